@@ -1,0 +1,78 @@
+//! The uncertainty of a pose.
+
+use nalgebra::{Matrix2, Matrix3};
+
+/// Covariance of a pose: rows and columns are x, y (metres) and yaw (radians),
+/// in the frame in which the pose is given.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Covariance(pub Matrix3<f64>);
+
+/// The one-sigma ellipse of a position.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Ellipse {
+    /// Half the longer axis, metres.
+    pub major_m: f64,
+    /// Half the shorter axis, metres.
+    pub minor_m: f64,
+    /// Direction of the longer axis, radians from the frame's x axis.
+    pub angle: f64,
+}
+
+impl Covariance {
+    /// Independent standard deviations: metres, metres and radians.
+    #[must_use]
+    pub fn from_deviations(x_m: f64, y_m: f64, yaw: f64) -> Self {
+        Covariance(Matrix3::from_diagonal(
+            &[x_m * x_m, y_m * y_m, yaw * yaw].into(),
+        ))
+    }
+
+    /// Row by row, as messages carry it.
+    #[must_use]
+    pub fn to_rows(self) -> [f64; 9] {
+        std::array::from_fn(|i| self.0[(i / 3, i % 3)])
+    }
+
+    /// The inverse of [`Covariance::to_rows`].
+    #[must_use]
+    pub fn from_rows(rows: [f64; 9]) -> Self {
+        Covariance(Matrix3::from_row_slice(&rows))
+    }
+
+    /// The one-sigma ellipse of the position, heading marginalised.
+    #[must_use]
+    pub fn ellipse(self) -> Ellipse {
+        let position: Matrix2<f64> = self.0.fixed_view::<2, 2>(0, 0).into_owned();
+        let eigen = position.symmetric_eigen();
+        let major = if eigen.eigenvalues[0] >= eigen.eigenvalues[1] {
+            0
+        } else {
+            1
+        };
+        let axis = eigen.eigenvectors.column(major);
+        Ellipse {
+            major_m: eigen.eigenvalues[major].max(0.0).sqrt(),
+            minor_m: eigen.eigenvalues[1 - major].max(0.0).sqrt(),
+            angle: axis[1].atan2(axis[0]),
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn rows_round_trip() {
+        let rows = [1.0, 0.1, 0.2, 0.1, 2.0, 0.3, 0.2, 0.3, 3.0];
+        assert_eq!(Covariance::from_rows(rows).to_rows(), rows);
+    }
+
+    #[test]
+    fn the_ellipse_lies_along_the_longer_axis() {
+        let ellipse = Covariance::from_deviations(0.1, 2.0, 0.01).ellipse();
+        assert!((ellipse.major_m - 2.0).abs() < 1e-12);
+        assert!((ellipse.minor_m - 0.1).abs() < 1e-12);
+        assert!((ellipse.angle.sin().abs() - 1.0).abs() < 1e-12, "along y");
+    }
+}

@@ -1,0 +1,13 @@
+//! Planar geometry: poses in SE(2), angles and covariances, on nalgebra.
+//!
+//! Lengths are metres and angles radians, counter-clockwise. A transform names
+//! both frames, target first: `map_from_laser` takes laser coordinates to the
+//! map. The crate knows no grid and no sensor.
+
+mod angle;
+mod covariance;
+mod pose;
+
+pub use angle::{angle_between, wrap_angle};
+pub use covariance::{Covariance, Ellipse};
+pub use pose::Pose;

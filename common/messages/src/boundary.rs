@@ -1,0 +1,58 @@
+//! The boundary of the obstacles.
+
+use bytemuck::{Pod, Zeroable};
+use iceoryx2_bb_derive_macros::ZeroCopySend;
+use iceoryx2_bb_elementary_traits::zero_copy_send::ZeroCopySend;
+
+use crate::Stamp;
+
+/// Header of topic `boundary`; the items are the boundary cells by (y, x).
+///
+/// It carries the rules by which cells were classed, so that whoever uses the
+/// boundary classes the map in the same way.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Pod, Zeroable, ZeroCopySend)]
+#[type_name("BoundaryHeader/v1")]
+#[repr(C)]
+pub struct BoundaryHeader {
+    /// Of the map.
+    pub stamp: Stamp,
+    /// The map that it was taken from.
+    pub map_id: u64,
+    /// Free cells, the paper's n.
+    pub free_cells: u64,
+    /// Boundary cells, the paper's p.
+    pub boundary_cells: u64,
+    /// Occupied cells.
+    pub occupied_cells: u64,
+    /// Occupancy from which a cell is occupied, 1..=100.
+    pub occupied_from: u32,
+    /// Occupancy up to which a cell is free, 0..=99.
+    pub free_to: u32,
+    /// 1 where unknown cells block rays, else 0.
+    pub unknown_blocks: u64,
+}
+
+/// A boundary cell: column and row.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Pod, Zeroable, ZeroCopySend)]
+#[type_name("BoundaryCell/v1")]
+#[repr(C)]
+pub struct BoundaryCell {
+    /// Cells along x from the grid's origin.
+    pub x: u16,
+    /// Cells along y from the grid's origin.
+    pub y: u16,
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    crate::pin_layout!(BoundaryHeader, size 72, align 8, {
+        stamp: 0, map_id: 24, free_cells: 32, boundary_cells: 40, occupied_cells: 48,
+        occupied_from: 56, free_to: 60, unknown_blocks: 64,
+    });
+
+    mod cell {
+        use super::*;
+        crate::pin_layout!(BoundaryCell, size 4, align 2, { x: 0, y: 2 });
+    }
+}

@@ -1,0 +1,26 @@
+//! The true pose of a scan, as recordings made for evaluation hold it.
+
+use bytemuck::{Pod, Zeroable};
+use iceoryx2_bb_derive_macros::ZeroCopySend;
+use iceoryx2_bb_elementary_traits::zero_copy_send::ZeroCopySend;
+
+use crate::{Name, Pose2, Stamp};
+
+/// The message of topic `ground_truth`; its `measured_ns` is the scan's.
+#[derive(Debug, Clone, Copy, PartialEq, Pod, Zeroable, ZeroCopySend)]
+#[type_name("GroundTruth/v1")]
+#[repr(C)]
+pub struct GroundTruth {
+    /// Of the scan that it belongs to.
+    pub stamp: Stamp,
+    /// Pose of the laser in the map.
+    pub map_from_laser: Pose2,
+    /// The frame in which the pose is given.
+    pub frame: Name,
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    crate::pin_layout!(GroundTruth, size 80, align 8, { stamp: 0, map_from_laser: 24, frame: 48 });
+}

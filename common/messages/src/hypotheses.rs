@@ -1,0 +1,116 @@
+//! Where the robot may be.
+
+use bytemuck::{Pod, Zeroable};
+use iceoryx2_bb_derive_macros::ZeroCopySend;
+use iceoryx2_bb_elementary_traits::zero_copy_send::ZeroCopySend;
+
+use crate::{Pose2, Stamp};
+
+/// Header of topic `hypotheses`; the items are distinct poses, best first.
+#[derive(Debug, Clone, Copy, PartialEq, Pod, Zeroable, ZeroCopySend)]
+#[type_name("HypothesesHeader/v1")]
+#[repr(C)]
+pub struct HypothesesHeader {
+    /// Of the scan.
+    pub stamp: Stamp,
+    /// The map that was searched; 0 where there was none.
+    pub map_id: u64,
+    /// `CLOCK_MONOTONIC` in nanoseconds when the hypotheses were sent.
+    pub sent_ns: i64,
+    /// Nanoseconds of computing, from scan to votes.
+    pub search_ns: u64,
+    /// Nanoseconds of computing, from votes to hypotheses.
+    pub extract_ns: u64,
+    /// A [`Verdict`].
+    pub verdict: u32,
+    /// Other places that fit about as well as the best; 0 where it is unique.
+    pub alternatives: u32,
+    /// The best pose's lead over the best other place, 0..=1.
+    pub confidence: f32,
+    /// Share of the beams' weight that agrees with the best pose, 0..=1.
+    pub inlier_share: f32,
+    /// The highest intensity of any pose.
+    pub best: u32,
+    /// What a pose would have if every beam agreed fully.
+    pub highest_possible: u32,
+    /// 1 where the laser's mount is known and `map_from_base` is meant, else 0.
+    pub mount_known: u64,
+}
+
+/// One place where the robot may be.
+#[derive(Debug, Clone, Copy, PartialEq, Pod, Zeroable, ZeroCopySend)]
+#[type_name("Hypothesis/v1")]
+#[repr(C)]
+pub struct Hypothesis {
+    /// Pose of the laser in the map.
+    pub map_from_laser: Pose2,
+    /// Pose of the robot's base in the map; the laser's where no mount is known.
+    pub map_from_base: Pose2,
+    /// Of `map_from_laser`, row by row over x, y and yaw: m², m·rad, rad².
+    pub covariance: [f64; 9],
+    /// Share of the votes that the pose could have at most, 0..=1.
+    pub score: f32,
+    /// Votes of the peak's highest pose.
+    pub intensity: u32,
+    /// Poses that make up the peak.
+    pub support: u64,
+}
+
+/// What the scan allows to say about the pose.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+#[repr(u32)]
+pub enum Verdict {
+    /// Nothing to go by: the scan was empty, refused, or explains nothing.
+    NoScan = 0,
+    /// One place fits, and no other comes near it.
+    Unique = 1,
+    /// Several places fit about as well.
+    Ambiguous = 2,
+    /// Even the best place fits badly: perhaps not this map.
+    PoorFit = 3,
+}
+
+impl Verdict {
+    /// The verdict with this number, if there is one.
+    #[must_use]
+    pub fn from_code(code: u32) -> Option<Self> {
+        [Self::NoScan, Self::Unique, Self::Ambiguous, Self::PoorFit]
+            .into_iter()
+            .find(|v| *v as u32 == code)
+    }
+
+    /// The word that logs and tables show.
+    #[must_use]
+    pub fn as_str(self) -> &'static str {
+        match self {
+            Verdict::NoScan => "NoScan",
+            Verdict::Unique => "Unique",
+            Verdict::Ambiguous => "Ambiguous",
+            Verdict::PoorFit => "PoorFit",
+        }
+    }
+}
+
+impl std::fmt::Display for Verdict {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        f.pad(self.as_str())
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    crate::pin_layout!(HypothesesHeader, size 88, align 8, {
+        stamp: 0, map_id: 24, sent_ns: 32, search_ns: 40, extract_ns: 48, verdict: 56,
+        alternatives: 60, confidence: 64, inlier_share: 68, best: 72, highest_possible: 76,
+        mount_known: 80,
+    });
+
+    mod hypothesis {
+        use super::*;
+        crate::pin_layout!(Hypothesis, size 136, align 8, {
+            map_from_laser: 0, map_from_base: 24, covariance: 48, score: 120, intensity: 124,
+            support: 128,
+        });
+    }
+}

@@ -1,0 +1,50 @@
+//! What flows through a Backcast graph: one header and one slice for each topic.
+//!
+//! Every type is `repr(C)`, plain data without padding, `usize` or pointers, so
+//! that a process can read it where another one wrote it. The version is part
+//! of the type name that the transport compares; a released layout never
+//! changes, a new one stands beside it under the next version. The crate holds
+//! no behaviour beyond conversions, and opens nothing.
+
+mod boundary;
+mod field;
+mod ground_truth;
+mod health;
+mod hypotheses;
+mod map;
+mod name;
+mod odometry;
+mod pose;
+mod scan;
+mod stamp;
+pub mod topic;
+mod votes;
+
+pub use boundary::{BoundaryCell, BoundaryHeader};
+pub use field::{FieldHeader, FieldKind};
+pub use ground_truth::GroundTruth;
+pub use health::{HealthHeader, NodeState};
+pub use hypotheses::{HypothesesHeader, Hypothesis, Verdict};
+pub use map::{MapHeader, UNKNOWN};
+pub use name::Name;
+pub use odometry::Odometry;
+pub use pose::Pose2;
+pub use scan::ScanHeader;
+pub use stamp::Stamp;
+pub use topic::{Message, Topic};
+pub use votes::{SearchOutcome, Vote, VotesHeader};
+
+/// Pins a message's size, alignment and the offset of every field.
+#[cfg(test)]
+macro_rules! pin_layout {
+    ($type:ty, size $size:literal, align $align:literal, { $($field:ident: $offset:literal),+ $(,)? }) => {
+        #[test]
+        fn layout_is_pinned() {
+            assert_eq!(size_of::<$type>(), $size, "size");
+            assert_eq!(align_of::<$type>(), $align, "alignment");
+            $(assert_eq!(std::mem::offset_of!($type, $field), $offset, stringify!($field));)+
+        }
+    };
+}
+#[cfg(test)]
+pub(crate) use pin_layout;

@@ -1,0 +1,34 @@
+//! What the wheels report.
+
+use bytemuck::{Pod, Zeroable};
+use iceoryx2_bb_derive_macros::ZeroCopySend;
+use iceoryx2_bb_elementary_traits::zero_copy_send::ZeroCopySend;
+
+use crate::{Name, Pose2, Stamp};
+
+/// The message of topic `odometry`.
+#[derive(Debug, Clone, Copy, PartialEq, Pod, Zeroable, ZeroCopySend)]
+#[type_name("Odometry/v1")]
+#[repr(C)]
+pub struct Odometry {
+    /// Of the measurement.
+    pub stamp: Stamp,
+    /// Pose of `child_frame` since the odometry's start.
+    pub odom_from_child: Pose2,
+    /// Velocity in the child frame: m/s, m/s, rad/s.
+    pub twist: Pose2,
+    /// Covariance of the pose, row by row over x, y and yaw: m², m·rad, rad².
+    pub covariance: [f64; 9],
+    /// The frame in which the pose is given.
+    pub frame: Name,
+    /// The frame that moves: the robot's base or the laser.
+    pub child_frame: Name,
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    crate::pin_layout!(Odometry, size 208, align 8, {
+        stamp: 0, odom_from_child: 24, twist: 48, covariance: 72, frame: 144, child_frame: 176,
+    });
+}

@@ -1,0 +1,37 @@
+//! A pose inside a message.
+
+use bytemuck::{Pod, Zeroable};
+use geometry::Pose;
+use iceoryx2_bb_derive_macros::ZeroCopySend;
+use iceoryx2_bb_elementary_traits::zero_copy_send::ZeroCopySend;
+
+/// Metres and radians; the field that holds it names the frames.
+#[derive(Debug, Clone, Copy, PartialEq, Pod, Zeroable, ZeroCopySend)]
+#[type_name("Pose2/v1")]
+#[repr(C)]
+pub struct Pose2 {
+    /// Metres.
+    pub x: f64,
+    /// Metres.
+    pub y: f64,
+    /// Radians, counter-clockwise.
+    pub yaw: f64,
+}
+
+impl From<Pose> for Pose2 {
+    fn from(Pose { x, y, yaw }: Pose) -> Self {
+        Pose2 { x, y, yaw }
+    }
+}
+
+impl From<Pose2> for Pose {
+    fn from(Pose2 { x, y, yaw }: Pose2) -> Self {
+        Pose::new(x, y, yaw)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    crate::pin_layout!(Pose2, size 24, align 8, { x: 0, y: 8, yaw: 16 });
+}

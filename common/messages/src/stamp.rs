@@ -1,0 +1,26 @@
+//! When something was measured, and when the graph first saw it.
+
+use bytemuck::{Pod, Zeroable};
+use iceoryx2_bb_derive_macros::ZeroCopySend;
+use iceoryx2_bb_elementary_traits::zero_copy_send::ZeroCopySend;
+
+/// The origin of a measurement. Every step copies the stamp of its input
+/// onward, so latency is always now minus `entered_ns`.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Pod, Zeroable, ZeroCopySend)]
+#[type_name("Stamp/v1")]
+#[repr(C)]
+pub struct Stamp {
+    /// Nanoseconds since 1970 at which the source measured; a recording keeps
+    /// its own.
+    pub measured_ns: i64,
+    /// The host's `CLOCK_MONOTONIC` in nanoseconds when it entered the graph.
+    pub entered_ns: i64,
+    /// Counts up by one from 0 at the publisher, so that gaps show losses.
+    pub counter: u64,
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    crate::pin_layout!(Stamp, size 24, align 8, { measured_ns: 0, entered_ns: 8, counter: 16 });
+}
