@@ -1,0 +1,207 @@
+//! Which beams of a scan vote, and how much each counts.
+
+use std::f64::consts::TAU;
+
+use crate::scan::Scan;
+use crate::space::Space;
+
+/// Added to every weight, so that near beams keep a say.
+const LEAST_WEIGHT: f64 = 0.05;
+
+/// Which beams vote, and with what weight.
+#[derive(Debug, Clone, Copy, PartialEq, clap::Args)]
+pub struct BeamConfig {
+    /// Most beams that vote, 1..=65536; longer scans are thinned by arc.
+    #[arg(long, value_name = "COUNT", default_value_t = 180, value_parser = clap::value_parser!(u32).range(1..=65_536))]
+    pub max_beams: u32,
+    /// Arc at the reading from which a beam counts fully, metres, 0..=2;
+    /// nearer ones count by the arc that they cover. 0 weighs all the same.
+    #[arg(long, value_name = "METRES", default_value_t = 0.20, value_parser = crate::config::parse_length)]
+    pub beam_arc_m: f64,
+}
+
+impl Default for BeamConfig {
+    fn default() -> Self {
+        BeamConfig {
+            max_beams: 180,
+            beam_arc_m: 0.20,
+        }
+    }
+}
+
+/// A beam that votes.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(crate) struct Beam {
+    /// Index on the heading grid.
+    pub bearing: usize,
+    /// What rounding to the grid left over, radians.
+    pub rounding: f64,
+    /// Metres.
+    pub reading_m: f64,
+    /// How much it counts; 1 weighs a beam in full.
+    pub weight: f64,
+}
+
+/// The beams that vote, by bearing, and how many say nothing.
+#[derive(Debug, Clone, PartialEq)]
+pub(crate) struct Chosen {
+    pub beams: Vec<Beam>,
+    pub silent: usize,
+}
+
+/// Divides the scan's arc evenly into at most `max_beams` sectors and takes
+/// from each the returned reading whose bearing lies nearest to the heading
+/// grid; of equally near ones that nearest to the sector's middle, then the
+/// first. A sector is silent where nothing returned, or from farther than the
+/// map reaches: nothing in it explains such a reading.
+pub(crate) fn choose(scan: &Scan<'_>, turn: f64, space: &Space, config: &BeamConfig) -> Chosen {
+    let readings = scan.ranges.len();
+    let sectors = readings.min(config.max_beams as usize);
+    let arc = (readings as f64 * scan.angle_increment).min(TAU) / sectors as f64;
+    let mut chosen = Chosen {
+        beams: Vec::with_capacity(sectors),
+        silent: 0,
+    };
+    for sector in 0..sectors {
+        // Integer bounds: every reading lies in exactly one sector.
+        let (start, end) = (
+            sector * readings / sectors,
+            (sector + 1) * readings / sectors,
+        );
+        let middle = (start + end - 1) as f64 / 2.0;
+        let candidates = (start..end).filter_map(|i| {
+            let reading_m = scan.reading(i).filter(|&m| m <= space.longest_m)?;
+            let (bearing, rounding) = space.directions.nearest(scan.bearing(i) + turn);
+            let weight = weight(reading_m * arc, config.beam_arc_m);
+            Some((
+                Beam {
+                    bearing,
+                    rounding,
+                    reading_m,
+                    weight,
+                },
+                (i as f64 - middle).abs(),
+            ))
+        });
+        let best = candidates.min_by(|(a, a_off), (b, b_off)| {
+            grid_distance(a)
+                .cmp(&grid_distance(b))
+                .then(a_off.total_cmp(b_off))
+        });
+        match best {
+            Some((beam, _)) => chosen.beams.push(beam),
+            None => chosen.silent += 1,
+        }
+    }
+    chosen
+}
+
+/// `min(1, arc at the reading / full arc) + 0.05`; 1 where beams weigh the same.
+fn weight(arc_m: f64, full_arc_m: f64) -> f64 {
+    if full_arc_m > 0.0 {
+        (arc_m / full_arc_m).min(1.0) + LEAST_WEIGHT
+    } else {
+        1.0
+    }
+}
+
+/// Distance of a bearing from the grid in microradians: scans store angles in
+/// 32 bits, whose last bits must not decide between two beams.
+fn grid_distance(beam: &Beam) -> i64 {
+    (beam.rounding.abs() * 1e6).round() as i64
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn half_degrees(ranges: &[f32]) -> Scan<'_> {
+        Scan {
+            angle_min: -90f64.to_radians(),
+            angle_increment: 0.5f64.to_radians(),
+            range_min_m: 0.0,
+            range_max_m: 80.0,
+            ranges,
+        }
+    }
+
+    fn space() -> Space {
+        Space::new(360, 0.05, 1000, 1000).unwrap()
+    }
+
+    #[test]
+    fn a_fine_scan_is_thinned_to_beams_on_the_heading_grid() {
+        let ranges = [3.0; 361];
+        let chosen = choose(
+            &half_degrees(&ranges),
+            0.0,
+            &space(),
+            &BeamConfig::default(),
+        );
+        assert_eq!(chosen.beams.len(), 180);
+        // Rounding a half degree is the worst; all but the odd sector avoid it.
+        let exact = chosen
+            .beams
+            .iter()
+            .filter(|beam| beam.rounding.abs() < 1e-6)
+            .count();
+        assert!(exact >= 179, "{exact} of 180 beams lie on the grid");
+        assert_eq!(chosen.beams[0].bearing, 270);
+    }
+
+    #[test]
+    fn a_sector_falls_back_on_the_reading_that_returned() {
+        let mut ranges = [f32::INFINITY; 360];
+        for i in (1..360).step_by(2) {
+            ranges[i] = 4.0;
+        }
+        let chosen = choose(
+            &half_degrees(&ranges),
+            0.0,
+            &space(),
+            &BeamConfig::default(),
+        );
+        assert_eq!((chosen.beams.len(), chosen.silent), (180, 0));
+    }
+
+    #[test]
+    fn near_beams_count_by_the_arc_that_they_cover() {
+        let mut ranges = [f32::INFINITY; 180];
+        (ranges[0], ranges[1]) = (1.0, 30.0);
+        let scan = Scan {
+            angle_increment: 1f64.to_radians(),
+            ..half_degrees(&ranges)
+        };
+        let chosen = choose(&scan, 0.0, &space(), &BeamConfig::default());
+        let arc = 1f64.to_radians();
+        let weights: Vec<f64> = chosen.beams.iter().map(|beam| beam.weight).collect();
+        assert_eq!(weights, [arc / 0.20 + 0.05, 1.05]);
+        assert_eq!(chosen.silent, 178);
+    }
+
+    #[test]
+    fn readings_beyond_the_map_are_silent() {
+        // The diagonal of 50 m x 50 m is 70.7 m.
+        let ranges = [70.0, 71.0];
+        let chosen = choose(
+            &half_degrees(&ranges),
+            0.0,
+            &space(),
+            &BeamConfig::default(),
+        );
+        assert_eq!((chosen.beams.len(), chosen.silent), (1, 1));
+    }
+
+    #[test]
+    fn few_beams_are_all_taken() {
+        let ranges = [1.0, 2.0, 3.0];
+        let config = BeamConfig {
+            beam_arc_m: 0.0,
+            ..BeamConfig::default()
+        };
+        let chosen = choose(&half_degrees(&ranges), 0.0, &space(), &config);
+        let readings: Vec<f64> = chosen.beams.iter().map(|beam| beam.reading_m).collect();
+        assert_eq!(readings, [1.0, 2.0, 3.0]);
+        assert!(chosen.beams.iter().all(|beam| beam.weight == 1.0));
+    }
+}

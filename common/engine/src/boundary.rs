@@ -1,0 +1,91 @@
+//! The boundary of the obstacles: the cells that rays end in.
+//!
+//! These are the paper's c_i ∈ C. A cell counts with all eight neighbours,
+//! because rays step diagonally: with four, a ray could end in a cell that the
+//! reverse projection does not start from.
+
+use messages::BoundaryCell;
+
+use crate::grid::{Cell, Grid};
+
+/// The occupied cells with an open cell among their eight neighbours, by
+/// (y, x).
+#[must_use]
+pub fn extract(grid: &Grid) -> Vec<BoundaryCell> {
+    cells_touching_open(grid, Cell::Occupied)
+}
+
+/// The cells in which rays are lost without a hit and that a ray can meet
+/// first, by (y, x).
+pub(crate) fn blocked(grid: &Grid) -> Vec<BoundaryCell> {
+    cells_touching_open(grid, Cell::Blocked)
+}
+
+fn cells_touching_open(grid: &Grid, kind: Cell) -> Vec<BoundaryCell> {
+    let rows = grid.cells().chunks_exact(grid.width());
+    rows.enumerate()
+        .flat_map(|(y, row)| row.iter().enumerate().map(move |(x, &cell)| (x, y, cell)))
+        .filter(|&(x, y, cell)| cell == kind && grid.touches_open(x as i64, y as i64))
+        .map(|(x, y, _)| BoundaryCell {
+            x: x as u16,
+            y: y as u16,
+        })
+        .collect()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::grid::CellRules;
+    use crate::grid::drawn::{grid, grid_with};
+
+    fn drawn(cells: &[BoundaryCell], width: usize, height: usize) -> Vec<String> {
+        let at = |x, y| {
+            if cells.contains(&BoundaryCell { x, y }) {
+                '*'
+            } else {
+                ' '
+            }
+        };
+        (0..height as u16)
+            .rev()
+            .map(|y| (0..width as u16).map(|x| at(x, y)).collect())
+            .collect()
+    }
+
+    #[test]
+    fn takes_cells_that_touch_an_open_one_even_at_a_corner() {
+        let grid = grid(&["......", ".####.", ".####.", ".####.", "......"]);
+        let boundary = extract(&grid);
+        assert_eq!(
+            drawn(&boundary, 6, 5),
+            ["      ", " **** ", " *  * ", " **** ", "      "]
+        );
+    }
+
+    #[test]
+    fn the_border_of_the_map_is_no_open_cell() {
+        let boundary = extract(&grid(&["####", "####", "##.#"]));
+        assert_eq!(drawn(&boundary, 4, 3), ["    ", " ***", " * *"]);
+    }
+
+    #[test]
+    fn behind_blocking_unknown_cells_there_is_no_boundary() {
+        let rows = ["??#..", "??#.."];
+        assert_eq!(extract(&grid(&rows)).len(), 2);
+        let rules = CellRules {
+            unknown_blocks: true,
+            ..CellRules::default()
+        };
+        assert_eq!(extract(&grid_with(&["#??", "?.#"], rules)).len(), 2);
+        assert_eq!(extract(&grid_with(&["#??.", "#??."], rules)).len(), 0);
+        assert_eq!(blocked(&grid_with(&["#??.", "#??."], rules)).len(), 2);
+    }
+
+    #[test]
+    fn the_order_is_by_row_then_column() {
+        let boundary = extract(&grid(&["#.#", "...", "#.#"]));
+        let order: Vec<_> = boundary.iter().map(|cell| (cell.y, cell.x)).collect();
+        assert_eq!(order, [(0, 0), (0, 2), (2, 0), (2, 2)]);
+    }
+}

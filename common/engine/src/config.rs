@@ -1,0 +1,50 @@
+//! Parsers of settings, so that a value out of range is refused by name.
+
+/// A length of 0 to 2 metres: the width of a taper, the arc of a beam.
+pub(crate) fn parse_length(text: &str) -> Result<f64, String> {
+    parse(text, 0.0..=2.0, "metres")
+}
+
+/// A share of the range, 0 to 0.25: no laser is worse.
+pub(crate) fn parse_range_share(text: &str) -> Result<f64, String> {
+    parse(text, 0.0..=0.25, "as a share of the range")
+}
+
+/// A share of 0 to 1.
+pub(crate) fn parse_share(text: &str) -> Result<f64, String> {
+    parse(text, 0.0..=1.0, "as a share")
+}
+
+fn parse(text: &str, allowed: std::ops::RangeInclusive<f64>, unit: &str) -> Result<f64, String> {
+    let value: f64 = text
+        .parse()
+        .map_err(|_| format!("{text:?} is not a number"))?;
+    if allowed.contains(&value) {
+        Ok(value)
+    } else {
+        Err(format!(
+            "{value} is not within {} to {} {unit}",
+            allowed.start(),
+            allowed.end()
+        ))
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn values_out_of_range_are_refused_by_name() {
+        assert_eq!(parse_length("0.2"), Ok(0.2));
+        assert_eq!(
+            parse_length("-1"),
+            Err("-1 is not within 0 to 2 metres".into())
+        );
+        assert_eq!(
+            parse_share("NaN"),
+            Err("NaN is not within 0 to 1 as a share".into())
+        );
+        assert_eq!(parse_share("x"), Err("\"x\" is not a number".into()));
+    }
+}

@@ -1,0 +1,75 @@
+//! What the engine refuses.
+
+use crate::grid::MAX_SIDE;
+
+/// A map, a scan or a setting that the engine cannot work with.
+#[derive(Debug, Clone, PartialEq, thiserror::Error)]
+pub enum EngineError {
+    /// A side of the grid is out of range.
+    #[error("a grid of {width} x {height} cells: each side must have 1 to {MAX_SIDE} cells")]
+    GridSides {
+        /// Cells along x.
+        width: usize,
+        /// Cells along y.
+        height: usize,
+    },
+    /// The cells do not fill the grid.
+    #[error("a grid of {width} x {height} cells came with {cells} occupancies instead of {}", width * height)]
+    GridCells {
+        /// Cells along x.
+        width: usize,
+        /// Cells along y.
+        height: usize,
+        /// Occupancies given.
+        cells: usize,
+    },
+    /// Cells have no size.
+    #[error("cells of {0} m: a cell's side must be finite and above zero")]
+    Resolution(f64),
+    /// There is no obstacle to project from.
+    #[error("the map has no occupied cell: there is nothing that a laser could see")]
+    NoOccupiedCell,
+    /// There is no place to stand.
+    #[error("the map has no free cell: there is nowhere that the robot could be")]
+    NoFreeCell,
+    /// The number of headings is not supported.
+    #[error("{0} headings a turn: it must be a multiple of 8 from 8 to 3600")]
+    Headings(u32),
+    /// The scan has no readings.
+    #[error("the scan is empty: it has no ranges")]
+    EmptyScan,
+    /// The scan has more readings than a scan can have.
+    #[error("the scan has {0} ranges: at most 65536 are allowed")]
+    TooManyRanges(usize),
+    /// The scan's first bearing is unusable.
+    #[error("angle_min is {0}: it must be finite, in radians, within two turns")]
+    AngleMin(f64),
+    /// The scan's angular step is unusable.
+    #[error(
+        "angle_increment is {0}: it must be finite and above zero, in radians, counter-clockwise"
+    )]
+    AngleIncrement(f64),
+    /// The scan covers more than a turn.
+    #[error(
+        "{beams} beams of {angle_increment} rad cover {turns:.2} turns: at most one is allowed"
+    )]
+    FieldOfView {
+        /// Readings of the scan.
+        beams: usize,
+        /// Radians from one to the next.
+        angle_increment: f64,
+        /// What they cover.
+        turns: f64,
+    },
+    /// The scan's range limits contradict each other.
+    #[error("range_min {min} and range_max {max}: 0 <= range_min < range_max is needed, in metres")]
+    RangeLimits {
+        /// Least range, metres.
+        min: f32,
+        /// Greatest range, metres.
+        max: f32,
+    },
+    /// The given heading is no number.
+    #[error("the known heading is {0}: it must be finite, in radians")]
+    Heading(f64),
+}

@@ -1,0 +1,265 @@
+//! The scan program: a scan compiled for the grid that it is matched with.
+//!
+//! Beams are thinned by arc, weighted, rounded once to the heading grid and
+//! given their integer tapers. Every accumulator runs the same program, so all
+//! of them count the same votes.
+
+use crate::EngineError;
+use crate::beams::{self, Beam, BeamConfig};
+use crate::lines::NO_RANGE;
+use crate::scan::Scan;
+use crate::space::Space;
+use crate::taper::TaperShape;
+
+/// Highest vote of a beam with weight 1.
+const FULL_VOTE: u32 = 15;
+
+/// How readings become votes.
+#[derive(Debug, Clone, Copy, PartialEq, clap::Args)]
+pub struct VoteConfig {
+    /// Which beams vote, and with what weight.
+    #[command(flatten)]
+    pub beams: BeamConfig,
+    /// How votes fall off in front of a reading and behind it.
+    #[arg(long, value_enum, default_value_t = TaperShape::Trapezoid)]
+    pub taper: TaperShape,
+    /// Standard deviation of a reading at no distance, metres, 0..=2; the
+    /// taper is never narrower than one cell.
+    #[arg(long, value_name = "METRES", default_value_t = 0.10, value_parser = crate::config::parse_length)]
+    pub sigma_m: f64,
+    /// What is added to the standard deviation for each metre of range, 0..=0.25.
+    #[arg(long, value_name = "SHARE", default_value_t = 0.01, value_parser = crate::config::parse_range_share)]
+    pub sigma_per_m: f64,
+}
+
+impl Default for VoteConfig {
+    fn default() -> Self {
+        VoteConfig {
+            beams: BeamConfig::default(),
+            taper: TaperShape::Trapezoid,
+            sigma_m: 0.10,
+            sigma_per_m: 0.01,
+        }
+    }
+}
+
+/// What one beam votes along rays of one class of directions.
+#[derive(Debug, Clone, Copy)]
+pub struct Taper<'a> {
+    /// Steps to the reading; no reading is longer than a grid's diagonal.
+    pub centre: u16,
+    /// Votes at 0, 1, 2, … steps from there; nothing beyond.
+    pub profile: &'a [u8],
+}
+
+impl Taper<'_> {
+    /// Votes for a pose from which the ray is `range` steps long; none for
+    /// [`NO_RANGE`].
+    #[must_use]
+    pub fn votes(&self, range: u16) -> u8 {
+        match self.profile.get(usize::from(range.abs_diff(self.centre))) {
+            Some(&votes) if range != NO_RANGE => votes,
+            _ => 0,
+        }
+    }
+
+    /// The least number of steps beyond the reading that has no votes.
+    #[must_use]
+    pub fn end(&self) -> u16 {
+        self.centre.saturating_add(self.profile.len() as u16)
+    }
+}
+
+/// A scan, ready to vote on a grid.
+#[derive(Debug, Clone)]
+pub struct ScanProgram {
+    bearings: Vec<usize>,
+    /// For beam `i` and class `c` at `i · classes + c`.
+    tapers: Vec<TaperEntry>,
+    profiles: Vec<u8>,
+    classes: usize,
+    highest_possible: u32,
+    silent: usize,
+    bearing_rounding: f64,
+}
+
+#[derive(Debug, Clone, Copy)]
+struct TaperEntry {
+    centre: u16,
+    start: u32,
+    len: u32,
+}
+
+impl ScanProgram {
+    /// Compiles a scan for a search space.
+    ///
+    /// `turn` is added to every bearing before it is rounded: the part of a
+    /// known heading that the heading grid does not hold, else 0.
+    ///
+    /// # Errors
+    /// If [`Scan::check`] refuses the scan.
+    pub fn new(
+        scan: &Scan<'_>,
+        turn: f64,
+        space: &Space,
+        config: &VoteConfig,
+    ) -> Result<Self, EngineError> {
+        scan.check()?;
+        let chosen = beams::choose(scan, turn, space, &config.beams);
+        let full_vote = fitting_full_vote(&chosen.beams);
+        let mut program = ScanProgram {
+            bearings: Vec::with_capacity(chosen.beams.len()),
+            tapers: Vec::with_capacity(chosen.beams.len() * space.directions.classes()),
+            profiles: Vec::new(),
+            classes: space.directions.classes(),
+            highest_possible: 0,
+            silent: chosen.silent,
+            bearing_rounding: 0.0,
+        };
+        for beam in &chosen.beams {
+            program.push(beam, f64::from(full_vote) * beam.weight, space, config);
+        }
+        Ok(program)
+    }
+
+    fn push(&mut self, beam: &Beam, peak: f64, space: &Space, config: &VoteConfig) {
+        let reading_cells = beam.reading_m / space.resolution_m;
+        let sigma_m = config.sigma_m + config.sigma_per_m * beam.reading_m;
+        let sigma_cells = (sigma_m / space.resolution_m).max(1.0);
+        for class in 0..self.classes {
+            let steps_per_cell = space.directions.steps_per_cell(class);
+            let profile = config.taper.profile(peak, sigma_cells * steps_per_cell);
+            self.tapers.push(TaperEntry {
+                centre: (reading_cells * steps_per_cell + 0.5).floor() as u16,
+                start: self.profiles.len() as u32,
+                len: profile.len() as u32,
+            });
+            self.profiles.extend(profile);
+        }
+        self.bearings.push(beam.bearing);
+        self.highest_possible += peak.round() as u32;
+        self.bearing_rounding = self.bearing_rounding.max(beam.rounding.abs());
+    }
+
+    /// How many beams vote; the paper's m.
+    #[must_use]
+    pub fn beams(&self) -> usize {
+        self.bearings.len()
+    }
+
+    /// Bearing of beam `i` as an index on the heading grid.
+    #[must_use]
+    pub fn bearing(&self, i: usize) -> usize {
+        self.bearings[i]
+    }
+
+    /// What beam `i` votes along rays of a class of directions.
+    #[must_use]
+    pub fn taper(&self, i: usize, class: usize) -> Taper<'_> {
+        let TaperEntry { centre, start, len } = self.tapers[i * self.classes + class];
+        Taper {
+            centre,
+            profile: &self.profiles[start as usize..][..len as usize],
+        }
+    }
+
+    /// What a pose would have if every beam agreed fully; at most 65535.
+    #[must_use]
+    pub fn highest_possible(&self) -> u32 {
+        self.highest_possible
+    }
+
+    /// Beams of the thinned scan whose reading says nothing.
+    #[must_use]
+    pub fn silent(&self) -> usize {
+        self.silent
+    }
+
+    /// The largest rounding of a bearing to the heading grid, radians.
+    #[must_use]
+    pub fn bearing_rounding(&self) -> f64 {
+        self.bearing_rounding
+    }
+}
+
+/// The highest full vote, at most [`FULL_VOTE`], with which the votes of all
+/// beams together fit 16 bits.
+fn fitting_full_vote(beams: &[Beam]) -> u32 {
+    (1..=FULL_VOTE)
+        .rev()
+        .find(|&full| {
+            let sum: f64 = beams
+                .iter()
+                .map(|beam| (f64::from(full) * beam.weight).round())
+                .sum();
+            sum <= f64::from(u16::MAX)
+        })
+        .unwrap_or(1)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn program(ranges: &[f32], config: &VoteConfig) -> ScanProgram {
+        let scan = Scan {
+            angle_min: 0.0,
+            angle_increment: std::f64::consts::TAU / ranges.len() as f64,
+            range_min_m: 0.0,
+            range_max_m: 100.0,
+            ranges,
+        };
+        ScanProgram::new(
+            &scan,
+            0.0,
+            &Space::new(360, 0.05, 1000, 1000).unwrap(),
+            config,
+        )
+        .unwrap()
+    }
+
+    #[test]
+    fn a_reading_is_measured_in_steps_of_its_direction() {
+        let program = program(&[10.0; 8], &VoteConfig::default());
+        // 200 cells: as many steps along an axis, 200 / √2 = 141.4 on a diagonal.
+        assert_eq!(program.taper(0, 0).centre, 200);
+        assert_eq!(program.taper(0, 45).centre, 141);
+        // σ = 0.2 m = 4 cells: flat to 4 steps, zero at 10.
+        let taper = program.taper(0, 0);
+        assert_eq!(
+            (taper.votes(196), taper.votes(204), taper.votes(209)),
+            (16, 16, 3)
+        );
+        assert_eq!(
+            (taper.votes(190), taper.votes(210), taper.votes(0)),
+            (0, 0, 0)
+        );
+    }
+
+    #[test]
+    fn votes_are_lowered_until_their_sum_fits() {
+        let beams = BeamConfig {
+            max_beams: 65_536,
+            beam_arc_m: 0.0,
+        };
+        let config = VoteConfig {
+            beams,
+            ..VoteConfig::default()
+        };
+        let wide = program(&vec![5.0; 6000], &config);
+        assert_eq!(
+            wide.highest_possible(),
+            60_000,
+            "10 votes for each of 6000 beams"
+        );
+        let usual = program(&vec![5.0; 360], &config);
+        assert_eq!(usual.highest_possible(), 15 * 360);
+    }
+
+    #[test]
+    fn silent_beams_are_counted_and_do_not_vote() {
+        let program = program(&[1.0, f32::INFINITY, 2.0, f32::NAN], &VoteConfig::default());
+        assert_eq!((program.beams(), program.silent()), (2, 2));
+        assert_eq!((program.bearing(0), program.bearing(1)), (0, 180));
+    }
+}

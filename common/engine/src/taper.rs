@@ -1,0 +1,81 @@
+//! The taper: how the votes of a reading fall off in front of it and behind.
+//!
+//! The paper's Eq. 1 is a Gaussian, and the paper adds that any shape that is
+//! highest at the reading and tapers off does as well. All shapes here peak at
+//! 1 and never rise with the distance.
+
+/// The shape of a taper over the distance from the reading, in units of σ.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, clap::ValueEnum)]
+pub enum TaperShape {
+    /// exp(-d²/2), Eq. 1 of the paper.
+    Gaussian,
+    /// Falls evenly to zero at 2σ.
+    Linear,
+    /// Flat to σ, then evenly to zero at 2.5σ.
+    Trapezoid,
+    /// Flat to 2σ, then nothing.
+    Box,
+}
+
+impl TaperShape {
+    /// Height at `distance` σ, in 0..=1.
+    #[must_use]
+    pub fn height(self, distance: f64) -> f64 {
+        match self {
+            TaperShape::Gaussian => (-0.5 * distance * distance).exp(),
+            TaperShape::Linear => (1.0 - distance / 2.0).max(0.0),
+            TaperShape::Trapezoid => ((2.5 - distance) / 1.5).clamp(0.0, 1.0),
+            TaperShape::Box => f64::from(u8::from(distance <= 2.0)),
+        }
+    }
+
+    /// Votes at 0, 1, 2, … steps from the reading: `round(peak · height)`, up
+    /// to and without the first zero. Empty where even the peak rounds to zero.
+    #[must_use]
+    pub fn profile(self, peak: f64, sigma_steps: f64) -> Vec<u8> {
+        (0..)
+            .map(|steps| (peak * self.height(f64::from(steps) / sigma_steps)).round() as u8)
+            .take_while(|&votes| votes > 0)
+            .collect()
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    const ALL: [TaperShape; 4] = [
+        TaperShape::Gaussian,
+        TaperShape::Linear,
+        TaperShape::Trapezoid,
+        TaperShape::Box,
+    ];
+
+    #[test]
+    fn shapes_have_their_widths() {
+        assert_eq!(TaperShape::Box.profile(15.0, 2.0), [15; 5]);
+        assert_eq!(TaperShape::Linear.profile(15.0, 2.0), [15, 11, 8, 4]);
+        assert_eq!(
+            TaperShape::Trapezoid.profile(15.0, 2.0),
+            [15, 15, 15, 10, 5]
+        );
+        // exp(-2) · 15 = 2.03 at two σ, exp(-4.5) · 15 = 0.17 at three.
+        assert_eq!(TaperShape::Gaussian.profile(15.0, 1.0), [15, 9, 2]);
+    }
+
+    #[test]
+    fn no_shape_rises_with_distance() {
+        for shape in ALL {
+            for sigma in [0.71, 1.0, 2.3, 18.0] {
+                let profile = shape.profile(15.75, sigma);
+                assert_eq!(profile.first(), Some(&16), "{shape:?} peaks at the reading");
+                assert!(profile.is_sorted_by(|a, b| a >= b), "{shape:?} {sigma}");
+            }
+        }
+    }
+
+    #[test]
+    fn a_peak_that_rounds_to_nothing_has_no_votes() {
+        assert_eq!(TaperShape::Trapezoid.profile(0.4, 2.0), []);
+    }
+}

@@ -1,0 +1,89 @@
+//! Random worlds for the tests of this crate.
+
+use messages::UNKNOWN;
+use proptest::collection::vec;
+use proptest::prelude::*;
+
+use crate::grid::{CellRules, Grid};
+use crate::program::{ScanProgram, VoteConfig};
+use crate::scan::Scan;
+use crate::space::Space;
+use crate::taper::TaperShape;
+
+/// Side of a cell in tests, metres.
+pub(crate) const RESOLUTION_M: f64 = 0.1;
+
+/// Grids of 1 to 40 cells a side, from empty to cluttered, with unknown cells
+/// that block or do not.
+pub(crate) fn any_grid() -> impl Strategy<Value = Grid> {
+    let cells = |count: usize| {
+        (1u32..60, 0u32..30).prop_flat_map(move |(occupied, unknown)| {
+            let cell = prop_oneof![
+                occupied => Just(100u8),
+                unknown => Just(UNKNOWN),
+                120 => Just(0u8),
+            ];
+            vec(cell, count)
+        })
+    };
+    (1usize..=40, 1usize..=40, any::<bool>()).prop_flat_map(
+        move |(width, height, unknown_blocks)| {
+            cells(width * height).prop_map(move |occupancy| {
+                let rules = CellRules {
+                    unknown_blocks,
+                    ..CellRules::default()
+                };
+                Grid::new(width, height, &occupancy, rules).expect("sides are in range")
+            })
+        },
+    )
+}
+
+/// The search space of a test grid.
+pub(crate) fn space_of(grid: &Grid, headings: u32) -> Space {
+    Space::new(headings, RESOLUTION_M, grid.width(), grid.height()).expect("headings are allowed")
+}
+
+/// What one may scan: readings from nothing to beyond the grid, any taper.
+#[derive(Debug, Clone)]
+pub(crate) struct AnyScan {
+    ranges: Vec<f32>,
+    angle_min: f64,
+    config: VoteConfig,
+}
+
+impl AnyScan {
+    /// The scan, compiled for a space.
+    pub(crate) fn program(&self, space: &Space) -> ScanProgram {
+        let scan = Scan {
+            angle_min: self.angle_min,
+            angle_increment: 0.9 * std::f64::consts::TAU / self.ranges.len() as f64,
+            range_min_m: 0.0,
+            range_max_m: 100.0,
+            ranges: &self.ranges,
+        };
+        ScanProgram::new(&scan, 0.0, space, &self.config).expect("the scan is sound")
+    }
+}
+
+/// Scans of 1 to 24 beams with any taper, narrow or wide.
+pub(crate) fn any_scan() -> impl Strategy<Value = AnyScan> {
+    let reading = prop_oneof![8 => 0.05f32..4.5, 1 => Just(f32::INFINITY), 1 => Just(f32::NAN)];
+    let taper = prop_oneof![
+        Just(TaperShape::Gaussian),
+        Just(TaperShape::Linear),
+        Just(TaperShape::Trapezoid),
+        Just(TaperShape::Box),
+    ];
+    (vec(reading, 1..24), -4.0..4.0f64, taper, 0.0..0.4f64).prop_map(
+        |(ranges, angle_min, taper, sigma_m)| AnyScan {
+            ranges,
+            angle_min,
+            config: VoteConfig {
+                taper,
+                sigma_m,
+                ..VoteConfig::default()
+            },
+        },
+    )
+}

@@ -1,0 +1,226 @@
+//! The outcome of a search: the poses that have the most votes.
+
+use std::cmp::Reverse;
+
+use messages::Vote;
+
+/// What is collected of a search.
+#[derive(Debug, Clone, Copy, PartialEq, clap::Args)]
+pub struct CollectConfig {
+    /// Poses with at least this share of the best pose's votes are collected,
+    /// 0..=1; lower shares show more alternatives and take longer.
+    #[arg(long, value_name = "SHARE", default_value_t = 0.85, value_parser = crate::config::parse_share)]
+    pub floor_share: f64,
+    /// Most poses that are collected, 1..=1000000; the floor rises until they
+    /// fit.
+    #[arg(long, value_name = "COUNT", default_value_t = 65_536, value_parser = clap::value_parser!(u32).range(1..=1_000_000))]
+    pub max_votes: u32,
+}
+
+impl Default for CollectConfig {
+    fn default() -> Self {
+        CollectConfig {
+            floor_share: 0.85,
+            max_votes: 65_536,
+        }
+    }
+}
+
+/// The poses with the most votes, and how complete they are.
+#[derive(Debug, Clone, PartialEq, Eq, Default)]
+pub struct VoteSet {
+    /// By falling intensity, equal ones by (heading, y, x). The first is the
+    /// pose of the robot; empty where no pose has a vote.
+    pub votes: Vec<Vote>,
+    /// The least intensity among them; 0 where there are none.
+    pub floor: u16,
+    /// All poses at or above this intensity are among the votes.
+    pub certified_floor: u16,
+    /// The highest intensity of any pose.
+    pub best: u16,
+    /// Whether poses above the share asked for were left out.
+    pub truncated: bool,
+    /// Poses whose intensity was computed one by one.
+    pub poses_evaluated: u64,
+}
+
+/// Takes poses in any order and keeps those that matter.
+///
+/// The outcome does not depend on the order: the floor only rises, and only to
+/// levels that the final floor cannot lie below.
+#[derive(Debug)]
+pub(crate) struct Collector {
+    config: CollectConfig,
+    votes: Vec<Vote>,
+    best: u16,
+    /// Below this intensity too many poses were seen for all to fit.
+    crowded_below: u16,
+    /// The intensity of which not even all best poses fit.
+    cut: Option<u16>,
+}
+
+impl Collector {
+    pub(crate) fn new(config: CollectConfig) -> Self {
+        Collector {
+            config,
+            votes: Vec::new(),
+            best: 0,
+            crowded_below: 1,
+            cut: None,
+        }
+    }
+
+    /// The least intensity that can still matter; at least 1.
+    pub(crate) fn floor(&self) -> u16 {
+        self.share_floor().max(self.crowded_below)
+    }
+
+    fn share_floor(&self) -> u16 {
+        ((f64::from(self.best) * self.config.floor_share).ceil() as u16).max(1)
+    }
+
+    /// Takes a pose, unless it lies below the floor.
+    pub(crate) fn take(&mut self, vote: Vote) {
+        if vote.intensity < self.floor() {
+            return;
+        }
+        self.best = self.best.max(vote.intensity);
+        self.votes.push(vote);
+        if self.votes.len() >= 2 * self.config.max_votes as usize {
+            self.make_room();
+        }
+    }
+
+    /// Drops what lies below the floor, then whole levels from below until
+    /// what is left fits. The best level stays, cut to what fits of it.
+    fn make_room(&mut self) {
+        let max_votes = self.config.max_votes as usize;
+        let floor = self.floor();
+        self.votes.retain(|vote| vote.intensity >= floor);
+        if self.votes.len() <= max_votes {
+            return;
+        }
+        self.votes.sort_unstable_by_key(order);
+        let first_left_out = self.votes[max_votes].intensity;
+        self.crowded_below = first_left_out.saturating_add(1).min(self.best);
+        let kept = self
+            .votes
+            .partition_point(|vote| vote.intensity >= self.crowded_below);
+        self.cut = (kept > max_votes).then_some(self.best);
+        self.votes.truncate(kept.min(max_votes));
+    }
+
+    /// The outcome, in order.
+    pub(crate) fn finish(mut self, poses_evaluated: u64) -> VoteSet {
+        self.make_room();
+        self.votes.sort_unstable_by_key(order);
+        let best_is_cut = self.cut == Some(self.best);
+        VoteSet {
+            floor: self.votes.last().map_or(0, |vote| vote.intensity),
+            certified_floor: self.floor().saturating_add(u16::from(best_is_cut)),
+            best: self.best,
+            truncated: best_is_cut || self.crowded_below > self.share_floor(),
+            poses_evaluated,
+            votes: self.votes,
+        }
+    }
+}
+
+/// Most votes first, equal ones by (heading, y, x).
+fn order(vote: &Vote) -> (Reverse<u16>, u16, u16, u16) {
+    (Reverse(vote.intensity), vote.heading, vote.y, vote.x)
+}
+
+#[cfg(test)]
+mod tests {
+    use proptest::collection::vec;
+    use proptest::prelude::*;
+
+    use super::*;
+
+    fn collect(config: CollectConfig, intensities: &[u16]) -> VoteSet {
+        let mut collector = Collector::new(config);
+        for (x, &intensity) in (0..).zip(intensities) {
+            collector.take(Vote {
+                x,
+                y: 0,
+                heading: 0,
+                intensity,
+            });
+        }
+        collector.finish(0)
+    }
+
+    fn levels(set: &VoteSet) -> Vec<u16> {
+        set.votes.iter().map(|vote| vote.intensity).collect()
+    }
+
+    #[test]
+    fn keeps_what_stands_above_the_share_of_the_best() {
+        let config = CollectConfig {
+            floor_share: 0.5,
+            max_votes: 10,
+        };
+        let set = collect(config, &[3, 0, 10, 5, 4, 7]);
+        assert_eq!(levels(&set), [10, 7, 5]);
+        assert_eq!(
+            (set.floor, set.certified_floor, set.best, set.truncated),
+            (5, 5, 10, false)
+        );
+    }
+
+    #[test]
+    fn the_floor_rises_by_whole_levels() {
+        let config = CollectConfig {
+            floor_share: 0.0,
+            max_votes: 4,
+        };
+        let set = collect(config, &[9, 8, 8, 7, 7, 6]);
+        assert_eq!(levels(&set), [9, 8, 8]);
+        assert_eq!(
+            (set.floor, set.certified_floor, set.truncated),
+            (8, 8, true)
+        );
+    }
+
+    #[test]
+    fn of_too_many_best_poses_the_first_are_kept() {
+        let config = CollectConfig {
+            floor_share: 1.0,
+            max_votes: 2,
+        };
+        let set = collect(config, &[5; 9]);
+        assert_eq!(
+            set.votes.iter().map(|vote| vote.x).collect::<Vec<_>>(),
+            [0, 1]
+        );
+        assert_eq!((set.best, set.certified_floor, set.truncated), (5, 6, true));
+    }
+
+    #[test]
+    fn no_votes_at_all_are_no_pose() {
+        let set = collect(CollectConfig::default(), &[0, 0]);
+        assert_eq!(set.votes, []);
+        assert_eq!((set.best, set.floor, set.truncated), (0, 0, false));
+    }
+
+    proptest! {
+        #[test]
+        fn the_order_of_taking_does_not_matter(
+            intensities in vec(0u16..12, 1..80), max_votes in 1u32..30, floor_share in 0.0..=1.0f64,
+        ) {
+            let config = CollectConfig { floor_share, max_votes };
+            let forward = collect(config, &intensities);
+            let mut backward = Collector::new(config);
+            for (x, &intensity) in intensities.iter().enumerate().rev() {
+                backward.take(Vote { x: x as u16, y: 0, heading: 0, intensity });
+            }
+            let backward = backward.finish(0);
+            prop_assert_eq!(&backward, &forward);
+            // Complete down to the certified floor.
+            let certified = intensities.iter().filter(|&&i| i > 0 && i >= forward.certified_floor).count();
+            let collected = forward.votes.iter().filter(|v| v.intensity >= forward.certified_floor).count();
+            prop_assert_eq!(collected, certified);
+        }
+    }
+}
