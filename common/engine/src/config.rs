@@ -15,6 +15,11 @@ pub(crate) fn parse_share(text: &str) -> Result<f64, String> {
     parse(text, 0.0..=1.0, "as a share")
 }
 
+/// An angle of 0 to 180 degrees.
+pub(crate) fn parse_degrees(text: &str) -> Result<f64, String> {
+    parse(text, 0.0..=180.0, "degrees")
+}
+
 fn parse(text: &str, allowed: std::ops::RangeInclusive<f64>, unit: &str) -> Result<f64, String> {
     let value: f64 = text
         .parse()

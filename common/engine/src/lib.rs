@@ -27,6 +27,8 @@ mod error;
 pub mod grid;
 pub mod intervals;
 pub mod lines;
+pub mod localizer;
+pub mod peaks;
 pub mod program;
 pub mod reference;
 pub mod scan;

@@ -126,6 +126,23 @@ impl Collector {
     }
 }
 
+/// The best poses of an intensity image, row by row, at one heading.
+#[must_use]
+pub fn of_field(field: &[u16], width: usize, heading: u16, config: CollectConfig) -> VoteSet {
+    let mut collector = Collector::new(config);
+    for (y, row) in (0..).zip(field.chunks(width)) {
+        for (x, &intensity) in (0..).zip(row) {
+            collector.take(Vote {
+                x,
+                y,
+                heading,
+                intensity,
+            });
+        }
+    }
+    collector.finish(field.len() as u64)
+}
+
 /// Most votes first, equal ones by (heading, y, x).
 fn order(vote: &Vote) -> (Reverse<u16>, u16, u16, u16) {
     (Reverse(vote.intensity), vote.heading, vote.y, vote.x)

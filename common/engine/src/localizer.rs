@@ -1,0 +1,313 @@
+//! A map and its settings, ready to be asked where scans were taken.
+
+use messages::BoundaryCell;
+
+use crate::EngineError;
+use crate::grid::{Grid, GridFrame};
+use crate::program::{ScanProgram, VoteConfig};
+use crate::scan::Scan;
+use crate::search::SearchIndex;
+use crate::space::Space;
+use crate::sweep::{self, SweepGrid};
+use crate::votes::{self, CollectConfig, VoteSet};
+
+/// How scans are matched with the map.
+#[derive(Debug, Clone, Copy, PartialEq, clap::Args)]
+pub struct LocalizerConfig {
+    /// Headings a turn, a multiple of 8 from 8 to 3600.
+    #[arg(long, value_name = "COUNT", default_value_t = 360)]
+    pub headings: u32,
+    /// How readings become votes.
+    #[command(flatten)]
+    pub votes: VoteConfig,
+    /// What is collected of a search.
+    #[command(flatten)]
+    pub collect: CollectConfig,
+}
+
+impl Default for LocalizerConfig {
+    fn default() -> Self {
+        LocalizerConfig {
+            headings: 360,
+            votes: VoteConfig::default(),
+            collect: CollectConfig::default(),
+        }
+    }
+}
+
+/// What the localizer knows of the heading beforehand.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Prior {
+    /// Nothing: all headings are searched.
+    None,
+    /// Each scan comes with its heading: only x and y are searched.
+    Heading,
+}
+
+/// A map prepared for one kind of question.
+#[derive(Debug, Clone)]
+pub struct Localizer {
+    frame: GridFrame,
+    grid: Grid,
+    space: Space,
+    config: LocalizerConfig,
+    method: Method,
+}
+
+#[derive(Debug, Clone)]
+enum Method {
+    Search(Box<SearchIndex>),
+    Sweep(SweepGrid),
+}
+
+/// What a scan says about the pose.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Outcome {
+    /// The poses with the most votes.
+    pub found: VoteSet,
+    /// What a pose would have if every beam agreed fully.
+    pub highest_possible: u32,
+    /// Beams that voted.
+    pub beams_used: u32,
+    /// Beams whose reading says nothing.
+    pub beams_silent: u32,
+    /// The largest rounding of a bearing to the heading grid, radians.
+    pub bearing_rounding: f64,
+    /// Headings a turn.
+    pub headings: u32,
+    /// The heading that was given, in the map frame, radians.
+    pub known_heading: Option<f64>,
+}
+
+impl Localizer {
+    /// Prepares a map. `boundary` is that of [`crate::boundary::extract`].
+    ///
+    /// # Errors
+    /// If the map has no occupied or no free cell, or a setting is out of range.
+    pub fn new(
+        frame: GridFrame,
+        grid: Grid,
+        boundary: &[BoundaryCell],
+        config: LocalizerConfig,
+        prior: Prior,
+    ) -> Result<Self, EngineError> {
+        if grid.occupied_cells() == 0 {
+            return Err(EngineError::NoOccupiedCell);
+        }
+        if grid.free_cells() == 0 {
+            return Err(EngineError::NoFreeCell);
+        }
+        let space = Space::new(
+            config.headings,
+            frame.resolution_m,
+            grid.width(),
+            grid.height(),
+        )?;
+        let method = match prior {
+            Prior::None => Method::Search(Box::new(SearchIndex::new(&grid, boundary, &space))),
+            Prior::Heading => Method::Sweep(SweepGrid::new(&grid)),
+        };
+        Ok(Localizer {
+            frame,
+            grid,
+            space,
+            config,
+            method,
+        })
+    }
+
+    /// Where the grid lies in the map.
+    #[must_use]
+    pub fn frame(&self) -> GridFrame {
+        self.frame
+    }
+
+    /// The map's cells.
+    #[must_use]
+    pub fn grid(&self) -> &Grid {
+        &self.grid
+    }
+
+    /// Searches all poses; `None` if `stop` said so before the end.
+    ///
+    /// # Errors
+    /// If the scan is refused, see [`Scan::check`].
+    ///
+    /// # Panics
+    /// If the localizer was prepared for known headings.
+    pub fn search(
+        &self,
+        scan: &Scan<'_>,
+        stop: &dyn Fn() -> bool,
+    ) -> Result<Option<Outcome>, EngineError> {
+        let Method::Search(index) = &self.method else {
+            panic!("this localizer was prepared for known headings");
+        };
+        let program = ScanProgram::new(scan, 0.0, &self.space, &self.config.votes)?;
+        let found = index.search(&self.grid, &program, &self.space, self.config.collect, stop);
+        Ok(found.map(|found| self.outcome(&program, found, None)))
+    }
+
+    /// Searches x and y at a heading in the map frame, radians, and fills in
+    /// the intensities of all cells, row by row from the lowest y.
+    ///
+    /// # Errors
+    /// If the scan is refused, see [`Scan::check`], or the heading not finite.
+    ///
+    /// # Panics
+    /// If the localizer was prepared for unknown headings.
+    pub fn search_at(
+        &self,
+        scan: &Scan<'_>,
+        heading: f64,
+    ) -> Result<(Outcome, Vec<u16>), EngineError> {
+        let Method::Sweep(sweeps) = &self.method else {
+            panic!("this localizer was prepared for unknown headings");
+        };
+        if !heading.is_finite() {
+            return Err(EngineError::Heading(heading));
+        }
+        // What the heading grid does not hold of the heading turns the beams.
+        let (index, turn) = self
+            .space
+            .directions
+            .nearest(heading - self.frame.map_from_grid.yaw);
+        let program = ScanProgram::new(scan, turn, &self.space, &self.config.votes)?;
+        let field = sweep::field(sweeps, &self.grid, &program, &self.space, index);
+        let found = votes::of_field(&field, self.grid.width(), index as u16, self.config.collect);
+        Ok((self.outcome(&program, found, Some(heading)), field))
+    }
+
+    fn outcome(
+        &self,
+        program: &ScanProgram,
+        found: VoteSet,
+        known_heading: Option<f64>,
+    ) -> Outcome {
+        Outcome {
+            found,
+            highest_possible: program.highest_possible(),
+            beams_used: program.beams() as u32,
+            beams_silent: program.silent() as u32,
+            bearing_rounding: program.bearing_rounding(),
+            headings: self.config.headings,
+            known_heading,
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use std::f64::consts::{FRAC_PI_2, PI};
+
+    use geometry::Pose;
+
+    use super::*;
+    use crate::boundary;
+    use crate::grid::drawn::grid;
+    use crate::reference;
+
+    /// An L-shaped room with a pillar: no pose looks like another.
+    const ROOM: [&str; 12] = [
+        "####################",
+        "#..................#",
+        "#..................#",
+        "#...........##.....#",
+        "#...........##.....#",
+        "#..................#",
+        "#.......############",
+        "#.......#...........",
+        "#.......#...........",
+        "#..#....#...........",
+        "#.......#...........",
+        "#########...........",
+    ];
+    const FRAME: GridFrame = GridFrame {
+        resolution_m: 0.25,
+        map_from_grid: Pose::new(3.0, -1.0, 0.5),
+    };
+
+    fn localizer(prior: Prior) -> Localizer {
+        let grid = grid(&ROOM);
+        let boundary = boundary::extract(&grid);
+        Localizer::new(FRAME, grid, &boundary, LocalizerConfig::default(), prior).unwrap()
+    }
+
+    /// What a laser with a beam a degree all around reads at a pose of the grid.
+    fn ranges(x: i64, y: i64, heading: usize) -> Vec<f32> {
+        let grid = grid(&ROOM);
+        let space = Space::new(360, FRAME.resolution_m, grid.width(), grid.height()).unwrap();
+        let beams = (0..360).map(|beam| {
+            let direction = space.directions.get(heading + 180 + beam);
+            reference::range(&grid, x, y, direction).map_or(f32::INFINITY, |steps| {
+                (f64::from(steps) / direction.steps_per_cell * FRAME.resolution_m) as f32
+            })
+        });
+        beams.collect()
+    }
+
+    fn scan(ranges: &[f32]) -> Scan<'_> {
+        let angle_increment = 1f64.to_radians();
+        Scan {
+            angle_min: -PI,
+            angle_increment,
+            range_min_m: 0.0,
+            range_max_m: 30.0,
+            ranges,
+        }
+    }
+
+    #[test]
+    fn finds_the_pose_that_a_scan_was_taken_at() {
+        let ranges = ranges(5, 3, 40);
+        let outcome = localizer(Prior::None)
+            .search(&scan(&ranges), &|| false)
+            .unwrap()
+            .unwrap();
+        let best = outcome.found.votes[0];
+        assert_eq!((best.x, best.y, best.heading), (5, 3, 40));
+        assert_eq!(
+            u32::from(best.intensity),
+            outcome.highest_possible,
+            "every beam agrees"
+        );
+    }
+
+    #[test]
+    fn a_known_heading_is_taken_in_the_map_frame() {
+        let ranges = ranges(5, 3, 40);
+        let heading = 40f64.to_radians() + 0.5;
+        let (outcome, field) = localizer(Prior::Heading)
+            .search_at(&scan(&ranges), heading)
+            .unwrap();
+        let best = outcome.found.votes[0];
+        assert_eq!((best.x, best.y, best.heading), (5, 3, 40));
+        assert_eq!(field[3 * 20 + 5], best.intensity);
+        assert!(outcome.bearing_rounding < 1e-6);
+    }
+
+    #[test]
+    fn a_map_without_obstacles_or_space_is_refused() {
+        let make = |rows: &[&str]| {
+            let grid = grid(rows);
+            Localizer::new(FRAME, grid, &[], LocalizerConfig::default(), Prior::None).map(|_| ())
+        };
+        assert_eq!(make(&["...", "..."]), Err(EngineError::NoOccupiedCell));
+        assert_eq!(make(&["###", "#?#"]), Err(EngineError::NoFreeCell));
+    }
+
+    #[test]
+    fn a_scan_in_which_nothing_returned_has_no_votes() {
+        let outcome = localizer(Prior::None).search(&scan(&[f32::INFINITY; 9]), &|| false);
+        let outcome = outcome.unwrap().unwrap();
+        assert_eq!(
+            (outcome.found.best, outcome.beams_used, outcome.beams_silent),
+            (0, 0, 9)
+        );
+        let (outcome, field) = localizer(Prior::Heading)
+            .search_at(&scan(&[f32::NAN; 9]), FRAC_PI_2)
+            .unwrap();
+        assert_eq!(outcome.found.votes, []);
+        assert!(field.iter().all(|&intensity| intensity == 0));
+    }
+}
