@@ -1,7 +1,7 @@
 //! Between which ranges the cells of a block see: what bounds their votes.
 //!
-//! For each block of cells and each direction the pyramid keeps the shortest
-//! and the longest range that any open cell of the block has. A reading's votes
+//! For each block of cells and each direction, the shortest and the
+//! longest range of any open cell of the block are kept. A reading's votes
 //! fall off on both sides of its taper, so no cell of the block can have more
 //! than the nearest range in between would give.
 
@@ -10,26 +10,13 @@ use crate::grid::{Cell, Grid};
 use crate::lines::NO_RANGE;
 use crate::sweep::SweepGrid;
 
-/// Cells along the side of a block, from the finest level to the coarsest.
-const SIDES: [usize; 3] = [4, 8, 16];
-
-/// Above this many cells the finest level is left out: it takes 90 bytes a
-/// cell at 360 headings, the next one a quarter of that.
-const MOST_CELLS_FOR_FINEST: usize = 8_000_000;
-
 /// Directions that are pooled at a time: 32 ranges fill a cache line of the
 /// tables, which are written block by block.
 const BATCH: usize = 32;
 
-/// Intervals of ranges for blocks of several sizes.
+/// Intervals of ranges by block and direction.
 #[derive(Debug, Clone)]
 pub struct Intervals {
-    levels: Vec<Level>,
-}
-
-/// The intervals of blocks of one size.
-#[derive(Debug, Clone)]
-pub struct Level {
     /// Cells along the side of a block.
     pub side: usize,
     /// Blocks along x.
@@ -45,37 +32,6 @@ pub struct Level {
 }
 
 impl Intervals {
-    /// Pools the ranges of all open cells.
-    #[must_use]
-    pub fn new(grid: &Grid, directions: &Directions) -> Self {
-        let finest = usize::from(grid.cells().len() > MOST_CELLS_FOR_FINEST);
-        let mut levels = vec![Level::pooled(grid, SIDES[finest], directions)];
-        while let Some(finer) = levels
-            .last()
-            .filter(|level| level.side < SIDES[SIDES.len() - 1])
-        {
-            levels.push(finer.coarser());
-        }
-        Intervals { levels }
-    }
-
-    /// From the finest level to the coarsest; each doubles the side.
-    #[must_use]
-    pub fn levels(&self) -> &[Level] {
-        &self.levels
-    }
-
-    /// Bytes that the pyramid takes.
-    #[must_use]
-    pub fn bytes(&self) -> usize {
-        self.levels
-            .iter()
-            .map(|level| 2 * (level.nearest.len() + level.end.len()))
-            .sum()
-    }
-}
-
-impl Level {
     /// Shortest ranges of a block by direction, and one more than the longest.
     #[must_use]
     pub fn block(&self, block: usize) -> (&[u16], &[u16]) {
@@ -83,9 +39,15 @@ impl Level {
         (&self.nearest[entries.clone()], &self.end[entries])
     }
 
+    /// Bytes that the intervals take.
+    #[must_use]
+    pub fn bytes(&self) -> usize {
+        2 * (self.nearest.len() + self.end.len())
+    }
+
     fn empty(side: usize, columns: usize, rows: usize, directions: usize) -> Self {
         let entries = columns * rows * directions;
-        Level {
+        Intervals {
             side,
             columns,
             rows,
@@ -95,10 +57,11 @@ impl Level {
         }
     }
 
-    /// The level of blocks of `side` cells, straight from range sweeps.
-    fn pooled(grid: &Grid, side: usize, directions: &Directions) -> Self {
+    /// Pools the ranges of all open cells in blocks of `side` cells.
+    #[must_use]
+    pub fn new(grid: &Grid, side: usize, directions: &Directions) -> Self {
         let (columns, rows) = (grid.width().div_ceil(side), grid.height().div_ceil(side));
-        let mut level = Level::empty(side, columns, rows, directions.count());
+        let mut intervals = Intervals::empty(side, columns, rows, directions.count());
         let mut pool = Pool::new(grid, side);
         let mut planes = vec![Plane::new(columns * rows); BATCH.min(directions.count())];
         for first in (0..directions.count()).step_by(BATCH) {
@@ -108,35 +71,39 @@ impl Level {
             }
             for block in 0..columns * rows {
                 let entries = block * directions.count() + first..;
-                for (entry, plane) in level.nearest[entries.clone()]
+                for (entry, plane) in intervals.nearest[entries.clone()]
                     .iter_mut()
                     .zip(&planes[..batch.len()])
                 {
                     *entry = plane.nearest[block];
                 }
-                for (entry, plane) in level.end[entries].iter_mut().zip(&planes[..batch.len()]) {
+                for (entry, plane) in intervals.end[entries]
+                    .iter_mut()
+                    .zip(&planes[..batch.len()])
+                {
                     *entry = plane.end[block];
                 }
             }
         }
-        level
+        intervals
     }
 
-    /// The level whose blocks join two by two of this one's.
-    fn coarser(&self) -> Self {
+    /// Those of blocks that join two by two of these.
+    #[must_use]
+    pub fn coarser(&self) -> Self {
         let (columns, rows) = (self.columns.div_ceil(2), self.rows.div_ceil(2));
-        let mut level = Level::empty(2 * self.side, columns, rows, self.directions);
+        let mut intervals = Intervals::empty(2 * self.side, columns, rows, self.directions);
         for (y, x) in (0..self.rows).flat_map(|y| (0..self.columns).map(move |x| (y, x))) {
             let (nearest, end) = self.block(y * self.columns + x);
             let first = (y / 2 * columns + x / 2) * self.directions;
-            for (joined, &finer) in level.nearest[first..].iter_mut().zip(nearest) {
+            for (joined, &finer) in intervals.nearest[first..].iter_mut().zip(nearest) {
                 *joined = finer.min(*joined);
             }
-            for (joined, &finer) in level.end[first..].iter_mut().zip(end) {
+            for (joined, &finer) in intervals.end[first..].iter_mut().zip(end) {
                 *joined = finer.max(*joined);
             }
         }
-        level
+        intervals
     }
 }
 
@@ -258,9 +225,8 @@ mod tests {
         #[test]
         fn intervals_are_tight_around_the_ranges_of_their_open_cells(grid in any_grid(), headings in 1u32..8) {
             let space = space_of(&grid, headings * 8);
-            let intervals = Intervals::new(&grid, &space.directions);
-            prop_assert_eq!(intervals.levels().len(), 3);
-            for level in intervals.levels() {
+            let fine = Intervals::new(&grid, 4, &space.directions);
+            for level in [&fine, &fine.coarser()] {
                 for (block, d) in (0..level.columns * level.rows).flat_map(|b| (0..space.directions.count()).map(move |d| (b, d))) {
                     let (x0, y0) = (block % level.columns * level.side, block / level.columns * level.side);
                     let cells = (y0..y0 + level.side).flat_map(|y| (x0..x0 + level.side).map(move |x| (x as i64, y as i64)));

@@ -19,6 +19,7 @@
 //! The crate knows no process, socket, clock or file.
 
 mod beams;
+mod bits;
 pub mod boundary;
 mod bounds;
 mod config;
@@ -26,6 +27,7 @@ pub mod directions;
 mod error;
 pub mod grid;
 pub mod intervals;
+mod leaf;
 pub mod lines;
 pub mod localizer;
 pub mod peaks;
@@ -34,6 +36,8 @@ pub mod reference;
 pub mod scan;
 pub mod scatter;
 pub mod search;
+mod set_bounds;
+mod sets;
 pub mod space;
 pub mod sweep;
 pub mod taper;

@@ -61,18 +61,20 @@ impl LineIndex {
         }
     }
 
-    /// Ranges in steps from an open cell along every direction, by heading;
-    /// [`NO_RANGE`] where a ray meets no obstacle.
-    pub fn ranges(&self, x: usize, y: usize, ranges: &mut [u16]) {
-        let (ahead, behind) = ranges.split_at_mut(self.bundles.len());
-        for ((bundle, ahead), behind) in self.bundles.iter().zip(ahead).zip(behind) {
-            let (up, down) = bundle.ranges(x as i64, y as i64);
-            (*ahead, *behind) = if bundle.direction.step > 0 {
-                (up, down)
-            } else {
-                (down, up)
-            };
-        }
+    /// Range in steps from an open cell along the direction of heading `d`;
+    /// [`NO_RANGE`] where the ray meets no obstacle.
+    #[must_use]
+    pub fn range(&self, d: usize, x: usize, y: usize) -> u16 {
+        let half = self.bundles.len();
+        let (bundle, step) = if d < half {
+            (&self.bundles[d], self.bundles[d].direction.step)
+        } else {
+            (
+                &self.bundles[d - half],
+                -self.bundles[d - half].direction.step,
+            )
+        };
+        bundle.range(x as i64, y as i64, step > 0)
     }
 
     /// Bytes that the index takes.
@@ -135,23 +137,20 @@ impl Bundle {
         )
     }
 
-    /// Ranges towards growing and falling positions on the major axis.
-    fn ranges(&self, x: i64, y: i64) -> (u16, u16) {
+    /// Range towards growing or falling positions on the major axis.
+    fn range(&self, x: i64, y: i64, upwards: bool) -> u16 {
         let (position, line) = self.locate(x, y);
         let ends = &self.ends[self.starts[line] as usize..self.starts[line + 1] as usize];
         let next = ends.partition_point(|&end| end >> 1 < position);
-        let range = |end: &u16| {
-            if end & 1 == 1 {
-                NO_RANGE
-            } else {
-                (end >> 1).abs_diff(position)
-            }
+        let end = if upwards {
+            ends.get(next)
+        } else {
+            next.checked_sub(1).map(|last| &ends[last])
         };
-        let up = ends.get(next).map_or(NO_RANGE, range);
-        let down = next
-            .checked_sub(1)
-            .map_or(NO_RANGE, |previous| range(&ends[previous]));
-        (up, down)
+        match end {
+            Some(&end) if end & 1 == 0 => (end >> 1).abs_diff(position),
+            _ => NO_RANGE,
+        }
     }
 }
 
@@ -171,13 +170,12 @@ mod tests {
                 grid.width(), grid.height(),
                 &boundary::extract(&grid), &boundary::blocked(&grid), &space.directions,
             );
-            let mut ranges = vec![0; space.directions.count()];
             for (x, y) in (0..grid.height()).flat_map(|y| (0..grid.width()).map(move |x| (x, y))) {
                 if !grid.is_open(x as i64, y as i64) {
                     continue;
                 }
-                lines.ranges(x, y, &mut ranges);
-                for (direction, &range) in space.directions.all().iter().zip(&ranges) {
+                for (d, direction) in space.directions.all().iter().enumerate() {
+                    let range = lines.range(d, x, y);
                     let plain = reference::range(&grid, x as i64, y as i64, direction);
                     prop_assert_eq!(range, plain.unwrap_or(NO_RANGE), "{:?} {:?}", (x, y), direction);
                 }

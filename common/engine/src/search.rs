@@ -1,60 +1,57 @@
 //! The search over x, y and all headings, exact by bounds.
 //!
-//! Blocks of cells wait in a queue by the most votes that any of their poses
-//! could have. The most promising block is split, or, at the finest level, its
-//! poses are counted one by one at the headings that may still matter. When no
-//! block can reach the floor any more, every pose above it has been seen.
+//! Blocks of 16 × 16 cells are bounded by their sets of visible ranges, for all
+//! headings at once, and wait in a queue by the most votes that any of their
+//! poses could have. The most promising block is split into four of 8 × 8,
+//! bounded by their intervals of ranges at the headings that may still matter;
+//! the poses of those are counted one by one. When no block in the queue can
+//! reach the floor any more, every pose above it has been seen.
 
-use std::cmp::Reverse;
 use std::collections::BinaryHeap;
+use std::ops::Range;
 
 use messages::{BoundaryCell, Vote};
 
-use crate::boundary;
 use crate::bounds::{BlockRanges, BoundProgram};
-use crate::grid::{Cell, Grid};
+use crate::grid::Grid;
 use crate::intervals::Intervals;
+use crate::leaf::{self, LeafProgram, LeafRanges};
 use crate::lines::LineIndex;
 use crate::program::ScanProgram;
+use crate::set_bounds::{SetBounds, SetProgram};
+use crate::sets::RangeSets;
 use crate::space::Space;
 use crate::votes::{CollectConfig, Collector, VoteSet};
+use crate::{boundary, sets};
 
 /// A map prepared for searches: made once for each map.
 #[derive(Debug, Clone)]
 pub struct SearchIndex {
     lines: LineIndex,
     intervals: Intervals,
-}
-
-/// A block in the queue; the order is by bound, then by place.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
-struct Block {
-    bound: u16,
-    level: Reverse<usize>,
-    index: Reverse<usize>,
+    sets: RangeSets,
 }
 
 impl SearchIndex {
     /// Prepares a map whose boundary is given.
     #[must_use]
     pub fn new(grid: &Grid, boundary: &[BoundaryCell], space: &Space) -> Self {
+        let directions = &space.directions;
         let blocked = boundary::blocked(grid);
+        let intervals = Intervals::new(grid, leaf::SIDE, directions);
+        let sets = RangeSets::new(grid, directions, &intervals.coarser());
+        let lines = LineIndex::new(grid.width(), grid.height(), boundary, &blocked, directions);
         SearchIndex {
-            lines: LineIndex::new(
-                grid.width(),
-                grid.height(),
-                boundary,
-                &blocked,
-                &space.directions,
-            ),
-            intervals: Intervals::new(grid, &space.directions),
+            lines,
+            intervals,
+            sets,
         }
     }
 
     /// Bytes that the index takes.
     #[must_use]
     pub fn bytes(&self) -> usize {
-        self.lines.bytes() + self.intervals.bytes()
+        self.lines.bytes() + self.intervals.bytes() + self.sets.bytes()
     }
 
     /// The poses with the most votes; `None` if `stop` said so before the end.
@@ -67,166 +64,183 @@ impl SearchIndex {
         config: CollectConfig,
         stop: &dyn Fn() -> bool,
     ) -> Option<VoteSet> {
-        Search {
-            index: self,
-            grid,
-            program,
-            space,
-            bounds: BoundProgram::new(program, &space.directions),
-            block_ranges: BlockRanges::new(space.directions.count()),
-            row: vec![0; space.directions.count()],
-            collector: Collector::new(config),
-            queue: BinaryHeap::new(),
-            poses_evaluated: 0,
-        }
-        .run(stop)
+        Search::new(self, grid, program, space, config).run(stop)
     }
+}
+
+/// A block in the queue; the order is by bound, then by place.
+#[derive(Debug, Clone, PartialEq, Eq, PartialOrd, Ord)]
+struct Block {
+    bound: u16,
+    index: usize,
+    content: Content,
+}
+
+/// What a block in the queue is.
+#[derive(Debug, Clone, PartialEq, Eq, PartialOrd, Ord)]
+enum Content {
+    /// 16 × 16 cells, to be split.
+    Coarse,
+    /// 8 × 8 cells, to be counted at these of the search's candidate headings.
+    Fine { start: usize, end: usize },
+}
+
+/// A heading at which a block may still matter, and its bound there.
+#[derive(Debug, Clone, Copy)]
+struct Candidate {
+    heading: u16,
+    bound: u16,
 }
 
 /// One search under way.
 struct Search<'a> {
     index: &'a SearchIndex,
     grid: &'a Grid,
-    program: &'a ScanProgram,
     space: &'a Space,
-    bounds: BoundProgram,
+    set_program: SetProgram,
+    bound_program: BoundProgram,
+    leaf_program: LeafProgram,
+    set_bounds: SetBounds,
     block_ranges: BlockRanges,
-    /// Bounds of one block by heading.
     row: Vec<u16>,
-    collector: Collector,
+    leaf_ranges: LeafRanges,
+    candidates: Vec<Candidate>,
     queue: BinaryHeap<Block>,
+    collector: Collector,
     poses_evaluated: u64,
 }
 
-impl Search<'_> {
-    fn run(mut self, stop: &dyn Fn() -> bool) -> Option<VoteSet> {
-        let levels = self.index.intervals.levels();
-        let coarsest = levels.len() - 1;
-        for block in 0..levels[coarsest].columns * levels[coarsest].rows {
-            self.enqueue(coarsest, block);
+impl<'a> Search<'a> {
+    fn new(
+        index: &'a SearchIndex,
+        grid: &'a Grid,
+        program: &ScanProgram,
+        space: &'a Space,
+        config: CollectConfig,
+    ) -> Self {
+        let set_program = SetProgram::new(program, &space.directions);
+        let headings = space.directions.count();
+        Search {
+            index,
+            grid,
+            space,
+            set_bounds: set_program.bounds(),
+            set_program,
+            bound_program: BoundProgram::new(program, &space.directions),
+            leaf_program: LeafProgram::new(program, space),
+            block_ranges: BlockRanges::new(headings),
+            row: vec![0; headings],
+            leaf_ranges: LeafRanges::new(space),
+            candidates: Vec::new(),
+            queue: BinaryHeap::new(),
+            collector: Collector::new(config),
+            poses_evaluated: 0,
         }
-        let mut leaf = Leaf::new(self.space);
-        while let Some(Block {
-            bound,
-            level: Reverse(level),
-            index: Reverse(block),
-        }) = self.queue.pop()
-        {
-            if bound < self.collector.floor() {
+    }
+
+    fn run(mut self, stop: &dyn Fn() -> bool) -> Option<VoteSet> {
+        for index in 0..self.index.sets.blocks() {
+            if stop() {
+                return None;
+            }
+            self.bound_coarse(index);
+            let bound = self.set_bounds.greatest();
+            if bound >= self.collector.floor() {
+                self.queue.push(Block {
+                    bound,
+                    index,
+                    content: Content::Coarse,
+                });
+            }
+        }
+        while let Some(block) = self.queue.pop() {
+            if block.bound < self.collector.floor() {
                 break;
             }
             if stop() {
                 return None;
             }
-            if level > 0 {
-                self.split(level, block);
-            } else {
-                self.count(block, &mut leaf);
+            match block.content {
+                Content::Coarse => self.split(block.index),
+                Content::Fine { start, end } => self.count(block.index, start..end),
             }
         }
         Some(self.collector.finish(self.poses_evaluated))
     }
 
-    /// Computes the bounds of a block and queues it, if it may still matter.
-    fn enqueue(&mut self, level: usize, block: usize) {
-        self.bound_block(level, block);
-        let bound = self.row.iter().copied().max().unwrap_or(0);
-        if bound >= self.collector.floor() {
-            self.queue.push(Block {
-                bound,
-                level: Reverse(level),
-                index: Reverse(block),
-            });
-        }
+    fn bound_coarse(&mut self, index: usize) {
+        self.set_program
+            .bound(self.index.sets.block(index), &mut self.set_bounds);
     }
 
-    fn bound_block(&mut self, level: usize, block: usize) {
-        self.block_ranges
-            .set(self.index.intervals.levels()[level].block(block));
-        self.bounds.bound(&self.block_ranges, &mut self.row);
-    }
-
-    /// Queues the four blocks of the next finer level.
-    fn split(&mut self, level: usize, block: usize) {
-        let levels = self.index.intervals.levels();
-        let (coarse, fine) = (&levels[level], &levels[level - 1]);
-        let (x, y) = (2 * (block % coarse.columns), 2 * (block / coarse.columns));
+    /// Queues the four blocks of 8 × 8 cells in one of 16 × 16.
+    fn split(&mut self, index: usize) {
+        let fine = &self.index.intervals;
+        let coarse_columns = fine.columns.div_ceil(sets::SIDE / leaf::SIDE);
+        let (x, y) = (2 * (index % coarse_columns), 2 * (index / coarse_columns));
+        self.bound_coarse(index);
         for (x, y) in [(x, y), (x + 1, y), (x, y + 1), (x + 1, y + 1)] {
             if x < fine.columns && y < fine.rows {
-                self.enqueue(level - 1, y * fine.columns + x);
+                self.enqueue_fine(y * fine.columns + x);
             }
         }
     }
 
-    /// Counts the votes of a block's poses at the headings that may matter.
-    fn count(&mut self, block: usize, leaf: &mut Leaf) {
-        self.bound_block(0, block);
-        let floor = self.collector.floor();
-        let headings = self
-            .row
-            .iter()
-            .enumerate()
-            .filter(|&(_, &bound)| bound >= floor);
-        leaf.headings.clear();
-        leaf.headings.extend(headings.map(|(heading, _)| heading));
-        let level = &self.index.intervals.levels()[0];
-        let (left, bottom) = (
-            block % level.columns * level.side,
-            block / level.columns * level.side,
-        );
-        let (width, height) = (self.grid.width(), self.grid.height());
-        for y in bottom..height.min(bottom + level.side) {
-            for x in left..width.min(left + level.side) {
-                if self.grid.cells()[y * width + x] == Cell::Open {
-                    self.count_cell(x, y, leaf);
+    /// Queues a block at the headings that the block around it leaves.
+    fn enqueue_fine(&mut self, index: usize) {
+        self.block_ranges.set(self.index.intervals.block(index));
+        self.bound_program.bound(&self.block_ranges, &mut self.row);
+        let (start, floor) = (self.candidates.len(), self.collector.floor());
+        let mut greatest = 0;
+        for heading in self.set_bounds.at_least(floor) {
+            let bound = self.row[heading];
+            if bound >= floor {
+                self.candidates.push(Candidate {
+                    heading: heading as u16,
+                    bound,
+                });
+                greatest = bound.max(greatest);
+            }
+        }
+        let end = self.candidates.len();
+        if start < end {
+            self.queue.push(Block {
+                bound: greatest,
+                index,
+                content: Content::Fine { start, end },
+            });
+        }
+    }
+
+    /// Counts the votes of a block's poses at the candidate headings.
+    fn count(&mut self, index: usize, candidates: Range<usize>) {
+        let columns = self.index.intervals.columns;
+        let (left, bottom) = (index % columns * leaf::SIDE, index / columns * leaf::SIDE);
+        self.leaf_ranges
+            .fill(self.grid, &self.index.lines, self.space, left, bottom);
+        for candidate in candidates {
+            let Candidate { heading, bound } = self.candidates[candidate];
+            if bound < self.collector.floor() {
+                continue;
+            }
+            let counts = self
+                .leaf_program
+                .count(&self.leaf_ranges, usize::from(heading));
+            self.poses_evaluated += leaf::CELLS as u64;
+            for (i, &intensity) in counts.iter().enumerate() {
+                if self.leaf_ranges.is_open(i) {
+                    let (x, y) = (
+                        (left + i % leaf::SIDE) as u16,
+                        (bottom + i / leaf::SIDE) as u16,
+                    );
+                    self.collector.take(Vote {
+                        x,
+                        y,
+                        heading,
+                        intensity,
+                    });
                 }
             }
-        }
-    }
-
-    fn count_cell(&mut self, x: usize, y: usize, leaf: &mut Leaf) {
-        self.index.lines.ranges(x, y, &mut leaf.ranges);
-        self.poses_evaluated += leaf.headings.len() as u64;
-        for &heading in &leaf.headings {
-            let votes = (0..self.program.beams()).map(|beam| {
-                let direction = leaf.wrap[heading + self.program.bearing(beam)];
-                let taper = self.program.taper(beam, leaf.classes[direction]);
-                u16::from(taper.votes(leaf.ranges[direction]))
-            });
-            let intensity = votes.sum();
-            self.collector.take(Vote {
-                x: x as u16,
-                y: y as u16,
-                heading: heading as u16,
-                intensity,
-            });
-        }
-    }
-}
-
-/// Buffers for counting the poses of one block.
-struct Leaf {
-    headings: Vec<usize>,
-    /// Of one cell, by direction.
-    ranges: Vec<u16>,
-    classes: Vec<usize>,
-    /// Directions modulo a turn, for two turns.
-    wrap: Vec<usize>,
-}
-
-impl Leaf {
-    fn new(space: &Space) -> Self {
-        let count = space.directions.count();
-        Leaf {
-            headings: Vec::with_capacity(count),
-            ranges: vec![0; count],
-            classes: space
-                .directions
-                .all()
-                .iter()
-                .map(|direction| direction.class)
-                .collect(),
-            wrap: (0..2 * count).map(|direction| direction % count).collect(),
         }
     }
 }
