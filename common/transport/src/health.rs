@@ -1,0 +1,118 @@
+//! A node's report on itself.
+//!
+//! It says what it is told; what makes a node ready or degraded, the node knows.
+
+use messages::topic;
+use messages::{HealthHeader, Name, NodeState};
+
+use crate::{Publisher, TransportError, monotonic_ns};
+
+/// Between two reports, nanoseconds.
+const PERIOD_NS: i64 = 1_000_000_000;
+
+/// Counts what a node does and publishes it on topic `health`.
+#[derive(Debug)]
+pub struct Health {
+    publisher: Publisher<topic::Health>,
+    report: HealthHeader,
+    last_error: String,
+}
+
+impl Health {
+    pub(crate) fn new(
+        node: &str,
+        publisher: Publisher<topic::Health>,
+    ) -> Result<Self, TransportError> {
+        let mut health = Health {
+            publisher,
+            report: HealthHeader {
+                node: Name::new(node),
+                pid: std::process::id(),
+                state: NodeState::Waiting as u32,
+                ..bytemuck::Zeroable::zeroed()
+            },
+            last_error: String::new(),
+        };
+        health.send()?;
+        Ok(health)
+    }
+
+    /// Counts samples taken from inputs.
+    pub fn count_received(&mut self, samples: u64) {
+        self.report.received += samples;
+    }
+
+    /// Counts samples sent.
+    pub fn count_sent(&mut self, samples: u64) {
+        self.report.sent += samples;
+    }
+
+    /// Counts samples lost before they could be taken.
+    pub fn count_dropped(&mut self, samples: u64) {
+        self.report.dropped += samples;
+    }
+
+    /// Counts samples taken and refused as unusable.
+    pub fn count_refused(&mut self, samples: u64) {
+        self.report.refused += samples;
+    }
+
+    /// Says what the node is doing; sent at once if that is new.
+    ///
+    /// # Errors
+    /// As [`Publisher::loan`] and [`crate::Loan::send`].
+    pub fn state(&mut self, state: NodeState) -> Result<(), TransportError> {
+        if self.report.state == state as u32 {
+            return Ok(());
+        }
+        self.report.state = state as u32;
+        self.send()
+    }
+
+    /// Keeps `error` as the last one and sends it at once, cut to
+    /// [`HealthHeader::ERROR_CAPACITY`] bytes between characters.
+    ///
+    /// # Errors
+    /// As [`Publisher::loan`] and [`crate::Loan::send`].
+    pub fn error(&mut self, error: &str) -> Result<(), TransportError> {
+        let end = error.floor_char_boundary(HealthHeader::ERROR_CAPACITY);
+        self.last_error.clear();
+        self.last_error.push_str(&error[..end]);
+        self.send()
+    }
+
+    /// Sends a report if the last one is a second old.
+    ///
+    /// # Errors
+    /// As [`Publisher::loan`] and [`crate::Loan::send`].
+    pub fn tick(&mut self) -> Result<(), TransportError> {
+        if monotonic_ns() - self.report.sent_ns < PERIOD_NS {
+            return Ok(());
+        }
+        self.send()
+    }
+
+    /// Reports that the node is about to end.
+    ///
+    /// # Errors
+    /// As [`Publisher::loan`] and [`crate::Loan::send`].
+    pub fn stop(mut self) -> Result<(), TransportError> {
+        self.state(NodeState::Stopped)
+    }
+
+    fn send(&mut self) -> Result<(), TransportError> {
+        self.report.sent_ns = monotonic_ns();
+        let mut loan = self.publisher.loan(self.last_error.len())?;
+        *loan.header_mut() = self.report;
+        loan.items_mut().copy_from_slice(self.last_error.as_bytes());
+        loan.send()
+    }
+}
+
+impl Drop for Health {
+    fn drop(&mut self) {
+        if let Err(error) = self.state(NodeState::Stopped) {
+            tracing::warn!(%error, "the last health report was not sent");
+        }
+    }
+}

@@ -1,0 +1,139 @@
+//! Removing what a graph has left, after its last process.
+//!
+//! Processes that end in order take their files along, but for a tiny one;
+//! killed ones leave all of theirs. Refuses to touch a graph that still runs,
+//! and never touches another graph's files.
+
+use std::ffi::OsStr;
+use std::fs::{read_dir, remove_dir, remove_file};
+use std::io::ErrorKind;
+use std::os::unix::ffi::OsStrExt;
+use std::path::{Path, PathBuf};
+use std::time::Duration;
+
+use iceoryx2::node::{DeadNodeView, Node, NodeDetails, NodeState, NodeView};
+use iceoryx2::prelude::{CallbackProgression, ipc};
+
+use crate::membership::{Membership, SHARED_MEMORY};
+use crate::{GraphName, TransportError, log};
+
+/// How long to wait for another process that cleans up the same dead node.
+const CLEANUP_WAIT: Duration = Duration::from_secs(1);
+
+/// Removes every file of this user's `graph`, all of whose processes have ended,
+/// in whatever way. For the launcher, before it starts the first process of the
+/// graph and after the last one has ended; its own membership has ended too.
+///
+/// # Errors
+/// [`TransportError::StillRunning`] if a process of the graph is alive, which is
+/// then left alone; [`TransportError::File`] if a file cannot be removed.
+pub fn remove_leftovers(graph: &GraphName) -> Result<(), TransportError> {
+    log::route_to_tracing();
+    let membership = Membership::of(graph);
+    let dead = refuse_living(&membership)?;
+    for node in dead {
+        // iceoryx2 knows best what belongs together. What it cannot take away,
+        // because a process died while making it, is found by its name below.
+        if let Err(error) = node.blocking_remove_stale_resources(CLEANUP_WAIT) {
+            tracing::debug!(?error, "a dead node was not cleaned away as a whole");
+        }
+    }
+    remove_files(&membership)
+}
+
+fn refuse_living(
+    membership: &Membership,
+) -> Result<Vec<DeadNodeView<ipc::Service>>, TransportError> {
+    let mut processes = Vec::new();
+    let mut dead = Vec::new();
+    Node::<ipc::Service>::list(&membership.config(), |state| {
+        match state {
+            NodeState::Alive(node) => processes.push(describe(node.details().as_ref())),
+            NodeState::Dead(node) => dead.push(node),
+            NodeState::Inaccessible(_) | NodeState::Undefined(_) => {}
+        }
+        CallbackProgression::Continue
+    })
+    .map_err(|error| TransportError::List {
+        graph: membership.graph.clone(),
+        root: membership.root.clone(),
+        reason: format!("{error:?}"),
+    })?;
+    if processes.is_empty() {
+        return Ok(dead);
+    }
+    Err(TransportError::StillRunning {
+        graph: membership.graph.clone(),
+        processes,
+    })
+}
+
+fn describe(details: Option<&NodeDetails>) -> String {
+    match details {
+        Some(node) => format!("{} (process {})", node.name(), node.process_id().value()),
+        None => "a node that does not say its name".into(),
+    }
+}
+
+fn remove_files(membership: &Membership) -> Result<(), TransportError> {
+    let prefix = membership.prefix.as_bytes();
+    let nodes = membership.root.join("nodes");
+    let folders = [
+        Path::new(SHARED_MEMORY),
+        &membership.root,
+        &membership.root.join("services"),
+        &nodes,
+    ];
+    for folder in folders {
+        remove_prefixed(folder, prefix)?;
+    }
+    // Each node has a folder of its own, named after its number alone. Whose it
+    // is shows in the files; an empty one may be another graph's, just made.
+    for folder in entries(&nodes)? {
+        if folder.is_dir() && remove_prefixed(&folder, prefix)? {
+            gone(&folder, remove_dir(&folder))?;
+        }
+    }
+    Ok(())
+}
+
+/// Removes the files in `folder` that begin with `prefix`; says if there were any.
+fn remove_prefixed(folder: &Path, prefix: &[u8]) -> Result<bool, TransportError> {
+    let mut any = false;
+    for path in entries(folder)? {
+        let name = path.file_name().map(OsStr::as_bytes);
+        if name.is_some_and(|name| name.starts_with(prefix)) {
+            gone(&path, remove_file(&path))?;
+            any = true;
+        }
+    }
+    Ok(any)
+}
+
+/// What `folder` holds; nothing where there is none.
+fn entries(folder: &Path) -> Result<Vec<PathBuf>, TransportError> {
+    let failed = |source| TransportError::File {
+        action: "list",
+        path: folder.to_owned(),
+        source,
+    };
+    match read_dir(folder) {
+        Ok(entries) => entries
+            .map(|entry| entry.map(|e| e.path()).map_err(failed))
+            .collect(),
+        Err(error) if error.kind() == ErrorKind::NotFound => Ok(Vec::new()),
+        Err(error) => Err(failed(error)),
+    }
+}
+
+/// Whether it is gone, whoever did it, is all that counts.
+fn gone(path: &Path, outcome: std::io::Result<()>) -> Result<(), TransportError> {
+    match outcome {
+        Err(source) if source.kind() != ErrorKind::NotFound => Err(TransportError::File {
+            action: "remove",
+            path: path.to_owned(),
+            source,
+        }),
+        _ => Ok(()),
+    }
+}

@@ -1,0 +1,90 @@
+//! A sample on its way from being asked for to being sent.
+//!
+//! The node fills it where its subscribers will read it: nothing is copied.
+
+use iceoryx2::prelude::ipc;
+use iceoryx2::sample_mut::SampleMut;
+use messages::Topic;
+
+use crate::header::Header;
+use crate::publisher::send_failed;
+use crate::{Publisher, TransportError, space};
+
+/// Bytes of iceoryx2's own header in front of ours, and of padding, at most.
+const OVERHEAD: usize = 256;
+
+/// A sample being filled; dropping it gives the memory back unsent.
+#[derive(Debug)]
+pub struct Loan<'p, T: Topic> {
+    sample: SampleMut<ipc::Service, [T::Item], Header<T::Header>>,
+    publisher: &'p Publisher<T>,
+}
+
+impl<'p, T: Topic> Loan<'p, T> {
+    pub(crate) fn of(publisher: &'p Publisher<T>, items: usize) -> Result<Self, TransportError> {
+        space::ensure_free(T::NAME, sample_bytes::<T>(items)?)?;
+        let sample = publisher
+            .port()
+            .loan_slice_uninit(items)
+            .map_err(|error| TransportError::Loan {
+                topic: T::NAME,
+                items,
+                reason: format!("{error:?}"),
+            })?
+            .write_from_fn(|_| bytemuck::Zeroable::zeroed());
+        Ok(Loan { sample, publisher })
+    }
+
+    /// The header, zeros at first.
+    pub fn header_mut(&mut self) -> &mut T::Header {
+        &mut self.sample.user_header_mut().0
+    }
+
+    /// The items, zeros at first.
+    pub fn items_mut(&mut self) -> &mut [T::Item] {
+        self.sample.payload_mut()
+    }
+
+    /// Hands the sample to every subscriber and wakes them.
+    ///
+    /// # Errors
+    /// [`TransportError::Send`] if a subscriber could not be reached.
+    pub fn send(self) -> Result<(), TransportError> {
+        self.sample
+            .send()
+            .map_err(|error| send_failed::<T>(&error))?;
+        self.publisher.wake()
+    }
+}
+
+/// Bytes that a sample touches at most. iceoryx2 rounds the size of its chunks
+/// up to a power of two, which must exist.
+fn sample_bytes<T: Topic>(items: usize) -> Result<u64, TransportError> {
+    size_of::<T::Item>()
+        .checked_mul(items)
+        .and_then(|bytes| bytes.checked_add(size_of::<T::Header>() + OVERHEAD))
+        .filter(|bytes| bytes.checked_next_power_of_two().is_some())
+        .and_then(|bytes| u64::try_from(bytes).ok())
+        .ok_or(TransportError::TooLarge {
+            topic: T::NAME,
+            items,
+            item_bytes: size_of::<T::Item>(),
+        })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use messages::topic;
+
+    #[test]
+    fn sizes_are_counted_or_refused_but_never_wrap() {
+        let scan = |items| sample_bytes::<topic::Scan>(items);
+        assert_eq!(scan(0).unwrap(), 128 + 256);
+        assert_eq!(scan(361).unwrap(), 361 * 4 + 128 + 256);
+        for items in [usize::MAX, usize::MAX / 4, usize::MAX / 8] {
+            let error = scan(items).unwrap_err();
+            assert!(matches!(error, TransportError::TooLarge { items: i, .. } if i == items));
+        }
+    }
+}

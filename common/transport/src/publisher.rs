@@ -1,0 +1,148 @@
+//! The sending end of a topic.
+//!
+//! A subscriber that is too slow loses its oldest samples; it never holds the
+//! publisher up, and the publisher never waits for anybody.
+
+use std::cell::RefCell;
+use std::rc::{Rc, Weak};
+
+use iceoryx2::node::Node;
+use iceoryx2::port::notifier::Notifier;
+use iceoryx2::port::publisher::{Publisher as IoxPublisher, PublisherCreateError};
+use iceoryx2::port::update_connections::UpdateConnections;
+use iceoryx2::prelude::{
+    AllocationStrategy, BackpressureStrategy, CallbackProgression, PortFactory, ipc,
+};
+use messages::Topic;
+
+use crate::header::Header;
+use crate::latched::Latched;
+use crate::service::{self, Samples};
+use crate::{Loan, TransportError, space};
+
+pub(crate) type Port<T> =
+    IoxPublisher<ipc::Service, [<T as Topic>::Item], Header<<T as Topic>::Header>>;
+
+/// Sends samples of topic `T`. When it is dropped, its memory goes with the last
+/// sample that somebody holds.
+#[derive(Debug)]
+pub struct Publisher<T: Topic> {
+    inner: Rc<Inner<T>>,
+}
+
+#[derive(Debug)]
+struct Inner<T: Topic> {
+    port: Port<T>,
+    notifier: Notifier<ipc::Service>,
+    samples: Samples<T>,
+    /// The subscribers that were there when late joiners were last served.
+    served: RefCell<Vec<u128>>,
+}
+
+impl<T: Topic> Publisher<T> {
+    /// Samples that may be filled at the same time.
+    pub const MAX_LOANED: usize = service::MAX_LOANED;
+
+    /// A publisher whose first segment holds samples of up to `items` items; it
+    /// grows by itself.
+    pub(crate) fn create(node: &Node<ipc::Service>, items: usize) -> Result<Self, TransportError> {
+        space::ensure_free(T::NAME, 0)?;
+        let samples = service::open_samples::<T>(node)?;
+        let notifier = service::notifier::<T>(node)?;
+        let port = samples
+            .publisher_builder()
+            .initial_max_slice_len(items)
+            .allocation_strategy(AllocationStrategy::PowerOfTwo)
+            .max_loaned_samples(Self::MAX_LOANED)
+            .backpressure_strategy(BackpressureStrategy::DiscardData)
+            .create()
+            .map_err(|error| match error {
+                PublisherCreateError::ExceedsMaxSupportedPublishers => {
+                    service::too_many_publishers::<T>()
+                }
+                other => service::port_failed::<T>("publisher", &other),
+            })?;
+        Ok(Publisher {
+            inner: Rc::new(Inner {
+                port,
+                notifier,
+                samples,
+                served: RefCell::default(),
+            }),
+        })
+    }
+
+    /// For the event loop; `None` where the topic keeps nothing for late joiners.
+    pub(crate) fn latched(&self) -> Option<Weak<dyn Latched>> {
+        let weak: Weak<Inner<T>> = Rc::downgrade(&self.inner);
+        T::LATCHED.then_some(weak as Weak<dyn Latched>)
+    }
+
+    /// Memory for a sample of `items` items in shared memory, all of them and
+    /// the header zero, to be filled in place.
+    ///
+    /// # Errors
+    /// [`TransportError::SharedMemoryFull`] where shared memory has no room for
+    /// it, [`TransportError::TooLarge`] where no memory could have,
+    /// [`TransportError::Loan`] where [`Publisher::MAX_LOANED`] samples are being
+    /// filled already.
+    pub fn loan(&self, items: usize) -> Result<Loan<'_, T>, TransportError> {
+        Loan::of(self, items)
+    }
+
+    /// Whether anybody would get what is sent. A subscriber that was killed
+    /// counts until it has been cleaned away.
+    #[must_use]
+    pub fn has_subscribers(&self) -> bool {
+        self.inner.samples.dynamic_config().number_of_subscribers() > 0
+    }
+
+    pub(crate) fn port(&self) -> &Port<T> {
+        &self.inner.port
+    }
+
+    /// Wakes the subscribers, after something was sent.
+    pub(crate) fn wake(&self) -> Result<(), TransportError> {
+        self.inner.wake()
+    }
+}
+
+impl<T: Topic> Inner<T> {
+    fn wake(&self) -> Result<(), TransportError> {
+        self.notifier
+            .notify()
+            .map(drop)
+            .map_err(|error| send_failed::<T>(&error))
+    }
+
+    fn subscribers(&self) -> Vec<u128> {
+        let mut ids = Vec::new();
+        self.samples.dynamic_config().list_subscribers(|details| {
+            ids.push(details.subscriber_id.value());
+            CallbackProgression::Continue
+        });
+        ids
+    }
+}
+
+impl<T: Topic> Latched for Inner<T> {
+    fn serve_late_joiners(&self) -> Result<(), TransportError> {
+        let subscribers = self.subscribers();
+        if *self.served.borrow() == subscribers {
+            return Ok(());
+        }
+        self.port
+            .update_connections()
+            .map_err(|error| send_failed::<T>(&error))?;
+        self.wake()?;
+        self.served.replace(subscribers);
+        Ok(())
+    }
+}
+
+pub(crate) fn send_failed<T: Topic>(error: &dyn std::fmt::Debug) -> TransportError {
+    TransportError::Send {
+        topic: T::NAME,
+        reason: format!("{error:?}"),
+    }
+}

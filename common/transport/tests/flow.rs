@@ -1,0 +1,193 @@
+//! What flows within one process: order, loss, growth, health, the event loop.
+
+#![allow(
+    clippy::unwrap_used,
+    reason = "helpers of tests fail the test, as tests do"
+)]
+
+mod isolated;
+
+use std::time::Duration;
+
+use isolated::Isolated;
+use messages::{HealthHeader, NodeState, Topic, topic};
+use transport::{Flow, GapCounter, Graph, Publisher, Subscriber, TransportError};
+
+fn pair<T: Topic>(graph: &Graph) -> (Publisher<T>, Subscriber<T>) {
+    (graph.publisher().unwrap(), graph.subscriber().unwrap())
+}
+
+#[test]
+fn a_slow_subscriber_keeps_the_newest_and_can_count_the_rest() {
+    let isolated = Isolated::new("overflow");
+    let graph = Graph::join_named("tester", &isolated.name).unwrap();
+    let (publisher, subscriber) = pair::<topic::Scan>(&graph);
+    let send = |counters: std::ops::Range<u64>| {
+        for counter in counters {
+            let mut loan = publisher.loan(5).unwrap();
+            loan.header_mut().stamp.counter = counter;
+            loan.send().unwrap();
+        }
+    };
+    let mut gaps = GapCounter::new();
+    let mut lost = 0;
+    let mut receive = || {
+        let mut counters = Vec::new();
+        while let Some(sample) = subscriber.receive().unwrap() {
+            let counter = sample.header().stamp.counter;
+            lost += gaps.lost_before(counter);
+            counters.push(counter);
+        }
+        counters
+    };
+    send(0..2);
+    assert_eq!(receive(), [0, 1]);
+    send(2..12);
+    assert_eq!(receive(), [8, 9, 10, 11]);
+    assert_eq!(lost, 6);
+}
+
+#[test]
+fn newest_skips_what_is_older() {
+    let isolated = Isolated::new("newest");
+    let graph = Graph::join_named("tester", &isolated.name).unwrap();
+    let (publisher, subscriber) = pair::<topic::OdometryTopic>(&graph);
+    assert!(subscriber.newest().unwrap().is_none());
+    for counter in 0..5 {
+        let mut loan = publisher.loan(0).unwrap();
+        loan.header_mut().stamp.counter = counter;
+        loan.send().unwrap();
+    }
+    let sample = subscriber.newest().unwrap().unwrap();
+    assert_eq!(sample.header().stamp.counter, 4);
+    assert!(subscriber.newest().unwrap().is_none());
+}
+
+#[test]
+fn the_current_map_stays_while_the_next_ones_are_taken() {
+    let isolated = Isolated::new("growth");
+    let graph = Graph::join_named("tester", &isolated.name).unwrap();
+    let (publisher, subscriber) = pair::<topic::Map>(&graph);
+    let serve = |cells: usize, value: u8| {
+        let mut loan = publisher.loan(cells).unwrap();
+        loan.items_mut().fill(value);
+        loan.send().unwrap();
+        subscriber.newest().unwrap().unwrap()
+    };
+    let small = serve(1, 1);
+    let large = serve(8_000_000, 2);
+    let other = serve(8_000_000, 3);
+    assert_eq!(small.items(), [1]);
+    assert_eq!(large.items().len(), 8_000_000);
+    assert!(large.items().iter().all(|&cell| cell == 2));
+    assert!(other.items().iter().all(|&cell| cell == 3));
+}
+
+#[test]
+fn health_is_sent_at_once_when_it_changes_and_when_the_node_ends() {
+    let isolated = Isolated::new("reports");
+    let graph = Graph::join_named("accumulator", &isolated.name).unwrap();
+    let subscriber = graph.subscriber::<topic::Health>().unwrap();
+    let mut health = graph.health().unwrap();
+    let report = || {
+        let sample = subscriber.receive().unwrap()?;
+        let text = std::str::from_utf8(sample.items()).unwrap().to_owned();
+        Some((*sample.header(), text))
+    };
+    let (first, text) = report().unwrap();
+    assert_eq!(first.node.as_str(), "accumulator");
+    assert_eq!(first.pid, std::process::id());
+    assert_eq!(NodeState::from_code(first.state), Some(NodeState::Waiting));
+    assert_eq!(text, "");
+
+    health.count_received(5);
+    health.count_sent(4);
+    health.count_dropped(3);
+    health.count_refused(1);
+    assert!(report().is_none(), "counting alone sends nothing");
+    health.state(NodeState::Ready).unwrap();
+    health.state(NodeState::Ready).unwrap();
+    let (ready, _) = report().unwrap();
+    assert_eq!(NodeState::from_code(ready.state), Some(NodeState::Ready));
+    let counts = (ready.received, ready.sent, ready.dropped, ready.refused);
+    assert_eq!(counts, (5, 4, 3, 1));
+    assert!(report().is_none(), "an old state is no news");
+
+    // The last character would end one byte behind the limit.
+    let long = format!("{}ä and more", "a".repeat(HealthHeader::ERROR_CAPACITY - 1));
+    health.error(&long).unwrap();
+    assert_eq!(
+        report().unwrap().1,
+        "a".repeat(HealthHeader::ERROR_CAPACITY - 1)
+    );
+    health.error("scan refused").unwrap();
+    assert_eq!(report().unwrap().1, "scan refused");
+
+    drop(health);
+    let (last, text) = report().unwrap();
+    assert_eq!(NodeState::from_code(last.state), Some(NodeState::Stopped));
+    assert_eq!(text, "scan refused");
+}
+
+#[test]
+fn the_event_loop_ends_as_it_is_told() {
+    let isolated = Isolated::new("loop");
+    let graph = Graph::join_named("tester", &isolated.name).unwrap();
+    let tick = Duration::from_millis(1);
+
+    let mut calls = 0;
+    graph
+        .run(&[], tick, |wake| {
+            assert!(wake.tick, "without inputs, only ticks wake");
+            calls += 1;
+            Ok::<_, TransportError>(if calls == 3 {
+                Flow::Stop
+            } else {
+                Flow::Continue
+            })
+        })
+        .unwrap();
+    assert_eq!(calls, 3);
+
+    let error = graph
+        .run(&[], tick, |_| {
+            Err(TransportError::GraphName {
+                name: "mine".into(),
+            })
+        })
+        .unwrap_err();
+    assert!(matches!(error, TransportError::GraphName { name } if name == "mine"));
+
+    let flag = graph.stop_flag();
+    let mut calls = 0;
+    let mut step = |_| {
+        calls += 1;
+        flag.store(true, std::sync::atomic::Ordering::Relaxed);
+        Ok::<_, TransportError>(Flow::Continue)
+    };
+    graph.run(&[], tick, &mut step).unwrap();
+    graph.run(&[], tick, &mut step).unwrap();
+    assert_eq!(calls, 1, "a set flag ends the loop before the next call");
+}
+
+#[test]
+fn a_sample_wakes_long_before_the_tick() {
+    let isolated = Isolated::new("wake");
+    let graph = Graph::join_named("tester", &isolated.name).unwrap();
+    let (publisher, subscriber) = pair::<topic::Scan>(&graph);
+    let mut received = 0;
+    // With such a tick, only the sample itself can end the wait.
+    graph
+        .run(&[&subscriber], Duration::from_secs(86_400), |wake| {
+            assert_eq!(wake.tick, received == 0);
+            while subscriber.receive()?.is_some() {}
+            received += 1;
+            if received == 20 {
+                return Ok::<_, TransportError>(Flow::Stop);
+            }
+            publisher.loan(1)?.send()?;
+            Ok(Flow::Continue)
+        })
+        .unwrap();
+    assert_eq!(received, 20);
+}

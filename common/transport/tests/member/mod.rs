@@ -1,0 +1,227 @@
+//! Another process of a test's graph: the test's own executable, which does
+//! what it is told line by line. It can be killed.
+
+use std::io::{BufRead, BufReader, Write};
+use std::os::unix::fs::MetadataExt;
+use std::process::{Child, ChildStdin, ChildStdout, Command, ExitCode, Stdio};
+use std::time::Duration;
+
+use messages::topic;
+use nix::sys::signal::{Signal, kill};
+use nix::unistd::Pid;
+use transport::{Flow, GRAPH_VARIABLE, Graph, GraphName, Publisher, Subscriber, TransportError};
+
+/// Set in such a process: the name under which it joins.
+const NODE_VARIABLE: &str = "TRANSPORT_TEST_NODE";
+/// Tells answers from what the test harness prints.
+const ANSWER: &str = "answer:";
+
+/// The member, as the test sees it.
+pub(crate) struct Member {
+    process: Child,
+    commands: Option<ChildStdin>,
+    answers: BufReader<ChildStdout>,
+}
+
+impl Member {
+    /// Starts a process that joins `graph` as `node`. The test executable must
+    /// have a test `member` that calls [`serve_if_asked`].
+    pub(crate) fn start(graph: &GraphName, node: &str) -> Self {
+        let mut process = Command::new(std::env::current_exe().unwrap())
+            .args(["--exact", "member", "--nocapture"])
+            .env(GRAPH_VARIABLE, graph.as_str())
+            .env(NODE_VARIABLE, node)
+            .env("RUST_LOG", "off")
+            .stdin(Stdio::piped())
+            .stdout(Stdio::piped())
+            .spawn()
+            .unwrap();
+        Member {
+            commands: process.stdin.take(),
+            answers: BufReader::new(process.stdout.take().unwrap()),
+            process,
+        }
+    }
+
+    pub(crate) fn tell(&mut self, command: &str) {
+        writeln!(self.commands.as_mut().unwrap(), "{command}").unwrap();
+    }
+
+    pub(crate) fn answer(&mut self) -> String {
+        let mut line = String::new();
+        loop {
+            line.clear();
+            let read = self.answers.read_line(&mut line).unwrap();
+            assert!(read > 0, "the member ended without an answer");
+            if let Some((_, answer)) = line.split_once(ANSWER) {
+                return answer.trim().to_owned();
+            }
+        }
+    }
+
+    pub(crate) fn ask(&mut self, command: &str) -> String {
+        self.tell(command);
+        self.answer()
+    }
+
+    pub(crate) fn id(&self) -> u32 {
+        self.process.id()
+    }
+
+    pub(crate) fn signal(&self, signal: Signal) {
+        kill(Pid::from_raw(self.process.id().cast_signed()), signal).unwrap();
+    }
+
+    /// Ends it with SIGKILL, which it cannot notice.
+    pub(crate) fn kill(mut self) {
+        self.process.kill().unwrap();
+        self.process.wait().unwrap();
+    }
+
+    /// Lets it leave the graph and end.
+    pub(crate) fn end(mut self) {
+        drop(self.commands.take());
+        assert!(self.process.wait().unwrap().success());
+    }
+}
+
+impl Drop for Member {
+    fn drop(&mut self) {
+        // A test that fails half-way must not leave it behind. Where it has
+        // ended already, this finds nothing to do.
+        let _ = self.process.kill();
+        let _ = self.process.wait();
+    }
+}
+
+/// In a process that [`Member::start`] started, does what it is told until its
+/// input ends, and returns true; false in the test itself.
+pub(crate) fn serve_if_asked() -> bool {
+    let Ok(node) = std::env::var(NODE_VARIABLE) else {
+        return false;
+    };
+    let mut served = Served {
+        graph: Graph::join(&node).unwrap(),
+        publisher: None,
+        subscriber: None,
+        held: Vec::new(),
+    };
+    for line in std::io::stdin().lines() {
+        let line = line.unwrap();
+        let words: Vec<&str> = line.split(' ').collect();
+        println!("{ANSWER}{}", served.obey(&words));
+    }
+    true
+}
+
+struct Served {
+    graph: Graph,
+    publisher: Option<Publisher<topic::Map>>,
+    subscriber: Option<Subscriber<topic::Map>>,
+    held: Vec<transport::Sample<topic::Map>>,
+}
+
+impl Served {
+    fn obey(&mut self, words: &[&str]) -> String {
+        match words {
+            ["name"] => self.graph.node_name().to_owned(),
+            ["main", outcome] => format!("{:?}", run_main(outcome)),
+            ["publish", id, cells] => self.publish(id.parse().unwrap(), cells.parse().unwrap()),
+            ["subscribe"] => {
+                self.subscriber = Some(self.graph.subscriber().unwrap());
+                "subscribed".into()
+            }
+            ["receive"] => self.receive(),
+            ["idle", tick_ms] => self.idle(tick_ms.parse().unwrap()),
+            other => panic!("unknown command {other:?}"),
+        }
+    }
+
+    /// Sends a map whose id and cells are `id`; says where its cells lie.
+    fn publish(&mut self, id: u8, cells: usize) -> String {
+        let publisher = self
+            .publisher
+            .get_or_insert_with(|| self.graph.publisher().unwrap());
+        let mut loan = publisher.loan(cells).unwrap();
+        loan.header_mut().map_id = id.into();
+        loan.items_mut().fill(id);
+        let place = place_of(loan.items_mut());
+        loan.send().unwrap();
+        place
+    }
+
+    /// Waits for a map and holds it; says its id and where its cells lie.
+    fn receive(&mut self) -> String {
+        let subscriber = self.subscriber.as_ref().unwrap();
+        let sample = wait_for_map(&self.graph, subscriber);
+        let answer = format!("{} {}", sample.header().map_id, place_of(sample.items()));
+        self.held.push(sample);
+        answer
+    }
+
+    /// Runs the event loop until a signal comes.
+    fn idle(&self, tick_ms: u64) -> String {
+        let tick = Duration::from_millis(tick_ms);
+        let mut first = true;
+        let step = |_| {
+            if std::mem::take(&mut first) {
+                println!("{ANSWER}idle");
+            }
+            Ok::<_, TransportError>(Flow::Continue)
+        };
+        self.graph.run(&[], tick, step).unwrap();
+        "stopped".into()
+    }
+}
+
+/// What `main` of a node makes of an outcome, and of the second start of logging.
+fn run_main(outcome: &str) -> ExitCode {
+    transport::node::main("inner", |graph| match outcome {
+        "ok" => Ok(()),
+        other => Err(TransportError::GraphName {
+            name: format!("{other} in {}", graph.name()),
+        }),
+    })
+}
+
+/// Waits until a map comes. The tick is so long that only a wake-up can end the
+/// wait: a map that came without one would hang the test.
+pub(crate) fn wait_for_map(
+    graph: &Graph,
+    subscriber: &Subscriber<topic::Map>,
+) -> transport::Sample<topic::Map> {
+    let mut received = None;
+    graph
+        .run(&[subscriber], Duration::from_secs(86_400), |_| {
+            received = subscriber.newest()?;
+            Ok::<_, TransportError>(match received {
+                Some(_) => Flow::Stop,
+                None => Flow::Continue,
+            })
+        })
+        .unwrap();
+    received.unwrap()
+}
+
+/// Where bytes lie, in words that mean the same in every process: the file that
+/// is mapped there and the offset in it.
+pub(crate) fn place_of(bytes: &[u8]) -> String {
+    let address = bytes.as_ptr().addr();
+    let maps = std::fs::read_to_string("/proc/self/maps").unwrap();
+    for line in maps.lines() {
+        let fields: Vec<&str> = line.split_whitespace().collect();
+        let (start, end) = fields[0].split_once('-').unwrap();
+        let hex = |text| usize::from_str_radix(text, 16).unwrap();
+        if (hex(start)..hex(end)).contains(&address) {
+            let offset = address - hex(start) + hex(fields[2]);
+            let file = std::fs::metadata(fields[5]).unwrap();
+            assert_eq!(
+                file.ino().to_string(),
+                fields[4],
+                "the file is the mapped one"
+            );
+            return format!("{}+{offset}", fields[5]);
+        }
+    }
+    panic!("{address:x} is not mapped");
+}
