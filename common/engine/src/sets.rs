@@ -7,16 +7,22 @@
 //! answers that for all headings at once.
 
 use crate::directions::{Direction, Directions};
-use crate::grid::{Cell, Grid};
+use crate::grid::Grid;
 use crate::intervals::Intervals;
-use crate::lines::NO_RANGE;
 use crate::sweep::SweepGrid;
 
 /// Cells along the side of a block.
 pub(crate) const SIDE: usize = 16;
 
-/// Cells of distance in a bin: a block smears distances by far more.
-const CELLS_PER_BIN: f64 = 2.0;
+/// Width of the nearest bins in cells: a block smears distances by far more.
+const NEAR_BIN_CELLS: f64 = 2.0;
+
+/// Distance in cells at which bins are twice as wide as the nearest ones: the
+/// tapers of far readings are wider, too.
+const BIN_GROWTH_CELLS: f64 = 64.0;
+
+/// Directions that are marked at a time: the bits of a byte.
+const OCTET: usize = 8;
 
 /// Bytes that are read from a row at a time.
 pub(crate) const READ: usize = 64;
@@ -34,23 +40,24 @@ pub(crate) struct RangeSets {
 /// Into which bin of distances the steps along a direction fall.
 #[derive(Debug, Clone)]
 pub(crate) struct Bins {
-    /// By class of direction.
-    bins_per_step: Vec<f64>,
+    /// Cells a step, by class of direction.
+    cells_per_step: Vec<f64>,
 }
 
 impl Bins {
     pub(crate) fn new(directions: &Directions) -> Self {
         let classes = 0..directions.classes();
-        let bins_per_step =
-            classes.map(|class| 1.0 / (directions.steps_per_cell(class) * CELLS_PER_BIN));
         Bins {
-            bins_per_step: bins_per_step.collect(),
+            cells_per_step: classes
+                .map(|class| 1.0 / directions.steps_per_cell(class))
+                .collect(),
         }
     }
 
     /// The bin of a range along a class of directions; never falls with it.
     pub(crate) fn bin(&self, class: usize, steps: u16) -> usize {
-        (f64::from(steps) * self.bins_per_step[class]) as usize
+        let cells = f64::from(steps) * self.cells_per_step[class];
+        (BIN_GROWTH_CELLS / NEAR_BIN_CELLS * (cells / BIN_GROWTH_CELLS).ln_1p()) as usize
     }
 }
 
@@ -78,47 +85,25 @@ impl RangeSets {
             starts,
             rows: vec![0; rows],
         };
-        let sweeps = SweepGrid::new(grid);
-        for (d, direction) in directions.all().iter().enumerate() {
-            sets.mark(grid, &sweeps, direction, d, blocks.columns, &bins);
+        let mut planes = Planes::new(grid);
+        for (octet, directions) in directions.all().chunks(OCTET).enumerate() {
+            planes.fill(directions, &bins);
+            for block in 0..sets.blocks() {
+                sets.mark(octet, block, blocks.columns, &planes);
+            }
         }
         sets.repeat(directions.count());
         sets
     }
 
-    /// Marks the ranges along one direction.
-    fn mark(
-        &mut self,
-        grid: &Grid,
-        sweeps: &SweepGrid,
-        direction: &Direction,
-        d: usize,
-        columns: usize,
-        bins: &Bins,
-    ) {
-        let (byte, bit) = (d / 8, 1 << (d % 8));
-        let longest = grid.width().max(grid.height()) as u16;
-        let offsets: Vec<u32> = (0..=longest)
-            .map(|steps| (bins.bin(direction.class, steps) * self.stride + byte) as u32)
-            .collect();
-        sweeps.sweep(direction, |row| {
-            for (minor, &range) in row.ranges.iter().enumerate() {
-                if range == NO_RANGE || range == 0 {
-                    continue;
-                }
-                let (x, y) = if direction.x_major {
-                    (row.major, minor)
-                } else {
-                    (minor, row.major)
-                };
-                let block = y / SIDE * columns + x / SIDE;
-                let row = self.starts[block] as usize * self.stride;
-                self.rows[row + offsets[usize::from(range)] as usize] |= bit;
-            }
-        });
-        debug_assert!(
-            grid.cells().contains(&Cell::Occupied) || self.rows.iter().all(|&byte| byte == 0)
-        );
+    /// Marks what a block sees in the eight directions of the planes.
+    fn mark(&mut self, octet: usize, block: usize, columns: usize, planes: &Planes) {
+        let bins = (self.starts[block + 1] - self.starts[block]) as usize;
+        let seen = planes.mark(block % columns * SIDE, block / columns * SIDE);
+        let rows = &mut self.rows[self.starts[block] as usize * self.stride..];
+        for (row, &seen) in rows.chunks_exact_mut(self.stride).zip(&seen[..bins]) {
+            row[octet] = seen;
+        }
     }
 
     /// Repeats the bits of each row behind themselves.
@@ -147,6 +132,85 @@ impl RangeSets {
     /// Bytes that the sets take.
     pub(crate) fn bytes(&self) -> usize {
         self.rows.len() + 4 * self.starts.len()
+    }
+}
+
+/// Bins that a byte can name, with one for what sees nothing.
+const BINS: usize = 256;
+
+/// The bins that all cells see into, in eight directions.
+struct Planes {
+    sweeps: SweepGrid,
+    width: usize,
+    height: usize,
+    /// Row by row, or column by column where the direction's major axis is x.
+    bins: [Vec<u8>; OCTET],
+    is_by_column: [bool; OCTET],
+}
+
+impl Planes {
+    /// The bin of cells that see nothing or that nobody can stand in. The
+    /// longest range, 46340 cells, lies in bin 210.
+    const NOTHING: u8 = (BINS - 1) as u8;
+
+    fn new(grid: &Grid) -> Self {
+        Planes {
+            sweeps: SweepGrid::new(grid),
+            width: grid.width(),
+            height: grid.height(),
+            bins: std::array::from_fn(|_| vec![0; grid.cells().len()]),
+            is_by_column: [false; OCTET],
+        }
+    }
+
+    fn fill(&mut self, directions: &[Direction], bins: &Bins) {
+        let longest = self.width.max(self.height) as u16;
+        for ((direction, plane), is_by_column) in directions
+            .iter()
+            .zip(&mut self.bins)
+            .zip(&mut self.is_by_column)
+        {
+            // No open cell has range 0, and none is farther than a side.
+            let mut table: Vec<u8> = (0..=longest)
+                .map(|steps| bins.bin(direction.class, steps) as u8)
+                .collect();
+            table[0] = Self::NOTHING;
+            *is_by_column = direction.x_major;
+            let minor = if direction.x_major {
+                self.height
+            } else {
+                self.width
+            };
+            self.sweeps.sweep(direction, |row| {
+                let plane = &mut plane[row.major * minor..][..minor];
+                for (bin, &range) in plane.iter_mut().zip(row.ranges) {
+                    *bin = table
+                        .get(usize::from(range))
+                        .copied()
+                        .unwrap_or(Self::NOTHING);
+                }
+            });
+        }
+    }
+
+    /// By bin, a byte whose bit `i` says whether a cell of the block at
+    /// (`left`, `bottom`) sees into the bin in direction `i`.
+    fn mark(&self, left: usize, bottom: usize) -> [u8; BINS] {
+        let mut seen = [0u8; BINS];
+        let (right, top) = (self.width.min(left + SIDE), self.height.min(bottom + SIDE));
+        for ((bit, plane), &is_by_column) in (0..).zip(&self.bins).zip(&self.is_by_column) {
+            let (majors, minors, stride) = if is_by_column {
+                (left..right, bottom..top, self.height)
+            } else {
+                (bottom..top, left..right, self.width)
+            };
+            for major in majors {
+                for &bin in &plane[major * stride..][minors.clone()] {
+                    seen[usize::from(bin)] |= 1 << bit;
+                }
+            }
+        }
+        seen
     }
 }
 
