@@ -1,1 +1,129 @@
-//! To be written.
+//! The descriptor of a graph, `dataflow.yaml`: which processes there are, how
+//! they are built and started, and which topics join them.
+//!
+//! It is a strict subset of dora's descriptor: whatever is accepted here,
+//! `dora validate` and `dora run` accept with the same meaning. Where dora
+//! guesses, replaces or ignores, this crate refuses. Every problem names its
+//! line and column, and all that can be told at once is told at once. The crate
+//! starts no process and knows no topic: the caller says which there are.
+//!
+//! | key | value | without it |
+//! |---|---|---|
+//! | `id` | 1 to 32 of `a-z A-Z 0-9 _ . -`, not `dora` | refused |
+//! | `path` | executable, from the descriptor's folder | refused |
+//! | `args` | words, quoted as in a shell; nothing is replaced | no arguments |
+//! | `env` | map of names to texts, whole numbers, decimals or booleans | none added |
+//! | `build` | commands, one a line, words split at spaces; run in the descriptor's folder | not built |
+//! | `inputs` | map of topic to `node/topic` | none |
+//! | `outputs` | list of topics | none |
+//! | `restart_policy` | `never`, `on-failure`, `always` | `never` |
+//! | `max_restarts` | 0 or more, 0 for no limit | 0 |
+//! | `restart_delay` | seconds before the first restart; it doubles with each | at once |
+
+mod descriptor;
+mod error;
+mod files;
+mod node;
+mod place;
+mod raw;
+mod scalar;
+mod wiring;
+mod words;
+
+pub use descriptor::{Command, Dataflow, Input, Node, Restart, RestartPolicy};
+pub use error::{DataflowError, Fault};
+pub use files::check_executables;
+pub use place::{Place, Problem};
+pub use wiring::Topics;
+
+use std::path::Path;
+
+/// The largest descriptor that is read, bytes.
+pub const MAX_FILE_BYTES: u64 = 1 << 20;
+/// The most nodes of a graph.
+pub const MAX_NODES: usize = 64;
+/// The longest id of a node, bytes.
+pub const MAX_ID_BYTES: usize = 32;
+
+/// Reads and checks the descriptor at `path`.
+///
+/// # Errors
+/// The file cannot be read, is larger than [`MAX_FILE_BYTES`], or is wrong in
+/// one or more places.
+pub fn load(path: &Path, topics: &Topics) -> Result<Dataflow, DataflowError> {
+    let text = files::read(path)?;
+    parse(&text, topics).map_err(|problems| DataflowError::Wrong {
+        file: path.to_owned(),
+        problems,
+    })
+}
+
+/// Checks the text of a descriptor.
+///
+/// # Errors
+/// Everything that is wrong, in the order of the text; only the first problem
+/// where the text is not a descriptor at all.
+pub fn parse(text: &str, topics: &Topics) -> Result<Dataflow, Vec<Problem>> {
+    let raw = raw::parse(text).map_err(|problem| vec![problem])?;
+    let mut problems = Vec::new();
+    let dataflow = node::read_all(&raw, text, &mut problems);
+    wiring::check(&raw, topics, &mut problems);
+    if problems.is_empty() {
+        return Ok(dataflow);
+    }
+    problems.sort_by_key(|p| p.place);
+    Err(problems)
+}
+
+#[cfg(test)]
+mod tests {
+    use proptest::prelude::*;
+
+    use super::*;
+
+    const SOUND: &str = "nodes:
+  - id: a
+    path: x
+    args: --flag 'two words'
+    env: { RUST_LOG: debug, N: 3 }
+    build: make x
+    outputs: [scan]
+    restart_policy: on-failure
+    max_restarts: 3
+    restart_delay: 0.5
+  - id: b
+    path: y
+    inputs: { scan: a/scan }
+";
+    const TOPICS: Topics = Topics {
+        names: &["scan"],
+        shared: &[],
+    };
+
+    #[test]
+    fn the_descriptor_that_the_properties_damage_is_sound() {
+        assert_eq!(parse(SOUND, &TOPICS).map(|d| d.nodes.len()), Ok(2));
+    }
+
+    proptest! {
+        #[test]
+        fn any_text_is_read_or_refused(text in any::<String>()) {
+            let _ = parse(&text, &TOPICS);
+        }
+
+        /// Places lie in the text: they name a line of it.
+        #[test]
+        fn a_damaged_descriptor_is_read_or_refused_in_place(
+            at in 0..SOUND.len(),
+            length in 0..12usize,
+            patch in "[-a-z:{}\\[\\],'\"#&*!|> \n0-9.]{0,6}",
+        ) {
+            let end = (at + length).min(SOUND.len());
+            let text = format!("{}{patch}{}", &SOUND[..at], &SOUND[end..]);
+            for problem in parse(&text, &TOPICS).err().unwrap_or_default() {
+                let lines = text.lines().count() as u64;
+                prop_assert!((1..=lines + 1).contains(&problem.place.line), "{problem}");
+            }
+        }
+    }
+}

@@ -1,2 +1,7 @@
-//! To be written.
-fn main() {}
+//! The command `backcast`; all that it does is in the library.
+
+use std::process::ExitCode;
+
+fn main() -> ExitCode {
+    backcast::cli::main()
+}

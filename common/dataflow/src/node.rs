@@ -1,0 +1,317 @@
+//! From the file's entries to checked nodes, each looked at alone.
+
+use std::time::Duration;
+
+use serde_saphyr::Spanned;
+
+use crate::{
+    Dataflow, Fault, Input, MAX_ID_BYTES, MAX_NODES, Node, Place, Problem, Restart, RestartPolicy,
+    raw::{RawDataflow, RawNode, Text},
+    scalar, words,
+};
+
+/// All nodes; what is wrong with them goes to `problems`.
+pub(crate) fn read_all(raw: &RawDataflow, source: &str, problems: &mut Vec<Problem>) -> Dataflow {
+    let found = raw.nodes.value.len();
+    let mut list_fault = |fault| {
+        let place = raw.nodes.referenced.into();
+        problems.push(Problem { place, fault });
+    };
+    if found == 0 {
+        list_fault(Fault::NoNodes);
+    }
+    if found > MAX_NODES {
+        list_fault(Fault::TooManyNodes { found });
+    }
+    let mut reader = Reader { source, problems };
+    let nodes = raw.nodes.value.iter().map(|n| reader.node(n)).collect();
+    Dataflow { nodes }
+}
+
+/// Reads one key after the other and notes what is wrong. Where something is,
+/// it goes on with what an absent key means: the result is not used then.
+struct Reader<'a> {
+    source: &'a str,
+    problems: &'a mut Vec<Problem>,
+}
+
+impl Reader<'_> {
+    fn node(&mut self, raw: &Spanned<RawNode>) -> Node {
+        let place = Place::from(raw.referenced);
+        let node = &raw.value;
+        let id = self.required(node.id.as_ref(), "id", place, check_id);
+        let path = self.required(node.path.as_ref(), "path", place, check_path);
+        Node {
+            id: id.to_owned(),
+            path: path.to_owned(),
+            path_place: node.path.as_ref().map_or(place, place_of),
+            args: self.optional(node.args.as_ref(), |t| words::split_args(&t.value)),
+            env: self.env(node),
+            build: self.optional(node.build.as_ref(), |t| words::split_build(&t.value)),
+            inputs: node.inputs().iter().filter_map(read_input).collect(),
+            outputs: node.outputs().iter().map(|o| o.value.clone()).collect(),
+            restart: self.restart(node),
+        }
+    }
+
+    fn required<'t>(
+        &mut self,
+        text: Option<&'t Text>,
+        key: &'static str,
+        node: Place,
+        check: fn(&str) -> Result<(), Fault>,
+    ) -> &'t str {
+        let Some(text) = text else {
+            self.note(node, Fault::MissingKey { key });
+            return "";
+        };
+        if let Err(fault) = check(&text.value) {
+            self.note(place_of(text), fault);
+        }
+        &text.value
+    }
+
+    fn optional<T: Default>(
+        &mut self,
+        text: Option<&Text>,
+        read: impl FnOnce(&Text) -> Result<T, Fault>,
+    ) -> T {
+        let Some(text) = text else {
+            return T::default();
+        };
+        read(text).unwrap_or_else(|fault| {
+            self.note(place_of(text), fault);
+            T::default()
+        })
+    }
+
+    fn env(&mut self, node: &RawNode) -> Vec<(String, String)> {
+        let entries = node.env.as_ref().map_or(&[][..], |env| &env.value.0);
+        let mut env = Vec::new();
+        for (name, value) in entries {
+            if name.value.is_empty() || name.value.contains(['=', '\0']) {
+                let found = name.value.clone();
+                self.note(place_of(name), Fault::BadEnvName { found });
+            }
+            let source = self.source;
+            let read = self.optional(Some(value), |v| scalar::read_env_value(v, source));
+            env.push((name.value.clone(), read));
+        }
+        env
+    }
+
+    fn restart(&mut self, node: &RawNode) -> Restart {
+        let source = self.source;
+        let policy = self
+            .optional(node.restart_policy.as_ref(), |t| read_policy(t).map(Some))
+            .unwrap_or(RestartPolicy::Never);
+        let max_restarts = self.optional(node.max_restarts.as_ref(), |t| {
+            scalar::read_count(t, source)
+        });
+        let delay: Duration = self.optional(node.restart_delay.as_ref(), |t| {
+            scalar::read_seconds(t, source)
+        });
+        if policy == RestartPolicy::Never {
+            self.note_unused("max_restarts", node.max_restarts.as_ref());
+            self.note_unused("restart_delay", node.restart_delay.as_ref());
+        }
+        Restart {
+            policy,
+            max_restarts,
+            delay,
+        }
+    }
+
+    fn note_unused(&mut self, key: &'static str, value: Option<&Text>) {
+        if let Some(text) = value {
+            self.note(place_of(text), Fault::NeverRestarted { key });
+        }
+    }
+
+    fn note(&mut self, place: Place, fault: Fault) {
+        self.problems.push(Problem { place, fault });
+    }
+}
+
+fn place_of(text: &Text) -> Place {
+    text.referenced.into()
+}
+
+fn check_id(id: &str) -> Result<(), Fault> {
+    let allowed = |b: u8| b.is_ascii_alphanumeric() || matches!(b, b'_' | b'.' | b'-');
+    let good = (1..=MAX_ID_BYTES).contains(&id.len()) && id.bytes().all(allowed) && id != "dora";
+    let found = || id.chars().take(2 * MAX_ID_BYTES).collect();
+    good.then_some(())
+        .ok_or_else(|| Fault::BadId { found: found() })
+}
+
+fn check_path(path: &str) -> Result<(), Fault> {
+    let why = match path {
+        "" => "it is empty",
+        "dynamic" | "shell" => "dora reads it as a kind of node",
+        p if p.contains("://") => "dora would download it",
+        p if p.contains(['$', '\0']) => "dora puts a variable in place of `$`",
+        p if p.ends_with(".py") => "dora would run it with Python",
+        p if p.ends_with('/') => "it names a folder",
+        _ => return Ok(()),
+    };
+    let found = path.to_owned();
+    Err(Fault::BadPath { found, why })
+}
+
+fn read_policy(text: &Text) -> Result<RestartPolicy, Fault> {
+    RestartPolicy::NAMES
+        .iter()
+        .find(|(name, _)| *name == text.value)
+        .map(|(_, policy)| *policy)
+        .ok_or_else(|| Fault::UnknownPolicy {
+            found: text.value.clone(),
+        })
+}
+
+/// `topic: node/topic`; anything else is noted where the wiring is checked.
+fn read_input((name, source): &(Text, Text)) -> Option<Input> {
+    let (from, _) = source.value.split_once('/')?;
+    Some(Input {
+        topic: name.value.clone(),
+        from: from.to_owned(),
+    })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::{Topics, parse};
+
+    fn faults(text: &str) -> Vec<String> {
+        match parse(text, &Topics::default()) {
+            Ok(_) => Vec::new(),
+            Err(problems) => problems.iter().map(ToString::to_string).collect(),
+        }
+    }
+
+    #[test]
+    fn every_key_is_read() {
+        let text = "
+nodes:
+  - id: replayer
+    path: target/release/replayer
+    args: >-
+      --recording 'my file.mcap'
+      --rate max
+    env: { RUST_LOG: debug, N: 3 }
+    build: cargo build --release -p replayer
+    restart_policy: on-failure
+    max_restarts: 3
+    restart_delay: 0.5
+";
+        let node = parse(text, &Topics::default()).unwrap().nodes.remove(0);
+        assert_eq!(node.id, "replayer");
+        assert_eq!(node.path, "target/release/replayer");
+        assert_eq!(
+            node.path_place,
+            Place {
+                line: 4,
+                column: 11
+            }
+        );
+        assert_eq!(node.args, ["--recording", "my file.mcap", "--rate", "max"]);
+        assert_eq!(node.env[0], ("RUST_LOG".to_owned(), "debug".to_owned()));
+        assert_eq!(node.env[1], ("N".to_owned(), "3".to_owned()));
+        assert_eq!(
+            node.build[0].to_string(),
+            "cargo build --release -p replayer"
+        );
+        assert_eq!(node.restart.policy, RestartPolicy::OnFailure);
+        assert_eq!(node.restart.max_restarts, 3);
+        assert_eq!(node.restart.delay, Duration::from_millis(500));
+    }
+
+    #[test]
+    fn absent_keys_mean_what_dora_means() {
+        let node = parse("nodes: [{id: a, path: x}]", &Topics::default())
+            .unwrap()
+            .nodes
+            .remove(0);
+        assert_eq!(node.restart.policy, RestartPolicy::Never);
+        assert_eq!(node.restart.max_restarts, 0);
+        assert_eq!(node.restart.delay, Duration::ZERO);
+        assert!(node.args.is_empty() && node.env.is_empty() && node.build.is_empty());
+    }
+
+    #[test]
+    fn all_problems_are_told_in_the_order_of_the_file() {
+        let said = faults(
+            "nodes:\n  - path: ''\n    args: \"it's\"\n  - id: a b\n    restart_policy: on_failure\n\
+             \x20   build: echo 'x'\n    env: {A=B: 1}\n",
+        );
+        let expected = [
+            "2:5: `id` is missing",
+            "2:11: `` cannot be a path: it is empty",
+            "3:11: `args` cannot be split in words",
+            "4:5: `path` is missing",
+            "4:9: `a b` cannot be a node's id",
+            "5:21: unknown restart_policy `on_failure`",
+            "6:12: the build line `echo 'x'` holds one of",
+            "7:11: `A=B` cannot name an environment variable",
+        ];
+        assert_eq!(said.len(), expected.len(), "{said:#?}");
+        for (said, expected) in said.iter().zip(expected) {
+            assert!(said.starts_with(expected), "{said}\n{expected}");
+        }
+    }
+
+    #[test]
+    fn ids_are_short_and_plain() {
+        for good in ["a", "A-1_b.c", &"x".repeat(32)] {
+            assert_eq!(check_id(good), Ok(()));
+        }
+        for bad in ["", "a b", "a/b", "ä", "dora", &"x".repeat(33)] {
+            assert!(check_id(bad).is_err(), "{bad}");
+        }
+    }
+
+    #[test]
+    fn paths_are_nothing_but_paths() {
+        for good in ["x", "./x", "/bin/sh", "target/release/x", "../y.sh"] {
+            assert_eq!(check_path(good), Ok(()));
+        }
+        for bad in [
+            "",
+            "dynamic",
+            "shell",
+            "https://x.org/y",
+            "$HOME/x",
+            "x.py",
+            "x/",
+        ] {
+            assert!(check_path(bad).is_err(), "{bad}");
+        }
+    }
+
+    #[test]
+    fn limits_of_restarting_need_a_policy() {
+        let said = faults("nodes: [{id: a, path: x, max_restarts: 2, restart_delay: 1}]");
+        assert_eq!(said.len(), 2);
+        assert!(said[0].starts_with("1:40: `max_restarts` without a `restart_policy`"));
+        assert!(said[1].starts_with("1:58: `restart_delay` without a `restart_policy`"));
+        let never = faults("nodes: [{id: a, path: x, restart_policy: never, max_restarts: 2}]");
+        assert_eq!(never.len(), 1);
+    }
+
+    #[test]
+    fn a_graph_has_some_nodes_but_not_too_many() {
+        assert!(faults("nodes: []")[0].contains("at least one"));
+        let graph = |n: usize| {
+            let nodes: String = (0..n)
+                .map(|i| format!("  - {{id: n{i}, path: x}}\n"))
+                .collect();
+            format!("nodes:\n{nodes}")
+        };
+        assert_eq!(faults(&graph(64)), [""; 0]);
+        assert_eq!(
+            faults(&graph(65)),
+            ["2:3: 65 nodes; at most 64 are allowed"]
+        );
+    }
+}

@@ -1,0 +1,297 @@
+//! The descriptor as it stands in the file: texts with their places. Nothing is
+//! interpreted here but the YAML itself.
+
+use std::fmt;
+
+use serde::{
+    Deserialize, Deserializer,
+    de::{MapAccess, Visitor},
+};
+use serde_saphyr::{Error, Location, MergeKeyPolicy, Spanned};
+
+use crate::{Fault, Place, Problem};
+
+/// A text and where it stands.
+pub(crate) type Text = Spanned<String>;
+
+/// The whole file.
+#[derive(Debug, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub(crate) struct RawDataflow {
+    pub(crate) nodes: Spanned<Vec<Spanned<RawNode>>>,
+}
+
+/// One entry of `nodes`. Numbers and policies are kept as texts, because the
+/// parser is more generous with them than dora's.
+#[derive(Debug, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub(crate) struct RawNode {
+    #[serde(default, deserialize_with = "present")]
+    pub(crate) id: Option<Text>,
+    #[serde(default, deserialize_with = "present")]
+    pub(crate) path: Option<Text>,
+    #[serde(default, deserialize_with = "present")]
+    pub(crate) args: Option<Text>,
+    #[serde(default, deserialize_with = "present")]
+    pub(crate) env: Option<Spanned<Entries>>,
+    #[serde(default, deserialize_with = "present")]
+    pub(crate) build: Option<Text>,
+    #[serde(default, deserialize_with = "present")]
+    pub(crate) inputs: Option<Spanned<Entries>>,
+    #[serde(default, deserialize_with = "present")]
+    pub(crate) outputs: Option<Spanned<Vec<Text>>>,
+    #[serde(default, deserialize_with = "present")]
+    pub(crate) restart_policy: Option<Text>,
+    #[serde(default, deserialize_with = "present")]
+    pub(crate) max_restarts: Option<Text>,
+    #[serde(default, deserialize_with = "present")]
+    pub(crate) restart_delay: Option<Text>,
+}
+
+impl RawNode {
+    /// The id, or nothing that could be one.
+    pub(crate) fn id(&self) -> &str {
+        self.id.as_ref().map_or("", |id| &id.value)
+    }
+
+    /// Input names and their sources.
+    pub(crate) fn inputs(&self) -> &[(Text, Text)] {
+        self.inputs.as_ref().map_or(&[], |inputs| &inputs.value.0)
+    }
+
+    /// The outputs.
+    pub(crate) fn outputs(&self) -> &[Text] {
+        self.outputs.as_ref().map_or(&[], |outputs| &outputs.value)
+    }
+}
+
+/// Keeps a key with the value `null` from passing for a missing one.
+fn present<'de, D, T>(deserializer: D) -> Result<Option<T>, D::Error>
+where
+    D: Deserializer<'de>,
+    T: Deserialize<'de>,
+{
+    T::deserialize(deserializer).map(Some)
+}
+
+/// The entries of a map, in order, keys with their places.
+#[derive(Debug)]
+pub(crate) struct Entries(pub(crate) Vec<(Text, Text)>);
+
+impl<'de> Deserialize<'de> for Entries {
+    fn deserialize<D: Deserializer<'de>>(deserializer: D) -> Result<Self, D::Error> {
+        struct EntriesVisitor;
+        impl<'de> Visitor<'de> for EntriesVisitor {
+            type Value = Entries;
+
+            fn expecting(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+                f.write_str("a map")
+            }
+
+            fn visit_map<A: MapAccess<'de>>(self, mut map: A) -> Result<Entries, A::Error> {
+                let mut entries = Vec::new();
+                while let Some(entry) = map.next_entry()? {
+                    entries.push(entry);
+                }
+                Ok(Entries(entries))
+            }
+        }
+        deserializer.deserialize_map(EntriesVisitor)
+    }
+}
+
+/// Reads the YAML.
+pub(crate) fn parse(text: &str) -> Result<RawDataflow, Problem> {
+    let options = serde_saphyr::options! {
+        with_snippet: false,
+        strict_booleans: true,
+        merge_keys: MergeKeyPolicy::Error,
+        reject_unsupported_tags: true,
+        // A descriptor within its size repeats little; a bomb repeats much.
+        alias_limits: serde_saphyr::alias_limits! { max_total_replayed_events: 10_000 },
+    };
+    let raw: RawDataflow =
+        serde_saphyr::from_str_with_options(text, options).map_err(|e| problem(&e, text))?;
+    for node in &raw.nodes.value {
+        for map in [&node.value.env, &node.value.inputs].into_iter().flatten() {
+            refuse_null(map.value.0.is_empty(), map.referenced, '{', text)?;
+        }
+        if let Some(list) = &node.value.outputs {
+            refuse_null(list.value.is_empty(), list.referenced, '[', text)?;
+        }
+    }
+    refuse_null(raw.nodes.value.is_empty(), raw.nodes.referenced, '[', text)?;
+    Ok(raw)
+}
+
+/// The parser takes `null` for an empty list or map. It is refused, since it
+/// looks like something forgotten.
+fn refuse_null(empty: bool, at: Location, opening: char, text: &str) -> Result<(), Problem> {
+    if !empty || rest_of_line(text, at).starts_with(opening) {
+        return Ok(());
+    }
+    let allowed = if opening == '[' { "a list" } else { "a map" };
+    let found = "nothing".to_owned();
+    Err(Problem {
+        place: at.into(),
+        fault: Fault::WrongType { found, allowed },
+    })
+}
+
+/// The text from a location to the end of its line; empty where the parser
+/// does not know the byte.
+pub(crate) fn rest_of_line(text: &str, at: Location) -> &str {
+    at.span()
+        .byte_offset()
+        .and_then(|offset| text.get(usize::try_from(offset).ok()?..))
+        .and_then(|rest| rest.lines().next())
+        .unwrap_or("")
+}
+
+/// Says in our words what the parser refused.
+fn problem(error: &Error, text: &str) -> Problem {
+    let at = error.location();
+    let found = || match at.map_or("", |at| rest_of_line(text, at)).trim_end() {
+        "" => "nothing".to_owned(),
+        line => line.chars().take(40).collect(),
+    };
+    let fault = match error.without_snippet() {
+        Error::SerdeUnknownField {
+            field, expected, ..
+        } => Fault::UnknownKey {
+            key: field.clone(),
+            allowed: expected.join(", "),
+        },
+        Error::DuplicateMappingKey { key, .. } => Fault::DuplicateKey {
+            key: key.clone().unwrap_or_else(found),
+        },
+        Error::SerdeMissingField { field, .. } => Fault::MissingKey { key: field },
+        Error::NullIntoString { .. } => wrong_type(found(), "string"),
+        Error::Unexpected { expected, .. } => wrong_type(found(), expected),
+        other => Fault::Yaml {
+            what: without_place(&other.to_string(), at),
+        },
+    };
+    Problem {
+        place: at.map_or(Place::START, Place::from),
+        fault,
+    }
+}
+
+fn wrong_type(found: String, expected: &str) -> Fault {
+    let allowed = match expected {
+        e if e.starts_with("mapping") => "a map",
+        e if e.starts_with("sequence") => "a list",
+        _ => "a text or number",
+    };
+    Fault::WrongType { found, allowed }
+}
+
+/// The parser ends its messages with the place, which we put in front.
+fn without_place(message: &str, at: Option<Location>) -> String {
+    let place = at.map_or_else(String::new, |at| {
+        format!(" at line {}, column {}", at.line(), at.column())
+    });
+    message.strip_suffix(&place).unwrap_or(message).to_owned()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn check(text: &str, expected: &str) {
+        match parse(text) {
+            Ok(raw) => panic!("accepted {text:?}: {raw:?}"),
+            Err(problem) => assert_eq!(problem.to_string(), expected, "{text:?}"),
+        }
+    }
+
+    #[test]
+    fn keys_are_known_and_stand_once() {
+        check(
+            "nodes:\n  - id: a\n    pth: x\n",
+            "3:5: unknown key `pth`; allowed are id, path, args, env, build, inputs, outputs, \
+             restart_policy, max_restarts, restart_delay",
+        );
+        check(
+            "nodes: []\ndeploy: x\n",
+            "2:1: unknown key `deploy`; allowed are nodes",
+        );
+        check(
+            "nodes:\n  - id: a\n    id: b\n",
+            "3:5: the key `id` stands here a second time; each may stand once",
+        );
+        check(
+            "nodes: [{env: {A: 1, A: 2}}]",
+            "1:22: the key `A` stands here a second time; each may stand once",
+        );
+        check("{}", "1:1: `nodes` is missing");
+        check(
+            "nodes: [{id: a, <<: {path: x}}]",
+            "1:17: not a descriptor: YAML merge keys are not allowed by configured policy",
+        );
+    }
+
+    #[test]
+    fn values_are_of_their_kind() {
+        check(
+            "nodes:\n  - id: a\n    args: [x, y]\n",
+            "3:11: found `[x, y]` where a text or number belongs",
+        );
+        check(
+            "nodes:\n  - id: a\n    env: [A=b]\n",
+            "3:10: found `[A=b]` where a map belongs",
+        );
+        check(
+            "nodes:\n  - outputs: scan\n",
+            "2:14: found `scan` where a list belongs",
+        );
+        check("nodes: 5", "1:8: found `5` where a list belongs");
+        check("- a", "1:1: found `- a` where a map belongs");
+        check("nodes: [5]", "1:9: found `5]` where a map belongs");
+    }
+
+    #[test]
+    fn a_forgotten_value_is_not_taken_for_an_empty_one() {
+        check(
+            "nodes:\n  - id: a\n    outputs: ~\n",
+            "3:14: found `nothing` where a list belongs",
+        );
+        check(
+            "nodes: [{env: ~}]",
+            "1:15: found `nothing` where a map belongs",
+        );
+        check(
+            "nodes:\n  - path: ~\n",
+            "2:11: found `~` where a text or number belongs",
+        );
+        check("nodes:\n", "1:6: found `nothing` where a list belongs");
+        assert!(parse("nodes: [{env: {}, inputs: {}, outputs: []}]").is_ok());
+    }
+
+    #[test]
+    fn what_is_not_yaml_is_told_in_the_words_of_the_parser() {
+        check("nodes: [{id: \"a", "1:14: not a descriptor: unclosed quote");
+        check(
+            "nodes:\n\t- id: a\n",
+            "2:2: not a descriptor: tabs disallowed within this context (block indentation)",
+        );
+        check("", "1:1: not a descriptor: unexpected end of input");
+        check(
+            "nodes: [{id: *q}]",
+            "1:14: not a descriptor: alias references unknown anchor",
+        );
+    }
+
+    #[test]
+    fn repeating_by_aliases_is_limited() {
+        let env: String = (0..100).map(|i| format!("A{i}: x, ")).collect();
+        let graph = |aliases: usize| {
+            let nodes = "  - {env: *e}\n".repeat(aliases);
+            format!("nodes:\n  - {{env: &e {{{env}}}}}\n{nodes}")
+        };
+        assert!(parse(&graph(10)).is_ok());
+        let said = parse(&graph(100)).unwrap_err().to_string();
+        assert!(said.contains("alias replay limit"), "{said}");
+    }
+}

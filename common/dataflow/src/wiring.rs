@@ -1,0 +1,255 @@
+//! Which node sends what to whom: the checks that look at several nodes.
+
+use std::collections::HashMap;
+
+use crate::{
+    Fault, Problem,
+    raw::{RawDataflow, RawNode, Text},
+};
+
+/// The topics that ports may name.
+#[derive(Debug, Clone, Copy, Default)]
+pub struct Topics<'a> {
+    /// All of them.
+    pub names: &'a [&'a str],
+    /// Those of them that several nodes may send.
+    pub shared: &'a [&'a str],
+}
+
+/// Notes what is wrong with the ids, ports and wires of the graph.
+pub(crate) fn check(raw: &RawDataflow, topics: &Topics, problems: &mut Vec<Problem>) {
+    let nodes: Vec<&RawNode> = raw.nodes.value.iter().map(|n| &n.value).collect();
+    let mut note = |text: &Text, fault| {
+        let place = text.referenced.into();
+        problems.push(Problem { place, fault });
+    };
+    check_ids(&nodes, &mut note);
+    check_outputs(&nodes, topics, &mut note);
+    for &node in &nodes {
+        for (name, source) in node.inputs() {
+            if let Err(fault) = check_name(&name.value, topics) {
+                note(name, fault);
+            } else if let Err(fault) = check_source(node, &name.value, &source.value, &nodes) {
+                note(source, fault);
+            }
+        }
+    }
+}
+
+fn check_ids(nodes: &[&RawNode], note: &mut impl FnMut(&Text, Fault)) {
+    let mut lines = HashMap::new();
+    for id in nodes.iter().filter_map(|n| n.id.as_ref()) {
+        if let Some(&first) = lines.get(&id.value) {
+            let id_text = id.value.clone();
+            note(id, Fault::DuplicateId { id: id_text, first });
+        } else {
+            lines.insert(&id.value, id.referenced.line());
+        }
+    }
+}
+
+fn check_outputs(nodes: &[&RawNode], topics: &Topics, note: &mut impl FnMut(&Text, Fault)) {
+    let mut senders = HashMap::new();
+    for &node in nodes {
+        for output in node.outputs() {
+            if let Err(fault) = check_output(node, &output.value, topics, &mut senders) {
+                note(output, fault);
+            }
+        }
+    }
+}
+
+/// `senders` holds the node that was last seen to send each topic.
+fn check_output<'a>(
+    node: &'a RawNode,
+    topic: &'a str,
+    topics: &Topics,
+    senders: &mut HashMap<&'a str, &'a RawNode>,
+) -> Result<(), Fault> {
+    check_name(topic, topics)?;
+    let topic_text = topic.to_owned();
+    match senders.insert(topic, node) {
+        Some(first) if std::ptr::eq(first, node) => {
+            Err(Fault::DuplicateOutput { topic: topic_text })
+        }
+        Some(first) if !topics.shared.contains(&topic) => Err(Fault::SecondSender {
+            topic: topic_text,
+            first: first.id().to_owned(),
+        }),
+        _ => Ok(()),
+    }
+}
+
+fn check_name(found: &str, topics: &Topics) -> Result<(), Fault> {
+    if topics.names.contains(&found) {
+        return Ok(());
+    }
+    Err(Fault::UnknownTopic {
+        found: found.to_owned(),
+        allowed: topics.names.join(", "),
+    })
+}
+
+fn check_source(
+    node: &RawNode,
+    input: &str,
+    source: &str,
+    nodes: &[&RawNode],
+) -> Result<(), Fault> {
+    let input_text = input.to_owned();
+    let parts = source.split_once('/');
+    let Some((from, topic)) = parts.filter(|(from, topic)| !from.is_empty() && !topic.is_empty())
+    else {
+        let found = source.to_owned();
+        return Err(Fault::BadSource {
+            input: input_text,
+            found,
+        });
+    };
+    if from == node.id() {
+        return Err(Fault::OwnOutput {
+            input: input_text,
+            node: from.to_owned(),
+        });
+    }
+    let Some(sender) = nodes.iter().find(|n| n.id() == from) else {
+        return Err(Fault::NoSuchNode {
+            input: input_text,
+            found: from.to_owned(),
+            allowed: list(nodes.iter().map(|n| n.id())),
+        });
+    };
+    if !sender.outputs().iter().any(|o| o.value == topic) {
+        return Err(Fault::NoSuchOutput {
+            input: input_text,
+            from: from.to_owned(),
+            found: topic.to_owned(),
+            allowed: list(sender.outputs().iter().map(|o| o.value.as_str())),
+        });
+    }
+    if topic != input {
+        return Err(Fault::RenamedInput {
+            input: input_text,
+            topic: topic.to_owned(),
+            from: from.to_owned(),
+        });
+    }
+    Ok(())
+}
+
+/// `a, b, c`, or `none`.
+fn list<'a>(items: impl Iterator<Item = &'a str>) -> String {
+    let items: Vec<&str> = items.filter(|i| !i.is_empty()).collect();
+    if items.is_empty() {
+        return "none".to_owned();
+    }
+    items.join(", ")
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::{Dataflow, parse};
+
+    const TOPICS: Topics = Topics {
+        names: &["scan", "votes", "health"],
+        shared: &["health"],
+    };
+
+    fn read(nodes: &[&str]) -> Result<Dataflow, Vec<Problem>> {
+        let nodes: String = nodes
+            .iter()
+            .map(|n| format!("  - {{path: x, {n}}}\n"))
+            .collect();
+        parse(&format!("nodes:\n{nodes}"), &TOPICS)
+    }
+
+    fn check(nodes: &[&str], expected: &[&str]) {
+        let said: Vec<_> = match read(nodes) {
+            Ok(_) => Vec::new(),
+            Err(problems) => problems.iter().map(ToString::to_string).collect(),
+        };
+        assert_eq!(said, expected);
+    }
+
+    #[test]
+    fn a_sound_graph_is_read_with_its_wires() {
+        let graph = read(&[
+            "id: a, outputs: [scan, health], inputs: {votes: b/votes}",
+            "id: b, outputs: [votes, health], inputs: {scan: a/scan}",
+        ])
+        .unwrap();
+        assert_eq!(graph.nodes[0].outputs, ["scan", "health"]);
+        assert_eq!(graph.nodes[1].inputs.len(), 1);
+        assert_eq!(graph.nodes[1].inputs[0].topic, "scan");
+        assert_eq!(graph.nodes[1].inputs[0].from, "a");
+    }
+
+    #[test]
+    fn ids_are_unique() {
+        check(
+            &["id: a", "id: b", "id: a"],
+            &["4:19: a second node with the id `a`, first used in line 2; ids are unique"],
+        );
+    }
+
+    #[test]
+    fn ports_name_topics_once() {
+        check(
+            &["id: a, outputs: [scam, scan, scan]"],
+            &[
+                "2:32: there is no topic `scam`; allowed are scan, votes, health",
+                "2:44: the output `scan` is listed a second time; each may stand once",
+            ],
+        );
+        check(
+            &["id: a, outputs: [scan]", "id: b, inputs: {image: a/scan}"],
+            &["3:31: there is no topic `image`; allowed are scan, votes, health"],
+        );
+    }
+
+    #[test]
+    fn a_topic_has_one_sender() {
+        check(
+            &[
+                "id: a, outputs: [scan, health]",
+                "id: b, outputs: [scan, health]",
+            ],
+            &[
+                "3:32: `scan` is already sent by `a`, and a topic has one sender in a graph; \
+               remove it from one of them",
+            ],
+        );
+    }
+
+    #[test]
+    fn wires_lead_to_an_output_of_the_same_name() {
+        let sender = "id: a, outputs: [scan, votes]";
+        check(
+            &[sender, "id: b, inputs: {scan: a}"],
+            &["3:37: the input `scan` comes from `a`; allowed is `node/topic`"],
+        );
+        check(
+            &[sender, "id: b, inputs: {scan: c/scan}"],
+            &["3:37: the input `scan` comes from `c`, which is no node; the nodes are a, b"],
+        );
+        check(
+            &[sender, "id: b, inputs: {health: a/health}"],
+            &[
+                "3:39: the input `health` takes `health` from `a`, which does not list it; \
+               its outputs are scan, votes",
+            ],
+        );
+        check(
+            &[sender, "id: b, inputs: {scan: a/votes}"],
+            &[
+                "3:37: the input `scan` takes the topic `votes`; nodes find topics by the names \
+               of their ports, so write `votes: a/votes`",
+            ],
+        );
+        check(
+            &["id: a, outputs: [scan], inputs: {scan: a/scan}"],
+            &["2:54: the input `scan` of `a` comes from `a` itself"],
+        );
+    }
+}

@@ -1,0 +1,72 @@
+//! Command lines split in words, as dora splits them: arguments by the quoting
+//! rules of a shell, build commands at spaces. Nothing is ever replaced.
+
+use crate::{Command, Fault};
+
+/// The words of `args`. As in a shell, a word that begins with `#` begins a
+/// comment, up to the end of its line.
+pub(crate) fn split_args(text: &str) -> Result<Vec<String>, Fault> {
+    shlex::split(text)
+        .filter(|_| !text.contains('\0'))
+        .ok_or_else(|| Fault::BadQuotes {
+            found: text.trim_end().to_owned(),
+        })
+}
+
+/// The commands of `build`, one a line.
+///
+/// dora knows half of a shell's quotes here, so that a quoted build line means
+/// one thing to a reader and another to dora; such lines are refused.
+pub(crate) fn split_build(text: &str) -> Result<Vec<Command>, Fault> {
+    if text.is_empty() {
+        return Err(bad_build("", "is empty"));
+    }
+    text.lines().map(split_line).collect()
+}
+
+fn split_line(line: &str) -> Result<Command, Fault> {
+    if line.contains(['"', '\'', '\\', '$', '#', '\0']) {
+        return Err(bad_build(line, "holds one of \" ' \\ $ #"));
+    }
+    let mut words = line.split_whitespace().map(ToOwned::to_owned);
+    let program = words.next().ok_or_else(|| bad_build(line, "is empty"))?;
+    Ok(Command {
+        program,
+        args: words.collect(),
+    })
+}
+
+fn bad_build(line: &str, why: &'static str) -> Fault {
+    Fault::BadBuild {
+        found: line.to_owned(),
+        why,
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn arguments_follow_the_quoting_of_a_shell() {
+        let words = split_args("--x 'a b' \"c d\" e\\ f --y=1\n--z # said twice").unwrap();
+        assert_eq!(words, ["--x", "a b", "c d", "e f", "--y=1", "--z"]);
+        assert_eq!(split_args("$HOME ~").unwrap(), ["$HOME", "~"]);
+        assert_eq!(split_args(" ").unwrap(), [""; 0]);
+        for open in ["'a", "a \"b", "a\\"] {
+            assert!(matches!(split_args(open), Err(Fault::BadQuotes { .. })));
+        }
+    }
+
+    #[test]
+    fn a_build_has_a_command_a_line() {
+        let commands = split_build("cargo build  -p x\ntrue\n").unwrap();
+        assert_eq!(commands[0].to_string(), "cargo build -p x");
+        assert_eq!(commands[1].program, "true");
+        assert_eq!(commands.len(), 2);
+        for bad in ["", "\n", "a\n\nb", "echo 'x'", "echo $HOME", "a # b"] {
+            let fault = split_build(bad).expect_err(bad);
+            assert!(matches!(fault, Fault::BadBuild { .. }), "{fault}");
+        }
+    }
+}

@@ -1,0 +1,102 @@
+//! The command line: reads it, calls the command, picks the exit code.
+
+use std::process::ExitCode;
+
+use clap::{Parser, Subcommand};
+
+use crate::{check, run};
+
+/// Finds where a robot is from its laser and a map, with no initial guess.
+///
+/// Without a command, `run` is meant: `backcast --rate max` is `backcast run
+/// --rate max`.
+#[derive(Debug, Parser)]
+#[command(version, args_conflicts_with_subcommands = true, after_help = EXIT_CODES)]
+struct Cli {
+    #[command(subcommand)]
+    command: Option<Command>,
+    #[command(flatten)]
+    run: run::Options,
+}
+
+const EXIT_CODES: &str = "Exit codes: 0 done, 1 failed, 2 wrong use, 3 done but data was lost";
+
+/// One variant a command.
+#[derive(Debug, Subcommand)]
+enum Command {
+    /// Builds and starts the graph, and prints a pose for each scan
+    #[command(after_help = EXIT_CODES)]
+    Run(run::Config),
+    /// Says what is wrong with a graph's descriptor, or draws the graph
+    #[command(after_help = "Exit codes: 0 sound, 1 something is wrong, 2 wrong use")]
+    Check(check::Config),
+}
+
+/// Runs the command that the process was started with.
+#[must_use]
+pub fn main() -> ExitCode {
+    let cli = Cli::parse();
+    let outcome = match cli.command {
+        None => run::run(&run::Config::with(cli.run)),
+        Some(Command::Run(config)) => run::run(&config),
+        Some(Command::Check(config)) => check::run(&config),
+    };
+    outcome.unwrap_or_else(|error| {
+        eprintln!("backcast: {}", error.chain());
+        ExitCode::from(error.exit_code())
+    })
+}
+
+/// The exit code of a run that finished but lost data on the way.
+pub(crate) const LOST_DATA: u8 = 3;
+
+#[cfg(test)]
+mod tests {
+    use clap::CommandFactory;
+
+    use super::*;
+
+    fn parse(line: &str) -> Result<Cli, clap::Error> {
+        Cli::try_parse_from(line.split_whitespace())
+    }
+
+    #[test]
+    fn the_definition_is_consistent() {
+        Cli::command().debug_assert();
+    }
+
+    #[test]
+    fn options_of_run_need_no_command() {
+        let cli = parse("backcast --rate max --loop").unwrap();
+        assert!(cli.command.is_none());
+        assert!(cli.run.repeat);
+        assert!(matches!(
+            parse("backcast run other.yaml --rate 2.5").unwrap().command,
+            Some(Command::Run(_))
+        ));
+    }
+
+    #[test]
+    fn nonsense_is_refused() {
+        for line in [
+            "backcast chekc",
+            "backcast --rate 0",
+            "backcast --rate -1",
+            "backcast --rate nan",
+            "backcast --rate inf",
+            "backcast --rate fast",
+            "backcast --heading north",
+            "backcast --heading inf",
+            "backcast --heading -361",
+            "backcast --heading 10 --heading-from odometry",
+            "backcast --heading-from compass",
+            "backcast --heading-offset 3",
+            "backcast --heading 10 --heading-offset 3",
+            "backcast --graph Big",
+            "backcast --rate 2 check",
+        ] {
+            let error = parse(line).expect_err(line);
+            assert_eq!(error.exit_code(), 2, "{line}");
+        }
+    }
+}

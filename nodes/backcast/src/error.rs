@@ -1,0 +1,153 @@
+//! All that can end a command early, and the exit code that it means.
+
+use std::{io, path::PathBuf, process::ExitStatus};
+
+use dataflow::DataflowError;
+use transport::TransportError;
+
+/// Why a command failed.
+#[derive(Debug, thiserror::Error)]
+pub enum BackcastError {
+    /// The descriptor cannot be used.
+    #[error(transparent)]
+    Dataflow(#[from] DataflowError),
+    /// There is no descriptor.
+    #[error(
+        "there is no file {} in {}: run in a folder that has one, as the repository's root does, or name it: `backcast run path/to/dataflow.yaml`",
+        file.display(),
+        folder.display()
+    )]
+    NoDescriptor {
+        /// As it was given.
+        file: PathBuf,
+        /// The current directory.
+        folder: PathBuf,
+    },
+    /// An option is for a node that the graph does not have.
+    #[error(
+        "{option} is for the {executable}, but no node in {} has a path that ends with `{executable}`; its executables are {found}",
+        file.display()
+    )]
+    NoNodeForOption {
+        /// The option.
+        option: &'static str,
+        /// Whose option it is.
+        executable: &'static str,
+        /// The descriptor.
+        file: PathBuf,
+        /// What the graph has instead.
+        found: String,
+    },
+    /// An option needs an input that is not wired.
+    #[error("{option} needs the input `{topic}` at node {node}, but {} wires none", file.display())]
+    NotWired {
+        /// The option.
+        option: &'static str,
+        /// The topic.
+        topic: &'static str,
+        /// The node that should take it.
+        node: String,
+        /// The descriptor.
+        file: PathBuf,
+    },
+    /// An offset for a heading that needs none.
+    #[error("--heading-offset is for `--heading-from odometry`; the true heading needs none")]
+    OffsetWithoutOdometry,
+    /// A build could not be started.
+    #[error("node {node}: the build `{command}` cannot be started")]
+    BuildNotStarted {
+        /// The node.
+        node: String,
+        /// Its command.
+        command: String,
+        /// Why not.
+        source: io::Error,
+    },
+    /// A build failed.
+    #[error("node {node}: the build `{command}` failed with {status}")]
+    BuildFailed {
+        /// The node.
+        node: String,
+        /// Its command.
+        command: String,
+        /// How it ended.
+        status: ExitStatus,
+    },
+    /// A process could not be started.
+    #[error("node {node}: {} cannot be started in {}", path.display(), folder.display())]
+    NotStarted {
+        /// The node.
+        node: String,
+        /// Its executable.
+        path: PathBuf,
+        /// Its working directory.
+        folder: PathBuf,
+        /// Why not.
+        source: io::Error,
+    },
+    /// A process could not be waited for or signalled.
+    #[error("node {node}: process {pid} cannot be supervised")]
+    NotSupervised {
+        /// The node.
+        node: String,
+        /// Its process.
+        pid: i32,
+        /// Why not.
+        source: io::Error,
+    },
+    /// A node failed, and is not started again.
+    #[error("node {node} ended with {status}{}; its own last lines say why", after(*restarts))]
+    NodeFailed {
+        /// The node.
+        node: String,
+        /// How it ended.
+        status: ExitStatus,
+        /// How often it was started again before.
+        restarts: u32,
+    },
+    /// The graph cannot be joined, heard or cleaned up.
+    #[error(transparent)]
+    Transport(#[from] TransportError),
+    /// Logging cannot be started.
+    #[error("{0}")]
+    Logging(String),
+    /// Standard output takes no more.
+    #[error("cannot write to standard output")]
+    Output(#[source] io::Error),
+    /// The current directory cannot be told.
+    #[error("cannot tell the current directory")]
+    Folder(#[source] io::Error),
+}
+
+impl BackcastError {
+    /// 2 where the command was used wrongly, else 1.
+    pub(crate) fn exit_code(&self) -> u8 {
+        match self {
+            Self::NoDescriptor { .. }
+            | Self::NoNodeForOption { .. }
+            | Self::NotWired { .. }
+            | Self::OffsetWithoutOdometry
+            | Self::Logging(_) => 2,
+            _ => 1,
+        }
+    }
+
+    /// The error and its causes, on one line.
+    pub(crate) fn chain(&self) -> String {
+        let mut text = self.to_string();
+        let mut cause = std::error::Error::source(self);
+        while let Some(error) = cause {
+            text = format!("{text}: {error}");
+            cause = error.source();
+        }
+        text
+    }
+}
+
+fn after(restarts: u32) -> String {
+    match restarts {
+        0 => String::new(),
+        1 => " after 1 restart".to_owned(),
+        n => format!(" after {n} restarts"),
+    }
+}

@@ -1,0 +1,265 @@
+//! Options of `run` that are meant for a node: they become arguments of the
+//! node with that executable, in place of what the descriptor gives there.
+
+use std::path::Path;
+
+use dataflow::{Dataflow, Node};
+use messages::{Topic, topic};
+
+use super::options::{HeadingFrom, Options, Rate};
+use crate::BackcastError;
+
+const REPLAYER: &str = "replayer";
+const ACCUMULATOR: &str = "accumulator";
+
+/// Puts the options into the arguments of their nodes. `file` is named in
+/// errors.
+///
+/// # Errors
+/// An option is for a node, or needs an input, that the graph does not have.
+pub(crate) fn apply(
+    options: &Options,
+    dataflow: &mut Dataflow,
+    file: &Path,
+) -> Result<(), BackcastError> {
+    if let Some(rate) = options.rate {
+        let node = find(dataflow, REPLAYER, "--rate", file)?;
+        set(node, "--rate", Some(&rate.to_string()));
+    }
+    if options.repeat {
+        let node = find(dataflow, REPLAYER, "--loop", file)?;
+        set(node, "--loop", None);
+    }
+    if let Some(degrees) = options.heading {
+        let node = find(dataflow, ACCUMULATOR, "--heading", file)?;
+        unset_heading(node, false);
+        set(node, "--heading", Some(&degrees.to_string()));
+    }
+    if let Some(source) = options.heading_from {
+        let node = find(dataflow, ACCUMULATOR, "--heading-from", file)?;
+        check_wired(node, source, file)?;
+        let odometry = source == HeadingFrom::Odometry;
+        if options.heading_offset.is_some() && !odometry {
+            return Err(BackcastError::OffsetWithoutOdometry);
+        }
+        unset_heading(node, odometry);
+        set(node, "--heading-from", Some(source.as_str()));
+        if let Some(degrees) = options.heading_offset {
+            set(node, "--heading-offset", Some(&degrees.to_string()));
+        }
+    }
+    Ok(())
+}
+
+/// Whether the graph is played as fast as it answers, so that nothing may be
+/// lost: the option says so, or the descriptor does.
+pub(crate) fn plays_at_max(dataflow: &Dataflow) -> bool {
+    let max = Rate::Max.to_string();
+    let joined = format!("--rate={max}");
+    dataflow
+        .nodes
+        .iter()
+        .filter(|n| n.executable() == REPLAYER)
+        .any(|n| n.args.contains(&joined) || n.args.windows(2).any(|w| w == ["--rate", &max]))
+}
+
+fn find<'d>(
+    dataflow: &'d mut Dataflow,
+    executable: &'static str,
+    option: &'static str,
+    file: &Path,
+) -> Result<&'d mut Node, BackcastError> {
+    let found: Vec<_> = dataflow
+        .nodes
+        .iter()
+        .map(|n| n.executable().to_owned())
+        .collect();
+    dataflow
+        .nodes
+        .iter_mut()
+        .find(|n| n.executable() == executable)
+        .ok_or_else(|| BackcastError::NoNodeForOption {
+            option,
+            executable,
+            file: file.to_owned(),
+            found: found.join(", "),
+        })
+}
+
+fn check_wired(node: &Node, source: HeadingFrom, file: &Path) -> Result<(), BackcastError> {
+    let topic = match source {
+        HeadingFrom::Odometry => topic::OdometryTopic::NAME,
+        HeadingFrom::Truth => topic::GroundTruthTopic::NAME,
+    };
+    if node.inputs.iter().any(|input| input.topic == topic) {
+        return Ok(());
+    }
+    Err(BackcastError::NotWired {
+        option: "--heading-from",
+        topic,
+        node: node.id.clone(),
+        file: file.to_owned(),
+    })
+}
+
+/// The options exclude or complete each other: a new source replaces all that
+/// was said about the one before. How old odometry may be stays if it is used.
+fn unset_heading(node: &mut Node, odometry: bool) {
+    for option in ["--heading", "--heading-from", "--heading-offset"] {
+        unset(node, option, true);
+    }
+    if !odometry {
+        unset(node, "--heading-max-age", true);
+    }
+}
+
+fn set(node: &mut Node, option: &str, value: Option<&str>) {
+    unset(node, option, value.is_some());
+    // With `=`, a negative number is not taken for an option.
+    let argument = value.map_or(option.to_owned(), |value| format!("{option}={value}"));
+    node.args.push(argument);
+}
+
+/// Removes `--option`, `--option value` and `--option=value`.
+fn unset(node: &mut Node, option: &str, takes_value: bool) {
+    let mut kept = Vec::with_capacity(node.args.len());
+    let mut args = std::mem::take(&mut node.args).into_iter();
+    while let Some(arg) = args.next() {
+        let joined = arg
+            .strip_prefix(option)
+            .is_some_and(|rest| rest.starts_with('='));
+        if arg == option && takes_value {
+            args.next();
+        } else if arg != option && !joined {
+            kept.push(arg);
+        }
+    }
+    node.args = kept;
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::BackcastError;
+
+    fn graph(replayer_args: &str, inputs: &str) -> Dataflow {
+        let text = format!(
+            "nodes:
+  - {{id: r, path: bin/replayer, outputs: [scan, odometry, ground_truth], args: \"{replayer_args}\"}}
+  - {{id: a, path: bin/accumulator, args: --beams 9, inputs: {{{inputs}}}}}
+"
+        );
+        let topics = dataflow::Topics {
+            names: messages::topic::NAMES,
+            shared: &[],
+        };
+        dataflow::parse(&text, &topics).unwrap()
+    }
+
+    fn applied(
+        options: &Options,
+        mut dataflow: Dataflow,
+    ) -> Result<Vec<Vec<String>>, BackcastError> {
+        apply(options, &mut dataflow, Path::new("g.yaml"))?;
+        Ok(dataflow.nodes.into_iter().map(|n| n.args).collect())
+    }
+
+    #[test]
+    fn options_replace_what_the_descriptor_gives() {
+        let options = Options {
+            rate: Some(Rate::Times(2.0)),
+            repeat: true,
+            ..Options::default()
+        };
+        for before in ["x --rate max y", "x --rate=0.5 y --loop", "x y"] {
+            let args = applied(&options, graph(before, "")).unwrap();
+            assert_eq!(args[0], ["x", "y", "--rate=2", "--loop"], "{before}");
+            assert_eq!(args[1], ["--beams", "9"]);
+        }
+    }
+
+    #[test]
+    fn headings_reach_the_accumulator() {
+        let fixed = Options {
+            heading: Some(-90.0),
+            ..Options::default()
+        };
+        let args = applied(&fixed, graph("", "")).unwrap();
+        assert_eq!(args[1], ["--beams", "9", "--heading=-90"]);
+        let mut aged = graph("", "");
+        aged.nodes[1].args = ["--heading-from=odometry", "--heading-max-age", "3"]
+            .map(Into::into)
+            .into();
+        assert_eq!(applied(&fixed, aged).unwrap()[1], ["--heading=-90"]);
+
+        let odometry = Options {
+            heading_from: Some(HeadingFrom::Odometry),
+            heading_offset: Some(-1.5),
+            ..Options::default()
+        };
+        let mut wired = graph("", "odometry: r/odometry");
+        wired.nodes[1].args = ["--heading", "7", "--heading-max-age=3"]
+            .map(Into::into)
+            .into();
+        let args = applied(&odometry, wired).unwrap();
+        assert_eq!(
+            args[1],
+            [
+                "--heading-max-age=3",
+                "--heading-from=odometry",
+                "--heading-offset=-1.5"
+            ]
+        );
+        let error = applied(&odometry, graph("", "")).unwrap_err();
+        assert!(
+            matches!(
+                &error,
+                BackcastError::NotWired {
+                    topic: "odometry",
+                    ..
+                }
+            ),
+            "{error}"
+        );
+    }
+
+    #[test]
+    fn the_true_heading_has_no_offset() {
+        let mut options = Options {
+            heading_from: Some(HeadingFrom::Truth),
+            ..Options::default()
+        };
+        let wired = || graph("", "odometry: r/odometry, ground_truth: r/ground_truth");
+        let args = applied(&options, wired()).unwrap();
+        assert_eq!(args[1], ["--beams", "9", "--heading-from=truth"]);
+        options.heading_offset = Some(1.0);
+        let error = applied(&options, wired()).unwrap_err();
+        assert!(
+            matches!(error, BackcastError::OffsetWithoutOdometry),
+            "{error}"
+        );
+    }
+
+    #[test]
+    fn an_option_without_its_node_is_refused() {
+        let mut no_replayer = graph("", "");
+        no_replayer.nodes.remove(0);
+        let options = Options {
+            repeat: true,
+            ..Options::default()
+        };
+        let error = applied(&options, no_replayer).unwrap_err();
+        assert_eq!(error.exit_code(), 2);
+        let said = error.to_string();
+        assert!(said.contains("--loop is for the replayer"), "{said}");
+        assert!(said.contains("its executables are accumulator"), "{said}");
+    }
+
+    #[test]
+    fn playing_at_max_is_seen_in_the_arguments() {
+        assert!(plays_at_max(&graph("--rate max", "")));
+        assert!(plays_at_max(&graph("--rate=max", "")));
+        assert!(!plays_at_max(&graph("--rate 2", "")));
+        assert!(!plays_at_max(&graph("max", "")));
+    }
+}

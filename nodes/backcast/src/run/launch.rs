@@ -1,0 +1,154 @@
+//! The course of a run: check, build, start, watch, stop, sum up.
+
+use std::{
+    io,
+    process::ExitCode,
+    time::{Duration, Instant},
+};
+
+use transport::{Flow, Graph, GraphName, TransportError, remove_leftovers};
+
+use super::{
+    build,
+    console::{LAUNCHER, say},
+    crew::Crew,
+    forward,
+    journal::Journal,
+    options::Config,
+    output::{Output, Reader},
+    watch::Watch,
+};
+use crate::{
+    BackcastError,
+    cli::LOST_DATA,
+    descriptor::{self, Descriptor},
+};
+
+/// Between two looks at the processes.
+const TICK: Duration = Duration::from_millis(20);
+/// Between two looks for what dead processes have left.
+const CLEANUP_PERIOD: Duration = Duration::from_secs(1);
+/// How long the last scans may go without an answer once the sources are done.
+/// A scan takes seconds on a large map and a busy machine.
+const LAST_ANSWERS: Duration = Duration::from_secs(20);
+/// What a slow reader of our output has left, unless the run ended by itself.
+const LAST_OUTPUT: Duration = Duration::from_millis(100);
+
+/// Why a run has ended in order.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+enum End {
+    /// The sources are done, and so are the answers.
+    Finished,
+    /// A signal came, or nobody reads the poses any more.
+    Interrupted,
+}
+
+/// Runs the graph until it ends, or is ended by a signal.
+///
+/// The exit code is 0, or 3 where the graph played as fast as it answers and
+/// something was lost all the same. At the pace of the recording a slow machine
+/// may drop scans; the summary counts them.
+///
+/// # Errors
+/// Anything that keeps the graph from running as described. Every process has
+/// ended then.
+pub(crate) fn run(config: &Config) -> Result<ExitCode, BackcastError> {
+    transport::node::start_logging().map_err(BackcastError::Logging)?;
+    let graph = config.options.graph_name()?;
+    let mut descriptor = descriptor::load(&config.dataflow)?;
+    forward::apply(&config.options, &mut descriptor.dataflow, &descriptor.file)?;
+    build::build_all(&descriptor.dataflow, &descriptor.folder)?;
+    remove_leftovers(&graph)?;
+
+    let lossless = forward::plays_at_max(&descriptor.dataflow);
+    let mut journal = Journal::new(Output::start(io::stdout())?, config.options.json);
+    let outcome = launch(descriptor, &graph, &mut journal);
+    let cleared = clear(&graph);
+    let finished = matches!(outcome, Ok(End::Finished));
+    let summary_wanted = outcome.is_ok() || journal.report.any_answer();
+    let summary = journal.finish(summary_wanted, (!finished).then_some(LAST_OUTPUT));
+    // What came first says most.
+    outcome?;
+    cleared?;
+    let summary = summary?;
+    if finished && lossless && summary.lost_data() {
+        say(
+            LAUNCHER,
+            "data was lost, though nothing may be at `--rate max`",
+        );
+        return Ok(ExitCode::from(LOST_DATA));
+    }
+    Ok(ExitCode::SUCCESS)
+}
+
+/// Joins the graph, starts its processes and stays until the end; all of them
+/// have ended when it returns.
+fn launch(
+    descriptor: Descriptor,
+    name: &GraphName,
+    journal: &mut Journal,
+) -> Result<End, BackcastError> {
+    let graph = Graph::join_named(LAUNCHER, name)?;
+    let watch = Watch::new(&graph)?;
+    say(
+        LAUNCHER,
+        &format!("graph {name} is starting; Ctrl-C stops it"),
+    );
+    journal.begin();
+    let mut crew = Crew::new(descriptor.dataflow.nodes, &descriptor.folder, name);
+    let end = stay(&graph, &watch, &mut crew, journal);
+    let stopped = crew.stop();
+    // Nodes that are stopped send a last report on their health.
+    let heard = watch.take(journal);
+    let end = end?;
+    stopped?;
+    heard?;
+    Ok(end)
+}
+
+/// Supervises the crew and enters what is heard, until the end.
+fn stay(
+    graph: &Graph,
+    watch: &Watch,
+    crew: &mut Crew,
+    journal: &mut Journal,
+) -> Result<End, BackcastError> {
+    let mut end = End::Interrupted;
+    let mut last_progress = Instant::now();
+    let mut last_cleanup = last_progress;
+    graph.run(&watch.inputs(), TICK, |_| {
+        let now = Instant::now();
+        // What a source has sent is heard after its end has been seen.
+        let over = crew.is_over();
+        let heard = watch.take(journal)?;
+        if heard.reader == Reader::Gone {
+            return Ok(Flow::Stop);
+        }
+        if heard.answers || !over {
+            last_progress = now;
+        }
+        let patient = now - last_progress < LAST_ANSWERS;
+        if over && (journal.report.all_answered() || !patient) {
+            end = End::Finished;
+            return Ok(Flow::Stop);
+        }
+        if crew.tick(now)? || now - last_cleanup >= CLEANUP_PERIOD {
+            graph.cleanup_dead_nodes();
+            last_cleanup = now;
+        }
+        Ok::<_, BackcastError>(Flow::Continue)
+    })?;
+    Ok(end)
+}
+
+/// Removes what the graph has left in shared memory. Tools that joined it by
+/// its name may still be there; it is theirs then.
+fn clear(graph: &GraphName) -> Result<(), TransportError> {
+    match remove_leftovers(graph) {
+        Err(error @ TransportError::StillRunning { .. }) => {
+            say(LAUNCHER, &format!("shared memory is kept: {error}"));
+            Ok(())
+        }
+        other => other,
+    }
+}

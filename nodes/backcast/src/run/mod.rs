@@ -1,0 +1,25 @@
+//! `backcast run`: builds the graph's nodes, starts and supervises their
+//! processes, and prints a pose for each scan.
+//!
+//! Joined to the graph, it only listens: it localizes nothing, and the graph
+//! runs without it. What is decided (restarts, the end of the run, figures and
+//! lines) is decided in pure files; `launch` does the work.
+
+mod build;
+mod console;
+mod crew;
+mod forward;
+mod journal;
+mod launch;
+mod line;
+mod options;
+mod output;
+mod pairs;
+mod process;
+mod report;
+mod summary;
+mod supervision;
+mod watch;
+
+pub(crate) use launch::run;
+pub(crate) use options::{Config, Options};

@@ -1,0 +1,163 @@
+//! What `backcast run` takes on the command line.
+
+use std::{path::PathBuf, str::FromStr};
+
+use clap::{Args, ValueEnum};
+use transport::{GRAPH_VARIABLE, GraphName, TransportError};
+
+use crate::descriptor::DEFAULT_FILE;
+
+/// What `backcast run` takes.
+#[derive(Debug, Args)]
+pub(crate) struct Config {
+    /// The graph's descriptor
+    #[arg(default_value = DEFAULT_FILE, value_name = "FILE")]
+    pub(crate) dataflow: PathBuf,
+    #[command(flatten)]
+    pub(crate) options: Options,
+}
+
+impl Config {
+    /// These options with the descriptor of the current directory.
+    pub(crate) fn with(options: Options) -> Self {
+        let dataflow = DEFAULT_FILE.into();
+        Config { dataflow, options }
+    }
+}
+
+/// The options of `run`, which may also stand without the command.
+#[derive(Debug, Clone, Default, Args)]
+pub(crate) struct Options {
+    /// Play so many times as fast as it was recorded, or `max`: wait for each
+    /// answer and lose nothing
+    #[arg(long, value_name = "FACTOR|max")]
+    pub(crate) rate: Option<Rate>,
+
+    /// Play the recording again and again, until Ctrl-C
+    #[arg(long = "loop")]
+    pub(crate) repeat: bool,
+
+    /// The robot's heading in the map, degrees counter-clockwise from its x
+    /// axis: only the position is searched
+    #[arg(long, value_name = "DEGREES", allow_negative_numbers = true, value_parser = degrees)]
+    #[arg(conflicts_with = "heading_from")]
+    pub(crate) heading: Option<f64>,
+
+    /// Take the heading from here, and search only the position
+    #[arg(long, value_name = "SOURCE")]
+    pub(crate) heading_from: Option<HeadingFrom>,
+
+    /// From the yaw of the odometry to the heading in the map, degrees; it
+    /// drifts, so this is for the start of a run
+    #[arg(long, value_name = "DEGREES", allow_negative_numbers = true, value_parser = degrees)]
+    // A requirement alone is let go where something excludes it, as --heading
+    // excludes --heading-from.
+    #[arg(requires = "heading_from", conflicts_with = "heading")]
+    pub(crate) heading_offset: Option<f64>,
+
+    /// The graph's name, by which other tools join it: 1 to 20 of a-z 0-9 - _
+    /// [default: $BACKCAST_GRAPH, or a name of its own]
+    #[arg(long, value_name = "NAME", value_parser = GraphName::new)]
+    pub(crate) graph: Option<GraphName>,
+
+    /// Print JSON, an object a line; the last one holds the summary
+    #[arg(long)]
+    pub(crate) json: bool,
+}
+
+impl Options {
+    /// The graph to start: as the option says, or the environment, or one that
+    /// no other launcher of this machine has.
+    ///
+    /// # Errors
+    /// The environment holds no valid name.
+    pub(crate) fn graph_name(&self) -> Result<GraphName, TransportError> {
+        match &self.graph {
+            Some(name) => Ok(name.clone()),
+            None if std::env::var_os(GRAPH_VARIABLE).is_some() => GraphName::from_environment(),
+            None => GraphName::new(&format!("bc{}", std::process::id())),
+        }
+    }
+}
+
+/// How fast a recording is played.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(crate) enum Rate {
+    /// So many times as fast as it was recorded.
+    Times(f64),
+    /// As fast as answers come.
+    Max,
+}
+
+impl FromStr for Rate {
+    type Err = String;
+
+    fn from_str(text: &str) -> Result<Self, Self::Err> {
+        if text == "max" {
+            return Ok(Rate::Max);
+        }
+        text.parse()
+            .ok()
+            .filter(|factor: &f64| factor.is_finite() && *factor > 0.0)
+            .map(Rate::Times)
+            .ok_or_else(|| "allowed are a number above 0, as 0.5 or 10, and `max`".to_owned())
+    }
+}
+
+impl std::fmt::Display for Rate {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        match self {
+            Rate::Times(factor) => write!(f, "{factor}"),
+            Rate::Max => f.write_str("max"),
+        }
+    }
+}
+
+/// Where a known heading comes from.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]
+pub(crate) enum HeadingFrom {
+    /// The yaw of the odometry, plus --heading-offset
+    Odometry,
+    /// The true pose, where a recording holds it: for tests
+    Truth,
+}
+
+impl HeadingFrom {
+    /// The value as the option spells it.
+    pub(crate) fn as_str(self) -> &'static str {
+        match self {
+            HeadingFrom::Odometry => "odometry",
+            HeadingFrom::Truth => "truth",
+        }
+    }
+}
+
+fn degrees(text: &str) -> Result<f64, String> {
+    text.parse()
+        .ok()
+        .filter(|degrees| (-360.0..=360.0).contains(degrees))
+        .ok_or_else(|| "allowed are degrees from -360 to 360".to_owned())
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn rates_read_back_as_written() {
+        for text in ["max", "0.5", "10"] {
+            assert_eq!(text.parse::<Rate>().unwrap().to_string(), text);
+        }
+    }
+
+    #[test]
+    fn a_graph_that_nobody_names_is_named_after_the_process() {
+        let named = Options {
+            graph: GraphName::new("robot7").ok(),
+            ..Options::default()
+        };
+        assert_eq!(named.graph_name().unwrap().as_str(), "robot7");
+        let own = Options::default().graph_name().unwrap();
+        assert_eq!(own.as_str(), format!("bc{}", std::process::id()));
+    }
+}

@@ -1,0 +1,222 @@
+//! Collects what the graph says during a run. Pure: fed with messages, in the
+//! order of their arrival.
+
+use std::collections::HashMap;
+
+use geometry::Pose;
+use messages::{GroundTruth, HealthHeader, HypothesesHeader, Hypothesis, Stamp, Verdict};
+
+use super::{line::Line, pairs::Pairs, summary::Summary};
+use crate::statistics::{Accuracy, Answer, Distribution};
+
+/// The newest scans that percentiles look at, so that a run may go on for
+/// months: some hours.
+const WINDOW: usize = 200_000;
+
+/// What was heard so far.
+pub(crate) struct Report {
+    /// Of publishers that have ended since, and their restarts.
+    earlier_scans: u64,
+    newest_scan: Option<Stamp>,
+    newest_answer: Option<Stamp>,
+    answered: u64,
+    pairs: Pairs<Answer, Pose>,
+    accuracy: Accuracy,
+    latency_ms: Distribution,
+    engine_ms: Distribution,
+    graph_ms: Distribution,
+    /// Dropped and refused, by process.
+    losses: HashMap<u32, (u64, u64)>,
+}
+
+impl Report {
+    /// Nothing heard.
+    pub(crate) fn new() -> Self {
+        Report {
+            earlier_scans: 0,
+            newest_scan: None,
+            newest_answer: None,
+            answered: 0,
+            pairs: Pairs::new(),
+            accuracy: Accuracy::new(WINDOW),
+            latency_ms: Distribution::new(WINDOW),
+            engine_ms: Distribution::new(WINDOW),
+            graph_ms: Distribution::new(WINDOW),
+            losses: HashMap::new(),
+        }
+    }
+
+    /// A scan entered the graph. Those before it need not be shown: their
+    /// number is in the counter.
+    pub(crate) fn scan(&mut self, stamp: Stamp) {
+        if let Some(last) = self.newest_scan
+            && stamp.counter <= last.counter
+            && stamp != last
+        {
+            // The sender was started again and counts anew.
+            let sent = last.counter.saturating_add(1);
+            self.earlier_scans = self.earlier_scans.saturating_add(sent);
+        }
+        self.newest_scan = Some(stamp);
+    }
+
+    /// A scan was answered.
+    pub(crate) fn answer(&mut self, header: &HypothesesHeader, found: &[Hypothesis]) -> Line {
+        let line = Line::new(header, found);
+        self.newest_answer = Some(header.stamp);
+        self.answered += 1;
+        self.latency_ms.add(line.latency_ms);
+        self.engine_ms.add(line.engine_ms);
+        self.graph_ms.add(line.latency_ms - line.engine_ms);
+        let has_pose = line.x.is_some();
+        let answer = Answer {
+            poses: found
+                .iter()
+                .filter(|_| has_pose)
+                .map(|h| h.map_from_laser.into())
+                .collect(),
+            verdict: Verdict::from_code(header.verdict),
+        };
+        if let Some((answer, truth)) = self.pairs.answer(header.stamp.measured_ns, answer) {
+            self.accuracy.add(truth, &answer);
+        }
+        line
+    }
+
+    /// The true pose of a scan.
+    pub(crate) fn truth(&mut self, truth: &GroundTruth) {
+        let pose = truth.map_from_laser.into();
+        if let Some((answer, truth)) = self.pairs.truth(truth.stamp.measured_ns, pose) {
+            self.accuracy.add(truth, &answer);
+        }
+    }
+
+    /// A node's health; its counters include what it reported before.
+    pub(crate) fn health(&mut self, health: &HealthHeader) {
+        let losses = (health.dropped, health.refused);
+        self.losses.insert(health.pid, losses);
+    }
+
+    /// Whether any scan was answered.
+    pub(crate) fn any_answer(&self) -> bool {
+        self.answered > 0
+    }
+
+    /// Whether the newest scan has its answer.
+    pub(crate) fn all_answered(&self) -> bool {
+        self.newest_scan == self.newest_answer || self.newest_scan.is_none()
+    }
+
+    /// The figures of the run so far.
+    pub(crate) fn summary(&self) -> Summary {
+        let newest = self.newest_scan.map_or(0, |s| s.counter.saturating_add(1));
+        let sum = |pick: fn(&(u64, u64)) -> u64| {
+            self.losses.values().map(pick).fold(0, u64::saturating_add)
+        };
+        Summary {
+            // An answer proves its scan, should the scan itself not be heard.
+            scans: self.earlier_scans.saturating_add(newest).max(self.answered),
+            answered: self.answered,
+            dropped: sum(|losses| losses.0),
+            refused: sum(|losses| losses.1),
+            accuracy: self.accuracy.figures(),
+            latency_ms: self.latency_ms.tail(),
+            engine_ms: self.engine_ms.tail(),
+            graph_ms: self.graph_ms.tail(),
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use bytemuck::Zeroable;
+    use messages::Pose2;
+
+    use super::{super::line::tests::message, *};
+
+    fn truth(measured_ns: i64, x: f64) -> GroundTruth {
+        let mut truth = GroundTruth::zeroed();
+        truth.stamp.measured_ns = measured_ns;
+        truth.map_from_laser = Pose2 {
+            x,
+            y: -2.0,
+            yaw: std::f64::consts::PI,
+        };
+        truth
+    }
+
+    fn answer(report: &mut Report, measured_ns: i64, counter: u64, verdict: Verdict) -> Line {
+        let (header, found) = message(measured_ns, counter, verdict as u32);
+        report.answer(&header, &found)
+    }
+
+    fn scan(report: &mut Report, measured_ns: i64, counter: u64) {
+        report.scan(message(measured_ns, counter, 0).0.stamp);
+    }
+
+    #[test]
+    fn answers_meet_their_truths_in_either_order() {
+        let mut report = Report::new();
+        report.truth(&truth(1, 1.0));
+        answer(&mut report, 1, 0, Verdict::Unique);
+        answer(&mut report, 2, 1, Verdict::Unique);
+        report.truth(&truth(2, 9.0));
+        answer(&mut report, 3, 2, Verdict::NoScan);
+        report.truth(&truth(3, 1.0));
+        answer(&mut report, 4, 3, Verdict::Unique);
+        let summary = report.summary();
+        assert_eq!(summary.answered, 4);
+        assert_eq!(summary.accuracy.truths, 3);
+        assert_eq!(summary.accuracy.success_50cm_10deg, Some(1.0 / 3.0));
+        assert_eq!(summary.accuracy.unique_wrong, 1);
+    }
+
+    #[test]
+    fn scans_are_counted_by_their_counters() {
+        let mut report = Report::new();
+        assert!(report.all_answered());
+        scan(&mut report, 10, 0);
+        scan(&mut report, 50, 4);
+        assert!(!report.all_answered());
+        answer(&mut report, 50, 4, Verdict::Unique);
+        assert!(report.all_answered());
+        assert_eq!((report.summary().scans, report.summary().answered), (5, 1));
+        scan(&mut report, 60, 1);
+        assert!(!report.all_answered());
+        assert_eq!(report.summary().scans, 7, "two more after a restart");
+    }
+
+    #[test]
+    fn a_loop_repeats_times_but_not_counters() {
+        let mut report = Report::new();
+        scan(&mut report, 10, 0);
+        answer(&mut report, 10, 0, Verdict::Unique);
+        scan(&mut report, 10, 1);
+        assert!(!report.all_answered());
+    }
+
+    #[test]
+    fn times_are_split_in_engine_and_graph() {
+        let mut report = Report::new();
+        answer(&mut report, 1, 0, Verdict::Unique);
+        let summary = report.summary();
+        assert_eq!(summary.latency_ms.p50, Some(25.0));
+        assert_eq!(summary.engine_ms.p99, Some(24.0));
+        assert_eq!(summary.graph_ms.p50, Some(1.0));
+    }
+
+    #[test]
+    fn losses_add_up_over_processes() {
+        let mut report = Report::new();
+        let mut health = |pid, dropped, refused| {
+            let mut header = HealthHeader::zeroed();
+            (header.pid, header.dropped, header.refused) = (pid, dropped, refused);
+            report.health(&header);
+        };
+        health(1, 1, 0);
+        health(1, 2, 5);
+        health(2, 3, 0);
+        let summary = report.summary();
+        assert_eq!((summary.dropped, summary.refused), (5, 5));
+    }
+}

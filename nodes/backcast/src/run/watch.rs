@@ -1,0 +1,68 @@
+//! Listens to the graph: takes what has come and enters it in the journal.
+
+use messages::topic;
+use transport::{Graph, Input, Subscriber, TransportError};
+
+use super::{journal::Journal, output::Reader};
+
+/// The topics that the launcher hears.
+pub(crate) struct Watch {
+    scans: Subscriber<topic::Scan>,
+    truths: Subscriber<topic::GroundTruthTopic>,
+    hypotheses: Subscriber<topic::Hypotheses>,
+    health: Subscriber<topic::Health>,
+}
+
+/// What came of one look at the topics.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(crate) struct Heard {
+    /// Any answer.
+    pub(crate) answers: bool,
+    /// Whether somebody reads them.
+    pub(crate) reader: Reader,
+}
+
+impl Watch {
+    /// Subscribes; to be called before any node sends.
+    ///
+    /// # Errors
+    /// The graph refuses.
+    pub(crate) fn new(graph: &Graph) -> Result<Self, TransportError> {
+        Ok(Watch {
+            scans: graph.subscriber()?,
+            truths: graph.subscriber()?,
+            hypotheses: graph.subscriber()?,
+            health: graph.subscriber()?,
+        })
+    }
+
+    /// What should wake the launcher. Scans need not: their answers will.
+    pub(crate) fn inputs(&self) -> [&dyn Input; 3] {
+        [&self.truths, &self.hypotheses, &self.health]
+    }
+
+    /// Takes all that has come.
+    ///
+    /// # Errors
+    /// A topic cannot be read.
+    pub(crate) fn take(&self, journal: &mut Journal) -> Result<Heard, TransportError> {
+        if let Some(scan) = self.scans.newest()? {
+            journal.report.scan(scan.header().stamp);
+        }
+        while let Some(truth) = self.truths.receive()? {
+            journal.report.truth(truth.header());
+        }
+        let mut heard = Heard {
+            answers: false,
+            reader: Reader::Reads,
+        };
+        while let Some(found) = self.hypotheses.receive()? {
+            heard.answers = true;
+            heard.reader = journal.answer(found.header(), found.items());
+        }
+        while let Some(health) = self.health.receive()? {
+            journal.report.health(health.header());
+        }
+        Ok(heard)
+    }
+}
