@@ -153,7 +153,16 @@ pub(crate) fn at_least(sums: &Planes, least: u16, among: Row) -> Row {
     or(greater, equal)
 }
 
-/// The numbers of the set bits, ascending.
+/// Number `i` of the sums.
+pub(crate) fn number(sums: &Planes, i: usize) -> u16 {
+    let bit = |row: &Row| (row[i / 64] >> (i % 64) & 1) as u16;
+    sums.iter()
+        .enumerate()
+        .map(|(plane, row)| bit(row) << plane)
+        .sum()
+}
+
+/// The places of the set bits, ascending.
 pub(crate) fn ones(row: Row) -> impl Iterator<Item = usize> {
     row.into_iter().enumerate().flat_map(|(i, word)| {
         let mut word = word;
@@ -175,10 +184,7 @@ mod tests {
     use super::*;
 
     fn numbers(sums: &Planes) -> Vec<u16> {
-        let bit = |plane: usize, i: usize| (sums[plane][i / 64] >> (i % 64) & 1) as u16;
-        (0..512)
-            .map(|i| (0..PLANES).map(|plane| bit(plane, i) << plane).sum())
-            .collect()
+        (0..512).map(|i| number(sums, i)).collect()
     }
 
     proptest! {

@@ -21,12 +21,10 @@
 mod beams;
 mod bits;
 pub mod boundary;
-mod bounds;
 mod config;
 pub mod directions;
 mod error;
 pub mod grid;
-pub mod intervals;
 mod leaf;
 pub mod lines;
 pub mod localizer;

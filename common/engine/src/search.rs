@@ -2,34 +2,32 @@
 //!
 //! Blocks of 16 × 16 cells are bounded by their sets of visible ranges, for all
 //! headings at once, and wait in a queue by the most votes that any of their
-//! poses could have. The most promising block is split into four of 8 × 8,
-//! bounded by their intervals of ranges at the headings that may still matter;
-//! the poses of those are counted one by one. When no block in the queue can
-//! reach the floor any more, every pose above it has been seen.
+//! poses could have. The most promising block is split into four of 8 × 8 with
+//! bounds of their own; the poses of those are counted one by one, at the
+//! headings that may still matter. When no block in the queue can reach the
+//! floor any more, every pose above it has been seen.
 
 use std::collections::BinaryHeap;
 use std::ops::Range;
 
 use messages::{BoundaryCell, Vote};
 
-use crate::bounds::{BlockRanges, BoundProgram};
+use crate::boundary;
 use crate::grid::Grid;
-use crate::intervals::Intervals;
 use crate::leaf::{self, LeafProgram, LeafRanges};
 use crate::lines::LineIndex;
 use crate::program::ScanProgram;
 use crate::set_bounds::{SetBounds, SetProgram};
-use crate::sets::RangeSets;
+use crate::sets::{BlockSets, RangeSets};
 use crate::space::Space;
 use crate::votes::{CollectConfig, Collector, VoteSet};
-use crate::{boundary, sets};
 
 /// A map prepared for searches: made once for each map.
 #[derive(Debug, Clone)]
 pub struct SearchIndex {
     lines: LineIndex,
-    intervals: Intervals,
-    sets: RangeSets,
+    fine: RangeSets,
+    coarse: RangeSets,
 }
 
 impl SearchIndex {
@@ -38,20 +36,20 @@ impl SearchIndex {
     pub fn new(grid: &Grid, boundary: &[BoundaryCell], space: &Space) -> Self {
         let directions = &space.directions;
         let blocked = boundary::blocked(grid);
-        let intervals = Intervals::new(grid, leaf::SIDE, directions);
-        let sets = RangeSets::new(grid, directions, &intervals.coarser());
+        let fine = RangeSets::new(grid, leaf::SIDE, directions);
+        let coarse = fine.joined();
         let lines = LineIndex::new(grid.width(), grid.height(), boundary, &blocked, directions);
         SearchIndex {
             lines,
-            intervals,
-            sets,
+            fine,
+            coarse,
         }
     }
 
     /// Bytes that the index takes.
     #[must_use]
     pub fn bytes(&self) -> usize {
-        self.lines.bytes() + self.intervals.bytes() + self.sets.bytes()
+        self.lines.bytes() + self.fine.bytes() + self.coarse.bytes()
     }
 
     /// The poses with the most votes; `None` if `stop` said so before the end.
@@ -98,11 +96,10 @@ struct Search<'a> {
     grid: &'a Grid,
     space: &'a Space,
     set_program: SetProgram,
-    bound_program: BoundProgram,
     leaf_program: LeafProgram,
-    set_bounds: SetBounds,
-    block_ranges: BlockRanges,
-    row: Vec<u16>,
+    block_sets: BlockSets,
+    coarse_bounds: SetBounds,
+    fine_bounds: SetBounds,
     leaf_ranges: LeafRanges,
     candidates: Vec<Candidate>,
     queue: BinaryHeap<Block>,
@@ -119,17 +116,15 @@ impl<'a> Search<'a> {
         config: CollectConfig,
     ) -> Self {
         let set_program = SetProgram::new(program, &space.directions);
-        let headings = space.directions.count();
         Search {
             index,
             grid,
             space,
-            set_bounds: set_program.bounds(),
+            block_sets: BlockSets::new(),
+            coarse_bounds: set_program.bounds(),
+            fine_bounds: set_program.bounds(),
             set_program,
-            bound_program: BoundProgram::new(program, &space.directions),
             leaf_program: LeafProgram::new(program, space),
-            block_ranges: BlockRanges::new(headings),
-            row: vec![0; headings],
             leaf_ranges: LeafRanges::new(space),
             candidates: Vec::new(),
             queue: BinaryHeap::new(),
@@ -139,12 +134,12 @@ impl<'a> Search<'a> {
     }
 
     fn run(mut self, stop: &dyn Fn() -> bool) -> Option<VoteSet> {
-        for index in 0..self.index.sets.blocks() {
+        for index in 0..self.index.coarse.blocks() {
             if stop() {
                 return None;
             }
             self.bound_coarse(index);
-            let bound = self.set_bounds.greatest();
+            let bound = self.coarse_bounds.greatest();
             if bound >= self.collector.floor() {
                 self.queue.push(Block {
                     bound,
@@ -169,15 +164,15 @@ impl<'a> Search<'a> {
     }
 
     fn bound_coarse(&mut self, index: usize) {
+        self.block_sets.set(&self.index.coarse, index);
         self.set_program
-            .bound(self.index.sets.block(index), &mut self.set_bounds);
+            .bound(&self.block_sets, &mut self.coarse_bounds);
     }
 
     /// Queues the four blocks of 8 × 8 cells in one of 16 × 16.
     fn split(&mut self, index: usize) {
-        let fine = &self.index.intervals;
-        let coarse_columns = fine.columns.div_ceil(sets::SIDE / leaf::SIDE);
-        let (x, y) = (2 * (index % coarse_columns), 2 * (index / coarse_columns));
+        let (coarse, fine) = (&self.index.coarse, &self.index.fine);
+        let (x, y) = (2 * (index % coarse.columns), 2 * (index / coarse.columns));
         self.bound_coarse(index);
         for (x, y) in [(x, y), (x + 1, y), (x, y + 1), (x + 1, y + 1)] {
             if x < fine.columns && y < fine.rows {
@@ -188,24 +183,26 @@ impl<'a> Search<'a> {
 
     /// Queues a block at the headings that the block around it leaves.
     fn enqueue_fine(&mut self, index: usize) {
-        self.block_ranges.set(self.index.intervals.block(index));
-        self.bound_program.bound(&self.block_ranges, &mut self.row);
-        let (start, floor) = (self.candidates.len(), self.collector.floor());
-        let mut greatest = 0;
-        for heading in self.set_bounds.at_least(floor) {
-            let bound = self.row[heading];
-            if bound >= floor {
-                self.candidates.push(Candidate {
-                    heading: heading as u16,
-                    bound,
-                });
-                greatest = bound.max(greatest);
-            }
+        let floor = self.collector.floor();
+        self.block_sets.set(&self.index.fine, index);
+        self.set_program
+            .bound(&self.block_sets, &mut self.fine_bounds);
+        let start = self.candidates.len();
+        for heading in self.fine_bounds.at_least(floor, &self.coarse_bounds) {
+            let bound = self.fine_bounds.at(heading);
+            self.candidates.push(Candidate {
+                heading: heading as u16,
+                bound,
+            });
         }
         let end = self.candidates.len();
-        if start < end {
+        if let Some(bound) = self.candidates[start..]
+            .iter()
+            .map(|candidate| candidate.bound)
+            .max()
+        {
             self.queue.push(Block {
-                bound: greatest,
+                bound,
                 index,
                 content: Content::Fine { start, end },
             });
@@ -214,7 +211,7 @@ impl<'a> Search<'a> {
 
     /// Counts the votes of a block's poses at the candidate headings.
     fn count(&mut self, index: usize, candidates: Range<usize>) {
-        let columns = self.index.intervals.columns;
+        let columns = self.index.fine.columns;
         let (left, bottom) = (index % columns * leaf::SIDE, index / columns * leaf::SIDE);
         self.leaf_ranges
             .fill(self.grid, &self.index.lines, self.space, left, bottom);

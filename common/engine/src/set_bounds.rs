@@ -57,15 +57,21 @@ impl SetBounds {
             .unwrap_or(0)
     }
 
-    /// The headings whose bound is at least `least`, ascending.
-    pub(crate) fn at_least(&self, least: u16) -> impl Iterator<Item = usize> {
-        self.chunks
-            .iter()
-            .enumerate()
-            .flat_map(move |(chunk, (sums, valid))| {
-                bits::ones(bits::at_least(sums, least, *valid))
-                    .map(move |heading| chunk * CHUNK + heading)
-            })
+    /// The headings at which this block and the one around it have a bound of
+    /// at least `least`, ascending.
+    pub(crate) fn at_least(&self, least: u16, around: &SetBounds) -> impl Iterator<Item = usize> {
+        self.chunks.iter().zip(&around.chunks).enumerate().flat_map(
+            move |(chunk, (here, around))| {
+                let around = bits::at_least(&around.0, least, around.1);
+                let both = bits::at_least(&here.0, least, around);
+                bits::ones(both).map(move |heading| chunk * CHUNK + heading)
+            },
+        )
+    }
+
+    /// The bound at a heading.
+    pub(crate) fn at(&self, heading: usize) -> u16 {
+        bits::number(&self.chunks[heading / CHUNK].0, heading % CHUNK)
     }
 }
 
@@ -104,7 +110,7 @@ impl SetProgram {
     }
 
     /// Bounds the votes of a block at all headings.
-    pub(crate) fn bound(&self, block: BlockSets<'_>, bounds: &mut SetBounds) {
+    pub(crate) fn bound(&self, block: &BlockSets, bounds: &mut SetBounds) {
         #[cfg(target_arch = "x86_64")]
         {
             if is_x86_feature_detected!("avx512bw") && is_x86_feature_detected!("avx512vl") {
@@ -121,18 +127,18 @@ impl SetProgram {
 
     #[cfg(target_arch = "x86_64")]
     #[target_feature(enable = "avx512f,avx512bw,avx512vl")]
-    fn bound_avx512(&self, block: BlockSets<'_>, bounds: &mut SetBounds) {
+    fn bound_avx512(&self, block: &BlockSets, bounds: &mut SetBounds) {
         self.bound_portable(block, bounds);
     }
 
     #[cfg(target_arch = "x86_64")]
     #[target_feature(enable = "avx2")]
-    fn bound_avx2(&self, block: BlockSets<'_>, bounds: &mut SetBounds) {
+    fn bound_avx2(&self, block: &BlockSets, bounds: &mut SetBounds) {
         self.bound_portable(block, bounds);
     }
 
     #[inline(always)]
-    fn bound_portable(&self, block: BlockSets<'_>, bounds: &mut SetBounds) {
+    fn bound_portable(&self, block: &BlockSets, bounds: &mut SetBounds) {
         let mut sum = BitSum::new();
         for (chunk, (sums, _)) in bounds.chunks.iter_mut().enumerate() {
             *sums = [EMPTY; bits::PLANES];
@@ -153,11 +159,11 @@ impl SetProgram {
 
 /// Adds what a beam can give, reading rows from a byte on.
 #[inline(always)]
-fn add_beam(sum: &mut BitSum, beam: &SetBeam, block: BlockSets<'_>, byte: usize) {
+fn add_beam(sum: &mut BitSum, beam: &SetBeam, block: &BlockSets, byte: usize) {
     let mut seen = EMPTY;
     let mut covered = 0..0;
     for window in &beam.windows {
-        let end = window.end.min(block.bins);
+        let end = window.end.min(block.bins());
         let first = window.first.min(end);
         if covered.is_empty() {
             covered = first..first;
@@ -217,9 +223,8 @@ mod tests {
     use proptest::prelude::*;
 
     use super::*;
-    use crate::intervals::Intervals;
     use crate::reference;
-    use crate::sets::{RangeSets, SIDE};
+    use crate::sets::RangeSets;
     use crate::testing::{any_grid, any_scan, space_of};
 
     proptest! {
@@ -229,25 +234,27 @@ mod tests {
         ) {
             let space = space_of(&grid, 8 * headings as u32);
             let program = scan.program(&space);
-            let blocks = Intervals::new(&grid, SIDE, &space.directions);
-            let sets = RangeSets::new(&grid, &space.directions, &blocks);
             let set_program = SetProgram::new(&program, &space.directions);
-            let mut bounds = vec![set_program.bounds(); sets.blocks()];
-            for (block, bounds) in bounds.iter_mut().enumerate() {
-                set_program.bound(sets.block(block), bounds);
-            }
-            // Some headings, spread over the turn, are enough to meet any error.
-            for heading in (0..space.directions.count()).step_by(1 + headings / 8) {
-                let field = reference::field(&grid, &program, &space, heading);
-                for (i, &votes) in field.iter().enumerate() {
-                    let (x, y) = (i % grid.width(), i / grid.width());
-                    let block = &bounds[y / SIDE * blocks.columns + x / SIDE];
-                    prop_assert!(votes <= block.greatest());
-                    prop_assert!(votes == 0 || block.at_least(votes).any(|h| h == heading));
+            let fine = RangeSets::new(&grid, 8, &space.directions);
+            let mut block_sets = BlockSets::new();
+            for sets in [&fine, &fine.joined()] {
+                let bounds: Vec<SetBounds> = (0..sets.blocks()).map(|block| {
+                    let mut bounds = set_program.bounds();
+                    block_sets.set(sets, block);
+                    set_program.bound(&block_sets, &mut bounds);
+                    bounds
+                }).collect();
+                // Some headings, spread over the turn, are enough to meet any error.
+                for heading in (0..space.directions.count()).step_by(1 + headings / 8) {
+                    let field = reference::field(&grid, &program, &space, heading);
+                    for (i, &votes) in field.iter().enumerate() {
+                        let (x, y) = (i % grid.width(), i / grid.width());
+                        let block = &bounds[y / sets.side * sets.columns + x / sets.side];
+                        prop_assert!(votes <= block.at(heading) && block.at(heading) <= block.greatest());
+                        prop_assert!(votes == 0 || block.at_least(votes, block).any(|h| h == heading));
+                    }
                 }
-            }
-            for block in &bounds {
-                prop_assert!(u32::from(block.greatest()) <= program.highest_possible());
+                prop_assert!(bounds.iter().all(|block| u32::from(block.greatest()) <= program.highest_possible()));
             }
         }
     }

@@ -1,18 +1,14 @@
 //! Which ranges the cells of a block see in each direction, as sets.
 //!
-//! For each block of 16 × 16 cells and each bin of distances, one bit a
-//! direction says whether any open cell of the block sees an obstacle at such a
-//! distance in that direction. A beam can only vote in a block at headings
-//! whose bit is set for a bin that its taper covers, and one row of bits
-//! answers that for all headings at once.
+//! For each block of cells and each bin of distances, one bit a direction says
+//! whether any open cell of the block sees an obstacle at such a distance in
+//! that direction. A beam can only vote in a block at headings whose bit is set
+//! for a bin that its taper covers, and one row of bits answers that for all
+//! headings at once.
 
 use crate::directions::{Direction, Directions};
-use crate::grid::Grid;
-use crate::intervals::Intervals;
+use crate::grid::{Cell, Grid};
 use crate::sweep::SweepGrid;
-
-/// Cells along the side of a block.
-pub(crate) const SIDE: usize = 16;
 
 /// Width of the nearest bins in cells: a block smears distances by far more.
 const NEAR_BIN_CELLS: f64 = 2.0;
@@ -27,14 +23,20 @@ const OCTET: usize = 8;
 /// Bytes that are read from a row at a time.
 pub(crate) const READ: usize = 64;
 
-/// The visible ranges of all blocks.
+/// The visible ranges of all blocks of one size.
 #[derive(Debug, Clone)]
 pub(crate) struct RangeSets {
-    /// Bytes of a row: a bit for each direction, twice around.
+    /// Cells along the side of a block.
+    pub side: usize,
+    /// Blocks along x.
+    pub columns: usize,
+    /// Blocks along y.
+    pub rows: usize,
+    /// Bytes of a row of bits: one bit for each direction.
     stride: usize,
-    /// The rows of block `b` are `starts[b]..starts[b + 1]`, one for each bin.
+    /// The bins of block `b` are `starts[b]..starts[b + 1]`.
     starts: Vec<u32>,
-    rows: Vec<u8>,
+    bits: Vec<u8>,
 }
 
 /// Into which bin of distances the steps along a direction fall.
@@ -62,76 +64,192 @@ impl Bins {
 }
 
 impl RangeSets {
-    /// Collects the ranges of all open cells. `blocks` are the intervals of the
-    /// same blocks, which say how far each of them sees.
-    pub(crate) fn new(grid: &Grid, directions: &Directions, blocks: &Intervals) -> Self {
+    /// Collects the ranges of all open cells in blocks of `side` cells.
+    pub(crate) fn new(grid: &Grid, side: usize, directions: &Directions) -> Self {
         let bins = Bins::new(directions);
-        let stride = directions.count() / 4;
-        let mut starts = vec![0];
-        for block in 0..blocks.columns * blocks.rows {
-            let (_, end) = blocks.block(block);
-            let farthest = directions.all().iter().zip(end).map(|(direction, &end)| {
-                if end == 0 {
-                    0
-                } else {
-                    bins.bin(direction.class, end - 1) + 1
-                }
-            });
-            starts.push(starts[block] + farthest.max().unwrap_or(0) as u32);
-        }
-        let rows = starts[blocks.columns * blocks.rows] as usize * stride + READ;
+        let (columns, rows) = (grid.width().div_ceil(side), grid.height().div_ceil(side));
+        let stride = directions.count() / 8;
+        let starts = starts_of(grid, side, &bins, directions);
+        let bits = vec![0; starts[columns * rows] as usize * stride];
         let mut sets = RangeSets {
+            side,
+            columns,
+            rows,
             stride,
             starts,
-            rows: vec![0; rows],
+            bits,
         };
         let mut planes = Planes::new(grid);
         for (octet, directions) in directions.all().chunks(OCTET).enumerate() {
             planes.fill(directions, &bins);
-            for block in 0..sets.blocks() {
-                sets.mark(octet, block, blocks.columns, &planes);
+            for block in 0..columns * rows {
+                let seen = planes.mark(block % columns * side, block / columns * side, side);
+                for (row, seen) in sets.block_mut(block).chunks_exact_mut(stride).zip(seen) {
+                    row[octet] = seen;
+                }
             }
         }
-        sets.repeat(directions.count());
+        sets.trim();
         sets
     }
 
-    /// Marks what a block sees in the eight directions of the planes.
-    fn mark(&mut self, octet: usize, block: usize, columns: usize, planes: &Planes) {
-        let bins = (self.starts[block + 1] - self.starts[block]) as usize;
-        let seen = planes.mark(block % columns * SIDE, block / columns * SIDE);
-        let rows = &mut self.rows[self.starts[block] as usize * self.stride..];
-        for (row, &seen) in rows.chunks_exact_mut(self.stride).zip(&seen[..bins]) {
-            row[octet] = seen;
+    /// Those of blocks that join two by two of these.
+    pub(crate) fn joined(&self) -> Self {
+        let (columns, rows) = (self.columns.div_ceil(2), self.rows.div_ceil(2));
+        let finer = |block: usize| {
+            let (x, y) = (2 * (block % columns), 2 * (block / columns));
+            let all = [(x, y), (x + 1, y), (x, y + 1), (x + 1, y + 1)];
+            let on_map = all
+                .into_iter()
+                .filter(|&(x, y)| x < self.columns && y < self.rows);
+            on_map.map(|(x, y)| y * self.columns + x)
+        };
+        let mut starts = vec![0];
+        for block in 0..columns * rows {
+            let bins = finer(block)
+                .map(|finer| self.starts[finer + 1] - self.starts[finer])
+                .max();
+            starts.push(starts[block] + bins.unwrap_or(0));
         }
-    }
-
-    /// Repeats the bits of each row behind themselves.
-    fn repeat(&mut self, directions: usize) {
-        for row in self.rows.chunks_exact_mut(self.stride) {
-            row.copy_within(0..directions / 8, directions / 8);
+        let bits = vec![0; starts[columns * rows] as usize * self.stride];
+        let mut sets = RangeSets {
+            side: 2 * self.side,
+            columns,
+            rows,
+            stride: self.stride,
+            starts,
+            bits,
+        };
+        for block in 0..columns * rows {
+            for finer in finer(block) {
+                for (joined, bits) in sets.block_mut(block).iter_mut().zip(self.block(finer)) {
+                    *joined |= bits;
+                }
+            }
         }
+        sets
     }
 
     /// How many blocks there are.
     pub(crate) fn blocks(&self) -> usize {
-        self.starts.len() - 1
-    }
-
-    /// The rows of a block, from the nearest bin; behind the last row at least
-    /// [`READ`] more bytes can be read.
-    pub(crate) fn block(&self, block: usize) -> BlockSets<'_> {
-        let first = self.starts[block] as usize;
-        BlockSets {
-            bins: self.starts[block + 1] as usize - first,
-            stride: self.stride,
-            rows: &self.rows[first * self.stride..],
-        }
+        self.columns * self.rows
     }
 
     /// Bytes that the sets take.
     pub(crate) fn bytes(&self) -> usize {
-        self.rows.len() + 4 * self.starts.len()
+        self.bits.len() + 4 * self.starts.len()
+    }
+
+    /// The rows of bits of a block, from the nearest bin.
+    fn block(&self, block: usize) -> &[u8] {
+        &self.bits[self.starts[block] as usize * self.stride
+            ..self.starts[block + 1] as usize * self.stride]
+    }
+
+    fn block_mut(&mut self, block: usize) -> &mut [u8] {
+        &mut self.bits[self.starts[block] as usize * self.stride
+            ..self.starts[block + 1] as usize * self.stride]
+    }
+
+    /// Gives up the bins of each block that no cell sees into, from the far end.
+    fn trim(&mut self) {
+        let mut kept = 0;
+        for block in 0..self.blocks() {
+            let seen = self
+                .block(block)
+                .chunks_exact(self.stride)
+                .rposition(|row| row.iter().any(|&byte| byte != 0));
+            let bins = seen.map_or(0, |last| last + 1);
+            let first = self.starts[block] as usize;
+            self.bits.copy_within(
+                first * self.stride..(first + bins) * self.stride,
+                kept * self.stride,
+            );
+            self.starts[block] = kept as u32;
+            kept += bins;
+        }
+        let blocks = self.blocks();
+        self.starts[blocks] = kept as u32;
+        self.bits.truncate(kept * self.stride);
+        self.bits.shrink_to_fit();
+    }
+}
+
+/// Where the bins of each block start, if each sees as far as the farthest
+/// obstacle could lie.
+fn starts_of(grid: &Grid, side: usize, bins: &Bins, directions: &Directions) -> Vec<u32> {
+    let (columns, rows) = (grid.width().div_ceil(side), grid.height().div_ceil(side));
+    let occupied = |i: &usize| grid.cells()[*i] == Cell::Occupied;
+    let all = || (0..grid.cells().len()).filter(occupied);
+    let span = |of: &dyn Fn(usize) -> usize| {
+        (
+            all().map(of).min().unwrap_or(0),
+            all().map(of).max().unwrap_or(0),
+        )
+    };
+    let (left, right) = span(&|i| i % grid.width());
+    let (bottom, top) = span(&|i| i / grid.width());
+    let mut starts = vec![0];
+    for block in 0..columns * rows {
+        // A ray has as many steps as it crosses columns or rows.
+        let across = |at: usize, low: usize, high: usize| {
+            (at + side).saturating_sub(low).max(high.saturating_sub(at))
+        };
+        let x = across(block % columns * side, left, right);
+        let y = across(block / columns * side, bottom, top);
+        let farthest = (0..directions.classes()).map(|class| bins.bin(class, x.max(y) as u16));
+        starts.push(starts[block] + farthest.max().unwrap_or(0) as u32 + 1);
+    }
+    starts
+}
+
+/// The rows of one block, each twice in a row: bits can be read from any
+/// direction on for a whole turn.
+#[derive(Debug, Clone)]
+pub(crate) struct BlockSets {
+    bins: usize,
+    stride: usize,
+    bits: Vec<u8>,
+}
+
+impl BlockSets {
+    pub(crate) fn new() -> Self {
+        BlockSets {
+            bins: 0,
+            stride: 0,
+            bits: Vec::new(),
+        }
+    }
+
+    /// Takes the rows of a block.
+    pub(crate) fn set(&mut self, sets: &RangeSets, block: usize) {
+        let rows = sets.block(block);
+        self.bins = rows.len() / sets.stride;
+        self.stride = 2 * sets.stride;
+        self.bits.clear();
+        for row in rows.chunks_exact(sets.stride) {
+            self.bits.extend_from_slice(row);
+            self.bits.extend_from_slice(row);
+        }
+        // Behind the last row, as much can be read as from it.
+        self.bits.extend_from_slice(&[0; READ]);
+    }
+
+    /// Bins that any cell sees into.
+    #[inline(always)]
+    pub(crate) fn bins(&self) -> usize {
+        self.bins
+    }
+
+    /// Bits of a bin from direction `8 · byte` on.
+    #[inline(always)]
+    pub(crate) fn read(&self, bin: usize, byte: usize) -> [u64; READ / 8] {
+        let start = bin * self.stride + byte;
+        let bytes = &self.bits[start..start + READ];
+        std::array::from_fn(|i| {
+            let word: [u8; 8] = std::array::from_fn(|j| bytes[8 * i + j]);
+            u64::from_le_bytes(word)
+        })
     }
 }
 
@@ -194,10 +312,10 @@ impl Planes {
     }
 
     /// By bin, a byte whose bit `i` says whether a cell of the block at
-    /// (`left`, `bottom`) sees into the bin in direction `i`.
-    fn mark(&self, left: usize, bottom: usize) -> [u8; BINS] {
+    /// (`left`, `bottom`), `side` cells wide, sees into the bin in direction `i`.
+    fn mark(&self, left: usize, bottom: usize, side: usize) -> [u8; BINS] {
         let mut seen = [0u8; BINS];
-        let (right, top) = (self.width.min(left + SIDE), self.height.min(bottom + SIDE));
+        let (right, top) = (self.width.min(left + side), self.height.min(bottom + side));
         for ((bit, plane), &is_by_column) in (0..).zip(&self.bins).zip(&self.is_by_column) {
             let (majors, minors, stride) = if is_by_column {
                 (left..right, bottom..top, self.height)
@@ -211,27 +329,5 @@ impl Planes {
             }
         }
         seen
-    }
-}
-
-/// The visible ranges of one block.
-#[derive(Debug, Clone, Copy)]
-pub(crate) struct BlockSets<'a> {
-    /// Bins that any cell sees into.
-    pub bins: usize,
-    stride: usize,
-    rows: &'a [u8],
-}
-
-impl BlockSets<'_> {
-    /// Bits of a bin from direction `8 · byte` on.
-    #[inline(always)]
-    pub(crate) fn read(&self, bin: usize, byte: usize) -> [u64; READ / 8] {
-        let start = bin * self.stride + byte;
-        let bytes = &self.rows[start..start + READ];
-        std::array::from_fn(|i| {
-            let word: [u8; 8] = std::array::from_fn(|j| bytes[8 * i + j]);
-            u64::from_le_bytes(word)
-        })
     }
 }
