@@ -84,12 +84,12 @@ impl RangeSets {
             planes.fill(directions, &bins);
             for block in 0..columns * rows {
                 let seen = planes.mark(block % columns * side, block / columns * side, side);
-                for (row, seen) in sets.block_mut(block).chunks_exact_mut(stride).zip(seen) {
-                    row[octet] = seen;
-                }
+                let bits = sets.block_mut(block);
+                let bins = bits.len() / stride;
+                bits[octet * bins..(octet + 1) * bins].copy_from_slice(&seen[..bins]);
             }
         }
-        sets.trim();
+        sets.settle();
         sets
     }
 
@@ -151,22 +151,23 @@ impl RangeSets {
             ..self.starts[block + 1] as usize * self.stride]
     }
 
-    /// Gives up the bins of each block that no cell sees into, from the far end.
-    fn trim(&mut self) {
+    /// Turns each block, filled octet by octet, into a row of bits for each bin,
+    /// and gives up the bins from the far end that no cell sees into.
+    fn settle(&mut self) {
         let mut kept = 0;
+        let mut rows = Vec::new();
         for block in 0..self.blocks() {
-            let seen = self
-                .block(block)
-                .chunks_exact(self.stride)
-                .rposition(|row| row.iter().any(|&byte| byte != 0));
-            let bins = seen.map_or(0, |last| last + 1);
-            let first = self.starts[block] as usize;
-            self.bits.copy_within(
-                first * self.stride..(first + bins) * self.stride,
-                kept * self.stride,
-            );
+            let octets = self.block(block);
+            let bins = octets.len() / self.stride;
+            let seen = octets
+                .chunks_exact(bins)
+                .filter_map(|octet| octet.iter().rposition(|&bits| bits != 0));
+            let seen = seen.max().map_or(0, |last| last + 1);
+            rows.clear();
+            rows.extend((0..seen).flat_map(|bin| octets.iter().skip(bin).step_by(bins)));
+            self.bits[kept * self.stride..][..rows.len()].copy_from_slice(&rows);
             self.starts[block] = kept as u32;
-            kept += bins;
+            kept += seen;
         }
         let blocks = self.blocks();
         self.starts[blocks] = kept as u32;
