@@ -6,7 +6,7 @@ use crate::EngineError;
 use crate::grid::{Grid, GridFrame};
 use crate::program::{ScanProgram, VoteConfig};
 use crate::scan::Scan;
-use crate::search::SearchIndex;
+use crate::search::{BlockBounds, SearchIndex};
 use crate::space::Space;
 use crate::sweep::{self, SweepGrid};
 use crate::votes::{self, CollectConfig, VoteSet};
@@ -77,6 +77,8 @@ pub struct Outcome {
     pub headings: u32,
     /// The heading that was given, in the map frame, radians.
     pub known_heading: Option<f64>,
+    /// Upper bounds by block, where all headings were searched.
+    pub block_bounds: Option<BlockBounds>,
 }
 
 impl Localizer {
@@ -145,7 +147,10 @@ impl Localizer {
         };
         let program = ScanProgram::new(scan, 0.0, &self.space, &self.config.votes)?;
         let found = index.search(&self.grid, &program, &self.space, self.config.collect, stop);
-        Ok(found.map(|found| self.outcome(&program, found, None)))
+        Ok(found.map(|(found, bounds)| Outcome {
+            block_bounds: Some(bounds),
+            ..self.outcome(&program, found, None)
+        }))
     }
 
     /// Searches x and y at a heading in the map frame, radians, and fills in
@@ -192,6 +197,7 @@ impl Localizer {
             bearing_rounding: program.bearing_rounding(),
             headings: self.config.headings,
             known_heading,
+            block_bounds: None,
         }
     }
 }

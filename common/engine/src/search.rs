@@ -52,7 +52,8 @@ impl SearchIndex {
         self.lines.bytes() + self.fine.bytes() + self.coarse.bytes()
     }
 
-    /// The poses with the most votes; `None` if `stop` said so before the end.
+    /// The poses with the most votes, and what bounds those of each coarse
+    /// block; `None` if `stop` said so before the end.
     #[must_use]
     pub fn search(
         &self,
@@ -61,9 +62,21 @@ impl SearchIndex {
         space: &Space,
         config: CollectConfig,
         stop: &dyn Fn() -> bool,
-    ) -> Option<VoteSet> {
+    ) -> Option<(VoteSet, BlockBounds)> {
         Search::new(self, grid, program, space, config).run(stop)
     }
+}
+
+/// Upper bounds of the intensities in square blocks, row by row from the
+/// lowest y.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub struct BlockBounds {
+    /// Cells along the side of a block.
+    pub side: usize,
+    /// Blocks along x.
+    pub columns: usize,
+    /// No pose in the block, at any heading, has more votes.
+    pub bounds: Vec<u16>,
 }
 
 /// A block in the queue; the order is by bound, then by place.
@@ -133,13 +146,15 @@ impl<'a> Search<'a> {
         }
     }
 
-    fn run(mut self, stop: &dyn Fn() -> bool) -> Option<VoteSet> {
+    fn run(mut self, stop: &dyn Fn() -> bool) -> Option<(VoteSet, BlockBounds)> {
+        let mut bounds = Vec::with_capacity(self.index.coarse.blocks());
         for index in 0..self.index.coarse.blocks() {
             if stop() {
                 return None;
             }
             self.bound_coarse(index);
             let bound = self.coarse_bounds.greatest();
+            bounds.push(bound);
             if bound >= self.collector.floor() {
                 self.queue.push(Block {
                     bound,
@@ -160,7 +175,13 @@ impl<'a> Search<'a> {
                 Content::Fine { start, end } => self.count(block.index, start..end),
             }
         }
-        Some(self.collector.finish(self.poses_evaluated))
+        let coarse = &self.index.coarse;
+        let bounds = BlockBounds {
+            side: coarse.side,
+            columns: coarse.columns,
+            bounds,
+        };
+        Some((self.collector.finish(self.poses_evaluated), bounds))
     }
 
     fn bound_coarse(&mut self, index: usize) {
@@ -279,8 +300,13 @@ mod tests {
             let config = CollectConfig { floor_share, max_votes };
             let index = SearchIndex::new(&grid, &boundary::extract(&grid), &space);
             let found = index.search(&grid, &program, &space, config, &|| false);
-            let found = found.map(|set| VoteSet { poses_evaluated: 0, ..set });
-            prop_assert_eq!(found, Some(plain(&grid, &program, &space, config)));
+            let (found, bounds) = found.unwrap();
+            let found = VoteSet { poses_evaluated: 0, ..found };
+            for vote in &found.votes {
+                let block = usize::from(vote.y) / bounds.side * bounds.columns + usize::from(vote.x) / bounds.side;
+                prop_assert!(vote.intensity <= bounds.bounds[block]);
+            }
+            prop_assert_eq!(found, plain(&grid, &program, &space, config));
         }
     }
 
