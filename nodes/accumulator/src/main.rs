@@ -1,2 +1,10 @@
-//! To be written.
-fn main() {}
+//! Starts the node; see the library.
+
+use std::process::ExitCode;
+
+use accumulator::Config;
+
+fn main() -> ExitCode {
+    let config = Config::from_command_line();
+    transport::node::main("accumulator", |graph| accumulator::run(graph, &config))
+}

@@ -1,0 +1,297 @@
+//! What the messages say about a scan. Asks the engine, and measures nothing.
+
+use bytemuck::Zeroable;
+use engine::EngineError;
+use engine::grid::Grid;
+use engine::localizer::{Localizer, Outcome};
+use engine::scan::Scan;
+use messages::{FieldHeader, FieldKind, ScanHeader, SearchOutcome, Vote, VotesHeader};
+
+use crate::AccumulatorError;
+use crate::preparation::PreparedMap;
+
+/// What is sent about a scan that was answered.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Answer {
+    /// Header of `votes`.
+    pub votes: VotesHeader,
+    /// Items of `votes`.
+    pub poses: Vec<Vote>,
+    /// Header and items of `field`, where the heading was known.
+    pub field: Option<(FieldHeader, Vec<u16>)>,
+}
+
+/// What the engine said about a scan: the poses with the most votes and, where
+/// the heading was known, the intensities of all cells.
+pub type Reply = (Outcome, Option<Vec<u16>>);
+
+/// The scan as the engine takes it, borrowed from the message.
+///
+/// # Errors
+/// If the mount, which is copied onward, is no number. The engine checks the
+/// rest.
+pub fn scan<'a>(header: &ScanHeader, ranges: &'a [f32]) -> Result<Scan<'a>, AccumulatorError> {
+    let found = header.base_from_laser;
+    if header.mount_known == 1 && !geometry::Pose::from(found).is_finite() {
+        return Err(AccumulatorError::Mount { found });
+    }
+    Ok(Scan {
+        angle_min: header.angle_min,
+        angle_increment: header.angle_increment,
+        range_min_m: header.range_min_m,
+        range_max_m: header.range_max_m,
+        ranges,
+    })
+}
+
+/// Asks the engine; `None` if `stop` said so before it was done. The localizer
+/// must be prepared for a known heading if and only if there is one.
+///
+/// # Errors
+/// If the engine refuses the scan or the heading.
+pub fn ask(
+    localizer: &Localizer,
+    scan: &Scan<'_>,
+    heading: Option<f64>,
+    stop: &dyn Fn() -> bool,
+) -> Result<Option<Reply>, EngineError> {
+    match heading {
+        None => Ok(localizer.search(scan, stop)?.map(|outcome| (outcome, None))),
+        Some(heading) => {
+            let (outcome, field) = localizer.search_at(scan, heading)?;
+            Ok(Some((outcome, Some(field))))
+        }
+    }
+}
+
+/// What to send about a scan to which the engine replied within `engine_ns`.
+#[must_use]
+pub fn answered(
+    scan: &ScanHeader,
+    map: &PreparedMap,
+    (outcome, field): Reply,
+    engine_ns: u64,
+) -> Answer {
+    let votes = votes_header(scan, map.map_id, &outcome, engine_ns);
+    Answer {
+        votes,
+        poses: outcome.found.votes,
+        field: field.map(|field| (field_header(&votes, map.localizer.grid()), field)),
+    }
+}
+
+fn votes_header(scan: &ScanHeader, map_id: u64, outcome: &Outcome, engine_ns: u64) -> VotesHeader {
+    let found = &outcome.found;
+    let code = if found.best > 0 {
+        SearchOutcome::Found
+    } else {
+        SearchOutcome::NoVotes
+    };
+    VotesHeader {
+        total: found.votes.len() as u64,
+        engine_ns,
+        poses_evaluated: found.poses_evaluated,
+        outcome: code as u32,
+        floor: found.floor.into(),
+        certified_floor: found.certified_floor.into(),
+        best: found.best.into(),
+        highest_possible: outcome.highest_possible,
+        truncated: found.truncated.into(),
+        beams_used: outcome.beams_used,
+        beams_silent: outcome.beams_silent,
+        heading_known: outcome.known_heading.is_some().into(),
+        known_heading: outcome.known_heading.unwrap_or(0.0),
+        bearing_rounding: outcome.bearing_rounding,
+        ..empty(scan, map_id, outcome.headings)
+    }
+}
+
+/// The header of a refused scan's votes; `map_id` is 0 where there is no map.
+#[must_use]
+pub fn refused(scan: &ScanHeader, map_id: u64, headings: u32) -> VotesHeader {
+    VotesHeader {
+        outcome: SearchOutcome::Refused as u32,
+        ..empty(scan, map_id, headings)
+    }
+}
+
+fn empty(scan: &ScanHeader, map_id: u64, headings: u32) -> VotesHeader {
+    VotesHeader {
+        stamp: scan.stamp,
+        map_id,
+        headings,
+        base_from_laser: scan.base_from_laser,
+        mount_known: scan.mount_known,
+        ..VotesHeader::zeroed()
+    }
+}
+
+fn field_header(votes: &VotesHeader, grid: &Grid) -> FieldHeader {
+    FieldHeader {
+        stamp: votes.stamp,
+        map_id: votes.map_id,
+        // No side of a grid has more than 15 bits.
+        width: grid.width() as u32,
+        height: grid.height() as u32,
+        block: 1,
+        kind: FieldKind::Exact as u32,
+        best: votes.best,
+        highest_possible: votes.highest_possible,
+        heading: votes.known_heading,
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use engine::grid::CellRules;
+    use engine::votes::VoteSet;
+    use messages::{Pose2, Stamp};
+
+    use super::*;
+
+    const MOUNT: Pose2 = Pose2 {
+        x: 0.78,
+        y: 0.0,
+        yaw: 0.1,
+    };
+
+    fn header() -> ScanHeader {
+        ScanHeader {
+            stamp: Stamp {
+                measured_ns: 1,
+                entered_ns: 2,
+                counter: 3,
+            },
+            angle_min: -1.5,
+            angle_increment: 0.5,
+            range_min_m: 0.1,
+            range_max_m: 30.0,
+            base_from_laser: MOUNT,
+            mount_known: 1,
+            ..Zeroable::zeroed()
+        }
+    }
+
+    fn outcome(best: u16) -> Outcome {
+        let vote = Vote {
+            x: 1,
+            y: 2,
+            heading: 3,
+            intensity: best,
+        };
+        Outcome {
+            found: VoteSet {
+                votes: vec![vote; usize::from(best > 0)],
+                floor: best,
+                certified_floor: 7,
+                best,
+                truncated: true,
+                poses_evaluated: 99,
+            },
+            highest_possible: 200,
+            beams_used: 11,
+            beams_silent: 4,
+            bearing_rounding: 0.001,
+            headings: 360,
+            known_heading: None,
+        }
+    }
+
+    #[test]
+    fn an_answer_carries_all_that_the_engine_said() {
+        let votes = votes_header(&header(), 77, &outcome(100), 1234);
+        let expected = VotesHeader {
+            stamp: header().stamp,
+            map_id: 77,
+            total: 1,
+            engine_ns: 1234,
+            poses_evaluated: 99,
+            outcome: SearchOutcome::Found as u32,
+            headings: 360,
+            floor: 100,
+            certified_floor: 7,
+            best: 100,
+            highest_possible: 200,
+            truncated: 1,
+            beams_used: 11,
+            heading_known: 0,
+            beams_silent: 4,
+            known_heading: 0.0,
+            bearing_rounding: 0.001,
+            base_from_laser: MOUNT,
+            mount_known: 1,
+        };
+        assert_eq!(votes, expected);
+        let known = Outcome {
+            known_heading: Some(0.25),
+            ..outcome(100)
+        };
+        let votes = votes_header(&header(), 77, &known, 1234);
+        assert_eq!((votes.heading_known, votes.known_heading), (1, 0.25));
+    }
+
+    #[test]
+    fn the_image_is_of_the_scan_and_as_large_as_the_map() {
+        let known = Outcome {
+            known_heading: Some(0.25),
+            ..outcome(100)
+        };
+        let votes = votes_header(&header(), 77, &known, 1234);
+        let grid = Grid::new(3, 2, &[0; 6], CellRules::default()).unwrap();
+        let expected = FieldHeader {
+            stamp: header().stamp,
+            map_id: 77,
+            width: 3,
+            height: 2,
+            block: 1,
+            kind: FieldKind::Exact as u32,
+            best: 100,
+            highest_possible: 200,
+            heading: 0.25,
+        };
+        assert_eq!(field_header(&votes, &grid), expected);
+    }
+
+    #[test]
+    fn a_scan_that_nothing_explains_has_no_votes() {
+        let votes = votes_header(&header(), 77, &outcome(0), 1234);
+        assert_eq!(votes.outcome, SearchOutcome::NoVotes as u32);
+        assert_eq!((votes.total, votes.best, votes.beams_used), (0, 0, 11));
+    }
+
+    #[test]
+    fn a_refused_scan_keeps_its_stamp_and_mount() {
+        let votes = refused(&header(), 77, 360);
+        assert_eq!(votes.outcome, SearchOutcome::Refused as u32);
+        assert_eq!((votes.stamp, votes.map_id), (header().stamp, 77));
+        assert_eq!((votes.base_from_laser, votes.mount_known), (MOUNT, 1));
+        assert_eq!((votes.total, votes.engine_ns, votes.headings), (0, 0, 360));
+    }
+
+    #[test]
+    fn ranges_are_borrowed_from_the_message() {
+        let ranges = [1.0, 2.0];
+        let borrowed = scan(&header(), &ranges).unwrap();
+        assert!(std::ptr::eq(borrowed.ranges, &ranges[..]));
+        assert_eq!((borrowed.angle_min, borrowed.angle_increment), (-1.5, 0.5));
+        assert_eq!((borrowed.range_min_m, borrowed.range_max_m), (0.1, 30.0));
+    }
+
+    #[test]
+    fn a_mount_that_is_no_number_is_refused_where_it_counts() {
+        let broken = ScanHeader {
+            base_from_laser: Pose2 {
+                yaw: f64::NAN,
+                ..MOUNT
+            },
+            ..header()
+        };
+        let error = scan(&broken, &[1.0]).unwrap_err();
+        assert!(error.to_string().contains("yaw NaN rad"), "{error}");
+        let unknown = ScanHeader {
+            mount_known: 0,
+            ..broken
+        };
+        assert!(scan(&unknown, &[1.0]).is_ok());
+    }
+}

@@ -1,0 +1,72 @@
+//! One piece of work on a thread of its own.
+//!
+//! Its outcome is asked for now and then, never waited for: whoever asks has
+//! scans to answer meanwhile. Work that nobody asks for any more runs to its
+//! end, or to that of the process.
+
+use std::any::Any;
+use std::io;
+use std::thread::{Builder, JoinHandle};
+
+/// Work under way.
+#[derive(Debug)]
+pub(crate) struct Background<T> {
+    thread: JoinHandle<T>,
+}
+
+impl<T: Send + 'static> Background<T> {
+    /// Starts `work` on a thread with a name that debuggers show.
+    pub(crate) fn start(
+        name: &str,
+        work: impl FnOnce() -> T + Send + 'static,
+    ) -> Result<Self, io::Error> {
+        let thread = Builder::new().name(name.into()).spawn(work)?;
+        Ok(Background { thread })
+    }
+
+    /// Whether the outcome is there: [`Background::finish`] returns at once.
+    pub(crate) fn is_finished(&self) -> bool {
+        self.thread.is_finished()
+    }
+
+    /// The outcome, or with what words the work panicked.
+    pub(crate) fn finish(self) -> Result<T, String> {
+        self.thread.join().map_err(|panic| words_of(&*panic))
+    }
+}
+
+fn words_of(panic: &(dyn Any + Send)) -> String {
+    let literal = panic.downcast_ref::<&str>().map(|text| (*text).to_owned());
+    let formatted = || panic.downcast_ref::<String>().cloned();
+    literal
+        .or_else(formatted)
+        .unwrap_or_else(|| "it panicked without words".into())
+}
+
+#[cfg(test)]
+mod tests {
+    use std::panic::panic_any;
+    use std::sync::mpsc;
+
+    use super::*;
+
+    #[test]
+    fn the_outcome_is_there_when_the_work_is_done() {
+        let (let_go, wait) = mpsc::channel::<()>();
+        let work = Background::start("test", move || wait.recv().map(|()| 5)).unwrap();
+        assert!(!work.is_finished(), "it waits for this test");
+        let_go.send(()).unwrap();
+        assert_eq!(work.finish(), Ok(Ok(5)));
+    }
+
+    #[test]
+    fn work_that_panics_is_told_and_not_waited_for() {
+        let dies = |work: fn()| Background::start("test", work).unwrap().finish();
+        assert_eq!(dies(|| panic!("no memory")), Err("no memory".into()));
+        assert_eq!(dies(|| panic!("{} left", 0)), Err("0 left".into()));
+        assert_eq!(
+            dies(|| panic_any(7)),
+            Err("it panicked without words".into())
+        );
+    }
+}

@@ -1,0 +1,113 @@
+//! What keeps a scan from being answered, a map from being used, and the node
+//! from running.
+
+use engine::EngineError;
+use map::MapError;
+use messages::{BoundaryCell, Pose2};
+use transport::TransportError;
+
+/// A scan or a map that is refused, or a failure of the node.
+#[derive(Debug, thiserror::Error)]
+pub enum AccumulatorError {
+    /// The scan came before a map was ready.
+    #[error("there is no map yet")]
+    NoMap,
+    /// The scan, the map's cells or a setting cannot be used.
+    #[error(transparent)]
+    Engine(#[from] EngineError),
+    /// The laser's mount is no number.
+    #[error(
+        "base_from_laser is x {} m, y {} m, yaw {} rad: each must be finite",
+        found.x, found.y, found.yaw
+    )]
+    Mount {
+        /// As the scan has it.
+        found: Pose2,
+    },
+    /// No odometry tells the heading.
+    #[error(
+        "the heading is to come from odometry, but none has come that was \
+         measured at {scan_ns} ns or before"
+    )]
+    NoOdometry {
+        /// When the scan was measured, nanoseconds.
+        scan_ns: i64,
+    },
+    /// The odometry that there is tells an old heading.
+    #[error(
+        "the newest odometry was measured {age_ns} ns before the scan: at most \
+         {allowed_ns} ns are allowed"
+    )]
+    OldOdometry {
+        /// Between the odometry and the scan, nanoseconds.
+        age_ns: i64,
+        /// By the configuration, nanoseconds.
+        allowed_ns: i64,
+    },
+    /// No truth tells the heading.
+    #[error(
+        "the heading is to come from the ground truth, but none has come that was \
+         measured at {scan_ns} ns"
+    )]
+    NoTruth {
+        /// When the scan was measured, nanoseconds.
+        scan_ns: i64,
+    },
+    /// The map's geometry is out of range.
+    #[error(transparent)]
+    Geometry(#[from] MapError),
+    /// The boundary does not say how to read the map.
+    #[error("{field} of the boundary is {found}: allowed are {allowed}")]
+    Rule {
+        /// The rule.
+        field: &'static str,
+        /// As the boundary has it.
+        found: u64,
+        /// What it may be.
+        allowed: &'static str,
+    },
+    /// The boundary has another size than it says.
+    #[error("the boundary came with {found} cells instead of {expected}")]
+    BoundarySize {
+        /// By its header.
+        expected: u64,
+        /// That came.
+        found: usize,
+    },
+    /// A cell of the boundary is none of the map's obstacles.
+    #[error("cell {}, {} of the boundary is no occupied cell of the map", cell.x, cell.y)]
+    BoundaryCell {
+        /// As the boundary has it.
+        cell: BoundaryCell,
+    },
+    /// The cells of the boundary are not in order.
+    #[error(
+        "cell {}, {} of the boundary follows {}, {}: they must rise by (y, x)",
+        cell.x, cell.y, previous.x, previous.y
+    )]
+    BoundaryOrder {
+        /// The one before.
+        previous: BoundaryCell,
+        /// As the boundary has it.
+        cell: BoundaryCell,
+    },
+    /// No thread could be started to prepare a map.
+    #[error("cannot start a thread to prepare map {map_id:016x}")]
+    Thread {
+        /// The map.
+        map_id: u64,
+        /// What the system says.
+        source: std::io::Error,
+    },
+    /// The thread that prepared a map has panicked.
+    #[error("preparing map {map_id:016x} died: {reason}")]
+    PreparationDied {
+        /// The map.
+        map_id: u64,
+        /// The panic's message.
+        reason: String,
+    },
+    /// The graph failed.
+    #[error(transparent)]
+    Transport(#[from] TransportError),
+}

@@ -1,0 +1,41 @@
+//! How often something may happen; told the time, and knowing no clock.
+
+/// Lets through at most one event a period.
+#[derive(Debug, Clone, Copy)]
+pub(crate) struct Pace {
+    period_ns: i64,
+    next_ns: Option<i64>,
+}
+
+impl Pace {
+    /// `rate` events a second at most; the first one passes at once.
+    pub(crate) fn new(rate: f64) -> Self {
+        Pace {
+            period_ns: (1e9 / rate) as i64,
+            next_ns: None,
+        }
+    }
+
+    /// Whether an event may happen now; if so, it is taken to happen.
+    pub(crate) fn pass(&mut self, now_ns: i64) -> bool {
+        if self.next_ns.is_some_and(|next| now_ns < next) {
+            return false;
+        }
+        self.next_ns = Some(now_ns.saturating_add(self.period_ns));
+        true
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn one_event_a_period_passes_and_the_first_at_once() {
+        let mut pace = Pace::new(2.0);
+        let passed = [0, 1, 499_999_999, 500_000_000, 900_000_000, 1_000_000_000]
+            .map(|now_ns| pace.pass(now_ns));
+        assert_eq!(passed, [true, false, false, true, false, true]);
+        assert!(Pace::new(0.1).pass(i64::MAX), "no time overflows");
+    }
+}

@@ -1,0 +1,303 @@
+//! From a map and its boundary to a localizer.
+//!
+//! Both come from other processes, so nothing in them is believed before it has
+//! been checked. That a boundary is complete cannot be seen without extracting
+//! it again, and is left to its sender.
+
+use std::f64::consts::TAU;
+
+use engine::grid::{Cell, CellRules, Grid, GridFrame};
+use engine::localizer::{Localizer, LocalizerConfig, Prior};
+use geometry::Pose;
+use map::{MAX_ORIGIN_M, MAX_RESOLUTION_M, MIN_RESOLUTION_M, MapError};
+use messages::{BoundaryCell, BoundaryHeader, MapHeader};
+
+use crate::AccumulatorError;
+
+/// What a localizer is made from: equal ones make equal localizers.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub struct Key {
+    /// The map.
+    pub map_id: u64,
+    /// By which its cells are read.
+    pub rules: CellRules,
+}
+
+impl Key {
+    /// The key of a map and a boundary; `None` where the boundary is of another
+    /// map, whose own one is still to come.
+    ///
+    /// # Errors
+    /// If the boundary's rules are out of range.
+    pub fn of(map: &MapHeader, boundary: &BoundaryHeader) -> Result<Option<Key>, AccumulatorError> {
+        let rules = rules_of(boundary)?;
+        let map_id = map.map_id;
+        Ok((map_id == boundary.map_id).then_some(Key { map_id, rules }))
+    }
+}
+
+/// A map that scans can be matched with.
+#[derive(Debug, Clone)]
+pub struct PreparedMap {
+    /// The map.
+    pub map_id: u64,
+    /// Made from it.
+    pub localizer: Localizer,
+}
+
+/// A map with its boundary, on the way to a localizer.
+#[derive(Debug, Clone)]
+pub struct Job {
+    map: MapHeader,
+    occupancy: Vec<u8>,
+    rules: CellRules,
+    boundary: Vec<BoundaryCell>,
+}
+
+impl Job {
+    /// Takes a copy along: samples stay on the thread that received them.
+    ///
+    /// # Errors
+    /// If the boundary has another size than it says, or impossible rules.
+    pub fn new(
+        map: &MapHeader,
+        occupancy: &[u8],
+        header: &BoundaryHeader,
+        boundary: &[BoundaryCell],
+    ) -> Result<Self, AccumulatorError> {
+        let (expected, found) = (header.boundary_cells, boundary.len());
+        if expected != found as u64 {
+            return Err(AccumulatorError::BoundarySize { expected, found });
+        }
+        Ok(Job {
+            map: *map,
+            occupancy: occupancy.to_vec(),
+            rules: rules_of(header)?,
+            boundary: boundary.to_vec(),
+        })
+    }
+
+    /// Makes the localizer, which takes from milliseconds to seconds.
+    ///
+    /// # Errors
+    /// If map or boundary cannot be used, or do not belong together.
+    pub fn prepare(
+        self,
+        config: LocalizerConfig,
+        prior: Prior,
+    ) -> Result<PreparedMap, AccumulatorError> {
+        let frame = frame_of(&self.map)?;
+        let (width, height) = (self.map.width as usize, self.map.height as usize);
+        let grid = Grid::new(width, height, &self.occupancy, self.rules)?;
+        check_boundary(&self.boundary, &grid)?;
+        let localizer = Localizer::new(frame, grid, &self.boundary, config, prior)?;
+        let map_id = self.map.map_id;
+        Ok(PreparedMap { map_id, localizer })
+    }
+}
+
+fn rules_of(boundary: &BoundaryHeader) -> Result<CellRules, AccumulatorError> {
+    let percent = |field, found: u32, allowed, range: std::ops::RangeInclusive<u8>| {
+        u8::try_from(found)
+            .ok()
+            .filter(|percent| range.contains(percent))
+            .ok_or(AccumulatorError::Rule {
+                field,
+                found: found.into(),
+                allowed,
+            })
+    };
+    let unknown_blocks = match boundary.unknown_blocks {
+        0 => false,
+        1 => true,
+        found => {
+            return Err(AccumulatorError::Rule {
+                field: "unknown_blocks",
+                found,
+                allowed: "0 and 1",
+            });
+        }
+    };
+    let occupied_from = boundary.occupied_from;
+    Ok(CellRules {
+        occupied_from: percent("occupied_from", occupied_from, "1 to 100", 1..=100)?,
+        free_to: percent("free_to", boundary.free_to, "0 to 99", 0..=99)?,
+        unknown_blocks,
+    })
+}
+
+fn frame_of(map: &MapHeader) -> Result<GridFrame, MapError> {
+    let resolution_m = map.resolution_m;
+    if !(MIN_RESOLUTION_M..=MAX_RESOLUTION_M).contains(&resolution_m) {
+        return Err(MapError::Resolution {
+            found: resolution_m,
+        });
+    }
+    let map_from_grid = Pose::from(map.map_from_grid);
+    let Pose { x, y, yaw } = map_from_grid;
+    if !(x.abs() <= MAX_ORIGIN_M && y.abs() <= MAX_ORIGIN_M && yaw.abs() <= TAU) {
+        return Err(MapError::Origin {
+            found: map_from_grid,
+        });
+    }
+    Ok(GridFrame {
+        resolution_m,
+        map_from_grid,
+    })
+}
+
+/// The engine takes each cell for an obstacle of its grid, and each but once.
+fn check_boundary(boundary: &[BoundaryCell], grid: &Grid) -> Result<(), AccumulatorError> {
+    for &cell in boundary {
+        if grid.get(cell.x.into(), cell.y.into()) != Some(Cell::Occupied) {
+            return Err(AccumulatorError::BoundaryCell { cell });
+        }
+    }
+    let mut neighbours = boundary.iter().zip(boundary.iter().skip(1));
+    match neighbours.find(|(previous, cell)| (previous.y, previous.x) >= (cell.y, cell.x)) {
+        Some((&previous, &cell)) => Err(AccumulatorError::BoundaryOrder { previous, cell }),
+        None => Ok(()),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use bytemuck::Zeroable;
+    use engine::boundary;
+
+    use super::*;
+
+    /// The messages of a map and its boundary.
+    struct Pair {
+        map: MapHeader,
+        occupancy: Vec<u8>,
+        header: BoundaryHeader,
+        cells: Vec<BoundaryCell>,
+    }
+
+    /// A room of 6 by 4 cells with bare walls.
+    fn room() -> Pair {
+        let is_wall = |x, y| x == 0 || x == 5 || y == 0 || y == 3;
+        let occupancy: Vec<u8> = (0..24)
+            .map(|i| 100 * u8::from(is_wall(i % 6, i / 6)))
+            .collect();
+        let grid = Grid::new(6, 4, &occupancy, CellRules::default()).unwrap();
+        let cells = boundary::extract(&grid);
+        let map = MapHeader {
+            map_id: 77,
+            width: 6,
+            height: 4,
+            resolution_m: 0.1,
+            ..Zeroable::zeroed()
+        };
+        let header = BoundaryHeader {
+            map_id: 77,
+            boundary_cells: cells.len() as u64,
+            occupied_from: 65,
+            free_to: 25,
+            ..Zeroable::zeroed()
+        };
+        Pair {
+            map,
+            occupancy,
+            header,
+            cells,
+        }
+    }
+
+    /// Prepares the room after `change` has been at it.
+    fn prepare(change: impl FnOnce(&mut Pair)) -> Result<PreparedMap, AccumulatorError> {
+        let mut pair = room();
+        change(&mut pair);
+        Job::new(&pair.map, &pair.occupancy, &pair.header, &pair.cells)?
+            .prepare(LocalizerConfig::default(), Prior::Heading)
+    }
+
+    #[track_caller]
+    fn refused(expected: &str, change: impl FnOnce(&mut Pair)) {
+        let error = prepare(change).unwrap_err();
+        assert!(error.to_string().contains(expected), "{error}");
+    }
+
+    #[test]
+    fn a_map_and_its_boundary_make_a_localizer() {
+        let prepared = prepare(|pair| pair.map.map_from_grid.x = 3.0).unwrap();
+        assert_eq!(prepared.map_id, 77);
+        assert_eq!(prepared.localizer.frame().map_from_grid.x, 3.0);
+        assert_eq!(prepared.localizer.grid().free_cells(), 8);
+    }
+
+    #[test]
+    fn a_pair_is_of_one_map_and_by_the_rules_of_the_boundary() {
+        let mut pair = room();
+        pair.header.unknown_blocks = 1;
+        let rules = CellRules {
+            unknown_blocks: true,
+            ..CellRules::default()
+        };
+        let key = Key::of(&pair.map, &pair.header).unwrap();
+        assert_eq!(key, Some(Key { map_id: 77, rules }));
+        pair.header.map_id = 78;
+        assert_eq!(Key::of(&pair.map, &pair.header).unwrap(), None);
+    }
+
+    #[test]
+    fn rules_that_foreign_bytes_may_hold_are_checked() {
+        let check = |change: fn(&mut BoundaryHeader), expected: &str| {
+            let mut pair = room();
+            change(&mut pair.header);
+            let error = Key::of(&pair.map, &pair.header).unwrap_err().to_string();
+            assert!(error.starts_with(expected), "{error}");
+        };
+        check(
+            |header| header.occupied_from = 0,
+            "occupied_from of the boundary is 0",
+        );
+        check(
+            |header| header.occupied_from = 321,
+            "occupied_from of the boundary is 321",
+        );
+        check(
+            |header| header.free_to = 100,
+            "free_to of the boundary is 100",
+        );
+        check(
+            |header| header.unknown_blocks = 2,
+            "unknown_blocks of the boundary is 2",
+        );
+    }
+
+    #[test]
+    fn a_map_that_is_not_sound_is_refused() {
+        for resolution_m in [0.0, f64::NAN, 1e-300, 11.0] {
+            refused("allowed: 0.001..=10 m", |pair| {
+                pair.map.resolution_m = resolution_m;
+            });
+        }
+        for yaw in [f64::NAN, 7.0] {
+            refused("an origin at", |pair| pair.map.map_from_grid.yaw = yaw);
+        }
+        refused("instead of 30", |pair| pair.map.height = 5);
+        refused("1 to 32767", |pair| pair.map.width = u32::MAX);
+        refused("nowhere that the robot could be", |pair| {
+            pair.occupancy.fill(100);
+        });
+    }
+
+    #[test]
+    fn a_boundary_of_other_cells_is_refused() {
+        refused("15 cells instead of 16", |pair| pair.cells.truncate(15));
+        refused("cell 1, 1 of the boundary", |pair| {
+            pair.cells[3] = BoundaryCell { x: 1, y: 1 };
+        });
+        refused("cell 6, 0 of the boundary", |pair| {
+            pair.cells[3] = BoundaryCell { x: 6, y: 0 };
+        });
+        refused("cell 1, 0 of the boundary follows 2, 0", |pair| {
+            pair.cells.swap(1, 2);
+        });
+        refused("cell 0, 0 of the boundary follows 0, 0", |pair| {
+            pair.cells[1] = pair.cells[0];
+        });
+    }
+}

@@ -1,0 +1,141 @@
+//! Receives scans and sends votes.
+
+mod inputs;
+mod outputs;
+mod supply;
+
+use std::sync::Arc;
+use std::sync::atomic::{AtomicBool, Ordering};
+use std::time::{Duration, Instant};
+
+use messages::topic;
+use transport::{Flow, GapCounter, Graph, Health, Sample, TransportError};
+
+use crate::answer::{self, Answer};
+use crate::headings::{HeadingSource, History};
+use crate::preparation::PreparedMap;
+use crate::{AccumulatorError, Config};
+use inputs::Inputs;
+use outputs::Outputs;
+use supply::Supply;
+
+/// How long a map that has been prepared waits to be used at most, while no
+/// scan comes.
+const TICK: Duration = Duration::from_millis(50);
+
+/// Answers each scan with its votes until the stop flag is set.
+///
+/// # Errors
+/// If the graph fails, or the thread that prepares a map dies. A scan or a map
+/// that is refused is reported in `health`.
+pub fn run(graph: &Graph, config: &Config) -> Result<(), AccumulatorError> {
+    let source = config.heading.source();
+    let inputs = Inputs::open(graph, source)?;
+    let outputs = Outputs::open(graph, config)?;
+    let mut node = Node {
+        source,
+        headings: config.localizer.headings,
+        history: History::default(),
+        supply: Supply::new(config.localizer, config.prior()),
+        map: None,
+        gaps: GapCounter::new(),
+        last_refusal: String::new(),
+        outputs,
+        stop: graph.stop_flag(),
+        health: graph.health()?,
+    };
+    graph.run(&inputs.all(), TICK, |_| node.step(&inputs))
+}
+
+struct Node {
+    source: HeadingSource,
+    headings: u32,
+    history: History,
+    supply: Supply,
+    map: Option<PreparedMap>,
+    gaps: GapCounter,
+    last_refusal: String,
+    outputs: Outputs,
+    stop: Arc<AtomicBool>,
+    health: Health,
+}
+
+impl Node {
+    /// Looks at the maps between any two scans, for a search may take long.
+    fn step(&mut self, inputs: &Inputs) -> Result<Flow, AccumulatorError> {
+        while !self.stopped() {
+            let prepared = self
+                .supply
+                .poll(&inputs.maps, &inputs.boundaries, &mut self.health)?;
+            self.map = prepared.or(self.map.take());
+            self.health.tick()?;
+            let scan = inputs.scans.receive()?;
+            // What was sent before the scan has come by now.
+            inputs.hear_headings(&mut self.history, &mut self.health)?;
+            match scan {
+                Some(scan) => self.answer(&scan)?,
+                None => return Ok(Flow::Continue),
+            }
+        }
+        Ok(Flow::Stop)
+    }
+
+    fn answer(&mut self, scan: &Sample<topic::Scan>) -> Result<(), TransportError> {
+        let lost = self.gaps.lost_before(scan.header().stamp.counter);
+        self.health.count_received(1);
+        self.health.count_dropped(lost);
+        match self.search(scan) {
+            Ok(Some(answer)) => self.send(&answer),
+            // Stopped half-way: nobody waits for the answer any more.
+            Ok(None) => Ok(()),
+            Err(error) => self.refuse(scan, &error),
+        }
+    }
+
+    fn search(&self, scan: &Sample<topic::Scan>) -> Result<Option<Answer>, AccumulatorError> {
+        let map = self.map.as_ref().ok_or(AccumulatorError::NoMap)?;
+        let heading = self.source.heading_of(scan.header(), &self.history)?;
+        let borrowed = answer::scan(scan.header(), scan.items())?;
+        let start = Instant::now();
+        let reply = answer::ask(&map.localizer, &borrowed, heading, &|| self.stopped())?;
+        let engine_ns = start.elapsed().as_nanos() as u64;
+        Ok(reply.map(|reply| answer::answered(scan.header(), map, reply, engine_ns)))
+    }
+
+    fn stopped(&self) -> bool {
+        self.stop.load(Ordering::Relaxed)
+    }
+
+    fn send(&mut self, answer: &Answer) -> Result<(), TransportError> {
+        self.outputs.votes(&answer.votes, &answer.poses)?;
+        self.health.count_sent(1);
+        self.last_refusal.clear();
+        if let Some((header, intensities)) = &answer.field {
+            let sent = self.outputs.field(header, intensities)?;
+            self.health.count_sent(sent.into());
+        }
+        Ok(())
+    }
+
+    /// Answers a refused scan all the same, for its source may be waiting.
+    fn refuse(
+        &mut self,
+        scan: &Sample<topic::Scan>,
+        error: &AccumulatorError,
+    ) -> Result<(), TransportError> {
+        let map_id = self.map.as_ref().map_or(0, |map| map.map_id);
+        let votes = answer::refused(scan.header(), map_id, self.headings);
+        self.outputs.votes(&votes, &[])?;
+        self.health.count_sent(1);
+        self.health.count_refused(1);
+        let (counter, reason) = (scan.header().stamp.counter, error.to_string());
+        self.health
+            .error(&format!("scan {counter} is refused: {reason}"))?;
+        // A source that is always wrong would fill the log.
+        if reason != self.last_refusal {
+            tracing::warn!("scan {counter} is refused: {reason}");
+            self.last_refusal = reason;
+        }
+        Ok(())
+    }
+}

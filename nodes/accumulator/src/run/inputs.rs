@@ -1,0 +1,57 @@
+//! What the node subscribes to.
+
+use messages::topic;
+use transport::{Graph, Health, Input, Subscriber, TransportError};
+
+use crate::headings::{HeadingSource, History};
+
+/// The node's subscribers; odometry and truth only where they are looked at.
+pub(super) struct Inputs {
+    pub(super) scans: Subscriber<topic::Scan>,
+    pub(super) maps: Subscriber<topic::Map>,
+    pub(super) boundaries: Subscriber<topic::Boundary>,
+    odometry: Option<Subscriber<topic::OdometryTopic>>,
+    truths: Option<Subscriber<topic::GroundTruthTopic>>,
+}
+
+impl Inputs {
+    pub(super) fn open(graph: &Graph, source: HeadingSource) -> Result<Self, TransportError> {
+        let by_odometry = matches!(source, HeadingSource::Odometry { .. });
+        let by_truth = source == HeadingSource::Truth;
+        Ok(Inputs {
+            scans: graph.subscriber()?,
+            maps: graph.subscriber()?,
+            boundaries: graph.subscriber()?,
+            odometry: by_odometry.then(|| graph.subscriber()).transpose()?,
+            truths: by_truth.then(|| graph.subscriber()).transpose()?,
+        })
+    }
+
+    pub(super) fn all(&self) -> Vec<&dyn Input> {
+        let always: [&dyn Input; 3] = [&self.scans, &self.maps, &self.boundaries];
+        let odometry = self.odometry.iter().map(|input| input as &dyn Input);
+        let truths = self.truths.iter().map(|input| input as &dyn Input);
+        always.into_iter().chain(odometry).chain(truths).collect()
+    }
+
+    /// Takes down all headings that have come.
+    pub(super) fn hear_headings(
+        &self,
+        history: &mut History,
+        health: &mut Health,
+    ) -> Result<(), TransportError> {
+        if let Some(subscriber) = &self.odometry {
+            while let Some(odometry) = subscriber.receive()? {
+                history.hear_odometry(odometry.header());
+                health.count_received(1);
+            }
+        }
+        if let Some(subscriber) = &self.truths {
+            while let Some(truth) = subscriber.receive()? {
+                history.hear_truth(truth.header());
+                health.count_received(1);
+            }
+        }
+        Ok(())
+    }
+}

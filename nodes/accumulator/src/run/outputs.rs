@@ -1,0 +1,48 @@
+//! What the node publishes.
+
+use messages::{FieldHeader, Vote, VotesHeader, topic};
+use transport::{Graph, Publisher, TransportError, monotonic_ns};
+
+use crate::Config;
+use crate::pace::Pace;
+
+/// The node's publishers.
+pub(super) struct Outputs {
+    votes: Publisher<topic::Votes>,
+    field: Publisher<topic::Field>,
+    field_pace: Pace,
+}
+
+impl Outputs {
+    pub(super) fn open(graph: &Graph, config: &Config) -> Result<Self, TransportError> {
+        Ok(Outputs {
+            votes: graph.publisher()?,
+            field: graph.publisher()?,
+            field_pace: Pace::new(config.field_rate),
+        })
+    }
+
+    pub(super) fn votes(&self, header: &VotesHeader, votes: &[Vote]) -> Result<(), TransportError> {
+        let mut loan = self.votes.loan(votes.len())?;
+        *loan.header_mut() = *header;
+        loan.items_mut().copy_from_slice(votes);
+        loan.send()
+    }
+
+    /// Sends the image while somebody subscribes and one is due; says whether
+    /// it did.
+    pub(super) fn field(
+        &mut self,
+        header: &FieldHeader,
+        intensities: &[u16],
+    ) -> Result<bool, TransportError> {
+        if !self.field.has_subscribers() || !self.field_pace.pass(monotonic_ns()) {
+            return Ok(false);
+        }
+        let mut loan = self.field.loan(intensities.len())?;
+        *loan.header_mut() = *header;
+        loan.items_mut().copy_from_slice(intensities);
+        loan.send()?;
+        Ok(true)
+    }
+}

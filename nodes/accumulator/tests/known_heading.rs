@@ -1,0 +1,177 @@
+//! The node with known headings: x and y alone are searched, and the intensity
+//! image is published.
+#![allow(
+    clippy::unwrap_used,
+    reason = "the lint spares test functions but not what they share"
+)]
+
+mod support;
+mod world;
+
+use std::f64::consts::FRAC_PI_2;
+
+use bytemuck::Zeroable;
+use engine::localizer::Prior;
+use messages::{
+    FieldHeader, FieldKind, GroundTruth, Name, NodeState, Odometry, Pose2, SearchOutcome, Stamp,
+    topic,
+};
+use support::{Isolated, Node, wait_for, wait_for_health};
+use world::{FRAME, MOUNT, ROOM, World, localizer, ranges, scan};
+
+/// In the grid's frame, as the scans are drawn.
+const HEADING: usize = 40;
+
+/// The same in the map frame, radians.
+fn map_heading() -> f64 {
+    (HEADING as f64).to_radians() + FRAME.map_from_grid.yaw
+}
+
+fn start(world: &World, arguments: &[&str]) -> Node {
+    let node = Node::start(&world.graph, arguments);
+    world.publish_map(5, &ROOM);
+    world.publish_boundary(5, &ROOM);
+    world.wait_until(NodeState::Ready);
+    node
+}
+
+fn at(measured_ns: i64) -> Stamp {
+    Stamp {
+        measured_ns,
+        ..Stamp::default()
+    }
+}
+
+fn turned(yaw: f64) -> Pose2 {
+    Pose2 {
+        x: 0.0,
+        y: 0.0,
+        yaw,
+    }
+}
+
+#[test]
+fn a_fixed_heading_gives_the_votes_and_the_image_of_the_engine() {
+    let isolated = Isolated::new("fixed");
+    let world = World::new(&isolated);
+    let degrees = map_heading().to_degrees().to_string();
+    let node = start(&world, &["--heading", &degrees, "--field-rate", "0.1"]);
+    let fields = world.graph.subscriber::<topic::Field>().unwrap();
+    let ranges = ranges(&ROOM, 3, 3, HEADING);
+    let (votes, poses) = world.ask(&ranges);
+
+    let heading = votes.known_heading;
+    // The heading went through decimal degrees: a rounding or two.
+    assert!((heading - map_heading()).abs() < 1e-12, "{heading}");
+    let (outcome, image) = localizer(&ROOM, Prior::Heading)
+        .search_at(&scan(&ranges), heading)
+        .unwrap();
+    assert_eq!(poses, outcome.found.votes);
+    assert_eq!(votes.heading_known, 1);
+    assert_eq!(votes.outcome, SearchOutcome::Found as u32);
+    assert_eq!(poses.first().map(|best| (best.x, best.y)), Some((3, 3)));
+
+    let expected = FieldHeader {
+        stamp: votes.stamp,
+        map_id: 5,
+        width: 16,
+        height: 9,
+        block: 1,
+        kind: FieldKind::Exact as u32,
+        best: votes.best,
+        highest_possible: votes.highest_possible,
+        heading,
+    };
+    let (header, intensities) = wait_for(&world.graph, &fields, |header, intensities| {
+        Some((*header, intensities.to_vec()))
+    });
+    assert_eq!((header, intensities), (expected, image));
+
+    // The next image is due in ten seconds; each scan is answered all the same.
+    // Were one sent, it would come before the answer to the scan after it.
+    for _ in 0..3 {
+        world.ask(&ranges);
+    }
+    assert!(fields.receive().unwrap().is_none());
+    node.stop();
+}
+
+#[test]
+fn without_a_subscriber_no_image_is_sent() {
+    let isolated = Isolated::new("nobody");
+    let world = World::new(&isolated);
+    let node = start(&world, &["--heading", "0"]);
+    world.ask(&ranges(&ROOM, 3, 3, HEADING));
+    node.stop();
+    let (last, _) = world.wait_until(NodeState::Stopped);
+    assert_eq!(last.sent, 1, "the votes alone");
+}
+
+#[test]
+fn headings_come_from_odometry_of_the_base() {
+    let isolated = Isolated::new("odometry");
+    let world = World::new(&isolated);
+    let odometry = world.graph.publisher::<topic::OdometryTopic>().unwrap();
+    let arguments = ["--heading-from", "odometry", "--heading-offset", "90"];
+    let node = start(&world, &arguments);
+    let ranges = ranges(&ROOM, 3, 3, HEADING);
+
+    let (votes, _) = world.ask(&ranges);
+    assert_eq!(votes.outcome, SearchOutcome::Refused as u32);
+    let (_, error) = wait_for_health(&world.graph, &world.health, |report| report.refused == 1);
+    assert!(error.contains("scan 0 is refused: the heading"), "{error}");
+
+    let report = |measured_ns, yaw| {
+        let mut loan = odometry.loan(0).unwrap();
+        *loan.header_mut() = Odometry {
+            stamp: at(measured_ns),
+            odom_from_child: turned(yaw),
+            child_frame: Name::new("base_link"),
+            ..Zeroable::zeroed()
+        };
+        loan.send().unwrap();
+    };
+    // Scan 1 is measured at 1 s: between these two.
+    let yaw = map_heading() - FRAC_PI_2 - MOUNT.yaw;
+    report(900_000_000, yaw);
+    report(1_100_000_000, 3.0);
+    let (votes, poses) = world.ask(&ranges);
+    assert_eq!(votes.outcome, SearchOutcome::Found as u32);
+    let heading = votes.known_heading;
+    assert!((heading - map_heading()).abs() < 1e-12, "{heading}");
+    assert_eq!(poses.first().map(|best| (best.x, best.y)), Some((3, 3)));
+
+    // Scan 3 is measured at 3 s: the odometry is then 1.9 s old.
+    world.counter.set(3);
+    let (votes, _) = world.ask(&ranges);
+    assert_eq!(votes.outcome, SearchOutcome::Refused as u32);
+    let (_, error) = wait_for_health(&world.graph, &world.health, |report| report.refused == 2);
+    assert!(error.contains("1900000000 ns before the scan"), "{error}");
+    node.stop();
+}
+
+#[test]
+fn headings_come_from_the_truth_of_the_scan() {
+    let isolated = Isolated::new("truth");
+    let world = World::new(&isolated);
+    let truths = world.graph.publisher::<topic::GroundTruthTopic>().unwrap();
+    let node = start(&world, &["--heading-from", "truth"]);
+    let mut loan = truths.loan(0).unwrap();
+    *loan.header_mut() = GroundTruth {
+        stamp: at(0),
+        map_from_laser: turned(map_heading()),
+        frame: Name::new("map"),
+    };
+    loan.send().unwrap();
+    let ranges = ranges(&ROOM, 3, 3, HEADING);
+    let (votes, poses) = world.ask(&ranges);
+    assert_eq!(votes.known_heading, map_heading());
+    assert_eq!(poses.first().map(|best| (best.x, best.y)), Some((3, 3)));
+    let (votes, _) = world.ask(&ranges);
+    assert_eq!(
+        votes.outcome,
+        SearchOutcome::Refused as u32,
+        "no truth came"
+    );
+    node.stop();
+}

@@ -1,0 +1,233 @@
+//! The node as a process: scans go in, votes come out, and they are the
+//! engine's.
+#![allow(
+    clippy::unwrap_used,
+    reason = "the lint spares test functions but not what they share"
+)]
+
+mod support;
+mod world;
+
+use engine::localizer::{Outcome, Prior};
+use messages::{BoundaryCell, NodeState, SearchOutcome, Vote, VotesHeader};
+use support::{Isolated, Node, wait_for_health};
+use world::{MOUNT, ROOM, World, localizer, ranges, scan};
+
+/// The same room after somebody has moved the pillar and opened a door.
+const CHANGED: [&str; 9] = [
+    "################",
+    "#..............#",
+    "#...##.........#",
+    "#..............#",
+    "#..............#",
+    "#.....####..####",
+    "#.....#.........",
+    "#.....#.........",
+    "#######.........",
+];
+
+fn searched(rows: &[&str], ranges: &[f32]) -> Outcome {
+    let outcome = localizer(rows, Prior::None).search(&scan(ranges), &|| false);
+    outcome.unwrap().unwrap()
+}
+
+#[track_caller]
+fn assert_equals(votes: &VotesHeader, poses: &[Vote], outcome: &Outcome) {
+    let found = &outcome.found;
+    assert_eq!(poses, found.votes);
+    assert_eq!(votes.outcome, SearchOutcome::Found as u32);
+    let levels = (votes.floor, votes.certified_floor, votes.best);
+    let expected = (found.floor, found.certified_floor, found.best);
+    assert_eq!(
+        levels,
+        (expected.0.into(), expected.1.into(), expected.2.into())
+    );
+    let beams = (votes.beams_used, votes.beams_silent);
+    assert_eq!(beams, (outcome.beams_used, outcome.beams_silent));
+    assert_eq!(votes.highest_possible, outcome.highest_possible);
+    assert_eq!(votes.headings, outcome.headings);
+    assert_eq!(votes.bearing_rounding, outcome.bearing_rounding);
+}
+
+fn is_refused(votes: &VotesHeader) -> bool {
+    votes.outcome == SearchOutcome::Refused as u32
+}
+
+#[test]
+fn votes_are_those_of_the_engine() {
+    let isolated = Isolated::new("equal");
+    let world = World::new(&isolated);
+    // Both are there before the node, which is thus a late joiner.
+    world.publish_map(5, &ROOM);
+    world.publish_boundary(5, &ROOM);
+    let node = Node::start(&world.graph, &[]);
+    world.wait_until(NodeState::Ready);
+    for (x, y, heading) in [(3, 3, 40), (12, 6, 211), (9, 4, 0)] {
+        let ranges = ranges(&ROOM, x, y, heading);
+        let (votes, poses) = world.ask(&ranges);
+        let outcome = searched(&ROOM, &ranges);
+        assert_equals(&votes, &poses, &outcome);
+        assert_eq!((votes.map_id, votes.heading_known), (5, 0));
+        assert_eq!((votes.base_from_laser, votes.mount_known), (MOUNT, 1));
+        assert_eq!(votes.total, poses.len() as u64);
+        assert!(votes.engine_ns > 0 && votes.poses_evaluated > 0);
+        let best = poses[0];
+        let found = (i64::from(best.x), i64::from(best.y), best.heading.into());
+        assert_eq!(found, (x, y, heading));
+    }
+    node.stop();
+    let (last, error) = world.wait_until(NodeState::Stopped);
+    let counts = (last.received, last.sent, last.dropped, last.refused);
+    assert_eq!(counts, (5, 3, 0, 0), "a map, a boundary and three scans");
+    assert_eq!(error, "");
+}
+
+#[test]
+fn bad_scans_are_refused_and_counted_and_the_next_good_one_is_answered() {
+    let isolated = Isolated::new("bad");
+    let world = World::new(&isolated);
+    let node = Node::start(&world.graph, &[]);
+    world.wait_until(NodeState::Waiting);
+    let good = ranges(&ROOM, 3, 3, 40);
+
+    let (votes, poses) = world.ask(&good);
+    assert!(is_refused(&votes) && poses.is_empty());
+    assert_eq!(votes.map_id, 0);
+    let (_, error) = wait_for_health(&world.graph, &world.health, |report| report.refused == 1);
+    assert_eq!(error, "scan 0 is refused: there is no map yet");
+
+    world.publish_map(5, &ROOM);
+    world.publish_boundary(5, &ROOM);
+    world.wait_until(NodeState::Ready);
+    let bad = [
+        world.ask(&[]),
+        world.ask_with(&good, |scan| scan.angle_increment = 0.0),
+        world.ask_with(&good, |scan| scan.angle_increment *= -1.0),
+        world.ask_with(&good, |scan| scan.angle_min = f64::NAN),
+        world.ask_with(&good, |scan| scan.base_from_laser.x = f64::INFINITY),
+    ];
+    for (votes, poses) in bad {
+        assert!(is_refused(&votes) && poses.is_empty());
+        assert_eq!(votes.map_id, 5);
+    }
+    let (_, error) = wait_for_health(&world.graph, &world.health, |report| report.refused == 6);
+    assert!(
+        error.starts_with("scan 5 is refused: base_from_laser is x inf m"),
+        "{error}"
+    );
+
+    let (votes, poses) = world.ask(&good);
+    assert_equals(&votes, &poses, &searched(&ROOM, &good));
+    let (votes, poses) = world.ask(&[f32::INFINITY, f32::NAN, -1.0, 0.0]);
+    assert_eq!(votes.outcome, SearchOutcome::NoVotes as u32);
+    assert_eq!((poses.len(), votes.beams_silent), (0, 4));
+    node.stop();
+    let (last, _) = world.wait_until(NodeState::Stopped);
+    assert_eq!((last.refused, last.sent), (6, 8));
+}
+
+#[test]
+fn scans_that_never_came_are_counted_as_dropped() {
+    let isolated = Isolated::new("dropped");
+    let world = World::new(&isolated);
+    let node = Node::start(&world.graph, &[]);
+    world.wait_until(NodeState::Waiting);
+    world.counter.set(7);
+    world.ask(&[1.0]);
+    world.counter.set(12);
+    world.ask(&[1.0]);
+    wait_for_health(&world.graph, &world.health, |report| report.dropped == 4);
+    node.stop();
+}
+
+/// Asks until a scan is matched with `map_id`; each answer on the way must be
+/// that of the map which it names.
+fn ask_until_swapped(world: &World, map_id: u64) {
+    let scanned = ranges(&CHANGED, 3, 3, 40);
+    loop {
+        let (votes, poses) = world.ask(&scanned);
+        let rows = if votes.map_id == 5 { &ROOM } else { &CHANGED };
+        assert_equals(&votes, &poses, &searched(rows, &scanned));
+        if votes.map_id == map_id {
+            return;
+        }
+        assert_eq!(votes.map_id, 5);
+    }
+}
+
+#[test]
+fn a_new_map_is_used_once_it_and_its_boundary_are_there() {
+    let isolated = Isolated::new("swap");
+    let world = World::new(&isolated);
+    let node = Node::start(&world.graph, &[]);
+    world.publish_boundary(5, &ROOM);
+    world.publish_map(5, &ROOM);
+    world.wait_until(NodeState::Ready);
+
+    world.publish_map(6, &CHANGED);
+    let (votes, _) = world.ask(&ranges(&ROOM, 3, 3, 40));
+    assert_eq!(votes.map_id, 5, "the boundary of the new map is missing");
+    world.publish_boundary(6, &CHANGED);
+    ask_until_swapped(&world, 6);
+    node.stop();
+}
+
+#[test]
+fn a_map_that_is_refused_leaves_the_one_before_in_use() {
+    let isolated = Isolated::new("refuse");
+    let world = World::new(&isolated);
+    let node = Node::start(&world.graph, &[]);
+    world.publish_map(5, &ROOM);
+    world.publish_boundary(5, &ROOM);
+    world.wait_until(NodeState::Ready);
+
+    world.publish_map(6, &CHANGED);
+    let mut loan = world.boundaries.loan(1).unwrap();
+    loan.header_mut().map_id = 6;
+    loan.header_mut().boundary_cells = 1;
+    loan.header_mut().occupied_from = 65;
+    loan.items_mut()[0] = BoundaryCell { x: 999, y: 0 };
+    loan.send().unwrap();
+    let (report, error) = world.wait_until(NodeState::Degraded);
+    assert_eq!(report.refused, 1);
+    assert_eq!(
+        error,
+        "map 0000000000000006 is refused: cell 999, 0 of the boundary is no occupied cell of the \
+         map"
+    );
+    let (votes, _) = world.ask(&ranges(&ROOM, 3, 3, 40));
+    assert_eq!(votes.map_id, 5);
+
+    // The extractor is started again and sends a sound one.
+    world.publish_boundary(6, &CHANGED);
+    world.wait_until(NodeState::Ready);
+    ask_until_swapped(&world, 6);
+    node.stop();
+}
+
+#[test]
+fn a_map_that_is_taken_back_is_in_use_again() {
+    let isolated = Isolated::new("back");
+    let world = World::new(&isolated);
+    let node = Node::start(&world.graph, &[]);
+    world.publish_map(5, &ROOM);
+    world.publish_boundary(5, &ROOM);
+    world.wait_until(NodeState::Ready);
+    world.publish_map(6, &["####", "####"]);
+    world.publish_boundary(6, &["####", "#..#", "####"]);
+    world.wait_until(NodeState::Degraded);
+    world.publish_map(5, &ROOM);
+    world.publish_boundary(5, &ROOM);
+    world.wait_until(NodeState::Ready);
+    let (votes, _) = world.ask(&ranges(&ROOM, 3, 3, 40));
+    assert_eq!(votes.map_id, 5);
+    node.stop();
+}
+
+#[test]
+fn a_command_line_that_contradicts_itself_ends_with_two() {
+    let isolated = Isolated::new("usage");
+    let world = World::new(&isolated);
+    let node = Node::start(&world.graph, &["--heading", "1", "--heading-offset", "2"]);
+    assert_eq!(node.exit_code(), Some(2));
+}

@@ -1,0 +1,197 @@
+//! A drawn world, and the node's neighbours: who sends it maps, boundaries and
+//! scans, and who takes its votes.
+#![allow(
+    clippy::unwrap_used,
+    reason = "the lint spares test functions but not what they share"
+)]
+
+use std::cell::Cell;
+use std::f64::consts::PI;
+
+use bytemuck::Zeroable;
+use engine::boundary;
+use engine::grid::{CellRules, Grid, GridFrame};
+use engine::localizer::{Localizer, LocalizerConfig, Prior};
+use engine::reference;
+use engine::scan::Scan;
+use engine::space::Space;
+use geometry::Pose;
+use messages::{
+    BoundaryHeader, HealthHeader, MapHeader, Name, NodeState, Pose2, ScanHeader, Stamp, Vote,
+    VotesHeader, topic,
+};
+use transport::{Graph, Publisher, Subscriber, monotonic_ns};
+
+use crate::support::{Isolated, wait_for, wait_for_health};
+
+/// A room with a pillar: no pose in it looks like another.
+pub(crate) const ROOM: [&str; 9] = [
+    "################",
+    "#..............#",
+    "#..............#",
+    "#..........##..#",
+    "#..............#",
+    "#.....##########",
+    "#.....#.........",
+    "#..#..#.........",
+    "#######.........",
+];
+
+/// Turned, so that a confusion of grid and map would show.
+pub(crate) const FRAME: GridFrame = GridFrame {
+    resolution_m: 0.25,
+    map_from_grid: Pose::new(3.0, -1.0, 0.5),
+};
+
+pub(crate) const MOUNT: Pose2 = Pose2 {
+    x: 0.78,
+    y: 0.0,
+    yaw: 0.125,
+};
+
+pub(crate) fn occupancy(rows: &[&str]) -> Vec<u8> {
+    let cells = rows.iter().rev().flat_map(|row| row.bytes());
+    cells.map(|cell| 100 * u8::from(cell == b'#')).collect()
+}
+
+pub(crate) fn grid(rows: &[&str]) -> Grid {
+    let cells = occupancy(rows);
+    Grid::new(rows[0].len(), rows.len(), &cells, CellRules::default()).unwrap()
+}
+
+/// The engine, asked directly.
+pub(crate) fn localizer(rows: &[&str], prior: Prior) -> Localizer {
+    let grid = grid(rows);
+    let boundary = boundary::extract(&grid);
+    Localizer::new(FRAME, grid, &boundary, LocalizerConfig::default(), prior).unwrap()
+}
+
+/// What a laser with a beam a degree all around reads at a pose of the grid.
+pub(crate) fn ranges(rows: &[&str], x: i64, y: i64, heading: usize) -> Vec<f32> {
+    let grid = grid(rows);
+    let space = Space::new(360, FRAME.resolution_m, grid.width(), grid.height()).unwrap();
+    let beams = (0..360).map(|beam| {
+        let direction = space.directions.get(heading + 180 + beam);
+        reference::range(&grid, x, y, direction).map_or(f32::INFINITY, |steps| {
+            (f64::from(steps) / direction.steps_per_cell * FRAME.resolution_m) as f32
+        })
+    });
+    beams.collect()
+}
+
+/// The scan of [`World::ask`], as the engine takes it.
+pub(crate) fn scan(ranges: &[f32]) -> Scan<'_> {
+    Scan {
+        angle_min: -PI,
+        angle_increment: 1f64.to_radians(),
+        range_min_m: 0.0,
+        range_max_m: 30.0,
+        ranges,
+    }
+}
+
+/// The node's neighbours.
+pub(crate) struct World {
+    pub(crate) graph: Graph,
+    pub(crate) maps: Publisher<topic::Map>,
+    pub(crate) boundaries: Publisher<topic::Boundary>,
+    pub(crate) scans: Publisher<topic::Scan>,
+    pub(crate) votes: Subscriber<topic::Votes>,
+    pub(crate) health: Subscriber<topic::Health>,
+    /// Of the next scan.
+    pub(crate) counter: Cell<u64>,
+}
+
+impl World {
+    pub(crate) fn new(isolated: &Isolated) -> Self {
+        let graph = isolated.join();
+        World {
+            maps: graph.publisher().unwrap(),
+            boundaries: graph.publisher().unwrap(),
+            scans: graph.publisher().unwrap(),
+            votes: graph.subscriber().unwrap(),
+            health: graph.subscriber().unwrap(),
+            counter: Cell::new(0),
+            graph,
+        }
+    }
+
+    pub(crate) fn publish_map(&self, map_id: u64, rows: &[&str]) {
+        let cells = occupancy(rows);
+        let mut loan = self.maps.loan(cells.len()).unwrap();
+        *loan.header_mut() = MapHeader {
+            stamp: Stamp::default(),
+            map_id,
+            width: rows[0].len() as u32,
+            height: rows.len() as u32,
+            resolution_m: FRAME.resolution_m,
+            map_from_grid: FRAME.map_from_grid.into(),
+        };
+        loan.items_mut().copy_from_slice(&cells);
+        loan.send().unwrap();
+    }
+
+    pub(crate) fn publish_boundary(&self, map_id: u64, rows: &[&str]) {
+        let grid = grid(rows);
+        let cells = boundary::extract(&grid);
+        let mut loan = self.boundaries.loan(cells.len()).unwrap();
+        *loan.header_mut() = BoundaryHeader {
+            map_id,
+            free_cells: grid.free_cells() as u64,
+            boundary_cells: cells.len() as u64,
+            occupied_cells: grid.occupied_cells() as u64,
+            occupied_from: 65,
+            free_to: 25,
+            ..Zeroable::zeroed()
+        };
+        loan.items_mut().copy_from_slice(&cells);
+        loan.send().unwrap();
+    }
+
+    /// Sends a scan and waits for its votes; fails if votes of another one come.
+    pub(crate) fn ask(&self, ranges: &[f32]) -> (VotesHeader, Vec<Vote>) {
+        self.ask_with(ranges, |_| {})
+    }
+
+    /// As [`World::ask`], with a header that `change` has been at.
+    pub(crate) fn ask_with(
+        &self,
+        ranges: &[f32],
+        change: impl FnOnce(&mut ScanHeader),
+    ) -> (VotesHeader, Vec<Vote>) {
+        let counter = self.counter.replace(self.counter.get() + 1);
+        let plain = scan(&[]);
+        let mut header = ScanHeader {
+            stamp: Stamp {
+                measured_ns: 1_000_000_000 * counter as i64,
+                entered_ns: monotonic_ns(),
+                counter,
+            },
+            angle_min: plain.angle_min,
+            angle_increment: plain.angle_increment,
+            range_min_m: plain.range_min_m,
+            range_max_m: plain.range_max_m,
+            base_from_laser: MOUNT,
+            mount_known: 1,
+            frame: Name::new("laser"),
+            ..Zeroable::zeroed()
+        };
+        change(&mut header);
+        let mut loan = self.scans.loan(ranges.len()).unwrap();
+        *loan.header_mut() = header;
+        loan.items_mut().copy_from_slice(ranges);
+        loan.send().unwrap();
+        let answer = wait_for(&self.graph, &self.votes, |votes, poses| {
+            Some((*votes, poses.to_vec()))
+        });
+        assert_eq!(answer.0.stamp, header.stamp);
+        answer
+    }
+
+    /// Waits until the node says that it is in `state`.
+    pub(crate) fn wait_until(&self, state: NodeState) -> (HealthHeader, String) {
+        wait_for_health(&self.graph, &self.health, |report| {
+            report.state == state as u32
+        })
+    }
+}

@@ -1,0 +1,177 @@
+//! The node's one function: from a map and the rules to the boundary.
+
+use std::f64::consts::TAU;
+
+use engine::EngineError;
+use engine::boundary;
+use engine::grid::{CellRules, Grid};
+use geometry::Pose;
+use map::{MAX_ORIGIN_M, MAX_RESOLUTION_M, MIN_RESOLUTION_M, MapError};
+use messages::{BoundaryCell, BoundaryHeader, MapHeader};
+
+use crate::BoundaryError;
+
+/// The message of topic `boundary`.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub struct Extraction {
+    /// What was counted, in which map, and by which rules.
+    pub header: BoundaryHeader,
+    /// By (y, x).
+    pub cells: Vec<BoundaryCell>,
+}
+
+/// Finds the boundary of a map whose cells are `occupancy`.
+///
+/// # Errors
+/// If the grid's sides, resolution or origin are out of range, the number of
+/// cells is not what the sides say, or the map has no free cell, no occupied
+/// one, or none of these where a ray could reach it.
+pub fn extract(
+    map: &MapHeader,
+    occupancy: &[u8],
+    rules: CellRules,
+) -> Result<Extraction, BoundaryError> {
+    check_geometry(map)?;
+    let (width, height) = (map.width as usize, map.height as usize);
+    let grid = Grid::new(width, height, occupancy, rules)?;
+    if grid.occupied_cells() == 0 {
+        return Err(EngineError::NoOccupiedCell.into());
+    }
+    if grid.free_cells() == 0 {
+        return Err(EngineError::NoFreeCell.into());
+    }
+    let cells = boundary::extract(&grid);
+    if cells.is_empty() {
+        let occupied = grid.occupied_cells();
+        return Err(BoundaryError::NoBoundaryCell { occupied });
+    }
+    let header = BoundaryHeader {
+        stamp: map.stamp,
+        map_id: map.map_id,
+        free_cells: grid.free_cells() as u64,
+        boundary_cells: cells.len() as u64,
+        occupied_cells: grid.occupied_cells() as u64,
+        occupied_from: rules.occupied_from.into(),
+        free_to: rules.free_to.into(),
+        unknown_blocks: rules.unknown_blocks.into(),
+    };
+    Ok(Extraction { header, cells })
+}
+
+/// The boundary needs no geometry, but whoever uses it does: a map that nobody
+/// can use is to be refused before anybody prepares for it.
+fn check_geometry(map: &MapHeader) -> Result<(), MapError> {
+    let found = map.resolution_m;
+    if !(MIN_RESOLUTION_M..=MAX_RESOLUTION_M).contains(&found) {
+        return Err(MapError::Resolution { found });
+    }
+    let found = Pose::from(map.map_from_grid);
+    let is_near = |metres: f64| metres.abs() <= MAX_ORIGIN_M;
+    if !(is_near(found.x) && is_near(found.y) && found.yaw.abs() <= TAU) {
+        return Err(MapError::Origin { found });
+    }
+    Ok(())
+}
+
+#[cfg(test)]
+mod tests {
+    use messages::{Pose2, Stamp, UNKNOWN};
+
+    use super::*;
+
+    fn map(width: u32, height: u32) -> MapHeader {
+        MapHeader {
+            stamp: Stamp {
+                measured_ns: 1,
+                entered_ns: 2,
+                counter: 3,
+            },
+            map_id: 77,
+            width,
+            height,
+            resolution_m: 0.05,
+            map_from_grid: Pose2 {
+                x: -1.0,
+                y: 2.0,
+                yaw: 0.1,
+            },
+        }
+    }
+
+    /// A wall along the left, unknown cells along the right.
+    const CELLS: [u8; 12] = [
+        100, 100, 0, UNKNOWN, //
+        100, 100, 0, UNKNOWN, //
+        100, 100, 0, UNKNOWN,
+    ];
+
+    #[track_caller]
+    fn refused(map: &MapHeader, cells: &[u8], expected: &str) {
+        let error = extract(map, cells, CellRules::default()).unwrap_err();
+        assert!(error.to_string().contains(expected), "{error}");
+    }
+
+    #[test]
+    fn the_boundary_comes_with_its_map_counts_and_rules() {
+        let rules = CellRules {
+            unknown_blocks: true,
+            ..CellRules::default()
+        };
+        let map = map(4, 3);
+        let Extraction { header, cells } = extract(&map, &CELLS, rules).unwrap();
+        let expected = [0, 1, 2].map(|y| BoundaryCell { x: 1, y });
+        assert_eq!(cells, expected);
+        assert_eq!((header.stamp, header.map_id), (map.stamp, 77));
+        let counts = (
+            header.free_cells,
+            header.boundary_cells,
+            header.occupied_cells,
+        );
+        assert_eq!(counts, (3, 3, 6));
+        let rules = (header.occupied_from, header.free_to, header.unknown_blocks);
+        assert_eq!(rules, (65, 25, 1));
+    }
+
+    #[test]
+    fn a_map_that_nobody_can_use_is_refused() {
+        refused(&map(0, 3), &[], "0 x 3 cells");
+        refused(&map(32_768, 1), &[0; 32_768], "32768 x 1 cells");
+        refused(&map(4, 3), &CELLS[..11], "11 occupancies instead of 12");
+        refused(&map(u32::MAX, u32::MAX), &CELLS, "1 to 32767");
+        refused(&map(2, 1), &[0, UNKNOWN], "no occupied cell");
+        refused(&map(2, 1), &[100, UNKNOWN], "no free cell");
+    }
+
+    #[test]
+    fn a_geometry_out_of_range_is_refused() {
+        for resolution_m in [0.0, -0.05, 1e-300, 11.0, f64::NAN, f64::INFINITY] {
+            let absurd = MapHeader {
+                resolution_m,
+                ..map(4, 3)
+            };
+            refused(&absurd, &CELLS, "allowed: 0.001..=10 m");
+        }
+        for (x, yaw) in [(f64::NAN, 0.0), (1e9, 0.0), (0.0, f64::INFINITY)] {
+            let map_from_grid = Pose2 { x, y: 0.0, yaw };
+            let absurd = MapHeader {
+                map_from_grid,
+                ..map(4, 3)
+            };
+            refused(&absurd, &CELLS, "an origin at x");
+        }
+    }
+
+    #[test]
+    fn obstacles_that_no_ray_reaches_are_no_map() {
+        let rules = CellRules {
+            unknown_blocks: true,
+            ..CellRules::default()
+        };
+        let walled_off = [100, UNKNOWN, UNKNOWN, 0];
+        let error = extract(&map(4, 1), &walled_off, rules).unwrap_err();
+        assert!(
+            matches!(error, BoundaryError::NoBoundaryCell { occupied: 1 }),
+            "{error}"
+        );
+    }
+}

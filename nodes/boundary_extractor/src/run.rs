@@ -1,0 +1,65 @@
+//! Receives maps and sends their boundaries.
+
+use std::time::Duration;
+
+use messages::{NodeState, topic};
+use transport::{Flow, Graph, Health, Publisher, Sample, TransportError};
+
+use crate::extraction::{Extraction, extract};
+use crate::{BoundaryError, Config};
+
+/// How long a late joiner waits for the boundary at most.
+const TICK: Duration = Duration::from_millis(100);
+
+/// Answers each map with its boundary until the stop flag is set.
+///
+/// # Errors
+/// If the graph fails; a map that is refused is reported in `health`.
+pub fn run(graph: &Graph, config: &Config) -> Result<(), BoundaryError> {
+    let maps = graph.subscriber::<topic::Map>()?;
+    let boundaries = graph.publisher::<topic::Boundary>()?;
+    let mut health = graph.health()?;
+    graph.run(&[&maps], TICK, |_| {
+        if let Some(map) = maps.newest()? {
+            health.count_received(1);
+            match extract(map.header(), map.items(), config.rules) {
+                Ok(extraction) => serve(&extraction, &boundaries, &mut health)?,
+                Err(error) => refuse(&map, &error, &mut health)?,
+            }
+        }
+        health.tick()?;
+        Ok(Flow::Continue)
+    })
+}
+
+fn serve(
+    Extraction { header, cells }: &Extraction,
+    boundaries: &Publisher<topic::Boundary>,
+    health: &mut Health,
+) -> Result<(), TransportError> {
+    let mut loan = boundaries.loan(cells.len())?;
+    *loan.header_mut() = *header;
+    loan.items_mut().copy_from_slice(cells);
+    loan.send()?;
+    health.count_sent(1);
+    tracing::info!(
+        map = format_args!("{:016x}", header.map_id),
+        free = header.free_cells,
+        boundary = header.boundary_cells,
+        "boundary served"
+    );
+    health.state(NodeState::Ready)
+}
+
+/// The boundary that was served last stays.
+fn refuse(
+    map: &Sample<topic::Map>,
+    error: &BoundaryError,
+    health: &mut Health,
+) -> Result<(), TransportError> {
+    let problem = format!("map {:016x} is refused: {error}", map.header().map_id);
+    tracing::warn!("{problem}");
+    health.count_refused(1);
+    health.error(&problem)?;
+    health.state(NodeState::Degraded)
+}

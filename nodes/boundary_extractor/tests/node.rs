@@ -1,0 +1,119 @@
+//! The node as a process: maps go in, boundaries come out.
+#![allow(
+    clippy::unwrap_used,
+    reason = "the lint spares test functions but not what they share"
+)]
+
+mod support;
+
+use engine::boundary;
+use engine::grid::{CellRules, Grid};
+use messages::{BoundaryCell, MapHeader, NodeState, Pose2, Stamp, topic};
+use support::{Isolated, Node, wait_for, wait_for_health};
+use transport::Publisher;
+
+/// A room with a pillar; `#` occupied, `.` free.
+const ROOM: [&str; 5] = ["########", "#......#", "#..#...#", "#......#", "########"];
+
+fn occupancy(rows: &[&str]) -> Vec<u8> {
+    let cells = rows.iter().rev().flat_map(|row| row.bytes());
+    cells.map(|cell| 100 * u8::from(cell == b'#')).collect()
+}
+
+fn publish(maps: &Publisher<topic::Map>, map_id: u64, rows: &[&str]) {
+    let cells = occupancy(rows);
+    let mut loan = maps.loan(cells.len()).unwrap();
+    *loan.header_mut() = MapHeader {
+        stamp: Stamp {
+            counter: map_id,
+            ..Stamp::default()
+        },
+        map_id,
+        width: rows[0].len() as u32,
+        height: rows.len() as u32,
+        resolution_m: 0.1,
+        map_from_grid: Pose2 {
+            x: 0.0,
+            y: 0.0,
+            yaw: 0.0,
+        },
+    };
+    loan.items_mut().copy_from_slice(&cells);
+    loan.send().unwrap();
+}
+
+fn expected(rows: &[&str]) -> Vec<BoundaryCell> {
+    let cells = occupancy(rows);
+    let grid = Grid::new(rows[0].len(), rows.len(), &cells, CellRules::default());
+    boundary::extract(&grid.unwrap())
+}
+
+#[test]
+fn each_map_is_answered_with_its_boundary() {
+    let isolated = Isolated::new("answer");
+    let graph = isolated.join();
+    let boundaries = graph.subscriber::<topic::Boundary>().unwrap();
+    let health = graph.subscriber::<topic::Health>().unwrap();
+    let node = Node::start(&graph, &["--occupied-from", "70"]);
+    let (waiting, _) = wait_for_health(&graph, &health, |_| true);
+    assert_eq!(
+        NodeState::from_code(waiting.state),
+        Some(NodeState::Waiting)
+    );
+
+    let maps = graph.publisher::<topic::Map>().unwrap();
+    let smaller = &ROOM[..4];
+    for (map_id, rows) in [(5, &ROOM[..]), (6, smaller)] {
+        publish(&maps, map_id, rows);
+        let (header, cells) = wait_for(&graph, &boundaries, |header, cells| {
+            Some((*header, cells.to_vec()))
+        });
+        assert_eq!((header.map_id, header.stamp.counter), (map_id, map_id));
+        assert_eq!(header.boundary_cells, cells.len() as u64);
+        assert_eq!(header.occupied_from, 70);
+        assert_eq!(cells, expected(rows));
+    }
+    let ready = |state: u32| state == NodeState::Ready as u32;
+    wait_for_health(&graph, &health, |report| ready(report.state));
+    node.stop();
+    let (last, _) = wait_for_health(&graph, &health, |report| !ready(report.state));
+    assert_eq!(NodeState::from_code(last.state), Some(NodeState::Stopped));
+    assert_eq!((last.received, last.sent, last.refused), (2, 2, 0));
+}
+
+#[test]
+fn a_refused_map_leaves_the_boundary_before_it_in_service() {
+    let isolated = Isolated::new("refused");
+    let graph = isolated.join();
+    let health = graph.subscriber::<topic::Health>().unwrap();
+    let maps = graph.publisher::<topic::Map>().unwrap();
+    publish(&maps, 5, &ROOM);
+    let node = Node::start(&graph, &[]);
+    // The map was there before the node: it comes to a late joiner.
+    wait_for_health(&graph, &health, |report| {
+        report.state == NodeState::Ready as u32
+    });
+
+    publish(&maps, 6, &["....", "...."]);
+    let (report, error) = wait_for_health(&graph, &health, |report| {
+        report.state == NodeState::Degraded as u32
+    });
+    assert_eq!((report.refused, report.sent), (1, 1));
+    assert!(
+        error.starts_with("map 0000000000000006 is refused: the map has no occupied cell"),
+        "{error}"
+    );
+    let late = graph.subscriber::<topic::Boundary>().unwrap();
+    let map_id = wait_for(&graph, &late, |header, _| Some(header.map_id));
+    assert_eq!(map_id, 5);
+
+    publish(&maps, 7, &ROOM[1..]);
+    let map_id = wait_for(&graph, &late, |header, _| {
+        (header.map_id != 5).then_some(header.map_id)
+    });
+    assert_eq!(map_id, 7);
+    wait_for_health(&graph, &health, |report| {
+        report.state == NodeState::Ready as u32
+    });
+    node.stop();
+}

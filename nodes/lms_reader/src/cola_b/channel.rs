@@ -1,0 +1,187 @@
+//! The channels of a scan telegram: one value for each angle.
+
+use super::cursor::{Cursor, field_error};
+use crate::LmsError;
+
+/// Values over equally spaced angles.
+///
+/// | bytes | field | |
+/// |---|---|---|
+/// | 5 | name | `DIST1` to `DIST5`, `RSSI1`, `ANGL1`, `VANG1`, … |
+/// | 4 | scale factor | f32 |
+/// | 4 | scale offset | f32 |
+/// | 4 | start angle | i32, 1/10000° |
+/// | 2 | angular step | u16, 1/10000° |
+/// | 2 | count | u16 |
+/// | count · width | values | u16 or u8 |
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Channel<'a> {
+    /// What the values are.
+    pub name: [u8; 5],
+    /// Times the raw value: millimetres for distances.
+    pub scale_factor: f32,
+    /// Added after scaling.
+    pub scale_offset: f32,
+    /// Of the first value, in the device's convention.
+    pub start_angle_raw_1e4_deg: i32,
+    /// From one value to the next.
+    pub step_raw_1e4_deg: u16,
+    width: usize,
+    values: &'a [u8],
+}
+
+impl<'a> Channel<'a> {
+    fn read(cursor: &mut Cursor<'a>, width: usize) -> Result<Self, LmsError> {
+        let offset = cursor.offset();
+        let name = cursor.bytes("channel name")?;
+        if !name.iter().all(u8::is_ascii_alphanumeric) {
+            let found = name.escape_ascii();
+            return Err(field_error(
+                "channel name",
+                offset,
+                &found,
+                "five letters or digits",
+            ));
+        }
+        Ok(Channel {
+            name,
+            scale_factor: cursor.f32("scale factor")?,
+            scale_offset: cursor.f32("scale offset")?,
+            start_angle_raw_1e4_deg: cursor.i32("start angle")?,
+            step_raw_1e4_deg: cursor.u16("angular step")?,
+            width,
+            values: {
+                let count = usize::from(cursor.u16("count")?);
+                cursor.take("values", count * width)?
+            },
+        })
+    }
+
+    /// Number of values.
+    #[must_use]
+    pub fn len(&self) -> usize {
+        self.values.len() / self.width
+    }
+
+    /// Whether there is no value.
+    #[must_use]
+    pub fn is_empty(&self) -> bool {
+        self.values.is_empty()
+    }
+
+    /// The raw values, first angle first.
+    pub fn values(&self) -> impl ExactSizeIterator<Item = u16> + use<'a> {
+        self.values
+            .chunks_exact(self.width)
+            .map(|bytes| bytes.iter().fold(0, |value, &b| value << 8 | u16::from(b)))
+    }
+}
+
+/// A block of channels of one width; iterating reads them in place.
+///
+/// | bytes | field | |
+/// |---|---|---|
+/// | 2 | count | u16 |
+/// | … | channels | see [`Channel`] |
+#[derive(Debug, Clone)]
+pub struct Channels<'a> {
+    left: u16,
+    width: usize,
+    cursor: Cursor<'a>,
+}
+
+impl<'a> Channels<'a> {
+    /// Reads the block once to check it; `width` is the bytes of a value.
+    pub(super) fn read(
+        cursor: &mut Cursor<'a>,
+        field: &'static str,
+        width: usize,
+    ) -> Result<Self, LmsError> {
+        let left = cursor.u16(field)?;
+        let block = Channels {
+            left,
+            width,
+            cursor: cursor.clone(),
+        };
+        for _ in 0..left {
+            Channel::read(cursor, width)?;
+        }
+        Ok(block)
+    }
+
+    /// The channel of this name.
+    #[must_use]
+    pub fn named(&self, name: &[u8; 5]) -> Option<Channel<'a>> {
+        self.clone().find(|channel| &channel.name == name)
+    }
+}
+
+impl<'a> Iterator for Channels<'a> {
+    type Item = Channel<'a>;
+
+    fn next(&mut self) -> Option<Self::Item> {
+        self.left = self.left.checked_sub(1)?;
+        Channel::read(&mut self.cursor, self.width).ok()
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn channel(name: &[u8; 5], values: &[u8], count: u16) -> Vec<u8> {
+        let mut bytes = name.to_vec();
+        bytes.extend(2f32.to_be_bytes());
+        bytes.extend(0f32.to_be_bytes());
+        bytes.extend((-50_000i32).to_be_bytes());
+        bytes.extend(1667u16.to_be_bytes());
+        bytes.extend(count.to_be_bytes());
+        bytes.extend(values);
+        bytes
+    }
+
+    fn block(channels: &[Vec<u8>]) -> Vec<u8> {
+        [vec![0, channels.len() as u8], channels.concat()].concat()
+    }
+
+    #[test]
+    fn wide_and_narrow_values() {
+        let bytes = block(&[
+            channel(b"DIST1", &[1, 2, 3, 4], 2),
+            channel(b"DIST2", &[5, 6], 1),
+        ]);
+        let mut cursor = Cursor::new(&bytes);
+        let channels = Channels::read(&mut cursor, "channels", 2).unwrap();
+        cursor.end().unwrap();
+        let first = channels.named(b"DIST1").unwrap();
+        assert_eq!(first.values().collect::<Vec<_>>(), [0x0102, 0x0304]);
+        assert_eq!((first.len(), first.step_raw_1e4_deg), (2, 1667));
+        assert_eq!(first.start_angle_raw_1e4_deg, -50_000);
+        assert_eq!(channels.clone().count(), 2);
+        assert!(channels.named(b"RSSI1").is_none());
+
+        let bytes = block(&[channel(b"RSSI1", &[7, 8], 2)]);
+        let mut channels = Channels::read(&mut Cursor::new(&bytes), "channels", 1).unwrap();
+        assert_eq!(
+            channels.next().unwrap().values().collect::<Vec<_>>(),
+            [7, 8]
+        );
+    }
+
+    #[test]
+    fn a_count_beyond_the_content_and_a_foreign_name_are_refused() {
+        let bytes = block(&[channel(b"DIST1", &[1, 2, 3, 4], 3)]);
+        let text = Channels::read(&mut Cursor::new(&bytes), "channels", 2)
+            .unwrap_err()
+            .to_string();
+        assert_eq!(
+            text,
+            "byte 23 of the telegram: `values` takes 6 bytes, 4 are left of the content"
+        );
+        let bytes = block(&[channel(b"DI\0T1", &[], 0)]);
+        let text = Channels::read(&mut Cursor::new(&bytes), "channels", 2)
+            .unwrap_err()
+            .to_string();
+        assert!(text.contains(r"`channel name` is DI\x00T1"), "{text}");
+    }
+}

@@ -1,0 +1,328 @@
+//! `LMDscandata`: one scan as the device sends it.
+//!
+//! The layout is that of SICK's telegram listing for LiDAR sensors. Every field
+//! is read and checked, in order, to the last byte; what the values mean for a
+//! robot is not decided here.
+
+use super::channel::Channels;
+use super::cursor::{Cursor, field_error};
+use super::tail::{self, DeviceTime, Event, Position};
+use crate::LmsError;
+
+/// A scan telegram. Offsets count from the start of the content.
+///
+/// | offset | bytes | field | |
+/// |---|---|---|---|
+/// | 0 | 16 | command and name | `sSN LMDscandata ` or `sRA LMDscandata ` |
+/// | 16 | 2 | version | u16, 0 or 1 |
+/// | 18 | 2 | device number | u16 |
+/// | 20 | 4 | serial number | u32 |
+/// | 24 | 2 | device status | 2 · u8 |
+/// | 26 | 2 | telegram counter | u16 |
+/// | 28 | 2 | scan counter | u16 |
+/// | 30 | 4 | time since start-up | u32, µs |
+/// | 34 | 4 | time of transmission | u32, µs |
+/// | 38 | 2 | digital inputs | 2 · u8 |
+/// | 40 | 2 | digital outputs | 2 · u8 |
+/// | 42 | 2 | layer angle | i16; 0 on devices with one layer |
+/// | 44 | 4 | scan frequency | u32, 1/100 Hz |
+/// | 48 | 4 | measurement frequency | u32, 100 Hz |
+/// | 52 | 2 | number of encoders | u16, 0 to 3 |
+/// | 54 | 6 each | encoders | position u32, speed u16 |
+/// | … | … | 16-bit channels | see [`Channels`] |
+/// | … | … | 8-bit channels | see [`Channels`] |
+/// | … | 2 (+ 25) | position | u16 flag, [`Position`] |
+/// | … | 2 (+ 1 + n) | name | u16 flag, u8 length, characters |
+/// | … | 2 (+ 1 + n) | comment | u16 flag, u8 length, characters |
+/// | … | 2 (+ 11) | time | u16 flag, [`DeviceTime`] |
+/// | … | 2 (+ 16) | event | u16 flag, [`Event`] |
+#[derive(Debug, Clone)]
+pub struct LmdScanData<'a> {
+    /// Of the layout.
+    pub version: u16,
+    /// Given by whoever set up the device.
+    pub device_number: u16,
+    /// Given by the factory.
+    pub serial_number: u32,
+    /// 0, 0 is in order; 0, 1 is an error; 0, 2 and 0, 4 are contamination.
+    pub status: [u8; 2],
+    /// Telegrams that the device has finished; wraps.
+    pub telegram_counter: u16,
+    /// Scans that the device has made; wraps.
+    pub scan_counter: u16,
+    /// Since the device started; wraps after 71.6 minutes.
+    pub time_since_start_up_us: u32,
+    /// On the same clock, when the telegram was handed to the interface.
+    pub time_of_transmission_us: u32,
+    /// A bit for each input, in the low byte.
+    pub digital_inputs: [u8; 2],
+    /// A bit for each output.
+    pub digital_outputs: [u8; 2],
+    /// Which layer this is, on devices with several.
+    pub layer_angle_raw: i16,
+    /// Turns of the mirror, 1/100 Hz.
+    pub scan_frequency_raw_1e2_hz: u32,
+    /// Shots, in 100 Hz on most devices; firmware differs.
+    pub measurement_frequency_raw: u32,
+    /// Incremental encoders on the device's inputs.
+    pub encoders: Encoders<'a>,
+    /// Distances, and remissions unless they are narrow.
+    pub channels_16_bit: Channels<'a>,
+    /// Narrow remissions.
+    pub channels_8_bit: Channels<'a>,
+    /// Where the device is mounted, if it was told and sends it.
+    pub position: Option<Position>,
+    /// The device's name, if it sends it.
+    pub name: Option<&'a [u8]>,
+    /// A comment, if it sends one.
+    pub comment: Option<&'a [u8]>,
+    /// The device's own clock, if it sends it.
+    pub time: Option<DeviceTime>,
+    /// An event at an input, if there was one.
+    pub event: Option<Event>,
+}
+
+/// An incremental encoder.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub struct Encoder {
+    /// Ticks.
+    pub position: u32,
+    /// Ticks per millimetre.
+    pub speed: u16,
+}
+
+/// The encoders; iterating reads them in place.
+#[derive(Debug, Clone)]
+pub struct Encoders<'a> {
+    left: u16,
+    cursor: Cursor<'a>,
+}
+
+impl Encoder {
+    fn read(cursor: &mut Cursor<'_>) -> Result<Self, LmsError> {
+        Ok(Encoder {
+            position: cursor.u32("encoder position")?,
+            speed: cursor.u16("encoder speed")?,
+        })
+    }
+}
+
+impl<'a> Encoders<'a> {
+    fn read(cursor: &mut Cursor<'a>) -> Result<Self, LmsError> {
+        let left = cursor.u16_upto("number of encoders", 3, "0 to 3")?;
+        let encoders = Encoders {
+            left,
+            cursor: cursor.clone(),
+        };
+        for _ in 0..left {
+            Encoder::read(cursor)?;
+        }
+        Ok(encoders)
+    }
+}
+
+impl Iterator for Encoders<'_> {
+    type Item = Encoder;
+
+    fn next(&mut self) -> Option<Encoder> {
+        self.left = self.left.checked_sub(1)?;
+        Encoder::read(&mut self.cursor).ok()
+    }
+}
+
+impl<'a> LmdScanData<'a> {
+    /// Reads the whole content of a telegram.
+    ///
+    /// # Errors
+    /// [`LmsError::Short`], [`LmsError::Field`] or [`LmsError::Trailing`], with
+    /// the place.
+    pub fn read(content: &'a [u8]) -> Result<Self, LmsError> {
+        let mut cursor = Cursor::new(content);
+        let cursor = &mut cursor;
+        let command = cursor.bytes("command and name")?;
+        if !matches!(&command, b"sSN LMDscandata " | b"sRA LMDscandata ") {
+            let found = command.escape_ascii();
+            return Err(field_error(
+                "command and name",
+                0,
+                &found,
+                "sSN LMDscandata or sRA LMDscandata",
+            ));
+        }
+        let data = LmdScanData {
+            version: cursor.u16_upto("version", 1, "0 or 1")?,
+            device_number: cursor.u16("device number")?,
+            serial_number: cursor.u32("serial number")?,
+            status: cursor.bytes("device status")?,
+            telegram_counter: cursor.u16("telegram counter")?,
+            scan_counter: cursor.u16("scan counter")?,
+            time_since_start_up_us: cursor.u32("time since start-up")?,
+            time_of_transmission_us: cursor.u32("time of transmission")?,
+            digital_inputs: cursor.bytes("digital inputs")?,
+            digital_outputs: cursor.bytes("digital outputs")?,
+            layer_angle_raw: cursor.i16("layer angle")?,
+            scan_frequency_raw_1e2_hz: cursor.u32("scan frequency")?,
+            measurement_frequency_raw: cursor.u32("measurement frequency")?,
+            encoders: Encoders::read(cursor)?,
+            channels_16_bit: Channels::read(cursor, "number of 16-bit channels", 2)?,
+            channels_8_bit: Channels::read(cursor, "number of 8-bit channels", 1)?,
+            position: optional(cursor, "position flag", Position::read)?,
+            name: optional(cursor, "name flag", |cursor| tail::text(cursor, "name"))?,
+            comment: optional(cursor, "comment flag", |cursor| {
+                tail::text(cursor, "comment")
+            })?,
+            time: optional(cursor, "time flag", DeviceTime::read)?,
+            event: optional(cursor, "event flag", Event::read)?,
+        };
+        cursor.end()?;
+        Ok(data)
+    }
+}
+
+/// A block behind its flag.
+fn optional<'a, T>(
+    cursor: &mut Cursor<'a>,
+    flag: &'static str,
+    read: impl FnOnce(&mut Cursor<'a>) -> Result<T, LmsError>,
+) -> Result<Option<T>, LmsError> {
+    if cursor.flag(flag)? {
+        return read(cursor).map(Some);
+    }
+    Ok(None)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// A telegram in which every optional block is there, field by field.
+    fn full() -> Vec<u8> {
+        let mut bytes = b"sSN LMDscandata ".to_vec();
+        bytes.extend([0, 1, 0, 7, 0, 1, 2, 3, 0, 2, 0xff, 0xff, 0, 0]);
+        bytes.extend([0xff, 0xff, 0xff, 0xf0, 0, 0, 0, 0x10, 3, 0, 7, 0]);
+        bytes.extend([0xf5, 0xb2, 0, 0, 0x13, 0x88, 0, 0, 1, 0x68]);
+        bytes.extend([0, 1, 0, 0, 0, 9, 0xff, 0xfe]);
+        bytes.extend([0, 0, 0, 1]);
+        bytes.extend(*b"RSSI1");
+        bytes.extend([
+            0x3f, 0x80, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0x13, 0x88, 0, 2, 200, 201,
+        ]);
+        bytes.extend([0, 1]);
+        bytes.extend(
+            [1f32, 2.0, 3.0, 0.1, 0.2, 0.3]
+                .map(f32::to_be_bytes)
+                .concat(),
+        );
+        bytes.push(3);
+        bytes.extend(*b"\0\x01\x03LMS\0\x01\x02hi");
+        bytes.extend([0, 1, 0x07, 0xb2, 1, 1, 0, 50, 14, 0, 2, 0x13, 0x40]);
+        bytes.extend(*b"\0\x01FDIN");
+        bytes.extend([0, 0, 0, 5, 0, 0, 0, 6, 0xff, 0xff, 0xff, 0xff]);
+        bytes
+    }
+
+    #[test]
+    fn every_field_of_a_full_telegram() {
+        let bytes = full();
+        let data = LmdScanData::read(&bytes).unwrap();
+        assert_eq!((data.version, data.device_number), (1, 7));
+        assert_eq!(data.serial_number, 0x0001_0203);
+        assert_eq!(data.status, [0, 2]);
+        assert_eq!((data.telegram_counter, data.scan_counter), (0xffff, 0));
+        assert_eq!(data.time_since_start_up_us, 0xffff_fff0);
+        assert_eq!(data.time_of_transmission_us, 0x10);
+        assert_eq!(
+            (data.digital_inputs, data.digital_outputs),
+            ([3, 0], [7, 0])
+        );
+        assert_eq!(data.layer_angle_raw, -2638);
+        assert_eq!(data.scan_frequency_raw_1e2_hz, 5000);
+        assert_eq!(data.measurement_frequency_raw, 360);
+        let encoder = Encoder {
+            position: 9,
+            speed: 0xfffe,
+        };
+        assert_eq!(data.encoders.collect::<Vec<_>>(), [encoder]);
+        assert_eq!(data.channels_16_bit.count(), 0);
+        let narrow = data.channels_8_bit.named(b"RSSI1").unwrap();
+        assert_eq!(narrow.values().collect::<Vec<_>>(), [200, 201]);
+        let position = data.position.unwrap();
+        assert_eq!(
+            (position.place, position.rotation_kind),
+            ([1.0, 2.0, 3.0], 3)
+        );
+        assert_eq!(position.rotation, [0.1, 0.2, 0.3]);
+        assert_eq!(data.name, Some(&b"LMS"[..]));
+        assert_eq!(data.comment, Some(&b"hi"[..]));
+        let time = data.time.unwrap();
+        assert_eq!((time.year, time.minute, time.second), (1970, 50, 14));
+        assert_eq!(time.microsecond, 136_000);
+        let event = data.event.unwrap();
+        assert_eq!(
+            (&event.kind, event.encoder_position, event.time_us),
+            (b"FDIN", 5, 6)
+        );
+        assert_eq!(event.angle_raw_1e4_deg, -1);
+    }
+
+    #[test]
+    fn every_shorter_and_every_longer_telegram_is_refused() {
+        let mut bytes = full();
+        for end in 0..bytes.len() {
+            let error = LmdScanData::read(&bytes[..end]).unwrap_err();
+            assert!(matches!(error, LmsError::Short { .. }), "{end}: {error}");
+        }
+        bytes.push(0);
+        let error = LmdScanData::read(&bytes).unwrap_err();
+        assert!(
+            matches!(error, LmsError::Trailing { left: 1, .. }),
+            "{error}"
+        );
+    }
+
+    #[test]
+    fn foreign_commands_versions_and_counts_are_refused() {
+        let refuse = |at: usize, value: u8, expected: &str| {
+            let mut bytes = full();
+            bytes[at] = value;
+            let text = LmdScanData::read(&bytes).unwrap_err().to_string();
+            assert!(text.contains(expected), "{text}");
+        };
+        refuse(
+            1,
+            b'W',
+            "`command and name` is sWN LMDscandata , allowed is sSN",
+        );
+        refuse(
+            17,
+            2,
+            "byte 16 of the telegram: `version` is 2, allowed is 0 or 1",
+        );
+        refuse(
+            53,
+            4,
+            "byte 52 of the telegram: `number of encoders` is 4, allowed is 0 to 3",
+        );
+    }
+
+    proptest::proptest! {
+        #[test]
+        fn no_bytes_panic(
+            mut bytes in proptest::collection::vec(proptest::num::u8::ANY, 0..300),
+            edits in proptest::collection::vec((0usize..200, proptest::num::u8::ANY), 1..6),
+        ) {
+            let _ = LmdScanData::read(&bytes);
+            bytes.splice(0..0, *b"sSN LMDscandata \0\x01");
+            let _ = LmdScanData::read(&bytes);
+            let mut edited = full();
+            for (at, value) in edits {
+                if let Some(byte) = edited.get_mut(at) { *byte = value; }
+            }
+            if let Ok(data) = LmdScanData::read(&edited) {
+                // What was accepted can be iterated to the end.
+                let _ = data.channels_16_bit.chain(data.channels_8_bit).map(|c| c.values().count()).sum::<usize>();
+                let _ = data.encoders.count();
+            }
+        }
+    }
+}

@@ -1,0 +1,147 @@
+//! The optional blocks at the end of a scan telegram.
+
+use super::cursor::{Cursor, field_error};
+use crate::LmsError;
+
+/// Where the device is mounted, as it was told.
+///
+/// | bytes | field | |
+/// |---|---|---|
+/// | 3 · 4 | x, y, z | f32 |
+/// | 3 · 4 | rotation about x, y, z | f32 |
+/// | 1 | kind of rotation | 0 none, 1 pitch, 2 roll, 3 free |
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Position {
+    /// x, y and z in the unit that the device was told.
+    pub place: [f32; 3],
+    /// About x, y and z, in the unit that the device was told.
+    pub rotation: [f32; 3],
+    /// 0 none, 1 pitch, 2 roll, 3 free.
+    pub rotation_kind: u8,
+}
+
+/// The device's own clock; 1970 and on where nobody set it.
+///
+/// | bytes | field | |
+/// |---|---|---|
+/// | 2 | year | u16 |
+/// | 1 each | month, day, hour, minute, second | u8 |
+/// | 4 | microsecond | u32 |
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub struct DeviceTime {
+    /// Of the Common Era.
+    pub year: u16,
+    /// 1 to 12.
+    pub month: u8,
+    /// 1 to 31.
+    pub day: u8,
+    /// 0 to 23.
+    pub hour: u8,
+    /// 0 to 59.
+    pub minute: u8,
+    /// 0 to 60.
+    pub second: u8,
+    /// 0 to 999999.
+    pub microsecond: u32,
+}
+
+/// What happened at a fast digital input.
+///
+/// | bytes | field | |
+/// |---|---|---|
+/// | 4 | kind | `FDIN` |
+/// | 4 | encoder position | u32, ticks |
+/// | 4 | time since start-up | u32, µs |
+/// | 4 | angle | i32, 1/10000° |
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub struct Event {
+    /// `FDIN`.
+    pub kind: [u8; 4],
+    /// Ticks.
+    pub encoder_position: u32,
+    /// Since start-up.
+    pub time_us: u32,
+    /// In the device's convention.
+    pub angle_raw_1e4_deg: i32,
+}
+
+impl Position {
+    pub(super) fn read(cursor: &mut Cursor<'_>) -> Result<Self, LmsError> {
+        let mut axes =
+            |field| Ok::<_, LmsError>([cursor.f32(field)?, cursor.f32(field)?, cursor.f32(field)?]);
+        Ok(Position {
+            place: axes("position")?,
+            rotation: axes("rotation")?,
+            rotation_kind: cursor.u8_upto("kind of rotation", 3, "0 to 3")?,
+        })
+    }
+}
+
+impl DeviceTime {
+    pub(super) fn read(cursor: &mut Cursor<'_>) -> Result<Self, LmsError> {
+        let time = DeviceTime {
+            year: cursor.u16("year")?,
+            month: cursor.u8_upto("month", 12, "0 to 12")?,
+            day: cursor.u8_upto("day", 31, "0 to 31")?,
+            hour: cursor.u8_upto("hour", 23, "0 to 23")?,
+            minute: cursor.u8_upto("minute", 59, "0 to 59")?,
+            second: cursor.u8_upto("second", 60, "0 to 60")?,
+            microsecond: cursor.u32("microsecond")?,
+        };
+        if time.microsecond < 1_000_000 {
+            return Ok(time);
+        }
+        let offset = cursor.offset() - 4;
+        Err(field_error(
+            "microsecond",
+            offset,
+            &time.microsecond,
+            "0 to 999999",
+        ))
+    }
+}
+
+impl Event {
+    pub(super) fn read(cursor: &mut Cursor<'_>) -> Result<Self, LmsError> {
+        Ok(Event {
+            kind: cursor.bytes("kind of event")?,
+            encoder_position: cursor.u32("encoder position of the event")?,
+            time_us: cursor.u32("time of the event")?,
+            angle_raw_1e4_deg: cursor.i32("angle of the event")?,
+        })
+    }
+}
+
+/// A name or comment: its length in one byte, then its characters.
+pub(super) fn text<'a>(cursor: &mut Cursor<'a>, field: &'static str) -> Result<&'a [u8], LmsError> {
+    let length = cursor.u8(field)?;
+    cursor.take(field, usize::from(length))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_clock_out_of_range_is_refused_with_its_place() {
+        let mut bytes = [0x07, 0xe8, 2, 29, 23, 59, 59, 0, 0x0f, 0x42, 0x3f];
+        let time = DeviceTime::read(&mut Cursor::new(&bytes)).unwrap();
+        assert_eq!((time.year, time.day, time.microsecond), (2024, 29, 999_999));
+        bytes[10] += 1;
+        let text = DeviceTime::read(&mut Cursor::new(&bytes))
+            .unwrap_err()
+            .to_string();
+        assert_eq!(
+            text,
+            "byte 7 of the telegram: `microsecond` is 1000000, allowed is 0 to 999999"
+        );
+        bytes[4] = 24;
+        let text = DeviceTime::read(&mut Cursor::new(&bytes))
+            .unwrap_err()
+            .to_string();
+        assert!(
+            text.contains("byte 4") && text.contains("`hour` is 24"),
+            "{text}"
+        );
+    }
+}

@@ -1,0 +1,40 @@
+//! Keeps a flood of errors from flooding the log.
+//!
+//! Pure: the caller says when. The first error is logged at once, further ones
+//! at most once a second with the number of those in between.
+
+/// Between two lines, nanoseconds.
+const PERIOD_NS: i64 = 1_000_000_000;
+
+/// Decides which errors are logged.
+#[derive(Debug, Default)]
+pub(crate) struct Complaints {
+    last_ns: Option<i64>,
+    held_back: u64,
+}
+
+impl Complaints {
+    /// Counts an error at `now_ns`; `Some` with the number held back before it
+    /// if it is to be logged.
+    pub(crate) fn note(&mut self, now_ns: i64) -> Option<u64> {
+        if self.last_ns.is_some_and(|last| now_ns - last < PERIOD_NS) {
+            self.held_back += 1;
+            return None;
+        }
+        self.last_ns = Some(now_ns);
+        Some(std::mem::take(&mut self.held_back))
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn the_first_at_once_then_one_a_second_with_the_rest_counted() {
+        let mut complaints = Complaints::default();
+        let seconds = [0.0, 0.1, 0.9, 1.0, 1.5, 3.0];
+        let noted = seconds.map(|s| complaints.note((s * 1e9) as i64));
+        assert_eq!(noted, [Some(0), None, None, Some(2), None, Some(1)]);
+    }
+}

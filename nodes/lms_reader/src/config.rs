@@ -1,0 +1,213 @@
+//! What a user can set.
+
+use std::path::PathBuf;
+
+use clap::{ArgAction, ArgGroup, CommandFactory, Parser, ValueEnum, error::ErrorKind};
+use messages::{Name, Pose2};
+
+use crate::scan::ScanSettings;
+
+/// Reads scans from a SICK laser scanner and publishes them as `scan`.
+#[derive(Debug, Clone, Parser)]
+#[command(name = "lms_reader", version)]
+#[command(group(ArgGroup::new("source").required(true).args(["tcp", "capture"])))]
+pub struct Config {
+    /// The device: HOST:PORT; devices listen on port 2112 (CoLa B).
+    #[arg(long, value_name = "HOST:PORT", value_parser = address)]
+    pub tcp: Option<String>,
+
+    /// A file of CoLa B telegrams back to back, instead of a device.
+    #[arg(long, value_name = "FILE")]
+    pub capture: Option<PathBuf>,
+
+    /// Starts the capture over at its end.
+    #[arg(long = "loop", conflicts_with = "tcp")]
+    pub looped: bool,
+
+    /// How fast the capture plays.
+    #[arg(long, value_enum, default_value_t = Rate::Device, conflicts_with = "tcp")]
+    pub rate: Rate,
+
+    /// Whether to ask the device to send scans (`sEN LMDscandata 1`).
+    #[arg(long, value_name = "BOOL", default_value_t = true, action = ArgAction::Set)]
+    pub start_stream: bool,
+
+    /// Seconds without a byte after which a connection is given up, 0.2 to 3600.
+    #[arg(long, value_name = "SECONDS", default_value_t = 5.0, value_parser = silence)]
+    pub silence: f64,
+
+    /// Where the laser sits on the robot: metres ahead, metres to the left,
+    /// degrees counter-clockwise. Left out where it is not known.
+    #[arg(long, value_name = "X,Y,YAW_DEG", value_parser = mount, allow_hyphen_values = true)]
+    pub mount: Option<Pose2>,
+
+    /// The laser's frame, 1 to 32 bytes.
+    #[arg(long, value_name = "NAME", default_value = "laser", value_parser = frame)]
+    pub frame: Name,
+
+    /// Readings below are no returns, metres, from 0.
+    #[arg(long, value_name = "METRES", default_value_t = 0.05, value_parser = metres)]
+    pub range_min_m: f32,
+
+    /// Readings above are no returns, metres, above --range-min-m. The default
+    /// is the farthest that any of these devices sees.
+    #[arg(long, value_name = "METRES", default_value_t = 80.0, value_parser = metres)]
+    pub range_max_m: f32,
+}
+
+/// How fast a capture plays.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]
+pub enum Rate {
+    /// As fast as the device sent it, by its time stamps.
+    Device,
+    /// As fast as it can be read.
+    Max,
+}
+
+impl Config {
+    /// Reads the command line; ends the process with code 2 where it is wrong.
+    #[must_use]
+    pub fn from_command_line() -> Self {
+        let config = Config::parse();
+        match config.check() {
+            Ok(()) => config,
+            Err(problem) => Config::command()
+                .error(ErrorKind::ValueValidation, problem)
+                .exit(),
+        }
+    }
+
+    /// Checks what no option can check alone.
+    fn check(&self) -> Result<(), String> {
+        if self.range_min_m < self.range_max_m {
+            return Ok(());
+        }
+        Err(format!(
+            "--range-max-m is {} and --range-min-m {}: the maximum must be larger",
+            self.range_max_m, self.range_min_m
+        ))
+    }
+
+    /// What the messages carry beside the telegrams.
+    #[must_use]
+    pub fn scan_settings(&self) -> ScanSettings {
+        ScanSettings {
+            range_min_m: self.range_min_m,
+            range_max_m: self.range_max_m,
+            base_from_laser: self.mount,
+            frame: self.frame,
+        }
+    }
+}
+
+fn address(text: &str) -> Result<String, String> {
+    let port = text
+        .rsplit_once(':')
+        .map(|(host, port)| (host, port.parse()));
+    match port {
+        Some((host, Ok(1u16..))) if !host.is_empty() => Ok(text.into()),
+        _ => Err("expected is HOST:PORT with a port from 1 to 65535".into()),
+    }
+}
+
+fn silence(text: &str) -> Result<f64, String> {
+    match text.parse() {
+        Ok(seconds) if (0.2..=3600.0).contains(&seconds) => Ok(seconds),
+        _ => Err("allowed are 0.2 to 3600 seconds".into()),
+    }
+}
+
+fn metres(text: &str) -> Result<f32, String> {
+    match text.parse::<f32>() {
+        Ok(metres) if metres >= 0.0 && metres.is_finite() => Ok(metres),
+        _ => Err("allowed are finite numbers of metres from 0".into()),
+    }
+}
+
+fn frame(text: &str) -> Result<Name, String> {
+    if (1..=Name::CAPACITY).contains(&text.len()) {
+        return Ok(Name::new(text));
+    }
+    Err(format!(
+        "it has {} bytes, allowed are 1 to {}",
+        text.len(),
+        Name::CAPACITY
+    ))
+}
+
+fn mount(text: &str) -> Result<Pose2, String> {
+    let numbers: Vec<f64> = text
+        .split(',')
+        .map_while(|number| number.trim().parse().ok().filter(|n: &f64| n.is_finite()))
+        .collect();
+    match (&numbers[..], text.matches(',').count()) {
+        (&[x, y, yaw_deg], 2) => Ok(Pose2 {
+            x,
+            y,
+            yaw: yaw_deg.to_radians(),
+        }),
+        _ => Err("expected are three finite numbers: X,Y,YAW_DEG".into()),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn parse(arguments: &str) -> Result<Config, String> {
+        let words = ["lms_reader"]
+            .into_iter()
+            .chain(arguments.split_whitespace());
+        let config = Config::try_parse_from(words).map_err(|error| error.to_string())?;
+        config.check().map(|()| config)
+    }
+
+    #[test]
+    fn the_command_line_is_well_formed() {
+        Config::command().debug_assert();
+    }
+
+    #[test]
+    fn defaults() {
+        let config = parse("--tcp 192.168.0.1:2112").unwrap();
+        assert!(config.start_stream && !config.looped);
+        assert_eq!(config.rate, Rate::Device);
+        assert_eq!(config.scan_settings().base_from_laser, None);
+        assert_eq!(config.frame.as_str(), "laser");
+    }
+
+    #[test]
+    fn a_mount_behind_the_base_turned_around() {
+        let config = parse("--capture a.bin --mount -0.1,0.2,180 --rate max --loop").unwrap();
+        let mount = config.mount.unwrap();
+        assert_eq!(
+            (mount.x, mount.y, mount.yaw),
+            (-0.1, 0.2, std::f64::consts::PI)
+        );
+    }
+
+    #[test]
+    fn what_is_refused_says_what_is_allowed() {
+        let refuse = |arguments: &str, expected: &str| {
+            let text = parse(arguments).unwrap_err();
+            assert!(text.contains(expected), "{arguments}: {text}");
+        };
+        refuse("", "--tcp");
+        refuse("--tcp a:1 --capture b", "cannot be used with");
+        refuse("--tcp a:1 --loop", "cannot be used with");
+        refuse("--tcp a:1 --rate max", "cannot be used with");
+        refuse("--tcp 192.168.0.1", "HOST:PORT with a port from 1 to 65535");
+        refuse("--tcp a:0", "1 to 65535");
+        refuse("--tcp a:1 --mount 1,2", "X,Y,YAW_DEG");
+        refuse("--tcp a:1 --mount 1,2,x", "X,Y,YAW_DEG");
+        refuse("--tcp a:1 --mount 1,2,3,4", "X,Y,YAW_DEG");
+        refuse("--tcp a:1 --mount 1,2,3,x", "X,Y,YAW_DEG");
+        refuse("--tcp a:1 --silence 0", "0.2 to 3600");
+        refuse("--tcp a:1 --range-min-m nan", "finite");
+        refuse("--tcp a:1 --range-max-m 0.01", "the maximum must be larger");
+        refuse(
+            &format!("--tcp a:1 --frame {}", "f".repeat(33)),
+            "33 bytes, allowed are 1 to 32",
+        );
+    }
+}

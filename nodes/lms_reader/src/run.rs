@@ -1,0 +1,39 @@
+//! Reads from a device or a capture and publishes.
+
+mod capture;
+mod outlet;
+mod tcp;
+
+use std::time::{SystemTime, UNIX_EPOCH};
+
+use transport::Graph;
+
+use crate::scan::Received;
+use crate::{Config, LmsError};
+use outlet::Outlet;
+
+/// Publishes scans until the capture ends or the stop flag is set.
+///
+/// A device that cannot be reached is tried again; a telegram that makes no
+/// scan is counted as refused.
+///
+/// # Errors
+/// If the graph fails, the capture cannot be read or holds no usable scan, or
+/// the configuration names no source.
+pub fn run(graph: &Graph, config: &Config) -> Result<(), LmsError> {
+    let mut outlet = Outlet::open(graph, config.scan_settings())?;
+    match (&config.tcp, &config.capture) {
+        (Some(address), _) => tcp::run(address, config, &mut outlet),
+        (None, Some(path)) => capture::run(path, config, &mut outlet),
+        (None, None) => Err(LmsError::NoSource),
+    }
+}
+
+fn now() -> Received {
+    let since_1970 = SystemTime::now().duration_since(UNIX_EPOCH);
+    Received {
+        // A clock before 1970 is as wrong as one in 1970.
+        realtime_ns: since_1970.map_or(0, |time| time.as_nanos() as i64),
+        monotonic_ns: transport::monotonic_ns(),
+    }
+}

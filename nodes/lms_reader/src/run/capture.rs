@@ -1,0 +1,84 @@
+//! Scans from a file of telegrams.
+
+use std::fs::File;
+use std::io::{ErrorKind, Read};
+use std::path::Path;
+use std::time::Instant;
+
+use super::outlet::Outlet;
+use crate::cola_b::Framer;
+use crate::pace::Pace;
+use crate::{Config, LmsError, Rate};
+
+/// Plays the capture to its end, or over and over, until the stop flag is set.
+pub(super) fn run(path: &Path, config: &Config, outlet: &mut Outlet) -> Result<(), LmsError> {
+    let mut pacer = (config.rate == Rate::Device).then(|| (Instant::now(), Pace::default()));
+    loop {
+        play(path, &mut pacer, outlet)?;
+        if outlet.stopped() {
+            break;
+        }
+        // Looping over a file that yields nothing would spin for ever.
+        if outlet.sent == 0 {
+            return Err(LmsError::NoScans {
+                path: path.into(),
+                telegrams: outlet.telegrams,
+            });
+        }
+        if !config.looped {
+            break;
+        }
+    }
+    let (sent, refused) = (outlet.sent, outlet.refused);
+    tracing::info!(sent, refused, "the capture has been played");
+    Ok(())
+}
+
+fn play(
+    path: &Path,
+    pacer: &mut Option<(Instant, Pace)>,
+    outlet: &mut Outlet,
+) -> Result<(), LmsError> {
+    let failed = |source| LmsError::Capture {
+        path: path.into(),
+        source,
+    };
+    let mut file = File::open(path).map_err(failed)?;
+    let mut framer = Framer::default();
+    let mut piece = [0; 1 << 14];
+    let mut more = true;
+    while more && !outlet.stopped() {
+        match file.read(&mut piece) {
+            Ok(0) => {
+                framer.finish();
+                more = false;
+            }
+            Ok(count) => framer.push(piece.get(..count).unwrap_or_default()),
+            Err(error) if error.kind() == ErrorKind::Interrupted => {}
+            Err(error) => return Err(failed(error)),
+        }
+        send_all(&mut framer, pacer, outlet)?;
+    }
+    Ok(())
+}
+
+fn send_all(
+    framer: &mut Framer,
+    pacer: &mut Option<(Instant, Pace)>,
+    outlet: &mut Outlet,
+) -> Result<(), LmsError> {
+    while let Some(next) = framer.next_frame() {
+        let Some(data) = outlet.hear(next)? else {
+            continue;
+        };
+        if let Some((start, pace)) = pacer {
+            outlet.wait_until(*start + pace.due(data.time_of_transmission_us))?;
+        }
+        if outlet.stopped() {
+            break;
+        }
+        outlet.publish(&data, super::now())?;
+        outlet.tick()?;
+    }
+    Ok(())
+}

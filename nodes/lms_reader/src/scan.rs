@@ -1,0 +1,367 @@
+//! From a scan telegram to the message of topic `scan`.
+//!
+//! Pure: the caller says when the telegram came. It decides nothing about what
+//! a range is good for; it only tells readings from codes.
+
+use messages::{Name, Pose2, ScanHeader, Stamp};
+
+use crate::LmsError;
+use crate::cola_b::{Channel, LmdScanData};
+
+/// Raw distances below this are codes, not distances: 0 nothing came back, 1
+/// dazzled, 2 implausible, the others reserved (SICK's operating instructions,
+/// "LMDscandata – reserved values").
+const FIRST_DISTANCE: u16 = 16;
+
+/// The longest time from scan to transmission that is believed, µs. A mirror
+/// turns at 5 Hz or faster.
+const LONGEST_DELAY_US: u32 = 1_000_000;
+
+/// SICK counts angles from the right: 90° is straight ahead.
+const AHEAD_DEG: f64 = 90.0;
+
+/// What the telegram does not say.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct ScanSettings {
+    /// Readings below are no returns, metres.
+    pub range_min_m: f32,
+    /// Readings above are no returns, metres.
+    pub range_max_m: f32,
+    /// Where the laser sits on the robot, if that is known.
+    pub base_from_laser: Option<Pose2>,
+    /// The laser's frame.
+    pub frame: Name,
+}
+
+/// When the last byte of a telegram was here.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub struct Received {
+    /// Nanoseconds since 1970.
+    pub realtime_ns: i64,
+    /// `CLOCK_MONOTONIC` in nanoseconds.
+    pub monotonic_ns: i64,
+}
+
+/// The channel that makes the scan: the first echo.
+///
+/// # Errors
+/// [`LmsError::NoDistances`], which names the channels that there are.
+pub fn distances<'a>(data: &LmdScanData<'a>) -> Result<Channel<'a>, LmsError> {
+    data.channels_16_bit.named(b"DIST1").ok_or_else(|| {
+        let names = data.channels_16_bit.clone();
+        let names: Vec<String> = names.map(|c| c.name.escape_ascii().to_string()).collect();
+        LmsError::NoDistances {
+            found: names.join(", "),
+        }
+    })
+}
+
+/// The header of the scan, with counter 0.
+///
+/// The stamp is the time of reception less what the device's clock counted
+/// from "time since start-up" to "time of transmission". SICK documents the
+/// former as the moment before the measurement starts. A TiM781 is seen to put
+/// 6 to 7 ms between the two although its scan takes 50 ms, so there the stamp
+/// is late by most of a scan. How the two clocks drift apart is not followed.
+///
+/// # Errors
+/// [`LmsError::Scan`] and [`LmsError::Field`] where the telegram makes no scan.
+pub fn header(
+    data: &LmdScanData<'_>,
+    distances: &Channel<'_>,
+    settings: &ScanSettings,
+    received: Received,
+) -> Result<ScanHeader, LmsError> {
+    let step_deg = f64::from(distances.step_raw_1e4_deg) * 1e-4;
+    check(data, distances, step_deg)?;
+    let angle_deg = f64::from(distances.start_angle_raw_1e4_deg) * 1e-4 - AHEAD_DEG;
+    let scan_time_s = match data.scan_frequency_raw_1e2_hz {
+        0 => 0.0,
+        frequency => 100.0 / f64::from(frequency),
+    };
+    Ok(ScanHeader {
+        stamp: Stamp {
+            measured_ns: received.realtime_ns - delay_ns(data)?,
+            entered_ns: received.monotonic_ns,
+            counter: 0,
+        },
+        angle_min: angle_deg.to_radians(),
+        angle_increment: step_deg.to_radians(),
+        // From the turn of the mirror: firmware disagrees about the unit of the
+        // measurement frequency, and a step takes its share of a turn anyway.
+        time_increment_s: scan_time_s * step_deg / 360.0,
+        scan_time_s,
+        range_min_m: settings.range_min_m,
+        range_max_m: settings.range_max_m,
+        base_from_laser: settings.base_from_laser.unwrap_or(Pose2 {
+            x: 0.0,
+            y: 0.0,
+            yaw: 0.0,
+        }),
+        mount_known: u64::from(settings.base_from_laser.is_some()),
+        frame: settings.frame,
+    })
+}
+
+/// Writes the distances in metres, infinity where nothing came back; `ranges`
+/// has as many places as there are distances.
+pub fn fill_ranges(distances: &Channel<'_>, ranges: &mut [f32]) {
+    let scale = f64::from(distances.scale_factor);
+    let offset = f64::from(distances.scale_offset);
+    for (range, raw) in ranges.iter_mut().zip(distances.values()) {
+        *range = if raw < FIRST_DISTANCE {
+            f32::INFINITY
+        } else {
+            ((f64::from(raw) * scale + offset) * 1e-3) as f32
+        };
+    }
+}
+
+fn check(data: &LmdScanData<'_>, distances: &Channel<'_>, step_deg: f64) -> Result<(), LmsError> {
+    let sweep_deg = step_deg * distances.len().saturating_sub(1) as f64;
+    let scale = f64::from(distances.scale_factor);
+    let layer = f64::from(data.layer_angle_raw);
+    let rules = [
+        ("layer angle", layer, layer == 0.0, "0, the level layer"),
+        ("count", 0.0, !distances.is_empty(), "at least 1"),
+        ("angular step", step_deg, step_deg > 0.0, "above 0°"),
+        ("sweep", sweep_deg, sweep_deg <= 360.0, "at most 360°"),
+        ("scale factor", scale, scale > 0.0, "above 0"),
+    ];
+    match rules.into_iter().find(|(_, _, holds, _)| !holds) {
+        None => Ok(()),
+        Some((field, found, _, allowed)) => Err(LmsError::Scan {
+            field,
+            found,
+            allowed,
+        }),
+    }
+}
+
+fn delay_ns(data: &LmdScanData<'_>) -> Result<i64, LmsError> {
+    // The device's clock wraps, the difference does not mind.
+    let delay_us = data
+        .time_of_transmission_us
+        .wrapping_sub(data.time_since_start_up_us);
+    if delay_us <= LONGEST_DELAY_US {
+        return Ok(i64::from(delay_us) * 1000);
+    }
+    Err(LmsError::Scan {
+        field: "time from scan to transmission",
+        found: f64::from(delay_us) * 1e-6,
+        allowed: "0 to 1 s",
+    })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    const RECEIVED: Received = Received {
+        realtime_ns: 1_700_000_000_000_000_000,
+        monotonic_ns: 77,
+    };
+
+    fn settings() -> ScanSettings {
+        ScanSettings {
+            range_min_m: 0.05,
+            range_max_m: 25.0,
+            base_from_laser: None,
+            frame: Name::new("laser"),
+        }
+    }
+
+    /// A telegram with the given times, angles in 1/10000° and raw distances.
+    struct World {
+        times_us: [u32; 2],
+        layer: i16,
+        name: [u8; 5],
+        scale: f32,
+        offset: f32,
+        start: i32,
+        step: u16,
+        raw: Vec<u16>,
+    }
+
+    impl Default for World {
+        fn default() -> Self {
+            World {
+                times_us: [5_000, 11_000],
+                layer: 0,
+                name: *b"DIST1",
+                scale: 1.0,
+                offset: 0.0,
+                start: -450_000,
+                step: 3333,
+                raw: vec![1000; 811],
+            }
+        }
+    }
+
+    impl World {
+        fn telegram(&self) -> Vec<u8> {
+            let mut bytes = b"sSN LMDscandata \0\x01\0\x01\0\0\0\0\0\0\0\0\0\0".to_vec();
+            bytes.extend(self.times_us.map(u32::to_be_bytes).concat());
+            bytes.extend([0; 4]);
+            bytes.extend(self.layer.to_be_bytes());
+            bytes.extend([0, 0, 5, 220, 0, 0, 0, 162, 0, 0, 0, 1]);
+            bytes.extend(self.name);
+            bytes.extend([self.scale, self.offset].map(f32::to_be_bytes).concat());
+            bytes.extend(self.start.to_be_bytes());
+            bytes.extend(self.step.to_be_bytes());
+            bytes.extend((self.raw.len() as u16).to_be_bytes());
+            bytes.extend(self.raw.iter().flat_map(|raw| raw.to_be_bytes()));
+            bytes.extend([0; 12]);
+            bytes
+        }
+
+        fn scan(&self) -> Result<(ScanHeader, Vec<f32>), LmsError> {
+            let bytes = self.telegram();
+            let data = LmdScanData::read(&bytes)?;
+            let distances = distances(&data)?;
+            let header = header(&data, &distances, &settings(), RECEIVED)?;
+            let mut ranges = vec![0.0; distances.len()];
+            fill_ranges(&distances, &mut ranges);
+            Ok((header, ranges))
+        }
+
+        fn refusal(&self) -> String {
+            self.scan().unwrap_err().to_string()
+        }
+    }
+
+    #[test]
+    fn ninety_degrees_of_the_device_is_ahead() {
+        let (header, ranges) = World::default().scan().unwrap();
+        assert_eq!(header.angle_min, (-135f64).to_radians());
+        // 0.3333 is not a binary fraction: one rounding of the product.
+        assert!((header.angle_increment.to_degrees() - 0.3333).abs() < 1e-12);
+        assert_eq!(ranges.len(), 811);
+        // Beam 405 of 811 at steps of 0.3333° is 0.0135° short of ahead.
+        let ahead = header.angle_min + 405.0 * header.angle_increment;
+        assert!((ahead.to_degrees() + 0.0135).abs() < 1e-9, "{ahead}");
+    }
+
+    #[test]
+    fn the_stamp_is_back_at_the_scan_also_across_the_wrap_of_the_clock() {
+        for times_us in [[5_000, 11_000], [u32::MAX - 999, 5_000]] {
+            let (header, _) = World {
+                times_us,
+                ..World::default()
+            }
+            .scan()
+            .unwrap();
+            assert_eq!(header.stamp.measured_ns, RECEIVED.realtime_ns - 6_000_000);
+            assert_eq!(header.stamp.entered_ns, 77);
+        }
+    }
+
+    #[test]
+    fn times_come_from_the_turn_of_the_mirror() {
+        let (header, _) = World::default().scan().unwrap();
+        // 15 Hz; 1080 steps of a third of a degree make a turn, the rounding of
+        // the step to 1/10000° is one part in 10⁴.
+        assert!((header.scan_time_s - 1.0 / 15.0).abs() < 1e-12);
+        assert!((header.time_increment_s * 1080.0 * 15.0 - 1.0).abs() < 1.1e-4);
+    }
+
+    #[test]
+    fn codes_are_no_returns_and_the_scale_applies() {
+        let raw = vec![0, 1, 2, 15, 16, 2000, 65535];
+        let (_, ranges) = World {
+            raw,
+            scale: 2.0,
+            offset: 500.0,
+            ..World::default()
+        }
+        .scan()
+        .unwrap();
+        let inf = f32::INFINITY;
+        assert_eq!(ranges, [inf, inf, inf, inf, 0.532, 4.5, 131.57]);
+    }
+
+    #[test]
+    fn the_settings_are_passed_on() {
+        let bytes = World::default().telegram();
+        let data = LmdScanData::read(&bytes).unwrap();
+        let channel = distances(&data).unwrap();
+        let mount = Pose2 {
+            x: 0.78,
+            y: 0.0,
+            yaw: 0.1,
+        };
+        let settings = ScanSettings {
+            base_from_laser: Some(mount),
+            ..settings()
+        };
+        let with = header(&data, &channel, &settings, RECEIVED).unwrap();
+        assert_eq!((with.base_from_laser, with.mount_known), (mount, 1));
+        assert_eq!((with.range_min_m, with.range_max_m), (0.05, 25.0));
+        assert_eq!(with.frame.as_str(), "laser");
+        assert_eq!(World::default().scan().unwrap().0.mount_known, 0);
+    }
+
+    #[test]
+    fn what_makes_no_scan_is_refused() {
+        let world = World::default;
+        assert!(
+            World {
+                raw: vec![],
+                ..world()
+            }
+            .refusal()
+            .contains("`count` of channel DIST1 is 0, allowed is at least 1")
+        );
+        assert!(
+            World { step: 0, ..world() }
+                .refusal()
+                .contains("`angular step`")
+        );
+        assert!(
+            World {
+                step: 6000,
+                ..world()
+            }
+            .refusal()
+            .contains("`sweep` of channel DIST1 is 486")
+        );
+        assert!(
+            World {
+                scale: -1.0,
+                ..world()
+            }
+            .refusal()
+            .contains("`scale factor`")
+        );
+        assert!(
+            World {
+                scale: f32::NAN,
+                ..world()
+            }
+            .refusal()
+            .contains("NaN")
+        );
+        assert!(
+            World {
+                layer: 250,
+                ..world()
+            }
+            .refusal()
+            .contains("`layer angle`")
+        );
+        assert!(
+            World {
+                times_us: [9, 8],
+                ..world()
+            }
+            .refusal()
+            .contains("0 to 1 s")
+        );
+        let refusal = World {
+            name: *b"RSSI1",
+            ..world()
+        }
+        .refusal();
+        assert!(refusal.contains("[RSSI1], a scan needs DIST1"), "{refusal}");
+    }
+}

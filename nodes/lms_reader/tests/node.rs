@@ -1,0 +1,252 @@
+//! The node as a process: a capture, and a device on the network that this test
+//! plays.
+#![allow(
+    clippy::unwrap_used,
+    reason = "the lint spares test functions but not what they share"
+)]
+
+mod support;
+
+use std::io::{Read, Write};
+use std::net::{TcpListener, TcpStream};
+use std::process::{Child, Command, Output, Stdio};
+use std::time::Duration;
+
+use lms_reader::cola_b::{START_SCAN_DATA, frame};
+use messages::{NodeState, topic};
+use nix::sys::signal::{Signal, kill};
+use nix::unistd::Pid;
+use support::Isolated;
+use transport::{Flow, Graph, TransportError};
+
+const CAPTURE: &[u8] = include_bytes!("data/tim781_colab_telegrams.bin");
+const CAPTURE_PATH: &str = concat!(
+    env!("CARGO_MANIFEST_DIR"),
+    "/tests/data/tim781_colab_telegrams.bin"
+);
+const TELEGRAM: usize = 3374;
+
+/// The node in a graph of its own, stopped when the test ends.
+struct Node {
+    child: Child,
+}
+
+impl Node {
+    fn start(graph: &Graph, arguments: &[&str]) -> Node {
+        let child = Command::new(env!("CARGO_BIN_EXE_lms_reader"))
+            .args(arguments)
+            .env("BACKCAST_GRAPH", graph.name().to_string())
+            .env_remove("RUST_LOG")
+            .env("NO_COLOR", "1")
+            .stderr(Stdio::piped())
+            .spawn()
+            .unwrap();
+        Node { child }
+    }
+
+    fn interrupt(&self) {
+        let pid = i32::try_from(self.child.id()).unwrap();
+        kill(Pid::from_raw(pid), Signal::SIGTERM).unwrap();
+    }
+
+    fn finish(mut self) -> Output {
+        let mut stderr = Vec::new();
+        let mut pipe = self.child.stderr.take().unwrap();
+        pipe.read_to_end(&mut stderr).unwrap();
+        Output {
+            status: self.child.wait().unwrap(),
+            stdout: Vec::new(),
+            stderr,
+        }
+    }
+}
+
+impl Drop for Node {
+    fn drop(&mut self) {
+        // Only a test that failed leaves it running.
+        let _ = self.child.kill();
+        let _ = self.child.wait();
+    }
+}
+
+/// Waits for messages of `T` until `done` says so.
+fn watch<T: messages::Topic>(
+    graph: &Graph,
+    subscriber: &transport::Subscriber<T>,
+    mut done: impl FnMut(&T::Header, &[T::Item]) -> bool,
+) {
+    let tick = Duration::from_millis(100);
+    graph
+        .run(&[subscriber], tick, |_| {
+            while let Some(sample) = subscriber.receive()? {
+                if done(sample.header(), sample.items()) {
+                    return Ok::<_, TransportError>(Flow::Stop);
+                }
+            }
+            Ok(Flow::Continue)
+        })
+        .unwrap();
+}
+
+#[test]
+fn a_capture_is_played_over_and_over_at_the_pace_of_the_device() {
+    let isolated = Isolated::new("loop");
+    let graph = isolated.join("test");
+    let scans = graph.subscriber::<topic::Scan>().unwrap();
+    let options = ["--loop", "--mount", "0.2,0,90", "--range-max-m", "25"];
+    let node = Node::start(
+        &graph,
+        &[&["--capture", CAPTURE_PATH][..], &options].concat(),
+    );
+    let mut first = None;
+    watch(&graph, &scans, |header, ranges| {
+        assert_eq!((ranges.len(), header.frame.as_str()), (811, "laser"));
+        assert_eq!((header.base_from_laser.x, header.mount_known), (0.2, 1));
+        assert_eq!(header.range_max_m, 25.0);
+        let stamp = header.stamp;
+        let &mut from = first.get_or_insert(stamp);
+        let steps = (stamp.counter - from.counter) as i64;
+        // The device turns at 15 Hz, and the host never plays early; by up to
+        // one step it may have been late with the first.
+        assert!(stamp.entered_ns - from.entered_ns >= (steps - 1) * 66_000_000);
+        // Sixteen scans are in the file, so this one is of the second round.
+        stamp.counter >= 17
+    });
+    node.interrupt();
+    assert!(node.finish().status.success());
+}
+
+#[test]
+fn a_capture_ends_by_itself() {
+    let isolated = Isolated::new("end");
+    let graph = isolated.join("test");
+    let output = Node::start(&graph, &["--capture", CAPTURE_PATH, "--rate", "max"]).finish();
+    assert!(output.status.success(), "{output:?}");
+    let log = String::from_utf8(output.stderr).unwrap();
+    assert!(log.contains("has been played sent=16 refused=0"), "{log}");
+}
+
+#[test]
+fn damage_in_a_capture_is_counted_and_the_rest_played() {
+    let isolated = Isolated::new("damage");
+    let graph = isolated.join("test");
+    let folder = tempfile::tempdir().unwrap();
+    let path = folder.path().join("damaged.bin");
+    let mut bytes = CAPTURE[..4 * TELEGRAM].to_vec();
+    bytes[TELEGRAM + 100] ^= 1;
+    std::fs::write(&path, bytes).unwrap();
+    let path = path.to_str().unwrap();
+    let output = Node::start(&graph, &["--capture", path, "--rate", "max"]).finish();
+    assert!(output.status.success());
+    let log = String::from_utf8(output.stderr).unwrap();
+    assert!(
+        log.contains("byte 3374 of the stream: the checksum"),
+        "{log}"
+    );
+    assert!(log.contains("has been played sent=3 refused=1"), "{log}");
+}
+
+#[test]
+fn a_file_without_scans_is_an_error_that_names_it() {
+    let isolated = Isolated::new("empty");
+    let graph = isolated.join("test");
+    let output = Node::start(&graph, &["--capture", file!(), "--loop"]).finish();
+    assert_eq!(output.status.code(), Some(1));
+    let output = Node::start(&graph, &["--capture", "/nowhere/at/all.bin"]).finish();
+    assert_eq!(output.status.code(), Some(1));
+    let log = String::from_utf8(output.stderr).unwrap();
+    assert!(
+        log.contains("/nowhere/at/all.bin: cannot read the capture"),
+        "{log}"
+    );
+}
+
+#[test]
+fn usage_errors_end_with_two() {
+    let isolated = Isolated::new("usage");
+    let graph = isolated.join("test");
+    let output = Node::start(&graph, &["--capture", "a", "--range-max-m", "0"]).finish();
+    assert_eq!(output.status.code(), Some(2));
+}
+
+/// Takes the node's connection and its request.
+fn accept(listener: &TcpListener) -> TcpStream {
+    let (mut stream, _) = listener.accept().unwrap();
+    let mut request = vec![0; frame(START_SCAN_DATA).len()];
+    stream.read_exact(&mut request).unwrap();
+    assert_eq!(request, frame(START_SCAN_DATA));
+    stream
+}
+
+#[test]
+fn a_device_that_goes_and_comes_back() {
+    let isolated = Isolated::new("device");
+    let graph = isolated.join("test");
+    let scans = graph.subscriber::<topic::Scan>().unwrap();
+    let health = graph.subscriber::<topic::Health>().unwrap();
+    let listener = TcpListener::bind("127.0.0.1:0").unwrap();
+    let address = listener.local_addr().unwrap().to_string();
+    let node = Node::start(&graph, &["--tcp", &address]);
+
+    let mut stream = accept(&listener);
+    stream.write_all(&frame(b"sEA LMDscandata \x01")).unwrap();
+    // Pieces that respect no telegram.
+    for piece in CAPTURE[..2 * TELEGRAM].chunks(1000) {
+        stream.write_all(piece).unwrap();
+    }
+    watch(&graph, &scans, |header, _| header.stamp.counter == 1);
+    drop(stream);
+    let mut reason = String::new();
+    watch(&graph, &health, |header, error| {
+        reason = String::from_utf8_lossy(error).into();
+        header.state == NodeState::Degraded as u32
+    });
+    assert!(reason.contains(&address), "{reason}");
+    assert!(reason.contains("closed the connection"), "{reason}");
+
+    let mut stream = accept(&listener);
+    stream.write_all(&CAPTURE[..TELEGRAM]).unwrap();
+    watch(&graph, &scans, |header, _| header.stamp.counter == 2);
+    watch(&graph, &health, |header, _| {
+        header.state == NodeState::Ready as u32
+    });
+
+    node.interrupt();
+    let output = node.finish();
+    assert!(output.status.success(), "{output:?}");
+}
+
+#[test]
+fn a_device_that_is_not_there_does_not_hold_up_a_stop() {
+    let isolated = Isolated::new("refused");
+    let graph = isolated.join("test");
+    let health = graph.subscriber::<topic::Health>().unwrap();
+    let listener = TcpListener::bind("127.0.0.1:0").unwrap();
+    let address = listener.local_addr().unwrap().to_string();
+    drop(listener);
+    let node = Node::start(&graph, &["--tcp", &address]);
+    watch(&graph, &health, |header, error| {
+        let reason = String::from_utf8_lossy(error);
+        header.state == NodeState::Degraded as u32 && reason.contains("refused")
+    });
+    node.interrupt();
+    let output = node.finish();
+    assert!(output.status.success(), "{output:?}");
+    let log = String::from_utf8(output.stderr).unwrap();
+    assert_eq!(log.matches("cannot connect").count(), 1, "{log}");
+}
+
+#[test]
+fn a_silent_device_is_given_up_and_tried_again() {
+    let isolated = Isolated::new("silent");
+    let graph = isolated.join("test");
+    let listener = TcpListener::bind("127.0.0.1:0").unwrap();
+    let address = listener.local_addr().unwrap().to_string();
+    let node = Node::start(&graph, &["--tcp", &address, "--silence", "0.2"]);
+    let _silent = accept(&listener);
+    let _again = accept(&listener);
+    node.interrupt();
+    let output = node.finish();
+    let log = String::from_utf8(output.stderr).unwrap();
+    assert!(log.contains("not a byte for 0.2 s"), "{log}");
+}

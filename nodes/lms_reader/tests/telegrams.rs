@@ -1,0 +1,175 @@
+//! The codec against telegrams that a real TiM781 sent, and their decoded
+//! fields beside them (tests/data/SOURCE.txt).
+#![allow(
+    clippy::unwrap_used,
+    reason = "the lint spares test functions but not what they share"
+)]
+
+use lms_reader::LmsError;
+use lms_reader::cola_b::{Frame, Framer, LmdScanData, Telegram};
+use proptest::prelude::*;
+use serde_json::Value;
+
+const CAPTURE: &[u8] = include_bytes!("data/tim781_colab_telegrams.bin");
+const MANIFEST: &str = include_str!("data/tim781_manifest.json");
+/// Each of the 16 telegrams, with start, length and checksum.
+const TELEGRAM: usize = 3374;
+
+/// Feeds pieces; hands each frame or error to `see` in order.
+fn read<'a>(
+    pieces: impl IntoIterator<Item = &'a [u8]>,
+    mut see: impl FnMut(Result<Frame<'_>, LmsError>),
+) {
+    let mut framer = Framer::default();
+    for piece in pieces {
+        framer.push(piece);
+        while let Some(next) = framer.next_frame() {
+            see(next);
+        }
+    }
+    framer.finish();
+    while let Some(next) = framer.next_frame() {
+        see(next);
+    }
+}
+
+/// The scan counter of each scan, and how often there was anything else.
+fn counters(stream: &[u8]) -> (Vec<u16>, usize) {
+    let (mut good, mut errors) = (Vec::new(), 0);
+    read([stream], |next| match next.map(|frame| frame.telegram) {
+        Ok(Telegram::ScanData(data)) => good.push(data.scan_counter),
+        // Damage may turn a scan into another command.
+        Ok(_) | Err(_) => errors += 1,
+    });
+    (good, errors)
+}
+
+#[test]
+fn every_field_of_the_real_telegrams() {
+    let manifest: Vec<Value> = serde_json::from_str(MANIFEST).unwrap();
+    let mut index = 0;
+    read([CAPTURE], |next| {
+        let frame = next.unwrap();
+        check(&frame, &manifest[index], index);
+        index += 1;
+    });
+    assert_eq!((index, manifest.len()), (16, 16));
+}
+
+fn check(frame: &Frame<'_>, expected: &Value, index: usize) {
+    let Telegram::ScanData(data) = &frame.telegram else {
+        panic!("telegram {index} is {:?}", frame.telegram);
+    };
+    let number = |key: &str| expected[key].as_u64().unwrap();
+    assert_eq!(frame.offset, number("offset"));
+    assert_eq!(frame.skipped, 0);
+    assert_eq!(frame.content.len() as u64 + 9, number("len"));
+    assert_eq!(u64::from(data.serial_number), number("serial"));
+    assert_eq!(u64::from(data.telegram_counter), number("telegram"));
+    assert_eq!(u64::from(data.scan_counter), number("scan"));
+    assert_eq!(u64::from(data.time_since_start_up_us), number("t_up_us"));
+    assert_eq!(u64::from(data.time_of_transmission_us), number("t_tx_us"));
+    let frequency = f64::from(data.scan_frequency_raw_1e2_hz) / 100.0;
+    assert_eq!(frequency, expected["scan_freq"].as_f64().unwrap());
+    check_channels(data, expected["channels"].as_array().unwrap());
+    check_tail(data, frame.content, expected["tail"].as_str().unwrap());
+    // Not in the manifest, read off the bytes; outputs and frequency are those
+    // of the device at rest, 16200 shots a second.
+    assert_eq!((data.version, data.device_number), (1, 1), "{index}");
+    assert_eq!((data.status, data.digital_inputs), ([0, 0], [0, 0]));
+    assert_eq!((data.digital_outputs, data.layer_angle_raw), ([8, 0], 0));
+    assert_eq!(data.measurement_frequency_raw, 162);
+    assert_eq!(data.encoders.clone().count(), 0);
+}
+
+fn check_channels(data: &LmdScanData<'_>, expected: &[Value]) {
+    let channels: Vec<_> = data.channels_16_bit.clone().collect();
+    assert_eq!(channels.len(), expected.len());
+    for (channel, expected) in channels.iter().zip(expected) {
+        assert_eq!(channel.name, expected[0].as_str().unwrap().as_bytes());
+        assert_eq!(f64::from(channel.scale_factor), expected[1]);
+        assert_eq!(f64::from(channel.scale_offset), expected[2]);
+        let degrees = |raw: f64| raw / 1e4;
+        assert_eq!(degrees(channel.start_angle_raw_1e4_deg.into()), expected[3]);
+        assert_eq!(degrees(channel.step_raw_1e4_deg.into()), expected[4]);
+        assert_eq!(channel.len() as u64, expected[5].as_u64().unwrap());
+        let least = channel.values().min().map(u64::from);
+        let most = channel.values().max().map(u64::from);
+        assert_eq!((least, most), (expected[6].as_u64(), expected[7].as_u64()));
+    }
+    assert_eq!(data.channels_8_bit.clone().count(), 0);
+}
+
+/// The manifest gives the blocks after the 16-bit channels as they were sent.
+fn check_tail(data: &LmdScanData<'_>, content: &[u8], expected: &str) {
+    let tail = &content[content.len() - expected.len() / 2..];
+    let hex: String = tail.iter().map(|byte| format!("{byte:02x}")).collect();
+    assert_eq!(hex, expected);
+    assert_eq!((data.position, data.name, data.comment), (None, None, None));
+    assert_eq!(data.event, None);
+    let time = data.time.unwrap();
+    assert_eq!(
+        (time.year, time.month, time.day, time.hour),
+        (1970, 1, 1, 0)
+    );
+    assert_eq!(time.minute, 50);
+    let hex = format!("{:02x}{:08x}", time.second, time.microsecond);
+    assert_eq!(hex, expected[expected.len() - 14..expected.len() - 4]);
+}
+
+#[test]
+fn every_flipped_bit_costs_one_telegram_and_is_noticed() {
+    // Around a whole telegram in the middle of three, so that a claim that
+    // grew or shrank has neighbours to damage.
+    let three = &CAPTURE[..3 * TELEGRAM];
+    let (all, _) = counters(three);
+    let mut stream = three.to_vec();
+    for bit in 0..TELEGRAM * 8 {
+        let at = TELEGRAM + bit / 8;
+        stream[at] ^= 1 << (bit % 8);
+        let (good, errors) = counters(&stream);
+        assert_eq!(good, [all[0], all[2]], "bit {bit}");
+        assert!(errors > 0, "bit {bit}");
+        stream[at] ^= 1 << (bit % 8);
+    }
+}
+
+proptest! {
+    #[test]
+    fn any_split_gives_the_same_telegrams(
+        cuts in proptest::collection::vec(1usize..5000, 1..200),
+    ) {
+        let mut whole = Vec::new();
+        read([CAPTURE], |next| whole.push((next.as_ref().unwrap().offset, next.unwrap().content.to_vec())));
+        let mut rest = CAPTURE;
+        let pieces = cuts.iter().cycle().map_while(|&cut| {
+            let (piece, tail) = rest.split_at(cut.min(rest.len()));
+            rest = tail;
+            (!piece.is_empty()).then_some(piece)
+        });
+        let mut index = 0;
+        read(pieces, |next| {
+            let frame = next.unwrap();
+            assert_eq!((frame.offset, frame.content), (whole[index].0, &whole[index].1[..]));
+            index += 1;
+        });
+        prop_assert_eq!(index, 16);
+    }
+
+    #[test]
+    fn damage_never_panics_and_never_invents_a_scan(
+        edits in proptest::collection::vec((0..4 * TELEGRAM, any::<u8>()), 1..40),
+        cut in 0..4 * TELEGRAM,
+    ) {
+        let (all, _) = counters(&CAPTURE[..4 * TELEGRAM]);
+        let mut stream = CAPTURE[..4 * TELEGRAM].to_vec();
+        for (at, value) in edits {
+            stream[at] = value;
+        }
+        // An even number of edits may cancel in the checksum, so a damaged scan
+        // may pass; what passes is one of the four, and there are no more.
+        let (good, _) = counters(&stream);
+        prop_assert!(good.len() <= all.len());
+        counters(&stream[cut..]);
+    }
+}

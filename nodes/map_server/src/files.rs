@@ -1,0 +1,126 @@
+//! Looks at a map's two files without reading the image.
+//!
+//! Looking at fixed intervals rather than listening for events works on every
+//! file system, network ones included, and does not care how an editor replaces
+//! a file. What is in the files is not judged here.
+
+use std::fs;
+use std::io::Read;
+use std::os::unix::fs::MetadataExt;
+use std::path::{Path, PathBuf};
+
+use serde::Deserialize;
+
+/// What is read of a description; a sound one has a few hundred bytes.
+const MAX_YAML_BYTES: u64 = 64 << 10;
+
+/// Tells one state of a file from another.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+pub(crate) struct Fingerprint {
+    pub(crate) device: u64,
+    /// A file that takes another's place by renaming has another number.
+    pub(crate) inode: u64,
+    pub(crate) size: u64,
+    pub(crate) modified_s: i64,
+    pub(crate) modified_ns: i64,
+}
+
+/// Both files at one moment; `None` for one that is not there.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(crate) struct Seen {
+    pub(crate) yaml: Option<Fingerprint>,
+    pub(crate) image: Option<Fingerprint>,
+}
+
+/// The description and the image that it names.
+#[derive(Debug)]
+pub(crate) struct Files {
+    yaml: PathBuf,
+    yaml_read: Option<Fingerprint>,
+    image: Option<PathBuf>,
+}
+
+/// The one key that matters here.
+#[derive(Deserialize)]
+struct Named {
+    image: String,
+}
+
+impl Files {
+    pub(crate) fn new(yaml: &Path) -> Self {
+        Files {
+            yaml: yaml.into(),
+            yaml_read: None,
+            image: None,
+        }
+    }
+
+    /// The files as they are now. A description that cannot be read leaves the
+    /// image that was named before.
+    pub(crate) fn look(&mut self) -> Seen {
+        let yaml = fingerprint(&self.yaml);
+        if yaml != self.yaml_read {
+            self.yaml_read = yaml;
+            self.image = named_image(&self.yaml).or(self.image.take());
+        }
+        Seen {
+            yaml,
+            image: self.image.as_deref().and_then(fingerprint),
+        }
+    }
+}
+
+fn fingerprint(path: &Path) -> Option<Fingerprint> {
+    let metadata = fs::metadata(path).ok()?;
+    Some(Fingerprint {
+        device: metadata.dev(),
+        inode: metadata.ino(),
+        size: metadata.size(),
+        modified_s: metadata.mtime(),
+        modified_ns: metadata.mtime_nsec(),
+    })
+}
+
+fn named_image(yaml: &Path) -> Option<PathBuf> {
+    let mut text = String::new();
+    let file = fs::File::open(yaml).ok()?;
+    file.take(MAX_YAML_BYTES).read_to_string(&mut text).ok()?;
+    let named: Named = serde_saphyr::from_str(&text).ok()?;
+    Some(yaml.parent()?.join(named.image))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn sees_both_files_change_and_follows_the_name() {
+        let folder = tempfile::tempdir().unwrap();
+        let at = |name: &str| folder.path().join(name);
+        let mut files = Files::new(&at("a.yaml"));
+        let nothing = files.look();
+        assert_eq!((nothing.yaml, nothing.image), (None, None));
+
+        fs::write(at("a.yaml"), "image: one.pgm\nresolution: 0.05\n").unwrap();
+        fs::write(at("one.pgm"), "1").unwrap();
+        let one = files.look();
+        assert_eq!(one.image.unwrap().size, 1);
+        assert_eq!(files.look(), one);
+
+        fs::write(at("one.pgm"), "22").unwrap();
+        let grown = files.look();
+        assert_eq!((grown.yaml, grown.image.unwrap().size), (one.yaml, 2));
+
+        // Another file of the same size under the same name.
+        fs::write(at("new"), "33").unwrap();
+        fs::rename(at("new"), at("one.pgm")).unwrap();
+        assert_ne!(files.look(), grown);
+
+        fs::write(at("two.pgm"), "4444").unwrap();
+        fs::write(at("a.yaml"), "image: two.pgm\n").unwrap();
+        assert_eq!(files.look().image.unwrap().size, 4);
+        // A broken description still watches the image that it named.
+        fs::write(at("a.yaml"), "image: [").unwrap();
+        assert_eq!(files.look().image.unwrap().size, 4);
+    }
+}

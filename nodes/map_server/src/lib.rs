@@ -1,0 +1,16 @@
+//! Node `map_server`: serves a map file as the latched topic `map`, and the new
+//! map whenever the file or its image changes.
+//!
+//! `watch` decides when a change has come to rest, pure; `run` looks at the
+//! files, loads and sends. What a map file may hold is the business of crate
+//! `map`. A map that turns out broken is refused and the old one stays.
+
+mod config;
+mod error;
+mod files;
+mod run;
+mod watch;
+
+pub use config::Config;
+pub use error::MapServerError;
+pub use run::run;

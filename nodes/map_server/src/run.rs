@@ -1,0 +1,116 @@
+//! Looks at the files, loads and sends.
+
+use std::error::Error;
+use std::time::{Duration, SystemTime, UNIX_EPOCH};
+
+use map::OccupancyGrid;
+use messages::{MapHeader, NodeState, Stamp, topic};
+use transport::{Flow, Graph, Health, Publisher, TransportError};
+
+use crate::files::Files;
+use crate::watch::{Look, Watch};
+use crate::{Config, MapServerError};
+
+/// Between two looks at the files: also how long a change has to rest, and how
+/// long somebody who joins late waits for the map.
+const TICK: Duration = Duration::from_millis(250);
+
+/// Serves the map until the stop flag is set.
+///
+/// # Errors
+/// If the graph fails, or there is no usable map at the start. Later a broken
+/// map is reported in `health` and the one before stays.
+pub fn run(graph: &Graph, config: &Config) -> Result<(), MapServerError> {
+    let mut files = Files::new(&config.map);
+    let mut server = Server {
+        publisher: graph.publisher()?,
+        health: graph.health()?,
+        served: 0,
+        map_id: 0,
+    };
+    // Looked at before loading: what changes in between is noticed.
+    let mut watch = Watch::new(files.look());
+    let grid = map::load(&config.map).map_err(|source| MapServerError::Map {
+        path: config.map.clone(),
+        source: Box::new(source),
+    })?;
+    server.serve(&grid)?;
+    drop(grid);
+    graph.run(&[], TICK, |_| {
+        if watch.look(files.look()) == Look::Settled {
+            let outcome = map::load(&config.map);
+            if watch.judged(files.look()) {
+                server.judge(outcome, config)?;
+            }
+        }
+        server.health.tick()?;
+        Ok(Flow::Continue)
+    })
+}
+
+struct Server {
+    publisher: Publisher<topic::Map>,
+    health: Health,
+    served: u64,
+    map_id: u64,
+}
+
+impl Server {
+    fn judge(
+        &mut self,
+        outcome: Result<OccupancyGrid, map::MapError>,
+        config: &Config,
+    ) -> Result<(), TransportError> {
+        match outcome {
+            Ok(grid) if grid.id() == self.map_id => {
+                tracing::info!("the files were written anew and hold the map that is served");
+                self.health.state(NodeState::Ready)
+            }
+            Ok(grid) => match self.serve(&grid) {
+                Err(error @ TransportError::SharedMemoryFull { .. }) => self.refuse(&error, config),
+                outcome => outcome,
+            },
+            Err(error) => self.refuse(&error, config),
+        }
+    }
+
+    fn refuse(&mut self, error: &dyn Error, config: &Config) -> Result<(), TransportError> {
+        let path = config.map.display();
+        tracing::warn!("the changed map {path} is refused, the one before stays: {error}");
+        self.health.count_refused(1);
+        self.health.error(&format!("map {path} refused: {error}"))?;
+        self.health.state(NodeState::Degraded)
+    }
+
+    fn serve(&mut self, grid: &OccupancyGrid) -> Result<(), TransportError> {
+        let map_id = grid.id();
+        let mut loan = self.publisher.loan(grid.cells.len())?;
+        *loan.header_mut() = MapHeader {
+            stamp: Stamp {
+                measured_ns: realtime_ns(),
+                entered_ns: transport::monotonic_ns(),
+                counter: self.served,
+            },
+            map_id,
+            width: grid.width,
+            height: grid.height,
+            resolution_m: grid.resolution_m,
+            map_from_grid: grid.map_from_grid.into(),
+        };
+        loan.items_mut().copy_from_slice(&grid.cells);
+        loan.send()?;
+        self.map_id = map_id;
+        self.served += 1;
+        self.health.count_sent(1);
+        let (width, height, resolution_m) = (grid.width, grid.height, grid.resolution_m);
+        let map_id = format!("{map_id:016x}");
+        tracing::info!(width, height, resolution_m, map_id, "serving the map");
+        self.health.state(NodeState::Ready)
+    }
+}
+
+fn realtime_ns() -> i64 {
+    let since_1970 = SystemTime::now().duration_since(UNIX_EPOCH);
+    // A clock before 1970 is as wrong as one in 1970.
+    since_1970.map_or(0, |time| time.as_nanos() as i64)
+}

@@ -1,0 +1,217 @@
+//! The node as a process, while its map files change under it.
+#![allow(
+    clippy::unwrap_used,
+    reason = "the lint spares test functions but not what they share"
+)]
+
+mod support;
+
+use std::fs;
+use std::io::Read;
+use std::path::{Path, PathBuf};
+use std::process::{Child, Command, ExitStatus, Stdio};
+use std::time::Duration;
+
+use messages::{HealthHeader, NodeState, topic};
+use nix::sys::signal::{Signal, kill};
+use nix::unistd::Pid;
+use support::Isolated;
+use tempfile::TempDir;
+use transport::{Flow, Graph, Subscriber, TransportError};
+
+/// A folder with map files, a graph, and the node in both.
+struct World {
+    child: Option<Child>,
+    folder: TempDir,
+    graph: Graph,
+    _isolated: Isolated,
+}
+
+impl World {
+    /// A map whose only row has these pixels.
+    fn new(test: &str, row: &[u8]) -> World {
+        let isolated = Isolated::new(test);
+        let world = World {
+            child: None,
+            folder: tempfile::tempdir().unwrap(),
+            graph: isolated.join("test"),
+            _isolated: isolated,
+        };
+        fs::write(world.at("map.pgm"), image(row)).unwrap();
+        world.describe(0.05);
+        world
+    }
+
+    fn at(&self, name: &str) -> PathBuf {
+        self.folder.path().join(name)
+    }
+
+    fn describe(&self, resolution: f64) {
+        let text = format!(
+            "image: map.pgm\nresolution: {resolution}\norigin: [1, 2, 0.5]\nnegate: 0\n\
+             occupied_thresh: 0.65\nfree_thresh: 0.196\n"
+        );
+        self.replace("map.yaml", text.as_bytes());
+    }
+
+    /// Puts a new file in the place of the old one, as careful writers do.
+    fn replace(&self, name: &str, bytes: &[u8]) {
+        fs::write(self.at("new"), bytes).unwrap();
+        fs::rename(self.at("new"), self.at(name)).unwrap();
+    }
+
+    fn start(&mut self) {
+        self.child = Some(
+            Command::new(env!("CARGO_BIN_EXE_map_server"))
+                .args([Path::new("--map"), &self.at("map.yaml")])
+                .env("BACKCAST_GRAPH", self.graph.name().to_string())
+                .env("NO_COLOR", "1")
+                .env_remove("RUST_LOG")
+                .stderr(Stdio::piped())
+                .spawn()
+                .unwrap(),
+        );
+    }
+
+    /// Waits for a message of `T` that `wanted` likes.
+    fn wait<T: messages::Topic>(
+        &self,
+        subscriber: &Subscriber<T>,
+        mut wanted: impl FnMut(&T::Header, &[T::Item]) -> bool,
+    ) {
+        self.graph
+            .run(&[subscriber], Duration::from_millis(100), |_| {
+                while let Some(sample) = subscriber.receive()? {
+                    if wanted(sample.header(), sample.items()) {
+                        return Ok::<_, TransportError>(Flow::Stop);
+                    }
+                }
+                Ok(Flow::Continue)
+            })
+            .unwrap();
+    }
+
+    fn wait_for_cells(&self, maps: &Subscriber<topic::Map>, counter: u64, cells: &[u8]) {
+        self.wait(maps, |header, items| {
+            assert!(header.stamp.counter <= counter, "{header:?}");
+            if header.stamp.counter == counter {
+                assert_eq!(items, cells);
+            }
+            header.stamp.counter == counter
+        });
+    }
+
+    fn wait_for_state(
+        &self,
+        health: &Subscriber<topic::Health>,
+        state: NodeState,
+    ) -> (HealthHeader, String) {
+        let mut found = None;
+        self.wait(health, |header, error| {
+            found = Some((*header, String::from_utf8_lossy(error).into_owned()));
+            header.state == state as u32
+        });
+        found.unwrap()
+    }
+
+    fn interrupt(&self) {
+        let pid = self.child.as_ref().unwrap().id();
+        kill(Pid::from_raw(i32::try_from(pid).unwrap()), Signal::SIGTERM).unwrap();
+    }
+
+    fn finish(&mut self) -> (ExitStatus, String) {
+        let mut child = self.child.take().unwrap();
+        let mut log = String::new();
+        child
+            .stderr
+            .take()
+            .unwrap()
+            .read_to_string(&mut log)
+            .unwrap();
+        (child.wait().unwrap(), log)
+    }
+}
+
+impl Drop for World {
+    fn drop(&mut self) {
+        // Only a test that failed leaves the node running.
+        if let Some(mut child) = self.child.take() {
+            let _ = child.kill();
+            let _ = child.wait();
+        }
+    }
+}
+
+fn image(row: &[u8]) -> Vec<u8> {
+    [format!("P5\n{} 1\n255\n", row.len()).as_bytes(), row].concat()
+}
+
+#[test]
+fn the_map_is_served_also_to_those_who_join_late() {
+    let mut world = World::new("late", &[0, 255, 205]);
+    let health = world.graph.subscriber::<topic::Health>().unwrap();
+    world.start();
+    world.wait_for_state(&health, NodeState::Ready);
+    let maps = world.graph.subscriber::<topic::Map>().unwrap();
+    world.wait(&maps, |header, cells| {
+        assert_eq!(
+            (header.width, header.height, header.resolution_m),
+            (3, 1, 0.05)
+        );
+        assert_eq!(
+            (header.map_from_grid.x, header.map_from_grid.yaw),
+            (1.0, 0.5)
+        );
+        let expected = map::load(world.at("map.yaml")).unwrap();
+        assert_eq!((header.map_id, cells), (expected.id(), &expected.cells[..]));
+        true
+    });
+    world.interrupt();
+    let (status, log) = world.finish();
+    assert!(status.success(), "{log}");
+}
+
+#[test]
+fn a_changed_map_is_served_and_a_broken_one_refused() {
+    let mut world = World::new("change", &[0, 255]);
+    let maps = world.graph.subscriber::<topic::Map>().unwrap();
+    let health = world.graph.subscriber::<topic::Health>().unwrap();
+    world.start();
+    world.wait_for_cells(&maps, 0, &[100, 0]);
+
+    // An editor's own files beside the map's do not matter.
+    fs::write(world.at(".map.yaml.swp"), "rubbish").unwrap();
+    world.replace("map.pgm", &image(&[255, 0]));
+    world.wait_for_cells(&maps, 1, &[0, 100]);
+
+    // The description alone.
+    world.describe(0.1);
+    world.wait(&maps, |header, _| header.resolution_m == 0.1);
+
+    // An image cut short is refused, and what was served stays.
+    let whole = image(&[255, 255, 0]);
+    fs::write(world.at("map.pgm"), &whole[..whole.len() - 2]).unwrap();
+    let (report, error) = world.wait_for_state(&health, NodeState::Degraded);
+    assert_eq!((report.refused, report.sent), (1, 3));
+    assert!(error.contains("map.pgm"), "{error}");
+    let late = world.graph.subscriber::<topic::Map>().unwrap();
+    world.wait_for_cells(&late, 2, &[0, 100]);
+
+    // Mended.
+    fs::write(world.at("map.pgm"), whole).unwrap();
+    world.wait_for_cells(&maps, 3, &[0, 0, 100]);
+    world.wait_for_state(&health, NodeState::Ready);
+    world.interrupt();
+    let (status, log) = world.finish();
+    assert!(status.success(), "{log}");
+}
+
+#[test]
+fn a_broken_map_at_the_start_is_an_error_that_names_it() {
+    let mut world = World::new("broken", &[0]);
+    fs::write(world.at("map.pgm"), "P5\n3 1\n255\n").unwrap();
+    world.start();
+    let (status, log) = world.finish();
+    assert_eq!(status.code(), Some(1));
+    assert!(log.contains("map.yaml") && log.contains("map.pgm"), "{log}");
+}

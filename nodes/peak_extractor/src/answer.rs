@@ -1,0 +1,237 @@
+//! The node's one function: from a message of `votes` to one of `hypotheses`.
+
+use bytemuck::Zeroable;
+use engine::peaks::{self, PeakConfig, Place, Places};
+use geometry::Pose;
+use messages::{HypothesesHeader, Hypothesis, Verdict, Vote, VotesHeader};
+
+use crate::PeakError;
+use crate::check::{check, mount};
+use crate::geometries::Geometries;
+
+/// What there is to say about a scan.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Answer {
+    /// All but the times of extracting and sending.
+    pub header: HypothesesHeader,
+    /// Best first.
+    pub places: Vec<Place>,
+    /// Where the laser sits on the robot, if that is known.
+    pub base_from_laser: Option<Pose>,
+}
+
+/// Reads the places from the votes of a scan.
+///
+/// # Errors
+/// If the votes are refused, see [`check`] and [`mount`]; [`nothing`] is then
+/// what to say.
+pub fn answer(
+    header: &VotesHeader,
+    votes: &[Vote],
+    geometries: &Geometries,
+    config: &PeakConfig,
+) -> Result<Answer, PeakError> {
+    let Some(input) = check(header, votes, geometries)? else {
+        return Ok(nothing(header));
+    };
+    let base_from_laser = mount(header)?;
+    let places = peaks::extract(&input, config);
+    Ok(Answer {
+        header: described(header, &places, base_from_laser.is_some()),
+        places: places.places,
+        base_from_laser,
+    })
+}
+
+/// The answer to votes that say nothing, or that cannot be read.
+#[must_use]
+pub fn nothing(votes: &VotesHeader) -> Answer {
+    let header = HypothesesHeader {
+        stamp: votes.stamp,
+        map_id: votes.map_id,
+        search_ns: votes.engine_ns,
+        verdict: Verdict::NoScan as u32,
+        ..HypothesesHeader::zeroed()
+    };
+    Answer {
+        header,
+        places: Vec::new(),
+        base_from_laser: None,
+    }
+}
+
+impl Answer {
+    /// The message's items, to be filled in place.
+    pub fn hypotheses(&self) -> impl ExactSizeIterator<Item = Hypothesis> {
+        let laser_from_base = self.base_from_laser.map_or(Pose::IDENTITY, Pose::inverse);
+        self.places
+            .iter()
+            .map(move |place| hypothesis(place, laser_from_base))
+    }
+}
+
+fn described(votes: &VotesHeader, places: &Places, mount_known: bool) -> HypothesesHeader {
+    HypothesesHeader {
+        verdict: places.verdict as u32,
+        alternatives: places.alternatives,
+        confidence: places.confidence as f32,
+        inlier_share: (f64::from(votes.best) / f64::from(votes.highest_possible)) as f32,
+        best: votes.best,
+        highest_possible: votes.highest_possible,
+        mount_known: mount_known.into(),
+        ..nothing(votes).header
+    }
+}
+
+fn hypothesis(place: &Place, laser_from_base: Pose) -> Hypothesis {
+    Hypothesis {
+        map_from_laser: place.map_from_laser.into(),
+        map_from_base: place.map_from_laser.then(laser_from_base).into(),
+        covariance: place.covariance.to_rows(),
+        score: place.score as f32,
+        intensity: place.intensity.into(),
+        support: place.support,
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use std::f64::consts::FRAC_PI_2;
+
+    use messages::{MapHeader, Pose2, SearchOutcome, Stamp};
+
+    use super::*;
+
+    /// Cells of a metre, turned by a quarter: grid x is map y, grid y is -x.
+    fn geometries() -> Geometries {
+        let mut geometries = Geometries::default();
+        let map = MapHeader {
+            map_id: 7,
+            width: 30,
+            height: 20,
+            resolution_m: 1.0,
+            map_from_grid: Pose2 {
+                x: 0.0,
+                y: 0.0,
+                yaw: FRAC_PI_2,
+            },
+            ..Zeroable::zeroed()
+        };
+        geometries.hear(&map).unwrap();
+        geometries
+    }
+
+    fn header() -> VotesHeader {
+        VotesHeader {
+            stamp: Stamp {
+                measured_ns: 1,
+                entered_ns: 2,
+                counter: 3,
+            },
+            map_id: 7,
+            engine_ns: 1234,
+            outcome: SearchOutcome::Found as u32,
+            headings: 360,
+            certified_floor: 60,
+            best: 100,
+            highest_possible: 125,
+            base_from_laser: Pose2 {
+                x: 0.75,
+                y: 0.0,
+                yaw: 0.0,
+            },
+            mount_known: 1,
+            ..Zeroable::zeroed()
+        }
+    }
+
+    /// Two places: one ahead of the other by a third.
+    const VOTES: [Vote; 2] = [
+        Vote {
+            x: 10,
+            y: 5,
+            heading: 0,
+            intensity: 100,
+        },
+        Vote {
+            x: 20,
+            y: 5,
+            heading: 90,
+            intensity: 75,
+        },
+    ];
+
+    fn extract(header: &VotesHeader) -> Answer {
+        answer(header, &VOTES, &geometries(), &PeakConfig::default()).unwrap()
+    }
+
+    #[test]
+    fn the_header_tells_of_the_best_place() {
+        let expected = HypothesesHeader {
+            stamp: header().stamp,
+            map_id: 7,
+            sent_ns: 0,
+            search_ns: 1234,
+            extract_ns: 0,
+            verdict: Verdict::Unique as u32,
+            alternatives: 0,
+            confidence: 0.25,
+            inlier_share: 0.8,
+            best: 100,
+            highest_possible: 125,
+            mount_known: 1,
+        };
+        assert_eq!(extract(&header()).header, expected);
+    }
+
+    #[test]
+    fn the_base_is_where_the_mount_puts_it() {
+        let hypotheses: Vec<Hypothesis> = extract(&header()).hypotheses().collect();
+        assert_eq!(hypotheses.len(), 2);
+        let laser = Pose::from(hypotheses[0].map_from_laser);
+        let base = Pose::from(hypotheses[0].map_from_base);
+        // The middle of cell (10, 5), and the base 0.75 m behind the laser,
+        // which looks along map y. A few roundings of numbers around ten.
+        assert!(laser.is_within(Pose::new(-5.5, 10.5, FRAC_PI_2), 1e-12, 1e-12));
+        assert!(base.is_within(Pose::new(-5.5, 9.75, FRAC_PI_2), 1e-12, 1e-12));
+        assert_eq!((hypotheses[0].score, hypotheses[0].intensity), (0.8, 100));
+        assert_eq!(hypotheses[0].support, 1);
+        // A cell's rounding: its side squared over twelve.
+        let spread = hypotheses[1].covariance;
+        assert!((spread[0] - 1.0 / 12.0).abs() < 1e-12, "{spread:?}");
+    }
+
+    #[test]
+    fn without_a_mount_the_base_is_the_laser() {
+        let unknown = VotesHeader {
+            mount_known: 0,
+            ..header()
+        };
+        let answer = extract(&unknown);
+        assert_eq!(answer.header.mount_known, 0);
+        for hypothesis in answer.hypotheses() {
+            let laser = Pose::from(hypothesis.map_from_laser);
+            let base = Pose::from(hypothesis.map_from_base);
+            assert!(base.is_within(laser, 1e-12, 1e-12));
+        }
+    }
+
+    #[test]
+    fn scans_without_votes_have_no_hypotheses() {
+        for outcome in [SearchOutcome::NoVotes, SearchOutcome::Refused] {
+            let empty = VotesHeader {
+                outcome: outcome as u32,
+                best: 0,
+                ..header()
+            };
+            let said = answer(&empty, &[], &geometries(), &PeakConfig::default()).unwrap();
+            assert_eq!(said, nothing(&empty));
+            assert_eq!(said.header.verdict, Verdict::NoScan as u32);
+            assert_eq!(
+                (said.header.stamp, said.header.search_ns),
+                (header().stamp, 1234)
+            );
+            assert_eq!(said.hypotheses().len(), 0);
+        }
+    }
+}

@@ -1,0 +1,264 @@
+//! What votes have to be before places are read from them.
+//!
+//! They come from another process: a heading beyond the turn, a cell off the
+//! map or an order that the engine does not expect would make it compute
+//! nonsense.
+
+use std::cmp::Reverse;
+
+use engine::peaks::PeakInput;
+use geometry::Pose;
+use messages::{SearchOutcome, Vote, VotesHeader};
+
+use crate::PeakError;
+use crate::geometries::{Geometries, Geometry};
+
+/// The votes of a scan as the engine takes them; `None` where the scan was
+/// refused or has no votes.
+///
+/// # Errors
+/// If the header contradicts itself or the votes, the map is not known, or a
+/// vote is for no pose of the search or out of order.
+pub fn check<'a>(
+    header: &VotesHeader,
+    votes: &'a [Vote],
+    geometries: &Geometries,
+) -> Result<Option<PeakInput<'a>>, PeakError> {
+    let outcome = header.outcome;
+    match SearchOutcome::from_code(outcome) {
+        None => return Err(PeakError::Outcome { found: outcome }),
+        Some(SearchOutcome::NoVotes | SearchOutcome::Refused) => return Ok(None),
+        Some(SearchOutcome::Found) => {}
+    }
+    let geometry = geometries.get(header.map_id)?;
+    check_header(header, votes)?;
+    check_poses(header, votes, &geometry)?;
+    check_order(votes)?;
+    Ok(Some(PeakInput {
+        votes,
+        certified_floor: header.certified_floor,
+        highest_possible: header.highest_possible,
+        headings: header.headings,
+        known_heading: (header.heading_known == 1).then_some(header.known_heading),
+        frame: geometry.frame,
+    }))
+}
+
+/// Where the laser sits on the robot, if the header knows.
+///
+/// # Errors
+/// If it is no number.
+pub fn mount(header: &VotesHeader) -> Result<Option<Pose>, PeakError> {
+    if header.mount_known != 1 {
+        return Ok(None);
+    }
+    let found = header.base_from_laser;
+    let mount = Pose::from(found);
+    if !mount.is_finite() {
+        return Err(PeakError::Mount { found });
+    }
+    Ok(Some(mount))
+}
+
+fn check_header(header: &VotesHeader, votes: &[Vote]) -> Result<(), PeakError> {
+    let headings = header.headings;
+    if !(1..=1 << 16).contains(&headings) {
+        return Err(PeakError::Headings { found: headings });
+    }
+    let heading = header.known_heading;
+    if header.heading_known == 1 && !heading.is_finite() {
+        return Err(PeakError::KnownHeading { found: heading });
+    }
+    let (best, highest_possible) = (header.best, header.highest_possible);
+    let first = votes.first().map(|vote| vote.intensity);
+    let is_first = first.map(u32::from) == Some(best);
+    if !is_first || best == 0 || best > highest_possible {
+        return Err(PeakError::Best {
+            best,
+            highest_possible,
+            first,
+        });
+    }
+    Ok(())
+}
+
+fn check_poses(
+    header: &VotesHeader,
+    votes: &[Vote],
+    &Geometry { width, height, .. }: &Geometry,
+) -> Result<(), PeakError> {
+    let headings = header.headings;
+    let is_known = |vote: &Vote| {
+        u32::from(vote.x) < width
+            && u32::from(vote.y) < height
+            && u32::from(vote.heading) < headings
+    };
+    match votes.iter().enumerate().find(|(_, vote)| !is_known(vote)) {
+        None => Ok(()),
+        Some((index, &vote)) => Err(PeakError::Pose {
+            index,
+            vote,
+            width,
+            height,
+            headings,
+        }),
+    }
+}
+
+fn check_order(votes: &[Vote]) -> Result<(), PeakError> {
+    let order = |vote: &Vote| (Reverse(vote.intensity), vote.heading, vote.y, vote.x);
+    let mut neighbours = (1..).zip(votes.iter().zip(votes.iter().skip(1)));
+    match neighbours.find(|(_, (previous, vote))| order(previous) >= order(vote)) {
+        None => Ok(()),
+        Some((index, (&previous, &vote))) => Err(PeakError::Order {
+            index,
+            previous,
+            vote,
+        }),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use bytemuck::Zeroable;
+    use messages::{MapHeader, Pose2};
+
+    use super::*;
+
+    fn geometries() -> Geometries {
+        let mut geometries = Geometries::default();
+        let map = MapHeader {
+            map_id: 7,
+            width: 30,
+            height: 20,
+            resolution_m: 0.1,
+            ..Zeroable::zeroed()
+        };
+        geometries.hear(&map).unwrap();
+        geometries
+    }
+
+    fn vote(x: u16, y: u16, heading: u16, intensity: u16) -> Vote {
+        Vote {
+            x,
+            y,
+            heading,
+            intensity,
+        }
+    }
+
+    fn votes() -> Vec<Vote> {
+        vec![
+            vote(29, 19, 359, 100),
+            vote(3, 4, 5, 90),
+            vote(4, 4, 5, 90),
+            vote(0, 5, 5, 90),
+            vote(0, 0, 6, 90),
+        ]
+    }
+
+    fn header() -> VotesHeader {
+        VotesHeader {
+            map_id: 7,
+            outcome: SearchOutcome::Found as u32,
+            headings: 360,
+            certified_floor: 85,
+            best: 100,
+            highest_possible: 200,
+            known_heading: 0.5,
+            ..Zeroable::zeroed()
+        }
+    }
+
+    #[test]
+    fn sound_votes_are_passed_on_without_a_copy() {
+        let votes = votes();
+        let input = check(&header(), &votes, &geometries()).unwrap().unwrap();
+        assert!(std::ptr::eq(input.votes, &votes[..]));
+        assert_eq!((input.certified_floor, input.highest_possible), (85, 200));
+        assert_eq!((input.headings, input.known_heading), (360, None));
+        assert_eq!(input.frame.resolution_m, 0.1);
+        let known = VotesHeader {
+            heading_known: 1,
+            ..header()
+        };
+        let input = check(&known, &votes, &geometries()).unwrap().unwrap();
+        assert_eq!(input.known_heading, Some(0.5));
+    }
+
+    #[test]
+    fn scans_without_votes_need_no_map() {
+        for outcome in [SearchOutcome::NoVotes, SearchOutcome::Refused] {
+            let empty = VotesHeader {
+                outcome: outcome as u32,
+                ..Zeroable::zeroed()
+            };
+            assert!(check(&empty, &[], &geometries()).unwrap().is_none());
+        }
+    }
+
+    #[test]
+    fn what_contradicts_itself_is_refused() {
+        let refuse = |change: fn(&mut VotesHeader, &mut Vec<Vote>), expected: &str| {
+            let (mut header, mut votes) = (header(), votes());
+            change(&mut header, &mut votes);
+            let error = check(&header, &votes, &geometries()).unwrap_err();
+            assert!(error.to_string().starts_with(expected), "{error}");
+        };
+        refuse(|header, _| header.outcome = 3, "outcome is 3");
+        refuse(
+            |header, _| header.map_id = 8,
+            "they are of map 0000000000000008",
+        );
+        refuse(|header, _| header.headings = 0, "headings is 0");
+        refuse(|header, _| header.headings = 65_537, "headings is 65537");
+        refuse(
+            |header, _| {
+                header.heading_known = 1;
+                header.known_heading = f64::NAN;
+            },
+            "known_heading is NaN",
+        );
+        refuse(|_, votes| votes.clear(), "best is 100 of 200 possible");
+        refuse(|header, _| header.best = 99, "best is 99 of 200");
+        refuse(
+            |header, _| header.highest_possible = 99,
+            "best is 100 of 99",
+        );
+        refuse(
+            |header, votes| {
+                header.best = 0;
+                *votes = vec![vote(0, 0, 0, 0)];
+            },
+            "best is 0 of 200",
+        );
+        refuse(|_, votes| votes[2].x = 30, "vote 2 is for cell 30, 4");
+        refuse(|_, votes| votes[0].y = 20, "vote 0 is for cell 29, 20");
+        refuse(|header, _| header.headings = 359, "vote 0 is for cell");
+        refuse(|_, votes| votes.swap(1, 2), "vote 2 is Vote");
+        refuse(|_, votes| votes[4].intensity = 91, "vote 4 is Vote");
+        refuse(|_, votes| votes[2] = votes[1], "vote 2 is Vote");
+    }
+
+    #[test]
+    fn a_mount_is_given_where_it_is_known_and_finite() {
+        let mounted = |mount_known, yaw| {
+            let base_from_laser = Pose2 {
+                x: 0.5,
+                y: 0.0,
+                yaw,
+            };
+            mount(&VotesHeader {
+                mount_known,
+                base_from_laser,
+                ..header()
+            })
+        };
+        assert_eq!(mounted(1, 0.25).unwrap(), Some(Pose::new(0.5, 0.0, 0.25)));
+        assert_eq!(mounted(0, f64::NAN).unwrap(), None);
+        assert!(matches!(
+            mounted(1, f64::NAN),
+            Err(PeakError::Mount { found }) if found.x == 0.5
+        ));
+    }
+}

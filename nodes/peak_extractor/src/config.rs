@@ -1,0 +1,48 @@
+//! What a user can set.
+
+use clap::Parser;
+use engine::peaks::PeakConfig;
+
+/// Turns the votes of each scan into distinct poses with a verdict and
+/// publishes them as `hypotheses`.
+#[derive(Debug, Clone, Parser)]
+#[command(name = "peak_extractor", version)]
+pub struct Config {
+    /// When votes make up one place, and when a place stands alone.
+    #[command(flatten)]
+    pub peaks: PeakConfig,
+}
+
+#[cfg(test)]
+mod tests {
+    use clap::CommandFactory;
+
+    use super::*;
+
+    fn parse(arguments: &str) -> Result<PeakConfig, String> {
+        let words = ["peak_extractor"]
+            .into_iter()
+            .chain(arguments.split_whitespace());
+        Config::try_parse_from(words)
+            .map(|config| config.peaks)
+            .map_err(|error| error.to_string())
+    }
+
+    #[test]
+    fn the_command_line_is_well_formed() {
+        Config::command().debug_assert();
+    }
+
+    #[test]
+    fn settings_have_defaults_and_limits() {
+        assert_eq!(parse(""), Ok(PeakConfig::default()));
+        let config = parse("--max-hypotheses 3 --same-place-m 0.3").unwrap();
+        assert_eq!((config.max_hypotheses, config.same_place_m), (3, 0.3));
+        assert!(
+            parse("--max-hypotheses 0")
+                .unwrap_err()
+                .contains("1..=1000")
+        );
+        assert!(parse("--same-place-m -1").is_err());
+    }
+}

@@ -1,0 +1,97 @@
+//! What keeps votes from being read, and the node from running.
+
+use map::MapError;
+use messages::{Pose2, Vote};
+use transport::TransportError;
+
+/// Votes or a map that are refused, or a failure of the graph.
+#[derive(Debug, thiserror::Error)]
+pub enum PeakError {
+    /// The votes are of a map that never came, or came too long ago.
+    #[error(
+        "they are of map {found:016x}, which is not known; known are the newest map and the one \
+         before: {known}"
+    )]
+    UnknownMap {
+        /// By the votes.
+        found: u64,
+        /// The maps that are known.
+        known: String,
+    },
+    /// The geometry of a map is out of range.
+    #[error(transparent)]
+    Geometry(#[from] MapError),
+    /// No search ends like this.
+    #[error("outcome is {found}: allowed are 0 (found), 1 (no votes) and 2 (refused)")]
+    Outcome {
+        /// By the header.
+        found: u32,
+    },
+    /// No turn has so many headings.
+    #[error("headings is {found}: allowed are 1 to 65536")]
+    Headings {
+        /// By the header.
+        found: u32,
+    },
+    /// The heading that was given is no number.
+    #[error("known_heading is {found}: it must be finite, in radians")]
+    KnownHeading {
+        /// By the header.
+        found: f64,
+    },
+    /// The laser's mount is no number.
+    #[error(
+        "base_from_laser is x {} m, y {} m, yaw {} rad: each must be finite",
+        found.x, found.y, found.yaw
+    )]
+    Mount {
+        /// By the header.
+        found: Pose2,
+    },
+    /// The highest intensity is not that of the first vote, or not possible.
+    #[error(
+        "best is {best} of {highest_possible} possible, and the first vote has {first:?}: they \
+         must be 1 or more, the first two rising and the last two equal"
+    )]
+    Best {
+        /// By the header.
+        best: u32,
+        /// By the header.
+        highest_possible: u32,
+        /// Intensity of the first vote, if there is one.
+        first: Option<u16>,
+    },
+    /// A vote is for a pose that the search does not know.
+    #[error(
+        "vote {index} is for cell {}, {} and heading {}: the map has {width} x {height} cells and \
+         a turn {headings} headings", vote.x, vote.y, vote.heading
+    )]
+    Pose {
+        /// From 0.
+        index: usize,
+        /// As it came.
+        vote: Vote,
+        /// Of the map, cells.
+        width: u32,
+        /// Of the map, cells.
+        height: u32,
+        /// A turn.
+        headings: u32,
+    },
+    /// The votes are not in order.
+    #[error(
+        "vote {index} is {vote:?}, after {previous:?}: intensities must fall, and equal \
+         ones rise by heading, y and x"
+    )]
+    Order {
+        /// From 0.
+        index: usize,
+        /// The one before.
+        previous: Vote,
+        /// As it came.
+        vote: Vote,
+    },
+    /// The graph failed.
+    #[error(transparent)]
+    Transport(#[from] TransportError),
+}

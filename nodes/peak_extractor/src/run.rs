@@ -1,0 +1,134 @@
+//! Receives votes and sends hypotheses.
+
+use std::time::{Duration, Instant};
+
+use engine::peaks::PeakConfig;
+use messages::{NodeState, topic};
+use transport::{
+    Flow, GapCounter, Graph, Health, Publisher, Sample, Subscriber, TransportError, monotonic_ns,
+};
+
+use crate::answer::{Answer, answer, nothing};
+use crate::geometries::Geometries;
+use crate::{Config, PeakError};
+
+/// How long a report of health may be overdue.
+const TICK: Duration = Duration::from_millis(100);
+
+/// Answers each message of votes with its hypotheses until the stop flag is
+/// set.
+///
+/// # Errors
+/// If the graph fails; votes or a map that are refused are reported in
+/// `health`.
+pub fn run(graph: &Graph, config: &Config) -> Result<(), PeakError> {
+    let votes = graph.subscriber::<topic::Votes>()?;
+    let maps = graph.subscriber::<topic::Map>()?;
+    let mut node = Node {
+        config: config.peaks,
+        geometries: Geometries::default(),
+        gaps: GapCounter::new(),
+        last_refusal: String::new(),
+        hypotheses: graph.publisher()?,
+        health: graph.health()?,
+    };
+    graph.run(&[&votes, &maps], TICK, |_| {
+        node.step(&votes, &maps)?;
+        Ok(Flow::Continue)
+    })
+}
+
+struct Node {
+    config: PeakConfig,
+    geometries: Geometries,
+    gaps: GapCounter,
+    last_refusal: String,
+    hypotheses: Publisher<topic::Hypotheses>,
+    health: Health,
+}
+
+impl Node {
+    fn step(
+        &mut self,
+        votes: &Subscriber<topic::Votes>,
+        maps: &Subscriber<topic::Map>,
+    ) -> Result<(), TransportError> {
+        loop {
+            let sample = votes.receive()?;
+            // The map that was searched was sent before its votes.
+            if let Some(map) = maps.newest()? {
+                self.hear(&map)?;
+            }
+            self.health.tick()?;
+            match sample {
+                Some(sample) => self.answer(&sample)?,
+                None => return Ok(()),
+            }
+        }
+    }
+
+    fn hear(&mut self, map: &Sample<topic::Map>) -> Result<(), TransportError> {
+        self.health.count_received(1);
+        match self.geometries.hear(map.header()) {
+            Ok(()) => self.health.state(NodeState::Ready),
+            Err(error) => {
+                let map_id = map.header().map_id;
+                let problem = format!("map {map_id:016x} is refused: {error}");
+                tracing::warn!("{problem}");
+                self.health.count_refused(1);
+                self.health.error(&problem)?;
+                self.health.state(NodeState::Degraded)
+            }
+        }
+    }
+
+    fn answer(&mut self, votes: &Sample<topic::Votes>) -> Result<(), TransportError> {
+        let start = Instant::now();
+        let header = votes.header();
+        let answered = answer(header, votes.items(), &self.geometries, &self.config);
+        let extract_ns = start.elapsed().as_nanos() as u64;
+        // Votes have the counter of their scan: one that is missing here was
+        // lost on one of its two ways.
+        let lost = self.gaps.lost_before(header.stamp.counter);
+        self.health.count_received(1);
+        self.health.count_dropped(lost);
+        match answered {
+            Ok(answer) => {
+                self.last_refusal.clear();
+                self.send(&answer, extract_ns)
+            }
+            Err(error) => {
+                self.send(&nothing(header), extract_ns)?;
+                self.refuse(header.stamp.counter, &error)
+            }
+        }
+    }
+
+    fn send(&mut self, answer: &Answer, extract_ns: u64) -> Result<(), TransportError> {
+        let hypotheses = answer.hypotheses();
+        let mut loan = self.hypotheses.loan(hypotheses.len())?;
+        for (item, hypothesis) in loan.items_mut().iter_mut().zip(hypotheses) {
+            *item = hypothesis;
+        }
+        let header = loan.header_mut();
+        *header = answer.header;
+        header.extract_ns = extract_ns;
+        header.sent_ns = monotonic_ns();
+        loan.send()?;
+        self.health.count_sent(1);
+        Ok(())
+    }
+
+    fn refuse(&mut self, counter: u64, error: &PeakError) -> Result<(), TransportError> {
+        self.health.count_refused(1);
+        let reason = error.to_string();
+        let problem = format!("the votes of scan {counter} are refused: {reason}");
+        self.health.error(&problem)?;
+        // A sender that is always wrong would fill the log.
+        if reason != self.last_refusal {
+            tracing::warn!("{problem}");
+            self.last_refusal = reason;
+        }
+        Ok(())
+    }
+}

@@ -1,0 +1,96 @@
+//! What a user can set.
+
+use std::path::PathBuf;
+
+use clap::Parser;
+use messages::Name;
+
+use crate::Rate;
+
+/// Plays a recording into the graph: scans, odometry and true poses.
+///
+/// Ends with 0 when everything was played, 1 on an error, 2 on wrong usage, and
+/// 3 when it finished but lost data: a scan without an answer, or a message that
+/// could not be used.
+#[derive(Debug, Clone, Parser)]
+#[command(name = "replayer", version)]
+pub struct Config {
+    /// The recording: an MCAP file with ROS 2 messages.
+    #[arg(long, value_name = "FILE")]
+    pub recording: PathBuf,
+
+    /// Times the original speed, 0.001 to 1000; or max: the next scan follows
+    /// the answer to the one before, and none is dropped.
+    #[arg(long, value_name = "FACTOR|max", default_value_t = Rate::Factor(1.0))]
+    pub rate: Rate,
+
+    /// Starts over at the end.
+    #[arg(long = "loop")]
+    pub looped: bool,
+
+    /// Nodes that must be ready before playing starts, with commas between.
+    #[arg(long, value_name = "NODES", value_delimiter = ',', value_parser = node)]
+    pub wait_for: Vec<String>,
+
+    /// Seconds that one answer may take, 0.1 to 3600: of every scan at --rate
+    /// max, else of the last one, if anybody listens.
+    #[arg(long, value_name = "SECONDS", default_value_t = 30.0, value_parser = patience)]
+    pub patience: f64,
+}
+
+fn node(text: &str) -> Result<String, String> {
+    match text.len() {
+        1..=Name::CAPACITY if text != "replayer" => Ok(text.into()),
+        1..=Name::CAPACITY => Err("it would wait for itself".into()),
+        bytes => Err(format!(
+            "it has {bytes} bytes, allowed are 1 to {}",
+            Name::CAPACITY
+        )),
+    }
+}
+
+fn patience(text: &str) -> Result<f64, String> {
+    match text.parse() {
+        Ok(seconds) if (0.1..=3600.0).contains(&seconds) => Ok(seconds),
+        _ => Err("allowed are 0.1 to 3600 seconds".into()),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use clap::CommandFactory;
+
+    use super::*;
+
+    fn parse(arguments: &str) -> Result<Config, String> {
+        let words = ["replayer"].into_iter().chain(arguments.split_whitespace());
+        Config::try_parse_from(words).map_err(|error| error.to_string())
+    }
+
+    #[test]
+    fn options() {
+        Config::command().debug_assert();
+        let config = parse("--recording a.mcap").unwrap();
+        assert_eq!(config.rate, Rate::Factor(1.0));
+        assert!(config.wait_for.is_empty() && !config.looped);
+        let config = parse("--recording a --rate max --wait-for b,c --patience 2").unwrap();
+        assert_eq!((config.rate, config.patience), (Rate::Max, 2.0));
+        assert_eq!(config.wait_for, ["b", "c"]);
+    }
+
+    #[test]
+    fn what_is_refused_says_what_is_allowed() {
+        let refuse = |arguments: &str, expected: &str| {
+            let text = parse(arguments).unwrap_err();
+            assert!(text.contains(expected), "{arguments}: {text}");
+        };
+        refuse("", "--recording");
+        refuse("--recording a --rate 0", "0.001 to 1000, and max");
+        refuse("--recording a --patience 0", "0.1 to 3600 seconds");
+        refuse(
+            "--recording a --wait-for b,,c",
+            "0 bytes, allowed are 1 to 32",
+        );
+        refuse("--recording a --wait-for replayer", "wait for itself");
+    }
+}

@@ -1,0 +1,55 @@
+//! What can go wrong with a recording and on the way into the graph.
+
+use recording::RecordingError;
+use recording::ros::ConversionError;
+
+/// What was tried, what was found and what is allowed.
+#[derive(Debug, thiserror::Error)]
+pub enum ReplayerError {
+    /// The recording, or a message of it, cannot be read.
+    #[error(transparent)]
+    Recording(#[from] Box<RecordingError>),
+    /// A frame's name does not fit into a message.
+    #[error(
+        "the message of {topic} at log time {log_time_ns} ns: the frame {frame:?} has {} bytes, \
+         at most {} are allowed", frame.len(), messages::Name::CAPACITY
+    )]
+    Frame {
+        /// The channel.
+        topic: String,
+        /// Nanoseconds since 1970.
+        log_time_ns: i64,
+        /// The name.
+        frame: String,
+    },
+    /// A pose is none.
+    #[error("the message of {topic} at log time {log_time_ns} ns cannot be used: {reason}")]
+    Pose {
+        /// The channel.
+        topic: String,
+        /// Nanoseconds since 1970.
+        log_time_ns: i64,
+        /// What is wrong.
+        reason: Box<ConversionError>,
+    },
+    /// The graph failed.
+    #[error(transparent)]
+    Transport(#[from] transport::TransportError),
+}
+
+impl ReplayerError {
+    /// Whether it is about one message, so that the next one may be played.
+    pub(crate) fn is_about_one_message(&self) -> bool {
+        match self {
+            ReplayerError::Frame { .. } | ReplayerError::Pose { .. } => true,
+            ReplayerError::Recording(error) => matches!(**error, RecordingError::Message { .. }),
+            ReplayerError::Transport(_) => false,
+        }
+    }
+}
+
+impl From<RecordingError> for ReplayerError {
+    fn from(error: RecordingError) -> Self {
+        ReplayerError::Recording(Box::new(error))
+    }
+}

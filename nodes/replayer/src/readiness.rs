@@ -1,0 +1,71 @@
+//! Which of the nodes that are waited for are ready.
+
+use messages::{HealthHeader, NodeState};
+
+/// The nodes and what they last said.
+#[derive(Debug)]
+pub(crate) struct Readiness {
+    nodes: Vec<(String, Option<NodeState>)>,
+}
+
+impl Readiness {
+    pub(crate) fn of(names: &[String]) -> Self {
+        let nodes = names.iter().map(|name| (name.clone(), None));
+        Readiness {
+            nodes: nodes.collect(),
+        }
+    }
+
+    /// Takes a node's report.
+    pub(crate) fn hear(&mut self, report: &HealthHeader) {
+        let name = report.node.as_str();
+        for (_, state) in self.nodes.iter_mut().filter(|(node, _)| node == name) {
+            *state = NodeState::from_code(report.state);
+        }
+    }
+
+    /// Those that are not ready, with what is known of them; empty when all are.
+    pub(crate) fn missing(&self) -> Vec<String> {
+        let missing = |(name, state): &(String, Option<NodeState>)| match state {
+            Some(NodeState::Ready) => None,
+            Some(state) => Some(format!("{name} ({state:?})")),
+            None => Some(format!("{name} (not heard of)")),
+        };
+        self.nodes.iter().filter_map(missing).collect()
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use bytemuck::Zeroable;
+    use messages::Name;
+
+    use super::*;
+
+    fn report(node: &str, state: u32) -> HealthHeader {
+        HealthHeader {
+            node: Name::new(node),
+            state,
+            ..HealthHeader::zeroed()
+        }
+    }
+
+    #[test]
+    fn all_must_be_ready_at_the_same_time() {
+        let mut readiness = Readiness::of(&["a".into(), "b".into()]);
+        assert_eq!(
+            readiness.missing(),
+            ["a (not heard of)", "b (not heard of)"]
+        );
+        readiness.hear(&report("a", NodeState::Ready as u32));
+        readiness.hear(&report("c", NodeState::Ready as u32));
+        readiness.hear(&report("b", NodeState::Waiting as u32));
+        assert_eq!(readiness.missing(), ["b (Waiting)"]);
+        readiness.hear(&report("b", NodeState::Ready as u32));
+        readiness.hear(&report("a", 99));
+        assert_eq!(readiness.missing(), ["a (not heard of)"]);
+        readiness.hear(&report("a", NodeState::Ready as u32));
+        assert!(readiness.missing().is_empty());
+        assert!(Readiness::of(&[]).missing().is_empty());
+    }
+}

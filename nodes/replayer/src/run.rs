@@ -1,0 +1,234 @@
+//! Reads the clock, waits and sends.
+
+mod outlet;
+
+use std::sync::Arc;
+use std::sync::atomic::{AtomicBool, Ordering};
+use std::time::Duration;
+
+use messages::{NodeState, topic};
+use recording::Recording;
+use transport::{Flow, Graph, Subscriber, monotonic_ns};
+
+use crate::order::InOrder;
+use crate::readiness::Readiness;
+use crate::schedule::{Action, Schedule};
+use crate::source::{Channels, Source, Timed};
+use crate::{Config, Rate, ReplayerError};
+use outlet::Outlet;
+
+/// The longest time without a look at answers, signals and health.
+const TICK: Duration = Duration::from_millis(50);
+
+/// Between two lines that say who is waited for, nanoseconds.
+const REMINDER_NS: i64 = 5_000_000_000;
+
+/// What a run did.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+pub struct Summary {
+    /// Whether it came to its end; false where it was stopped.
+    pub finished: bool,
+    /// Scans sent.
+    pub scans: u64,
+    /// Answers that came.
+    pub answers: u64,
+    /// Scans whose answer was waited for in vain.
+    pub unanswered: u64,
+    /// Messages that could not be used.
+    pub refused: u64,
+}
+
+impl Summary {
+    /// Whether it finished but lost data on the way.
+    #[must_use]
+    pub fn lost_data(&self) -> bool {
+        self.finished && self.unanswered + self.refused > 0
+    }
+}
+
+/// Plays the recording until it ends or the stop flag is set.
+///
+/// # Errors
+/// If there is no recording with scans, if it is damaged (what lies before the
+/// damage is played), or if the graph fails.
+pub fn run(graph: &Graph, config: &Config) -> Result<Summary, ReplayerError> {
+    let mut outlet = Outlet::open(graph)?;
+    let answers = graph.subscriber::<topic::Hypotheses>()?;
+    let recording = Recording::open(&config.recording)?;
+    let channels = Channels::of(&recording)?;
+    wait_for_nodes(graph, config, &mut outlet)?;
+    let stop = graph.stop_flag();
+    if stop.load(Ordering::Relaxed) {
+        return Ok(Summary::default());
+    }
+    let gap_ns = announce(&recording, &channels, config);
+    outlet.health.state(NodeState::Ready)?;
+    let mut player = Player {
+        recording: &recording,
+        items: InOrder::new(Source::new(&recording, channels.clone())),
+        channels,
+        config,
+        gap_ns,
+        scans_before: 0,
+        pending: None,
+        failure: None,
+        schedule: Schedule::new(config.rate, config.patience),
+        outlet,
+        stop,
+    };
+    player.advance()?;
+    graph.run(&[&answers], TICK, |_| player.step(&answers))?;
+    player.conclude()
+}
+
+/// Says what will be played; returns the usual time between two scans.
+fn announce(recording: &Recording, channels: &Channels, config: &Config) -> i64 {
+    let scans = channels.scans(recording);
+    let (first_ns, last_ns) = recording.time_range_ns().unwrap_or((0, 0));
+    let duration_ns = last_ns.saturating_sub(first_ns);
+    tracing::info!(
+        recording = %recording.path().display(),
+        scans,
+        duration = format!("{:.1} s", duration_ns as f64 * 1e-9),
+        rate = %config.rate,
+        "playing"
+    );
+    duration_ns / i64::try_from(scans).unwrap_or(i64::MAX).max(1)
+}
+
+/// Waits until all nodes that the configuration names are ready.
+fn wait_for_nodes(
+    graph: &Graph,
+    config: &Config,
+    outlet: &mut Outlet,
+) -> Result<(), ReplayerError> {
+    let mut readiness = Readiness::of(&config.wait_for);
+    if readiness.missing().is_empty() {
+        return Ok(());
+    }
+    let reports = graph.subscriber::<topic::Health>()?;
+    let mut reminder_ns = i64::MIN;
+    graph.run(&[&reports], TICK, |_| {
+        while let Some(report) = reports.receive()? {
+            readiness.hear(report.header());
+        }
+        let missing = readiness.missing();
+        if missing.is_empty() {
+            return Ok(Flow::Stop);
+        }
+        if monotonic_ns() >= reminder_ns {
+            reminder_ns = monotonic_ns().saturating_add(REMINDER_NS);
+            tracing::info!("waiting for {}", missing.join(", "));
+        }
+        outlet.health.tick()?;
+        Ok(Flow::Continue)
+    })
+}
+
+struct Player<'r> {
+    recording: &'r Recording,
+    channels: Channels,
+    config: &'r Config,
+    /// The usual time between two scans of the recording.
+    gap_ns: i64,
+    items: InOrder<Source<'r>, ReplayerError>,
+    /// Scans sent before this round.
+    scans_before: u64,
+    pending: Option<Timed>,
+    /// What ended the recording before its end.
+    failure: Option<ReplayerError>,
+    schedule: Schedule,
+    outlet: Outlet,
+    stop: Arc<AtomicBool>,
+}
+
+impl Player<'_> {
+    /// Does what is due, until there is nothing to do for longer than a tick.
+    fn step(&mut self, answers: &Subscriber<topic::Hypotheses>) -> Result<Flow, ReplayerError> {
+        while !self.stop.load(Ordering::Relaxed) {
+            while let Some(answer) = answers.receive()? {
+                self.schedule.answered(answer.header().stamp);
+                self.outlet.count_answer()?;
+            }
+            self.outlet.health.tick()?;
+            let pending_ns = self.pending.as_ref().map(|timed| timed.log_time_ns);
+            let now_ns = monotonic_ns();
+            match self.schedule.next(pending_ns, now_ns) {
+                Action::Send => self.send()?,
+                Action::SleepUntil(due_ns) => {
+                    let left = Duration::from_nanos((due_ns - now_ns).unsigned_abs());
+                    if left > TICK {
+                        return Ok(Flow::Continue);
+                    }
+                    std::thread::sleep(left);
+                }
+                Action::AwaitAnswer => return Ok(Flow::Continue),
+                Action::GiveUp(stamp) => self.outlet.give_up(stamp, self.config.patience)?,
+                Action::Done => {
+                    self.outlet.summary.finished = true;
+                    return Ok(Flow::Stop);
+                }
+            }
+        }
+        Ok(Flow::Continue)
+    }
+
+    fn send(&mut self) -> Result<(), ReplayerError> {
+        if let Some(timed) = self.pending.take()
+            && let Some(stamp) = self.outlet.send(timed)?
+            // At a factor the graph need not be there; at max it must answer.
+            && (self.config.rate == Rate::Max || self.outlet.is_heard())
+        {
+            self.schedule.scan_sent(stamp);
+        }
+        self.advance()
+    }
+
+    /// Makes the next message pending, if there is one.
+    fn advance(&mut self) -> Result<(), ReplayerError> {
+        while self.pending.is_none() && self.failure.is_none() {
+            match self.items.next() {
+                Some(Ok(timed)) => self.pending = Some(timed),
+                Some(Err(error)) if error.is_about_one_message() => self.outlet.refuse(&error)?,
+                Some(Err(error)) => self.failure = Some(error),
+                None if self.starts_over() => {}
+                None => break,
+            }
+        }
+        Ok(())
+    }
+
+    /// Begins another round; not where the last one had no scan, for it would
+    /// never end.
+    fn starts_over(&mut self) -> bool {
+        let scans = self.outlet.summary.scans;
+        if !self.config.looped || scans == self.scans_before {
+            return false;
+        }
+        self.scans_before = scans;
+        self.items = InOrder::new(Source::new(self.recording, self.channels.clone()));
+        self.schedule.start_over(self.gap_ns);
+        true
+    }
+
+    /// Says how it went.
+    fn conclude(self) -> Result<Summary, ReplayerError> {
+        let summary = self.outlet.summary;
+        let Summary {
+            finished,
+            scans,
+            answers,
+            unanswered,
+            refused,
+        } = summary;
+        let how = match finished {
+            true => "played",
+            false => "stopped",
+        };
+        tracing::info!(scans, answers, unanswered, refused, "{how}");
+        match self.failure {
+            Some(error) if finished => Err(error),
+            _ => Ok(summary),
+        }
+    }
+}

@@ -1,0 +1,216 @@
+//! What to do next, and when: pure, the caller passes the clock in.
+//!
+//! At a factor each message is due at the original distance from the first one,
+//! so that no error adds up; at `max` the next message follows the answer to the
+//! last scan. At the end the last scan's answer is waited for in either case.
+
+use messages::Stamp;
+
+use crate::Rate;
+
+/// What to do now. Times are `CLOCK_MONOTONIC` in nanoseconds.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(crate) enum Action {
+    /// Send the pending message.
+    Send,
+    /// It is due at this time.
+    SleepUntil(i64),
+    /// Only an answer, or patience, leads on.
+    AwaitAnswer,
+    /// The answer to this scan is given up.
+    GiveUp(Stamp),
+    /// Everything was played, and answered or given up.
+    Done,
+}
+
+/// Where the recording's time meets the clock.
+#[derive(Debug, Clone, Copy)]
+struct Anchor {
+    log_ns: i64,
+    clock_ns: i64,
+}
+
+/// The state of playing.
+#[derive(Debug)]
+pub(crate) struct Schedule {
+    rate: Rate,
+    patience_ns: i64,
+    anchor: Option<Anchor>,
+    /// Of the message that was due last, on the clock.
+    last_due_ns: i64,
+    /// The first message of this round is not due before.
+    not_before_ns: i64,
+    awaited: Option<Stamp>,
+}
+
+impl Schedule {
+    pub(crate) fn new(rate: Rate, patience_s: f64) -> Self {
+        Schedule {
+            rate,
+            patience_ns: (patience_s * 1e9) as i64,
+            anchor: None,
+            last_due_ns: i64::MIN,
+            not_before_ns: i64::MIN,
+            awaited: None,
+        }
+    }
+
+    /// What to do at `now_ns`, where the next message was recorded at
+    /// `pending_ns`, or there is none.
+    pub(crate) fn next(&mut self, pending_ns: Option<i64>, now_ns: i64) -> Action {
+        if let Some(stamp) = self.awaited
+            && (self.rate == Rate::Max || pending_ns.is_none())
+        {
+            // A scan enters the graph when it is sent.
+            if now_ns - stamp.entered_ns < self.patience_ns {
+                return Action::AwaitAnswer;
+            }
+            self.awaited = None;
+            return Action::GiveUp(stamp);
+        }
+        let Some(log_ns) = pending_ns else {
+            return Action::Done;
+        };
+        let due_ns = self.due(log_ns, now_ns);
+        if due_ns > now_ns {
+            return Action::SleepUntil(due_ns);
+        }
+        self.last_due_ns = due_ns;
+        Action::Send
+    }
+
+    /// A scan was sent with this stamp.
+    pub(crate) fn scan_sent(&mut self, stamp: Stamp) {
+        self.awaited = Some(stamp);
+    }
+
+    /// An answer came that carries this stamp.
+    pub(crate) fn answered(&mut self, stamp: Stamp) {
+        if self.awaited == Some(stamp) {
+            self.awaited = None;
+        }
+    }
+
+    /// The recording starts over, `gap_ns` of its time after its last message.
+    pub(crate) fn start_over(&mut self, gap_ns: i64) {
+        self.anchor = None;
+        self.not_before_ns = self.last_due_ns.saturating_add(self.scaled(gap_ns));
+    }
+
+    fn due(&mut self, log_ns: i64, now_ns: i64) -> i64 {
+        if self.rate == Rate::Max {
+            return now_ns;
+        }
+        let not_before_ns = self.not_before_ns;
+        let anchor = *self.anchor.get_or_insert(Anchor {
+            log_ns,
+            clock_ns: now_ns.max(not_before_ns),
+        });
+        anchor
+            .clock_ns
+            .saturating_add(self.scaled(log_ns.saturating_sub(anchor.log_ns)))
+    }
+
+    /// A time of the recording as the clock counts it.
+    fn scaled(&self, recorded_ns: i64) -> i64 {
+        match self.rate {
+            Rate::Factor(factor) => (recorded_ns as f64 / factor) as i64,
+            Rate::Max => 0,
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    const MS: i64 = 1_000_000;
+    /// Recordings start long before a clock that started at boot.
+    const LOG: i64 = 1_700_000_000_000 * MS;
+
+    fn at(log_ms: i64) -> Option<i64> {
+        Some(LOG + log_ms * MS)
+    }
+
+    fn stamp(counter: u64, entered_ms: i64) -> Stamp {
+        Stamp {
+            measured_ns: 0,
+            entered_ns: entered_ms * MS,
+            counter,
+        }
+    }
+
+    #[test]
+    fn the_original_distances_scaled_without_drift() {
+        for (factor, stretch) in [(1.0, 100), (2.0, 50), (0.1, 1000)] {
+            let mut schedule = Schedule::new(Rate::Factor(factor), 1.0);
+            assert_eq!(schedule.next(at(0), 5 * MS), Action::Send);
+            for step in 1..1000 {
+                let due = (5 + step * stretch) * MS;
+                let pending = at(step * 100);
+                assert_eq!(schedule.next(pending, due - 1), Action::SleepUntil(due));
+                // Each wake-up is late by a millisecond; the next one's due
+                // time does not care.
+                assert_eq!(schedule.next(pending, due + MS), Action::Send);
+            }
+        }
+    }
+
+    #[test]
+    fn what_is_overdue_is_sent_at_once() {
+        let mut schedule = Schedule::new(Rate::Factor(1.0), 1.0);
+        schedule.next(at(0), 0);
+        assert_eq!(schedule.next(at(10), 50 * MS), Action::Send);
+        assert_eq!(schedule.next(at(-10), 50 * MS), Action::Send);
+    }
+
+    #[test]
+    fn at_a_factor_only_the_last_answer_is_waited_for() {
+        let mut schedule = Schedule::new(Rate::Factor(1.0), 1.0);
+        schedule.next(at(0), 0);
+        schedule.scan_sent(stamp(0, 0));
+        assert_eq!(schedule.next(at(10), 10 * MS), Action::Send);
+        schedule.scan_sent(stamp(1, 10));
+        schedule.answered(stamp(0, 0));
+        assert_eq!(schedule.next(None, 11 * MS), Action::AwaitAnswer);
+        schedule.answered(stamp(1, 10));
+        assert_eq!(schedule.next(None, 12 * MS), Action::Done);
+    }
+
+    #[test]
+    fn at_max_everything_waits_for_the_answer() {
+        let mut schedule = Schedule::new(Rate::Max, 1.0);
+        assert_eq!(schedule.next(at(0), 0), Action::Send);
+        schedule.scan_sent(stamp(0, 0));
+        assert_eq!(schedule.next(at(9999), MS), Action::AwaitAnswer);
+        // The same counter from another source is another scan.
+        schedule.answered(stamp(0, 7));
+        assert_eq!(schedule.next(at(9999), MS), Action::AwaitAnswer);
+        schedule.answered(stamp(0, 0));
+        assert_eq!(schedule.next(at(9999), MS), Action::Send);
+        assert_eq!(schedule.next(None, MS), Action::Done);
+    }
+
+    #[test]
+    fn patience_ends_and_the_run_goes_on() {
+        let mut schedule = Schedule::new(Rate::Max, 0.5);
+        schedule.scan_sent(stamp(3, 100));
+        assert_eq!(schedule.next(at(0), 599 * MS), Action::AwaitAnswer);
+        let given_up = Action::GiveUp(stamp(3, 100));
+        assert_eq!(schedule.next(at(0), 600 * MS), given_up);
+        assert_eq!(schedule.next(at(0), 600 * MS), Action::Send);
+    }
+
+    #[test]
+    fn a_new_round_keeps_its_distance_from_the_last() {
+        let mut schedule = Schedule::new(Rate::Factor(2.0), 1.0);
+        schedule.next(at(0), 0);
+        assert_eq!(schedule.next(at(1000), 501 * MS), Action::Send);
+        schedule.start_over(200 * MS);
+        let due = 600 * MS;
+        assert_eq!(schedule.next(at(0), 502 * MS), Action::SleepUntil(due));
+        assert_eq!(schedule.next(at(0), 603 * MS), Action::Send);
+        let due = 1100 * MS;
+        assert_eq!(schedule.next(at(1000), 604 * MS), Action::SleepUntil(due));
+    }
+}

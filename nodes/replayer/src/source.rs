@@ -1,0 +1,313 @@
+//! From the records of a recording to messages of the graph, in their order.
+//!
+//! Pure: the recording is open already. It chooses the channels and leaves out
+//! all others.
+
+use std::collections::BTreeMap;
+use std::sync::Arc;
+
+use messages::{GroundTruth, Odometry, Pose2, ScanHeader};
+use recording::{Kind, Message, Record, Recording, RecordingError, Records};
+
+use crate::ReplayerError;
+use crate::convert::{Place, scan_header};
+
+/// A message that is ready but for its moment.
+#[derive(Debug, Clone, PartialEq)]
+pub(crate) struct Timed {
+    /// When it was recorded, nanoseconds.
+    pub(crate) log_time_ns: i64,
+    pub(crate) content: Content,
+}
+
+/// What it says.
+#[derive(Debug, Clone, PartialEq)]
+pub(crate) enum Content {
+    Scan(Box<ScanHeader>, Vec<f32>),
+    Odometry(Box<Odometry>),
+    GroundTruth(Box<GroundTruth>),
+}
+
+impl Timed {
+    pub(crate) fn is_scan(&self) -> bool {
+        matches!(self.content, Content::Scan(..))
+    }
+
+    /// When it was measured, nanoseconds.
+    pub(crate) fn stamp_ns(&self) -> i64 {
+        match &self.content {
+            Content::Scan(header, _) => header.stamp.measured_ns,
+            Content::Odometry(odometry) => odometry.stamp.measured_ns,
+            Content::GroundTruth(truth) => truth.stamp.measured_ns,
+        }
+    }
+}
+
+/// The channels that are played.
+#[derive(Debug, Clone)]
+pub(crate) struct Channels {
+    scan: Arc<str>,
+    odometry: Option<Arc<str>>,
+    truth: Option<Arc<str>>,
+}
+
+impl Channels {
+    /// # Errors
+    /// If there are no scans, or it is not clear which ones are meant.
+    pub(crate) fn of(recording: &Recording) -> Result<Self, RecordingError> {
+        Ok(Channels {
+            scan: recording.required_topic(Kind::Scan)?,
+            odometry: recording.topic(Kind::Odometry)?,
+            truth: recording.topic(Kind::PoseStamped)?,
+        })
+    }
+
+    /// Readable messages of the channel with scans.
+    pub(crate) fn scans(&self, recording: &Recording) -> u64 {
+        let mut channels = recording.channels();
+        let scan = channels.find(|channel| channel.topic == self.scan);
+        scan.map_or(0, |channel| channel.messages)
+    }
+
+    fn has(&self, topic: &str) -> bool {
+        let meant = [
+            Some(&self.scan),
+            self.odometry.as_ref(),
+            self.truth.as_ref(),
+        ];
+        meant.into_iter().flatten().any(|name| **name == *topic)
+    }
+}
+
+/// The messages by log time; damage of the file is the last item.
+pub(crate) struct Source<'a> {
+    recording: &'a Recording,
+    channels: Channels,
+    records: Records<'a>,
+    mounts: BTreeMap<String, Option<Pose2>>,
+}
+
+impl<'a> Source<'a> {
+    pub(crate) fn new(recording: &'a Recording, channels: Channels) -> Self {
+        Source {
+            recording,
+            channels,
+            records: recording.records_of(&[Kind::Scan, Kind::Odometry, Kind::PoseStamped]),
+            mounts: BTreeMap::new(),
+        }
+    }
+
+    fn convert(&mut self, record: Record) -> Result<Option<Timed>, ReplayerError> {
+        let place = Place {
+            topic: &record.topic,
+            log_time_ns: record.log_time_ns,
+        };
+        let content = match record.message {
+            Message::Scan(scan) => {
+                let frame = place.name(&scan.header.frame_id)?;
+                let mount = self.mount(&scan.header.frame_id)?;
+                Content::Scan(Box::new(scan_header(&scan, frame, mount)), scan.ranges)
+            }
+            Message::Odometry(message) => Content::Odometry(Box::new(place.odometry(&message)?)),
+            Message::PoseStamped(message) => {
+                Content::GroundTruth(Box::new(place.ground_truth(&message)?))
+            }
+            Message::Map(_) | Message::StaticTransforms(_) => return Ok(None),
+        };
+        Ok(Some(Timed {
+            log_time_ns: record.log_time_ns,
+            content,
+        }))
+    }
+
+    /// Where the laser of this frame sits; looked up once.
+    fn mount(&mut self, frame: &str) -> Result<Option<Pose2>, RecordingError> {
+        if let Some(&known) = self.mounts.get(frame) {
+            return Ok(known);
+        }
+        let mount = self.recording.base_from_laser(frame)?;
+        let mount = mount.map(|mount| mount.base_from_laser.into());
+        self.mounts.insert(frame.into(), mount);
+        Ok(mount)
+    }
+}
+
+impl Iterator for Source<'_> {
+    type Item = Result<Timed, ReplayerError>;
+
+    fn next(&mut self) -> Option<Self::Item> {
+        loop {
+            let converted = match self.records.next()? {
+                Ok(record) if !self.channels.has(&record.topic) => continue,
+                Err(
+                    RecordingError::Message { topic, .. } | RecordingError::NotCdr { topic, .. },
+                ) if !self.channels.has(&topic) => {
+                    continue;
+                }
+                Ok(record) => self.convert(record).transpose(),
+                Err(error) => Some(Err(error.into())),
+            };
+            if converted.is_some() {
+                return converted;
+            }
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use geometry::Pose;
+    use recording::ros::{self, LaserScan, PoseStamped, Time};
+    use recording::write::{Packing, RecordingWriter};
+
+    use super::*;
+
+    const SECOND: i64 = 1_000_000_000;
+
+    fn header(second: i32, frame: &str) -> ros::Header {
+        ros::Header {
+            stamp: Time {
+                sec: second,
+                nanosec: 5,
+            },
+            frame_id: frame.into(),
+        }
+    }
+
+    fn scan(second: i32, frame: &str) -> Message {
+        Message::Scan(LaserScan {
+            header: header(second, frame),
+            angle_min: -1.5,
+            angle_increment: 0.25,
+            range_max: 80.0,
+            ranges: vec![1.0, f32::NAN, f32::INFINITY, -1.0],
+            ..LaserScan::default()
+        })
+    }
+
+    fn truth(second: i32) -> Message {
+        Message::PoseStamped(PoseStamped {
+            header: header(second, "map"),
+            pose: ros::Pose::from_planar(Pose::new(1.0, 2.0, 0.5)),
+        })
+    }
+
+    fn recording(messages: &[(&str, Message)]) -> Recording {
+        let mut writer = RecordingWriter::in_memory(Packing::Zstd).unwrap();
+        for (second, (topic, message)) in (0..).zip(messages) {
+            writer.write(topic, second * SECOND, message).unwrap();
+        }
+        let bytes = writer.finish().unwrap().into_inner();
+        Recording::from_bytes("world.mcap", bytes).unwrap()
+    }
+
+    fn play(recording: &Recording) -> Vec<Result<Timed, ReplayerError>> {
+        Source::new(recording, Channels::of(recording).unwrap()).collect()
+    }
+
+    #[test]
+    fn readings_pass_as_they_are_and_the_mount_comes_with_them() {
+        let transform = ros::TransformStamped {
+            header: header(0, "base_link"),
+            child_frame_id: "laser".into(),
+            transform: ros::Transform {
+                translation: ros::Vector3 {
+                    x: 0.78,
+                    ..ros::Vector3::default()
+                },
+                ..ros::Transform::default()
+            },
+        };
+        let transforms = ros::TfMessage {
+            transforms: vec![transform],
+        };
+        let recording = recording(&[
+            ("/scan", scan(7, "laser")),
+            ("/tf_static", Message::StaticTransforms(transforms)),
+            ("/scan", scan(8, "elsewhere")),
+        ]);
+        let played = play(&recording);
+        let Ok(Timed {
+            content: Content::Scan(header, ranges),
+            log_time_ns: 0,
+        }) = &played[0]
+        else {
+            panic!("{played:?}");
+        };
+        assert_eq!(header.stamp.measured_ns, 7 * SECOND + 5);
+        assert_eq!((header.angle_min, header.angle_increment), (-1.5, 0.25));
+        assert_eq!((header.range_max_m, header.frame.as_str()), (80.0, "laser"));
+        assert_eq!((header.base_from_laser.x, header.mount_known), (0.78, 1));
+        assert_eq!(
+            (ranges[0], ranges[2], ranges[3]),
+            (1.0, f32::INFINITY, -1.0)
+        );
+        assert!(ranges[1].is_nan());
+        let Ok(Timed {
+            content: Content::Scan(header, _),
+            ..
+        }) = &played[1]
+        else {
+            panic!("{played:?}");
+        };
+        assert_eq!(header.mount_known, 0);
+        assert_eq!(played.len(), 2);
+    }
+
+    #[test]
+    fn only_the_channels_that_are_meant_are_played() {
+        let recording = recording(&[
+            ("/scan", scan(0, "laser")),
+            ("/other_scan", scan(1, "laser")),
+            ("/goal_pose", truth(2)),
+            ("/ground_truth", truth(3)),
+        ]);
+        let played = play(&recording);
+        let stamps: Vec<i64> = played
+            .iter()
+            .map(|timed| timed.as_ref().unwrap().stamp_ns())
+            .collect();
+        assert_eq!(stamps, [5, 3 * SECOND + 5]);
+    }
+
+    #[test]
+    fn what_cannot_be_said_in_a_message_is_refused_one_by_one() {
+        let turned = ros::Odometry {
+            pose: ros::PoseWithCovariance {
+                pose: ros::Pose {
+                    orientation: ros::Quaternion {
+                        w: 0.0,
+                        ..ros::Quaternion::default()
+                    },
+                    ..ros::Pose::default()
+                },
+                ..ros::PoseWithCovariance::default()
+            },
+            ..ros::Odometry::default()
+        };
+        let recording = recording(&[
+            ("/scan", scan(0, &"f".repeat(33))),
+            ("/odom", Message::Odometry(Box::new(turned))),
+            ("/scan", scan(2, "laser")),
+        ]);
+        let played = play(&recording);
+        assert!(played[2].is_ok());
+        for (refused, expected) in played
+            .iter()
+            .zip(["/scan at log time 0 ns: the frame", "/odom"])
+        {
+            let error = refused.as_ref().unwrap_err();
+            assert!(error.is_about_one_message());
+            assert!(error.to_string().contains(expected), "{error}");
+        }
+    }
+
+    #[test]
+    fn a_recording_without_scans_says_what_it_has() {
+        let recording = recording(&[("/ground_truth", truth(0))]);
+        let text = Channels::of(&recording).unwrap_err().to_string();
+        for expected in ["world.mcap", "LaserScan", "/ground_truth"] {
+            assert!(text.contains(expected), "{text}");
+        }
+    }
+}

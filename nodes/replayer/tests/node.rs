@@ -1,0 +1,377 @@
+//! The node as a process; this test plays the rest of the graph.
+#![allow(
+    clippy::unwrap_used,
+    reason = "the lint spares test functions but not what they share"
+)]
+
+mod support;
+
+use std::io::Read;
+use std::path::Path;
+use std::process::{Child, Command, ExitStatus, Stdio};
+use std::time::Duration;
+
+use geometry::Pose;
+use messages::{NodeState, Stamp, topic};
+use nix::sys::signal::{Signal, kill};
+use nix::unistd::Pid;
+use recording::ros::{self, LaserScan, PoseStamped, Time};
+use recording::write::{Packing, RecordingWriter};
+use recording::{Message, Recording};
+use support::Isolated;
+use transport::{Flow, Graph, Publisher, Subscriber, TransportError};
+
+const SECOND: i64 = 1_000_000_000;
+
+/// The ends of the topics that the rest of a graph would hold.
+struct World {
+    child: Option<Child>,
+    folder: tempfile::TempDir,
+    /// None where nobody listens.
+    scans: Option<Subscriber<topic::Scan>>,
+    odometry: Subscriber<topic::OdometryTopic>,
+    truths: Subscriber<topic::GroundTruthTopic>,
+    health: Subscriber<topic::Health>,
+    answers: Publisher<topic::Hypotheses>,
+    graph: Graph,
+    _isolated: Isolated,
+}
+
+impl World {
+    fn new(test: &str) -> World {
+        let isolated = Isolated::new(test);
+        let graph = isolated.join("accumulator");
+        World {
+            child: None,
+            folder: tempfile::tempdir().unwrap(),
+            scans: Some(graph.subscriber().unwrap()),
+            odometry: graph.subscriber().unwrap(),
+            truths: graph.subscriber().unwrap(),
+            health: graph.subscriber().unwrap(),
+            answers: graph.publisher().unwrap(),
+            graph,
+            _isolated: isolated,
+        }
+    }
+
+    fn start(&mut self, bytes: &[u8], options: &[&str]) {
+        let path = self.folder.path().join("world.mcap");
+        std::fs::write(&path, bytes).unwrap();
+        self.child = Some(
+            Command::new(env!("CARGO_BIN_EXE_replayer"))
+                .args([Path::new("--recording"), &path])
+                .args(options)
+                .env("BACKCAST_GRAPH", self.graph.name().to_string())
+                .env_remove("RUST_LOG")
+                .stderr(Stdio::piped())
+                .spawn()
+                .unwrap(),
+        );
+    }
+
+    fn wait<T: messages::Topic>(
+        &self,
+        subscriber: &Subscriber<T>,
+        mut wanted: impl FnMut(&T::Header, &[T::Item]) -> bool,
+    ) {
+        self.graph
+            .run(&[subscriber], Duration::from_millis(100), |_| {
+                while let Some(sample) = subscriber.receive()? {
+                    if wanted(sample.header(), sample.items()) {
+                        return Ok::<_, TransportError>(Flow::Stop);
+                    }
+                }
+                Ok(Flow::Continue)
+            })
+            .unwrap();
+    }
+
+    fn next_scan(&self) -> (Stamp, Vec<f32>) {
+        let mut found = None;
+        self.wait(self.scans.as_ref().unwrap(), |header, ranges| {
+            found = Some((header.stamp, ranges.to_vec()));
+            true
+        });
+        found.unwrap()
+    }
+
+    fn no_scan_has_come(&self) -> bool {
+        self.scans.as_ref().unwrap().receive().unwrap().is_none()
+    }
+
+    fn answer(&self, stamp: Stamp) {
+        let mut loan = self.answers.loan(0).unwrap();
+        loan.header_mut().stamp = stamp;
+        loan.send().unwrap();
+    }
+
+    fn wait_for_state(&self, state: NodeState) {
+        self.wait(&self.health, |header, _| {
+            header.node.as_str() == "replayer" && header.state == state as u32
+        });
+    }
+
+    fn interrupt(&self) {
+        let pid = self.child.as_ref().unwrap().id();
+        kill(Pid::from_raw(i32::try_from(pid).unwrap()), Signal::SIGTERM).unwrap();
+    }
+
+    fn finish(&mut self) -> (ExitStatus, String) {
+        let mut child = self.child.take().unwrap();
+        let mut log = String::new();
+        let mut pipe = child.stderr.take().unwrap();
+        pipe.read_to_string(&mut log).unwrap();
+        (child.wait().unwrap(), log)
+    }
+}
+
+impl Drop for World {
+    fn drop(&mut self) {
+        // Only a test that failed leaves the node running.
+        if let Some(mut child) = self.child.take() {
+            let _ = child.kill();
+            let _ = child.wait();
+        }
+    }
+}
+
+fn header(stamp_ns: i64, frame: &str) -> ros::Header {
+    ros::Header {
+        stamp: Time::from_ns(stamp_ns).unwrap(),
+        frame_id: frame.into(),
+    }
+}
+
+fn scan(stamp_ns: i64) -> Message {
+    Message::Scan(LaserScan {
+        header: header(stamp_ns, "laser"),
+        angle_increment: 0.1,
+        ranges: vec![stamp_ns as f32, f32::NAN],
+        ..LaserScan::default()
+    })
+}
+
+fn truth(stamp_ns: i64) -> Message {
+    Message::PoseStamped(PoseStamped {
+        header: header(stamp_ns, "map"),
+        pose: ros::Pose::from_planar(Pose::new(1.0, 2.0, 0.5)),
+    })
+}
+
+fn odometry(stamp_ns: i64) -> Message {
+    Message::Odometry(Box::new(ros::Odometry {
+        header: header(stamp_ns, "odom"),
+        child_frame_id: "base_link".into(),
+        ..ros::Odometry::default()
+    }))
+}
+
+fn record(messages: &[(&str, i64, Message)]) -> Vec<u8> {
+    let mut writer = RecordingWriter::in_memory(Packing::Plain).unwrap();
+    for (topic, log_time_ns, message) in messages {
+        writer.write(topic, *log_time_ns, message).unwrap();
+        writer.flush().unwrap();
+    }
+    writer.finish().unwrap().into_inner()
+}
+
+/// Three scans, a second apart, with truth and odometry recorded just after.
+fn three_scans() -> Vec<u8> {
+    let messages: Vec<_> = (0..3)
+        .map(|index| (index + 1) * SECOND)
+        .flat_map(|at| {
+            [
+                ("/scan", at, scan(at)),
+                ("/ground_truth", at + 1, truth(at)),
+                ("/odom", at + 2, odometry(at)),
+            ]
+        })
+        .collect();
+    record(&messages)
+}
+
+#[test]
+fn at_max_each_scan_follows_the_answer_and_what_belongs_to_it() {
+    let mut world = World::new("max");
+    world.start(&three_scans(), &["--rate", "max"]);
+    for counter in 0..3 {
+        let (stamp, ranges) = world.next_scan();
+        let measured_ns = (counter + 1) * SECOND;
+        assert_eq!(
+            (stamp.counter, stamp.measured_ns),
+            (counter as u64, measured_ns)
+        );
+        assert!(ranges[0] == measured_ns as f32 && ranges[1].is_nan());
+        // What belongs to the scan was sent before it, and nothing after it.
+        let truth = world.truths.receive().unwrap().unwrap();
+        assert_eq!(truth.header().stamp.measured_ns, measured_ns);
+        assert_eq!(truth.header().map_from_laser.x, 1.0);
+        let odometry = world.odometry.receive().unwrap().unwrap();
+        assert_eq!(odometry.header().stamp.measured_ns, measured_ns);
+        assert_eq!(odometry.header().child_frame.as_str(), "base_link");
+        assert!(world.no_scan_has_come());
+        assert!(world.truths.receive().unwrap().is_none());
+        world.answer(stamp);
+    }
+    let (status, log) = world.finish();
+    assert_eq!(status.code(), Some(0), "{log}");
+    assert!(
+        log.contains("played scans=3 answers=3 unanswered=0 refused=0"),
+        "{log}"
+    );
+}
+
+#[test]
+fn a_scan_without_an_answer_is_counted_and_the_run_finishes_with_three() {
+    let mut world = World::new("lost");
+    world.start(&three_scans(), &["--rate", "max", "--patience", "0.1"]);
+    let (stamp, _) = world.next_scan();
+    assert_eq!(stamp.counter, 0);
+    let (stamp, _) = world.next_scan();
+    world.answer(stamp);
+    world.next_scan();
+    let (status, log) = world.finish();
+    assert_eq!(status.code(), Some(3), "{log}");
+    assert!(
+        log.contains("scan 0, measured at 1000000000 ns, got no answer"),
+        "{log}"
+    );
+    // The answer to scan 1 may be a tenth of a second late on a busy machine;
+    // then it is given up as well.
+    assert!(log.contains("played scans=3"), "{log}");
+}
+
+#[test]
+fn at_a_factor_the_distances_are_kept_and_the_last_answer_is_waited_for() {
+    let mut world = World::new("paced");
+    world.start(&three_scans(), &["--rate", "10"]);
+    let stamps = [0; 3].map(|_| world.next_scan().0);
+    // A tenth of a second each; the first one may have been late itself, but
+    // not by so much as the whole distance.
+    let span_ns = stamps[2].entered_ns - stamps[0].entered_ns;
+    assert!(span_ns > SECOND / 10, "{span_ns}");
+    world.answer(stamps[2]);
+    let (status, log) = world.finish();
+    assert_eq!(status.code(), Some(0), "{log}");
+}
+
+#[test]
+fn at_a_factor_nobody_is_waited_for_where_nobody_listens() {
+    let mut world = World::new("deaf");
+    world.scans = None;
+    world.start(&three_scans(), &["--rate", "1000", "--patience", "3600"]);
+    let (status, log) = world.finish();
+    assert_eq!(status.code(), Some(0), "{log}");
+    assert!(
+        log.contains("played scans=3 answers=0 unanswered=0"),
+        "{log}"
+    );
+}
+
+#[test]
+fn the_recording_starts_over() {
+    let mut world = World::new("loop");
+    world.start(&three_scans(), &["--rate", "max", "--loop"]);
+    for counter in 0..7 {
+        let (stamp, _) = world.next_scan();
+        assert_eq!(stamp.counter, counter);
+        assert_eq!(stamp.measured_ns, (counter as i64 % 3 + 1) * SECOND);
+        world.answer(stamp);
+    }
+    world.interrupt();
+    let (status, log) = world.finish();
+    assert_eq!(status.code(), Some(0), "{log}");
+}
+
+#[test]
+fn playing_waits_for_the_nodes_that_are_named() {
+    let mut world = World::new("wait");
+    let mut health = world.graph.health().unwrap();
+    world.start(
+        &three_scans(),
+        &["--rate", "max", "--wait-for", "accumulator"],
+    );
+    world.wait_for_state(NodeState::Waiting);
+    assert!(world.no_scan_has_come());
+    health.state(NodeState::Ready).unwrap();
+    for _ in 0..3 {
+        let (stamp, _) = world.next_scan();
+        world.answer(stamp);
+    }
+    let (status, log) = world.finish();
+    assert_eq!(status.code(), Some(0), "{log}");
+    assert!(log.contains("waiting for accumulator"), "{log}");
+}
+
+#[test]
+fn a_stop_ends_the_waiting() {
+    let mut world = World::new("stop");
+    world.start(&three_scans(), &["--wait-for", "nobody"]);
+    world.wait_for_state(NodeState::Waiting);
+    world.interrupt();
+    let (status, log) = world.finish();
+    assert_eq!(status.code(), Some(0), "{log}");
+}
+
+#[test]
+fn a_recording_without_scans_is_an_error_that_says_what_it_has() {
+    let mut world = World::new("none");
+    world.start(&record(&[("/ground_truth", 1, truth(1))]), &[]);
+    let (status, log) = world.finish();
+    assert_eq!(status.code(), Some(1));
+    for expected in ["world.mcap", "LaserScan", "/ground_truth"] {
+        assert!(log.contains(expected), "{log}");
+    }
+}
+
+#[test]
+fn a_recording_that_is_cut_short_is_played_as_far_as_it_goes() {
+    let mut world = World::new("cut");
+    let messages = [
+        ("/scan", 1, scan(1)),
+        ("/scan", 2, scan(2)),
+        ("/scan", 3, scan(3)),
+    ];
+    let mut bytes = record(&messages);
+    bytes.truncate(bytes.len() / 2);
+    let readable = Recording::from_bytes("cut", bytes.clone())
+        .unwrap()
+        .messages();
+    // Each message is a chunk of its own, and the summary takes some bytes too.
+    assert!((1..3).contains(&readable), "{readable}");
+    world.start(&bytes, &["--rate", "max"]);
+    for _ in 0..readable {
+        let (stamp, _) = world.next_scan();
+        world.answer(stamp);
+    }
+    let (status, log) = world.finish();
+    assert_eq!(status.code(), Some(1), "{log}");
+    let played = format!("played scans={readable} answers={readable}");
+    assert!(log.contains(&played), "{log}");
+    assert!(
+        log.contains("world.mcap") && log.contains("cut short"),
+        "{log}"
+    );
+}
+
+#[test]
+fn a_message_that_is_none_is_counted_and_the_rest_played() {
+    let mut world = World::new("bad");
+    let mut writer = RecordingWriter::in_memory(Packing::Plain).unwrap();
+    let schema = "sensor_msgs/msg/LaserScan";
+    writer.write("/scan", 1, &scan(1)).unwrap();
+    writer
+        .write_bytes("/scan", schema, "", "cdr", 2, &[0, 1, 0, 0, 9])
+        .unwrap();
+    writer.write("/scan", 3, &scan(3)).unwrap();
+    let bytes = writer.finish().unwrap().into_inner();
+    world.start(&bytes, &["--rate", "max"]);
+    for measured_ns in [1, 3] {
+        let (stamp, _) = world.next_scan();
+        assert_eq!(stamp.measured_ns, measured_ns);
+        world.answer(stamp);
+    }
+    let (status, log) = world.finish();
+    assert_eq!(status.code(), Some(3), "{log}");
+    assert!(log.contains("/scan at log time 2 ns"), "{log}");
+}
