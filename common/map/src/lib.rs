@@ -1,1 +1,26 @@
-//! To be written.
+//! Occupancy grids, and the map files of ROS that hold them.
+//!
+//! [`load`] reads what `map_server` reads: a YAML description beside a PGM or
+//! PNG image, in trinary, scale or raw mode; [`save`] writes such a pair.
+//! [`OccupancyGrid::from_parts`] takes a grid from anywhere else. Every grid
+//! that the crate hands out is within the limits that it states. It knows no
+//! topic and no engine, and repairs nothing: a map that is not sound is refused
+//! with file, place and what is allowed.
+
+mod description;
+mod error;
+mod grid;
+mod load;
+mod pgm;
+mod png;
+mod raster;
+mod rules;
+mod save;
+
+pub use description::Mode;
+pub use error::MapError;
+pub use grid::{
+    MAX_CELLS, MAX_ORIGIN_M, MAX_RESOLUTION_M, MAX_SIDE, MIN_RESOLUTION_M, OccupancyGrid, UNKNOWN,
+};
+pub use load::load;
+pub use save::save;

@@ -1,1 +1,45 @@
-//! To be written.
+//! Reading recordings: MCAP files that hold ROS 2 messages in CDR.
+//!
+//! [`Recording::open`] checks a file from start to end, [`Recording::records`]
+//! gives its messages in the order of their log times, and [`mod@write`] makes
+//! small recordings for tests and examples. Damage is never repaired and never
+//! passed over: what lies before it is given out, then the error that says
+//! where it is. The crate decodes the five message types of [`Kind`], counts
+//! the others, and knows no graph.
+
+mod block;
+mod cdr;
+mod chunk;
+mod contents;
+mod damage;
+mod error;
+mod fields;
+mod frames;
+mod kind;
+mod layout;
+mod message;
+mod mount;
+mod reading;
+mod recording;
+mod registry;
+pub mod ros;
+#[cfg(test)]
+mod sample;
+#[cfg(test)]
+mod soundness;
+mod survey;
+mod topics;
+mod truth;
+pub mod write;
+
+pub use chunk::MAX_CHUNK_BYTES;
+pub use damage::Damage;
+pub use error::RecordingError;
+pub use kind::Kind;
+pub use message::{Message, Record};
+pub use mount::Mount;
+pub use reading::Records;
+pub use recording::Recording;
+pub use registry::Channel;
+pub use topics::{GROUND_TRUTH, MAP, ODOM, SCAN, TF_STATIC};
+pub use truth::GroundTruth;

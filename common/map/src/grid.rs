@@ -1,0 +1,284 @@
+//! The occupancy grid, its limits and its identity.
+
+use std::f64::consts::TAU;
+use std::hash::Hasher;
+
+use geometry::Pose;
+use twox_hash::XxHash3_64;
+
+use crate::MapError;
+
+/// The occupancy of a cell about which nothing is known.
+pub const UNKNOWN: u8 = 255;
+
+/// Most cells along a side: a cell's column and row fit a signed 16-bit number,
+/// with room to step off the grid by one.
+pub const MAX_SIDE: u32 = 32_767;
+
+/// Most cells: 16,384 squared, 819 m by 819 m at 5 cm. Several processes keep
+/// the map and tables as large as it; this much still fits a robot's computer,
+/// while a damaged header that claims more must not be believed.
+pub const MAX_CELLS: u64 = 1 << 28;
+
+/// Shortest side of a cell, metres.
+pub const MIN_RESOLUTION_M: f64 = 0.001;
+
+/// Longest side of a cell, metres.
+pub const MAX_RESOLUTION_M: f64 = 10.0;
+
+/// Farthest origin along each axis, metres: map projections of the whole Earth
+/// stay within, and a nanometre is still resolved to a few hundredths.
+pub const MAX_ORIGIN_M: f64 = 1e8;
+
+/// A map of square cells.
+#[derive(Debug, Clone, PartialEq)]
+pub struct OccupancyGrid {
+    /// Cells along x, 1..=[`MAX_SIDE`].
+    pub width: u32,
+    /// Cells along y, 1..=[`MAX_SIDE`].
+    pub height: u32,
+    /// Side of a cell, metres.
+    pub resolution_m: f64,
+    /// The lower left corner of cell (0, 0) in the map frame, and the turn of
+    /// the grid's axes.
+    pub map_from_grid: Pose,
+    /// Row by row from the lowest y: 0 free to 100 occupied, [`UNKNOWN`].
+    pub cells: Vec<u8>,
+}
+
+impl OccupancyGrid {
+    /// A grid from its parts, each checked against the crate's limits.
+    ///
+    /// # Errors
+    /// Says which part is not allowed.
+    pub fn from_parts(
+        width: u32,
+        height: u32,
+        resolution_m: f64,
+        map_from_grid: Pose,
+        cells: Vec<u8>,
+    ) -> Result<Self, MapError> {
+        if !size_is_allowed(width, height) {
+            return Err(MapError::GridSize { width, height });
+        }
+        if !resolution_is_allowed(resolution_m) {
+            return Err(MapError::Resolution {
+                found: resolution_m,
+            });
+        }
+        if !origin_is_allowed(map_from_grid) {
+            return Err(MapError::Origin {
+                found: map_from_grid,
+            });
+        }
+        if cells.len() as u64 != u64::from(width) * u64::from(height) {
+            return Err(MapError::CellCount {
+                width,
+                height,
+                found: cells.len(),
+            });
+        }
+        let grid = OccupancyGrid {
+            width,
+            height,
+            resolution_m,
+            map_from_grid,
+            cells,
+        };
+        grid.check_values()?;
+        Ok(grid)
+    }
+
+    /// Hash of geometry and cells (XXH3, 64 bits), the same on every machine.
+    ///
+    /// Lengths and angles count to the nanometre and nanoradian, so that a map
+    /// and its copy in a recording have one id although they were written with
+    /// different roundings.
+    #[must_use]
+    pub fn id(&self) -> u64 {
+        let mut hasher = XxHash3_64::new();
+        hasher.write(&self.width.to_le_bytes());
+        hasher.write(&self.height.to_le_bytes());
+        let Pose { x, y, yaw } = self.map_from_grid;
+        for value in [self.resolution_m, x, y, yaw] {
+            // MAX_ORIGIN_M in nanometres is 1e17, well within an i64.
+            hasher.write(&((value * 1e9).round() as i64).to_le_bytes());
+        }
+        hasher.write(&self.cells);
+        hasher.finish()
+    }
+
+    /// The centre of a cell in the map frame, metres; cells off the grid go on
+    /// in the same raster.
+    #[must_use]
+    pub fn cell_center(&self, x: u32, y: u32) -> (f64, f64) {
+        self.map_from_grid.transform(
+            (f64::from(x) + 0.5) * self.resolution_m,
+            (f64::from(y) + 0.5) * self.resolution_m,
+        )
+    }
+
+    /// The column and row of the cell that holds a point of the map frame, if
+    /// the point is on the grid.
+    #[must_use]
+    pub fn cell_at(&self, x_m: f64, y_m: f64) -> Option<(u32, u32)> {
+        let (x, y) = self.map_from_grid.inverse().transform(x_m, y_m);
+        let column = (x / self.resolution_m).floor();
+        let row = (y / self.resolution_m).floor();
+        let inside = (0.0..f64::from(self.width)).contains(&column)
+            && (0.0..f64::from(self.height)).contains(&row);
+        inside.then_some((column as u32, row as u32))
+    }
+
+    fn check_values(&self) -> Result<(), MapError> {
+        let is_allowed = |&cell: &u8| cell <= 100 || cell == UNKNOWN;
+        let Some(index) = self.cells.iter().position(|cell| !is_allowed(cell)) else {
+            return Ok(());
+        };
+        // The index is below MAX_CELLS, so both parts fit.
+        Err(MapError::CellValue {
+            x: index as u32 % self.width,
+            y: index as u32 / self.width,
+            found: self.cells[index],
+        })
+    }
+}
+
+/// Whether a grid may have these sides.
+pub(crate) fn size_is_allowed(width: u32, height: u32) -> bool {
+    let sides = 1..=MAX_SIDE;
+    sides.contains(&width)
+        && sides.contains(&height)
+        && u64::from(width) * u64::from(height) <= MAX_CELLS
+}
+
+/// Whether a cell may have this side; false for NaN.
+pub(crate) fn resolution_is_allowed(metres: f64) -> bool {
+    (MIN_RESOLUTION_M..=MAX_RESOLUTION_M).contains(&metres)
+}
+
+/// Whether a grid may lie there; false for NaN and infinities.
+pub(crate) fn origin_is_allowed(origin: Pose) -> bool {
+    origin.x.abs() <= MAX_ORIGIN_M && origin.y.abs() <= MAX_ORIGIN_M && origin.yaw.abs() <= TAU
+}
+
+#[cfg(test)]
+mod tests {
+    use std::f64::consts::FRAC_PI_2;
+
+    use super::*;
+
+    fn grid(cells: &[u8]) -> OccupancyGrid {
+        let height = cells.len() as u32 / 3;
+        OccupancyGrid::from_parts(3, height, 0.5, Pose::new(10.0, 20.0, 0.0), cells.to_vec())
+            .unwrap()
+    }
+
+    #[test]
+    fn parts_out_of_range_are_refused() {
+        let build = |width, height, resolution, pose, cells: usize| {
+            OccupancyGrid::from_parts(width, height, resolution, pose, vec![0; cells])
+        };
+        let at = Pose::IDENTITY;
+        assert!(build(2, 3, 0.05, at, 6).is_ok());
+        assert!(matches!(
+            build(0, 3, 0.05, at, 0),
+            Err(MapError::GridSize { width: 0, .. })
+        ));
+        assert!(matches!(
+            build(32_768, 1, 0.05, at, 32_768),
+            Err(MapError::GridSize { .. })
+        ));
+        assert!(matches!(
+            build(32_767, 32_767, 0.05, at, 0),
+            Err(MapError::GridSize { .. })
+        ));
+        assert!(matches!(
+            build(2, 3, 0.05, at, 5),
+            Err(MapError::CellCount { found: 5, .. })
+        ));
+        for resolution in [0.0, -0.05, f64::NAN, f64::INFINITY, 0.000_999, 10.001] {
+            assert!(matches!(
+                build(2, 3, resolution, at, 6),
+                Err(MapError::Resolution { .. })
+            ));
+        }
+        for pose in [
+            Pose::new(f64::NAN, 0.0, 0.0),
+            Pose::new(0.0, 1.1e8, 0.0),
+            Pose::new(0.0, 0.0, 90.0),
+        ] {
+            assert!(matches!(
+                build(2, 3, 0.05, pose, 6),
+                Err(MapError::Origin { .. })
+            ));
+        }
+    }
+
+    #[test]
+    fn a_cell_out_of_range_is_named() {
+        let cells = vec![0, 50, 100, UNKNOWN, 101, 0];
+        let error = OccupancyGrid::from_parts(3, 2, 0.05, Pose::IDENTITY, cells).unwrap_err();
+        assert_eq!(
+            error.to_string(),
+            "cell 1, 1 is 101; allowed: 0..=100, and 255 for unknown"
+        );
+    }
+
+    #[test]
+    fn equal_maps_have_equal_ids_and_others_do_not() {
+        let map = grid(&[0, 0, 100, 0, UNKNOWN, 100]);
+        // A constant, so that a change of the hash shows: it must never change.
+        assert_eq!(map.id(), 0x3B8F_579C_0E05_75CE);
+
+        let rounded = OccupancyGrid {
+            map_from_grid: Pose::new(10.000_000_000_000_002, 20.0, -0.0),
+            ..map.clone()
+        };
+        assert_eq!(rounded.id(), map.id());
+
+        let mut cell = map.clone();
+        cell.cells[0] = 1;
+        let mut turned = map.clone();
+        turned.map_from_grid.yaw = 1e-6;
+        let mut finer = map.clone();
+        finer.resolution_m = 0.499_999;
+        let reshaped = OccupancyGrid {
+            width: 2,
+            height: 3,
+            ..map.clone()
+        };
+        for other in [cell, turned, finer, reshaped] {
+            assert_ne!(other.id(), map.id());
+        }
+    }
+
+    #[test]
+    fn a_turned_grid_puts_its_cells_in_the_map() {
+        let mut map = grid(&[0; 6]);
+        assert_eq!(map.cell_center(2, 1), (11.25, 20.75));
+        map.map_from_grid.yaw = FRAC_PI_2;
+        // The grid's x axis now points along the map's y: column 2 is 1.25 m up,
+        // row 1 is 0.75 m to the left.
+        let (x, y) = map.cell_center(2, 1);
+        // One rotation of numbers near 20: a few units in the last place.
+        assert!((x - 9.25).abs() < 1e-12 && (y - 21.25).abs() < 1e-12);
+        assert_eq!(map.cell_at(x, y), Some((2, 1)));
+        assert_eq!(map.cell_at(10.1, 20.1), None, "behind the turned grid");
+        assert_eq!(map.cell_at(f64::NAN, 0.0), None);
+    }
+
+    proptest::proptest! {
+        #[test]
+        fn every_cell_is_found_at_its_centre(
+            x in 0u32..40, y in 0u32..30, yaw in -TAU..TAU,
+            ox in -1e4..1e4f64, oy in -1e4..1e4f64, resolution in 0.001..10.0f64,
+        ) {
+            let map = OccupancyGrid::from_parts(
+                40, 30, resolution, Pose::new(ox, oy, yaw), vec![0; 1200],
+            ).unwrap();
+            let (cx, cy) = map.cell_center(x, y);
+            proptest::prop_assert_eq!(map.cell_at(cx, cy), Some((x, y)));
+        }
+    }
+}

@@ -1,0 +1,277 @@
+//! From a description and its image to a grid.
+
+use std::fs::File;
+use std::io::{self, Read};
+use std::path::Path;
+
+use crate::description::Description;
+use crate::raster::Raster;
+use crate::{MapError, OccupancyGrid, pgm, png};
+
+/// Most bytes of a description; a sound one has a few hundred.
+const MAX_DESCRIPTION_BYTES: u64 = 64 << 10;
+
+/// Most bytes of an image: the largest map as plain text of five digits a cell
+/// comes to 1.6 GB, as 16-bit colour with alpha to 2.1 GB.
+const MAX_IMAGE_BYTES: u64 = 1 << 31;
+
+/// Reads a map as `map_server` does: the YAML file at `yaml`, and the image that
+/// it names, relative to the YAML file's folder.
+///
+/// # Errors
+/// Says which file is not there, or what in it is not sound and what is allowed.
+pub fn load(yaml: impl AsRef<Path>) -> Result<OccupancyGrid, MapError> {
+    let yaml = yaml.as_ref();
+    let text = read_text(yaml)?;
+    let description = Description::parse(&text, yaml)?;
+    let (line, column) = description.image_named_at;
+    let bytes = read_file(&description.image, MAX_IMAGE_BYTES, |source| {
+        MapError::Image {
+            image: description.image.clone(),
+            yaml: yaml.to_owned(),
+            line,
+            column,
+            source,
+        }
+    })?;
+    let raster = decode(&bytes, &description.image)?;
+    drop(bytes);
+    OccupancyGrid::from_parts(
+        raster.width,
+        raster.height,
+        description.resolution_m,
+        description.map_from_grid,
+        cells(&raster, &description),
+    )
+}
+
+/// Images run from the top down, grids from the lowest y up.
+fn cells(raster: &Raster, description: &Description) -> Vec<u8> {
+    let rules = description.rules;
+    let rows = (0..raster.height).rev().map(|y| raster.row(y));
+    rows.flatten().map(|pixel| rules.occupancy(pixel)).collect()
+}
+
+fn decode(bytes: &[u8], path: &Path) -> Result<Raster, MapError> {
+    if bytes.starts_with(png::SIGNATURE) {
+        check_name(path, "PNG")?;
+        png::decode(bytes, path)
+    } else if bytes.starts_with(b"P2") || bytes.starts_with(b"P5") {
+        check_name(path, "PGM")?;
+        pgm::decode(bytes, path)
+    } else {
+        Err(wrong_kind(bytes, path))
+    }
+}
+
+/// A name that says one kind and a content of the other: most likely not the
+/// image that was meant. Names without such a suffix say nothing.
+fn check_name(path: &Path, found: &'static str) -> Result<(), MapError> {
+    let suffix = path.extension().unwrap_or_default().to_ascii_lowercase();
+    let named = match suffix.to_str() {
+        Some("pgm") => "PGM",
+        Some("png") => "PNG",
+        _ => return Ok(()),
+    };
+    if named == found {
+        return Ok(());
+    }
+    Err(MapError::ImageName {
+        path: path.to_owned(),
+        named,
+        found,
+    })
+}
+
+/// The error for a file that is neither PGM nor PNG.
+pub(crate) fn wrong_kind(bytes: &[u8], path: &Path) -> MapError {
+    let start = &bytes[..bytes.len().min(8)];
+    MapError::ImageKind {
+        path: path.to_owned(),
+        found: match start {
+            [] => "nothing: it is empty".to_owned(),
+            start => format!("\"{}\"", start.escape_ascii()),
+        },
+    }
+}
+
+fn read_text(yaml: &Path) -> Result<String, MapError> {
+    let bytes = read_file(yaml, MAX_DESCRIPTION_BYTES, |source| {
+        MapError::Description {
+            path: yaml.to_owned(),
+            source,
+        }
+    })?;
+    String::from_utf8(bytes).map_err(|error| {
+        let valid = &error.as_bytes()[..error.utf8_error().valid_up_to()];
+        let line = valid.iter().filter(|&&byte| byte == b'\n').count() as u64 + 1;
+        let column = valid
+            .rsplit(|&byte| byte == b'\n')
+            .next()
+            .map_or(0, <[u8]>::len) as u64
+            + 1;
+        MapError::Yaml {
+            path: yaml.to_owned(),
+            line,
+            column,
+            reason: "not UTF-8 text".to_owned(),
+        }
+    })
+}
+
+fn read_file(
+    path: &Path,
+    allowed: u64,
+    unreadable: impl Fn(io::Error) -> MapError,
+) -> Result<Vec<u8>, MapError> {
+    let file = File::open(path).map_err(&unreadable)?;
+    let mut bytes = Vec::new();
+    // One byte more than allowed shows that there are too many, also where the
+    // system does not know the length.
+    let found = file
+        .take(allowed + 1)
+        .read_to_end(&mut bytes)
+        .map_err(&unreadable)? as u64;
+    if found > allowed {
+        return Err(MapError::FileSize {
+            path: path.to_owned(),
+            found,
+            allowed,
+        });
+    }
+    Ok(bytes)
+}
+
+#[cfg(test)]
+mod tests {
+    use std::fs;
+
+    use geometry::Pose;
+    use tempfile::TempDir;
+
+    use super::*;
+    use crate::UNKNOWN;
+
+    const YAML: &str = "image: floor.pgm\nresolution: 0.5\norigin: [1, 2, 0.25]\n\
+                        negate: 0\noccupied_thresh: 0.65\nfree_thresh: 0.196\n";
+
+    /// A folder with a description and an image of the given name.
+    fn folder(yaml: &str, name: &str, image: &[u8]) -> TempDir {
+        let folder = TempDir::new().unwrap();
+        fs::write(folder.path().join("floor.yaml"), yaml).unwrap();
+        fs::write(folder.path().join(name), image).unwrap();
+        folder
+    }
+
+    fn load_from(folder: &TempDir) -> Result<OccupancyGrid, MapError> {
+        load(folder.path().join("floor.yaml"))
+    }
+
+    #[test]
+    fn the_top_row_of_the_image_has_the_highest_y() {
+        let image = b"P5 3 2 255\n\x00\xfe\xcd\xfe\xfe\x00";
+        let map = load_from(&folder(YAML, "floor.pgm", image)).unwrap();
+        assert_eq!((map.width, map.height, map.resolution_m), (3, 2, 0.5));
+        assert_eq!(map.map_from_grid, Pose::new(1.0, 2.0, 0.25));
+        assert_eq!(map.cells, [0, 0, 100, 100, 0, UNKNOWN]);
+        // The picture's top left pixel, in the map frame.
+        let (x, y) = map.cell_center(0, 1);
+        let (sin, cos) = 0.25f64.sin_cos();
+        // The same sums in another order: a few units in the last place.
+        assert!((x - (1.0 + 0.25 * cos - 0.75 * sin)).abs() < 1e-12);
+        assert!((y - (2.0 + 0.25 * sin + 0.75 * cos)).abs() < 1e-12);
+    }
+
+    #[test]
+    fn each_mode_reads_its_image() {
+        let image = b"P5 4 1 255\n\x00\x32\x80\xff";
+        let read = |extra: &str| {
+            let yaml = format!("{YAML}{extra}");
+            load_from(&folder(&yaml, "floor.pgm", image)).unwrap().cells
+        };
+        assert_eq!(read("mode: trinary\n"), [100, 100, UNKNOWN, 0]);
+        // 1 - 128/255 lies 66.4 % of the way from 0.196 to 0.65.
+        assert_eq!(read("mode: scale\n"), [100, 100, 67, 0]);
+        assert_eq!(read("mode: raw\n"), [0, 50, UNKNOWN, UNKNOWN]);
+    }
+
+    #[test]
+    fn missing_files_are_named() {
+        let nowhere = load("no/such.yaml").unwrap_err().to_string();
+        assert!(nowhere.starts_with("cannot read the map description no/such.yaml: "));
+        let folder = folder(YAML, "other.pgm", b"P5 1 1 255\n\x00");
+        let message = load_from(&folder).unwrap_err().to_string();
+        let image = folder.path().join("floor.pgm").display().to_string();
+        let place = format!(
+            "named by {}:1:8: ",
+            folder.path().join("floor.yaml").display()
+        );
+        assert!(
+            message.contains(&image) && message.contains(&place),
+            "{message}"
+        );
+    }
+
+    #[test]
+    fn image_and_description_that_disagree_are_refused() {
+        let grey = b"P5 1 1 255\n\x00";
+        let yaml = YAML.replace("floor.pgm", "floor.PNG");
+        let error = load_from(&folder(&yaml, "floor.PNG", grey)).unwrap_err();
+        assert!(
+            error.to_string().ends_with("should hold PNG but holds PGM"),
+            "{error}"
+        );
+        // A name that says nothing about the kind.
+        let yaml = YAML.replace("floor.pgm", "floor");
+        assert!(load_from(&folder(&yaml, "floor", grey)).is_ok());
+    }
+
+    #[test]
+    fn other_kinds_of_file_are_refused() {
+        for (image, shown) in [
+            (&b""[..], "starts with nothing: it is empty"),
+            (b"P6 1 1 255\n\x00\x00\x00", "starts with \"P6 1 1 2\""),
+            (b"\xff\xd8\xff\xe0", "starts with \"\\xff\\xd8\\xff\\xe0\""),
+        ] {
+            let error = load_from(&folder(YAML, "floor.pgm", image)).unwrap_err();
+            let message = error.to_string();
+            assert!(message.contains(shown), "{message}");
+            assert!(
+                message.contains("allowed: PGM (P2 or P5) and PNG"),
+                "{message}"
+            );
+        }
+    }
+
+    #[test]
+    fn a_description_that_is_no_text_is_refused() {
+        let folder = folder(YAML, "floor.pgm", b"");
+        let path = folder.path().join("floor.yaml");
+        fs::write(&path, b"image: a\nmode: \xff").unwrap();
+        let error = load(&path).unwrap_err();
+        assert!(
+            matches!(
+                error,
+                MapError::Yaml {
+                    line: 2,
+                    column: 7,
+                    ..
+                }
+            ),
+            "{error}"
+        );
+        fs::write(&path, vec![b'#'; MAX_DESCRIPTION_BYTES as usize + 1]).unwrap();
+        let error = load(&path).unwrap_err();
+        assert!(matches!(
+            error,
+            MapError::FileSize {
+                allowed: MAX_DESCRIPTION_BYTES,
+                ..
+            }
+        ));
+        assert!(matches!(
+            load(folder.path()),
+            Err(MapError::Description { .. })
+        ));
+    }
+}

@@ -1,0 +1,273 @@
+//! Portable grey maps: the header by the image library, the pixels here.
+//!
+//! The library scales pixels to eight bits before it hands them out, reserves
+//! what a header claims and takes values above the header's highest; here every
+//! pixel keeps its value, and memory is taken only for pixels that are there.
+//!
+//! | field | P2 | P5 |
+//! |---|---|---|
+//! | header | `P2`, width, height, highest value | `P5`, the same |
+//! | pixel | decimal number, white space | one byte; two, high first, above 255 |
+
+use std::io::Cursor;
+use std::path::Path;
+
+use image::codecs::pnm::{GraymapHeader, PnmDecoder, SampleEncoding};
+
+use crate::MapError;
+use crate::grid::size_is_allowed;
+use crate::raster::{Channels, FULL, Raster, Samples};
+
+/// Decodes a file that starts with P2 or P5; `path` is for errors.
+pub(crate) fn decode(bytes: &[u8], path: &Path) -> Result<Raster, MapError> {
+    let damaged = |source| MapError::ImageDecode {
+        path: path.to_owned(),
+        source,
+    };
+    let (cursor, header) = PnmDecoder::new(Cursor::new(bytes))
+        .map_err(damaged)?
+        .into_inner();
+    let Some(header) = header.as_graymap() else {
+        return Err(crate::load::wrong_kind(bytes, path));
+    };
+    if !size_is_allowed(header.width, header.height) {
+        return Err(MapError::ImageSize {
+            path: path.to_owned(),
+            width: header.width,
+            height: header.height,
+        });
+    }
+    let start = usize::try_from(cursor.position()).unwrap_or(usize::MAX);
+    let pixels = Pixels {
+        header,
+        bytes: bytes.get(start..).unwrap_or_default(),
+        path,
+    };
+    Ok(Raster {
+        width: header.width,
+        height: header.height,
+        channels: Channels::Grey,
+        samples: match header.encoding {
+            SampleEncoding::Binary => pixels.binary()?,
+            SampleEncoding::Ascii => pixels.plain()?,
+        },
+    })
+}
+
+/// The part of a file after its header.
+struct Pixels<'a> {
+    header: &'a GraymapHeader,
+    bytes: &'a [u8],
+    path: &'a Path,
+}
+
+impl Pixels<'_> {
+    /// Sides are within the limits, so the product fits.
+    fn count(&self) -> usize {
+        self.header.width as usize * self.header.height as usize
+    }
+
+    fn binary(&self) -> Result<Samples, MapError> {
+        let width = if self.header.maxwhite > 255 { 2 } else { 1 };
+        let (pixels, rest) = self
+            .bytes
+            .split_at_checked(self.count() * width)
+            .ok_or_else(|| self.truncated(self.count() * width))?;
+        self.check_rest(rest)?;
+        if self.header.maxwhite == 255 {
+            return Ok(Samples::Eight(pixels.to_vec()));
+        }
+        let value = |pixel: &[u8]| {
+            pixel
+                .iter()
+                .fold(0, |high, &low| high << 8 | u32::from(low))
+        };
+        let samples = pixels.chunks_exact(width).map(value).enumerate();
+        samples
+            .map(|(index, value)| self.scaled(index, value))
+            .collect::<Result<_, _>>()
+            .map(Samples::Sixteen)
+    }
+
+    fn plain(&self) -> Result<Samples, MapError> {
+        // Each pixel takes a digit, and white space between it and the next.
+        let needed = 2 * self.count() - 1;
+        if self.bytes.len() < needed {
+            return Err(self.truncated(needed));
+        }
+        let mut words = self
+            .bytes
+            .split(u8::is_ascii_whitespace)
+            .filter(|word| !word.is_empty());
+        let mut samples = Vec::with_capacity(self.count());
+        for index in 0..self.count() {
+            let word = words.next().ok_or_else(|| self.truncated(needed))?;
+            samples.push(self.scaled(index, self.number(index, word)?)?);
+        }
+        match words.next() {
+            None => Ok(Samples::Sixteen(samples)),
+            Some(word) => Err(self.surplus(word.len())),
+        }
+    }
+
+    fn number(&self, index: usize, word: &[u8]) -> Result<u32, MapError> {
+        let text = std::str::from_utf8(word).unwrap_or_default();
+        text.parse().map_err(|_| {
+            let shown = String::from_utf8_lossy(&word[..word.len().min(16)]);
+            self.bad_pixel(index, shown.into_owned())
+        })
+    }
+
+    /// A value in 16-bit steps, rounded half up.
+    fn scaled(&self, index: usize, value: u32) -> Result<u16, MapError> {
+        let highest = self.header.maxwhite;
+        if value > highest {
+            return Err(self.bad_pixel(index, value.to_string()));
+        }
+        let full = u64::from(FULL);
+        let scaled = (u64::from(value) * full + u64::from(highest) / 2) / u64::from(highest);
+        // At most FULL, because the value is at most the highest.
+        Ok(scaled as u16)
+    }
+
+    fn check_rest(&self, rest: &[u8]) -> Result<(), MapError> {
+        if rest.iter().all(u8::is_ascii_whitespace) {
+            return Ok(());
+        }
+        Err(self.surplus(rest.len()))
+    }
+
+    fn bad_pixel(&self, index: usize, found: String) -> MapError {
+        let width = self.header.width as usize;
+        MapError::ImagePixel {
+            path: self.path.to_owned(),
+            x: (index % width) as u64,
+            y: (index / width) as u64,
+            found,
+            allowed: self.header.maxwhite,
+        }
+    }
+
+    fn truncated(&self, needed: usize) -> MapError {
+        MapError::ImageTruncated {
+            path: self.path.to_owned(),
+            width: self.header.width,
+            height: self.header.height,
+            needed: needed as u64,
+            found: self.bytes.len() as u64,
+        }
+    }
+
+    fn surplus(&self, bytes: usize) -> MapError {
+        MapError::ImageSurplus {
+            path: self.path.to_owned(),
+            width: self.header.width,
+            height: self.header.height,
+            surplus: bytes as u64,
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn samples(bytes: &[u8]) -> Result<Vec<u16>, MapError> {
+        let raster = decode(bytes, Path::new("floor.pgm"))?;
+        let rows = (0..raster.height).flat_map(|y| raster.row(y).map(|pixel| pixel.colour[0]));
+        Ok(rows.collect())
+    }
+
+    fn refusal(bytes: &[u8]) -> String {
+        samples(bytes).unwrap_err().to_string()
+    }
+
+    #[test]
+    fn binary_pixels_of_one_and_two_bytes() {
+        assert_eq!(
+            samples(b"P5\n# drawn by hand\n3 1\n255\n\x00\x01\xff").unwrap(),
+            [0, 257, 65_535]
+        );
+        assert_eq!(
+            samples(b"P5 2 1 65535\n\x12\x34\xff\xff").unwrap(),
+            [0x1234, 65_535]
+        );
+        // Other highest values are scaled: half of 100, and 300 of 600.
+        assert_eq!(samples(b"P5 2 1 100\n\x32\x64").unwrap(), [32_768, 65_535]);
+        assert_eq!(samples(b"P5 1 1 600\n\x01\x2c\n").unwrap(), [32_768]);
+    }
+
+    #[test]
+    fn plain_pixels() {
+        assert_eq!(
+            samples(b"P2\n2 2\n255\n0 1\n 254\t255\n").unwrap(),
+            [0, 257, 65_278, 65_535]
+        );
+        assert_eq!(samples(b"P2 1 1 65535 4660").unwrap(), [0x1234]);
+    }
+
+    #[test]
+    fn cut_and_overlong_files_are_refused() {
+        assert_eq!(
+            refusal(b"P5 3 2 255\n12345"),
+            "floor.pgm is cut short: 3 x 2 cells need at least 6 bytes, 5 are there"
+        );
+        assert_eq!(
+            refusal(b"P2 3 1 255 1 2 "),
+            "floor.pgm is cut short: 3 x 1 cells need at least 5 bytes, 4 are there"
+        );
+        assert!(refusal(b"P2 2 1 2000 1234 ").contains("cut short"));
+        assert_eq!(
+            refusal(b"P5 3 2 255\n1234567"),
+            "floor.pgm goes on for 1 bytes after the last of 3 x 2 cells; allowed: white space"
+        );
+        assert!(refusal(b"P2 1 1 255 1 2").contains("goes on"));
+        for cut in [&b"P5"[..], b"P5 3", b"P5 3 2 ", b"P2\n#"] {
+            assert!(refusal(cut).contains("damaged or cut short"), "{cut:?}");
+        }
+    }
+
+    #[test]
+    fn pixels_out_of_range_are_named() {
+        assert_eq!(
+            refusal(b"P5 2 2 100\n\x01\x02\x03\x65"),
+            "floor.pgm: pixel 1, 1 from the top left is 101; allowed: 0..=100"
+        );
+        assert_eq!(
+            refusal(b"P2 2 1 255 7 -1 "),
+            "floor.pgm: pixel 1, 0 from the top left is -1; allowed: 0..=255"
+        );
+    }
+
+    #[test]
+    fn absurd_sizes_are_refused_before_anything_is_reserved() {
+        assert_eq!(
+            refusal(b"P5 31623 31623 255\n"),
+            "floor.pgm claims 31623 x 31623 cells; allowed: sides of 1..=32767 and at most 268435456 cells"
+        );
+        for header in ["P5 0 3 255\n", "P2 3 0 255\n", "P5 32768 1 255\n"] {
+            assert!(refusal(header.as_bytes()).contains("claims"), "{header}");
+        }
+        // Within the limits, but the pixels are not there.
+        assert!(refusal(b"P5 16384 16384 65535\n").contains("cut short"));
+        for header in ["P5 3 2 0\n", "P5 3 2 65536\n", "P5 99999999999 2 255\n"] {
+            assert!(samples(header.as_bytes()).is_err(), "{header}");
+        }
+    }
+
+    proptest::proptest! {
+        #[test]
+        fn no_bytes_make_it_panic(
+            kind in "[PQ][1-7]", body in proptest::collection::vec(proptest::num::u8::ANY, 0..60),
+            width in 0u32..9, height in 0u32..9, highest in 0u32..70_000,
+        ) {
+            let mut bytes = kind.into_bytes();
+            let _ = samples(&[&bytes[..], &body].concat());
+            bytes.extend(format!("\n{width} {height} {highest}\n").bytes());
+            bytes.extend(body);
+            if let Ok(samples) = samples(&bytes) {
+                proptest::prop_assert_eq!(samples.len() as u32, width * height);
+            }
+        }
+    }
+}

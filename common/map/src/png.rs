@@ -1,0 +1,292 @@
+//! Portable network graphics, through the image library.
+//!
+//! What the header claims is checked against the crate's limits, and against
+//! what that many compressed bytes can hold, before the library or this file
+//! reserves anything for it.
+
+use std::io::Cursor;
+use std::path::Path;
+
+use image::codecs::png::PngDecoder;
+use image::{ColorType, ImageDecoder, Limits};
+
+use crate::grid::size_is_allowed;
+use crate::raster::{Channels, Raster, Samples};
+use crate::{MAX_SIDE, MapError};
+
+/// The bytes that every such file starts with.
+pub(crate) const SIGNATURE: &[u8] = b"\x89PNG\r\n\x1a\n";
+
+/// The chunk that ends every such file: its length, name and checksum.
+const END: &[u8] = b"\0\0\0\0IEND\xae\x42\x60\x82";
+
+/// Deflate's highest ratio: 258 bytes for a length and a distance of one bit.
+const MAX_RATIO: u64 = 1032;
+
+/// Most bytes of the decoder's own tables and notes, apart from the pixels.
+const DECODER_BYTES: u64 = 64 << 20;
+
+/// Decodes a file that starts with [`SIGNATURE`]; `path` is for errors.
+pub(crate) fn decode(bytes: &[u8], path: &Path) -> Result<Raster, MapError> {
+    let damaged = |source| MapError::ImageDecode {
+        path: path.to_owned(),
+        source,
+    };
+    check_claims(bytes, path)?;
+    let mut limits = Limits::no_limits();
+    limits.max_image_width = Some(MAX_SIDE);
+    limits.max_image_height = Some(MAX_SIDE);
+    limits.max_alloc = Some(DECODER_BYTES);
+    let decoder = PngDecoder::with_limits(Cursor::new(bytes), limits).map_err(damaged)?;
+    let (width, height) = decoder.dimensions();
+    let (channels, wide) = layout(decoder.color_type(), path)?;
+    // The sides are within the limits, so the product fits.
+    let count = width as usize * height as usize * channels.count();
+    let samples = if wide {
+        let mut samples = vec![0; count];
+        let mut pixels = vec![0; 2 * count];
+        decoder.read_image(&mut pixels).map_err(damaged)?;
+        for (sample, pair) in samples.iter_mut().zip(pixels.as_chunks::<2>().0) {
+            *sample = u16::from_ne_bytes(*pair);
+        }
+        Samples::Sixteen(samples)
+    } else {
+        let mut pixels = vec![0; count];
+        decoder.read_image(&mut pixels).map_err(damaged)?;
+        Samples::Eight(pixels)
+    };
+    check_end(bytes, path, width, height)?;
+    Ok(Raster {
+        width,
+        height,
+        channels,
+        samples,
+    })
+}
+
+/// The first chunk, by offset from the start of the file:
+///
+/// | offset | bytes | field |
+/// |---|---|---|
+/// | 8 | 8 | length and name of the chunk, `IHDR` |
+/// | 16 | 4 | width, high byte first |
+/// | 20 | 4 | height |
+/// | 24 | 1 | bits a sample |
+/// | 25 | 1 | colour type: 0 grey, 2 RGB, 3 palette, 4 grey and alpha, 6 RGBA |
+fn check_claims(bytes: &[u8], path: &Path) -> Result<(), MapError> {
+    let number = |at: usize| -> Option<u32> {
+        let field = bytes.get(at..)?.first_chunk::<4>()?;
+        Some(u32::from_be_bytes(*field))
+    };
+    let (Some(width), Some(height), Some(&bits), Some(&colour)) =
+        (number(16), number(20), bytes.get(24), bytes.get(25))
+    else {
+        // Too short for a header: the decoder says so.
+        return Ok(());
+    };
+    if !size_is_allowed(width, height) {
+        return Err(MapError::ImageSize {
+            path: path.to_owned(),
+            width,
+            height,
+        });
+    }
+    let samples = match colour {
+        2 => 3,
+        4 => 2,
+        6 => 4,
+        _ => 1,
+    };
+    let row = (u64::from(width) * samples * u64::from(bits)).div_ceil(8);
+    let needed = (row * u64::from(height)).div_ceil(MAX_RATIO);
+    if needed > bytes.len() as u64 {
+        return Err(truncated(bytes, path, width, height, needed));
+    }
+    Ok(())
+}
+
+/// The decoder stops at the last pixel; without the end the file was cut, and
+/// with it the checksum of the pixels.
+fn check_end(bytes: &[u8], path: &Path, width: u32, height: u32) -> Result<(), MapError> {
+    if bytes.windows(END.len()).rev().any(|window| window == END) {
+        return Ok(());
+    }
+    let needed = bytes.len() as u64 + 1;
+    Err(truncated(bytes, path, width, height, needed))
+}
+
+fn truncated(bytes: &[u8], path: &Path, width: u32, height: u32, needed: u64) -> MapError {
+    MapError::ImageTruncated {
+        path: path.to_owned(),
+        width,
+        height,
+        needed,
+        found: bytes.len() as u64,
+    }
+}
+
+/// The decoder expands palettes and samples of fewer than eight bits.
+fn layout(colour: ColorType, path: &Path) -> Result<(Channels, bool), MapError> {
+    Ok(match colour {
+        ColorType::L8 => (Channels::Grey, false),
+        ColorType::La8 => (Channels::GreyAlpha, false),
+        ColorType::Rgb8 => (Channels::Rgb, false),
+        ColorType::Rgba8 => (Channels::RgbAlpha, false),
+        ColorType::L16 => (Channels::Grey, true),
+        ColorType::La16 => (Channels::GreyAlpha, true),
+        ColorType::Rgb16 => (Channels::Rgb, true),
+        ColorType::Rgba16 => (Channels::RgbAlpha, true),
+        other => {
+            return Err(MapError::ImageKind {
+                path: path.to_owned(),
+                found: format!("samples of type {other:?}"),
+            });
+        }
+    })
+}
+
+#[cfg(test)]
+mod tests {
+    use ::png::{BitDepth, ColorType as Colour};
+
+    use super::*;
+    use crate::raster::Pixel;
+
+    /// A file of `rows` as they stand in the format, with an optional palette
+    /// and its transparency.
+    fn file(
+        (width, height): (u32, u32),
+        colour: Colour,
+        depth: BitDepth,
+        palette: Option<(&[u8], &[u8])>,
+        rows: &[u8],
+    ) -> Vec<u8> {
+        let mut bytes = Vec::new();
+        let mut encoder = ::png::Encoder::new(&mut bytes, width, height);
+        encoder.set_color(colour);
+        encoder.set_depth(depth);
+        if let Some((colours, transparency)) = palette {
+            encoder.set_palette(colours.to_vec());
+            encoder.set_trns(transparency.to_vec());
+        }
+        let mut writer = encoder.write_header().unwrap();
+        writer.write_image_data(rows).unwrap();
+        writer.finish().unwrap();
+        bytes
+    }
+
+    fn pixels(bytes: &[u8]) -> Result<Vec<Pixel>, MapError> {
+        let raster = decode(bytes, Path::new("floor.png"))?;
+        Ok((0..raster.height).flat_map(|y| raster.row(y)).collect())
+    }
+
+    fn greys(bytes: &[u8]) -> Vec<u16> {
+        let pixels = pixels(bytes).unwrap();
+        pixels.iter().map(|pixel| pixel.colour[0]).collect()
+    }
+
+    #[test]
+    fn grey_of_one_to_sixteen_bits() {
+        let grey = |depth, rows: &[u8]| greys(&file((2, 1), Colour::Grayscale, depth, None, rows));
+        assert_eq!(grey(BitDepth::One, &[0b0100_0000]), [0, 65_535]);
+        assert_eq!(grey(BitDepth::Two, &[0b0111_0000]), [85 * 257, 65_535]);
+        assert_eq!(grey(BitDepth::Four, &[0x1f]), [17 * 257, 65_535]);
+        assert_eq!(grey(BitDepth::Eight, &[1, 254]), [257, 65_278]);
+        assert_eq!(
+            grey(BitDepth::Sixteen, &[0x12, 0x34, 0xff, 0xfe]),
+            [0x1234, 0xfffe]
+        );
+    }
+
+    #[test]
+    fn colour_and_alpha() {
+        let of = |colour, depth, rows: &[u8]| {
+            pixels(&file((1, 1), colour, depth, None, rows)).unwrap()[0]
+        };
+        let grey = of(Colour::GrayscaleAlpha, BitDepth::Eight, &[10, 20]);
+        assert_eq!(grey.colour, [2570; 3]);
+        assert_eq!(grey.alpha, Some(5140));
+        let rgb = of(Colour::Rgb, BitDepth::Eight, &[1, 2, 3]);
+        assert_eq!((rgb.colour, rgb.alpha), ([257, 514, 771], None));
+        let rgba = of(Colour::Rgba, BitDepth::Sixteen, &[0, 1, 0, 2, 0, 3, 0, 4]);
+        assert_eq!((rgba.colour, rgba.alpha), ([1, 2, 3], Some(4)));
+    }
+
+    #[test]
+    fn palettes_with_transparent_entries() {
+        let colours = [255, 0, 0, 10, 10, 10];
+        let bytes = file(
+            (2, 1),
+            Colour::Indexed,
+            BitDepth::One,
+            Some((&colours, &[0])),
+            &[0b1000_0000],
+        );
+        let pixels = pixels(&bytes).unwrap();
+        assert_eq!(
+            (pixels[0].colour, pixels[0].alpha),
+            ([2570; 3], Some(65_535))
+        );
+        assert_eq!(
+            (pixels[1].colour, pixels[1].alpha),
+            ([65_535, 0, 0], Some(0))
+        );
+    }
+
+    #[test]
+    fn a_file_cut_anywhere_or_flipped_in_its_pixels_is_refused() {
+        let rows: Vec<u8> = (0..64 * 48u32).map(|i| (i * i / 8) as u8).collect();
+        let whole = file((64, 48), Colour::Grayscale, BitDepth::Eight, None, &rows);
+        assert!(pixels(&whole).is_ok());
+        for length in 0..whole.len() {
+            assert!(pixels(&whole[..length]).is_err(), "cut at {length}");
+        }
+        // Past the signature and the header every chunk carries a checksum.
+        for at in (33..whole.len() - END.len()).step_by(7) {
+            let mut flipped = whole.clone();
+            flipped[at] ^= 0x10;
+            match pixels(&flipped) {
+                Err(_) => {}
+                Ok(_) => panic!("a flipped bit at {at} of {} went unseen", whole.len()),
+            }
+        }
+    }
+
+    #[test]
+    fn absurd_sizes_are_refused_before_anything_is_reserved() {
+        let mut bytes = file((1, 1), Colour::Grayscale, BitDepth::Eight, None, &[0]);
+        let mut claim = |width: u32, height: u32| {
+            bytes[16..20].copy_from_slice(&width.to_be_bytes());
+            bytes[20..24].copy_from_slice(&height.to_be_bytes());
+            pixels(&bytes).unwrap_err().to_string()
+        };
+        assert_eq!(
+            claim(31_623, 31_623),
+            "floor.png claims 31623 x 31623 cells; allowed: sides of 1..=32767 and at most 268435456 cells"
+        );
+        assert!(claim(0, 1).contains("claims 0 x 1 cells"));
+        assert!(claim(u32::MAX, u32::MAX).contains("claims"));
+        // Allowed, but deflate cannot pack that many into so few bytes.
+        assert!(claim(16_384, 16_384).contains("cut short"));
+    }
+
+    proptest::proptest! {
+        #[test]
+        fn no_bytes_make_it_panic(body in proptest::collection::vec(proptest::num::u8::ANY, 0..200)) {
+            let _ = pixels(&[SIGNATURE, &body].concat());
+        }
+
+        #[test]
+        fn a_flipped_bit_makes_no_other_picture(at in 0usize..2000, bit in 0u8..8) {
+            let rows: Vec<u8> = (0..32 * 32u32).map(|i| (i * 37 / 4) as u8).collect();
+            let whole = file((32, 32), Colour::Grayscale, BitDepth::Eight, None, &rows);
+            let mut flipped = whole.clone();
+            let at = at % flipped.len();
+            flipped[at] ^= 1 << bit;
+            if let Ok(pixels) = pixels(&flipped) {
+                let greys: Vec<u16> = pixels.iter().map(|pixel| pixel.colour[0]).collect();
+                proptest::prop_assert_eq!(greys, super::tests::greys(&whole));
+            }
+        }
+    }
+}

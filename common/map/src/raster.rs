@@ -1,0 +1,94 @@
+//! A decoded image, before it means occupancy.
+//!
+//! Pixels are given in 16-bit steps whatever the file holds, as the image
+//! library of `map_server` does; so every threshold falls between the same
+//! values.
+
+/// The full brightness or opacity of a channel.
+pub(crate) const FULL: u16 = u16::MAX;
+
+/// Rows from the top, pixels from the left, channels together.
+pub(crate) struct Raster {
+    pub(crate) width: u32,
+    pub(crate) height: u32,
+    pub(crate) channels: Channels,
+    pub(crate) samples: Samples,
+}
+
+/// What a pixel's samples are, in their order.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(crate) enum Channels {
+    Grey,
+    GreyAlpha,
+    Rgb,
+    RgbAlpha,
+}
+
+/// The samples as wide as the file has them.
+pub(crate) enum Samples {
+    /// 255 is full.
+    Eight(Vec<u8>),
+    /// 65535 is full.
+    Sixteen(Vec<u16>),
+}
+
+/// A pixel in 16-bit steps.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(crate) struct Pixel {
+    /// Red, green and blue; equal for grey.
+    pub(crate) colour: [u16; 3],
+    /// Opacity, where the image has such a channel.
+    pub(crate) alpha: Option<u16>,
+}
+
+impl Channels {
+    pub(crate) fn count(self) -> usize {
+        match self {
+            Channels::Grey => 1,
+            Channels::GreyAlpha => 2,
+            Channels::Rgb => 3,
+            Channels::RgbAlpha => 4,
+        }
+    }
+}
+
+impl Raster {
+    /// The pixels of a row, from the left; `y` counts from the top.
+    pub(crate) fn row(&self, y: u32) -> impl Iterator<Item = Pixel> {
+        let start = y as usize * self.width as usize;
+        (start..start + self.width as usize).map(|index| self.pixel(index))
+    }
+
+    fn pixel(&self, index: usize) -> Pixel {
+        let first = index * self.channels.count();
+        let sample = |channel: usize| self.samples.get(first + channel);
+        match self.channels {
+            Channels::Grey => Pixel {
+                colour: [sample(0); 3],
+                alpha: None,
+            },
+            Channels::GreyAlpha => Pixel {
+                colour: [sample(0); 3],
+                alpha: Some(sample(1)),
+            },
+            Channels::Rgb => Pixel {
+                colour: [sample(0), sample(1), sample(2)],
+                alpha: None,
+            },
+            Channels::RgbAlpha => Pixel {
+                colour: [sample(0), sample(1), sample(2)],
+                alpha: Some(sample(3)),
+            },
+        }
+    }
+}
+
+impl Samples {
+    /// Decoders fill as many samples as the size says, so the index is valid.
+    fn get(&self, index: usize) -> u16 {
+        match self {
+            Samples::Eight(samples) => u16::from(samples[index]) * 257,
+            Samples::Sixteen(samples) => samples[index],
+        }
+    }
+}

@@ -1,0 +1,216 @@
+//! From a pixel's shade to a cell's occupancy.
+//!
+//! The rules are those of `map_server` in ROS 1 and of `nav2_map_server` up to
+//! Jazzy: `occ = 1 - shade`, or the shade itself with `negate`; above
+//! `occupied_thresh` occupied, below `free_thresh` free, both strictly. Later
+//! nav2 counts a shade exactly at a threshold as reached, weighs the colours by
+//! luminance and takes whatever is transparent for unknown; for opaque grey
+//! images off the thresholds both agree.
+
+use crate::UNKNOWN;
+use crate::description::{Mode, Thresholds};
+use crate::raster::{FULL, Pixel};
+
+const FREE: u8 = 0;
+const OCCUPIED: u8 = 100;
+
+/// How the pixels of an image are read.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(crate) struct Rules {
+    pub(crate) mode: Mode,
+    /// Whether bright pixels are the occupied ones.
+    pub(crate) negate: bool,
+    pub(crate) thresholds: Thresholds,
+}
+
+impl Rules {
+    /// The occupancy that a pixel stands for.
+    pub(crate) fn occupancy(self, pixel: Pixel) -> u8 {
+        match self.mode {
+            Mode::Trinary => {
+                // The alpha channel counts as one more colour: what is
+                // transparent is darker.
+                let occ = self.occupied_share(shade(&pixel.colour, pixel.alpha));
+                self.beyond_thresholds(occ).unwrap_or(UNKNOWN)
+            }
+            Mode::Scale if pixel.alpha.is_some_and(|alpha| alpha != FULL) => UNKNOWN,
+            Mode::Scale => {
+                let occ = self.occupied_share(shade(&pixel.colour, None));
+                self.beyond_thresholds(occ)
+                    .unwrap_or_else(|| self.between_thresholds(occ))
+            }
+            Mode::Raw => match (shade(&pixel.colour, None) * 255.0).round() {
+                percent if percent <= f64::from(OCCUPIED) => percent as u8,
+                _ => UNKNOWN,
+            },
+        }
+    }
+
+    fn occupied_share(self, shade: f64) -> f64 {
+        if self.negate { shade } else { 1.0 - shade }
+    }
+
+    fn beyond_thresholds(self, occ: f64) -> Option<u8> {
+        if occ > self.thresholds.occupied {
+            Some(OCCUPIED)
+        } else if occ < self.thresholds.free {
+            Some(FREE)
+        } else {
+            None
+        }
+    }
+
+    fn between_thresholds(self, occ: f64) -> u8 {
+        let Thresholds { occupied, free } = self.thresholds;
+        ((occ - free) / (occupied - free) * 100.0).round_ties_even() as u8
+    }
+}
+
+/// How bright a pixel is, 0..=1: the mean of its channels.
+fn shade(colour: &[u16; 3], alpha: Option<u16>) -> f64 {
+    let channels = colour.iter().copied().chain(alpha);
+    let (count, sum) = channels.fold((0.0, 0.0), |(count, sum), channel| {
+        (count + 1.0, sum + f64::from(channel))
+    });
+    sum / count / f64::from(FULL)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    const MAP_SAVER: Thresholds = Thresholds {
+        occupied: 0.65,
+        free: 0.196,
+    };
+
+    fn grey(value: u8) -> Pixel {
+        Pixel {
+            colour: [u16::from(value) * 257; 3],
+            alpha: None,
+        }
+    }
+
+    fn cells(rules: Rules, shades: &[u8]) -> Vec<u8> {
+        shades.iter().map(|&s| rules.occupancy(grey(s))).collect()
+    }
+
+    #[test]
+    fn trinary_knows_three_values() {
+        let mut rules = Rules {
+            mode: Mode::Trinary,
+            negate: false,
+            thresholds: MAP_SAVER,
+        };
+        // 205 is what map_saver writes for unknown: 50/255 is just above 0.196.
+        assert_eq!(
+            cells(rules, &[0, 89, 90, 205, 206, 254, 255]),
+            [100, 100, 255, 255, 0, 0, 0]
+        );
+        rules.negate = true;
+        assert_eq!(
+            cells(rules, &[0, 49, 50, 165, 166, 255]),
+            [0, 0, 255, 255, 100, 100]
+        );
+    }
+
+    #[test]
+    fn a_shade_exactly_at_a_threshold_is_not_beyond_it() {
+        let rules = Rules {
+            mode: Mode::Trinary,
+            negate: true,
+            thresholds: Thresholds {
+                occupied: 204.0 / 255.0,
+                free: 51.0 / 255.0,
+            },
+        };
+        assert_eq!(
+            cells(rules, &[50, 51, 52, 203, 204, 205]),
+            [0, 255, 255, 255, 255, 100]
+        );
+    }
+
+    #[test]
+    fn scale_interpolates_and_transparent_is_unknown() {
+        let rules = Rules {
+            mode: Mode::Scale,
+            negate: true,
+            thresholds: Thresholds {
+                occupied: 1.0,
+                free: 0.0,
+            },
+        };
+        // 255 is not beyond 1.0, it is interpolated to 100; 127/255 is 49.8 %.
+        assert_eq!(cells(rules, &[0, 51, 127, 128, 255]), [0, 20, 50, 50, 100]);
+        let faint = Pixel {
+            alpha: Some(FULL - 1),
+            ..grey(255)
+        };
+        assert_eq!(rules.occupancy(faint), UNKNOWN);
+        let opaque = Pixel {
+            alpha: Some(FULL),
+            ..grey(255)
+        };
+        assert_eq!(rules.occupancy(opaque), 100);
+    }
+
+    #[test]
+    fn scale_rounds_halves_to_even() {
+        let rules = Rules {
+            mode: Mode::Scale,
+            negate: true,
+            thresholds: Thresholds {
+                occupied: 1.0,
+                free: 0.0,
+            },
+        };
+        // 0.125 * 100 and 0.375 * 100 are exact halves: 12.5 and 37.5.
+        assert_eq!(rules.between_thresholds(0.125), 12);
+        assert_eq!(rules.between_thresholds(0.375), 38);
+    }
+
+    #[test]
+    fn raw_takes_values_up_to_a_hundred_and_ignores_negate_and_alpha() {
+        for negate in [false, true] {
+            let rules = Rules {
+                mode: Mode::Raw,
+                negate,
+                thresholds: MAP_SAVER,
+            };
+            assert_eq!(
+                cells(rules, &[0, 1, 99, 100, 101, 255]),
+                [0, 1, 99, 100, 255, 255]
+            );
+            let clear = Pixel {
+                alpha: Some(0),
+                ..grey(42)
+            };
+            assert_eq!(rules.occupancy(clear), 42);
+        }
+    }
+
+    #[test]
+    fn colours_are_averaged_and_alpha_with_them_in_trinary_only() {
+        let pixel = Pixel {
+            colour: [FULL, FULL, 0],
+            alpha: Some(0),
+        };
+        let rules = |mode| Rules {
+            mode,
+            negate: false,
+            thresholds: Thresholds {
+                occupied: 0.45,
+                free: 0.4,
+            },
+        };
+        // (1 + 1 + 0 + 0) / 4 is half occupied; without alpha it is a third.
+        assert_eq!(rules(Mode::Trinary).occupancy(pixel), 100);
+        let opaque = Pixel {
+            alpha: None,
+            ..pixel
+        };
+        assert_eq!(rules(Mode::Trinary).occupancy(opaque), 0);
+        assert_eq!(rules(Mode::Scale).occupancy(opaque), 0);
+        assert_eq!(rules(Mode::Raw).occupancy(pixel), UNKNOWN, "170 of 255");
+    }
+}

@@ -1,0 +1,87 @@
+//! The kinds of message that are read.
+
+use std::fmt;
+
+use crate::TF_STATIC;
+use crate::ros::{LaserScan, OccupancyGridMsg, Odometry, PoseStamped, RosMessage, TfMessage};
+
+/// A kind of message, by its schema.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
+pub enum Kind {
+    /// `sensor_msgs/msg/LaserScan`.
+    Scan,
+    /// `nav_msgs/msg/OccupancyGrid`.
+    Map,
+    /// `nav_msgs/msg/Odometry`.
+    Odometry,
+    /// `geometry_msgs/msg/PoseStamped`.
+    PoseStamped,
+    /// `tf2_msgs/msg/TFMessage` on a topic called `/tf_static`; those of `/tf`
+    /// have the same schema, but hold for a moment only.
+    StaticTransforms,
+}
+
+impl Kind {
+    /// All kinds.
+    pub const ALL: [Kind; 5] = [
+        Kind::Scan,
+        Kind::Map,
+        Kind::Odometry,
+        Kind::PoseStamped,
+        Kind::StaticTransforms,
+    ];
+
+    /// The schema's name in ROS 2.
+    #[must_use]
+    pub fn schema(self) -> &'static str {
+        match self {
+            Kind::Scan => LaserScan::SCHEMA,
+            Kind::Map => OccupancyGridMsg::SCHEMA,
+            Kind::Odometry => Odometry::SCHEMA,
+            Kind::PoseStamped => PoseStamped::SCHEMA,
+            Kind::StaticTransforms => TfMessage::SCHEMA,
+        }
+    }
+
+    /// The kind of a channel; the schema may be named as ROS 1 does, without
+    /// `msg`, so that such a channel can be refused with the reason.
+    pub(crate) fn of(schema: &str, topic: &str) -> Option<Kind> {
+        let is_named = |kind: &Kind| {
+            let name = kind.schema();
+            schema == name || schema == name.replace("/msg/", "/")
+        };
+        let kind = Kind::ALL.into_iter().find(is_named)?;
+        let is_static = topic.ends_with(TF_STATIC);
+        (kind != Kind::StaticTransforms || is_static).then_some(kind)
+    }
+
+    pub(crate) fn bit(self) -> u8 {
+        1 << self as u8
+    }
+}
+
+impl fmt::Display for Kind {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.write_str(self.schema())
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn schemas_and_topics_decide() {
+        assert_eq!(
+            Kind::of("sensor_msgs/msg/LaserScan", "/a"),
+            Some(Kind::Scan)
+        );
+        assert_eq!(Kind::of("sensor_msgs/LaserScan", "/a"), Some(Kind::Scan));
+        assert_eq!(Kind::of("sensor_msgs/msg/Image", "/scan"), None);
+        let transforms = "tf2_msgs/msg/TFMessage";
+        assert_eq!(Kind::of(transforms, "/tf"), None);
+        for topic in ["/tf_static", "/robot1/tf_static"] {
+            assert_eq!(Kind::of(transforms, topic), Some(Kind::StaticTransforms));
+        }
+    }
+}

@@ -1,0 +1,66 @@
+//! A decoded message.
+
+use std::sync::Arc;
+
+use crate::ros::{LaserScan, OccupancyGridMsg, Odometry, PoseStamped, TfMessage};
+use crate::{Kind, cdr};
+
+/// A message with its place in the recording.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Record {
+    /// The channel.
+    pub topic: Arc<str>,
+    /// When it was recorded, nanoseconds since 1970.
+    pub log_time_ns: i64,
+    /// What it says.
+    pub message: Message,
+}
+
+/// A message of one of the kinds that are read.
+#[derive(Debug, Clone, PartialEq)]
+pub enum Message {
+    /// A laser scan.
+    Scan(LaserScan),
+    /// A map.
+    Map(OccupancyGridMsg),
+    /// What the wheels report.
+    Odometry(Box<Odometry>),
+    /// A pose: the truth, a goal, or whatever the topic says.
+    PoseStamped(PoseStamped),
+    /// Transforms that never change.
+    StaticTransforms(TfMessage),
+}
+
+impl Message {
+    /// Which kind it is.
+    #[must_use]
+    pub fn kind(&self) -> Kind {
+        match self {
+            Message::Scan(_) => Kind::Scan,
+            Message::Map(_) => Kind::Map,
+            Message::Odometry(_) => Kind::Odometry,
+            Message::PoseStamped(_) => Kind::PoseStamped,
+            Message::StaticTransforms(_) => Kind::StaticTransforms,
+        }
+    }
+
+    pub(crate) fn decode(kind: Kind, bytes: &[u8]) -> Result<Self, String> {
+        Ok(match kind {
+            Kind::Scan => Message::Scan(cdr::decode(bytes)?),
+            Kind::Map => Message::Map(cdr::decode(bytes)?),
+            Kind::Odometry => Message::Odometry(Box::new(cdr::decode(bytes)?)),
+            Kind::PoseStamped => Message::PoseStamped(cdr::decode(bytes)?),
+            Kind::StaticTransforms => Message::StaticTransforms(cdr::decode(bytes)?),
+        })
+    }
+
+    pub(crate) fn encode(&self) -> Result<Vec<u8>, cdr_encoding::Error> {
+        match self {
+            Message::Scan(message) => cdr::encode(message),
+            Message::Map(message) => cdr::encode(message),
+            Message::Odometry(message) => cdr::encode(message),
+            Message::PoseStamped(message) => cdr::encode(message),
+            Message::StaticTransforms(message) => cdr::encode(message),
+        }
+    }
+}

@@ -1,0 +1,247 @@
+//! The parts of `geometry_msgs` that other messages are made of.
+
+use serde::{Deserialize, Serialize};
+
+use super::ConversionError;
+
+/// How far a quaternion's squared length may be from 1, as in tf2.
+const ROTATION_TOLERANCE: f64 = 0.01;
+
+/// `geometry_msgs/msg/Point`, metres.
+#[derive(Debug, Clone, Copy, PartialEq, Default, Serialize, Deserialize)]
+pub struct Point {
+    /// Forward in the frame.
+    pub x: f64,
+    /// Left in the frame.
+    pub y: f64,
+    /// Up in the frame.
+    pub z: f64,
+}
+
+/// `geometry_msgs/msg/Vector3`: metres, metres a second or radians a second.
+#[derive(Debug, Clone, Copy, PartialEq, Default, Serialize, Deserialize)]
+pub struct Vector3 {
+    /// Along or about the frame's x axis.
+    pub x: f64,
+    /// Along or about the frame's y axis.
+    pub y: f64,
+    /// Along or about the frame's z axis.
+    pub z: f64,
+}
+
+/// `geometry_msgs/msg/Quaternion`.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
+pub struct Quaternion {
+    /// Of i.
+    pub x: f64,
+    /// Of j.
+    pub y: f64,
+    /// Of k.
+    pub z: f64,
+    /// The real part.
+    pub w: f64,
+}
+
+/// `geometry_msgs/msg/Pose`.
+#[derive(Debug, Clone, Copy, PartialEq, Default, Serialize, Deserialize)]
+pub struct Pose {
+    /// Where.
+    pub position: Point,
+    /// Which way.
+    pub orientation: Quaternion,
+}
+
+/// `geometry_msgs/msg/PoseWithCovariance`.
+#[derive(Debug, Clone, Copy, PartialEq, Default, Serialize, Deserialize)]
+pub struct PoseWithCovariance {
+    /// The estimate.
+    pub pose: Pose,
+    /// Row by row over x, y, z and the rotations about them.
+    pub covariance: [[f64; 6]; 6],
+}
+
+/// `geometry_msgs/msg/Twist`.
+#[derive(Debug, Clone, Copy, PartialEq, Default, Serialize, Deserialize)]
+pub struct Twist {
+    /// Metres a second.
+    pub linear: Vector3,
+    /// Radians a second.
+    pub angular: Vector3,
+}
+
+/// `geometry_msgs/msg/TwistWithCovariance`.
+#[derive(Debug, Clone, Copy, PartialEq, Default, Serialize, Deserialize)]
+pub struct TwistWithCovariance {
+    /// The estimate.
+    pub twist: Twist,
+    /// Row by row over x, y, z and the rotations about them.
+    pub covariance: [[f64; 6]; 6],
+}
+
+/// `geometry_msgs/msg/Transform`.
+#[derive(Debug, Clone, Copy, PartialEq, Default, Serialize, Deserialize)]
+pub struct Transform {
+    /// Where the inner frame's origin lies in the outer frame, metres.
+    pub translation: Vector3,
+    /// How the inner frame is turned in the outer frame.
+    pub rotation: Quaternion,
+}
+
+impl Default for Quaternion {
+    /// No turn.
+    fn default() -> Self {
+        Quaternion {
+            x: 0.0,
+            y: 0.0,
+            z: 0.0,
+            w: 1.0,
+        }
+    }
+}
+
+impl Quaternion {
+    /// A turn about the z axis, radians.
+    #[must_use]
+    pub fn from_yaw(yaw: f64) -> Self {
+        let (sin, cos) = (0.5 * yaw).sin_cos();
+        Quaternion {
+            x: 0.0,
+            y: 0.0,
+            z: sin,
+            w: cos,
+        }
+    }
+
+    /// The heading of the turned x axis, radians in `[-π, π]`.
+    ///
+    /// # Errors
+    /// If it is no rotation.
+    pub fn yaw(self) -> Result<f64, ConversionError> {
+        self.check()?;
+        let Quaternion { x, y, z, w } = self;
+        // Both arguments scale with the squared length, so it need not be 1.
+        Ok((2.0 * (w * z + x * y)).atan2(w * w + x * x - y * y - z * z))
+    }
+
+    pub(crate) fn check(self) -> Result<(), ConversionError> {
+        let Quaternion { x, y, z, w } = self;
+        let squared = x * x + y * y + z * z + w * w;
+        if (squared - 1.0).abs() < ROTATION_TOLERANCE {
+            return Ok(());
+        }
+        Err(ConversionError::Rotation { x, y, z, w })
+    }
+}
+
+impl Pose {
+    /// A pose in the plane, at height 0.
+    #[must_use]
+    pub fn from_planar(pose: geometry::Pose) -> Self {
+        Pose {
+            position: Point {
+                x: pose.x,
+                y: pose.y,
+                z: 0.0,
+            },
+            orientation: Quaternion::from_yaw(pose.yaw),
+        }
+    }
+
+    /// The pose seen from above.
+    ///
+    /// # Errors
+    /// If it is not finite or no rotation.
+    pub fn planar(&self) -> Result<geometry::Pose, ConversionError> {
+        let Point { x, y, .. } = self.position;
+        if !(x.is_finite() && y.is_finite()) {
+            return Err(ConversionError::Position { x, y });
+        }
+        Ok(geometry::Pose::new(x, y, self.orientation.yaw()?))
+    }
+}
+
+impl PoseWithCovariance {
+    /// The covariance row by row over x, y and yaw: m², m·rad, rad².
+    #[must_use]
+    pub fn planar_covariance(&self) -> [f64; 9] {
+        let axes = [0, 1, 5];
+        std::array::from_fn(|i| self.covariance[axes[i / 3]][axes[i % 3]])
+    }
+}
+
+impl Twist {
+    /// The motion in the plane: m/s, m/s and rad/s.
+    #[must_use]
+    pub fn planar(&self) -> geometry::Pose {
+        geometry::Pose::new(self.linear.x, self.linear.y, self.angular.z)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use std::f64::consts::{FRAC_PI_2, PI};
+
+    use super::*;
+
+    #[test]
+    fn yaw_comes_back_also_with_tilt() {
+        for yaw in [0.0, 0.1, -3.0, FRAC_PI_2] {
+            // Half angles and one arc tangent: a few units in the last place.
+            assert!((Quaternion::from_yaw(yaw).yaw().unwrap() - yaw).abs() < 1e-15);
+        }
+        // Upside down and turned by 0.4: the x axis still points there.
+        let (sin, cos) = 0.2f64.sin_cos();
+        let flipped = Quaternion {
+            x: cos,
+            y: sin,
+            z: 0.0,
+            w: 0.0,
+        };
+        assert!((flipped.yaw().unwrap() - 0.4).abs() < 1e-15);
+        // A little too long, as rounded writers make them.
+        let long = Quaternion {
+            w: 1.004,
+            ..Quaternion::default()
+        };
+        assert_eq!(long.yaw().unwrap(), 0.0);
+    }
+
+    #[test]
+    fn what_is_no_pose_is_refused() {
+        let zero = Quaternion {
+            w: 0.0,
+            ..Quaternion::default()
+        };
+        let message = zero.yaw().unwrap_err().to_string();
+        assert_eq!(
+            message,
+            "the quaternion (0, 0, 0, 0) is no rotation; allowed: a length of 1"
+        );
+        let nan = Quaternion {
+            x: f64::NAN,
+            ..Quaternion::default()
+        };
+        assert!(nan.yaw().is_err());
+        let mut pose = Pose::from_planar(geometry::Pose::new(1.0, 2.0, PI));
+        assert_eq!(pose.planar().unwrap(), geometry::Pose::new(1.0, 2.0, PI));
+        pose.position.x = f64::INFINITY;
+        assert!(matches!(
+            pose.planar(),
+            Err(ConversionError::Position { .. })
+        ));
+    }
+
+    #[test]
+    fn the_planar_covariance_is_of_x_y_and_yaw() {
+        let mut with = PoseWithCovariance::default();
+        for (row, values) in with.covariance.iter_mut().enumerate() {
+            for (column, value) in values.iter_mut().enumerate() {
+                *value = (10 * row + column) as f64;
+            }
+        }
+        assert_eq!(
+            with.planar_covariance(),
+            [0.0, 1.0, 5.0, 10.0, 11.0, 15.0, 50.0, 51.0, 55.0]
+        );
+    }
+}

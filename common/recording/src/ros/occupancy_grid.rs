@@ -1,0 +1,159 @@
+//! `nav_msgs/msg/OccupancyGrid`.
+
+use map::OccupancyGrid;
+use serde::{Deserialize, Serialize};
+
+use super::{ConversionError, Header, Pose, RosMessage, Time};
+
+/// A map.
+#[derive(Debug, Clone, PartialEq, Default, Serialize, Deserialize)]
+pub struct OccupancyGridMsg {
+    /// When it was published, and the map's frame.
+    pub header: Header,
+    /// Its size and place.
+    pub info: MapMetaData,
+    /// Row by row from the lowest y: 0 free to 100 occupied, -1 unknown.
+    pub data: Vec<i8>,
+}
+
+/// `nav_msgs/msg/MapMetaData`.
+#[derive(Debug, Clone, PartialEq, Default, Serialize, Deserialize)]
+pub struct MapMetaData {
+    /// When the map was read.
+    pub map_load_time: Time,
+    /// Side of a cell, metres.
+    pub resolution: f32,
+    /// Cells along x.
+    pub width: u32,
+    /// Cells along y.
+    pub height: u32,
+    /// The lower left corner of cell (0, 0) in the map frame.
+    pub origin: Pose,
+}
+
+impl OccupancyGridMsg {
+    /// The grid that the message holds.
+    ///
+    /// Its resolution is the shortest decimal that rounds to the message's 32
+    /// bits: a map of 0.05 m is 0.05 m, as in the file that it was read from.
+    ///
+    /// # Errors
+    /// Says what about the message is not sound.
+    pub fn to_grid(&self) -> Result<OccupancyGrid, ConversionError> {
+        let cells = self.data.iter().enumerate().map(cell);
+        let cells: Vec<u8> = cells.collect::<Result<_, _>>()?;
+        let info = &self.info;
+        Ok(OccupancyGrid::from_parts(
+            info.width,
+            info.height,
+            shortest_decimal(info.resolution),
+            info.origin.planar()?,
+            cells,
+        )?)
+    }
+
+    /// The message for a grid; its header is empty.
+    #[must_use]
+    pub fn from_grid(grid: &OccupancyGrid) -> Self {
+        OccupancyGridMsg {
+            header: Header::default(),
+            info: MapMetaData {
+                map_load_time: Time::default(),
+                resolution: grid.resolution_m as f32,
+                width: grid.width,
+                height: grid.height,
+                origin: Pose::from_planar(grid.map_from_grid),
+            },
+            // Unknown is 255, and -1 in the message: the same bits.
+            data: grid.cells.iter().map(|&cell| cell as i8).collect(),
+        }
+    }
+}
+
+fn cell((index, &found): (usize, &i8)) -> Result<u8, ConversionError> {
+    match found {
+        -1 => Ok(map::UNKNOWN),
+        // Not negative, so the bits are the number.
+        0..=100 => Ok(found as u8),
+        _ => Err(ConversionError::Cell { index, found }),
+    }
+}
+
+fn shortest_decimal(value: f32) -> f64 {
+    // What an f32 prints, an f64 reads; NaN stays NaN and is refused later.
+    value.to_string().parse().unwrap_or(f64::NAN)
+}
+
+impl RosMessage for OccupancyGridMsg {
+    const SCHEMA: &'static str = "nav_msgs/msg/OccupancyGrid";
+    const DEFINITION: &'static str = "\
+std_msgs/Header header
+nav_msgs/MapMetaData info
+int8[] data
+================================================================================
+MSG: std_msgs/Header
+builtin_interfaces/Time stamp
+string frame_id
+================================================================================
+MSG: builtin_interfaces/Time
+int32 sec
+uint32 nanosec
+================================================================================
+MSG: nav_msgs/MapMetaData
+builtin_interfaces/Time map_load_time
+float32 resolution
+uint32 width
+uint32 height
+geometry_msgs/Pose origin
+================================================================================
+MSG: geometry_msgs/Pose
+geometry_msgs/Point position
+geometry_msgs/Quaternion orientation
+================================================================================
+MSG: geometry_msgs/Point
+float64 x
+float64 y
+float64 z
+================================================================================
+MSG: geometry_msgs/Quaternion
+float64 x 0
+float64 y 0
+float64 z 0
+float64 w 1
+";
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn grid() -> OccupancyGrid {
+        let origin = geometry::Pose::new(-1.5, 2.0, 0.25);
+        OccupancyGrid::from_parts(2, 2, 0.05, origin, vec![0, 100, 255, 42]).unwrap()
+    }
+
+    #[test]
+    fn a_grid_survives_its_message() {
+        let back = OccupancyGridMsg::from_grid(&grid()).to_grid().unwrap();
+        assert_eq!(back.resolution_m, 0.05, "not 0.05000000074505806");
+        assert_eq!(back.cells, grid().cells);
+        assert_eq!(back.id(), grid().id());
+    }
+
+    #[test]
+    fn unsound_messages_are_refused() {
+        let refusal = |spoil: fn(&mut OccupancyGridMsg)| {
+            let mut message = OccupancyGridMsg::from_grid(&grid());
+            spoil(&mut message);
+            message.to_grid().unwrap_err().to_string()
+        };
+        assert_eq!(
+            refusal(|m| m.data[2] = -2),
+            "cell 2 is -2; allowed: 0..=100, and -1 for unknown"
+        );
+        assert!(refusal(|m| m.info.width = 3).contains("4 cells for a grid of 3 x 2"));
+        assert!(refusal(|m| m.info.resolution = f32::NAN).contains("a resolution of NaN m"));
+        assert!(refusal(|m| m.info.origin.orientation.w = 0.0).contains("no rotation"));
+        assert!(refusal(|m| m.info.width = u32::MAX).contains("allowed: sides of"));
+    }
+}

@@ -1,0 +1,132 @@
+//! A small recording for this crate's tests: a map, a mount, a few scans with
+//! odometry and truth in several chunks, and a message of an unknown type.
+
+use geometry::Pose;
+use map::OccupancyGrid;
+
+use crate::ros::{
+    self, Header, LaserScan, OccupancyGridMsg, Odometry, PoseStamped, TfMessage, Time, Transform,
+    TransformStamped, Vector3,
+};
+use crate::write::{Packing, RecordingWriter};
+use crate::{GROUND_TRUTH, MAP, Message, ODOM, Record, SCAN, TF_STATIC};
+
+pub(crate) const SCANS: usize = 6;
+pub(crate) const MOUNT: Pose = Pose::new(0.78, 0.1, 0.25);
+
+pub(crate) fn stamp_ns(scan: usize) -> i64 {
+    1_137_772_793_000_000_000 + 100_000_000 * scan as i64
+}
+
+pub(crate) fn truth(scan: usize) -> Pose {
+    Pose::new(1.0 + scan as f64, -2.0, 0.1 * scan as f64)
+}
+
+pub(crate) fn grid() -> OccupancyGrid {
+    let cells = [0, 100, 255].repeat(20);
+    OccupancyGrid::from_parts(10, 6, 0.05, Pose::new(-1.0, 2.0, 0.0), cells).unwrap()
+}
+
+/// The messages that are read, by log time, then place in the file.
+pub(crate) fn records() -> Vec<Record> {
+    let record = |topic: &str, scan: usize, message| Record {
+        topic: topic.into(),
+        log_time_ns: stamp_ns(scan),
+        message,
+    };
+    let mut records = vec![
+        record(MAP, 0, Message::Map(OccupancyGridMsg::from_grid(&grid()))),
+        record(TF_STATIC, 0, mount()),
+    ];
+    for scan in 0..SCANS {
+        records.push(record(SCAN, scan, laser_scan(scan)));
+        records.push(record(ODOM, scan, odometry(scan)));
+        records.push(record(GROUND_TRUTH, scan, true_pose(scan)));
+    }
+    records
+}
+
+/// The file: chunks of four messages, the second chunk before the first, so
+/// that the order of the file is not the order of the times.
+pub(crate) fn bytes(packing: Packing) -> Vec<u8> {
+    let mut writer = RecordingWriter::in_memory(packing).unwrap();
+    let records = records();
+    let mut chunks: Vec<&[Record]> = records.chunks(4).collect();
+    // The first chunk ends within scan 0, so ties would change their order.
+    chunks.swap(1, 2);
+    for chunk in chunks {
+        for record in chunk {
+            let Record {
+                topic,
+                log_time_ns,
+                message,
+            } = record;
+            writer.write(topic, *log_time_ns, message).unwrap();
+        }
+        writer.flush().unwrap();
+    }
+    let log = "rcl_interfaces/msg/Log";
+    writer
+        .write_bytes("/rosout", log, "string msg", "cdr", stamp_ns(1), b"hello")
+        .unwrap();
+    writer.finish().unwrap().into_inner()
+}
+
+fn header(scan: usize, frame: &str) -> Header {
+    Header {
+        stamp: Time::from_ns(stamp_ns(scan)).unwrap(),
+        frame_id: frame.to_owned(),
+    }
+}
+
+fn mount() -> Message {
+    Message::StaticTransforms(TfMessage {
+        transforms: vec![TransformStamped {
+            header: header(0, "base_link"),
+            child_frame_id: "laser".to_owned(),
+            transform: Transform {
+                translation: Vector3 {
+                    x: MOUNT.x,
+                    y: MOUNT.y,
+                    z: 0.3,
+                },
+                rotation: ros::Quaternion::from_yaw(MOUNT.yaw),
+            },
+        }],
+    })
+}
+
+fn laser_scan(scan: usize) -> Message {
+    Message::Scan(LaserScan {
+        header: header(scan, "laser"),
+        angle_min: -1.5,
+        angle_max: 1.5,
+        angle_increment: 0.1,
+        time_increment: 0.001,
+        scan_time: 0.1,
+        range_min: 0.05,
+        range_max: 80.0,
+        ranges: (0..31).map(|beam| (beam + scan) as f32).collect(),
+        intensities: vec![f32::INFINITY, 0.5],
+    })
+}
+
+fn odometry(scan: usize) -> Message {
+    let mut message = Odometry {
+        header: header(scan, "odom"),
+        child_frame_id: "base_link".to_owned(),
+        ..Odometry::default()
+    };
+    message.pose.pose = ros::Pose::from_planar(truth(scan));
+    message.pose.covariance[5][5] = 0.01;
+    message.twist.twist.angular.z = 0.5;
+    message.twist.covariance[0][1] = 0.02;
+    Message::Odometry(Box::new(message))
+}
+
+fn true_pose(scan: usize) -> Message {
+    Message::PoseStamped(PoseStamped {
+        header: header(scan, "map"),
+        pose: ros::Pose::from_planar(truth(scan)),
+    })
+}

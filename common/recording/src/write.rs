@@ -1,0 +1,224 @@
+//! A minimal writer of ROS 2 recordings, for tests and examples.
+//!
+//! It writes the messages that this crate reads, with chunk, data and summary
+//! checksums, so that other tools read them too.
+
+use std::collections::HashMap;
+use std::fs::File;
+use std::io::{BufWriter, Cursor, Seek, Write};
+use std::path::Path;
+
+use mcap::records::MessageHeader;
+use mcap::{McapError, WriteOptions};
+
+use crate::ros::{LaserScan, OccupancyGridMsg, Odometry, PoseStamped, RosMessage, TfMessage};
+use crate::{Kind, Message, RecordingError};
+
+/// How chunks are packed.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Packing {
+    /// No chunks: messages stand in the file one by one.
+    Loose,
+    /// Chunks that are not packed.
+    Plain,
+    /// Chunks packed with zstd.
+    Zstd,
+    /// Chunks packed with lz4.
+    Lz4,
+}
+
+/// Writes messages to a file or to memory.
+pub struct RecordingWriter<W: Write + Seek> {
+    writer: mcap::Writer<W>,
+    /// By topic: the channel's number and its schema.
+    channels: HashMap<String, (u16, String)>,
+    sequence: u32,
+}
+
+impl RecordingWriter<BufWriter<File>> {
+    /// Starts a file, replacing one that is there.
+    ///
+    /// # Errors
+    /// If it cannot be written.
+    pub fn create(path: impl AsRef<Path>, packing: Packing) -> Result<Self, RecordingError> {
+        let path = path.as_ref();
+        let file =
+            File::create(path).map_err(|error| refused(format!("{}: {error}", path.display())))?;
+        RecordingWriter::new(BufWriter::new(file), packing)
+    }
+}
+
+impl RecordingWriter<Cursor<Vec<u8>>> {
+    /// Starts a recording in memory.
+    ///
+    /// # Errors
+    /// Only if the library refuses.
+    pub fn in_memory(packing: Packing) -> Result<Self, RecordingError> {
+        RecordingWriter::new(Cursor::new(Vec::new()), packing)
+    }
+}
+
+impl<W: Write + Seek> RecordingWriter<W> {
+    /// Starts a recording.
+    ///
+    /// # Errors
+    /// If it cannot be written.
+    pub fn new(sink: W, packing: Packing) -> Result<Self, RecordingError> {
+        let compression = match packing {
+            Packing::Loose | Packing::Plain => None,
+            Packing::Zstd => Some(mcap::Compression::Zstd),
+            Packing::Lz4 => Some(mcap::Compression::Lz4),
+        };
+        let writer = WriteOptions::new()
+            .profile("ros2")
+            .use_chunks(packing != Packing::Loose)
+            .compression(compression)
+            .create(sink)
+            .map_err(failed)?;
+        Ok(RecordingWriter {
+            writer,
+            channels: HashMap::new(),
+            sequence: 0,
+        })
+    }
+
+    /// Writes a message; a topic takes messages of one kind.
+    ///
+    /// # Errors
+    /// If the topic has another kind, the time is before 1970, or it cannot be
+    /// written.
+    pub fn write(
+        &mut self,
+        topic: &str,
+        log_time_ns: i64,
+        message: &Message,
+    ) -> Result<(), RecordingError> {
+        let body = message
+            .encode()
+            .map_err(|error| refused(error.to_string()))?;
+        let (schema, definition) = schema(message.kind());
+        self.write_bytes(topic, schema, definition, "cdr", log_time_ns, &body)
+    }
+
+    /// Writes a message of any type whose bytes are given; the first one of a
+    /// topic decides its encoding.
+    ///
+    /// # Errors
+    /// If the topic has another schema, the time is before 1970, or it cannot be
+    /// written.
+    pub fn write_bytes(
+        &mut self,
+        topic: &str,
+        schema: &str,
+        definition: &str,
+        encoding: &str,
+        log_time_ns: i64,
+        body: &[u8],
+    ) -> Result<(), RecordingError> {
+        let log_time = u64::try_from(log_time_ns)
+            .map_err(|_| refused(format!("log time {log_time_ns} ns is before 1970")))?;
+        let channel_id = match self.channels.get(topic) {
+            Some((id, known)) if known == schema => *id,
+            Some((_, known)) => {
+                return Err(refused(format!("{topic} has {known}, not {schema}")));
+            }
+            None => self.add_channel(topic, schema, definition, encoding)?,
+        };
+        self.sequence = self.sequence.wrapping_add(1);
+        let header = MessageHeader {
+            channel_id,
+            sequence: self.sequence,
+            log_time,
+            publish_time: log_time,
+        };
+        self.writer
+            .write_to_known_channel(&header, body)
+            .map_err(failed)
+    }
+
+    /// Ends the chunk: what was written until now survives whatever follows.
+    ///
+    /// # Errors
+    /// If it cannot be written.
+    pub fn flush(&mut self) -> Result<(), RecordingError> {
+        self.writer.flush().map_err(failed)
+    }
+
+    /// Ends the recording and gives back what it was written to.
+    ///
+    /// # Errors
+    /// If it cannot be written.
+    pub fn finish(mut self) -> Result<W, RecordingError> {
+        self.writer.finish().map_err(failed)?;
+        Ok(self.writer.into_inner())
+    }
+
+    fn add_channel(
+        &mut self,
+        topic: &str,
+        schema: &str,
+        definition: &str,
+        encoding: &str,
+    ) -> Result<u16, RecordingError> {
+        let schema_id = self
+            .writer
+            .add_schema(schema, "ros2msg", definition.as_bytes())
+            .map_err(failed)?;
+        let metadata = [("offered_qos_profiles".to_owned(), String::new())].into();
+        let id = self
+            .writer
+            .add_channel(schema_id, topic, encoding, &metadata)
+            .map_err(failed)?;
+        self.channels
+            .insert(topic.to_owned(), (id, schema.to_owned()));
+        Ok(id)
+    }
+}
+
+fn failed(error: McapError) -> RecordingError {
+    refused(match error {
+        // The library's text leaves out what the system says.
+        McapError::Io(error) => error.to_string(),
+        other => other.to_string(),
+    })
+}
+
+fn refused(reason: String) -> RecordingError {
+    RecordingError::Write { reason }
+}
+
+fn schema(kind: Kind) -> (&'static str, &'static str) {
+    let definition = match kind {
+        Kind::Scan => LaserScan::DEFINITION,
+        Kind::Map => OccupancyGridMsg::DEFINITION,
+        Kind::Odometry => Odometry::DEFINITION,
+        Kind::PoseStamped => PoseStamped::DEFINITION,
+        Kind::StaticTransforms => TfMessage::DEFINITION,
+    };
+    (kind.schema(), definition)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::sample;
+
+    #[test]
+    fn a_topic_keeps_its_kind_and_times_start_in_1970() {
+        let mut writer = RecordingWriter::in_memory(Packing::Plain).unwrap();
+        let records = sample::records();
+        let (map, pose) = (&records[0].message, &records[4].message);
+        writer.write("/map", 0, map).unwrap();
+        let other = writer.write("/map", 0, pose).unwrap_err().to_string();
+        assert!(
+            other.contains("/map has nav_msgs/msg/OccupancyGrid, not geometry_msgs/"),
+            "{other}"
+        );
+        let early = writer.write("/map", -1, map).unwrap_err().to_string();
+        assert!(early.contains("log time -1 ns is before 1970"), "{early}");
+        let Err(nowhere) = RecordingWriter::create("no/such/r.mcap", Packing::Plain) else {
+            panic!("there is no such folder");
+        };
+        assert!(nowhere.to_string().contains("no/such/r.mcap"), "{nowhere}");
+    }
+}
