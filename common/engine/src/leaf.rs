@@ -39,21 +39,28 @@ impl LeafRanges {
         self.open[cell]
     }
 
-    /// Looks out from the block whose lowest cell is (`left`, `bottom`).
+    /// Looks out from the block whose lowest cell is (`left`, `bottom`), in the
+    /// directions that are needed; ranges in the others are left as they were.
     pub(crate) fn fill(
         &mut self,
         grid: &Grid,
         lines: &LineIndex,
         space: &Space,
-        left: usize,
-        bottom: usize,
+        (left, bottom): (usize, usize),
+        needed: &[bool],
     ) {
         let mut cells = [None; CELLS];
         for (i, cell) in cells.iter_mut().enumerate() {
             *cell = grid.get((left + i % SIDE) as i64, (bottom + i / SIDE) as i64);
             self.open[i] = *cell == Some(Cell::Open);
         }
-        for (d, direction) in space.directions.all().iter().enumerate() {
+        for (d, direction) in space
+            .directions
+            .all()
+            .iter()
+            .enumerate()
+            .filter(|(d, _)| needed[*d])
+        {
             let outlook = |i: usize| lines.range(d, left + i % SIDE, bottom + i / SIDE);
             let origin = if direction.x_major { left } else { bottom };
             sweep(
@@ -161,6 +168,18 @@ impl LeafProgram {
             leaf.is_short &= size == TABLE;
         }
         leaf
+    }
+
+    /// Marks the directions that beams have at a heading.
+    pub(crate) fn mark_needed(&self, heading: usize, needed: &mut [bool]) {
+        for &bearing in &self.bearings {
+            let direction = heading + bearing;
+            needed[if direction < needed.len() {
+                direction
+            } else {
+                direction - needed.len()
+            }] = true;
+        }
     }
 
     /// Intensities of the block's cells at a heading; meaningless where a cell
@@ -282,8 +301,10 @@ mod tests {
             let (left, bottom) = (seed[0] % grid.width() / SIDE * SIDE, seed[1] % grid.height() / SIDE * SIDE);
             let heading = seed[2] % space.directions.count();
             let mut ranges = LeafRanges::new(&space);
-            ranges.fill(&grid, &lines, &space, left, bottom);
             let leaf = LeafProgram::new(&program, &space);
+            let mut needed = vec![false; space.directions.count()];
+            leaf.mark_needed(heading, &mut needed);
+            ranges.fill(&grid, &lines, &space, (left, bottom), &needed);
             let (portable, chosen) = (leaf.count_portable(&ranges, heading), leaf.count(&ranges, heading));
             for i in 0..CELLS {
                 let (x, y) = ((left + i % SIDE) as i64, (bottom + i / SIDE) as i64);

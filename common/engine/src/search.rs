@@ -114,6 +114,8 @@ struct Search<'a> {
     coarse_bounds: SetBounds,
     fine_bounds: SetBounds,
     leaf_ranges: LeafRanges,
+    /// Directions to look in, for one block.
+    needed: Vec<bool>,
     candidates: Vec<Candidate>,
     queue: BinaryHeap<Block>,
     collector: Collector,
@@ -139,6 +141,7 @@ impl<'a> Search<'a> {
             set_program,
             leaf_program: LeafProgram::new(program, space),
             leaf_ranges: LeafRanges::new(space),
+            needed: vec![false; space.directions.count()],
             candidates: Vec::new(),
             queue: BinaryHeap::new(),
             collector: Collector::new(config),
@@ -234,8 +237,7 @@ impl<'a> Search<'a> {
     fn count(&mut self, index: usize, candidates: Range<usize>) {
         let columns = self.index.fine.columns;
         let (left, bottom) = (index % columns * leaf::SIDE, index / columns * leaf::SIDE);
-        self.leaf_ranges
-            .fill(self.grid, &self.index.lines, self.space, left, bottom);
+        self.look_out((left, bottom), candidates.clone());
         for candidate in candidates {
             let Candidate { heading, bound } = self.candidates[candidate];
             if bound < self.collector.floor() {
@@ -260,6 +262,27 @@ impl<'a> Search<'a> {
                 }
             }
         }
+    }
+
+    /// Fills in the ranges of a block in the directions that its candidate
+    /// headings need.
+    fn look_out(&mut self, block: (usize, usize), candidates: Range<usize>) {
+        let floor = self.collector.floor();
+        self.needed.fill(false);
+        for candidate in self.candidates[candidates]
+            .iter()
+            .filter(|candidate| candidate.bound >= floor)
+        {
+            self.leaf_program
+                .mark_needed(usize::from(candidate.heading), &mut self.needed);
+        }
+        self.leaf_ranges.fill(
+            self.grid,
+            &self.index.lines,
+            self.space,
+            block,
+            &self.needed,
+        );
     }
 }
 
