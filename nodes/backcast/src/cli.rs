@@ -4,7 +4,7 @@ use std::process::ExitCode;
 
 use clap::{Parser, Subcommand};
 
-use crate::{check, run};
+use crate::{check, evaluate, locate, run};
 
 /// Finds where a robot is from its laser and a map, with no initial guess.
 ///
@@ -30,6 +30,12 @@ enum Command {
     /// Says what is wrong with a graph's descriptor, or draws the graph
     #[command(after_help = "Exit codes: 0 sound, 1 something is wrong, 2 wrong use")]
     Check(check::Config),
+    /// Finds the place of each scan of a recording, in one process
+    #[command(after_help = EXIT_CODES)]
+    Locate(locate::Config),
+    /// Judges the places that are found against the truth in recordings
+    #[command(after_help = evaluate::NOTES)]
+    Evaluate(evaluate::Config),
 }
 
 /// Runs the command that the process was started with.
@@ -40,6 +46,8 @@ pub fn main() -> ExitCode {
         None => run::run(&run::Config::with(cli.run)),
         Some(Command::Run(config)) => run::run(&config),
         Some(Command::Check(config)) => check::run(&config),
+        Some(Command::Locate(config)) => locate::run(&config),
+        Some(Command::Evaluate(config)) => evaluate::run(&config),
     };
     outcome.unwrap_or_else(|error| {
         eprintln!("backcast: {}", error.chain());

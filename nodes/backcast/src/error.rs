@@ -3,6 +3,9 @@
 use std::{io, path::PathBuf, process::ExitStatus};
 
 use dataflow::DataflowError;
+use engine::EngineError;
+use map::MapError;
+use recording::RecordingError;
 use transport::TransportError;
 
 /// Why a command failed.
@@ -108,6 +111,76 @@ pub enum BackcastError {
     /// The graph cannot be joined, heard or cleaned up.
     #[error(transparent)]
     Transport(#[from] TransportError),
+    /// A map file cannot be used.
+    #[error(transparent)]
+    Map(#[from] MapError),
+    /// A recording cannot be used.
+    #[error(transparent)]
+    Recording(#[from] RecordingError),
+    /// There is no map to search.
+    #[error(
+        "{} has no map on /map: name one with --map map.yaml",
+        recording.display()
+    )]
+    NoMap {
+        /// The recording.
+        recording: PathBuf,
+    },
+    /// A map that is sound, but on which nothing can be found.
+    #[error("{} cannot be searched", file.display())]
+    UnusableMap {
+        /// The map's file, or the recording that holds it.
+        file: PathBuf,
+        /// Why not.
+        source: EngineError,
+    },
+    /// A setting of the engine is out of range.
+    #[error(transparent)]
+    Setting(EngineError),
+    /// A scan is refused.
+    #[error(transparent)]
+    Refused(EngineError),
+    /// A scan whose heading should come from the truth, but has none.
+    #[error("the heading is to come from the true pose, but there is none of this scan")]
+    NoTrueHeading,
+    /// A scan whose heading should come from odometry, but has none.
+    #[error("the heading is to come from odometry, but none was measured before this scan")]
+    NoOdometry,
+    /// A scan whose heading should come from odometry, but has an old one.
+    #[error(
+        "the newest odometry was measured {age_ns} ns before the scan: at most {allowed_ns} ns are allowed"
+    )]
+    OldOdometry {
+        /// Between the odometry and the scan, nanoseconds.
+        age_ns: i64,
+        /// The most that is allowed, nanoseconds.
+        allowed_ns: i64,
+    },
+    /// A recording by which nothing can be judged.
+    #[error("{} has no true poses on /ground_truth: there is nothing to judge by", file.display())]
+    NoTruths {
+        /// The recording.
+        file: PathBuf,
+    },
+    /// A recording whose true poses are of other scans than those taken.
+    #[error(
+        "{}: none of the {scans} scans taken has a true pose; the file holds {truths}, of other scans",
+        file.display()
+    )]
+    NoTruthTaken {
+        /// The recording.
+        file: PathBuf,
+        /// Scans that were taken.
+        scans: u64,
+        /// True poses in the recording.
+        truths: usize,
+    },
+    /// The thread's processor time cannot be read.
+    #[error("cannot read the processor time of a thread")]
+    Clock(#[source] nix::Error),
+    /// The process's memory cannot be read.
+    #[error("cannot read the peak of memory from /proc/self/status")]
+    Memory(#[source] io::Error),
     /// Logging cannot be started.
     #[error("{0}")]
     Logging(String),
@@ -127,17 +200,22 @@ impl BackcastError {
             | Self::NoNodeForOption { .. }
             | Self::NotWired { .. }
             | Self::OffsetWithoutOdometry
+            | Self::Setting(_)
             | Self::Logging(_) => 2,
             _ => 1,
         }
     }
 
-    /// The error and its causes, on one line.
+    /// The error and its causes, on one line. A cause that the error before it
+    /// has told already is not told again.
     pub(crate) fn chain(&self) -> String {
         let mut text = self.to_string();
         let mut cause = std::error::Error::source(self);
         while let Some(error) = cause {
-            text = format!("{text}: {error}");
+            let told = error.to_string();
+            if !text.ends_with(&told) {
+                text = format!("{text}: {told}");
+            }
             cause = error.source();
         }
         text
@@ -149,5 +227,25 @@ fn after(restarts: u32) -> String {
         0 => String::new(),
         1 => " after 1 restart".to_owned(),
         n => format!(" after {n} restarts"),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn causes_are_told_once() {
+        let output = BackcastError::Output(io::Error::other("the disk is full"));
+        assert_eq!(
+            output.chain(),
+            "cannot write to standard output: the disk is full"
+        );
+        let recording: BackcastError = RecordingError::Open {
+            path: "r.mcap".into(),
+            source: io::Error::other("gone"),
+        }
+        .into();
+        assert_eq!(recording.chain(), "cannot read the recording r.mcap: gone");
     }
 }

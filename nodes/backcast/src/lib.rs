@@ -2,14 +2,18 @@
 //!
 //! One file or folder a command, all with the same verbs: a `Config` that clap
 //! reads, and a function that does the work and returns the exit code. Only
-//! `cli` knows all of them. A localizer is not in here: it runs in its own
-//! processes, and this crate depends on none of theirs.
+//! `cli` knows all of them. The graph's localizer runs in its own processes, and
+//! this crate depends on none of theirs; what runs without a graph asks the
+//! engine itself, by way of `offline`.
 
 pub mod cli;
 
 mod check;
 mod descriptor;
 mod error;
+mod evaluate;
+mod locate;
+mod offline;
 mod run;
 mod statistics;
 mod stdout;

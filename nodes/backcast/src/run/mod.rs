@@ -22,4 +22,5 @@ mod supervision;
 mod watch;
 
 pub(crate) use launch::run;
-pub(crate) use options::{Config, Options};
+pub(crate) use line::Line;
+pub(crate) use options::{Config, HeadingFrom, Options, degrees};

@@ -132,7 +132,8 @@ impl HeadingFrom {
     }
 }
 
-fn degrees(text: &str) -> Result<f64, String> {
+/// An angle of at most a turn.
+pub(crate) fn degrees(text: &str) -> Result<f64, String> {
     text.parse()
         .ok()
         .filter(|degrees| (-360.0..=360.0).contains(degrees))

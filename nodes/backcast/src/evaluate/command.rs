@@ -1,0 +1,140 @@
+//! What `backcast evaluate` does: reads, asks scan by scan, and prints.
+
+use std::collections::BTreeMap;
+use std::path::{Path, PathBuf};
+use std::process::ExitCode;
+
+use map::OccupancyGrid;
+use recording::{GroundTruth, Recording};
+
+use super::judge::{Effort, Evaluation, Judge};
+use super::memory;
+use super::table::Table;
+use crate::offline::{Options, Progress, Session, damage_of, say};
+use crate::{BackcastError, stdout};
+
+/// What stands below the options.
+pub(crate) const NOTES: &str = "\
+Shares are of the truths: the scans taken that have a true pose. Only those are searched.
+cpu is of one thread from the scan to the verdict, decoding excluded; prepare is of the map.
+Errors are of the answers within 0.5 m and 10 degrees.
+
+Exit codes: 0 all evaluated, 1 a file could not be, 2 wrong use";
+
+/// What `backcast evaluate` takes.
+#[derive(Debug, clap::Args)]
+pub(crate) struct Config {
+    /// Recordings with true poses on /ground_truth: MCAP files with ROS 2
+    /// messages
+    #[arg(required = true, value_name = "FILE")]
+    bags: Vec<PathBuf>,
+
+    /// Print JSON, an object a file
+    #[arg(long)]
+    json: bool,
+
+    #[command(flatten)]
+    options: Options,
+}
+
+/// Evaluates one file after another. A file that cannot be evaluated is told on
+/// standard error, and the next one follows.
+///
+/// # Errors
+/// The options or the map that is named cannot be used, or output cannot be
+/// written.
+pub(crate) fn run(config: &Config) -> Result<ExitCode, BackcastError> {
+    config.options.check()?;
+    let map = config.options.load_map()?;
+    let table = Table::of(&config.bags);
+    let mut code = ExitCode::SUCCESS;
+    let mut header = (!config.json).then(|| table.header());
+    for (index, bag) in config.bags.iter().enumerate() {
+        if let Err(error) = memory::forget_peak()
+            && index > 0
+        {
+            let bag = bag.display();
+            say(&format!(
+                "{bag}: peak_rss_mb is that of all files so far: {error}"
+            ));
+        }
+        let evaluation = match evaluate(bag, &config.options, map.as_ref()) {
+            Ok(evaluation) => evaluation,
+            Err(error) => {
+                say(&error.chain());
+                code = ExitCode::FAILURE;
+                continue;
+            }
+        };
+        let line = match config.json {
+            true => evaluation.json(),
+            false => table.row(&evaluation),
+        };
+        for line in header.take().into_iter().chain([line]) {
+            stdout::print(&format!("{line}\n"))?;
+        }
+    }
+    Ok(code)
+}
+
+/// Evaluates one file; a damaged one not at all.
+fn evaluate(
+    bag: &Path,
+    options: &Options,
+    map: Option<&OccupancyGrid>,
+) -> Result<Evaluation, BackcastError> {
+    let recording = Recording::open(bag)?;
+    if let Some(damage) = damage_of(&recording) {
+        return Err(damage.into());
+    }
+    let truths = recording.ground_truths()?;
+    if truths.is_empty() {
+        return Err(BackcastError::NoTruths { file: bag.into() });
+    }
+    let mut session = Session::open(&recording, options, map)?;
+    let name = bag.display().to_string();
+    let progress = Progress::new(&name, session.scans.total());
+    let (judge, scans) = judge_all(&mut session, &truths, &progress)?;
+    if let Some(complaint) = judge.complaint() {
+        progress.say(&format!("{name}: {complaint}"));
+    }
+    let evaluation = judge.conclude(Effort {
+        bag: name,
+        map_cells: session.world.cells(),
+        scans,
+        prepare_cpu_ms: session.prepare_cpu_ms,
+        peak_rss_mb: memory::peak_mb().map_err(BackcastError::Memory)?,
+    });
+    match evaluation.truths {
+        0 => Err(BackcastError::NoTruthTaken {
+            file: bag.into(),
+            scans,
+            truths: truths.len(),
+        }),
+        _ => Ok(evaluation),
+    }
+}
+
+/// Searches and judges the scans whose truth is known; returns with that how
+/// many were taken.
+fn judge_all(
+    session: &mut Session<'_>,
+    truths: &BTreeMap<i64, GroundTruth>,
+    progress: &Progress,
+) -> Result<(Judge, u64), BackcastError> {
+    let mut judge = Judge::new();
+    let mut scans = 0;
+    while let Some(scan) = session.scans.next() {
+        let scan = scan?;
+        scans += 1;
+        if let Some(truth) = truths.get(&scan.stamp_ns) {
+            let reply = session.ask(&scan)?;
+            match reply.answer {
+                Ok(answer) => judge.answer(truth.pose, &answer.places, reply.cpu_ms),
+                Err(refusal) => judge.refusal(truth.pose, refusal.chain()),
+            }
+        }
+        progress.step();
+    }
+    Ok((judge, scans))
+}

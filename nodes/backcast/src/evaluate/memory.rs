@@ -1,0 +1,66 @@
+//! The most memory that this process has held, as Linux counts it in /proc.
+
+use std::{fs, io};
+
+use nix::sys::resource::{UsageWho, getrusage};
+
+/// The number that makes the kernel forget the peak, see proc_pid_clear_refs(5).
+const FORGET_PEAK: &str = "5";
+
+/// The peak counts anew from what is held now.
+///
+/// # Errors
+/// The system does not allow it: the peak stays that of the whole process.
+pub(super) fn forget_peak() -> io::Result<()> {
+    fs::write("/proc/self/clear_refs", FORGET_PEAK)
+}
+
+/// The most that was resident since, in megabytes of 10⁶ bytes.
+///
+/// # Errors
+/// The system does not tell.
+pub(super) fn peak_mb() -> io::Result<f64> {
+    let status = fs::read_to_string("/proc/self/status")?;
+    let kib = match peak_in(&status) {
+        Some(kib) => kib,
+        // Kernels without this line tell the process's peak here, in KiB too.
+        None => getrusage(UsageWho::RUSAGE_SELF)?.max_rss() as f64,
+    };
+    Ok(kib * 1024.0 / 1e6)
+}
+
+/// The line `VmHWM:     1968 kB`, where the unit is KiB.
+fn peak_in(status: &str) -> Option<f64> {
+    let rest = status
+        .lines()
+        .find_map(|line| line.strip_prefix("VmHWM:"))?;
+    rest.trim().strip_suffix("kB")?.trim().parse().ok()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn the_peak_is_read_from_its_line() {
+        let status = "Name:\tx\nVmPeak:\t  99 kB\nVmHWM:\t    1968 kB\nVmRSS:\t 5 kB\n";
+        assert_eq!(peak_in(status), Some(1968.0));
+        assert_eq!(peak_in("Name:\tx\n"), None);
+        assert_eq!(peak_in("VmHWM:\tmuch\n"), None);
+    }
+
+    #[test]
+    fn the_peak_grows_with_what_is_held_and_can_be_forgotten() {
+        let held = vec![1u8; 256 << 20];
+        let sum: u64 = held.iter().map(|&byte| u64::from(byte)).sum();
+        assert_eq!(sum, 256 << 20);
+        let peak = peak_mb().unwrap();
+        assert!(peak > 256.0, "{peak}");
+        drop(held);
+        forget_peak().unwrap();
+        // So much is given back to the system at once, and no other test of
+        // this process holds nearly as much.
+        let after = peak_mb().unwrap();
+        assert!(after < peak - 128.0, "{after} of {peak}");
+    }
+}

@@ -1,0 +1,132 @@
+//! A scan and its places as JSON. Pure.
+//!
+//! Every line has the same keys; what a refused scan does not have is null, and
+//! what only it has, the reason, is null elsewhere.
+
+use engine::localizer::Outcome;
+use engine::peaks::Place;
+use geometry::Pose;
+use messages::Verdict;
+use serde::Serialize;
+
+use crate::offline::{Answer, Reply, TakenScan};
+
+/// One line.
+#[derive(Debug, Serialize)]
+pub(super) struct Object {
+    /// When the scan was measured, nanoseconds since 1970.
+    stamp_ns: i64,
+    /// The map's id in hexadecimal, as logs show it: a number of 64 bits is not
+    /// safe in JSON.
+    map_id: String,
+    verdict: &'static str,
+    /// Other places that fit about as well.
+    alternatives: u32,
+    /// The best place's lead, 0..=1.
+    confidence: f64,
+    /// Milliseconds of computing from the scan to the verdict.
+    cpu_ms: f64,
+    /// Why the scan was refused.
+    refused: Option<String>,
+    votes: Option<Votes>,
+    /// Best first.
+    hypotheses: Vec<Hypothesis>,
+}
+
+/// What the header of topic `votes` says.
+#[derive(Debug, Serialize)]
+struct Votes {
+    best: u16,
+    floor: u16,
+    certified_floor: u16,
+    highest_possible: u32,
+    total: u64,
+    truncated: bool,
+    beams_used: u32,
+    beams_silent: u32,
+    poses_evaluated: u64,
+    headings: u32,
+    /// In the map, radians, where it was given.
+    known_heading: Option<f64>,
+    /// Radians.
+    bearing_rounding: f64,
+}
+
+/// `map_from_laser` in metres and radians, and how sure it is.
+#[derive(Debug, Serialize)]
+struct Hypothesis {
+    x: f64,
+    y: f64,
+    yaw: f64,
+    /// Row by row over x, y and yaw.
+    covariance: [f64; 9],
+    score: f64,
+    intensity: u16,
+    support: u64,
+    /// Where the laser's mount is known.
+    map_from_base: Option<Pose>,
+}
+
+impl Object {
+    pub(super) fn new(scan: &TakenScan, map_id: u64, reply: &Reply) -> Self {
+        let mut object = Object {
+            stamp_ns: scan.stamp_ns,
+            map_id: format!("{map_id:016x}"),
+            verdict: Verdict::NoScan.as_str(),
+            alternatives: 0,
+            confidence: 0.0,
+            cpu_ms: reply.cpu_ms,
+            refused: None,
+            votes: None,
+            hypotheses: Vec::new(),
+        };
+        match &reply.answer {
+            Ok(answer) => object.fill(answer, scan.base_from_laser),
+            Err(refusal) => object.refused = Some(refusal.chain()),
+        }
+        object
+    }
+
+    fn fill(&mut self, Answer { outcome, places }: &Answer, base_from_laser: Option<Pose>) {
+        self.verdict = places.verdict.as_str();
+        self.alternatives = places.alternatives;
+        self.confidence = places.confidence;
+        self.votes = Some(votes(outcome));
+        let laser_from_base = base_from_laser.map(Pose::inverse);
+        let hypothesis = |place: &Place| Hypothesis {
+            x: place.map_from_laser.x,
+            y: place.map_from_laser.y,
+            yaw: place.map_from_laser.yaw,
+            covariance: place.covariance.to_rows(),
+            score: place.score,
+            intensity: place.intensity,
+            support: place.support,
+            map_from_base: laser_from_base.map(|base| place.map_from_laser.then(base)),
+        };
+        self.hypotheses = places.places.iter().map(hypothesis).collect();
+    }
+
+    /// One line, without its end. Plain values under fixed keys cannot fail to
+    /// serialize; a fault there would show as the line's content.
+    pub(super) fn json(&self) -> String {
+        serde_json::to_string(self).unwrap_or_else(|error| format!("{{\"error\":\"{error}\"}}"))
+    }
+}
+
+fn votes(outcome: &Outcome) -> Votes {
+    let found = &outcome.found;
+    Votes {
+        best: found.best,
+        floor: found.floor,
+        certified_floor: found.certified_floor,
+        highest_possible: outcome.highest_possible,
+        total: found.votes.len() as u64,
+        truncated: found.truncated,
+        beams_used: outcome.beams_used,
+        beams_silent: outcome.beams_silent,
+        poses_evaluated: found.poses_evaluated,
+        headings: outcome.headings,
+        known_heading: outcome.known_heading,
+        bearing_rounding: outcome.bearing_rounding,
+    }
+}

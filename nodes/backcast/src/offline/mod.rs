@@ -1,0 +1,20 @@
+//! What `locate` and `evaluate` share: the scans of a recording, each asked for
+//! its place on a map, in this process and without a graph.
+//!
+//! The engine is the graph's, with the same settings, so the votes are the same
+//! to the last one. Files are read and times are taken in here; nothing is
+//! printed but by the commands.
+
+mod cpu;
+mod heading;
+mod options;
+mod progress;
+mod scans;
+mod session;
+mod world;
+
+pub(crate) use options::Options;
+pub(crate) use progress::{Progress, say};
+pub(crate) use scans::TakenScan;
+pub(crate) use session::{Reply, Session, damage_of};
+pub(crate) use world::Answer;

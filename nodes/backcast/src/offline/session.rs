@@ -1,0 +1,114 @@
+//! One recording on one map: everything read and prepared, ready to be asked
+//! scan by scan.
+
+use std::borrow::Cow;
+use std::path::{Path, PathBuf};
+
+use map::OccupancyGrid;
+use recording::{Recording, RecordingError};
+
+use super::heading::Headings;
+use super::scans::Scans;
+use super::world::{Answer, World};
+use super::{Options, TakenScan, cpu};
+use crate::BackcastError;
+
+/// A recording that is being gone through.
+pub(crate) struct Session<'a> {
+    pub(crate) scans: Scans<'a>,
+    pub(crate) world: World,
+    /// Milliseconds of computing that preparing the map has cost.
+    pub(crate) prepare_cpu_ms: f64,
+    headings: Headings,
+}
+
+/// What came of one scan.
+pub(crate) struct Reply {
+    /// Milliseconds of computing from the scan to the verdict or the refusal;
+    /// decoding is not in it.
+    pub(crate) cpu_ms: f64,
+    /// The places, or why the scan is refused.
+    pub(crate) answer: Result<Answer, BackcastError>,
+}
+
+impl<'a> Session<'a> {
+    /// Prepares the map that is given, else the one in the recording.
+    ///
+    /// # Errors
+    /// Something that is needed is not there or cannot be used. Where something
+    /// is missing in a damaged file, the damage is the error.
+    pub(crate) fn open(
+        recording: &'a Recording,
+        options: &Options,
+        given: Option<&OccupancyGrid>,
+    ) -> Result<Self, BackcastError> {
+        let damage = |error| match error {
+            RecordingError::NoTopic { .. } => damage_of(recording).unwrap_or(error),
+            other => other,
+        };
+        let scans = Scans::of(recording, options.every).map_err(damage)?;
+        let headings = Headings::of(&options.heading, recording).map_err(damage)?;
+        let map = match given {
+            Some(map) => Cow::Borrowed(map),
+            None => Cow::Owned(map_in(recording)?),
+        };
+        let prepare = || World::prepare(&map, &options.engine, headings.prior());
+        let (world, prepare_cpu_ms) = cpu::timed(prepare)?;
+        let world = world.map_err(|source| BackcastError::UnusableMap {
+            file: map_file(options, recording.path()),
+            source,
+        })?;
+        Ok(Session {
+            scans,
+            world,
+            prepare_cpu_ms,
+            headings,
+        })
+    }
+
+    /// Finds the place of a scan.
+    ///
+    /// # Errors
+    /// The clock fails. A scan that is refused is a reply.
+    pub(crate) fn ask(&self, scan: &TakenScan) -> Result<Reply, BackcastError> {
+        let heading = match self.headings.of_scan(scan) {
+            Ok(heading) => heading,
+            Err(refusal) => {
+                return Ok(Reply {
+                    cpu_ms: 0.0,
+                    answer: Err(refusal),
+                });
+            }
+        };
+        let borrowed = scan.borrowed();
+        let (found, cpu_ms) = cpu::timed(|| self.world.locate(&borrowed, heading))?;
+        let answer = found.map_err(BackcastError::Refused);
+        Ok(Reply { cpu_ms, answer })
+    }
+}
+
+/// The damage of a recording, as an error.
+pub(crate) fn damage_of(recording: &Recording) -> Option<RecordingError> {
+    let damage = recording.damage()?.clone();
+    Some(RecordingError::Damaged {
+        path: recording.path().to_owned(),
+        readable: recording.messages(),
+        damage,
+    })
+}
+
+fn map_in(recording: &Recording) -> Result<OccupancyGrid, BackcastError> {
+    if let Some(map) = recording.map()? {
+        return Ok(map);
+    }
+    Err(match damage_of(recording) {
+        Some(damage) => damage.into(),
+        None => BackcastError::NoMap {
+            recording: recording.path().to_owned(),
+        },
+    })
+}
+
+fn map_file(options: &Options, bag: &Path) -> PathBuf {
+    options.map.as_deref().unwrap_or(bag).to_owned()
+}

@@ -1,0 +1,83 @@
+//! A map that is ready to be searched, and what a search answers. Pure: no
+//! file, no clock.
+
+use engine::EngineError;
+use engine::boundary;
+use engine::grid::{Grid, GridFrame};
+use engine::localizer::{Localizer, Outcome, Prior};
+use engine::peaks::{self, PeakConfig, PeakInput, Places};
+use engine::scan::Scan;
+use map::OccupancyGrid;
+
+use super::options::EngineOptions;
+
+/// A map and all settings.
+#[derive(Debug)]
+pub(crate) struct World {
+    /// The map's id, as the graph's messages have it.
+    pub(crate) map_id: u64,
+    localizer: Localizer,
+    peaks: PeakConfig,
+}
+
+/// What a scan says about the place.
+#[derive(Debug, Clone, PartialEq)]
+pub(crate) struct Answer {
+    /// The votes, and how they were come by.
+    pub(crate) outcome: Outcome,
+    /// What they say, the verdict included.
+    pub(crate) places: Places,
+}
+
+impl World {
+    /// Does what the graph's boundary extractor and accumulator do with a map.
+    ///
+    /// # Errors
+    /// The map has no occupied or no free cell, or a setting is out of range.
+    pub(crate) fn prepare(
+        map: &OccupancyGrid,
+        options: &EngineOptions,
+        prior: Prior,
+    ) -> Result<Self, EngineError> {
+        let (width, height) = (map.width as usize, map.height as usize);
+        let grid = Grid::new(width, height, &map.cells, options.cells)?;
+        let boundary = boundary::extract(&grid);
+        let frame = GridFrame {
+            resolution_m: map.resolution_m,
+            map_from_grid: map.map_from_grid,
+        };
+        Ok(World {
+            map_id: map.id(),
+            localizer: Localizer::new(frame, grid, &boundary, options.localizer, prior)?,
+            peaks: options.peaks,
+        })
+    }
+
+    /// Cells of the map.
+    pub(crate) fn cells(&self) -> u64 {
+        let grid = self.localizer.grid();
+        grid.width() as u64 * grid.height() as u64
+    }
+
+    /// Searches all poses or, where the heading in the map is given in radians,
+    /// all positions; the world must be prepared for the one or the other.
+    ///
+    /// # Errors
+    /// The scan is refused.
+    pub(crate) fn locate(
+        &self,
+        scan: &Scan<'_>,
+        heading: Option<f64>,
+    ) -> Result<Answer, EngineError> {
+        let outcome = match heading {
+            Some(heading) => self.localizer.search_at(scan, heading)?.0,
+            None => {
+                let found = self.localizer.search(scan, &|| false)?;
+                found.expect("a search that nothing stops ends with an outcome")
+            }
+        };
+        let input = PeakInput::of(&outcome, self.localizer.frame());
+        let places = peaks::extract(&input, &self.peaks);
+        Ok(Answer { outcome, places })
+    }
+}

@@ -1,0 +1,222 @@
+//! A room drawn in source, scans that a laser would take in it, and recordings
+//! of them.
+
+#![allow(
+    clippy::unwrap_used,
+    dead_code,
+    reason = "a test fails by panicking; each file of tests uses its part"
+)]
+
+use std::path::Path;
+use std::process::{Command, Output, Stdio};
+
+use engine::grid::{CellRules, Grid, GridFrame};
+use engine::reference;
+use engine::space::Space;
+use geometry::Pose;
+use map::OccupancyGrid;
+use recording::Message;
+use recording::ros::{self, LaserScan, OccupancyGridMsg};
+use recording::write::{Packing, RecordingWriter};
+use serde_json::Value;
+use tempfile::TempDir;
+
+/// An L-shaped room with a pillar, lowest y first: no pose looks like another.
+const ROOM: [&str; 12] = [
+    "####################",
+    "#..................#",
+    "#..................#",
+    "#...........##.....#",
+    "#...........##.....#",
+    "#..................#",
+    "#.......############",
+    "#.......#...........",
+    "#.......#...........",
+    "#..#....#...........",
+    "#.......#...........",
+    "#########...........",
+];
+
+pub(crate) const RESOLUTION_M: f64 = 0.25;
+pub(crate) const MAP_FROM_GRID: Pose = Pose::new(3.0, -1.0, 0.5);
+pub(crate) const BASE_FROM_LASER: Pose = Pose::new(0.5, 0.0, 0.25);
+/// From the yaw of the odometry to the heading in the map, degrees.
+pub(crate) const ODOMETRY_OFFSET_DEG: f64 = 30.0;
+pub(crate) const SECOND_NS: i64 = 1_000_000_000;
+
+/// Column, row and heading in degrees of the grid's frame.
+pub(crate) type Place = (i64, i64, usize);
+
+pub(crate) const HERE: Place = (5, 3, 40);
+pub(crate) const THERE: Place = (14, 1, 200);
+
+pub(crate) fn room() -> OccupancyGrid {
+    let cells = ROOM.iter().flat_map(|row| row.bytes());
+    let cells = cells.map(|cell| if cell == b'#' { 100 } else { 0 });
+    let (width, height) = (ROOM[0].len() as u32, ROOM.len() as u32);
+    OccupancyGrid::from_parts(width, height, RESOLUTION_M, MAP_FROM_GRID, cells.collect()).unwrap()
+}
+
+/// Where the laser truly is at the centre of a cell.
+pub(crate) fn map_from_laser((x, y, heading): Place) -> Pose {
+    let frame = GridFrame {
+        resolution_m: RESOLUTION_M,
+        map_from_grid: MAP_FROM_GRID,
+    };
+    let heading = (heading as f64).to_radians();
+    frame.map_from_cells(x as f64 + 0.5, y as f64 + 0.5, heading)
+}
+
+/// What a laser with a beam a degree all around reads there, without noise.
+pub(crate) fn scan(second: i32, (x, y, heading): Place) -> LaserScan {
+    let room = room();
+    let (width, height) = (room.width as usize, room.height as usize);
+    let grid = Grid::new(width, height, &room.cells, CellRules::default()).unwrap();
+    let space = Space::new(360, RESOLUTION_M, width, height).unwrap();
+    let reading = |beam| {
+        let direction = space.directions.get(heading + 180 + beam);
+        let steps = reference::range(&grid, x, y, direction).map(f64::from);
+        let metres = steps.map(|steps| steps / direction.steps_per_cell * RESOLUTION_M);
+        metres.map_or(f32::INFINITY, |metres| metres as f32)
+    };
+    LaserScan {
+        header: header(second, "laser"),
+        angle_min: -std::f32::consts::PI,
+        angle_max: 179f32.to_radians(),
+        angle_increment: 1f32.to_radians(),
+        range_max: 30.0,
+        ranges: (0..360).map(reading).collect(),
+        ..LaserScan::default()
+    }
+}
+
+pub(crate) fn scan_at(second: i32, place: Place) -> (&'static str, Message) {
+    ("/scan", Message::Scan(scan(second, place)))
+}
+
+pub(crate) fn map_message() -> (&'static str, Message) {
+    ("/map", Message::Map(OccupancyGridMsg::from_grid(&room())))
+}
+
+pub(crate) fn truth_at(second: i32, place: Place) -> (&'static str, Message) {
+    let message = ros::PoseStamped {
+        header: header(second, "map"),
+        pose: ros::Pose::from_planar(map_from_laser(place)),
+    };
+    ("/ground_truth", Message::PoseStamped(message))
+}
+
+/// Odometry of the base, which is turned against the laser.
+pub(crate) fn odometry_at(second: i32, place: Place) -> (&'static str, Message) {
+    let offset = ODOMETRY_OFFSET_DEG.to_radians();
+    let yaw = map_from_laser(place).yaw - BASE_FROM_LASER.yaw - offset;
+    let mut message = ros::Odometry {
+        header: header(second, "odom"),
+        child_frame_id: "base_link".into(),
+        ..ros::Odometry::default()
+    };
+    message.pose.pose = ros::Pose::from_planar(Pose::new(0.0, 0.0, yaw));
+    ("/odom", Message::Odometry(Box::new(message)))
+}
+
+pub(crate) fn mount_message() -> (&'static str, Message) {
+    let Pose { x, y, yaw } = BASE_FROM_LASER;
+    let transform = ros::TransformStamped {
+        header: header(0, "base_link"),
+        child_frame_id: "laser".into(),
+        transform: ros::Transform {
+            translation: ros::Vector3 { x, y, z: 0.3 },
+            rotation: ros::Quaternion::from_yaw(yaw),
+        },
+    };
+    let transforms = vec![transform];
+    let message = Message::StaticTransforms(ros::TfMessage { transforms });
+    ("/tf_static", message)
+}
+
+fn header(second: i32, frame: &str) -> ros::Header {
+    ros::Header {
+        stamp: ros::Time {
+            sec: second,
+            nanosec: 0,
+        },
+        frame_id: frame.into(),
+    }
+}
+
+/// Writes the messages a second apart.
+pub(crate) fn record(path: &Path, messages: &[(&str, Message)]) {
+    let mut writer = RecordingWriter::create(path, Packing::Zstd).unwrap();
+    for (second, (topic, message)) in (0..).zip(messages) {
+        writer.write(topic, second * SECOND_NS, message).unwrap();
+    }
+    writer.finish().unwrap();
+}
+
+/// The program, its output in pipes.
+pub(crate) fn backcast(folder: &Path, arguments: &str) -> Command {
+    let mut command = Command::new(env!("CARGO_BIN_EXE_backcast"));
+    command
+        .args(arguments.split_whitespace())
+        .current_dir(folder)
+        .stdin(Stdio::null())
+        .stdout(Stdio::piped())
+        .stderr(Stdio::piped());
+    command
+}
+
+/// Runs to the end: exit code, standard output, standard error.
+pub(crate) fn run(folder: &Path, arguments: &str) -> (i32, String, String) {
+    let Output {
+        status,
+        stdout,
+        stderr,
+    } = backcast(folder, arguments).output().unwrap();
+    let text = |bytes| String::from_utf8(bytes).unwrap();
+    (status.code().unwrap(), text(stdout), text(stderr))
+}
+
+/// The recordings of the repository.
+pub(crate) fn recordings() -> &'static Path {
+    Path::new(concat!(env!("CARGO_MANIFEST_DIR"), "/../../recordings"))
+}
+
+/// The keys of a JSON object, sorted.
+pub(crate) fn keys(object: &Value) -> Vec<&str> {
+    let mut keys: Vec<&str> = object
+        .as_object()
+        .unwrap()
+        .keys()
+        .map(String::as_str)
+        .collect();
+    keys.sort_unstable();
+    keys
+}
+
+/// A folder with `r.mcap`.
+pub(crate) fn folder(messages: &[(&str, Message)]) -> TempDir {
+    let folder = tempfile::tempdir().unwrap();
+    record(&folder.path().join("r.mcap"), messages);
+    folder
+}
+
+/// Locates the scans of `r.mcap`, which must go well; returns the lines.
+pub(crate) fn lines(folder: &Path, options: &str) -> Vec<String> {
+    let (code, stdout, stderr) = run(folder, &format!("locate --bag r.mcap {options}"));
+    // In a pipe there is no bar, and nothing else was to be said.
+    assert_eq!((code, stderr.as_str()), (0, ""), "{stdout}");
+    stdout.lines().map(ToOwned::to_owned).collect()
+}
+
+/// As [`lines`], read from JSON.
+pub(crate) fn objects(folder: &Path, options: &str) -> Vec<Value> {
+    let lines = lines(folder, &format!("--json {options}"));
+    let parsed = lines.iter().map(|line| serde_json::from_str(line));
+    parsed.map(Result::unwrap).collect()
+}
+
+/// The word that a row holds in a column.
+pub(crate) fn word(row: &str, column: usize) -> String {
+    let word = row.split_whitespace().nth(column);
+    word.unwrap().to_owned()
+}

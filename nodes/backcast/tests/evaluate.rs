@@ -1,0 +1,250 @@
+//! `backcast evaluate` as a process, on drawn and on real recordings.
+
+#![allow(
+    clippy::unwrap_used,
+    reason = "a test fails by panicking, helpers of tests too"
+)]
+
+mod drawn;
+
+use std::fs;
+use std::path::Path;
+
+use drawn::{HERE, THERE, keys, map_message, record, recordings, run, scan, scan_at, truth_at};
+use recording::Message;
+use serde_json::Value;
+use tempfile::TempDir;
+
+/// A folder with `r.mcap`: a map and five scans, of which the second has no
+/// truth, the third is empty, and the truth of the last is of another place.
+fn folder() -> TempDir {
+    let folder = tempfile::tempdir().unwrap();
+    let mut empty = scan(3, HERE);
+    empty.ranges.clear();
+    record(
+        &folder.path().join("r.mcap"),
+        &[
+            map_message(),
+            scan_at(1, HERE),
+            truth_at(1, HERE),
+            scan_at(2, HERE),
+            ("/scan", Message::Scan(empty)),
+            truth_at(3, HERE),
+            truth_at(4, THERE),
+            scan_at(4, THERE),
+            scan_at(5, THERE),
+            truth_at(5, HERE),
+        ],
+    );
+    folder
+}
+
+fn objects(stdout: &str) -> Vec<Value> {
+    let lines = stdout.lines().map(serde_json::from_str);
+    lines.map(Result::unwrap).collect()
+}
+
+#[test]
+fn the_object_has_the_keys_of_the_contract() {
+    let (code, stdout, stderr) = run(folder().path(), "evaluate --json r.mcap");
+    assert_eq!(code, 0, "{stderr}");
+    let object = &objects(&stdout)[0];
+    assert_eq!(
+        keys(object),
+        [
+            "bag",
+            "cpu_ms",
+            "error_deg",
+            "error_m",
+            "map_cells",
+            "peak_rss_mb",
+            "prepare_cpu_ms",
+            "scans",
+            "success_20cm_3deg",
+            "success_50cm_10deg",
+            "top16_recall",
+            "truths",
+            "unique",
+            "unique_wrong"
+        ]
+    );
+    assert_eq!(keys(&object["cpu_ms"]), ["max", "median", "p90"]);
+    assert_eq!(keys(&object["error_m"]), ["median", "p90"]);
+    assert_eq!(keys(&object["error_deg"]), ["median", "p90"]);
+    assert_eq!(object["bag"], "r.mcap");
+    assert_eq!(object["map_cells"], 240);
+    assert_eq!(
+        (&object["scans"], &object["truths"]),
+        (&5.into(), &4.into())
+    );
+    assert_eq!(object["success_50cm_10deg"], 0.5);
+    assert_eq!(object["top16_recall"], 0.5);
+    assert_eq!(object["unique"], 3);
+    assert_eq!(object["unique_wrong"], 1);
+    // Errors are of what was found: within the half metre of a success.
+    assert!(object["error_m"]["p90"].as_f64().unwrap() <= 0.5);
+    for key in ["prepare_cpu_ms", "peak_rss_mb"] {
+        assert!(object[key].as_f64().unwrap() > 0.0, "{key}");
+    }
+    assert!(object["cpu_ms"]["median"].as_f64() <= object["cpu_ms"]["max"].as_f64());
+    assert_eq!(
+        stderr,
+        "backcast: r.mcap: scans refused: 1; the first: the scan is empty: it has no ranges\n"
+    );
+}
+
+#[test]
+fn of_the_scans_taken_those_with_a_truth_are_judged() {
+    let folder = folder();
+    let counts = |every| {
+        let (code, stdout, stderr) = run(
+            folder.path(),
+            &format!("evaluate --json --every {every} r.mcap"),
+        );
+        assert_eq!(code, 0, "{stderr}");
+        let object = &objects(&stdout)[0];
+        (
+            object["scans"].as_u64().unwrap(),
+            object["truths"].as_u64().unwrap(),
+            object["success_50cm_10deg"].as_f64().unwrap(),
+        )
+    };
+    assert_eq!(counts(3), (2, 2, 1.0), "the first and the fourth");
+    assert_eq!(counts(100), (1, 1, 1.0));
+}
+
+#[test]
+fn people_get_a_row_for_each_file() {
+    let folder = folder();
+    fs::copy(
+        folder.path().join("r.mcap"),
+        folder.path().join("again.mcap"),
+    )
+    .unwrap();
+    let (code, stdout, _) = run(folder.path(), "evaluate r.mcap again.mcap");
+    assert_eq!(code, 0);
+    let lines: Vec<&str> = stdout.lines().collect();
+    assert_eq!(lines.len(), 3, "{stdout}");
+    assert!(
+        lines[0].starts_with("recording       cells   scans  truths  50cm10deg %"),
+        "{stdout}"
+    );
+    for (line, name) in lines[1..].iter().zip(["r.mcap", "again.mcap"]) {
+        let words: Vec<&str> = line.split_whitespace().collect();
+        assert_eq!(words[..5], [name, "240", "5", "4", "50.0"], "{line}");
+        assert_eq!(line.len(), lines[0].len());
+    }
+}
+
+#[test]
+fn a_file_that_cannot_be_evaluated_does_not_keep_the_others() {
+    let folder = folder();
+    let path = |name: &str| folder.path().join(name);
+    let bytes = fs::read(path("r.mcap")).unwrap();
+    fs::write(path("cut.mcap"), &bytes[..bytes.len() - 4]).unwrap();
+    record(&path("untrue.mcap"), &[map_message(), scan_at(1, HERE)]);
+    record(
+        &path("other.mcap"),
+        &[map_message(), scan_at(1, HERE), truth_at(2, HERE)],
+    );
+    record(
+        &path("mapless.mcap"),
+        &[scan_at(1, HERE), truth_at(1, HERE)],
+    );
+    record(&path("blind.mcap"), &[map_message(), truth_at(1, HERE)]);
+    let (code, stdout, stderr) = run(
+        folder.path(),
+        "evaluate --json none.mcap cut.mcap untrue.mcap other.mcap mapless.mcap blind.mcap \
+         r.mcap --every 4",
+    );
+    assert_eq!(code, 1, "{stderr}");
+    assert_eq!(objects(&stdout).len(), 1, "{stdout}");
+    assert_eq!(objects(&stdout)[0]["bag"], "r.mcap");
+    let expected = [
+        "backcast: cannot read the recording none.mcap: No such file",
+        "backcast: cut.mcap: the file is cut short",
+        "backcast: untrue.mcap has no true poses on /ground_truth",
+        "backcast: other.mcap: none of the 1 scans taken has a true pose; the file holds 1,",
+        "backcast: mapless.mcap has no map on /map: name one with --map map.yaml",
+        "backcast: blind.mcap has no sensor_msgs/msg/LaserScan; it has /",
+    ];
+    let said: Vec<&str> = stderr.lines().collect();
+    assert_eq!(said.len(), expected.len(), "{stderr}");
+    for (line, expected) in said.iter().zip(expected) {
+        assert!(line.starts_with(expected), "{line}");
+    }
+}
+
+#[test]
+fn wrong_use_is_told() {
+    let folder = tempfile::tempdir().unwrap();
+    for (options, expected) in [
+        ("", "<FILE>..."),
+        ("--every 0 r.mcap", "0 is not in 1.."),
+        ("--headings 12 r.mcap", "a multiple of 8"),
+    ] {
+        let (code, stdout, stderr) = run(folder.path(), &format!("evaluate {options}"));
+        assert_eq!((code, stdout.as_str()), (2, ""), "{stderr}");
+        assert!(stderr.contains(expected), "{stderr}");
+    }
+    let (code, _, stderr) = run(folder.path(), "evaluate --map none.yaml a.mcap b.mcap");
+    assert_eq!((code, stderr.lines().count()), (1, 1), "{stderr}");
+    assert!(stderr.contains("none.yaml"), "{stderr}");
+}
+
+/// Evaluates a real recording.
+fn real(bag: &Path, options: &str) -> Value {
+    let arguments = format!("evaluate --json {options} {}", bag.display());
+    let (code, stdout, stderr) = run(Path::new("."), &arguments);
+    assert_eq!((code, stderr.as_str()), (0, ""));
+    objects(&stdout).remove(0)
+}
+
+fn share(object: &Value, key: &str) -> f64 {
+    object[key].as_f64().unwrap()
+}
+
+#[test]
+fn the_corridor_is_found() {
+    let bag = recordings().join("malaga_corridor/recording.mcap");
+    let object = real(&bag, "");
+    assert_eq!(
+        (&object["scans"], &object["truths"]),
+        (&37.into(), &37.into())
+    );
+    assert_eq!(object["map_cells"], 1908 * 377);
+    assert!(share(&object, "success_50cm_10deg") >= 0.97, "{object}");
+    assert!(share(&object, "top16_recall") >= 0.97, "{object}");
+    assert_eq!(object["unique_wrong"], 0, "{object}");
+}
+
+#[test]
+fn the_corridor_is_found_with_known_headings() {
+    let bag = recordings().join("malaga_corridor/recording.mcap");
+    let object = real(&bag, "--heading-from truth --every 6");
+    assert_eq!(object["truths"], 7);
+    assert_eq!(object["success_50cm_10deg"], 1.0, "{object}");
+    // The heading is answered as it was given, through a quaternion.
+    assert!(share(&object["error_deg"], "p90") < 1e-6, "{object}");
+}
+
+#[test]
+fn the_courtyard_is_found() {
+    let bag = recordings().join("malaga_courtyard/recording.mcap");
+    let object = real(&bag, "--every 4");
+    assert_eq!(object["scans"], 57);
+    assert!(share(&object, "success_50cm_10deg") >= 0.90, "{object}");
+}
+
+#[test]
+fn a_public_building_is_found() {
+    let data = "../../../shared/data/evaluation/intel_queries.mcap";
+    let bag = Path::new(env!("CARGO_MANIFEST_DIR")).join(data);
+    if !bag.exists() {
+        println!("SKIPPED: there is no {}", bag.display());
+        return;
+    }
+    let object = real(&bag, "--every 4");
+    assert_eq!(object["truths"], 50);
+    assert!(share(&object, "success_50cm_10deg") >= 0.90, "{object}");
+}

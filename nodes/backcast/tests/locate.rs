@@ -1,0 +1,283 @@
+//! `backcast locate` as a process, on drawn and on real recordings.
+
+#![allow(
+    clippy::unwrap_used,
+    reason = "a test fails by panicking, helpers of tests too"
+)]
+
+mod drawn;
+
+use std::fs::File;
+use std::io::Read;
+
+use drawn::{
+    BASE_FROM_LASER, HERE, ODOMETRY_OFFSET_DEG, RESOLUTION_M, SECOND_NS, THERE, backcast, folder,
+    keys, lines, map_from_laser, map_message, mount_message, objects, odometry_at, recordings,
+    room, run, scan_at, truth_at, word,
+};
+use geometry::Pose;
+use serde_json::Value;
+
+fn pose(object: &Value) -> Pose {
+    let number = |key: &str| object[key].as_f64().unwrap();
+    Pose::new(number("x"), number("y"), number("yaw"))
+}
+
+/// A cell and a step of the headings: as near as the search itself comes.
+#[track_caller]
+fn assert_near(found: Pose, expected: Pose) {
+    let near = found.is_within(expected, RESOLUTION_M, 1.5f64.to_radians());
+    assert!(near, "{found:?} {expected:?}");
+}
+
+#[test]
+fn a_row_for_each_scan_under_the_columns_of_run() {
+    let folder = folder(&[map_message(), scan_at(7, HERE), scan_at(8, THERE)]);
+    let lines = lines(folder.path(), "");
+    assert_eq!(
+        lines[0],
+        "       stamp s        x m        y m  heading deg  score  verdict    alternatives        ms"
+    );
+    assert_eq!(lines.len(), 3);
+    for (row, (stamp, place)) in lines[1..].iter().zip([("7.000", HERE), ("8.000", THERE)]) {
+        assert_eq!(word(row, 0), stamp);
+        let number = |column| word(row, column).parse::<f64>().unwrap();
+        let found = Pose::new(number(1), number(2), number(3).to_radians());
+        assert_near(found, map_from_laser(place));
+        assert_eq!(word(row, 4), "1.00", "every beam agrees");
+        assert_eq!((word(row, 5), word(row, 6)), ("Unique".into(), "0".into()));
+        assert!(number(7) > 0.0, "computing costs");
+        assert_eq!(row.split_whitespace().count(), 8);
+    }
+}
+
+#[test]
+fn an_object_tells_votes_and_hypotheses() {
+    let folder = folder(&[map_message(), mount_message(), scan_at(7, HERE)]);
+    let object = &objects(folder.path(), "")[0];
+    assert_eq!(
+        keys(object),
+        [
+            "alternatives",
+            "confidence",
+            "cpu_ms",
+            "hypotheses",
+            "map_id",
+            "refused",
+            "stamp_ns",
+            "verdict",
+            "votes"
+        ]
+    );
+    assert_eq!(object["stamp_ns"], 7 * SECOND_NS);
+    assert_eq!(object["map_id"], format!("{:016x}", room().id()));
+    assert_eq!(object["verdict"], "Unique");
+    assert_eq!(object["refused"], Value::Null);
+    assert_eq!(
+        keys(&object["votes"]),
+        [
+            "beams_silent",
+            "beams_used",
+            "bearing_rounding",
+            "best",
+            "certified_floor",
+            "floor",
+            "headings",
+            "highest_possible",
+            "known_heading",
+            "poses_evaluated",
+            "total",
+            "truncated"
+        ]
+    );
+    let votes = &object["votes"];
+    assert_eq!(votes["best"], votes["highest_possible"]);
+    assert_eq!(votes["headings"], 360);
+    assert_eq!(votes["known_heading"], Value::Null);
+    let best = &object["hypotheses"][0];
+    assert_eq!(
+        keys(best),
+        [
+            "covariance",
+            "intensity",
+            "map_from_base",
+            "score",
+            "support",
+            "x",
+            "y",
+            "yaw"
+        ]
+    );
+    assert_eq!(best["covariance"].as_array().unwrap().len(), 9);
+    assert_eq!(best["intensity"], votes["best"]);
+    assert_near(pose(best), map_from_laser(HERE));
+    // Of the same transforms in another order: a few units in the last place.
+    let base = pose(&best["map_from_base"]);
+    assert!(base.then(BASE_FROM_LASER).is_within(pose(best), 1e-9, 1e-9));
+}
+
+#[test]
+fn without_a_mount_there_is_no_base() {
+    let folder = folder(&[map_message(), scan_at(7, HERE)]);
+    let object = &objects(folder.path(), "")[0];
+    assert_eq!(object["hypotheses"][0]["map_from_base"], Value::Null);
+}
+
+#[test]
+fn each_nth_scan_is_taken() {
+    let scans = (0..5).map(|second| scan_at(second, HERE));
+    let messages: Vec<_> = [map_message()].into_iter().chain(scans).collect();
+    let folder = folder(&messages);
+    let stamps = |options| -> Vec<i64> {
+        let objects = objects(folder.path(), options);
+        let stamps = objects.iter().map(|object| object["stamp_ns"].as_i64());
+        stamps.map(|ns| ns.unwrap() / SECOND_NS).collect()
+    };
+    assert_eq!(stamps(""), [0, 1, 2, 3, 4]);
+    assert_eq!(stamps("--every 2"), [0, 2, 4]);
+    assert_eq!(stamps("--every 100"), [0]);
+}
+
+#[test]
+fn the_map_that_is_named_goes_before_the_one_in_the_recording() {
+    let folder = folder(&[map_message(), scan_at(1, HERE)]);
+    let wider = map::OccupancyGrid {
+        map_from_grid: Pose::new(100.0, 0.0, 0.0),
+        ..room()
+    };
+    map::save(&wider, folder.path().join("other.yaml")).unwrap();
+    map::save(&room(), folder.path().join("same.yaml")).unwrap();
+    let other = &objects(folder.path(), "--map other.yaml")[0];
+    assert!(other["hypotheses"][0]["x"].as_f64().unwrap() > 99.0);
+    let [same, inside] =
+        ["--map same.yaml", ""].map(|options| objects(folder.path(), options).remove(0));
+    assert_eq!(same["map_id"], inside["map_id"]);
+    assert_eq!(same["votes"], inside["votes"]);
+    assert_eq!(same["hypotheses"], inside["hypotheses"]);
+}
+
+#[test]
+fn a_known_heading_comes_from_where_it_is_said_to() {
+    let folder = folder(&[
+        map_message(),
+        mount_message(),
+        odometry_at(1, HERE),
+        truth_at(1, HERE),
+        scan_at(1, HERE),
+        odometry_at(2, THERE),
+        scan_at(2, THERE),
+        scan_at(60, THERE),
+    ]);
+    let truths = [HERE, THERE].map(map_from_laser);
+    let fixed = format!("--heading {}", truths[0].yaw.to_degrees());
+    let odometry = format!("--heading-from odometry --heading-offset {ODOMETRY_OFFSET_DEG}");
+    for (options, answered) in [
+        (fixed, 1),
+        (odometry, 2),
+        ("--heading-from truth".into(), 1),
+    ] {
+        let objects = objects(folder.path(), &options);
+        for (object, truth) in objects.iter().zip(truths).take(answered) {
+            let best = pose(&object["hypotheses"][0]);
+            assert_near(best, truth);
+            // Of one rotation and a few sums: what was given is kept.
+            assert!(best.angle_to(truth) < 1e-9, "{options}");
+            assert_eq!(object["votes"]["known_heading"], best.yaw);
+        }
+        assert_eq!(objects.len(), 3);
+    }
+    let reason = |options, scan: usize| {
+        let object = &objects(folder.path(), options)[scan];
+        object["refused"].as_str().unwrap().to_owned()
+    };
+    assert_eq!(
+        reason("--heading-from truth", 1),
+        "the heading is to come from the true pose, but there is none of this scan"
+    );
+    let old = reason("--heading-from odometry", 2);
+    assert!(
+        old.contains("measured 58000000000 ns before the scan"),
+        "{old}"
+    );
+}
+
+#[test]
+fn settings_reach_the_engine() {
+    let folder = folder(&[map_message(), scan_at(1, HERE)]);
+    let votes = |options| objects(folder.path(), options)[0]["votes"].clone();
+    assert_eq!(votes("--max-beams 60")["beams_used"], 60);
+    assert_eq!(votes("--headings 720")["headings"], 720);
+    assert_eq!(votes("--max-votes 1")["total"], 1);
+    let object = &objects(folder.path(), "--floor-share 0.3 --ambiguous-share 0.1")[0];
+    assert_eq!(object["verdict"], "Ambiguous");
+    let many = objects(folder.path(), "--floor-share 0.3 --max-hypotheses 5").remove(0);
+    assert_eq!(many["hypotheses"].as_array().unwrap().len(), 5);
+    let blocked = objects(
+        folder.path(),
+        "--occupied-from 100 --free-to 0 --unknown-blocks",
+    );
+    assert_eq!(blocked[0]["verdict"], "Unique");
+}
+
+#[test]
+fn a_reader_that_went_away_ends_it_well() {
+    let folder = folder(&[map_message(), scan_at(1, HERE), scan_at(2, HERE)]);
+    let mut child = backcast(folder.path(), "locate --bag r.mcap")
+        .spawn()
+        .unwrap();
+    drop(child.stdout.take());
+    let output = child.wait_with_output().unwrap();
+    assert_eq!(output.status.code(), Some(0));
+    assert_eq!(output.stderr, b"");
+}
+
+#[test]
+fn on_a_terminal_there_is_a_bar() {
+    let folder = folder(&[map_message(), scan_at(1, HERE), scan_at(2, HERE)]);
+    let terminal = nix::pty::openpty(None, None).unwrap();
+    let mut command = backcast(folder.path(), "locate --bag r.mcap");
+    command.env("TERM", "xterm").stderr(terminal.slave);
+    let child = command.spawn().unwrap();
+    // The terminal ends when nobody holds its other end any more.
+    drop(command);
+    let mut shown = Vec::new();
+    let mut buffer = [0; 4096];
+    let mut master = File::from(terminal.master);
+    while let Ok(length @ 1..) = master.read(&mut buffer) {
+        shown.extend_from_slice(&buffer[..length]);
+    }
+    let output = child.wait_with_output().unwrap();
+    assert_eq!(output.status.code(), Some(0));
+    let shown = String::from_utf8_lossy(&shown);
+    assert!(shown.contains("locating"), "{shown:?}");
+    assert!(shown.contains("/2 scans"), "{shown:?}");
+    let rows = String::from_utf8(output.stdout).unwrap();
+    assert_eq!(rows.lines().count(), 3, "the rows are not in the bar's way");
+}
+
+#[test]
+fn a_real_corridor_is_found_on_either_copy_of_its_map() {
+    let folder = recordings().join("malaga_corridor");
+    let read = |options: &str| {
+        let arguments = format!("locate --json --every 18 --bag recording.mcap {options}");
+        let (code, stdout, stderr) = run(&folder, &arguments);
+        assert_eq!((code, stderr.as_str()), (0, ""));
+        let lines = stdout.lines().map(serde_json::from_str::<Value>);
+        lines.map(Result::unwrap).collect::<Vec<_>>()
+    };
+    let (inside, named) = (read(""), read("--map map.yaml"));
+    assert_eq!((inside.len(), named.len()), (3, 3));
+    for (inside, named) in inside.iter().zip(&named) {
+        for key in ["map_id", "votes", "verdict", "stamp_ns"] {
+            assert_eq!(inside[key], named[key], "{key}");
+        }
+        assert_eq!(inside["verdict"], "Unique");
+        // The YAML rounds the origin in the last place of its numbers.
+        let copy = pose(&named["hypotheses"][0]);
+        assert!(copy.is_within(pose(&inside["hypotheses"][0]), 1e-9, 1e-9));
+        // The base is 0.78 m behind the laser, as the recording says.
+        let best = &inside["hypotheses"][0];
+        let apart = pose(best).distance_to(pose(&best["map_from_base"]));
+        assert!((apart - 0.78).abs() < 1e-6, "{apart}");
+    }
+}

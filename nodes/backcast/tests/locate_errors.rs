@@ -1,0 +1,188 @@
+//! `backcast locate` as a process, on bad scans, bad files and wrong use.
+
+#![allow(
+    clippy::unwrap_used,
+    reason = "a test fails by panicking, helpers of tests too"
+)]
+
+mod drawn;
+
+use std::fs;
+
+use drawn::{HERE, folder, lines, map_message, objects, room, run, scan, scan_at, truth_at, word};
+use recording::Message;
+use recording::ros::LaserScan;
+use recording::write::{Packing, RecordingWriter};
+use serde_json::Value;
+use tempfile::TempDir;
+
+#[test]
+fn a_refused_scan_has_a_line_with_the_reason() {
+    let with = |second, spoil: fn(&mut LaserScan)| {
+        let mut scan = scan(second, HERE);
+        spoil(&mut scan);
+        ("/scan", Message::Scan(scan))
+    };
+    let folder = folder(&[
+        map_message(),
+        with(1, |scan| scan.ranges.clear()),
+        with(2, |scan| scan.ranges.fill(f32::NAN)),
+        with(3, |scan| scan.angle_increment = -0.01),
+        with(4, |scan| scan.angle_increment = 0.0),
+        with(5, |scan| scan.ranges[..300].fill(-1.0)),
+        scan_at(6, HERE),
+    ]);
+    // No beam is thinned out.
+    let objects = objects(folder.path(), "--max-beams 360");
+    let reason = |i: usize| objects[i]["refused"].as_str().unwrap_or("none");
+    assert_eq!(reason(0), "the scan is empty: it has no ranges");
+    assert_eq!(reason(1), "none", "nothing returned, which is no fault");
+    assert!(
+        reason(2).starts_with("angle_increment is -0.0"),
+        "{}",
+        reason(2)
+    );
+    assert!(
+        reason(3).starts_with("angle_increment is 0:"),
+        "{}",
+        reason(3)
+    );
+    for object in &objects[..4] {
+        assert_eq!(object["verdict"], "NoScan");
+        assert_eq!(object["hypotheses"], Value::Array(Vec::new()));
+    }
+    assert_eq!(objects[0]["votes"], Value::Null);
+    assert_eq!(objects[1]["votes"]["beams_used"], 0);
+    assert_eq!(objects[1]["votes"]["best"], 0);
+    assert_eq!(
+        objects[4]["votes"]["beams_silent"], 300,
+        "a reading below zero is none"
+    );
+    assert_eq!(objects[5]["verdict"], "Unique");
+
+    let rows = lines(folder.path(), "");
+    let (columns, reason) = rows[1].split_at(rows[0].len());
+    let dashes = columns
+        .split_whitespace()
+        .filter(|word| *word == "-")
+        .count();
+    assert_eq!((word(columns, 0), dashes), ("1.000".into(), 4));
+    assert_eq!(word(columns, 5), "NoScan");
+    assert_eq!(reason, "  the scan is empty: it has no ranges");
+    assert_eq!(rows[2].len(), rows[0].len(), "{}", rows[2]);
+}
+
+#[test]
+fn a_scan_that_does_not_decode_is_lost_data() {
+    let folder = tempfile::tempdir().unwrap();
+    let path = folder.path().join("r.mcap");
+    let mut writer = RecordingWriter::create(path, Packing::Lz4).unwrap();
+    let (_, map) = map_message();
+    writer.write("/map", 0, &map).unwrap();
+    writer.write("/scan", 1, &scan_at(1, HERE).1).unwrap();
+    let (schema, text) = ("sensor_msgs/msg/LaserScan", "float32[] ranges");
+    let nonsense = [0, 1, 0, 0, 9];
+    writer
+        .write_bytes("/scan", schema, text, "cdr", 2, &nonsense)
+        .unwrap();
+    writer.write("/scan", 3, &scan_at(3, HERE).1).unwrap();
+    writer.finish().unwrap();
+    let (code, stdout, stderr) = run(folder.path(), "locate --json --bag r.mcap");
+    assert_eq!((code, stdout.lines().count()), (3, 2), "{stderr}");
+    assert!(
+        stderr.starts_with("backcast: r.mcap: the message of /scan at log time 2 ns is no"),
+        "{stderr}"
+    );
+}
+
+#[test]
+fn what_is_missing_or_broken_is_named() {
+    let fails = |folder: &TempDir, options: &str, expected: &str| {
+        let (code, stdout, stderr) = run(folder.path(), &format!("locate {options}"));
+        assert_eq!((code, stdout.as_str()), (1, ""), "{stderr}");
+        assert!(stderr.starts_with("backcast: "), "{stderr}");
+        assert!(stderr.contains(expected), "{stderr}");
+        assert_eq!(stderr.lines().count(), 1, "{stderr}");
+    };
+    let no_scan = folder(&[map_message(), truth_at(1, HERE)]);
+    fails(
+        &no_scan,
+        "--bag r.mcap",
+        "r.mcap has no sensor_msgs/msg/LaserScan; it has /map",
+    );
+    fails(
+        &no_scan,
+        "--bag nowhere.mcap",
+        "cannot read the recording nowhere.mcap: No such file",
+    );
+    let no_map = folder(&[scan_at(1, HERE)]);
+    fails(
+        &no_map,
+        "--bag r.mcap",
+        "r.mcap has no map on /map: name one with --map map.yaml",
+    );
+    fails(
+        &no_map,
+        "--bag r.mcap --map nowhere.yaml",
+        "cannot read the map description nowhere.yaml",
+    );
+    fails(
+        &no_map,
+        "--bag r.mcap --heading-from odometry",
+        "r.mcap has no nav_msgs/msg/Odometry; it has /scan",
+    );
+    let empty = map::OccupancyGrid {
+        cells: vec![0; 240],
+        ..room()
+    };
+    map::save(&empty, no_map.path().join("empty.yaml")).unwrap();
+    fails(
+        &no_map,
+        "--bag r.mcap --map empty.yaml",
+        "empty.yaml cannot be searched: the map has no occupied cell",
+    );
+    fs::write(no_map.path().join("text.mcap"), "no recording at all").unwrap();
+    fails(&no_map, "--bag text.mcap", "text.mcap");
+}
+
+#[test]
+fn a_recording_that_is_cut_short_gives_what_lies_before() {
+    let folder = folder(&[map_message(), scan_at(1, HERE)]);
+    let path = folder.path().join("r.mcap");
+    let bytes = fs::read(&path).unwrap();
+    // The end mark alone is lost: all messages are there.
+    fs::write(&path, &bytes[..bytes.len() - 4]).unwrap();
+    let (code, stdout, stderr) = run(folder.path(), "locate --json --bag r.mcap");
+    assert_eq!((code, stdout.lines().count()), (1, 1), "{stderr}");
+    assert!(stderr.contains("r.mcap: the file is cut short"), "{stderr}");
+    // Cut within the only chunk, it is damage that is told, not missing scans.
+    fs::write(&path, &bytes[..200]).unwrap();
+    let (code, stdout, stderr) = run(folder.path(), "locate --json --bag r.mcap");
+    assert_eq!((code, stdout.as_str()), (1, ""), "{stderr}");
+    assert!(stderr.contains("r.mcap: the file is cut short"), "{stderr}");
+}
+
+#[test]
+fn wrong_use_is_told_before_anything_is_opened() {
+    let folder = tempfile::tempdir().unwrap();
+    for (options, expected) in [
+        ("", "--bag <FILE>"),
+        ("--bag r.mcap --every 0", "0 is not in 1.."),
+        ("--bag r.mcap --headings 100", "a multiple of 8"),
+        ("--bag r.mcap --heading 400", "-360 to 360"),
+        (
+            "--bag r.mcap --heading 4 --heading-from truth",
+            "cannot be used with",
+        ),
+        (
+            "--bag r.mcap --heading-from truth --heading-offset 4",
+            "--heading-offset is for",
+        ),
+        ("--bag r.mcap --ambiguous-share 2", "not within 0 to 1"),
+        ("--bag r.mcap --beams 9", "unexpected argument"),
+    ] {
+        let (code, stdout, stderr) = run(folder.path(), &format!("locate {options}"));
+        assert_eq!((code, stdout.as_str()), (2, ""), "{options}: {stderr}");
+        assert!(stderr.contains(expected), "{options}: {stderr}");
+    }
+}
