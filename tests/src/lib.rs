@@ -1,1 +1,18 @@
-//! To be written.
+//! What the tests of whole graphs share: the executables, the recordings, and
+//! the answers that a graph gave.
+#![allow(clippy::unwrap_used, reason = "this crate is tests and nothing else")]
+
+pub mod answers;
+pub mod executables;
+pub mod world;
+
+use std::path::PathBuf;
+
+/// The root of the repository.
+#[must_use]
+pub fn root() -> PathBuf {
+    PathBuf::from(env!("CARGO_MANIFEST_DIR"))
+        .parent()
+        .unwrap()
+        .to_owned()
+}

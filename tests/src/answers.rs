@@ -1,0 +1,92 @@
+//! What a graph answered, collected while it ran.
+
+use std::path::Path;
+use std::time::Duration;
+
+use messages::{HypothesesHeader, Hypothesis, Vote, VotesHeader, topic};
+use transport::testing::{Isolated, NodeProcess};
+use transport::{Flow, Graph, Subscriber, TransportError};
+
+use crate::executables;
+
+/// The votes and the hypotheses of all scans, in the order of their coming.
+#[derive(Default)]
+pub struct Answers {
+    /// Headers and items of `votes`.
+    pub votes: Vec<(VotesHeader, Vec<Vote>)>,
+    /// Headers and items of `hypotheses`.
+    pub hypotheses: Vec<(HypothesesHeader, Vec<Hypothesis>)>,
+}
+
+/// Plays a recording through a graph of its own, waiting for each answer, until
+/// `scans` scans are answered.
+///
+/// `accumulator` are more arguments of that node.
+#[must_use]
+pub fn of_graph(
+    tag: &str,
+    recording: &Path,
+    map: &Path,
+    scans: usize,
+    accumulator: &[&str],
+) -> Answers {
+    let isolated = Isolated::new(tag);
+    let graph = isolated.join("test");
+    let votes = graph.subscriber::<topic::Votes>().unwrap();
+    let hypotheses = graph.subscriber::<topic::Hypotheses>().unwrap();
+    let start = |name: &str, arguments: &[&str]| {
+        NodeProcess::start(executables::path(name).to_str().unwrap(), &graph, arguments)
+    };
+    let nodes = [
+        start("map_server", &["--map", map.to_str().unwrap()]),
+        start("boundary_extractor", &[]),
+        start("accumulator", accumulator),
+        start("peak_extractor", &[]),
+    ];
+    let source = [
+        "--rate",
+        "max",
+        "--wait-for",
+        "accumulator,peak_extractor",
+        "--recording",
+    ];
+    let source = start(
+        "replayer",
+        &[source.as_slice(), &[recording.to_str().unwrap()]].concat(),
+    );
+    let answers = collect(&graph, &votes, &hypotheses, scans);
+    assert_eq!(source.exit_code(), Some(0), "the replayer lost something");
+    for node in nodes {
+        node.stop();
+    }
+    answers
+}
+
+fn collect(
+    graph: &Graph,
+    votes: &Subscriber<topic::Votes>,
+    hypotheses: &Subscriber<topic::Hypotheses>,
+    scans: usize,
+) -> Answers {
+    let mut answers = Answers::default();
+    let outcome = graph.run(&[votes, hypotheses], Duration::from_millis(100), |_| {
+        while let Some(sample) = votes.receive()? {
+            answers
+                .votes
+                .push((*sample.header(), sample.items().to_vec()));
+        }
+        while let Some(sample) = hypotheses.receive()? {
+            answers
+                .hypotheses
+                .push((*sample.header(), sample.items().to_vec()));
+        }
+        let is_complete = answers.votes.len() == scans && answers.hypotheses.len() == scans;
+        Ok::<_, TransportError>(if is_complete {
+            Flow::Stop
+        } else {
+            Flow::Continue
+        })
+    });
+    outcome.unwrap();
+    answers
+}

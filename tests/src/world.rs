@@ -1,0 +1,88 @@
+//! A recording and its map, and what the engine says about them when it is
+//! asked directly.
+
+use std::path::PathBuf;
+
+use engine::boundary;
+use engine::grid::{CellRules, Grid, GridFrame};
+use engine::localizer::{Localizer, LocalizerConfig, Prior};
+use engine::scan::Scan;
+use recording::ros::LaserScan;
+use recording::{Kind, Message, Recording};
+
+/// One of the recordings in the repository.
+pub struct World {
+    /// Its folder.
+    pub folder: PathBuf,
+}
+
+impl World {
+    /// The recording of that name.
+    #[must_use]
+    pub fn of(name: &str) -> Self {
+        World {
+            folder: crate::root().join("recordings").join(name),
+        }
+    }
+
+    /// Path of the recording.
+    #[must_use]
+    pub fn recording(&self) -> PathBuf {
+        self.folder.join("recording.mcap")
+    }
+
+    /// Path of the map.
+    #[must_use]
+    pub fn map(&self) -> PathBuf {
+        self.folder.join("map.yaml")
+    }
+
+    /// The map's cells and where they lie.
+    #[must_use]
+    pub fn grid(&self) -> (Grid, GridFrame) {
+        let map = map::load(self.map()).unwrap();
+        let frame = GridFrame {
+            resolution_m: map.resolution_m,
+            map_from_grid: map.map_from_grid,
+        };
+        let (width, height) = (map.width as usize, map.height as usize);
+        (
+            Grid::new(width, height, &map.cells, CellRules::default()).unwrap(),
+            frame,
+        )
+    }
+
+    /// The engine with its default settings, on this map.
+    #[must_use]
+    pub fn localizer(&self, prior: Prior) -> Localizer {
+        let (grid, frame) = self.grid();
+        let boundary = boundary::extract(&grid);
+        Localizer::new(frame, grid, &boundary, LocalizerConfig::default(), prior).unwrap()
+    }
+
+    /// All scans, by time.
+    #[must_use]
+    pub fn scans(&self) -> Vec<LaserScan> {
+        let recording = Recording::open(self.recording()).unwrap();
+        let scans =
+            recording
+                .records_of(&[Kind::Scan])
+                .map(|record| match record.unwrap().message {
+                    Message::Scan(scan) => scan,
+                    other => panic!("asked for scans, got {:?}", other.kind()),
+                });
+        scans.collect()
+    }
+}
+
+/// A recorded scan as the engine takes it.
+#[must_use]
+pub fn as_engine_takes_it(scan: &LaserScan) -> Scan<'_> {
+    Scan {
+        angle_min: f64::from(scan.angle_min),
+        angle_increment: f64::from(scan.angle_increment),
+        range_min_m: scan.range_min,
+        range_max_m: scan.range_max,
+        ranges: &scan.ranges,
+    }
+}

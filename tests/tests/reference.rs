@@ -1,0 +1,89 @@
+//! The search against the plain reference on a piece of a real map, with a
+//! real scan. The reference looks at every pose and takes too long for more.
+#![allow(
+    clippy::unwrap_used,
+    reason = "the lint spares test functions but not what they share"
+)]
+
+use engine::boundary;
+use engine::grid::{Cell, CellRules, Grid};
+use engine::program::{ScanProgram, VoteConfig};
+use engine::reference;
+use engine::search::SearchIndex;
+use engine::space::Space;
+use engine::sweep::{self, SweepGrid};
+use engine::votes::CollectConfig;
+use tests::world::{World, as_engine_takes_it};
+
+/// Cells of the piece: the corridor around the place of the scan.
+const LEFT: usize = 1120;
+const BOTTOM: usize = 62;
+const WIDTH: usize = 96;
+const HEIGHT: usize = 72;
+
+/// A heading for each 5°: a fifth of the poses of a search at 1°.
+const HEADINGS: u32 = 72;
+
+fn piece(grid: &Grid) -> Grid {
+    let rows = (BOTTOM..BOTTOM + HEIGHT).map(|y| &grid.cells()[y * grid.width() + LEFT..][..WIDTH]);
+    let occupancy: Vec<u8> = rows
+        .flatten()
+        .map(|&cell| if cell == Cell::Occupied { 100 } else { 0 })
+        .collect();
+    Grid::new(WIDTH, HEIGHT, &occupancy, CellRules::default()).unwrap()
+}
+
+#[test]
+fn on_a_piece_of_a_real_map_all_methods_count_the_same_votes() {
+    let world = World::of("malaga_corridor");
+    let (whole, frame) = world.grid();
+    let grid = piece(&whole);
+    assert!(
+        grid.occupied_cells() > 200,
+        "the piece shows walls: {}",
+        grid.occupied_cells()
+    );
+    let space = Space::new(HEADINGS, frame.resolution_m, WIDTH, HEIGHT).unwrap();
+    let boundary = boundary::extract(&grid);
+    let index = SearchIndex::new(&grid, &boundary, &space);
+    let sweeps = SweepGrid::new(&grid);
+    let scan = &world.scans()[18];
+    let program = ScanProgram::new(
+        &as_engine_takes_it(scan),
+        0.0,
+        &space,
+        &VoteConfig::default(),
+    )
+    .unwrap();
+    let config = CollectConfig::default();
+    let (found, _) = index
+        .search(&grid, &program, &space, config, &|| false)
+        .unwrap();
+    assert!(found.best > 0);
+
+    let mut above_floor = 0;
+    for heading in 0..space.directions.count() {
+        let plain = reference::field(&grid, &program, &space, heading);
+        let swept = sweep::field(&sweeps, &grid, &program, &space, heading, &|| false);
+        assert_eq!(swept.as_ref(), Some(&plain), "heading {heading}");
+        above_floor += plain
+            .iter()
+            .filter(|&&votes| votes >= found.certified_floor)
+            .count();
+        for vote in found
+            .votes
+            .iter()
+            .filter(|vote| usize::from(vote.heading) == heading)
+        {
+            assert_eq!(
+                plain[usize::from(vote.y) * WIDTH + usize::from(vote.x)],
+                vote.intensity
+            );
+        }
+    }
+    assert_eq!(
+        found.votes.len(),
+        above_floor,
+        "nothing is missing above the floor"
+    );
+}

@@ -1,0 +1,111 @@
+//! Rules of the workspace that the compiler does not keep.
+#![allow(
+    clippy::unwrap_used,
+    reason = "the lint spares test functions but not what they share"
+)]
+
+use std::collections::{BTreeMap, BTreeSet};
+use std::process::Command;
+
+use serde_json::Value;
+
+/// The only nodes that may link zenoh: the others must build in a minute.
+const ZENOH_NODES: [&str; 4] = ["bridge", "monitor", "locate_server", "ros2_gateway"];
+
+/// The workspace's crates, each with the names of what it links; what only its
+/// tests use does not count.
+fn dependencies() -> BTreeMap<String, BTreeSet<String>> {
+    let output = Command::new(env!("CARGO"))
+        .args(["metadata", "--format-version", "1", "--no-deps", "--locked"])
+        .current_dir(tests::root())
+        .output()
+        .unwrap();
+    assert!(
+        output.status.success(),
+        "{}",
+        String::from_utf8_lossy(&output.stderr)
+    );
+    let metadata: Value = serde_json::from_slice(&output.stdout).unwrap();
+    let name = |value: &Value| value["name"].as_str().unwrap().to_owned();
+    let linked = |package: &Value| {
+        let all = package["dependencies"].as_array().unwrap().iter();
+        all.filter(|dependency| dependency["kind"].is_null())
+            .map(name)
+            .collect()
+    };
+    let packages = metadata["packages"].as_array().unwrap().iter();
+    packages
+        .map(|package| (name(package), linked(package)))
+        .collect()
+}
+
+fn folders(parent: &str) -> BTreeSet<String> {
+    let entries = std::fs::read_dir(tests::root().join(parent)).unwrap();
+    entries
+        .map(|entry| entry.unwrap().file_name().into_string().unwrap())
+        .collect()
+}
+
+#[test]
+fn nodes_never_depend_on_nodes() {
+    let nodes = folders("nodes");
+    for (name, dependencies) in dependencies() {
+        let on_nodes: Vec<_> = dependencies.intersection(&nodes).collect();
+        assert!(on_nodes.is_empty(), "{name} depends on {on_nodes:?}");
+    }
+}
+
+#[test]
+fn the_engine_knows_no_process_socket_clock_or_file() {
+    let dependencies = dependencies();
+    let all = folders("common");
+    let allowed = BTreeSet::from(["geometry", "messages"].map(str::to_owned));
+    let known: BTreeSet<_> = dependencies["engine"].intersection(&all).cloned().collect();
+    assert_eq!(known, allowed);
+    for file in std::fs::read_dir(tests::root().join("common/engine/src")).unwrap() {
+        let path = file.unwrap().path();
+        let text = std::fs::read_to_string(&path).unwrap();
+        for forbidden in [
+            "std::fs",
+            "std::net",
+            "std::time",
+            "std::process",
+            "std::io",
+        ] {
+            assert!(
+                !text.contains(forbidden),
+                "{} uses {forbidden}",
+                path.display()
+            );
+        }
+    }
+}
+
+#[test]
+fn each_crate_has_the_name_of_its_folder() {
+    let names: BTreeSet<String> = dependencies().into_keys().collect();
+    let folders: BTreeSet<String> = folders("nodes")
+        .into_iter()
+        .chain(folders("common"))
+        .collect();
+    let tests = BTreeSet::from(["tests".to_owned()]);
+    assert_eq!(
+        names.difference(&folders).cloned().collect::<BTreeSet<_>>(),
+        tests
+    );
+    assert_eq!(folders.difference(&names).count(), 0);
+}
+
+#[test]
+fn zenoh_is_linked_only_where_machines_are_joined() {
+    for (name, dependencies) in dependencies() {
+        if !ZENOH_NODES.contains(&name.as_str()) {
+            assert!(
+                !dependencies
+                    .iter()
+                    .any(|dependency| dependency.starts_with("zenoh")),
+                "{name}"
+            );
+        }
+    }
+}

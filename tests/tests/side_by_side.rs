@@ -1,0 +1,57 @@
+//! Two graphs on one machine, started as users start them.
+#![allow(
+    clippy::unwrap_used,
+    reason = "the lint spares test functions but not what they share"
+)]
+
+use std::path::Path;
+use std::process::{Child, Command, Stdio};
+
+use serde_json::Value;
+use tests::executables;
+
+fn start() -> Child {
+    // Built first, so that the runs below find nothing to build.
+    let backcast = executables::path("backcast");
+    Command::new(backcast)
+        .args(["run", "--rate", "max", "--json"])
+        .current_dir(tests::root())
+        .stdout(Stdio::piped())
+        .spawn()
+        .unwrap()
+}
+
+fn lines(graph: Child) -> Vec<Value> {
+    let output = graph.wait_with_output().unwrap();
+    assert!(output.status.success(), "{}", output.status);
+    let text = String::from_utf8(output.stdout).unwrap();
+    text.lines()
+        .map(|line| serde_json::from_str(line).unwrap())
+        .collect()
+}
+
+#[test]
+fn two_graphs_do_not_hear_each_other() {
+    let (first, second) = (start(), start());
+    let pids = [first.id(), second.id()];
+    for lines in [lines(first), lines(second)] {
+        // A pose for each of the 37 scans, each heard once, and the summary.
+        assert_eq!(lines.len(), 38);
+        let stamps: Vec<i64> = lines[..37]
+            .iter()
+            .map(|line| line["stamp_ns"].as_i64().unwrap())
+            .collect();
+        assert!(
+            stamps.is_sorted_by(|a, b| a < b),
+            "each scan is answered once: {stamps:?}"
+        );
+    }
+    for pid in pids {
+        let left: Vec<_> = std::fs::read_dir(Path::new("/dev/shm"))
+            .unwrap()
+            .map(|entry| entry.unwrap().file_name().into_string().unwrap())
+            .filter(|name| name.contains(&format!("_bc{pid}.")))
+            .collect();
+        assert!(left.is_empty(), "left in shared memory: {left:?}");
+    }
+}
