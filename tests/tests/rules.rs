@@ -5,6 +5,7 @@
 )]
 
 use std::collections::{BTreeMap, BTreeSet};
+use std::path::{Path, PathBuf};
 use std::process::Command;
 
 use serde_json::Value;
@@ -46,6 +47,21 @@ fn folders(parent: &str) -> BTreeSet<String> {
         .collect()
 }
 
+/// All files below a folder.
+fn files(folder: &Path) -> Vec<PathBuf> {
+    let entries = std::fs::read_dir(folder).unwrap();
+    let paths = entries.map(|entry| entry.unwrap().path());
+    paths
+        .flat_map(|path| {
+            if path.is_dir() {
+                files(&path)
+            } else {
+                vec![path]
+            }
+        })
+        .collect()
+}
+
 #[test]
 fn nodes_never_depend_on_nodes() {
     let nodes = folders("nodes");
@@ -62,8 +78,7 @@ fn the_engine_knows_no_process_socket_clock_or_file() {
     let allowed = BTreeSet::from(["geometry", "messages"].map(str::to_owned));
     let known: BTreeSet<_> = dependencies["engine"].intersection(&all).cloned().collect();
     assert_eq!(known, allowed);
-    for file in std::fs::read_dir(tests::root().join("common/engine/src")).unwrap() {
-        let path = file.unwrap().path();
+    for path in files(&tests::root().join("common/engine/src")) {
         let text = std::fs::read_to_string(&path).unwrap();
         for forbidden in [
             "std::fs",
