@@ -1,6 +1,8 @@
 //! What the engine refuses.
 
-use crate::grid::MAX_SIDE;
+use geometry::Pose;
+
+use crate::grid::{MAX_CELLS, MAX_ORIGIN_M, MAX_RESOLUTION_M, MAX_SIDE, MIN_RESOLUTION_M};
 
 /// A map, a scan or a setting that the engine cannot work with.
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]
@@ -8,6 +10,14 @@ pub enum EngineError {
     /// A side of the grid is out of range.
     #[error("a grid of {width} x {height} cells: each side must have 1 to {MAX_SIDE} cells")]
     GridSides {
+        /// Cells along x.
+        width: usize,
+        /// Cells along y.
+        height: usize,
+    },
+    /// The grid has more cells than are believed.
+    #[error("a grid of {width} x {height} cells: at most {MAX_CELLS} cells are allowed")]
+    GridSize {
         /// Cells along x.
         width: usize,
         /// Cells along y.
@@ -23,9 +33,15 @@ pub enum EngineError {
         /// Occupancies given.
         cells: usize,
     },
-    /// Cells have no size.
-    #[error("cells of {0} m: a cell's side must be finite and above zero")]
+    /// A cell's side is out of range.
+    #[error("a resolution of {0} m; allowed: {MIN_RESOLUTION_M}..={MAX_RESOLUTION_M} m")]
     Resolution(f64),
+    /// The grid's place in the map frame is out of range, or none.
+    #[error(
+        "an origin at x {} m, y {} m, yaw {} rad; allowed: within {MAX_ORIGIN_M} m, and a yaw of \
+         at most a turn", .0.x, .0.y, .0.yaw
+    )]
+    Origin(Pose),
     /// There is no obstacle to project from.
     #[error("the map has no occupied cell: there is nothing that a laser could see")]
     NoOccupiedCell,

@@ -3,14 +3,31 @@
 //! A grid has its own frame: x along columns, y along rows, cell (0, 0) at the
 //! origin. [`GridFrame`] says where that frame lies in the map.
 
-use geometry::Pose;
+mod frame;
+
 use messages::UNKNOWN;
 
 use crate::EngineError;
+pub use frame::GridFrame;
 
 /// Most cells along a side: positions fit 15 bits, and no ray is longer than
 /// what 16 bits hold.
 pub const MAX_SIDE: usize = 32_767;
+
+// What follows is limited as in map files, by crate `map`, which a test compares:
+// no map that can be loaded is refused here.
+
+/// Most cells; a damaged header that claims more must not be believed.
+pub const MAX_CELLS: usize = 1 << 28;
+
+/// Shortest side of a cell, metres.
+pub const MIN_RESOLUTION_M: f64 = 0.001;
+
+/// Longest side of a cell, metres.
+pub const MAX_RESOLUTION_M: f64 = 10.0;
+
+/// Farthest origin of a grid along each axis of the map, metres.
+pub const MAX_ORIGIN_M: f64 = 1e8;
 
 /// Rules by which the occupancy of a cell, 0..=100 or unknown, is read.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, clap::Args)]
@@ -36,40 +53,6 @@ impl Default for CellRules {
             free_to: 25,
             unknown_blocks: false,
         }
-    }
-}
-
-/// Where a grid lies in the map frame.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub struct GridFrame {
-    /// Side of a cell, metres.
-    pub resolution_m: f64,
-    /// The lower left corner of cell (0, 0), and the turn of the grid's axes.
-    pub map_from_grid: Pose,
-}
-
-impl GridFrame {
-    /// The pose in the map of a position in cells and a heading in the grid's
-    /// frame, radians. The centre of cell (0, 0) is (0.5, 0.5).
-    #[must_use]
-    pub fn map_from_cells(&self, x: f64, y: f64, heading: f64) -> Pose {
-        self.map_from_grid.then(Pose::new(
-            x * self.resolution_m,
-            y * self.resolution_m,
-            heading,
-        ))
-    }
-
-    /// The inverse of [`GridFrame::map_from_cells`]: x and y in cells, and the
-    /// heading in the grid's frame.
-    #[must_use]
-    pub fn cells_from_map(&self, map_pose: Pose) -> (f64, f64, f64) {
-        let grid_pose = self.map_from_grid.inverse().then(map_pose);
-        (
-            grid_pose.x / self.resolution_m,
-            grid_pose.y / self.resolution_m,
-            grid_pose.yaw,
-        )
     }
 }
 
@@ -99,18 +82,15 @@ impl Grid {
     /// Classes `width · height` occupancies, row by row from the lowest y.
     ///
     /// # Errors
-    /// If a side is 0 or above [`MAX_SIDE`], or the number of cells is not
-    /// `width · height`.
+    /// If a side is 0 or above [`MAX_SIDE`], or the number of cells is above
+    /// [`MAX_CELLS`] or not `width · height`.
     pub fn new(
         width: usize,
         height: usize,
         occupancy: &[u8],
         rules: CellRules,
     ) -> Result<Self, EngineError> {
-        let in_range = 1..=MAX_SIDE;
-        if !in_range.contains(&width) || !in_range.contains(&height) {
-            return Err(EngineError::GridSides { width, height });
-        }
+        check_sides(width, height)?;
         if occupancy.len() != width * height {
             return Err(EngineError::GridCells {
                 width,
@@ -190,6 +170,25 @@ impl Grid {
     }
 }
 
+fn check_sides(width: usize, height: usize) -> Result<(), EngineError> {
+    let in_range = 1..=MAX_SIDE;
+    if !in_range.contains(&width) || !in_range.contains(&height) {
+        return Err(EngineError::GridSides { width, height });
+    }
+    if width * height > MAX_CELLS {
+        return Err(EngineError::GridSize { width, height });
+    }
+    Ok(())
+}
+
+/// NaN lies in no range.
+pub(crate) fn check_resolution(metres: f64) -> Result<(), EngineError> {
+    if (MIN_RESOLUTION_M..=MAX_RESOLUTION_M).contains(&metres) {
+        return Ok(());
+    }
+    Err(EngineError::Resolution(metres))
+}
+
 /// Small worlds for tests: one line a row, highest y first, as one draws a map.
 #[cfg(test)]
 pub(crate) mod drawn {
@@ -222,8 +221,6 @@ pub(crate) mod drawn {
 
 #[cfg(test)]
 mod tests {
-    use std::f64::consts::FRAC_PI_2;
-
     use super::*;
 
     #[test]
@@ -264,35 +261,20 @@ mod tests {
     }
 
     #[test]
+    fn the_limits_are_those_of_map_files() {
+        assert_eq!(MAX_SIDE, map::MAX_SIDE as usize);
+        assert_eq!(MAX_CELLS as u64, map::MAX_CELLS);
+        assert_eq!(MIN_RESOLUTION_M, map::MIN_RESOLUTION_M);
+        assert_eq!(MAX_RESOLUTION_M, map::MAX_RESOLUTION_M);
+        assert_eq!(MAX_ORIGIN_M, map::MAX_ORIGIN_M);
+    }
+
+    #[test]
     fn rows_run_upwards_from_the_lowest_y() {
         let grid = drawn::grid(&["#..", "..."]);
         assert_eq!(grid.get(0, 1), Some(Cell::Occupied));
         assert_eq!(grid.get(0, 0), Some(Cell::Open));
         assert_eq!(grid.get(0, 2), None);
         assert!(grid.touches_open(0, 1));
-    }
-
-    proptest::proptest! {
-        #[test]
-        fn map_and_cells_round_trip(
-            ox in -100.0..100.0f64, oy in -100.0..100.0f64, turn in -3.0..3.0f64,
-            resolution_m in 0.01..0.5f64, x in 0.0..3e4f64, y in 0.0..3e4f64, heading in -3.0..3.0f64,
-        ) {
-            let frame = GridFrame { resolution_m, map_from_grid: Pose::new(ox, oy, turn) };
-            let (bx, by, bh) = frame.cells_from_map(frame.map_from_cells(x, y, heading));
-            // Positions up to 15 km at 1 cm cells: a rounding is 1e-10 of a cell there.
-            proptest::prop_assert!((bx - x).abs() < 1e-7 && (by - y).abs() < 1e-7);
-            proptest::prop_assert!(geometry::angle_between(bh, heading) < 1e-12);
-        }
-    }
-
-    #[test]
-    fn a_turned_grid_turns_its_poses() {
-        let frame = GridFrame {
-            resolution_m: 0.5,
-            map_from_grid: Pose::new(10.0, 20.0, FRAC_PI_2),
-        };
-        let pose = frame.map_from_cells(2.0, 0.0, 0.0);
-        assert!(pose.is_within(Pose::new(10.0, 21.0, FRAC_PI_2), 1e-12, 1e-12));
     }
 }

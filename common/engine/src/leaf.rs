@@ -9,15 +9,13 @@ use crate::grid::{Cell, Grid};
 use crate::lines::{LineIndex, NO_RANGE};
 use crate::program::ScanProgram;
 use crate::space::Space;
+use crate::tables::{TABLE, VoteTable, VoteTables};
 
 /// Cells along the side of a block.
 pub(crate) const SIDE: usize = 8;
 
 /// Cells of a block, row by row.
 pub(crate) const CELLS: usize = SIDE * SIDE;
-
-/// A table's size is a multiple of this: what one instruction can look up.
-const TABLE: usize = 64;
 
 /// The ranges of a block's cells in every direction.
 #[derive(Debug, Clone)]
@@ -118,56 +116,23 @@ fn sweep(
 #[derive(Debug, Clone)]
 pub(crate) struct LeafProgram {
     bearings: Vec<usize>,
-    /// For beam `i` and class `c` at `i · classes + c`.
-    tapers: Vec<TableEntry>,
-    tables: Vec<u8>,
-    classes: usize,
+    tables: VoteTables,
     /// Class of each direction, for two turns.
-    class_of: Vec<u8>,
-    /// Whether all tables have one block of entries.
-    is_short: bool,
-}
-
-/// Votes by distance from the reading, from `start` on; the last are zero.
-#[derive(Debug, Clone, Copy)]
-struct TableEntry {
-    centre: u16,
-    last: u16,
-    start: u32,
+    class_of: Vec<usize>,
 }
 
 impl LeafProgram {
     pub(crate) fn new(program: &ScanProgram, space: &Space) -> Self {
         let directions = &space.directions;
-        let mut leaf = LeafProgram {
+        LeafProgram {
             bearings: (0..program.beams())
                 .map(|beam| program.bearing(beam))
                 .collect(),
-            tapers: Vec::with_capacity(program.beams() * directions.classes()),
-            tables: Vec::new(),
-            classes: directions.classes(),
+            tables: VoteTables::new(program, directions),
             class_of: (0..2 * directions.count())
-                .map(|d| directions.get(d).class as u8)
+                .map(|d| directions.get(d).class)
                 .collect(),
-            is_short: true,
-        };
-        for (beam, class) in
-            (0..program.beams()).flat_map(|i| (0..directions.classes()).map(move |c| (i, c)))
-        {
-            let taper = program.taper(beam, class);
-            let start = leaf.tables.len();
-            // At least one zero ends each table.
-            let size = (taper.profile.len() + 1).next_multiple_of(TABLE);
-            leaf.tables.extend_from_slice(taper.profile);
-            leaf.tables.resize(start + size, 0);
-            leaf.tapers.push(TableEntry {
-                centre: taper.centre,
-                last: (size - 1) as u16,
-                start: start as u32,
-            });
-            leaf.is_short &= size == TABLE;
         }
-        leaf
     }
 
     /// Marks the directions that beams have at a heading.
@@ -186,7 +151,7 @@ impl LeafProgram {
     /// is not open.
     pub(crate) fn count(&self, ranges: &LeafRanges, heading: usize) -> [u16; CELLS] {
         #[cfg(target_arch = "x86_64")]
-        if self.is_short
+        if self.tables.are_short()
             && is_x86_feature_detected!("avx512bw")
             && is_x86_feature_detected!("avx512vbmi")
         {
@@ -199,12 +164,8 @@ impl LeafProgram {
     fn count_portable(&self, ranges: &LeafRanges, heading: usize) -> [u16; CELLS] {
         let mut counts = [0u16; CELLS];
         for (beam, &bearing) in self.bearings.iter().enumerate() {
-            let (entry, ranges) = self.look(ranges, heading + bearing, beam);
-            let table = &self.tables[entry.start as usize..][..usize::from(entry.last) + 1];
-            for (count, &range) in counts.iter_mut().zip(ranges) {
-                let distance = range.abs_diff(entry.centre).min(entry.last);
-                *count += u16::from(table[usize::from(distance)]);
-            }
+            let (table, ranges) = self.look(ranges, heading + bearing, beam);
+            table.add_portable(ranges, &mut counts);
         }
         counts
     }
@@ -212,15 +173,15 @@ impl LeafProgram {
     /// A beam's table and the cells' ranges in a direction of two turns.
     #[inline(always)]
     fn look<'a>(
-        &self,
+        &'a self,
         ranges: &'a LeafRanges,
         direction: usize,
         beam: usize,
-    ) -> (TableEntry, &'a [u16; CELLS]) {
-        let entry = self.tapers[beam * self.classes + usize::from(self.class_of[direction])];
+    ) -> (VoteTable<'a>, &'a [u16; CELLS]) {
+        let table = self.tables.get(beam, self.class_of[direction]);
         let count = ranges.by_direction.len();
         (
-            entry,
+            table,
             &ranges.by_direction[if direction < count {
                 direction
             } else {
@@ -241,10 +202,10 @@ impl LeafProgram {
         for (chunk, bearings) in self.bearings.chunks(BEAMS_A_BYTE).enumerate() {
             let mut bytes = zero;
             for (beam, &bearing) in bearings.iter().enumerate() {
-                let (entry, ranges) =
+                let (table, ranges) =
                     self.look(ranges, heading + bearing, chunk * BEAMS_A_BYTE + beam);
-                let centre = _mm512_set1_epi16(entry.centre as i16);
-                let table = &self.tables[entry.start as usize..][..TABLE];
+                let centre = _mm512_set1_epi16(table.centre as i16);
+                let table = &table.votes[..TABLE];
                 // SAFETY: both slices and the array are as long as what is read of them.
                 let (table, first, second) = unsafe {
                     (

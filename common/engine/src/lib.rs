@@ -38,6 +38,7 @@ mod set_bounds;
 mod sets;
 pub mod space;
 pub mod sweep;
+mod tables;
 pub mod taper;
 #[cfg(test)]
 mod testing;

@@ -154,7 +154,8 @@ impl Localizer {
     }
 
     /// Searches x and y at a heading in the map frame, radians, and fills in
-    /// the intensities of all cells, row by row from the lowest y.
+    /// the intensities of all cells, row by row from the lowest y; `None` if
+    /// `stop` said so before the end.
     ///
     /// # Errors
     /// If the scan is refused, see [`Scan::check`], or the heading not finite.
@@ -165,7 +166,8 @@ impl Localizer {
         &self,
         scan: &Scan<'_>,
         heading: f64,
-    ) -> Result<(Outcome, Vec<u16>), EngineError> {
+        stop: &dyn Fn() -> bool,
+    ) -> Result<Option<(Outcome, Vec<u16>)>, EngineError> {
         let Method::Sweep(sweeps) = &self.method else {
             panic!("this localizer was prepared for unknown headings");
         };
@@ -178,9 +180,12 @@ impl Localizer {
             .directions
             .nearest(heading - self.frame.map_from_grid.yaw);
         let program = ScanProgram::new(scan, turn, &self.space, &self.config.votes)?;
-        let field = sweep::field(sweeps, &self.grid, &program, &self.space, index);
+        let field = sweep::field(sweeps, &self.grid, &program, &self.space, index, stop);
+        let Some(field) = field else {
+            return Ok(None);
+        };
         let found = votes::of_field(&field, self.grid.width(), index as u16, self.config.collect);
-        Ok((self.outcome(&program, found, Some(heading)), field))
+        Ok(Some((self.outcome(&program, found, Some(heading)), field)))
     }
 
     fn outcome(
@@ -204,6 +209,7 @@ impl Localizer {
 
 #[cfg(test)]
 mod tests {
+    use std::cell::Cell;
     use std::f64::consts::{FRAC_PI_2, PI};
 
     use geometry::Pose;
@@ -284,12 +290,34 @@ mod tests {
         let ranges = ranges(5, 3, 40);
         let heading = 40f64.to_radians() + 0.5;
         let (outcome, field) = localizer(Prior::Heading)
-            .search_at(&scan(&ranges), heading)
+            .search_at(&scan(&ranges), heading, &|| false)
+            .unwrap()
             .unwrap();
         let best = outcome.found.votes[0];
         assert_eq!((best.x, best.y, best.heading), (5, 3, 40));
         assert_eq!(field[3 * 20 + 5], best.intensity);
         assert!(outcome.bearing_rounding < 1e-6);
+    }
+
+    #[test]
+    fn a_search_at_a_heading_ends_when_it_is_told_to() {
+        let (ranges, localizer) = (ranges(5, 3, 40), localizer(Prior::Heading));
+        let beams = localizer.search_at(&scan(&ranges), 0.0, &|| false);
+        let beams = beams.unwrap().unwrap().0.beams_used;
+        let asked = Cell::new(0);
+        let stop_at = |last| {
+            asked.set(0);
+            let stop = || {
+                asked.set(asked.get() + 1);
+                asked.get() == last
+            };
+            localizer.search_at(&scan(&ranges), 0.0, &stop).unwrap()
+        };
+        for last in [1, 2, beams] {
+            assert_eq!(stop_at(last), None);
+            assert_eq!(asked.get(), last, "no beam is swept after that");
+        }
+        assert!(stop_at(beams + 1).is_some());
     }
 
     #[test]
@@ -311,7 +339,8 @@ mod tests {
             (0, 0, 9)
         );
         let (outcome, field) = localizer(Prior::Heading)
-            .search_at(&scan(&[f32::NAN; 9]), FRAC_PI_2)
+            .search_at(&scan(&[f32::NAN; 9]), FRAC_PI_2, &|| false)
+            .unwrap()
             .unwrap();
         assert_eq!(outcome.found.votes, []);
         assert!(field.iter().all(|&intensity| intensity == 0));

@@ -14,6 +14,10 @@ use crate::taper::TaperShape;
 /// Highest vote of a beam with weight 1.
 const FULL_VOTE: u32 = 15;
 
+/// The widest taper: with it, no taper reaches [`NO_RANGE`] from a reading as
+/// long as the largest grid's diagonal.
+const MAX_SIGMA_CELLS: f64 = 6000.0;
+
 /// How readings become votes.
 #[derive(Debug, Clone, Copy, PartialEq, clap::Args)]
 pub struct VoteConfig {
@@ -125,7 +129,7 @@ impl ScanProgram {
     fn push(&mut self, beam: &Beam, peak: f64, space: &Space, config: &VoteConfig) {
         let reading_cells = beam.reading_m / space.resolution_m;
         let sigma_m = config.sigma_m + config.sigma_per_m * beam.reading_m;
-        let sigma_cells = (sigma_m / space.resolution_m).max(1.0);
+        let sigma_cells = (sigma_m / space.resolution_m).clamp(1.0, MAX_SIGMA_CELLS);
         for class in 0..self.classes {
             let steps_per_cell = space.directions.steps_per_cell(class);
             let profile = config.taper.profile(peak, sigma_cells * steps_per_cell);

@@ -57,8 +57,9 @@ mod tests {
             let plain = reference::field(&grid, &program, &space, heading);
             let scattered = field(&grid, &boundary::extract(&grid), &program, &space, heading);
             prop_assert_eq!(&scattered, &plain);
-            let swept = sweep::field(&SweepGrid::new(&grid), &grid, &program, &space, heading);
-            prop_assert_eq!(&swept, &plain);
+            let sweeps = SweepGrid::new(&grid);
+            let swept = sweep::field(&sweeps, &grid, &program, &space, heading, &|| false);
+            prop_assert_eq!(swept, Some(plain));
         }
 
         #[test]

@@ -79,6 +79,14 @@ pub struct BlockBounds {
     pub bounds: Vec<u16>,
 }
 
+impl BlockBounds {
+    /// Blocks along y.
+    #[must_use]
+    pub fn rows(&self) -> usize {
+        self.bounds.len() / self.columns
+    }
+}
+
 /// A block in the queue; the order is by bound, then by place.
 #[derive(Debug, Clone, PartialEq, Eq, PartialOrd, Ord)]
 struct Block {

@@ -2,6 +2,7 @@
 
 use crate::EngineError;
 use crate::directions::Directions;
+use crate::grid;
 
 /// Headings, cell size and extent of a search.
 #[derive(Debug, Clone, PartialEq)]
@@ -18,16 +19,15 @@ impl Space {
     /// The space of `headings` headings on a grid of `width · height` cells.
     ///
     /// # Errors
-    /// If the number of headings is not supported, or cells have no size.
+    /// If the number of headings is not supported, or the resolution is out of
+    /// range.
     pub fn new(
         headings: u32,
         resolution_m: f64,
         width: usize,
         height: usize,
     ) -> Result<Self, EngineError> {
-        if !(resolution_m.is_finite() && resolution_m > 0.0) {
-            return Err(EngineError::Resolution(resolution_m));
-        }
+        grid::check_resolution(resolution_m)?;
         Ok(Space {
             directions: Directions::new(headings)?,
             resolution_m,

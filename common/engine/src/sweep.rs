@@ -10,6 +10,7 @@ use crate::grid::{Cell, Grid};
 use crate::lines::NO_RANGE;
 use crate::program::ScanProgram;
 use crate::space::Space;
+use crate::tables::VoteTables;
 
 /// A grid laid out for sweeps along either axis.
 #[derive(Debug, Clone)]
@@ -102,7 +103,8 @@ impl Layout {
 }
 
 /// Intensities of all cells at one heading, row by row from the lowest y: one
-/// sweep for each beam, whatever the boundary.
+/// sweep for each beam, whatever the boundary; `None` if `stop` said so between
+/// two of them.
 #[must_use]
 pub fn field(
     sweeps: &SweepGrid,
@@ -110,23 +112,25 @@ pub fn field(
     program: &ScanProgram,
     space: &Space,
     heading: usize,
-) -> Vec<u16> {
+    stop: &dyn Fn() -> bool,
+) -> Option<Vec<u16>> {
     let (width, height) = (grid.width(), grid.height());
     let mut field = vec![0u16; width * height];
     let mut columns = field.clone();
+    let tables = VoteTables::new(program, &space.directions);
     for beam in 0..program.beams() {
+        if stop() {
+            return None;
+        }
         let direction = space.directions.get(heading + program.bearing(beam));
-        let taper = program.taper(beam, direction.class);
+        let table = tables.get(beam, direction.class);
         let (votes, minor) = if direction.x_major {
             (&mut columns, height)
         } else {
             (&mut field, width)
         };
         sweeps.sweep(direction, |row| {
-            let votes = &mut votes[row.major * minor..][..minor];
-            for (votes, &range) in votes.iter_mut().zip(row.ranges) {
-                *votes += u16::from(taper.votes(range));
-            }
+            table.add(row.ranges, &mut votes[row.major * minor..][..minor]);
         });
     }
     for (y, row) in field.chunks_exact_mut(width).enumerate() {
@@ -137,5 +141,5 @@ pub fn field(
             }
         }
     }
-    field
+    Some(field)
 }

@@ -3,15 +3,23 @@
 use std::collections::BTreeMap;
 use std::ops::Range;
 
-use crate::registry::{Registry, damaged};
-use crate::{Damage, Kind, layout};
+use mcap::records::MessageHeader;
+use mcap::sans_io::LinearReader;
+
+use crate::chunk::Chunk;
+use crate::feed::{each_record, part_options};
+use crate::parse::reason;
+use crate::registry::Registry;
+use crate::{Damage, Kind};
 
 /// A part of the file that holds messages.
 #[derive(Debug, Clone)]
 pub(crate) struct Block {
-    /// Its records: a chunk, or messages that stand outside of chunks.
-    pub(crate) bytes: Range<usize>,
+    /// Start of its first record.
+    pub(crate) at: usize,
     pub(crate) is_chunk: bool,
+    /// A chunk's body, or the records that stand outside of chunks.
+    pub(crate) bytes: Range<usize>,
     /// Log times of its messages, nanoseconds.
     pub(crate) first_ns: i64,
     pub(crate) last_ns: i64,
@@ -22,10 +30,21 @@ pub(crate) struct Block {
 }
 
 impl Block {
-    pub(crate) fn new(start: usize, is_chunk: bool) -> Self {
+    /// A chunk's block.
+    pub(crate) fn chunk(at: usize, body: Range<usize>) -> Self {
+        Block::new(at, true, body)
+    }
+
+    /// The block of messages outside of chunks, of which the first is at `at`.
+    pub(crate) fn loose(at: usize) -> Self {
+        Block::new(at, false, at..at)
+    }
+
+    fn new(at: usize, is_chunk: bool, bytes: Range<usize>) -> Self {
         Block {
-            bytes: start..start,
+            at,
             is_chunk,
+            bytes,
             first_ns: i64::MAX,
             last_ns: i64::MIN,
             kinds: 0,
@@ -38,27 +57,51 @@ impl Block {
     }
 
     /// Adds a message record that starts at byte `at`, or whose chunk does.
-    pub(crate) fn add(&mut self, body: &[u8], at: u64, registry: &Registry) -> Result<(), Damage> {
-        let message = layout::message(body).map_err(|bad| damaged(at, "message", bad))?;
-        let log_time = i64::try_from(message.log_time).map_err(|_| Damage::Record {
+    pub(crate) fn add(
+        &mut self,
+        header: &MessageHeader,
+        at: u64,
+        registry: &Registry,
+    ) -> Result<(), Damage> {
+        let log_time = i64::try_from(header.log_time).map_err(|_| Damage::Record {
             at,
             kind: "message",
             reason: format!(
                 "its log time is {} ns, beyond {}",
-                message.log_time,
+                header.log_time,
                 i64::MAX
             ),
         })?;
-        let channel = registry.channel(message.channel).ok_or(Damage::Undefined {
+        let id = header.channel_id;
+        let channel = registry.channel(id).ok_or(Damage::Undefined {
             at,
             kind: "message",
             missing: "channel",
-            id: message.channel,
+            id,
         })?;
         self.first_ns = self.first_ns.min(log_time);
         self.last_ns = self.last_ns.max(log_time);
         self.kinds |= channel.kind.map_or(0, Kind::bit);
-        *self.counts.entry(message.channel).or_default() += 1;
+        *self.counts.entry(id).or_default() += 1;
         Ok(())
+    }
+
+    /// Shows each of its records in `file` to `take`.
+    pub(crate) fn each_record(
+        &self,
+        file: &[u8],
+        take: impl FnMut(u8, &[u8]) -> Result<(), Damage>,
+    ) -> Result<(), Damage> {
+        let bytes = file.get(self.bytes.clone()).unwrap_or_default();
+        let at = self.at as u64;
+        if self.is_chunk {
+            return Chunk::of(bytes, at)?.each_record(take);
+        }
+        let reader = LinearReader::new_with_options(part_options().with_emit_chunks(true));
+        each_record(reader, bytes, take, |error| Damage::Record {
+            at,
+            kind: "message",
+            reason: reason(&error),
+        })
     }
 }

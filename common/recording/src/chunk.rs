@@ -1,184 +1,303 @@
-//! From a chunk's packed bytes to its records, checked.
+//! From a chunk to its records, unpacked and checked by the library.
 
-use std::borrow::Cow;
-use std::io::{self, Read};
+use mcap::McapError;
+use mcap::records::{ChunkHeader, Record, op};
+use mcap::sans_io::LinearReader;
 
 use crate::Damage;
-use crate::layout::ChunkRecord;
+use crate::feed::{each_record, feed, part_options};
+use crate::parse::{parse, reason};
 
-/// Most bytes that a chunk may unpack to. Writers aim at about a megabyte; a
-/// single message, such as a large map, can make a chunk as large as itself.
-pub const MAX_CHUNK_BYTES: u64 = 1 << 30;
-
-/// The records of the chunk that starts at byte `at`.
+/// Most bytes of a record, and most that a chunk may unpack to: twice the
+/// largest map. Writers aim at chunks of about a megabyte, but a single message
+/// makes one as large as itself.
 ///
-/// Memory grows with what really unpacks, never with what the chunk claims.
-pub(crate) fn unpack<'a>(chunk: &ChunkRecord<'a>, at: u64) -> Result<Cow<'a, [u8]>, Damage> {
-    let claimed = chunk.unpacked_size;
-    if claimed > MAX_CHUNK_BYTES {
-        return Err(Damage::ChunkSize { at, claimed });
-    }
-    let content = match chunk.compression {
-        "" => Cow::Borrowed(chunk.packed),
-        "zstd" => zstd::Decoder::with_buffer(chunk.packed)
-            .and_then(|decoder| read(decoder, claimed))
-            .map_err(|error| does_not_unpack(at, &error))?,
-        "lz4" => lz4::Decoder::new(chunk.packed)
-            .and_then(|decoder| read(decoder, claimed))
-            .map_err(|error| does_not_unpack(at, &error))?,
-        other => {
-            return Err(Damage::Compression {
-                at,
-                found: other.to_owned(),
-            });
+/// It bounds the memory that a damaged length can cost: for a chunk with a
+/// checksum the library takes, and fills with zeros, what the chunk claims.
+pub const MAX_CHUNK_BYTES: u64 = 2 * map::MAX_CELLS;
+
+/// Bytes of a chunk before its packed records, without the packing's name.
+const HEADER_BYTES: usize = 40;
+
+/// A chunk whose claims are within the limits.
+#[derive(Debug)]
+pub(crate) struct Chunk<'a> {
+    at: u64,
+    header: ChunkHeader,
+    /// The record without its opcode, its length, and what may follow the
+    /// packed records.
+    body: &'a [u8],
+}
+
+impl<'a> Chunk<'a> {
+    /// The chunk that starts at byte `at`.
+    pub(crate) fn of(body: &'a [u8], at: u64) -> Result<Self, Damage> {
+        let Record::Chunk { header, data } = parse(op::CHUNK, body, at)? else {
+            return Err(damaged(at, "it is none".to_owned()));
+        };
+        let claimed = header.uncompressed_size;
+        // The library looks at this size only where there is a checksum, and
+        // without a packing not at all. Where there is a packing and the size is
+        // too small, records may be missing: the checksum tells, or that of the
+        // data, or the count in the summary.
+        if claimed > MAX_CHUNK_BYTES {
+            return Err(Damage::ChunkSize { at, claimed });
         }
-    };
-    let found = content.len() as u64;
-    if found != claimed {
-        return Err(Damage::ChunkContent { at, claimed, found });
+        let found = header.compressed_size;
+        if header.compression.is_empty() && found != claimed {
+            return Err(Damage::ChunkContent { at, claimed, found });
+        }
+        let end = HEADER_BYTES + header.compression.len() + data.len();
+        let body = body.get(..end).unwrap_or(body);
+        Ok(Chunk { at, header, body })
     }
-    let saved = chunk.checksum;
-    if saved == 0 {
-        return Ok(content);
+
+    /// Whether it has a checksum.
+    pub(crate) fn is_checked(&self) -> bool {
+        self.header.uncompressed_crc != 0
     }
-    match crc32fast::hash(&content) {
-        found if found == saved => Ok(content),
-        found => Err(Damage::ChunkChecksum { at, saved, found }),
+
+    /// Shows each of its records to `take`; none if the checksum is wrong.
+    ///
+    /// The reader gets the chunk without what may follow the packed records. It
+    /// believes the length of an unpacked record without a look at where the
+    /// chunk's records end, and then counts what is left of them below zero: a
+    /// panic in builds with overflow checks, else bytes of the next field as
+    /// records. Where the bytes end with the records, it finds them missing.
+    pub(crate) fn each_record(
+        &self,
+        take: impl FnMut(u8, &[u8]) -> Result<(), Damage>,
+    ) -> Result<(), Damage> {
+        let options = part_options().with_prevalidate_chunk_crcs(true);
+        let mut reader = LinearReader::new_with_options(options);
+        let length = (self.body.len() as u64).to_le_bytes();
+        feed(&mut reader, 1, &mut &[op::CHUNK][..]);
+        feed(&mut reader, length.len(), &mut &length[..]);
+        each_record(reader, self.body, take, |error| self.damage(error))
+    }
+
+    fn damage(&self, error: McapError) -> Damage {
+        let at = self.at;
+        match error {
+            McapError::BadChunkCrc { saved, calculated } => Damage::ChunkChecksum {
+                at,
+                saved,
+                found: calculated,
+            },
+            McapError::UnsupportedCompression(found) => Damage::Compression { at, found },
+            McapError::DecompressionError(_) | McapError::Io(_) => Damage::Unpack {
+                at,
+                reason: reason(&error),
+            },
+            McapError::UnexpectedEof
+            | McapError::UnexpectedEoc
+            | McapError::RecordTooLarge { .. } => {
+                damaged(at, "its content ends within a record".to_owned())
+            }
+            other => damaged(at, reason(&other)),
+        }
     }
 }
 
-/// One byte more than claimed shows that there are more.
-fn read<'a>(decoder: impl Read, claimed: u64) -> io::Result<Cow<'a, [u8]>> {
-    let mut content = Vec::new();
-    decoder.take(claimed + 1).read_to_end(&mut content)?;
-    Ok(Cow::Owned(content))
-}
-
-fn does_not_unpack(at: u64, error: &io::Error) -> Damage {
-    Damage::Unpack {
+fn damaged(at: u64, reason: String) -> Damage {
+    Damage::Record {
         at,
-        reason: error.to_string(),
+        kind: "chunk",
+        reason,
     }
 }
 
 #[cfg(test)]
 mod tests {
-    use std::io::Write;
+    use mcap::MAGIC;
 
     use super::*;
+    use crate::feed::options;
+    use crate::sample;
+    use crate::write::Packing;
 
-    const CONTENT: &[u8] = b"records, records, records, records, records";
+    const PACKINGS: [Packing; 3] = [Packing::Plain, Packing::Zstd, Packing::Lz4];
+    /// Where the fields stand: sizes of eight bytes, a checksum of four.
+    const CLAIMED: usize = 16;
+    const CHECKSUM: usize = 24;
 
-    fn packed(compression: &str) -> Vec<u8> {
-        match compression {
-            "zstd" => zstd::encode_all(CONTENT, 0).unwrap(),
-            "lz4" => {
-                let mut encoder = lz4::EncoderBuilder::new().build(Vec::new()).unwrap();
-                encoder.write_all(CONTENT).unwrap();
-                let (bytes, result) = encoder.finish();
-                result.unwrap();
-                bytes
-            }
-            _ => CONTENT.to_vec(),
-        }
+    /// The body of the sample's first chunk.
+    fn body(packing: Packing) -> Vec<u8> {
+        let file = sample::bytes(packing);
+        let mut reader = LinearReader::new_with_options(options().with_emit_chunks(true));
+        feed(&mut reader, MAGIC.len(), &mut &MAGIC[..]);
+        let mut chunks = Vec::new();
+        let take = |opcode, body: &[u8]| {
+            chunks.extend((opcode == op::CHUNK).then(|| body.to_vec()));
+            Ok(())
+        };
+        each_record(reader, &file[MAGIC.len()..], take, |error| {
+            panic!("{error}")
+        })
+        .unwrap();
+        chunks.swap_remove(0)
     }
 
-    fn chunk<'a>(compression: &'a str, packed: &'a [u8]) -> ChunkRecord<'a> {
-        ChunkRecord {
-            unpacked_size: CONTENT.len() as u64,
-            checksum: crc32fast::hash(CONTENT),
-            compression,
-            packed,
-        }
+    /// How many messages it holds.
+    fn messages(body: &[u8]) -> Result<usize, Damage> {
+        let mut messages = 0;
+        Chunk::of(body, 7)?.each_record(|opcode, _| {
+            messages += usize::from(opcode == op::MESSAGE);
+            Ok(())
+        })?;
+        Ok(messages)
+    }
+
+    fn claimed(body: &[u8]) -> u64 {
+        u64::from_le_bytes(*body[CLAIMED..].first_chunk().unwrap())
+    }
+
+    fn claiming(mut body: Vec<u8>, size: u64) -> Vec<u8> {
+        body[CLAIMED..CLAIMED + 8].copy_from_slice(&size.to_le_bytes());
+        body
+    }
+
+    fn with_checksum(mut body: Vec<u8>, checksum: u32) -> Vec<u8> {
+        body[CHECKSUM..CHECKSUM + 4].copy_from_slice(&checksum.to_le_bytes());
+        body
+    }
+
+    /// With another packing's name and packed bytes.
+    fn packed(body: &[u8], name: &str, bytes: &[u8]) -> Vec<u8> {
+        let length = (name.len() as u32).to_le_bytes();
+        let size = (bytes.len() as u64).to_le_bytes();
+        [&body[..28], &length, name.as_bytes(), &size, bytes].concat()
     }
 
     #[test]
     fn every_packing_unpacks_and_is_checked() {
-        for compression in ["", "zstd", "lz4"] {
-            let packed = packed(compression);
-            let sound = chunk(compression, &packed);
-            assert_eq!(&*unpack(&sound, 7).unwrap(), CONTENT);
-
-            let other = ChunkRecord {
-                checksum: 1,
-                ..chunk(compression, &packed)
-            };
+        for packing in PACKINGS {
+            let sound = body(packing);
+            assert_eq!(messages(&sound), Ok(4), "{packing:?}");
+            assert!(Chunk::of(&sound, 7).unwrap().is_checked());
             assert!(matches!(
-                unpack(&other, 7),
+                messages(&with_checksum(sound.clone(), 1)),
                 Err(Damage::ChunkChecksum {
                     at: 7,
                     saved: 1,
                     ..
                 })
             ));
-            let unchecked = ChunkRecord {
-                checksum: 0,
-                ..chunk(compression, &packed)
-            };
-            assert_eq!(&*unpack(&unchecked, 7).unwrap(), CONTENT);
+            let unchecked = with_checksum(sound, 0);
+            assert_eq!(messages(&unchecked), Ok(4), "{packing:?}");
+            assert!(!Chunk::of(&unchecked, 7).unwrap().is_checked());
         }
     }
 
     #[test]
     fn other_sizes_than_claimed_are_refused() {
-        for compression in ["", "zstd", "lz4"] {
-            let packed = packed(compression);
-            for claimed in [0, CONTENT.len() as u64 - 1, CONTENT.len() as u64 + 1] {
-                let wrong = ChunkRecord {
-                    unpacked_size: claimed,
-                    ..chunk(compression, &packed)
+        for packing in PACKINGS {
+            let sound = body(packing);
+            let size = claimed(&sound);
+            for other in [0, size - 1, size + 1] {
+                let damage = messages(&claiming(sound.clone(), other)).unwrap_err();
+                let is_refused = match packing {
+                    Packing::Zstd | Packing::Lz4 if other < size => {
+                        matches!(damage, Damage::ChunkChecksum { at: 7, .. })
+                    }
+                    Packing::Zstd | Packing::Lz4 => matches!(damage, Damage::Unpack { at: 7, .. }),
+                    _ => matches!(damage, Damage::ChunkContent { at: 7, .. }),
                 };
-                assert!(matches!(
-                    unpack(&wrong, 7),
-                    Err(Damage::ChunkContent { at: 7, .. })
-                ));
+                assert!(is_refused, "{packing:?}, {other}: {damage}");
             }
-            let absurd = ChunkRecord {
-                unpacked_size: 4 << 30,
-                ..chunk(compression, &packed)
-            };
-            assert!(matches!(
-                unpack(&absurd, 7),
-                Err(Damage::ChunkSize {
-                    claimed: 0x1_0000_0000,
-                    ..
-                })
-            ));
+            for absurd in [MAX_CHUNK_BYTES + 1, u64::MAX] {
+                for checksum in [0, 1] {
+                    let body = with_checksum(claiming(sound.clone(), absurd), checksum);
+                    let at = 7;
+                    let claimed = absurd;
+                    assert_eq!(messages(&body), Err(Damage::ChunkSize { at, claimed }));
+                }
+            }
         }
     }
 
     #[test]
-    fn an_allowed_claim_reserves_nothing_that_is_not_there() {
-        // A gigabyte is claimed and a few bytes are there: this would take
-        // seconds and the memory of a small machine if it were believed.
-        let packed = packed("zstd");
-        let claim = ChunkRecord {
-            unpacked_size: MAX_CHUNK_BYTES,
-            ..chunk("zstd", &packed)
-        };
-        let content = zstd::Decoder::with_buffer(&packed[..]).unwrap();
-        let Cow::Owned(read) = read(content, MAX_CHUNK_BYTES).unwrap() else {
-            panic!("what was unpacked is owned");
-        };
-        assert!(read.capacity() < 1 << 16, "{}", read.capacity());
-        assert!(unpack(&claim, 7).is_err());
+    fn a_chunk_without_checksum_that_ends_within_a_record_is_refused() {
+        for packing in [Packing::Zstd, Packing::Lz4] {
+            let sound = with_checksum(body(packing), 0);
+            let size = claimed(&sound);
+            assert!(matches!(
+                messages(&claiming(sound, size - 1)),
+                Err(Damage::Unpack { at: 7, .. })
+            ));
+        }
+        let plain = with_checksum(body(Packing::Plain), 0);
+        let records = &plain[HEADER_BYTES..];
+        let cut = packed(&plain, "", &records[..records.len() - 1]);
+        assert!(matches!(
+            messages(&claiming(cut, records.len() as u64 - 1)),
+            Err(Damage::Record { kind: "chunk", .. })
+        ));
     }
 
     #[test]
     fn cut_and_unknown_packings_are_refused() {
-        for compression in ["zstd", "lz4"] {
-            let packed = packed(compression);
-            for length in 0..packed.len() {
-                // The last bytes of lz4 only say that nothing follows.
-                let result = unpack(&chunk(compression, &packed[..length]), 7);
-                if let Ok(content) = result {
-                    assert_eq!((&*content, compression), (CONTENT, "lz4"));
+        for (packing, name) in [(Packing::Zstd, "zstd"), (Packing::Lz4, "lz4")] {
+            let sound = body(packing);
+            let bytes = &sound[HEADER_BYTES + name.len()..];
+            for length in 0..bytes.len() {
+                // The last bytes of lz4 only say that nothing follows, with a
+                // checksum of its own; the chunk's has covered what was there.
+                let is_after_content = name == "lz4" && bytes.len() - length <= 8;
+                match messages(&packed(&sound, name, &bytes[..length])) {
+                    Ok(found) => assert!(found == 4 && is_after_content, "{name}, {length}"),
+                    Err(damage) => assert!(matches!(damage, Damage::Unpack { .. }), "{damage}"),
                 }
             }
         }
-        assert!(matches!(
-            unpack(&chunk("br", CONTENT), 7),
-            Err(Damage::Compression { .. })
-        ));
+        let plain = body(Packing::Plain);
+        let unknown = packed(&plain, "br", &plain[HEADER_BYTES..]);
+        let found = "br".to_owned();
+        assert_eq!(
+            messages(&unknown),
+            Err(Damage::Compression { at: 7, found })
+        );
+    }
+
+    #[test]
+    fn what_follows_the_records_is_stepped_over() {
+        for packing in PACKINGS {
+            let longer = [body(packing), b"a field of a later version".to_vec()].concat();
+            assert_eq!(messages(&longer), Ok(4), "{packing:?}");
+        }
+    }
+
+    /// The library's own reading of a chunk: what its records hold.
+    fn as_the_library_reads(body: &[u8]) -> Vec<u8> {
+        let mut found = Vec::new();
+        let mut reader = LinearReader::new_with_options(part_options());
+        feed(&mut reader, 1, &mut &[op::CHUNK][..]);
+        let length = (body.len() as u64).to_le_bytes();
+        feed(&mut reader, length.len(), &mut &length[..]);
+        let take = |_, body: &[u8]| {
+            found.extend(body);
+            Ok(())
+        };
+        let _ = each_record(reader, body, take, |error| Damage::NotMcap {
+            found: error.to_string(),
+        });
+        found
+    }
+
+    #[test]
+    fn an_unpacked_record_that_reaches_beyond_the_records_is_refused() {
+        // A record that claims eight bytes, of which four are the chunk's.
+        let record = [&[op::MESSAGE, 8, 0, 0, 0, 0, 0, 0, 0][..], b"mine"].concat();
+        let start = claiming(vec![0; 28], record.len() as u64);
+        let body = [packed(&start, "", &record), b"not mine".to_vec()].concat();
+        let library = std::panic::catch_unwind(|| as_the_library_reads(&body));
+        assert!(
+            library.is_err() || library.is_ok_and(|found| found == b"minenot "),
+            "the library has learnt it, and what is cut off here need not be"
+        );
+        assert_eq!(
+            messages(&body),
+            Err(damaged(7, "its content ends within a record".to_owned()))
+        );
     }
 }

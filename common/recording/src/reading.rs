@@ -1,20 +1,16 @@
 //! The messages of a recording in the order of their log times.
 //!
 //! A block (a chunk, or a run of messages outside of chunks) is unpacked when
-//! its first message is next, and kept until its last one has been given out.
+//! its first message is next; of its messages, those that are wanted are kept.
 
-use std::borrow::Cow;
 use std::cmp::Reverse;
 use std::collections::BinaryHeap;
-use std::ops::Range;
-use std::rc::Rc;
 
-use mcap::records::op;
+use mcap::records::{Record as Raw, op};
 
 use crate::block::Block;
-use crate::frames::Frames;
-use crate::registry::damaged;
-use crate::{Damage, Kind, Message, Record, Recording, RecordingError, chunk, layout};
+use crate::parse::parse;
+use crate::{Damage, Kind, Message, Record, Recording, RecordingError};
 
 /// Iterates over a recording's messages by log time; where times are equal, in
 /// the order of the file.
@@ -27,17 +23,16 @@ pub struct Records<'a> {
     kinds: u8,
     /// Blocks that are not unpacked yet, by first log time.
     blocks: std::slice::Iter<'a, Block>,
-    next: BinaryHeap<Reverse<Pending<'a>>>,
+    next: BinaryHeap<Reverse<Pending>>,
     damage: Option<Damage>,
 }
 
 /// A message that waits for its turn.
-struct Pending<'a> {
+struct Pending {
     /// Log time, then place: of the block, and within it.
     order: (i64, usize, usize),
     channel: u16,
-    content: Rc<Cow<'a, [u8]>>,
-    body: Range<usize>,
+    body: Vec<u8>,
 }
 
 impl<'a> Records<'a> {
@@ -69,50 +64,33 @@ impl<'a> Records<'a> {
     }
 
     fn unpack(&mut self, block: &Block) -> Result<(), Damage> {
-        let at = block.bytes.start;
-        let content = Rc::new(self.content(block)?);
-        let mut frames = Frames::new(&content, 0);
-        while let Some(frame) = frames.next()? {
-            if frame.opcode != op::MESSAGE {
-                continue;
+        let registry = &self.recording.survey.registry;
+        let kinds = self.kinds;
+        let mut place = 0;
+        block.each_record(self.recording.bytes(), |opcode, body| {
+            place += 1;
+            if opcode != op::MESSAGE {
+                return Ok(());
             }
-            let bad = |bad| damaged(at as u64, "message", bad);
-            let message = layout::message(frame.body).map_err(bad)?;
-            if self.kind(message.channel).is_none() {
-                continue;
+            let Raw::Message { header, data } = parse(opcode, body, block.at as u64)? else {
+                return Ok(());
+            };
+            let channel = header.channel_id;
+            let kind = registry.channel(channel).and_then(|channel| channel.kind);
+            if kind.is_some_and(|kind| kind.bit() & kinds != 0) {
+                // The survey has seen that the time fits.
+                let log_time = i64::try_from(header.log_time).unwrap_or(i64::MAX);
+                self.next.push(Reverse(Pending {
+                    order: (log_time, block.at, place),
+                    channel,
+                    body: data.into_owned(),
+                }));
             }
-            // The survey has seen that the time fits.
-            let log_time = i64::try_from(message.log_time).unwrap_or(i64::MAX);
-            let end = frames.position();
-            self.next.push(Reverse(Pending {
-                order: (log_time, at, frame.at),
-                channel: message.channel,
-                content: Rc::clone(&content),
-                body: end - message.body.len()..end,
-            }));
-        }
-        Ok(())
+            Ok(())
+        })
     }
 
-    fn content(&self, block: &Block) -> Result<Cow<'a, [u8]>, Damage> {
-        let bytes = self.recording.bytes();
-        let records = bytes.get(block.bytes.clone()).unwrap_or_default();
-        if !block.is_chunk {
-            return Ok(Cow::Borrowed(records));
-        }
-        let at = block.bytes.start as u64;
-        let frame = Frames::new(records, 0).expect()?;
-        let record = layout::chunk(frame.body).map_err(|bad| damaged(at, "chunk", bad))?;
-        chunk::unpack(&record, at)
-    }
-
-    /// The kind of a channel's messages, if it is wanted.
-    fn kind(&self, channel: u16) -> Option<Kind> {
-        let kind = self.recording.survey.registry.channel(channel)?.kind?;
-        (kind.bit() & self.kinds != 0).then_some(kind)
-    }
-
-    fn decode(&self, pending: &Pending<'_>) -> Option<Result<Record, RecordingError>> {
+    fn decode(&self, pending: &Pending) -> Option<Result<Record, RecordingError>> {
         let channel = self.recording.survey.registry.channel(pending.channel)?;
         let kind = channel.kind?;
         let path = self.recording.path();
@@ -125,8 +103,7 @@ impl<'a> Records<'a> {
             }));
         }
         let log_time_ns = pending.order.0;
-        let bytes = pending.content.get(pending.body.clone())?;
-        Some(match Message::decode(kind, bytes) {
+        Some(match Message::decode(kind, &pending.body) {
             Ok(message) => Ok(Record {
                 topic: channel.topic.clone(),
                 log_time_ns,
@@ -172,21 +149,21 @@ impl Iterator for Records<'_> {
     }
 }
 
-impl PartialEq for Pending<'_> {
+impl PartialEq for Pending {
     fn eq(&self, other: &Self) -> bool {
         self.order == other.order
     }
 }
 
-impl Eq for Pending<'_> {}
+impl Eq for Pending {}
 
-impl PartialOrd for Pending<'_> {
+impl PartialOrd for Pending {
     fn partial_cmp(&self, other: &Self) -> Option<std::cmp::Ordering> {
         Some(self.cmp(other))
     }
 }
 
-impl Ord for Pending<'_> {
+impl Ord for Pending {
     fn cmp(&self, other: &Self) -> std::cmp::Ordering {
         self.order.cmp(&other.order)
     }

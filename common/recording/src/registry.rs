@@ -1,10 +1,15 @@
 //! The schemas and channels that a recording defines.
 
 use std::collections::BTreeMap;
+use std::collections::btree_map::Entry;
 use std::sync::Arc;
 
-use crate::fields::BadField;
-use crate::{Damage, Kind, layout};
+use mcap::McapError;
+use mcap::read::ChannelAccumulator;
+use mcap::records::Record;
+
+use crate::parse::{parse, reason};
+use crate::{Damage, Kind};
 
 /// A channel of a recording.
 #[derive(Debug, Clone, PartialEq, Eq)]
@@ -24,94 +29,86 @@ pub struct Channel {
 /// All channels by number, each complete when the first message refers to it.
 #[derive(Debug, Default)]
 pub(crate) struct Registry {
-    schemas: BTreeMap<u16, String>,
-    channels: BTreeMap<u16, (u16, Channel)>,
+    /// Links channels to schemas, and demands that a repetition is equal.
+    known: ChannelAccumulator<'static>,
+    channels: BTreeMap<u16, Channel>,
 }
 
 impl Registry {
     pub(crate) fn channel(&self, id: u16) -> Option<&Channel> {
-        self.channels.get(&id).map(|(_, channel)| channel)
+        self.channels.get(&id)
     }
 
     pub(crate) fn channels(&self) -> impl Iterator<Item = &Channel> {
-        self.channels.values().map(|(_, channel)| channel)
+        self.channels.values()
     }
 
     /// Counts messages of a channel that is there.
     pub(crate) fn count(&mut self, id: u16, messages: u64) {
-        if let Some((_, channel)) = self.channels.get_mut(&id) {
+        if let Some(channel) = self.channels.get_mut(&id) {
             channel.messages += messages;
         }
     }
 
-    /// Takes a schema record; a repetition must be equal.
-    pub(crate) fn add_schema(&mut self, body: &[u8], at: u64) -> Result<(), Damage> {
-        let schema = layout::schema(body).map_err(|bad| damaged(at, "schema", bad))?;
-        match self.schemas.get(&schema.id) {
-            Some(name) if name != schema.name => Err(Damage::Conflict {
-                at,
-                kind: "schema",
-                id: schema.id,
-            }),
-            Some(_) => Ok(()),
-            None => {
-                self.schemas.insert(schema.id, schema.name.to_owned());
+    /// Takes a schema or channel record that starts at byte `at`, or whose chunk
+    /// does.
+    pub(crate) fn add(&mut self, opcode: u8, body: &[u8], at: u64) -> Result<(), Damage> {
+        match parse(opcode, body, at)? {
+            Record::Schema { header, data } => {
+                let id = header.id;
+                self.known
+                    .add_schema_from_slice(header, &data)
+                    .map_err(|error| refused(&error, at, "schema", id))
+            }
+            Record::Channel(channel) => {
+                let id = channel.id;
+                self.known
+                    .add_channel(channel)
+                    .map_err(|error| refused(&error, at, "channel", id))?;
+                self.list(id);
                 Ok(())
             }
+            _ => Ok(()),
         }
     }
 
-    /// Takes a channel record; a repetition must be equal.
-    pub(crate) fn add_channel(&mut self, body: &[u8], at: u64) -> Result<(), Damage> {
-        let record = layout::channel(body).map_err(|bad| damaged(at, "channel", bad))?;
-        if let Some((schema, known)) = self.channels.get(&record.id) {
-            let is_equal = *schema == record.schema
-                && &*known.topic == record.topic
-                && known.encoding == record.encoding;
-            return match is_equal {
-                true => Ok(()),
-                false => Err(Damage::Conflict {
-                    at,
-                    kind: "channel",
-                    id: record.id,
-                }),
-            };
+    fn list(&mut self, id: u16) {
+        if let (Entry::Vacant(free), Some(known)) = (self.channels.entry(id), self.known.get(id)) {
+            let schema = known.schema.as_ref().map_or("", |schema| &schema.name);
+            free.insert(Channel {
+                topic: known.topic.as_str().into(),
+                schema: schema.to_owned(),
+                encoding: known.message_encoding.clone(),
+                kind: Kind::of(schema, &known.topic),
+                messages: 0,
+            });
         }
-        let schema = match (record.schema, self.schemas.get(&record.schema)) {
-            (0, _) => "",
-            (_, Some(name)) => name,
-            (id, None) => {
-                return Err(Damage::Undefined {
-                    at,
-                    kind: "channel",
-                    missing: "schema",
-                    id,
-                });
-            }
-        };
-        let channel = Channel {
-            topic: record.topic.into(),
-            schema: schema.to_owned(),
-            encoding: record.encoding.to_owned(),
-            kind: Kind::of(schema, record.topic),
-            messages: 0,
-        };
-        self.channels.insert(record.id, (record.schema, channel));
-        Ok(())
     }
 }
 
-/// The damage that a bad field is.
-pub(crate) fn damaged(at: u64, kind: &'static str, bad: BadField) -> Damage {
-    Damage::Record {
-        at,
-        kind,
-        reason: bad.to_string(),
+fn refused(error: &McapError, at: u64, kind: &'static str, id: u16) -> Damage {
+    match *error {
+        McapError::ConflictingSchemas(_) | McapError::ConflictingChannels(_) => {
+            Damage::Conflict { at, kind, id }
+        }
+        McapError::UnknownSchema(_, id) => Damage::Undefined {
+            at,
+            kind,
+            missing: "schema",
+            id,
+        },
+        ref other => Damage::Record {
+            at,
+            kind,
+            reason: reason(other),
+        },
     }
 }
 
 #[cfg(test)]
 mod tests {
+    use mcap::records::op;
+
     use super::*;
 
     fn text(text: &str) -> Vec<u8> {
@@ -119,24 +116,36 @@ mod tests {
     }
 
     fn schema(id: u16, name: &str) -> Vec<u8> {
-        [&id.to_le_bytes()[..], &text(name), &text("ros2msg")].concat()
+        [
+            &id.to_le_bytes()[..],
+            &text(name),
+            &text("ros2msg"),
+            &[0; 4],
+        ]
+        .concat()
     }
 
     fn channel(id: u16, schema: u16, topic: &str) -> Vec<u8> {
         let ids = [id.to_le_bytes(), schema.to_le_bytes()].concat();
-        [&ids[..], &text(topic), &text("cdr")].concat()
+        [&ids[..], &text(topic), &text("cdr"), &[0; 4]].concat()
     }
 
     #[test]
     fn channels_take_their_kind_from_their_schema() {
         let mut registry = Registry::default();
         let scan = schema(1, "sensor_msgs/msg/LaserScan");
-        registry.add_schema(&scan, 0).unwrap();
-        registry.add_channel(&channel(4, 1, "/scan"), 0).unwrap();
-        registry.add_channel(&channel(5, 0, "/raw"), 0).unwrap();
+        registry.add(op::SCHEMA, &scan, 0).unwrap();
+        registry
+            .add(op::CHANNEL, &channel(4, 1, "/scan"), 0)
+            .unwrap();
+        registry
+            .add(op::CHANNEL, &channel(5, 0, "/raw"), 0)
+            .unwrap();
         // Both are repeated in the summary.
-        registry.add_schema(&scan, 0).unwrap();
-        registry.add_channel(&channel(4, 1, "/scan"), 0).unwrap();
+        registry.add(op::SCHEMA, &scan, 0).unwrap();
+        registry
+            .add(op::CHANNEL, &channel(4, 1, "/scan"), 0)
+            .unwrap();
         registry.count(4, 3);
 
         let found = registry.channel(4).unwrap();
@@ -148,10 +157,12 @@ mod tests {
     #[test]
     fn contradictions_are_damage() {
         let mut registry = Registry::default();
-        registry.add_schema(&schema(1, "a"), 0).unwrap();
-        registry.add_channel(&channel(4, 1, "/scan"), 0).unwrap();
+        registry.add(op::SCHEMA, &schema(1, "a"), 0).unwrap();
+        registry
+            .add(op::CHANNEL, &channel(4, 1, "/scan"), 0)
+            .unwrap();
         assert!(matches!(
-            registry.add_schema(&schema(1, "b"), 9),
+            registry.add(op::SCHEMA, &schema(1, "b"), 9),
             Err(Damage::Conflict {
                 at: 9,
                 kind: "schema",
@@ -159,7 +170,7 @@ mod tests {
             })
         ));
         assert!(matches!(
-            registry.add_channel(&channel(4, 1, "/scam"), 9),
+            registry.add(op::CHANNEL, &channel(4, 1, "/scam"), 9),
             Err(Damage::Conflict {
                 at: 9,
                 kind: "channel",
@@ -167,7 +178,7 @@ mod tests {
             })
         ));
         assert!(matches!(
-            registry.add_channel(&channel(6, 2, "/b"), 9),
+            registry.add(op::CHANNEL, &channel(6, 2, "/b"), 9),
             Err(Damage::Undefined {
                 missing: "schema",
                 id: 2,
@@ -175,7 +186,7 @@ mod tests {
             })
         ));
         assert!(matches!(
-            registry.add_channel(b"\x01", 9),
+            registry.add(op::CHANNEL, b"\x01", 9),
             Err(Damage::Record {
                 at: 9,
                 kind: "channel",

@@ -98,7 +98,7 @@ fn a_file_cut_anywhere_gives_what_is_whole_and_says_where_it_ends() {
 fn the_error_of_a_cut_file_counts_what_is_readable() {
     let sound = sample::bytes(Packing::Zstd);
     let survey = Survey::of(&sound).unwrap();
-    let mut starts: Vec<usize> = survey.blocks.iter().map(|b| b.bytes.start).collect();
+    let mut starts: Vec<usize> = survey.blocks.iter().map(|b| b.at).collect();
     starts.sort_unstable();
     let length = starts[2] + 20;
     let cut = Recording::from_bytes("r.mcap", sound[..length].to_vec()).unwrap();

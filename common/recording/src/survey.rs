@@ -7,14 +7,17 @@
 
 use std::ops::Range;
 
-use mcap::MAGIC;
-use mcap::records::op;
+use mcap::records::{Record, op};
+use mcap::sans_io::{LinearReadEvent, LinearReader};
+use mcap::{MAGIC, McapError};
 
 use crate::block::Block;
+use crate::chunk::Chunk;
 use crate::damage::shown;
-use crate::frames::{Frame, Frames};
-use crate::registry::{Registry, damaged};
-use crate::{Damage, chunk, layout};
+use crate::feed::{feed, options};
+use crate::parse::{name, parse, reason};
+use crate::registry::Registry;
+use crate::{Damage, MAX_CHUNK_BYTES};
 
 /// What the first pass found.
 #[derive(Debug, Default)]
@@ -42,10 +45,16 @@ impl Survey {
         let mut pass = Pass {
             bytes,
             survey: Survey::default(),
+            part: Part::Start,
             loose: None,
             unchecked_from: None,
         };
         let damage = pass.run().err();
+        // Also before damage: what was read until then is sound.
+        pass.close_loose();
+        if let Some(Damage::DataChecksum { .. }) = damage {
+            pass.drop_unchecked();
+        }
         let mut survey = pass.survey;
         survey.damage = damage;
         for block in &survey.blocks {
@@ -54,7 +63,7 @@ impl Survey {
             }
         }
         survey.messages = survey.blocks.iter().map(Block::messages).sum();
-        let order = |block: &Block| (block.first_ns, block.bytes.start);
+        let order = |block: &Block| (block.first_ns, block.at);
         survey.blocks.sort_by_key(order);
         Ok(survey)
     }
@@ -69,6 +78,7 @@ impl Survey {
 struct Pass<'a> {
     bytes: &'a [u8],
     survey: Survey,
+    part: Part,
     /// Messages outside of chunks since the last chunk.
     loose: Option<Block>,
     /// How many blocks lie before the first record that no chunk's checksum
@@ -76,79 +86,101 @@ struct Pass<'a> {
     unchecked_from: Option<usize>,
 }
 
+/// Where in the file the pass is.
+#[derive(Debug, Clone, Copy)]
+enum Part {
+    Start,
+    Data,
+    Summary {
+        /// Its first byte.
+        from: usize,
+    },
+}
+
 impl Pass<'_> {
     fn run(&mut self) -> Result<(), Damage> {
-        let mut frames = Frames::new(self.bytes, MAGIC.len());
-        let data = self.data(&mut frames);
-        // Also before damage: what was read until then is sound.
-        self.close_loose();
-        let saved = data?;
-        self.check_data(frames.position() - DATA_END_BYTES, saved)?;
-        let summary_at = frames.position();
-        let footer = self.summary(&mut frames)?;
-        self.check_summary(summary_at, &footer)?;
-        self.check_end(frames.position())
-    }
-
-    /// Reads up to the end of the data; gives the checksum that was written.
-    fn data(&mut self, frames: &mut Frames<'_>) -> Result<u32, Damage> {
-        let header = frames.expect()?;
-        if header.opcode != op::HEADER {
-            return Err(misplaced(&header, "where the header belongs"));
-        }
-        loop {
-            let frame = frames.expect()?;
-            let at = frame.at as u64;
-            match frame.opcode {
-                op::SCHEMA | op::CHANNEL => {
-                    self.mark_unchecked();
-                    define(&mut self.survey.registry, &frame, at)?;
+        let options = options()
+            .with_emit_chunks(true)
+            .with_validate_data_section_crc(true)
+            .with_validate_summary_section_crc(true)
+            .with_check_finishes_after_end_magic(true);
+        let mut reader = LinearReader::new_with_options(options);
+        let mut rest = self.bytes;
+        let mut at = MAGIC.len();
+        while let Some(event) = reader.next_event() {
+            match event {
+                Ok(LinearReadEvent::ReadRequest(wanted)) => feed(&mut reader, wanted, &mut rest),
+                Ok(LinearReadEvent::Record { opcode, data }) => {
+                    // The reader asks for the bytes of one record at a time, so
+                    // what it has been given ends where this one does.
+                    let end = self.bytes.len() - rest.len();
+                    self.record(opcode, data, at..end)?;
+                    at = end;
                 }
-                op::MESSAGE => self.loose_message(&frame, frames.position())?,
-                op::CHUNK => self.chunk(&frame)?,
-                op::DATA_END if frame.body.len() == DATA_END_BYTES - 9 => {
-                    return layout::data_checksum(frame.body)
-                        .map_err(|bad| damaged(at, "data end", bad));
-                }
-                op::DATA_END | op::FOOTER => {
-                    return Err(misplaced(&frame, "where the data goes on or ends"));
-                }
-                // Indexes and attachments hold no messages, and later versions
-                // may add what this one does not know.
-                _ => {}
+                Err(error) => return Err(self.damage(&error, at, rest.len())),
             }
         }
+        Ok(())
     }
 
-    fn chunk(&mut self, frame: &Frame<'_>) -> Result<(), Damage> {
+    fn record(&mut self, opcode: u8, body: &[u8], place: Range<usize>) -> Result<(), Damage> {
+        let at = place.start as u64;
+        let misplaced = |belongs: &str| {
+            Err(Damage::Record {
+                at,
+                kind: "misplaced",
+                reason: format!("a record of type {opcode:#04x} stands {belongs}"),
+            })
+        };
+        match (self.part, opcode) {
+            (Part::Start, op::HEADER) => self.part = Part::Data,
+            (Part::Start, _) => return misplaced("where the header belongs"),
+            (Part::Data, op::SCHEMA | op::CHANNEL) => {
+                self.mark_unchecked();
+                self.survey.registry.add(opcode, body, at)?;
+            }
+            (Part::Data, op::MESSAGE) => self.loose_message(body, place)?,
+            (Part::Data, op::CHUNK) => self.chunk(body, &place)?,
+            (Part::Data, op::FOOTER) => return misplaced("where the data goes on or ends"),
+            (Part::Data, op::DATA_END) => {
+                self.close_loose();
+                self.part = Part::Summary { from: place.end };
+            }
+            (Part::Summary { .. }, op::SCHEMA | op::CHANNEL) => {
+                self.survey.registry.add(opcode, body, at)?;
+            }
+            (Part::Summary { .. }, op::STATISTICS) => self.check_count(body, at)?,
+            (Part::Summary { .. }, op::DATA_END) => return misplaced("behind the data"),
+            // Indexes and attachments hold no messages, and later versions may
+            // add what this one does not know.
+            _ => {}
+        }
+        Ok(())
+    }
+
+    fn chunk(&mut self, body: &[u8], place: &Range<usize>) -> Result<(), Damage> {
         self.close_loose();
-        let at = frame.at as u64;
-        let record = layout::chunk(frame.body).map_err(|bad| damaged(at, "chunk", bad))?;
-        let content = chunk::unpack(&record, at)?;
-        if record.checksum == 0 {
+        let at = place.start as u64;
+        let chunk = Chunk::of(body, at)?;
+        if !chunk.is_checked() {
             self.mark_unchecked();
         }
-        let mut block = Block::new(frame.at, true);
-        block.bytes.end += 9 + frame.body.len();
-        let mut records = Frames::new(&content, 0);
-        while let Some(inner) = records.next().map_err(|_| ends_within(at))? {
-            match inner.opcode {
-                op::SCHEMA | op::CHANNEL => define(&mut self.survey.registry, &inner, at)?,
-                op::MESSAGE => block.add(inner.body, at, &self.survey.registry)?,
-                _ => {}
-            }
-        }
+        let mut block = Block::chunk(place.start, place.end - body.len()..place.end);
+        let registry = &mut self.survey.registry;
+        chunk.each_record(|opcode, body| match opcode {
+            op::SCHEMA | op::CHANNEL => registry.add(opcode, body, at),
+            op::MESSAGE => add_message(&mut block, body, at, registry),
+            _ => Ok(()),
+        })?;
         self.push(block);
         Ok(())
     }
 
-    fn loose_message(&mut self, frame: &Frame<'_>, end: usize) -> Result<(), Damage> {
+    fn loose_message(&mut self, body: &[u8], place: Range<usize>) -> Result<(), Damage> {
         self.mark_unchecked();
-        let block = self
-            .loose
-            .get_or_insert_with(|| Block::new(frame.at, false));
-        block.add(frame.body, frame.at as u64, &self.survey.registry)?;
-        block.bytes.end = end;
+        let block = self.loose.get_or_insert_with(|| Block::loose(place.start));
+        add_message(block, body, place.start as u64, &self.survey.registry)?;
+        block.bytes.end = place.end;
         Ok(())
     }
 
@@ -169,23 +201,20 @@ impl Pass<'_> {
         self.unchecked_from.get_or_insert(blocks);
     }
 
-    /// Reads the summary up to and with the footer, which it gives.
-    fn summary<'a>(&mut self, frames: &mut Frames<'a>) -> Result<Frame<'a>, Damage> {
-        loop {
-            let frame = frames.expect()?;
-            let at = frame.at as u64;
-            match frame.opcode {
-                op::SCHEMA | op::CHANNEL => define(&mut self.survey.registry, &frame, at)?,
-                op::STATISTICS => self.check_count(&frame)?,
-                op::FOOTER => return Ok(frame),
-                _ => {}
-            }
+    /// Where the data's checksum is wrong, messages are believed only as far as
+    /// a chunk's own checksum covers them, and nothing uncovered lies before
+    /// them.
+    fn drop_unchecked(&mut self) {
+        if let Some(checked) = self.unchecked_from {
+            self.survey.blocks.truncate(checked);
         }
     }
 
-    fn check_count(&self, frame: &Frame<'_>) -> Result<(), Damage> {
-        let claimed = layout::message_count(frame.body)
-            .map_err(|bad| damaged(frame.at as u64, "statistics", bad))?;
+    fn check_count(&self, body: &[u8], at: u64) -> Result<(), Damage> {
+        let Record::Statistics(statistics) = parse(op::STATISTICS, body, at)? else {
+            return Ok(());
+        };
+        let claimed = statistics.message_count;
         let found = self.survey.blocks.iter().map(Block::messages).sum();
         if claimed == found {
             return Ok(());
@@ -193,92 +222,57 @@ impl Pass<'_> {
         Err(Damage::MessageCount { claimed, found })
     }
 
-    /// The checksum covers everything up to `end`. Where it differs, messages
-    /// are believed only as far as a chunk's own checksum covers them, and
-    /// nothing uncovered lies before them.
-    fn check_data(&mut self, end: usize, saved: u32) -> Result<(), Damage> {
-        let Some(found) = self.differs(0..end, saved) else {
-            return Ok(());
-        };
-        if let Some(checked) = self.unchecked_from {
-            self.survey.blocks.truncate(checked);
-        }
-        Err(Damage::DataChecksum {
-            end: end as u64,
-            saved,
-            found,
-        })
-    }
-
-    /// The checksum covers the summary and the footer up to the checksum.
-    fn check_summary(&self, at: usize, footer: &Frame<'_>) -> Result<(), Damage> {
-        let saved = layout::summary_checksum(footer.body)
-            .map_err(|bad| damaged(footer.at as u64, "footer", bad))?;
-        match self.differs(at..footer.at + 9 + 16, saved) {
-            None => Ok(()),
-            Some(found) => Err(Damage::SummaryChecksum {
-                at: at as u64,
-                saved,
-                found,
-            }),
-        }
-    }
-
-    /// The checksum of some bytes, if it is not the one that was written; 0
-    /// stands for none.
-    fn differs(&self, bytes: Range<usize>, saved: u32) -> Option<u32> {
-        if saved == 0 {
-            return None;
-        }
-        let found = crc32fast::hash(self.bytes.get(bytes).unwrap_or_default());
-        (found != saved).then_some(found)
-    }
-
-    fn check_end(&self, at: usize) -> Result<(), Damage> {
-        let rest = self.bytes.get(at..).unwrap_or_default();
-        if rest == MAGIC {
-            return Ok(());
-        }
-        if MAGIC.starts_with(rest) {
-            return Err(Damage::Truncated {
-                length: self.bytes.len() as u64,
-                at: at as u64,
-            });
-        }
-        Err(Damage::End {
+    /// What it means that the reader stopped at the record at byte `at`, with
+    /// `left` bytes that it was not given.
+    fn damage(&self, error: &McapError, at: usize, left: usize) -> Damage {
+        let bytes = self.bytes;
+        let from = |at| shown(bytes.get(at..).unwrap_or_default());
+        let truncated = Damage::Truncated {
+            length: bytes.len() as u64,
             at: at as u64,
-            found: shown(rest),
-        })
+        };
+        match (error, self.part) {
+            (McapError::UnexpectedEof, _) => truncated,
+            (&McapError::RecordTooLarge { len, .. }, _) if len > left as u64 => truncated,
+            (&McapError::RecordTooLarge { opcode, len }, _) => Damage::Record {
+                at: at as u64,
+                kind: name(opcode),
+                reason: format!("it has {len} bytes; at most {MAX_CHUNK_BYTES} are read"),
+            },
+            (&McapError::BadDataCrc { saved, calculated }, _) => Damage::DataChecksum {
+                end: at as u64,
+                saved,
+                found: calculated,
+            },
+            (&McapError::BadSummaryCrc { saved, calculated }, Part::Summary { from }) => {
+                Damage::SummaryChecksum {
+                    at: from as u64,
+                    saved,
+                    found: calculated,
+                }
+            }
+            (McapError::BadMagic, _) => Damage::End {
+                at: at as u64,
+                found: from(at),
+            },
+            (McapError::BytesAfterEndMagic, _) => Damage::End {
+                at: at as u64,
+                found: from(at + MAGIC.len()),
+            },
+            // The reader itself looks into the data end and the footer.
+            (other, _) => Damage::Record {
+                at: at as u64,
+                kind: bytes.get(at).map_or("missing", |&opcode| name(opcode)),
+                reason: reason(other),
+            },
+        }
     }
 }
 
-/// Opcode, length and checksum.
-const DATA_END_BYTES: usize = 9 + 4;
-
-fn define(registry: &mut Registry, frame: &Frame<'_>, at: u64) -> Result<(), Damage> {
-    match frame.opcode {
-        op::SCHEMA => registry.add_schema(frame.body, at),
-        _ => registry.add_channel(frame.body, at),
-    }
-}
-
-fn misplaced(frame: &Frame<'_>, place: &str) -> Damage {
-    Damage::Record {
-        at: frame.at as u64,
-        kind: "misplaced",
-        reason: format!(
-            "opcode {:#04x} with {} bytes stands {place}",
-            frame.opcode,
-            frame.body.len()
-        ),
-    }
-}
-
-fn ends_within(at: u64) -> Damage {
-    Damage::Record {
-        at,
-        kind: "chunk",
-        reason: "its content ends within a record".to_owned(),
+fn add_message(block: &mut Block, body: &[u8], at: u64, registry: &Registry) -> Result<(), Damage> {
+    match parse(op::MESSAGE, body, at)? {
+        Record::Message { header, .. } => block.add(&header, at, registry),
+        _ => Ok(()),
     }
 }
 
@@ -336,7 +330,8 @@ mod tests {
         ));
         // A name of four gigabytes, in a record of ten bytes.
         let name = [&[1, 0][..], &u32::MAX.to_le_bytes(), b"/sca"].concat();
-        let reason = "its name needs 4294967295 bytes, 4 are left".to_owned();
+        let reason = "it ends within a field, or a field claims more bytes than are left";
+        let reason = reason.to_owned();
         assert_eq!(
             damage(&[record(op::SCHEMA, &name)]),
             Damage::Record {
@@ -393,7 +388,11 @@ mod tests {
             damage(&[end(), b"more".to_vec()]),
             Damage::End { .. }
         ));
-        let mut statistics = record(op::STATISTICS, &3u64.to_le_bytes());
+        // The count, then all that is not looked at.
+        let mut statistics = record(
+            op::STATISTICS,
+            &[&3u64.to_le_bytes()[..], &[0; 38]].concat(),
+        );
         statistics.extend(record(op::FOOTER, &[0; 20]));
         assert_eq!(
             damage(&[record(op::DATA_END, &[0; 4]), statistics]),

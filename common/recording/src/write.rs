@@ -11,6 +11,7 @@ use std::path::Path;
 use mcap::records::MessageHeader;
 use mcap::{McapError, WriteOptions};
 
+use crate::parse::reason;
 use crate::ros::{LaserScan, OccupancyGridMsg, Odometry, PoseStamped, RosMessage, TfMessage};
 use crate::{Kind, Message, RecordingError};
 
@@ -175,12 +176,9 @@ impl<W: Write + Seek> RecordingWriter<W> {
     }
 }
 
+#[allow(clippy::needless_pass_by_value, reason = "it is given to map_err")]
 fn failed(error: McapError) -> RecordingError {
-    refused(match error {
-        // The library's text leaves out what the system says.
-        McapError::Io(error) => error.to_string(),
-        other => other.to_string(),
-    })
+    refused(reason(&error))
 }
 
 fn refused(reason: String) -> RecordingError {

@@ -5,7 +5,7 @@
 use messages::topic;
 use messages::{HealthHeader, Name, NodeState};
 
-use crate::{Publisher, TransportError, monotonic_ns};
+use crate::{Publisher, TransportError, monotonic_ns, with_causes};
 
 /// Between two reports, nanoseconds.
 const PERIOD_NS: i64 = 1_000_000_000;
@@ -112,7 +112,8 @@ impl Health {
 impl Drop for Health {
     fn drop(&mut self) {
         if let Err(error) = self.state(NodeState::Stopped) {
-            tracing::warn!(%error, "the last health report was not sent");
+            let problem = with_causes(&error);
+            tracing::warn!("the last health report was not sent: {problem}");
         }
     }
 }

@@ -46,7 +46,8 @@
 //! | `node`, `log` | `main` of a node: logging, exit code |
 //! | `space` | room in shared memory, looked up before it is used |
 //! | `leftovers` | removing what a graph leaves |
-//! | `error` | what can go wrong |
+//! | `error`, `causes` | what can go wrong; an error with its causes on one line |
+//! | `testing` | for tests of nodes: a graph of their own, the node as a process |
 //!
 //! # Invariants
 //!
@@ -70,8 +71,9 @@
 //!   Until then a dead subscriber counts as one.
 //! - **iceoryx2 handles no signals and prints nothing**; both are done here.
 //!
-//! One loss remains: a publisher that grows its memory for a sample and goes
-//! before a subscriber has looked takes that sample along.
+//! One loss remains: a publisher that goes takes along what it sent to a
+//! subscriber that has not looked since the publisher came, or since it last grew
+//! its memory. A source that ends by itself waits for [`Publisher::is_settled`].
 //!
 //! # Memory
 //!
@@ -87,6 +89,7 @@
 //! the old one goes with its last sample. Wake-ups and connections take about
 //! 20 KiB for each pair of publisher and subscriber.
 
+mod causes;
 mod clock;
 mod error;
 mod event_loop;
@@ -107,7 +110,9 @@ mod service;
 mod signals;
 mod space;
 mod subscriber;
+pub mod testing;
 
+pub use causes::with_causes;
 pub use clock::monotonic_ns;
 pub use error::TransportError;
 pub use event_loop::{Flow, Wake};

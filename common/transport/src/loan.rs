@@ -50,10 +50,16 @@ impl<'p, T: Topic> Loan<'p, T> {
     /// # Errors
     /// [`TransportError::Send`] if a subscriber could not be reached.
     pub fn send(self) -> Result<(), TransportError> {
+        let address = self.address();
         self.sample
             .send()
             .map_err(|error| send_failed::<T>(&error))?;
-        self.publisher.wake()
+        self.publisher.sent(address)
+    }
+
+    /// Where the sample lies in this process.
+    pub(crate) fn address(&self) -> usize {
+        std::ptr::from_ref(self.sample.user_header()).addr()
     }
 }
 

@@ -11,7 +11,7 @@ use std::process::ExitCode;
 use tracing_subscriber::EnvFilter;
 use tracing_subscriber::filter::LevelFilter;
 
-use crate::Graph;
+use crate::{Graph, with_causes};
 
 /// The environment variable that picks the form of log lines: `text` or `json`.
 pub const LOG_FORMAT_VARIABLE: &str = "BACKCAST_LOG_FORMAT";
@@ -27,8 +27,8 @@ pub fn main<E: Error + 'static>(name: &str, run: impl FnOnce(&Graph) -> Result<(
         return ExitCode::from(2);
     }
     let outcome = Graph::join(name)
-        .map_err(|error| chain(&error))
-        .and_then(|graph| run(&graph).map_err(|error| chain(&error)));
+        .map_err(|error| with_causes(&error))
+        .and_then(|graph| run(&graph).map_err(|error| with_causes(&error)));
     match outcome {
         Ok(()) => ExitCode::SUCCESS,
         Err(problem) => {
@@ -71,32 +71,5 @@ fn variable(name: &str, default: &str) -> Result<String, String> {
         Ok(value) => Ok(value),
         Err(VarError::NotPresent) => Ok(default.into()),
         Err(VarError::NotUnicode(value)) => Err(format!("{name} is {value:?}: it must be UTF-8")),
-    }
-}
-
-/// An error and its causes, on one line.
-fn chain(error: &dyn Error) -> String {
-    let mut text = error.to_string();
-    let mut cause = error.source();
-    while let Some(error) = cause {
-        text = format!("{text}: {error}");
-        cause = error.source();
-    }
-    text
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-    use crate::TransportError;
-
-    #[test]
-    fn causes_follow_the_error() {
-        let error = TransportError::File {
-            action: "list",
-            path: "/some/where".into(),
-            source: std::io::Error::other("the disk is gone"),
-        };
-        assert_eq!(chain(&error), "cannot list /some/where: the disk is gone");
     }
 }

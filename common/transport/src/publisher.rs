@@ -3,7 +3,7 @@
 //! A subscriber that is too slow loses its oldest samples; it never holds the
 //! publisher up, and the publisher never waits for anybody.
 
-use std::cell::RefCell;
+use std::cell::{Cell, RefCell};
 use std::rc::{Rc, Weak};
 
 use iceoryx2::node::Node;
@@ -37,6 +37,8 @@ struct Inner<T: Topic> {
     samples: Samples<T>,
     /// The subscribers that were there when late joiners were last served.
     served: RefCell<Vec<u128>>,
+    /// Where the sample lies that was sent last.
+    last_sent: Cell<Option<usize>>,
 }
 
 impl<T: Topic> Publisher<T> {
@@ -68,6 +70,7 @@ impl<T: Topic> Publisher<T> {
                 notifier,
                 samples,
                 served: RefCell::default(),
+                last_sent: Cell::new(None),
             }),
         })
     }
@@ -97,12 +100,37 @@ impl<T: Topic> Publisher<T> {
         self.inner.samples.dynamic_config().number_of_subscribers() > 0
     }
 
+    /// Whether every subscriber is done with the sample that was sent last, and
+    /// so with all before it: has taken it and let go of it, or has left. One
+    /// that was killed counts until it has been cleaned away.
+    ///
+    /// A publisher that ends takes along what it has sent since a subscriber
+    /// last looked, so a source that ends by itself waits for this before, though
+    /// not for ever: where a subscriber lets go of samples in another order than
+    /// they came, this may stay false. A latched topic keeps its newest sample
+    /// and has no such moment.
+    ///
+    /// # Errors
+    /// As [`Publisher::loan`]; there must be no loan at the time.
+    pub fn is_settled(&self) -> Result<bool, TransportError> {
+        const { assert!(!T::LATCHED, "a latched topic keeps its newest sample") };
+        let Some(last) = self.inner.last_sent.get() else {
+            return Ok(true);
+        };
+        // Those that have left give back what they had.
+        self.inner.update_connections()?;
+        // iceoryx2 does not say who has taken what. But it gives memory out
+        // again only once nobody holds it, and then what came back last first.
+        Ok(self.loan(0)?.address() == last)
+    }
+
     pub(crate) fn port(&self) -> &Port<T> {
         &self.inner.port
     }
 
-    /// Wakes the subscribers, after something was sent.
-    pub(crate) fn wake(&self) -> Result<(), TransportError> {
+    /// Wakes the subscribers, after the sample at `address` was sent.
+    pub(crate) fn sent(&self, address: usize) -> Result<(), TransportError> {
+        self.inner.last_sent.set(Some(address));
         self.inner.wake()
     }
 }
@@ -112,6 +140,12 @@ impl<T: Topic> Inner<T> {
         self.notifier
             .notify()
             .map(drop)
+            .map_err(|error| send_failed::<T>(&error))
+    }
+
+    fn update_connections(&self) -> Result<(), TransportError> {
+        self.port
+            .update_connections()
             .map_err(|error| send_failed::<T>(&error))
     }
 
@@ -131,9 +165,7 @@ impl<T: Topic> Latched for Inner<T> {
         if *self.served.borrow() == subscribers {
             return Ok(());
         }
-        self.port
-            .update_connections()
-            .map_err(|error| send_failed::<T>(&error))?;
+        self.update_connections()?;
         self.wake()?;
         self.served.replace(subscribers);
         Ok(())

@@ -5,12 +5,10 @@
     reason = "helpers of tests fail the test, as tests do"
 )]
 
-mod isolated;
-
 use std::time::Duration;
 
-use isolated::Isolated;
 use messages::{HealthHeader, NodeState, Topic, topic};
+use transport::testing::Isolated;
 use transport::{Flow, GapCounter, Graph, Publisher, Subscriber, TransportError};
 
 fn pair<T: Topic>(graph: &Graph) -> (Publisher<T>, Subscriber<T>) {
@@ -20,7 +18,7 @@ fn pair<T: Topic>(graph: &Graph) -> (Publisher<T>, Subscriber<T>) {
 #[test]
 fn a_slow_subscriber_keeps_the_newest_and_can_count_the_rest() {
     let isolated = Isolated::new("overflow");
-    let graph = Graph::join_named("tester", &isolated.name).unwrap();
+    let graph = isolated.join("tester");
     let (publisher, subscriber) = pair::<topic::Scan>(&graph);
     let send = |counters: std::ops::Range<u64>| {
         for counter in counters {
@@ -50,7 +48,7 @@ fn a_slow_subscriber_keeps_the_newest_and_can_count_the_rest() {
 #[test]
 fn newest_skips_what_is_older() {
     let isolated = Isolated::new("newest");
-    let graph = Graph::join_named("tester", &isolated.name).unwrap();
+    let graph = isolated.join("tester");
     let (publisher, subscriber) = pair::<topic::OdometryTopic>(&graph);
     assert!(subscriber.newest().unwrap().is_none());
     for counter in 0..5 {
@@ -64,9 +62,52 @@ fn newest_skips_what_is_older() {
 }
 
 #[test]
+fn a_publisher_is_settled_once_all_subscribers_are_done_with_what_it_sent() {
+    let isolated = Isolated::new("settled");
+    let graph = isolated.join("tester");
+    let (publisher, one) = pair::<topic::Scan>(&graph);
+    let other = graph.subscriber::<topic::Scan>().unwrap();
+    let send = |items: &[usize]| {
+        for &items in items {
+            publisher.loan(items).unwrap().send().unwrap();
+        }
+    };
+    let take_all = |subscriber: &Subscriber<topic::Scan>| {
+        while subscriber.receive().unwrap().is_some() {}
+    };
+    let is_settled = || publisher.is_settled().unwrap();
+    assert!(is_settled(), "nothing was sent");
+
+    send(&[5, 5, 5]);
+    assert!(!is_settled());
+    take_all(&one);
+    assert!(!is_settled(), "the other one has not looked");
+    let held: Vec<_> = std::iter::from_fn(|| other.receive().unwrap()).collect();
+    assert!(!is_settled(), "the other one looks at them still");
+    drop(held);
+    assert!(is_settled());
+    assert!(is_settled(), "asking changes nothing");
+
+    // More than fit, and larger than the memory so far.
+    send(&[1000, 1, 2000, 1, 1, 5000, 3]);
+    take_all(&other);
+    assert!(!is_settled());
+    take_all(&one);
+    assert!(is_settled());
+
+    send(&[5, 5]);
+    take_all(&other);
+    drop(one);
+    assert!(is_settled(), "who has left takes nothing any more");
+    drop(other);
+    send(&[5]);
+    assert!(is_settled(), "nobody is there");
+}
+
+#[test]
 fn the_current_map_stays_while_the_next_ones_are_taken() {
     let isolated = Isolated::new("growth");
-    let graph = Graph::join_named("tester", &isolated.name).unwrap();
+    let graph = isolated.join("tester");
     let (publisher, subscriber) = pair::<topic::Map>(&graph);
     let serve = |cells: usize, value: u8| {
         let mut loan = publisher.loan(cells).unwrap();
@@ -86,7 +127,7 @@ fn the_current_map_stays_while_the_next_ones_are_taken() {
 #[test]
 fn health_is_sent_at_once_when_it_changes_and_when_the_node_ends() {
     let isolated = Isolated::new("reports");
-    let graph = Graph::join_named("accumulator", &isolated.name).unwrap();
+    let graph = isolated.join("accumulator");
     let subscriber = graph.subscriber::<topic::Health>().unwrap();
     let mut health = graph.health().unwrap();
     let report = || {
@@ -132,7 +173,7 @@ fn health_is_sent_at_once_when_it_changes_and_when_the_node_ends() {
 #[test]
 fn the_event_loop_ends_as_it_is_told() {
     let isolated = Isolated::new("loop");
-    let graph = Graph::join_named("tester", &isolated.name).unwrap();
+    let graph = isolated.join("tester");
     let tick = Duration::from_millis(1);
 
     let mut calls = 0;
@@ -173,7 +214,7 @@ fn the_event_loop_ends_as_it_is_told() {
 #[test]
 fn a_sample_wakes_long_before_the_tick() {
     let isolated = Isolated::new("wake");
-    let graph = Graph::join_named("tester", &isolated.name).unwrap();
+    let graph = isolated.join("tester");
     let (publisher, subscriber) = pair::<topic::Scan>(&graph);
     let mut received = 0;
     // With such a tick, only the sample itself can end the wait.

@@ -5,11 +5,9 @@
     reason = "helpers of tests fail the test, as tests do"
 )]
 
-mod isolated;
-
 use bytemuck::{bytes_of, bytes_of_mut, cast_slice, cast_slice_mut};
-use isolated::Isolated;
 use messages::{ScanHeader, Topic, topic};
+use transport::testing::Isolated;
 use transport::{Graph, Publisher, Subscriber, TransportError};
 
 fn pair<T: Topic>(graph: &Graph) -> (Publisher<T>, Subscriber<T>) {
@@ -24,7 +22,7 @@ fn fill(bytes: &mut [u8], seed: u8) {
 
 fn round_trip<T: Topic>() {
     let isolated = Isolated::new(T::NAME.get(..11).unwrap_or(T::NAME));
-    let graph = Graph::join_named("tester", &isolated.name).unwrap();
+    let graph = isolated.join("tester");
     let (publisher, subscriber) = pair::<T>(&graph);
     assert!(subscriber.receive().unwrap().is_none());
     // The second of equal size gets memory that the first has written to.
@@ -81,8 +79,8 @@ round_trips! {
 #[test]
 fn graphs_side_by_side_do_not_hear_each_other() {
     let (here, there) = (Isolated::new("here"), Isolated::new("there"));
-    let one = Graph::join_named("one", &here.name).unwrap();
-    let other = Graph::join_named("other", &there.name).unwrap();
+    let one = here.join("one");
+    let other = there.join("other");
     let (publisher, subscriber) = pair::<topic::Scan>(&one);
     let stranger = other.subscriber::<topic::Scan>().unwrap();
     let lonely = other.publisher::<topic::Map>().unwrap();
@@ -98,7 +96,7 @@ fn graphs_side_by_side_do_not_hear_each_other() {
 #[test]
 fn an_unsent_loan_is_given_back() {
     let isolated = Isolated::new("unsent");
-    let graph = Graph::join_named("tester", &isolated.name).unwrap();
+    let graph = isolated.join("tester");
     let (publisher, subscriber) = pair::<topic::Scan>(&graph);
     for _ in 0..100 {
         drop(publisher.loan(10).unwrap());
@@ -120,7 +118,7 @@ fn an_unsent_loan_is_given_back() {
 #[test]
 fn impossible_sizes_are_refused() {
     let isolated = Isolated::new("sizes");
-    let graph = Graph::join_named("tester", &isolated.name).unwrap();
+    let graph = isolated.join("tester");
     let publisher = graph.publisher::<topic::Scan>().unwrap();
     let error = publisher.loan(usize::MAX / 2).unwrap_err();
     assert!(matches!(
@@ -149,7 +147,7 @@ impl Topic for OtherMap {
 #[test]
 fn another_version_of_a_message_is_refused_by_name() {
     let isolated = Isolated::new("versions");
-    let graph = Graph::join_named("tester", &isolated.name).unwrap();
+    let graph = isolated.join("tester");
     let _map = graph.publisher::<topic::Map>().unwrap();
     let error = graph.subscriber::<OtherMap>().unwrap_err();
     let text = error.to_string();
@@ -167,7 +165,7 @@ fn another_version_of_a_message_is_refused_by_name() {
 #[test]
 fn a_topic_has_no_more_publishers_and_subscribers_than_it_allows() {
     let isolated = Isolated::new("limits");
-    let graph = Graph::join_named("tester", &isolated.name).unwrap();
+    let graph = isolated.join("tester");
     let publishers: Vec<_> = (0..topic::Scan::MAX_PUBLISHERS)
         .map(|_| graph.publisher::<topic::Scan>().unwrap())
         .collect();
@@ -207,7 +205,7 @@ fn a_topic_has_no_more_publishers_and_subscribers_than_it_allows() {
 fn names_of_nodes_are_checked() {
     let isolated = Isolated::new("names");
     for name in ["", &"x".repeat(33)] {
-        let error = Graph::join_named(name, &isolated.name).unwrap_err();
+        let error = Graph::join_named(name, isolated.name()).unwrap_err();
         assert!(matches!(error, TransportError::NodeName { name: n } if n == name));
     }
 }

@@ -5,6 +5,7 @@ use engine::EngineError;
 use engine::grid::Grid;
 use engine::localizer::{Localizer, Outcome};
 use engine::scan::Scan;
+use engine::search::BlockBounds;
 use messages::{FieldHeader, FieldKind, ScanHeader, SearchOutcome, Vote, VotesHeader};
 
 use crate::AccumulatorError;
@@ -17,12 +18,14 @@ pub struct Answer {
     pub votes: VotesHeader,
     /// Items of `votes`.
     pub poses: Vec<Vote>,
-    /// Header and items of `field`, where the heading was known.
+    /// Header and items of `field`: the intensities of all cells where the
+    /// heading was known, else their upper bounds, block by block.
     pub field: Option<(FieldHeader, Vec<u16>)>,
 }
 
-/// What the engine said about a scan: the poses with the most votes and, where
-/// the heading was known, the intensities of all cells.
+/// What the engine said about a scan: the poses with the most votes, with the
+/// bounds of blocks where the heading was searched; and, where it was known, the
+/// intensities of all cells.
 pub type Reply = (Outcome, Option<Vec<u16>>);
 
 /// The scan as the engine takes it, borrowed from the message.
@@ -58,8 +61,8 @@ pub fn ask(
     match heading {
         None => Ok(localizer.search(scan, stop)?.map(|outcome| (outcome, None))),
         Some(heading) => {
-            let (outcome, field) = localizer.search_at(scan, heading)?;
-            Ok(Some((outcome, Some(field))))
+            let found = localizer.search_at(scan, heading, stop)?;
+            Ok(found.map(|(outcome, field)| (outcome, Some(field))))
         }
     }
 }
@@ -69,14 +72,18 @@ pub fn ask(
 pub fn answered(
     scan: &ScanHeader,
     map: &PreparedMap,
-    (outcome, field): Reply,
+    (outcome, intensities): Reply,
     engine_ns: u64,
 ) -> Answer {
     let votes = votes_header(scan, map.map_id, &outcome, engine_ns);
+    let exact = intensities.map(|all| (exact_header(&votes, map.localizer.grid()), all));
+    let bounds = outcome
+        .block_bounds
+        .map(|blocks| (bounds_header(&votes, &blocks), blocks.bounds));
     Answer {
         votes,
         poses: outcome.found.votes,
-        field: field.map(|field| (field_header(&votes, map.localizer.grid()), field)),
+        field: exact.or(bounds),
     }
 }
 
@@ -126,7 +133,7 @@ fn empty(scan: &ScanHeader, map_id: u64, headings: u32) -> VotesHeader {
     }
 }
 
-fn field_header(votes: &VotesHeader, grid: &Grid) -> FieldHeader {
+fn exact_header(votes: &VotesHeader, grid: &Grid) -> FieldHeader {
     FieldHeader {
         stamp: votes.stamp,
         map_id: votes.map_id,
@@ -138,6 +145,22 @@ fn field_header(votes: &VotesHeader, grid: &Grid) -> FieldHeader {
         best: votes.best,
         highest_possible: votes.highest_possible,
         heading: votes.known_heading,
+    }
+}
+
+/// The heading is none: the bounds hold for all.
+fn bounds_header(votes: &VotesHeader, blocks: &BlockBounds) -> FieldHeader {
+    FieldHeader {
+        stamp: votes.stamp,
+        map_id: votes.map_id,
+        // Not more than there are cells along a side.
+        width: blocks.columns as u32,
+        height: blocks.rows() as u32,
+        block: blocks.side as u32,
+        kind: FieldKind::UpperBound as u32,
+        best: blocks.bounds.iter().copied().max().unwrap_or(0).into(),
+        highest_possible: votes.highest_possible,
+        heading: 0.0,
     }
 }
 
@@ -194,6 +217,7 @@ mod tests {
             bearing_rounding: 0.001,
             headings: 360,
             known_heading: None,
+            block_bounds: None,
         }
     }
 
@@ -249,7 +273,29 @@ mod tests {
             highest_possible: 200,
             heading: 0.25,
         };
-        assert_eq!(field_header(&votes, &grid), expected);
+        assert_eq!(exact_header(&votes, &grid), expected);
+    }
+
+    #[test]
+    fn the_image_of_bounds_has_a_pixel_for_each_block() {
+        let votes = votes_header(&header(), 77, &outcome(100), 1234);
+        let blocks = BlockBounds {
+            side: 16,
+            columns: 3,
+            bounds: vec![0, 120, 0, 90, 0, 0],
+        };
+        let expected = FieldHeader {
+            stamp: header().stamp,
+            map_id: 77,
+            width: 3,
+            height: 2,
+            block: 16,
+            kind: FieldKind::UpperBound as u32,
+            best: 120,
+            highest_possible: 200,
+            heading: 0.0,
+        };
+        assert_eq!(bounds_header(&votes, &blocks), expected);
     }
 
     #[test]

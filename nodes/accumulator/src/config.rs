@@ -22,8 +22,9 @@ pub struct Config {
     #[command(flatten)]
     pub heading: HeadingConfig,
 
-    /// Most images on `field` a second, 0.1..=100. They are sent while the
-    /// heading is known and somebody subscribes.
+    /// Most images on `field` a second, 0.1..=100. They are sent while somebody
+    /// subscribes: the intensities of all cells where the heading is known, else
+    /// the most that any pose in a block of cells could have.
     #[arg(long, value_name = "HERTZ", default_value_t = 2.0, value_parser = field_rate)]
     pub field_rate: f64,
 }

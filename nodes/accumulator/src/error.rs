@@ -2,7 +2,6 @@
 //! from running.
 
 use engine::EngineError;
-use map::MapError;
 use messages::{BoundaryCell, Pose2};
 use transport::TransportError;
 
@@ -12,7 +11,7 @@ pub enum AccumulatorError {
     /// The scan came before a map was ready.
     #[error("there is no map yet")]
     NoMap,
-    /// The scan, the map's cells or a setting cannot be used.
+    /// The scan, the map or a setting cannot be used.
     #[error(transparent)]
     Engine(#[from] EngineError),
     /// The laser's mount is no number.
@@ -53,9 +52,6 @@ pub enum AccumulatorError {
         /// When the scan was measured, nanoseconds.
         scan_ns: i64,
     },
-    /// The map's geometry is out of range.
-    #[error(transparent)]
-    Geometry(#[from] MapError),
     /// The boundary does not say how to read the map.
     #[error("{field} of the boundary is {found}: allowed are {allowed}")]
     Rule {

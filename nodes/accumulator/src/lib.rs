@@ -1,6 +1,5 @@
 //! Node `accumulator`: where on the map could each scan have been taken? From
-//! `scan`, `map` and `boundary` to `votes`, and to `field` where the heading is
-//! known.
+//! `scan`, `map` and `boundary` to `votes`, and to `field` while somebody looks.
 //!
 //! Each scan is answered by exactly one message of `votes`, also where it is
 //! refused or explains nothing. A new map is prepared in the background while

@@ -4,12 +4,8 @@
 //! been checked. That a boundary is complete cannot be seen without extracting
 //! it again, and is left to its sender.
 
-use std::f64::consts::TAU;
-
 use engine::grid::{Cell, CellRules, Grid, GridFrame};
 use engine::localizer::{Localizer, LocalizerConfig, Prior};
-use geometry::Pose;
-use map::{MAX_ORIGIN_M, MAX_RESOLUTION_M, MIN_RESOLUTION_M, MapError};
 use messages::{BoundaryCell, BoundaryHeader, MapHeader};
 
 use crate::AccumulatorError;
@@ -86,7 +82,7 @@ impl Job {
         config: LocalizerConfig,
         prior: Prior,
     ) -> Result<PreparedMap, AccumulatorError> {
-        let frame = frame_of(&self.map)?;
+        let frame = GridFrame::of(&self.map)?;
         let (width, height) = (self.map.width as usize, self.map.height as usize);
         let grid = Grid::new(width, height, &self.occupancy, self.rules)?;
         check_boundary(&self.boundary, &grid)?;
@@ -123,26 +119,6 @@ fn rules_of(boundary: &BoundaryHeader) -> Result<CellRules, AccumulatorError> {
         occupied_from: percent("occupied_from", occupied_from, "1 to 100", 1..=100)?,
         free_to: percent("free_to", boundary.free_to, "0 to 99", 0..=99)?,
         unknown_blocks,
-    })
-}
-
-fn frame_of(map: &MapHeader) -> Result<GridFrame, MapError> {
-    let resolution_m = map.resolution_m;
-    if !(MIN_RESOLUTION_M..=MAX_RESOLUTION_M).contains(&resolution_m) {
-        return Err(MapError::Resolution {
-            found: resolution_m,
-        });
-    }
-    let map_from_grid = Pose::from(map.map_from_grid);
-    let Pose { x, y, yaw } = map_from_grid;
-    if !(x.abs() <= MAX_ORIGIN_M && y.abs() <= MAX_ORIGIN_M && yaw.abs() <= TAU) {
-        return Err(MapError::Origin {
-            found: map_from_grid,
-        });
-    }
-    Ok(GridFrame {
-        resolution_m,
-        map_from_grid,
     })
 }
 

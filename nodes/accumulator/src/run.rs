@@ -9,7 +9,7 @@ use std::sync::atomic::{AtomicBool, Ordering};
 use std::time::{Duration, Instant};
 
 use messages::topic;
-use transport::{Flow, GapCounter, Graph, Health, Sample, TransportError};
+use transport::{Flow, GapCounter, Graph, Health, Sample, TransportError, with_causes};
 
 use crate::answer::{self, Answer};
 use crate::headings::{HeadingSource, History};
@@ -128,7 +128,7 @@ impl Node {
         self.outputs.votes(&votes, &[])?;
         self.health.count_sent(1);
         self.health.count_refused(1);
-        let (counter, reason) = (scan.header().stamp.counter, error.to_string());
+        let (counter, reason) = (scan.header().stamp.counter, with_causes(error));
         self.health
             .error(&format!("scan {counter} is refused: {reason}"))?;
         // A source that is always wrong would fill the log.

@@ -5,7 +5,6 @@
     reason = "the lint spares test functions but not what they share"
 )]
 
-mod support;
 mod world;
 
 use std::f64::consts::FRAC_PI_2;
@@ -16,7 +15,7 @@ use messages::{
     FieldHeader, FieldKind, GroundTruth, Name, NodeState, Odometry, Pose2, SearchOutcome, Stamp,
     topic,
 };
-use support::{Isolated, Node, wait_for, wait_for_health};
+use transport::testing::{Isolated, NodeProcess, wait_for, wait_for_health};
 use world::{FRAME, MOUNT, ROOM, World, localizer, ranges, scan};
 
 /// In the grid's frame, as the scans are drawn.
@@ -27,8 +26,8 @@ fn map_heading() -> f64 {
     (HEADING as f64).to_radians() + FRAME.map_from_grid.yaw
 }
 
-fn start(world: &World, arguments: &[&str]) -> Node {
-    let node = Node::start(&world.graph, arguments);
+fn start(world: &World, arguments: &[&str]) -> NodeProcess {
+    let node = world.start(arguments);
     world.publish_map(5, &ROOM);
     world.publish_boundary(5, &ROOM);
     world.wait_until(NodeState::Ready);
@@ -64,7 +63,8 @@ fn a_fixed_heading_gives_the_votes_and_the_image_of_the_engine() {
     // The heading went through decimal degrees: a rounding or two.
     assert!((heading - map_heading()).abs() < 1e-12, "{heading}");
     let (outcome, image) = localizer(&ROOM, Prior::Heading)
-        .search_at(&scan(&ranges), heading)
+        .search_at(&scan(&ranges), heading, &|| false)
+        .unwrap()
         .unwrap();
     assert_eq!(poses, outcome.found.votes);
     assert_eq!(votes.heading_known, 1);

@@ -5,12 +5,13 @@
     reason = "the lint spares test functions but not what they share"
 )]
 
-mod support;
 mod world;
 
 use engine::localizer::{Outcome, Prior};
-use messages::{BoundaryCell, NodeState, SearchOutcome, Vote, VotesHeader};
-use support::{Isolated, Node, wait_for_health};
+use messages::{
+    BoundaryCell, FieldHeader, FieldKind, NodeState, SearchOutcome, Vote, VotesHeader, topic,
+};
+use transport::testing::{Isolated, wait_for, wait_for_health};
 use world::{MOUNT, ROOM, World, localizer, ranges, scan};
 
 /// The same room after somebody has moved the pillar and opened a door.
@@ -24,6 +25,28 @@ const CHANGED: [&str; 9] = [
     "#.....#.........",
     "#.....#.........",
     "#######.........",
+];
+
+/// Three blocks of sixteen cells long and two high, the outer ones cut off.
+const HALL: [&str; 18] = [
+    "########################################",
+    "#......................................#",
+    "#......................................#",
+    "#............##........................#",
+    "#............##...............#........#",
+    "#......................................#",
+    "#......................................#",
+    "#......................................#",
+    "###########.......##############.......#",
+    "..........#.......#............#.......#",
+    "..........#.......#............#.......#",
+    "..........#.......#............#.......#",
+    "..........#.......#............#..#....#",
+    "..........#.......#............#.......#",
+    "..........#.......#............#.......#",
+    "..........#..#....#............#.......#",
+    "..........#.......#............#.......#",
+    "..........#########............#########",
 ];
 
 fn searched(rows: &[&str], ranges: &[f32]) -> Outcome {
@@ -60,7 +83,7 @@ fn votes_are_those_of_the_engine() {
     // Both are there before the node, which is thus a late joiner.
     world.publish_map(5, &ROOM);
     world.publish_boundary(5, &ROOM);
-    let node = Node::start(&world.graph, &[]);
+    let node = world.start(&[]);
     world.wait_until(NodeState::Ready);
     for (x, y, heading) in [(3, 3, 40), (12, 6, 211), (9, 4, 0)] {
         let ranges = ranges(&ROOM, x, y, heading);
@@ -83,10 +106,54 @@ fn votes_are_those_of_the_engine() {
 }
 
 #[test]
+fn the_image_bounds_the_votes_where_the_heading_is_searched() {
+    let isolated = Isolated::new("bounds");
+    let world = World::new(&isolated);
+    let node = world.start(&["--field-rate", "0.1"]);
+    let fields = world.graph.subscriber::<topic::Field>().unwrap();
+    world.publish_map(5, &HALL);
+    world.publish_boundary(5, &HALL);
+    world.wait_until(NodeState::Ready);
+    let ranges = ranges(&HALL, 35, 4, 211);
+    let (votes, poses) = world.ask(&ranges);
+    let (header, bounds) = wait_for(&world.graph, &fields, |header, bounds| {
+        Some((*header, bounds.to_vec()))
+    });
+
+    let expected = FieldHeader {
+        stamp: votes.stamp,
+        map_id: 5,
+        width: 3,
+        height: 2,
+        block: 16,
+        kind: FieldKind::UpperBound as u32,
+        best: bounds.iter().copied().max().unwrap().into(),
+        highest_possible: votes.highest_possible,
+        heading: 0.0,
+    };
+    assert_eq!((header, bounds.len()), (expected, 6));
+    assert!(header.best <= header.highest_possible);
+    assert_eq!(poses.first().map(|best| (best.x, best.y)), Some((35, 4)));
+    for vote in poses {
+        let (x, y) = (u32::from(vote.x), u32::from(vote.y));
+        let pixel = y / header.block * header.width + x / header.block;
+        assert!(vote.intensity <= bounds[pixel as usize], "{vote:?}");
+    }
+
+    // The next image is due in ten seconds; each scan is answered all the same.
+    // Were one sent, it would come before the answer to the scan after it.
+    for _ in 0..3 {
+        world.ask(&ranges);
+    }
+    assert!(fields.receive().unwrap().is_none());
+    node.stop();
+}
+
+#[test]
 fn bad_scans_are_refused_and_counted_and_the_next_good_one_is_answered() {
     let isolated = Isolated::new("bad");
     let world = World::new(&isolated);
-    let node = Node::start(&world.graph, &[]);
+    let node = world.start(&[]);
     world.wait_until(NodeState::Waiting);
     let good = ranges(&ROOM, 3, 3, 40);
 
@@ -130,7 +197,7 @@ fn bad_scans_are_refused_and_counted_and_the_next_good_one_is_answered() {
 fn scans_that_never_came_are_counted_as_dropped() {
     let isolated = Isolated::new("dropped");
     let world = World::new(&isolated);
-    let node = Node::start(&world.graph, &[]);
+    let node = world.start(&[]);
     world.wait_until(NodeState::Waiting);
     world.counter.set(7);
     world.ask(&[1.0]);
@@ -159,7 +226,7 @@ fn ask_until_swapped(world: &World, map_id: u64) {
 fn a_new_map_is_used_once_it_and_its_boundary_are_there() {
     let isolated = Isolated::new("swap");
     let world = World::new(&isolated);
-    let node = Node::start(&world.graph, &[]);
+    let node = world.start(&[]);
     world.publish_boundary(5, &ROOM);
     world.publish_map(5, &ROOM);
     world.wait_until(NodeState::Ready);
@@ -176,7 +243,7 @@ fn a_new_map_is_used_once_it_and_its_boundary_are_there() {
 fn a_map_that_is_refused_leaves_the_one_before_in_use() {
     let isolated = Isolated::new("refuse");
     let world = World::new(&isolated);
-    let node = Node::start(&world.graph, &[]);
+    let node = world.start(&[]);
     world.publish_map(5, &ROOM);
     world.publish_boundary(5, &ROOM);
     world.wait_until(NodeState::Ready);
@@ -209,7 +276,7 @@ fn a_map_that_is_refused_leaves_the_one_before_in_use() {
 fn a_map_that_is_taken_back_is_in_use_again() {
     let isolated = Isolated::new("back");
     let world = World::new(&isolated);
-    let node = Node::start(&world.graph, &[]);
+    let node = world.start(&[]);
     world.publish_map(5, &ROOM);
     world.publish_boundary(5, &ROOM);
     world.wait_until(NodeState::Ready);
@@ -228,6 +295,6 @@ fn a_map_that_is_taken_back_is_in_use_again() {
 fn a_command_line_that_contradicts_itself_ends_with_two() {
     let isolated = Isolated::new("usage");
     let world = World::new(&isolated);
-    let node = Node::start(&world.graph, &["--heading", "1", "--heading-offset", "2"]);
+    let node = world.start(&["--heading", "1", "--heading-offset", "2"]);
     assert_eq!(node.exit_code(), Some(2));
 }

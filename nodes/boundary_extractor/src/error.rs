@@ -1,18 +1,14 @@
 //! What keeps a map from having a boundary, and the node from running.
 
 use engine::EngineError;
-use map::MapError;
 use transport::TransportError;
 
 /// A map that is refused, or a failure of the graph.
 #[derive(Debug, thiserror::Error)]
 pub enum BoundaryError {
-    /// The map's geometry is out of range.
+    /// The map's geometry or cells cannot be used.
     #[error(transparent)]
-    Geometry(#[from] MapError),
-    /// The map's cells cannot be used.
-    #[error(transparent)]
-    Cells(#[from] EngineError),
+    Engine(#[from] EngineError),
     /// No ray can reach an obstacle.
     #[error(
         "the map has {occupied} occupied cells, but none touches a cell that a laser sees \

@@ -1,12 +1,8 @@
 //! The node's one function: from a map and the rules to the boundary.
 
-use std::f64::consts::TAU;
-
 use engine::EngineError;
 use engine::boundary;
-use engine::grid::{CellRules, Grid};
-use geometry::Pose;
-use map::{MAX_ORIGIN_M, MAX_RESOLUTION_M, MIN_RESOLUTION_M, MapError};
+use engine::grid::{CellRules, Grid, GridFrame};
 use messages::{BoundaryCell, BoundaryHeader, MapHeader};
 
 use crate::BoundaryError;
@@ -31,7 +27,9 @@ pub fn extract(
     occupancy: &[u8],
     rules: CellRules,
 ) -> Result<Extraction, BoundaryError> {
-    check_geometry(map)?;
+    // The boundary needs no frame, but whoever uses it does: a map that nobody can
+    // use is to be refused before anybody prepares for it.
+    GridFrame::of(map)?;
     let (width, height) = (map.width as usize, map.height as usize);
     let grid = Grid::new(width, height, occupancy, rules)?;
     if grid.occupied_cells() == 0 {
@@ -56,21 +54,6 @@ pub fn extract(
         unknown_blocks: rules.unknown_blocks.into(),
     };
     Ok(Extraction { header, cells })
-}
-
-/// The boundary needs no geometry, but whoever uses it does: a map that nobody
-/// can use is to be refused before anybody prepares for it.
-fn check_geometry(map: &MapHeader) -> Result<(), MapError> {
-    let found = map.resolution_m;
-    if !(MIN_RESOLUTION_M..=MAX_RESOLUTION_M).contains(&found) {
-        return Err(MapError::Resolution { found });
-    }
-    let found = Pose::from(map.map_from_grid);
-    let is_near = |metres: f64| metres.abs() <= MAX_ORIGIN_M;
-    if !(is_near(found.x) && is_near(found.y) && found.yaw.abs() <= TAU) {
-        return Err(MapError::Origin { found });
-    }
-    Ok(())
 }
 
 #[cfg(test)]

@@ -3,7 +3,7 @@
 use std::time::Duration;
 
 use messages::{NodeState, topic};
-use transport::{Flow, Graph, Health, Publisher, Sample, TransportError};
+use transport::{Flow, Graph, Health, Publisher, Sample, TransportError, with_causes};
 
 use crate::extraction::{Extraction, extract};
 use crate::{BoundaryError, Config};
@@ -57,7 +57,8 @@ fn refuse(
     error: &BoundaryError,
     health: &mut Health,
 ) -> Result<(), TransportError> {
-    let problem = format!("map {:016x} is refused: {error}", map.header().map_id);
+    let (map_id, error) = (map.header().map_id, with_causes(error));
+    let problem = format!("map {map_id:016x} is refused: {error}");
     tracing::warn!("{problem}");
     health.count_refused(1);
     health.error(&problem)?;

@@ -4,16 +4,18 @@
     reason = "the lint spares test functions but not what they share"
 )]
 
-mod support;
-
 use engine::boundary;
 use engine::grid::{CellRules, Grid};
 use messages::{BoundaryCell, MapHeader, NodeState, Pose2, Stamp, topic};
-use support::{Isolated, Node, wait_for, wait_for_health};
-use transport::Publisher;
+use transport::testing::{Isolated, NodeProcess, wait_for, wait_for_health};
+use transport::{Graph, Publisher};
 
 /// A room with a pillar; `#` occupied, `.` free.
 const ROOM: [&str; 5] = ["########", "#......#", "#..#...#", "#......#", "########"];
+
+fn start(graph: &Graph, arguments: &[&str]) -> NodeProcess {
+    NodeProcess::start(env!("CARGO_BIN_EXE_boundary_extractor"), graph, arguments)
+}
 
 fn occupancy(rows: &[&str]) -> Vec<u8> {
     let cells = rows.iter().rev().flat_map(|row| row.bytes());
@@ -51,10 +53,10 @@ fn expected(rows: &[&str]) -> Vec<BoundaryCell> {
 #[test]
 fn each_map_is_answered_with_its_boundary() {
     let isolated = Isolated::new("answer");
-    let graph = isolated.join();
+    let graph = isolated.join("test");
     let boundaries = graph.subscriber::<topic::Boundary>().unwrap();
     let health = graph.subscriber::<topic::Health>().unwrap();
-    let node = Node::start(&graph, &["--occupied-from", "70"]);
+    let node = start(&graph, &["--occupied-from", "70"]);
     let (waiting, _) = wait_for_health(&graph, &health, |_| true);
     assert_eq!(
         NodeState::from_code(waiting.state),
@@ -84,11 +86,11 @@ fn each_map_is_answered_with_its_boundary() {
 #[test]
 fn a_refused_map_leaves_the_boundary_before_it_in_service() {
     let isolated = Isolated::new("refused");
-    let graph = isolated.join();
+    let graph = isolated.join("test");
     let health = graph.subscriber::<topic::Health>().unwrap();
     let maps = graph.publisher::<topic::Map>().unwrap();
     publish(&maps, 5, &ROOM);
-    let node = Node::start(&graph, &[]);
+    let node = start(&graph, &[]);
     // The map was there before the node: it comes to a late joiner.
     wait_for_health(&graph, &health, |report| {
         report.state == NodeState::Ready as u32

@@ -16,7 +16,8 @@ pub struct Config {
     #[arg(long, value_name = "HOST:PORT", value_parser = address)]
     pub tcp: Option<String>,
 
-    /// A file of CoLa B telegrams back to back, instead of a device.
+    /// A file of CoLa B telegrams back to back, instead of a device. At its end
+    /// the node waits for subscribers to take the last scans, up to 30 seconds.
     #[arg(long, value_name = "FILE")]
     pub capture: Option<PathBuf>,
 
@@ -60,7 +61,8 @@ pub struct Config {
 pub enum Rate {
     /// As fast as the device sent it, by its time stamps.
     Device,
-    /// As fast as it can be read.
+    /// As fast as it can be read: a subscriber that is slower gets the newest
+    /// scans alone.
     Max,
 }
 

@@ -5,19 +5,13 @@
     reason = "the lint spares test functions but not what they share"
 )]
 
-mod support;
-
 use std::io::{Read, Write};
 use std::net::{TcpListener, TcpStream};
-use std::process::{Child, Command, Output, Stdio};
-use std::time::Duration;
 
 use lms_reader::cola_b::{START_SCAN_DATA, frame};
 use messages::{NodeState, topic};
-use nix::sys::signal::{Signal, kill};
-use nix::unistd::Pid;
-use support::Isolated;
-use transport::{Flow, Graph, TransportError};
+use transport::Graph;
+use transport::testing::{Isolated, NodeProcess, wait_for_health, wait_until};
 
 const CAPTURE: &[u8] = include_bytes!("data/tim781_colab_telegrams.bin");
 const CAPTURE_PATH: &str = concat!(
@@ -26,66 +20,8 @@ const CAPTURE_PATH: &str = concat!(
 );
 const TELEGRAM: usize = 3374;
 
-/// The node in a graph of its own, stopped when the test ends.
-struct Node {
-    child: Child,
-}
-
-impl Node {
-    fn start(graph: &Graph, arguments: &[&str]) -> Node {
-        let child = Command::new(env!("CARGO_BIN_EXE_lms_reader"))
-            .args(arguments)
-            .env("BACKCAST_GRAPH", graph.name().to_string())
-            .env_remove("RUST_LOG")
-            .env("NO_COLOR", "1")
-            .stderr(Stdio::piped())
-            .spawn()
-            .unwrap();
-        Node { child }
-    }
-
-    fn interrupt(&self) {
-        let pid = i32::try_from(self.child.id()).unwrap();
-        kill(Pid::from_raw(pid), Signal::SIGTERM).unwrap();
-    }
-
-    fn finish(mut self) -> Output {
-        let mut stderr = Vec::new();
-        let mut pipe = self.child.stderr.take().unwrap();
-        pipe.read_to_end(&mut stderr).unwrap();
-        Output {
-            status: self.child.wait().unwrap(),
-            stdout: Vec::new(),
-            stderr,
-        }
-    }
-}
-
-impl Drop for Node {
-    fn drop(&mut self) {
-        // Only a test that failed leaves it running.
-        let _ = self.child.kill();
-        let _ = self.child.wait();
-    }
-}
-
-/// Waits for messages of `T` until `done` says so.
-fn watch<T: messages::Topic>(
-    graph: &Graph,
-    subscriber: &transport::Subscriber<T>,
-    mut done: impl FnMut(&T::Header, &[T::Item]) -> bool,
-) {
-    let tick = Duration::from_millis(100);
-    graph
-        .run(&[subscriber], tick, |_| {
-            while let Some(sample) = subscriber.receive()? {
-                if done(sample.header(), sample.items()) {
-                    return Ok::<_, TransportError>(Flow::Stop);
-                }
-            }
-            Ok(Flow::Continue)
-        })
-        .unwrap();
+fn start(graph: &Graph, arguments: &[&str]) -> NodeProcess {
+    NodeProcess::start(env!("CARGO_BIN_EXE_lms_reader"), graph, arguments)
 }
 
 #[test]
@@ -94,12 +30,12 @@ fn a_capture_is_played_over_and_over_at_the_pace_of_the_device() {
     let graph = isolated.join("test");
     let scans = graph.subscriber::<topic::Scan>().unwrap();
     let options = ["--loop", "--mount", "0.2,0,90", "--range-max-m", "25"];
-    let node = Node::start(
+    let node = start(
         &graph,
         &[&["--capture", CAPTURE_PATH][..], &options].concat(),
     );
     let mut first = None;
-    watch(&graph, &scans, |header, ranges| {
+    wait_until(&graph, &scans, |header, ranges| {
         assert_eq!((ranges.len(), header.frame.as_str()), (811, "laser"));
         assert_eq!((header.base_from_laser.x, header.mount_known), (0.2, 1));
         assert_eq!(header.range_max_m, 25.0);
@@ -113,17 +49,34 @@ fn a_capture_is_played_over_and_over_at_the_pace_of_the_device() {
         stamp.counter >= 17
     });
     node.interrupt();
-    assert!(node.finish().status.success());
+    let (status, log) = node.finish();
+    assert!(status.success(), "{log}");
 }
 
 #[test]
 fn a_capture_ends_by_itself() {
     let isolated = Isolated::new("end");
     let graph = isolated.join("test");
-    let output = Node::start(&graph, &["--capture", CAPTURE_PATH, "--rate", "max"]).finish();
-    assert!(output.status.success(), "{output:?}");
-    let log = String::from_utf8(output.stderr).unwrap();
+    let (status, log) = start(&graph, &["--capture", CAPTURE_PATH, "--rate", "max"]).finish();
+    assert!(status.success(), "{log}");
     assert!(log.contains("has been played sent=16 refused=0"), "{log}");
+}
+
+#[test]
+fn the_last_scans_of_a_capture_wait_for_a_subscriber_that_is_late() {
+    let isolated = Isolated::new("tail");
+    let graph = isolated.join("test");
+    let scans = graph.subscriber::<topic::Scan>().unwrap();
+    let health = graph.subscriber::<topic::Health>().unwrap();
+    let node = start(&graph, &["--capture", CAPTURE_PATH, "--rate", "max"]);
+    // Until all have been sent, nobody looks at the scans.
+    wait_for_health(&graph, &health, |report| report.sent == 16);
+    let taken = std::iter::from_fn(|| scans.receive().unwrap());
+    let counters: Vec<u64> = taken.map(|scan| scan.header().stamp.counter).collect();
+    assert_eq!(counters, [12, 13, 14, 15], "as many as a subscriber keeps");
+    let (status, log) = node.finish();
+    assert!(status.success(), "{log}");
+    assert!(!log.contains("not all subscribers"), "{log}");
 }
 
 #[test]
@@ -136,9 +89,8 @@ fn damage_in_a_capture_is_counted_and_the_rest_played() {
     bytes[TELEGRAM + 100] ^= 1;
     std::fs::write(&path, bytes).unwrap();
     let path = path.to_str().unwrap();
-    let output = Node::start(&graph, &["--capture", path, "--rate", "max"]).finish();
-    assert!(output.status.success());
-    let log = String::from_utf8(output.stderr).unwrap();
+    let (status, log) = start(&graph, &["--capture", path, "--rate", "max"]).finish();
+    assert!(status.success(), "{log}");
     assert!(
         log.contains("byte 3374 of the stream: the checksum"),
         "{log}"
@@ -150,11 +102,10 @@ fn damage_in_a_capture_is_counted_and_the_rest_played() {
 fn a_file_without_scans_is_an_error_that_names_it() {
     let isolated = Isolated::new("empty");
     let graph = isolated.join("test");
-    let output = Node::start(&graph, &["--capture", file!(), "--loop"]).finish();
-    assert_eq!(output.status.code(), Some(1));
-    let output = Node::start(&graph, &["--capture", "/nowhere/at/all.bin"]).finish();
-    assert_eq!(output.status.code(), Some(1));
-    let log = String::from_utf8(output.stderr).unwrap();
+    let node = start(&graph, &["--capture", file!(), "--loop"]);
+    assert_eq!(node.exit_code(), Some(1));
+    let (status, log) = start(&graph, &["--capture", "/nowhere/at/all.bin"]).finish();
+    assert_eq!(status.code(), Some(1));
     assert!(
         log.contains("/nowhere/at/all.bin: cannot read the capture"),
         "{log}"
@@ -165,8 +116,8 @@ fn a_file_without_scans_is_an_error_that_names_it() {
 fn usage_errors_end_with_two() {
     let isolated = Isolated::new("usage");
     let graph = isolated.join("test");
-    let output = Node::start(&graph, &["--capture", "a", "--range-max-m", "0"]).finish();
-    assert_eq!(output.status.code(), Some(2));
+    let node = start(&graph, &["--capture", "a", "--range-max-m", "0"]);
+    assert_eq!(node.exit_code(), Some(2));
 }
 
 /// Takes the node's connection and its request.
@@ -186,7 +137,7 @@ fn a_device_that_goes_and_comes_back() {
     let health = graph.subscriber::<topic::Health>().unwrap();
     let listener = TcpListener::bind("127.0.0.1:0").unwrap();
     let address = listener.local_addr().unwrap().to_string();
-    let node = Node::start(&graph, &["--tcp", &address]);
+    let node = start(&graph, &["--tcp", &address]);
 
     let mut stream = accept(&listener);
     stream.write_all(&frame(b"sEA LMDscandata \x01")).unwrap();
@@ -194,11 +145,9 @@ fn a_device_that_goes_and_comes_back() {
     for piece in CAPTURE[..2 * TELEGRAM].chunks(1000) {
         stream.write_all(piece).unwrap();
     }
-    watch(&graph, &scans, |header, _| header.stamp.counter == 1);
+    wait_until(&graph, &scans, |header, _| header.stamp.counter == 1);
     drop(stream);
-    let mut reason = String::new();
-    watch(&graph, &health, |header, error| {
-        reason = String::from_utf8_lossy(error).into();
+    let (_, reason) = wait_for_health(&graph, &health, |header| {
         header.state == NodeState::Degraded as u32
     });
     assert!(reason.contains(&address), "{reason}");
@@ -206,14 +155,14 @@ fn a_device_that_goes_and_comes_back() {
 
     let mut stream = accept(&listener);
     stream.write_all(&CAPTURE[..TELEGRAM]).unwrap();
-    watch(&graph, &scans, |header, _| header.stamp.counter == 2);
-    watch(&graph, &health, |header, _| {
+    wait_until(&graph, &scans, |header, _| header.stamp.counter == 2);
+    wait_for_health(&graph, &health, |header| {
         header.state == NodeState::Ready as u32
     });
 
     node.interrupt();
-    let output = node.finish();
-    assert!(output.status.success(), "{output:?}");
+    let (status, log) = node.finish();
+    assert!(status.success(), "{log}");
 }
 
 #[test]
@@ -224,15 +173,14 @@ fn a_device_that_is_not_there_does_not_hold_up_a_stop() {
     let listener = TcpListener::bind("127.0.0.1:0").unwrap();
     let address = listener.local_addr().unwrap().to_string();
     drop(listener);
-    let node = Node::start(&graph, &["--tcp", &address]);
-    watch(&graph, &health, |header, error| {
+    let node = start(&graph, &["--tcp", &address]);
+    wait_until(&graph, &health, |header, error| {
         let reason = String::from_utf8_lossy(error);
         header.state == NodeState::Degraded as u32 && reason.contains("refused")
     });
     node.interrupt();
-    let output = node.finish();
-    assert!(output.status.success(), "{output:?}");
-    let log = String::from_utf8(output.stderr).unwrap();
+    let (status, log) = node.finish();
+    assert!(status.success(), "{log}");
     assert_eq!(log.matches("cannot connect").count(), 1, "{log}");
 }
 
@@ -242,11 +190,10 @@ fn a_silent_device_is_given_up_and_tried_again() {
     let graph = isolated.join("test");
     let listener = TcpListener::bind("127.0.0.1:0").unwrap();
     let address = listener.local_addr().unwrap().to_string();
-    let node = Node::start(&graph, &["--tcp", &address, "--silence", "0.2"]);
+    let node = start(&graph, &["--tcp", &address, "--silence", "0.2"]);
     let _silent = accept(&listener);
     let _again = accept(&listener);
     node.interrupt();
-    let output = node.finish();
-    let log = String::from_utf8(output.stderr).unwrap();
+    let (_, log) = node.finish();
     assert!(log.contains("not a byte for 0.2 s"), "{log}");
 }

@@ -5,7 +5,7 @@ use std::time::{Duration, SystemTime, UNIX_EPOCH};
 
 use map::OccupancyGrid;
 use messages::{MapHeader, NodeState, Stamp, topic};
-use transport::{Flow, Graph, Health, Publisher, TransportError};
+use transport::{Flow, Graph, Health, Publisher, TransportError, with_causes};
 
 use crate::files::Files;
 use crate::watch::{Look, Watch};
@@ -75,7 +75,7 @@ impl Server {
     }
 
     fn refuse(&mut self, error: &dyn Error, config: &Config) -> Result<(), TransportError> {
-        let path = config.map.display();
+        let (path, error) = (config.map.display(), with_causes(error));
         tracing::warn!("the changed map {path} is refused, the one before stays: {error}");
         self.health.count_refused(1);
         self.health.error(&format!("map {path} refused: {error}"))?;

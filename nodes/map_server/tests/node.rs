@@ -4,24 +4,19 @@
     reason = "the lint spares test functions but not what they share"
 )]
 
-mod support;
-
+use std::ffi::OsStr;
 use std::fs;
-use std::io::Read;
-use std::path::{Path, PathBuf};
-use std::process::{Child, Command, ExitStatus, Stdio};
-use std::time::Duration;
+use std::path::PathBuf;
+use std::process::ExitStatus;
 
 use messages::{HealthHeader, NodeState, topic};
-use nix::sys::signal::{Signal, kill};
-use nix::unistd::Pid;
-use support::Isolated;
 use tempfile::TempDir;
-use transport::{Flow, Graph, Subscriber, TransportError};
+use transport::testing::{Isolated, NodeProcess, wait_for_health, wait_until};
+use transport::{Graph, Subscriber};
 
 /// A folder with map files, a graph, and the node in both.
 struct World {
-    child: Option<Child>,
+    node: Option<NodeProcess>,
     folder: TempDir,
     graph: Graph,
     _isolated: Isolated,
@@ -32,7 +27,7 @@ impl World {
     fn new(test: &str, row: &[u8]) -> World {
         let isolated = Isolated::new(test);
         let world = World {
-            child: None,
+            node: None,
             folder: tempfile::tempdir().unwrap(),
             graph: isolated.join("test"),
             _isolated: isolated,
@@ -61,34 +56,21 @@ impl World {
     }
 
     fn start(&mut self) {
-        self.child = Some(
-            Command::new(env!("CARGO_BIN_EXE_map_server"))
-                .args([Path::new("--map"), &self.at("map.yaml")])
-                .env("BACKCAST_GRAPH", self.graph.name().to_string())
-                .env("NO_COLOR", "1")
-                .env_remove("RUST_LOG")
-                .stderr(Stdio::piped())
-                .spawn()
-                .unwrap(),
-        );
+        let map = self.at("map.yaml");
+        self.node = Some(NodeProcess::start(
+            env!("CARGO_BIN_EXE_map_server"),
+            &self.graph,
+            [OsStr::new("--map"), map.as_os_str()],
+        ));
     }
 
     /// Waits for a message of `T` that `wanted` likes.
     fn wait<T: messages::Topic>(
         &self,
         subscriber: &Subscriber<T>,
-        mut wanted: impl FnMut(&T::Header, &[T::Item]) -> bool,
+        wanted: impl FnMut(&T::Header, &[T::Item]) -> bool,
     ) {
-        self.graph
-            .run(&[subscriber], Duration::from_millis(100), |_| {
-                while let Some(sample) = subscriber.receive()? {
-                    if wanted(sample.header(), sample.items()) {
-                        return Ok::<_, TransportError>(Flow::Stop);
-                    }
-                }
-                Ok(Flow::Continue)
-            })
-            .unwrap();
+        wait_until(&self.graph, subscriber, wanted);
     }
 
     fn wait_for_cells(&self, maps: &Subscriber<topic::Map>, counter: u64, cells: &[u8]) {
@@ -106,39 +88,15 @@ impl World {
         health: &Subscriber<topic::Health>,
         state: NodeState,
     ) -> (HealthHeader, String) {
-        let mut found = None;
-        self.wait(health, |header, error| {
-            found = Some((*header, String::from_utf8_lossy(error).into_owned()));
-            header.state == state as u32
-        });
-        found.unwrap()
+        wait_for_health(&self.graph, health, |report| report.state == state as u32)
     }
 
     fn interrupt(&self) {
-        let pid = self.child.as_ref().unwrap().id();
-        kill(Pid::from_raw(i32::try_from(pid).unwrap()), Signal::SIGTERM).unwrap();
+        self.node.as_ref().unwrap().interrupt();
     }
 
     fn finish(&mut self) -> (ExitStatus, String) {
-        let mut child = self.child.take().unwrap();
-        let mut log = String::new();
-        child
-            .stderr
-            .take()
-            .unwrap()
-            .read_to_string(&mut log)
-            .unwrap();
-        (child.wait().unwrap(), log)
-    }
-}
-
-impl Drop for World {
-    fn drop(&mut self) {
-        // Only a test that failed leaves the node running.
-        if let Some(mut child) = self.child.take() {
-            let _ = child.kill();
-            let _ = child.wait();
-        }
+        self.node.take().unwrap().finish()
     }
 }
 

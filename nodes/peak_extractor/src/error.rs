@@ -1,6 +1,5 @@
 //! What keeps votes from being read, and the node from running.
 
-use map::MapError;
 use messages::{Pose2, Vote};
 use transport::TransportError;
 
@@ -18,9 +17,6 @@ pub enum PeakError {
         /// The maps that are known.
         known: String,
     },
-    /// The geometry of a map is out of range.
-    #[error(transparent)]
-    Geometry(#[from] MapError),
     /// No search ends like this.
     #[error("outcome is {found}: allowed are 0 (found), 1 (no votes) and 2 (refused)")]
     Outcome {

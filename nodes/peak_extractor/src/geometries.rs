@@ -3,11 +3,8 @@
 //! Votes are cells of the map that was searched, and those on their way when
 //! the map changes are of the one before. The cells themselves are not kept.
 
-use std::f64::consts::TAU;
-
+use engine::EngineError;
 use engine::grid::GridFrame;
-use geometry::Pose;
-use map::{MAX_ORIGIN_M, MAX_RESOLUTION_M, MAX_SIDE, MIN_RESOLUTION_M, MapError};
 use messages::MapHeader;
 
 use crate::PeakError;
@@ -37,8 +34,13 @@ impl Geometries {
     ///
     /// # Errors
     /// If the grid's sides, resolution or origin are out of range.
-    pub fn hear(&mut self, map: &MapHeader) -> Result<(), MapError> {
-        let geometry = Geometry::of(map)?;
+    pub fn hear(&mut self, map: &MapHeader) -> Result<(), EngineError> {
+        let geometry = Geometry {
+            map_id: map.map_id,
+            width: map.width,
+            height: map.height,
+            frame: GridFrame::of(map)?,
+        };
         if self.newest.is_none_or(|newest| newest.map_id != map.map_id) {
             self.previous = self.newest;
         }
@@ -73,37 +75,10 @@ impl Geometries {
     }
 }
 
-impl Geometry {
-    fn of(map: &MapHeader) -> Result<Self, MapError> {
-        let (width, height) = (map.width, map.height);
-        let sides = 1..=MAX_SIDE;
-        if !(sides.contains(&width) && sides.contains(&height)) {
-            return Err(MapError::GridSize { width, height });
-        }
-        let found = map.resolution_m;
-        if !(MIN_RESOLUTION_M..=MAX_RESOLUTION_M).contains(&found) {
-            return Err(MapError::Resolution { found });
-        }
-        let found = Pose::from(map.map_from_grid);
-        let is_near = |metres: f64| metres.abs() <= MAX_ORIGIN_M;
-        if !(is_near(found.x) && is_near(found.y) && found.yaw.abs() <= TAU) {
-            return Err(MapError::Origin { found });
-        }
-        Ok(Geometry {
-            map_id: map.map_id,
-            width,
-            height,
-            frame: GridFrame {
-                resolution_m: map.resolution_m,
-                map_from_grid: found,
-            },
-        })
-    }
-}
-
 #[cfg(test)]
 mod tests {
     use bytemuck::Zeroable;
+    use geometry::Pose;
     use messages::Pose2;
 
     use super::*;

@@ -6,6 +6,7 @@ use engine::peaks::PeakConfig;
 use messages::{NodeState, topic};
 use transport::{
     Flow, GapCounter, Graph, Health, Publisher, Sample, Subscriber, TransportError, monotonic_ns,
+    with_causes,
 };
 
 use crate::answer::{Answer, answer, nothing};
@@ -73,7 +74,7 @@ impl Node {
             Ok(()) => self.health.state(NodeState::Ready),
             Err(error) => {
                 let map_id = map.header().map_id;
-                let problem = format!("map {map_id:016x} is refused: {error}");
+                let problem = format!("map {map_id:016x} is refused: {}", with_causes(&error));
                 tracing::warn!("{problem}");
                 self.health.count_refused(1);
                 self.health.error(&problem)?;
@@ -121,7 +122,7 @@ impl Node {
 
     fn refuse(&mut self, counter: u64, error: &PeakError) -> Result<(), TransportError> {
         self.health.count_refused(1);
-        let reason = error.to_string();
+        let reason = with_causes(error);
         let problem = format!("the votes of scan {counter} are refused: {reason}");
         self.health.error(&problem)?;
         // A sender that is always wrong would fill the log.

@@ -4,8 +4,6 @@
     reason = "the lint spares test functions but not what they share"
 )]
 
-mod support;
-
 use std::cell::Cell;
 use std::f64::consts::PI;
 
@@ -22,7 +20,7 @@ use messages::{
     HypothesesHeader, Hypothesis, MapHeader, NodeState, Pose2, SearchOutcome, Stamp, Verdict, Vote,
     VotesHeader, topic,
 };
-use support::{Isolated, Node, wait_for, wait_for_health};
+use transport::testing::{Isolated, NodeProcess, wait_for, wait_for_health};
 use transport::{Graph, Publisher, Subscriber, monotonic_ns};
 
 /// A room with a pillar: no pose in it looks like another.
@@ -89,7 +87,7 @@ struct World {
 
 impl World {
     fn new(isolated: &Isolated) -> Self {
-        let graph = isolated.join();
+        let graph = isolated.join("test");
         World {
             maps: graph.publisher().unwrap(),
             votes: graph.publisher().unwrap(),
@@ -98,6 +96,10 @@ impl World {
             counter: Cell::new(0),
             graph,
         }
+    }
+
+    fn start(&self, arguments: &[&str]) -> NodeProcess {
+        NodeProcess::start(env!("CARGO_BIN_EXE_peak_extractor"), &self.graph, arguments)
     }
 
     fn publish_map(&self, map_id: u64, resolution_m: f64) {
@@ -161,7 +163,7 @@ fn hypotheses_are_those_of_the_engine() {
     let isolated = Isolated::new("equal");
     let world = World::new(&isolated);
     world.publish_map(5, FRAME.resolution_m);
-    let node = Node::start(&world.graph, &[]);
+    let node = world.start(&[]);
     world.wait_until(NodeState::Ready);
     for (x, y, heading) in [(3, 3, 40), (12, 6, 211)] {
         let outcome = searched(x, y, heading);
@@ -195,7 +197,7 @@ fn hypotheses_are_those_of_the_engine() {
 fn votes_that_cannot_be_read_are_refused_and_the_next_ones_answered() {
     let isolated = Isolated::new("refused");
     let world = World::new(&isolated);
-    let node = Node::start(&world.graph, &[]);
+    let node = world.start(&[]);
     world.wait_until(NodeState::Waiting);
     let outcome = searched(3, 3, 40);
     let (votes, sound) = (&outcome.found.votes, header(5, &outcome));
@@ -252,7 +254,7 @@ fn votes_that_cannot_be_read_are_refused_and_the_next_ones_answered() {
 fn votes_on_their_way_when_the_map_changes_are_of_the_map_before() {
     let isolated = Isolated::new("swap");
     let world = World::new(&isolated);
-    let node = Node::start(&world.graph, &[]);
+    let node = world.start(&[]);
     world.publish_map(5, FRAME.resolution_m);
     world.wait_until(NodeState::Ready);
     // A map that is refused takes no place.

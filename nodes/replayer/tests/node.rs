@@ -4,28 +4,22 @@
     reason = "the lint spares test functions but not what they share"
 )]
 
-mod support;
-
-use std::io::Read;
-use std::path::Path;
-use std::process::{Child, Command, ExitStatus, Stdio};
-use std::time::Duration;
+use std::ffi::OsStr;
+use std::process::ExitStatus;
 
 use geometry::Pose;
 use messages::{NodeState, Stamp, topic};
-use nix::sys::signal::{Signal, kill};
-use nix::unistd::Pid;
 use recording::ros::{self, LaserScan, PoseStamped, Time};
 use recording::write::{Packing, RecordingWriter};
 use recording::{Message, Recording};
-use support::Isolated;
-use transport::{Flow, Graph, Publisher, Subscriber, TransportError};
+use transport::testing::{Isolated, NodeProcess, wait_for, wait_until};
+use transport::{Graph, Publisher, Subscriber};
 
 const SECOND: i64 = 1_000_000_000;
 
 /// The ends of the topics that the rest of a graph would hold.
 struct World {
-    child: Option<Child>,
+    node: Option<NodeProcess>,
     folder: tempfile::TempDir,
     /// None where nobody listens.
     scans: Option<Subscriber<topic::Scan>>,
@@ -42,7 +36,7 @@ impl World {
         let isolated = Isolated::new(test);
         let graph = isolated.join("accumulator");
         World {
-            child: None,
+            node: None,
             folder: tempfile::tempdir().unwrap(),
             scans: Some(graph.subscriber().unwrap()),
             odometry: graph.subscriber().unwrap(),
@@ -57,42 +51,19 @@ impl World {
     fn start(&mut self, bytes: &[u8], options: &[&str]) {
         let path = self.folder.path().join("world.mcap");
         std::fs::write(&path, bytes).unwrap();
-        self.child = Some(
-            Command::new(env!("CARGO_BIN_EXE_replayer"))
-                .args([Path::new("--recording"), &path])
-                .args(options)
-                .env("BACKCAST_GRAPH", self.graph.name().to_string())
-                .env_remove("RUST_LOG")
-                .stderr(Stdio::piped())
-                .spawn()
-                .unwrap(),
-        );
-    }
-
-    fn wait<T: messages::Topic>(
-        &self,
-        subscriber: &Subscriber<T>,
-        mut wanted: impl FnMut(&T::Header, &[T::Item]) -> bool,
-    ) {
-        self.graph
-            .run(&[subscriber], Duration::from_millis(100), |_| {
-                while let Some(sample) = subscriber.receive()? {
-                    if wanted(sample.header(), sample.items()) {
-                        return Ok::<_, TransportError>(Flow::Stop);
-                    }
-                }
-                Ok(Flow::Continue)
-            })
-            .unwrap();
+        let recording = [OsStr::new("--recording"), path.as_os_str()];
+        self.node = Some(NodeProcess::start(
+            env!("CARGO_BIN_EXE_replayer"),
+            &self.graph,
+            recording.into_iter().chain(options.iter().map(OsStr::new)),
+        ));
     }
 
     fn next_scan(&self) -> (Stamp, Vec<f32>) {
-        let mut found = None;
-        self.wait(self.scans.as_ref().unwrap(), |header, ranges| {
-            found = Some((header.stamp, ranges.to_vec()));
-            true
-        });
-        found.unwrap()
+        let scans = self.scans.as_ref().unwrap();
+        wait_for(&self.graph, scans, |header, ranges| {
+            Some((header.stamp, ranges.to_vec()))
+        })
     }
 
     fn no_scan_has_come(&self) -> bool {
@@ -106,32 +77,17 @@ impl World {
     }
 
     fn wait_for_state(&self, state: NodeState) {
-        self.wait(&self.health, |header, _| {
+        wait_until(&self.graph, &self.health, |header, _| {
             header.node.as_str() == "replayer" && header.state == state as u32
         });
     }
 
     fn interrupt(&self) {
-        let pid = self.child.as_ref().unwrap().id();
-        kill(Pid::from_raw(i32::try_from(pid).unwrap()), Signal::SIGTERM).unwrap();
+        self.node.as_ref().unwrap().interrupt();
     }
 
     fn finish(&mut self) -> (ExitStatus, String) {
-        let mut child = self.child.take().unwrap();
-        let mut log = String::new();
-        let mut pipe = child.stderr.take().unwrap();
-        pipe.read_to_string(&mut log).unwrap();
-        (child.wait().unwrap(), log)
-    }
-}
-
-impl Drop for World {
-    fn drop(&mut self) {
-        // Only a test that failed leaves the node running.
-        if let Some(mut child) = self.child.take() {
-            let _ = child.kill();
-            let _ = child.wait();
-        }
+        self.node.take().unwrap().finish()
     }
 }
 

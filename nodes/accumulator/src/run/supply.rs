@@ -4,7 +4,7 @@ use std::time::Instant;
 
 use engine::localizer::{LocalizerConfig, Prior};
 use messages::{NodeState, topic};
-use transport::{Health, Sample, Subscriber, TransportError};
+use transport::{Health, Sample, Subscriber, TransportError, with_causes};
 
 use crate::AccumulatorError;
 use crate::background::Background;
@@ -162,7 +162,7 @@ fn refuse(
     error: &AccumulatorError,
     health: &mut Health,
 ) -> Result<(), TransportError> {
-    let problem = format!("map {map_id:016x} is refused: {error}");
+    let problem = format!("map {map_id:016x} is refused: {}", with_causes(error));
     tracing::warn!("{problem}");
     health.count_refused(1);
     health.error(&problem)?;

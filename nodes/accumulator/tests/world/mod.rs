@@ -22,7 +22,7 @@ use messages::{
 };
 use transport::{Graph, Publisher, Subscriber, monotonic_ns};
 
-use crate::support::{Isolated, wait_for, wait_for_health};
+use transport::testing::{Isolated, NodeProcess, wait_for, wait_for_health};
 
 /// A room with a pillar: no pose in it looks like another.
 pub(crate) const ROOM: [&str; 9] = [
@@ -104,7 +104,7 @@ pub(crate) struct World {
 
 impl World {
     pub(crate) fn new(isolated: &Isolated) -> Self {
-        let graph = isolated.join();
+        let graph = isolated.join("test");
         World {
             maps: graph.publisher().unwrap(),
             boundaries: graph.publisher().unwrap(),
@@ -114,6 +114,11 @@ impl World {
             counter: Cell::new(0),
             graph,
         }
+    }
+
+    /// The node.
+    pub(crate) fn start(&self, arguments: &[&str]) -> NodeProcess {
+        NodeProcess::start(env!("CARGO_BIN_EXE_accumulator"), &self.graph, arguments)
     }
 
     pub(crate) fn publish_map(&self, map_id: u64, rows: &[&str]) {

@@ -69,13 +69,14 @@ impl World {
         scan: &Scan<'_>,
         heading: Option<f64>,
     ) -> Result<Answer, EngineError> {
-        let outcome = match heading {
-            Some(heading) => self.localizer.search_at(scan, heading)?.0,
-            None => {
-                let found = self.localizer.search(scan, &|| false)?;
-                found.expect("a search that nothing stops ends with an outcome")
+        let found = match heading {
+            Some(heading) => {
+                let found = self.localizer.search_at(scan, heading, &|| false)?;
+                found.map(|(outcome, _)| outcome)
             }
+            None => self.localizer.search(scan, &|| false)?,
         };
+        let outcome = found.expect("a search that nothing stops ends with an outcome");
         let input = PeakInput::of(&outcome, self.localizer.frame());
         let places = peaks::extract(&input, &self.peaks);
         Ok(Answer { outcome, places })

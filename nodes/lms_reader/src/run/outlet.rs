@@ -5,7 +5,7 @@ use std::sync::atomic::{AtomicBool, Ordering};
 use std::time::{Duration, Instant};
 
 use messages::{NodeState, topic};
-use transport::{Graph, Health, Publisher, TransportError};
+use transport::{Graph, Health, Publisher, TransportError, with_causes};
 
 use crate::LmsError;
 use crate::cola_b::{Frame, LmdScanData, Telegram};
@@ -70,6 +70,21 @@ impl Outlet {
         Ok(())
     }
 
+    /// Waits until every subscriber is done with what was sent, until `deadline`
+    /// or the stop flag; says whether they are.
+    pub(super) fn wait_until_taken(&mut self, deadline: Instant) -> Result<bool, TransportError> {
+        loop {
+            if self.publisher.is_settled()? {
+                return Ok(true);
+            }
+            let now = Instant::now();
+            if self.stopped() || now >= deadline {
+                return Ok(false);
+            }
+            self.wait_until(deadline.min(now + SLICE))?;
+        }
+    }
+
     pub(super) fn tick(&mut self) -> Result<(), TransportError> {
         self.health.tick()
     }
@@ -132,7 +147,7 @@ impl Outlet {
 
     /// The source is gone; said once for each reason.
     pub(super) fn lost(&mut self, error: &LmsError) -> Result<(), LmsError> {
-        let lost = Link::Lost(with_cause(error));
+        let lost = Link::Lost(with_causes(error));
         if let Link::Lost(reason) = &lost
             && self.link != lost
         {
@@ -148,8 +163,9 @@ impl Outlet {
         self.refused += 1;
         self.health.count_refused(1);
         if let Some(held_back) = self.complaints.note(transport::monotonic_ns()) {
-            tracing::warn!(held_back, "{error}");
-            self.health.error(&error.to_string())?;
+            let problem = with_causes(error);
+            tracing::warn!(held_back, "{problem}");
+            self.health.error(&problem)?;
         }
         self.health.state(NodeState::Degraded)?;
         Ok(())
@@ -167,12 +183,5 @@ impl Outlet {
             [0, 0] => NodeState::Ready,
             _ => NodeState::Degraded,
         })
-    }
-}
-
-fn with_cause(error: &LmsError) -> String {
-    match std::error::Error::source(error) {
-        Some(cause) => format!("{error}: {cause}"),
-        None => error.to_string(),
     }
 }

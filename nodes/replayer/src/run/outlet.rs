@@ -1,7 +1,7 @@
 //! Where messages leave the node and troubles are reported.
 
 use messages::{GroundTruth, NodeState, Odometry, ScanHeader, Stamp, topic};
-use transport::{Graph, Health, Publisher, TransportError, monotonic_ns};
+use transport::{Graph, Health, Publisher, TransportError, monotonic_ns, with_causes};
 
 use super::Summary;
 use crate::ReplayerError;
@@ -89,7 +89,7 @@ impl Outlet {
     pub(super) fn refuse(&mut self, error: &ReplayerError) -> Result<(), TransportError> {
         self.summary.refused += 1;
         self.health.count_refused(1);
-        self.complain(&error.to_string())
+        self.complain(&with_causes(error))
     }
 
     /// A scan got no answer in time.

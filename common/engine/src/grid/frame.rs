@@ -1,0 +1,171 @@
+//! Where a grid lies in the map: the one reading of a map's header.
+
+use std::f64::consts::TAU;
+
+use geometry::Pose;
+use messages::MapHeader;
+
+use super::{MAX_ORIGIN_M, check_resolution, check_sides};
+use crate::EngineError;
+
+/// Where a grid lies in the map frame.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct GridFrame {
+    /// Side of a cell, metres.
+    pub resolution_m: f64,
+    /// The lower left corner of cell (0, 0), and the turn of the grid's axes.
+    pub map_from_grid: Pose,
+}
+
+impl GridFrame {
+    /// The frame of a map's grid, whose whole header is checked, for it comes
+    /// from another process.
+    ///
+    /// # Errors
+    /// If the sides, their product, the resolution or the origin are out of
+    /// range, or no numbers.
+    pub fn of(map: &MapHeader) -> Result<Self, EngineError> {
+        check_sides(map.width as usize, map.height as usize)?;
+        check_resolution(map.resolution_m)?;
+        let found = Pose::from(map.map_from_grid);
+        let Pose { x, y, yaw } = found;
+        if !(x.abs() <= MAX_ORIGIN_M && y.abs() <= MAX_ORIGIN_M && yaw.abs() <= TAU) {
+            return Err(EngineError::Origin(found));
+        }
+        Ok(GridFrame {
+            resolution_m: map.resolution_m,
+            map_from_grid: found,
+        })
+    }
+
+    /// The pose in the map of a position in cells and a heading in the grid's
+    /// frame, radians. The centre of cell (0, 0) is (0.5, 0.5).
+    #[must_use]
+    pub fn map_from_cells(&self, x: f64, y: f64, heading: f64) -> Pose {
+        self.map_from_grid.then(Pose::new(
+            x * self.resolution_m,
+            y * self.resolution_m,
+            heading,
+        ))
+    }
+
+    /// The inverse of [`GridFrame::map_from_cells`]: x and y in cells, and the
+    /// heading in the grid's frame.
+    #[must_use]
+    pub fn cells_from_map(&self, map_pose: Pose) -> (f64, f64, f64) {
+        let grid_pose = self.map_from_grid.inverse().then(map_pose);
+        (
+            grid_pose.x / self.resolution_m,
+            grid_pose.y / self.resolution_m,
+            grid_pose.yaw,
+        )
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use std::f64::consts::FRAC_PI_2;
+
+    use bytemuck::Zeroable;
+    use messages::Pose2;
+
+    use super::*;
+
+    fn header() -> MapHeader {
+        MapHeader {
+            width: 30,
+            height: 20,
+            resolution_m: 0.05,
+            map_from_grid: Pose2 {
+                x: -1.0,
+                y: 2.0,
+                yaw: 0.5,
+            },
+            ..Zeroable::zeroed()
+        }
+    }
+
+    #[test]
+    fn the_frame_of_a_sound_header_is_what_it_says() {
+        let expected = GridFrame {
+            resolution_m: 0.05,
+            map_from_grid: Pose::new(-1.0, 2.0, 0.5),
+        };
+        assert_eq!(GridFrame::of(&header()), Ok(expected));
+    }
+
+    #[test]
+    fn a_header_out_of_range_is_refused_by_what_is_wrong() {
+        let refused = |change: fn(&mut MapHeader)| {
+            let mut header = header();
+            change(&mut header);
+            GridFrame::of(&header).unwrap_err().to_string()
+        };
+        let check = |change: fn(&mut MapHeader), expected: &str| {
+            assert_eq!(refused(change), expected);
+        };
+        check(
+            |map| map.width = 0,
+            "a grid of 0 x 20 cells: each side must have 1 to 32767 cells",
+        );
+        check(
+            |map| map.height = u32::MAX,
+            "a grid of 30 x 4294967295 cells: each side must have 1 to 32767 cells",
+        );
+        check(
+            |map| (map.width, map.height) = (32_767, 32_767),
+            "a grid of 32767 x 32767 cells: at most 268435456 cells are allowed",
+        );
+        for (resolution_m, found) in [
+            (0.0, "0"),
+            (-0.05, "-0.05"),
+            (0.000_999, "0.000999"),
+            (10.001, "10.001"),
+            (f64::NAN, "NaN"),
+            (f64::INFINITY, "inf"),
+        ] {
+            let error = GridFrame::of(&MapHeader {
+                resolution_m,
+                ..header()
+            });
+            let expected = format!("a resolution of {found} m; allowed: 0.001..=10 m");
+            assert_eq!(error.unwrap_err().to_string(), expected);
+        }
+        check(
+            |map| map.map_from_grid.y = f64::NAN,
+            "an origin at x -1 m, y NaN m, yaw 0.5 rad; allowed: within 100000000 m, and a yaw of \
+             at most a turn",
+        );
+        for change in [
+            (|map| map.map_from_grid.x = 1.1e8) as fn(&mut MapHeader),
+            |map| map.map_from_grid.yaw = 7.0,
+            |map| map.map_from_grid.yaw = f64::NEG_INFINITY,
+        ] {
+            assert!(refused(change).starts_with("an origin at"));
+        }
+    }
+
+    proptest::proptest! {
+        #[test]
+        fn map_and_cells_round_trip(
+            ox in -100.0..100.0f64, oy in -100.0..100.0f64, turn in -3.0..3.0f64,
+            resolution_m in 0.01..0.5f64, x in 0.0..3e4f64, y in 0.0..3e4f64, heading in -3.0..3.0f64,
+        ) {
+            let frame = GridFrame { resolution_m, map_from_grid: Pose::new(ox, oy, turn) };
+            let (bx, by, bh) = frame.cells_from_map(frame.map_from_cells(x, y, heading));
+            // Positions up to 15 km at 1 cm cells: a rounding is 1e-10 of a cell there.
+            proptest::prop_assert!((bx - x).abs() < 1e-7 && (by - y).abs() < 1e-7);
+            proptest::prop_assert!(geometry::angle_between(bh, heading) < 1e-12);
+        }
+    }
+
+    #[test]
+    fn a_turned_grid_turns_its_poses() {
+        let frame = GridFrame {
+            resolution_m: 0.5,
+            map_from_grid: Pose::new(10.0, 20.0, FRAC_PI_2),
+        };
+        let pose = frame.map_from_cells(2.0, 0.0, 0.0);
+        assert!(pose.is_within(Pose::new(10.0, 21.0, FRAC_PI_2), 1e-12, 1e-12));
+    }
+}

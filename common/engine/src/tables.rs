@@ -1,0 +1,166 @@
+//! The tapers of a scan program as tables that can be looked up side by side.
+
+use crate::directions::Directions;
+use crate::program::ScanProgram;
+
+/// A table's size is a multiple of this: what one instruction can look up.
+pub(crate) const TABLE: usize = 64;
+
+/// The tables of all beams, for each class of directions.
+#[derive(Debug, Clone)]
+pub(crate) struct VoteTables {
+    classes: usize,
+    /// For beam `i` and class `c` at `i · classes + c`.
+    entries: Vec<Entry>,
+    votes: Vec<u8>,
+    is_short: bool,
+}
+
+#[derive(Debug, Clone, Copy)]
+struct Entry {
+    centre: u16,
+    start: u32,
+    size: u32,
+}
+
+/// Votes by distance from the reading. Its size is a multiple of [`TABLE`], and
+/// its last entry is zero: farther distances look that up.
+#[derive(Debug, Clone, Copy)]
+pub(crate) struct VoteTable<'a> {
+    /// Steps to the reading.
+    pub centre: u16,
+    /// Votes at 0, 1, 2, … steps from there.
+    pub votes: &'a [u8],
+}
+
+impl VoteTables {
+    pub(crate) fn new(program: &ScanProgram, directions: &Directions) -> Self {
+        let classes = directions.classes();
+        let mut tables = VoteTables {
+            classes,
+            entries: Vec::with_capacity(program.beams() * classes),
+            votes: Vec::new(),
+            is_short: true,
+        };
+        for (beam, class) in (0..program.beams()).flat_map(|i| (0..classes).map(move |c| (i, c))) {
+            let taper = program.taper(beam, class);
+            let start = tables.votes.len();
+            let size = (taper.profile.len() + 1).next_multiple_of(TABLE);
+            tables.votes.extend_from_slice(taper.profile);
+            tables.votes.resize(start + size, 0);
+            tables.entries.push(Entry {
+                centre: taper.centre,
+                start: start as u32,
+                size: size as u32,
+            });
+            tables.is_short &= size == TABLE;
+        }
+        tables
+    }
+
+    /// The table of a beam for a class of directions.
+    #[inline(always)]
+    pub(crate) fn get(&self, beam: usize, class: usize) -> VoteTable<'_> {
+        let Entry {
+            centre,
+            start,
+            size,
+        } = self.entries[beam * self.classes + class];
+        VoteTable {
+            centre,
+            votes: &self.votes[start as usize..][..size as usize],
+        }
+    }
+
+    /// Whether all tables have [`TABLE`] entries.
+    pub(crate) fn are_short(&self) -> bool {
+        self.is_short
+    }
+}
+
+impl VoteTable<'_> {
+    /// Adds the votes for poses from which the ray is so long, side by side.
+    pub(crate) fn add(&self, ranges: &[u16], votes: &mut [u16]) {
+        #[cfg(target_arch = "x86_64")]
+        if self.votes.len() == TABLE
+            && is_x86_feature_detected!("avx512bw")
+            && is_x86_feature_detected!("avx512vbmi")
+        {
+            // SAFETY: the processor has the features that the function is compiled for.
+            return unsafe { self.add_avx512(ranges, votes) };
+        }
+        self.add_portable(ranges, votes);
+    }
+
+    #[inline(always)]
+    pub(crate) fn add_portable(&self, ranges: &[u16], votes: &mut [u16]) {
+        let last = self.votes.len() - 1;
+        for (votes, &range) in votes.iter_mut().zip(ranges) {
+            let distance = usize::from(range.abs_diff(self.centre)).min(last);
+            *votes += u16::from(self.votes[distance]);
+        }
+    }
+
+    #[cfg(target_arch = "x86_64")]
+    #[target_feature(enable = "avx512f,avx512bw,avx512vbmi")]
+    fn add_avx512(&self, ranges: &[u16], votes: &mut [u16]) {
+        use std::arch::x86_64::*;
+        const LANES: usize = 32;
+        let centre = _mm512_set1_epi16(self.centre as i16);
+        let last = _mm512_set1_epi16(TABLE as i16 - 1);
+        // SAFETY: the table has 64 entries.
+        let table = unsafe { _mm512_loadu_si512(self.votes[..TABLE].as_ptr().cast()) };
+        let mut ranges = ranges.chunks_exact(LANES);
+        let mut votes = votes.chunks_exact_mut(LANES);
+        for (ranges, votes) in (&mut ranges).zip(&mut votes) {
+            // SAFETY: both chunks hold 32 numbers.
+            let (range, sum) = unsafe {
+                (
+                    _mm512_loadu_si512(ranges.as_ptr().cast()),
+                    _mm512_loadu_si512(votes.as_ptr().cast()),
+                )
+            };
+            let off = _mm512_or_si512(
+                _mm512_subs_epu16(range, centre),
+                _mm512_subs_epu16(centre, range),
+            );
+            // An index is the low byte of a lane, and the high one looks up
+            // entry 0, which the mask leaves out.
+            let index = _mm512_min_epu16(off, last);
+            let found = _mm512_maskz_permutexvar_epi8(0x5555_5555_5555_5555, index, table);
+            // SAFETY: as above.
+            unsafe { _mm512_storeu_si512(votes.as_mut_ptr().cast(), _mm512_add_epi16(sum, found)) };
+        }
+        self.add_portable(ranges.remainder(), votes.into_remainder());
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use proptest::collection::vec;
+    use proptest::prelude::*;
+
+    use super::*;
+    use crate::lines::NO_RANGE;
+    use crate::testing::any_scan;
+
+    proptest! {
+        #[test]
+        fn tables_give_the_votes_of_the_taper_on_every_instruction_set(
+            scan in any_scan(), ranges in vec(prop_oneof![9 => 0u16..80, 1 => Just(NO_RANGE)], 0..150),
+        ) {
+            let space = crate::space::Space::new(16, 0.1, 40, 40).unwrap();
+            let program = scan.program(&space);
+            let tables = VoteTables::new(&program, &space.directions);
+            for (beam, class) in (0..program.beams()).flat_map(|i| (0..3).map(move |c| (i, c))) {
+                let taper = program.taper(beam, class);
+                let plain: Vec<u16> = ranges.iter().map(|&range| 1 + u16::from(taper.votes(range))).collect();
+                let (mut portable, mut chosen) = (vec![1; ranges.len()], vec![1; ranges.len()]);
+                tables.get(beam, class).add_portable(&ranges, &mut portable);
+                tables.get(beam, class).add(&ranges, &mut chosen);
+                prop_assert_eq!(&portable, &plain);
+                prop_assert_eq!(&chosen, &plain);
+            }
+        }
+    }
+}

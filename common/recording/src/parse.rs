@@ -1,0 +1,182 @@
+//! A record's fields, by the library, after a look at the lengths among them.
+
+use std::borrow::Cow;
+
+use mcap::McapError;
+use mcap::records::{Record, op};
+
+use crate::Damage;
+
+/// The fields of the record at byte `at`, or in the chunk there.
+///
+/// Records that are not read for their fields come back as unknown ones: the
+/// library would panic on an attachment that is shorter than its fields.
+pub(crate) fn parse(opcode: u8, body: &[u8], at: u64) -> Result<Record<'_>, Damage> {
+    let damaged = |reason| Damage::Record {
+        at,
+        kind: name(opcode),
+        reason,
+    };
+    match opcode {
+        op::SCHEMA | op::CHANNEL | op::CHUNK if lengths_fit(opcode, body).is_none() => {
+            let reason = "it ends within a field, or a field claims more bytes than are left";
+            Err(damaged(reason.to_owned()))
+        }
+        op::SCHEMA | op::CHANNEL | op::CHUNK | op::MESSAGE | op::STATISTICS => {
+            mcap::parse_record(opcode, body).map_err(|error| damaged(reason(&error)))
+        }
+        _ => Ok(Record::Unknown {
+            opcode,
+            data: Cow::Borrowed(body),
+        }),
+    }
+}
+
+/// `None` if a field that starts with its length does not end within the record.
+///
+/// The library reserves what the length of a text claims, up to four gigabytes,
+/// before it looks whether as much is there; where the system has less, the
+/// process ends. These are the fields of that kind:
+///
+/// | record | bytes before | fields that start with their length |
+/// |---|---|---|
+/// | schema | 2 | name, encoding, data |
+/// | channel | 4 | topic, encoding, metadata (within it: keys and values) |
+/// | chunk | 28 | compression |
+fn lengths_fit(opcode: u8, body: &[u8]) -> Option<()> {
+    let (before, fields) = match opcode {
+        op::SCHEMA => (2, 3),
+        op::CHANNEL => (4, 3),
+        _ => (28, 1),
+    };
+    let mut last = &[][..];
+    let mut rest = body.get(before..)?;
+    for _ in 0..fields {
+        (last, rest) = split_field(rest)?;
+    }
+    while opcode == op::CHANNEL && !last.is_empty() {
+        (_, last) = split_field(last)?;
+    }
+    Some(())
+}
+
+fn split_field(bytes: &[u8]) -> Option<(&[u8], &[u8])> {
+    let (length, rest) = bytes.split_first_chunk()?;
+    rest.split_at_checked(u32::from_le_bytes(*length) as usize)
+}
+
+/// What the library says is wrong, on one line.
+pub(crate) fn reason(error: &McapError) -> String {
+    match error {
+        // The texts of these leave out the cause, or put a frame around it.
+        McapError::Parse(error) => error.root_cause().to_string(),
+        McapError::Io(error) => error.to_string(),
+        McapError::DecompressionError(reason) => reason.clone(),
+        other => other.to_string(),
+    }
+}
+
+/// A record's type in words.
+pub(crate) fn name(opcode: u8) -> &'static str {
+    match opcode {
+        op::HEADER => "header",
+        op::FOOTER => "footer",
+        op::SCHEMA => "schema",
+        op::CHANNEL => "channel",
+        op::MESSAGE => "message",
+        op::CHUNK => "chunk",
+        op::ATTACHMENT => "attachment",
+        op::STATISTICS => "statistics",
+        op::METADATA => "metadata",
+        op::DATA_END => "data end",
+        _ => "index or unknown",
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    const HUGE: [u8; 4] = u32::MAX.to_le_bytes();
+
+    fn refused(opcode: u8, body: &[u8]) -> String {
+        match parse(opcode, body, 7) {
+            Err(Damage::Record { at: 7, reason, .. }) => reason,
+            other => panic!("{other:?}"),
+        }
+    }
+
+    /// A channel of one letter, up to its metadata.
+    fn channel(metadata: &[u8]) -> Vec<u8> {
+        let start = b"\x01\0\x02\0\x01\0\0\0t\x03\0\0\0cdr";
+        let length = (metadata.len() as u32).to_le_bytes();
+        [&start[..], &length, metadata].concat()
+    }
+
+    #[test]
+    fn sound_records_are_parsed() {
+        let metadata = [&[1, 0, 0, 0][..], b"k", &[1, 0, 0, 0], b"v"].concat();
+        let body = channel(&metadata);
+        let Ok(Record::Channel(channel)) = parse(op::CHANNEL, &body, 7) else {
+            panic!("it is a channel");
+        };
+        assert_eq!((channel.id, channel.schema_id), (1, 2));
+        assert_eq!((&*channel.topic, &*channel.message_encoding), ("t", "cdr"));
+        assert_eq!(channel.metadata["k"], "v");
+        let schema = b"\x01\0\x01\0\0\0n\0\0\0\0\x02\0\0\0{}later";
+        let Ok(Record::Schema { header, data }) = parse(op::SCHEMA, schema, 7) else {
+            panic!("it is a schema, with a field of a later version");
+        };
+        assert_eq!((header.id, &*header.name, &*data), (1, "n", &b"{}"[..]));
+    }
+
+    #[test]
+    fn claims_beyond_the_record_are_refused_wherever_they_stand() {
+        let claims = "it ends within a field, or a field claims more bytes than are left";
+        let name = [&[1, 0][..], &HUGE, b"/sca"].concat();
+        assert_eq!(refused(op::SCHEMA, &name), claims);
+        let topic = [&[1, 0, 1, 0][..], &HUGE].concat();
+        assert_eq!(refused(op::CHANNEL, &topic), claims);
+        let packing = [&[0; 28][..], &HUGE, &[0; 8]].concat();
+        assert_eq!(refused(op::CHUNK, &packing), claims);
+        assert_eq!(refused(op::CHANNEL, &channel(&HUGE)), claims);
+        let value = [&[1, 0, 0, 0][..], b"k", &HUGE].concat();
+        assert_eq!(refused(op::CHANNEL, &channel(&value)), claims);
+        for opcode in [op::SCHEMA, op::CHANNEL, op::CHUNK] {
+            assert_eq!(refused(opcode, b"\x01"), claims);
+        }
+    }
+
+    #[test]
+    fn what_the_library_refuses_is_said_on_one_line() {
+        let schema = b"\x01\0\x01\0\0\0\xff\0\0\0\0\0\0\0\0";
+        assert!(refused(op::SCHEMA, schema).contains("invalid utf-8"));
+        assert_eq!(
+            refused(op::MESSAGE, &[0; 21]),
+            "failed to fill whole buffer"
+        );
+        let twice = [&[1, 0, 0, 0][..], b"k", &[0; 4]].concat().repeat(2);
+        assert!(refused(op::CHANNEL, &channel(&twice)).contains("Duplicate keys"));
+    }
+
+    #[test]
+    fn an_attachment_shorter_than_its_fields_is_not_looked_into() {
+        let empty = [0; 32];
+        let library =
+            std::panic::catch_unwind(|| mcap::parse_record(op::ATTACHMENT, &empty).is_ok());
+        assert!(library.is_err(), "the library has learnt it");
+        assert!(matches!(
+            parse(op::ATTACHMENT, &empty, 7),
+            Ok(Record::Unknown { .. })
+        ));
+    }
+
+    proptest::proptest! {
+        #[test]
+        fn no_bytes_make_it_panic(body in proptest::collection::vec(proptest::num::u8::ANY, 0..100)) {
+            for opcode in 0..=0x10 {
+                let _ = parse(opcode, &body, 7);
+            }
+        }
+    }
+}

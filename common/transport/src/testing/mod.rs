@@ -1,0 +1,19 @@
+//! For tests of nodes: a graph of their own, the node as a process, and waiting
+//! for what it says.
+//!
+//! Everything here fails the test by panicking and waits without a limit, for
+//! how long a machine takes is nothing that a test could know. Nodes themselves
+//! use none of it.
+
+#![allow(
+    clippy::unwrap_used,
+    reason = "what tests share fails the test, as tests do"
+)]
+
+mod isolated;
+mod node_process;
+mod waiting;
+
+pub use isolated::Isolated;
+pub use node_process::NodeProcess;
+pub use waiting::{wait_for, wait_for_health, wait_until};

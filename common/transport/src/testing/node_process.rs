@@ -1,0 +1,151 @@
+//! A node as a process in a test's graph.
+
+use std::ffi::OsStr;
+use std::io::Read;
+use std::process::{Child, ChildStderr, Command, ExitStatus, Stdio};
+use std::thread::JoinHandle;
+
+use nix::sys::signal::{Signal, kill};
+use nix::unistd::Pid;
+
+use crate::node::LOG_FORMAT_VARIABLE;
+use crate::{GRAPH_VARIABLE, Graph};
+
+/// The node, killed if the test fails before it has ended; what it had logged
+/// is then shown.
+#[derive(Debug)]
+pub struct NodeProcess {
+    child: Child,
+    /// Reads all the time, or a talkative node would wait for its reader.
+    log: Option<JoinHandle<Vec<u8>>>,
+}
+
+impl NodeProcess {
+    /// Starts `executable` in `graph`; a test names that of its package by
+    /// `env!("CARGO_BIN_EXE_…")`. It logs as it does where nobody asks for
+    /// another way.
+    ///
+    /// # Panics
+    /// If it cannot be started.
+    pub fn start<A: AsRef<OsStr>>(
+        executable: &str,
+        graph: &Graph,
+        arguments: impl IntoIterator<Item = A>,
+    ) -> Self {
+        let mut child = Command::new(executable)
+            .args(arguments)
+            .env(GRAPH_VARIABLE, graph.name().as_str())
+            .env_remove("RUST_LOG")
+            .env_remove(LOG_FORMAT_VARIABLE)
+            .stderr(Stdio::piped())
+            .spawn()
+            .unwrap();
+        let pipe = child.stderr.take().unwrap();
+        let log = Some(std::thread::spawn(move || read_all(pipe)));
+        NodeProcess { child, log }
+    }
+
+    /// Asks it to end, by SIGTERM.
+    ///
+    /// # Panics
+    /// If the signal cannot be sent.
+    pub fn interrupt(&self) {
+        let process = Pid::from_raw(self.child.id().cast_signed());
+        kill(process, Signal::SIGTERM).unwrap();
+    }
+
+    /// Waits until it ends, by itself or because it was asked to; returns how it
+    /// ended and what it logged.
+    ///
+    /// # Panics
+    /// If what it logged is not UTF-8.
+    pub fn finish(mut self) -> (ExitStatus, String) {
+        let status = self.child.wait().unwrap();
+        let log = String::from_utf8(self.take_log()).unwrap();
+        (status, log)
+    }
+
+    /// As [`NodeProcess::finish`]; the code alone, `None` if a signal ended it.
+    pub fn exit_code(self) -> Option<i32> {
+        self.finish().0.code()
+    }
+
+    /// Asks it to end, which is no failure.
+    ///
+    /// # Panics
+    /// If the node takes it for one.
+    pub fn stop(self) {
+        self.interrupt();
+        let (status, log) = self.finish();
+        assert!(status.success(), "{status}\n{log}");
+    }
+
+    /// Ends it by SIGKILL, which it cannot notice.
+    ///
+    /// # Panics
+    /// If it cannot be killed.
+    pub fn kill(mut self) {
+        self.child.kill().unwrap();
+        self.child.wait().unwrap();
+        self.take_log();
+    }
+
+    fn take_log(&mut self) -> Vec<u8> {
+        let log = self.log.take();
+        log.map_or_else(Vec::new, |log| log.join().unwrap())
+    }
+}
+
+impl Drop for NodeProcess {
+    fn drop(&mut self) {
+        if self.log.is_none() {
+            // It has ended already.
+            return;
+        }
+        let _ = self.child.kill();
+        let _ = self.child.wait();
+        let log = self.take_log();
+        if std::thread::panicking() {
+            eprintln!("the node logged:\n{}", String::from_utf8_lossy(&log));
+        }
+    }
+}
+
+fn read_all(mut pipe: ChildStderr) -> Vec<u8> {
+    let mut log = Vec::new();
+    pipe.read_to_end(&mut log).unwrap();
+    log
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::testing::Isolated;
+
+    fn shell(graph: &Graph, script: &str) -> NodeProcess {
+        NodeProcess::start("/bin/sh", graph, ["-c", script])
+    }
+
+    #[test]
+    fn a_process_tells_its_graph_its_log_and_its_code() {
+        let isolated = Isolated::new("process");
+        let graph = isolated.join("test");
+        // More than a pipe holds.
+        let script = "head -c 200000 /dev/zero | tr '\\0' x >&2; echo $BACKCAST_GRAPH >&2; exit 3";
+        let (status, log) = shell(&graph, script).finish();
+        assert_eq!(status.code(), Some(3));
+        assert_eq!(log.len(), 200_000 + isolated.name().as_str().len() + 1);
+        assert!(log.trim_end().ends_with(isolated.name().as_str()));
+        assert_eq!(shell(&graph, "exit 2").exit_code(), Some(2));
+    }
+
+    #[test]
+    fn a_process_that_would_stay_can_be_ended() {
+        let isolated = Isolated::new("end");
+        let graph = isolated.join("test");
+        shell(&graph, "exec sleep 86400").kill();
+        let sleeps = shell(&graph, "exec sleep 86400");
+        sleeps.interrupt();
+        assert_eq!(sleeps.exit_code(), None, "the signal ended it");
+    }
+}

@@ -1,0 +1,63 @@
+//! Waiting for what a node says.
+
+use std::time::Duration;
+
+use messages::{HealthHeader, Topic, topic};
+
+use crate::{Flow, Graph, Subscriber, TransportError};
+
+/// How long a late joiner waits for what the test itself has latched.
+const TICK: Duration = Duration::from_millis(20);
+
+/// Waits for a message of which `take` makes something, and returns that.
+/// Meanwhile the test's own latched topics are served.
+///
+/// # Panics
+/// If the graph fails.
+pub fn wait_for<T: Topic, R>(
+    graph: &Graph,
+    subscriber: &Subscriber<T>,
+    mut take: impl FnMut(&T::Header, &[T::Item]) -> Option<R>,
+) -> R {
+    let mut taken = None;
+    graph
+        .run(&[subscriber], TICK, |_| {
+            while let Some(sample) = subscriber.receive()? {
+                taken = take(sample.header(), sample.items());
+                if taken.is_some() {
+                    return Ok::<_, TransportError>(Flow::Stop);
+                }
+            }
+            Ok(Flow::Continue)
+        })
+        .unwrap();
+    taken.unwrap()
+}
+
+/// Waits for a message that `is_awaited`.
+///
+/// # Panics
+/// As [`wait_for`].
+pub fn wait_until<T: Topic>(
+    graph: &Graph,
+    subscriber: &Subscriber<T>,
+    mut is_awaited: impl FnMut(&T::Header, &[T::Item]) -> bool,
+) {
+    wait_for(graph, subscriber, |header, items| {
+        is_awaited(header, items).then_some(())
+    });
+}
+
+/// Waits for a report that `is_awaited`; returns it and its last error.
+///
+/// # Panics
+/// If the graph fails, or the error is not UTF-8.
+pub fn wait_for_health(
+    graph: &Graph,
+    health: &Subscriber<topic::Health>,
+    is_awaited: impl Fn(&HealthHeader) -> bool,
+) -> (HealthHeader, String) {
+    wait_for(graph, health, |report, error| {
+        is_awaited(report).then(|| (*report, String::from_utf8(error.to_vec()).unwrap()))
+    })
+}
