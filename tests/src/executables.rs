@@ -1,18 +1,22 @@
 //! The node executables, built by the tests that start them: a test run builds
 //! those of its own crate alone.
 
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 use std::process::Command;
 use std::sync::OnceLock;
 
-/// Everything that a graph on a recording needs.
-const PACKAGES: [&str; 6] = [
-    "accumulator",
-    "backcast",
-    "boundary_extractor",
-    "map_server",
-    "peak_extractor",
-    "replayer",
+/// Everything that a graph on a recording needs, in the groups in which
+/// `cargo run` and the descriptor build it: cargo would build what they depend
+/// on anew for another group.
+const GROUPS: [&[&str]; 2] = [
+    &[
+        "replayer",
+        "map_server",
+        "boundary_extractor",
+        "accumulator",
+        "peak_extractor",
+    ],
+    &["backcast"],
 ];
 
 /// The path of an executable, built in the profile of the tests.
@@ -26,23 +30,23 @@ fn build() -> PathBuf {
     // The tests lie in `<target>/<profile>/deps`, executables one above.
     let test = std::env::current_exe().unwrap();
     let folder = test.ancestors().nth(2).unwrap().to_owned();
+    for packages in GROUPS {
+        build_group(packages, &folder);
+    }
+    folder
+}
+
+fn build_group(packages: &[&str], folder: &Path) {
     let mut command = Command::new(env!("CARGO"));
-    command
-        .current_dir(crate::root())
-        .args(["build", "--quiet", "--locked"]);
+    command.current_dir(crate::root());
+    command.args(["build", "--quiet", "--locked"]);
     command.arg("--target-dir").arg(folder.parent().unwrap());
-    if folder
-        .file_name()
-        .is_some_and(|profile| profile == "release")
-    {
+    if folder.ends_with("release") {
         command.arg("--release");
     }
-    for package in PACKAGES {
+    for package in packages {
         command.args(["--package", package]);
     }
-    assert!(
-        command.status().unwrap().success(),
-        "the nodes do not build"
-    );
-    folder
+    let status = command.status().unwrap();
+    assert!(status.success(), "{packages:?} do not build");
 }

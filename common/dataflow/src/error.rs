@@ -8,7 +8,7 @@ use crate::{MAX_FILE_BYTES, MAX_ID_BYTES, MAX_NODES, Problem};
 #[derive(Debug, thiserror::Error)]
 pub enum DataflowError {
     /// The file could not be read.
-    #[error("cannot read {}: {source}", file.display())]
+    #[error("cannot read {}", file.display())]
     Unreadable {
         /// As it was given.
         file: PathBuf,

@@ -20,7 +20,12 @@ pub(crate) fn parse_degrees(text: &str) -> Result<f64, String> {
     parse(text, 0.0..=180.0, "degrees")
 }
 
-fn parse(text: &str, allowed: std::ops::RangeInclusive<f64>, unit: &str) -> Result<f64, String> {
+/// A number within a range.
+pub(crate) fn parse(
+    text: &str,
+    allowed: std::ops::RangeInclusive<f64>,
+    unit: &str,
+) -> Result<f64, String> {
     let value: f64 = text
         .parse()
         .map_err(|_| format!("{text:?} is not a number"))?;

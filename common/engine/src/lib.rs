@@ -25,6 +25,7 @@ mod config;
 pub mod directions;
 mod error;
 pub mod grid;
+pub mod heading;
 mod leaf;
 pub mod lines;
 pub mod localizer;

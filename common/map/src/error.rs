@@ -11,7 +11,7 @@ use crate::{MAX_CELLS, MAX_ORIGIN_M, MAX_RESOLUTION_M, MAX_SIDE, MIN_RESOLUTION_
 #[derive(Debug, thiserror::Error)]
 pub enum MapError {
     /// The description is not there or not readable.
-    #[error("cannot read the map description {}: {source}", path.display())]
+    #[error("cannot read the map description {}", path.display())]
     Description {
         /// The YAML file.
         path: PathBuf,
@@ -58,7 +58,7 @@ pub enum MapError {
         allowed: String,
     },
     /// The image that the description names is not there or not readable.
-    #[error("cannot read the image {}, named by {}:{line}:{column}: {source}", image.display(), yaml.display())]
+    #[error("cannot read the image {}, named by {}:{line}:{column}", image.display(), yaml.display())]
     Image {
         /// The image file.
         image: PathBuf,
@@ -140,7 +140,7 @@ pub enum MapError {
         allowed: u32,
     },
     /// The image could not be decoded.
-    #[error("{} is damaged or cut short: {source}", path.display())]
+    #[error("{} is damaged or cut short", path.display())]
     ImageDecode {
         /// The image file.
         path: PathBuf,
@@ -190,7 +190,7 @@ pub enum MapError {
         found: Pose,
     },
     /// A map file could not be written.
-    #[error("cannot write {}: {source}", path.display())]
+    #[error("cannot write {}", path.display())]
     Write {
         /// The file.
         path: PathBuf,

@@ -198,7 +198,7 @@ mod tests {
     #[test]
     fn missing_files_are_named() {
         let nowhere = load("no/such.yaml").unwrap_err().to_string();
-        assert!(nowhere.starts_with("cannot read the map description no/such.yaml: "));
+        assert_eq!(nowhere, "cannot read the map description no/such.yaml");
         let folder = folder(YAML, "other.pgm", b"P5 1 1 255\n\x00");
         let message = load_from(&folder).unwrap_err().to_string();
         let image = folder.path().join("floor.pgm").display().to_string();

@@ -10,7 +10,7 @@ use crate::{Damage, Kind};
 #[derive(Debug, thiserror::Error)]
 pub enum RecordingError {
     /// The file is not there or not readable.
-    #[error("cannot read the recording {}: {source}", path.display())]
+    #[error("cannot read the recording {}", path.display())]
     Open {
         /// The file.
         path: PathBuf,
@@ -54,7 +54,7 @@ pub enum RecordingError {
         reason: String,
     },
     /// A message decodes, but cannot be used.
-    #[error("{}: the message of {topic} at log time {log_time_ns} ns cannot be used: {source}", path.display())]
+    #[error("{}: the message of {topic} at log time {log_time_ns} ns cannot be used", path.display())]
     Unusable {
         /// The file.
         path: PathBuf,

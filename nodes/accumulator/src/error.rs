@@ -2,6 +2,7 @@
 //! from running.
 
 use engine::EngineError;
+use engine::heading::HeadingError;
 use messages::{BoundaryCell, Pose2};
 use transport::TransportError;
 
@@ -23,35 +24,9 @@ pub enum AccumulatorError {
         /// As the scan has it.
         found: Pose2,
     },
-    /// No odometry tells the heading.
-    #[error(
-        "the heading is to come from odometry, but none has come that was \
-         measured at {scan_ns} ns or before"
-    )]
-    NoOdometry {
-        /// When the scan was measured, nanoseconds.
-        scan_ns: i64,
-    },
-    /// The odometry that there is tells an old heading.
-    #[error(
-        "the newest odometry was measured {age_ns} ns before the scan: at most \
-         {allowed_ns} ns are allowed"
-    )]
-    OldOdometry {
-        /// Between the odometry and the scan, nanoseconds.
-        age_ns: i64,
-        /// By the configuration, nanoseconds.
-        allowed_ns: i64,
-    },
-    /// No truth tells the heading.
-    #[error(
-        "the heading is to come from the ground truth, but none has come that was \
-         measured at {scan_ns} ns"
-    )]
-    NoTruth {
-        /// When the scan was measured, nanoseconds.
-        scan_ns: i64,
-    },
+    /// The scan's heading is not known.
+    #[error(transparent)]
+    Heading(#[from] HeadingError),
     /// The boundary does not say how to read the map.
     #[error("{field} of the boundary is {found}: allowed are {allowed}")]
     Rule {

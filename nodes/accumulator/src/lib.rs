@@ -4,19 +4,17 @@
 //! Each scan is answered by exactly one message of `votes`, also where it is
 //! refused or explains nothing. A new map is prepared in the background while
 //! scans are answered with the one before. The search itself is the engine's;
-//! `headings` knows where a heading comes from, `preparation` what a map has to
-//! be, `answer` what a message says. Only `run` touches the graph and the
+//! `preparation` knows what a map has to be, `answer` what a message says. Only `run` touches the graph and the
 //! clock.
 
 pub mod answer;
 mod background;
 mod config;
 mod error;
-pub mod headings;
 mod pace;
 pub mod preparation;
 mod run;
 
-pub use config::{Config, HeadingConfig, HeadingFrom};
+pub use config::Config;
 pub use error::AccumulatorError;
 pub use run::run;

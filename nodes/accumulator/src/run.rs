@@ -8,11 +8,11 @@ use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, Ordering};
 use std::time::{Duration, Instant};
 
+use engine::heading::{HeadingSource, History};
 use messages::topic;
 use transport::{Flow, GapCounter, Graph, Health, Sample, TransportError, with_causes};
 
 use crate::answer::{self, Answer};
-use crate::headings::{HeadingSource, History};
 use crate::preparation::PreparedMap;
 use crate::{AccumulatorError, Config};
 use inputs::Inputs;
@@ -22,6 +22,10 @@ use supply::Supply;
 /// How long a map that has been prepared waits to be used at most, while no
 /// scan comes.
 const TICK: Duration = Duration::from_millis(50);
+
+/// Readings of each kind that are kept to take headings from: ten seconds of
+/// odometry at 100 Hz.
+const HEADINGS_KEPT: usize = 1024;
 
 /// Answers each scan with its votes until the stop flag is set.
 ///
@@ -35,7 +39,7 @@ pub fn run(graph: &Graph, config: &Config) -> Result<(), AccumulatorError> {
     let mut node = Node {
         source,
         headings: config.localizer.headings,
-        history: History::default(),
+        history: History::keeping(HEADINGS_KEPT),
         supply: Supply::new(config.localizer, config.prior()),
         map: None,
         gaps: GapCounter::new(),

@@ -50,7 +50,7 @@ pub fn main() -> ExitCode {
         Some(Command::Evaluate(config)) => evaluate::run(&config),
     };
     outcome.unwrap_or_else(|error| {
-        eprintln!("backcast: {}", error.chain());
+        eprintln!("backcast: {}", transport::with_causes(&error));
         ExitCode::from(error.exit_code())
     })
 }
@@ -98,8 +98,6 @@ mod tests {
             "backcast --heading -361",
             "backcast --heading 10 --heading-from odometry",
             "backcast --heading-from compass",
-            "backcast --heading-offset 3",
-            "backcast --heading 10 --heading-offset 3",
             "backcast --graph Big",
             "backcast --rate 2 check",
         ] {

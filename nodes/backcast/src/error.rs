@@ -4,6 +4,7 @@ use std::{io, path::PathBuf, process::ExitStatus};
 
 use dataflow::DataflowError;
 use engine::EngineError;
+use engine::heading::HeadingError;
 use map::MapError;
 use recording::RecordingError;
 use transport::TransportError;
@@ -53,9 +54,9 @@ pub enum BackcastError {
         /// The descriptor.
         file: PathBuf,
     },
-    /// An offset for a heading that needs none.
-    #[error("--heading-offset is for `--heading-from odometry`; the true heading needs none")]
-    OffsetWithoutOdometry,
+    /// Options that do not go together.
+    #[error("{0}")]
+    Usage(String),
     /// A build could not be started.
     #[error("node {node}: the build `{command}` cannot be started")]
     BuildNotStarted {
@@ -140,22 +141,9 @@ pub enum BackcastError {
     /// A scan is refused.
     #[error(transparent)]
     Refused(EngineError),
-    /// A scan whose heading should come from the truth, but has none.
-    #[error("the heading is to come from the true pose, but there is none of this scan")]
-    NoTrueHeading,
-    /// A scan whose heading should come from odometry, but has none.
-    #[error("the heading is to come from odometry, but none was measured before this scan")]
-    NoOdometry,
-    /// A scan whose heading should come from odometry, but has an old one.
-    #[error(
-        "the newest odometry was measured {age_ns} ns before the scan: at most {allowed_ns} ns are allowed"
-    )]
-    OldOdometry {
-        /// Between the odometry and the scan, nanoseconds.
-        age_ns: i64,
-        /// The most that is allowed, nanoseconds.
-        allowed_ns: i64,
-    },
+    /// A scan whose heading is not known.
+    #[error(transparent)]
+    Heading(#[from] HeadingError),
     /// A recording by which nothing can be judged.
     #[error("{} has no true poses on /ground_truth: there is nothing to judge by", file.display())]
     NoTruths {
@@ -199,26 +187,11 @@ impl BackcastError {
             Self::NoDescriptor { .. }
             | Self::NoNodeForOption { .. }
             | Self::NotWired { .. }
-            | Self::OffsetWithoutOdometry
+            | Self::Usage(_)
             | Self::Setting(_)
             | Self::Logging(_) => 2,
             _ => 1,
         }
-    }
-
-    /// The error and its causes, on one line. A cause that the error before it
-    /// has told already is not told again.
-    pub(crate) fn chain(&self) -> String {
-        let mut text = self.to_string();
-        let mut cause = std::error::Error::source(self);
-        while let Some(error) = cause {
-            let told = error.to_string();
-            if !text.ends_with(&told) {
-                text = format!("{text}: {told}");
-            }
-            cause = error.source();
-        }
-        text
     }
 }
 
@@ -238,7 +211,7 @@ mod tests {
     fn causes_are_told_once() {
         let output = BackcastError::Output(io::Error::other("the disk is full"));
         assert_eq!(
-            output.chain(),
+            transport::with_causes(&output),
             "cannot write to standard output: the disk is full"
         );
         let recording: BackcastError = RecordingError::Open {
@@ -246,6 +219,9 @@ mod tests {
             source: io::Error::other("gone"),
         }
         .into();
-        assert_eq!(recording.chain(), "cannot read the recording r.mcap: gone");
+        assert_eq!(
+            transport::with_causes(&recording),
+            "cannot read the recording r.mcap: gone"
+        );
     }
 }

@@ -192,7 +192,7 @@ fn a_known_heading_comes_from_where_it_is_said_to() {
     };
     assert_eq!(
         reason("--heading-from truth", 1),
-        "the heading is to come from the true pose, but there is none of this scan"
+        "the heading is to come from the ground truth, but none is known that was measured at 2000000000 ns"
     );
     let old = reason("--heading-from odometry", 2);
     assert!(

@@ -176,7 +176,7 @@ fn wrong_use_is_told_before_anything_is_opened() {
         ),
         (
             "--bag r.mcap --heading-from truth --heading-offset 4",
-            "--heading-offset is for",
+            "--heading-offset needs --heading-from odometry",
         ),
         ("--bag r.mcap --ambiguous-share 2", "not within 0 to 1"),
         ("--bag r.mcap --beams 9", "unexpected argument"),

@@ -1,9 +1,8 @@
 //! What the node subscribes to.
 
+use engine::heading::{HeadingSource, History};
 use messages::topic;
 use transport::{Graph, Health, Input, Subscriber, TransportError};
-
-use crate::headings::{HeadingSource, History};
 
 /// The node's subscribers; odometry and truth only where they are looked at.
 pub(super) struct Inputs {

@@ -61,7 +61,7 @@ pub(crate) fn run(config: &Config) -> Result<ExitCode, BackcastError> {
         let evaluation = match evaluate(bag, &config.options, map.as_ref()) {
             Ok(evaluation) => evaluation,
             Err(error) => {
-                say(&error.chain());
+                say(&transport::with_causes(&error));
                 code = ExitCode::FAILURE;
                 continue;
             }
@@ -131,7 +131,7 @@ fn judge_all(
             let reply = session.ask(&scan)?;
             match reply.answer {
                 Ok(answer) => judge.answer(truth.pose, &answer.places, reply.cpu_ms),
-                Err(refusal) => judge.refusal(truth.pose, refusal.chain()),
+                Err(refusal) => judge.refusal(truth.pose, transport::with_causes(&refusal)),
             }
         }
         progress.step();

@@ -82,7 +82,7 @@ impl Object {
         };
         match &reply.answer {
             Ok(answer) => object.fill(answer, scan.base_from_laser),
-            Err(refusal) => object.refused = Some(refusal.chain()),
+            Err(refusal) => object.refused = Some(transport::with_causes(&refusal)),
         }
         object
     }

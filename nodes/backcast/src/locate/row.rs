@@ -22,7 +22,7 @@ pub(super) fn text(stamp_ns: i64, reply: &Reply) -> String {
     };
     let places = match &reply.answer {
         Ok(answer) => &answer.places,
-        Err(refusal) => return format!("{}  {}", line.text(), refusal.chain()),
+        Err(refusal) => return format!("{}  {}", line.text(), transport::with_causes(&refusal)),
     };
     line.verdict = places.verdict.as_str();
     line.alternatives = places.alternatives;

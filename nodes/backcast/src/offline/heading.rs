@@ -1,76 +1,17 @@
-//! What is known of the heading of a recording's scans.
-//!
-//! The rules are those of the node `accumulator`: odometry is the newest that
-//! was measured before the scan, the truth has the time of the scan, and a
-//! heading that is missing or too old is refused, never stretched.
+//! What a recording says about the headings of its scans.
 
-use std::collections::BTreeMap;
-
-use engine::localizer::Prior;
-use geometry::wrap_angle;
+use bytemuck::Zeroable;
+use engine::heading::{HeadingConfig, HeadingError, HeadingSource, History};
+use messages::{GroundTruth, Name, Odometry, ScanHeader, Stamp};
 use recording::{Kind, Message, Recording, RecordingError};
 
 use super::TakenScan;
-use crate::BackcastError;
-use crate::run::{HeadingFrom, degrees};
 
-/// The options about the heading. With none, all headings are searched.
-#[derive(Debug, Clone, Default, clap::Args)]
-pub(crate) struct HeadingOptions {
-    /// The laser's heading in the map, degrees counter-clockwise from its x
-    /// axis, -360..=360: only the position is searched
-    #[arg(long, value_name = "DEGREES", allow_negative_numbers = true, value_parser = degrees)]
-    #[arg(conflicts_with = "heading_from")]
-    heading: Option<f64>,
-
-    /// Take the heading from here, and search only the position
-    #[arg(long, value_name = "SOURCE")]
-    heading_from: Option<HeadingFrom>,
-
-    /// From the yaw of the odometry to the heading in the map, degrees,
-    /// -360..=360; it drifts, so this is for the start of a recording
-    #[arg(long, value_name = "DEGREES", allow_negative_numbers = true, value_parser = degrees)]
-    // A requirement alone is let go where something excludes it, as --heading
-    // excludes --heading-from.
-    #[arg(requires = "heading_from", conflicts_with = "heading")]
-    heading_offset: Option<f64>,
-}
-
-impl HeadingOptions {
-    /// Checks what clap cannot.
-    pub(crate) fn check(&self) -> Result<(), BackcastError> {
-        match (self.heading_offset, self.heading_from) {
-            (Some(_), Some(HeadingFrom::Truth)) => Err(BackcastError::OffsetWithoutOdometry),
-            _ => Ok(()),
-        }
-    }
-}
-
-/// Odometry that was measured longer before its scan is not used, nanoseconds;
-/// the accumulator's default.
-const MAX_AGE_NS: i64 = 1_000_000_000;
-
-/// The headings of the scans of one recording, in the map, radians.
-#[derive(Debug, Clone, PartialEq)]
-pub(crate) enum Headings {
-    /// Nothing is known: all are searched.
-    Searched,
-    /// Always the same.
-    Fixed(f64),
-    /// By the time of measuring, with what is added to the yaw.
-    Odometry {
-        offset: f64,
-        readings: BTreeMap<i64, OdometryYaw>,
-    },
-    /// By the time of the scan.
-    Truth(BTreeMap<i64, f64>),
-}
-
-/// The yaw of one odometry message, radians, and the frame that it is of.
-#[derive(Debug, Clone, PartialEq)]
-pub(crate) struct OdometryYaw {
-    yaw: f64,
-    child_frame: String,
+/// All that a recording says about headings, and what of it is asked for.
+#[derive(Debug, Clone)]
+pub(crate) struct Headings {
+    source: HeadingSource,
+    history: History,
 }
 
 impl Headings {
@@ -79,82 +20,62 @@ impl Headings {
     /// # Errors
     /// It is not there, or one of its messages cannot be used.
     pub(crate) fn of(
-        options: &HeadingOptions,
+        config: &HeadingConfig,
         recording: &Recording,
     ) -> Result<Self, RecordingError> {
-        Ok(match (options.heading, options.heading_from) {
-            (Some(degrees), _) => Headings::Fixed(degrees.to_radians()),
-            (None, None) => Headings::Searched,
-            (None, Some(HeadingFrom::Odometry)) => Headings::Odometry {
-                offset: options.heading_offset.unwrap_or(0.0).to_radians(),
-                readings: odometry(recording)?,
-            },
-            (None, Some(HeadingFrom::Truth)) => {
-                recording.required_topic(Kind::PoseStamped)?;
-                let truths = recording.ground_truths()?.into_iter();
-                Headings::Truth(truths.map(|(ns, truth)| (ns, truth.pose.yaw)).collect())
-            }
-        })
+        let source = config.source();
+        let mut history = History::keeping(usize::MAX);
+        match source {
+            HeadingSource::Searched | HeadingSource::Fixed(_) => {}
+            HeadingSource::Odometry { .. } => hear_odometry(recording, &mut history)?,
+            HeadingSource::Truth => hear_truths(recording, &mut history)?,
+        }
+        Ok(Headings { source, history })
     }
 
-    /// What a localizer has to be prepared for.
-    pub(crate) fn prior(&self) -> Prior {
-        match self {
-            Headings::Searched => Prior::None,
-            _ => Prior::Heading,
-        }
+    /// Where the headings come from.
+    pub(crate) fn source(&self) -> HeadingSource {
+        self.source
     }
 
     /// The laser's heading when it measured `scan`; `None` where it is to be
     /// searched.
     ///
-    /// Odometry of another frame than the scan's is taken for that of the
-    /// robot's base, and the mount's yaw is added where it is known; where it is
-    /// not, the offset has to hold it.
-    ///
     /// # Errors
     /// Nothing that is known belongs to the scan.
-    pub(crate) fn of_scan(&self, scan: &TakenScan) -> Result<Option<f64>, BackcastError> {
-        let scan_ns = scan.stamp_ns;
-        match self {
-            Headings::Searched => Ok(None),
-            Headings::Fixed(heading) => Ok(Some(*heading)),
-            Headings::Truth(headings) => match headings.get(&scan_ns) {
-                Some(heading) => Ok(Some(*heading)),
-                None => Err(BackcastError::NoTrueHeading),
-            },
-            Headings::Odometry { offset, readings } => {
-                let reading = newest(readings, scan_ns)?;
-                let mount = match scan.base_from_laser {
-                    Some(mount) if reading.child_frame != scan.frame() => mount.yaw,
-                    _ => 0.0,
-                };
-                Ok(Some(wrap_angle(reading.yaw + mount + offset)))
-            }
-        }
+    pub(crate) fn of_scan(&self, scan: &TakenScan) -> Result<Option<f64>, HeadingError> {
+        let header = ScanHeader {
+            stamp: measured(scan.stamp_ns),
+            base_from_laser: scan.base_from_laser.unwrap_or_default().into(),
+            mount_known: scan.base_from_laser.is_some().into(),
+            frame: Name::new(scan.frame()),
+            ..ScanHeader::zeroed()
+        };
+        self.source.heading_of(&header, &self.history)
     }
 }
 
-fn newest(
-    readings: &BTreeMap<i64, OdometryYaw>,
-    scan_ns: i64,
-) -> Result<&OdometryYaw, BackcastError> {
-    let (measured_ns, reading) = readings
-        .range(..=scan_ns)
-        .next_back()
-        .ok_or(BackcastError::NoOdometry)?;
-    match scan_ns.saturating_sub(*measured_ns) {
-        ..=MAX_AGE_NS => Ok(reading),
-        age_ns => Err(BackcastError::OldOdometry {
-            age_ns,
-            allowed_ns: MAX_AGE_NS,
-        }),
+fn measured(measured_ns: i64) -> Stamp {
+    Stamp {
+        measured_ns,
+        ..Stamp::default()
     }
 }
 
-fn odometry(recording: &Recording) -> Result<BTreeMap<i64, OdometryYaw>, RecordingError> {
+fn hear_truths(recording: &Recording, history: &mut History) -> Result<(), RecordingError> {
+    recording.required_topic(Kind::PoseStamped)?;
+    for (ns, truth) in recording.ground_truths()? {
+        history.hear_truth(&GroundTruth {
+            stamp: measured(ns),
+            map_from_laser: truth.pose.into(),
+            frame: Name::new(&truth.frame),
+        });
+    }
+    Ok(())
+}
+
+fn hear_odometry(recording: &Recording, history: &mut History) -> Result<(), RecordingError> {
     let topic = recording.required_topic(Kind::Odometry)?;
-    let mut readings = BTreeMap::new();
     for record in recording.records_of(&[Kind::Odometry]) {
         let record = match record {
             Ok(record) => record,
@@ -176,13 +97,14 @@ fn odometry(recording: &Recording) -> Result<BTreeMap<i64, OdometryYaw>, Recordi
             log_time_ns: record.log_time_ns,
             source,
         })?;
-        let reading = OdometryYaw {
-            yaw: pose.yaw,
-            child_frame: message.child_frame_id.clone(),
-        };
-        readings.insert(message.header.stamp.as_ns(), reading);
+        history.hear_odometry(&Odometry {
+            stamp: measured(message.header.stamp.as_ns()),
+            odom_from_child: pose.into(),
+            child_frame: Name::new(&message.child_frame_id),
+            ..Odometry::zeroed()
+        });
     }
-    Ok(readings)
+    Ok(())
 }
 
 /// Whether an error is about a message of a channel other than `topic`.
@@ -199,19 +121,47 @@ pub(super) fn concerns_other(error: &RecordingError, topic: &str) -> bool {
 mod tests {
     use clap::Parser;
     use geometry::Pose;
-    use recording::ros;
+    use recording::ros::{self, Header, Time};
+    use recording::write::{Packing, RecordingWriter};
 
     use super::*;
 
     #[derive(Debug, clap::Parser)]
     struct Line {
         #[command(flatten)]
-        heading: HeadingOptions,
+        heading: HeadingConfig,
     }
 
-    fn options(line: &str) -> HeadingOptions {
-        let words = ["x"].into_iter().chain(line.split_whitespace());
-        Line::try_parse_from(words).unwrap().heading
+    fn header(nanosec: u32, frame_id: &str) -> Header {
+        Header {
+            stamp: Time { sec: 0, nanosec },
+            frame_id: frame_id.into(),
+        }
+    }
+
+    /// A recording with a scan, odometry of a frame, and a true pose.
+    fn recording(child_frame: &str) -> Recording {
+        let pose = ros::Pose::from_planar(Pose::new(1.0, 2.0, 0.25));
+        let mut odometry = ros::Odometry {
+            header: header(10, "odom"),
+            child_frame_id: child_frame.into(),
+            ..ros::Odometry::default()
+        };
+        odometry.pose.pose = pose;
+        let truth = ros::PoseStamped {
+            header: header(20, "map"),
+            pose,
+        };
+        let messages = [
+            ("/odom", Message::Odometry(Box::new(odometry))),
+            ("/ground_truth", Message::PoseStamped(truth)),
+        ];
+        let mut writer = RecordingWriter::in_memory(Packing::Zstd).unwrap();
+        for (time, (topic, message)) in (0..).zip(&messages) {
+            writer.write(topic, time, message).unwrap();
+        }
+        let bytes = writer.finish().unwrap().into_inner();
+        Recording::from_bytes("drawn", bytes).unwrap()
     }
 
     fn scan(stamp_ns: i64, mount_yaw: Option<f64>) -> TakenScan {
@@ -219,89 +169,52 @@ mod tests {
             stamp_ns,
             base_from_laser: mount_yaw.map(|yaw| Pose::new(0.78, 0.0, yaw)),
             message: ros::LaserScan {
-                header: ros::Header {
-                    frame_id: "laser".into(),
-                    ..ros::Header::default()
-                },
+                header: header(0, "laser"),
                 ..ros::LaserScan::default()
             },
         }
     }
 
-    fn by_odometry(readings: &[(i64, f64)], child_frame: &str) -> Headings {
-        let reading = |&(ns, yaw): &(i64, f64)| {
-            let child_frame = child_frame.to_owned();
-            (ns, OdometryYaw { yaw, child_frame })
-        };
-        Headings::Odometry {
-            offset: 0.5,
-            readings: readings.iter().map(reading).collect(),
-        }
+    fn headings(line: &str, child_frame: &str) -> Headings {
+        let words = ["x"].into_iter().chain(line.split_whitespace());
+        Headings::of(&Line::parse_from(words).heading, &recording(child_frame)).unwrap()
     }
 
-    #[test]
-    fn a_searched_heading_is_none_and_a_fixed_one_needs_nothing() {
-        let scan = scan(5, None);
-        assert_eq!(Headings::Searched.of_scan(&scan).unwrap(), None);
-        assert_eq!(Headings::Searched.prior(), Prior::None);
-        assert_eq!(Headings::Fixed(1.5).of_scan(&scan).unwrap(), Some(1.5));
-        assert_eq!(Headings::Fixed(1.5).prior(), Prior::Heading);
-    }
-
-    #[test]
-    fn odometry_is_the_newest_before_the_scan() {
-        let headings = by_odometry(&[(10, 0.1), (20, 0.2), (30, 0.3)], "laser");
-        let at = |ns| headings.of_scan(&scan(ns, Some(1.0))).unwrap().unwrap();
-        assert_eq!(at(20), 0.2 + 0.5);
-        assert_eq!(at(29), 0.2 + 0.5);
-        assert_eq!(at(1000), 0.3 + 0.5);
+    #[track_caller]
+    fn check(found: Result<Option<f64>, HeadingError>, expected: f64) {
+        // A yaw goes through a quaternion and back.
+        assert!((found.unwrap().unwrap() - expected).abs() < 1e-12);
     }
 
     #[test]
     fn odometry_of_the_base_is_turned_by_the_mount() {
-        let headings = by_odometry(&[(10, 0.25)], "base_link");
-        assert_eq!(headings.of_scan(&scan(10, None)).unwrap(), Some(0.75));
-        assert_eq!(headings.of_scan(&scan(10, Some(1.0))).unwrap(), Some(1.75));
-    }
-
-    #[test]
-    fn odometry_that_is_too_old_or_too_new_is_refused() {
-        let headings = by_odometry(&[(10, 0.1)], "laser");
-        let refusal = |ns| headings.of_scan(&scan(ns, None)).unwrap_err();
-        assert!(matches!(refusal(9), BackcastError::NoOdometry));
-        assert!(headings.of_scan(&scan(10 + MAX_AGE_NS, None)).is_ok());
-        assert!(matches!(
-            refusal(11 + MAX_AGE_NS),
-            BackcastError::OldOdometry {
-                age_ns: 1_000_000_001,
-                allowed_ns: MAX_AGE_NS
-            }
-        ));
-        // Times that a file may hold do not overflow.
-        let ancient = by_odometry(&[(i64::MIN, 0.1)], "laser");
-        assert!(ancient.of_scan(&scan(i64::MAX, None)).is_err());
-    }
-
-    #[test]
-    fn the_truth_has_exactly_the_time_of_the_scan() {
-        let headings = Headings::Truth([(10, 0.1)].into());
-        assert_eq!(headings.of_scan(&scan(10, Some(1.0))).unwrap(), Some(0.1));
-        let refusal = headings.of_scan(&scan(11, None)).unwrap_err();
-        assert!(matches!(refusal, BackcastError::NoTrueHeading));
-    }
-
-    #[test]
-    fn an_offset_is_for_odometry() {
-        assert!(options("--heading 10").check().is_ok());
-        assert!(
-            options("--heading-from odometry --heading-offset -5")
-                .check()
-                .is_ok()
+        let line = "--heading-from odometry --heading-offset 90";
+        let quarter = std::f64::consts::FRAC_PI_2;
+        let base = headings(line, "base_link");
+        check(base.of_scan(&scan(15, Some(1.0))), 0.25 + 1.0 + quarter);
+        check(base.of_scan(&scan(15, None)), 0.25 + quarter);
+        check(
+            headings(line, "laser").of_scan(&scan(15, Some(1.0))),
+            0.25 + quarter,
         );
-        let truth = options("--heading-from truth --heading-offset 5").check();
-        assert!(matches!(truth, Err(BackcastError::OffsetWithoutOdometry)));
-        for line in ["x --heading 1 --heading-offset 2", "x --heading-offset 2"] {
-            assert!(Line::try_parse_from(line.split(' ')).is_err(), "{line}");
-        }
+        assert_eq!(
+            base.of_scan(&scan(9, None)),
+            Err(HeadingError::NoOdometry { scan_ns: 9 })
+        );
+    }
+
+    #[test]
+    fn the_truth_has_the_time_of_the_scan() {
+        let headings = headings("--heading-from truth", "laser");
+        check(headings.of_scan(&scan(20, Some(1.0))), 0.25);
+        assert_eq!(
+            headings.of_scan(&scan(21, None)),
+            Err(HeadingError::NoTruth { scan_ns: 21 })
+        );
+    }
+
+    #[test]
+    fn with_nothing_known_the_heading_is_searched() {
+        assert_eq!(headings("", "laser").of_scan(&scan(20, None)), Ok(None));
     }
 }

@@ -4,11 +4,11 @@ use std::path::PathBuf;
 
 use engine::directions::Directions;
 use engine::grid::CellRules;
+use engine::heading::HeadingConfig;
 use engine::localizer::LocalizerConfig;
 use engine::peaks::PeakConfig;
 use map::OccupancyGrid;
 
-use super::heading::HeadingOptions;
 use crate::BackcastError;
 
 /// The map, the scans that are taken, and how they are searched.
@@ -24,7 +24,7 @@ pub(crate) struct Options {
     pub(crate) every: u64,
 
     #[command(flatten)]
-    pub(crate) heading: HeadingOptions,
+    pub(crate) heading: HeadingConfig,
 
     #[command(flatten)]
     pub(crate) engine: EngineOptions,
@@ -49,7 +49,7 @@ impl Options {
     /// Names the option and what is allowed.
     pub(crate) fn check(&self) -> Result<(), BackcastError> {
         Directions::new(self.engine.localizer.headings).map_err(BackcastError::Setting)?;
-        self.heading.check()
+        self.heading.check().map_err(BackcastError::Usage)
     }
 
     /// The map that is named, if one is.

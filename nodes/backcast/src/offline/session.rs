@@ -52,7 +52,7 @@ impl<'a> Session<'a> {
             Some(map) => Cow::Borrowed(map),
             None => Cow::Owned(map_in(recording)?),
         };
-        let prepare = || World::prepare(&map, &options.engine, headings.prior());
+        let prepare = || World::prepare(&map, &options.engine, headings.source().prior());
         let (world, prepare_cpu_ms) = cpu::timed(prepare)?;
         let world = world.map_err(|source| BackcastError::UnusableMap {
             file: map_file(options, recording.path()),
@@ -76,7 +76,7 @@ impl<'a> Session<'a> {
             Err(refusal) => {
                 return Ok(Reply {
                     cpu_ms: 0.0,
-                    answer: Err(refusal),
+                    answer: Err(refusal.into()),
                 });
             }
         };

@@ -4,13 +4,15 @@
 use std::path::Path;
 
 use dataflow::{Dataflow, Node};
+use engine::heading::{HeadingConfig, HeadingFrom, HeadingSource};
 use messages::{Topic, topic};
 
-use super::options::{HeadingFrom, Options, Rate};
+use super::options::{Options, Rate};
 use crate::BackcastError;
 
 const REPLAYER: &str = "replayer";
 const ACCUMULATOR: &str = "accumulator";
+const MAX_AGE: &str = "--heading-max-age-s";
 
 /// Puts the options into the arguments of their nodes. `file` is named in
 /// errors.
@@ -30,22 +32,50 @@ pub(crate) fn apply(
         let node = find(dataflow, REPLAYER, "--loop", file)?;
         set(node, "--loop", None);
     }
-    if let Some(degrees) = options.heading {
-        let node = find(dataflow, ACCUMULATOR, "--heading", file)?;
-        unset_heading(node, false);
-        set(node, "--heading", Some(&degrees.to_string()));
-    }
-    if let Some(source) = options.heading_from {
-        let node = find(dataflow, ACCUMULATOR, "--heading-from", file)?;
+    forward_heading(&options.heading, dataflow, file)
+}
+
+/// The options exclude or complete each other: a new source replaces all that
+/// was said about the one before. How old odometry may be stays if it is used.
+fn forward_heading(
+    heading: &HeadingConfig,
+    dataflow: &mut Dataflow,
+    file: &Path,
+) -> Result<(), BackcastError> {
+    heading.check().map_err(BackcastError::Usage)?;
+    let option = match heading.source() {
+        HeadingSource::Searched => return Ok(()),
+        HeadingSource::Fixed(_) => "--heading",
+        HeadingSource::Odometry { .. } | HeadingSource::Truth => "--heading-from",
+    };
+    let node = find(dataflow, ACCUMULATOR, option, file)?;
+    let values = [
+        (
+            "--heading",
+            heading.heading.map(|degrees| degrees.to_string()),
+        ),
+        (
+            "--heading-from",
+            heading.heading_from.map(|source| source.to_string()),
+        ),
+        (
+            "--heading-offset",
+            heading.heading_offset.map(|degrees| degrees.to_string()),
+        ),
+        (
+            MAX_AGE,
+            heading.heading_max_age_s.map(|seconds| seconds.to_string()),
+        ),
+    ];
+    if let Some(source) = heading.heading_from {
         check_wired(node, source, file)?;
-        let odometry = source == HeadingFrom::Odometry;
-        if options.heading_offset.is_some() && !odometry {
-            return Err(BackcastError::OffsetWithoutOdometry);
-        }
-        unset_heading(node, odometry);
-        set(node, "--heading-from", Some(source.as_str()));
-        if let Some(degrees) = options.heading_offset {
-            set(node, "--heading-offset", Some(&degrees.to_string()));
+    }
+    let odometry = heading.heading_from == Some(HeadingFrom::Odometry);
+    for (option, value) in values {
+        match value {
+            Some(value) => set(node, option, Some(&value)),
+            None if option == MAX_AGE && odometry => {}
+            None => unset(node, option, true),
         }
     }
     Ok(())
@@ -100,17 +130,6 @@ fn check_wired(node: &Node, source: HeadingFrom, file: &Path) -> Result<(), Back
         node: node.id.clone(),
         file: file.to_owned(),
     })
-}
-
-/// The options exclude or complete each other: a new source replaces all that
-/// was said about the one before. How old odometry may be stays if it is used.
-fn unset_heading(node: &mut Node, odometry: bool) {
-    for option in ["--heading", "--heading-from", "--heading-offset"] {
-        unset(node, option, true);
-    }
-    if !odometry {
-        unset(node, "--heading-max-age", true);
-    }
 }
 
 fn set(node: &mut Node, option: &str, value: Option<&str>) {
@@ -178,34 +197,41 @@ mod tests {
         }
     }
 
+    fn with(heading: HeadingConfig) -> Options {
+        Options {
+            heading,
+            ..Options::default()
+        }
+    }
+
     #[test]
     fn headings_reach_the_accumulator() {
-        let fixed = Options {
+        let fixed = with(HeadingConfig {
             heading: Some(-90.0),
-            ..Options::default()
-        };
+            ..HeadingConfig::default()
+        });
         let args = applied(&fixed, graph("", "")).unwrap();
         assert_eq!(args[1], ["--beams", "9", "--heading=-90"]);
         let mut aged = graph("", "");
-        aged.nodes[1].args = ["--heading-from=odometry", "--heading-max-age", "3"]
+        aged.nodes[1].args = ["--heading-from=odometry", "--heading-max-age-s", "3"]
             .map(Into::into)
             .into();
         assert_eq!(applied(&fixed, aged).unwrap()[1], ["--heading=-90"]);
 
-        let odometry = Options {
+        let odometry = with(HeadingConfig {
             heading_from: Some(HeadingFrom::Odometry),
             heading_offset: Some(-1.5),
-            ..Options::default()
-        };
+            ..HeadingConfig::default()
+        });
         let mut wired = graph("", "odometry: r/odometry");
-        wired.nodes[1].args = ["--heading", "7", "--heading-max-age=3"]
+        wired.nodes[1].args = ["--heading", "7", "--heading-max-age-s=3"]
             .map(Into::into)
             .into();
         let args = applied(&odometry, wired).unwrap();
         assert_eq!(
             args[1],
             [
-                "--heading-max-age=3",
+                "--heading-max-age-s=3",
                 "--heading-from=odometry",
                 "--heading-offset=-1.5"
             ]
@@ -225,18 +251,18 @@ mod tests {
 
     #[test]
     fn the_true_heading_has_no_offset() {
-        let mut options = Options {
+        let mut options = with(HeadingConfig {
             heading_from: Some(HeadingFrom::Truth),
-            ..Options::default()
-        };
+            ..HeadingConfig::default()
+        });
         let wired = || graph("", "odometry: r/odometry, ground_truth: r/ground_truth");
         let args = applied(&options, wired()).unwrap();
         assert_eq!(args[1], ["--beams", "9", "--heading-from=truth"]);
-        options.heading_offset = Some(1.0);
+        options.heading.heading_offset = Some(1.0);
         let error = applied(&options, wired()).unwrap_err();
-        assert!(
-            matches!(error, BackcastError::OffsetWithoutOdometry),
-            "{error}"
+        assert_eq!(
+            error.to_string(),
+            "--heading-offset needs --heading-from odometry"
         );
     }
 

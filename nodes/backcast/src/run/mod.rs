@@ -23,4 +23,4 @@ mod watch;
 
 pub(crate) use launch::run;
 pub(crate) use line::Line;
-pub(crate) use options::{Config, HeadingFrom, Options, degrees};
+pub(crate) use options::{Config, Options};

@@ -2,7 +2,8 @@
 
 use std::{path::PathBuf, str::FromStr};
 
-use clap::{Args, ValueEnum};
+use clap::Args;
+use engine::heading::HeadingConfig;
 use transport::{GRAPH_VARIABLE, GraphName, TransportError};
 
 use crate::descriptor::DEFAULT_FILE;
@@ -37,23 +38,8 @@ pub(crate) struct Options {
     #[arg(long = "loop")]
     pub(crate) repeat: bool,
 
-    /// The robot's heading in the map, degrees counter-clockwise from its x
-    /// axis: only the position is searched
-    #[arg(long, value_name = "DEGREES", allow_negative_numbers = true, value_parser = degrees)]
-    #[arg(conflicts_with = "heading_from")]
-    pub(crate) heading: Option<f64>,
-
-    /// Take the heading from here, and search only the position
-    #[arg(long, value_name = "SOURCE")]
-    pub(crate) heading_from: Option<HeadingFrom>,
-
-    /// From the yaw of the odometry to the heading in the map, degrees; it
-    /// drifts, so this is for the start of a run
-    #[arg(long, value_name = "DEGREES", allow_negative_numbers = true, value_parser = degrees)]
-    // A requirement alone is let go where something excludes it, as --heading
-    // excludes --heading-from.
-    #[arg(requires = "heading_from", conflicts_with = "heading")]
-    pub(crate) heading_offset: Option<f64>,
+    #[command(flatten)]
+    pub(crate) heading: HeadingConfig,
 
     /// The graph's name, by which other tools join it: 1 to 20 of a-z 0-9 - _
     /// [default: $BACKCAST_GRAPH, or a name of its own]
@@ -111,33 +97,6 @@ impl std::fmt::Display for Rate {
             Rate::Max => f.write_str("max"),
         }
     }
-}
-
-/// Where a known heading comes from.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]
-pub(crate) enum HeadingFrom {
-    /// The yaw of the odometry, plus --heading-offset
-    Odometry,
-    /// The true pose, where a recording holds it: for tests
-    Truth,
-}
-
-impl HeadingFrom {
-    /// The value as the option spells it.
-    pub(crate) fn as_str(self) -> &'static str {
-        match self {
-            HeadingFrom::Odometry => "odometry",
-            HeadingFrom::Truth => "truth",
-        }
-    }
-}
-
-/// An angle of at most a turn.
-pub(crate) fn degrees(text: &str) -> Result<f64, String> {
-    text.parse()
-        .ok()
-        .filter(|degrees| (-360.0..=360.0).contains(degrees))
-        .ok_or_else(|| "allowed are degrees from -360 to 360".to_owned())
 }
 
 #[cfg(test)]

@@ -1,0 +1,518 @@
+//! Where a scan's heading comes from, if it is known.
+//!
+//! What odometry and the ground truth said is kept, and a scan picks what
+//! belongs to it. A heading that is too old is refused, never stretched.
+
+use std::collections::VecDeque;
+
+use geometry::wrap_angle;
+use messages::{GroundTruth, Name, Odometry, ScanHeader};
+
+use crate::localizer::Prior;
+
+/// What is known of the heading. With nothing given, all headings are searched.
+#[derive(Debug, Clone, Default, clap::Args)]
+pub struct HeadingConfig {
+    /// The laser's heading in the map, degrees counter-clockwise from its x
+    /// axis, -360..=360: only x and y are searched.
+    #[arg(long, value_name = "DEGREES", value_parser = degrees, allow_negative_numbers = true)]
+    #[arg(conflicts_with = "heading_from")]
+    pub heading: Option<f64>,
+
+    /// Where each scan's heading comes from: only x and y are searched.
+    #[arg(long, value_enum, value_name = "SOURCE")]
+    pub heading_from: Option<HeadingFrom>,
+
+    /// Added to the heading from odometry, degrees, -360..=360: the heading in
+    /// the map where odometry says 0. Odometry drifts, so this serves the start
+    /// of a run. 0 where it is not given.
+    #[arg(long, value_name = "DEGREES", value_parser = degrees, allow_negative_numbers = true)]
+    pub heading_offset: Option<f64>,
+
+    /// Odometry that was measured longer before its scan is not used, seconds,
+    /// 0..=60. 1 where it is not given.
+    #[arg(long, value_name = "SECONDS", value_parser = seconds)]
+    pub heading_max_age_s: Option<f64>,
+}
+
+/// What headings come from.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, clap::ValueEnum)]
+pub enum HeadingFrom {
+    /// The newest odometry that was measured before the scan.
+    Odometry,
+    /// The true pose of the scan, where a recording holds it; for tests.
+    Truth,
+}
+
+impl std::fmt::Display for HeadingFrom {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        f.write_str(match self {
+            HeadingFrom::Odometry => "odometry",
+            HeadingFrom::Truth => "truth",
+        })
+    }
+}
+
+/// What is known of the heading of scans.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub enum HeadingSource {
+    /// Nothing: all headings are searched.
+    Searched,
+    /// Always the same, in the map, radians.
+    Fixed(f64),
+    /// The newest odometry that was measured before the scan.
+    Odometry {
+        /// Heading in the map where odometry says 0, radians.
+        offset: f64,
+        /// Between the odometry and the scan at most, nanoseconds.
+        max_age_ns: i64,
+    },
+    /// The ground truth that was measured with the scan.
+    Truth,
+}
+
+/// Why a scan has no heading.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, thiserror::Error)]
+pub enum HeadingError {
+    /// No odometry tells it.
+    #[error(
+        "the heading is to come from odometry, but none is known that was \
+         measured at {scan_ns} ns or before"
+    )]
+    NoOdometry {
+        /// When the scan was measured, nanoseconds.
+        scan_ns: i64,
+    },
+    /// The odometry that there is tells an old one.
+    #[error(
+        "the newest odometry was measured {age_ns} ns before the scan: at most \
+         {allowed_ns} ns are allowed"
+    )]
+    OldOdometry {
+        /// Between the odometry and the scan, nanoseconds.
+        age_ns: i64,
+        /// By the configuration, nanoseconds.
+        allowed_ns: i64,
+    },
+    /// No truth tells it.
+    #[error(
+        "the heading is to come from the ground truth, but none is known that was \
+         measured at {scan_ns} ns"
+    )]
+    NoTruth {
+        /// When the scan was measured, nanoseconds.
+        scan_ns: i64,
+    },
+}
+
+impl HeadingConfig {
+    /// Where headings come from, in radians and nanoseconds.
+    #[must_use]
+    pub fn source(&self) -> HeadingSource {
+        match (self.heading, self.heading_from) {
+            (Some(degrees), _) => HeadingSource::Fixed(degrees.to_radians()),
+            (None, None) => HeadingSource::Searched,
+            (None, Some(HeadingFrom::Truth)) => HeadingSource::Truth,
+            (None, Some(HeadingFrom::Odometry)) => HeadingSource::Odometry {
+                offset: self.heading_offset.unwrap_or(0.0).to_radians(),
+                max_age_ns: (self.heading_max_age_s.unwrap_or(1.0) * 1e9) as i64,
+            },
+        }
+    }
+
+    /// Checks what no option can check alone: clap lets an option's requirement
+    /// go where something else excludes it, as `--heading` does here.
+    ///
+    /// # Errors
+    /// Names the option and what it needs.
+    pub fn check(&self) -> Result<(), String> {
+        if self.heading_from == Some(HeadingFrom::Odometry) {
+            return Ok(());
+        }
+        let options = [
+            ("--heading-offset", self.heading_offset),
+            ("--heading-max-age-s", self.heading_max_age_s),
+        ];
+        match options.iter().find(|(_, value)| value.is_some()) {
+            Some((option, _)) => Err(format!("{option} needs --heading-from odometry")),
+            None => Ok(()),
+        }
+    }
+}
+
+fn degrees(text: &str) -> Result<f64, String> {
+    crate::config::parse(text, -360.0..=360.0, "degrees")
+}
+
+fn seconds(text: &str) -> Result<f64, String> {
+    crate::config::parse(text, 0.0..=60.0, "seconds")
+}
+
+/// What was said about headings.
+#[derive(Debug, Clone)]
+pub struct History {
+    odometry: Recent<OdometryYaw>,
+    truths: Recent<Truth>,
+}
+
+#[derive(Debug, Clone, Copy)]
+struct OdometryYaw {
+    measured_ns: i64,
+    yaw: f64,
+    child_frame: Name,
+}
+
+#[derive(Debug, Clone, Copy)]
+struct Truth {
+    measured_ns: i64,
+    yaw: f64,
+}
+
+impl History {
+    /// Keeps the last readings of each kind, so many at most.
+    #[must_use]
+    pub fn keeping(readings: usize) -> Self {
+        History {
+            odometry: Recent::keeping(readings),
+            truths: Recent::keeping(readings),
+        }
+    }
+
+    /// Takes note of odometry.
+    pub fn hear_odometry(&mut self, odometry: &Odometry) {
+        self.odometry.push(OdometryYaw {
+            measured_ns: odometry.stamp.measured_ns,
+            yaw: odometry.odom_from_child.yaw,
+            child_frame: odometry.child_frame,
+        });
+    }
+
+    /// Takes note of a true pose.
+    pub fn hear_truth(&mut self, truth: &GroundTruth) {
+        self.truths.push(Truth {
+            measured_ns: truth.stamp.measured_ns,
+            yaw: truth.map_from_laser.yaw,
+        });
+    }
+}
+
+impl HeadingSource {
+    /// What a localizer has to be prepared for.
+    #[must_use]
+    pub fn prior(&self) -> Prior {
+        match self {
+            HeadingSource::Searched => Prior::None,
+            _ => Prior::Heading,
+        }
+    }
+
+    /// The laser's heading in the map when it measured `scan`, radians; `None`
+    /// where it is to be searched.
+    ///
+    /// Odometry of another frame than the scan's is taken for that of the
+    /// robot's base, and the mount's yaw is added where the scan knows it; where
+    /// it does not, the offset has to hold it.
+    ///
+    /// # Errors
+    /// If nothing in `history` belongs to the scan.
+    pub fn heading_of(
+        &self,
+        scan: &ScanHeader,
+        history: &History,
+    ) -> Result<Option<f64>, HeadingError> {
+        match *self {
+            HeadingSource::Searched => Ok(None),
+            HeadingSource::Fixed(heading) => Ok(Some(heading)),
+            HeadingSource::Truth => truth_of(scan, history).map(Some),
+            HeadingSource::Odometry { offset, max_age_ns } => {
+                let odometry = odometry_of(scan, history, max_age_ns)?;
+                let mount = if odometry.child_frame == scan.frame || scan.mount_known != 1 {
+                    0.0
+                } else {
+                    scan.base_from_laser.yaw
+                };
+                Ok(Some(wrap_angle(odometry.yaw + mount + offset)))
+            }
+        }
+    }
+}
+
+fn truth_of(scan: &ScanHeader, history: &History) -> Result<f64, HeadingError> {
+    let scan_ns = scan.stamp.measured_ns;
+    let mut newest_first = history.truths.readings.iter().rev();
+    newest_first
+        .find(|truth| truth.measured_ns == scan_ns)
+        .map(|truth| truth.yaw)
+        .ok_or(HeadingError::NoTruth { scan_ns })
+}
+
+/// Looks by the time of measuring and not of arrival, for a recording that is
+/// played over and over starts anew.
+fn odometry_of(
+    scan: &ScanHeader,
+    history: &History,
+    allowed_ns: i64,
+) -> Result<OdometryYaw, HeadingError> {
+    let scan_ns = scan.stamp.measured_ns;
+    let before = history.odometry.readings.iter();
+    let newest = before
+        .filter(|odometry| odometry.measured_ns <= scan_ns)
+        .max_by_key(|odometry| odometry.measured_ns)
+        .ok_or(HeadingError::NoOdometry { scan_ns })?;
+    let age_ns = scan_ns.saturating_sub(newest.measured_ns);
+    if age_ns > allowed_ns {
+        return Err(HeadingError::OldOdometry { age_ns, allowed_ns });
+    }
+    Ok(*newest)
+}
+
+/// The last readings, oldest first.
+#[derive(Debug, Clone)]
+struct Recent<R> {
+    readings: VecDeque<R>,
+    most: usize,
+}
+
+impl<R> Recent<R> {
+    fn keeping(most: usize) -> Self {
+        Recent {
+            readings: VecDeque::new(),
+            most,
+        }
+    }
+
+    fn push(&mut self, reading: R) {
+        if self.readings.len() == self.most {
+            self.readings.pop_front();
+        }
+        self.readings.push_back(reading);
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use bytemuck::Zeroable;
+    use messages::{Pose2, Stamp};
+
+    use super::*;
+
+    const KEPT: usize = 5;
+    const SECOND_NS: i64 = 1_000_000_000;
+
+    fn stamp(measured_ns: i64) -> Stamp {
+        Stamp {
+            measured_ns,
+            ..Stamp::default()
+        }
+    }
+
+    fn turned(yaw: f64) -> Pose2 {
+        Pose2 {
+            x: 3.0,
+            y: 4.0,
+            yaw,
+        }
+    }
+
+    fn scan(measured_ns: i64) -> ScanHeader {
+        ScanHeader {
+            stamp: stamp(measured_ns),
+            frame: Name::new("laser"),
+            ..Zeroable::zeroed()
+        }
+    }
+
+    fn odometry(measured_ns: i64, yaw: f64) -> Odometry {
+        Odometry {
+            stamp: stamp(measured_ns),
+            odom_from_child: turned(yaw),
+            child_frame: Name::new("laser"),
+            ..Zeroable::zeroed()
+        }
+    }
+
+    fn truth(measured_ns: i64, yaw: f64) -> GroundTruth {
+        GroundTruth {
+            stamp: stamp(measured_ns),
+            map_from_laser: turned(yaw),
+            frame: Name::new("map"),
+        }
+    }
+
+    const BY_ODOMETRY: HeadingSource = HeadingSource::Odometry {
+        offset: 0.5,
+        max_age_ns: SECOND_NS,
+    };
+
+    fn history(readings: &[(i64, f64)]) -> History {
+        let mut history = History::keeping(KEPT);
+        for &(measured_ns, yaw) in readings {
+            history.hear_odometry(&odometry(measured_ns, yaw));
+        }
+        history
+    }
+
+    #[track_caller]
+    fn heading(source: HeadingSource, scan: &ScanHeader, history: &History) -> f64 {
+        source.heading_of(scan, history).unwrap().unwrap()
+    }
+
+    #[test]
+    fn a_searched_heading_is_none_and_a_fixed_one_needs_no_history() {
+        let nothing = History::keeping(KEPT);
+        let searched = HeadingSource::Searched.heading_of(&scan(5), &nothing);
+        assert_eq!(searched.unwrap(), None);
+        assert_eq!(heading(HeadingSource::Fixed(1.5), &scan(5), &nothing), 1.5);
+    }
+
+    #[test]
+    fn odometry_is_the_newest_that_was_measured_before_the_scan() {
+        let history = history(&[(10, 0.1), (20, 0.2), (30, 0.3)]);
+        let at = |measured_ns| heading(BY_ODOMETRY, &scan(measured_ns), &history);
+        assert_eq!(at(20), 0.2 + 0.5);
+        assert_eq!(at(29), 0.2 + 0.5);
+        assert_eq!(at(1000), 0.3 + 0.5);
+    }
+
+    #[test]
+    fn a_recording_that_starts_anew_finds_its_early_odometry() {
+        let history = history(&[(100, 0.1), (200, 0.2), (10, 0.7)]);
+        assert_eq!(heading(BY_ODOMETRY, &scan(15), &history), 0.7 + 0.5);
+    }
+
+    #[test]
+    fn odometry_that_is_too_old_or_too_new_is_refused() {
+        let history = history(&[(10, 0.1)]);
+        let refused = |measured_ns| {
+            BY_ODOMETRY
+                .heading_of(&scan(measured_ns), &history)
+                .unwrap_err()
+        };
+        assert!(matches!(
+            refused(9),
+            HeadingError::NoOdometry { scan_ns: 9 }
+        ));
+        assert_eq!(
+            heading(BY_ODOMETRY, &scan(10 + SECOND_NS), &history),
+            0.1 + 0.5
+        );
+        assert!(matches!(
+            refused(11 + SECOND_NS),
+            HeadingError::OldOdometry {
+                age_ns: 1_000_000_001,
+                allowed_ns: SECOND_NS
+            }
+        ));
+        // Times that foreign bytes may hold do not overflow.
+        refused(i64::MIN);
+        let ancient = self::history(&[(i64::MIN, 0.0)]);
+        assert!(BY_ODOMETRY.heading_of(&scan(i64::MAX), &ancient).is_err());
+    }
+
+    #[test]
+    fn odometry_of_the_base_is_turned_by_the_mount() {
+        let mut history = History::keeping(KEPT);
+        let of_base = Odometry {
+            child_frame: Name::new("base_link"),
+            ..odometry(10, 0.25)
+        };
+        history.hear_odometry(&of_base);
+        let unknown = ScanHeader {
+            base_from_laser: turned(1.0),
+            ..scan(10)
+        };
+        assert_eq!(heading(BY_ODOMETRY, &unknown, &history), 0.75);
+        let known = ScanHeader {
+            mount_known: 1,
+            ..unknown
+        };
+        assert_eq!(heading(BY_ODOMETRY, &known, &history), 1.75);
+        history.hear_odometry(&odometry(11, 0.25));
+        let later = ScanHeader {
+            stamp: stamp(11),
+            ..known
+        };
+        assert_eq!(heading(BY_ODOMETRY, &later, &history), 0.75);
+    }
+
+    #[test]
+    fn the_truth_has_exactly_the_time_of_the_scan() {
+        let mut history = History::keeping(KEPT);
+        history.hear_truth(&truth(10, 0.1));
+        history.hear_truth(&truth(20, 0.2));
+        assert_eq!(heading(HeadingSource::Truth, &scan(10), &history), 0.1);
+        let refused = HeadingSource::Truth.heading_of(&scan(11), &history);
+        assert!(matches!(
+            refused,
+            Err(HeadingError::NoTruth { scan_ns: 11 })
+        ));
+    }
+
+    #[test]
+    fn only_the_last_readings_are_kept() {
+        let readings: Vec<(i64, f64)> = (0..=KEPT as i64).map(|i| (i, 0.0)).collect();
+        let history = history(&readings);
+        assert_eq!(history.odometry.readings.len(), KEPT);
+        assert!(BY_ODOMETRY.heading_of(&scan(0), &history).is_err());
+        assert!(BY_ODOMETRY.heading_of(&scan(1), &history).is_ok());
+    }
+
+    #[derive(Debug, clap::Parser)]
+    struct Line {
+        #[command(flatten)]
+        heading: HeadingConfig,
+    }
+
+    fn parse(arguments: &str) -> Result<HeadingConfig, String> {
+        let words = ["x"].into_iter().chain(arguments.split_whitespace());
+        let line =
+            <Line as clap::Parser>::try_parse_from(words).map_err(|error| error.to_string())?;
+        line.heading.check().map(|()| line.heading)
+    }
+
+    fn source(arguments: &str) -> HeadingSource {
+        parse(arguments).unwrap().source()
+    }
+
+    #[test]
+    fn headings_are_given_in_degrees() {
+        assert_eq!(source("").prior(), Prior::None);
+        assert_eq!(
+            source("--heading -90"),
+            HeadingSource::Fixed(-std::f64::consts::FRAC_PI_2)
+        );
+        assert_eq!(source("--heading 0").prior(), Prior::Heading);
+        assert_eq!(source("--heading-from truth"), HeadingSource::Truth);
+        let odometry = |offset, max_age_ns| HeadingSource::Odometry { offset, max_age_ns };
+        assert_eq!(source("--heading-from odometry"), odometry(0.0, SECOND_NS));
+        assert_eq!(
+            source("--heading-from odometry --heading-offset -180 --heading-max-age-s 0.25"),
+            odometry(-std::f64::consts::PI, SECOND_NS / 4)
+        );
+    }
+
+    #[test]
+    fn what_is_refused_says_what_is_allowed() {
+        let refuse = |arguments: &str, expected: &str| {
+            let text = parse(arguments).unwrap_err();
+            assert!(text.contains(expected), "{arguments}: {text}");
+        };
+        refuse("--heading 10 --heading-from truth", "cannot be used with");
+        let needs_odometry = [
+            "--heading-offset 10",
+            "--heading-max-age-s 1",
+            "--heading 1 --heading-offset 10",
+            "--heading-from truth --heading-offset 0",
+            "--heading-from truth --heading-max-age-s 1",
+        ];
+        for arguments in needs_odometry {
+            refuse(arguments, "needs --heading-from odometry");
+        }
+        refuse("--heading NaN", "-360 to 360 degrees");
+        refuse(
+            "--heading-from odometry --heading-max-age-s 61",
+            "0 to 60 seconds",
+        );
+        refuse("--heading-from gps", "odometry, truth");
+    }
+}
