@@ -45,8 +45,8 @@ impl Graph {
     /// `step` is to take all samples that its subscribers have; one left there
     /// waits for the next input or tick. A signal ends the sleep at once; a flag
     /// that the program sets itself is seen with the next input or tick. Before
-    /// each call, the latched publishers of this graph serve late joiners, who
-    /// thus wait a tick at most, or as long as `step` takes.
+    /// each call, the publishers of this graph connect with late joiners, who thus
+    /// wait for a latched sample a tick at most, or as long as `step` takes.
     ///
     /// # Errors
     /// What `step` returns, and [`TransportError`] if waiting or serving fails.
@@ -69,7 +69,7 @@ impl Graph {
                 tick: ticks.passed(),
             };
             if input || wake.tick {
-                self.latched().serve_late_joiners()?;
+                self.publishers().serve_late_joiners()?;
                 if step(wake)? == Flow::Stop {
                     break;
                 }

@@ -11,7 +11,7 @@ use iceoryx2::node::Node;
 use iceoryx2::prelude::{NodeBuilder, NodeName, SignalHandlingMode, ipc};
 use messages::{HealthHeader, Name, Topic};
 
-use crate::latched::LatchedPublishers;
+use crate::idle::IdlePublishers;
 use crate::membership::Membership;
 use crate::signals::Signals;
 use crate::{GraphName, Health, Publisher, Subscriber, TransportError, log, root};
@@ -26,7 +26,7 @@ pub struct Graph {
     membership: Membership,
     node: Node<ipc::Service>,
     signals: Signals,
-    latched: LatchedPublishers,
+    publishers: IdlePublishers,
 }
 
 impl Graph {
@@ -71,7 +71,7 @@ impl Graph {
             membership,
             node,
             signals,
-            latched: LatchedPublishers::default(),
+            publishers: IdlePublishers::default(),
         })
     }
 
@@ -131,9 +131,7 @@ impl Graph {
 
     fn publisher_for<T: Topic>(&self, items: usize) -> Result<Publisher<T>, TransportError> {
         let publisher = Publisher::create(&self.node, items)?;
-        if let Some(latched) = publisher.latched() {
-            self.latched.add(latched);
-        }
+        self.publishers.add(publisher.for_event_loop());
         Ok(publisher)
     }
 
@@ -141,8 +139,8 @@ impl Graph {
         &self.signals
     }
 
-    pub(crate) fn latched(&self) -> &LatchedPublishers {
-        &self.latched
+    pub(crate) fn publishers(&self) -> &IdlePublishers {
+        &self.publishers
     }
 }
 

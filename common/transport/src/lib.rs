@@ -39,7 +39,7 @@
 //! | `graph_name`, `membership`, `root` | which graph; what keeps it apart from others; the user's folder |
 //! | `graph` | joining, and making the ends of topics |
 //! | `service`, `header` | a topic in terms of iceoryx2: quality of service, types |
-//! | `publisher`, `loan`, `latched` | sending; filling in place; late joiners |
+//! | `publisher`, `loan`, `idle` | sending; filling in place; late joiners |
 //! | `subscriber`, `gaps` | receiving; counting what was lost |
 //! | `event_loop`, `signals` | waiting for inputs, ticks, SIGINT and SIGTERM |
 //! | `health`, `clock` | a node's report on itself; the clock of latencies |
@@ -98,7 +98,7 @@ mod graph;
 mod graph_name;
 mod header;
 mod health;
-mod latched;
+mod idle;
 mod leftovers;
 mod loan;
 mod log;

@@ -16,7 +16,7 @@ use iceoryx2::prelude::{
 use messages::Topic;
 
 use crate::header::Header;
-use crate::latched::Latched;
+use crate::idle::Connects;
 use crate::service::{self, Samples};
 use crate::{Loan, TransportError, space};
 
@@ -75,10 +75,10 @@ impl<T: Topic> Publisher<T> {
         })
     }
 
-    /// For the event loop; `None` where the topic keeps nothing for late joiners.
-    pub(crate) fn latched(&self) -> Option<Weak<dyn Latched>> {
+    /// For the event loop.
+    pub(crate) fn for_event_loop(&self) -> Weak<dyn Connects> {
         let weak: Weak<Inner<T>> = Rc::downgrade(&self.inner);
-        T::LATCHED.then_some(weak as Weak<dyn Latched>)
+        weak
     }
 
     /// Memory for a sample of `items` items in shared memory, all of them and
@@ -159,14 +159,16 @@ impl<T: Topic> Inner<T> {
     }
 }
 
-impl<T: Topic> Latched for Inner<T> {
+impl<T: Topic> Connects for Inner<T> {
     fn serve_late_joiners(&self) -> Result<(), TransportError> {
         let subscribers = self.subscribers();
         if *self.served.borrow() == subscribers {
             return Ok(());
         }
         self.update_connections()?;
-        self.wake()?;
+        if T::LATCHED {
+            self.wake()?;
+        }
         self.served.replace(subscribers);
         Ok(())
     }
