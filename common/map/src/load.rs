@@ -200,16 +200,18 @@ mod tests {
         let nowhere = load("no/such.yaml").unwrap_err().to_string();
         assert_eq!(nowhere, "cannot read the map description no/such.yaml");
         let folder = folder(YAML, "other.pgm", b"P5 1 1 255\n\x00");
-        let message = load_from(&folder).unwrap_err().to_string();
-        let image = folder.path().join("floor.pgm").display().to_string();
-        let place = format!(
-            "named by {}:1:8: ",
-            folder.path().join("floor.yaml").display()
+        let error = load_from(&folder).unwrap_err();
+        let image = folder.path().join("floor.pgm");
+        let yaml = folder.path().join("floor.yaml");
+        assert_eq!(
+            error.to_string(),
+            format!(
+                "cannot read the image {}, named by {}:1:8",
+                image.display(),
+                yaml.display()
+            )
         );
-        assert!(
-            message.contains(&image) && message.contains(&place),
-            "{message}"
-        );
+        assert!(std::error::Error::source(&error).is_some(), "the system's");
     }
 
     #[test]

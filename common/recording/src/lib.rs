@@ -18,6 +18,7 @@ mod kind;
 mod message;
 mod mount;
 mod parse;
+mod pass;
 mod reading;
 mod recording;
 mod registry;
