@@ -1,19 +1,19 @@
 //! Global localization by reverse projection: where on a map could this scan
 //! have been taken? Exact, pure, and the same in the graph and in the tools.
 //!
-//! It follows "Global Localization of Mobile Robots by
-//! Reverse Projection of Sensor Readings" (the paper): each reading is projected from every
-//! boundary cell of the obstacles back into the open space that sees it, and
-//! where the votes meet is the robot. All votes are integers, so that every
-//! fast way of counting them equals the plain one to the last bit.
+//! It follows "Global Localization of Mobile Robots by Reverse Projection of
+//! Sensor Readings" (the paper): each reading is projected from every boundary
+//! cell of the obstacles back into the open space that sees it, and where the
+//! votes meet is the robot. All votes are integers, so that every fast way of
+//! counting them equals the plain one to the last bit.
 //!
 //! How a scan flows through the modules:
 //!
 //! ```text
-//! occupancy ─ grid ─ boundary ─┬─ lines ─────┐
-//!                              └─ intervals ─┴─ search ─┐
-//! scan ─ beams ─ program (taper) ────────────┬──────────┴─ votes ─ peaks
-//!                                            └─ sweep / scatter ─┘
+//! occupancy ─ grid ─ boundary ─┬─ lines ─┐
+//!                  └─ sets ────┴─────────┴─ search ─┐
+//! scan ─ beams ─ program (taper) ──────────┬────────┴─ votes ─ peaks
+//!                                          └─ sweep / scatter ─┘
 //! ```
 //!
 //! The crate knows no process, socket, clock or file.
