@@ -2,7 +2,7 @@
 //!
 //! The library reads the container. It does no input itself and asks for bytes;
 //! here they come from memory, and never more than there are: a record that
-//! claims four gigabytes makes it ask for them, and gets what is left.
+//! claims hundreds of megabytes makes it ask for them, and gets what is left.
 
 use mcap::McapError;
 use mcap::sans_io::{LinearReadEvent, LinearReader, LinearReaderOptions};

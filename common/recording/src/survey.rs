@@ -166,10 +166,12 @@ mod tests {
                 ..
             })
         ));
-        assert!(matches!(
+        // Behind the magic (8), header (17), data end (13) and footer (29).
+        let found = "\"more\"".to_owned();
+        assert_eq!(
             damage(&[end(), b"more".to_vec()]),
-            Damage::End { .. }
-        ));
+            Damage::End { at: 67, found }
+        );
         // The count, then all that is not looked at.
         let mut statistics = record(
             op::STATISTICS,
