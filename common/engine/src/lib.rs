@@ -26,6 +26,7 @@ pub mod directions;
 mod error;
 pub mod grid;
 pub mod heading;
+pub mod instruction_set;
 mod leaf;
 pub mod lines;
 pub mod localizer;

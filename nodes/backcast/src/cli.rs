@@ -4,7 +4,7 @@ use std::process::ExitCode;
 
 use clap::{Parser, Subcommand};
 
-use crate::{check, evaluate, locate, run};
+use crate::{bench, check, evaluate, locate, run};
 
 /// Finds where a robot is from its laser and a map, with no initial guess.
 ///
@@ -36,6 +36,9 @@ enum Command {
     /// Judges the places that are found against the truth in recordings
     #[command(after_help = evaluate::NOTES)]
     Evaluate(evaluate::Config),
+    /// Measures the methods of global localization on generated worlds
+    #[command(after_help = bench::NOTES)]
+    Bench(bench::Config),
 }
 
 /// Runs the command that the process was started with.
@@ -48,6 +51,7 @@ pub fn main() -> ExitCode {
         Some(Command::Check(config)) => check::run(&config),
         Some(Command::Locate(config)) => locate::run(&config),
         Some(Command::Evaluate(config)) => evaluate::run(&config),
+        Some(Command::Bench(config)) => bench::run(&config),
     };
     outcome.unwrap_or_else(|error| {
         eprintln!("backcast: {}", transport::with_causes(&error));
@@ -100,6 +104,14 @@ mod tests {
             "backcast --heading-from compass",
             "backcast --graph Big",
             "backcast --rate 2 check",
+            "backcast bench",
+            "backcast bench table3",
+            "backcast bench search --kind caves",
+            "backcast bench search --size 31",
+            "backcast bench search --size 5001",
+            "backcast bench table1 --p-over-n 0",
+            "backcast bench table1 --noise 26",
+            "backcast bench table2 --headings 361",
         ] {
             let error = parse(line).expect_err(line);
             assert_eq!(error.exit_code(), 2, "{line}");

@@ -2,6 +2,7 @@
 
 use std::{io, path::PathBuf, process::ExitStatus};
 
+use benchmarks::BenchmarksError;
 use dataflow::DataflowError;
 use engine::EngineError;
 use engine::heading::HeadingError;
@@ -163,6 +164,9 @@ pub enum BackcastError {
         /// True poses in the recording.
         truths: usize,
     },
+    /// A case of the bench cannot be set up.
+    #[error(transparent)]
+    Benchmarks(#[from] BenchmarksError),
     /// The thread's processor time cannot be read.
     #[error("cannot read the processor time of a thread")]
     Clock(#[source] nix::Error),

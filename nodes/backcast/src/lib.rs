@@ -8,6 +8,7 @@
 
 pub mod cli;
 
+mod bench;
 mod check;
 mod descriptor;
 mod error;

@@ -1,0 +1,266 @@
+//! Correlation with a likelihood field: how near to an obstacle do the end
+//! points of the beams lie (Thrun, Burgard and Fox, Probabilistic Robotics,
+//! section 6.4)? Whether something stands between is not asked.
+
+use engine::grid::Cell;
+use engine::instruction_set::InstructionSet;
+use engine::space::Space;
+
+use super::Baseline;
+use super::best::{Best, Estimate};
+use super::padded::Padded;
+use super::reading::Readings;
+use super::row_sums::{self, Group};
+use crate::worlds::World;
+
+/// Likelihood of an end point in an obstacle: four bits, as fine as the votes
+/// of the engine.
+pub(super) const FULL: u8 = 15;
+
+/// Rows whose sum fits eight bits.
+const TOGETHER: usize = (u8::MAX / FULL) as usize;
+
+/// Correlation by end points in a likelihood field.
+#[derive(Debug, Clone)]
+pub struct FieldCorrelation {
+    space: Space,
+    field: Padded,
+    open: Vec<bool>,
+    instructions: InstructionSet,
+}
+
+impl FieldCorrelation {
+    /// Prepares a map for readings with one deviation, in cells.
+    #[must_use]
+    pub fn new(world: &World, space: &Space, sigma_cells: f64) -> Self {
+        let grid = &world.grid;
+        let field = likelihood(world, sigma_cells);
+        FieldCorrelation {
+            space: space.clone(),
+            field: Padded::new(grid.width(), field.into_iter()),
+            open: grid
+                .cells()
+                .iter()
+                .map(|&cell| cell == Cell::Open)
+                .collect(),
+            instructions: InstructionSet::best(),
+        }
+    }
+}
+
+impl Baseline for FieldCorrelation {
+    fn locate(&mut self, readings: &Readings, headings: &[usize]) -> Option<Estimate> {
+        let mut best = Best::default();
+        let mut sums = vec![0; self.field.row];
+        let (mut offsets, mut groups) = (Vec::new(), Vec::new());
+        for &heading in headings {
+            let ends = end_points(readings, &self.space, heading);
+            for y in 0..self.field.height {
+                offsets.clear();
+                offsets.extend(ends.iter().filter_map(|&end| self.field.shifted(y, end)));
+                groups.clear();
+                groups.extend((0..offsets.len()).step_by(TOGETHER).map(|start| Group {
+                    start,
+                    end: (start + TOGETHER).min(offsets.len()),
+                    weight: 1,
+                }));
+                let bytes = self.field.bytes();
+                row_sums::fill(self.instructions, bytes, &offsets, &groups, &mut sums);
+                let open = &self.open[y * self.field.width..][..self.field.width];
+                take_row(&mut best, &sums, open, y, heading);
+            }
+        }
+        best.get()
+    }
+
+    fn bytes(&self) -> usize {
+        self.field.bytes().len() + self.open.len()
+    }
+}
+
+/// Where the beams end, in cells from the laser, at one heading.
+pub(super) fn end_points(readings: &Readings, space: &Space, heading: usize) -> Vec<(i32, i32)> {
+    let end = |reading: &super::Reading| {
+        let angle = (heading + reading.bearing) as f64 * space.directions.spacing();
+        let (sin, cos) = angle.sin_cos();
+        let cells = |part: f64| (reading.cells * part).round() as i32;
+        (cells(cos), cells(sin))
+    };
+    readings.beams.iter().map(end).collect()
+}
+
+/// Takes the best of a row, if it is better than what there is. Rows come in
+/// order, so that of equal poses the first one stays.
+pub(super) fn take_row(best: &mut Best, sums: &[u16], open: &[bool], y: usize, heading: usize) {
+    let score = best.score();
+    // Most rows hold nothing better: one pass over them decides.
+    let most = sums
+        .iter()
+        .zip(open)
+        .map(|(&sum, &open)| sum * u16::from(open))
+        .max();
+    if most.is_none_or(|most| f32::from(most) <= score) {
+        return;
+    }
+    for (x, (&sum, _)) in sums
+        .iter()
+        .zip(open)
+        .enumerate()
+        .filter(|(_, (_, open))| **open)
+    {
+        best.take(Estimate {
+            x,
+            y,
+            heading,
+            score: f32::from(sum),
+        });
+    }
+}
+
+/// For each cell the likelihood of an end point there, up to [`FULL`].
+pub(super) fn likelihood(world: &World, sigma_cells: f64) -> Vec<u8> {
+    // Beyond this distance the likelihood rounds to zero.
+    let most = (0..)
+        .find(|&square: &u32| level(square, sigma_cells) == 0)
+        .unwrap_or(u32::MAX);
+    let levels: Vec<u8> = (0..=most)
+        .map(|square| level(square, sigma_cells))
+        .collect();
+    let at = |square: u32| levels[square.min(most) as usize];
+    square_distances(world).into_iter().map(at).collect()
+}
+
+fn level(square: u32, sigma_cells: f64) -> u8 {
+    let height = (-0.5 * f64::from(square) / (sigma_cells * sigma_cells)).exp();
+    (f64::from(FULL) * height).round() as u8
+}
+
+/// For each cell the squared distance to the nearest boundary cell, exactly:
+/// column by column, then along each row by the lower envelope of parabolas
+/// (Felzenszwalb and Huttenlocher). What lies within an obstacle is none, for
+/// no beam ends there.
+fn square_distances(world: &World) -> Vec<u32> {
+    let (width, height) = (world.grid.width(), world.grid.height());
+    let far = (width + height) as u32;
+    let mut columns = vec![far; width * height];
+    for cell in &world.boundary {
+        columns[usize::from(cell.y) * width + usize::from(cell.x)] = 0;
+    }
+    for i in width..width * height {
+        columns[i] = columns[i].min(columns[i - width] + 1);
+    }
+    for i in (0..width * (height - 1)).rev() {
+        columns[i] = columns[i].min(columns[i + width] + 1);
+    }
+    for row in columns.chunks_exact_mut(width) {
+        spread_row(row);
+    }
+    columns
+}
+
+/// Turns distances along the columns into squared distances.
+fn spread_row(row: &mut [u32]) {
+    let squares: Vec<i64> = row.iter().map(|&d| i64::from(d) * i64::from(d)).collect();
+    // Parabola `i` is below its predecessor from `from` on.
+    let mut envelope: Vec<(usize, i64)> = Vec::new();
+    for (i, &square) in squares.iter().enumerate() {
+        let from = loop {
+            let Some(&(last, since)) = envelope.last() else {
+                break 0;
+            };
+            let (a, b) = (last as i64, i as i64);
+            let from = (square + b * b - squares[last] - a * a).div_euclid(2 * (b - a)) + 1;
+            if from > since {
+                break from;
+            }
+            envelope.pop();
+        };
+        if from < row.len() as i64 {
+            envelope.push((i, from));
+        }
+    }
+    let mut next = 0;
+    for (x, distance) in row.iter_mut().enumerate() {
+        while envelope
+            .get(next + 1)
+            .is_some_and(|&(_, from)| from <= x as i64)
+        {
+            next += 1;
+        }
+        let (i, _) = envelope[next];
+        let off = x.abs_diff(i) as i64;
+        *distance = (squares[i] + off * off) as u32;
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use engine::taper::TaperShape;
+
+    use super::*;
+    use crate::scans::{ScanConfig, simulate};
+    use crate::worlds::Kind;
+
+    #[test]
+    fn distances_are_those_to_the_nearest_boundary_cell() {
+        let world = World::generate(Kind::Boxes, (40, 30), 0.25, 1).unwrap();
+        let places = world.boundary.iter();
+        let boundary: Vec<usize> = places
+            .map(|cell| usize::from(cell.y) * 40 + usize::from(cell.x))
+            .collect();
+        for (i, distance) in square_distances(&world).into_iter().enumerate() {
+            let square = |a: usize, b: usize| a.abs_diff(b).pow(2);
+            let to = |&j: &usize| square(i % 40, j % 40) + square(i / 40, j / 40);
+            assert_eq!(Some(distance as usize), boundary.iter().map(to).min());
+        }
+    }
+
+    #[test]
+    fn the_best_pose_is_that_of_plain_sums_on_every_instruction_set() {
+        let world = World::generate(Kind::Rooms, (90, 70), 0.15, 4).unwrap();
+        let space = world.space(24).unwrap();
+        let config = ScanConfig {
+            beams: 24,
+            noise_percent: 10.0,
+        };
+        let votes = config.votes(TaperShape::Trapezoid);
+        let field = likelihood(&world, 2.0);
+        let mut correlation = FieldCorrelation::new(&world, &space, 2.0);
+        let headings: Vec<usize> = (0..24).collect();
+        for scan in simulate(&world, &space, &config, 3, 6).unwrap() {
+            let readings = Readings::new(&scan.scan(), &space, &votes).unwrap();
+            let mut plain = Best::default();
+            for heading in 0..24 {
+                let ends = end_points(&readings, &space, heading);
+                for (x, y) in (0..70).flat_map(|y| (0..90).map(move |x| (x, y))) {
+                    let at = |&(dx, dy): &(i32, i32)| {
+                        let (x, y) = (x as i64 + i64::from(dx), y as i64 + i64::from(dy));
+                        let is_within = (0..90).contains(&x) && (0..70).contains(&y);
+                        if is_within {
+                            u16::from(field[(y * 90 + x) as usize])
+                        } else {
+                            0
+                        }
+                    };
+                    if world.grid.is_open(x as i64, y as i64) {
+                        let score = f32::from(ends.iter().map(at).sum::<u16>());
+                        plain.take(Estimate {
+                            x,
+                            y,
+                            heading,
+                            score,
+                        });
+                    }
+                }
+            }
+            for set in InstructionSet::available() {
+                correlation.instructions = set;
+                assert_eq!(
+                    correlation.locate(&readings, &headings),
+                    plain.get(),
+                    "{set}"
+                );
+            }
+        }
+    }
+}

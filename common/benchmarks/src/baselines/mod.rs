@@ -1,0 +1,152 @@
+//! Other methods of global localization, for comparison: those of the paper's
+//! tables and their faster variants, each written as well as it allows.
+//!
+//! | method | idea | sees through walls |
+//! |---|---|---|
+//! | [`RayCasting`] | Markov localization: rays cast from each pose | no |
+//! | [`RangeTable`] | the same, ranges looked up in a table of all | no |
+//! | [`PatchCorrelation`] | the scan drawn as a patch, correlated with the map | yes |
+//! | [`FieldCorrelation`] | end points looked up in a likelihood field | yes |
+//! | [`MonteCarlo`] | particles, uniform at the start, on the same field | yes |
+//!
+//! All but the last compute the score of every free cell at every heading asked
+//! for. None normalizes its posterior: the best pose does not depend on it, and
+//! to leave it out is only in their favour.
+
+mod best;
+mod clearance;
+mod field_correlation;
+mod monte_carlo;
+mod padded;
+mod patch_correlation;
+mod range_table;
+mod ray_casting;
+mod reading;
+mod row_sums;
+
+pub use best::Estimate;
+pub use field_correlation::FieldCorrelation;
+pub use monte_carlo::{MonteCarlo, MonteCarloConfig};
+pub use patch_correlation::PatchCorrelation;
+pub use range_table::RangeTable;
+pub use ray_casting::RayCasting;
+pub use reading::{Reading, Readings};
+
+/// A method, prepared for a map.
+pub trait Baseline {
+    /// The best pose at these headings, given in rising order; of equal ones
+    /// the first by (heading, y, x). `None` if no cell is free.
+    fn locate(&mut self, readings: &Readings, headings: &[usize]) -> Option<Estimate>;
+
+    /// Bytes of what was prepared.
+    fn bytes(&self) -> usize;
+}
+
+impl<B: Baseline> Baseline for &mut B {
+    fn locate(&mut self, readings: &Readings, headings: &[usize]) -> Option<Estimate> {
+        (**self).locate(readings, headings)
+    }
+
+    fn bytes(&self) -> usize {
+        (**self).bytes()
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use engine::taper::TaperShape;
+
+    use super::*;
+    use crate::scans::{ScanConfig, simulate};
+    use crate::worlds::{Kind, World};
+
+    const EXACT: ScanConfig = ScanConfig {
+        beams: 24,
+        noise_percent: 0.0,
+    };
+
+    /// Of four scans in each kind of world, with and without their heading,
+    /// all but `missed` of 24 are found, to so many cells and a heading.
+    #[track_caller]
+    fn check(cells: usize, missed: usize, make: impl Fn(&World) -> Box<dyn Baseline>) {
+        let mut far_off = Vec::new();
+        for kind in [Kind::Rooms, Kind::Corridors, Kind::Boxes] {
+            let world = World::generate(kind, (72, 60), 0.2, 5).unwrap();
+            let space = world.space(48).unwrap();
+            let votes = EXACT.votes(TaperShape::Trapezoid);
+            let mut baseline = make(&world);
+            for scan in simulate(&world, &space, &EXACT, 4, 3).unwrap() {
+                let readings = Readings::new(&scan.scan(), &space, &votes).unwrap();
+                for headings in [vec![scan.heading], (0..48).collect()] {
+                    let found = baseline.locate(&readings, &headings).unwrap();
+                    let off = found.x.abs_diff(scan.x).max(found.y.abs_diff(scan.y));
+                    let turned = (found.heading + 48 - scan.heading) % 48;
+                    if off > cells || turned.min(48 - turned) > 1 {
+                        far_off.push((kind, headings.len(), found));
+                    }
+                }
+            }
+        }
+        assert!(far_off.len() <= missed, "{far_off:?}");
+    }
+
+    #[test]
+    fn markov_localization_finds_the_true_pose() {
+        check(0, 0, |world| {
+            Box::new(RayCasting::new(world, &world.space(48).unwrap()))
+        });
+        check(0, 0, |world| {
+            Box::new(RangeTable::new(world, &world.space(48).unwrap(), 0..48))
+        });
+    }
+
+    // What these do not ask, whether something stands between, leads them
+    // astray now and then; and their end points are rounded to cells.
+    #[test]
+    fn methods_that_see_through_walls_mostly_find_the_true_pose() {
+        check(1, 4, |world| {
+            Box::new(PatchCorrelation::new(world, &world.space(48).unwrap()))
+        });
+        check(1, 2, |world| {
+            Box::new(FieldCorrelation::new(world, &world.space(48).unwrap(), 1.0))
+        });
+        check(3, 6, |world| {
+            let config = MonteCarloConfig::default();
+            Box::new(MonteCarlo::new(
+                world,
+                &world.space(48).unwrap(),
+                1.0,
+                config,
+            ))
+        });
+    }
+
+    #[test]
+    fn a_map_without_free_cells_has_no_pose() {
+        use engine::grid::{CellRules, Grid};
+        let grid = Grid::new(20, 16, &[100; 320], CellRules::default()).unwrap();
+        let world = World {
+            grid,
+            boundary: Vec::new(),
+        };
+        let space = world.space(48).unwrap();
+        let readings = Readings {
+            beams: vec![Reading {
+                bearing: 0,
+                cells: 3.0,
+                sigma_cells: 1.0,
+            }],
+        };
+        let config = MonteCarloConfig::default();
+        let baselines: [Box<dyn Baseline>; 5] = [
+            Box::new(RayCasting::new(&world, &space)),
+            Box::new(RangeTable::new(&world, &space, 0..48)),
+            Box::new(PatchCorrelation::new(&world, &space)),
+            Box::new(FieldCorrelation::new(&world, &space, 1.0)),
+            Box::new(MonteCarlo::new(&world, &space, 1.0, config)),
+        ];
+        for mut baseline in baselines {
+            assert_eq!(baseline.locate(&readings, &[0, 1]), None);
+        }
+    }
+}

@@ -1,0 +1,201 @@
+//! Correlation with a patch, as the paper compares with it (its [5], Konolige
+//! and Chou): the scan is drawn as a small local map, and that is correlated
+//! with the global map at each pose. What stands in between is not asked.
+
+use std::collections::HashMap;
+
+use engine::grid::Cell;
+use engine::instruction_set::InstructionSet;
+use engine::space::Space;
+
+use super::Baseline;
+use super::best::{Best, Estimate};
+use super::field_correlation::take_row;
+use super::padded::Padded;
+use super::reading::Readings;
+use super::row_sums::{self, Group};
+use crate::worlds::World;
+
+/// Most that a cell of the patch weighs.
+const FULL: u16 = 15;
+
+/// Rows of zeros and ones whose sum fits eight bits.
+const TOGETHER: usize = u8::MAX as usize;
+
+/// Correlation of a patch with the map.
+#[derive(Debug, Clone)]
+pub struct PatchCorrelation {
+    space: Space,
+    boundary: Padded,
+    open: Vec<bool>,
+    instructions: InstructionSet,
+}
+
+/// A cell of the patch, relative to the laser.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
+struct PatchCell {
+    weight: u16,
+    dy: i32,
+    dx: i32,
+}
+
+impl PatchCorrelation {
+    /// Prepares a map. Only its boundary counts: the patch shows where beams
+    /// end, and none ends within an obstacle.
+    #[must_use]
+    pub fn new(world: &World, space: &Space) -> Self {
+        let cells = world.grid.cells();
+        let width = world.grid.width();
+        let mut boundary = vec![0; cells.len()];
+        for cell in &world.boundary {
+            boundary[usize::from(cell.y) * width + usize::from(cell.x)] = 1;
+        }
+        PatchCorrelation {
+            space: space.clone(),
+            boundary: Padded::new(width, boundary.into_iter()),
+            open: cells.iter().map(|&cell| cell == Cell::Open).collect(),
+            instructions: InstructionSet::best(),
+        }
+    }
+
+    /// Cells of the patch at a heading: the paper's k for each beam, less what
+    /// beams share.
+    #[must_use]
+    pub fn patch_cells(&self, readings: &Readings, heading: usize) -> usize {
+        patch(readings, &self.space, heading).len()
+    }
+}
+
+impl Baseline for PatchCorrelation {
+    fn locate(&mut self, readings: &Readings, headings: &[usize]) -> Option<Estimate> {
+        let mut best = Best::default();
+        let mut sums = vec![0; self.boundary.row];
+        let (mut offsets, mut groups) = (Vec::new(), Vec::new());
+        for &heading in headings {
+            let patch = patch(readings, &self.space, heading);
+            for y in 0..self.boundary.height {
+                offsets.clear();
+                groups.clear();
+                for same in patch.chunk_by(|a, b| a.weight == b.weight) {
+                    for cells in same.chunks(TOGETHER) {
+                        let start = offsets.len();
+                        let shifted =
+                            |cell: &PatchCell| self.boundary.shifted(y, (cell.dx, cell.dy));
+                        offsets.extend(cells.iter().filter_map(shifted));
+                        let (end, weight) = (offsets.len(), same[0].weight);
+                        groups.push(Group { start, end, weight });
+                    }
+                }
+                let bytes = self.boundary.bytes();
+                row_sums::fill(self.instructions, bytes, &offsets, &groups, &mut sums);
+                let open = &self.open[y * self.boundary.width..][..self.boundary.width];
+                take_row(&mut best, &sums, open, y, heading);
+            }
+        }
+        best.get()
+    }
+
+    fn bytes(&self) -> usize {
+        self.boundary.bytes().len() + self.open.len()
+    }
+}
+
+/// Draws the scan: along each beam a taper of two deviations either way around
+/// the reading, the highest weight where beams cross. Sorted by weight.
+fn patch(readings: &Readings, space: &Space, heading: usize) -> Vec<PatchCell> {
+    let mut heights: HashMap<(i32, i32), f64> = HashMap::new();
+    for reading in &readings.beams {
+        let angle = (heading + reading.bearing) as f64 * space.directions.spacing();
+        let (sin, cos) = angle.sin_cos();
+        let reach = (2.0 * reading.sigma_cells).floor() as i32;
+        for offset in -reach..=reach {
+            let distance = reading.cells + f64::from(offset);
+            if distance > 0.0 {
+                let deviations = f64::from(offset) / reading.sigma_cells;
+                let height = (-0.5 * deviations * deviations).exp();
+                let cell = (
+                    (distance * cos).round() as i32,
+                    (distance * sin).round() as i32,
+                );
+                let highest = heights.entry(cell).or_insert(0.0);
+                *highest = highest.max(height);
+            }
+        }
+    }
+    // As with votes, the weights are lowered until they fit sixteen bits.
+    let sum: f64 = heights.values().sum();
+    let full = f64::from(FULL)
+        .min((f64::from(u16::MAX) / sum).floor())
+        .max(1.0);
+    let cell = |(&(dx, dy), &height): (&(i32, i32), &f64)| PatchCell {
+        weight: (full * height).round() as u16,
+        dy,
+        dx,
+    };
+    let mut cells: Vec<PatchCell> = heights
+        .iter()
+        .map(cell)
+        .filter(|cell| cell.weight > 0)
+        .collect();
+    cells.sort_unstable();
+    cells
+}
+
+#[cfg(test)]
+mod tests {
+    use std::collections::HashSet;
+
+    use engine::taper::TaperShape;
+
+    use super::*;
+    use crate::scans::{ScanConfig, simulate};
+    use crate::worlds::Kind;
+
+    #[test]
+    fn the_best_pose_is_that_of_plain_sums_on_every_instruction_set() {
+        let world = World::generate(Kind::Rooms, (90, 70), 0.15, 4).unwrap();
+        let space = world.space(24).unwrap();
+        let config = ScanConfig {
+            beams: 24,
+            noise_percent: 10.0,
+        };
+        let votes = config.votes(TaperShape::Trapezoid);
+        let mut correlation = PatchCorrelation::new(&world, &space);
+        let headings: Vec<usize> = (0..24).collect();
+        let places = world.boundary.iter();
+        let boundary: HashSet<(i64, i64)> = places
+            .map(|cell| (i64::from(cell.x), i64::from(cell.y)))
+            .collect();
+        for scan in simulate(&world, &space, &config, 3, 6).unwrap() {
+            let readings = Readings::new(&scan.scan(), &space, &votes).unwrap();
+            let mut plain = Best::default();
+            for heading in 0..24 {
+                let patch = patch(&readings, &space, heading);
+                for (x, y) in (0..70i64).flat_map(|y| (0..90i64).map(move |x| (x, y))) {
+                    let meets = |cell: &&PatchCell| {
+                        let (x, y) = (x + i64::from(cell.dx), y + i64::from(cell.dy));
+                        boundary.contains(&(x, y))
+                    };
+                    if world.grid.is_open(x, y) {
+                        let sum: u16 = patch.iter().filter(meets).map(|cell| cell.weight).sum();
+                        let (x, y, score) = (x as usize, y as usize, f32::from(sum));
+                        plain.take(Estimate {
+                            x,
+                            y,
+                            heading,
+                            score,
+                        });
+                    }
+                }
+            }
+            for set in InstructionSet::available() {
+                correlation.instructions = set;
+                assert_eq!(
+                    correlation.locate(&readings, &headings),
+                    plain.get(),
+                    "{set}"
+                );
+            }
+        }
+    }
+}

@@ -1,0 +1,252 @@
+//! Markov localization with all ranges computed beforehand, as Fox, Burgard
+//! and Thrun do it (the paper's [1]).
+
+use engine::grid::Cell;
+use engine::instruction_set::InstructionSet;
+use engine::space::Space;
+
+use super::Baseline;
+use super::best::{Best, Estimate};
+use super::reading::{MOST_DEVIATIONS, Readings};
+use crate::worlds::World;
+
+/// Cells that are scored together: their ranges in 360 directions fit the
+/// second cache.
+const TILE: usize = 1024;
+
+/// No obstacle along the ray.
+const NO_RANGE: u16 = u16::MAX;
+
+/// Markov localization with a table of ranges.
+///
+/// The table holds two bytes for each cell and direction. Tiles of cells are
+/// scored side by side, all headings while their ranges are in the cache.
+#[derive(Debug, Clone)]
+pub struct RangeTable {
+    space: Space,
+    width: usize,
+    /// Direction by direction, the range of each cell in steps.
+    ranges: Vec<u16>,
+    /// Where in `ranges` a direction begins; `None` if it was left out.
+    starts: Vec<Option<usize>>,
+    /// Zero where the robot may stand, else out of the question.
+    blocked: Vec<f32>,
+    instructions: InstructionSet,
+}
+
+impl RangeTable {
+    /// Computes the ranges in some directions: all, or those that a known
+    /// heading needs.
+    #[must_use]
+    pub fn new(world: &World, space: &Space, directions: impl IntoIterator<Item = usize>) -> Self {
+        let cells = world.grid.cells();
+        let mut table = RangeTable {
+            space: space.clone(),
+            width: world.grid.width(),
+            ranges: Vec::new(),
+            starts: vec![None; space.directions.count()],
+            blocked: cells
+                .iter()
+                .map(|&cell| {
+                    if cell == Cell::Open {
+                        0.0
+                    } else {
+                        f32::INFINITY
+                    }
+                })
+                .collect(),
+            instructions: InstructionSet::best(),
+        };
+        for direction in directions {
+            if table.starts[direction].is_none() {
+                table.starts[direction] = Some(table.ranges.len());
+                table.push(world, direction);
+            }
+        }
+        table
+    }
+
+    /// The range of a cell is one step more than that of the next on its line.
+    fn push(&mut self, world: &World, direction: usize) {
+        let grid = &world.grid;
+        let (width, height) = (grid.width(), grid.height());
+        let direction = self.space.directions.get(direction);
+        let start = self.ranges.len();
+        self.ranges.resize(start + width * height, NO_RANGE);
+        let ranges = &mut self.ranges[start..];
+        let (majors, minors, major_stride, minor_stride) = match direction.x_major {
+            true => (width, height, 1, width),
+            false => (height, width, width, 1),
+        };
+        for i in 0..majors {
+            let major = if direction.step > 0 {
+                majors - 1 - i
+            } else {
+                i
+            };
+            for minor in 0..minors {
+                let at = major * major_stride + minor * minor_stride;
+                let (x, y) = (at % width, at / width);
+                let next = direction.advance(x as i64, y as i64);
+                ranges[at] = match (grid.cells()[at], grid.get(next.0, next.1)) {
+                    (Cell::Occupied, _) => 0,
+                    (Cell::Open, Some(_)) => {
+                        ranges[next.1 as usize * width + next.0 as usize].saturating_add(1)
+                    }
+                    _ => NO_RANGE,
+                };
+            }
+        }
+    }
+
+    /// The ranges of all cells in a direction, row by row.
+    ///
+    /// # Panics
+    /// If the direction was left out.
+    #[must_use]
+    pub fn ranges(&self, direction: usize) -> &[u16] {
+        let start = self.starts[direction].expect("the direction is in the table");
+        &self.ranges[start..][..self.blocked.len()]
+    }
+
+    /// Scores one tile at one heading; lower is better.
+    fn score(&self, tile: usize, readings: &Readings, heading: usize, costs: &mut [f32]) {
+        let count = self.space.directions.count();
+        let len = costs.len();
+        costs.copy_from_slice(&self.blocked[tile..][..len]);
+        for reading in &readings.beams {
+            let direction = (heading + reading.bearing) % count;
+            let steps_per_cell = self.space.directions.get(direction).steps_per_cell;
+            let ranges = &self.ranges(direction)[tile..][..len];
+            let errors = Errors {
+                scale: (1.0 / (steps_per_cell * reading.sigma_cells)) as f32,
+                reading: (reading.cells / reading.sigma_cells) as f32,
+            };
+            errors.add(self.instructions, ranges, costs);
+        }
+    }
+}
+
+impl Baseline for RangeTable {
+    fn locate(&mut self, readings: &Readings, headings: &[usize]) -> Option<Estimate> {
+        let mut best = Best::default();
+        let mut costs = [0.0; TILE];
+        for tile in (0..self.blocked.len()).step_by(TILE) {
+            let costs = &mut costs[..TILE.min(self.blocked.len() - tile)];
+            for &heading in headings {
+                self.score(tile, readings, heading, costs);
+                for (i, &cost) in (tile..).zip(costs.iter()) {
+                    if -cost >= best.score() && cost.is_finite() {
+                        let (x, y) = (i % self.width, i / self.width);
+                        best.take(Estimate {
+                            x,
+                            y,
+                            heading,
+                            score: -cost,
+                        });
+                    }
+                }
+            }
+        }
+        best.get()
+    }
+
+    fn bytes(&self) -> usize {
+        size_of_val(&self.ranges[..]) + size_of_val(&self.blocked[..])
+    }
+}
+
+/// The squared error of one reading over many ranges.
+#[derive(Debug, Clone, Copy)]
+struct Errors {
+    /// Deviations for each step of range.
+    scale: f32,
+    /// The reading in deviations.
+    reading: f32,
+}
+
+impl Errors {
+    fn add(self, instructions: InstructionSet, ranges: &[u16], costs: &mut [f32]) {
+        match instructions {
+            #[cfg(target_arch = "x86_64")]
+            // SAFETY: the processor has what was detected.
+            InstructionSet::Avx512 => unsafe { self.add_avx512(ranges, costs) },
+            #[cfg(target_arch = "x86_64")]
+            // SAFETY: the processor has what was detected.
+            InstructionSet::Avx2 => unsafe { self.add_avx2(ranges, costs) },
+            _ => self.add_plain(ranges, costs),
+        }
+    }
+
+    #[cfg(target_arch = "x86_64")]
+    #[target_feature(enable = "avx512f,avx512bw,avx512dq,avx512vl")]
+    fn add_avx512(self, ranges: &[u16], costs: &mut [f32]) {
+        self.add_plain(ranges, costs);
+    }
+
+    #[cfg(target_arch = "x86_64")]
+    #[target_feature(enable = "avx2")]
+    fn add_avx2(self, ranges: &[u16], costs: &mut [f32]) {
+        self.add_plain(ranges, costs);
+    }
+
+    /// Compiled once for each instruction set.
+    #[inline(always)]
+    fn add_plain(self, ranges: &[u16], costs: &mut [f32]) {
+        for (cost, &range) in costs.iter_mut().zip(ranges) {
+            let deviations = f32::from(range) * self.scale - self.reading;
+            *cost += (deviations * deviations).min(MOST_DEVIATIONS * MOST_DEVIATIONS);
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use engine::reference;
+    use engine::taper::TaperShape;
+
+    use super::super::RayCasting;
+    use super::*;
+    use crate::scans::{ScanConfig, simulate};
+    use crate::worlds::Kind;
+
+    fn world() -> World {
+        World::generate(Kind::Rooms, (90, 70), 0.12, 4).unwrap()
+    }
+
+    #[test]
+    fn the_table_holds_what_rays_meet() {
+        let world = world();
+        let space = world.space(40).unwrap();
+        let table = RangeTable::new(&world, &space, 0..40);
+        for d in 0..40 {
+            for (i, &range) in table.ranges(d).iter().enumerate() {
+                let (x, y) = ((i % 90) as i64, (i / 90) as i64);
+                let plain = reference::range(&world.grid, x, y, space.directions.get(d));
+                assert_eq!(range, plain.unwrap_or(NO_RANGE));
+            }
+        }
+    }
+
+    #[test]
+    fn it_finds_what_ray_casts_find_on_every_instruction_set() {
+        let world = world();
+        let space = world.space(40).unwrap();
+        let config = ScanConfig {
+            beams: 20,
+            noise_percent: 10.0,
+        };
+        let votes = config.votes(TaperShape::Trapezoid);
+        let mut casts = RayCasting::new(&world, &space);
+        let mut table = RangeTable::new(&world, &space, 0..40);
+        let headings: Vec<usize> = (0..40).collect();
+        for scan in simulate(&world, &space, &config, 5, 6).unwrap() {
+            let readings = Readings::new(&scan.scan(), &space, &votes).unwrap();
+            let plain = casts.locate(&readings, &headings);
+            for set in InstructionSet::available() {
+                table.instructions = set;
+                assert_eq!(table.locate(&readings, &headings), plain, "{set}");
+            }
+        }
+    }
+}

@@ -1,0 +1,110 @@
+//! Markov localization as the paper compares with it (section II B): from each
+//! pose a ray is cast for each reading, and the squared errors are summed.
+
+use engine::space::Space;
+use messages::BoundaryCell;
+
+use super::Baseline;
+use super::best::{Best, Estimate};
+use super::clearance::Clearance;
+use super::reading::{MOST_DEVIATIONS, Readings};
+use crate::worlds::World;
+
+/// Markov localization by ray casts.
+///
+/// Rays leap over free space, and give up where the reading's error can grow
+/// no more. The posterior is complete: no pose is left out early.
+#[derive(Debug, Clone)]
+pub struct RayCasting {
+    space: Space,
+    clearance: Clearance,
+    /// Where the robot may stand.
+    free: Vec<BoundaryCell>,
+}
+
+/// A beam at one heading.
+#[derive(Debug, Clone, Copy)]
+struct Beam {
+    direction: usize,
+    /// Deviations for each step of range.
+    scale: f32,
+    /// The reading in deviations.
+    reading: f32,
+    /// Steps from which on the error is the greatest.
+    limit: i64,
+}
+
+impl RayCasting {
+    /// Prepares a map: what lets rays leap.
+    #[must_use]
+    pub fn new(world: &World, space: &Space) -> Self {
+        let grid = &world.grid;
+        let cells = (0..grid.height()).flat_map(|y| (0..grid.width()).map(move |x| (x, y)));
+        RayCasting {
+            space: space.clone(),
+            clearance: Clearance::new(world),
+            free: cells
+                .filter(|&(x, y)| grid.is_open(x as i64, y as i64))
+                .map(|(x, y)| BoundaryCell {
+                    x: x as u16,
+                    y: y as u16,
+                })
+                .collect(),
+        }
+    }
+
+    fn beams(&self, readings: &Readings, heading: usize) -> Vec<Beam> {
+        let count = self.space.directions.count();
+        let beam = |reading: &super::Reading| {
+            let direction = (heading + reading.bearing) % count;
+            let steps_per_cell = self.space.directions.get(direction).steps_per_cell;
+            let farthest = reading.cells + f64::from(MOST_DEVIATIONS) * reading.sigma_cells;
+            Beam {
+                direction,
+                scale: (1.0 / (steps_per_cell * reading.sigma_cells)) as f32,
+                reading: (reading.cells / reading.sigma_cells) as f32,
+                limit: (farthest * steps_per_cell).ceil() as i64,
+            }
+        };
+        readings.beams.iter().map(beam).collect()
+    }
+
+    /// Twice the negative logarithm of the likelihood, but for a constant.
+    fn cost(&self, x: usize, y: usize, beams: &[Beam]) -> f32 {
+        let error = |beam: &Beam| {
+            let direction = self.space.directions.get(beam.direction);
+            let range = self.clearance.range(x, y, direction, beam.limit);
+            let deviations = range.map_or(MOST_DEVIATIONS, |steps| {
+                steps as f32 * beam.scale - beam.reading
+            });
+            (deviations * deviations).min(MOST_DEVIATIONS * MOST_DEVIATIONS)
+        };
+        beams.iter().map(error).sum()
+    }
+}
+
+impl Baseline for RayCasting {
+    fn locate(&mut self, readings: &Readings, headings: &[usize]) -> Option<Estimate> {
+        let mut best = Best::default();
+        for &heading in headings {
+            let beams = self.beams(readings, heading);
+            for cell in &self.free {
+                let (x, y) = (usize::from(cell.x), usize::from(cell.y));
+                let score = -self.cost(x, y, &beams);
+                if score >= best.score() {
+                    best.take(Estimate {
+                        x,
+                        y,
+                        heading,
+                        score,
+                    });
+                }
+            }
+        }
+        best.get()
+    }
+
+    fn bytes(&self) -> usize {
+        self.clearance.bytes() + self.free.len() * size_of::<BoundaryCell>()
+    }
+}

@@ -1,0 +1,64 @@
+//! A scan as the other methods take it: bearings on the heading grid, and
+//! readings with their deviations.
+
+use engine::program::VoteConfig;
+use engine::scan::Scan;
+use engine::space::Space;
+
+use crate::BenchmarksError;
+
+/// Deviations from which on a reading says nothing more against a pose: the
+/// flat part of a sensor model, for what the map does not know.
+pub(super) const MOST_DEVIATIONS: f32 = 3.0;
+
+/// One beam.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Reading {
+    /// Index on the heading grid.
+    pub bearing: usize,
+    /// Cells from the laser to where the beam ended.
+    pub cells: f64,
+    /// Standard deviation of that, at least one cell.
+    pub sigma_cells: f64,
+}
+
+/// The beams of a scan that returned.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Readings {
+    /// In the order of the scan.
+    pub beams: Vec<Reading>,
+}
+
+impl Readings {
+    /// Takes all readings, with the deviations of the votes.
+    ///
+    /// # Errors
+    /// If the engine refuses the scan.
+    pub fn new(
+        scan: &Scan<'_>,
+        space: &Space,
+        votes: &VoteConfig,
+    ) -> Result<Self, BenchmarksError> {
+        scan.check()?;
+        let reading = |i| {
+            let range_m = scan.reading(i).filter(|&m| m <= space.longest_m)?;
+            let sigma_m = votes.sigma_m + votes.sigma_per_m * range_m;
+            Some(Reading {
+                bearing: space.directions.nearest(scan.bearing(i)).0,
+                cells: range_m / space.resolution_m,
+                sigma_cells: (sigma_m / space.resolution_m).max(1.0),
+            })
+        };
+        Ok(Readings {
+            beams: (0..scan.ranges.len()).filter_map(reading).collect(),
+        })
+    }
+
+    /// The median deviation, for methods that know one for all; 1 without any.
+    #[must_use]
+    pub fn median_sigma_cells(&self) -> f64 {
+        let sigmas = self.beams.iter().map(|beam| beam.sigma_cells).collect();
+        let median = crate::timing::median(sigmas);
+        if median.is_nan() { 1.0 } else { median }
+    }
+}

@@ -1,0 +1,172 @@
+//! Weighted sums of shifted rows of bytes: what both correlations come to.
+
+use engine::instruction_set::InstructionSet;
+
+use super::padded::BLOCK;
+
+/// Rows that weigh the same. Their plain sum must fit eight bits.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct Group {
+    /// Which of the offsets belong to it.
+    pub(super) start: usize,
+    pub(super) end: usize,
+    pub(super) weight: u16,
+}
+
+/// Fills in, for each place of a row, the sum over all groups of the weight
+/// times the bytes at the group's offsets, saturated at 65535.
+///
+/// # Panics
+/// If the row does not consist of whole blocks, or a shifted one lies beyond
+/// the bytes.
+pub(super) fn fill(
+    instructions: InstructionSet,
+    bytes: &[u8],
+    offsets: &[usize],
+    groups: &[Group],
+    sums: &mut [u16],
+) {
+    assert!(sums.len().is_multiple_of(BLOCK), "whole blocks");
+    let farthest = offsets.iter().max().map_or(0, |&most| most + sums.len());
+    assert!(farthest <= bytes.len(), "a row beyond the bytes");
+    match instructions {
+        #[cfg(target_arch = "x86_64")]
+        // SAFETY: the processor has what was detected; offsets were checked.
+        InstructionSet::Avx512 => unsafe { x86::fill_avx512(bytes, offsets, groups, sums) },
+        #[cfg(target_arch = "x86_64")]
+        // SAFETY: as above.
+        InstructionSet::Avx2 => unsafe { x86::fill_avx2(bytes, offsets, groups, sums) },
+        _ => fill_portable(bytes, offsets, groups, sums),
+    }
+}
+
+fn fill_portable(bytes: &[u8], offsets: &[usize], groups: &[Group], sums: &mut [u16]) {
+    let (blocks, _) = sums.as_chunks_mut::<BLOCK>();
+    for (i, block) in blocks.iter_mut().enumerate() {
+        *block = [0; BLOCK];
+        for group in groups {
+            let mut sum = [0u8; BLOCK];
+            for &offset in &offsets[group.start..group.end] {
+                let row = &bytes[offset + i * BLOCK..][..BLOCK];
+                sum.iter_mut()
+                    .zip(row)
+                    .for_each(|(sum, &byte)| *sum += byte);
+            }
+            for (total, sum) in block.iter_mut().zip(sum) {
+                *total = total.saturating_add(u16::from(sum).saturating_mul(group.weight));
+            }
+        }
+    }
+}
+
+#[cfg(target_arch = "x86_64")]
+mod x86 {
+    use std::arch::x86_64::*;
+
+    use super::{BLOCK, Group};
+
+    /// # Safety
+    /// Each offset and the length of `sums` behind it must lie within `bytes`,
+    /// and groups within `offsets`.
+    #[target_feature(enable = "avx512f,avx512bw")]
+    pub(super) unsafe fn fill_avx512(
+        bytes: &[u8],
+        offsets: &[usize],
+        groups: &[Group],
+        sums: &mut [u16],
+    ) {
+        let (blocks, _) = sums.as_chunks_mut::<BLOCK>();
+        for (i, block) in blocks.iter_mut().enumerate() {
+            let (mut low, mut high) = (_mm512_setzero_si512(), _mm512_setzero_si512());
+            for group in groups {
+                let mut sum = _mm512_setzero_si512();
+                for &offset in &offsets[group.start..group.end] {
+                    // SAFETY: the caller's promise.
+                    let row = unsafe { bytes.as_ptr().add(offset + i * BLOCK) };
+                    // SAFETY: as above; the load needs no alignment.
+                    sum = _mm512_add_epi8(sum, unsafe { _mm512_loadu_si512(row.cast()) });
+                }
+                let weight = _mm512_set1_epi16(group.weight as i16);
+                let first = _mm512_cvtepu8_epi16(_mm512_castsi512_si256(sum));
+                let second = _mm512_cvtepu8_epi16(_mm512_extracti64x4_epi64::<1>(sum));
+                low = _mm512_adds_epu16(low, _mm512_mullo_epi16(first, weight));
+                high = _mm512_adds_epu16(high, _mm512_mullo_epi16(second, weight));
+            }
+            let to = block.as_mut_ptr();
+            // SAFETY: a block holds 64 numbers, two stores of 32.
+            unsafe {
+                _mm512_storeu_si512(to.cast(), low);
+                _mm512_storeu_si512(to.add(BLOCK / 2).cast(), high);
+            }
+        }
+    }
+
+    /// # Safety
+    /// As of [`fill_avx512`].
+    #[target_feature(enable = "avx2")]
+    pub(super) unsafe fn fill_avx2(
+        bytes: &[u8],
+        offsets: &[usize],
+        groups: &[Group],
+        sums: &mut [u16],
+    ) {
+        let (halves, _) = sums.as_chunks_mut::<{ BLOCK / 2 }>();
+        for (i, half) in halves.iter_mut().enumerate() {
+            let (mut low, mut high) = (_mm256_setzero_si256(), _mm256_setzero_si256());
+            for group in groups {
+                let mut sum = _mm256_setzero_si256();
+                for &offset in &offsets[group.start..group.end] {
+                    // SAFETY: the caller's promise.
+                    let row = unsafe { bytes.as_ptr().add(offset + i * BLOCK / 2) };
+                    // SAFETY: as above; the load needs no alignment.
+                    sum = _mm256_add_epi8(sum, unsafe { _mm256_loadu_si256(row.cast()) });
+                }
+                let weight = _mm256_set1_epi16(group.weight as i16);
+                let first = _mm256_cvtepu8_epi16(_mm256_castsi256_si128(sum));
+                let second = _mm256_cvtepu8_epi16(_mm256_extracti128_si256::<1>(sum));
+                low = _mm256_adds_epu16(low, _mm256_mullo_epi16(first, weight));
+                high = _mm256_adds_epu16(high, _mm256_mullo_epi16(second, weight));
+            }
+            let to = half.as_mut_ptr();
+            // SAFETY: half a block holds 32 numbers, two stores of 16.
+            unsafe {
+                _mm256_storeu_si256(to.cast(), low);
+                _mm256_storeu_si256(to.add(BLOCK / 4).cast(), high);
+            }
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use proptest::collection::vec;
+    use proptest::prelude::*;
+
+    use super::*;
+
+    proptest! {
+        #[test]
+        fn sums_are_those_of_plain_numbers(
+            bytes in vec(0u8..15, 500..900), blocks in 1usize..4,
+            groups in vec((vec(0usize..300, 0..17), 0u16..200), 0..12),
+        ) {
+            let mut offsets = Vec::new();
+            let mut ranges = Vec::new();
+            for (rows, weight) in &groups {
+                ranges.push(Group { start: offsets.len(), end: offsets.len() + rows.len(), weight: *weight });
+                offsets.extend(rows);
+            }
+            let plain: Vec<u16> = (0..blocks * BLOCK)
+                .map(|i| groups.iter().fold(0u16, |total, (rows, weight)| {
+                    let sum: u16 = rows.iter().map(|&row| u16::from(bytes[row + i])).sum();
+                    total.saturating_add(sum * weight)
+                }))
+                .collect();
+            for set in InstructionSet::available() {
+                let mut sums = vec![7; blocks * BLOCK];
+                fill(set, &bytes, &offsets, &ranges, &mut sums);
+                prop_assert_eq!(&sums, &plain, "{}", set);
+            }
+        }
+    }
+}

@@ -1,0 +1,215 @@
+//! Simulated scans: rays cast by the engine's own definition of a range, from
+//! random free poses on the heading grid, with normal noise.
+
+use std::f64::consts::TAU;
+
+use engine::program::VoteConfig;
+use engine::reference;
+use engine::scan::Scan;
+use engine::space::Space;
+use engine::taper::TaperShape;
+use rand::rngs::Xoshiro256PlusPlus;
+use rand::{RngExt, SeedableRng};
+use rand_distr::{Distribution, StandardNormal};
+
+use crate::BenchmarksError;
+use crate::worlds::World;
+
+/// Share of the beams that must return.
+const LEAST_RETURNS: f64 = 0.9;
+
+/// Random poses that are tried before a scan is given up.
+const TRIES: usize = 10_000;
+
+/// What is simulated.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct ScanConfig {
+    /// Beams, evenly over a whole turn; they must divide the headings.
+    pub beams: usize,
+    /// Standard deviation of a reading, per cent of its range.
+    pub noise_percent: f64,
+}
+
+impl ScanConfig {
+    /// Votes to match: the same deviation, and all beams weigh the same.
+    #[must_use]
+    pub fn votes(&self, taper: TaperShape) -> VoteConfig {
+        let mut votes = VoteConfig {
+            taper,
+            sigma_m: 0.0,
+            sigma_per_m: self.noise_percent / 100.0,
+            ..VoteConfig::default()
+        };
+        votes.beams.max_beams = self.beams as u32;
+        votes.beams.beam_arc_m = 0.0;
+        votes
+    }
+}
+
+/// A scan, and where it was taken.
+#[derive(Debug, Clone, PartialEq)]
+pub struct SimulatedScan {
+    /// Column of the cell.
+    pub x: usize,
+    /// Row of the cell.
+    pub y: usize,
+    /// Index on the heading grid.
+    pub heading: usize,
+    /// Metres; infinite where nothing came back.
+    pub ranges: Vec<f32>,
+}
+
+impl SimulatedScan {
+    /// As the engine takes it.
+    #[must_use]
+    pub fn scan(&self) -> Scan<'_> {
+        Scan {
+            angle_min: 0.0,
+            angle_increment: TAU / self.ranges.len() as f64,
+            range_min_m: 0.0,
+            range_max_m: f32::MAX,
+            ranges: &self.ranges,
+        }
+    }
+}
+
+/// Takes `count` scans at random poses.
+///
+/// # Errors
+/// If the beams do not divide the headings, or nowhere enough of them return.
+pub fn simulate(
+    world: &World,
+    space: &Space,
+    config: &ScanConfig,
+    count: usize,
+    seed: u64,
+) -> Result<Vec<SimulatedScan>, BenchmarksError> {
+    let headings = space.directions.count();
+    if config.beams == 0 || !headings.is_multiple_of(config.beams) {
+        return Err(BenchmarksError::Beams {
+            beams: config.beams,
+            headings,
+        });
+    }
+    let mut rng = Xoshiro256PlusPlus::seed_from_u64(seed);
+    (0..count)
+        .map(|_| simulate_one(world, space, config, &mut rng))
+        .collect()
+}
+
+fn simulate_one(
+    world: &World,
+    space: &Space,
+    config: &ScanConfig,
+    rng: &mut Xoshiro256PlusPlus,
+) -> Result<SimulatedScan, BenchmarksError> {
+    for _ in 0..TRIES {
+        let (x, y) = (
+            rng.random_range(0..world.grid.width()),
+            rng.random_range(0..world.grid.height()),
+        );
+        let heading = rng.random_range(0..space.directions.count());
+        if !world.grid.is_open(x as i64, y as i64) {
+            continue;
+        }
+        let ranges = look_out(world, space, config, (x, y, heading), rng);
+        let returns = ranges.iter().filter(|range| range.is_finite()).count();
+        if returns as f64 >= LEAST_RETURNS * config.beams as f64 {
+            return Ok(SimulatedScan {
+                x,
+                y,
+                heading,
+                ranges,
+            });
+        }
+    }
+    Err(BenchmarksError::NoPose { tried: TRIES })
+}
+
+/// The readings of all beams from one pose.
+fn look_out(
+    world: &World,
+    space: &Space,
+    config: &ScanConfig,
+    (x, y, heading): (usize, usize, usize),
+    rng: &mut Xoshiro256PlusPlus,
+) -> Vec<f32> {
+    let apart = space.directions.count() / config.beams;
+    let reading = |beam| {
+        let direction = space.directions.get(heading + beam * apart);
+        let Some(steps) = reference::range(&world.grid, x as i64, y as i64, direction) else {
+            return f32::INFINITY;
+        };
+        let range_m = f64::from(steps) / direction.steps_per_cell * space.resolution_m;
+        let error: f64 = StandardNormal.sample(rng);
+        (range_m * (1.0 + config.noise_percent / 100.0 * error)) as f32
+    };
+    (0..config.beams).map(reading).collect()
+}
+
+#[cfg(test)]
+mod tests {
+    use engine::program::ScanProgram;
+
+    use super::*;
+    use crate::worlds::Kind;
+
+    const EXACT: ScanConfig = ScanConfig {
+        beams: 36,
+        noise_percent: 0.0,
+    };
+
+    fn world() -> World {
+        World::generate(Kind::Rooms, (150, 120), 0.1, 7).unwrap()
+    }
+
+    #[test]
+    fn without_noise_the_true_pose_has_all_votes() {
+        let world = world();
+        let space = world.space(72).unwrap();
+        for scan in simulate(&world, &space, &EXACT, 20, 1).unwrap() {
+            let config = EXACT.votes(TaperShape::Trapezoid);
+            let program = ScanProgram::new(&scan.scan(), 0.0, &space, &config).unwrap();
+            let (x, y) = (scan.x as i64, scan.y as i64);
+            let votes = reference::intensity(&world.grid, &program, &space, x, y, scan.heading);
+            assert_eq!(u32::from(votes), program.highest_possible());
+            assert_eq!(program.beams(), 36);
+        }
+    }
+
+    #[test]
+    fn noise_has_the_deviation_that_was_asked_for() {
+        let world = world();
+        let space = world.space(72).unwrap();
+        let noisy = ScanConfig {
+            noise_percent: 10.0,
+            ..EXACT
+        };
+        let mut errors = Vec::new();
+        for scan in simulate(&world, &space, &noisy, 100, 1).unwrap() {
+            for (beam, &range) in scan.ranges.iter().enumerate() {
+                let direction = space.directions.get(scan.heading + 2 * beam);
+                let (x, y) = (scan.x as i64, scan.y as i64);
+                let steps = reference::range(&world.grid, x, y, direction).unwrap();
+                let true_m = f64::from(steps) / direction.steps_per_cell * space.resolution_m;
+                errors.push(f64::from(range) / true_m - 1.0);
+            }
+        }
+        let square_mean =
+            errors.iter().map(|error| error * error).sum::<f64>() / errors.len() as f64;
+        // 3600 samples give the deviation to 1.2 %; four of those are allowed.
+        assert!(
+            (square_mean.sqrt() - 0.10).abs() < 0.005,
+            "{}",
+            square_mean.sqrt()
+        );
+    }
+
+    #[test]
+    fn beams_off_the_heading_grid_are_refused() {
+        let world = world();
+        let space = world.space(72).unwrap();
+        let config = ScanConfig { beams: 7, ..EXACT };
+        assert!(simulate(&world, &space, &config, 1, 1).is_err());
+    }
+}

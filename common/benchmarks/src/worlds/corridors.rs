@@ -1,0 +1,86 @@
+//! Long corridors with rooms on both sides, crossed by a few others: places
+//! that look like one another.
+
+use rand::RngExt;
+use rand::rngs::Xoshiro256PlusPlus;
+
+use super::canvas::{Canvas, Rect};
+use super::rooms::{DOOR, WALL};
+
+/// Fewest cells from wall to wall of a corridor: 1.5 m.
+const LEAST_CORRIDOR: usize = 30;
+
+/// Draws corridors along x whose rooms are about `spacing` cells deep.
+pub(super) fn build(canvas: &mut Canvas, spacing: usize, rng: &mut Xoshiro256PlusPlus) {
+    let corridor = (spacing / 3).max(LEAST_CORRIDOR);
+    let mut y = 1;
+    while y + spacing + corridor < canvas.height {
+        row_of_rooms(canvas, (y, y + spacing), spacing, y + spacing, rng);
+        let bottom = y + spacing + WALL;
+        let top = bottom + corridor;
+        row_of_rooms(
+            canvas,
+            (top + WALL, top + WALL + spacing),
+            spacing,
+            top,
+            rng,
+        );
+        let back = top + WALL + spacing;
+        canvas.fill(Rect {
+            x: 0,
+            y: back,
+            width: canvas.width,
+            height: WALL,
+        });
+        y = back + WALL;
+    }
+    cross(canvas, corridor, 8 * spacing);
+}
+
+/// Draws rooms between two heights, and their wall to the corridor, with a door
+/// for each room.
+fn row_of_rooms(
+    canvas: &mut Canvas,
+    (bottom, top): (usize, usize),
+    spacing: usize,
+    wall: usize,
+    rng: &mut Xoshiro256PlusPlus,
+) {
+    let full = Rect {
+        x: 0,
+        y: wall,
+        width: canvas.width,
+        height: WALL,
+    };
+    canvas.fill(full);
+    let mut x = 1;
+    while x < canvas.width {
+        let width = rng.random_range(spacing * 3 / 4..=spacing * 5 / 4);
+        canvas.fill(Rect {
+            x: x + width,
+            y: bottom,
+            width: WALL,
+            height: top - bottom,
+        });
+        canvas.clear(Rect {
+            x: x + rng.random_range(0..width - DOOR),
+            width: DOOR,
+            ..full
+        });
+        x += width + WALL;
+    }
+}
+
+/// Clears corridors along y, so far apart.
+fn cross(canvas: &mut Canvas, corridor: usize, apart: usize) {
+    let mut x = apart / 2;
+    while x + corridor < canvas.width {
+        canvas.clear(Rect {
+            x,
+            y: 1,
+            width: corridor,
+            height: canvas.height - 2,
+        });
+        x += apart;
+    }
+}

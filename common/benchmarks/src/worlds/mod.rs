@@ -1,0 +1,188 @@
+//! Generated worlds of three kinds, each steered to a wanted p/n: boundary
+//! cells over free cells, the figure that the paper's tables run over.
+//!
+//! Walls come first, as far apart as the ratio allows; clutter then fills up
+//! what is missing. Above some 25 % the clutter is of single cells, for larger
+//! pieces hide more boundary than they bring.
+
+mod canvas;
+mod clutter;
+mod corridors;
+mod rooms;
+
+use engine::boundary;
+use engine::grid::{CellRules, Grid};
+use engine::space::Space;
+use messages::BoundaryCell;
+use rand::SeedableRng;
+use rand::rngs::Xoshiro256PlusPlus;
+
+use crate::{BenchmarksError, RESOLUTION_M};
+use canvas::Canvas;
+
+/// Fewest cells along a side.
+const LEAST_SIDE: usize = 16;
+
+/// How far p/n may lie from what was asked for, as a share of it.
+const TOLERANCE: f64 = 0.05;
+
+/// Share of the wanted boundary that walls may make up.
+const WALL_SHARE: f64 = 0.9;
+
+/// What a world looks like.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, clap::ValueEnum)]
+pub enum Kind {
+    /// A building: rooms with doors and furniture.
+    Rooms,
+    /// Long corridors with rooms on both sides, one like the other.
+    Corridors,
+    /// A hall with scattered boxes, turned at random.
+    Boxes,
+}
+
+impl Kind {
+    /// As it is written on the command line and in reports.
+    #[must_use]
+    pub fn name(self) -> &'static str {
+        match self {
+            Kind::Rooms => "rooms",
+            Kind::Corridors => "corridors",
+            Kind::Boxes => "boxes",
+        }
+    }
+}
+
+/// A generated world.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub struct World {
+    /// Its cells, closed off by a wall around.
+    pub grid: Grid,
+    /// Its boundary cells.
+    pub boundary: Vec<BoundaryCell>,
+}
+
+impl World {
+    /// Generates a world of `width` · `height` cells with `p_over_n` boundary
+    /// cells for each free cell, to within 5 % of that.
+    ///
+    /// # Errors
+    /// If a side is too short or too long, or the ratio is out of reach at that
+    /// size: the wall around a small world alone is some boundary.
+    pub fn generate(
+        kind: Kind,
+        (width, height): (usize, usize),
+        p_over_n: f64,
+        seed: u64,
+    ) -> Result<Self, BenchmarksError> {
+        if width.min(height) < LEAST_SIDE {
+            return Err(BenchmarksError::WorldSides {
+                width,
+                height,
+                least: LEAST_SIDE,
+            });
+        }
+        let mut rng = Xoshiro256PlusPlus::seed_from_u64(seed);
+        let mut canvas = walls(kind, (width, height), p_over_n, &mut rng);
+        clutter::add(&mut canvas, kind == Kind::Boxes, p_over_n, &mut rng);
+        let grid = Grid::new(width, height, &canvas.occupancy(), CellRules::default())?;
+        let boundary = boundary::extract(&grid);
+        let world = World { grid, boundary };
+        if (world.p_over_n() / p_over_n - 1.0).abs() <= TOLERANCE {
+            return Ok(world);
+        }
+        Err(BenchmarksError::Ratio {
+            width,
+            height,
+            wanted_percent: 100.0 * p_over_n,
+            reached_percent: 100.0 * world.p_over_n(),
+        })
+    }
+
+    /// Boundary cells over free cells.
+    #[must_use]
+    pub fn p_over_n(&self) -> f64 {
+        self.boundary.len() as f64 / self.grid.free_cells() as f64
+    }
+
+    /// The space of a search with so many headings.
+    ///
+    /// # Errors
+    /// If the number of headings is not supported.
+    pub fn space(&self, headings: u32) -> Result<Space, BenchmarksError> {
+        let (width, height) = (self.grid.width(), self.grid.height());
+        Ok(Space::new(headings, RESOLUTION_M, width, height)?)
+    }
+}
+
+/// Walls as close together as the wanted ratio allows; at worst only those
+/// around the world.
+fn walls(
+    kind: Kind,
+    (width, height): (usize, usize),
+    p_over_n: f64,
+    rng: &mut Xoshiro256PlusPlus,
+) -> Canvas {
+    // Both faces of the walls of rooms with side s are 4/s of their cells.
+    let mut side = (7.0 / p_over_n).max(80.0);
+    loop {
+        let mut canvas = Canvas::walled(width, height);
+        let spacing = side as usize;
+        match kind {
+            Kind::Rooms => rooms::build(&mut canvas, spacing, rng),
+            Kind::Corridors => corridors::build(&mut canvas, spacing, rng),
+            Kind::Boxes => {}
+        }
+        if canvas.p_over_n() <= WALL_SHARE * p_over_n || spacing > width.max(height) {
+            return canvas;
+        }
+        side *= 1.25;
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    const KINDS: [Kind; 3] = [Kind::Rooms, Kind::Corridors, Kind::Boxes];
+
+    #[test]
+    fn worlds_have_the_ratio_that_was_asked_for() {
+        for kind in KINDS {
+            for percent in [5.0, 10.0, 25.0, 50.0, 100.0, 120.0] {
+                for side in [100, 300] {
+                    let world = World::generate(kind, (side, side), percent / 100.0, 1).unwrap();
+                    let off = world.p_over_n() * 100.0 / percent;
+                    assert!(
+                        (off - 1.0).abs() <= TOLERANCE,
+                        "{kind:?} {percent} {side}: {off}"
+                    );
+                    assert_eq!(world.boundary, boundary::extract(&world.grid));
+                }
+            }
+        }
+    }
+
+    #[test]
+    fn a_seed_gives_one_world() {
+        for kind in KINDS {
+            let world = |seed| World::generate(kind, (120, 90), 0.1, seed).unwrap();
+            assert_eq!(world(3), world(3));
+            assert_ne!(world(3), world(4));
+        }
+    }
+
+    #[test]
+    fn what_cannot_be_is_refused() {
+        let refused = World::generate(Kind::Rooms, (8, 100), 0.1, 1).unwrap_err();
+        assert_eq!(
+            refused.to_string(),
+            "a world of 8 x 100 cells: each side must have at least 16"
+        );
+        let refused = World::generate(Kind::Boxes, (20, 20), 0.05, 1).unwrap_err();
+        assert_eq!(
+            refused.to_string(),
+            "a world of 20 x 20 cells comes to 23.5 % of boundary cells for its free cells: \
+             5 % are out of reach"
+        );
+    }
+}

@@ -1,0 +1,88 @@
+//! A building: the ground is split into rooms, one wall after another, and
+//! every wall has doors.
+
+use rand::RngExt;
+use rand::rngs::Xoshiro256PlusPlus;
+
+use super::canvas::{Canvas, Rect};
+
+/// Thickness of a wall within, cells.
+pub(super) const WALL: usize = 2;
+
+/// Width of a door, cells.
+pub(super) const DOOR: usize = 18;
+
+/// Draws rooms whose sides are about `spacing` cells.
+pub(super) fn build(canvas: &mut Canvas, spacing: usize, rng: &mut Xoshiro256PlusPlus) {
+    let mut doors = Vec::new();
+    let mut grounds = vec![Rect {
+        x: 1,
+        y: 1,
+        width: canvas.width - 2,
+        height: canvas.height - 2,
+    }];
+    while let Some(ground) = grounds.pop() {
+        // Between half and one and a half spacings: rooms of many sizes.
+        let limit = rng.random_range(spacing..=spacing + spacing / 2);
+        if ground.width.max(ground.height) > limit {
+            grounds.extend(split(canvas, ground, spacing, &mut doors, rng));
+        }
+    }
+    // Doors come last, so that no later wall closes one.
+    for door in doors {
+        canvas.clear(door);
+    }
+}
+
+/// Draws a wall across the longer side and returns the grounds beside it.
+fn split(
+    canvas: &mut Canvas,
+    ground: Rect,
+    spacing: usize,
+    doors: &mut Vec<Rect>,
+    rng: &mut Xoshiro256PlusPlus,
+) -> [Rect; 2] {
+    let Rect {
+        x,
+        y,
+        width,
+        height,
+    } = ground;
+    let (long, across) = (width.max(height), width.min(height));
+    let at = rng.random_range(long * 3 / 8..=long * 5 / 8);
+    let rest = long - at - WALL;
+    let along = |start, length| match width >= height {
+        true => Rect {
+            x: x + start,
+            width: length,
+            ..ground
+        },
+        false => Rect {
+            y: y + start,
+            height: length,
+            ..ground
+        },
+    };
+    canvas.fill(along(at, WALL));
+    for start in (0..across).step_by(2 * spacing) {
+        let room = (across - start)
+            .min(2 * spacing)
+            .saturating_sub(DOOR)
+            .max(1);
+        let offset = start + rng.random_range(0..room);
+        let wall = along(at, WALL);
+        doors.push(match width >= height {
+            true => Rect {
+                y: y + offset,
+                height: DOOR,
+                ..wall
+            },
+            false => Rect {
+                x: x + offset,
+                width: DOOR,
+                ..wall
+            },
+        });
+    }
+    [along(0, at), along(at + WALL, rest)]
+}

@@ -1,0 +1,92 @@
+//! The instruction sets that hot loops are written for, chosen at run time.
+//!
+//! A released binary is built for the plainest processor of its architecture
+//! and yet uses what it finds. Every instruction set gives the same numbers.
+
+use std::fmt;
+
+/// A set of instructions, from the plainest on.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
+pub enum InstructionSet {
+    /// What every processor of the architecture has; on aarch64 with NEON, as
+    /// far as the compiler uses it by itself.
+    Portable,
+    /// AVX2 and POPCNT: x86-64 since Haswell and Zen.
+    Avx2,
+    /// AVX-512 F, BW, DQ, VL and VBMI: x86-64 since Ice Lake and Zen 4.
+    Avx512,
+}
+
+impl InstructionSet {
+    /// The best one that this processor has.
+    #[must_use]
+    pub fn best() -> Self {
+        if Self::Avx512.is_available() {
+            Self::Avx512
+        } else if Self::Avx2.is_available() {
+            Self::Avx2
+        } else {
+            Self::Portable
+        }
+    }
+
+    /// All that this processor has, from the plainest on.
+    pub fn available() -> impl Iterator<Item = Self> {
+        let all = [Self::Portable, Self::Avx2, Self::Avx512];
+        all.into_iter().filter(|set| set.is_available())
+    }
+
+    /// Whether this processor has it.
+    #[must_use]
+    pub fn is_available(self) -> bool {
+        match self {
+            Self::Portable => true,
+            #[cfg(target_arch = "x86_64")]
+            Self::Avx2 => is_x86_feature_detected!("avx2") && is_x86_feature_detected!("popcnt"),
+            #[cfg(target_arch = "x86_64")]
+            Self::Avx512 => {
+                is_x86_feature_detected!("avx512f")
+                    && is_x86_feature_detected!("avx512bw")
+                    && is_x86_feature_detected!("avx512dq")
+                    && is_x86_feature_detected!("avx512vl")
+                    && is_x86_feature_detected!("avx512vbmi")
+            }
+            #[cfg(not(target_arch = "x86_64"))]
+            Self::Avx2 | Self::Avx512 => false,
+        }
+    }
+
+    /// The set itself.
+    ///
+    /// # Panics
+    /// If this processor does not have it.
+    #[must_use]
+    pub fn checked(self) -> Self {
+        assert!(self.is_available(), "this processor has no {self}");
+        self
+    }
+}
+
+impl fmt::Display for InstructionSet {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.pad(match self {
+            Self::Portable => "portable",
+            Self::Avx2 => "AVX2",
+            Self::Avx512 => "AVX-512",
+        })
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn the_best_is_the_last_that_is_available() {
+        let available: Vec<_> = InstructionSet::available().collect();
+        assert_eq!(available.first(), Some(&InstructionSet::Portable));
+        assert_eq!(available.last(), Some(&InstructionSet::best()));
+        assert!(available.is_sorted());
+        assert_eq!(InstructionSet::best().checked(), InstructionSet::best());
+    }
+}

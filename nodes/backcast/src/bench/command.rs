@@ -1,0 +1,127 @@
+//! What `backcast bench` does: sets up the cases of a table, measures, prints.
+
+use std::process::ExitCode;
+
+use engine::instruction_set::InstructionSet;
+
+use super::contest::{Contest, Effort};
+use super::progress::Progress;
+use super::row::Row;
+use super::scope::{Cases, Filter, Place, Table, cases};
+use super::text;
+use crate::BackcastError;
+
+/// What stands below the options.
+pub(crate) const NOTES: &str = "\
+Worlds are generated: buildings, corridors or scattered boxes with the wanted p/n, boundary
+cells over free cells. Noise q % adds a normal error of q/100 of the range to each reading,
+and the votes expect the same. The full tables take an hour or so: --quick takes a minute,
+and the options above pick single cases.
+
+Exit codes: 0 measured, 1 failed, 2 wrong use";
+
+/// What `backcast bench` takes.
+#[derive(Debug, clap::Args)]
+pub(crate) struct Config {
+    /// What is measured
+    #[arg(value_enum)]
+    table: Table,
+
+    /// Print JSON, an object for each method and case
+    #[arg(long)]
+    json: bool,
+
+    /// Measure fewer cases, less often: about a minute
+    #[arg(long)]
+    quick: bool,
+
+    /// Where the random worlds and scans begin
+    #[arg(long, value_name = "NUMBER", default_value_t = 1)]
+    seed: u64,
+
+    /// Most scans of a case, 1..=1000; methods that take long are measured on
+    /// fewer [default: 10, or 5 with --quick]
+    #[arg(long, value_name = "COUNT", value_parser = clap::value_parser!(u32).range(1..=1000))]
+    scans: Option<u32>,
+
+    #[command(flatten)]
+    filter: Filter,
+}
+
+impl Config {
+    fn effort(&self) -> Effort {
+        let (scans, budget_ms, patience_s) = match self.quick {
+            true => (5, 300.0, 2.0),
+            false => (10, 2000.0, 60.0),
+        };
+        Effort {
+            scans: self.scans.map_or(scans, |scans| scans as usize),
+            budget_ms,
+            patience_s,
+            seed: self.seed,
+        }
+    }
+
+    /// # Errors
+    /// If beams do not fall on the heading grid.
+    fn check(&self, cases: &Cases) -> Result<(), BackcastError> {
+        for (place, sights) in cases {
+            for sight in sights {
+                if !place.headings.is_multiple_of(sight.beams) {
+                    return Err(BackcastError::Usage(format!(
+                        "{} beams do not fall on a grid of {} headings: use --beams and --headings \
+                         of which the second is a multiple of the first",
+                        sight.beams, place.headings
+                    )));
+                }
+            }
+        }
+        Ok(())
+    }
+}
+
+/// Measures case by case, and prints each as soon as it is done.
+///
+/// # Errors
+/// A case cannot be set up, or output cannot be written.
+pub(crate) fn run(config: &Config) -> Result<ExitCode, BackcastError> {
+    let cases = cases(config.table, config.quick, &config.filter);
+    config.check(&cases)?;
+    let sights: usize = cases.iter().map(|(_, sights)| sights.len()).sum();
+    let progress = Progress::new(sights * Contest::rows(config.table));
+    if !config.json {
+        let instructions = InstructionSet::best().to_string();
+        progress.print(&text::title(config.table, &instructions))?;
+    }
+    for (place, sights) in cases {
+        progress.say(format!("{} is prepared", name(&place)));
+        let mut contest = Contest::new(config.table, place, config.seed)?;
+        for sight in sights {
+            progress.say(format!("{}, {} beams", name(&place), sight.beams));
+            let rows = contest.run(&sight, config.effort(), || progress.step())?;
+            progress.print(&printed(&rows, config.json))?;
+        }
+    }
+    if !config.json {
+        progress.print(text::LEGEND)?;
+    }
+    Ok(ExitCode::SUCCESS)
+}
+
+fn name(place: &Place) -> String {
+    let Place {
+        kind,
+        size,
+        p_over_n,
+        ..
+    } = place;
+    format!("{} {size} x {size}, p/n {p_over_n} %", kind.name())
+}
+
+fn printed(rows: &[Row], as_json: bool) -> String {
+    if as_json {
+        rows.iter().map(|row| row.json() + "\n").collect()
+    } else {
+        text::block(rows)
+    }
+}

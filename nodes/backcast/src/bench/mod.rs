@@ -1,0 +1,15 @@
+//! `backcast bench`: the paper's tables and the search, every method on the
+//! same generated worlds with the same scans, in one run and on one thread.
+
+mod command;
+mod contest;
+mod engine_methods;
+mod line_up;
+mod measure;
+mod method;
+mod progress;
+mod row;
+mod scope;
+mod text;
+
+pub(crate) use command::{Config, NOTES, run};

@@ -1,0 +1,76 @@
+//! What is reported of one method in one case.
+
+use serde::Serialize;
+
+use super::measure::Measured;
+
+/// One line of JSON, and one of the table.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+pub(super) struct Row {
+    pub(super) table: &'static str,
+    pub(super) method: &'static str,
+    pub(super) kind: &'static str,
+    /// Cells a side of the square world, 0.05 m each.
+    pub(super) size: u32,
+    pub(super) beams: u32,
+    /// Headings that were searched; 1 where it is known.
+    pub(super) headings: usize,
+    /// Boundary cells over free cells, as generated.
+    pub(super) p_over_n: f64,
+    pub(super) noise_percent: f64,
+    pub(super) taper: &'static str,
+    /// Cells that a reading's votes reach along an axis, on average.
+    pub(super) k: f64,
+    /// Median for one scan, on one thread; none where it was skipped.
+    pub(super) cpu_ms: Option<f64>,
+    /// Against the fastest way of reverse projection in the case.
+    pub(super) ratio_to_reverse_projection: Option<f64>,
+    /// Scans that were measured.
+    pub(super) scans: usize,
+    /// Share of them that were located to 0.5 m and 10 degrees.
+    pub(super) found: Option<f64>,
+    /// Headings that were measured, where the time is scaled up from them.
+    pub(super) scaled_from_headings: Option<usize>,
+    /// As the paper counts them.
+    pub(super) operations: Option<f64>,
+    /// As the paper counts them.
+    pub(super) additions: Option<f64>,
+    /// To prepare the map for the method.
+    pub(super) prepare_cpu_ms: f64,
+    /// What of the prepared map is kept.
+    pub(super) map_bytes: usize,
+    pub(super) instruction_set: String,
+    /// Why the method was left out.
+    pub(super) skipped: Option<String>,
+    /// As the table names the method.
+    #[serde(skip)]
+    pub(super) label: &'static str,
+}
+
+impl Row {
+    /// The row with the times that were taken.
+    pub(super) fn with(self, measured: &Measured) -> Self {
+        Row {
+            cpu_ms: Some(measured.cpu_ms),
+            scans: measured.scans,
+            found: measured
+                .found
+                .map(|found| found as f64 / measured.scans as f64),
+            scaled_from_headings: measured.scaled_from_headings,
+            ..self
+        }
+    }
+
+    /// The row of a method that was left out.
+    pub(super) fn without(self, reason: String) -> Self {
+        Row {
+            skipped: Some(reason),
+            ..self
+        }
+    }
+
+    /// As a line of JSON, without its end.
+    pub(super) fn json(&self) -> String {
+        serde_json::to_string(self).unwrap_or_else(|error| format!("{{\"error\":\"{error}\"}}"))
+    }
+}
