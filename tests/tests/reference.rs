@@ -5,7 +5,6 @@
     reason = "the lint spares test functions but not what they share"
 )]
 
-use engine::boundary;
 use engine::grid::{Cell, CellRules, Grid};
 use engine::program::{ScanProgram, VoteConfig};
 use engine::reference;
@@ -44,8 +43,7 @@ fn on_a_piece_of_a_real_map_all_methods_count_the_same_votes() {
         grid.occupied_cells()
     );
     let space = Space::new(HEADINGS, frame.resolution_m, WIDTH, HEIGHT).unwrap();
-    let boundary = boundary::extract(&grid);
-    let index = SearchIndex::new(&grid, &boundary, &space);
+    let index = SearchIndex::new(&grid, &space);
     let sweeps = SweepGrid::new(&grid);
     let scan = &world.scans()[18];
     let program = ScanProgram::new(
@@ -56,7 +54,7 @@ fn on_a_piece_of_a_real_map_all_methods_count_the_same_votes() {
     )
     .unwrap();
     let config = CollectConfig::default();
-    let (found, _) = index
+    let found = index
         .search(&grid, &program, &space, config, &|| false)
         .unwrap();
     assert!(found.best > 0);

@@ -75,7 +75,7 @@ fn prepare(criterion: &mut Criterion, case: &Case) {
     group.bench_function("boundary", |b| b.iter(|| boundary::extract(&world.grid)));
     group.bench_function("sweep", |b| b.iter(|| SweepGrid::new(&world.grid)));
     group.bench_function("search", |b| {
-        b.iter(|| SearchIndex::new(&world.grid, &world.boundary, space));
+        b.iter(|| SearchIndex::new(&world.grid, space));
     });
     group.bench_function("program", |b| {
         b.iter(|| ScanProgram::new(&case.scan.scan(), 0.0, space, &case.votes));
@@ -112,7 +112,7 @@ fn searches(criterion: &mut Criterion, case: &Case) {
         program,
         ..
     } = case;
-    let index = SearchIndex::new(&world.grid, &world.boundary, space);
+    let index = SearchIndex::new(&world.grid, space);
     let mut group = criterion.benchmark_group("search");
     group.sample_size(20);
     for (name, floor_share) in [("argmax", 1.0), ("candidates", 0.85)] {

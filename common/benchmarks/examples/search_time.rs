@@ -56,7 +56,7 @@ fn main() -> Result<(), BenchmarksError> {
         floor_share: options.floor_share,
         ..CollectConfig::default()
     };
-    let (index, prepare_ms) = cpu_ms(|| SearchIndex::new(&world.grid, &world.boundary, &space));
+    let (index, prepare_ms) = cpu_ms(|| SearchIndex::new(&world.grid, &space));
     println!(
         "p/n {:.2} %, prepared in {prepare_ms:.0} ms, {:.1} MB",
         100.0 * world.p_over_n(),
@@ -68,7 +68,7 @@ fn main() -> Result<(), BenchmarksError> {
         let program = ScanProgram::new(&scan.scan(), 0.0, &space, &votes)?;
         let run = || index.search(&world.grid, &program, &space, collect, &|| false);
         let (found, cost) = cpu_ms(run);
-        let Some((found, _)) = found else { continue };
+        let Some(found) = found else { continue };
         let best_share = f64::from(found.best) / f64::from(program.highest_possible());
         let hit = found.votes.first().is_some_and(|vote| {
             let (dx, dy) = (

@@ -12,20 +12,10 @@ use crate::grid::{Cell, Grid};
 /// (y, x).
 #[must_use]
 pub fn extract(grid: &Grid) -> Vec<BoundaryCell> {
-    cells_touching_open(grid, Cell::Occupied)
-}
-
-/// The cells in which rays are lost without a hit and that a ray can meet
-/// first, by (y, x).
-pub(crate) fn blocked(grid: &Grid) -> Vec<BoundaryCell> {
-    cells_touching_open(grid, Cell::Blocked)
-}
-
-fn cells_touching_open(grid: &Grid, kind: Cell) -> Vec<BoundaryCell> {
     let rows = grid.cells().chunks_exact(grid.width());
     rows.enumerate()
         .flat_map(|(y, row)| row.iter().enumerate().map(move |(x, &cell)| (x, y, cell)))
-        .filter(|&(x, y, cell)| cell == kind && grid.touches_open(x as i64, y as i64))
+        .filter(|&(x, y, cell)| cell == Cell::Occupied && grid.touches_open(x as i64, y as i64))
         .map(|(x, y, _)| BoundaryCell {
             x: x as u16,
             y: y as u16,
@@ -79,7 +69,6 @@ mod tests {
         };
         assert_eq!(extract(&grid_with(&["#??", "?.#"], rules)).len(), 2);
         assert_eq!(extract(&grid_with(&["#??.", "#??."], rules)).len(), 0);
-        assert_eq!(blocked(&grid_with(&["#??.", "#??."], rules)).len(), 2);
     }
 
     #[test]

@@ -125,7 +125,19 @@ impl Direction {
     /// `(j · slope + 2³¹) >> 32`.
     #[must_use]
     pub fn minor(&self, j: i64) -> i64 {
-        (j * self.slope + (1 << 31)) >> 32
+        self.rise(j) >> 32
+    }
+
+    /// The same with 32 binary places; from one index to the next it grows by
+    /// [`Direction::slope`].
+    #[inline(always)]
+    pub(crate) fn rise(&self, j: i64) -> i64 {
+        j * self.slope + (1 << 31)
+    }
+
+    /// Rise on the minor axis for one cell on the major, times 2³².
+    pub(crate) fn slope(&self) -> i64 {
+        self.slope
     }
 
     /// The next cell of a ray.

@@ -76,6 +76,7 @@ pub struct Grid {
     cells: Vec<Cell>,
     free: usize,
     occupied: usize,
+    has_blocked: bool,
 }
 
 impl Grid {
@@ -104,10 +105,12 @@ impl Grid {
             cells: Vec::with_capacity(occupancy.len()),
             free: 0,
             occupied: 0,
+            has_blocked: false,
         };
         for &value in occupancy {
             let is_occupied = value >= rules.occupied_from && value != UNKNOWN;
             let is_free = value <= rules.free_to && !is_occupied;
+            grid.has_blocked |= rules.unknown_blocks && !is_occupied && !is_free;
             grid.occupied += usize::from(is_occupied);
             grid.free += usize::from(is_free);
             grid.cells.push(match (is_occupied, is_free) {
@@ -147,6 +150,12 @@ impl Grid {
     #[must_use]
     pub fn occupied_cells(&self) -> usize {
         self.occupied
+    }
+
+    /// Whether rays can be lost in a cell.
+    #[must_use]
+    pub fn has_blocked(&self) -> bool {
+        self.has_blocked
     }
 
     /// The cell at column `x` of row `y`; `None` off the grid.

@@ -19,7 +19,6 @@
 //! The crate knows no process, socket, clock or file.
 
 mod beams;
-mod bits;
 pub mod boundary;
 mod config;
 pub mod directions;
@@ -27,8 +26,6 @@ mod error;
 pub mod grid;
 pub mod heading;
 pub mod instruction_set;
-mod leaf;
-pub mod lines;
 pub mod localizer;
 pub mod peaks;
 pub mod program;
@@ -36,8 +33,6 @@ pub mod reference;
 pub mod scan;
 pub mod scatter;
 pub mod search;
-mod set_bounds;
-mod sets;
 pub mod space;
 pub mod sweep;
 mod tables;

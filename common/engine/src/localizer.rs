@@ -77,8 +77,6 @@ pub struct Outcome {
     pub headings: u32,
     /// The heading that was given, in the map frame, radians.
     pub known_heading: Option<f64>,
-    /// Upper bounds by block, where all headings were searched.
-    pub block_bounds: Option<BlockBounds>,
 }
 
 impl Localizer {
@@ -89,7 +87,7 @@ impl Localizer {
     pub fn new(
         frame: GridFrame,
         grid: Grid,
-        boundary: &[BoundaryCell],
+        _boundary: &[BoundaryCell],
         config: LocalizerConfig,
         prior: Prior,
     ) -> Result<Self, EngineError> {
@@ -106,7 +104,7 @@ impl Localizer {
             grid.height(),
         )?;
         let method = match prior {
-            Prior::None => Method::Search(Box::new(SearchIndex::new(&grid, boundary, &space))),
+            Prior::None => Method::Search(Box::new(SearchIndex::new(&grid, &space))),
             Prior::Heading => Method::Sweep(SweepGrid::new(&grid)),
         };
         Ok(Localizer {
@@ -147,10 +145,23 @@ impl Localizer {
         };
         let program = ScanProgram::new(scan, 0.0, &self.space, &self.config.votes)?;
         let found = index.search(&self.grid, &program, &self.space, self.config.collect, stop);
-        Ok(found.map(|(found, bounds)| Outcome {
-            block_bounds: Some(bounds),
-            ..self.outcome(&program, found, None)
-        }))
+        Ok(found.map(|found| self.outcome(&program, found, None)))
+    }
+
+    /// Upper bounds of what [`Localizer::search`] can find, by block: where the
+    /// robot may be, roughly.
+    ///
+    /// # Errors
+    /// If the scan is refused, see [`Scan::check`].
+    ///
+    /// # Panics
+    /// If the localizer was prepared for known headings.
+    pub fn block_bounds(&self, scan: &Scan<'_>) -> Result<BlockBounds, EngineError> {
+        let Method::Search(index) = &self.method else {
+            panic!("this localizer was prepared for known headings");
+        };
+        let program = ScanProgram::new(scan, 0.0, &self.space, &self.config.votes)?;
+        Ok(index.block_bounds(&program, &self.space))
     }
 
     /// Searches x and y at a heading in the map frame, radians, and fills in
@@ -202,7 +213,6 @@ impl Localizer {
             bearing_rounding: program.bearing_rounding(),
             headings: self.config.headings,
             known_heading,
-            block_bounds: None,
         }
     }
 }

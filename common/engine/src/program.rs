@@ -6,10 +6,12 @@
 
 use crate::EngineError;
 use crate::beams::{self, Beam, BeamConfig};
-use crate::lines::NO_RANGE;
 use crate::scan::Scan;
 use crate::space::Space;
 use crate::taper::TaperShape;
+
+/// The range of a ray that meets no obstacle.
+pub const NO_RANGE: u16 = u16::MAX;
 
 /// Highest vote of a beam with weight 1.
 const FULL_VOTE: u32 = 15;
@@ -165,6 +167,12 @@ impl ScanProgram {
             centre,
             profile: &self.profiles[start as usize..][..len as usize],
         }
+    }
+
+    /// The most votes of beam `i`.
+    pub(crate) fn peak(&self, i: usize) -> u16 {
+        let profile = self.taper(i, 0).profile;
+        profile.first().map_or(0, |&peak| u16::from(peak))
     }
 
     /// What a pose would have if every beam agreed fully; at most 65535.

@@ -7,7 +7,7 @@
 
 use crate::directions::Direction;
 use crate::grid::{Cell, Grid};
-use crate::lines::NO_RANGE;
+use crate::program::NO_RANGE;
 use crate::program::ScanProgram;
 use crate::space::Space;
 use crate::tables::VoteTables;

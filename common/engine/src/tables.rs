@@ -141,7 +141,7 @@ mod tests {
     use proptest::prelude::*;
 
     use super::*;
-    use crate::lines::NO_RANGE;
+    use crate::program::NO_RANGE;
     use crate::testing::any_scan;
 
     proptest! {

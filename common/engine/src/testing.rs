@@ -1,14 +1,16 @@
 //! Random worlds for the tests of this crate.
 
-use messages::UNKNOWN;
+use messages::{UNKNOWN, Vote};
 use proptest::collection::vec;
 use proptest::prelude::*;
 
 use crate::grid::{CellRules, Grid};
 use crate::program::{ScanProgram, VoteConfig};
+use crate::reference;
 use crate::scan::Scan;
 use crate::space::Space;
 use crate::taper::TaperShape;
+use crate::votes::{CollectConfig, Collector, VoteSet};
 
 /// Side of a cell in tests, metres.
 pub(crate) const RESOLUTION_M: f64 = 0.1;
@@ -42,6 +44,28 @@ pub(crate) fn any_grid() -> impl Strategy<Value = Grid> {
 /// The search space of a test grid.
 pub(crate) fn space_of(grid: &Grid, headings: u32) -> Space {
     Space::new(headings, RESOLUTION_M, grid.width(), grid.height()).expect("headings are allowed")
+}
+
+/// All poses by the plain reference, collected as the search does it.
+pub(crate) fn plain_votes(
+    grid: &Grid,
+    program: &ScanProgram,
+    space: &Space,
+    config: CollectConfig,
+) -> VoteSet {
+    let mut collector = Collector::new(config);
+    for heading in 0..space.directions.count() {
+        let field = reference::field(grid, program, space, heading);
+        for (i, &intensity) in field.iter().enumerate() {
+            collector.take(Vote {
+                x: (i % grid.width()) as u16,
+                y: (i / grid.width()) as u16,
+                heading: heading as u16,
+                intensity,
+            });
+        }
+    }
+    collector.finish(0)
 }
 
 /// What one may scan: readings from nothing to beyond the grid, any taper.

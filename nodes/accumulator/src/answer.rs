@@ -9,7 +9,6 @@ use engine::search::BlockBounds;
 use messages::{FieldHeader, FieldKind, ScanHeader, SearchOutcome, Vote, VotesHeader};
 
 use crate::AccumulatorError;
-use crate::preparation::PreparedMap;
 
 /// What is sent about a scan that was answered.
 #[derive(Debug, Clone, PartialEq)]
@@ -18,14 +17,15 @@ pub struct Answer {
     pub votes: VotesHeader,
     /// Items of `votes`.
     pub poses: Vec<Vote>,
-    /// Header and items of `field`: the intensities of all cells where the
-    /// heading was known, else their upper bounds, block by block.
-    pub field: Option<(FieldHeader, Vec<u16>)>,
+    /// The intensities of all cells, where the heading was known.
+    pub intensities: Option<Vec<u16>>,
 }
 
-/// What the engine said about a scan: the poses with the most votes, with the
-/// bounds of blocks where the heading was searched; and, where it was known, the
-/// intensities of all cells.
+/// Header and items of `field`.
+pub type Image = (FieldHeader, Vec<u16>);
+
+/// What the engine said about a scan: the poses with the most votes and, where
+/// the heading was known, the intensities of all cells.
 pub type Reply = (Outcome, Option<Vec<u16>>);
 
 /// The scan as the engine takes it, borrowed from the message.
@@ -71,19 +71,30 @@ pub fn ask(
 #[must_use]
 pub fn answered(
     scan: &ScanHeader,
-    map: &PreparedMap,
+    map_id: u64,
     (outcome, intensities): Reply,
     engine_ns: u64,
 ) -> Answer {
-    let votes = votes_header(scan, map.map_id, &outcome, engine_ns);
-    let exact = intensities.map(|all| (exact_header(&votes, map.localizer.grid()), all));
-    let bounds = outcome
-        .block_bounds
-        .map(|blocks| (bounds_header(&votes, &blocks), blocks.bounds));
     Answer {
-        votes,
+        votes: votes_header(scan, map_id, &outcome, engine_ns),
         poses: outcome.found.votes,
-        field: exact.or(bounds),
+        intensities,
+    }
+}
+
+/// The image of an answered scan: the intensities of all cells where the
+/// heading was known, else their upper bounds, block by block.
+///
+/// # Errors
+/// If the engine refuses the scan.
+pub fn image(answer: Answer, localizer: &Localizer, scan: &Scan<'_>) -> Result<Image, EngineError> {
+    let votes = &answer.votes;
+    match answer.intensities {
+        Some(intensities) => Ok((exact_header(votes, localizer.grid()), intensities)),
+        None => {
+            let blocks = localizer.block_bounds(scan)?;
+            Ok((bounds_header(votes, &blocks), blocks.bounds))
+        }
     }
 }
 
@@ -217,7 +228,6 @@ mod tests {
             bearing_rounding: 0.001,
             headings: 360,
             known_heading: None,
-            block_bounds: None,
         }
     }
 

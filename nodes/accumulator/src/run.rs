@@ -12,7 +12,7 @@ use engine::heading::{HeadingSource, History};
 use messages::topic;
 use transport::{Flow, GapCounter, Graph, Health, Sample, TransportError, with_causes};
 
-use crate::answer::{self, Answer};
+use crate::answer::{self, Answer, Image};
 use crate::preparation::PreparedMap;
 use crate::{AccumulatorError, Config};
 use inputs::Inputs;
@@ -89,7 +89,7 @@ impl Node {
         self.health.count_received(1);
         self.health.count_dropped(lost);
         match self.search(scan) {
-            Ok(Some(answer)) => self.send(&answer),
+            Ok(Some(answer)) => self.send(scan, answer),
             // Stopped half-way: nobody waits for the answer any more.
             Ok(None) => Ok(()),
             Err(error) => self.refuse(scan, &error),
@@ -103,22 +103,32 @@ impl Node {
         let start = Instant::now();
         let reply = answer::ask(&map.localizer, &borrowed, heading, &|| self.stopped())?;
         let engine_ns = start.elapsed().as_nanos() as u64;
-        Ok(reply.map(|reply| answer::answered(scan.header(), map, reply, engine_ns)))
+        Ok(reply.map(|reply| answer::answered(scan.header(), map.map_id, reply, engine_ns)))
     }
 
     fn stopped(&self) -> bool {
         self.stop.load(Ordering::Relaxed)
     }
 
-    fn send(&mut self, answer: &Answer) -> Result<(), TransportError> {
+    fn send(&mut self, scan: &Sample<topic::Scan>, answer: Answer) -> Result<(), TransportError> {
         self.outputs.votes(&answer.votes, &answer.poses)?;
         self.health.count_sent(1);
         self.last_refusal.clear();
-        if let Some((header, intensities)) = &answer.field {
-            let sent = self.outputs.field(header, intensities)?;
-            self.health.count_sent(sent.into());
+        if self.outputs.is_field_due()
+            && let Some((header, intensities)) = self.image(scan, answer)
+        {
+            self.outputs.field(&header, &intensities)?;
+            self.health.count_sent(1);
         }
         Ok(())
+    }
+
+    /// The image of a scan that was answered, so that nothing can be wrong with
+    /// it any more.
+    fn image(&self, scan: &Sample<topic::Scan>, answer: Answer) -> Option<Image> {
+        let localizer = &self.map.as_ref()?.localizer;
+        let borrowed = answer::scan(scan.header(), scan.items()).ok()?;
+        answer::image(answer, localizer, &borrowed).ok()
     }
 
     /// Answers a refused scan all the same, for its source may be waiting.

@@ -29,20 +29,20 @@ impl Outputs {
         loan.send()
     }
 
-    /// Sends the image while somebody subscribes and one is due; says whether
-    /// it did.
+    /// Whether somebody subscribes to the image and one is due; if so, it is
+    /// taken to be sent.
+    pub(super) fn is_field_due(&mut self) -> bool {
+        self.field.has_subscribers() && self.field_pace.pass(monotonic_ns())
+    }
+
     pub(super) fn field(
-        &mut self,
+        &self,
         header: &FieldHeader,
         intensities: &[u16],
-    ) -> Result<bool, TransportError> {
-        if !self.field.has_subscribers() || !self.field_pace.pass(monotonic_ns()) {
-            return Ok(false);
-        }
+    ) -> Result<(), TransportError> {
         let mut loan = self.field.loan(intensities.len())?;
         *loan.header_mut() = *header;
         loan.items_mut().copy_from_slice(intensities);
-        loan.send()?;
-        Ok(true)
+        loan.send()
     }
 }

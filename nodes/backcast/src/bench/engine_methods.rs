@@ -81,7 +81,7 @@ pub(super) fn search<'a>(world: &'a World, index: &'a SearchIndex, floor_share: 
     };
     Box::new(move |task, _| {
         let found = index.search(&world.grid, &program(task)?, task.space, collect, &|| false);
-        Ok(Answer::Best(found.and_then(|(found, _)| best(&found))))
+        Ok(Answer::Best(found.and_then(|found| best(&found))))
     })
 }
 
@@ -104,7 +104,7 @@ pub(super) fn top_sixteen<'a>(
                 max_votes: 1_000_000,
             };
             let found = index.search(&world.grid, &program, task.space, collect, &is_late);
-            let Some((found, _)) = found else {
+            let Some(found) = found else {
                 return Ok(Answer::GaveUp);
             };
             if distinct(&found, task) >= 16 || floor_share < 0.1 {

@@ -71,7 +71,7 @@ impl LineUp {
             patch: with_baselines.then(|| Prepared::new(|| PatchCorrelation::new(&world, &space))),
             sweeps: Prepared::new(|| SweepGrid::new(&world.grid)),
             index: (table != Table::Table1)
-                .then(|| Prepared::new(|| SearchIndex::new(&world.grid, &world.boundary, &space))),
+                .then(|| Prepared::new(|| SearchIndex::new(&world.grid, &space))),
             world,
             space,
         })

@@ -1,0 +1,139 @@
+//! Bins of distances: one byte for how far a ray is.
+//!
+//! Bins are two cells wide at first and twice as wide in each further piece of
+//! the scale, as tapers of far readings are wider, too. A piece is a line in
+//! integers, and the bin is the least of all lines, so a whole row of ranges
+//! is binned at once.
+
+use crate::directions::Directions;
+
+/// Where each piece's line meets distance 0, in bins, and how many cells wide
+/// its bins are. The last line is nearly flat: no ray within a map's sides
+/// reaches its end, and yet [`NO_RANGE`](crate::program::NO_RANGE) comes out as
+/// [`Bins::NOTHING`] like any other range.
+const PIECES: [(u16, u32); 7] = [
+    (1, 2),
+    (15, 4),
+    (36, 8),
+    (60, 16),
+    (86, 32),
+    (113, 64),
+    (240, 4096),
+];
+
+/// From which distance on, in steps, a ray falls into which bin.
+#[derive(Debug, Clone)]
+pub(crate) struct Bins {
+    /// For each class of direction, the lines of all pieces.
+    lines: Vec<[Line; PIECES.len()]>,
+}
+
+/// `start + (steps · slope >> 16)`, in bins.
+#[derive(Debug, Clone, Copy)]
+pub(crate) struct Line {
+    pub start: u16,
+    pub slope: u16,
+}
+
+impl Bins {
+    /// The bin of what sees nothing, and of cells that nobody can stand in.
+    pub(crate) const NOTHING: u8 = u8::MAX;
+
+    /// Up to here, the lines of the last two pieces lie above the others: they
+    /// come in at 1728 cells, which are the fewest steps along a diagonal.
+    pub(crate) const NEAR_STEPS: u16 = 1_200;
+
+    pub(crate) fn new(directions: &Directions) -> Self {
+        let lines = (0..directions.classes()).map(|class| {
+            PIECES.map(|(start, cells_per_bin)| {
+                let steps_per_bin = directions.steps_per_cell(class) * f64::from(cells_per_bin);
+                let slope = (65_536.0 / steps_per_bin).round() as u16;
+                Line { start, slope }
+            })
+        });
+        Bins {
+            lines: lines.collect(),
+        }
+    }
+
+    /// The bin of a range in steps along a class of directions, at least 1 and
+    /// never less for more steps.
+    #[inline(always)]
+    pub(crate) fn bin(&self, class: usize, steps: u16) -> u8 {
+        let bins = self.lines[class].iter().map(|line| line.at(steps));
+        bins.min().unwrap_or(0).min(u16::from(Self::NOTHING) - 1) as u8
+    }
+
+    /// The lines whose least value is the bin of a range on any map, and at
+    /// least [`Bins::NOTHING`] for no range.
+    #[inline(always)]
+    pub(crate) fn lines(&self, class: usize) -> &[Line; PIECES.len()] {
+        &self.lines[class]
+    }
+
+    /// Those of them that suffice up to [`Bins::NEAR_STEPS`].
+    #[inline(always)]
+    pub(crate) fn near_lines(&self, class: usize) -> &[Line; PIECES.len() - 2] {
+        let [near @ .., _, _] = &self.lines[class];
+        near
+    }
+}
+
+impl Line {
+    #[inline(always)]
+    fn at(self, steps: u16) -> u16 {
+        self.start + ((u32::from(steps) * u32::from(self.slope)) >> 16) as u16
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::grid::MAX_SIDE;
+
+    #[test]
+    fn bins_rise_with_the_steps_and_stay_below_nothing() {
+        for count in [8, 16, 360, 720, 3600] {
+            let directions = Directions::new(count).unwrap();
+            let bins = Bins::new(&directions);
+            for class in 0..directions.classes() {
+                let mut before = 1;
+                for steps in 0..u16::MAX {
+                    let bin = bins.bin(class, steps);
+                    assert!(before <= bin && bin < Bins::NOTHING, "{class}: {steps}");
+                    before = bin;
+                }
+            }
+        }
+    }
+
+    #[test]
+    fn near_bins_are_two_cells_wide_and_far_ones_wider() {
+        let directions = Directions::new(8).unwrap();
+        let bins = Bins::new(&directions);
+        let along_axis = [0, 1, 2, 3, 4, 40, 60, 1200, 5000].map(|steps| bins.bin(0, steps));
+        assert_eq!(along_axis, [1, 1, 2, 2, 3, 21, 30, 123, 191]);
+        // A diagonal step is 1.4 cells long.
+        assert_eq!([1, 2, 3].map(|steps| bins.bin(1, steps)), [1, 2, 3]);
+    }
+
+    #[test]
+    fn lines_give_the_bins_of_all_ranges_and_of_none() {
+        let directions = Directions::new(360).unwrap();
+        let bins = Bins::new(&directions);
+        let least = |lines: &[Line], steps| lines.iter().map(|line| line.at(steps)).min();
+        for class in 0..directions.classes() {
+            let (near, all) = (bins.near_lines(class), bins.lines(class));
+            for steps in 0..MAX_SIDE as u16 {
+                let bin = Some(u16::from(bins.bin(class, steps)));
+                assert_eq!(least(all, steps), bin, "{class}: {steps}");
+                if steps <= Bins::NEAR_STEPS {
+                    assert_eq!(least(near, steps), bin, "{class}: {steps}");
+                }
+            }
+            for lines in [near.as_slice(), all] {
+                assert!(least(lines, u16::MAX) >= Some(u16::from(Bins::NOTHING)));
+            }
+        }
+    }
+}

@@ -1,0 +1,129 @@
+//! Rows of bits and numbers kept as planes, side by side for 512 headings.
+//!
+//! Plane `j` of numbers holds bit `j` of all of them.
+
+/// 512 bits, one for each heading of a chunk.
+pub(crate) type Row = [u64; 8];
+
+/// A row without bits.
+pub(crate) const EMPTY: Row = [0; 8];
+
+/// Planes of numbers: they fit 16 bits.
+pub(crate) const PLANES: usize = 16;
+
+/// 512 numbers, by plane.
+pub(crate) type Planes = [Row; PLANES];
+
+/// Applies an operation word by word.
+#[inline(always)]
+fn zip(a: Row, b: Row, op: impl Fn(u64, u64) -> u64) -> Row {
+    std::array::from_fn(|i| op(a[i], b[i]))
+}
+
+/// The greatest of the numbers that `among` selects.
+pub(crate) fn greatest(numbers: &Planes, among: Row) -> u16 {
+    let mut candidates = among;
+    let mut value = 0;
+    for (plane, bits) in numbers.iter().enumerate().rev() {
+        let higher = zip(candidates, *bits, |a, b| a & b);
+        if !is_empty(&higher) {
+            candidates = higher;
+            value |= 1 << plane;
+        }
+    }
+    value
+}
+
+/// Where the numbers that `among` selects are at least `least`.
+pub(crate) fn at_least(numbers: &Planes, least: u16, among: Row) -> Row {
+    // Equal so far from the highest plane down, or greater already.
+    let (mut equal, mut greater) = (among, EMPTY);
+    for (plane, &bits) in numbers.iter().enumerate().rev() {
+        if least >> plane & 1 == 1 {
+            equal = zip(equal, bits, |equal, bits| equal & bits);
+        } else {
+            let higher = zip(equal, bits, |equal, bits| equal & bits);
+            greater = zip(greater, higher, |greater, higher| greater | higher);
+            equal = zip(equal, bits, |equal, bits| equal & !bits);
+        }
+    }
+    zip(greater, equal, |greater, equal| greater | equal)
+}
+
+/// Whether no bit is set.
+#[inline(always)]
+pub(crate) fn is_empty(row: &Row) -> bool {
+    row.iter().fold(0, |all, word| all | word) == 0
+}
+
+/// The places of the set bits of a word, ascending.
+pub(crate) fn ones(word: u64) -> impl Iterator<Item = usize> {
+    let mut word = word;
+    std::iter::from_fn(move || {
+        let bit = word.trailing_zeros() as usize;
+        (word != 0).then(|| {
+            word &= word - 1;
+            bit
+        })
+    })
+}
+
+/// Takes the first set bit of a row and those less than 64 places behind it:
+/// the place of the first, and all of them from there.
+pub(crate) fn take_window(row: &mut Row) -> Option<(usize, u64)> {
+    let word = row.iter().position(|&word| word != 0)?;
+    let shift = row[word].trailing_zeros();
+    let mut window = row[word] >> shift;
+    row[word] = 0;
+    if shift > 0
+        && let Some(next) = row.get_mut(word + 1)
+    {
+        window |= *next << (64 - shift);
+        *next = *next >> shift << shift;
+    }
+    Some((64 * word + shift as usize, window))
+}
+
+#[cfg(test)]
+mod tests {
+    use proptest::collection::vec;
+    use proptest::prelude::*;
+
+    use super::*;
+
+    proptest! {
+        #[test]
+        fn planes_are_compared_like_plain_numbers(
+            plain in vec(any::<u16>(), 512), among in any::<[u64; 8]>(), least in any::<u16>(),
+        ) {
+            let mut planes = [EMPTY; PLANES];
+            for (i, &number) in plain.iter().enumerate() {
+                for (plane, bits) in planes.iter_mut().enumerate() {
+                    bits[i / 64] |= u64::from(number >> plane & 1) << (i % 64);
+                }
+            }
+            let selected = |i: &usize| among[i / 64] >> (i % 64) & 1 == 1;
+            let most = (0..512).filter(selected).map(|i| plain[i]).max();
+            prop_assert_eq!(greatest(&planes, among), most.unwrap_or(0));
+            let found = at_least(&planes, least, among);
+            for i in 0..512 {
+                prop_assert_eq!(found[i / 64] >> (i % 64) & 1 == 1, selected(&i) && plain[i] >= least);
+            }
+        }
+
+        #[test]
+        fn windows_hold_each_bit_once(row in any::<[u64; 8]>(), sparse in any::<[u64; 8]>()) {
+            let row: Row = std::array::from_fn(|i| row[i] & sparse[i]);
+            let (mut rest, mut found) = (row, EMPTY);
+            while let Some((first, window)) = take_window(&mut rest) {
+                prop_assert_eq!(window & 1, 1);
+                for i in ones(window).map(|i| first + i) {
+                    prop_assert_eq!(found[i / 64] >> (i % 64) & 1, 0);
+                    found[i / 64] |= 1 << (i % 64);
+                }
+            }
+            prop_assert_eq!(found, row);
+            prop_assert_eq!(is_empty(&row), row == EMPTY);
+        }
+    }
+}

@@ -1,0 +1,346 @@
+//! One search: from large blocks down to poses, the most promising first.
+
+use std::cmp::Ordering;
+use std::collections::BinaryHeap;
+use std::ops::Range;
+
+use messages::Vote;
+
+use super::bits::{self, Row};
+use super::index::SearchIndex;
+use super::interval_bounds::{HEADINGS, IntervalBounds, IntervalProgram};
+use super::intervals::BlockIntervals;
+use super::leaf::LeafProgram;
+use super::outlook::{CELLS, Outlook};
+use super::set_bounds::{CHUNK, SetBounds, SetProgram};
+use super::sets::RangeSets;
+use crate::grid::Grid;
+use crate::instruction_set::InstructionSet;
+use crate::program::ScanProgram;
+use crate::space::Space;
+use crate::votes::{CollectConfig, Collector, VoteSet};
+
+/// A search under way.
+pub(super) struct Descent<'a> {
+    index: &'a SearchIndex,
+    grid: &'a Grid,
+    space: &'a Space,
+    coarse_program: SetProgram,
+    fine_program: SetProgram,
+    interval_program: IntervalProgram,
+    leaf_program: LeafProgram,
+    coarse_bounds: SetBounds,
+    fine_bounds: SetBounds,
+    intervals: BlockIntervals,
+    interval_bounds: IntervalBounds,
+    outlook: Outlook,
+    queue: BinaryHeap<Block>,
+    /// Headings at which blocks of 8 × 8 cells may matter, a row a chunk.
+    masks: Vec<Row>,
+    /// Headings at which blocks of 4 × 4 cells may matter.
+    candidates: Vec<Candidate>,
+    collector: Collector,
+    poses_evaluated: u64,
+}
+
+/// A block in the queue.
+#[derive(Debug, Clone, Copy)]
+struct Block {
+    /// What its best pose may have: the order of the queue.
+    promise: u16,
+    /// What none of its poses has more than.
+    bound: u16,
+    index: u32,
+    level: Level,
+}
+
+/// How large a block is, and what is known of it.
+#[derive(Debug, Clone, Copy)]
+enum Level {
+    /// 16 × 16 cells, roughly bounded.
+    Coarse,
+    /// 8 × 8 cells, at the headings of these masks.
+    Fine { masks: u32 },
+    /// 4 × 4 cells, at these candidate headings.
+    Leaf { start: u32, end: u32 },
+}
+
+/// A heading at which a block may still matter, and its bound there.
+#[derive(Debug, Clone, Copy)]
+struct Candidate {
+    heading: u16,
+    bound: u16,
+}
+
+impl Block {
+    fn key(&self) -> (u16, u32) {
+        (self.promise, self.index)
+    }
+}
+
+impl PartialEq for Block {
+    fn eq(&self, other: &Self) -> bool {
+        self.key() == other.key()
+    }
+}
+
+impl Eq for Block {}
+
+impl PartialOrd for Block {
+    fn partial_cmp(&self, other: &Self) -> Option<Ordering> {
+        Some(self.cmp(other))
+    }
+}
+
+impl Ord for Block {
+    fn cmp(&self, other: &Self) -> Ordering {
+        self.key().cmp(&other.key())
+    }
+}
+
+impl<'a> Descent<'a> {
+    /// `instruction_set` must be available.
+    pub(super) fn new(
+        instruction_set: InstructionSet,
+        index: &'a SearchIndex,
+        grid: &'a Grid,
+        program: &ScanProgram,
+        space: &'a Space,
+        config: CollectConfig,
+    ) -> Self {
+        let (directions, steps) = (&space.directions, &index.steps);
+        let set_program = |sets: &RangeSets| {
+            SetProgram::new(program, directions, steps, sets.shift, instruction_set)
+        };
+        let (coarse_program, fine_program) = (set_program(&index.coarse), set_program(&index.fine));
+        Descent {
+            index,
+            grid,
+            space,
+            coarse_bounds: coarse_program.bounds(),
+            fine_bounds: fine_program.bounds(),
+            coarse_program,
+            fine_program,
+            interval_program: IntervalProgram::new(program, directions, steps, instruction_set),
+            leaf_program: LeafProgram::new(program, directions, instruction_set),
+            intervals: BlockIntervals::default(),
+            interval_bounds: IntervalBounds::new(),
+            outlook: Outlook::new(grid, directions),
+            queue: BinaryHeap::new(),
+            masks: Vec::new(),
+            candidates: Vec::new(),
+            collector: Collector::new(config),
+            poses_evaluated: 0,
+        }
+    }
+
+    /// The outcome; `None` if `stop` said so before the end.
+    pub(super) fn run(mut self, stop: &dyn Fn() -> bool) -> Option<VoteSet> {
+        for index in 0..self.index.coarse.blocks() {
+            if stop() {
+                return None;
+            }
+            let coarse = &self.index.coarse;
+            let (bound, promise) =
+                self.coarse_program
+                    .rough(coarse, index, &mut self.coarse_bounds);
+            self.push(bound, promise, index, Level::Coarse);
+        }
+        while let Some(block) = self.queue.pop() {
+            if block.bound < self.collector.floor() {
+                continue;
+            }
+            if stop() {
+                return None;
+            }
+            let index = block.index as usize;
+            match block.level {
+                Level::Coarse => self.split_coarse(index),
+                Level::Fine { masks } => self.split_fine(index, masks as usize),
+                Level::Leaf { start, end } => self.count(index, start as usize..end as usize),
+            }
+        }
+        Some(self.collector.finish(self.poses_evaluated))
+    }
+
+    fn push(&mut self, bound: u16, promise: u16, index: usize, level: Level) {
+        if bound >= self.collector.floor() {
+            self.queue.push(Block {
+                promise,
+                bound,
+                index: index as u32,
+                level,
+            });
+        }
+    }
+
+    /// Bounds a block of 16 × 16 cells by all beams, and queues the 8 × 8 in it.
+    fn split_coarse(&mut self, index: usize) {
+        let (coarse, fine) = (&self.index.coarse, &self.index.fine);
+        let floor = self.collector.floor();
+        if self
+            .coarse_program
+            .bound(coarse, index, floor, &mut self.coarse_bounds)
+        {
+            for block in quarters(index, coarse.columns, (fine.columns, fine.rows)) {
+                self.queue_fine(block);
+            }
+        }
+    }
+
+    /// Queues a block of 8 × 8 cells at the headings that the block around it
+    /// leaves.
+    fn queue_fine(&mut self, index: usize) {
+        let floor = self.collector.floor();
+        if !self
+            .fine_program
+            .bound(&self.index.fine, index, floor, &mut self.fine_bounds)
+        {
+            return;
+        }
+        let start = self.masks.len();
+        self.masks
+            .extend(self.fine_bounds.at_least(floor, &self.coarse_bounds));
+        if self.masks[start..].iter().all(bits::is_empty) {
+            self.masks.truncate(start);
+            return;
+        }
+        let bound = self.fine_bounds.greatest();
+        let masks = start as u32;
+        self.push(bound, bound, index, Level::Fine { masks });
+    }
+
+    /// Queues the blocks of 4 × 4 cells in one of 8 × 8.
+    fn split_fine(&mut self, index: usize, masks: usize) {
+        let (fine, intervals) = (&self.index.fine, &self.index.intervals);
+        for block in quarters(index, fine.columns, (intervals.columns, intervals.rows)) {
+            self.queue_leaf(block, masks);
+        }
+    }
+
+    /// Queues a block of 4 × 4 cells at the headings at which it may matter.
+    fn queue_leaf(&mut self, index: usize, masks: usize) {
+        let floor = self.collector.floor();
+        self.index.intervals.read(index, &mut self.intervals);
+        let start = self.candidates.len();
+        for chunk in 0..self.space.directions.count().div_ceil(CHUNK) {
+            let mut mask = self.masks[masks + chunk];
+            while let Some((heading, among)) = bits::take_window(&mut mask) {
+                self.bound_leaf(chunk * CHUNK + heading, among, floor);
+            }
+        }
+        let candidates = self.candidates[start..].iter();
+        if let Some(bound) = candidates.map(|candidate| candidate.bound).max() {
+            let (start, end) = (start as u32, self.candidates.len() as u32);
+            self.push(bound, bound, index, Level::Leaf { start, end });
+        }
+    }
+
+    /// Notes the headings from `first` on at which the block whose intervals
+    /// were read may matter.
+    fn bound_leaf(&mut self, first: usize, among: u64, floor: u16) {
+        let bounds = &mut self.interval_bounds;
+        if !self
+            .interval_program
+            .bound(&self.intervals, first, among, floor, bounds)
+        {
+            return;
+        }
+        for lane in bits::ones(among) {
+            let bound = bounds.all[lane];
+            if bound >= floor {
+                let heading = (first + lane) as u16;
+                self.candidates.push(Candidate { heading, bound });
+            }
+        }
+    }
+
+    /// Counts the votes of a block's poses at the candidate headings.
+    fn count(&mut self, index: usize, mut candidates: Range<usize>) {
+        self.outlook.enter(self.grid, &self.index.intervals, index);
+        while let Some((first, among)) = self.next_headings(&mut candidates) {
+            let floor = self.collector.floor();
+            let (intervals, bounds) = (self.outlook.intervals(), &mut self.interval_bounds);
+            if self
+                .interval_program
+                .bound(intervals, first, among, floor, bounds)
+            {
+                self.count_at(first, among);
+            }
+        }
+    }
+
+    /// Takes candidates less than [`HEADINGS`] behind the first: its heading,
+    /// and those from there on that may still matter.
+    fn next_headings(&self, candidates: &mut Range<usize>) -> Option<(usize, u64)> {
+        let floor = self.collector.floor();
+        let first = usize::from(self.candidates[candidates.clone()].first()?.heading);
+        let mut among = 0;
+        for candidate in &self.candidates[candidates.clone()] {
+            let lane = usize::from(candidate.heading) - first;
+            if lane >= HEADINGS {
+                break;
+            }
+            among |= u64::from(candidate.bound >= floor) << lane;
+            candidates.start += 1;
+        }
+        Some((first, among))
+    }
+
+    /// Counts sector by sector at headings from `first` on, until no pose can
+    /// reach the floor with what the sectors left are bounded by.
+    fn count_at(&mut self, first: usize, among: u64) {
+        let open = self.outlook.open();
+        let prepared = (self.grid, &self.index.steps, &self.space.directions);
+        let mut counts = [[0u16; CELLS]; HEADINGS];
+        let mut rest = self.interval_bounds.all;
+        let mut alive = among;
+        let floor = self.collector.floor();
+        for (sector, bounds) in self.interval_bounds.sectors.iter().enumerate() {
+            let mut still = 0;
+            for lane in bits::ones(alive) {
+                let counts = &mut counts[lane];
+                self.leaf_program
+                    .add(&mut self.outlook, prepared, sector, first + lane, counts);
+                rest[lane] -= u16::from(bounds[lane]);
+                let counts = counts.iter().zip(&open);
+                let most = counts.map(|(&count, &open)| count & open).max();
+                still |= u64::from(most.unwrap_or(0) + rest[lane] >= floor) << lane;
+            }
+            alive = still;
+        }
+        for lane in bits::ones(alive) {
+            self.take((first + lane) as u16, &counts[lane], &open);
+        }
+    }
+
+    fn take(&mut self, heading: u16, counts: &[u16; CELLS], open: &[u16; CELLS]) {
+        self.poses_evaluated += CELLS as u64;
+        for (i, &intensity) in counts.iter().enumerate() {
+            if open[i] != 0 {
+                let (x, y) = self.outlook.cell(i);
+                self.collector.take(Vote {
+                    x: x as u16,
+                    y: y as u16,
+                    heading,
+                    intensity,
+                });
+            }
+        }
+    }
+}
+
+/// The blocks of the next smaller size in a block, as far as they are on the
+/// map.
+fn quarters(
+    index: usize,
+    columns: usize,
+    (finer_columns, finer_rows): (usize, usize),
+) -> impl Iterator<Item = usize> {
+    let (x, y) = (2 * (index % columns), 2 * (index / columns));
+    let all = [(x, y), (x + 1, y), (x, y + 1), (x + 1, y + 1)];
+    let on_map = move |&(x, y): &(usize, usize)| x < finer_columns && y < finer_rows;
+    all.into_iter()
+        .filter(on_map)
+        .map(move |(x, y)| y * finer_columns + x)
+}

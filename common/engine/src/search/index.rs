@@ -1,0 +1,181 @@
+//! A map prepared for searches.
+
+use super::bins::Bins;
+use super::descent::Descent;
+use super::intervals::RangeIntervals;
+use super::set_bounds::SetProgram;
+use super::sets::RangeSets;
+use super::steps::BinSteps;
+use crate::grid::Grid;
+use crate::instruction_set::InstructionSet;
+use crate::program::ScanProgram;
+use crate::space::Space;
+use crate::votes::{CollectConfig, VoteSet};
+
+/// Rows of the sets of 8 × 8 blocks stand for `1 << FINE_SHIFT` bins: a block
+/// smears distances by more.
+const FINE_SHIFT: u32 = 1;
+
+/// A map prepared for searches: made once for each map.
+#[derive(Debug, Clone)]
+pub struct SearchIndex {
+    pub(super) steps: BinSteps,
+    pub(super) intervals: RangeIntervals,
+    pub(super) fine: RangeSets,
+    pub(super) coarse: RangeSets,
+}
+
+/// Upper bounds of the intensities in square blocks, row by row from the
+/// lowest y.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub struct BlockBounds {
+    /// Cells along the side of a block.
+    pub side: usize,
+    /// Blocks along x.
+    pub columns: usize,
+    /// No pose in the block, at any heading, has more votes.
+    pub bounds: Vec<u16>,
+}
+
+impl SearchIndex {
+    /// Prepares a map.
+    #[must_use]
+    pub fn new(grid: &Grid, space: &Space) -> Self {
+        let directions = &space.directions;
+        let bins = Bins::new(directions);
+        // No ray has more steps than it crosses columns or rows.
+        let longest = grid.width().max(grid.height()) as u16;
+        let intervals = RangeIntervals::new(grid, directions, &bins);
+        let fine = RangeSets::new(&intervals, FINE_SHIFT);
+        let coarse = fine.joined();
+        SearchIndex {
+            steps: BinSteps::new(&bins, directions, longest),
+            intervals,
+            fine,
+            coarse,
+        }
+    }
+
+    /// Bytes that the index takes.
+    #[must_use]
+    pub fn bytes(&self) -> usize {
+        self.intervals.bytes() + self.fine.bytes() + self.coarse.bytes()
+    }
+
+    /// The poses with the most votes; `None` if `stop` said so before the end.
+    #[must_use]
+    pub fn search(
+        &self,
+        grid: &Grid,
+        program: &ScanProgram,
+        space: &Space,
+        config: CollectConfig,
+        stop: &dyn Fn() -> bool,
+    ) -> Option<VoteSet> {
+        self.search_with(InstructionSet::best(), grid, program, space, config, stop)
+    }
+
+    /// The same with a certain instruction set, which the processor must have.
+    #[must_use]
+    pub fn search_with(
+        &self,
+        instruction_set: InstructionSet,
+        grid: &Grid,
+        program: &ScanProgram,
+        space: &Space,
+        config: CollectConfig,
+        stop: &dyn Fn() -> bool,
+    ) -> Option<VoteSet> {
+        let instruction_set = instruction_set.checked();
+        Descent::new(instruction_set, self, grid, program, space, config).run(stop)
+    }
+
+    /// Upper bounds of the intensities in all coarse blocks: where the robot
+    /// may be, roughly.
+    #[must_use]
+    pub fn block_bounds(&self, program: &ScanProgram, space: &Space) -> BlockBounds {
+        let (coarse, directions) = (&self.coarse, &space.directions);
+        let best = InstructionSet::best();
+        let set_program = SetProgram::new(program, directions, &self.steps, coarse.shift, best);
+        let mut bounds = set_program.bounds();
+        let bound = |block| {
+            set_program.bound(coarse, block, 0, &mut bounds);
+            bounds.greatest()
+        };
+        BlockBounds {
+            side: coarse.side,
+            columns: coarse.columns,
+            bounds: (0..coarse.blocks()).map(bound).collect(),
+        }
+    }
+}
+
+impl BlockBounds {
+    /// Blocks along y.
+    #[must_use]
+    pub fn rows(&self) -> usize {
+        self.bounds.len() / self.columns
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use proptest::prelude::*;
+
+    use super::*;
+    use crate::reference;
+    use crate::testing::{any_grid, any_scan, plain_votes, space_of};
+
+    proptest! {
+        #[test]
+        fn the_search_equals_the_reference_on_every_instruction_set(
+            grid in any_grid(), scan in any_scan(), headings in 1u32..8,
+            floor_share in 0.5..=1.0f64, max_votes in 1u32..400,
+        ) {
+            let space = space_of(&grid, headings * 8);
+            let program = scan.program(&space);
+            let config = CollectConfig { floor_share, max_votes };
+            let index = SearchIndex::new(&grid, &space);
+            let plain = plain_votes(&grid, &program, &space, config);
+            for instruction_set in InstructionSet::available() {
+                let found = index.search_with(instruction_set, &grid, &program, &space, config, &|| false);
+                let found = VoteSet { poses_evaluated: 0, ..found.unwrap() };
+                prop_assert_eq!(&found, &plain, "{:?}", instruction_set);
+            }
+        }
+
+        #[test]
+        fn no_pose_has_more_votes_than_the_bound_of_its_block(
+            grid in any_grid(), scan in any_scan(), headings in 1u32..8, heading in 0usize..64,
+        ) {
+            let space = space_of(&grid, headings * 8);
+            let program = scan.program(&space);
+            let blocks = SearchIndex::new(&grid, &space).block_bounds(&program, &space);
+            prop_assert_eq!(blocks.rows(), grid.height().div_ceil(blocks.side));
+            let field = reference::field(&grid, &program, &space, heading % space.directions.count());
+            for (i, &votes) in field.iter().enumerate() {
+                let (x, y) = (i % grid.width(), i / grid.width());
+                prop_assert!(votes <= blocks.bounds[y / blocks.side * blocks.columns + x / blocks.side]);
+            }
+        }
+    }
+
+    #[test]
+    fn a_search_that_is_told_to_stop_has_no_outcome() {
+        let grid = crate::grid::drawn::grid(&["####", "#..#", "####"]);
+        let space = space_of(&grid, 8);
+        let scan = crate::scan::Scan {
+            angle_min: 0.0,
+            angle_increment: 1.0,
+            range_min_m: 0.0,
+            range_max_m: 9.0,
+            ranges: &[0.1, 0.1],
+        };
+        let program = ScanProgram::new(&scan, 0.0, &space, &Default::default()).unwrap();
+        let index = SearchIndex::new(&grid, &space);
+        let search =
+            |stop| index.search(&grid, &program, &space, CollectConfig::default(), &|| stop);
+        assert!(search(true).is_none());
+        assert!(search(false).is_some());
+    }
+}

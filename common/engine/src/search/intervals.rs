@@ -1,0 +1,217 @@
+//! Which ranges the cells of a small block see in each direction, as intervals.
+//!
+//! Four by four cells see one surface, or two where the edge of one hides a part
+//! of the other: a near interval of bins and a far one hold nearly just what
+//! they see.
+
+mod build;
+mod pool;
+mod strip;
+mod transpose;
+
+use crate::directions::Directions;
+use crate::grid::Grid;
+use crate::instruction_set::InstructionSet;
+use crate::search::bins::Bins;
+use build::Source;
+
+/// Cells along the side of a block.
+pub(crate) const SIDE: usize = 4;
+
+/// Directions that are read at a time.
+pub(crate) const READ: usize = 64;
+
+/// Rows of bytes of a packed block.
+const PACKED: usize = 3;
+
+/// The width in a nibble that stands for all that the block sees.
+const ALL: u8 = 15;
+
+/// The two intervals of all blocks in all directions.
+#[derive(Debug, Clone)]
+pub(crate) struct RangeIntervals {
+    /// Blocks along x.
+    pub columns: usize,
+    /// Blocks along y.
+    pub rows: usize,
+    /// Directions of a turn.
+    pub directions: usize,
+    /// For each block three rows with a byte for each direction: the nearest
+    /// bin, the farthest bin, and the widths of the two intervals.
+    packed: Vec<u8>,
+}
+
+/// The intervals of one block, direction by direction for a turn and [`READ`]
+/// further ones, so that as many can be read from any direction on.
+#[derive(Debug, Clone, Default)]
+pub(crate) struct BlockIntervals {
+    /// First and last bin of the near interval, then of the far one. Where
+    /// there is none, the first lies behind the last.
+    pub rows: [Vec<u8>; 4],
+}
+
+impl RangeIntervals {
+    /// Those of all blocks of a grid.
+    pub(crate) fn new(grid: &Grid, directions: &Directions, bins: &Bins) -> Self {
+        Self::with(grid, directions, bins, InstructionSet::best(), 1)
+    }
+
+    /// The same by a given instruction set and number of threads.
+    pub(crate) fn with(
+        grid: &Grid,
+        directions: &Directions,
+        bins: &Bins,
+        set: InstructionSet,
+        threads: usize,
+    ) -> Self {
+        let (columns, rows) = (grid.width().div_ceil(SIDE), grid.height().div_ceil(SIDE));
+        let mut packed = vec![0; PACKED * directions.count() * columns * rows];
+        let source = Source {
+            grid,
+            directions,
+            bins,
+        };
+        build::build(source, set, threads, &mut packed);
+        RangeIntervals {
+            columns,
+            rows,
+            directions: directions.count(),
+            packed,
+        }
+    }
+
+    /// Bytes that the intervals take.
+    pub(crate) fn bytes(&self) -> usize {
+        self.packed.len()
+    }
+
+    /// The nearest bins of a block, its farthest ones, and the widths.
+    pub(crate) fn packed(&self, block: usize) -> [&[u8]; PACKED] {
+        let packed = &self.packed[PACKED * self.directions * block..][..PACKED * self.directions];
+        let (nearest, rest) = packed.split_at(self.directions);
+        let (farthest, widths) = rest.split_at(self.directions);
+        [nearest, farthest, widths]
+    }
+
+    /// Unpacks the intervals of a block.
+    pub(crate) fn read(&self, block: usize, into: &mut BlockIntervals) {
+        let [nearest, farthest, widths] = self.packed(block);
+        for row in &mut into.rows {
+            row.resize(self.directions + READ, 0);
+        }
+        let [near_first, near_last, far_first, far_last] = &mut into.rows;
+        near_first[..self.directions].copy_from_slice(nearest);
+        far_last[..self.directions].copy_from_slice(farthest);
+        unpack(near_end, nearest, farthest, widths, near_last);
+        unpack(far_start, nearest, farthest, widths, far_first);
+        for row in &mut into.rows {
+            for start in (self.directions..row.len()).step_by(self.directions) {
+                let rest = self.directions.min(row.len() - start);
+                row.copy_within(..rest, start);
+            }
+        }
+    }
+}
+
+/// Unpacks one of the inner ends; a function of its own, where the compiler
+/// knows that what it writes is not what it reads.
+#[inline(never)]
+fn unpack(
+    end: impl Fn(u8, u8, u8) -> u8,
+    nearest: &[u8],
+    farthest: &[u8],
+    widths: &[u8],
+    ends: &mut [u8],
+) {
+    let packed = nearest.iter().zip(farthest).zip(widths);
+    for (((&nearest, &farthest), &widths), unpacked) in packed.zip(ends) {
+        *unpacked = end(nearest, farthest, widths);
+    }
+}
+
+/// Last bin of the near interval.
+#[inline(always)]
+pub(crate) fn near_end(nearest: u8, farthest: u8, widths: u8) -> u8 {
+    nearest.saturating_add(width(widths & 15)).min(farthest)
+}
+
+/// First bin of the far interval.
+#[inline(always)]
+pub(crate) fn far_start(nearest: u8, farthest: u8, widths: u8) -> u8 {
+    farthest.saturating_sub(width(widths >> 4)).max(nearest)
+}
+
+#[inline(always)]
+fn width(nibble: u8) -> u8 {
+    if nibble == ALL { u8::MAX } else { nibble }
+}
+
+#[cfg(test)]
+mod tests {
+    use proptest::prelude::*;
+
+    use super::*;
+    use crate::reference;
+    use crate::testing::{any_grid, space_of};
+
+    proptest! {
+        #[test]
+        fn intervals_end_with_what_the_cells_see_and_hold_it_all(
+            grid in any_grid(), headings in prop_oneof![1u32..12, Just(45)],
+        ) {
+            let directions = &space_of(&grid, headings * 8).directions;
+            let bins = Bins::new(directions);
+            let intervals = RangeIntervals::with(&grid, directions, &bins, InstructionSet::Portable, 1);
+            for set in InstructionSet::available() {
+                for threads in 1..4 {
+                    let other = RangeIntervals::with(&grid, directions, &bins, set, threads);
+                    prop_assert!(other.packed == intervals.packed, "{} {}", set, threads);
+                }
+            }
+            let mut read = BlockIntervals::default();
+            for block in 0..intervals.columns * intervals.rows {
+                intervals.read(block, &mut read);
+                for (d, direction) in directions.all().iter().enumerate() {
+                    let seen = seen(&grid, &intervals, block, |x, y| {
+                        reference::range(&grid, x, y, direction).map(|range| bins.bin(direction.class, range))
+                    });
+                    let [near_first, near_last, far_first, far_last] = [0, 1, 2, 3].map(|i| read.rows[i][d]);
+                    prop_assert_eq!(seen.iter().min().copied().unwrap_or(Bins::NOTHING), near_first);
+                    prop_assert_eq!(seen.iter().max().copied().unwrap_or(0), far_last);
+                    for bin in &seen {
+                        let near = (near_first..=near_last).contains(bin);
+                        prop_assert!(near || (far_first..=far_last).contains(bin), "{} {:?}", bin, seen);
+                    }
+                    // An inner end is seen, too, unless its interval is too wide to say.
+                    if !seen.is_empty() {
+                        prop_assert!(near_last == far_last || seen.contains(&near_last));
+                        prop_assert!(far_first == near_first || seen.contains(&far_first));
+                    }
+                }
+                for row in &read.rows {
+                    let again = (directions.count()..row.len()).all(|i| row[i] == row[i - directions.count()]);
+                    prop_assert!(again && row.len() == directions.count() + READ);
+                }
+            }
+        }
+    }
+
+    /// What the open cells of a block see.
+    fn seen(
+        grid: &Grid,
+        intervals: &RangeIntervals,
+        block: usize,
+        see: impl Fn(i64, i64) -> Option<u8>,
+    ) -> Vec<u8> {
+        let (left, bottom) = (
+            block % intervals.columns * SIDE,
+            block / intervals.columns * SIDE,
+        );
+        let cells =
+            (0..SIDE * SIDE).map(|i| ((left + i % SIDE) as i64, (bottom + i / SIDE) as i64));
+        cells
+            .filter(|&(x, y)| grid.is_open(x, y))
+            .filter_map(|(x, y)| see(x, y))
+            .collect()
+    }
+}

@@ -1,0 +1,301 @@
+//! Builds the intervals of all blocks by range sweeps, strip by strip.
+//!
+//! Directions with the same major axis and sense sweep together: a strip of
+//! blocks is done in all of them before the next one, so that what is built
+//! leaves the cache once, with the bytes of a block side by side.
+
+use std::ops::Range;
+use std::sync::atomic::{AtomicUsize, Ordering};
+use std::sync::{Mutex, PoisonError};
+
+use super::pool::pool;
+use super::strip::{Row, RowLayout, StripMasks};
+use super::transpose::{TILE, WORD, transpose};
+use super::{PACKED, SIDE};
+use crate::directions::Directions;
+use crate::grid::Grid;
+use crate::instruction_set::InstructionSet;
+use crate::search::bins::Bins;
+use crate::search::lanes::{Lanes, Portable};
+
+/// What the intervals are made of.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct Source<'a> {
+    pub grid: &'a Grid,
+    pub directions: &'a Directions,
+    pub bins: &'a Bins,
+}
+
+/// [`TILE`] rows of blocks of the packed intervals. Threads fill it in different
+/// directions and take turns at that.
+type Band<'a> = Mutex<&'a mut [u8]>;
+
+/// Fills the packed intervals of all blocks, row by row.
+pub(super) fn build(source: Source<'_>, set: InstructionSet, threads: usize, packed: &mut [u8]) {
+    let row = source.grid.width().div_ceil(SIDE) * PACKED * source.directions.count();
+    let bands: Vec<Band<'_>> = packed.chunks_mut(TILE * row).map(Mutex::new).collect();
+    let parts = parts(source.directions, threads);
+    let next = AtomicUsize::new(0);
+    let work = || {
+        while let Some(part) = parts.get(next.fetch_add(1, Ordering::Relaxed)) {
+            sweep_on(set, source, part, &bands);
+        }
+    };
+    std::thread::scope(|scope| {
+        for _ in 1..threads {
+            scope.spawn(work);
+        }
+        work();
+    });
+}
+
+/// Directions that sweep together.
+#[derive(Debug, Clone)]
+struct Part {
+    x_major: bool,
+    forward: bool,
+    /// In ascending order.
+    directions: Vec<usize>,
+}
+
+/// All directions by major axis and sense, in as many pieces as threads need.
+fn parts(directions: &Directions, threads: usize) -> Vec<Part> {
+    let mut parts = Vec::new();
+    for (x_major, forward) in [(true, true), (true, false), (false, true), (false, false)] {
+        let alike = |&d: &usize| {
+            let direction = directions.get(d);
+            direction.x_major == x_major && (direction.step > 0) == forward
+        };
+        let all: Vec<usize> = (0..directions.count()).filter(alike).collect();
+        let pieces = threads.div_ceil(2);
+        parts.extend(
+            all.chunks(all.len().div_ceil(pieces).max(1))
+                .map(|piece| Part {
+                    x_major,
+                    forward,
+                    directions: piece.to_vec(),
+                }),
+        );
+    }
+    parts
+}
+
+fn sweep_on(set: InstructionSet, source: Source<'_>, part: &Part, bands: &[Band<'_>]) {
+    match set.checked() {
+        InstructionSet::Portable => sweep(Portable, source, part, bands),
+        #[cfg(target_arch = "x86_64")]
+        // SAFETY: the processor has the features that the function is compiled for.
+        InstructionSet::Avx2 => unsafe { sweep_avx2(source, part, bands) },
+        #[cfg(target_arch = "x86_64")]
+        // SAFETY: as above.
+        InstructionSet::Avx512 => unsafe { sweep_avx512(source, part, bands) },
+        #[cfg(not(target_arch = "x86_64"))]
+        _ => unreachable!("checked above"),
+    }
+}
+
+#[cfg(target_arch = "x86_64")]
+#[target_feature(enable = "avx2")]
+fn sweep_avx2(source: Source<'_>, part: &Part, bands: &[Band<'_>]) {
+    sweep(crate::search::lanes::Avx2::new(), source, part, bands);
+}
+
+#[cfg(target_arch = "x86_64")]
+#[target_feature(enable = "avx512f,avx512bw,avx512dq,avx512vl")]
+fn sweep_avx512(source: Source<'_>, part: &Part, bands: &[Band<'_>]) {
+    sweep(crate::search::lanes::Avx512::new(), source, part, bands);
+}
+
+/// Sweeps over the map in the directions of a part.
+#[inline(always)]
+fn sweep<L: Lanes>(lanes: L, source: Source<'_>, part: &Part, bands: &[Band<'_>]) {
+    let (width, height) = (source.grid.width(), source.grid.height());
+    let longest = (width.max(height) - 1) as u16;
+    let (majors, minors) = if part.x_major {
+        (width, height)
+    } else {
+        (height, width)
+    };
+    let row_blocks = width.div_ceil(SIDE);
+    let (strips, blocks) = (majors.div_ceil(SIDE), minors.div_ceil(SIDE));
+    let layout = RowLayout::new(blocks);
+    let mut masks = StripMasks::new(layout);
+    let mut swept = vec![Row::new(layout); part.directions.len()];
+    let mut between: [Row; SIDE - 1] = std::array::from_fn(|_| Row::new(layout));
+    let mut planes = Planes::new(part, blocks, source.directions.count());
+    for i in 0..strips {
+        let strip = if part.forward { strips - 1 - i } else { i };
+        masks.fill(source.grid, part.x_major, strip);
+        for (slot, (&d, swept)) in part.directions.iter().zip(&mut swept).enumerate() {
+            let direction = source.directions.get(d);
+            let [a, b, c] = &mut between;
+            for i in 0..SIDE {
+                let row = if part.forward { SIDE - 1 - i } else { i };
+                let major = (SIDE * strip + row) as i64;
+                let shift = direction.minor(major + direction.step) - direction.minor(major);
+                let (next, ranges) = match i {
+                    0 => (&*swept, &mut *a),
+                    1 => (&*a, &mut *b),
+                    2 => (&*b, &mut *c),
+                    _ => (&*c, &mut *swept),
+                };
+                masks.sweep(lanes, row, shift, next, ranges);
+            }
+            let rows = [&*a, b, c, swept];
+            if longest <= Bins::NEAR_STEPS {
+                pool(
+                    lanes,
+                    rows,
+                    source.bins.near_lines(direction.class),
+                    planes.of(slot),
+                );
+            } else {
+                pool(
+                    lanes,
+                    rows,
+                    source.bins.lines(direction.class),
+                    planes.of(slot),
+                );
+            }
+        }
+        planes.write(part, strip, blocks, row_blocks, bands);
+    }
+}
+
+/// The packed intervals of a strip, direction by direction.
+struct Planes {
+    /// Directions of a turn.
+    directions: usize,
+    /// Bytes of a row of the packed format in one direction: one a block.
+    stride: usize,
+    bytes: Vec<u8>,
+    /// Bytes of a row of the packed format in one block.
+    turned_stride: usize,
+    /// Those of the blocks of a tile, block by block.
+    turned: Vec<u8>,
+    /// Runs of neighbouring directions, and where they start among all.
+    runs: Vec<(usize, Range<usize>)>,
+}
+
+impl Planes {
+    fn new(part: &Part, blocks: usize, directions: usize) -> Self {
+        let stride = blocks.next_multiple_of(TILE);
+        let slots = part.directions.len().next_multiple_of(WORD);
+        let mut runs = Vec::new();
+        let mut slot = 0;
+        for run in part.directions.chunk_by(|a, b| a + 1 == *b) {
+            runs.push((slot, run[0]..run[0] + run.len()));
+            slot += run.len();
+        }
+        Planes {
+            directions,
+            stride,
+            bytes: vec![0; PACKED * stride * slots],
+            turned_stride: slots,
+            turned: vec![0; PACKED * TILE * slots],
+            runs,
+        }
+    }
+
+    /// The rows of the packed format in one direction.
+    #[inline(always)]
+    fn of(&mut self, slot: usize) -> [&mut [u8]; PACKED] {
+        let rows = &mut self.bytes[PACKED * self.stride * slot..][..PACKED * self.stride];
+        let (first, rest) = rows.split_at_mut(self.stride);
+        let (second, third) = rest.split_at_mut(self.stride);
+        [first, second, third]
+    }
+
+    /// Writes what was filled in into the blocks of a strip, where a row of
+    /// blocks has `columns`.
+    #[inline(always)]
+    fn write(
+        &mut self,
+        part: &Part,
+        strip: usize,
+        blocks: usize,
+        columns: usize,
+        bands: &[Band<'_>],
+    ) {
+        let bytes = PACKED * self.directions;
+        for start in (0..blocks).step_by(TILE) {
+            let tile = TILE.min(blocks - start);
+            // A tile across a column of blocks is as high as a band.
+            let (band, first, stride) = if part.x_major {
+                (start / TILE, strip, columns)
+            } else {
+                (strip / TILE, strip % TILE * columns + start, 1)
+            };
+            let mut band = bands[band].lock().unwrap_or_else(PoisonError::into_inner);
+            for block in 0..tile {
+                self.prefetch_block(&band[bytes * (first + block * stride)..][..bytes]);
+            }
+            self.turn(start);
+            for block in 0..tile {
+                self.write_block(
+                    block,
+                    &mut band[bytes * (first + block * stride)..][..bytes],
+                );
+            }
+        }
+    }
+
+    /// Has the memory at hand that a block will be written to.
+    #[inline(always)]
+    fn prefetch_block(&self, packed: &[u8]) {
+        for row in packed.chunks_exact(self.directions) {
+            for (_, run) in &self.runs {
+                prefetch(&row[run.clone()]);
+            }
+        }
+    }
+
+    /// Turns the tile of blocks from `start` on.
+    #[inline(always)]
+    fn turn(&mut self, start: usize) {
+        let stride = self.turned_stride;
+        for slot in (0..stride).step_by(WORD) {
+            for row in 0..PACKED {
+                let mut words = [[0; WORD]; WORD];
+                for (i, words) in words.iter_mut().enumerate() {
+                    let bytes = &self.bytes[(PACKED * (slot + i) + row) * self.stride + start..];
+                    *words = bytemuck::pod_read_unaligned(&bytes[..TILE]);
+                }
+                transpose(&mut words);
+                for (block, turned) in self.turned.chunks_exact_mut(PACKED * stride).enumerate() {
+                    let word = words[block % WORD][block / WORD];
+                    turned[row * stride + slot..][..WORD].copy_from_slice(&word.to_ne_bytes());
+                }
+            }
+        }
+    }
+
+    /// Writes a block of the turned tile.
+    #[inline(always)]
+    fn write_block(&self, block: usize, packed: &mut [u8]) {
+        let turned = &self.turned[PACKED * self.turned_stride * block..];
+        for row in 0..PACKED {
+            for (slot, run) in &self.runs {
+                let from = &turned[row * self.turned_stride + slot..][..run.len()];
+                packed[row * self.directions..][run.clone()].copy_from_slice(from);
+            }
+        }
+    }
+}
+
+/// Asks for all cache lines of some bytes, where one can.
+#[inline(always)]
+fn prefetch(bytes: &[u8]) {
+    #[cfg(target_arch = "x86_64")]
+    for line in bytes.chunks(64) {
+        use std::arch::x86_64::{_MM_HINT_T1, _mm_prefetch};
+        let ends = [&line[0], &line[line.len() - 1]];
+        for end in ends {
+            // SAFETY: every processor of the architecture has the instruction, and
+            // it reads nothing.
+            unsafe { _mm_prefetch::<_MM_HINT_T1>(std::ptr::from_ref(end).cast()) };
+        }
+    }
+    #[cfg(not(target_arch = "x86_64"))]
+    let _ = bytes;
+}

@@ -1,0 +1,100 @@
+//! The packed intervals of a whole strip of blocks in one direction.
+
+use super::strip::Row;
+use super::{ALL, PACKED, SIDE};
+use crate::search::bins::{Bins, Line};
+use crate::search::lanes::Lanes;
+
+/// Pools the ranges of a strip's four rows of cells block by block, and packs
+/// the intervals of their bins, by `lines`, row by row of the packed format.
+///
+/// What lies up to the middle between the shortest and the longest range of a
+/// block is near, the rest is far. Cells that see nothing and cells that nobody
+/// can stand in must not count: one step less than [`NO_RANGE`] and than the 0 of
+/// occupied cells are the two greatest numbers, and -2 and -1 if signed.
+///
+/// [`NO_RANGE`]: crate::program::NO_RANGE
+#[inline(always)]
+pub(super) fn pool<L: Lanes, const LINES: usize>(
+    lanes: L,
+    rows: [&Row; SIDE],
+    lines: &[Line; LINES],
+    packed: [&mut [u8]; PACKED],
+) {
+    let cells: [&[u16]; SIDE * SIDE] = std::array::from_fn(|i| rows[i / SIDE].plane(i % SIDE));
+    let [nearest, farthest, widths] = packed;
+    let nearest = nearest.chunks_exact_mut(L::COUNT);
+    let farthest = farthest.chunks_exact_mut(L::COUNT);
+    let widths = widths.chunks_exact_mut(L::COUNT);
+    for (chunk, ((nearest, farthest), widths)) in nearest.zip(farthest).zip(widths).enumerate() {
+        let start = chunk * L::COUNT;
+        if start >= cells[0].len() {
+            break;
+        }
+        let one = lanes.splat(1);
+        let mut steps = [lanes.splat(0); SIDE * SIDE];
+        for (steps, cells) in steps.iter_mut().zip(&cells) {
+            *steps = lanes.sub(lanes.load(&cells[start..]), one);
+        }
+        let mut ends = ends(lanes, steps);
+        for end in &mut ends {
+            *end = lanes.add_saturating(*end, one);
+        }
+        let [first, near_last, far_first, last] = bin(lanes, lines, ends);
+        // Turns NOTHING into 0.
+        let last = lanes.sub_saturating(
+            lanes.and(lanes.add(last, one), lanes.splat(u16::from(u8::MAX))),
+            one,
+        );
+        let all = lanes.splat(u16::from(ALL));
+        let near = lanes.min(lanes.sub(near_last, first), all);
+        let far = lanes.min(lanes.sub_saturating(last, far_first), all);
+        lanes.store_bytes(first, nearest);
+        lanes.store_bytes(last, farthest);
+        lanes.store_bytes(lanes.or(near, lanes.shift_nibble(far)), widths);
+    }
+}
+
+/// First and last number of the near part and of the far part of each lane.
+#[inline(always)]
+fn ends<L: Lanes>(lanes: L, steps: [L::Vector; SIDE * SIDE]) -> [L::Vector; 4] {
+    let (mut first, mut last) = (steps[0], steps[0]);
+    for &steps in &steps[1..] {
+        first = lanes.min(first, steps);
+        last = lanes.max_signed(last, steps);
+    }
+    // Counted from behind the middle, what lies up to it wraps around to the
+    // greatest numbers.
+    let far = lanes.average(first, lanes.add(last, lanes.splat(1)));
+    let mut far_first = lanes.sub(steps[0], far);
+    let mut near_last = far_first;
+    for &steps in &steps[1..] {
+        let beyond = lanes.sub(steps, far);
+        far_first = lanes.min(far_first, beyond);
+        near_last = lanes.max(near_last, beyond);
+    }
+    [
+        first,
+        lanes.add(far, near_last),
+        lanes.add(far, far_first),
+        last,
+    ]
+}
+
+/// The bins of ranges.
+#[inline(always)]
+fn bin<L: Lanes, const N: usize, const LINES: usize>(
+    lanes: L,
+    lines: &[Line; LINES],
+    steps: [L::Vector; N],
+) -> [L::Vector; N] {
+    let mut bins = [lanes.splat(u16::from(Bins::NOTHING)); N];
+    for line in lines {
+        let (start, slope) = (lanes.splat(line.start), lanes.splat(line.slope));
+        for i in 0..N {
+            let bin = lanes.add(start, lanes.mul_high(steps[i], slope));
+            bins[i] = lanes.min(bins[i], bin);
+        }
+    }
+    bins
+}

@@ -1,0 +1,59 @@
+//! Turns bytes that lie block by block for each direction into bytes that lie
+//! direction by direction for each block.
+
+/// Bytes of a word: so many directions are turned at a time.
+pub(super) const WORD: usize = 8;
+
+/// Blocks that are turned at a time.
+pub(super) const TILE: usize = WORD * WORD;
+
+/// Turns the bytes of 64 blocks in eight directions, a row of words each: the
+/// word of block `8 · i + j`, with a byte for each direction, is then `[j][i]`.
+#[inline(always)]
+pub(super) fn transpose(words: &mut [[u64; WORD]; WORD]) {
+    // Squares of bytes swap places across the diagonal: of four, two and one.
+    swap(words, 4, 0x0000_0000_FFFF_FFFF);
+    swap(words, 2, 0x0000_FFFF_0000_FFFF);
+    swap(words, 1, 0x00FF_00FF_00FF_00FF);
+}
+
+/// Swaps the upper part of each word with the lower part, `low`, of the one
+/// `distance` on.
+#[inline(always)]
+fn swap(words: &mut [[u64; WORD]; WORD], distance: usize, low: u64) {
+    let bits = 8 * distance;
+    for i in 0..WORD {
+        if i & distance != 0 {
+            continue;
+        }
+        #[expect(clippy::needless_range_loop, reason = "two words change at a time")]
+        for lane in 0..WORD {
+            let (a, b) = (words[i][lane], words[i + distance][lane]);
+            words[i][lane] = (a & low) | ((b & low) << bits);
+            words[i + distance][lane] = ((a >> bits) & low) | (b & !low);
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn every_byte_finds_its_place() {
+        let byte = |direction: usize, block: usize| (direction * 31 + block * 7) as u8;
+        let word = |direction: usize, i: usize| {
+            u64::from_le_bytes(std::array::from_fn(|j| byte(direction, WORD * i + j)))
+        };
+        let mut words =
+            std::array::from_fn(|direction| std::array::from_fn(|i| word(direction, i)));
+        transpose(&mut words);
+        for block in 0..TILE {
+            let bytes = words[block % WORD][block / WORD].to_le_bytes();
+            assert_eq!(
+                bytes,
+                std::array::from_fn(|direction| byte(direction, block))
+            );
+        }
+    }
+}

@@ -1,0 +1,191 @@
+//! Counting votes, pose by pose, for the 16 cells of a small block at once.
+//!
+//! The ranges of all cells in a direction lie side by side, so that a beam's
+//! votes for the whole block are one table look-up for each cell. With AVX-512
+//! all look-ups are one instruction.
+
+use std::ops::Range;
+
+use super::outlook::{CELLS, Outlook};
+use super::sectors;
+use super::steps::BinSteps;
+use crate::directions::Directions;
+use crate::grid::Grid;
+use crate::instruction_set::InstructionSet;
+use crate::program::ScanProgram;
+use crate::tables::{TABLE, VoteTable, VoteTables};
+
+/// A scan program laid out for counting in blocks.
+#[derive(Debug, Clone)]
+pub(crate) struct LeafProgram {
+    instruction_set: InstructionSet,
+    /// The beams, sector by sector, and their bearings.
+    order: Vec<usize>,
+    bearings: Vec<usize>,
+    tables: VoteTables,
+    /// Class of each direction.
+    classes: Vec<usize>,
+}
+
+impl LeafProgram {
+    pub(crate) fn new(
+        program: &ScanProgram,
+        directions: &Directions,
+        instruction_set: InstructionSet,
+    ) -> Self {
+        let order = sectors::order(program.beams());
+        LeafProgram {
+            instruction_set,
+            bearings: order.iter().map(|&beam| program.bearing(beam)).collect(),
+            order,
+            tables: VoteTables::new(program, directions),
+            classes: directions
+                .all()
+                .iter()
+                .map(|direction| direction.class)
+                .collect(),
+        }
+    }
+
+    /// Adds the votes of a sector of beams at a heading to those of the block's
+    /// cells; what is added where a cell is not open means nothing.
+    pub(crate) fn add(
+        &self,
+        outlook: &mut Outlook,
+        (grid, steps, directions): (&Grid, &BinSteps, &Directions),
+        sector: usize,
+        heading: usize,
+        counts: &mut [u16; CELLS],
+    ) {
+        let beams = sectors::beams(sector, self.bearings.len());
+        for beam in beams.clone() {
+            outlook.look(grid, steps, directions, self.direction(beam, heading));
+        }
+        match self.instruction_set {
+            // SAFETY: the processor has the instruction set, or it would not be chosen.
+            #[cfg(target_arch = "x86_64")]
+            InstructionSet::Avx512 if self.tables.are_short() => unsafe {
+                self.add_avx512(outlook, beams, heading, counts);
+            },
+            _ => self.add_portable(outlook, beams, heading, counts),
+        }
+    }
+
+    fn add_portable(
+        &self,
+        outlook: &Outlook,
+        beams: Range<usize>,
+        heading: usize,
+        counts: &mut [u16; CELLS],
+    ) {
+        for beam in beams {
+            let (table, ranges) = self.look(outlook, heading, beam);
+            table.add_portable(ranges, counts);
+        }
+    }
+
+    #[inline(always)]
+    fn direction(&self, beam: usize, heading: usize) -> usize {
+        let direction = heading + self.bearings[beam];
+        let count = self.classes.len();
+        if direction < count {
+            direction
+        } else {
+            direction - count
+        }
+    }
+
+    /// A beam's table and the cells' ranges along it.
+    #[inline(always)]
+    fn look<'a>(
+        &'a self,
+        outlook: &'a Outlook,
+        heading: usize,
+        beam: usize,
+    ) -> (VoteTable<'a>, &'a [u16; CELLS]) {
+        let direction = self.direction(beam, heading);
+        let table = self.tables.get(self.order[beam], self.classes[direction]);
+        (table, outlook.ranges(direction))
+    }
+
+    #[cfg(target_arch = "x86_64")]
+    #[target_feature(enable = "avx512f,avx512bw,avx512vl,avx512vbmi")]
+    fn add_avx512(
+        &self,
+        outlook: &Outlook,
+        beams: Range<usize>,
+        heading: usize,
+        counts: &mut [u16; CELLS],
+    ) {
+        use std::arch::x86_64::*;
+        let last = _mm256_set1_epi16(TABLE as i16 - 1);
+        // SAFETY: the array holds the 16 numbers that are read of it.
+        let mut sums = unsafe { _mm256_loadu_si256(counts.as_ptr().cast()) };
+        for beam in beams {
+            let (table, ranges) = self.look(outlook, heading, beam);
+            let centre = _mm256_set1_epi16(table.centre as i16);
+            let table = &table.votes[..TABLE];
+            // SAFETY: both are as long as what is read of them.
+            let (table, range) = unsafe {
+                (
+                    _mm512_loadu_si512(table.as_ptr().cast()),
+                    _mm256_loadu_si256(ranges.as_ptr().cast()),
+                )
+            };
+            let off = _mm256_or_si256(
+                _mm256_subs_epu16(range, centre),
+                _mm256_subs_epu16(centre, range),
+            );
+            // The index is the low byte of a lane; the high one looks up
+            // entry 0, which the mask leaves out.
+            let index = _mm512_castsi256_si512(_mm256_min_epu16(off, last));
+            let found = _mm512_maskz_permutexvar_epi8(0x5555_5555, index, table);
+            sums = _mm256_add_epi16(sums, _mm512_castsi512_si256(found));
+        }
+        // SAFETY: the array holds the 16 numbers that are stored to it.
+        unsafe { _mm256_storeu_si256(counts.as_mut_ptr().cast(), sums) };
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use proptest::prelude::*;
+
+    use super::super::bins::Bins;
+    use super::super::intervals::RangeIntervals;
+    use super::*;
+    use crate::reference;
+    use crate::testing::{any_grid, any_scan, space_of};
+
+    proptest! {
+        #[test]
+        fn counts_equal_the_reference_on_every_instruction_set(
+            grid in any_grid(), scan in any_scan(), headings in 1u32..12, seed in any::<[usize; 2]>(),
+        ) {
+            let space = space_of(&grid, headings * 8);
+            let directions = &space.directions;
+            let program = scan.program(&space);
+            let bins = Bins::new(directions);
+            let steps = BinSteps::new(&bins, directions, grid.width().max(grid.height()) as u16);
+            let intervals = RangeIntervals::new(&grid, directions, &bins);
+            let block = seed[0] % (intervals.columns * intervals.rows);
+            let heading = seed[1] % directions.count();
+            for instruction_set in InstructionSet::available() {
+                let leaf = LeafProgram::new(&program, directions, instruction_set);
+                let mut outlook = Outlook::new(&grid, directions);
+                outlook.enter(&grid, &intervals, block);
+                let mut counts = [0; CELLS];
+                for sector in 0..sectors::count(program.beams()) {
+                    leaf.add(&mut outlook, (&grid, &steps, directions), sector, heading, &mut counts);
+                }
+                for (i, &count) in counts.iter().enumerate() {
+                    let (x, y) = outlook.cell(i);
+                    if grid.is_open(x as i64, y as i64) {
+                        let plain = reference::intensity(&grid, &program, &space, x as i64, y as i64, heading);
+                        prop_assert_eq!(count, plain, "{:?} {:?}", (x, y), instruction_set);
+                    }
+                }
+            }
+        }
+    }
+}

@@ -1,0 +1,33 @@
+//! The search over x, y and all headings, exact by bounds.
+//!
+//! Blocks of 16 × 16 cells are bounded by their sets of visible ranges, for all
+//! headings at once. What may still matter is split into blocks of 8 × 8 cells
+//! with sets of their own, then into 4 × 4 with intervals of ranges, and last
+//! the poses of those are counted one by one. When no block that is left can
+//! reach the floor, every pose above it has been seen.
+//!
+//! ```text
+//! map ─ bins ─ intervals ─ sets                         prepared once (index)
+//!                  │         │
+//! scan program ────┼─────────┴─ set bounds ─ 16 × 16, 8 × 8 ─┐
+//!                  ├─ interval bounds ────── 4 × 4 ──────────┼─ descent ─ votes
+//!                  └─ outlook ─ leaf ─────── poses ──────────┘
+//! ```
+
+mod bins;
+mod bits;
+mod descent;
+mod index;
+mod interval_bounds;
+mod intervals;
+mod lanes;
+mod leaf;
+mod outlook;
+mod rows;
+mod sectors;
+mod set_bounds;
+mod sets;
+mod spans;
+mod steps;
+
+pub use index::{BlockBounds, SearchIndex};
