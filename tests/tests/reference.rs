@@ -5,12 +5,13 @@
     reason = "the lint spares test functions but not what they share"
 )]
 
+use engine::accumulator::{Accumulator, Query};
 use engine::grid::{Cell, CellRules, Grid};
 use engine::program::{ScanProgram, VoteConfig};
 use engine::reference;
 use engine::search::SearchIndex;
 use engine::space::Space;
-use engine::sweep::{self, SweepGrid};
+use engine::sweep::FieldSweep;
 use engine::votes::CollectConfig;
 use tests::world::{World, as_engine_takes_it};
 
@@ -44,7 +45,8 @@ fn on_a_piece_of_a_real_map_all_methods_count_the_same_votes() {
     );
     let space = Space::new(HEADINGS, frame.resolution_m, WIDTH, HEIGHT).unwrap();
     let index = SearchIndex::new(&grid, &space);
-    let sweeps = SweepGrid::new(&grid);
+    let sweeps = FieldSweep::new(&grid);
+    let (mut sweep, mut swept) = (sweeps.accumulator(), Vec::new());
     let scan = &world.scans()[18];
     let program = ScanProgram::new(
         &as_engine_takes_it(scan),
@@ -62,8 +64,13 @@ fn on_a_piece_of_a_real_map_all_methods_count_the_same_votes() {
     let mut above_floor = 0;
     for heading in 0..space.directions.count() {
         let plain = reference::field(&grid, &program, &space, heading);
-        let swept = sweep::field(&sweeps, &grid, &program, &space, heading, &|| false);
-        assert_eq!(swept.as_ref(), Some(&plain), "heading {heading}");
+        let query = Query {
+            program: &program,
+            space: &space,
+            heading,
+        };
+        sweep.fill(query, &mut swept, &|| false).unwrap();
+        assert_eq!(swept, plain, "heading {heading}");
         above_floor += plain
             .iter()
             .filter(|&&votes| votes >= found.certified_floor)

@@ -16,12 +16,13 @@ use benchmarks::baselines::{
 use benchmarks::scans::{ScanConfig, SimulatedScan, simulate};
 use benchmarks::worlds::{Kind, World};
 use criterion::Criterion;
+use engine::accumulator::{Accumulator, Query};
 use engine::boundary;
 use engine::program::{ScanProgram, VoteConfig};
-use engine::scatter;
+use engine::scatter::Scatter;
 use engine::search::SearchIndex;
 use engine::space::Space;
-use engine::sweep::{self, SweepGrid};
+use engine::sweep::FieldSweep;
 use engine::taper::TaperShape;
 use engine::votes::CollectConfig;
 
@@ -73,7 +74,7 @@ fn prepare(criterion: &mut Criterion, case: &Case) {
     let mut group = criterion.benchmark_group("prepare");
     group.sample_size(10);
     group.bench_function("boundary", |b| b.iter(|| boundary::extract(&world.grid)));
-    group.bench_function("sweep", |b| b.iter(|| SweepGrid::new(&world.grid)));
+    group.bench_function("sweep", |b| b.iter(|| FieldSweep::new(&world.grid)));
     group.bench_function("search", |b| {
         b.iter(|| SearchIndex::new(&world.grid, space));
     });
@@ -91,15 +92,21 @@ fn fields(criterion: &mut Criterion, case: &Case) {
         program,
         ..
     } = case;
-    let heading = case.scan.heading;
-    let sweeps = SweepGrid::new(&world.grid);
+    let query = Query {
+        program,
+        space,
+        heading: case.scan.heading,
+    };
+    let sweeps = FieldSweep::new(&world.grid);
     let mut group = criterion.benchmark_group("field");
     group.sample_size(20);
     group.bench_function("sweep", |b| {
-        b.iter(|| sweep::field(&sweeps, &world.grid, program, space, heading, &|| false));
+        let (mut sweep, mut field) = (sweeps.accumulator(), Vec::new());
+        b.iter(|| sweep.fill(query, &mut field, &|| false));
     });
     group.bench_function("scatter", |b| {
-        b.iter(|| scatter::field(&world.grid, &world.boundary, program, space, heading));
+        let (mut scatter, mut field) = (Scatter::new(&world.grid, &world.boundary), Vec::new());
+        b.iter(|| scatter.fill(query, &mut field, &|| false));
     });
     group.finish();
 }

@@ -9,6 +9,7 @@ use benchmarks::scans::{ScanConfig, simulate};
 use benchmarks::timing::{cpu_ms, median};
 use benchmarks::worlds::{Kind, World};
 use clap::Parser;
+use engine::instruction_set::InstructionSet;
 use engine::program::ScanProgram;
 use engine::search::SearchIndex;
 use engine::taper::TaperShape;
@@ -36,6 +37,11 @@ struct Options {
     floor_share: f64,
     #[arg(long, default_value_t = 1)]
     seed: u64,
+    #[arg(long, default_value_t = 1)]
+    threads: usize,
+    /// From the plainest, 0, to what this processor has at best
+    #[arg(long)]
+    instruction_set: Option<usize>,
     /// Print a line for each scan
     #[arg(long)]
     each: bool,
@@ -62,11 +68,15 @@ fn main() -> Result<(), BenchmarksError> {
         100.0 * world.p_over_n(),
         index.bytes() as f64 / 1e6
     );
+    let available: Vec<_> = InstructionSet::available().collect();
+    let wanted = options.instruction_set.unwrap_or(available.len() - 1);
+    let instruction_set = available[wanted.min(available.len() - 1)];
     let mut costs = Vec::new();
     let (mut share, mut poses, mut hits) = (0.0, 0, 0);
     for scan in &scans {
         let program = ScanProgram::new(&scan.scan(), 0.0, &space, &votes)?;
-        let run = || index.search(&world.grid, &program, &space, collect, &|| false);
+        let how = (instruction_set, options.threads);
+        let run = || index.search_with(how, &world.grid, (&program, &space), collect, &|| false);
         let (found, cost) = cpu_ms(run);
         let Some(found) = found else { continue };
         let best_share = f64::from(found.best) / f64::from(program.highest_possible());

@@ -3,12 +3,14 @@
 use messages::BoundaryCell;
 
 use crate::EngineError;
+use crate::accumulator::{Accumulator, Query};
 use crate::grid::{Grid, GridFrame};
+use crate::instruction_set::InstructionSet;
 use crate::program::{ScanProgram, VoteConfig};
 use crate::scan::Scan;
 use crate::search::{BlockBounds, SearchIndex};
 use crate::space::Space;
-use crate::sweep::{self, SweepGrid};
+use crate::sweep::FieldSweep;
 use crate::votes::{self, CollectConfig, VoteSet};
 
 /// How scans are matched with the map.
@@ -17,6 +19,9 @@ pub struct LocalizerConfig {
     /// Headings a turn, a multiple of 8 from 8 to 3600.
     #[arg(long, value_name = "COUNT", default_value_t = 360)]
     pub headings: u32,
+    /// Threads of a search, 1..=64; the answer is the same with any number.
+    #[arg(long, value_name = "COUNT", default_value_t = 1, value_parser = clap::value_parser!(u8).range(1..=64))]
+    pub threads: u8,
     /// How readings become votes.
     #[command(flatten)]
     pub votes: VoteConfig,
@@ -29,6 +34,7 @@ impl Default for LocalizerConfig {
     fn default() -> Self {
         LocalizerConfig {
             headings: 360,
+            threads: 1,
             votes: VoteConfig::default(),
             collect: CollectConfig::default(),
         }
@@ -57,7 +63,7 @@ pub struct Localizer {
 #[derive(Debug, Clone)]
 enum Method {
     Search(Box<SearchIndex>),
-    Sweep(SweepGrid),
+    Sweep(FieldSweep),
 }
 
 /// What a scan says about the pose.
@@ -105,7 +111,7 @@ impl Localizer {
         )?;
         let method = match prior {
             Prior::None => Method::Search(Box::new(SearchIndex::new(&grid, &space))),
-            Prior::Heading => Method::Sweep(SweepGrid::new(&grid)),
+            Prior::Heading => Method::Sweep(FieldSweep::new(&grid)),
         };
         Ok(Localizer {
             frame,
@@ -144,7 +150,9 @@ impl Localizer {
             panic!("this localizer was prepared for known headings");
         };
         let program = ScanProgram::new(scan, 0.0, &self.space, &self.config.votes)?;
-        let found = index.search(&self.grid, &program, &self.space, self.config.collect, stop);
+        let how = (InstructionSet::best(), usize::from(self.config.threads));
+        let (scan, collect) = ((&program, &self.space), self.config.collect);
+        let found = index.search_with(how, &self.grid, scan, collect, stop);
         Ok(found.map(|found| self.outcome(&program, found, None)))
     }
 
@@ -191,10 +199,15 @@ impl Localizer {
             .directions
             .nearest(heading - self.frame.map_from_grid.yaw);
         let program = ScanProgram::new(scan, turn, &self.space, &self.config.votes)?;
-        let field = sweep::field(sweeps, &self.grid, &program, &self.space, index, stop);
-        let Some(field) = field else {
-            return Ok(None);
+        let query = Query {
+            program: &program,
+            space: &self.space,
+            heading: index,
         };
+        let mut field = Vec::new();
+        if sweeps.accumulator().fill(query, &mut field, stop).is_none() {
+            return Ok(None);
+        }
         let found = votes::of_field(&field, self.grid.width(), index as u16, self.config.collect);
         Ok(Some((self.outcome(&program, found, Some(heading)), field)))
     }
@@ -312,10 +325,8 @@ mod tests {
     #[test]
     fn a_search_at_a_heading_ends_when_it_is_told_to() {
         let (ranges, localizer) = (ranges(5, 3, 40), localizer(Prior::Heading));
-        let beams = localizer.search_at(&scan(&ranges), 0.0, &|| false);
-        let beams = beams.unwrap().unwrap().0.beams_used;
         let asked = Cell::new(0);
-        let stop_at = |last| {
+        let search_until = |last| {
             asked.set(0);
             let stop = || {
                 asked.set(asked.get() + 1);
@@ -323,11 +334,13 @@ mod tests {
             };
             localizer.search_at(&scan(&ranges), 0.0, &stop).unwrap()
         };
-        for last in [1, 2, beams] {
-            assert_eq!(stop_at(last), None);
-            assert_eq!(asked.get(), last, "no beam is swept after that");
+        assert!(search_until(0).is_some());
+        let times = asked.get();
+        assert!(times > 1, "it is asked again and again: {times}");
+        for last in 1..=times {
+            assert_eq!(search_until(last), None);
+            assert_eq!(asked.get(), last, "nothing is swept after that");
         }
-        assert!(stop_at(beams + 1).is_some());
     }
 
     #[test]

@@ -7,35 +7,59 @@
 
 use messages::BoundaryCell;
 
+use crate::accumulator::{Accumulator, Query};
+use crate::directions::Direction;
 use crate::grid::{Cell, Grid};
-use crate::program::ScanProgram;
-use crate::space::Space;
+use crate::program::Taper;
 
-/// Intensities of all cells at one heading, row by row from the lowest y.
-#[must_use]
-pub fn field(
-    grid: &Grid,
-    boundary: &[BoundaryCell],
-    program: &ScanProgram,
-    space: &Space,
-    heading: usize,
-) -> Vec<u16> {
-    let mut field = vec![0; grid.cells().len()];
-    for beam in 0..program.beams() {
-        let direction = space.directions.get(heading + program.bearing(beam));
-        let (taper, back) = (program.taper(beam, direction.class), direction.opposite());
-        for cell in boundary {
+/// Counts votes from the boundary cells outward; wins with few beams on maps
+/// with few boundary cells.
+#[derive(Debug, Clone, Copy)]
+pub struct Scatter<'a> {
+    grid: &'a Grid,
+    boundary: &'a [BoundaryCell],
+}
+
+impl<'a> Scatter<'a> {
+    /// Takes a map and its boundary, that of [`crate::boundary::extract`].
+    #[must_use]
+    pub fn new(grid: &'a Grid, boundary: &'a [BoundaryCell]) -> Self {
+        Scatter { grid, boundary }
+    }
+
+    fn project(&self, direction: &Direction, taper: Taper<'_>, field: &mut [u16]) {
+        let back = direction.opposite();
+        for cell in self.boundary {
             let (mut x, mut y) = (i64::from(cell.x), i64::from(cell.y));
             for steps in 1..taper.end() {
                 (x, y) = back.advance(x, y);
-                if grid.get(x, y) != Some(Cell::Open) {
+                if self.grid.get(x, y) != Some(Cell::Open) {
                     break;
                 }
-                field[y as usize * grid.width() + x as usize] += u16::from(taper.votes(steps));
+                field[y as usize * self.grid.width() + x as usize] += u16::from(taper.votes(steps));
             }
         }
     }
-    field
+}
+
+impl Accumulator for Scatter<'_> {
+    fn fill(
+        &mut self,
+        query: Query<'_>,
+        field: &mut Vec<u16>,
+        stop: &dyn Fn() -> bool,
+    ) -> Option<()> {
+        field.clear();
+        field.resize(self.grid.cells().len(), 0);
+        for beam in 0..query.program.beams() {
+            if stop() {
+                return None;
+            }
+            let (direction, taper) = query.beam(beam);
+            self.project(direction, taper, field);
+        }
+        Some(())
+    }
 }
 
 #[cfg(test)]
@@ -43,37 +67,22 @@ mod tests {
     use proptest::prelude::*;
 
     use super::*;
-    use crate::sweep::{self, SweepGrid};
+    use crate::boundary;
     use crate::testing::{any_grid, any_scan, space_of};
-    use crate::{boundary, reference};
 
     proptest! {
-        #[test]
-        fn scatter_and_sweep_equal_the_reference(
-            grid in any_grid(), scan in any_scan(), headings in 1u32..12, heading in 0usize..96,
-        ) {
-            let space = space_of(&grid, headings * 8);
-            let program = scan.program(&space);
-            let plain = reference::field(&grid, &program, &space, heading);
-            let scattered = field(&grid, &boundary::extract(&grid), &program, &space, heading);
-            prop_assert_eq!(&scattered, &plain);
-            let sweeps = SweepGrid::new(&grid);
-            let swept = sweep::field(&sweeps, &grid, &program, &space, heading, &|| false);
-            prop_assert_eq!(swept, Some(plain));
-        }
-
         #[test]
         fn no_pose_has_more_votes_than_beams(grid in any_grid(), scan in any_scan(), heading in 0usize..72) {
             // Lemma 1, with one vote for each beam that reaches a pose: no beam
             // reaches it from two boundary cells.
-            let space = space_of(&grid, 72);
-            let program = scan.program(&space);
+            let space = &space_of(&grid, 72);
+            let program = &scan.program(space);
             let boundary = boundary::extract(&grid);
-            let most: u16 = (0..program.beams())
-                .map(|beam| program.taper(beam, 0).profile.first().map_or(0, |&peak| u16::from(peak)))
-                .sum();
+            let most: u16 = (0..program.beams()).map(|beam| program.peak(beam)).sum();
             prop_assert_eq!(u32::from(most), program.highest_possible());
-            let field = field(&grid, &boundary, &program, &space, heading);
+            let mut field = Vec::new();
+            let query = Query { program, space, heading };
+            prop_assert!(Scatter::new(&grid, &boundary).fill(query, &mut field, &|| false).is_some());
             prop_assert!(field.iter().all(|&votes| votes <= most));
         }
     }

@@ -80,18 +80,6 @@ impl VoteTables {
 
 impl VoteTable<'_> {
     /// Adds the votes for poses from which the ray is so long, side by side.
-    pub(crate) fn add(&self, ranges: &[u16], votes: &mut [u16]) {
-        #[cfg(target_arch = "x86_64")]
-        if self.votes.len() == TABLE
-            && is_x86_feature_detected!("avx512bw")
-            && is_x86_feature_detected!("avx512vbmi")
-        {
-            // SAFETY: the processor has the features that the function is compiled for.
-            return unsafe { self.add_avx512(ranges, votes) };
-        }
-        self.add_portable(ranges, votes);
-    }
-
     #[inline(always)]
     pub(crate) fn add_portable(&self, ranges: &[u16], votes: &mut [u16]) {
         let last = self.votes.len() - 1;
@@ -99,39 +87,6 @@ impl VoteTable<'_> {
             let distance = usize::from(range.abs_diff(self.centre)).min(last);
             *votes += u16::from(self.votes[distance]);
         }
-    }
-
-    #[cfg(target_arch = "x86_64")]
-    #[target_feature(enable = "avx512f,avx512bw,avx512vbmi")]
-    fn add_avx512(&self, ranges: &[u16], votes: &mut [u16]) {
-        use std::arch::x86_64::*;
-        const LANES: usize = 32;
-        let centre = _mm512_set1_epi16(self.centre as i16);
-        let last = _mm512_set1_epi16(TABLE as i16 - 1);
-        // SAFETY: the table has 64 entries.
-        let table = unsafe { _mm512_loadu_si512(self.votes[..TABLE].as_ptr().cast()) };
-        let mut ranges = ranges.chunks_exact(LANES);
-        let mut votes = votes.chunks_exact_mut(LANES);
-        for (ranges, votes) in (&mut ranges).zip(&mut votes) {
-            // SAFETY: both chunks hold 32 numbers.
-            let (range, sum) = unsafe {
-                (
-                    _mm512_loadu_si512(ranges.as_ptr().cast()),
-                    _mm512_loadu_si512(votes.as_ptr().cast()),
-                )
-            };
-            let off = _mm512_or_si512(
-                _mm512_subs_epu16(range, centre),
-                _mm512_subs_epu16(centre, range),
-            );
-            // An index is the low byte of a lane, and the high one looks up
-            // entry 0, which the mask leaves out.
-            let index = _mm512_min_epu16(off, last);
-            let found = _mm512_maskz_permutexvar_epi8(0x5555_5555_5555_5555, index, table);
-            // SAFETY: as above.
-            unsafe { _mm512_storeu_si512(votes.as_mut_ptr().cast(), _mm512_add_epi16(sum, found)) };
-        }
-        self.add_portable(ranges.remainder(), votes.into_remainder());
     }
 }
 
@@ -146,7 +101,7 @@ mod tests {
 
     proptest! {
         #[test]
-        fn tables_give_the_votes_of_the_taper_on_every_instruction_set(
+        fn tables_give_the_votes_of_the_taper(
             scan in any_scan(), ranges in vec(prop_oneof![9 => 0u16..80, 1 => Just(NO_RANGE)], 0..150),
         ) {
             let space = crate::space::Space::new(16, 0.1, 40, 40).unwrap();
@@ -155,11 +110,9 @@ mod tests {
             for (beam, class) in (0..program.beams()).flat_map(|i| (0..3).map(move |c| (i, c))) {
                 let taper = program.taper(beam, class);
                 let plain: Vec<u16> = ranges.iter().map(|&range| 1 + u16::from(taper.votes(range))).collect();
-                let (mut portable, mut chosen) = (vec![1; ranges.len()], vec![1; ranges.len()]);
-                tables.get(beam, class).add_portable(&ranges, &mut portable);
-                tables.get(beam, class).add(&ranges, &mut chosen);
-                prop_assert_eq!(&portable, &plain);
-                prop_assert_eq!(&chosen, &plain);
+                let mut votes = vec![1; ranges.len()];
+                tables.get(beam, class).add_portable(&ranges, &mut votes);
+                prop_assert_eq!(&votes, &plain);
             }
         }
     }

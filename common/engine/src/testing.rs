@@ -41,6 +41,22 @@ pub(crate) fn any_grid() -> impl Strategy<Value = Grid> {
     )
 }
 
+/// Long and narrow grids with few obstacles: far readings need more than a byte
+/// of steps.
+pub(crate) fn any_long_grid() -> impl Strategy<Value = Grid> {
+    let cell = prop_oneof![1 => Just(100u8), 300 => Just(0u8)];
+    (400usize..900, 1usize..4, any::<bool>()).prop_flat_map(move |(length, breadth, upright)| {
+        let (width, height) = if upright {
+            (breadth, length)
+        } else {
+            (length, breadth)
+        };
+        vec(cell.clone(), length * breadth).prop_map(move |occupancy| {
+            Grid::new(width, height, &occupancy, CellRules::default()).expect("sides are in range")
+        })
+    })
+}
+
 /// The search space of a test grid.
 pub(crate) fn space_of(grid: &Grid, headings: u32) -> Space {
     Space::new(headings, RESOLUTION_M, grid.width(), grid.height()).expect("headings are allowed")
@@ -77,6 +93,12 @@ pub(crate) struct AnyScan {
 }
 
 impl AnyScan {
+    /// The scan with all readings so many times as long.
+    pub(crate) fn stretched(mut self, by: f32) -> Self {
+        self.ranges.iter_mut().for_each(|range| *range *= by);
+        self
+    }
+
     /// The scan, compiled for a space.
     pub(crate) fn program(&self, space: &Space) -> ScanProgram {
         let scan = Scan {

@@ -91,6 +91,29 @@ impl Collector {
         }
     }
 
+    /// Raises the floor to what follows from a pose seen elsewhere.
+    pub(crate) fn hear_of(&mut self, best: u16) {
+        self.best = self.best.max(best);
+    }
+
+    /// The most votes of any pose so far.
+    pub(crate) fn best(&self) -> u16 {
+        self.best
+    }
+
+    /// What one collector would hold that had taken the poses of both.
+    pub(crate) fn merged(mut self, other: Collector) -> Collector {
+        self.crowded_below = self.crowded_below.max(other.crowded_below);
+        self.hear_of(other.best);
+        for vote in other.votes {
+            self.take(vote);
+        }
+        if other.cut == Some(self.best) {
+            self.cut = other.cut;
+        }
+        self
+    }
+
     /// Drops what lies below the floor, then whole levels from below until
     /// what is left fits. The best level stays, cut to what fits of it.
     fn make_room(&mut self) {
@@ -234,6 +257,13 @@ mod tests {
             }
             let backward = backward.finish(0);
             prop_assert_eq!(&backward, &forward);
+            // Nor does it who took them.
+            let mut parts = [Collector::new(config), Collector::new(config), Collector::new(config)];
+            for (x, &intensity) in intensities.iter().enumerate() {
+                parts[x % 3].take(Vote { x: x as u16, y: 0, heading: 0, intensity });
+            }
+            let merged = parts.into_iter().reduce(Collector::merged).unwrap().finish(0);
+            prop_assert_eq!(&merged, &forward);
             // Complete down to the certified floor.
             let certified = intensities.iter().filter(|&&i| i > 0 && i >= forward.certified_floor).count();
             let collected = forward.votes.iter().filter(|v| v.intensity >= forward.certified_floor).count();

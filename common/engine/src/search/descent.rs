@@ -1,8 +1,9 @@
 //! One search: from large blocks down to poses, the most promising first.
 
-use std::cmp::Ordering;
+use std::cmp;
 use std::collections::BinaryHeap;
 use std::ops::Range;
+use std::sync::atomic::{AtomicBool, AtomicU16, Ordering};
 
 use messages::Vote;
 
@@ -18,17 +19,32 @@ use crate::grid::Grid;
 use crate::instruction_set::InstructionSet;
 use crate::program::ScanProgram;
 use crate::space::Space;
-use crate::votes::{CollectConfig, Collector, VoteSet};
+use crate::votes::{CollectConfig, Collector};
 
-/// A search under way.
+/// What is searched: a scan on a map.
+pub(super) struct Task<'a> {
+    pub index: &'a SearchIndex,
+    pub grid: &'a Grid,
+    pub space: &'a Space,
+    pub config: CollectConfig,
+    programs: Programs,
+    /// The most votes of any pose so far, whoever found it.
+    best: AtomicU16,
+    /// Whether all threads are to stop.
+    stopped: AtomicBool,
+}
+
+/// A scan program laid out for each size of blocks.
+struct Programs {
+    coarse: SetProgram,
+    fine: SetProgram,
+    interval: IntervalProgram,
+    leaf: LeafProgram,
+}
+
+/// One thread's part of a search.
 pub(super) struct Descent<'a> {
-    index: &'a SearchIndex,
-    grid: &'a Grid,
-    space: &'a Space,
-    coarse_program: SetProgram,
-    fine_program: SetProgram,
-    interval_program: IntervalProgram,
-    leaf_program: LeafProgram,
+    task: &'a Task<'a>,
     coarse_bounds: SetBounds,
     fine_bounds: SetBounds,
     intervals: BlockIntervals,
@@ -87,66 +103,91 @@ impl PartialEq for Block {
 impl Eq for Block {}
 
 impl PartialOrd for Block {
-    fn partial_cmp(&self, other: &Self) -> Option<Ordering> {
+    fn partial_cmp(&self, other: &Self) -> Option<cmp::Ordering> {
         Some(self.cmp(other))
     }
 }
 
 impl Ord for Block {
-    fn cmp(&self, other: &Self) -> Ordering {
+    fn cmp(&self, other: &Self) -> cmp::Ordering {
         self.key().cmp(&other.key())
     }
 }
 
-impl<'a> Descent<'a> {
+impl<'a> Task<'a> {
     /// `instruction_set` must be available.
     pub(super) fn new(
         instruction_set: InstructionSet,
         index: &'a SearchIndex,
         grid: &'a Grid,
-        program: &ScanProgram,
-        space: &'a Space,
+        (program, space): (&ScanProgram, &'a Space),
         config: CollectConfig,
     ) -> Self {
         let (directions, steps) = (&space.directions, &index.steps);
         let set_program = |sets: &RangeSets| {
             SetProgram::new(program, directions, steps, sets.shift, instruction_set)
         };
-        let (coarse_program, fine_program) = (set_program(&index.coarse), set_program(&index.fine));
-        Descent {
+        Task {
             index,
             grid,
             space,
-            coarse_bounds: coarse_program.bounds(),
-            fine_bounds: fine_program.bounds(),
-            coarse_program,
-            fine_program,
-            interval_program: IntervalProgram::new(program, directions, steps, instruction_set),
-            leaf_program: LeafProgram::new(program, directions, instruction_set),
+            config,
+            programs: Programs {
+                coarse: set_program(&index.coarse),
+                fine: set_program(&index.fine),
+                interval: IntervalProgram::new(program, directions, steps, instruction_set),
+                leaf: LeafProgram::new(program, directions, instruction_set),
+            },
+            best: AtomicU16::new(0),
+            stopped: AtomicBool::new(false),
+        }
+    }
+
+    /// Tells all threads to stop.
+    pub(super) fn stop(&self) {
+        self.stopped.store(true, Ordering::Relaxed);
+    }
+
+    pub(super) fn is_stopped(&self) -> bool {
+        self.stopped.load(Ordering::Relaxed)
+    }
+}
+
+impl<'a> Descent<'a> {
+    pub(super) fn new(task: &'a Task<'a>) -> Self {
+        Descent {
+            task,
+            coarse_bounds: task.programs.coarse.bounds(),
+            fine_bounds: task.programs.fine.bounds(),
             intervals: BlockIntervals::default(),
             interval_bounds: IntervalBounds::new(),
-            outlook: Outlook::new(grid, directions),
+            outlook: Outlook::new(task.grid, &task.space.directions),
             queue: BinaryHeap::new(),
             masks: Vec::new(),
             candidates: Vec::new(),
-            collector: Collector::new(config),
+            collector: Collector::new(task.config),
             poses_evaluated: 0,
         }
     }
 
-    /// The outcome; `None` if `stop` said so before the end.
-    pub(super) fn run(mut self, stop: &dyn Fn() -> bool) -> Option<VoteSet> {
-        for index in 0..self.index.coarse.blocks() {
+    /// Searches some of the coarse blocks: the poses that matter in them, and how
+    /// many were counted. `None` if `stop` said so before the end.
+    pub(super) fn run(
+        mut self,
+        blocks: impl Iterator<Item = usize>,
+        stop: &dyn Fn() -> bool,
+    ) -> Option<(Collector, u64)> {
+        let (coarse, program) = (&self.task.index.coarse, &self.task.programs.coarse);
+        for index in blocks {
             if stop() {
                 return None;
             }
-            let coarse = &self.index.coarse;
-            let (bound, promise) =
-                self.coarse_program
-                    .rough(coarse, index, &mut self.coarse_bounds);
+            let (bound, promise) = program.rough(coarse, index, &mut self.coarse_bounds);
             self.push(bound, promise, index, Level::Coarse);
         }
         while let Some(block) = self.queue.pop() {
+            self.collector
+                .hear_of(self.task.best.load(Ordering::Relaxed));
             if block.bound < self.collector.floor() {
                 continue;
             }
@@ -160,7 +201,7 @@ impl<'a> Descent<'a> {
                 Level::Leaf { start, end } => self.count(index, start as usize..end as usize),
             }
         }
-        Some(self.collector.finish(self.poses_evaluated))
+        Some((self.collector, self.poses_evaluated))
     }
 
     fn push(&mut self, bound: u16, promise: u16, index: usize, level: Level) {
@@ -176,12 +217,10 @@ impl<'a> Descent<'a> {
 
     /// Bounds a block of 16 × 16 cells by all beams, and queues the 8 × 8 in it.
     fn split_coarse(&mut self, index: usize) {
-        let (coarse, fine) = (&self.index.coarse, &self.index.fine);
+        let (coarse, fine) = (&self.task.index.coarse, &self.task.index.fine);
         let floor = self.collector.floor();
-        if self
-            .coarse_program
-            .bound(coarse, index, floor, &mut self.coarse_bounds)
-        {
+        let program = &self.task.programs.coarse;
+        if program.bound(coarse, index, floor, &mut self.coarse_bounds) {
             for block in quarters(index, coarse.columns, (fine.columns, fine.rows)) {
                 self.queue_fine(block);
             }
@@ -192,10 +231,8 @@ impl<'a> Descent<'a> {
     /// leaves.
     fn queue_fine(&mut self, index: usize) {
         let floor = self.collector.floor();
-        if !self
-            .fine_program
-            .bound(&self.index.fine, index, floor, &mut self.fine_bounds)
-        {
+        let (fine, program) = (&self.task.index.fine, &self.task.programs.fine);
+        if !program.bound(fine, index, floor, &mut self.fine_bounds) {
             return;
         }
         let start = self.masks.len();
@@ -212,7 +249,7 @@ impl<'a> Descent<'a> {
 
     /// Queues the blocks of 4 × 4 cells in one of 8 × 8.
     fn split_fine(&mut self, index: usize, masks: usize) {
-        let (fine, intervals) = (&self.index.fine, &self.index.intervals);
+        let (fine, intervals) = (&self.task.index.fine, &self.task.index.intervals);
         for block in quarters(index, fine.columns, (intervals.columns, intervals.rows)) {
             self.queue_leaf(block, masks);
         }
@@ -221,9 +258,10 @@ impl<'a> Descent<'a> {
     /// Queues a block of 4 × 4 cells at the headings at which it may matter.
     fn queue_leaf(&mut self, index: usize, masks: usize) {
         let floor = self.collector.floor();
-        self.index.intervals.read(index, &mut self.intervals);
+        let index_intervals = &self.task.index.intervals;
+        index_intervals.read(index, &mut self.intervals);
         let start = self.candidates.len();
-        for chunk in 0..self.space.directions.count().div_ceil(CHUNK) {
+        for chunk in 0..self.task.space.directions.count().div_ceil(CHUNK) {
             let mut mask = self.masks[masks + chunk];
             while let Some((heading, among)) = bits::take_window(&mut mask) {
                 self.bound_leaf(chunk * CHUNK + heading, among, floor);
@@ -239,11 +277,8 @@ impl<'a> Descent<'a> {
     /// Notes the headings from `first` on at which the block whose intervals
     /// were read may matter.
     fn bound_leaf(&mut self, first: usize, among: u64, floor: u16) {
-        let bounds = &mut self.interval_bounds;
-        if !self
-            .interval_program
-            .bound(&self.intervals, first, among, floor, bounds)
-        {
+        let (program, bounds) = (&self.task.programs.interval, &mut self.interval_bounds);
+        if !program.bound(&self.intervals, first, among, floor, bounds) {
             return;
         }
         for lane in bits::ones(among) {
@@ -257,14 +292,15 @@ impl<'a> Descent<'a> {
 
     /// Counts the votes of a block's poses at the candidate headings.
     fn count(&mut self, index: usize, mut candidates: Range<usize>) {
-        self.outlook.enter(self.grid, &self.index.intervals, index);
+        let Task {
+            index: map, grid, ..
+        } = self.task;
+        self.outlook.enter(grid, &map.intervals, index);
         while let Some((first, among)) = self.next_headings(&mut candidates) {
             let floor = self.collector.floor();
             let (intervals, bounds) = (self.outlook.intervals(), &mut self.interval_bounds);
-            if self
-                .interval_program
-                .bound(intervals, first, among, floor, bounds)
-            {
+            let program = &self.task.programs.interval;
+            if program.bound(intervals, first, among, floor, bounds) {
                 self.count_at(first, among);
             }
         }
@@ -291,7 +327,10 @@ impl<'a> Descent<'a> {
     /// reach the floor with what the sectors left are bounded by.
     fn count_at(&mut self, first: usize, among: u64) {
         let open = self.outlook.open();
-        let prepared = (self.grid, &self.index.steps, &self.space.directions);
+        let Task {
+            index, grid, space, ..
+        } = self.task;
+        let prepared = (*grid, &index.steps, &space.directions);
         let mut counts = [[0u16; CELLS]; HEADINGS];
         let mut rest = self.interval_bounds.all;
         let mut alive = among;
@@ -300,8 +339,8 @@ impl<'a> Descent<'a> {
             let mut still = 0;
             for lane in bits::ones(alive) {
                 let counts = &mut counts[lane];
-                self.leaf_program
-                    .add(&mut self.outlook, prepared, sector, first + lane, counts);
+                let (program, heading) = (&self.task.programs.leaf, first + lane);
+                program.add(&mut self.outlook, prepared, sector, heading, counts);
                 rest[lane] -= u16::from(bounds[lane]);
                 let counts = counts.iter().zip(&open);
                 let most = counts.map(|(&count, &open)| count & open).max();
@@ -312,6 +351,8 @@ impl<'a> Descent<'a> {
         for lane in bits::ones(alive) {
             self.take((first + lane) as u16, &counts[lane], &open);
         }
+        let best = self.collector.best();
+        self.task.best.fetch_max(best, Ordering::Relaxed);
     }
 
     fn take(&mut self, heading: u16, counts: &[u16; CELLS], open: &[u16; CELLS]) {

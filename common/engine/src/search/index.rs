@@ -1,7 +1,9 @@
 //! A map prepared for searches.
 
+use std::panic::resume_unwind;
+
 use super::bins::Bins;
-use super::descent::Descent;
+use super::descent::{Descent, Task};
 use super::intervals::RangeIntervals;
 use super::set_bounds::SetProgram;
 use super::sets::RangeSets;
@@ -72,22 +74,47 @@ impl SearchIndex {
         config: CollectConfig,
         stop: &dyn Fn() -> bool,
     ) -> Option<VoteSet> {
-        self.search_with(InstructionSet::best(), grid, program, space, config, stop)
+        let best = InstructionSet::best();
+        self.search_with((best, 1), grid, (program, space), config, stop)
     }
 
-    /// The same with a certain instruction set, which the processor must have.
+    /// The same with a certain instruction set on a number of threads, with the
+    /// same outcome but for the number of poses that were counted.
+    ///
+    /// # Panics
+    /// If the processor does not have the instruction set, or there is no
+    /// thread.
     #[must_use]
     pub fn search_with(
         &self,
-        instruction_set: InstructionSet,
+        (instruction_set, threads): (InstructionSet, usize),
         grid: &Grid,
-        program: &ScanProgram,
-        space: &Space,
+        scan: (&ScanProgram, &Space),
         config: CollectConfig,
         stop: &dyn Fn() -> bool,
     ) -> Option<VoteSet> {
-        let instruction_set = instruction_set.checked();
-        Descent::new(instruction_set, self, grid, program, space, config).run(stop)
+        let task = &Task::new(instruction_set.checked(), self, grid, scan, config);
+        // Neighbouring blocks are alike, so threads take them in turn.
+        let part = move |thread, stop: &dyn Fn() -> bool| {
+            let blocks = (thread..self.coarse.blocks()).step_by(threads);
+            Descent::new(task).run(blocks, stop)
+        };
+        let parts: Option<Vec<_>> = std::thread::scope(|scope| {
+            let others =
+                (1..threads).map(|thread| scope.spawn(move || part(thread, &|| task.is_stopped())));
+            let others: Vec<_> = others.collect();
+            let own = part(0, stop);
+            if own.is_none() {
+                task.stop();
+            }
+            let joined = others.into_iter().map(std::thread::ScopedJoinHandle::join);
+            let joined = joined.map(|part| part.unwrap_or_else(|panic| resume_unwind(panic)));
+            std::iter::once(own).chain(joined).collect()
+        });
+        let merged = parts?
+            .into_iter()
+            .reduce(|a, b| (a.0.merged(b.0), a.1 + b.1));
+        merged.map(|(collector, poses)| collector.finish(poses))
     }
 
     /// Upper bounds of the intensities in all coarse blocks: where the robot
@@ -128,7 +155,7 @@ mod tests {
 
     proptest! {
         #[test]
-        fn the_search_equals_the_reference_on_every_instruction_set(
+        fn the_search_equals_the_reference_however_it_is_done(
             grid in any_grid(), scan in any_scan(), headings in 1u32..8,
             floor_share in 0.5..=1.0f64, max_votes in 1u32..400,
         ) {
@@ -138,9 +165,12 @@ mod tests {
             let index = SearchIndex::new(&grid, &space);
             let plain = plain_votes(&grid, &program, &space, config);
             for instruction_set in InstructionSet::available() {
-                let found = index.search_with(instruction_set, &grid, &program, &space, config, &|| false);
-                let found = VoteSet { poses_evaluated: 0, ..found.unwrap() };
-                prop_assert_eq!(&found, &plain, "{:?}", instruction_set);
+                for threads in 1..4 {
+                    let how = (instruction_set, threads);
+                    let found = index.search_with(how, &grid, (&program, &space), config, &|| false);
+                    let found = VoteSet { poses_evaluated: 0, ..found.unwrap() };
+                    prop_assert_eq!(&found, &plain, "{:?}", how);
+                }
             }
         }
 

@@ -3,10 +3,11 @@
 use std::time::Instant;
 
 use benchmarks::worlds::World;
+use engine::accumulator::{Accumulator, Query};
 use engine::program::ScanProgram;
-use engine::scatter;
+use engine::scatter::Scatter;
 use engine::search::SearchIndex;
-use engine::sweep::{self, SweepGrid};
+use engine::sweep::FieldSweep;
 use engine::votes::{CollectConfig, VoteSet, of_field};
 
 use super::measure::{Answer, Locate, Pose, Task};
@@ -35,42 +36,35 @@ fn best(found: &VoteSet) -> Option<Pose> {
     })
 }
 
-/// The best of the fields at some headings.
-fn best_of_fields(
-    width: usize,
-    headings: &[usize],
-    mut field: impl FnMut(usize) -> Vec<u16>,
-) -> Option<Pose> {
-    let sets = headings
-        .iter()
-        .map(|&heading| of_field(&field(heading), width, heading as u16, ARGMAX));
-    // Of equal ones the first, as the search has it.
-    let better = |a: VoteSet, b: VoteSet| if b.best > a.best { b } else { a };
-    best(&sets.reduce(better)?)
+/// By the fields of an accumulator at some headings.
+fn fields<'a, A: Accumulator + 'a>(world: &'a World, accumulator: A) -> Locate<'a> {
+    let (mut accumulator, mut field) = (accumulator, Vec::new());
+    Box::new(move |task, headings| {
+        let program = program(task)?;
+        let sets = headings.iter().filter_map(|&heading| {
+            let query = Query {
+                program: &program,
+                space: task.space,
+                heading,
+            };
+            accumulator.fill(query, &mut field, &|| false)?;
+            Some(of_field(&field, world.grid.width(), heading as u16, ARGMAX))
+        });
+        // Of equal ones the first, as the search has it.
+        let better = |a: VoteSet, b: VoteSet| if b.best > a.best { b } else { a };
+        let found = sets.reduce(better);
+        Ok(Answer::Best(found.and_then(|found| best(&found))))
+    })
 }
 
 /// The paper's own way: from boundary cells.
 pub(super) fn scatter(world: &World) -> Locate<'_> {
-    Box::new(move |task, headings| {
-        let program = program(task)?;
-        let (grid, boundary) = (&world.grid, &world.boundary);
-        let best = best_of_fields(grid.width(), headings, |heading| {
-            scatter::field(grid, boundary, &program, task.space, heading)
-        });
-        Ok(Answer::Best(best))
-    })
+    fields(world, Scatter::new(&world.grid, &world.boundary))
 }
 
 /// By sweeps along the lines of each beam.
-pub(super) fn sweep<'a>(world: &'a World, sweeps: &'a SweepGrid) -> Locate<'a> {
-    Box::new(move |task, headings| {
-        let program = program(task)?;
-        let grid = &world.grid;
-        let best = best_of_fields(grid.width(), headings, |heading| {
-            sweep::field(sweeps, grid, &program, task.space, heading, &|| false).unwrap_or_default()
-        });
-        Ok(Answer::Best(best))
-    })
+pub(super) fn sweep<'a>(world: &'a World, sweeps: &'a FieldSweep) -> Locate<'a> {
+    fields(world, sweeps.accumulator())
 }
 
 /// By bounds, down to a share of the best.

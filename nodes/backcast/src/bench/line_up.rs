@@ -8,7 +8,7 @@ use benchmarks::timing::cpu_ms;
 use benchmarks::worlds::World;
 use engine::search::SearchIndex;
 use engine::space::Space;
-use engine::sweep::SweepGrid;
+use engine::sweep::FieldSweep;
 
 use super::engine_methods as reverse;
 use super::measure::{Answer, Locate, Pose, Task};
@@ -27,7 +27,7 @@ pub(super) struct LineUp {
     ray_casting: Option<Prepared<RayCasting>>,
     range_table: Option<Prepared<RangeTable>>,
     patch: Option<Prepared<PatchCorrelation>>,
-    sweeps: Prepared<SweepGrid>,
+    sweeps: Prepared<FieldSweep>,
     index: Option<Prepared<SearchIndex>>,
 }
 
@@ -69,7 +69,7 @@ impl LineUp {
             ray_casting: with_baselines.then(|| Prepared::new(|| RayCasting::new(&world, &space))),
             range_table: has_table.then(|| Prepared::new(|| RangeTable::new(&world, &space, all))),
             patch: with_baselines.then(|| Prepared::new(|| PatchCorrelation::new(&world, &space))),
-            sweeps: Prepared::new(|| SweepGrid::new(&world.grid)),
+            sweeps: Prepared::new(|| FieldSweep::new(&world.grid)),
             index: (table != Table::Table1)
                 .then(|| Prepared::new(|| SearchIndex::new(&world.grid, &space))),
             world,
@@ -119,7 +119,7 @@ impl LineUp {
             locate: reverse::sweep(world, &self.sweeps.value),
             prepare_cpu_ms: self.sweeps.cpu_ms,
             // Two masks of two bytes, along each axis.
-            map_bytes: 8 * world.grid.cells().len(),
+            map_bytes: self.sweeps.value.bytes(),
         });
         if let Some(index) = &self.index {
             let mut add = |method, locate| {

@@ -1,0 +1,100 @@
+//! Times the field of one heading, and all headings by brute force, with each
+//! instruction set:
+//!
+//! ```text
+//! cargo run --release -p benchmarks --example field_time -- rooms 1200 10 10 --beams 180
+//! ```
+
+use std::time::Instant;
+
+use benchmarks::BenchmarksError;
+use benchmarks::scans::{ScanConfig, simulate};
+use benchmarks::timing::{cpu_ms, median};
+use benchmarks::worlds::{Kind, World};
+use clap::Parser;
+use engine::accumulator::{Accumulator, Query};
+use engine::exhaustive;
+use engine::instruction_set::InstructionSet;
+use engine::program::ScanProgram;
+use engine::scatter::Scatter;
+use engine::sweep::FieldSweep;
+use engine::taper::TaperShape;
+use engine::votes::CollectConfig;
+
+/// Times the field of one heading, and all headings by brute force.
+#[derive(Debug, Parser)]
+struct Options {
+    kind: Kind,
+    /// Cells a side
+    side: usize,
+    /// Boundary cells over free cells, per cent
+    p_over_n: f64,
+    /// Standard deviation of a reading, per cent of its range
+    noise: f64,
+    #[arg(long, default_value_t = 180)]
+    beams: usize,
+    #[arg(long, default_value_t = 21)]
+    runs: usize,
+    /// Threads of the exhaustive search; 0 leaves it out
+    #[arg(long, default_value_t = 1)]
+    threads: usize,
+}
+
+fn main() -> Result<(), BenchmarksError> {
+    let options = Options::parse();
+    let size = (options.side, options.side);
+    let world = World::generate(options.kind, size, options.p_over_n / 100.0, 1)?;
+    let space = world.space(360)?;
+    let simulated = ScanConfig {
+        beams: options.beams,
+        noise_percent: options.noise,
+    };
+    let scan = &simulate(&world, &space, &simulated, 1, 1)?[0];
+    let votes = simulated.votes(TaperShape::Trapezoid);
+    let program = ScanProgram::new(&scan.scan(), 0.0, &space, &votes)?;
+    let query = Query {
+        program: &program,
+        space: &space,
+        heading: scan.heading,
+    };
+    let sweeps = FieldSweep::new(&world.grid);
+    for instruction_set in InstructionSet::available() {
+        let cost = time(
+            &mut sweeps.accumulator_with(instruction_set),
+            query,
+            options.runs,
+        );
+        println!("sweep, {instruction_set}: {cost:.2} ms");
+    }
+    let cost = time(&mut Scatter::new(&world.grid, &world.boundary), query, 3);
+    println!("scatter: {cost:.2} ms");
+    if options.threads > 0 {
+        let mut all: Vec<_> = (0..options.threads).map(|_| sweeps.accumulator()).collect();
+        let config = CollectConfig {
+            floor_share: 1.0,
+            ..CollectConfig::default()
+        };
+        let start = Instant::now();
+        let width = world.grid.width();
+        let found = exhaustive::search(&mut all, width, (&program, &space), config, &|| false);
+        let (seconds, poses) = (
+            start.elapsed().as_secs_f64(),
+            found.map_or(0, |found| found.poses_evaluated),
+        );
+        println!(
+            "exhaustive on {} threads: {:.0} ms, {:.1} G poses and beams a second",
+            options.threads,
+            1e3 * seconds,
+            poses as f64 * options.beams as f64 / seconds / 1e9
+        );
+    }
+    Ok(())
+}
+
+/// Median CPU time of an accumulator, milliseconds.
+fn time(accumulator: &mut impl Accumulator, query: Query<'_>, runs: usize) -> f64 {
+    let mut field = Vec::new();
+    let costs = (0..=runs).map(|_| cpu_ms(|| accumulator.fill(query, &mut field, &|| false)).1);
+    // The first run pays for what is allocated once.
+    median(costs.skip(1).collect())
+}

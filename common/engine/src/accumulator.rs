@@ -1,0 +1,126 @@
+//! The one interface of all ways to count votes at a known heading.
+//!
+//! Every accumulator gives the same numbers; they differ in how long they take.
+
+use crate::directions::Direction;
+use crate::grid::Grid;
+use crate::program::{ScanProgram, Taper};
+use crate::reference;
+use crate::space::Space;
+
+/// One scan at one heading.
+#[derive(Debug, Clone, Copy)]
+pub struct Query<'a> {
+    /// The scan.
+    pub program: &'a ScanProgram,
+    /// The space that it was compiled for.
+    pub space: &'a Space,
+    /// Index on the heading grid.
+    pub heading: usize,
+}
+
+impl<'a> Query<'a> {
+    /// The direction of a beam, and what it votes along rays.
+    #[must_use]
+    pub fn beam(&self, beam: usize) -> (&'a Direction, Taper<'a>) {
+        let bearing = self.program.bearing(beam);
+        let direction = self.space.directions.get(self.heading + bearing);
+        (direction, self.program.taper(beam, direction.class))
+    }
+}
+
+/// A way of counting votes; it may keep what it needs from scan to scan.
+pub trait Accumulator {
+    /// Fills in the intensities of all cells, row by row from the lowest y;
+    /// `None` if `stop` said so before the end.
+    fn fill(
+        &mut self,
+        query: Query<'_>,
+        field: &mut Vec<u16>,
+        stop: &dyn Fn() -> bool,
+    ) -> Option<()>;
+}
+
+/// The plain reference: every cell of every ray.
+#[derive(Debug, Clone, Copy)]
+pub struct Reference<'a> {
+    /// The map.
+    pub grid: &'a Grid,
+}
+
+impl Accumulator for Reference<'_> {
+    fn fill(
+        &mut self,
+        query: Query<'_>,
+        field: &mut Vec<u16>,
+        stop: &dyn Fn() -> bool,
+    ) -> Option<()> {
+        let Query {
+            program,
+            space,
+            heading,
+        } = query;
+        field.clear();
+        for y in 0..self.grid.height() as i64 {
+            if stop() {
+                return None;
+            }
+            let xs = 0..self.grid.width() as i64;
+            field
+                .extend(xs.map(|x| reference::intensity(self.grid, program, space, x, y, heading)));
+        }
+        Some(())
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use proptest::prelude::*;
+
+    use super::*;
+    use crate::boundary;
+    use crate::instruction_set::InstructionSet;
+    use crate::scatter::Scatter;
+    use crate::sweep::FieldSweep;
+    use crate::testing::{any_grid, any_long_grid, any_scan, space_of};
+
+    fn check(grid: &Grid, query: Query<'_>) -> Result<(), TestCaseError> {
+        let plain = reference::field(grid, query.program, query.space, query.heading);
+        let boundary = boundary::extract(grid);
+        let sweeps = FieldSweep::new(grid);
+        let mut all: Vec<Box<dyn Accumulator>> = vec![
+            Box::new(Reference { grid }),
+            Box::new(Scatter::new(grid, &boundary)),
+        ];
+        for set in InstructionSet::available() {
+            all.push(Box::new(sweeps.accumulator_with(set)));
+        }
+        for (i, accumulator) in all.iter_mut().enumerate() {
+            // What is left of another scan must not matter.
+            let mut field = vec![7; 5];
+            for _ in 0..2 {
+                prop_assert!(accumulator.fill(query, &mut field, &|| false).is_some());
+                prop_assert_eq!(&field, &plain, "accumulator {}", i);
+            }
+        }
+        Ok(())
+    }
+
+    proptest! {
+        #[test]
+        fn all_accumulators_equal_the_reference(
+            grid in any_grid(), scan in any_scan(), headings in 1u32..12, heading in 0usize..96,
+        ) {
+            let space = &space_of(&grid, headings * 8);
+            check(&grid, Query { program: &scan.program(space), space, heading })?;
+        }
+
+        #[test]
+        fn readings_beyond_a_byte_of_steps_count_as_well(
+            grid in any_long_grid(), scan in any_scan(), heading in 0usize..16,
+        ) {
+            let space = &space_of(&grid, 16);
+            check(&grid, Query { program: &scan.stretched(18.0).program(space), space, heading })?;
+        }
+    }
+}

@@ -1,0 +1,131 @@
+//! All headings by brute force: the field of each, one after the other.
+//!
+//! What the search must beat, and what it is compared with. Several
+//! accumulators share the headings, each on a thread of its own.
+
+use std::panic::resume_unwind;
+
+use messages::Vote;
+
+use crate::accumulator::{Accumulator, Query};
+use crate::program::ScanProgram;
+use crate::space::Space;
+use crate::votes::{CollectConfig, Collector, VoteSet};
+
+/// The poses with the most votes over all headings; `None` if `stop` said so
+/// before the end.
+///
+/// `width` is that of the grid. The outcome does not depend on how many
+/// accumulators there are.
+///
+/// # Panics
+/// If there is no accumulator, or one of them panics.
+#[must_use]
+pub fn search<A: Accumulator + Send>(
+    accumulators: &mut [A],
+    width: usize,
+    (program, space): (&ScanProgram, &Space),
+    config: CollectConfig,
+    stop: &(dyn Fn() -> bool + Sync),
+) -> Option<VoteSet> {
+    let step = accumulators.len();
+    let share = |first: usize, accumulator: &mut A| {
+        let mut share = Share::new(config);
+        let headings = (first..space.directions.count()).step_by(step);
+        for heading in headings {
+            let query = Query {
+                program,
+                space,
+                heading,
+            };
+            accumulator.fill(query, &mut share.field, stop)?;
+            share.collect(width, heading);
+        }
+        Some(share)
+    };
+    let shares: Option<Vec<Share>> = std::thread::scope(|scope| {
+        let threads: Vec<_> = accumulators
+            .iter_mut()
+            .enumerate()
+            .map(|(first, accumulator)| scope.spawn(move || share(first, accumulator)))
+            .collect();
+        let joined = threads.into_iter().map(std::thread::ScopedJoinHandle::join);
+        let share =
+            |share: std::thread::Result<_>| share.unwrap_or_else(|panic| resume_unwind(panic));
+        joined.map(share).collect()
+    });
+    let all = shares?.into_iter().reduce(Share::merged);
+    let all = all.expect("there is an accumulator");
+    Some(all.collector.finish(all.poses))
+}
+
+/// What one accumulator found.
+struct Share {
+    field: Vec<u16>,
+    collector: Collector,
+    poses: u64,
+}
+
+impl Share {
+    fn new(config: CollectConfig) -> Self {
+        Share {
+            field: Vec::new(),
+            collector: Collector::new(config),
+            poses: 0,
+        }
+    }
+
+    fn collect(&mut self, width: usize, heading: usize) {
+        self.poses += self.field.len() as u64;
+        for (y, row) in self.field.chunks_exact(width).enumerate() {
+            // Few rows hold any pose that matters, and a maximum is quick.
+            let most = row.iter().copied().max().unwrap_or(0);
+            if most < self.collector.floor() {
+                continue;
+            }
+            for (x, &intensity) in row.iter().enumerate() {
+                self.collector.take(Vote {
+                    x: x as u16,
+                    y: y as u16,
+                    heading: heading as u16,
+                    intensity,
+                });
+            }
+        }
+    }
+
+    fn merged(self, other: Share) -> Share {
+        Share {
+            field: self.field,
+            collector: self.collector.merged(other.collector),
+            poses: self.poses + other.poses,
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use proptest::prelude::*;
+
+    use super::*;
+    use crate::sweep::FieldSweep;
+    use crate::testing::{any_grid, any_scan, plain_votes, space_of};
+
+    proptest! {
+        #[test]
+        fn any_number_of_threads_finds_what_the_reference_does(
+            grid in any_grid(), scan in any_scan(), headings in 1u32..6, threads in 1usize..4,
+            floor_share in 0.0..=1.0f64, max_votes in 1u32..400,
+        ) {
+            let space = space_of(&grid, headings * 8);
+            let program = scan.program(&space);
+            let config = CollectConfig { floor_share, max_votes };
+            let sweeps = FieldSweep::new(&grid);
+            let mut accumulators: Vec<_> = (0..threads).map(|_| sweeps.accumulator()).collect();
+            let found = search(&mut accumulators, grid.width(), (&program, &space), config, &|| false).unwrap();
+            prop_assert_eq!(found.poses_evaluated, (grid.cells().len() * space.directions.count()) as u64);
+            let found = VoteSet { poses_evaluated: 0, ..found };
+            prop_assert_eq!(found, plain_votes(&grid, &program, &space, config));
+        }
+    }
+}

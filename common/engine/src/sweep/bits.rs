@@ -1,0 +1,90 @@
+//! A grid as rows of bits, laid out for sweeps along either axis.
+
+use crate::grid::{Cell, Grid};
+
+/// Bits of a word.
+const WORD: usize = u64::BITS as usize;
+
+/// One bit a cell, row by row over the major axis. Rows are filled up to whole
+/// words with cells that neither hold a ray nor send one back.
+#[derive(Debug, Clone)]
+pub(crate) struct BitGrid {
+    /// Cells along the major axis.
+    pub rows: usize,
+    /// Cells along the minor axis.
+    pub columns: usize,
+    /// Words of a row.
+    words: usize,
+    occupied: Vec<u64>,
+    /// Empty where no cell is blocked.
+    blocked: Vec<u64>,
+}
+
+impl BitGrid {
+    /// Rows lie along y where `x_major` and along x where not.
+    pub(crate) fn new(grid: &Grid, x_major: bool) -> Self {
+        let (width, height) = (grid.width(), grid.height());
+        let (rows, columns) = if x_major {
+            (width, height)
+        } else {
+            (height, width)
+        };
+        let mut bits = BitGrid {
+            rows,
+            columns,
+            words: columns.div_ceil(WORD),
+            occupied: Vec::new(),
+            blocked: Vec::new(),
+        };
+        bits.occupied = bits.collect(grid, x_major, Cell::Occupied);
+        bits.blocked = bits.collect(grid, x_major, Cell::Blocked);
+        if bits.blocked.iter().all(|&word| word == 0) {
+            bits.blocked = Vec::new();
+        }
+        bits
+    }
+
+    fn collect(&self, grid: &Grid, x_major: bool, kind: Cell) -> Vec<u64> {
+        let mut bits = vec![0; self.rows * self.words];
+        for (i, _) in grid
+            .cells()
+            .iter()
+            .enumerate()
+            .filter(|&(_, &cell)| cell == kind)
+        {
+            let (x, y) = (i % grid.width(), i / grid.width());
+            let (row, column) = if x_major { (x, y) } else { (y, x) };
+            bits[row * self.words + column / WORD] |= 1 << (column % WORD);
+        }
+        bits
+    }
+
+    /// Bytes that the bits take.
+    pub(crate) fn bytes(&self) -> usize {
+        8 * (self.occupied.len() + self.blocked.len())
+    }
+
+    /// Whether rays can be lost in a cell.
+    pub(crate) fn has_blocked(&self) -> bool {
+        !self.blocked.is_empty()
+    }
+
+    /// The occupied and the blocked cells of a row; no words of the latter
+    /// where the grid has none.
+    pub(crate) fn row(&self, row: usize) -> (&[u64], &[u64]) {
+        let words = row * self.words..(row + 1) * self.words;
+        let blocked = if self.has_blocked() {
+            words.clone()
+        } else {
+            0..0
+        };
+        (&self.occupied[words], &self.blocked[blocked])
+    }
+
+    /// The open cells among the eight of a row from a multiple of eight on.
+    pub(crate) fn open_octet(&self, row: usize, column: usize) -> u8 {
+        let (word, shift) = (row * self.words + column / WORD, column % WORD);
+        let blocked = self.blocked.get(word).map_or(0, |&blocked| blocked);
+        !((self.occupied[word] | blocked) >> shift) as u8
+    }
+}

@@ -1,0 +1,281 @@
+//! The intensity field at one heading, by sweeps over the whole grid.
+
+use super::bits::BitGrid;
+use super::kernel::{self, Stretch, Sum};
+use super::lanes::{self, Lanes};
+use super::plan::{GROUPS, Plan};
+use super::transpose::{Square, transposed};
+use super::wide;
+use crate::accumulator::{Accumulator, Query};
+use crate::grid::Grid;
+use crate::instruction_set::InstructionSet;
+
+/// Rows that all batches pass before the next ones: their sums stay in the
+/// second cache meanwhile.
+const TILE_ROWS: usize = 32;
+
+/// What a sweep needs beside the field; kept from scan to scan, so that nothing
+/// is allocated but once.
+#[derive(Debug, Default)]
+struct Workspace {
+    plan: Plan,
+    store: Vec<Line>,
+    bytes: Sums<u8>,
+    words: Sums<u16>,
+}
+
+/// A cache line, which is read and written through pointers only.
+#[derive(Debug, Clone, Copy)]
+#[expect(dead_code, reason = "it is the size and the alignment that matter")]
+#[repr(align(64))]
+struct Line([u8; 64]);
+
+/// The sums of votes: along y and, lying on its side, along x.
+#[derive(Debug, Default)]
+struct Sums<S> {
+    rows: Vec<S>,
+    columns: Vec<S>,
+}
+
+/// A grid prepared for sweeps that vote.
+#[derive(Debug, Clone)]
+pub struct FieldSweep {
+    along_y: BitGrid,
+    along_x: BitGrid,
+}
+
+impl FieldSweep {
+    /// Prepares a grid.
+    #[must_use]
+    pub fn new(grid: &Grid) -> Self {
+        FieldSweep {
+            along_y: BitGrid::new(grid, false),
+            along_x: BitGrid::new(grid, true),
+        }
+    }
+
+    /// An accumulator on the grid with the best instruction set.
+    #[must_use]
+    pub fn accumulator(&self) -> Sweep<'_> {
+        self.accumulator_with(InstructionSet::best())
+    }
+
+    /// The same with a certain instruction set.
+    ///
+    /// # Panics
+    /// If this processor does not have it.
+    #[must_use]
+    pub fn accumulator_with(&self, instruction_set: InstructionSet) -> Sweep<'_> {
+        Sweep {
+            sweeps: self,
+            instruction_set: instruction_set.checked(),
+            workspace: Workspace::default(),
+        }
+    }
+
+    /// Bytes that the prepared grid takes.
+    #[must_use]
+    pub fn bytes(&self) -> usize {
+        self.along_y.bytes() + self.along_x.bytes()
+    }
+}
+
+/// Counts votes by one line sweep for each beam, whatever the boundary.
+#[derive(Debug)]
+pub struct Sweep<'a> {
+    sweeps: &'a FieldSweep,
+    instruction_set: InstructionSet,
+    workspace: Workspace,
+}
+
+impl Accumulator for Sweep<'_> {
+    fn fill(
+        &mut self,
+        query: Query<'_>,
+        field: &mut Vec<u16>,
+        stop: &dyn Fn() -> bool,
+    ) -> Option<()> {
+        let job = Job {
+            sweeps: self.sweeps,
+            query,
+            stop,
+        };
+        let workspace = &mut self.workspace;
+        match self.instruction_set {
+            // SAFETY: the instruction set was checked.
+            #[cfg(target_arch = "x86_64")]
+            InstructionSet::Avx512 => unsafe { job.run_avx512(workspace, field) },
+            // SAFETY: as above.
+            #[cfg(target_arch = "x86_64")]
+            InstructionSet::Avx2 => unsafe { job.run_avx2(workspace, field) },
+            // SAFETY: every processor has it.
+            _ => unsafe { job.run_with::<lanes::Portable, 1>(workspace, field) },
+        }
+    }
+}
+
+/// One scan at one heading.
+struct Job<'a> {
+    sweeps: &'a FieldSweep,
+    query: Query<'a>,
+    stop: &'a dyn Fn() -> bool,
+}
+
+impl Job<'_> {
+    #[cfg(target_arch = "x86_64")]
+    #[target_feature(enable = "avx512f,avx512bw,avx512dq,avx512vl,avx512vbmi")]
+    unsafe fn run_avx512(&self, workspace: &mut Workspace, field: &mut Vec<u16>) -> Option<()> {
+        unsafe { self.run_with::<lanes::Avx512, 5>(workspace, field) }
+    }
+
+    #[cfg(target_arch = "x86_64")]
+    #[target_feature(enable = "avx2")]
+    unsafe fn run_avx2(&self, workspace: &mut Workspace, field: &mut Vec<u16>) -> Option<()> {
+        unsafe { self.run_with::<lanes::Avx2, 3>(workspace, field) }
+    }
+
+    #[inline(always)]
+    unsafe fn run_with<L: Lanes, const N: usize>(
+        &self,
+        workspace: &mut Workspace,
+        field: &mut Vec<u16>,
+    ) -> Option<()> {
+        let Workspace {
+            plan,
+            store,
+            bytes,
+            words,
+        } = workspace;
+        let sides = (self.sweeps.along_y.columns, self.sweeps.along_y.rows);
+        plan.make::<L>(self.query, sides);
+        store.clear();
+        store.resize(plan.lines, Line([0; 64]));
+        field.resize(sides.0 * sides.1, 0);
+        // Few beams have so few votes that bytes hold their sums.
+        if self.query.program.highest_possible() <= 255 && plan.wide.is_empty() {
+            unsafe { self.fill::<L, u8, N>(plan, store, bytes, field) }
+        } else {
+            unsafe { self.fill::<L, u16, N>(plan, store, words, field) }
+        }
+    }
+
+    #[inline(always)]
+    unsafe fn fill<L: Lanes, S: Sum, const N: usize>(
+        &self,
+        plan: &Plan,
+        store: &mut [Line],
+        sums: &mut Sums<S>,
+        field: &mut [u16],
+    ) -> Option<()> {
+        let Sums { rows, columns } = sums;
+        for (sums, bits) in [
+            (&mut *rows, &self.sweeps.along_y),
+            (columns, &self.sweeps.along_x),
+        ] {
+            sums.resize(bits.rows * stride(bits), S::default());
+        }
+        unsafe {
+            self.sweep_axis::<L, S, N>(plan, store, columns, 2)?;
+            self.sweep_axis::<L, S, N>(plan, store, rows, 0)?;
+        }
+        merge(
+            &self.sweeps.along_y,
+            rows,
+            columns,
+            stride(&self.sweeps.along_x),
+            field,
+        );
+        Some(())
+    }
+
+    /// Sums up the votes along one axis: those of a group and the next.
+    #[inline(always)]
+    unsafe fn sweep_axis<L: Lanes, S: Sum, const N: usize>(
+        &self,
+        plan: &Plan,
+        store: &mut [Line],
+        sums: &mut [S],
+        first_group: usize,
+    ) -> Option<()> {
+        let bits = if first_group == 0 {
+            &self.sweeps.along_y
+        } else {
+            &self.sweeps.along_x
+        };
+        let mut adds = false;
+        for batches in &plan.batches[first_group..first_group + GROUPS / 2] {
+            for start in (0..bits.rows).step_by(TILE_ROWS) {
+                if (self.stop)() {
+                    return None;
+                }
+                for (i, batch) in batches.iter().enumerate() {
+                    let mut stretch = Stretch {
+                        bits,
+                        steps: start..(start + TILE_ROWS).min(bits.rows),
+                        sums,
+                        stride: stride(bits),
+                        adds: adds || i > 0,
+                        store: store.as_mut_ptr().cast(),
+                    };
+                    unsafe {
+                        kernel::sweep::<L, S, N>(&mut stretch, &plan.beams[batch.beams.clone()]);
+                    }
+                }
+            }
+            adds |= !batches.is_empty();
+        }
+        if !adds {
+            sums.fill(S::default());
+        }
+        for &beam in &plan.wide {
+            let (direction, taper) = self.query.beam(beam);
+            if direction.x_major == (first_group != 0) {
+                wide::add(bits, direction, &taper, sums, stride(bits));
+            }
+        }
+        Some(())
+    }
+}
+
+/// Cells from one row of sums to the next.
+fn stride(bits: &BitGrid) -> usize {
+    bits.columns.next_multiple_of(64)
+}
+
+fn merge<S: Sum>(bits: &BitGrid, rows: &[S], columns: &[S], height: usize, field: &mut [u16]) {
+    let width = stride(bits);
+    for bottom in (0..bits.rows).step_by(8) {
+        for left in (0..bits.columns).step_by(8) {
+            let mut square: Square = [[0; 8]; 8];
+            for (i, square) in square.iter_mut().enumerate() {
+                if left + i < bits.columns {
+                    *square = S::octet(&columns[(left + i) * height + bottom..]);
+                }
+            }
+            let square = transposed(&square);
+            let count = (bits.columns - left).min(8);
+            for (i, square) in square.iter().enumerate().take(bits.rows - bottom) {
+                let y = bottom + i;
+                let mut sum = S::octet(&rows[y * width + left..]);
+                let open = OPEN[usize::from(bits.open_octet(y, left))];
+                for (j, sum) in sum.iter_mut().enumerate() {
+                    *sum = (*sum + square[j]) & open[j];
+                }
+                field[y * bits.columns + left..][..count].copy_from_slice(&sum[..count]);
+            }
+        }
+    }
+}
+
+/// All ones where a bit is set.
+static OPEN: [[u16; 8]; 256] = {
+    let mut masks = [[0; 8]; 256];
+    let mut i = 0;
+    while i < 8 * 256 {
+        if (i / 8) >> (i % 8) & 1 == 1 {
+            masks[i / 8][i % 8] = u16::MAX;
+        }
+        i += 1;
+    }
+    masks
+};

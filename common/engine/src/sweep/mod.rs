@@ -1,0 +1,31 @@
+//! Line sweeps: what all cells see along one direction, a row at a time.
+//!
+//! Along a line of a bundle the range of a cell follows from the next one's:
+//! 0 if the cell is occupied, else one step more. All cells at one position of
+//! the major axis form a row, and the next row lies shifted by the same amount
+//! for all of them, so a row of ranges follows from the row before at once.
+
+mod bits;
+#[expect(
+    clippy::undocumented_unsafe_blocks,
+    reason = "unsafe functions hand on what their caller promised: an instruction set that the \
+              processor has, and rows with margins that hold what is read and written"
+)]
+mod field;
+#[expect(
+    clippy::undocumented_unsafe_blocks,
+    reason = "unsafe functions hand on what their caller promised: an instruction set that the \
+              processor has, and rows with margins that hold what is read and written"
+)]
+mod kernel;
+#[expect(
+    clippy::undocumented_unsafe_blocks,
+    reason = "unsafe functions hand on what their caller promised: an instruction set that the \
+              processor has, and rows with margins that hold what is read and written"
+)]
+mod lanes;
+mod plan;
+mod transpose;
+mod wide;
+
+pub use field::{FieldSweep, Sweep};

@@ -1,0 +1,129 @@
+//! Which beams are swept together, and where their rows of cells lie.
+
+use std::ops::Range;
+
+use super::lanes::{Lanes, Lookup, MAX_REACH};
+use crate::accumulator::Query;
+use crate::directions::Direction;
+
+/// Bytes of rows that are swept together: they must stay in the nearest cache,
+/// with the votes beside them.
+const NEAR_BYTES: usize = 32 << 10;
+
+/// Most beams that are swept together.
+pub(super) const MOST_BEAMS: usize = 32;
+
+/// Directions with one major axis and one sense along it.
+pub(super) const GROUPS: usize = 4;
+
+/// A beam at a heading.
+#[derive(Debug, Clone)]
+pub(super) struct SweptBeam {
+    pub direction: Direction,
+    pub lookup: Lookup,
+    /// What is left in an obstacle: steps from there to the taper's end.
+    pub end: u16,
+    /// Whether the end takes 16 bits.
+    pub is_far: bool,
+    /// The beam's votes in full.
+    pub peak: u8,
+    /// Where the beam's row begins in the store of rows.
+    pub row: usize,
+}
+
+/// Beams that are swept together: none has more votes than a byte holds.
+#[derive(Debug, Clone)]
+pub(super) struct Batch {
+    pub beams: Range<usize>,
+    pub is_far: bool,
+}
+
+/// All beams of a scan at a heading, in the order in which they are swept.
+#[derive(Debug, Clone, Default)]
+pub(super) struct Plan {
+    pub beams: Vec<SweptBeam>,
+    /// In each group, those whose ends take 8 bits come first.
+    pub batches: [Vec<Batch>; GROUPS],
+    /// Beams whose tapers are too wide for a [`Lookup`].
+    pub wide: Vec<usize>,
+    /// Cache lines that the rows of all beams take.
+    pub lines: usize,
+}
+
+/// The group of a direction.
+pub(super) fn group(direction: &Direction) -> usize {
+    2 * usize::from(direction.x_major) + usize::from(direction.step > 0)
+}
+
+impl Plan {
+    /// Plans a scan at a heading on a grid of so many cells.
+    pub(super) fn make<L: Lanes>(&mut self, query: Query<'_>, (width, height): (usize, usize)) {
+        self.beams.clear();
+        self.wide.clear();
+        for i in 0..query.program.beams() {
+            let (direction, taper) = query.beam(i);
+            let reach = taper.profile.len();
+            if reach > MAX_REACH {
+                self.wide.push(i);
+            } else if reach > 0 {
+                let end = taper.centre + reach as u16;
+                let highest = end.min(255) as u8;
+                self.beams.push(SweptBeam {
+                    direction: *direction,
+                    lookup: L::lookup(&taper, highest),
+                    end,
+                    is_far: end > 255,
+                    peak: taper.profile[0],
+                    row: 0,
+                });
+            }
+        }
+        self.beams
+            .sort_unstable_by_key(|beam| (group(&beam.direction), beam.is_far, beam.lookup.kind));
+        self.split::<L>((width, height));
+    }
+
+    /// Splits the beams into batches and gives each beam its row.
+    fn split<L: Lanes>(&mut self, (width, height): (usize, usize)) {
+        self.batches.iter_mut().for_each(Vec::clear);
+        let (mut line, mut votes) = (0, 0);
+        for i in 0..self.beams.len() {
+            let beam = &mut self.beams[i];
+            let columns = if beam.direction.x_major {
+                height
+            } else {
+                width
+            };
+            let lines = row_bytes::<L>(columns, beam.is_far).div_ceil(64);
+            beam.row = 64 * line;
+            line += lines;
+            let most = (NEAR_BYTES / (64 * lines)).clamp(1, MOST_BEAMS);
+            let peak = u32::from(beam.peak);
+            let batches = &mut self.batches[group(&beam.direction)];
+            match batches.last_mut() {
+                Some(batch)
+                    if batch.is_far == beam.is_far
+                        && batch.beams.len() < most
+                        && votes + peak <= 255 =>
+                {
+                    batch.beams.end = i + 1;
+                    votes += peak;
+                }
+                _ => {
+                    batches.push(Batch {
+                        beams: i..i + 1,
+                        is_far: beam.is_far,
+                    });
+                    votes = peak;
+                }
+            }
+        }
+        self.lines = line;
+    }
+}
+
+/// Bytes that a beam's row takes: its cells, a vector to which they move and
+/// back, and a margin on either side.
+fn row_bytes<L: Lanes>(columns: usize, is_far: bool) -> usize {
+    (columns.div_ceil(L::WIDTH) + 3) * L::WIDTH * (1 + usize::from(is_far))
+}
