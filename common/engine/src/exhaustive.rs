@@ -5,8 +5,6 @@
 
 use std::panic::resume_unwind;
 
-use messages::Vote;
-
 use crate::accumulator::{Accumulator, Query};
 use crate::program::ScanProgram;
 use crate::space::Space;
@@ -77,21 +75,8 @@ impl Share {
 
     fn collect(&mut self, width: usize, heading: usize) {
         self.poses += self.field.len() as u64;
-        for (y, row) in self.field.chunks_exact(width).enumerate() {
-            // Few rows hold any pose that matters, and a maximum is quick.
-            let most = row.iter().copied().max().unwrap_or(0);
-            if most < self.collector.floor() {
-                continue;
-            }
-            for (x, &intensity) in row.iter().enumerate() {
-                self.collector.take(Vote {
-                    x: x as u16,
-                    y: y as u16,
-                    heading: heading as u16,
-                    intensity,
-                });
-            }
-        }
+        self.collector
+            .take_field(&self.field, width, heading as u16);
     }
 
     fn merged(self, other: Share) -> Share {

@@ -10,11 +10,14 @@
 //! How a scan flows through the modules:
 //!
 //! ```text
-//! occupancy ─ grid ─ boundary ─┬─ lines ─┐
-//!                  └─ sets ────┴─────────┴─ search ─┐
-//! scan ─ beams ─ program (taper) ──────────┬────────┴─ votes ─ peaks
-//!                                          └─ sweep / scatter ─┘
+//! occupancy ─ grid ─┬─ search: index (prepared once) ─┐
+//!                   ├─ boundary ─ scatter ──┐         │
+//!                   └─ sweep ───────────────┤         │
+//! scan ─ beams ─ program (taper) ───────────┴─────────┴─ votes ─ peaks
+//!                                     known heading   all headings
 //! ```
+//!
+//! `docs/engine.md` explains the method with drawings.
 //!
 //! The crate knows no process, socket, clock or file.
 

@@ -91,6 +91,24 @@ impl Collector {
         }
     }
 
+    /// Takes the poses of an intensity image, row by row, at one heading.
+    pub(crate) fn take_field(&mut self, field: &[u16], width: usize, heading: u16) {
+        for (y, row) in (0..).zip(field.chunks_exact(width)) {
+            // Few rows hold any pose that matters, and a maximum is quick.
+            if row.iter().max().is_none_or(|&most| most < self.floor()) {
+                continue;
+            }
+            for (x, &intensity) in (0..).zip(row) {
+                self.take(Vote {
+                    x,
+                    y,
+                    heading,
+                    intensity,
+                });
+            }
+        }
+    }
+
     /// Raises the floor to what follows from a pose seen elsewhere.
     pub(crate) fn hear_of(&mut self, best: u16) {
         self.best = self.best.max(best);
@@ -153,16 +171,7 @@ impl Collector {
 #[must_use]
 pub fn of_field(field: &[u16], width: usize, heading: u16, config: CollectConfig) -> VoteSet {
     let mut collector = Collector::new(config);
-    for (y, row) in (0..).zip(field.chunks(width)) {
-        for (x, &intensity) in (0..).zip(row) {
-            collector.take(Vote {
-                x,
-                y,
-                heading,
-                intensity,
-            });
-        }
-    }
+    collector.take_field(field, width, heading);
     collector.finish(field.len() as u64)
 }
 

@@ -82,6 +82,7 @@ impl BitGrid {
     }
 
     /// The open cells among the eight of a row from a multiple of eight on.
+    #[inline(always)]
     pub(crate) fn open_octet(&self, row: usize, column: usize) -> u8 {
         let (word, shift) = (row * self.words + column / WORD, column % WORD);
         let blocked = self.blocked.get(word).map_or(0, |&blocked| blocked);

@@ -242,27 +242,44 @@ fn stride(bits: &BitGrid) -> usize {
     bits.columns.next_multiple_of(64)
 }
 
+/// Adds up the sums along both axes where cells are open.
+#[inline(always)]
 fn merge<S: Sum>(bits: &BitGrid, rows: &[S], columns: &[S], height: usize, field: &mut [u16]) {
-    let width = stride(bits);
     for bottom in (0..bits.rows).step_by(8) {
         for left in (0..bits.columns).step_by(8) {
-            let mut square: Square = [[0; 8]; 8];
-            for (i, square) in square.iter_mut().enumerate() {
-                if left + i < bits.columns {
-                    *square = S::octet(&columns[(left + i) * height + bottom..]);
-                }
-            }
-            let square = transposed(&square);
-            let count = (bits.columns - left).min(8);
-            for (i, square) in square.iter().enumerate().take(bits.rows - bottom) {
-                let y = bottom + i;
-                let mut sum = S::octet(&rows[y * width + left..]);
-                let open = OPEN[usize::from(bits.open_octet(y, left))];
-                for (j, sum) in sum.iter_mut().enumerate() {
-                    *sum = (*sum + square[j]) & open[j];
-                }
-                field[y * bits.columns + left..][..count].copy_from_slice(&sum[..count]);
-            }
+            merge_square(bits, rows, columns, height, (left, bottom), field);
+        }
+    }
+}
+
+#[inline(always)]
+fn merge_square<S: Sum>(
+    bits: &BitGrid,
+    rows: &[S],
+    columns: &[S],
+    height: usize,
+    (left, bottom): (usize, usize),
+    field: &mut [u16],
+) {
+    let width = stride(bits);
+    let mut square: Square = [[0; 8]; 8];
+    for (x, square) in (left..bits.columns).zip(&mut square) {
+        *square = S::octet(&columns[x * height + bottom..]);
+    }
+    let square = transposed(&square);
+    for (y, square) in (bottom..bits.rows).zip(square) {
+        let mut sums = S::octet(&rows[y * width + left..]);
+        let open = &OPEN[usize::from(bits.open_octet(y, left))];
+        for ((sum, other), open) in sums.iter_mut().zip(square).zip(open) {
+            *sum = (*sum + other) & open;
+        }
+        let row = &mut field[y * bits.columns..][..bits.columns];
+        if let Some(octet) = row[left..].first_chunk_mut() {
+            *octet = sums;
+            continue;
+        }
+        for (to, sum) in row[left..].iter_mut().zip(sums) {
+            *to = sum;
         }
     }
 }

@@ -27,7 +27,9 @@ pub(super) trait Sum: Copy + Default + From<u8> + AddAssign {
 impl Sum for u16 {
     #[inline(always)]
     fn octet(sums: &[u16]) -> [u16; 8] {
-        std::array::from_fn(|i| sums[..8][i])
+        let mut octet = [0; 8];
+        octet.copy_from_slice(&sums[..8]);
+        octet
     }
 
     #[inline(always)]
@@ -39,7 +41,11 @@ impl Sum for u16 {
 impl Sum for u8 {
     #[inline(always)]
     fn octet(sums: &[u8]) -> [u16; 8] {
-        std::array::from_fn(|i| u16::from(sums[..8][i]))
+        let mut octet = [0; 8];
+        for (octet, &sum) in octet.iter_mut().zip(&sums[..8]) {
+            *octet = u16::from(sum);
+        }
+        octet
     }
 
     #[inline(always)]

@@ -11,23 +11,17 @@ pub(super) fn transposed(square: &Square) -> Square {
     // SAFETY: every x86-64 processor has SSE2; squares and vectors have the
     // same size, and all bits mean a number in both.
     unsafe {
-        let row = |i: usize| _mm_loadu_si128(square[i].as_ptr().cast());
-        let pairs: [[__m128i; 2]; 4] = std::array::from_fn(|i| {
-            let (a, b) = (row(i), row(i + 4));
-            [_mm_unpacklo_epi16(a, b), _mm_unpackhi_epi16(a, b)]
-        });
+        let mut rows = std::mem::transmute::<Square, [__m128i; 8]>(*square);
         // Three rounds that interleave rows i and i + 4 turn a square over.
-        let rows = pairs.as_flattened();
-        let pairs: [[__m128i; 2]; 4] = std::array::from_fn(|i| {
-            let (a, b) = (rows[i], rows[i + 4]);
-            [_mm_unpacklo_epi16(a, b), _mm_unpackhi_epi16(a, b)]
-        });
-        let rows = pairs.as_flattened();
-        let pairs: [[__m128i; 2]; 4] = std::array::from_fn(|i| {
-            let (a, b) = (rows[i], rows[i + 4]);
-            [_mm_unpacklo_epi16(a, b), _mm_unpackhi_epi16(a, b)]
-        });
-        std::mem::transmute::<[[__m128i; 2]; 4], Square>(pairs)
+        for _ in 0..3 {
+            let before = rows;
+            for i in 0..4 {
+                let (a, b) = (before[i], before[i + 4]);
+                rows[2 * i] = _mm_unpacklo_epi16(a, b);
+                rows[2 * i + 1] = _mm_unpackhi_epi16(a, b);
+            }
+        }
+        std::mem::transmute::<[__m128i; 8], Square>(rows)
     }
 }
 

@@ -148,7 +148,10 @@ impl Lanes for Portable {
     #[inline(always)]
     unsafe fn vote<const N: usize>(votes: &mut [Self; N], left: &[Self; N], lookup: &Lookup) {
         for (votes, left) in votes.iter_mut().zip(left) {
-            let distances = left.0.map(|left| left.abs_diff(lookup.reach));
+            let mut distances = [0; WIDTH];
+            for (distance, left) in distances.iter_mut().zip(left.0) {
+                *distance = left.abs_diff(lookup.reach);
+            }
             let levels = lookup.bytes.chunks_exact(2);
             for level in levels.take(usize::from(lookup.parts)) {
                 let (farthest, drop) = (level[0], level[1]);
