@@ -4,6 +4,7 @@
 //! accumulators share the headings, each on a thread of its own.
 
 use std::panic::resume_unwind;
+use std::sync::atomic::{AtomicBool, Ordering};
 
 use crate::accumulator::{Accumulator, Query};
 use crate::program::ScanProgram;
@@ -14,7 +15,7 @@ use crate::votes::{CollectConfig, Collector, VoteSet};
 /// before the end.
 ///
 /// `width` is that of the grid. The outcome does not depend on how many
-/// accumulators there are.
+/// accumulators there are; the first one works on this thread.
 ///
 /// # Panics
 /// If there is no accumulator, or one of them panics.
@@ -24,13 +25,13 @@ pub fn search<A: Accumulator + Send>(
     width: usize,
     (program, space): (&ScanProgram, &Space),
     config: CollectConfig,
-    stop: &(dyn Fn() -> bool + Sync),
+    stop: &dyn Fn() -> bool,
 ) -> Option<VoteSet> {
     let step = accumulators.len();
-    let share = |first: usize, accumulator: &mut A| {
+    let (own, others) = accumulators.split_first_mut().expect("an accumulator");
+    let fill = |first: usize, accumulator: &mut A, stop: &dyn Fn() -> bool| {
         let mut share = Share::new(config);
-        let headings = (first..space.directions.count()).step_by(step);
-        for heading in headings {
+        for heading in (first..space.directions.count()).step_by(step) {
             let query = Query {
                 program,
                 space,
@@ -41,19 +42,19 @@ pub fn search<A: Accumulator + Send>(
         }
         Some(share)
     };
+    let stopped = AtomicBool::new(false);
+    let is_stopped = || stopped.load(Ordering::Relaxed);
     let shares: Option<Vec<Share>> = std::thread::scope(|scope| {
-        let threads: Vec<_> = accumulators
-            .iter_mut()
-            .enumerate()
-            .map(|(first, accumulator)| scope.spawn(move || share(first, accumulator)))
-            .collect();
+        let spawn =
+            |(first, accumulator)| scope.spawn(move || fill(first, accumulator, &is_stopped));
+        let threads: Vec<_> = (1..).zip(others).map(spawn).collect();
+        let own = fill(0, own, stop);
+        stopped.store(own.is_none(), Ordering::Relaxed);
         let joined = threads.into_iter().map(std::thread::ScopedJoinHandle::join);
-        let share =
-            |share: std::thread::Result<_>| share.unwrap_or_else(|panic| resume_unwind(panic));
-        joined.map(share).collect()
+        let joined = joined.map(|share| share.unwrap_or_else(|panic| resume_unwind(panic)));
+        std::iter::once(own).chain(joined).collect()
     });
-    let all = shares?.into_iter().reduce(Share::merged);
-    let all = all.expect("there is an accumulator");
+    let all = shares?.into_iter().reduce(Share::merged)?;
     Some(all.collector.finish(all.poses))
 }
 

@@ -8,6 +8,7 @@ use std::sync::atomic::{AtomicBool, AtomicU16, Ordering};
 use messages::Vote;
 
 use super::bits::{self, Row};
+use super::budget::{Budget, Cost, LEVELS, Tally};
 use super::index::SearchIndex;
 use super::interval_bounds::{HEADINGS, IntervalBounds, IntervalProgram};
 use super::intervals::BlockIntervals;
@@ -32,6 +33,8 @@ pub(super) struct Task<'a> {
     best: AtomicU16,
     /// Whether all threads are to stop.
     stopped: AtomicBool,
+    /// What counting every pose would cost one thread.
+    brute_force: Cost,
 }
 
 /// A scan program laid out for each size of blocks.
@@ -40,6 +43,7 @@ struct Programs {
     fine: SetProgram,
     interval: IntervalProgram,
     leaf: LeafProgram,
+    beams: usize,
 }
 
 /// One thread's part of a search.
@@ -57,6 +61,7 @@ pub(super) struct Descent<'a> {
     candidates: Vec<Candidate>,
     collector: Collector,
     poses_evaluated: u64,
+    tally: Tally,
 }
 
 /// A block in the queue.
@@ -79,6 +84,38 @@ enum Level {
     Fine { masks: u32 },
     /// 4 × 4 cells, at these candidate headings.
     Leaf { start: u32, end: u32 },
+}
+
+impl Level {
+    /// From the largest blocks on.
+    fn number(self) -> usize {
+        match self {
+            Level::Coarse => 0,
+            Level::Fine { .. } => 1,
+            Level::Leaf { .. } => 2,
+        }
+    }
+}
+
+/// How a part of a search ended.
+pub(super) enum End {
+    /// With the poses that matter, and how many were counted.
+    Done(Collector, u64),
+    /// It was told to stop.
+    Stopped,
+    /// Counting every pose would take less than what is left.
+    Hopeless,
+}
+
+impl End {
+    /// How two parts ended together.
+    pub(super) fn joined(self, other: End) -> End {
+        match (self, other) {
+            (End::Done(a, poses), End::Done(b, others)) => End::Done(a.merged(b), poses + others),
+            (End::Hopeless, _) | (End::Done(..), End::Hopeless) => End::Hopeless,
+            (End::Stopped, _) | (End::Done(..), End::Stopped) => End::Stopped,
+        }
+    }
 }
 
 /// A heading at which a block may still matter, and its bound there.
@@ -137,9 +174,20 @@ impl<'a> Task<'a> {
                 fine: set_program(&index.fine),
                 interval: IntervalProgram::new(program, directions, steps, instruction_set),
                 leaf: LeafProgram::new(program, directions, instruction_set),
+                beams: program.beams(),
             },
             best: AtomicU16::new(0),
             stopped: AtomicBool::new(false),
+            brute_force: Cost::of_brute_force(instruction_set, grid, program, space),
+        }
+    }
+
+    /// Takes brute force to cost so much.
+    #[cfg(test)]
+    pub(super) fn with_brute_force(self, brute_force: Cost) -> Self {
+        Task {
+            brute_force,
+            ..self
         }
     }
 
@@ -167,41 +215,53 @@ impl<'a> Descent<'a> {
             candidates: Vec::new(),
             collector: Collector::new(task.config),
             poses_evaluated: 0,
+            tally: Tally::default(),
         }
     }
 
-    /// Searches some of the coarse blocks: the poses that matter in them, and how
-    /// many were counted. `None` if `stop` said so before the end.
-    pub(super) fn run(
-        mut self,
-        blocks: impl Iterator<Item = usize>,
-        stop: &dyn Fn() -> bool,
-    ) -> Option<(Collector, u64)> {
+    /// Searches one of `parts` of the coarse blocks.
+    pub(super) fn run(mut self, (part, parts): (usize, usize), stop: &dyn Fn() -> bool) -> End {
         let (coarse, program) = (&self.task.index.coarse, &self.task.programs.coarse);
-        for index in blocks {
+        // Neighbouring blocks are alike, so parts take them in turn.
+        for index in (part..coarse.blocks()).step_by(parts) {
             if stop() {
-                return None;
+                return End::Stopped;
             }
             let (bound, promise) = program.rough(coarse, index, &mut self.coarse_bounds);
             self.push(bound, promise, index, Level::Coarse);
         }
+        let mut budget = Budget::new(self.task.brute_force, parts);
         while let Some(block) = self.queue.pop() {
-            self.collector
-                .hear_of(self.task.best.load(Ordering::Relaxed));
+            let best = self.task.best.load(Ordering::Relaxed);
+            self.collector.hear_of(best);
             if block.bound < self.collector.floor() {
                 continue;
             }
             if stop() {
-                return None;
+                return End::Stopped;
             }
-            let index = block.index as usize;
-            match block.level {
+            let (level, index) = (block.level, block.index as usize);
+            match level {
                 Level::Coarse => self.split_coarse(index),
                 Level::Fine { masks } => self.split_fine(index, masks as usize),
                 Level::Leaf { start, end } => self.count(index, start as usize..end as usize),
             }
+            budget.spend(level.number(), self.tally.take(self.task.programs.beams));
+            if budget.is_up() && budget.is_hopeless(self.left()) {
+                return End::Hopeless;
+            }
         }
-        Some((self.collector, self.poses_evaluated))
+        End::Done(self.collector, self.poses_evaluated)
+    }
+
+    /// How many blocks of each level are left that may matter.
+    fn left(&self) -> [usize; LEVELS] {
+        let mut left = [0; LEVELS];
+        let floor = self.collector.floor();
+        for block in self.queue.iter().filter(|block| block.bound >= floor) {
+            left[block.level.number()] += 1;
+        }
+        left
     }
 
     fn push(&mut self, bound: u16, promise: u16, index: usize, level: Level) {
@@ -220,6 +280,7 @@ impl<'a> Descent<'a> {
         let (coarse, fine) = (&self.task.index.coarse, &self.task.index.fine);
         let floor = self.collector.floor();
         let program = &self.task.programs.coarse;
+        self.tally.bounds += 1;
         if program.bound(coarse, index, floor, &mut self.coarse_bounds) {
             for block in quarters(index, coarse.columns, (fine.columns, fine.rows)) {
                 self.queue_fine(block);
@@ -232,6 +293,7 @@ impl<'a> Descent<'a> {
     fn queue_fine(&mut self, index: usize) {
         let floor = self.collector.floor();
         let (fine, program) = (&self.task.index.fine, &self.task.programs.fine);
+        self.tally.bounds += 1;
         if !program.bound(fine, index, floor, &mut self.fine_bounds) {
             return;
         }
@@ -278,6 +340,7 @@ impl<'a> Descent<'a> {
     /// were read may matter.
     fn bound_leaf(&mut self, first: usize, among: u64, floor: u16) {
         let (program, bounds) = (&self.task.programs.interval, &mut self.interval_bounds);
+        self.tally.windows += 1;
         if !program.bound(&self.intervals, first, among, floor, bounds) {
             return;
         }
@@ -300,6 +363,7 @@ impl<'a> Descent<'a> {
             let floor = self.collector.floor();
             let (intervals, bounds) = (self.outlook.intervals(), &mut self.interval_bounds);
             let program = &self.task.programs.interval;
+            self.tally.windows += 1;
             if program.bound(intervals, first, among, floor, bounds) {
                 self.count_at(first, among);
             }
@@ -338,6 +402,7 @@ impl<'a> Descent<'a> {
         for (sector, bounds) in self.interval_bounds.sectors.iter().enumerate() {
             let mut still = 0;
             for lane in bits::ones(alive) {
+                self.tally.sectors += 1;
                 let counts = &mut counts[lane];
                 let (program, heading) = (&self.task.programs.leaf, first + lane);
                 program.add(&mut self.outlook, prepared, sector, heading, counts);
@@ -351,6 +416,7 @@ impl<'a> Descent<'a> {
         for lane in bits::ones(alive) {
             self.take((first + lane) as u16, &counts[lane], &open);
         }
+        self.tally.looks = self.outlook.looks();
         let best = self.collector.best();
         self.task.best.fetch_max(best, Ordering::Relaxed);
     }

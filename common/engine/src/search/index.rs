@@ -3,15 +3,17 @@
 use std::panic::resume_unwind;
 
 use super::bins::Bins;
-use super::descent::{Descent, Task};
+use super::descent::{Descent, End, Task};
 use super::intervals::RangeIntervals;
 use super::set_bounds::SetProgram;
 use super::sets::RangeSets;
 use super::steps::BinSteps;
+use crate::exhaustive;
 use crate::grid::Grid;
 use crate::instruction_set::InstructionSet;
 use crate::program::ScanProgram;
 use crate::space::Space;
+use crate::sweep::FieldSweep;
 use crate::votes::{CollectConfig, VoteSet};
 
 /// Rows of the sets of 8 × 8 blocks stand for `1 << FINE_SHIFT` bins: a block
@@ -79,7 +81,8 @@ impl SearchIndex {
     }
 
     /// The same with a certain instruction set on a number of threads, with the
-    /// same outcome but for the number of poses that were counted.
+    /// same outcome but for the number of poses that were counted. Where bounds
+    /// cannot tell blocks apart, all poses are counted.
     ///
     /// # Panics
     /// If the processor does not have the instruction set, or there is no
@@ -93,28 +96,12 @@ impl SearchIndex {
         config: CollectConfig,
         stop: &dyn Fn() -> bool,
     ) -> Option<VoteSet> {
-        let task = &Task::new(instruction_set.checked(), self, grid, scan, config);
-        // Neighbouring blocks are alike, so threads take them in turn.
-        let part = move |thread, stop: &dyn Fn() -> bool| {
-            let blocks = (thread..self.coarse.blocks()).step_by(threads);
-            Descent::new(task).run(blocks, stop)
-        };
-        let parts: Option<Vec<_>> = std::thread::scope(|scope| {
-            let others =
-                (1..threads).map(|thread| scope.spawn(move || part(thread, &|| task.is_stopped())));
-            let others: Vec<_> = others.collect();
-            let own = part(0, stop);
-            if own.is_none() {
-                task.stop();
-            }
-            let joined = others.into_iter().map(std::thread::ScopedJoinHandle::join);
-            let joined = joined.map(|part| part.unwrap_or_else(|panic| resume_unwind(panic)));
-            std::iter::once(own).chain(joined).collect()
-        });
-        let merged = parts?
-            .into_iter()
-            .reduce(|a, b| (a.0.merged(b.0), a.1 + b.1));
-        merged.map(|(collector, poses)| collector.finish(poses))
+        let task = Task::new(instruction_set.checked(), self, grid, scan, config);
+        match run(&task, threads, stop) {
+            End::Done(collector, poses) => Some(collector.finish(poses)),
+            End::Stopped => None,
+            End::Hopeless => count_all((instruction_set, threads), grid, scan, config, stop),
+        }
     }
 
     /// Upper bounds of the intensities in all coarse blocks: where the robot
@@ -137,6 +124,36 @@ impl SearchIndex {
     }
 }
 
+/// Runs a search on a number of threads, of which this is one.
+fn run(task: &Task<'_>, threads: usize, stop: &dyn Fn() -> bool) -> End {
+    std::thread::scope(|scope| {
+        let part = |thread| Descent::new(task).run((thread, threads), &|| task.is_stopped());
+        let others = (1..threads).map(|thread| scope.spawn(move || part(thread)));
+        let others: Vec<_> = others.collect();
+        let own = Descent::new(task).run((0, threads), stop);
+        if !matches!(own, End::Done(..)) {
+            task.stop();
+        }
+        let joined = others.into_iter().map(std::thread::ScopedJoinHandle::join);
+        let joined = joined.map(|end| end.unwrap_or_else(|panic| resume_unwind(panic)));
+        joined.fold(own, End::joined)
+    })
+}
+
+/// Counts every pose.
+fn count_all(
+    (instruction_set, threads): (InstructionSet, usize),
+    grid: &Grid,
+    scan: (&ScanProgram, &Space),
+    config: CollectConfig,
+    stop: &dyn Fn() -> bool,
+) -> Option<VoteSet> {
+    let sweeps = FieldSweep::new(grid);
+    let accumulators = (0..threads).map(|_| sweeps.accumulator_with(instruction_set));
+    let mut accumulators: Vec<_> = accumulators.collect();
+    exhaustive::search(&mut accumulators, grid.width(), scan, config, stop)
+}
+
 impl BlockBounds {
     /// Blocks along y.
     #[must_use]
@@ -149,6 +166,7 @@ impl BlockBounds {
 mod tests {
     use proptest::prelude::*;
 
+    use super::super::budget::Cost;
     use super::*;
     use crate::reference;
     use crate::testing::{any_grid, any_scan, plain_votes, space_of};
@@ -171,6 +189,27 @@ mod tests {
                     let found = VoteSet { poses_evaluated: 0, ..found.unwrap() };
                     prop_assert_eq!(&found, &plain, "{:?}", how);
                 }
+            }
+        }
+
+        #[test]
+        fn a_search_that_would_cost_too_much_gives_up_at_once(
+            grid in any_grid(), scan in any_scan(), threads in 1usize..4,
+        ) {
+            let space = space_of(&grid, 64);
+            let program = scan.program(&space);
+            let (best, config) = (InstructionSet::best(), CollectConfig::default());
+            let index = SearchIndex::new(&grid, &space);
+            let task = Task::new(best, &index, &grid, (&program, &space), config);
+            let task = task.with_brute_force(Cost(0.0));
+            // A search that is done after the first block has nothing to give up.
+            match run(&task, threads, &|| false) {
+                End::Done(collector, _) => {
+                    let plain = plain_votes(&grid, &program, &space, config);
+                    prop_assert_eq!(collector.finish(0), plain);
+                }
+                End::Hopeless => (),
+                End::Stopped => prop_assert!(false, "nobody said stop"),
             }
         }
 

@@ -16,6 +16,7 @@
 
 mod bins;
 mod bits;
+mod budget;
 mod descent;
 mod index;
 mod interval_bounds;

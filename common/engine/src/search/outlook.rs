@@ -29,6 +29,8 @@ pub(crate) struct Outlook {
     /// Whether rays can be lost on the map: then they must be followed from the
     /// start, as intervals say only where they hit.
     can_lose: bool,
+    /// How often a direction was looked in.
+    looks: u64,
 }
 
 impl Outlook {
@@ -42,6 +44,7 @@ impl Outlook {
             cells: [Cell::Blocked; CELLS],
             intervals: BlockIntervals::default(),
             can_lose: grid.has_blocked(),
+            looks: 0,
         }
     }
 
@@ -88,8 +91,14 @@ impl Outlook {
     ) {
         if self.looked_for[d] != self.number {
             self.looked_for[d] = self.number;
+            self.looks += 1;
             self.look_anew(grid, steps, directions.get(d), d);
         }
+    }
+
+    /// How often a direction of any block was looked in.
+    pub(crate) fn looks(&self) -> u64 {
+        self.looks
     }
 
     /// The ranges in direction `d`, in steps; it must have been looked in.

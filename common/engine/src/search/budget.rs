@@ -1,0 +1,175 @@
+//! When a search is worse than counting every pose.
+//!
+//! In uniform clutter no bound tells blocks apart. The search tallies what it
+//! did, estimates what is left from what blocks of each level have cost so far,
+//! and gives up where brute force would be done sooner. So it costs at most
+//! about half more than brute force.
+
+use crate::grid::Grid;
+use crate::instruction_set::InstructionSet;
+use crate::program::ScanProgram;
+use crate::space::Space;
+
+/// Sizes of blocks in the queue of a search.
+pub(super) const LEVELS: usize = 3;
+
+/// Work, in nanoseconds on a processor of 2 GHz. Only ratios matter.
+#[derive(Debug, Clone, Copy, PartialEq, PartialOrd)]
+pub(super) struct Cost(pub f64);
+
+/// What was done since it was last looked at.
+#[derive(Debug, Clone, Copy, Default)]
+pub(super) struct Tally {
+    /// Bounds of blocks from sets.
+    pub bounds: u64,
+    /// Bounds of blocks from intervals, 64 headings each.
+    pub windows: u64,
+    /// Sectors of beams that were counted at a heading.
+    pub sectors: u64,
+    /// Directions that were looked in, ever.
+    pub looks: u64,
+    looks_before: u64,
+}
+
+/// What a search has cost so far.
+#[derive(Debug)]
+pub(super) struct Budget {
+    brute_force: Cost,
+    spent: f64,
+    /// When to look again.
+    next: f64,
+    /// Blocks of each level that were taken from the queue, and their cost.
+    taken: [(f64, f64); LEVELS],
+}
+
+/// What was measured for the parts of a search, with AVX-512.
+const BOUND_PER_BEAM: f64 = 7.0;
+const WINDOW_PER_BEAM: f64 = 2.5;
+const SECTOR: f64 = 60.0;
+const LOOK: f64 = 250.0;
+
+/// The first look, as a share of what brute force costs. Until the best pose is
+/// found the floor is low and much seems to be left, so looking earlier gives up
+/// searches that are about to end; looking later loses more on the others.
+const FIRST_LOOK: f64 = 0.5;
+
+/// How much more is spent until the next look.
+const NEXT_LOOK: f64 = 1.5;
+
+impl Cost {
+    /// What it costs to count every pose.
+    pub(super) fn of_brute_force(
+        instruction_set: InstructionSet,
+        grid: &Grid,
+        program: &ScanProgram,
+        space: &Space,
+    ) -> Self {
+        let per_cell_and_beam = match instruction_set {
+            InstructionSet::Avx512 => 0.027,
+            InstructionSet::Avx2 => 0.07,
+            InstructionSet::Portable => 0.9,
+        };
+        let fields = (grid.cells().len() * space.directions.count()) as f64;
+        Cost(fields * program.beams() as f64 * per_cell_and_beam)
+    }
+}
+
+impl Tally {
+    /// What was done since the last time.
+    pub(super) fn take(&mut self, beams: usize) -> Cost {
+        let beams = beams as f64;
+        let cost = self.bounds as f64 * BOUND_PER_BEAM * beams
+            + self.windows as f64 * WINDOW_PER_BEAM * beams
+            + self.sectors as f64 * SECTOR
+            + (self.looks - self.looks_before) as f64 * LOOK;
+        *self = Tally {
+            looks: self.looks,
+            looks_before: self.looks,
+            ..Tally::default()
+        };
+        Cost(cost)
+    }
+}
+
+impl Budget {
+    /// For one of so many parts of a search.
+    pub(super) fn new(brute_force: Cost, parts: usize) -> Self {
+        let brute_force = Cost(brute_force.0 / parts as f64);
+        Budget {
+            brute_force,
+            spent: 0.0,
+            next: brute_force.0 * FIRST_LOOK,
+            taken: [(0.0, 0.0); LEVELS],
+        }
+    }
+
+    /// Notes what a block of a level has cost.
+    pub(super) fn spend(&mut self, level: usize, cost: Cost) {
+        self.spent += cost.0;
+        self.taken[level].0 += 1.0;
+        self.taken[level].1 += cost.0;
+    }
+
+    /// Whether it is time to see how much is left.
+    pub(super) fn is_up(&self) -> bool {
+        self.spent >= self.next
+    }
+
+    /// Whether brute force would be done sooner than what is left: blocks of
+    /// each level.
+    pub(super) fn is_hopeless(&mut self, left: [usize; LEVELS]) -> bool {
+        self.next = self.spent * NEXT_LOOK;
+        let mut below = 0.0;
+        // A block costs what those of its level did, and what those below it
+        // will that came of it.
+        let mut expected = 0.0;
+        for level in (0..LEVELS).rev() {
+            let (taken, cost) = self.taken[level];
+            let each = if taken > 0.0 { cost / taken } else { 0.0 };
+            let children = match self.taken.get(level + 1) {
+                Some(&(children, _)) if taken > 0.0 => (children + left[level + 1] as f64) / taken,
+                _ => 0.0,
+            };
+            below = each + children * below;
+            expected += left[level] as f64 * below;
+        }
+        expected > self.brute_force.0
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_search_is_given_up_where_what_is_left_costs_more() {
+        let mut budget = Budget::new(Cost(7_000.0), 2);
+        assert!(!budget.is_up());
+        // Four coarse blocks came to eight fine ones, of which three were taken.
+        for _ in 0..4 {
+            budget.spend(0, Cost(100.0));
+        }
+        for _ in 0..3 {
+            budget.spend(1, Cost(500.0));
+        }
+        assert!(budget.is_up());
+        // Five fine ones cost 500 each; a coarse one 100, and twice 500.
+        assert!(!budget.is_hopeless([0, 5, 0]));
+        assert!(!budget.is_up(), "not at once again");
+        assert!(budget.is_hopeless([1, 5, 0]));
+    }
+
+    #[test]
+    fn a_tally_counts_each_thing_once() {
+        let mut tally = Tally {
+            bounds: 1,
+            windows: 2,
+            sectors: 3,
+            looks: 4,
+            ..Tally::default()
+        };
+        let cost = BOUND_PER_BEAM * 10.0 + 2.0 * WINDOW_PER_BEAM * 10.0 + 3.0 * SECTOR + 4.0 * LOOK;
+        assert_eq!(tally.take(10), Cost(cost));
+        assert_eq!(tally.take(10), Cost(0.0));
+    }
+}
