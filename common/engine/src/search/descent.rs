@@ -1,50 +1,20 @@
 //! One search: from large blocks down to poses, the most promising first.
 
-use std::cmp;
 use std::collections::BinaryHeap;
 use std::ops::Range;
-use std::sync::atomic::{AtomicBool, AtomicU16, Ordering};
+use std::sync::atomic::Ordering;
 
 use messages::Vote;
 
 use super::bits::{self, Row};
-use super::budget::{Budget, Cost, LEVELS, Tally};
-use super::index::SearchIndex;
-use super::interval_bounds::{HEADINGS, IntervalBounds, IntervalProgram};
+use super::budget::{Budget, LEVELS, Tally};
+use super::interval_bounds::{HEADINGS, IntervalBounds};
 use super::intervals::BlockIntervals;
-use super::leaf::LeafProgram;
 use super::outlook::{CELLS, Outlook};
-use super::set_bounds::{CHUNK, SetBounds, SetProgram};
-use super::sets::RangeSets;
-use crate::grid::Grid;
-use crate::instruction_set::InstructionSet;
-use crate::program::ScanProgram;
-use crate::space::Space;
-use crate::votes::{CollectConfig, Collector};
-
-/// What is searched: a scan on a map.
-pub(super) struct Task<'a> {
-    pub index: &'a SearchIndex,
-    pub grid: &'a Grid,
-    pub space: &'a Space,
-    pub config: CollectConfig,
-    programs: Programs,
-    /// The most votes of any pose so far, whoever found it.
-    best: AtomicU16,
-    /// Whether all threads are to stop.
-    stopped: AtomicBool,
-    /// What counting every pose would cost one thread.
-    brute_force: Cost,
-}
-
-/// A scan program laid out for each size of blocks.
-struct Programs {
-    coarse: SetProgram,
-    fine: SetProgram,
-    interval: IntervalProgram,
-    leaf: LeafProgram,
-    beams: usize,
-}
+use super::queue::{Block, Level};
+use super::set_bounds::{CHUNK, SetBounds};
+use super::task::Task;
+use crate::votes::Collector;
 
 /// One thread's part of a search.
 pub(super) struct Descent<'a> {
@@ -62,39 +32,6 @@ pub(super) struct Descent<'a> {
     collector: Collector,
     poses_evaluated: u64,
     tally: Tally,
-}
-
-/// A block in the queue.
-#[derive(Debug, Clone, Copy)]
-struct Block {
-    /// What its best pose may have: the order of the queue.
-    promise: u16,
-    /// What none of its poses has more than.
-    bound: u16,
-    index: u32,
-    level: Level,
-}
-
-/// How large a block is, and what is known of it.
-#[derive(Debug, Clone, Copy)]
-enum Level {
-    /// 16 × 16 cells, roughly bounded.
-    Coarse,
-    /// 8 × 8 cells, at the headings of these masks.
-    Fine { masks: u32 },
-    /// 4 × 4 cells, at these candidate headings.
-    Leaf { start: u32, end: u32 },
-}
-
-impl Level {
-    /// From the largest blocks on.
-    fn number(self) -> usize {
-        match self {
-            Level::Coarse => 0,
-            Level::Fine { .. } => 1,
-            Level::Leaf { .. } => 2,
-        }
-    }
 }
 
 /// How a part of a search ended.
@@ -123,82 +60,6 @@ impl End {
 struct Candidate {
     heading: u16,
     bound: u16,
-}
-
-impl Block {
-    fn key(&self) -> (u16, u32) {
-        (self.promise, self.index)
-    }
-}
-
-impl PartialEq for Block {
-    fn eq(&self, other: &Self) -> bool {
-        self.key() == other.key()
-    }
-}
-
-impl Eq for Block {}
-
-impl PartialOrd for Block {
-    fn partial_cmp(&self, other: &Self) -> Option<cmp::Ordering> {
-        Some(self.cmp(other))
-    }
-}
-
-impl Ord for Block {
-    fn cmp(&self, other: &Self) -> cmp::Ordering {
-        self.key().cmp(&other.key())
-    }
-}
-
-impl<'a> Task<'a> {
-    /// `instruction_set` must be available.
-    pub(super) fn new(
-        instruction_set: InstructionSet,
-        index: &'a SearchIndex,
-        grid: &'a Grid,
-        (program, space): (&ScanProgram, &'a Space),
-        config: CollectConfig,
-    ) -> Self {
-        let (directions, steps) = (&space.directions, &index.steps);
-        let set_program = |sets: &RangeSets| {
-            SetProgram::new(program, directions, steps, sets.shift, instruction_set)
-        };
-        Task {
-            index,
-            grid,
-            space,
-            config,
-            programs: Programs {
-                coarse: set_program(&index.coarse),
-                fine: set_program(&index.fine),
-                interval: IntervalProgram::new(program, directions, steps, instruction_set),
-                leaf: LeafProgram::new(program, directions, instruction_set),
-                beams: program.beams(),
-            },
-            best: AtomicU16::new(0),
-            stopped: AtomicBool::new(false),
-            brute_force: Cost::of_brute_force(instruction_set, grid, program, space),
-        }
-    }
-
-    /// Takes brute force to cost so much.
-    #[cfg(test)]
-    pub(super) fn with_brute_force(self, brute_force: Cost) -> Self {
-        Task {
-            brute_force,
-            ..self
-        }
-    }
-
-    /// Tells all threads to stop.
-    pub(super) fn stop(&self) {
-        self.stopped.store(true, Ordering::Relaxed);
-    }
-
-    pub(super) fn is_stopped(&self) -> bool {
-        self.stopped.load(Ordering::Relaxed)
-    }
 }
 
 impl<'a> Descent<'a> {

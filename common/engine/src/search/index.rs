@@ -3,11 +3,12 @@
 use std::panic::resume_unwind;
 
 use super::bins::Bins;
-use super::descent::{Descent, End, Task};
+use super::descent::{Descent, End};
 use super::intervals::RangeIntervals;
 use super::set_bounds::SetProgram;
 use super::sets::RangeSets;
 use super::steps::BinSteps;
+use super::task::Task;
 use crate::exhaustive;
 use crate::grid::Grid;
 use crate::instruction_set::InstructionSet;

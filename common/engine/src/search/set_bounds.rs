@@ -9,9 +9,10 @@
 use std::ops::Range;
 
 use super::bits::{self, EMPTY, Planes, Row};
+use super::group::{Aligned, Group};
 use super::rows::BitRow;
 use super::sets::RangeSets;
-use super::spans::{SpanLayout, Spans, Window};
+use super::spans::{SpanLayout, Spans};
 use super::steps::BinSteps;
 use crate::directions::Directions;
 use crate::instruction_set::InstructionSet;
@@ -33,17 +34,6 @@ pub(crate) struct SetProgram {
     layout: SpanLayout,
 }
 
-/// Beams whose bearings leave the same rest by eight.
-#[derive(Debug, Clone)]
-struct Group {
-    /// That rest.
-    shift: u32,
-    /// The windows with a share of `1 << i` units, narrow ones and wide ones.
-    planes: Vec<[Vec<Window>; 2]>,
-    /// The most units that the beams can give.
-    possible: u16,
-}
-
 /// Bounds of a block for all headings, and room to find them.
 #[derive(Debug, Clone)]
 pub(crate) struct SetBounds {
@@ -54,11 +44,6 @@ pub(crate) struct SetBounds {
     /// Rows carried over to the next plane, and to the one after.
     carries: [Vec<Aligned>; 2],
 }
-
-/// A row in one line of the processor's cache.
-#[derive(Debug, Clone)]
-#[repr(align(64))]
-struct Aligned(Row);
 
 impl SetBounds {
     /// The greatest bound.
@@ -125,9 +110,7 @@ impl SetProgram {
             });
             ([EMPTY; bits::PLANES], valid)
         });
-        // Each window or pair of rows leaves at most one carry.
-        let windows = |group: &Group| group.planes.iter().flatten().map(Vec::len).sum();
-        let carries: usize = self.groups.iter().map(windows).max().unwrap_or(0);
+        let carries = self.groups.iter().map(Group::windows).max().unwrap_or(0);
         SetBounds {
             unit: self.unit,
             chunks: chunks.collect(),
@@ -267,96 +250,6 @@ fn any_reaches<R: BitRow>(sums: &[R], least: u16, among: R) -> bool {
         }
     }
     !greater.or(equal).is_empty()
-}
-
-impl Group {
-    fn new(shift: u32) -> Self {
-        Group {
-            shift,
-            planes: Vec::new(),
-            possible: 0,
-        }
-    }
-
-    fn push(&mut self, plane: usize, window: Window) {
-        self.possible += 1 << plane;
-        if self.planes.len() <= plane {
-            self.planes
-                .resize_with(plane + 1, || [Vec::new(), Vec::new()]);
-        }
-        self.planes[plane][usize::from(!window.is_narrow())].push(window);
-    }
-
-    /// Adds up what the windows see, plane by plane with carry-save adders, and
-    /// adds that to the sums of all groups.
-    #[inline(always)]
-    fn add<R: BitRow>(
-        &self,
-        spans: &[u8],
-        [carries, next]: &mut [Vec<Aligned>; 2],
-        total: &mut [R],
-    ) {
-        let (mut carries, mut next) = (&mut carries[..], &mut next[..]);
-        let mut carried = 0;
-        let mut windows = self.planes.iter();
-        // What adding to the total carries over.
-        let mut overflow = R::empty();
-        for total in total {
-            let (mut sum, mut made) = (R::empty(), 0);
-            if let Some([narrow, wide]) = windows.next() {
-                made = add_windows::<R, { Window::NARROW }>(narrow, spans, &mut sum, next);
-                let next = &mut next[made..];
-                made += add_windows::<R, { Window::WIDE }>(wide, spans, &mut sum, next);
-            }
-            made += add_carries(&carries[..carried], &mut sum, &mut next[made..]);
-            (*total, overflow) = total.full_adder(sum.shift_down(self.shift), overflow);
-            std::mem::swap(&mut carries, &mut next);
-            carried = made;
-        }
-    }
-}
-
-/// Adds windows that take `READS` reads to a plane, two by two; how many carries
-/// that made.
-#[inline(always)]
-fn add_windows<R: BitRow, const READS: usize>(
-    windows: &[Window],
-    spans: &[u8],
-    sum: &mut R,
-    carries: &mut [Aligned],
-) -> usize {
-    let read = |window: &Window| window.read::<R, READS>(spans);
-    let mut pairs = windows.chunks_exact(2);
-    for (pair, carry) in (&mut pairs).zip(&mut *carries) {
-        carry.add(sum, read(&pair[0]), read(&pair[1]));
-    }
-    if let [last] = pairs.remainder() {
-        carries[windows.len() / 2].add(sum, read(last), R::empty());
-    }
-    windows.len().div_ceil(2)
-}
-
-/// Adds the rows carried over from the plane below; how many carries that made.
-#[inline(always)]
-fn add_carries<R: BitRow>(rows: &[Aligned], sum: &mut R, carries: &mut [Aligned]) -> usize {
-    let mut pairs = rows.chunks_exact(2);
-    for (pair, carry) in (&mut pairs).zip(&mut *carries) {
-        carry.add(sum, R::from_row(&pair[0].0), R::from_row(&pair[1].0));
-    }
-    if let [last] = pairs.remainder() {
-        carries[rows.len() / 2].add(sum, R::from_row(&last.0), R::empty());
-    }
-    rows.len().div_ceil(2)
-}
-
-impl Aligned {
-    /// Adds two rows to a sum and becomes their carry.
-    #[inline(always)]
-    fn add<R: BitRow>(&mut self, sum: &mut R, a: R, b: R) {
-        let carry;
-        (*sum, carry) = sum.full_adder(a, b);
-        self.0 = carry.to_row();
-    }
 }
 
 fn greatest_common_divisor(a: u16, b: u16) -> u16 {

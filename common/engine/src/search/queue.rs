@@ -1,0 +1,62 @@
+//! Blocks that wait to be searched, the most promising first.
+
+use std::cmp::Ordering;
+
+/// A block in the queue.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct Block {
+    /// What its best pose may have: the order of the queue.
+    pub promise: u16,
+    /// What none of its poses has more than.
+    pub bound: u16,
+    pub index: u32,
+    pub level: Level,
+}
+
+/// How large a block is, and what is known of it.
+#[derive(Debug, Clone, Copy)]
+pub(super) enum Level {
+    /// 16 × 16 cells, roughly bounded.
+    Coarse,
+    /// 8 × 8 cells, at the headings of these masks.
+    Fine { masks: u32 },
+    /// 4 × 4 cells, at these candidate headings.
+    Leaf { start: u32, end: u32 },
+}
+
+impl Level {
+    /// From the largest blocks on.
+    pub(super) fn number(self) -> usize {
+        match self {
+            Level::Coarse => 0,
+            Level::Fine { .. } => 1,
+            Level::Leaf { .. } => 2,
+        }
+    }
+}
+
+impl Block {
+    fn key(&self) -> (u16, u32) {
+        (self.promise, self.index)
+    }
+}
+
+impl PartialEq for Block {
+    fn eq(&self, other: &Self) -> bool {
+        self.key() == other.key()
+    }
+}
+
+impl Eq for Block {}
+
+impl PartialOrd for Block {
+    fn partial_cmp(&self, other: &Self) -> Option<Ordering> {
+        Some(self.cmp(other))
+    }
+}
+
+impl Ord for Block {
+    fn cmp(&self, other: &Self) -> Ordering {
+        self.key().cmp(&other.key())
+    }
+}

@@ -1,0 +1,89 @@
+//! What the threads of a search share.
+
+use std::sync::atomic::{AtomicBool, AtomicU16, Ordering};
+
+use super::budget::Cost;
+use super::index::SearchIndex;
+use super::interval_bounds::IntervalProgram;
+use super::leaf::LeafProgram;
+use super::set_bounds::SetProgram;
+use super::sets::RangeSets;
+use crate::grid::Grid;
+use crate::instruction_set::InstructionSet;
+use crate::program::ScanProgram;
+use crate::space::Space;
+use crate::votes::CollectConfig;
+
+/// What is searched: a scan on a map.
+pub(super) struct Task<'a> {
+    pub index: &'a SearchIndex,
+    pub grid: &'a Grid,
+    pub space: &'a Space,
+    pub config: CollectConfig,
+    pub programs: Programs,
+    /// The most votes of any pose so far, whoever found it.
+    pub best: AtomicU16,
+    /// Whether all threads are to stop.
+    stopped: AtomicBool,
+    /// What counting every pose would cost one thread.
+    pub brute_force: Cost,
+}
+
+/// A scan program laid out for each size of blocks.
+pub(super) struct Programs {
+    pub coarse: SetProgram,
+    pub fine: SetProgram,
+    pub interval: IntervalProgram,
+    pub leaf: LeafProgram,
+    pub beams: usize,
+}
+
+impl<'a> Task<'a> {
+    /// `instruction_set` must be available.
+    pub(super) fn new(
+        instruction_set: InstructionSet,
+        index: &'a SearchIndex,
+        grid: &'a Grid,
+        (program, space): (&ScanProgram, &'a Space),
+        config: CollectConfig,
+    ) -> Self {
+        let (directions, steps) = (&space.directions, &index.steps);
+        let set_program = |sets: &RangeSets| {
+            SetProgram::new(program, directions, steps, sets.shift, instruction_set)
+        };
+        Task {
+            index,
+            grid,
+            space,
+            config,
+            programs: Programs {
+                coarse: set_program(&index.coarse),
+                fine: set_program(&index.fine),
+                interval: IntervalProgram::new(program, directions, steps, instruction_set),
+                leaf: LeafProgram::new(program, directions, instruction_set),
+                beams: program.beams(),
+            },
+            best: AtomicU16::new(0),
+            stopped: AtomicBool::new(false),
+            brute_force: Cost::of_brute_force(instruction_set, grid, program, space),
+        }
+    }
+
+    /// Takes brute force to cost so much.
+    #[cfg(test)]
+    pub(super) fn with_brute_force(self, brute_force: Cost) -> Self {
+        Task {
+            brute_force,
+            ..self
+        }
+    }
+
+    /// Tells all threads to stop.
+    pub(super) fn stop(&self) {
+        self.stopped.store(true, Ordering::Relaxed);
+    }
+
+    pub(super) fn is_stopped(&self) -> bool {
+        self.stopped.load(Ordering::Relaxed)
+    }
+}
