@@ -121,15 +121,23 @@ pub(crate) fn any_scan() -> impl Strategy<Value = AnyScan> {
         Just(TaperShape::Trapezoid),
         Just(TaperShape::Box),
     ];
-    (vec(reading, 1..24), -4.0..4.0f64, taper, 0.0..0.4f64).prop_map(
-        |(ranges, angle_min, taper, sigma_m)| AnyScan {
+    let sigma_m = prop_oneof![4 => 0.0..0.4f64, 1 => 0.0..2.0f64];
+    let sigma_per_m = prop_oneof![4 => Just(0.01), 1 => 0.0..0.25f64];
+    (
+        vec(reading, 1..24),
+        -4.0..4.0f64,
+        taper,
+        sigma_m,
+        sigma_per_m,
+    )
+        .prop_map(|(ranges, angle_min, taper, sigma_m, sigma_per_m)| AnyScan {
             ranges,
             angle_min,
             config: VoteConfig {
                 taper,
                 sigma_m,
+                sigma_per_m,
                 ..VoteConfig::default()
             },
-        },
-    )
+        })
 }

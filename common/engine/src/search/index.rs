@@ -170,7 +170,28 @@ mod tests {
     use super::super::budget::Cost;
     use super::*;
     use crate::reference;
-    use crate::testing::{any_grid, any_scan, plain_votes, space_of};
+    use crate::testing::{any_grid, any_long_grid, any_scan, plain_votes, space_of};
+
+    fn check(
+        grid: &Grid,
+        (program, space): (&ScanProgram, &Space),
+        config: CollectConfig,
+    ) -> Result<(), TestCaseError> {
+        let index = SearchIndex::new(grid, space);
+        let plain = plain_votes(grid, program, space, config);
+        for instruction_set in InstructionSet::available() {
+            for threads in 1..4 {
+                let how = (instruction_set, threads);
+                let found = index.search_with(how, grid, (program, space), config, &|| false);
+                let found = VoteSet {
+                    poses_evaluated: 0,
+                    ..found.unwrap()
+                };
+                prop_assert_eq!(&found, &plain, "{:?}", how);
+            }
+        }
+        Ok(())
+    }
 
     proptest! {
         #[test]
@@ -179,18 +200,17 @@ mod tests {
             floor_share in 0.5..=1.0f64, max_votes in 1u32..400,
         ) {
             let space = space_of(&grid, headings * 8);
-            let program = scan.program(&space);
             let config = CollectConfig { floor_share, max_votes };
-            let index = SearchIndex::new(&grid, &space);
-            let plain = plain_votes(&grid, &program, &space, config);
-            for instruction_set in InstructionSet::available() {
-                for threads in 1..4 {
-                    let how = (instruction_set, threads);
-                    let found = index.search_with(how, &grid, (&program, &space), config, &|| false);
-                    let found = VoteSet { poses_evaluated: 0, ..found.unwrap() };
-                    prop_assert_eq!(&found, &plain, "{:?}", how);
-                }
-            }
+            check(&grid, (&scan.program(&space), &space), config)?;
+        }
+
+        #[test]
+        fn the_search_finds_far_readings_and_wide_tapers(
+            grid in any_long_grid(), scan in any_scan(), floor_share in 0.5..=1.0f64,
+        ) {
+            let space = space_of(&grid, 16);
+            let config = CollectConfig { floor_share, ..CollectConfig::default() };
+            check(&grid, (&scan.stretched(18.0).program(&space), &space), config)?;
         }
 
         #[test]
