@@ -125,6 +125,7 @@ fn searches(criterion: &mut Criterion, case: &Case) {
     for (name, floor_share) in [("argmax", 1.0), ("candidates", 0.85)] {
         let collect = CollectConfig {
             floor_share,
+            candidates: 0,
             ..CollectConfig::default()
         };
         group.bench_function(name, |b| {

@@ -72,6 +72,7 @@ fn main() -> Result<(), BenchmarksError> {
         let mut all: Vec<_> = (0..options.threads).map(|_| sweeps.accumulator()).collect();
         let config = CollectConfig {
             floor_share: 1.0,
+            candidates: 0,
             ..CollectConfig::default()
         };
         let start = Instant::now();

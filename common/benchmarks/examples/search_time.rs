@@ -35,6 +35,9 @@ struct Options {
     /// Share of the best pose's votes down to which poses are collected
     #[arg(long, default_value_t = 1.0)]
     floor_share: f64,
+    /// Distinct poses that are wanted
+    #[arg(long, default_value_t = 0)]
+    candidates: u32,
     #[arg(long, default_value_t = 1)]
     seed: u64,
     #[arg(long, default_value_t = 1)]
@@ -60,6 +63,7 @@ fn main() -> Result<(), BenchmarksError> {
     let votes = simulated.votes(options.taper);
     let collect = CollectConfig {
         floor_share: options.floor_share,
+        candidates: options.candidates,
         ..CollectConfig::default()
     };
     let (index, prepare_ms) = cpu_ms(|| SearchIndex::new(&world.grid, &space));

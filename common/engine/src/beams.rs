@@ -36,6 +36,8 @@ pub(crate) struct Beam {
     pub bearing: usize,
     /// What rounding to the grid left over, radians.
     pub rounding: f64,
+    /// The bearing in the laser's frame, radians, not rounded.
+    pub angle: f64,
     /// Metres.
     pub reading_m: f64,
     /// How much it counts; 1 weighs a beam in full.
@@ -77,6 +79,7 @@ pub(crate) fn choose(scan: &Scan<'_>, turn: f64, space: &Space, config: &BeamCon
                 Beam {
                     bearing,
                     rounding,
+                    angle: scan.bearing(i),
                     reading_m,
                     weight,
                 },

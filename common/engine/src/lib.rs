@@ -22,12 +22,13 @@
 //! The crate knows no process, socket, clock or file.
 
 pub mod accumulator;
-mod beams;
+pub mod beams;
 pub mod boundary;
 mod config;
 pub mod directions;
 mod error;
 pub mod exhaustive;
+pub mod fit;
 pub mod grid;
 pub mod heading;
 pub mod instruction_set;

@@ -134,6 +134,12 @@ impl Localizer {
         &self.grid
     }
 
+    /// The space that is searched.
+    #[must_use]
+    pub fn space(&self) -> &Space {
+        &self.space
+    }
+
     /// Searches all poses; `None` if `stop` said so before the end.
     ///
     /// # Errors

@@ -4,6 +4,8 @@ use std::cmp::Reverse;
 
 use messages::Vote;
 
+use crate::space::Space;
+
 /// What is collected of a search.
 #[derive(Debug, Clone, Copy, PartialEq, clap::Args)]
 pub struct CollectConfig {
@@ -15,13 +17,26 @@ pub struct CollectConfig {
     /// fit.
     #[arg(long, value_name = "COUNT", default_value_t = 65_536, value_parser = clap::value_parser!(u32).range(1..=1_000_000))]
     pub max_votes: u32,
+    /// Distinct poses that are wanted, 0..=1000: where fewer stand above the
+    /// floor, the most promising ones below are added.
+    #[arg(long, value_name = "COUNT", default_value_t = 64, value_parser = clap::value_parser!(u32).range(0..=1000))]
+    pub candidates: u32,
 }
+
+/// Poses farther apart than this, or than [`DISTINCT_DEG`], are distinct
+/// candidates, metres.
+pub const DISTINCT_M: f64 = 0.3;
+
+/// Poses farther apart than this, or than [`DISTINCT_M`], are distinct
+/// candidates, degrees.
+pub const DISTINCT_DEG: f64 = 6.5;
 
 impl Default for CollectConfig {
     fn default() -> Self {
         CollectConfig {
             floor_share: 0.85,
             max_votes: 65_536,
+            candidates: 64,
         }
     }
 }
@@ -32,7 +47,8 @@ pub struct VoteSet {
     /// By falling intensity, equal ones by (heading, y, x). The first is the
     /// pose of the robot; empty where no pose has a vote.
     pub votes: Vec<Vote>,
-    /// The least intensity among them; 0 where there are none.
+    /// The least intensity among them, candidates below the certified floor
+    /// included; 0 where there are none.
     pub floor: u16,
     /// All poses at or above this intensity are among the votes.
     pub certified_floor: u16,
@@ -42,6 +58,39 @@ pub struct VoteSet {
     pub truncated: bool,
     /// Poses whose intensity was computed one by one.
     pub poses_evaluated: u64,
+}
+
+impl VoteSet {
+    /// Adds poses below the certified floor until there are so many distinct
+    /// ones, best first.
+    pub(crate) fn add_candidates(&mut self, mut others: Vec<Vote>, space: &Space, wanted: usize) {
+        let mut distinct: Vec<Vote> = Vec::with_capacity(wanted);
+        let mut is_new = |vote: &Vote| {
+            let is_new = distinct.len() < wanted
+                && !distinct.iter().any(|other| are_near(vote, other, space));
+            if is_new {
+                distinct.push(*vote);
+            }
+            is_new
+        };
+        for vote in &self.votes {
+            is_new(vote);
+        }
+        others.retain(|vote| vote.intensity < self.certified_floor);
+        others.sort_unstable_by_key(order);
+        others.retain(is_new);
+        self.votes.append(&mut others);
+        self.floor = self.votes.last().map_or(0, |vote| vote.intensity);
+    }
+}
+
+/// Whether two poses are one candidate.
+fn are_near(a: &Vote, b: &Vote, space: &Space) -> bool {
+    let headings = space.directions.count() as u16;
+    let turn = a.heading.abs_diff(b.heading);
+    let degrees = f64::from(turn.min(headings - turn)) * 360.0 / f64::from(headings);
+    let (dx, dy) = (f64::from(a.x.abs_diff(b.x)), f64::from(a.y.abs_diff(b.y)));
+    dx.hypot(dy) * space.resolution_m <= DISTINCT_M && degrees <= DISTINCT_DEG
 }
 
 /// Takes poses in any order and keeps those that matter.

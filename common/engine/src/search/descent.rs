@@ -89,6 +89,7 @@ impl<'a> Descent<'a> {
                 return End::Stopped;
             }
             let (bound, promise) = program.rough(coarse, index, &mut self.coarse_bounds);
+            self.task.promises[index].store(promise, Ordering::Relaxed);
             self.push(bound, promise, index, Level::Coarse);
         }
         let mut budget = Budget::new(self.task.brute_force, parts);
@@ -300,7 +301,7 @@ impl<'a> Descent<'a> {
 
 /// The blocks of the next smaller size in a block, as far as they are on the
 /// map.
-fn quarters(
+pub(super) fn quarters(
     index: usize,
     columns: usize,
     (finer_columns, finer_rows): (usize, usize),

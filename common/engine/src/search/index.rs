@@ -2,6 +2,7 @@
 
 use std::panic::resume_unwind;
 
+use super::alternatives::Alternatives;
 use super::bins::Bins;
 use super::descent::{Descent, End};
 use super::intervals::RangeIntervals;
@@ -98,11 +99,16 @@ impl SearchIndex {
         stop: &dyn Fn() -> bool,
     ) -> Option<VoteSet> {
         let task = Task::new(instruction_set.checked(), self, grid, scan, config);
-        match run(&task, threads, stop) {
-            End::Done(collector, poses) => Some(collector.finish(poses)),
-            End::Stopped => None,
-            End::Hopeless => count_all((instruction_set, threads), grid, scan, config, stop),
+        let mut found = match run(&task, threads, stop) {
+            End::Done(collector, poses) => collector.finish(poses),
+            End::Stopped => return None,
+            End::Hopeless => count_all((instruction_set, threads), grid, scan, config, stop)?,
+        };
+        if config.candidates > 0 && found.best > 0 {
+            let alternatives = Alternatives::new(&task).find(config.candidates as usize);
+            found.add_candidates(alternatives, scan.1, config.candidates as usize);
         }
+        Some(found)
     }
 
     /// Upper bounds of the intensities in all coarse blocks: where the robot

@@ -13,7 +13,10 @@
 //!                  ├─ interval bounds ────── 4 × 4 ──────────┼─ descent ─ votes
 //!                  └─ outlook ─ leaf ─────── poses ──────────┘
 //! ```
+//!
+//! Alternatives below the floor come from the most promising blocks.
 
+mod alternatives;
 mod bins;
 mod bits;
 mod budget;

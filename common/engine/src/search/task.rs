@@ -21,6 +21,8 @@ pub(super) struct Task<'a> {
     pub space: &'a Space,
     pub config: CollectConfig,
     pub programs: Programs,
+    /// What the best pose of each coarse block may have, as far as it was asked.
+    pub promises: Vec<AtomicU16>,
     /// The most votes of any pose so far, whoever found it.
     pub best: AtomicU16,
     /// Whether all threads are to stop.
@@ -63,6 +65,9 @@ impl<'a> Task<'a> {
                 leaf: LeafProgram::new(program, directions, instruction_set),
                 beams: program.beams(),
             },
+            promises: (0..index.coarse.blocks())
+                .map(|_| AtomicU16::new(0))
+                .collect(),
             best: AtomicU16::new(0),
             stopped: AtomicBool::new(false),
             brute_force: Cost::of_brute_force(instruction_set, grid, program, space),

@@ -17,6 +17,7 @@ use crate::BackcastError;
 const ARGMAX: CollectConfig = CollectConfig {
     floor_share: 1.0,
     max_votes: 1,
+    candidates: 0,
 };
 
 /// Two poses so near are one place: 0.3 m and 6.5 degrees.
@@ -96,6 +97,7 @@ pub(super) fn top_sixteen<'a>(
             let collect = CollectConfig {
                 floor_share,
                 max_votes: 1_000_000,
+                candidates: 0,
             };
             let found = index.search(&world.grid, &program, task.space, collect, &is_late);
             let Some(found) = found else {

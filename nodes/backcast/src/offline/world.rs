@@ -2,7 +2,9 @@
 //! file, no clock.
 
 use engine::EngineError;
+use engine::beams::BeamConfig;
 use engine::boundary;
+use engine::fit::{Ends, Terrain};
 use engine::grid::{Grid, GridFrame};
 use engine::localizer::{Localizer, Outcome, Prior};
 use engine::peaks::{self, PeakConfig, PeakInput, Places};
@@ -17,6 +19,8 @@ pub(crate) struct World {
     /// The map's id, as the graph's messages have it.
     pub(crate) map_id: u64,
     localizer: Localizer,
+    terrain: Terrain,
+    beams: BeamConfig,
     peaks: PeakConfig,
 }
 
@@ -48,6 +52,8 @@ impl World {
         };
         Ok(World {
             map_id: map.id(),
+            terrain: Terrain::new(frame, (width, height), &map.cells, options.cells)?,
+            beams: options.localizer.votes.beams,
             localizer: Localizer::new(frame, grid, &boundary, options.localizer, prior)?,
             peaks: options.peaks,
         })
@@ -78,7 +84,8 @@ impl World {
         };
         let outcome = found.expect("a search that nothing stops ends with an outcome");
         let input = PeakInput::of(&outcome, self.localizer.frame());
-        let places = peaks::extract(&input, &self.peaks);
+        let ends = Ends::new(scan, self.localizer.space(), &self.beams)?;
+        let places = peaks::extract(&input, (&self.terrain, &ends), &self.peaks);
         Ok(Answer { outcome, places })
     }
 }

@@ -1,0 +1,48 @@
+//! The lengths and shares of the second stage.
+
+use crate::config::{parse_length, parse_share};
+
+/// How end points are judged by their distance to obstacles.
+#[derive(Debug, Clone, Copy, PartialEq, clap::Args)]
+pub struct FitConfig {
+    /// Standard deviation of an end point around the obstacle that it belongs
+    /// to, map errors included, metres, 0.01..=2; at least `--fit-sigma-cells`.
+    #[arg(long, value_name = "METRES", default_value_t = 0.10, value_parser = parse_length)]
+    pub fit_sigma_m: f64,
+    /// The same in cells of the map, 0..=10: coarse maps are less exact.
+    #[arg(long, value_name = "CELLS", default_value_t = 2.0, value_parser = parse_cells)]
+    pub fit_sigma_cells: f64,
+    /// What a beam that passes through an obstacle loses of its full score,
+    /// 0..=1. It passes through where it reads three standard deviations more
+    /// than the way to the first obstacle.
+    #[arg(long, value_name = "SHARE", default_value_t = 0.15, value_parser = parse_share)]
+    pub through_penalty: f64,
+    /// The score of a beam that ends behind unknown space, 0..=1; half of it if
+    /// it passes through an obstacle there.
+    #[arg(long, value_name = "SHARE", default_value_t = 0.3, value_parser = parse_share)]
+    pub unknown_score: f64,
+}
+
+fn parse_cells(text: &str) -> Result<f64, String> {
+    crate::config::parse(text, 0.0..=10.0, "cells")
+}
+
+impl Default for FitConfig {
+    fn default() -> Self {
+        FitConfig {
+            fit_sigma_m: 0.10,
+            fit_sigma_cells: 2.0,
+            through_penalty: 0.15,
+            unknown_score: 0.3,
+        }
+    }
+}
+
+impl FitConfig {
+    /// The standard deviation in cells of a map.
+    pub(super) fn sigma_cells(&self, resolution_m: f64) -> f64 {
+        (self.fit_sigma_m / resolution_m)
+            .max(self.fit_sigma_cells)
+            .max(0.1)
+    }
+}

@@ -1,0 +1,38 @@
+//! The second stage: how well a scan fits the map at a pose, judged by how far
+//! its end points lie from obstacles.
+//!
+//! Votes count along rays, and where a ray grazes a wall, centimetres of wall
+//! are half a metre of range. So the places that the votes name are refined
+//! continuously and judged again by the perpendicular distance:
+//!
+//! ```text
+//! occupancy ─ distance ─ terrain ─┬─ refine ─ agreement ─ score, beam classes
+//! scan ─ beams ─ ends ────────────┘
+//! ```
+//!
+//! Lengths here are in cells and positions in the grid's frame, the centre of
+//! cell (0, 0) at (0.5, 0.5).
+
+mod agreement;
+mod config;
+mod distance;
+mod ends;
+mod refine;
+mod terrain;
+
+pub use agreement::{Agreement, BeamClass};
+pub use config::FitConfig;
+pub use ends::Ends;
+pub use refine::Refined;
+pub use terrain::Terrain;
+
+/// A pose in cells of the grid and radians in its frame.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct GridPose {
+    /// Cells along the grid's x axis.
+    pub x: f64,
+    /// Cells along the grid's y axis.
+    pub y: f64,
+    /// Radians, counter-clockwise from the grid's x axis.
+    pub heading: f64,
+}

@@ -1,0 +1,131 @@
+//! Moving a pose to where the end points lie on obstacles: Gauss-Newton on
+//! their distances, with Tukey's weights against those that belong to nothing.
+
+use nalgebra::{Matrix3, Vector3};
+
+use super::ends::Ends;
+use super::{FitConfig, GridPose, Terrain};
+
+/// A pose that was moved to the nearest best fit.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Refined {
+    /// Where the scan fits best nearby.
+    pub pose: GridPose,
+    /// The curvature of half the squared distances there: Σ w ∇d ∇dᵀ over x, y
+    /// (cells) and the heading (radians).
+    pub curvature: Matrix3<f64>,
+    /// Weighted variance of the distances of the beams that belong to
+    /// obstacles, squared cells.
+    pub variance: f64,
+    /// Weights of these beams together.
+    pub weight: f64,
+}
+
+/// Beams farther off have no say: coarse first, then fine, in standard
+/// deviations.
+const REACHES: [f64; 2] = [4.0, 2.0];
+
+/// Most steps with each reach.
+const MOST_STEPS: usize = 10;
+
+/// A step shorter than this, cells and radians times a hundred, is the last.
+const LAST_STEP: f64 = 0.01;
+
+/// Keeps steps short along what the scan does not tell, as a share of the
+/// weight of all beams.
+const DAMPING: f64 = 1e-3;
+
+impl Terrain {
+    /// Moves a pose to where the scan fits best nearby; its heading only where
+    /// that is not known. It stays where it is along what no beam tells.
+    #[must_use]
+    pub fn refine(
+        &self,
+        ends: &Ends,
+        start: GridPose,
+        heading_is_known: bool,
+        config: &FitConfig,
+    ) -> Refined {
+        let sigma = config.sigma_cells(self.frame.resolution_m);
+        let mut pose = start;
+        for reach in REACHES {
+            for _ in 0..MOST_STEPS {
+                let sums = self.linearise(ends, pose, reach * sigma);
+                let Some(step) = sums.step(ends.weight, heading_is_known) else {
+                    break;
+                };
+                pose = GridPose {
+                    x: pose.x + step.x,
+                    y: pose.y + step.y,
+                    heading: pose.heading + step.z,
+                };
+                if step.x.abs().max(step.y.abs()).max(100.0 * step.z.abs()) < LAST_STEP {
+                    break;
+                }
+            }
+        }
+        let sums = self.linearise(ends, pose, REACHES[1] * sigma);
+        Refined {
+            pose,
+            curvature: sums.curvature,
+            variance: sums.squares / sums.weight.max(f64::MIN_POSITIVE),
+            weight: sums.weight,
+        }
+    }
+
+    fn linearise(&self, ends: &Ends, pose: GridPose, reach: f64) -> Sums {
+        let turn = pose.heading.sin_cos();
+        let mut sums = Sums::default();
+        for end in &ends.ends {
+            let (dx, dy) = end.direction(turn);
+            let (ahead, aside) = (end.reading * dx, end.reading * dy);
+            let Some((distance, [along_x, along_y])) =
+                self.distance(pose.x + ahead, pose.y + aside)
+            else {
+                continue;
+            };
+            if distance >= reach {
+                continue;
+            }
+            let off = distance / reach;
+            let share = 1.0 - off * off;
+            // Turning by a radian moves the end by (-aside, ahead).
+            let gradient = Vector3::new(along_x, along_y, ahead * along_y - aside * along_x);
+            sums.add(end.weight * share * share, distance, gradient);
+        }
+        sums
+    }
+}
+
+/// The normal equations.
+#[derive(Debug, Default)]
+struct Sums {
+    curvature: Matrix3<f64>,
+    slope: Vector3<f64>,
+    squares: f64,
+    weight: f64,
+}
+
+impl Sums {
+    #[inline]
+    fn add(&mut self, weight: f64, distance: f64, gradient: Vector3<f64>) {
+        self.curvature += weight * gradient * gradient.transpose();
+        self.slope += weight * distance * gradient;
+        self.squares += weight * distance * distance;
+        self.weight += weight;
+    }
+
+    /// The step to the minimum, if the beams have a say.
+    fn step(&self, all: f64, heading_is_known: bool) -> Option<Vector3<f64>> {
+        let turning = self.curvature[(2, 2)].max(1.0);
+        let damping = Vector3::new(DAMPING * all, DAMPING * all, DAMPING * turning);
+        let mut damped = self.curvature + Matrix3::from_diagonal(&damping);
+        let mut slope = self.slope;
+        if heading_is_known {
+            damped.fill_row(2, 0.0);
+            damped.fill_column(2, 0.0);
+            (damped[(2, 2)], slope[2]) = (1.0, 0.0);
+        }
+        damped.cholesky().map(|factor| -factor.solve(&slope))
+    }
+}

@@ -1,0 +1,117 @@
+//! Places by how well the scan fits the map there: the votes' candidates are
+//! refined, judged again and put in order.
+
+use geometry::{Covariance, wrap_angle};
+use messages::Verdict;
+use nalgebra::{Matrix3, Vector3};
+
+use super::summits::{Reach, Summit, summits};
+use super::{PeakConfig, PeakInput, Place, Places};
+use crate::fit::{Ends, GridPose, Refined, Terrain};
+
+/// Reads the places from the votes of a scan and the scan itself.
+pub(super) fn extract(
+    input: &PeakInput<'_>,
+    (terrain, ends): (&Terrain, &Ends),
+    config: &PeakConfig,
+) -> Places {
+    let reach = Reach::new(input, config.candidate_m, config.candidate_deg);
+    let mut places: Vec<Place> = summits(input, reach, config.max_hypotheses)
+        .iter()
+        .map(|summit| place(input, (terrain, ends), summit, config))
+        .collect();
+    // A stable sort: of equal ones, that with more votes comes first.
+    places.sort_by(|a, b| b.score.total_cmp(&a.score));
+    let places = distinct(places, config);
+    let Some(best) = places.first() else {
+        return Places::none();
+    };
+    let lead = |other: &Place| (best.score - other.score) / (1.1 - best.score).sqrt();
+    let rivals = places[1..]
+        .iter()
+        .filter(|other| lead(other) < config.least_lead);
+    let alternatives = rivals.count() as u32;
+    let confidence = places.get(1).map_or(1.0, lead).clamp(0.0, 1.0);
+    let verdict = match () {
+        () if best.score < config.least_score => Verdict::PoorFit,
+        () if alternatives > 0 => Verdict::Ambiguous,
+        () => Verdict::Unique,
+    };
+    Places {
+        verdict,
+        alternatives,
+        confidence,
+        places,
+    }
+}
+
+/// The best of all poses that came to lie at one place.
+fn distinct(places: Vec<Place>, config: &PeakConfig) -> Vec<Place> {
+    let angle = config.same_place_deg.to_radians();
+    let mut kept: Vec<Place> = Vec::with_capacity(places.len());
+    for place in places {
+        let is_near = |other: &&mut Place| {
+            let pose = other.map_from_laser;
+            pose.is_within(place.map_from_laser, config.same_place_m, angle)
+        };
+        match kept.iter_mut().find(is_near) {
+            Some(other) => other.support += place.support,
+            None => kept.push(place),
+        }
+    }
+    kept
+}
+
+/// The refined place of a candidate.
+fn place(
+    input: &PeakInput<'_>,
+    (terrain, ends): (&Terrain, &Ends),
+    summit: &Summit,
+    config: &PeakConfig,
+) -> Place {
+    let vote = &summit.vote;
+    let start = GridPose {
+        x: f64::from(vote.x) + 0.5,
+        y: f64::from(vote.y) + 0.5,
+        heading: input
+            .known_heading_in_grid()
+            .unwrap_or(input.heading_of(vote)),
+    };
+    let is_known = input.known_heading.is_some();
+    let refined = terrain.refine(ends, start, is_known, &config.fit);
+    let pose = refined.pose;
+    let mut map_from_laser = input.frame.map_from_cells(pose.x, pose.y, pose.heading);
+    if let Some(heading) = input.known_heading {
+        map_from_laser.yaw = wrap_angle(heading);
+    }
+    Place {
+        map_from_laser,
+        covariance: covariance(input, &refined),
+        score: terrain.agreement(ends, pose, &config.fit).score,
+        intensity: vote.intensity,
+        support: summit.support,
+    }
+}
+
+/// Neighbouring beams end on the same piece of wall, and maps err by walls, not
+/// by points: so many beams tell as much as one with an error of its own.
+const BEAMS_TOGETHER: f64 = 8.0;
+
+/// How far a place may reach along what no beam tells: metres, and radians.
+const LOOSE_M: f64 = 2.0;
+const LOOSE_RADIANS: f64 = 0.35;
+
+/// What the curvature of the fit says about its error, in the map frame.
+fn covariance(input: &PeakInput<'_>, refined: &Refined) -> Covariance {
+    // No end point is known better than the cell that it is compared with.
+    let variance = BEAMS_TOGETHER * refined.variance.max(1.0 / 12.0);
+    let loose = LOOSE_M / input.frame.resolution_m;
+    let prior = Vector3::new(loose.powi(-2), loose.powi(-2), LOOSE_RADIANS.powi(-2));
+    let information = refined.curvature / variance + Matrix3::from_diagonal(&prior);
+    let mut in_cells = information.try_inverse().unwrap_or_else(Matrix3::zeros);
+    if input.known_heading.is_some() {
+        in_cells.fill_row(2, 0.0);
+        in_cells.fill_column(2, 0.0);
+    }
+    input.in_map(in_cells)
+}

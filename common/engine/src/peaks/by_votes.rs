@@ -1,0 +1,133 @@
+//! Places by their votes alone: a peak is refined by its centre, and its shape
+//! is its covariance.
+
+use geometry::{Covariance, wrap_angle};
+use messages::Verdict;
+use nalgebra::{Matrix3, Vector3};
+
+use super::summits::{Reach, Summit, summits};
+use super::{PeakConfig, PeakInput, Place, Places};
+
+/// Votes from this share of a peak's height up make up its shape: below, the
+/// flanks of other peaks begin.
+const PEAK_BASE_SHARE: f64 = 0.85;
+
+/// Reads the places from the votes of a scan.
+pub(super) fn extract(input: &PeakInput<'_>, config: &PeakConfig) -> Places {
+    let reach = Reach::new(input, config.same_place_m, config.same_place_deg);
+    let places: Vec<Place> = summits(input, reach, config.max_hypotheses)
+        .iter()
+        .map(|summit| place(input, summit, reach))
+        .collect();
+    let Some(best) = places.first() else {
+        return Places::none();
+    };
+    let rival = f64::from(best.intensity) * config.ambiguous_share;
+    let alternatives = places[1..]
+        .iter()
+        .filter(|place| f64::from(place.intensity) >= rival)
+        .count() as u32;
+    let next = places.get(1).map_or_else(
+        || input.certified_floor.saturating_sub(1),
+        |next| u32::from(next.intensity),
+    );
+    let confidence = (1.0 - f64::from(next) / f64::from(best.intensity)).clamp(0.0, 1.0);
+    let verdict = match () {
+        () if best.score < config.poor_fit_share => Verdict::PoorFit,
+        () if alternatives > 0 => Verdict::Ambiguous,
+        () => Verdict::Unique,
+    };
+    Places {
+        verdict,
+        alternatives,
+        confidence,
+        places,
+    }
+}
+
+/// The place of a summit: the centre and the spread of the votes around it.
+fn place(input: &PeakInput<'_>, summit: &Summit, reach: Reach) -> Place {
+    let summit = &summit.vote;
+    let base = f64::from(summit.intensity) * PEAK_BASE_SHARE;
+    let mut moments = Moments::default();
+    for vote in input.votes {
+        let height = f64::from(vote.intensity) - base;
+        if height <= 0.0 {
+            break;
+        }
+        if input.are_near(summit, vote, reach) {
+            let turn = wrap_angle(input.heading_of(vote) - input.heading_of(summit));
+            let (dx, dy) = (
+                f64::from(vote.x) - f64::from(summit.x),
+                f64::from(vote.y) - f64::from(summit.y),
+            );
+            moments.add(height, Vector3::new(dx, dy, turn));
+        }
+    }
+    let centre = moments.mean();
+    let grid_heading = input.heading_of(summit) + centre.z;
+    let (x, y) = (
+        f64::from(summit.x) + 0.5 + centre.x,
+        f64::from(summit.y) + 0.5 + centre.y,
+    );
+    let mut map_from_laser = input.frame.map_from_cells(x, y, grid_heading);
+    if let Some(heading) = input.known_heading {
+        map_from_laser.yaw = wrap_angle(heading);
+    }
+    Place {
+        map_from_laser,
+        covariance: spread_in_map(input, moments.covariance()),
+        score: f64::from(summit.intensity) / f64::from(input.highest_possible.max(1)),
+        intensity: summit.intensity,
+        support: moments.count,
+    }
+}
+
+/// A covariance over cells and radians, with that of rounding to the search
+/// grid, in metres along the map's axes.
+fn spread_in_map(input: &PeakInput<'_>, in_cells: Matrix3<f64>) -> Covariance {
+    // A value rounded to steps of width w varies by w²/12 around it.
+    let step = std::f64::consts::TAU / f64::from(input.headings);
+    let heading_rounding = if input.known_heading.is_some() {
+        0.0
+    } else {
+        step * step / 12.0
+    };
+    let rounding = Vector3::new(1.0 / 12.0, 1.0 / 12.0, heading_rounding);
+    input.in_map(in_cells + Matrix3::from_diagonal(&rounding))
+}
+
+/// Weighted moments of offsets from a summit.
+#[derive(Debug, Default)]
+struct Moments {
+    count: u64,
+    weight: f64,
+    sum: Vector3<f64>,
+    squares: Matrix3<f64>,
+}
+
+impl Moments {
+    fn add(&mut self, weight: f64, offset: Vector3<f64>) {
+        self.count += 1;
+        self.weight += weight;
+        self.sum += weight * offset;
+        self.squares += weight * offset * offset.transpose();
+    }
+
+    fn mean(&self) -> Vector3<f64> {
+        if self.weight > 0.0 {
+            self.sum / self.weight
+        } else {
+            Vector3::zeros()
+        }
+    }
+
+    fn covariance(&self) -> Matrix3<f64> {
+        let mean = self.mean();
+        if self.weight > 0.0 {
+            self.squares / self.weight - mean * mean.transpose()
+        } else {
+            Matrix3::zeros()
+        }
+    }
+}

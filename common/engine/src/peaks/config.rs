@@ -1,0 +1,79 @@
+//! What makes poses one place, and a place the answer.
+
+use crate::config::{parse_degrees, parse_length, parse_share};
+use crate::fit::FitConfig;
+use crate::votes::{DISTINCT_DEG, DISTINCT_M};
+
+/// By what the places are judged.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, clap::ValueEnum)]
+pub enum Score {
+    /// By how well the scan fits the map at the refined pose.
+    Fit,
+    /// By the votes alone: the paper's method.
+    Votes,
+}
+
+/// When poses are one place, and when a place stands alone.
+#[derive(Debug, Clone, Copy, PartialEq, clap::Args)]
+pub struct PeakConfig {
+    /// By what places are judged and ordered.
+    #[arg(long, value_enum, default_value_t = Score::Fit)]
+    pub score: Score,
+    /// Poses within this distance and `--same-place-deg` are one place,
+    /// metres, 0..=2.
+    #[arg(long, value_name = "METRES", default_value_t = 0.5, value_parser = parse_length)]
+    pub same_place_m: f64,
+    /// Poses within this angle and `--same-place-m` are one place, degrees,
+    /// 0..=180.
+    #[arg(long, value_name = "DEGREES", default_value_t = 10.0, value_parser = parse_degrees)]
+    pub same_place_deg: f64,
+    /// Most places that are reported, 1..=1000.
+    #[arg(long, value_name = "COUNT", default_value_t = 64, value_parser = clap::value_parser!(u32).range(1..=1000))]
+    pub max_hypotheses: u32,
+    /// Votes within this distance and `--candidate-deg` are refined together,
+    /// metres, 0..=2.
+    #[arg(long, value_name = "METRES", default_value_t = DISTINCT_M, value_parser = parse_length)]
+    pub candidate_m: f64,
+    /// Votes within this angle and `--candidate-m` are refined together,
+    /// degrees, 0..=180.
+    #[arg(long, value_name = "DEGREES", default_value_t = DISTINCT_DEG, value_parser = parse_degrees)]
+    pub candidate_deg: f64,
+    /// How the places' fit is judged.
+    #[command(flatten)]
+    pub fit: FitConfig,
+    /// Another place whose score lies behind the best by less makes the answer
+    /// ambiguous, 0..=1. The lead is measured against what is missing of a
+    /// perfect score: (best - other) / √(1.1 - best).
+    #[arg(long, value_name = "LEAD", default_value_t = 0.10, value_parser = parse_share)]
+    pub least_lead: f64,
+    /// A best place with a lower score fits poorly: the scan may not be of this
+    /// map, 0..=1.
+    #[arg(long, value_name = "SCORE", default_value_t = 0.65, value_parser = parse_share)]
+    pub least_score: f64,
+    /// With `--score votes`: another place with at least this share of the best
+    /// one's votes makes the answer ambiguous, 0..=1.
+    #[arg(long, value_name = "SHARE", default_value_t = 0.92, value_parser = parse_share)]
+    pub ambiguous_share: f64,
+    /// With `--score votes`: a best place with less than this share of the
+    /// votes that are possible fits poorly, 0..=1.
+    #[arg(long, value_name = "SHARE", default_value_t = 0.35, value_parser = parse_share)]
+    pub poor_fit_share: f64,
+}
+
+impl Default for PeakConfig {
+    fn default() -> Self {
+        PeakConfig {
+            score: Score::Fit,
+            same_place_m: 0.5,
+            same_place_deg: 10.0,
+            max_hypotheses: 64,
+            candidate_m: DISTINCT_M,
+            candidate_deg: DISTINCT_DEG,
+            fit: FitConfig::default(),
+            least_lead: 0.10,
+            least_score: 0.65,
+            ambiguous_share: 0.92,
+            poor_fit_share: 0.35,
+        }
+    }
+}

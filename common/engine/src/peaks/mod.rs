@@ -1,0 +1,128 @@
+//! From votes to hypotheses: distinct places, refined, with their spread and a
+//! verdict.
+//!
+//! Votes of neighbouring poses make up one peak. The best vote names a place,
+//! all votes near it are taken for the same place, and so on down the list. A
+//! place is refined below the cell by the centre of its peak, and the peak's
+//! shape is its covariance.
+
+mod by_fit;
+mod by_votes;
+mod config;
+mod summits;
+
+use geometry::{Covariance, Pose, wrap_angle};
+use messages::{Verdict, Vote};
+use nalgebra::{Matrix3, Rotation2, Vector3};
+
+use crate::fit::{Ends, Terrain};
+
+use crate::grid::GridFrame;
+use crate::localizer::Outcome;
+pub use config::{PeakConfig, Score};
+
+/// The votes of one scan and what is needed to read them.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct PeakInput<'a> {
+    /// By falling intensity.
+    pub votes: &'a [Vote],
+    /// All poses at or above this intensity are among the votes.
+    pub certified_floor: u32,
+    /// What a pose would have if every beam agreed fully.
+    pub highest_possible: u32,
+    /// Headings a turn.
+    pub headings: u32,
+    /// The heading that was given, in the map frame, radians.
+    pub known_heading: Option<f64>,
+    /// Where the votes' grid lies in the map.
+    pub frame: GridFrame,
+}
+
+impl<'a> PeakInput<'a> {
+    /// The input for an outcome on a map.
+    #[must_use]
+    pub fn of(outcome: &'a Outcome, frame: GridFrame) -> Self {
+        PeakInput {
+            votes: &outcome.found.votes,
+            certified_floor: u32::from(outcome.found.certified_floor),
+            highest_possible: outcome.highest_possible,
+            headings: outcome.headings,
+            known_heading: outcome.known_heading,
+            frame,
+        }
+    }
+
+    /// The given heading in the grid's frame, radians.
+    fn known_heading_in_grid(&self) -> Option<f64> {
+        let heading = self.known_heading?;
+        Some(wrap_angle(heading - self.frame.map_from_grid.yaw))
+    }
+
+    /// A covariance over cells and radians of the grid's frame, in metres along
+    /// the map's axes.
+    fn in_map(&self, in_cells: Matrix3<f64>) -> Covariance {
+        let side = self.frame.resolution_m;
+        let scale = Matrix3::from_diagonal(&Vector3::new(side, side, 1.0));
+        let turn = Rotation2::new(self.frame.map_from_grid.yaw).to_homogeneous() * scale;
+        Covariance(turn * in_cells * turn.transpose())
+    }
+}
+
+/// One place where the robot may be.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Place {
+    /// Pose of the laser.
+    pub map_from_laser: Pose,
+    /// The peak's spread, in the map frame.
+    pub covariance: Covariance,
+    /// How well the scan fits the map there, at most 1; by votes alone, the
+    /// share of those that the pose could have at most.
+    pub score: f64,
+    /// Votes of the peak's highest pose.
+    pub intensity: u16,
+    /// Votes that make up the peak.
+    pub support: u64,
+}
+
+/// What a scan's votes say.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Places {
+    /// Distinct places, best first.
+    pub places: Vec<Place>,
+    /// What they allow to say about the pose.
+    pub verdict: Verdict,
+    /// Other places that fit about as well as the best.
+    pub alternatives: u32,
+    /// How far the best place stands above the next, as a share of its votes;
+    /// where none was collected, above the floor below which none was sought.
+    pub confidence: f64,
+}
+
+impl Places {
+    /// A scan of which nothing voted.
+    fn none() -> Self {
+        Places {
+            places: Vec::new(),
+            verdict: Verdict::NoScan,
+            alternatives: 0,
+            confidence: 0.0,
+        }
+    }
+}
+
+/// Reads the places from the votes of a scan, and judges them by the scan and
+/// the map unless the votes alone are to decide.
+#[must_use]
+pub fn extract(
+    input: &PeakInput<'_>,
+    (terrain, ends): (&Terrain, &Ends),
+    config: &PeakConfig,
+) -> Places {
+    match config.score {
+        Score::Votes => by_votes::extract(input, config),
+        Score::Fit => by_fit::extract(input, (terrain, ends), config),
+    }
+}
+
+#[cfg(test)]
+mod tests;
