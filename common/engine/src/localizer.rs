@@ -128,6 +128,12 @@ impl Localizer {
         self.frame
     }
 
+    /// How scans are matched.
+    #[must_use]
+    pub fn config(&self) -> &LocalizerConfig {
+        &self.config
+    }
+
     /// The map's cells.
     #[must_use]
     pub fn grid(&self) -> &Grid {

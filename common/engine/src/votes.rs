@@ -85,7 +85,7 @@ impl VoteSet {
 }
 
 /// Whether two poses are one candidate.
-fn are_near(a: &Vote, b: &Vote, space: &Space) -> bool {
+pub(crate) fn are_near(a: &Vote, b: &Vote, space: &Space) -> bool {
     let headings = space.directions.count() as u16;
     let turn = a.heading.abs_diff(b.heading);
     let degrees = f64::from(turn.min(headings - turn)) * 360.0 / f64::from(headings);

@@ -8,7 +8,7 @@ use crate::{Pose2, Stamp};
 
 /// Header of topic `hypotheses`; the items are distinct poses, best first.
 #[derive(Debug, Clone, Copy, PartialEq, Pod, Zeroable, ZeroCopySend)]
-#[type_name("HypothesesHeader/v1")]
+#[type_name("HypothesesHeader/v2")]
 #[repr(C)]
 pub struct HypothesesHeader {
     /// Of the scan.
@@ -25,7 +25,7 @@ pub struct HypothesesHeader {
     pub verdict: u32,
     /// Other places that fit about as well as the best; 0 where it is unique.
     pub alternatives: u32,
-    /// The best pose's lead over the best other place, 0..=1.
+    /// The probability of the best pose, 0..=1; by votes alone, its lead.
     pub confidence: f32,
     /// Share of the beams' weight that agrees with the best pose, 0..=1.
     pub inlier_share: f32,
@@ -39,7 +39,7 @@ pub struct HypothesesHeader {
 
 /// One place where the robot may be.
 #[derive(Debug, Clone, Copy, PartialEq, Pod, Zeroable, ZeroCopySend)]
-#[type_name("Hypothesis/v1")]
+#[type_name("Hypothesis/v2")]
 #[repr(C)]
 pub struct Hypothesis {
     /// Pose of the laser in the map.
@@ -48,11 +48,15 @@ pub struct Hypothesis {
     pub map_from_base: Pose2,
     /// Of `map_from_laser`, row by row over x, y and yaw: m², m·rad, rad².
     pub covariance: [f64; 9],
-    /// Share of the votes that the pose could have at most, 0..=1.
+    /// How well the scan fits the map there, at most 1; by votes alone, the share
+    /// of those that the pose could have at most.
     pub score: f32,
-    /// Votes of the peak's highest pose.
-    pub intensity: u32,
-    /// Poses that make up the peak.
+    /// How likely the robot is there, 0..=1; what the hypotheses leave is that it
+    /// is at none of them.
+    pub probability: f32,
+    /// Votes of the best pose that led there.
+    pub intensity: u64,
+    /// Votes that led there.
     pub support: u64,
 }
 
@@ -108,9 +112,9 @@ mod tests {
 
     mod hypothesis {
         use super::*;
-        crate::pin_layout!(Hypothesis, size 136, align 8, {
-            map_from_laser: 0, map_from_base: 24, covariance: 48, score: 120, intensity: 124,
-            support: 128,
+        crate::pin_layout!(Hypothesis, size 144, align 8, {
+            map_from_laser: 0, map_from_base: 24, covariance: 48, score: 120,
+            probability: 124, intensity: 128, support: 136,
         });
     }
 }

@@ -6,17 +6,18 @@ use iceoryx2_bb_elementary_traits::zero_copy_send::ZeroCopySend;
 
 use crate::{Pose2, Stamp};
 
-/// Header of topic `votes`; the items are the poses at or above `floor`, by
-/// falling intensity, equal ones by (heading, y, x).
+/// Header of topic `votes`; the items are poses by falling intensity, equal ones
+/// by (heading, y, x): all at or above `certified_floor`, and distinct candidates
+/// below.
 #[derive(Debug, Clone, Copy, PartialEq, Pod, Zeroable, ZeroCopySend)]
-#[type_name("VotesHeader/v1")]
+#[type_name("VotesHeader/v2")]
 #[repr(C)]
 pub struct VotesHeader {
     /// Of the scan.
     pub stamp: Stamp,
     /// The map that was searched; 0 where there was none.
     pub map_id: u64,
-    /// Poses at or above `floor`.
+    /// How many items there are.
     pub total: u64,
     /// Nanoseconds of computing, from scan to votes.
     pub engine_ns: u64,
@@ -50,6 +51,14 @@ pub struct VotesHeader {
     pub base_from_laser: Pose2,
     /// 1 where the mount was given, else 0.
     pub mount_known: u64,
+    /// Occupancy from which a cell was taken as occupied, per cent.
+    pub occupied_from: u32,
+    /// Occupancy up to which a cell was taken as free, per cent.
+    pub free_to: u32,
+    /// Most beams of a scan that vote; longer scans are thinned by arc.
+    pub max_beams: u64,
+    /// Arc at the reading from which a beam counts fully, metres.
+    pub beam_arc_m: f64,
 }
 
 /// How a search ended.
@@ -93,11 +102,12 @@ pub struct Vote {
 #[cfg(test)]
 mod tests {
     use super::*;
-    crate::pin_layout!(VotesHeader, size 144, align 8, {
+    crate::pin_layout!(VotesHeader, size 168, align 8, {
         stamp: 0, map_id: 24, total: 32, engine_ns: 40, poses_evaluated: 48, outcome: 56,
         headings: 60, floor: 64, certified_floor: 68, best: 72, highest_possible: 76,
         truncated: 80, beams_used: 84, heading_known: 88, beams_silent: 92, known_heading: 96,
         bearing_rounding: 104, base_from_laser: 112, mount_known: 136,
+        occupied_from: 144, free_to: 148, max_beams: 152, beam_arc_m: 160,
     });
 
     mod vote {

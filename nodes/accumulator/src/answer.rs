@@ -9,6 +9,7 @@ use engine::search::BlockBounds;
 use messages::{FieldHeader, FieldKind, ScanHeader, SearchOutcome, Vote, VotesHeader};
 
 use crate::AccumulatorError;
+use crate::preparation::PreparedMap;
 
 /// What is sent about a scan that was answered.
 #[derive(Debug, Clone, PartialEq)]
@@ -71,12 +72,12 @@ pub fn ask(
 #[must_use]
 pub fn answered(
     scan: &ScanHeader,
-    map_id: u64,
+    map: &PreparedMap,
     (outcome, intensities): Reply,
     engine_ns: u64,
 ) -> Answer {
     Answer {
-        votes: votes_header(scan, map_id, &outcome, engine_ns),
+        votes: votes_header(scan, map, &outcome, engine_ns),
         poses: outcome.found.votes,
         intensities,
     }
@@ -98,8 +99,13 @@ pub fn image(answer: Answer, localizer: &Localizer, scan: &Scan<'_>) -> Result<I
     }
 }
 
-fn votes_header(scan: &ScanHeader, map_id: u64, outcome: &Outcome, engine_ns: u64) -> VotesHeader {
-    let found = &outcome.found;
+fn votes_header(
+    scan: &ScanHeader,
+    map: &PreparedMap,
+    outcome: &Outcome,
+    engine_ns: u64,
+) -> VotesHeader {
+    let (found, beams) = (&outcome.found, map.localizer.config().votes.beams);
     let code = if found.best > 0 {
         SearchOutcome::Found
     } else {
@@ -120,7 +126,11 @@ fn votes_header(scan: &ScanHeader, map_id: u64, outcome: &Outcome, engine_ns: u6
         heading_known: outcome.known_heading.is_some().into(),
         known_heading: outcome.known_heading.unwrap_or(0.0),
         bearing_rounding: outcome.bearing_rounding,
-        ..empty(scan, map_id, outcome.headings)
+        occupied_from: map.rules.occupied_from.into(),
+        free_to: map.rules.free_to.into(),
+        max_beams: beams.max_beams.into(),
+        beam_arc_m: beams.beam_arc_m,
+        ..empty(scan, map.map_id, outcome.headings)
     }
 }
 

@@ -37,6 +37,8 @@ impl Key {
 pub struct PreparedMap {
     /// The map.
     pub map_id: u64,
+    /// How its cells were read.
+    pub rules: CellRules,
     /// Made from it.
     pub localizer: Localizer,
 }
@@ -88,7 +90,11 @@ impl Job {
         check_boundary(&self.boundary, &grid)?;
         let localizer = Localizer::new(frame, grid, &self.boundary, config, prior)?;
         let map_id = self.map.map_id;
-        Ok(PreparedMap { map_id, localizer })
+        Ok(PreparedMap {
+            map_id,
+            rules: self.rules,
+            localizer,
+        })
     }
 }
 

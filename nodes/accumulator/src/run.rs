@@ -103,7 +103,7 @@ impl Node {
         let start = Instant::now();
         let reply = answer::ask(&map.localizer, &borrowed, heading, &|| self.stopped())?;
         let engine_ns = start.elapsed().as_nanos() as u64;
-        Ok(reply.map(|reply| answer::answered(scan.header(), map.map_id, reply, engine_ns)))
+        Ok(reply.map(|reply| answer::answered(scan.header(), map, reply, engine_ns)))
     }
 
     fn stopped(&self) -> bool {

@@ -1,13 +1,16 @@
 //! The node's one function: from a message of `votes` to one of `hypotheses`.
 
 use bytemuck::Zeroable;
-use engine::peaks::{self, PeakConfig, Place, Places};
+use engine::fit::Ends;
+use engine::peaks::{self, PeakConfig, Place, Places, Score};
+use engine::space::Space;
 use geometry::Pose;
 use messages::{HypothesesHeader, Hypothesis, Verdict, Vote, VotesHeader};
 
 use crate::PeakError;
-use crate::check::{check, mount};
-use crate::geometries::Geometries;
+use crate::check::{Checked, check, mount};
+use crate::maps::Maps;
+use crate::scans::Scans;
 
 /// What there is to say about a scan.
 #[derive(Debug, Clone, PartialEq)]
@@ -20,22 +23,32 @@ pub struct Answer {
     pub base_from_laser: Option<Pose>,
 }
 
-/// Reads the places from the votes of a scan.
+/// Reads the places from the votes of a scan and, unless the votes alone are to
+/// decide, from the scan.
 ///
 /// # Errors
-/// If the votes are refused, see [`check`] and [`mount`]; [`nothing`] is then
-/// what to say.
+/// If the votes are refused, see [`check`] and [`mount`], or their scan is not
+/// known; [`nothing`] is then what to say.
 pub fn answer(
     header: &VotesHeader,
     votes: &[Vote],
-    geometries: &Geometries,
+    (maps, scans): (&mut Maps, &Scans),
     config: &PeakConfig,
 ) -> Result<Answer, PeakError> {
-    let Some(input) = check(header, votes, geometries)? else {
+    let Some(Checked { input, map, beams }) = check(header, votes, maps)? else {
         return Ok(nothing(header));
     };
     let base_from_laser = mount(header)?;
-    let places = peaks::extract(&input, config);
+    let places = match config.score {
+        Score::Votes => peaks::by_votes(&input, config),
+        Score::Fit => {
+            let scan = scans.get(header.stamp)?;
+            let sides = (map.width as usize, map.height as usize);
+            let space = Space::new(header.headings, map.frame.resolution_m, sides.0, sides.1)?;
+            let ends = Ends::new(&scan, &space, &beams)?;
+            peaks::by_fit(&input, (&map.terrain, &ends), config)
+        }
+    };
     Ok(Answer {
         header: described(header, &places, base_from_laser.is_some()),
         places: places.places,
@@ -75,7 +88,7 @@ fn described(votes: &VotesHeader, places: &Places, mount_known: bool) -> Hypothe
         verdict: places.verdict as u32,
         alternatives: places.alternatives,
         confidence: places.confidence as f32,
-        inlier_share: (f64::from(votes.best) / f64::from(votes.highest_possible)) as f32,
+        inlier_share: places.inlier_share as f32,
         best: votes.best,
         highest_possible: votes.highest_possible,
         mount_known: mount_known.into(),
@@ -89,6 +102,7 @@ fn hypothesis(place: &Place, laser_from_base: Pose) -> Hypothesis {
         map_from_base: place.map_from_laser.then(laser_from_base).into(),
         covariance: place.covariance.to_rows(),
         score: place.score as f32,
+        probability: place.probability as f32,
         intensity: place.intensity.into(),
         support: place.support,
     }

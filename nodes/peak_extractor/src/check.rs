@@ -5,13 +5,27 @@
 //! nonsense.
 
 use std::cmp::Reverse;
+use std::ops::RangeInclusive;
 
+use engine::beams::BeamConfig;
+use engine::grid::CellRules;
 use engine::peaks::PeakInput;
 use geometry::Pose;
 use messages::{SearchOutcome, Vote, VotesHeader};
 
 use crate::PeakError;
-use crate::geometries::{Geometries, Geometry};
+use crate::maps::{Map, Maps};
+
+/// The votes of a scan as the engine takes them, and what they refer to.
+#[derive(Debug)]
+pub struct Checked<'a> {
+    /// The votes.
+    pub input: PeakInput<'a>,
+    /// The map that was searched.
+    pub map: &'a Map,
+    /// How the scan was thinned.
+    pub beams: BeamConfig,
+}
 
 /// The votes of a scan as the engine takes them; `None` where the scan was
 /// refused or has no votes.
@@ -22,26 +36,28 @@ use crate::geometries::{Geometries, Geometry};
 pub fn check<'a>(
     header: &VotesHeader,
     votes: &'a [Vote],
-    geometries: &Geometries,
-) -> Result<Option<PeakInput<'a>>, PeakError> {
+    maps: &'a mut Maps,
+) -> Result<Option<Checked<'a>>, PeakError> {
     let outcome = header.outcome;
     match SearchOutcome::from_code(outcome) {
         None => return Err(PeakError::Outcome { found: outcome }),
         Some(SearchOutcome::NoVotes | SearchOutcome::Refused) => return Ok(None),
         Some(SearchOutcome::Found) => {}
     }
-    let geometry = geometries.get(header.map_id)?;
+    let map = maps.get(header.map_id, rules(header)?)?;
     check_header(header, votes)?;
-    check_poses(header, votes, &geometry)?;
+    check_poses(header, votes, map)?;
     check_order(votes)?;
-    Ok(Some(PeakInput {
+    let input = PeakInput {
         votes,
         certified_floor: header.certified_floor,
         highest_possible: header.highest_possible,
         headings: header.headings,
         known_heading: (header.heading_known == 1).then_some(header.known_heading),
-        frame: geometry.frame,
-    }))
+        frame: map.frame,
+    };
+    let beams = beams(header)?;
+    Ok(Some(Checked { input, map, beams }))
 }
 
 /// Where the laser sits on the robot, if the header knows.
@@ -58,6 +74,48 @@ pub fn mount(header: &VotesHeader) -> Result<Option<Pose>, PeakError> {
         return Err(PeakError::Mount { found });
     }
     Ok(Some(mount))
+}
+
+/// How the map's cells were read. Whether unknown ones block is nothing to the
+/// fit.
+fn rules(header: &VotesHeader) -> Result<CellRules, PeakError> {
+    let percent = |field, found: u32, allowed, range: RangeInclusive<u8>| {
+        let percent = u8::try_from(found).ok();
+        let percent = percent.filter(|percent| range.contains(percent));
+        let found = found.into();
+        percent.ok_or(PeakError::Setting {
+            field,
+            found,
+            allowed,
+        })
+    };
+    Ok(CellRules {
+        occupied_from: percent("occupied_from", header.occupied_from, "1 to 100", 1..=100)?,
+        free_to: percent("free_to", header.free_to, "0 to 99", 0..=99)?,
+        unknown_blocks: false,
+    })
+}
+
+/// How the scan was thinned.
+fn beams(header: &VotesHeader) -> Result<BeamConfig, PeakError> {
+    let found = header.beam_arc_m;
+    if !(0.0..=2.0).contains(&found) {
+        return Err(PeakError::Setting {
+            field: "beam_arc_m",
+            found,
+            allowed: "0 to 2 metres",
+        });
+    }
+    let max_beams = u32::try_from(header.max_beams).ok();
+    let max_beams = max_beams.filter(|beams| (1..=1 << 16).contains(beams));
+    Ok(BeamConfig {
+        max_beams: max_beams.ok_or(PeakError::Setting {
+            field: "max_beams",
+            found: header.max_beams as f64,
+            allowed: "1 to 65536",
+        })?,
+        beam_arc_m: found,
+    })
 }
 
 fn check_header(header: &VotesHeader, votes: &[Vote]) -> Result<(), PeakError> {
@@ -85,7 +143,7 @@ fn check_header(header: &VotesHeader, votes: &[Vote]) -> Result<(), PeakError> {
 fn check_poses(
     header: &VotesHeader,
     votes: &[Vote],
-    &Geometry { width, height, .. }: &Geometry,
+    &Map { width, height, .. }: &Map,
 ) -> Result<(), PeakError> {
     let headings = header.headings;
     let is_known = |vote: &Vote| {
@@ -125,8 +183,8 @@ mod tests {
 
     use super::*;
 
-    fn geometries() -> Geometries {
-        let mut geometries = Geometries::default();
+    fn maps() -> Maps {
+        let mut maps = Maps::default();
         let map = MapHeader {
             map_id: 7,
             width: 30,
@@ -134,8 +192,8 @@ mod tests {
             resolution_m: 0.1,
             ..Zeroable::zeroed()
         };
-        geometries.hear(&map).unwrap();
-        geometries
+        maps.hear(&map, &[0; 30 * 20]).unwrap();
+        maps
     }
 
     fn vote(x: u16, y: u16, heading: u16, intensity: u16) -> Vote {
@@ -166,6 +224,10 @@ mod tests {
             best: 100,
             highest_possible: 200,
             known_heading: 0.5,
+            occupied_from: 65,
+            free_to: 25,
+            max_beams: 180,
+            beam_arc_m: 0.2,
             ..Zeroable::zeroed()
         }
     }
@@ -173,7 +235,14 @@ mod tests {
     #[test]
     fn sound_votes_are_passed_on_without_a_copy() {
         let votes = votes();
-        let input = check(&header(), &votes, &geometries()).unwrap().unwrap();
+        let (mut maps, rules) = (maps(), CellRules::default());
+        let checked = check(&header(), &votes, &mut maps).unwrap().unwrap();
+        assert_eq!(
+            (checked.map.map_id, checked.beams),
+            (7, BeamConfig::default())
+        );
+        assert_eq!(super::rules(&header()).unwrap(), rules);
+        let input = checked.input;
         assert!(std::ptr::eq(input.votes, &votes[..]));
         assert_eq!((input.certified_floor, input.highest_possible), (85, 200));
         assert_eq!((input.headings, input.known_heading), (360, None));
@@ -182,8 +251,8 @@ mod tests {
             heading_known: 1,
             ..header()
         };
-        let input = check(&known, &votes, &geometries()).unwrap().unwrap();
-        assert_eq!(input.known_heading, Some(0.5));
+        let checked = check(&known, &votes, &mut maps).unwrap().unwrap();
+        assert_eq!(checked.input.known_heading, Some(0.5));
     }
 
     #[test]
@@ -193,7 +262,7 @@ mod tests {
                 outcome: outcome as u32,
                 ..Zeroable::zeroed()
             };
-            assert!(check(&empty, &[], &geometries()).unwrap().is_none());
+            assert!(check(&empty, &[], &mut maps()).unwrap().is_none());
         }
     }
 
@@ -202,7 +271,7 @@ mod tests {
         let refuse = |change: fn(&mut VotesHeader, &mut Vec<Vote>), expected: &str| {
             let (mut header, mut votes) = (header(), votes());
             change(&mut header, &mut votes);
-            let error = check(&header, &votes, &geometries()).unwrap_err();
+            let error = check(&header, &votes, &mut maps()).unwrap_err();
             assert!(error.to_string().starts_with(expected), "{error}");
         };
         refuse(|header, _| header.outcome = 3, "outcome is 3");
@@ -218,6 +287,16 @@ mod tests {
                 header.known_heading = f64::NAN;
             },
             "known_heading is NaN",
+        );
+        refuse(|header, _| header.occupied_from = 0, "occupied_from is 0");
+        refuse(|header, _| header.free_to = 100, "free_to is 100");
+        refuse(
+            |header, _| header.max_beams = 1 << 32,
+            "max_beams is 4294967296",
+        );
+        refuse(
+            |header, _| header.beam_arc_m = f64::NAN,
+            "beam_arc_m is NaN",
         );
         refuse(|_, votes| votes.clear(), "best is 100 of 200 possible");
         refuse(|header, _| header.best = 99, "best is 99 of 200");

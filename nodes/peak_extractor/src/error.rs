@@ -1,5 +1,6 @@
 //! What keeps votes from being read, and the node from running.
 
+use engine::EngineError;
 use messages::{Pose2, Vote};
 use transport::TransportError;
 
@@ -17,6 +18,22 @@ pub enum PeakError {
         /// The maps that are known.
         known: String,
     },
+    /// The scan of the votes never came, or came too long ago.
+    #[error("their scan is not known: it did not come here, or too long ago")]
+    UnknownScan,
+    /// How a map's cells or a scan's beams were read cannot be.
+    #[error("{field} is {found}: allowed are {allowed}")]
+    Setting {
+        /// Of the header.
+        field: &'static str,
+        /// By the header.
+        found: f64,
+        /// In words.
+        allowed: &'static str,
+    },
+    /// The engine refused the map or the scan.
+    #[error(transparent)]
+    Engine(#[from] EngineError),
     /// No search ends like this.
     #[error("outcome is {found}: allowed are 0 (found), 1 (no votes) and 2 (refused)")]
     Outcome {

@@ -1,18 +1,20 @@
 //! Node `peak_extractor`: from the votes of a scan to the places where the
-//! robot may be, from `votes` and `map` to `hypotheses`.
+//! robot may be, from `votes`, `scan` and `map` to
+//! `hypotheses`.
 //!
 //! Each message of `votes` is answered by exactly one of `hypotheses`, also
 //! where it holds nothing or is refused. How votes become places is the
-//! engine's; `geometries` knows where the grids of maps lie, `check` what votes
-//! have to be, `answer` what a message says. Only `run` touches the graph and
+//! engine's; `maps` and `scans` keep what votes refer to, `check` knows what
+//! they have to be, `answer` what a message says. Only `run` touches the graph and
 //! the clock.
 
 pub mod answer;
 pub mod check;
 mod config;
 mod error;
-pub mod geometries;
+pub mod maps;
 mod run;
+pub mod scans;
 
 pub use config::Config;
 pub use error::PeakError;

@@ -10,7 +10,8 @@ use transport::{
 };
 
 use crate::answer::{Answer, answer, nothing};
-use crate::geometries::Geometries;
+use crate::maps::Maps;
+use crate::scans::Scans;
 use crate::{Config, PeakError};
 
 /// How long a report of health may be overdue.
@@ -24,24 +25,27 @@ const TICK: Duration = Duration::from_millis(100);
 /// `health`.
 pub fn run(graph: &Graph, config: &Config) -> Result<(), PeakError> {
     let votes = graph.subscriber::<topic::Votes>()?;
+    let scans = graph.subscriber::<topic::Scan>()?;
     let maps = graph.subscriber::<topic::Map>()?;
     let mut node = Node {
         config: config.peaks,
-        geometries: Geometries::default(),
+        maps: Maps::default(),
+        scans: Scans::default(),
         gaps: GapCounter::new(),
         last_refusal: String::new(),
         hypotheses: graph.publisher()?,
         health: graph.health()?,
     };
-    graph.run(&[&votes, &maps], TICK, |_| {
-        node.step(&votes, &maps)?;
+    graph.run(&[&votes, &scans, &maps], TICK, |_| {
+        node.step(&votes, &scans, &maps)?;
         Ok(Flow::Continue)
     })
 }
 
 struct Node {
     config: PeakConfig,
-    geometries: Geometries,
+    maps: Maps,
+    scans: Scans,
     gaps: GapCounter,
     last_refusal: String,
     hypotheses: Publisher<topic::Hypotheses>,
@@ -52,11 +56,16 @@ impl Node {
     fn step(
         &mut self,
         votes: &Subscriber<topic::Votes>,
+        scans: &Subscriber<topic::Scan>,
         maps: &Subscriber<topic::Map>,
     ) -> Result<(), TransportError> {
         loop {
             let sample = votes.receive()?;
-            // The map that was searched was sent before its votes.
+            // The scan and the map that was searched were sent before the votes.
+            while let Some(scan) = scans.receive()? {
+                self.health.count_received(1);
+                self.scans.hear(scan.header(), scan.items());
+            }
             if let Some(map) = maps.newest()? {
                 self.hear(&map)?;
             }
@@ -70,7 +79,7 @@ impl Node {
 
     fn hear(&mut self, map: &Sample<topic::Map>) -> Result<(), TransportError> {
         self.health.count_received(1);
-        match self.geometries.hear(map.header()) {
+        match self.maps.hear(map.header(), map.items()) {
             Ok(()) => self.health.state(NodeState::Ready),
             Err(error) => {
                 let map_id = map.header().map_id;
@@ -86,7 +95,8 @@ impl Node {
     fn answer(&mut self, votes: &Sample<topic::Votes>) -> Result<(), TransportError> {
         let start = Instant::now();
         let header = votes.header();
-        let answered = answer(header, votes.items(), &self.geometries, &self.config);
+        let known = (&mut self.maps, &self.scans);
+        let answered = answer(header, votes.items(), known, &self.config);
         let extract_ns = start.elapsed().as_nanos() as u64;
         // Votes have the counter of their scan: one that is missing here was
         // lost on one of its two ways.

@@ -26,10 +26,11 @@ pub struct Refined {
 const REACHES: [f64; 2] = [4.0, 2.0];
 
 /// Most steps with each reach.
-const MOST_STEPS: usize = 10;
+const MOST_STEPS: usize = 6;
 
-/// A step shorter than this, cells and radians times a hundred, is the last.
-const LAST_STEP: f64 = 0.01;
+/// A step shorter than this, cells and radians times a hundred, is the last
+/// with each reach.
+const LAST_STEPS: [f64; 2] = [0.1, 0.02];
 
 /// Keeps steps short along what the scan does not tell, as a share of the
 /// weight of all beams.
@@ -48,7 +49,7 @@ impl Terrain {
     ) -> Refined {
         let sigma = config.sigma_cells(self.frame.resolution_m);
         let mut pose = start;
-        for reach in REACHES {
+        for (reach, last_step) in REACHES.into_iter().zip(LAST_STEPS) {
             for _ in 0..MOST_STEPS {
                 let sums = self.linearise(ends, pose, reach * sigma);
                 let Some(step) = sums.step(ends.weight, heading_is_known) else {
@@ -59,7 +60,7 @@ impl Terrain {
                     y: pose.y + step.y,
                     heading: pose.heading + step.z,
                 };
-                if step.x.abs().max(step.y.abs()).max(100.0 * step.z.abs()) < LAST_STEP {
+                if step.x.abs().max(step.y.abs()).max(100.0 * step.z.abs()) < last_step {
                     break;
                 }
             }
@@ -67,7 +68,7 @@ impl Terrain {
         let sums = self.linearise(ends, pose, REACHES[1] * sigma);
         Refined {
             pose,
-            curvature: sums.curvature,
+            curvature: sums.curvature(),
             variance: sums.squares / sums.weight.max(f64::MIN_POSITIVE),
             weight: sums.weight,
         }
@@ -90,7 +91,7 @@ impl Terrain {
             let off = distance / reach;
             let share = 1.0 - off * off;
             // Turning by a radian moves the end by (-aside, ahead).
-            let gradient = Vector3::new(along_x, along_y, ahead * along_y - aside * along_x);
+            let gradient = [along_x, along_y, ahead * along_y - aside * along_x];
             sums.add(end.weight * share * share, distance, gradient);
         }
         sums
@@ -100,27 +101,41 @@ impl Terrain {
 /// The normal equations.
 #[derive(Debug, Default)]
 struct Sums {
-    curvature: Matrix3<f64>,
-    slope: Vector3<f64>,
+    /// Σ w ∇d ∇dᵀ, whose lower half is the mirrored upper one: xx, xy, xh, yy,
+    /// yh, hh.
+    products: [f64; 6],
+    slope: [f64; 3],
     squares: f64,
     weight: f64,
 }
 
 impl Sums {
-    #[inline]
-    fn add(&mut self, weight: f64, distance: f64, gradient: Vector3<f64>) {
-        self.curvature += weight * gradient * gradient.transpose();
-        self.slope += weight * distance * gradient;
+    #[inline(always)]
+    fn add(&mut self, weight: f64, distance: f64, [x, y, h]: [f64; 3]) {
+        let (wx, wy, wh) = (weight * x, weight * y, weight * h);
+        let products = [wx * x, wx * y, wx * h, wy * y, wy * h, wh * h];
+        for (sum, product) in self.products.iter_mut().zip(products) {
+            *sum += product;
+        }
+        for (sum, slope) in self.slope.iter_mut().zip([wx, wy, wh]) {
+            *sum += slope * distance;
+        }
         self.squares += weight * distance * distance;
         self.weight += weight;
     }
 
+    fn curvature(&self) -> Matrix3<f64> {
+        let [xx, xy, xh, yy, yh, hh] = self.products;
+        Matrix3::new(xx, xy, xh, xy, yy, yh, xh, yh, hh)
+    }
+
     /// The step to the minimum, if the beams have a say.
     fn step(&self, all: f64, heading_is_known: bool) -> Option<Vector3<f64>> {
-        let turning = self.curvature[(2, 2)].max(1.0);
+        let curvature = self.curvature();
+        let turning = curvature[(2, 2)].max(1.0);
         let damping = Vector3::new(DAMPING * all, DAMPING * all, DAMPING * turning);
-        let mut damped = self.curvature + Matrix3::from_diagonal(&damping);
-        let mut slope = self.slope;
+        let mut damped = curvature + Matrix3::from_diagonal(&damping);
+        let mut slope = Vector3::from(self.slope);
         if heading_is_known {
             damped.fill_row(2, 0.0);
             damped.fill_column(2, 0.0);

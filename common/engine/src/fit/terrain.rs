@@ -66,19 +66,21 @@ impl Terrain {
 
     /// Distance of a point to the nearest occupied cell, and how it grows along
     /// x and y: bilinear between the centres of cells. `None` off the map.
-    #[inline]
+    #[inline(always)]
     pub(super) fn distance(&self, x: f64, y: f64) -> Option<(f64, [f64; 2])> {
-        let (left, bottom) = ((x - 0.5).floor(), (y - 0.5).floor());
-        let (column, row) = (left as i64, bottom as i64);
-        if column < 0 || row < 0 || column + 1 >= self.width as i64 || row + 1 >= self.height as i64
-        {
+        let (x, y) = (x - 0.5, y - 0.5);
+        if !(x >= 0.0 && y >= 0.0) {
             return None;
         }
-        let at = row as usize * self.width + column as usize;
+        let (column, row) = (x as usize, y as usize);
+        if column + 1 >= self.width || row + 1 >= self.height {
+            return None;
+        }
+        let at = row * self.width + column;
         let corner = |i: usize| f64::from(self.to_occupied[i]);
         let (a, b) = (corner(at), corner(at + 1));
         let (c, d) = (corner(at + self.width), corner(at + self.width + 1));
-        let (u, v) = (x - 0.5 - left, y - 0.5 - bottom);
+        let (u, v) = (x - column as f64, y - row as f64);
         let (low, high) = (a + u * (b - a), c + u * (d - c));
         let along_x = (b - a) + v * ((d - c) - (b - a));
         Some((low + v * (high - low), [along_x, high - low]))

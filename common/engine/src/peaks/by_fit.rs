@@ -1,16 +1,18 @@
 //! Places by how well the scan fits the map there: the votes' candidates are
 //! refined, judged again and put in order.
 
-use geometry::{Covariance, wrap_angle};
+use geometry::{Covariance, Pose, wrap_angle};
 use messages::Verdict;
 use nalgebra::{Matrix3, Vector3};
 
 use super::summits::{Reach, Summit, summits};
-use super::{PeakConfig, PeakInput, Place, Places};
+use super::{PeakConfig, PeakInput, Place, Places, likelihood};
 use crate::fit::{Ends, GridPose, Refined, Terrain};
 
-/// Reads the places from the votes of a scan and the scan itself.
-pub(super) fn extract(
+/// Reads the places from the votes of a scan and from the scan itself, which
+/// must be of the same map.
+#[must_use]
+pub fn by_fit(
     input: &PeakInput<'_>,
     (terrain, ends): (&Terrain, &Ends),
     config: &PeakConfig,
@@ -22,27 +24,41 @@ pub(super) fn extract(
         .collect();
     // A stable sort: of equal ones, that with more votes comes first.
     places.sort_by(|a, b| b.score.total_cmp(&a.score));
-    let places = distinct(places, config);
-    let Some(best) = places.first() else {
+    let mut places = distinct(places, config);
+    let Some(&best) = places.first() else {
         return Places::none();
     };
-    let lead = |other: &Place| (best.score - other.score) / (1.1 - best.score).sqrt();
-    let rivals = places[1..]
+    let leads: Vec<f64> = places
         .iter()
-        .filter(|other| lead(other) < config.least_lead);
+        .map(|place| lead(best.score, place.score))
+        .collect();
+    likelihood::assign(&mut places, &leads);
+    let rivals = leads[1..].iter().filter(|&&lead| lead < config.least_lead);
     let alternatives = rivals.count() as u32;
-    let confidence = places.get(1).map_or(1.0, lead).clamp(0.0, 1.0);
     let verdict = match () {
         () if best.score < config.least_score => Verdict::PoorFit,
         () if alternatives > 0 => Verdict::Ambiguous,
         () => Verdict::Unique,
     };
+    let pose = grid_pose(input, best.map_from_laser);
     Places {
         verdict,
         alternatives,
-        confidence,
+        confidence: places[0].probability,
+        inlier_share: terrain.agreement(ends, pose, &config.fit).hits,
         places,
     }
+}
+
+/// How far a score lies behind the best, against what that lacks of a perfect
+/// one: where the scan fits well, small differences tell much.
+fn lead(best: f64, other: f64) -> f64 {
+    (best - other) / (1.1 - best).sqrt()
+}
+
+fn grid_pose(input: &PeakInput<'_>, map_from_laser: Pose) -> GridPose {
+    let (x, y, heading) = input.frame.cells_from_map(map_from_laser);
+    GridPose { x, y, heading }
 }
 
 /// The best of all poses that came to lie at one place.
@@ -88,6 +104,7 @@ fn place(
         map_from_laser,
         covariance: covariance(input, &refined),
         score: terrain.agreement(ends, pose, &config.fit).score,
+        probability: 0.0,
         intensity: vote.intensity,
         support: summit.support,
     }

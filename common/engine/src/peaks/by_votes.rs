@@ -12,8 +12,9 @@ use super::{PeakConfig, PeakInput, Place, Places};
 /// flanks of other peaks begin.
 const PEAK_BASE_SHARE: f64 = 0.85;
 
-/// Reads the places from the votes of a scan.
-pub(super) fn extract(input: &PeakInput<'_>, config: &PeakConfig) -> Places {
+/// Reads the places from the votes of a scan: the paper's method.
+#[must_use]
+pub fn by_votes(input: &PeakInput<'_>, config: &PeakConfig) -> Places {
     let reach = Reach::new(input, config.same_place_m, config.same_place_deg);
     let places: Vec<Place> = summits(input, reach, config.max_hypotheses)
         .iter()
@@ -41,6 +42,7 @@ pub(super) fn extract(input: &PeakInput<'_>, config: &PeakConfig) -> Places {
         verdict,
         alternatives,
         confidence,
+        inlier_share: best.score,
         places,
     }
 }
@@ -77,6 +79,7 @@ fn place(input: &PeakInput<'_>, summit: &Summit, reach: Reach) -> Place {
     Place {
         map_from_laser,
         covariance: spread_in_map(input, moments.covariance()),
+        probability: 0.0,
         score: f64::from(summit.intensity) / f64::from(input.highest_possible.max(1)),
         intensity: summit.intensity,
         support: moments.count,

@@ -1,24 +1,27 @@
 //! From votes to hypotheses: distinct places, refined, with their spread and a
 //! verdict.
 //!
-//! Votes of neighbouring poses make up one peak. The best vote names a place,
-//! all votes near it are taken for the same place, and so on down the list. A
-//! place is refined below the cell by the centre of its peak, and the peak's
-//! shape is its covariance.
+//! The votes name candidates, the fit of the scan decides between them:
+//!
+//! ```text
+//! votes ─ summits ─┬─ by_votes ───────────────────────────┬─ places, verdict
+//!                  └─ by_fit ─ refined and judged again ──┘
+//! ```
 
 mod by_fit;
 mod by_votes;
 mod config;
+mod likelihood;
 mod summits;
 
 use geometry::{Covariance, Pose, wrap_angle};
 use messages::{Verdict, Vote};
 use nalgebra::{Matrix3, Rotation2, Vector3};
 
-use crate::fit::{Ends, Terrain};
-
 use crate::grid::GridFrame;
 use crate::localizer::Outcome;
+pub use by_fit::by_fit;
+pub use by_votes::by_votes;
 pub use config::{PeakConfig, Score};
 
 /// The votes of one scan and what is needed to read them.
@@ -78,9 +81,11 @@ pub struct Place {
     /// How well the scan fits the map there, at most 1; by votes alone, the
     /// share of those that the pose could have at most.
     pub score: f64,
-    /// Votes of the peak's highest pose.
+    /// How likely the robot is there, 0..=1; 0 by votes alone.
+    pub probability: f64,
+    /// Votes of the best pose that led there.
     pub intensity: u16,
-    /// Votes that make up the peak.
+    /// Votes that led there.
     pub support: u64,
 }
 
@@ -93,9 +98,13 @@ pub struct Places {
     pub verdict: Verdict,
     /// Other places that fit about as well as the best.
     pub alternatives: u32,
-    /// How far the best place stands above the next, as a share of its votes;
-    /// where none was collected, above the floor below which none was sought.
+    /// The probability of the best place, 0..=1. By votes alone, how far it
+    /// stands above the next, as a share of its votes; where none was
+    /// collected, above the floor below which none was sought.
     pub confidence: f64,
+    /// Share of the beams by weight that end at an obstacle at the best place;
+    /// by votes alone, its score.
+    pub inlier_share: f64,
 }
 
 impl Places {
@@ -106,21 +115,8 @@ impl Places {
             verdict: Verdict::NoScan,
             alternatives: 0,
             confidence: 0.0,
+            inlier_share: 0.0,
         }
-    }
-}
-
-/// Reads the places from the votes of a scan, and judges them by the scan and
-/// the map unless the votes alone are to decide.
-#[must_use]
-pub fn extract(
-    input: &PeakInput<'_>,
-    (terrain, ends): (&Terrain, &Ends),
-    config: &PeakConfig,
-) -> Places {
-    match config.score {
-        Score::Votes => by_votes::extract(input, config),
-        Score::Fit => by_fit::extract(input, (terrain, ends), config),
     }
 }
 

@@ -14,21 +14,22 @@ use messages::Vote;
 use super::bits;
 use super::descent::quarters;
 use super::interval_bounds::IntervalBounds;
-use super::intervals::BlockIntervals;
+use super::intervals::{BlockIntervals, SIDE};
 use super::outlook::{CELLS, Outlook};
 use super::sectors;
 use super::set_bounds::{CHUNK, SetBounds};
 use super::task::Task;
+use crate::votes;
 
 /// Coarse blocks that are split for each candidate that is wanted.
-const COARSE_SHARE: usize = 4;
+const COARSE_SHARE: usize = 6;
 
 /// Blocks of 8 × 8 cells that are looked into for each candidate.
-const FINE_SHARE: usize = 2;
+const FINE_SHARE: usize = 1;
 
-/// Headings with less than this share of a block's highest bound, in
-/// sixteenths, are not looked at.
-const LEAST_SIXTEENTHS: u16 = 15;
+/// Headings with less than this share of a block's highest bound, in parts of
+/// 32, are not looked at.
+const LEAST_THIRTY_SECONDTHS: u32 = 31;
 
 /// Looks for candidates on one thread, whatever the search did.
 pub(super) struct Alternatives<'a> {
@@ -58,16 +59,44 @@ impl<'a> Alternatives<'a> {
         }
     }
 
-    /// One pose of each of the blocks that promise most, in no order.
+    /// Poses of the blocks that promise most, in no order, at most so many.
     pub(super) fn find(&mut self, wanted: usize) -> Vec<Vote> {
         let coarse = self.most_promising(COARSE_SHARE * wanted);
         let mut fine = self.bound_all(&coarse);
         keep_greatest(&mut fine, FINE_SHARE * wanted);
-        let looked = fine.iter().filter_map(|&(_, Reverse(block))| {
-            let spot = self.best_spot(block as usize)?;
-            self.count(spot)
-        });
-        looked.collect()
+        let spots = fine
+            .iter()
+            .filter_map(|&(_, Reverse(block))| self.best_spot(block as usize));
+        let mut spots: Vec<Spot> = spots.collect();
+        spots.sort_unstable_by(|a, b| b.cmp(a));
+        let mut distinct: Vec<Spot> = Vec::with_capacity(wanted);
+        for spot in spots {
+            if distinct.len() < wanted && !distinct.iter().any(|other| self.are_near(&spot, other))
+            {
+                distinct.push(spot);
+            }
+        }
+        distinct
+            .into_iter()
+            .filter_map(|spot| self.count(spot))
+            .collect()
+    }
+
+    /// Whether the poses of two spots are one candidate, as far as the spots'
+    /// middles tell.
+    fn are_near(&self, a: &Spot, b: &Spot) -> bool {
+        votes::are_near(&self.middle(a), &self.middle(b), self.task.space)
+    }
+
+    fn middle(&self, spot: &Spot) -> Vote {
+        let (Reverse(block), Reverse(heading)) = (spot.block, spot.heading);
+        let columns = self.task.index.intervals.columns;
+        Vote {
+            x: (block % columns * SIDE) as u16,
+            y: (block / columns * SIDE) as u16,
+            heading: heading as u16,
+            intensity: spot.bound,
+        }
     }
 
     /// The coarse blocks that promise most.
@@ -101,7 +130,7 @@ impl<'a> Alternatives<'a> {
             .fine
             .bound(&index.fine, block, 0, &mut self.bounds);
         let greatest = u32::from(self.bounds.greatest());
-        let least = (greatest * u32::from(LEAST_SIXTEENTHS) / 16) as u16;
+        let least = (greatest * LEAST_THIRTY_SECONDTHS / 32) as u16;
         let masks: Vec<_> = self.bounds.at_least(least.max(1), &self.bounds).collect();
         let sides = (index.intervals.columns, index.intervals.rows);
         let mut best = None;
@@ -110,16 +139,27 @@ impl<'a> Alternatives<'a> {
             for (chunk, mask) in masks.iter().enumerate() {
                 let mut mask = *mask;
                 while let Some((first, among)) = bits::take_window(&mut mask) {
-                    best = best.max(self.best_in_window(small, chunk * CHUNK + first, among));
+                    let first = chunk * CHUNK + first;
+                    best = best.max(self.best_in_window(small, first, among, best));
                 }
             }
         }
         best
     }
 
-    fn best_in_window(&mut self, block: usize, first: usize, among: u64) -> Option<Spot> {
+    /// The best spot at some headings, if it may be better than that so far.
+    fn best_in_window(
+        &mut self,
+        block: usize,
+        first: usize,
+        among: u64,
+        so_far: Option<Spot>,
+    ) -> Option<Spot> {
         let (program, bounds) = (&self.task.programs.interval, &mut self.interval_bounds);
-        program.bound(&self.intervals, first, among, 0, bounds);
+        let least = so_far.map_or(1, |spot| spot.bound);
+        if !program.bound(&self.intervals, first, among, least, bounds) {
+            return None;
+        }
         let spot = |lane| Spot {
             bound: bounds.all[lane],
             block: Reverse(block),

@@ -22,7 +22,7 @@ pub(super) struct Object {
     verdict: &'static str,
     /// Other places that fit about as well.
     alternatives: u32,
-    /// The best place's lead, 0..=1.
+    /// The best place's probability, 0..=1; by votes alone, its lead.
     confidence: f64,
     /// Milliseconds of computing from the scan to the verdict.
     cpu_ms: f64,
@@ -61,6 +61,8 @@ struct Hypothesis {
     /// Row by row over x, y and yaw.
     covariance: [f64; 9],
     score: f64,
+    /// 0..=1; what they leave of 1 is that the robot is at none.
+    probability: f64,
     intensity: u16,
     support: u64,
     /// Where the laser's mount is known.
@@ -99,6 +101,7 @@ impl Object {
             yaw: place.map_from_laser.yaw,
             covariance: place.covariance.to_rows(),
             score: place.score,
+            probability: place.probability,
             intensity: place.intensity,
             support: place.support,
             map_from_base: laser_from_base.map(|base| place.map_from_laser.then(base)),

@@ -7,7 +7,7 @@ use engine::boundary;
 use engine::fit::{Ends, Terrain};
 use engine::grid::{Grid, GridFrame};
 use engine::localizer::{Localizer, Outcome, Prior};
-use engine::peaks::{self, PeakConfig, PeakInput, Places};
+use engine::peaks::{self, PeakConfig, PeakInput, Places, Score};
 use engine::scan::Scan;
 use map::OccupancyGrid;
 
@@ -84,8 +84,13 @@ impl World {
         };
         let outcome = found.expect("a search that nothing stops ends with an outcome");
         let input = PeakInput::of(&outcome, self.localizer.frame());
-        let ends = Ends::new(scan, self.localizer.space(), &self.beams)?;
-        let places = peaks::extract(&input, (&self.terrain, &ends), &self.peaks);
+        let places = match self.peaks.score {
+            Score::Votes => peaks::by_votes(&input, &self.peaks),
+            Score::Fit => {
+                let ends = Ends::new(scan, self.localizer.space(), &self.beams)?;
+                peaks::by_fit(&input, (&self.terrain, &ends), &self.peaks)
+            }
+        };
         Ok(Answer { outcome, places })
     }
 }

@@ -1,0 +1,186 @@
+//! The last two maps, ready for the fit of scans.
+//!
+//! Votes are cells of the map that was searched, and those on their way when
+//! the map changes are of the one before.
+
+use engine::EngineError;
+use engine::fit::Terrain;
+use engine::grid::{CellRules, GridFrame};
+use messages::MapHeader;
+
+use crate::PeakError;
+
+/// A map, ready for the fit of scans.
+#[derive(Debug, Clone)]
+pub struct Map {
+    /// Its id in messages.
+    pub map_id: u64,
+    /// Cells along x.
+    pub width: u32,
+    /// Cells along y.
+    pub height: u32,
+    /// Its grid in the map frame.
+    pub frame: GridFrame,
+    /// Distances to obstacles, by the rules for its cells.
+    pub terrain: Terrain,
+    rules: CellRules,
+    occupancy: Vec<u8>,
+}
+
+/// The newest map and the one before.
+#[derive(Debug, Clone, Default)]
+pub struct Maps {
+    /// The newest first.
+    known: Vec<Map>,
+    /// By which the last votes read their map.
+    rules: CellRules,
+}
+
+impl Map {
+    fn new(header: &MapHeader, occupancy: Vec<u8>, rules: CellRules) -> Result<Self, EngineError> {
+        let frame = GridFrame::of(header)?;
+        let sides = (header.width as usize, header.height as usize);
+        Ok(Map {
+            map_id: header.map_id,
+            width: header.width,
+            height: header.height,
+            frame,
+            terrain: Terrain::new(frame, sides, &occupancy, rules)?,
+            rules,
+            occupancy,
+        })
+    }
+
+    fn read_by(&mut self, rules: CellRules) -> Result<(), EngineError> {
+        if self.rules != rules {
+            let sides = (self.width as usize, self.height as usize);
+            self.terrain = Terrain::new(self.frame, sides, &self.occupancy, rules)?;
+            self.rules = rules;
+        }
+        Ok(())
+    }
+}
+
+impl Maps {
+    /// Takes a map; one that is refused changes nothing.
+    ///
+    /// # Errors
+    /// If the grid's sides, resolution or origin are out of range, or the
+    /// number of cells is not what the sides say.
+    pub fn hear(&mut self, header: &MapHeader, occupancy: &[u8]) -> Result<(), EngineError> {
+        let map = Map::new(header, occupancy.to_vec(), self.rules)?;
+        self.known.retain(|known| known.map_id != header.map_id);
+        self.known.truncate(1);
+        self.known.insert(0, map);
+        Ok(())
+    }
+
+    /// A map with its cells read by some rules.
+    ///
+    /// # Errors
+    /// If it is neither of the last two.
+    pub fn get(&mut self, map_id: u64, rules: CellRules) -> Result<&Map, PeakError> {
+        let mut ids = self.known.iter().map(|map| map.map_id);
+        let Some(at) = ids.position(|id| id == map_id) else {
+            return Err(PeakError::UnknownMap {
+                found: map_id,
+                known: self.names(),
+            });
+        };
+        self.rules = rules;
+        let map = &mut self.known[at];
+        map.read_by(rules)?;
+        Ok(map)
+    }
+
+    fn names(&self) -> String {
+        let known = self.known.iter();
+        let names: Vec<String> = known.map(|map| format!("{:016x}", map.map_id)).collect();
+        if names.is_empty() {
+            return "none".into();
+        }
+        names.join(", ")
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use bytemuck::Zeroable;
+    use geometry::Pose;
+    use messages::Pose2;
+
+    use super::*;
+
+    const CELLS: [u8; 30 * 20] = [0; 30 * 20];
+    const RULES: CellRules = CellRules {
+        occupied_from: 65,
+        free_to: 25,
+        unknown_blocks: false,
+    };
+
+    fn map(map_id: u64) -> MapHeader {
+        MapHeader {
+            map_id,
+            width: 30,
+            height: 20,
+            resolution_m: 0.05,
+            map_from_grid: Pose2 {
+                x: -1.0,
+                y: 2.0,
+                yaw: 0.5,
+            },
+            ..Zeroable::zeroed()
+        }
+    }
+
+    #[test]
+    fn the_last_two_maps_are_known() {
+        let mut maps = Maps::default();
+        for map_id in [1, 2, 3] {
+            maps.hear(&map(map_id), &CELLS).unwrap();
+        }
+        let found = maps.get(2, RULES).unwrap();
+        assert_eq!((found.map_id, found.width, found.height), (2, 30, 20));
+        assert_eq!(found.frame.map_from_grid, Pose::new(-1.0, 2.0, 0.5));
+        assert_eq!(maps.get(3, RULES).unwrap().map_id, 3);
+        let error = maps.get(1, RULES).unwrap_err().to_string();
+        assert!(error.contains("map 0000000000000001"), "{error}");
+        let known = "before: 0000000000000003, 0000000000000002";
+        assert!(error.ends_with(known), "{error}");
+    }
+
+    #[test]
+    fn a_map_that_is_served_again_does_not_push_out_the_one_before() {
+        let mut maps = Maps::default();
+        for map_id in [1, 2, 2] {
+            maps.hear(&map(map_id), &CELLS).unwrap();
+        }
+        assert!(maps.get(1, RULES).is_ok() && maps.get(2, RULES).is_ok());
+    }
+
+    #[test]
+    fn a_map_that_is_not_sound_changes_nothing() {
+        let mut maps = Maps::default();
+        assert!(
+            maps.get(1, RULES)
+                .unwrap_err()
+                .to_string()
+                .ends_with("none")
+        );
+        maps.hear(&map(1), &CELLS).unwrap();
+        let mut refuse = |change: fn(&mut MapHeader), expected: &str| {
+            let mut broken = map(2);
+            change(&mut broken);
+            let error = maps.hear(&broken, &CELLS).unwrap_err().to_string();
+            assert!(error.contains(expected), "{error}");
+        };
+        refuse(|map| map.width = 0, "0 x 20 cells");
+        refuse(|map| map.height = 32_768, "30 x 32768 cells");
+        refuse(|map| map.height = 21, "600 cells");
+        refuse(|map| map.resolution_m = 0.0, "0.001..=10 m");
+        refuse(|map| map.resolution_m = f64::NAN, "0.001..=10 m");
+        refuse(|map| map.map_from_grid.x = f64::INFINITY, "an origin at");
+        refuse(|map| map.map_from_grid.yaw = f64::NAN, "an origin at");
+        assert!(maps.get(1, RULES).is_ok() && maps.get(2, RULES).is_err());
+    }
+}

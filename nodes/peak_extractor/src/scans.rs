@@ -1,0 +1,85 @@
+//! The last scans, until their votes come.
+
+use std::collections::VecDeque;
+
+use engine::scan::Scan;
+use messages::{ScanHeader, Stamp};
+
+use crate::PeakError;
+
+/// Scans that are kept: far more than wait before the search at any time.
+const KEPT: usize = 64;
+
+/// The last scans.
+#[derive(Debug, Default)]
+pub struct Scans {
+    /// The newest last.
+    kept: VecDeque<(ScanHeader, Vec<f32>)>,
+}
+
+impl Scans {
+    /// Takes a scan. Room is taken from the oldest one, once there are enough.
+    pub fn hear(&mut self, header: &ScanHeader, ranges: &[f32]) {
+        let mut room = match self.kept.len() {
+            KEPT => self
+                .kept
+                .pop_front()
+                .map_or_else(Vec::new, |(_, room)| room),
+            _ => Vec::new(),
+        };
+        room.clear();
+        room.extend_from_slice(ranges);
+        self.kept.push_back((*header, room));
+    }
+
+    /// The scan with a stamp.
+    ///
+    /// # Errors
+    /// If it did not come, or too long ago.
+    pub fn get(&self, stamp: Stamp) -> Result<Scan<'_>, PeakError> {
+        let mut newest_first = self.kept.iter().rev();
+        let found = newest_first.find(|(header, _)| header.stamp == stamp);
+        let (header, ranges) = found.ok_or(PeakError::UnknownScan)?;
+        Ok(Scan {
+            angle_min: header.angle_min,
+            angle_increment: header.angle_increment,
+            range_min_m: header.range_min_m,
+            range_max_m: header.range_max_m,
+            ranges,
+        })
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use bytemuck::Zeroable;
+
+    use super::*;
+
+    fn header(counter: u64) -> ScanHeader {
+        ScanHeader {
+            stamp: Stamp {
+                counter,
+                ..Stamp::default()
+            },
+            angle_increment: 0.5,
+            ..Zeroable::zeroed()
+        }
+    }
+
+    #[test]
+    fn the_last_scans_are_found_by_their_stamp() {
+        let mut scans = Scans::default();
+        for counter in 0..=KEPT as u64 {
+            scans.hear(&header(counter), &[counter as f32]);
+        }
+        let ranges = |counter| {
+            scans
+                .get(header(counter).stamp)
+                .map(|scan| scan.ranges.to_vec())
+        };
+        assert_eq!(ranges(1).unwrap(), [1.0]);
+        assert_eq!(ranges(KEPT as u64).unwrap(), [KEPT as f32]);
+        assert!(matches!(ranges(0), Err(PeakError::UnknownScan)));
+    }
+}
