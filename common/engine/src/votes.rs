@@ -258,6 +258,7 @@ mod tests {
         let config = CollectConfig {
             floor_share: 0.5,
             max_votes: 10,
+            candidates: 0,
         };
         let set = collect(config, &[3, 0, 10, 5, 4, 7]);
         assert_eq!(levels(&set), [10, 7, 5]);
@@ -272,6 +273,7 @@ mod tests {
         let config = CollectConfig {
             floor_share: 0.0,
             max_votes: 4,
+            candidates: 0,
         };
         let set = collect(config, &[9, 8, 8, 7, 7, 6]);
         assert_eq!(levels(&set), [9, 8, 8]);
@@ -286,6 +288,7 @@ mod tests {
         let config = CollectConfig {
             floor_share: 1.0,
             max_votes: 2,
+            candidates: 0,
         };
         let set = collect(config, &[5; 9]);
         assert_eq!(
@@ -293,6 +296,28 @@ mod tests {
             [0, 1]
         );
         assert_eq!((set.best, set.certified_floor, set.truncated), (5, 6, true));
+    }
+
+    #[test]
+    fn candidates_are_added_below_the_floor_while_distinct_ones_are_wanted() {
+        let space = Space::new(360, 0.1, 100, 100).unwrap();
+        let vote = |x, heading, intensity| Vote {
+            x,
+            y: 0,
+            heading,
+            intensity,
+        };
+        let config = CollectConfig {
+            floor_share: 0.9,
+            ..CollectConfig::default()
+        };
+        let mut set = collect(config, &[10, 9, 3]);
+        // Near the best; far; near that; turned by more than 6.5 degrees; too many.
+        let others = [(2, 3, 8), (9, 0, 5), (9, 6, 4), (0, 353, 7), (50, 0, 2)];
+        let others = others.map(|(x, heading, intensity)| vote(x, heading, intensity));
+        set.add_candidates(others.to_vec(), &space, 3);
+        assert_eq!(levels(&set), [10, 9, 7, 5]);
+        assert_eq!((set.floor, set.certified_floor), (5, 9));
     }
 
     #[test]
@@ -307,7 +332,7 @@ mod tests {
         fn the_order_of_taking_does_not_matter(
             intensities in vec(0u16..12, 1..80), max_votes in 1u32..30, floor_share in 0.0..=1.0f64,
         ) {
-            let config = CollectConfig { floor_share, max_votes };
+            let config = CollectConfig { floor_share, max_votes, candidates: 0 };
             let forward = collect(config, &intensities);
             let mut backward = Collector::new(config);
             for (x, &intensity) in intensities.iter().enumerate().rev() {

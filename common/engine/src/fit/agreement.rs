@@ -77,12 +77,9 @@ impl Terrain {
                 .distance(x, y)
                 .map_or(f64::INFINITY, |(distance, _)| distance / sigma);
             let near = (-0.5 * off * off).exp();
-            let way = self.look(
-                (pose.x, pose.y),
-                (dx, dy),
-                end.reading - THROUGH_SIGMAS * sigma,
-            );
-            let is_through = way.occupied.is_some();
+            let way = self.look((pose.x, pose.y), (dx, dy), end.reading);
+            let longest = end.reading - THROUGH_SIGMAS * sigma;
+            let is_through = way.occupied.is_some_and(|occupied| occupied < longest);
             let is_hit = off <= HIT_SIGMAS;
             let (value, class) = match (way.unknown, is_through) {
                 (Some(_), false) => (near.max(config.unknown_score), BeamClass::Unknown),
@@ -100,5 +97,90 @@ impl Terrain {
                 },
             );
         }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::super::drawn::terrain;
+    use super::*;
+    use crate::fit::ends::End;
+
+    /// A wall ahead at 6 cells, unknown space to the left, open to the right.
+    const MAP: [&str; 9] = [
+        "...........",
+        "...........",
+        ".....??....",
+        "...........",
+        ".......#..#",
+        "...........",
+        "...........",
+        "...........",
+        "...........",
+    ];
+    const POSE: GridPose = GridPose {
+        x: 1.5,
+        y: 4.5,
+        heading: 0.0,
+    };
+
+    fn ends(readings: &[(f64, f64)]) -> Ends {
+        let end = |&(degrees, reading): &(f64, f64)| {
+            let (sin, cos) = degrees.to_radians().sin_cos();
+            End {
+                towards: (cos, sin),
+                reading,
+                weight: 1.0,
+            }
+        };
+        Ends {
+            ends: readings.iter().map(end).collect(),
+            weight: readings.len() as f64,
+        }
+    }
+
+    /// One cell is 0.1 m: σ is one cell.
+    fn config() -> FitConfig {
+        FitConfig {
+            fit_sigma_cells: 1.0,
+            ..FitConfig::default()
+        }
+    }
+
+    #[test]
+    fn each_beam_is_classed_by_where_it_ends() {
+        let scan = ends(&[
+            (0.0, 6.0),
+            (0.0, 2.0),
+            (0.0, 9.0),
+            (22.0, 6.0),
+            (-30.0, 5.0),
+        ]);
+        let classes = terrain(&MAP).classes(&scan, POSE, &config());
+        let expected = [
+            BeamClass::Hit,
+            BeamClass::Short,
+            // Through the first obstacle to the second is through all the same.
+            BeamClass::Through,
+            BeamClass::Unknown,
+            BeamClass::Short,
+        ];
+        assert_eq!(classes, expected);
+    }
+
+    #[test]
+    fn the_score_is_what_the_ends_are_worth() {
+        let map = terrain(&MAP);
+        let score = |readings: &[(f64, f64)]| map.agreement(&ends(readings), POSE, &config());
+        let on_the_wall = score(&[(0.0, 6.0)]);
+        assert_eq!((on_the_wall.score, on_the_wall.hits), (1.0, 1.0));
+        // One σ before the wall, and in the open.
+        assert!((score(&[(0.0, 5.0)]).score - (-0.5f64).exp()).abs() < 1e-12);
+        assert!(score(&[(0.0, 1.0)]).score < 1e-5);
+        // At an obstacle, but through another.
+        assert!((score(&[(0.0, 9.0)]).score - 0.85).abs() < 1e-12);
+        assert_eq!(score(&[(22.0, 6.0)]).score, 0.3);
+        let both = score(&[(0.0, 6.0), (22.0, 6.0)]);
+        assert!((both.score - 0.65).abs() < 1e-12 && both.hits == 0.5);
     }
 }

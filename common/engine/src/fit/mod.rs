@@ -16,6 +16,8 @@
 mod agreement;
 mod config;
 mod distance;
+#[cfg(test)]
+mod drawn;
 mod ends;
 mod refine;
 mod terrain;

@@ -144,3 +144,125 @@ impl Sums {
         damped.cholesky().map(|factor| -factor.solve(&slope))
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::super::drawn::terrain;
+    use super::*;
+    use crate::fit::ends::End;
+
+    /// An L-shaped room, 20 cells wide.
+    const ROOM: [&str; 12] = [
+        "####################",
+        "#..................#",
+        "#..................#",
+        "#..................#",
+        "#..................#",
+        "#..................#",
+        "#..................#",
+        "#.......############",
+        "#.......#...........",
+        "#.......#...........",
+        "#.......#...........",
+        "#########...........",
+    ];
+    const TRUTH: GridPose = GridPose {
+        x: 5.25,
+        y: 7.75,
+        heading: 0.3,
+    };
+
+    /// What a laser at the pose reads: the way to the middle of the walls.
+    fn scan(rows: &[&str], pose: GridPose) -> Ends {
+        let map = terrain(rows);
+        let end = |beam: i32| {
+            let angle = f64::from(beam).to_radians();
+            let (dy, dx) = (pose.heading + angle).sin_cos();
+            let is_at_wall = |reading: &f64| {
+                let at = map.distance(pose.x + reading * dx, pose.y + reading * dy);
+                at.is_some_and(|(distance, _)| distance < 0.05)
+            };
+            let reading = (0..4000)
+                .map(|step| 0.01 * f64::from(step))
+                .find(is_at_wall)?;
+            let (sin, cos) = angle.sin_cos();
+            Some(End {
+                towards: (cos, sin),
+                reading,
+                weight: 1.0,
+            })
+        };
+        let ends: Vec<End> = (-180..180).step_by(3).filter_map(end).collect();
+        Ends {
+            weight: ends.len() as f64,
+            ends,
+        }
+    }
+
+    #[test]
+    fn a_pose_nearby_is_moved_to_where_the_scan_was_taken() {
+        let (map, ends) = (terrain(&ROOM), scan(&ROOM, TRUTH));
+        for (x, y, turn) in [(0.0, 0.0, 0.0), (0.7, -0.6, 0.03), (-0.8, 0.5, -0.05)] {
+            let start = GridPose {
+                x: TRUTH.x + x,
+                y: TRUTH.y + y,
+                heading: TRUTH.heading + turn,
+            };
+            let refined = map.refine(&ends, start, false, &FitConfig::default());
+            let off = (refined.pose.x - TRUTH.x).hypot(refined.pose.y - TRUTH.y);
+            // Readings end up to 0.05 cells before the middle of a wall.
+            assert!(off < 0.1, "{off} cells from {start:?}");
+            assert!((refined.pose.heading - TRUTH.heading).abs() < 0.01);
+            assert!(refined.variance < 0.05 && refined.weight > 0.9 * ends.weight);
+        }
+    }
+
+    #[test]
+    fn a_known_heading_is_left_alone() {
+        let (map, ends) = (terrain(&ROOM), scan(&ROOM, TRUTH));
+        let start = GridPose {
+            x: TRUTH.x + 0.5,
+            ..TRUTH
+        };
+        let refined = map.refine(&ends, start, true, &FitConfig::default());
+        assert_eq!(refined.pose.heading, TRUTH.heading);
+        assert!((refined.pose.x - TRUTH.x).abs() < 0.1);
+    }
+
+    #[test]
+    fn what_no_beam_tells_stays_as_it_was() {
+        const CORRIDOR: [&str; 5] = [
+            "##############################",
+            "..............................",
+            "..............................",
+            "..............................",
+            "##############################",
+        ];
+        let pose = GridPose {
+            x: 15.0,
+            y: 2.5,
+            heading: 0.0,
+        };
+        let (map, ends) = (terrain(&CORRIDOR), scan(&CORRIDOR, pose));
+        let start = GridPose {
+            x: 13.0,
+            y: 2.9,
+            ..pose
+        };
+        let refined = map.refine(&ends, start, false, &FitConfig::default());
+        // Ends at the corridor's far ends say a little about x.
+        assert!((refined.pose.x - 13.0).abs() < 0.5, "{:?}", refined.pose);
+        assert!((refined.pose.y - 2.5).abs() < 0.1);
+        assert!(refined.curvature[(0, 0)] < 0.05 * refined.curvature[(1, 1)]);
+    }
+
+    #[test]
+    fn a_scan_without_beams_moves_nothing() {
+        let none = Ends {
+            ends: Vec::new(),
+            weight: 0.0,
+        };
+        let refined = terrain(&ROOM).refine(&none, TRUTH, false, &FitConfig::default());
+        assert_eq!((refined.pose, refined.weight), (TRUTH, 0.0));
+    }
+}

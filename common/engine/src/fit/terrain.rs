@@ -65,22 +65,22 @@ impl Terrain {
     }
 
     /// Distance of a point to the nearest occupied cell, and how it grows along
-    /// x and y: bilinear between the centres of cells. `None` off the map.
+    /// x and y: bilinear between the centres of cells, and beyond the outermost
+    /// as at the nearest point between them. `None` off the map.
     #[inline(always)]
     pub(super) fn distance(&self, x: f64, y: f64) -> Option<(f64, [f64; 2])> {
-        let (x, y) = (x - 0.5, y - 0.5);
-        if !(x >= 0.0 && y >= 0.0) {
+        let (right, top) = (self.width - 1, self.height - 1);
+        if !(x >= 0.0 && y >= 0.0 && x <= self.width as f64 && y <= self.height as f64) {
             return None;
         }
-        let (column, row) = (x as usize, y as usize);
-        if column + 1 >= self.width || row + 1 >= self.height {
-            return None;
-        }
-        let at = row * self.width + column;
-        let corner = |i: usize| f64::from(self.to_occupied[i]);
-        let (a, b) = (corner(at), corner(at + 1));
-        let (c, d) = (corner(at + self.width), corner(at + self.width + 1));
-        let (u, v) = (x - column as f64, y - row as f64);
+        let (x, y) = ((x - 0.5).max(0.0), (y - 0.5).max(0.0));
+        let (column, row) = ((x as usize).min(right), (y as usize).min(top));
+        let (u, v) = ((x - column as f64).min(1.0), (y - row as f64).min(1.0));
+        let (low_row, high_row) = (row * self.width, (row + 1).min(top) * self.width);
+        let next = (column + 1).min(right);
+        let corner = |row: usize, column: usize| f64::from(self.to_occupied[row + column]);
+        let (a, b) = (corner(low_row, column), corner(low_row, next));
+        let (c, d) = (corner(high_row, column), corner(high_row, next));
         let (low, high) = (a + u * (b - a), c + u * (d - c));
         let along_x = (b - a) + v * ((d - c) - (b - a));
         Some((low + v * (high - low), [along_x, high - low]))
@@ -120,5 +120,71 @@ impl Terrain {
     fn index(&self, x: f64, y: f64) -> Option<usize> {
         let inside = x >= 0.0 && y >= 0.0 && x < self.width as f64 && y < self.height as f64;
         inside.then(|| y as usize * self.width + x as usize)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use geometry::Pose;
+    use proptest::prelude::*;
+
+    use super::*;
+    use crate::fit::drawn::terrain;
+
+    #[test]
+    fn distance_is_bilinear_between_the_centres_of_cells() {
+        let terrain = terrain(&["....", "#...", "...."]);
+        let at = |x, y| terrain.distance(x, y);
+        // Distances are kept in 32 bits.
+        let diagonal = f64::from(2f32.sqrt());
+        assert_eq!(at(1.5, 1.5), Some((1.0, [1.0, diagonal - 1.0])));
+        let (distance, [along_x, _]) = at(1.0, 1.5).unwrap();
+        assert_eq!((distance, along_x), (0.5, 1.0));
+        assert_eq!(at(4.0, 1.5).unwrap().0, 3.0);
+        for (x, y) in [(-0.1, 1.5), (4.1, 1.5), (1.5, 3.1), (f64::NAN, 1.0)] {
+            assert_eq!(at(x, y), None, "{x} {y}");
+        }
+    }
+
+    #[test]
+    fn a_ray_meets_the_first_obstacle_and_what_is_unknown_before_it() {
+        let terrain = terrain(&["......?..#..#"]);
+        let from = |x, limit| terrain.look((x, 0.5), (1.0, 0.0), limit);
+        let way = from(0.5, 20.0);
+        // It steps by half a cell at most where it matters.
+        assert!((8.5..9.0).contains(&way.occupied.unwrap()), "{way:?}");
+        assert!((5.5..6.0).contains(&way.unknown.unwrap()), "{way:?}");
+        assert_eq!(from(7.5, 20.0).unknown, None);
+        assert_eq!(from(0.5, 8.0).occupied, None, "beyond the limit");
+        let back = terrain.look((8.5, 0.5), (-1.0, 0.0), 20.0);
+        assert_eq!(back.occupied, None, "it leaves the map");
+    }
+
+    proptest! {
+        #[test]
+        fn a_long_step_passes_no_obstacle(
+            grid in crate::testing::any_grid(), start in (0.0..40.0f64, 0.0..40.0f64), angle in 0.0..7.0f64,
+        ) {
+            let occupancy: Vec<u8> = grid.cells().iter().map(|cell| match cell {
+                Cell::Occupied => 100,
+                Cell::Open => 0,
+                Cell::Blocked => messages::UNKNOWN,
+            }).collect();
+            let frame = GridFrame { resolution_m: 0.1, map_from_grid: Pose::IDENTITY };
+            let sides = (grid.width(), grid.height());
+            let terrain = Terrain::new(frame, sides, &occupancy, CellRules::default()).unwrap();
+            let (dy, dx) = angle.sin_cos();
+            let way = terrain.look(start, (dx, dy), 100.0);
+            // Steps of a tenth of a cell, until the way ends.
+            for step in 0..1000 {
+                let gone = 0.1 * f64::from(step);
+                let Some(at) = terrain.index(start.0 + gone * dx, start.1 + gone * dy) else { break };
+                // The shortest step enters a cell late, but passes none.
+                if way.occupied.is_some_and(|end| gone > end - LEAST_STEP) { break }
+                let (x, y) = (start.0 + gone * dx, start.1 + gone * dy);
+                let inner = [x, y].iter().all(|c| (0.36..0.64).contains(&c.fract()));
+                prop_assert!(!(inner && terrain.to_occupied[at] == 0.0), "{:?} at {}", way, gone);
+            }
+        }
     }
 }

@@ -27,7 +27,7 @@ fn input(votes: &[Vote]) -> PeakInput<'_> {
 
 #[test]
 fn no_votes_are_no_scan() {
-    let places = extract(&input(&[]), &PeakConfig::default());
+    let places = by_votes(&input(&[]), &PeakConfig::default());
     assert_eq!((places.verdict, places.places.len()), (Verdict::NoScan, 0));
 }
 
@@ -39,7 +39,7 @@ fn votes_close_by_are_one_place_refined_to_its_centre() {
         vote(10, 20, 1, 99),
         vote(11, 20, 359, 99),
     ];
-    let places = extract(&input(&votes), &PeakConfig::default());
+    let places = by_votes(&input(&votes), &PeakConfig::default());
     assert_eq!(
         (places.verdict, places.places.len(), places.alternatives),
         (Verdict::Unique, 1, 0)
@@ -60,7 +60,7 @@ fn votes_close_by_are_one_place_refined_to_its_centre() {
 #[test]
 fn the_covariance_lies_as_the_peak_does() {
     let votes: Vec<Vote> = (8..=12).map(|x| vote(x, 20, 0, 100)).collect();
-    let places = extract(&input(&votes), &PeakConfig::default());
+    let places = by_votes(&input(&votes), &PeakConfig::default());
     let ellipse = places.places[0].covariance.ellipse();
     // Five cells in a row have variance 2, and rounding adds 1/12.
     assert!((ellipse.major_m - 0.1 * (2.0f64 + 1.0 / 12.0).sqrt()).abs() < 1e-9);
@@ -79,7 +79,7 @@ fn equal_places_are_ambiguous_and_weak_ones_fit_poorly() {
         vote(10, 20, 180, 93),
         vote(70, 70, 0, 86),
     ];
-    let places = extract(&input(&votes), &PeakConfig::default());
+    let places = by_votes(&input(&votes), &PeakConfig::default());
     assert_eq!(
         (places.verdict, places.alternatives, places.places.len()),
         (Verdict::Ambiguous, 2, 4)
@@ -90,7 +90,7 @@ fn equal_places_are_ambiguous_and_weak_ones_fit_poorly() {
         ..input(&votes)
     };
     assert_eq!(
-        extract(&weak, &PeakConfig::default()).verdict,
+        by_votes(&weak, &PeakConfig::default()).verdict,
         Verdict::PoorFit
     );
 }
@@ -102,7 +102,7 @@ fn a_known_heading_is_kept_as_given() {
         known_heading: Some(0.123),
         ..input(&votes)
     };
-    let best = extract(&known, &PeakConfig::default()).places[0];
+    let best = by_votes(&known, &PeakConfig::default()).places[0];
     assert_eq!(best.map_from_laser.yaw, 0.123);
     assert_eq!(best.covariance.0[(2, 2)], 0.0);
 }

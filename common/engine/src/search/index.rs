@@ -206,7 +206,7 @@ mod tests {
             floor_share in 0.5..=1.0f64, max_votes in 1u32..400,
         ) {
             let space = space_of(&grid, headings * 8);
-            let config = CollectConfig { floor_share, max_votes };
+            let config = CollectConfig { floor_share, max_votes, candidates: 0 };
             check(&grid, (&scan.program(&space), &space), config)?;
         }
 
@@ -215,8 +215,38 @@ mod tests {
             grid in any_long_grid(), scan in any_scan(), floor_share in 0.5..=1.0f64,
         ) {
             let space = space_of(&grid, 16);
-            let config = CollectConfig { floor_share, ..CollectConfig::default() };
+            let config = CollectConfig { floor_share, candidates: 0, ..CollectConfig::default() };
             check(&grid, (&scan.stretched(18.0).program(&space), &space), config)?;
+        }
+
+        #[test]
+        fn candidates_are_poses_below_the_floor_and_the_same_however_it_is_done(
+            grid in any_grid(), scan in any_scan(), headings in 1u32..8, candidates in 1u32..20,
+        ) {
+            let space = space_of(&grid, headings * 8);
+            let program = scan.program(&space);
+            let certain = CollectConfig { candidates: 0, ..CollectConfig::default() };
+            let config = CollectConfig { candidates, ..certain };
+            let index = SearchIndex::new(&grid, &space);
+            let plain = plain_votes(&grid, &program, &space, certain);
+            let mut first = None;
+            for instruction_set in InstructionSet::available() {
+                for threads in 1..3 {
+                    let how = (instruction_set, threads);
+                    let found = index.search_with(how, &grid, (&program, &space), config, &|| false).unwrap();
+                    let found = VoteSet { poses_evaluated: 0, ..found };
+                    let (above, below) = found.votes.split_at(plain.votes.len());
+                    prop_assert_eq!(above, &plain.votes);
+                    prop_assert!(below.len() <= candidates as usize);
+                    for vote in below {
+                        let (x, y) = (i64::from(vote.x), i64::from(vote.y));
+                        let intensity = reference::intensity(&grid, &program, &space, x, y, vote.heading.into());
+                        prop_assert_eq!(vote.intensity, intensity);
+                        prop_assert!(grid.is_open(x, y) && intensity < found.certified_floor && intensity > 0);
+                    }
+                    prop_assert_eq!(first.get_or_insert(found.clone()), &found, "{:?}", how);
+                }
+            }
         }
 
         #[test]
@@ -225,7 +255,7 @@ mod tests {
         ) {
             let space = space_of(&grid, 64);
             let program = scan.program(&space);
-            let (best, config) = (InstructionSet::best(), CollectConfig::default());
+            let (best, config) = (InstructionSet::best(), CollectConfig { candidates: 0, ..CollectConfig::default() });
             let index = SearchIndex::new(&grid, &space);
             let task = Task::new(best, &index, &grid, (&program, &space), config);
             let task = task.with_brute_force(Cost(0.0));
