@@ -2,7 +2,8 @@
 
 use bytemuck::Zeroable;
 use engine::EngineError;
-use engine::grid::Grid;
+use engine::beams::BeamConfig;
+use engine::grid::{CellRules, Grid};
 use engine::localizer::{Localizer, Outcome};
 use engine::scan::Scan;
 use engine::search::BlockBounds;
@@ -76,8 +77,13 @@ pub fn answered(
     (outcome, intensities): Reply,
     engine_ns: u64,
 ) -> Answer {
+    let terms = Terms {
+        map_id: map.map_id,
+        rules: map.rules,
+        beams: map.localizer.config().votes.beams,
+    };
     Answer {
-        votes: votes_header(scan, map, &outcome, engine_ns),
+        votes: votes_header(scan, &terms, &outcome, engine_ns),
         poses: outcome.found.votes,
         intensities,
     }
@@ -99,13 +105,20 @@ pub fn image(answer: Answer, localizer: &Localizer, scan: &Scan<'_>) -> Result<I
     }
 }
 
+/// Which map was searched, and how it and the scan were read.
+struct Terms {
+    map_id: u64,
+    rules: CellRules,
+    beams: BeamConfig,
+}
+
 fn votes_header(
     scan: &ScanHeader,
-    map: &PreparedMap,
+    terms: &Terms,
     outcome: &Outcome,
     engine_ns: u64,
 ) -> VotesHeader {
-    let (found, beams) = (&outcome.found, map.localizer.config().votes.beams);
+    let (found, beams, rules) = (&outcome.found, &terms.beams, &terms.rules);
     let code = if found.best > 0 {
         SearchOutcome::Found
     } else {
@@ -126,11 +139,11 @@ fn votes_header(
         heading_known: outcome.known_heading.is_some().into(),
         known_heading: outcome.known_heading.unwrap_or(0.0),
         bearing_rounding: outcome.bearing_rounding,
-        occupied_from: map.rules.occupied_from.into(),
-        free_to: map.rules.free_to.into(),
+        occupied_from: rules.occupied_from.into(),
+        free_to: rules.free_to.into(),
         max_beams: beams.max_beams.into(),
         beam_arc_m: beams.beam_arc_m,
-        ..empty(scan, map.map_id, outcome.headings)
+        ..empty(scan, terms.map_id, outcome.headings)
     }
 }
 
@@ -187,7 +200,6 @@ fn bounds_header(votes: &VotesHeader, blocks: &BlockBounds) -> FieldHeader {
 
 #[cfg(test)]
 mod tests {
-    use engine::grid::CellRules;
     use engine::votes::VoteSet;
     use messages::{Pose2, Stamp};
 
@@ -216,6 +228,19 @@ mod tests {
         }
     }
 
+    const TERMS: Terms = Terms {
+        map_id: 77,
+        rules: CellRules {
+            occupied_from: 60,
+            free_to: 20,
+            unknown_blocks: false,
+        },
+        beams: BeamConfig {
+            max_beams: 90,
+            beam_arc_m: 0.5,
+        },
+    };
+
     fn outcome(best: u16) -> Outcome {
         let vote = Vote {
             x: 1,
@@ -243,7 +268,7 @@ mod tests {
 
     #[test]
     fn an_answer_carries_all_that_the_engine_said() {
-        let votes = votes_header(&header(), 77, &outcome(100), 1234);
+        let votes = votes_header(&header(), &TERMS, &outcome(100), 1234);
         let expected = VotesHeader {
             stamp: header().stamp,
             map_id: 77,
@@ -264,13 +289,17 @@ mod tests {
             bearing_rounding: 0.001,
             base_from_laser: MOUNT,
             mount_known: 1,
+            occupied_from: 60,
+            free_to: 20,
+            max_beams: 90,
+            beam_arc_m: 0.5,
         };
         assert_eq!(votes, expected);
         let known = Outcome {
             known_heading: Some(0.25),
             ..outcome(100)
         };
-        let votes = votes_header(&header(), 77, &known, 1234);
+        let votes = votes_header(&header(), &TERMS, &known, 1234);
         assert_eq!((votes.heading_known, votes.known_heading), (1, 0.25));
     }
 
@@ -280,7 +309,7 @@ mod tests {
             known_heading: Some(0.25),
             ..outcome(100)
         };
-        let votes = votes_header(&header(), 77, &known, 1234);
+        let votes = votes_header(&header(), &TERMS, &known, 1234);
         let grid = Grid::new(3, 2, &[0; 6], CellRules::default()).unwrap();
         let expected = FieldHeader {
             stamp: header().stamp,
@@ -298,7 +327,7 @@ mod tests {
 
     #[test]
     fn the_image_of_bounds_has_a_pixel_for_each_block() {
-        let votes = votes_header(&header(), 77, &outcome(100), 1234);
+        let votes = votes_header(&header(), &TERMS, &outcome(100), 1234);
         let blocks = BlockBounds {
             side: 16,
             columns: 3,
@@ -320,7 +349,7 @@ mod tests {
 
     #[test]
     fn a_scan_that_nothing_explains_has_no_votes() {
-        let votes = votes_header(&header(), 77, &outcome(0), 1234);
+        let votes = votes_header(&header(), &TERMS, &outcome(0), 1234);
         assert_eq!(votes.outcome, SearchOutcome::NoVotes as u32);
         assert_eq!((votes.total, votes.best, votes.beams_used), (0, 0, 11));
     }

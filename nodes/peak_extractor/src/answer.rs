@@ -112,13 +112,13 @@ fn hypothesis(place: &Place, laser_from_base: Pose) -> Hypothesis {
 mod tests {
     use std::f64::consts::FRAC_PI_2;
 
-    use messages::{MapHeader, Pose2, SearchOutcome, Stamp};
+    use messages::{MapHeader, Pose2, ScanHeader, SearchOutcome, Stamp};
 
     use super::*;
 
     /// Cells of a metre, turned by a quarter: grid x is map y, grid y is -x.
-    fn geometries() -> Geometries {
-        let mut geometries = Geometries::default();
+    fn maps() -> Maps {
+        let mut maps = Maps::default();
         let map = MapHeader {
             map_id: 7,
             width: 30,
@@ -131,8 +131,8 @@ mod tests {
             },
             ..Zeroable::zeroed()
         };
-        geometries.hear(&map).unwrap();
-        geometries
+        maps.hear(&map, &[0; 30 * 20]).unwrap();
+        maps
     }
 
     fn header() -> VotesHeader {
@@ -155,6 +155,10 @@ mod tests {
                 yaw: 0.0,
             },
             mount_known: 1,
+            occupied_from: 65,
+            free_to: 25,
+            max_beams: 180,
+            beam_arc_m: 0.2,
             ..Zeroable::zeroed()
         }
     }
@@ -176,7 +180,11 @@ mod tests {
     ];
 
     fn extract(header: &VotesHeader) -> Answer {
-        answer(header, &VOTES, &geometries(), &PeakConfig::default()).unwrap()
+        let by_votes = PeakConfig {
+            score: Score::Votes,
+            ..PeakConfig::default()
+        };
+        answer(header, &VOTES, (&mut maps(), &Scans::default()), &by_votes).unwrap()
     }
 
     #[test]
@@ -231,6 +239,27 @@ mod tests {
     }
 
     #[test]
+    fn the_fit_needs_the_scan_of_the_votes() {
+        let mut scans = Scans::default();
+        let config = PeakConfig::default();
+        let unknown = answer(&header(), &VOTES, (&mut maps(), &scans), &config);
+        assert!(matches!(unknown, Err(PeakError::UnknownScan)));
+        let scan = ScanHeader {
+            stamp: header().stamp,
+            angle_increment: 0.1,
+            range_max_m: 30.0,
+            ..Zeroable::zeroed()
+        };
+        scans.hear(&scan, &[1.0, 2.0]);
+        let said = answer(&header(), &VOTES, (&mut maps(), &scans), &config).unwrap();
+        // The map is empty, so that nothing fits.
+        assert_eq!(said.header.verdict, Verdict::PoorFit as u32);
+        let hypotheses: Vec<Hypothesis> = said.hypotheses().collect();
+        assert_eq!((hypotheses.len(), hypotheses[0].score), (2, 0.0));
+        assert!(hypotheses[0].probability < 0.01, "{hypotheses:?}");
+    }
+
+    #[test]
     fn scans_without_votes_have_no_hypotheses() {
         for outcome in [SearchOutcome::NoVotes, SearchOutcome::Refused] {
             let empty = VotesHeader {
@@ -238,7 +267,8 @@ mod tests {
                 best: 0,
                 ..header()
             };
-            let said = answer(&empty, &[], &geometries(), &PeakConfig::default()).unwrap();
+            let known = (&mut maps(), &Scans::default());
+            let said = answer(&empty, &[], known, &PeakConfig::default()).unwrap();
             assert_eq!(said, nothing(&empty));
             assert_eq!(said.header.verdict, Verdict::NoScan as u32);
             assert_eq!(

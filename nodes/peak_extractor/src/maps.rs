@@ -176,7 +176,7 @@ mod tests {
         };
         refuse(|map| map.width = 0, "0 x 20 cells");
         refuse(|map| map.height = 32_768, "30 x 32768 cells");
-        refuse(|map| map.height = 21, "600 cells");
+        refuse(|map| map.height = 21, "600 occupancies instead of 630");
         refuse(|map| map.resolution_m = 0.0, "0.001..=10 m");
         refuse(|map| map.resolution_m = f64::NAN, "0.001..=10 m");
         refuse(|map| map.map_from_grid.x = f64::INFINITY, "an origin at");

@@ -8,17 +8,19 @@ use std::cell::Cell;
 use std::f64::consts::PI;
 
 use bytemuck::Zeroable;
+use engine::beams::BeamConfig;
 use engine::boundary;
+use engine::fit::{Ends, Terrain};
 use engine::grid::{CellRules, Grid, GridFrame};
 use engine::localizer::{Localizer, LocalizerConfig, Outcome, Prior};
-use engine::peaks::{PeakConfig, PeakInput, extract};
+use engine::peaks::{PeakConfig, PeakInput, Places, by_fit};
 use engine::reference;
 use engine::scan::Scan;
 use engine::space::Space;
 use geometry::Pose;
 use messages::{
-    HypothesesHeader, Hypothesis, MapHeader, NodeState, Pose2, SearchOutcome, Stamp, Verdict, Vote,
-    VotesHeader, topic,
+    HypothesesHeader, Hypothesis, MapHeader, NodeState, Pose2, ScanHeader, SearchOutcome, Stamp,
+    Verdict, Vote, VotesHeader, topic,
 };
 use transport::testing::{Isolated, NodeProcess, wait_for, wait_for_health};
 use transport::{Graph, Publisher, Subscriber, monotonic_ns};
@@ -45,15 +47,31 @@ const MOUNT: Pose2 = Pose2 {
     yaw: 0.125,
 };
 
-/// What the engine says about a scan of the room from the given pose.
-fn searched(x: i64, y: i64, heading: usize) -> Outcome {
-    let cells: Vec<u8> = ROOM
-        .iter()
-        .rev()
-        .flat_map(|row| row.bytes())
-        .map(|cell| 100 * u8::from(cell == b'#'))
-        .collect();
-    let grid = Grid::new(16, 9, &cells, CellRules::default()).unwrap();
+fn cells() -> Vec<u8> {
+    let cells = ROOM.iter().rev().flat_map(|row| row.bytes());
+    cells.map(|cell| 100 * u8::from(cell == b'#')).collect()
+}
+
+/// A scan of the room and what the engine says about it.
+struct Searched {
+    ranges: Vec<f32>,
+    outcome: Outcome,
+}
+
+/// The scan with one beam a degree.
+fn scan(ranges: &[f32]) -> Scan<'_> {
+    Scan {
+        angle_min: -PI,
+        angle_increment: 1f64.to_radians(),
+        range_min_m: 0.0,
+        range_max_m: 30.0,
+        ranges,
+    }
+}
+
+/// Scans the room from the given pose.
+fn searched(x: i64, y: i64, heading: usize) -> Searched {
+    let grid = Grid::new(16, 9, &cells(), CellRules::default()).unwrap();
     let space = Space::new(360, FRAME.resolution_m, 16, 9).unwrap();
     let beams = (0..360).map(|beam| {
         let direction = space.directions.get(heading + 180 + beam);
@@ -62,23 +80,30 @@ fn searched(x: i64, y: i64, heading: usize) -> Outcome {
         })
     });
     let ranges: Vec<f32> = beams.collect();
-    let scan = Scan {
-        angle_min: -PI,
-        angle_increment: 1f64.to_radians(),
-        range_min_m: 0.0,
-        range_max_m: 30.0,
-        ranges: &ranges,
-    };
     let boundary = boundary::extract(&grid);
     let config = LocalizerConfig::default();
     let localizer = Localizer::new(FRAME, grid, &boundary, config, Prior::None).unwrap();
-    localizer.search(&scan, &|| false).unwrap().unwrap()
+    let outcome = localizer.search(&scan(&ranges), &|| false);
+    Searched {
+        outcome: outcome.unwrap().unwrap(),
+        ranges,
+    }
+}
+
+/// What the engine makes of it on a map in a frame.
+fn expected(searched: &Searched, frame: GridFrame) -> Places {
+    let terrain = Terrain::new(frame, (16, 9), &cells(), CellRules::default()).unwrap();
+    let space = Space::new(360, frame.resolution_m, 16, 9).unwrap();
+    let ends = Ends::new(&scan(&searched.ranges), &space, &BeamConfig::default()).unwrap();
+    let input = PeakInput::of(&searched.outcome, frame);
+    by_fit(&input, (&terrain, &ends), &PeakConfig::default())
 }
 
 /// The node's neighbours.
 struct World {
     graph: Graph,
     maps: Publisher<topic::Map>,
+    scans: Publisher<topic::Scan>,
     votes: Publisher<topic::Votes>,
     hypotheses: Subscriber<topic::Hypotheses>,
     health: Subscriber<topic::Health>,
@@ -90,6 +115,7 @@ impl World {
         let graph = isolated.join("test");
         World {
             maps: graph.publisher().unwrap(),
+            scans: graph.publisher().unwrap(),
             votes: graph.publisher().unwrap(),
             hypotheses: graph.subscriber().unwrap(),
             health: graph.subscriber().unwrap(),
@@ -112,18 +138,35 @@ impl World {
             map_from_grid: FRAME.map_from_grid.into(),
             ..Zeroable::zeroed()
         };
+        loan.items_mut().copy_from_slice(&cells());
         loan.send().unwrap();
     }
 
-    /// Sends votes and waits for the hypotheses; fails if those of other votes
-    /// come.
-    fn ask(&self, header: VotesHeader, votes: &[Vote]) -> (HypothesesHeader, Vec<Hypothesis>) {
+    /// Sends a scan and its votes and waits for the hypotheses; fails if those of
+    /// other votes come.
+    fn ask(
+        &self,
+        header: VotesHeader,
+        ranges: &[f32],
+        votes: &[Vote],
+    ) -> (HypothesesHeader, Vec<Hypothesis>) {
         let counter = self.counter.replace(self.counter.get() + 1);
         let stamp = Stamp {
             measured_ns: 17,
             entered_ns: monotonic_ns(),
             counter,
         };
+        let scan = scan(ranges);
+        let mut loan = self.scans.loan(ranges.len()).unwrap();
+        *loan.header_mut() = ScanHeader {
+            stamp,
+            angle_min: scan.angle_min,
+            angle_increment: scan.angle_increment,
+            range_max_m: scan.range_max_m,
+            ..Zeroable::zeroed()
+        };
+        loan.items_mut().copy_from_slice(ranges);
+        loan.send().unwrap();
         let mut loan = self.votes.loan(votes.len()).unwrap();
         *loan.header_mut() = VotesHeader { stamp, ..header };
         loan.items_mut().copy_from_slice(votes);
@@ -154,6 +197,10 @@ fn header(map_id: u64, outcome: &Outcome) -> VotesHeader {
         highest_possible: outcome.highest_possible,
         base_from_laser: MOUNT,
         mount_known: 1,
+        occupied_from: 65,
+        free_to: 25,
+        max_beams: 180,
+        beam_arc_m: 0.2,
         ..Zeroable::zeroed()
     }
 }
@@ -166,18 +213,18 @@ fn hypotheses_are_those_of_the_engine() {
     let node = world.start(&[]);
     world.wait_until(NodeState::Ready);
     for (x, y, heading) in [(3, 3, 40), (12, 6, 211)] {
-        let outcome = searched(x, y, heading);
-        let votes = &outcome.found.votes;
-        let (said, hypotheses) = world.ask(header(5, &outcome), votes);
+        let searched = searched(x, y, heading);
+        let Searched { ranges, outcome } = &searched;
+        let (said, hypotheses) = world.ask(header(5, outcome), ranges, &outcome.found.votes);
 
-        let expected = extract(&PeakInput::of(&outcome, FRAME), &PeakConfig::default());
+        let expected = expected(&searched, FRAME);
         assert_eq!(said.verdict, expected.verdict as u32);
         assert_eq!(said.alternatives, expected.alternatives);
         assert_eq!((said.map_id, said.search_ns), (5, 4321));
-        assert_eq!(
-            (said.best, said.inlier_share),
-            (outcome.found.best.into(), 1.0)
-        );
+        let inlier_share = expected.inlier_share as f32;
+        assert_eq!(said.best, u32::from(outcome.found.best));
+        assert_eq!(said.inlier_share, inlier_share);
+        assert_eq!(said.confidence, expected.confidence as f32);
         assert!(said.extract_ns > 0);
         assert_eq!(hypotheses.len(), expected.places.len());
         for (hypothesis, place) in hypotheses.iter().zip(&expected.places) {
@@ -199,8 +246,8 @@ fn votes_that_cannot_be_read_are_refused_and_the_next_ones_answered() {
     let world = World::new(&isolated);
     let node = world.start(&[]);
     world.wait_until(NodeState::Waiting);
-    let outcome = searched(3, 3, 40);
-    let (votes, sound) = (&outcome.found.votes, header(5, &outcome));
+    let Searched { ranges, outcome } = &searched(3, 3, 40);
+    let (votes, sound) = (&outcome.found.votes, header(5, outcome));
     let refused = |answer: (HypothesesHeader, Vec<Hypothesis>), count: u64| {
         assert_eq!(answer.0.verdict, Verdict::NoScan as u32);
         assert!(answer.1.is_empty());
@@ -209,7 +256,7 @@ fn votes_that_cannot_be_read_are_refused_and_the_next_ones_answered() {
         });
         error
     };
-    let error = refused(world.ask(sound, votes), 1);
+    let error = refused(world.ask(sound, ranges, votes), 1);
     assert!(
         error.starts_with("the votes of scan 0 are refused: they are of map 0000000000000005"),
         "{error}"
@@ -220,11 +267,11 @@ fn votes_that_cannot_be_read_are_refused_and_the_next_ones_answered() {
         headings: 0,
         ..sound
     };
-    let error = refused(world.ask(broken, votes), 2);
+    let error = refused(world.ask(broken, ranges, votes), 2);
     assert!(error.contains("headings is 0"), "{error}");
     let mut off_the_map = votes.clone();
     off_the_map[0].x = 16;
-    let error = refused(world.ask(sound, &off_the_map), 3);
+    let error = refused(world.ask(sound, ranges, &off_the_map), 3);
     assert!(error.contains("vote 0 is for cell 16"), "{error}");
 
     // Neither is wrong with these: the scan alone said nothing.
@@ -235,11 +282,11 @@ fn votes_that_cannot_be_read_are_refused_and_the_next_ones_answered() {
             map_id: 0,
             ..sound
         };
-        let (said, hypotheses) = world.ask(empty, &[]);
+        let (said, hypotheses) = world.ask(empty, ranges, &[]);
         assert_eq!(said.verdict, Verdict::NoScan as u32);
         assert!(hypotheses.is_empty());
     }
-    let (said, hypotheses) = world.ask(sound, votes);
+    let (said, hypotheses) = world.ask(sound, ranges, votes);
     assert_eq!(said.verdict, Verdict::Unique as u32);
     assert!(!hypotheses.is_empty());
     node.stop();
@@ -247,7 +294,7 @@ fn votes_that_cannot_be_read_are_refused_and_the_next_ones_answered() {
         report.state == NodeState::Stopped as u32
     });
     let counts = (last.received, last.sent, last.dropped, last.refused);
-    assert_eq!(counts, (7, 6, 0, 3), "a map and six messages of votes");
+    assert_eq!(counts, (13, 6, 0, 3), "a map, six scans and their votes");
 }
 
 #[test]
@@ -263,15 +310,16 @@ fn votes_on_their_way_when_the_map_changes_are_of_the_map_before() {
     world.publish_map(6, 2.0 * FRAME.resolution_m);
     world.wait_until(NodeState::Ready);
 
-    let outcome = searched(3, 3, 40);
+    let searched = searched(3, 3, 40);
+    let Searched { ranges, outcome } = &searched;
     for (map_id, scale) in [(5, 1.0), (6, 2.0)] {
-        let (_, hypotheses) = world.ask(header(map_id, &outcome), &outcome.found.votes);
+        let header = header(map_id, outcome);
+        let (_, hypotheses) = world.ask(header, ranges, &outcome.found.votes);
         let frame = GridFrame {
             resolution_m: scale * FRAME.resolution_m,
             ..FRAME
         };
-        let expected = extract(&PeakInput::of(&outcome, frame), &PeakConfig::default());
-        let expected = Pose2::from(expected.places[0].map_from_laser);
+        let expected = Pose2::from(expected(&searched, frame).places[0].map_from_laser);
         assert_eq!(hypotheses[0].map_from_laser, expected, "map {map_id}");
     }
     node.stop();

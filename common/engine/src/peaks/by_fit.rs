@@ -32,7 +32,7 @@ pub fn by_fit(
         .iter()
         .map(|place| lead(best.score, place.score))
         .collect();
-    likelihood::assign(&mut places, &leads);
+    likelihood::assign(&mut places, &leads, config);
     let rivals = leads[1..].iter().filter(|&&lead| lead < config.least_lead);
     let alternatives = rivals.count() as u32;
     let verdict = match () {

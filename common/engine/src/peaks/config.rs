@@ -50,6 +50,17 @@ pub struct PeakConfig {
     /// map, 0..=1.
     #[arg(long, value_name = "SCORE", default_value_t = 0.65, value_parser = parse_share)]
     pub least_score: f64,
+    /// Each such lead makes another place less likely by a factor of e, 0.001..=1.
+    #[arg(long, value_name = "LEAD", default_value_t = 0.025, value_parser = parse_scale)]
+    pub lead_scale: f64,
+    /// A single place with this score is as likely as that the robot is at none
+    /// that was found, 0..=1.
+    #[arg(long, value_name = "SCORE", default_value_t = 0.55, value_parser = parse_share)]
+    pub even_score: f64,
+    /// By each such score above that, none becomes less likely by a factor of e,
+    /// 0.001..=1.
+    #[arg(long, value_name = "SCORE", default_value_t = 0.06, value_parser = parse_scale)]
+    pub score_scale: f64,
     /// With `--score votes`: another place with at least this share of the best
     /// one's votes makes the answer ambiguous, 0..=1.
     #[arg(long, value_name = "SHARE", default_value_t = 0.92, value_parser = parse_share)]
@@ -58,6 +69,11 @@ pub struct PeakConfig {
     /// votes that are possible fits poorly, 0..=1.
     #[arg(long, value_name = "SHARE", default_value_t = 0.35, value_parser = parse_share)]
     pub poor_fit_share: f64,
+}
+
+/// A scale of scores: something is divided by it.
+fn parse_scale(text: &str) -> Result<f64, String> {
+    crate::config::parse(text, 0.001..=1.0, "as a share")
 }
 
 impl Default for PeakConfig {
@@ -72,6 +88,9 @@ impl Default for PeakConfig {
             fit: FitConfig::default(),
             least_lead: 0.10,
             least_score: 0.65,
+            lead_scale: 0.025,
+            even_score: 0.55,
+            score_scale: 0.06,
             ambiguous_share: 0.92,
             poor_fit_share: 0.35,
         }

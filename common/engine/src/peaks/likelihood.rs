@@ -1,28 +1,57 @@
 //! How likely the robot is at each place, and at none of them.
+//!
+//! A softmax: weights fall exponentially with the lead of the best place and,
+//! for none of them, with its score. The scales are settings that were fitted
+//! to real scans with known poses, by the likelihood of what was true.
 
-use super::Place;
-
-/// By so much lead, in the measure of [`super::PeakConfig::least_lead`], another
-/// place becomes less likely by a factor of e.
-const LEAD_SCALE: f64 = 0.02;
-
-/// A best place with this score is as likely as that the robot is at none.
-const EVEN_SCORE: f64 = 0.55;
-
-/// By so much score, that becomes less likely by a factor of e.
-const SCORE_SCALE: f64 = 0.03;
+use super::{PeakConfig, Place};
 
 /// Fills in the probabilities, best place first, from the leads over each; what
 /// they leave of 1 is that the robot is at none.
-pub(super) fn assign(places: &mut [Place], leads: &[f64]) {
+pub(super) fn assign(places: &mut [Place], leads: &[f64], config: &PeakConfig) {
     let Some(best) = places.first() else { return };
-    let none = ((EVEN_SCORE - best.score) / SCORE_SCALE).exp();
-    let weights: Vec<f64> = leads
-        .iter()
-        .map(|lead| (-lead / LEAD_SCALE).exp())
-        .collect();
-    let all = none + weights.iter().sum::<f64>();
-    for (place, weight) in places.iter_mut().zip(weights) {
-        place.probability = weight / all;
+    let none = ((config.even_score - best.score) / config.score_scale).exp();
+    let weight = |lead: &f64| (-lead / config.lead_scale).exp();
+    let all = none + leads.iter().map(weight).sum::<f64>();
+    for (place, lead) in places.iter_mut().zip(leads) {
+        place.probability = weight(lead) / all;
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use geometry::{Covariance, Pose};
+
+    use super::*;
+
+    fn assigned(scores: &[f64], leads: &[f64]) -> Vec<f64> {
+        let place = |&score: &f64| Place {
+            map_from_laser: Pose::IDENTITY,
+            covariance: Covariance::from_deviations(0.1, 0.1, 0.01),
+            score,
+            probability: 0.0,
+            intensity: 1,
+            support: 1,
+        };
+        let mut places: Vec<Place> = scores.iter().map(place).collect();
+        assign(&mut places, leads, &PeakConfig::default());
+        places.iter().map(|place| place.probability).collect()
+    }
+
+    #[test]
+    fn equal_places_share_what_none_leaves() {
+        let at = assigned(&[0.95, 0.95], &[0.0, 0.0]);
+        assert!(at[0] == at[1] && (0.49..0.5).contains(&at[0]), "{at:?}");
+        let [even] = assigned(&[0.55], &[0.0])[..] else {
+            panic!("one place");
+        };
+        assert!((even - 0.5).abs() < 1e-12);
+    }
+
+    #[test]
+    fn a_lead_of_one_scale_is_a_factor_of_e() {
+        let at = assigned(&[0.9, 0.89], &[0.0, 0.025]);
+        assert!((at[0] / at[1] - std::f64::consts::E).abs() < 1e-12);
+        assert!(at.iter().sum::<f64>() < 1.0);
     }
 }

@@ -163,6 +163,7 @@ pub(super) mod tests {
             map_from_laser,
             covariance: Covariance::from_deviations(0.1, 0.1, 0.01),
             score: 0.75,
+            probability: 0.5,
             intensity: 100,
             support: 1,
         };
@@ -171,6 +172,7 @@ pub(super) mod tests {
             verdict,
             alternatives: 0,
             confidence: 0.5,
+            inlier_share: 0.75,
         }
     }
 
