@@ -220,7 +220,13 @@ impl Localizer {
         if sweeps.accumulator().fill(query, &mut field, stop).is_none() {
             return Ok(None);
         }
-        let found = votes::of_field(&field, self.grid.width(), index as u16, self.config.collect);
+        let (width, collect) = (self.grid.width(), self.config.collect);
+        let mut found = votes::of_field(&field, width, index as u16, collect);
+        let wanted = collect.candidates as usize;
+        if wanted > 0 && found.best > 0 {
+            let others = votes::best_of_blocks(&field, width, index as u16);
+            found.add_candidates(others, &self.space, wanted);
+        }
         Ok(Some((self.outcome(&program, found, Some(heading)), field)))
     }
 

@@ -224,6 +224,33 @@ pub fn of_field(field: &[u16], width: usize, heading: u16, config: CollectConfig
     collector.finish(field.len() as u64)
 }
 
+/// Cells along the side of the blocks of an image of which the best is a
+/// candidate.
+const BLOCK: usize = 8;
+
+/// The best pose of each block of an intensity image, row by row, at one
+/// heading; none of blocks without votes.
+pub(crate) fn best_of_blocks(field: &[u16], width: usize, heading: u16) -> Vec<Vote> {
+    let mut bests = Vec::new();
+    for (band, rows) in field.chunks(BLOCK * width).enumerate() {
+        for left in (0..width).step_by(BLOCK) {
+            let right = (left + BLOCK).min(width);
+            let cells = rows.chunks_exact(width).enumerate().flat_map(|(y, row)| {
+                let cells = (left..right).zip(&row[left..right]);
+                cells.map(move |(x, &intensity)| Vote {
+                    x: x as u16,
+                    y: (BLOCK * band + y) as u16,
+                    heading,
+                    intensity,
+                })
+            });
+            let best = cells.min_by_key(order).filter(|best| best.intensity > 0);
+            bests.extend(best);
+        }
+    }
+    bests
+}
+
 /// Most votes first, equal ones by (heading, y, x).
 fn order(vote: &Vote) -> (Reverse<u16>, u16, u16, u16) {
     (Reverse(vote.intensity), vote.heading, vote.y, vote.x)
@@ -296,6 +323,20 @@ mod tests {
             [0, 1]
         );
         assert_eq!((set.best, set.certified_floor, set.truncated), (5, 6, true));
+    }
+
+    #[test]
+    fn each_block_of_an_image_has_one_best_pose() {
+        // Two blocks side by side, and one row of two more.
+        let (width, height) = (11, 9);
+        let mut field = vec![0; width * height];
+        (field[2 * width + 3], field[3 * width + 1]) = (5, 7);
+        (field[8], field[width + 10]) = (4, 4);
+        field[8 * width] = 1;
+        let bests = best_of_blocks(&field, width, 6);
+        let found: Vec<_> = bests.iter().map(|v| (v.x, v.y, v.intensity)).collect();
+        assert_eq!(found, [(1, 3, 7), (8, 0, 4), (0, 8, 1)]);
+        assert!(bests.iter().all(|vote| vote.heading == 6));
     }
 
     #[test]

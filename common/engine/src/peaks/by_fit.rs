@@ -18,7 +18,7 @@ pub fn by_fit(
     config: &PeakConfig,
 ) -> Places {
     let reach = Reach::new(input, config.candidate_m, config.candidate_deg);
-    let mut places: Vec<Place> = summits(input, reach, config.max_hypotheses)
+    let mut places: Vec<Place> = summits(input, reach, config.max_candidates)
         .iter()
         .map(|summit| place(input, (terrain, ends), summit, config))
         .collect();
@@ -40,6 +40,7 @@ pub fn by_fit(
         () if alternatives > 0 => Verdict::Ambiguous,
         () => Verdict::Unique,
     };
+    places.truncate(config.max_hypotheses as usize);
     let pose = grid_pose(input, best.map_from_laser);
     Places {
         verdict,
@@ -71,7 +72,10 @@ fn distinct(places: Vec<Place>, config: &PeakConfig) -> Vec<Place> {
             pose.is_within(place.map_from_laser, config.same_place_m, angle)
         };
         match kept.iter_mut().find(is_near) {
-            Some(other) => other.support += place.support,
+            Some(other) => {
+                other.support += place.support;
+                other.intensity = other.intensity.max(place.intensity);
+            }
             None => kept.push(place),
         }
     }

@@ -30,6 +30,9 @@ pub struct PeakConfig {
     /// Most places that are reported, 1..=1000.
     #[arg(long, value_name = "COUNT", default_value_t = 64, value_parser = clap::value_parser!(u32).range(1..=1000))]
     pub max_hypotheses: u32,
+    /// Most candidates that are refined, 1..=1000: the first of the votes.
+    #[arg(long, value_name = "COUNT", default_value_t = 64, value_parser = clap::value_parser!(u32).range(1..=1000))]
+    pub max_candidates: u32,
     /// Votes within this distance and `--candidate-deg` are refined together,
     /// metres, 0..=2.
     #[arg(long, value_name = "METRES", default_value_t = DISTINCT_M, value_parser = parse_length)]
@@ -83,6 +86,7 @@ impl Default for PeakConfig {
             same_place_m: 0.5,
             same_place_deg: 10.0,
             max_hypotheses: 64,
+            max_candidates: 64,
             candidate_m: DISTINCT_M,
             candidate_deg: DISTINCT_DEG,
             fit: FitConfig::default(),
