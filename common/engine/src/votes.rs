@@ -64,8 +64,8 @@ impl VoteSet {
     /// Adds poses below the certified floor until there are so many distinct
     /// ones, best first.
     pub(crate) fn add_candidates(&mut self, mut others: Vec<Vote>, space: &Space, wanted: usize) {
-        let mut distinct: Vec<Vote> = Vec::with_capacity(wanted);
-        let mut is_new = |vote: &Vote| {
+        let mut distinct = distinct(&self.votes, space, wanted);
+        let is_new = |vote: &Vote| {
             let is_new = distinct.len() < wanted
                 && !distinct.iter().any(|other| are_near(vote, other, space));
             if is_new {
@@ -73,15 +73,27 @@ impl VoteSet {
             }
             is_new
         };
-        for vote in &self.votes {
-            is_new(vote);
-        }
         others.retain(|vote| vote.intensity < self.certified_floor);
         others.sort_unstable_by_key(order);
         others.retain(is_new);
         self.votes.append(&mut others);
         self.floor = self.votes.last().map_or(0, |vote| vote.intensity);
     }
+}
+
+/// The first of all votes that are distinct from all before them, at most so
+/// many.
+pub(crate) fn distinct(votes: &[Vote], space: &Space, wanted: usize) -> Vec<Vote> {
+    let mut distinct: Vec<Vote> = Vec::with_capacity(wanted);
+    for vote in votes {
+        if distinct.len() == wanted {
+            break;
+        }
+        if !distinct.iter().any(|other| are_near(vote, other, space)) {
+            distinct.push(*vote);
+        }
+    }
+    distinct
 }
 
 /// Whether two poses are one candidate.

@@ -36,5 +36,7 @@ mod sets;
 mod spans;
 mod steps;
 mod task;
+mod top;
 
 pub use index::{BlockBounds, SearchIndex};
+pub use top::Top;

@@ -4,11 +4,13 @@ use std::time::Instant;
 
 use benchmarks::worlds::World;
 use engine::accumulator::{Accumulator, Query};
+use engine::instruction_set::InstructionSet;
 use engine::program::ScanProgram;
 use engine::scatter::Scatter;
 use engine::search::SearchIndex;
 use engine::sweep::FieldSweep;
 use engine::votes::{CollectConfig, VoteSet, of_field};
+use messages::Vote;
 
 use super::measure::{Answer, Locate, Pose, Task};
 use crate::BackcastError;
@@ -20,21 +22,21 @@ const ARGMAX: CollectConfig = CollectConfig {
     candidates: 0,
 };
 
-/// Two poses so near are one place: 0.3 m and 6.5 degrees.
-const SAME_CELLS: f64 = 6.0;
-const SAME_DEGREES: f64 = 6.5;
-
 fn program(task: &Task<'_>) -> Result<ScanProgram, BackcastError> {
     ScanProgram::new(&task.scan.scan(), 0.0, task.space, &task.votes)
         .map_err(BackcastError::Refused)
 }
 
 fn best(found: &VoteSet) -> Option<Pose> {
-    found.votes.first().map(|vote| Pose {
+    found.votes.first().map(pose)
+}
+
+fn pose(vote: &Vote) -> Pose {
+    Pose {
         x: usize::from(vote.x),
         y: usize::from(vote.y),
         heading: usize::from(vote.heading),
-    })
+    }
 }
 
 /// By the fields of an accumulator at some headings.
@@ -80,9 +82,8 @@ pub(super) fn search<'a>(world: &'a World, index: &'a SearchIndex, floor_share: 
     })
 }
 
-/// The sixteen best distinct poses, exactly: the floor falls until as many
-/// stand above it. Gives up after so many seconds, or where a million poses are
-/// not enough.
+/// The sixteen best distinct poses, exactly. Gives up after so many seconds, or
+/// where a million poses are not enough.
 pub(super) fn top_sixteen<'a>(
     world: &'a World,
     index: &'a SearchIndex,
@@ -92,49 +93,11 @@ pub(super) fn top_sixteen<'a>(
         let program = program(task)?;
         let start = Instant::now();
         let is_late = || start.elapsed().as_secs_f64() > patience_s;
-        let mut floor_share = 0.85;
-        loop {
-            let collect = CollectConfig {
-                floor_share,
-                max_votes: 1_000_000,
-                candidates: 0,
-            };
-            let found = index.search(&world.grid, &program, task.space, collect, &is_late);
-            let Some(found) = found else {
-                return Ok(Answer::GaveUp);
-            };
-            if distinct(&found, task) >= 16 || floor_share < 0.1 {
-                return Ok(Answer::Best(best(&found)));
-            }
-            if found.truncated {
-                return Ok(Answer::GaveUp);
-            }
-            floor_share *= 0.85;
-        }
+        let how = (InstructionSet::best(), 1);
+        let top = index.top(how, &world.grid, (&program, task.space), 16, &is_late);
+        Ok(match top {
+            Some(top) if top.is_complete => Answer::Best(top.poses.first().map(pose)),
+            _ => Answer::GaveUp,
+        })
     })
-}
-
-/// Distinct poses among those that are certain to be complete, up to 16.
-fn distinct(found: &VoteSet, task: &Task<'_>) -> usize {
-    let mut places: Vec<Pose> = Vec::new();
-    let certain = found
-        .votes
-        .iter()
-        .take_while(|vote| vote.intensity >= found.certified_floor);
-    for vote in certain {
-        let (x, y) = (usize::from(vote.x), usize::from(vote.y));
-        let heading = usize::from(vote.heading);
-        let is_near = |place: &Pose| {
-            let cells = (place.x.abs_diff(x) as f64).hypot(place.y.abs_diff(y) as f64);
-            let turned = (place.heading as f64 - heading as f64) * task.space.directions.spacing();
-            cells <= SAME_CELLS && geometry::wrap_angle(turned).abs() <= SAME_DEGREES.to_radians()
-        };
-        if !places.iter().any(is_near) {
-            places.push(Pose { x, y, heading });
-            if places.len() == 16 {
-                break;
-            }
-        }
-    }
-    places.len()
 }

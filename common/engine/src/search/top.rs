@@ -1,0 +1,118 @@
+//! The best distinct poses, exactly.
+//!
+//! Distinct poses are picked by falling votes, each at least some way apart
+//! from all before it; ties go to the lowest (heading, y, x). How low the last
+//! of them lies is not known beforehand, and no sum of what was seen so far
+//! bounds it: a better pose may push two others aside. So candidates give a
+//! floor, all poses above it are collected, and where too few of them are
+//! distinct the floor falls.
+
+use messages::Vote;
+
+use super::SearchIndex;
+use crate::grid::Grid;
+use crate::instruction_set::InstructionSet;
+use crate::program::ScanProgram;
+use crate::space::Space;
+use crate::votes::{self, CollectConfig, VoteSet};
+
+/// Most poses that are collected at a time.
+const MAX_VOTES: u32 = 1_000_000;
+
+/// How far the floor falls where too few poses are distinct.
+const NEXT_FLOOR: f64 = 0.85;
+
+/// The best distinct poses of a scan.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub struct Top {
+    /// Most votes first.
+    pub poses: Vec<Vote>,
+    /// Whether these are as many as were asked for, or all that have votes.
+    /// Otherwise more than a million poses stand above the next one.
+    pub is_complete: bool,
+}
+
+impl SearchIndex {
+    /// The `count` distinct poses with the most votes, that is
+    /// [`votes::DISTINCT_M`] or [`votes::DISTINCT_DEG`] apart; `None` if `stop`
+    /// said so before the end.
+    ///
+    /// # Panics
+    /// See [`SearchIndex::search_with`].
+    #[must_use]
+    pub fn top(
+        &self,
+        how: (InstructionSet, usize),
+        grid: &Grid,
+        scan: (&ScanProgram, &Space),
+        count: usize,
+        stop: &dyn Fn() -> bool,
+    ) -> Option<Top> {
+        let search = |floor_share, candidates| {
+            let config = CollectConfig {
+                floor_share,
+                max_votes: MAX_VOTES,
+                candidates,
+            };
+            self.search_with(how, grid, scan, config, stop)
+        };
+        let first = search(1.0, count as u32)?;
+        let guess = votes::distinct(&first.votes, scan.1, count);
+        let mut floor = match guess.last() {
+            Some(last) if guess.len() == count => f64::from(last.intensity),
+            _ => NEXT_FLOOR * f64::from(first.best),
+        };
+        loop {
+            let found = search(floor / f64::from(first.best.max(1)), 0)?;
+            let top = top_of(&found, scan.1, count, floor < 1.0);
+            if top.is_complete || found.truncated {
+                return Some(top);
+            }
+            floor *= NEXT_FLOOR;
+        }
+    }
+}
+
+/// The best distinct ones of the poses that are certain to be complete.
+fn top_of(found: &VoteSet, space: &Space, count: usize, is_all: bool) -> Top {
+    let is_certain = |vote: &Vote| vote.intensity >= found.certified_floor;
+    let certain = found.votes.partition_point(is_certain);
+    let poses = votes::distinct(&found.votes[..certain], space, count);
+    Top {
+        is_complete: poses.len() == count || (is_all && !found.truncated),
+        poses,
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use proptest::prelude::*;
+
+    use super::*;
+    use crate::testing::{any_grid, any_scan, plain_votes, space_of};
+
+    proptest! {
+        #[test]
+        fn the_best_distinct_poses_are_those_of_the_reference(
+            grid in any_grid(), scan in any_scan(), headings in 1u32..8, count in 1usize..20,
+        ) {
+            let space = space_of(&grid, headings * 8);
+            let program = scan.program(&space);
+            let all = CollectConfig { floor_share: 0.0, max_votes: MAX_VOTES, candidates: 0 };
+            let all = plain_votes(&grid, &program, &space, all);
+            prop_assert!(!all.truncated);
+            // One by one, with nothing but the definition.
+            let mut left = all.votes;
+            let mut plain: Vec<Vote> = Vec::new();
+            while plain.len() < count && !left.is_empty() {
+                let best = left[0];
+                plain.push(best);
+                left.retain(|vote| !votes::are_near(vote, &best, &space));
+            }
+            let index = SearchIndex::new(&grid, &space);
+            let how = (InstructionSet::best(), 1);
+            let top = index.top(how, &grid, (&program, &space), count, &|| false).unwrap();
+            prop_assert_eq!(top, Top { poses: plain, is_complete: true });
+        }
+    }
+}
