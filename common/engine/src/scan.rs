@@ -2,6 +2,8 @@
 
 use std::f64::consts::TAU;
 
+use messages::ScanHeader;
+
 use crate::EngineError;
 
 /// A scan in the laser's frame, borrowed from wherever it lies.
@@ -22,7 +24,20 @@ pub struct Scan<'a> {
 /// Most readings of a scan.
 const MAX_RANGES: usize = 65_536;
 
-impl Scan<'_> {
+impl<'a> Scan<'a> {
+    /// The scan of a message, which is not copied; [`Scan::check`] is still to
+    /// come.
+    #[must_use]
+    pub fn of(header: &ScanHeader, ranges: &'a [f32]) -> Self {
+        Scan {
+            angle_min: header.angle_min,
+            angle_increment: header.angle_increment,
+            range_min_m: header.range_min_m,
+            range_max_m: header.range_max_m,
+            ranges,
+        }
+    }
+
     /// Checks what all readings share; single readings may be anything.
     ///
     /// # Errors

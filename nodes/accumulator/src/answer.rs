@@ -40,13 +40,7 @@ pub fn scan<'a>(header: &ScanHeader, ranges: &'a [f32]) -> Result<Scan<'a>, Accu
     if header.mount_known == 1 && !geometry::Pose::from(found).is_finite() {
         return Err(AccumulatorError::Mount { found });
     }
-    Ok(Scan {
-        angle_min: header.angle_min,
-        angle_increment: header.angle_increment,
-        range_min_m: header.range_min_m,
-        range_max_m: header.range_max_m,
-        ranges,
-    })
+    Ok(Scan::of(header, ranges))
 }
 
 /// Asks the engine; `None` if `stop` said so before it was done. The localizer

@@ -60,6 +60,7 @@ fn an_object_tells_votes_and_hypotheses() {
         keys(object),
         [
             "alternatives",
+            "beams",
             "confidence",
             "cpu_ms",
             "hypotheses",
@@ -92,6 +93,13 @@ fn an_object_tells_votes_and_hypotheses() {
         ]
     );
     let votes = &object["votes"];
+    let beams = object["beams"].as_object().unwrap();
+    assert_eq!(
+        beams.keys().collect::<Vec<_>>(),
+        ["hit", "short", "through", "unknown"]
+    );
+    let all: u64 = beams.values().map(|count| count.as_u64().unwrap()).sum();
+    assert_eq!(all, votes["beams_used"].as_u64().unwrap());
     assert_eq!(votes["best"], votes["highest_possible"]);
     assert_eq!(votes["headings"], 360);
     assert_eq!(votes["known_heading"], Value::Null);

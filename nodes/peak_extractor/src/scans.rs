@@ -40,13 +40,7 @@ impl Scans {
         let mut newest_first = self.kept.iter().rev();
         let found = newest_first.find(|(header, _)| header.stamp == stamp);
         let (header, ranges) = found.ok_or(PeakError::UnknownScan)?;
-        Ok(Scan {
-            angle_min: header.angle_min,
-            angle_increment: header.angle_increment,
-            range_min_m: header.range_min_m,
-            range_max_m: header.range_max_m,
-            ranges,
-        })
+        Ok(Scan::of(header, ranges))
     }
 }
 

@@ -71,32 +71,39 @@ impl Terrain {
         let sigma = config.sigma_cells(self.frame.resolution_m);
         let turn = pose.heading.sin_cos();
         for end in &ends.ends {
-            let (dx, dy) = end.direction(turn);
-            let (x, y) = (pose.x + end.reading * dx, pose.y + end.reading * dy);
-            let off = self
-                .distance(x, y)
-                .map_or(f64::INFINITY, |(distance, _)| distance / sigma);
-            let near = (-0.5 * off * off).exp();
-            let way = self.look((pose.x, pose.y), (dx, dy), end.reading);
-            let longest = end.reading - THROUGH_SIGMAS * sigma;
-            let is_through = way.occupied.is_some_and(|occupied| occupied < longest);
-            let is_hit = off <= HIT_SIGMAS;
-            let (value, class) = match (way.unknown, is_through) {
-                (Some(_), false) => (near.max(config.unknown_score), BeamClass::Unknown),
-                (Some(_), true) => (0.5 * near.max(config.unknown_score), BeamClass::Through),
-                (None, false) => (near, BeamClass::Short),
-                (None, true) => (near - config.through_penalty, BeamClass::Through),
-            };
-            take(
-                end,
-                value,
-                if is_hit && !is_through {
-                    BeamClass::Hit
-                } else {
-                    class
-                },
-            );
+            let direction = end.direction(turn);
+            let (value, class) = self.judge_beam(end.reading, direction, pose, (sigma, config));
+            take(end, value, class);
         }
+    }
+
+    /// What a beam is worth, and what became of it.
+    fn judge_beam(
+        &self,
+        reading: f64,
+        (dx, dy): (f64, f64),
+        pose: GridPose,
+        (sigma, config): (f64, &FitConfig),
+    ) -> (f64, BeamClass) {
+        let end = self.distance(pose.x + reading * dx, pose.y + reading * dy);
+        let off = end.map_or(f64::INFINITY, |(distance, _)| distance / sigma);
+        let near = (-0.5 * off * off).exp();
+        let way = self.look((pose.x, pose.y), (dx, dy), reading);
+        let longest = reading - THROUGH_SIGMAS * sigma;
+        let is_through = way.occupied.is_some_and(|occupied| occupied < longest);
+        let value = match (way.unknown, is_through) {
+            (Some(_), false) => near.max(config.unknown_score),
+            (Some(_), true) => 0.5 * near.max(config.unknown_score),
+            (None, false) => near,
+            (None, true) => near - config.through_penalty,
+        };
+        let class = match way.unknown {
+            _ if is_through => BeamClass::Through,
+            _ if off <= HIT_SIGMAS => BeamClass::Hit,
+            Some(_) => BeamClass::Unknown,
+            None => BeamClass::Short,
+        };
+        (value, class)
     }
 }
 

@@ -47,6 +47,7 @@ pub fn by_fit(
         alternatives,
         confidence: places[0].probability,
         inlier_share: terrain.agreement(ends, pose, &config.fit).hits,
+        classes: terrain.classes(ends, pose, &config.fit),
         places,
     }
 }

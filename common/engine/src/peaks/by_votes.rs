@@ -43,6 +43,7 @@ pub fn by_votes(input: &PeakInput<'_>, config: &PeakConfig) -> Places {
         alternatives,
         confidence,
         inlier_share: best.score,
+        classes: Vec::new(),
         places,
     }
 }

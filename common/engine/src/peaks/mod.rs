@@ -18,6 +18,7 @@ use geometry::{Covariance, Pose, wrap_angle};
 use messages::{Verdict, Vote};
 use nalgebra::{Matrix3, Rotation2, Vector3};
 
+use crate::fit::BeamClass;
 use crate::grid::GridFrame;
 use crate::localizer::Outcome;
 pub use by_fit::by_fit;
@@ -105,6 +106,9 @@ pub struct Places {
     /// Share of the beams by weight that end at an obstacle at the best place;
     /// by votes alone, its score.
     pub inlier_share: f64,
+    /// What became of each beam at the best place, in the order of their
+    /// bearings; empty by votes alone.
+    pub classes: Vec<BeamClass>,
 }
 
 impl Places {
@@ -116,6 +120,7 @@ impl Places {
             alternatives: 0,
             confidence: 0.0,
             inlier_share: 0.0,
+            classes: Vec::new(),
         }
     }
 }

@@ -173,6 +173,7 @@ pub(super) mod tests {
             alternatives: 0,
             confidence: 0.5,
             inlier_share: 0.75,
+            classes: Vec::new(),
         }
     }
 

@@ -3,6 +3,7 @@
 //! Every line has the same keys; what a refused scan does not have is null, and
 //! what only it has, the reason, is null elsewhere.
 
+use engine::fit::BeamClass;
 use engine::localizer::Outcome;
 use engine::peaks::Place;
 use geometry::Pose;
@@ -29,6 +30,8 @@ pub(super) struct Object {
     /// Why the scan was refused.
     refused: Option<String>,
     votes: Option<Votes>,
+    /// What became of the beams at the best place; null by votes alone.
+    beams: Option<Beams>,
     /// Best first.
     hypotheses: Vec<Hypothesis>,
 }
@@ -50,6 +53,19 @@ struct Votes {
     known_heading: Option<f64>,
     /// Radians.
     bearing_rounding: f64,
+}
+
+/// How many beams that voted ended where.
+#[derive(Debug, Serialize)]
+struct Beams {
+    /// At an obstacle.
+    hit: usize,
+    /// In the open.
+    short: usize,
+    /// Behind an obstacle.
+    through: usize,
+    /// Behind unknown space.
+    unknown: usize,
 }
 
 /// `map_from_laser` in metres and radians, and how sure it is.
@@ -80,6 +96,7 @@ impl Object {
             cpu_ms: reply.cpu_ms,
             refused: None,
             votes: None,
+            beams: None,
             hypotheses: Vec::new(),
         };
         match &reply.answer {
@@ -94,6 +111,7 @@ impl Object {
         self.alternatives = places.alternatives;
         self.confidence = places.confidence;
         self.votes = Some(votes(outcome));
+        self.beams = beams(&places.classes);
         let laser_from_base = base_from_laser.map(Pose::inverse);
         let hypothesis = |place: &Place| Hypothesis {
             x: place.map_from_laser.x,
@@ -114,6 +132,16 @@ impl Object {
     pub(super) fn json(&self) -> String {
         serde_json::to_string(self).unwrap_or_else(|error| format!("{{\"error\":\"{error}\"}}"))
     }
+}
+
+fn beams(classes: &[BeamClass]) -> Option<Beams> {
+    let count = |class| classes.iter().filter(|&&other| other == class).count();
+    (!classes.is_empty()).then(|| Beams {
+        hit: count(BeamClass::Hit),
+        short: count(BeamClass::Short),
+        through: count(BeamClass::Through),
+        unknown: count(BeamClass::Unknown),
+    })
 }
 
 fn votes(outcome: &Outcome) -> Votes {
