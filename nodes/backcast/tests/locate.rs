@@ -66,6 +66,7 @@ fn an_object_tells_votes_and_hypotheses() {
             "hypotheses",
             "map_id",
             "refused",
+            "says",
             "stamp_ns",
             "verdict",
             "votes"

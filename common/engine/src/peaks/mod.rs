@@ -12,6 +12,7 @@ mod by_fit;
 mod by_votes;
 mod config;
 mod likelihood;
+pub mod sentence;
 mod summits;
 
 use geometry::{Covariance, Pose, wrap_angle};
@@ -24,6 +25,7 @@ use crate::localizer::Outcome;
 pub use by_fit::by_fit;
 pub use by_votes::by_votes;
 pub use config::{PeakConfig, Score};
+use sentence::Stand;
 
 /// The votes of one scan and what is needed to read them.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -112,6 +114,20 @@ pub struct Places {
 }
 
 impl Places {
+    /// The verdict in words.
+    #[must_use]
+    pub fn sentence(&self) -> String {
+        let told = self.places.iter().take(1 + self.alternatives as usize);
+        let stands: Vec<Stand> = told
+            .map(|place| Stand {
+                map_from_laser: place.map_from_laser,
+                covariance: place.covariance,
+                score: place.score,
+            })
+            .collect();
+        sentence::sentence(self.verdict, &stands)
+    }
+
     /// A scan of which nothing voted.
     fn none() -> Self {
         Places {

@@ -23,6 +23,8 @@ pub(super) struct Object {
     verdict: &'static str,
     /// Other places that fit about as well.
     alternatives: u32,
+    /// The verdict in words; why a scan was refused stands in `refused`.
+    says: Option<String>,
     /// The best place's probability, 0..=1; by votes alone, its lead.
     confidence: f64,
     /// Milliseconds of computing from the scan to the verdict.
@@ -92,6 +94,7 @@ impl Object {
             map_id: format!("{map_id:016x}"),
             verdict: Verdict::NoScan.as_str(),
             alternatives: 0,
+            says: None,
             confidence: 0.0,
             cpu_ms: reply.cpu_ms,
             refused: None,
@@ -109,6 +112,7 @@ impl Object {
     fn fill(&mut self, Answer { outcome, places }: &Answer, base_from_laser: Option<Pose>) {
         self.verdict = places.verdict.as_str();
         self.alternatives = places.alternatives;
+        self.says = Some(places.sentence());
         self.confidence = places.confidence;
         self.votes = Some(votes(outcome));
         self.beams = beams(&places.classes);

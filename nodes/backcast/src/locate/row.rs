@@ -16,6 +16,7 @@ pub(super) fn text(stamp_ns: i64, reply: &Reply) -> String {
         score: None,
         verdict: Verdict::NoScan.as_str(),
         alternatives: 0,
+        says: String::new(),
         // Without a graph there is nothing but computing.
         latency_ms: reply.cpu_ms,
         engine_ms: reply.cpu_ms,
@@ -26,6 +27,7 @@ pub(super) fn text(stamp_ns: i64, reply: &Reply) -> String {
     };
     line.verdict = places.verdict.as_str();
     line.alternatives = places.alternatives;
+    line.says = places.sentence();
     if let Some(best) = places.places.first() {
         line.x = Some(best.map_from_laser.x);
         line.y = Some(best.map_from_laser.y);

@@ -1,5 +1,7 @@
 //! What is printed for one scan, as a row of the table or as JSON. Pure.
 
+use engine::peaks::sentence::{Stand, sentence};
+use geometry::{Covariance, Pose};
 use messages::{HypothesesHeader, Hypothesis, Verdict};
 use serde::Serialize;
 
@@ -16,12 +18,14 @@ pub(crate) struct Line {
     pub(crate) y: Option<f64>,
     /// Of the laser in the map, degrees counter-clockwise.
     pub(crate) heading_deg: Option<f64>,
-    /// Share of the votes that the pose could have, 0..=1.
+    /// How well the scan fits the map there, at most 1.
     pub(crate) score: Option<f32>,
     /// The verdict, or `?` for one that this version does not know.
     pub(crate) verdict: &'static str,
     /// Other places that fit about as well.
     pub(crate) alternatives: u32,
+    /// The verdict in words.
+    pub(crate) says: String,
     /// From the scan's entry into the graph to the pose, milliseconds.
     pub(crate) latency_ms: f64,
     /// Of that, computing.
@@ -46,6 +50,9 @@ impl Line {
             score: best.map(|h| h.score),
             verdict: verdict.map_or("?", Verdict::as_str),
             alternatives: header.alternatives,
+            says: verdict.map_or_else(String::new, |verdict| {
+                sentence(verdict, &stands(header, hypotheses))
+            }),
             latency_ms: latency_ns as f64 / NS_PER_MS,
             engine_ms: engine_ns as f64 / NS_PER_MS,
         }
@@ -70,7 +77,7 @@ impl Line {
         let number = |value: Option<f64>, decimals: usize| {
             value.map_or("-".to_owned(), |v| format!("{v:.decimals$}"))
         };
-        row([
+        let row = row([
             &seconds(self.stamp_ns),
             &number(self.x, 3),
             &number(self.y, 3),
@@ -79,8 +86,29 @@ impl Line {
             self.verdict,
             &self.alternatives.to_string(),
             &format!("{:.2}", self.latency_ms),
-        ])
+        ]);
+        // What all scans should say needs no words.
+        if self.verdict == Verdict::Unique.as_str() || self.says.is_empty() {
+            return row;
+        }
+        format!("{row}  {}", self.says)
     }
+}
+
+/// The best place and those that fit about as well, as far as they are numbers:
+/// they come from another process.
+fn stands(header: &HypothesesHeader, hypotheses: &[Hypothesis]) -> Vec<Stand> {
+    let is_finite = |h: &&Hypothesis| {
+        Pose::from(h.map_from_laser).is_finite() && h.covariance.iter().all(|c| c.is_finite())
+    };
+    let told = hypotheses.iter().take(1 + header.alternatives as usize);
+    told.filter(is_finite)
+        .map(|h| Stand {
+            map_from_laser: h.map_from_laser.into(),
+            covariance: Covariance::from_rows(h.covariance),
+            score: h.score.into(),
+        })
+        .collect()
 }
 
 fn row([stamp, x, y, heading, score, verdict, alternatives, ms]: [&str; 8]) -> String {
@@ -139,8 +167,8 @@ pub(super) mod tests {
         let (header, found) = message(1_117_803_432_123_999_999, 0, Verdict::Ambiguous as u32);
         let expected = "
        stamp s        x m        y m  heading deg  score  verdict    alternatives        ms
-1117803432.123      1.000     -2.000       180.00   0.88  Ambiguous             2     25.00
-             -          -          -            -      -  NoScan                2     25.00
+1117803432.123      1.000     -2.000       180.00   0.88  Ambiguous             2     25.00  several places fit about as well
+             -          -          -            -      -  NoScan                2     25.00  no beam says anything about this map: is the laser covered?
 ";
         let mut none = Line::new(
             &HypothesesHeader {
@@ -166,7 +194,7 @@ pub(super) mod tests {
         let json = serde_json::to_string(&Line::new(&header, &found)).unwrap();
         assert_eq!(
             json,
-            r#"{"stamp_ns":7,"x":1.0,"y":-2.0,"heading_deg":180.0,"score":0.875,"verdict":"Unique","alternatives":2,"latency_ms":25.0,"engine_ms":24.0}"#
+            r#"{"stamp_ns":7,"x":1.0,"y":-2.0,"heading_deg":180.0,"score":0.875,"verdict":"Unique","alternatives":2,"says":"one place fits, 88 % of the scan agrees","latency_ms":25.0,"engine_ms":24.0}"#
         );
         let none = serde_json::to_value(Line::new(&header, &[])).unwrap();
         assert!(none["x"].is_null() && none["score"].is_null());

@@ -1,0 +1,139 @@
+//! The verdict in words, for the operator at the robot.
+
+use std::f64::consts::PI;
+
+use geometry::{Covariance, Pose};
+use messages::Verdict;
+
+/// What is told of a place.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Stand {
+    /// Pose of the laser in the map.
+    pub map_from_laser: Pose,
+    /// Its spread.
+    pub covariance: Covariance,
+    /// How well the scan fits there.
+    pub score: f64,
+}
+
+/// An ellipse that is so many times as long as it is wide lies along a
+/// corridor.
+const CORRIDOR: f64 = 5.0;
+
+/// Places in a corridor's direction, give or take, are along it.
+const ALONG_RADIANS: f64 = 0.35;
+
+/// Poses so near each other are the same spot, metres.
+const SAME_SPOT_M: f64 = 0.5;
+
+/// What a verdict means. Of the places, best first, those after the first fit
+/// about as well where the verdict is [`Verdict::Ambiguous`].
+#[must_use]
+pub fn sentence(verdict: Verdict, places: &[Stand]) -> String {
+    match (verdict, places) {
+        (Verdict::NoScan, _) | (_, []) => {
+            "no beam says anything about this map: is the laser covered?".into()
+        }
+        (Verdict::Unique, [best, ..]) => {
+            format!("one place fits, {:.0} % of the scan agrees", percent(best))
+        }
+        (Verdict::PoorFit, [best, ..]) => format!(
+            "even at the best place only {:.0} % of the scan agrees: is it this map?",
+            percent(best)
+        ),
+        (Verdict::Ambiguous, [_]) => "several places fit about as well".into(),
+        (Verdict::Ambiguous, [best, others @ ..]) => {
+            format!("{} places fit: {}", places.len(), apart(best, others))
+        }
+    }
+}
+
+fn percent(place: &Stand) -> f64 {
+    100.0 * place.score.clamp(0.0, 1.0)
+}
+
+/// How the others lie to the best place.
+fn apart(best: &Stand, others: &[Stand]) -> String {
+    let distance = |other: &Stand| best.map_from_laser.distance_to(other.map_from_laser);
+    let distances = others.iter().map(distance);
+    let (nearest, farthest) = distances.fold((f64::INFINITY, 0.0_f64), |(near, far), distance| {
+        (near.min(distance), far.max(distance))
+    });
+    if farthest <= SAME_SPOT_M {
+        let angle = |other: &Stand| best.map_from_laser.angle_to(other.map_from_laser);
+        let turn = others.iter().map(angle).fold(0.0, f64::max);
+        return format!("the same spot, turned by up to {:.0}°", turn.to_degrees());
+    }
+    let range = match others {
+        [_] => format!("{farthest:.1} m apart"),
+        _ => format!("{nearest:.1} to {farthest:.1} m from the best"),
+    };
+    if others.iter().all(|other| is_along_corridor(best, other)) {
+        return format!("{range}, along the corridor");
+    }
+    range
+}
+
+/// Whether the way to another place lies along what the scan does not tell.
+fn is_along_corridor(best: &Stand, other: &Stand) -> bool {
+    let ellipse = best.covariance.ellipse();
+    let (from, to) = (best.map_from_laser, other.map_from_laser);
+    let way = (to.y - from.y).atan2(to.x - from.x);
+    let off = (way - ellipse.angle).rem_euclid(PI);
+    ellipse.major_m > CORRIDOR * ellipse.minor_m && off.min(PI - off) < ALONG_RADIANS
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn at(x: f64, y: f64, degrees: f64) -> Stand {
+        Stand {
+            map_from_laser: Pose::new(x, y, degrees.to_radians()),
+            covariance: Covariance::from_deviations(2.0, 0.02, 0.01),
+            score: 0.874,
+        }
+    }
+
+    #[test]
+    fn each_verdict_has_its_words() {
+        let say = |verdict, places: &[Stand]| sentence(verdict, places);
+        assert_eq!(
+            say(Verdict::Unique, &[at(0.0, 0.0, 0.0)]),
+            "one place fits, 87 % of the scan agrees"
+        );
+        assert_eq!(
+            say(Verdict::PoorFit, &[at(0.0, 0.0, 0.0)]),
+            "even at the best place only 87 % of the scan agrees: is it this map?"
+        );
+        assert_eq!(
+            say(Verdict::NoScan, &[]),
+            "no beam says anything about this map: is the laser covered?"
+        );
+        assert_eq!(
+            say(Verdict::Ambiguous, &[at(0.0, 0.0, 0.0)]),
+            "several places fit about as well"
+        );
+    }
+
+    #[test]
+    fn rivals_are_told_by_how_they_lie_to_the_best() {
+        let say = |others: &[Stand]| {
+            let places = [&[at(0.0, 0.0, 0.0)], others].concat();
+            sentence(Verdict::Ambiguous, &places)
+        };
+        assert_eq!(
+            say(&[at(-12.0, 1.0, 0.0)]),
+            "2 places fit: 12.0 m apart, along the corridor"
+        );
+        assert_eq!(say(&[at(3.0, 4.0, 90.0)]), "2 places fit: 5.0 m apart");
+        assert_eq!(
+            say(&[at(6.0, 0.0, 0.0), at(0.0, 9.0, 0.0)]),
+            "3 places fit: 6.0 to 9.0 m from the best"
+        );
+        assert_eq!(
+            say(&[at(0.1, 0.0, 180.0)]),
+            "2 places fit: the same spot, turned by up to 180°"
+        );
+    }
+}
