@@ -6,10 +6,10 @@ use crate::config::{parse_length, parse_share};
 #[derive(Debug, Clone, Copy, PartialEq, clap::Args)]
 pub struct FitConfig {
     /// Standard deviation of an end point around the obstacle that it belongs
-    /// to, map errors included, metres, 0.01..=2; at least `--fit-sigma-cells`.
+    /// to, map errors included, metres, 0..=2; at least `--fit-sigma-cells`.
     #[arg(long, value_name = "METRES", default_value_t = 0.10, value_parser = parse_length)]
     pub fit_sigma_m: f64,
-    /// The same in cells of the map, 0..=10: coarse maps are less exact.
+    /// The same in cells of the map, 0.1..=10: coarse maps are less exact.
     #[arg(long, value_name = "CELLS", default_value_t = 2.0, value_parser = parse_cells)]
     pub fit_sigma_cells: f64,
     /// What a beam that passes through an obstacle loses of its full score,
@@ -24,7 +24,7 @@ pub struct FitConfig {
 }
 
 fn parse_cells(text: &str) -> Result<f64, String> {
-    crate::config::parse(text, 0.0..=10.0, "cells")
+    crate::config::parse(text, 0.1..=10.0, "cells")
 }
 
 impl Default for FitConfig {
@@ -41,8 +41,6 @@ impl Default for FitConfig {
 impl FitConfig {
     /// The standard deviation in cells of a map.
     pub(super) fn sigma_cells(&self, resolution_m: f64) -> f64 {
-        (self.fit_sigma_m / resolution_m)
-            .max(self.fit_sigma_cells)
-            .max(0.1)
+        (self.fit_sigma_m / resolution_m).max(self.fit_sigma_cells)
     }
 }

@@ -129,11 +129,72 @@ fn covariance(input: &PeakInput<'_>, refined: &Refined) -> Covariance {
     let variance = BEAMS_TOGETHER * refined.variance.max(1.0 / 12.0);
     let loose = LOOSE_M / input.frame.resolution_m;
     let prior = Vector3::new(loose.powi(-2), loose.powi(-2), LOOSE_RADIANS.powi(-2));
-    let information = refined.curvature / variance + Matrix3::from_diagonal(&prior);
+    let mut information = refined.curvature / variance + Matrix3::from_diagonal(&prior);
+    let is_known = input.known_heading.is_some();
+    if is_known {
+        // The heading does not err, and x and y not with it.
+        information.fill_row(2, 0.0);
+        information.fill_column(2, 0.0);
+        information[(2, 2)] = 1.0;
+    }
+    // The prior makes it positive definite.
     let mut in_cells = information.try_inverse().unwrap_or_else(Matrix3::zeros);
-    if input.known_heading.is_some() {
-        in_cells.fill_row(2, 0.0);
-        in_cells.fill_column(2, 0.0);
+    if is_known {
+        in_cells[(2, 2)] = 0.0;
     }
     input.in_map(in_cells)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::grid::GridFrame;
+
+    fn deviations(known_heading: Option<f64>, curvature: Matrix3<f64>) -> [f64; 3] {
+        let input = PeakInput {
+            votes: &[],
+            certified_floor: 0,
+            highest_possible: 1,
+            headings: 360,
+            known_heading,
+            frame: GridFrame {
+                resolution_m: 0.1,
+                map_from_grid: Pose::IDENTITY,
+            },
+        };
+        let refined = Refined {
+            pose: GridPose {
+                x: 0.0,
+                y: 0.0,
+                heading: 0.0,
+            },
+            curvature,
+            variance: 0.5,
+            weight: 100.0,
+        };
+        let Covariance(covariance) = covariance(&input, &refined);
+        std::array::from_fn(|i| covariance[(i, i)].sqrt())
+    }
+
+    #[test]
+    fn a_known_heading_does_not_err_nor_the_position_with_it() {
+        // Turning moves all ends as going 20 cells along y does.
+        let turned = Matrix3::new(50.0, 0.0, 0.0, 0.0, 50.0, 900.0, 0.0, 900.0, 20_000.0);
+        let [x, y, yaw] = deviations(None, turned);
+        let [known_x, known_y, known_yaw] = deviations(Some(0.5), turned);
+        assert!(
+            (x - known_x).abs() < 1e-9 && known_y < 0.7 * y,
+            "{y} {known_y}"
+        );
+        assert!(yaw > 0.0 && known_yaw == 0.0);
+        // Eight beams tell as much as one: 0.5 · 8 / 50 squared cells.
+        assert!((known_x - 0.1 * 0.08f64.sqrt()).abs() < 1e-4, "{known_x}");
+    }
+
+    #[test]
+    fn along_what_no_beam_tells_a_place_is_two_metres_long() {
+        let corridor = Matrix3::from_diagonal(&Vector3::new(0.0, 90.0, 5_000.0));
+        let [x, y, _] = deviations(None, corridor);
+        assert!((x - LOOSE_M).abs() < 1e-9 && y < 0.03, "{x} {y}");
+    }
 }
