@@ -24,6 +24,9 @@ use crate::votes;
 /// Coarse blocks that are split for each candidate that is wanted.
 const COARSE_SHARE: usize = 6;
 
+/// On large maps, one of so many coarse blocks is split.
+const COARSE_PART: usize = 16;
+
 /// Blocks of 8 × 8 cells that are looked into for each candidate.
 const FINE_SHARE: usize = 1;
 
@@ -61,7 +64,8 @@ impl<'a> Alternatives<'a> {
 
     /// Poses of the blocks that promise most, in no order, at most so many.
     pub(super) fn find(&mut self, wanted: usize) -> Vec<Vote> {
-        let coarse = self.most_promising(COARSE_SHARE * wanted);
+        let part = self.task.promises.len() / COARSE_PART;
+        let coarse = self.most_promising(part.max(COARSE_SHARE * wanted));
         let mut fine = self.bound_all(&coarse);
         keep_greatest(&mut fine, FINE_SHARE * wanted);
         let spots = fine
