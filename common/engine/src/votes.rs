@@ -64,36 +64,54 @@ impl VoteSet {
     /// Adds poses below the certified floor until there are so many distinct
     /// ones, best first.
     pub(crate) fn add_candidates(&mut self, mut others: Vec<Vote>, space: &Space, wanted: usize) {
-        let mut distinct = distinct(&self.votes, space, wanted);
-        let is_new = |vote: &Vote| {
-            let is_new = distinct.len() < wanted
-                && !distinct.iter().any(|other| are_near(vote, other, space));
-            if is_new {
-                distinct.push(*vote);
-            }
-            is_new
-        };
+        let mut distinct = Distinct::new(space, wanted);
+        self.votes.iter().for_each(|vote| {
+            distinct.take(vote);
+        });
         others.retain(|vote| vote.intensity < self.certified_floor);
         others.sort_unstable_by_key(order);
-        others.retain(is_new);
+        others.retain(|vote| distinct.take(vote));
         self.votes.append(&mut others);
         self.floor = self.votes.last().map_or(0, |vote| vote.intensity);
     }
 }
 
-/// The first of all votes that are distinct from all before them, at most so
-/// many.
-pub(crate) fn distinct(votes: &[Vote], space: &Space, wanted: usize) -> Vec<Vote> {
-    let mut distinct: Vec<Vote> = Vec::with_capacity(wanted);
-    for vote in votes {
-        if distinct.len() == wanted {
-            break;
-        }
-        if !distinct.iter().any(|other| are_near(vote, other, space)) {
-            distinct.push(*vote);
+/// Takes poses in order and keeps those that are distinct from all kept before,
+/// at most so many.
+#[derive(Debug)]
+pub(crate) struct Distinct<'a> {
+    space: &'a Space,
+    wanted: usize,
+    kept: Vec<Vote>,
+}
+
+impl<'a> Distinct<'a> {
+    pub(crate) fn new(space: &'a Space, wanted: usize) -> Self {
+        Distinct {
+            space,
+            wanted,
+            kept: Vec::with_capacity(wanted),
         }
     }
-    distinct
+
+    /// Whether the pose is kept.
+    pub(crate) fn take(&mut self, vote: &Vote) -> bool {
+        let near = |kept: &Vote| are_near(vote, kept, self.space);
+        let is_new = self.kept.len() < self.wanted && !self.kept.iter().any(near);
+        if is_new {
+            self.kept.push(*vote);
+        }
+        is_new
+    }
+
+    /// Those of all poses.
+    pub(crate) fn of(votes: &[Vote], space: &'a Space, wanted: usize) -> Vec<Vote> {
+        let mut distinct = Distinct::new(space, wanted);
+        votes.iter().for_each(|vote| {
+            distinct.take(vote);
+        });
+        distinct.kept
+    }
 }
 
 /// Whether two poses are one candidate.

@@ -16,16 +16,6 @@ pub enum BeamClass {
     Unknown,
 }
 
-/// The agreement of a scan with the map at a pose.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Agreement {
-    /// Mean score of the beams by weight, at most 1; below 0 where most beams
-    /// pass through obstacles.
-    pub score: f64,
-    /// Share of the beams by weight that end at an obstacle, 0..=1.
-    pub hits: f64,
-}
-
 /// An end point within this many standard deviations lies at the obstacle.
 const HIT_SIGMAS: f64 = 2.0;
 
@@ -34,23 +24,15 @@ const HIT_SIGMAS: f64 = 2.0;
 const THROUGH_SIGMAS: f64 = 3.0;
 
 impl Terrain {
-    /// Judges a scan at a pose.
+    /// How well a scan agrees with the map at a pose: the mean score of the beams
+    /// by weight, at most 1; below 0 where most beams pass through obstacles.
     #[must_use]
-    pub fn agreement(&self, ends: &Ends, pose: GridPose, config: &FitConfig) -> Agreement {
-        let (mut score, mut hits) = (0.0, 0.0);
-        self.judge(ends, pose, config, |end, value, class| {
+    pub fn score(&self, ends: &Ends, pose: GridPose, config: &FitConfig) -> f64 {
+        let mut score = 0.0;
+        self.judge(ends, pose, config, |end, value, _| {
             score += end.weight * value;
-            hits += if class == BeamClass::Hit {
-                end.weight
-            } else {
-                0.0
-            };
         });
-        let weight = ends.weight.max(f64::MIN_POSITIVE);
-        Agreement {
-            score: score / weight,
-            hits: hits / weight,
-        }
+        score / ends.weight.max(f64::MIN_POSITIVE)
     }
 
     /// What became of each beam at a pose, in the order of their bearings.
@@ -178,16 +160,23 @@ mod tests {
     #[test]
     fn the_score_is_what_the_ends_are_worth() {
         let map = terrain(&MAP);
-        let score = |readings: &[(f64, f64)]| map.agreement(&ends(readings), POSE, &config());
-        let on_the_wall = score(&[(0.0, 6.0)]);
-        assert_eq!((on_the_wall.score, on_the_wall.hits), (1.0, 1.0));
+        // The score, and the share of hits.
+        let judged = |readings: &[(f64, f64)]| {
+            let scan = ends(readings);
+            let classes = map.classes(&scan, POSE, &config());
+            let hits = scan.share(&classes, BeamClass::Hit);
+            (map.score(&scan, POSE, &config()), hits)
+        };
+        let score = |readings: &[(f64, f64)]| judged(readings).0;
+        let on_the_wall = judged(&[(0.0, 6.0)]);
+        assert_eq!(on_the_wall, (1.0, 1.0));
         // One σ before the wall, and in the open.
-        assert!((score(&[(0.0, 5.0)]).score - (-0.5f64).exp()).abs() < 1e-12);
-        assert!(score(&[(0.0, 1.0)]).score < 1e-5);
+        assert!((score(&[(0.0, 5.0)]) - (-0.5f64).exp()).abs() < 1e-12);
+        assert!(score(&[(0.0, 1.0)]) < 1e-5);
         // At an obstacle, but through another.
-        assert!((score(&[(0.0, 9.0)]).score - 0.85).abs() < 1e-12);
-        assert_eq!(score(&[(22.0, 6.0)]).score, 0.3);
-        let both = score(&[(0.0, 6.0), (22.0, 6.0)]);
-        assert!((both.score - 0.65).abs() < 1e-12 && both.hits == 0.5);
+        assert!((score(&[(0.0, 9.0)]) - 0.85).abs() < 1e-12);
+        assert_eq!(score(&[(22.0, 6.0)]), 0.3);
+        let both = judged(&[(0.0, 6.0), (22.0, 6.0)]);
+        assert!((both.0 - 0.65).abs() < 1e-12 && both.1 == 0.5);
     }
 }

@@ -1,5 +1,6 @@
 //! Where the beams of a scan end, seen from the laser.
 
+use super::BeamClass;
 use crate::EngineError;
 use crate::beams::{self, BeamConfig};
 use crate::scan::Scan;
@@ -48,6 +49,18 @@ impl Ends {
             weight: ends.iter().map(|end| end.weight).sum(),
             ends,
         })
+    }
+}
+
+impl Ends {
+    /// Share of the beams by weight that are of a class, 0..=1; `classes` are
+    /// those of [`Terrain::classes`](super::Terrain::classes).
+    #[must_use]
+    pub fn share(&self, classes: &[BeamClass], class: BeamClass) -> f64 {
+        let both = self.ends.iter().zip(classes);
+        let weights = both.filter(|&(_, &other)| other == class);
+        let weight: f64 = weights.map(|(end, _)| end.weight).sum();
+        weight / self.weight.max(f64::MIN_POSITIVE)
     }
 }
 

@@ -22,7 +22,7 @@ mod ends;
 mod refine;
 mod terrain;
 
-pub use agreement::{Agreement, BeamClass};
+pub use agreement::BeamClass;
 pub use config::FitConfig;
 pub use ends::Ends;
 pub use refine::Refined;

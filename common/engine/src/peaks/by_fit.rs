@@ -7,7 +7,7 @@ use nalgebra::{Matrix3, Vector3};
 
 use super::summits::{Reach, Summit, summits};
 use super::{PeakConfig, PeakInput, Place, Places, likelihood};
-use crate::fit::{Ends, GridPose, Refined, Terrain};
+use crate::fit::{BeamClass, Ends, GridPose, Refined, Terrain};
 
 /// Reads the places from the votes of a scan and from the scan itself, which
 /// must be of the same map.
@@ -42,12 +42,13 @@ pub fn by_fit(
     };
     places.truncate(config.max_hypotheses as usize);
     let pose = grid_pose(input, best.map_from_laser);
+    let classes = terrain.classes(ends, pose, &config.fit);
     Places {
         verdict,
         alternatives,
         confidence: places[0].probability,
-        inlier_share: terrain.agreement(ends, pose, &config.fit).hits,
-        classes: terrain.classes(ends, pose, &config.fit),
+        inlier_share: ends.share(&classes, BeamClass::Hit),
+        classes,
         places,
     }
 }
@@ -108,7 +109,7 @@ fn place(
     Place {
         map_from_laser,
         covariance: covariance(input, &refined),
-        score: terrain.agreement(ends, pose, &config.fit).score,
+        score: terrain.score(ends, pose, &config.fit),
         probability: 0.0,
         intensity: vote.intensity,
         support: summit.support,

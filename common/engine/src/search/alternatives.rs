@@ -19,7 +19,7 @@ use super::outlook::{CELLS, Outlook};
 use super::sectors;
 use super::set_bounds::{CHUNK, SetBounds};
 use super::task::Task;
-use crate::votes;
+use crate::votes::Distinct;
 
 /// Coarse blocks that are split for each candidate that is wanted.
 const COARSE_SHARE: usize = 6;
@@ -73,26 +73,16 @@ impl<'a> Alternatives<'a> {
             .filter_map(|&(_, Reverse(block))| self.best_spot(block as usize));
         let mut spots: Vec<Spot> = spots.collect();
         spots.sort_unstable_by(|a, b| b.cmp(a));
-        let mut distinct: Vec<Spot> = Vec::with_capacity(wanted);
-        for spot in spots {
-            if distinct.len() < wanted && !distinct.iter().any(|other| self.are_near(&spot, other))
-            {
-                distinct.push(spot);
-            }
-        }
-        distinct
+        let mut distinct = Distinct::new(self.task.space, wanted);
+        spots.retain(|spot| distinct.take(&self.corner(spot)));
+        spots
             .into_iter()
             .filter_map(|spot| self.count(spot))
             .collect()
     }
 
-    /// Whether the poses of two spots are one candidate, as far as the spots'
-    /// middles tell.
-    fn are_near(&self, a: &Spot, b: &Spot) -> bool {
-        votes::are_near(&self.middle(a), &self.middle(b), self.task.space)
-    }
-
-    fn middle(&self, spot: &Spot) -> Vote {
+    /// A spot as a pose, by which spots are told apart.
+    fn corner(&self, spot: &Spot) -> Vote {
         let (Reverse(block), Reverse(heading)) = (spot.block, spot.heading);
         let columns = self.task.index.intervals.columns;
         Vote {

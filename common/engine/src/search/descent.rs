@@ -83,11 +83,9 @@ impl<'a> Descent<'a> {
     /// Searches one of `parts` of the coarse blocks.
     pub(super) fn run(mut self, (part, parts): (usize, usize), stop: &dyn Fn() -> bool) -> End {
         let (coarse, program) = (&self.task.index.coarse, &self.task.programs.coarse);
-        // Neighbouring blocks are alike, so parts take them in turn.
+        // Neighbouring blocks are alike, so parts take them in turn. All promises
+        // are needed, also where another part gives up: candidates come of them.
         for index in (part..coarse.blocks()).step_by(parts) {
-            if stop() {
-                return End::Stopped;
-            }
             let (bound, promise) = program.rough(coarse, index, &mut self.coarse_bounds);
             self.task.promises[index].store(promise, Ordering::Relaxed);
             self.push(bound, promise, index, Level::Coarse);

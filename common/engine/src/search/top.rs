@@ -14,7 +14,7 @@ use crate::grid::Grid;
 use crate::instruction_set::InstructionSet;
 use crate::program::ScanProgram;
 use crate::space::Space;
-use crate::votes::{self, CollectConfig, VoteSet};
+use crate::votes::{CollectConfig, Distinct, VoteSet};
 
 /// Most poses that are collected at a time.
 const MAX_VOTES: u32 = 1_000_000;
@@ -34,7 +34,8 @@ pub struct Top {
 
 impl SearchIndex {
     /// The `count` distinct poses with the most votes, that is
-    /// [`votes::DISTINCT_M`] or [`votes::DISTINCT_DEG`] apart; `None` if `stop`
+    /// [`DISTINCT_M`](crate::votes::DISTINCT_M) or
+    /// [`DISTINCT_DEG`](crate::votes::DISTINCT_DEG) apart; `None` if `stop`
     /// said so before the end.
     ///
     /// # Panics
@@ -57,7 +58,7 @@ impl SearchIndex {
             self.search_with(how, grid, scan, config, stop)
         };
         let first = search(1.0, count as u32)?;
-        let guess = votes::distinct(&first.votes, scan.1, count);
+        let guess = Distinct::of(&first.votes, scan.1, count);
         let mut floor = match guess.last() {
             Some(last) if guess.len() == count => f64::from(last.intensity),
             _ => NEXT_FLOOR * f64::from(first.best),
@@ -77,7 +78,7 @@ impl SearchIndex {
 fn top_of(found: &VoteSet, space: &Space, count: usize, is_all: bool) -> Top {
     let is_certain = |vote: &Vote| vote.intensity >= found.certified_floor;
     let certain = found.votes.partition_point(is_certain);
-    let poses = votes::distinct(&found.votes[..certain], space, count);
+    let poses = Distinct::of(&found.votes[..certain], space, count);
     Top {
         is_complete: poses.len() == count || (is_all && !found.truncated),
         poses,
@@ -90,6 +91,7 @@ mod tests {
 
     use super::*;
     use crate::testing::{any_grid, any_scan, plain_votes, space_of};
+    use crate::votes;
 
     proptest! {
         #[test]
