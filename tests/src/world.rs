@@ -3,7 +3,6 @@
 
 use std::path::PathBuf;
 
-use engine::boundary;
 use engine::grid::{CellRules, Grid, GridFrame};
 use engine::localizer::{Localizer, LocalizerConfig, Prior};
 use engine::scan::Scan;
@@ -56,8 +55,7 @@ impl World {
     #[must_use]
     pub fn localizer(&self, prior: Prior) -> Localizer {
         let (grid, frame) = self.grid();
-        let boundary = boundary::extract(&grid);
-        Localizer::new(frame, grid, &boundary, LocalizerConfig::default(), prior).unwrap()
+        Localizer::new(frame, grid, LocalizerConfig::default(), prior).unwrap()
     }
 
     /// All scans, by time.

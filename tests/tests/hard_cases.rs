@@ -84,7 +84,7 @@ impl Building {
 
     fn localizer(&self) -> Localizer {
         let config = LocalizerConfig::default();
-        Localizer::new(FRAME, self.grid(), &[], config, Prior::None).unwrap()
+        Localizer::new(FRAME, self.grid(), config, Prior::None).unwrap()
     }
 
     fn locate(&self, ranges: &[f32]) -> Places {

@@ -1,7 +1,5 @@
 //! A map and its settings, ready to be asked where scans were taken.
 
-use messages::BoundaryCell;
-
 use crate::EngineError;
 use crate::accumulator::{Accumulator, Query};
 use crate::grid::{Grid, GridFrame};
@@ -86,14 +84,13 @@ pub struct Outcome {
 }
 
 impl Localizer {
-    /// Prepares a map. `boundary` is that of [`crate::boundary::extract`].
+    /// Prepares a map.
     ///
     /// # Errors
     /// If the map has no occupied or no free cell, or a setting is out of range.
     pub fn new(
         frame: GridFrame,
         grid: Grid,
-        _boundary: &[BoundaryCell],
         config: LocalizerConfig,
         prior: Prior,
     ) -> Result<Self, EngineError> {
@@ -256,7 +253,6 @@ mod tests {
     use geometry::Pose;
 
     use super::*;
-    use crate::boundary;
     use crate::grid::drawn::grid;
     use crate::reference;
 
@@ -282,8 +278,7 @@ mod tests {
 
     fn localizer(prior: Prior) -> Localizer {
         let grid = grid(&ROOM);
-        let boundary = boundary::extract(&grid);
-        Localizer::new(FRAME, grid, &boundary, LocalizerConfig::default(), prior).unwrap()
+        Localizer::new(FRAME, grid, LocalizerConfig::default(), prior).unwrap()
     }
 
     /// What a laser with a beam a degree all around reads at a pose of the grid.
@@ -365,7 +360,7 @@ mod tests {
     fn a_map_without_obstacles_or_space_is_refused() {
         let make = |rows: &[&str]| {
             let grid = grid(rows);
-            Localizer::new(FRAME, grid, &[], LocalizerConfig::default(), Prior::None).map(|_| ())
+            Localizer::new(FRAME, grid, LocalizerConfig::default(), Prior::None).map(|_| ())
         };
         assert_eq!(make(&["...", "..."]), Err(EngineError::NoOccupiedCell));
         assert_eq!(make(&["###", "#?#"]), Err(EngineError::NoFreeCell));

@@ -88,7 +88,7 @@ impl Job {
         let (width, height) = (self.map.width as usize, self.map.height as usize);
         let grid = Grid::new(width, height, &self.occupancy, self.rules)?;
         check_boundary(&self.boundary, &grid)?;
-        let localizer = Localizer::new(frame, grid, &self.boundary, config, prior)?;
+        let localizer = Localizer::new(frame, grid, config, prior)?;
         let map_id = self.map.map_id;
         Ok(PreparedMap {
             map_id,

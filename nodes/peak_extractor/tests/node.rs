@@ -9,7 +9,6 @@ use std::f64::consts::PI;
 
 use bytemuck::Zeroable;
 use engine::beams::BeamConfig;
-use engine::boundary;
 use engine::fit::{Ends, Terrain};
 use engine::grid::{CellRules, Grid, GridFrame};
 use engine::localizer::{Localizer, LocalizerConfig, Outcome, Prior};
@@ -80,9 +79,8 @@ fn searched(x: i64, y: i64, heading: usize) -> Searched {
         })
     });
     let ranges: Vec<f32> = beams.collect();
-    let boundary = boundary::extract(&grid);
     let config = LocalizerConfig::default();
-    let localizer = Localizer::new(FRAME, grid, &boundary, config, Prior::None).unwrap();
+    let localizer = Localizer::new(FRAME, grid, config, Prior::None).unwrap();
     let outcome = localizer.search(&scan(&ranges), &|| false);
     Searched {
         outcome: outcome.unwrap().unwrap(),

@@ -1,8 +1,10 @@
 //! How likely the robot is at each place, and at none of them.
 //!
 //! A softmax: weights fall exponentially with the lead of the best place and,
-//! for none of them, with its score. The scales are settings that were fitted
-//! to real scans with known poses, by the likelihood of what was true.
+//! for none of them, with its score. The scales are settings: that of leads was
+//! fitted to real scans with known poses, by the likelihood of what was true;
+//! those of scores lie near where that is highest, a little lower, for those
+//! scans were all taken on their maps.
 
 use super::{PeakConfig, Place};
 

@@ -62,8 +62,7 @@ pub(crate) fn grid(rows: &[&str]) -> Grid {
 /// The engine, asked directly.
 pub(crate) fn localizer(rows: &[&str], prior: Prior) -> Localizer {
     let grid = grid(rows);
-    let boundary = boundary::extract(&grid);
-    Localizer::new(FRAME, grid, &boundary, LocalizerConfig::default(), prior).unwrap()
+    Localizer::new(FRAME, grid, LocalizerConfig::default(), prior).unwrap()
 }
 
 /// What a laser with a beam a degree all around reads at a pose of the grid.

@@ -3,7 +3,6 @@
 
 use engine::EngineError;
 use engine::beams::BeamConfig;
-use engine::boundary;
 use engine::fit::{Ends, Terrain};
 use engine::grid::{Grid, GridFrame};
 use engine::localizer::{Localizer, Outcome, Prior};
@@ -34,7 +33,7 @@ pub(crate) struct Answer {
 }
 
 impl World {
-    /// Does what the graph's boundary extractor and accumulator do with a map.
+    /// Does what the graph's accumulator and peak extractor do with a map.
     ///
     /// # Errors
     /// The map has no occupied or no free cell, or a setting is out of range.
@@ -45,7 +44,6 @@ impl World {
     ) -> Result<Self, EngineError> {
         let (width, height) = (map.width as usize, map.height as usize);
         let grid = Grid::new(width, height, &map.cells, options.cells)?;
-        let boundary = boundary::extract(&grid);
         let frame = GridFrame {
             resolution_m: map.resolution_m,
             map_from_grid: map.map_from_grid,
@@ -54,7 +52,7 @@ impl World {
             map_id: map.id(),
             terrain: Terrain::new(frame, (width, height), &map.cells, options.cells)?,
             beams: options.localizer.votes.beams,
-            localizer: Localizer::new(frame, grid, &boundary, options.localizer, prior)?,
+            localizer: Localizer::new(frame, grid, options.localizer, prior)?,
             peaks: options.peaks,
         })
     }
