@@ -77,7 +77,13 @@ fn main() -> Result<(), BenchmarksError> {
         };
         let start = Instant::now();
         let width = world.grid.width();
-        let found = exhaustive::search(&mut all, width, (&program, &space), config, &|| false);
+        let found = exhaustive::search(
+            &mut all,
+            &engine::limits::Limits::none(width),
+            (&program, &space),
+            config,
+            &|| false,
+        );
         let (seconds, poses) = (
             start.elapsed().as_secs_f64(),
             found.map_or(0, |found| found.poses_evaluated),

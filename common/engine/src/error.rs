@@ -48,6 +48,15 @@ pub enum EngineError {
     /// There is no place to stand.
     #[error("the map has no free cell: there is nowhere that the robot could be")]
     NoFreeCell,
+    /// The limits leave nowhere to stand.
+    #[error(
+        "no open cell of the map lies in the region that is searched, as far from obstacles as \
+         the robot's radius asks"
+    )]
+    NoCellWithin,
+    /// The limits leave no heading.
+    #[error("none of the {0} headings a turn lies in the interval that is searched")]
+    NoHeadingWithin(u32),
     /// The number of headings is not supported.
     #[error("{0} headings a turn: it must be a multiple of 8 from 8 to 3600")]
     Headings(u32),

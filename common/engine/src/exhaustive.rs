@@ -7,6 +7,7 @@ use std::panic::resume_unwind;
 use std::sync::atomic::{AtomicBool, Ordering};
 
 use crate::accumulator::{Accumulator, Query};
+use crate::limits::Limits;
 use crate::program::ScanProgram;
 use crate::space::Space;
 use crate::votes::{CollectConfig, Collector, VoteSet};
@@ -14,7 +15,7 @@ use crate::votes::{CollectConfig, Collector, VoteSet};
 /// The poses with the most votes over all headings; `None` if `stop` said so
 /// before the end.
 ///
-/// `width` is that of the grid. The outcome does not depend on how many
+/// Poses are sought within the limits, which are those of the grid. The outcome does not depend on how many
 /// accumulators there are; the first one works on this thread.
 ///
 /// # Panics
@@ -22,7 +23,7 @@ use crate::votes::{CollectConfig, Collector, VoteSet};
 #[must_use]
 pub fn search<A: Accumulator + Send>(
     accumulators: &mut [A],
-    width: usize,
+    limits: &Limits,
     (program, space): (&ScanProgram, &Space),
     config: CollectConfig,
     stop: &dyn Fn() -> bool,
@@ -37,8 +38,10 @@ pub fn search<A: Accumulator + Send>(
                 space,
                 heading,
             };
-            accumulator.fill(query, &mut share.field, stop)?;
-            share.collect(width, heading);
+            if limits.hold_heading(heading) {
+                accumulator.fill(query, &mut share.field, stop)?;
+                share.collect(limits, heading);
+            }
         }
         Some(share)
     };
@@ -74,10 +77,11 @@ impl Share {
         }
     }
 
-    fn collect(&mut self, width: usize, heading: usize) {
+    fn collect(&mut self, limits: &Limits, heading: usize) {
         self.poses += self.field.len() as u64;
+        limits.clear(&mut self.field, heading);
         self.collector
-            .take_field(&self.field, width, heading as u16);
+            .take_field(&self.field, limits.width(), heading as u16);
     }
 
     fn merged(self, other: Share) -> Share {
@@ -108,7 +112,7 @@ mod tests {
             let config = CollectConfig { floor_share, max_votes, candidates: 0 };
             let sweeps = FieldSweep::new(&grid);
             let mut accumulators: Vec<_> = (0..threads).map(|_| sweeps.accumulator()).collect();
-            let found = search(&mut accumulators, grid.width(), (&program, &space), config, &|| false).unwrap();
+            let found = search(&mut accumulators, &Limits::none(grid.width()), (&program, &space), config, &|| false).unwrap();
             prop_assert_eq!(found.poses_evaluated, (grid.cells().len() * space.directions.count()) as u64);
             let found = VoteSet { poses_evaluated: 0, ..found };
             prop_assert_eq!(found, plain_votes(&grid, &program, &space, config));

@@ -32,6 +32,7 @@ pub mod fit;
 pub mod grid;
 pub mod heading;
 pub mod instruction_set;
+pub mod limits;
 pub mod localizer;
 pub mod peaks;
 pub mod program;

@@ -4,6 +4,7 @@ use crate::EngineError;
 use crate::accumulator::{Accumulator, Query};
 use crate::grid::{Grid, GridFrame};
 use crate::instruction_set::InstructionSet;
+use crate::limits::{Limits, LimitsConfig};
 use crate::program::{ScanProgram, VoteConfig};
 use crate::scan::Scan;
 use crate::search::{BlockBounds, SearchIndex};
@@ -12,7 +13,7 @@ use crate::sweep::FieldSweep;
 use crate::votes::{self, CollectConfig, VoteSet};
 
 /// How scans are matched with the map.
-#[derive(Debug, Clone, Copy, PartialEq, clap::Args)]
+#[derive(Debug, Clone, PartialEq, clap::Args)]
 pub struct LocalizerConfig {
     /// Headings a turn, a multiple of 8 from 8 to 3600.
     #[arg(long, value_name = "COUNT", default_value_t = 360)]
@@ -26,6 +27,9 @@ pub struct LocalizerConfig {
     /// What is collected of a search.
     #[command(flatten)]
     pub collect: CollectConfig,
+    /// Where poses are sought.
+    #[command(flatten)]
+    pub limits: LimitsConfig,
 }
 
 impl Default for LocalizerConfig {
@@ -35,6 +39,7 @@ impl Default for LocalizerConfig {
             threads: 1,
             votes: VoteConfig::default(),
             collect: CollectConfig::default(),
+            limits: LimitsConfig::default(),
         }
     }
 }
@@ -55,6 +60,7 @@ pub struct Localizer {
     grid: Grid,
     space: Space,
     config: LocalizerConfig,
+    limits: Limits,
     method: Method,
 }
 
@@ -87,7 +93,8 @@ impl Localizer {
     /// Prepares a map.
     ///
     /// # Errors
-    /// If the map has no occupied or no free cell, or a setting is out of range.
+    /// If the map has no occupied or no free cell, a setting is out of range, or
+    /// the limits leave no pose.
     pub fn new(
         frame: GridFrame,
         grid: Grid,
@@ -106,8 +113,12 @@ impl Localizer {
             grid.width(),
             grid.height(),
         )?;
+        let limits = Limits::new(&config.limits, frame, &grid, &space.directions)?;
         let method = match prior {
-            Prior::None => Method::Search(Box::new(SearchIndex::new(&grid, &space))),
+            Prior::None => {
+                let index = SearchIndex::new(&grid, &space).within(limits.clone());
+                Method::Search(Box::new(index))
+            }
             Prior::Heading => Method::Sweep(FieldSweep::new(&grid)),
         };
         Ok(Localizer {
@@ -115,6 +126,7 @@ impl Localizer {
             grid,
             space,
             config,
+            limits,
             method,
         })
     }
@@ -217,6 +229,7 @@ impl Localizer {
         if sweeps.accumulator().fill(query, &mut field, stop).is_none() {
             return Ok(None);
         }
+        self.limits.clear(&mut field, index);
         let (width, collect) = (self.grid.width(), self.config.collect);
         let mut found = votes::of_field(&field, width, index as u16, collect);
         let wanted = collect.candidates as usize;

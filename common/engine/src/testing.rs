@@ -1,10 +1,13 @@
 //! Random worlds for the tests of this crate.
 
+use geometry::Pose;
 use messages::{UNKNOWN, Vote};
 use proptest::collection::vec;
+use proptest::option::of;
 use proptest::prelude::*;
 
-use crate::grid::{CellRules, Grid};
+use crate::grid::{CellRules, Grid, GridFrame};
+use crate::limits::{HeadingInterval, Limits, LimitsConfig, Region};
 use crate::program::{ScanProgram, VoteConfig};
 use crate::reference;
 use crate::scan::Scan;
@@ -62,8 +65,43 @@ pub(crate) fn space_of(grid: &Grid, headings: u32) -> Space {
     Space::new(headings, RESOLUTION_M, grid.width(), grid.height()).expect("headings are allowed")
 }
 
+/// Limits of a test grid: none, a region, a radius, some headings or all three.
+pub(crate) fn any_limits(grid: &Grid, headings: u32) -> impl Strategy<Value = Limits> + use<> {
+    let (grid, space) = (grid.clone(), space_of(grid, headings));
+    let frame = GridFrame {
+        resolution_m: RESOLUTION_M,
+        map_from_grid: Pose::new(1.0, -2.0, 0.3),
+    };
+    let corner = || (-4.0..5.0f64, -4.0..4.0f64).prop_map(|(x, y)| [x, y]);
+    let region = vec(corner(), 2..6).prop_map(|corners| Region::new(&corners).expect("corners"));
+    let within = (0.0..6.3f64, 0.0..6.3f64).prop_map(|(from, to)| HeadingInterval { from, to });
+    let radius = prop_oneof![Just(0.0), 0.05..0.3f64];
+    let config = (radius, of(region), of(within));
+    config.prop_map(move |(robot_radius, region, headings_within)| {
+        let config = LimitsConfig {
+            robot_radius,
+            region,
+            headings_within,
+        };
+        let limits = Limits::new(&config, frame, &grid, &space.directions);
+        limits.unwrap_or_else(|_| Limits::none(grid.width()))
+    })
+}
+
 /// All poses by the plain reference, collected as the search does it.
 pub(crate) fn plain_votes(
+    grid: &Grid,
+    program: &ScanProgram,
+    space: &Space,
+    config: CollectConfig,
+) -> VoteSet {
+    let limits = Limits::none(grid.width());
+    plain_votes_within(&limits, grid, program, space, config)
+}
+
+/// The same of the poses within limits.
+pub(crate) fn plain_votes_within(
+    limits: &Limits,
     grid: &Grid,
     program: &ScanProgram,
     space: &Space,
@@ -73,9 +111,13 @@ pub(crate) fn plain_votes(
     for heading in 0..space.directions.count() {
         let field = reference::field(grid, program, space, heading);
         for (i, &intensity) in field.iter().enumerate() {
+            let (x, y) = (i % grid.width(), i / grid.width());
+            if !(limits.hold_cell(x, y) && limits.hold_heading(heading)) {
+                continue;
+            }
             collector.take(Vote {
-                x: (i % grid.width()) as u16,
-                y: (i / grid.width()) as u16,
+                x: x as u16,
+                y: y as u16,
                 heading: heading as u16,
                 intensity,
             });

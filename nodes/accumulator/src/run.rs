@@ -40,7 +40,7 @@ pub fn run(graph: &Graph, config: &Config) -> Result<(), AccumulatorError> {
         source,
         headings: config.localizer.headings,
         history: History::keeping(HEADINGS_KEPT),
-        supply: Supply::new(config.localizer, config.prior()),
+        supply: Supply::new(config.localizer.clone(), config.prior()),
         map: None,
         gaps: GapCounter::new(),
         last_refusal: String::new(),

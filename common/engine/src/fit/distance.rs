@@ -10,7 +10,7 @@ const FAR: f32 = 1e12;
 
 /// Distances in cells between cell centres, row by row, 0 in marked cells;
 /// 10⁶ everywhere where none is marked.
-pub(super) fn transform(
+pub(crate) fn transform(
     width: usize,
     height: usize,
     is_marked: impl Fn(usize) -> bool,

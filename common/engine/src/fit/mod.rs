@@ -15,7 +15,7 @@
 
 mod agreement;
 mod config;
-mod distance;
+pub(crate) mod distance;
 #[cfg(test)]
 mod drawn;
 mod ends;

@@ -19,6 +19,7 @@ use super::outlook::{CELLS, Outlook};
 use super::sectors;
 use super::set_bounds::{CHUNK, SetBounds};
 use super::task::Task;
+use super::within::Size;
 use crate::votes::Distinct;
 
 /// Coarse blocks that are split for each candidate that is wanted.
@@ -55,7 +56,7 @@ impl<'a> Alternatives<'a> {
     pub(super) fn new(task: &'a Task<'a>) -> Self {
         Alternatives {
             task,
-            bounds: task.programs.fine.bounds(),
+            bounds: task.programs.fine.bounds(task.headings()),
             intervals: BlockIntervals::default(),
             interval_bounds: IntervalBounds::new(),
             outlook: Outlook::new(task.grid, &task.space.directions),
@@ -96,8 +97,10 @@ impl<'a> Alternatives<'a> {
     /// The coarse blocks that promise most.
     fn most_promising(&self, count: usize) -> Vec<(u16, Reverse<u32>)> {
         let promises = self.task.promises.iter().zip(0..);
+        let within = &self.task.index.within;
         let mut blocks: Vec<_> = promises
             .map(|(promise, block)| (promise.load(Ordering::Relaxed), Reverse(block)))
+            .filter(|&(_, Reverse(block))| within.holds(Size::Coarse, block as usize))
             .collect();
         keep_greatest(&mut blocks, count);
         blocks
@@ -113,7 +116,9 @@ impl<'a> Alternatives<'a> {
             program.bound(&index.fine, block, 0, &mut self.bounds);
             (self.bounds.greatest(), Reverse(block as u32))
         };
-        coarse.iter().flat_map(within).map(bound).collect()
+        let blocks = coarse.iter().flat_map(within);
+        let blocks = blocks.filter(|&block| index.within.holds(Size::Fine, block));
+        blocks.map(bound).collect()
     }
 
     /// Where in an 8 × 8 block the bound of a small block is highest.
@@ -128,7 +133,8 @@ impl<'a> Alternatives<'a> {
         let masks: Vec<_> = self.bounds.at_least(least.max(1), &self.bounds).collect();
         let sides = (index.intervals.columns, index.intervals.rows);
         let mut best = None;
-        for small in quarters(block, index.fine.columns, sides) {
+        let smalls = quarters(block, index.fine.columns, sides);
+        for small in smalls.filter(|&block| index.within.holds(Size::Small, block)) {
             index.intervals.read(small, &mut self.intervals);
             for (chunk, mask) in masks.iter().enumerate() {
                 let mut mask = *mask;
@@ -168,7 +174,8 @@ impl<'a> Alternatives<'a> {
             index, grid, space, ..
         } = self.task;
         let (Reverse(block), Reverse(heading)) = (spot.block, spot.heading);
-        self.outlook.enter(grid, &index.intervals, block);
+        let map = (*grid, &index.within.limits);
+        self.outlook.enter(map, &index.intervals, block);
         let prepared = (*grid, &index.steps, &space.directions);
         let mut counts = [0; CELLS];
         for sector in 0..sectors::count(self.task.programs.beams) {

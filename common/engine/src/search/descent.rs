@@ -14,6 +14,7 @@ use super::outlook::{CELLS, Outlook};
 use super::queue::{Block, Level};
 use super::set_bounds::{CHUNK, SetBounds};
 use super::task::Task;
+use super::within::Size;
 use crate::votes::Collector;
 
 /// One thread's part of a search.
@@ -64,10 +65,11 @@ struct Candidate {
 
 impl<'a> Descent<'a> {
     pub(super) fn new(task: &'a Task<'a>) -> Self {
+        let headings = || task.headings();
         Descent {
             task,
-            coarse_bounds: task.programs.coarse.bounds(),
-            fine_bounds: task.programs.fine.bounds(),
+            coarse_bounds: task.programs.coarse.bounds(headings()),
+            fine_bounds: task.programs.fine.bounds(headings()),
             intervals: BlockIntervals::default(),
             interval_bounds: IntervalBounds::new(),
             outlook: Outlook::new(task.grid, &task.space.directions),
@@ -85,7 +87,9 @@ impl<'a> Descent<'a> {
         let (coarse, program) = (&self.task.index.coarse, &self.task.programs.coarse);
         // Neighbouring blocks are alike, so parts take them in turn. All promises
         // are needed, also where another part gives up: candidates come of them.
-        for index in (part..coarse.blocks()).step_by(parts) {
+        let within = &self.task.index.within;
+        let own = (part..coarse.blocks()).step_by(parts);
+        for index in own.filter(|&block| within.holds(Size::Coarse, block)) {
             let (bound, promise) = program.rough(coarse, index, &mut self.coarse_bounds);
             self.task.promises[index].store(promise, Ordering::Relaxed);
             self.push(bound, promise, index, Level::Coarse);
@@ -142,7 +146,9 @@ impl<'a> Descent<'a> {
         let program = &self.task.programs.coarse;
         self.tally.bounds += 1;
         if program.bound(coarse, index, floor, &mut self.coarse_bounds) {
-            for block in quarters(index, coarse.columns, (fine.columns, fine.rows)) {
+            let within = &self.task.index.within;
+            let quarters = quarters(index, coarse.columns, (fine.columns, fine.rows));
+            for block in quarters.filter(|&block| within.holds(Size::Fine, block)) {
                 self.queue_fine(block);
             }
         }
@@ -172,7 +178,9 @@ impl<'a> Descent<'a> {
     /// Queues the blocks of 4 × 4 cells in one of 8 × 8.
     fn split_fine(&mut self, index: usize, masks: usize) {
         let (fine, intervals) = (&self.task.index.fine, &self.task.index.intervals);
-        for block in quarters(index, fine.columns, (intervals.columns, intervals.rows)) {
+        let within = &self.task.index.within;
+        let quarters = quarters(index, fine.columns, (intervals.columns, intervals.rows));
+        for block in quarters.filter(|&block| within.holds(Size::Small, block)) {
             self.queue_leaf(block, masks);
         }
     }
@@ -218,7 +226,8 @@ impl<'a> Descent<'a> {
         let Task {
             index: map, grid, ..
         } = self.task;
-        self.outlook.enter(grid, &map.intervals, index);
+        self.outlook
+            .enter((*grid, &map.within.limits), &map.intervals, index);
         while let Some((first, among)) = self.next_headings(&mut candidates) {
             let floor = self.collector.floor();
             let (intervals, bounds) = (self.outlook.intervals(), &mut self.interval_bounds);

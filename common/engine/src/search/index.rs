@@ -10,9 +10,11 @@ use super::set_bounds::SetProgram;
 use super::sets::RangeSets;
 use super::steps::BinSteps;
 use super::task::Task;
+use super::within::{Size, Within};
 use crate::exhaustive;
 use crate::grid::Grid;
 use crate::instruction_set::InstructionSet;
+use crate::limits::Limits;
 use crate::program::ScanProgram;
 use crate::space::Space;
 use crate::sweep::FieldSweep;
@@ -29,6 +31,7 @@ pub struct SearchIndex {
     pub(super) intervals: RangeIntervals,
     pub(super) fine: RangeSets,
     pub(super) coarse: RangeSets,
+    pub(super) within: Within,
 }
 
 /// Upper bounds of the intensities in square blocks, row by row from the
@@ -59,7 +62,16 @@ impl SearchIndex {
             intervals,
             fine,
             coarse,
+            within: Within::new(Limits::none(grid.width())),
         }
+    }
+
+    /// The same map, of which poses are sought only within limits: those of its
+    /// grid.
+    #[must_use]
+    pub fn within(mut self, limits: Limits) -> Self {
+        self.within = Within::new(limits);
+        self
     }
 
     /// Bytes that the index takes.
@@ -102,7 +114,10 @@ impl SearchIndex {
         let mut found = match run(&task, threads, stop) {
             End::Done(collector, poses) => collector.finish(poses),
             End::Stopped => return None,
-            End::Hopeless => count_all((instruction_set, threads), grid, scan, config, stop)?,
+            End::Hopeless => {
+                let how = (instruction_set, threads);
+                count_all(how, (grid, &self.within.limits), scan, config, stop)?
+            }
         };
         if config.candidates > 0 && found.best > 0 {
             let alternatives = Alternatives::new(&task).find(config.candidates as usize);
@@ -118,8 +133,11 @@ impl SearchIndex {
         let (coarse, directions) = (&self.coarse, &space.directions);
         let best = InstructionSet::best();
         let set_program = SetProgram::new(program, directions, &self.steps, coarse.shift, best);
-        let mut bounds = set_program.bounds();
+        let mut bounds = set_program.bounds(self.within.headings(directions.count()));
         let bound = |block| {
+            if !self.within.holds(Size::Coarse, block) {
+                return 0;
+            }
             set_program.bound(coarse, block, 0, &mut bounds);
             bounds.greatest()
         };
@@ -150,7 +168,7 @@ fn run(task: &Task<'_>, threads: usize, stop: &dyn Fn() -> bool) -> End {
 /// Counts every pose.
 fn count_all(
     (instruction_set, threads): (InstructionSet, usize),
-    grid: &Grid,
+    (grid, limits): (&Grid, &Limits),
     scan: (&ScanProgram, &Space),
     config: CollectConfig,
     stop: &dyn Fn() -> bool,
@@ -158,7 +176,7 @@ fn count_all(
     let sweeps = FieldSweep::new(grid);
     let accumulators = (0..threads).map(|_| sweeps.accumulator_with(instruction_set));
     let mut accumulators: Vec<_> = accumulators.collect();
-    exhaustive::search(&mut accumulators, grid.width(), scan, config, stop)
+    exhaustive::search(&mut accumulators, limits, scan, config, stop)
 }
 
 impl BlockBounds {
@@ -176,7 +194,17 @@ mod tests {
     use super::super::budget::Cost;
     use super::*;
     use crate::reference;
-    use crate::testing::{any_grid, any_long_grid, any_scan, plain_votes, space_of};
+    use crate::testing::{
+        any_grid, any_limits, any_long_grid, any_scan, plain_votes, plain_votes_within, space_of,
+    };
+    use messages::Vote;
+
+    fn any_limited_grid() -> impl Strategy<Value = (Grid, Limits, u32)> {
+        (any_grid(), 1u32..8).prop_flat_map(|(grid, eighths)| {
+            let limits = any_limits(&grid, 8 * eighths);
+            (Just(grid), limits, Just(8 * eighths))
+        })
+    }
 
     fn check(
         grid: &Grid,
@@ -208,6 +236,29 @@ mod tests {
             let space = space_of(&grid, headings * 8);
             let config = CollectConfig { floor_share, max_votes, candidates: 0 };
             check(&grid, (&scan.program(&space), &space), config)?;
+        }
+
+        #[test]
+        fn poses_beyond_the_limits_are_not_found(
+            (grid, limits, headings) in any_limited_grid(), scan in any_scan(),
+            floor_share in 0.3..=1.0f64, threads in 1usize..3, candidates in 0u32..9,
+        ) {
+            let space = space_of(&grid, headings);
+            let program = scan.program(&space);
+            let config = CollectConfig { floor_share, ..CollectConfig::default() };
+            let plain = plain_votes_within(&limits, &grid, &program, &space, config);
+            let index = SearchIndex::new(&grid, &space).within(limits.clone());
+            let scan = (&program, &space);
+            let config = CollectConfig { candidates, ..config };
+            let how = (InstructionSet::best(), threads);
+            let found = index.search_with(how, &grid, scan, config, &|| false).unwrap();
+            let (above, below) = found.votes.split_at(plain.votes.len());
+            prop_assert_eq!(above, &plain.votes);
+            let is_held = |vote: &Vote| limits.hold_cell(vote.x.into(), vote.y.into())
+                && limits.hold_heading(vote.heading.into());
+            prop_assert!(below.iter().all(is_held));
+            let counted = count_all(how, (&grid, &limits), scan, CollectConfig { candidates: 0, ..config }, &|| false);
+            prop_assert_eq!(counted.unwrap().votes, plain.votes);
         }
 
         #[test]

@@ -154,6 +154,7 @@ mod tests {
     use super::super::bins::Bins;
     use super::super::intervals::RangeIntervals;
     use super::*;
+    use crate::limits::Limits;
     use crate::reference;
     use crate::testing::{any_grid, any_scan, space_of};
 
@@ -173,7 +174,7 @@ mod tests {
             for instruction_set in InstructionSet::available() {
                 let leaf = LeafProgram::new(&program, directions, instruction_set);
                 let mut outlook = Outlook::new(&grid, directions);
-                outlook.enter(&grid, &intervals, block);
+                outlook.enter((&grid, &Limits::none(grid.width())), &intervals, block);
                 let mut counts = [0; CELLS];
                 for sector in 0..sectors::count(program.beams()) {
                     leaf.add(&mut outlook, (&grid, &steps, directions), sector, heading, &mut counts);

@@ -37,6 +37,7 @@ mod spans;
 mod steps;
 mod task;
 mod top;
+mod within;
 
 pub use index::{BlockBounds, SearchIndex};
 pub use top::Top;

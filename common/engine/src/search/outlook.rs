@@ -9,6 +9,7 @@ use super::intervals::{BlockIntervals, RangeIntervals, SIDE};
 use super::steps::BinSteps;
 use crate::directions::{Direction, Directions};
 use crate::grid::{Cell, Grid};
+use crate::limits::Limits;
 use crate::program::NO_RANGE;
 
 /// Cells of a block, row by row.
@@ -25,6 +26,8 @@ pub(crate) struct Outlook {
     left: usize,
     bottom: usize,
     cells: [Cell; CELLS],
+    /// For each cell, all ones where poses are sought.
+    open: [u16; CELLS],
     intervals: BlockIntervals,
     /// Whether rays can be lost on the map: then they must be followed from the
     /// start, as intervals say only where they hit.
@@ -42,6 +45,7 @@ impl Outlook {
             left: 0,
             bottom: 0,
             cells: [Cell::Blocked; CELLS],
+            open: [0; CELLS],
             intervals: BlockIntervals::default(),
             can_lose: grid.has_blocked(),
             looks: 0,
@@ -49,7 +53,12 @@ impl Outlook {
     }
 
     /// Turns to a block.
-    pub(crate) fn enter(&mut self, grid: &Grid, intervals: &RangeIntervals, block: usize) {
+    pub(crate) fn enter(
+        &mut self,
+        (grid, limits): (&Grid, &Limits),
+        intervals: &RangeIntervals,
+        block: usize,
+    ) {
         if self.number == u32::MAX {
             self.looked_for.fill(0);
             self.number = 0;
@@ -58,9 +67,12 @@ impl Outlook {
         intervals.read(block, &mut self.intervals);
         self.left = block % intervals.columns * SIDE;
         self.bottom = block / intervals.columns * SIDE;
-        for (i, cell) in self.cells.iter_mut().enumerate() {
+        let cells = self.cells.iter_mut().zip(&mut self.open);
+        for (i, (cell, open)) in cells.enumerate() {
             let (x, y) = (self.left + i % SIDE, self.bottom + i / SIDE);
             *cell = grid.get(x as i64, y as i64).unwrap_or(Cell::Blocked);
+            let sought = *cell == Cell::Open && limits.hold_cell(x, y);
+            *open = if sought { u16::MAX } else { 0 };
         }
     }
 
@@ -74,10 +86,9 @@ impl Outlook {
         &self.intervals
     }
 
-    /// For each cell, all ones where the robot may stand.
+    /// For each cell, all ones where the robot may stand and is sought.
     pub(crate) fn open(&self) -> [u16; CELLS] {
-        self.cells
-            .map(|cell| if cell == Cell::Open { u16::MAX } else { 0 })
+        self.open
     }
 
     /// Looks in direction `d`, unless that was done for this block.
@@ -232,7 +243,7 @@ mod tests {
             let intervals = RangeIntervals::new(&grid, directions, &bins);
             let mut outlook = Outlook::new(&grid, directions);
             for block in 0..intervals.columns * intervals.rows {
-                outlook.enter(&grid, &intervals, block);
+                outlook.enter((&grid, &Limits::none(grid.width())), &intervals, block);
                 let open = outlook.open();
                 for (d, direction) in directions.all().iter().enumerate() {
                     outlook.look(&grid, &steps, directions, d);

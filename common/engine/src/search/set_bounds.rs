@@ -25,7 +25,6 @@ pub(crate) const CHUNK: usize = 504;
 #[derive(Debug, Clone)]
 pub(crate) struct SetProgram {
     instruction_set: InstructionSet,
-    headings: usize,
     /// Votes are counted in this unit, of which all peaks are multiples.
     unit: u16,
     /// Planes that hold all sums.
@@ -38,7 +37,7 @@ pub(crate) struct SetProgram {
 #[derive(Debug, Clone)]
 pub(crate) struct SetBounds {
     unit: u16,
-    /// Sums in units, and which headings there are.
+    /// Sums in units, and which headings matter.
     chunks: Vec<(Planes, Row)>,
     spans: Spans,
     /// Rows carried over to the next plane, and to the one after.
@@ -89,7 +88,6 @@ impl SetProgram {
         let possible: u16 = groups.iter().map(|group| group.possible).sum();
         SetProgram {
             instruction_set,
-            headings: directions.count(),
             unit,
             planes: possible
                 .checked_ilog2()
@@ -99,17 +97,9 @@ impl SetProgram {
         }
     }
 
-    /// Room for the bounds of a block.
-    pub(crate) fn bounds(&self) -> SetBounds {
-        let chunks = (0..self.headings).step_by(CHUNK).map(|first| {
-            let headings = CHUNK.min(self.headings - first);
-            let valid = std::array::from_fn(|word| match headings.saturating_sub(64 * word) {
-                0 => 0,
-                bits @ 1..64 => (1 << bits) - 1,
-                _ => u64::MAX,
-            });
-            ([EMPTY; bits::PLANES], valid)
-        });
+    /// Room for the bounds of a block at some headings, a row a chunk.
+    pub(crate) fn bounds(&self, headings: impl Iterator<Item = Row>) -> SetBounds {
+        let chunks = headings.map(|headings| ([EMPTY; bits::PLANES], headings));
         let carries = self.groups.iter().map(Group::windows).max().unwrap_or(0);
         SetBounds {
             unit: self.unit,
@@ -299,7 +289,9 @@ mod tests {
 
     use super::super::bins::Bins;
     use super::super::intervals::RangeIntervals;
+    use super::super::within::Within;
     use super::*;
+    use crate::limits::Limits;
     use crate::reference;
     use crate::testing::{any_grid, any_scan, space_of};
 
@@ -322,7 +314,8 @@ mod tests {
                 let mut of_all_sets = Vec::new();
                 for instruction_set in InstructionSet::available() {
                     let set_program = SetProgram::new(&program, directions, &steps, sets.shift, instruction_set);
-                    let mut bounds = set_program.bounds();
+                    let all = Within::new(Limits::none(grid.width()));
+                    let mut bounds = set_program.bounds(all.headings(directions.count()));
                     let mut found = Vec::new();
                     for block in 0..sets.blocks() {
                         let (rough, _) = set_program.rough(sets, block, &mut bounds);

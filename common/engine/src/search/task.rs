@@ -2,6 +2,7 @@
 
 use std::sync::atomic::{AtomicBool, AtomicU16, Ordering};
 
+use super::bits::Row;
 use super::budget::Cost;
 use super::index::SearchIndex;
 use super::interval_bounds::IntervalProgram;
@@ -81,6 +82,11 @@ impl<'a> Task<'a> {
             brute_force,
             ..self
         }
+    }
+
+    /// The headings that are sought, a row a chunk.
+    pub(super) fn headings(&self) -> impl Iterator<Item = Row> {
+        self.index.within.headings(self.space.directions.count())
     }
 
     /// Tells all threads to stop.

@@ -142,7 +142,7 @@ impl Supply {
             Ok(job) => job,
             Err(error) => return Ok(refuse(key.map_id, &error, health)?),
         };
-        let (config, prior) = (self.config, self.prior);
+        let (config, prior) = (self.config.clone(), self.prior);
         let work = Background::start("prepare map", move || job.prepare(config, prior));
         self.under_way = Some(UnderWay {
             key,

@@ -52,7 +52,7 @@ impl World {
             map_id: map.id(),
             terrain: Terrain::new(frame, (width, height), &map.cells, options.cells)?,
             beams: options.localizer.votes.beams,
-            localizer: Localizer::new(frame, grid, options.localizer, prior)?,
+            localizer: Localizer::new(frame, grid, options.localizer.clone(), prior)?,
             peaks: options.peaks,
         })
     }

@@ -1,0 +1,225 @@
+//! Where poses are sought: in a region, at some headings, away from obstacles.
+//!
+//! Rays are not limited: they pass wherever they would. Poses outside the
+//! limits have no votes.
+
+mod config;
+mod region;
+
+pub use config::{HeadingInterval, LimitsConfig};
+pub use region::Region;
+
+use crate::EngineError;
+use crate::directions::Directions;
+use crate::fit::distance;
+use crate::grid::{Cell, Grid, GridFrame};
+
+/// The poses of a grid that are sought.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub struct Limits {
+    /// Cells along x.
+    width: usize,
+    /// For each cell, row by row, whether poses in it are sought; `None` where
+    /// all are.
+    cells: Option<Vec<bool>>,
+    /// The same for each heading.
+    headings: Option<Vec<bool>>,
+}
+
+impl Limits {
+    /// No limits on a grid so many cells wide.
+    #[must_use]
+    pub fn none(width: usize) -> Self {
+        Limits {
+            width,
+            cells: None,
+            headings: None,
+        }
+    }
+
+    /// The limits that are set, on a grid.
+    ///
+    /// # Errors
+    /// They leave no cell of the grid, or no heading.
+    pub fn new(
+        config: &LimitsConfig,
+        frame: GridFrame,
+        grid: &Grid,
+        directions: &Directions,
+    ) -> Result<Self, EngineError> {
+        let cells = Self::cells(config, frame, grid);
+        let is_open = |(&cell, &sought): (&Cell, &bool)| sought && cell == Cell::Open;
+        if let Some(cells) = &cells
+            && !grid.cells().iter().zip(cells).any(is_open)
+        {
+            return Err(EngineError::NoCellWithin);
+        }
+        let headings = config.headings_within.map(|interval| {
+            let step = std::f64::consts::TAU / directions.count() as f64;
+            let heading = |index: usize| index as f64 * step + frame.map_from_grid.yaw;
+            let headings = 0..directions.count();
+            headings
+                .map(|index| interval.holds(heading(index)))
+                .collect()
+        });
+        if headings
+            .as_ref()
+            .is_some_and(|headings: &Vec<bool>| !headings.contains(&true))
+        {
+            return Err(EngineError::NoHeadingWithin(directions.count() as u32));
+        }
+        Ok(Limits {
+            width: grid.width(),
+            cells,
+            headings,
+        })
+    }
+
+    fn cells(config: &LimitsConfig, frame: GridFrame, grid: &Grid) -> Option<Vec<bool>> {
+        if config.robot_radius <= 0.0 && config.region.is_none() {
+            return None;
+        }
+        let (width, height) = (grid.width(), grid.height());
+        let mut cells = vec![true; width * height];
+        if config.robot_radius > 0.0 {
+            let least = (config.robot_radius / frame.resolution_m) as f32;
+            let is_occupied = |i: usize| grid.cells()[i] == Cell::Occupied;
+            let distances = distance::transform(width, height, is_occupied);
+            for (cell, distance) in cells.iter_mut().zip(distances) {
+                *cell = distance >= least;
+            }
+        }
+        if let Some(region) = &config.region {
+            for (i, cell) in cells.iter_mut().enumerate() {
+                let (x, y) = ((i % width) as f64 + 0.5, (i / width) as f64 + 0.5);
+                let middle = frame.map_from_cells(x, y, 0.0);
+                *cell &= region.holds(middle.x, middle.y);
+            }
+        }
+        Some(cells)
+    }
+
+    /// Whether poses in the cell at column `x` of row `y` are sought.
+    #[must_use]
+    pub fn hold_cell(&self, x: usize, y: usize) -> bool {
+        let cells = self.cells.as_ref();
+        cells.is_none_or(|cells| cells[y * self.width + x])
+    }
+
+    /// Whether a heading is sought.
+    #[must_use]
+    pub fn hold_heading(&self, heading: usize) -> bool {
+        let headings = self.headings.as_ref();
+        headings.is_none_or(|headings| headings[heading])
+    }
+
+    /// Takes the votes off the cells of an image at a heading, row by row,
+    /// where none are sought.
+    pub(crate) fn clear(&self, field: &mut [u16], heading: usize) {
+        if !self.hold_heading(heading) {
+            field.fill(0);
+        }
+        for (votes, &sought) in field.iter_mut().zip(self.cells.iter().flatten()) {
+            *votes *= u16::from(sought);
+        }
+    }
+
+    /// Cells along x of the grid.
+    pub(crate) fn width(&self) -> usize {
+        self.width
+    }
+
+    /// For blocks of so many cells a side, row by row, whether poses are sought
+    /// in any cell; `None` where they are in all.
+    pub(crate) fn blocks(&self, side: usize) -> Option<Vec<bool>> {
+        let cells = self.cells.as_ref()?;
+        let columns = self.width.div_ceil(side);
+        let rows = (cells.len() / self.width).div_ceil(side);
+        let mut blocks = vec![false; columns * rows];
+        for (i, _) in cells.iter().enumerate().filter(|&(_, &sought)| sought) {
+            let (x, y) = (i % self.width, i / self.width);
+            blocks[y / side * columns + x / side] = true;
+        }
+        Some(blocks)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use geometry::Pose;
+
+    use super::*;
+    use crate::grid::drawn::grid;
+
+    const FRAME: GridFrame = GridFrame {
+        resolution_m: 0.5,
+        map_from_grid: Pose::new(10.0, 20.0, std::f64::consts::FRAC_PI_2),
+    };
+
+    const ROOM: [&str; 4] = ["######", "#....#", "#....#", "######"];
+
+    fn limits(config: &LimitsConfig) -> Result<Limits, EngineError> {
+        Limits::new(config, FRAME, &grid(&ROOM), &Directions::new(8).unwrap())
+    }
+
+    fn drawn(limits: &Limits) -> Vec<String> {
+        let row = |y| {
+            (0..6)
+                .map(|x| if limits.hold_cell(x, y) { '+' } else { '-' })
+                .collect()
+        };
+        (0..4).rev().map(row).collect()
+    }
+
+    #[test]
+    fn nothing_is_limited_by_default() {
+        let limits = limits(&LimitsConfig::default()).unwrap();
+        assert_eq!(limits, Limits::none(6));
+        assert!(limits.hold_cell(0, 0) && limits.hold_heading(7));
+        assert_eq!(limits.blocks(4), None);
+    }
+
+    #[test]
+    fn a_region_is_one_of_the_map() {
+        // The grid's x runs along the map's y.
+        let config = LimitsConfig {
+            region: Some("8.6,20.6 9.4,21.9".parse().unwrap()),
+            ..LimitsConfig::default()
+        };
+        let limits = limits(&config).unwrap();
+        assert_eq!(drawn(&limits), ["------", "-+++--", "-+++--", "------"]);
+        assert_eq!(limits.blocks(4), Some(vec![true, false]));
+        let mut field = vec![7; 24];
+        limits.clear(&mut field, 0);
+        assert_eq!(field.iter().filter(|&&votes| votes == 7).count(), 6);
+    }
+
+    #[test]
+    fn a_robot_keeps_off_obstacles() {
+        let config = |robot_radius| LimitsConfig {
+            robot_radius,
+            ..LimitsConfig::default()
+        };
+        // Cells of 0.5 m: those beside the wall are that far from it.
+        let drawn_at = |radius| drawn(&limits(&config(radius)).unwrap());
+        assert_eq!(drawn_at(0.5), ["------", "-++++-", "-++++-", "------"]);
+        assert_eq!(limits(&config(0.6)).unwrap_err(), EngineError::NoCellWithin);
+    }
+
+    #[test]
+    fn headings_are_those_of_the_map() {
+        let within = |interval: &str| LimitsConfig {
+            headings_within: Some(interval.parse().unwrap()),
+            ..LimitsConfig::default()
+        };
+        let limits_of = limits(&within("80,140")).unwrap();
+        let held = (0..8).filter(|&heading| limits_of.hold_heading(heading));
+        assert_eq!(
+            held.collect::<Vec<_>>(),
+            [0, 1],
+            "the grid is turned by 90 degrees"
+        );
+        let refused = limits(&within("1,2")).unwrap_err();
+        assert_eq!(refused, EngineError::NoHeadingWithin(8));
+    }
+}

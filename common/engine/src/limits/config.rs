@@ -1,0 +1,100 @@
+//! What a user can set of the limits.
+
+use super::Region;
+use crate::config;
+
+/// Where poses are sought; by default everywhere.
+#[derive(Debug, Clone, PartialEq, Default, clap::Args)]
+pub struct LimitsConfig {
+    /// Only cells at least so far from the middle of every occupied cell can
+    /// hold the laser, metres, 0..=5: the distance from the laser to the robot's
+    /// nearest side.
+    #[arg(long, value_name = "METRES", default_value_t = 0.0, value_parser = parse_radius)]
+    pub robot_radius: f64,
+    /// Only poses in this polygon are sought: two corners of an upright
+    /// rectangle or all of any other, in metres in the map: "X,Y X,Y …".
+    #[arg(long, value_name = "CORNERS", allow_hyphen_values = true)]
+    pub region: Option<Region>,
+    /// Only headings from FROM counter-clockwise to TO are sought, degrees in
+    /// the map, -360..=360: "FROM,TO".
+    #[arg(long, value_name = "FROM,TO", allow_hyphen_values = true)]
+    pub headings_within: Option<HeadingInterval>,
+}
+
+/// Headings from one counter-clockwise to another, both included, radians in
+/// the map frame.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct HeadingInterval {
+    /// The first.
+    pub from: f64,
+    /// The last.
+    pub to: f64,
+}
+
+impl HeadingInterval {
+    /// Whether a heading lies within, up to rounding.
+    #[must_use]
+    pub fn holds(&self, heading: f64) -> bool {
+        // What computing with angles of some turns may be off by.
+        const ROUNDING: f64 = 1e-9;
+        let ahead = |angle: f64| angle.rem_euclid(std::f64::consts::TAU);
+        // An interval of whole turns from a heading to itself holds that alone.
+        let width = match self.to - self.from {
+            width if width.abs() >= std::f64::consts::TAU => std::f64::consts::TAU,
+            width => ahead(width),
+        };
+        ahead(heading - self.from + ROUNDING) <= width + 2.0 * ROUNDING
+    }
+}
+
+impl std::str::FromStr for HeadingInterval {
+    type Err = String;
+
+    /// Reads `FROM,TO`, degrees.
+    fn from_str(text: &str) -> Result<Self, String> {
+        let (from, to) = text
+            .split_once(',')
+            .ok_or_else(|| format!("{text:?} is not an interval; needed is FROM,TO in degrees"))?;
+        let degrees = |text: &str| config::parse(text.trim(), -360.0..=360.0, "degrees");
+        Ok(HeadingInterval {
+            from: degrees(from)?.to_radians(),
+            to: degrees(to)?.to_radians(),
+        })
+    }
+}
+
+fn parse_radius(text: &str) -> Result<f64, String> {
+    config::parse(text, 0.0..=5.0, "metres")
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn check(interval: &str, inside: &[f64], outside: &[f64]) {
+        let interval: HeadingInterval = interval.parse().unwrap();
+        let holds = |degrees: &f64| interval.holds(degrees.to_radians());
+        assert!(inside.iter().all(holds), "{interval:?}");
+        assert!(!outside.iter().any(holds), "{interval:?}");
+    }
+
+    #[test]
+    fn intervals_run_counter_clockwise_and_over_the_turn() {
+        check("10,20", &[10.0, 20.0, 15.0, 375.0], &[9.9, 20.1, 195.0]);
+        check("-20,30", &[-20.0, 0.0, 340.0, 30.0], &[31.0, 339.0, 180.0]);
+        check("350,10", &[350.0, 0.0, 10.0], &[11.0, 349.0, 180.0]);
+        check("5,5", &[5.0], &[4.9, 5.1]);
+        check("0,360", &[0.0, 123.0, 359.9], &[]);
+    }
+
+    #[test]
+    fn what_is_no_interval_is_refused_by_what_is_wrong() {
+        let refused = |text: &str| text.parse::<HeadingInterval>().unwrap_err();
+        assert_eq!(
+            refused("10"),
+            "\"10\" is not an interval; needed is FROM,TO in degrees"
+        );
+        assert_eq!(refused("10,x"), "\"x\" is not a number");
+        assert_eq!(refused("0,400"), "400 is not within -360 to 360 degrees");
+    }
+}

@@ -1,0 +1,53 @@
+//! The limits of a search, laid out for blocks of each size.
+
+use super::bits::{self, Row};
+use super::intervals::SIDE;
+use super::set_bounds::CHUNK;
+use crate::limits::Limits;
+
+/// Where poses are sought, block by block.
+#[derive(Debug, Clone)]
+pub(super) struct Within {
+    pub limits: Limits,
+    /// For blocks of 4 × 4, 8 × 8 and 16 × 16 cells whether poses are sought in
+    /// them; `None` where they are in all.
+    blocks: Option<[Vec<bool>; 3]>,
+}
+
+/// A size of blocks.
+#[derive(Debug, Clone, Copy)]
+pub(super) enum Size {
+    Small,
+    Fine,
+    Coarse,
+}
+
+impl Within {
+    pub(super) fn new(limits: Limits) -> Self {
+        let [small, fine, coarse] = [SIDE, 2 * SIDE, 4 * SIDE].map(|side| limits.blocks(side));
+        let blocks = small.zip(fine).zip(coarse);
+        Within {
+            limits,
+            blocks: blocks.map(|((small, fine), coarse)| [small, fine, coarse]),
+        }
+    }
+
+    /// Whether poses are sought in a block.
+    pub(super) fn holds(&self, size: Size, block: usize) -> bool {
+        let blocks = self.blocks.as_ref();
+        blocks.is_none_or(|blocks| blocks[size as usize][block])
+    }
+
+    /// The headings that are sought among `count`, a row a chunk.
+    pub(super) fn headings(&self, count: usize) -> impl Iterator<Item = Row> {
+        (0..count).step_by(CHUNK).map(move |first| {
+            let mut row = bits::EMPTY;
+            let headings = first..count.min(first + CHUNK);
+            for heading in headings.filter(|&heading| self.limits.hold_heading(heading)) {
+                let place = heading - first;
+                row[place / 64] |= 1 << (place % 64);
+            }
+            row
+        })
+    }
+}
