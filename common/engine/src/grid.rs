@@ -4,11 +4,13 @@
 //! origin. [`GridFrame`] says where that frame lies in the map.
 
 mod frame;
+mod pooling;
 
 use messages::UNKNOWN;
 
 use crate::EngineError;
 pub use frame::GridFrame;
+pub use pooling::{Pooled, pooling};
 
 /// Most cells along a side: positions fit 15 bits, and no ray is longer than
 /// what 16 bits hold.
@@ -91,14 +93,7 @@ impl Grid {
         occupancy: &[u8],
         rules: CellRules,
     ) -> Result<Self, EngineError> {
-        check_sides(width, height)?;
-        if occupancy.len() != width * height {
-            return Err(EngineError::GridCells {
-                width,
-                height,
-                cells: occupancy.len(),
-            });
-        }
+        check_cells(width, height, occupancy)?;
         let mut grid = Grid {
             width,
             height,
@@ -186,6 +181,19 @@ fn check_sides(width: usize, height: usize) -> Result<(), EngineError> {
     }
     if width * height > MAX_CELLS {
         return Err(EngineError::GridSize { width, height });
+    }
+    Ok(())
+}
+
+fn check_cells(width: usize, height: usize, occupancy: &[u8]) -> Result<(), EngineError> {
+    check_sides(width, height)?;
+    let cells = occupancy.len();
+    if cells != width * height {
+        return Err(EngineError::GridCells {
+            width,
+            height,
+            cells,
+        });
     }
     Ok(())
 }

@@ -2,7 +2,7 @@
 
 use crate::EngineError;
 use crate::accumulator::{Accumulator, Query};
-use crate::grid::{Grid, GridFrame};
+use crate::grid::{self, CellRules, Grid, GridFrame, Pooled};
 use crate::instruction_set::InstructionSet;
 use crate::limits::{Limits, LimitsConfig};
 use crate::program::{ScanProgram, VoteConfig};
@@ -30,6 +30,15 @@ pub struct LocalizerConfig {
     /// Where poses are sought.
     #[command(flatten)]
     pub limits: LimitsConfig,
+    /// Finer maps are searched in cells of at most this side, and what is found
+    /// is refined on the map as it is, metres, 0..=1; 0 searches each map as it
+    /// is.
+    #[arg(long, value_name = "METRES", default_value_t = 0.05, value_parser = parse_cell)]
+    pub search_cell: f64,
+}
+
+fn parse_cell(text: &str) -> Result<f64, String> {
+    crate::config::parse(text, 0.0..=1.0, "metres")
 }
 
 impl Default for LocalizerConfig {
@@ -40,6 +49,7 @@ impl Default for LocalizerConfig {
             votes: VoteConfig::default(),
             collect: CollectConfig::default(),
             limits: LimitsConfig::default(),
+            search_cell: 0.05,
         }
     }
 }
@@ -57,6 +67,7 @@ pub enum Prior {
 #[derive(Debug, Clone)]
 pub struct Localizer {
     frame: GridFrame,
+    pooling: usize,
     grid: Grid,
     space: Space,
     config: LocalizerConfig,
@@ -90,7 +101,35 @@ pub struct Outcome {
 }
 
 impl Localizer {
-    /// Prepares a map.
+    /// Prepares a map of `width · height` occupancies, row by row from the
+    /// lowest y; one finer than is searched is pooled.
+    ///
+    /// # Errors
+    /// See [`Grid::new`] and [`Localizer::new`].
+    pub fn of_map(
+        frame: GridFrame,
+        (width, height): (usize, usize),
+        occupancy: &[u8],
+        rules: CellRules,
+        config: LocalizerConfig,
+        prior: Prior,
+    ) -> Result<Self, EngineError> {
+        let pooling = grid::pooling(frame.resolution_m, config.search_cell);
+        if pooling == 1 {
+            let grid = Grid::new(width, height, occupancy, rules)?;
+            return Localizer::new(frame, grid, config, prior);
+        }
+        let pooled = Pooled::new(frame, (width, height), occupancy, rules, pooling)?;
+        let (width, height) = pooled.sides;
+        let grid = Grid::new(width, height, &pooled.occupancy, rules)?;
+        let localizer = Localizer::new(pooled.frame, grid, config, prior)?;
+        Ok(Localizer {
+            pooling,
+            ..localizer
+        })
+    }
+
+    /// Prepares a grid, which is searched as it is.
     ///
     /// # Errors
     /// If the map has no occupied or no free cell, a setting is out of range, or
@@ -123,6 +162,7 @@ impl Localizer {
         };
         Ok(Localizer {
             frame,
+            pooling: 1,
             grid,
             space,
             config,
@@ -131,7 +171,13 @@ impl Localizer {
         })
     }
 
-    /// Where the grid lies in the map.
+    /// Cells of the map along the side of a cell that is searched.
+    #[must_use]
+    pub fn pooling(&self) -> usize {
+        self.pooling
+    }
+
+    /// Where the grid that is searched lies in the map.
     #[must_use]
     pub fn frame(&self) -> GridFrame {
         self.frame
@@ -143,7 +189,7 @@ impl Localizer {
         &self.config
     }
 
-    /// The map's cells.
+    /// The cells that are searched.
     #[must_use]
     pub fn grid(&self) -> &Grid {
         &self.grid

@@ -10,7 +10,7 @@ use crate::{Pose2, Stamp};
 /// by (heading, y, x): all at or above `certified_floor`, and distinct candidates
 /// below.
 #[derive(Debug, Clone, Copy, PartialEq, Pod, Zeroable, ZeroCopySend)]
-#[type_name("VotesHeader/v2")]
+#[type_name("VotesHeader/v3")]
 #[repr(C)]
 pub struct VotesHeader {
     /// Of the scan.
@@ -56,7 +56,10 @@ pub struct VotesHeader {
     /// Occupancy up to which a cell was taken as free, per cent.
     pub free_to: u32,
     /// Most beams of a scan that vote; longer scans are thinned by arc.
-    pub max_beams: u64,
+    pub max_beams: u32,
+    /// Cells of the map along the side of a cell that was searched: of so many
+    /// are the items' cells.
+    pub pooling: u32,
     /// Arc at the reading from which a beam counts fully, metres.
     pub beam_arc_m: f64,
 }
@@ -89,9 +92,9 @@ impl SearchOutcome {
 #[type_name("Vote/v1")]
 #[repr(C)]
 pub struct Vote {
-    /// Cells along x from the grid's origin.
+    /// Cells that were searched along x from the grid's origin.
     pub x: u16,
-    /// Cells along y from the grid's origin.
+    /// Cells that were searched along y from the grid's origin.
     pub y: u16,
     /// Index of the heading.
     pub heading: u16,
@@ -107,7 +110,7 @@ mod tests {
         headings: 60, floor: 64, certified_floor: 68, best: 72, highest_possible: 76,
         truncated: 80, beams_used: 84, heading_known: 88, beams_silent: 92, known_heading: 96,
         bearing_rounding: 104, base_from_laser: 112, mount_known: 136,
-        occupied_from: 144, free_to: 148, max_beams: 152, beam_arc_m: 160,
+        occupied_from: 144, free_to: 148, max_beams: 152, pooling: 156, beam_arc_m: 160,
     });
 
     mod vote {

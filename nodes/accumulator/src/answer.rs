@@ -75,6 +75,7 @@ pub fn answered(
         map_id: map.map_id,
         rules: map.rules,
         beams: map.localizer.config().votes.beams,
+        pooling: map.localizer.pooling() as u32,
     };
     Answer {
         votes: votes_header(scan, &terms, &outcome, engine_ns),
@@ -104,6 +105,7 @@ struct Terms {
     map_id: u64,
     rules: CellRules,
     beams: BeamConfig,
+    pooling: u32,
 }
 
 fn votes_header(
@@ -135,7 +137,8 @@ fn votes_header(
         bearing_rounding: outcome.bearing_rounding,
         occupied_from: rules.occupied_from.into(),
         free_to: rules.free_to.into(),
-        max_beams: beams.max_beams.into(),
+        max_beams: beams.max_beams,
+        pooling: terms.pooling,
         beam_arc_m: beams.beam_arc_m,
         ..empty(scan, terms.map_id, outcome.headings)
     }
@@ -168,7 +171,7 @@ fn exact_header(votes: &VotesHeader, grid: &Grid) -> FieldHeader {
         // No side of a grid has more than 15 bits.
         width: grid.width() as u32,
         height: grid.height() as u32,
-        block: 1,
+        block: votes.pooling,
         kind: FieldKind::Exact as u32,
         best: votes.best,
         highest_possible: votes.highest_possible,
@@ -184,7 +187,7 @@ fn bounds_header(votes: &VotesHeader, blocks: &BlockBounds) -> FieldHeader {
         // Not more than there are cells along a side.
         width: blocks.columns as u32,
         height: blocks.rows() as u32,
-        block: blocks.side as u32,
+        block: blocks.side as u32 * votes.pooling,
         kind: FieldKind::UpperBound as u32,
         best: blocks.bounds.iter().copied().max().unwrap_or(0).into(),
         highest_possible: votes.highest_possible,
@@ -233,6 +236,7 @@ mod tests {
             max_beams: 90,
             beam_arc_m: 0.5,
         },
+        pooling: 2,
     };
 
     fn outcome(best: u16) -> Outcome {
@@ -286,6 +290,7 @@ mod tests {
             occupied_from: 60,
             free_to: 20,
             max_beams: 90,
+            pooling: 2,
             beam_arc_m: 0.5,
         };
         assert_eq!(votes, expected);
@@ -310,7 +315,7 @@ mod tests {
             map_id: 77,
             width: 3,
             height: 2,
-            block: 1,
+            block: 2,
             kind: FieldKind::Exact as u32,
             best: 100,
             highest_possible: 200,
@@ -332,7 +337,7 @@ mod tests {
             map_id: 77,
             width: 3,
             height: 2,
-            block: 16,
+            block: 32,
             kind: FieldKind::UpperBound as u32,
             best: 120,
             highest_possible: 200,

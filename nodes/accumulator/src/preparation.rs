@@ -86,9 +86,11 @@ impl Job {
     ) -> Result<PreparedMap, AccumulatorError> {
         let frame = GridFrame::of(&self.map)?;
         let (width, height) = (self.map.width as usize, self.map.height as usize);
+        let sides = (width, height);
         let grid = Grid::new(width, height, &self.occupancy, self.rules)?;
         check_boundary(&self.boundary, &grid)?;
-        let localizer = Localizer::new(frame, grid, config, prior)?;
+        let (cells, rules) = (&self.occupancy, self.rules);
+        let localizer = Localizer::of_map(frame, sides, cells, rules, config, prior)?;
         let map_id = self.map.map_id;
         Ok(PreparedMap {
             map_id,

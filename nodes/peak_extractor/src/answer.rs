@@ -158,6 +158,7 @@ mod tests {
             occupied_from: 65,
             free_to: 25,
             max_beams: 180,
+            pooling: 1,
             beam_arc_m: 0.2,
             ..Zeroable::zeroed()
         }

@@ -16,6 +16,9 @@ use messages::{SearchOutcome, Vote, VotesHeader};
 use crate::PeakError;
 use crate::maps::{Map, Maps};
 
+/// Cells of a millimetre along a metre: none are finer, none searched larger.
+const MOST_POOLED: u32 = 1_000;
+
 /// The votes of a scan as the engine takes them, and what they refer to.
 #[derive(Debug)]
 pub struct Checked<'a> {
@@ -46,7 +49,12 @@ pub fn check<'a>(
     }
     let map = maps.get(header.map_id, rules(header)?)?;
     check_header(header, votes)?;
-    check_poses(header, votes, map)?;
+    let pooling = pooling(header)?;
+    check_poses(
+        header,
+        votes,
+        (map.width.div_ceil(pooling), map.height.div_ceil(pooling)),
+    )?;
     check_order(votes)?;
     let input = PeakInput {
         votes,
@@ -54,7 +62,7 @@ pub fn check<'a>(
         highest_possible: header.highest_possible,
         headings: header.headings,
         known_heading: (header.heading_known == 1).then_some(header.known_heading),
-        frame: map.frame,
+        frame: map.frame.pooled(pooling as usize),
     };
     let beams = beams(header)?;
     Ok(Some(Checked { input, map, beams }))
@@ -106,15 +114,25 @@ fn beams(header: &VotesHeader) -> Result<BeamConfig, PeakError> {
             allowed: "0 to 2 metres",
         });
     }
-    let max_beams = u32::try_from(header.max_beams).ok();
-    let max_beams = max_beams.filter(|beams| (1..=1 << 16).contains(beams));
+    let max_beams = Some(header.max_beams).filter(|beams| (1..=1 << 16).contains(beams));
     Ok(BeamConfig {
         max_beams: max_beams.ok_or(PeakError::Setting {
             field: "max_beams",
-            found: header.max_beams as f64,
+            found: header.max_beams.into(),
             allowed: "1 to 65536",
         })?,
         beam_arc_m: found,
+    })
+}
+
+/// Cells of the map along the side of a cell that was searched.
+fn pooling(header: &VotesHeader) -> Result<u32, PeakError> {
+    let found = header.pooling;
+    let pooling = Some(found).filter(|pooling| (1..=MOST_POOLED).contains(pooling));
+    pooling.ok_or(PeakError::Setting {
+        field: "pooling",
+        found: found.into(),
+        allowed: "1 to 1000",
     })
 }
 
@@ -143,7 +161,7 @@ fn check_header(header: &VotesHeader, votes: &[Vote]) -> Result<(), PeakError> {
 fn check_poses(
     header: &VotesHeader,
     votes: &[Vote],
-    &Map { width, height, .. }: &Map,
+    (width, height): (u32, u32),
 ) -> Result<(), PeakError> {
     let headings = header.headings;
     let is_known = |vote: &Vote| {
@@ -227,6 +245,7 @@ mod tests {
             occupied_from: 65,
             free_to: 25,
             max_beams: 180,
+            pooling: 1,
             beam_arc_m: 0.2,
             ..Zeroable::zeroed()
         }
@@ -291,8 +310,14 @@ mod tests {
         refuse(|header, _| header.occupied_from = 0, "occupied_from is 0");
         refuse(|header, _| header.free_to = 100, "free_to is 100");
         refuse(
-            |header, _| header.max_beams = 1 << 32,
-            "max_beams is 4294967296",
+            |header, _| header.max_beams = 1 << 17,
+            "max_beams is 131072",
+        );
+        refuse(|header, _| header.pooling = 0, "pooling is 0");
+        refuse(
+            // Fifteen by ten cells were searched.
+            |header, _| header.pooling = 2,
+            "vote 0 is for cell 29, 19 and heading 359: 15 x 10 cells",
         );
         refuse(
             |header, _| header.beam_arc_m = f64::NAN,

@@ -76,17 +76,17 @@ pub enum PeakError {
     },
     /// A vote is for a pose that the search does not know.
     #[error(
-        "vote {index} is for cell {}, {} and heading {}: the map has {width} x {height} cells and \
-         a turn {headings} headings", vote.x, vote.y, vote.heading
+        "vote {index} is for cell {}, {} and heading {}: {width} x {height} cells were \
+         searched at {headings} headings", vote.x, vote.y, vote.heading
     )]
     Pose {
         /// From 0.
         index: usize,
         /// As it came.
         vote: Vote,
-        /// Of the map, cells.
+        /// Cells that were searched along x.
         width: u32,
-        /// Of the map, cells.
+        /// Along y.
         height: u32,
         /// A turn.
         headings: u32,

@@ -198,6 +198,7 @@ fn header(map_id: u64, outcome: &Outcome) -> VotesHeader {
         occupied_from: 65,
         free_to: 25,
         max_beams: 180,
+        pooling: 1,
         beam_arc_m: 0.2,
         ..Zeroable::zeroed()
     }

@@ -6,11 +6,13 @@ use messages::Verdict;
 use nalgebra::{Matrix3, Vector3};
 
 use super::summits::{Reach, Summit, summits};
-use super::{PeakConfig, PeakInput, Place, Places, likelihood};
+use super::{PeakConfig, PeakInput, Place, Places, in_map, likelihood};
 use crate::fit::{BeamClass, Ends, GridPose, Refined, Terrain};
+use crate::grid::GridFrame;
 
 /// Reads the places from the votes of a scan and from the scan itself, which
-/// must be of the same map.
+/// must be of the same map. Its grid may be finer than that of the votes, with
+/// the same origin.
 #[must_use]
 pub fn by_fit(
     input: &PeakInput<'_>,
@@ -41,7 +43,7 @@ pub fn by_fit(
         () => Verdict::Unique,
     };
     places.truncate(config.max_hypotheses as usize);
-    let pose = grid_pose(input, best.map_from_laser);
+    let pose = grid_pose(terrain.frame, best.map_from_laser);
     let classes = terrain.classes(ends, pose, &config.fit);
     Places {
         verdict,
@@ -59,8 +61,8 @@ fn lead(best: f64, other: f64) -> f64 {
     (best - other) / (1.1 - best).sqrt()
 }
 
-fn grid_pose(input: &PeakInput<'_>, map_from_laser: Pose) -> GridPose {
-    let (x, y, heading) = input.frame.cells_from_map(map_from_laser);
+fn grid_pose(frame: GridFrame, map_from_laser: Pose) -> GridPose {
+    let (x, y, heading) = frame.cells_from_map(map_from_laser);
     GridPose { x, y, heading }
 }
 
@@ -92,9 +94,10 @@ fn place(
     config: &PeakConfig,
 ) -> Place {
     let vote = &summit.vote;
+    let side = input.frame.resolution_m / terrain.frame.resolution_m;
     let start = GridPose {
-        x: f64::from(vote.x) + 0.5,
-        y: f64::from(vote.y) + 0.5,
+        x: side * (f64::from(vote.x) + 0.5),
+        y: side * (f64::from(vote.y) + 0.5),
         heading: input
             .known_heading_in_grid()
             .unwrap_or(input.heading_of(vote)),
@@ -102,13 +105,13 @@ fn place(
     let is_known = input.known_heading.is_some();
     let refined = terrain.refine(ends, start, is_known, &config.fit);
     let pose = refined.pose;
-    let mut map_from_laser = input.frame.map_from_cells(pose.x, pose.y, pose.heading);
+    let mut map_from_laser = terrain.frame.map_from_cells(pose.x, pose.y, pose.heading);
     if let Some(heading) = input.known_heading {
         map_from_laser.yaw = wrap_angle(heading);
     }
     Place {
         map_from_laser,
-        covariance: covariance(input, &refined),
+        covariance: covariance(terrain.frame, is_known, &refined),
         score: terrain.score(ends, pose, &config.fit),
         probability: 0.0,
         intensity: vote.intensity,
@@ -125,14 +128,13 @@ const LOOSE_M: f64 = 2.0;
 const LOOSE_RADIANS: f64 = 0.35;
 
 /// What the curvature of the fit says about its error, in the map frame.
-fn covariance(input: &PeakInput<'_>, refined: &Refined) -> Covariance {
+fn covariance(frame: GridFrame, heading_is_known: bool, refined: &Refined) -> Covariance {
     // No end point is known better than the cell that it is compared with.
     let variance = BEAMS_TOGETHER * refined.variance.max(1.0 / 12.0);
-    let loose = LOOSE_M / input.frame.resolution_m;
+    let loose = LOOSE_M / frame.resolution_m;
     let prior = Vector3::new(loose.powi(-2), loose.powi(-2), LOOSE_RADIANS.powi(-2));
     let mut information = refined.curvature / variance + Matrix3::from_diagonal(&prior);
-    let is_known = input.known_heading.is_some();
-    if is_known {
+    if heading_is_known {
         // The heading does not err, and x and y not with it.
         information.fill_row(2, 0.0);
         information.fill_column(2, 0.0);
@@ -140,28 +142,20 @@ fn covariance(input: &PeakInput<'_>, refined: &Refined) -> Covariance {
     }
     // The prior makes it positive definite.
     let mut in_cells = information.try_inverse().unwrap_or_else(Matrix3::zeros);
-    if is_known {
+    if heading_is_known {
         in_cells[(2, 2)] = 0.0;
     }
-    input.in_map(in_cells)
+    in_map(frame, in_cells)
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::grid::GridFrame;
 
-    fn deviations(known_heading: Option<f64>, curvature: Matrix3<f64>) -> [f64; 3] {
-        let input = PeakInput {
-            votes: &[],
-            certified_floor: 0,
-            highest_possible: 1,
-            headings: 360,
-            known_heading,
-            frame: GridFrame {
-                resolution_m: 0.1,
-                map_from_grid: Pose::IDENTITY,
-            },
+    fn deviations(heading_is_known: bool, curvature: Matrix3<f64>) -> [f64; 3] {
+        let frame = GridFrame {
+            resolution_m: 0.1,
+            map_from_grid: Pose::IDENTITY,
         };
         let refined = Refined {
             pose: GridPose {
@@ -173,7 +167,7 @@ mod tests {
             variance: 0.5,
             weight: 100.0,
         };
-        let Covariance(covariance) = covariance(&input, &refined);
+        let Covariance(covariance) = covariance(frame, heading_is_known, &refined);
         std::array::from_fn(|i| covariance[(i, i)].sqrt())
     }
 
@@ -181,8 +175,8 @@ mod tests {
     fn a_known_heading_does_not_err_nor_the_position_with_it() {
         // Turning moves all ends as going 20 cells along y does.
         let turned = Matrix3::new(50.0, 0.0, 0.0, 0.0, 50.0, 900.0, 0.0, 900.0, 20_000.0);
-        let [x, y, yaw] = deviations(None, turned);
-        let [known_x, known_y, known_yaw] = deviations(Some(0.5), turned);
+        let [x, y, yaw] = deviations(false, turned);
+        let [known_x, known_y, known_yaw] = deviations(true, turned);
         assert!(
             (x - known_x).abs() < 1e-9 && known_y < 0.7 * y,
             "{y} {known_y}"
@@ -195,7 +189,7 @@ mod tests {
     #[test]
     fn along_what_no_beam_tells_a_place_is_two_metres_long() {
         let corridor = Matrix3::from_diagonal(&Vector3::new(0.0, 90.0, 5_000.0));
-        let [x, y, _] = deviations(None, corridor);
+        let [x, y, _] = deviations(false, corridor);
         assert!((x - LOOSE_M).abs() < 1e-9 && y < 0.03, "{x} {y}");
     }
 }

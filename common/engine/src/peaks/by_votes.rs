@@ -6,7 +6,7 @@ use messages::Verdict;
 use nalgebra::{Matrix3, Vector3};
 
 use super::summits::{Reach, Summit, summits};
-use super::{PeakConfig, PeakInput, Place, Places};
+use super::{PeakConfig, PeakInput, Place, Places, in_map};
 
 /// Votes from this share of a peak's height up make up its shape: below, the
 /// flanks of other peaks begin.
@@ -98,7 +98,7 @@ fn spread_in_map(input: &PeakInput<'_>, in_cells: Matrix3<f64>) -> Covariance {
         step * step / 12.0
     };
     let rounding = Vector3::new(1.0 / 12.0, 1.0 / 12.0, heading_rounding);
-    input.in_map(in_cells + Matrix3::from_diagonal(&rounding))
+    in_map(input.frame, in_cells + Matrix3::from_diagonal(&rounding))
 }
 
 /// Weighted moments of offsets from a summit.

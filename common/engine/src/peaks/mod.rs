@@ -63,15 +63,15 @@ impl<'a> PeakInput<'a> {
         let heading = self.known_heading?;
         Some(wrap_angle(heading - self.frame.map_from_grid.yaw))
     }
+}
 
-    /// A covariance over cells and radians of the grid's frame, in metres along
-    /// the map's axes.
-    fn in_map(&self, in_cells: Matrix3<f64>) -> Covariance {
-        let side = self.frame.resolution_m;
-        let scale = Matrix3::from_diagonal(&Vector3::new(side, side, 1.0));
-        let turn = Rotation2::new(self.frame.map_from_grid.yaw).to_homogeneous() * scale;
-        Covariance(turn * in_cells * turn.transpose())
-    }
+/// A covariance over cells and radians of a grid's frame, in metres along the
+/// map's axes.
+fn in_map(frame: GridFrame, in_cells: Matrix3<f64>) -> Covariance {
+    let side = frame.resolution_m;
+    let scale = Matrix3::from_diagonal(&Vector3::new(side, side, 1.0));
+    let turn = Rotation2::new(frame.map_from_grid.yaw).to_homogeneous() * scale;
+    Covariance(turn * in_cells * turn.transpose())
 }
 
 /// One place where the robot may be.

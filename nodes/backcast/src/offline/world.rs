@@ -4,10 +4,11 @@
 use engine::EngineError;
 use engine::beams::BeamConfig;
 use engine::fit::{Ends, Terrain};
-use engine::grid::{Grid, GridFrame};
+use engine::grid::GridFrame;
 use engine::localizer::{Localizer, Outcome, Prior};
 use engine::peaks::{self, PeakConfig, PeakInput, Places, Score};
 use engine::scan::Scan;
+use engine::space::Space;
 use map::OccupancyGrid;
 
 use super::options::EngineOptions;
@@ -19,6 +20,9 @@ pub(crate) struct World {
     pub(crate) map_id: u64,
     localizer: Localizer,
     terrain: Terrain,
+    /// That of the map as it is.
+    space: Space,
+    cells: u64,
     beams: BeamConfig,
     peaks: PeakConfig,
 }
@@ -43,24 +47,26 @@ impl World {
         prior: Prior,
     ) -> Result<Self, EngineError> {
         let (width, height) = (map.width as usize, map.height as usize);
-        let grid = Grid::new(width, height, &map.cells, options.cells)?;
         let frame = GridFrame {
             resolution_m: map.resolution_m,
             map_from_grid: map.map_from_grid,
         };
+        let (sides, cells, rules) = ((width, height), &map.cells, options.cells);
+        let config = options.localizer.clone();
         Ok(World {
             map_id: map.id(),
-            terrain: Terrain::new(frame, (width, height), &map.cells, options.cells)?,
+            terrain: Terrain::new(frame, sides, cells, rules)?,
+            space: Space::new(config.headings, frame.resolution_m, width, height)?,
             beams: options.localizer.votes.beams,
-            localizer: Localizer::new(frame, grid, options.localizer.clone(), prior)?,
+            localizer: Localizer::of_map(frame, sides, cells, rules, config, prior)?,
+            cells: width as u64 * height as u64,
             peaks: options.peaks,
         })
     }
 
     /// Cells of the map.
     pub(crate) fn cells(&self) -> u64 {
-        let grid = self.localizer.grid();
-        grid.width() as u64 * grid.height() as u64
+        self.cells
     }
 
     /// Searches all poses or, where the heading in the map is given in radians,
@@ -85,7 +91,7 @@ impl World {
         let places = match self.peaks.score {
             Score::Votes => peaks::by_votes(&input, &self.peaks),
             Score::Fit => {
-                let ends = Ends::new(scan, self.localizer.space(), &self.beams)?;
+                let ends = Ends::new(scan, &self.space, &self.beams)?;
                 peaks::by_fit(&input, (&self.terrain, &ends), &self.peaks)
             }
         };

@@ -1,0 +1,195 @@
+//! Buildings of upright rectangles, as they are: what a laser reads in them, and
+//! the map of them with cells of any size.
+
+use std::f64::consts::TAU;
+
+use engine::fit::{Ends, Terrain};
+use engine::grid::{CellRules, GridFrame};
+use engine::localizer::{Localizer, LocalizerConfig, Prior};
+use engine::peaks::{PeakConfig, PeakInput, Places, by_fit};
+use engine::scan::Scan;
+use engine::space::Space;
+use geometry::Pose;
+
+/// Left, bottom, right and top, metres.
+pub type Rectangle = [f64; 4];
+
+/// Obstacles in open space.
+#[derive(Debug, Clone)]
+pub struct Building {
+    /// Extent along x and y from the origin, metres.
+    pub size_m: [f64; 2],
+    /// What a laser sees.
+    pub obstacles: Vec<Rectangle>,
+}
+
+/// Where and how far a laser looks.
+#[derive(Debug, Clone, Copy)]
+pub struct Laser {
+    /// Readings of a scan.
+    pub beams: usize,
+    /// From the first to the last bearing, radians; ahead is the middle.
+    pub field_of_view: f64,
+    /// Nothing returns from farther, metres.
+    pub reach_m: f64,
+}
+
+impl Laser {
+    /// All around, a beam a degree, to 8 m.
+    pub const AROUND: Laser = Laser {
+        beams: 360,
+        field_of_view: 359.0 / 360.0 * TAU,
+        reach_m: 8.0,
+    };
+
+    /// A scan of these readings.
+    #[must_use]
+    pub fn scan<'a>(&self, ranges: &'a [f32]) -> Scan<'a> {
+        Scan {
+            angle_min: -self.field_of_view / 2.0,
+            angle_increment: self.field_of_view / (self.beams - 1) as f64,
+            range_min_m: 0.0,
+            range_max_m: self.reach_m as f32,
+            ranges,
+        }
+    }
+}
+
+impl Building {
+    /// Open space, metres.
+    #[must_use]
+    pub fn new(width_m: f64, height_m: f64) -> Self {
+        Building {
+            size_m: [width_m, height_m],
+            obstacles: Vec::new(),
+        }
+    }
+
+    /// Adds an obstacle.
+    #[must_use]
+    pub fn with(mut self, obstacle: Rectangle) -> Self {
+        self.obstacles.push(obstacle);
+        self
+    }
+
+    /// Adds the four walls of a room.
+    #[must_use]
+    pub fn room(self, [left, bottom, right, top]: Rectangle) -> Self {
+        const THICK: f64 = 0.1;
+        self.with([left, bottom, right, bottom + THICK])
+            .with([left, top - THICK, right, top])
+            .with([left, bottom, left + THICK, top])
+            .with([right - THICK, bottom, right, top])
+    }
+
+    /// What a laser at a pose reads: exact to the last bit.
+    #[must_use]
+    pub fn ranges(&self, pose: Pose, laser: Laser) -> Vec<f32> {
+        let scan = laser.scan(&[]);
+        let range = |beam: usize| {
+            let (dy, dx) = (pose.yaw + scan.bearing(beam)).sin_cos();
+            let hits = self.obstacles.iter().filter_map(|obstacle| {
+                let along_x = crossing(pose.x, dx, [obstacle[0], obstacle[2]]);
+                let along_y = crossing(pose.y, dy, [obstacle[1], obstacle[3]]);
+                let (enter, leave) = (along_x.0.max(along_y.0), along_x.1.min(along_y.1));
+                (enter <= leave && enter > 0.0).then_some(enter)
+            });
+            let nearest = hits.fold(f64::INFINITY, f64::min);
+            if nearest <= laser.reach_m {
+                nearest as f32
+            } else {
+                f32::INFINITY
+            }
+        };
+        (0..laser.beams).map(range).collect()
+    }
+
+    /// The map with cells of some size, occupied where an obstacle covers any of
+    /// one.
+    #[must_use]
+    pub fn map(&self, resolution_m: f64) -> BuildingMap {
+        let cells = |metres: f64| (metres / resolution_m).ceil() as usize;
+        let (width, height) = (cells(self.size_m[0]), cells(self.size_m[1]));
+        let mut occupancy = vec![0; width * height];
+        for &[left, bottom, right, top] in &self.obstacles {
+            // Up to a rounding, a wall that ends with a cell does not touch the next.
+            let first = |metres: f64| (metres / resolution_m + 1e-6) as usize;
+            let end = |metres: f64| (metres / resolution_m - 1e-6).ceil() as usize;
+            for y in first(bottom)..end(top).min(height) {
+                occupancy[y * width + first(left)..y * width + end(right).min(width)].fill(100);
+            }
+        }
+        BuildingMap {
+            frame: GridFrame {
+                resolution_m,
+                map_from_grid: Pose::IDENTITY,
+            },
+            sides: (width, height),
+            occupancy,
+        }
+    }
+}
+
+/// How far a ray is on its way where it enters and leaves a strip.
+fn crossing(start: f64, slope: f64, [low, high]: [f64; 2]) -> (f64, f64) {
+    if slope == 0.0 {
+        return if (low..=high).contains(&start) {
+            (f64::NEG_INFINITY, f64::INFINITY)
+        } else {
+            (f64::INFINITY, f64::NEG_INFINITY)
+        };
+    }
+    let (a, b) = ((low - start) / slope, (high - start) / slope);
+    (a.min(b), a.max(b))
+}
+
+/// The map of a building.
+#[derive(Debug, Clone)]
+pub struct BuildingMap {
+    /// Where its grid lies.
+    pub frame: GridFrame,
+    /// Cells along x and y.
+    pub sides: (usize, usize),
+    /// Row by row from the lowest y.
+    pub occupancy: Vec<u8>,
+}
+
+/// A map that is ready to be asked, as in the graph.
+#[derive(Debug)]
+pub struct Locator {
+    localizer: Localizer,
+    terrain: Terrain,
+    space: Space,
+}
+
+impl BuildingMap {
+    /// Prepares the map.
+    #[must_use]
+    pub fn locator(&self, config: LocalizerConfig) -> Locator {
+        let (frame, sides, rules) = (self.frame, self.sides, CellRules::default());
+        Locator {
+            terrain: Terrain::new(frame, sides, &self.occupancy, rules).unwrap(),
+            space: Space::new(config.headings, frame.resolution_m, sides.0, sides.1).unwrap(),
+            localizer: Localizer::of_map(frame, sides, &self.occupancy, rules, config, Prior::None)
+                .unwrap(),
+        }
+    }
+}
+
+impl Locator {
+    /// The places at which a scan may have been taken.
+    #[must_use]
+    pub fn locate(&self, scan: &Scan<'_>) -> Places {
+        let outcome = self.localizer.search(scan, &|| false).unwrap().unwrap();
+        let beams = self.localizer.config().votes.beams;
+        let ends = Ends::new(scan, &self.space, &beams).unwrap();
+        let input = PeakInput::of(&outcome, self.localizer.frame());
+        by_fit(&input, (&self.terrain, &ends), &PeakConfig::default())
+    }
+
+    /// The localizer alone.
+    #[must_use]
+    pub fn localizer(&self) -> &Localizer {
+        &self.localizer
+    }
+}
