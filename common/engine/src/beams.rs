@@ -44,11 +44,12 @@ pub(crate) struct Beam {
     pub weight: f64,
 }
 
-/// The beams that vote, by bearing, and how many say nothing.
+/// The beams that vote, by bearing, and those that say nothing.
 #[derive(Debug, Clone, PartialEq)]
 pub(crate) struct Chosen {
     pub beams: Vec<Beam>,
-    pub silent: usize,
+    /// The middles of the sectors that say nothing, radians.
+    pub silent: Vec<f64>,
 }
 
 /// Divides the scan's arc evenly into at most `max_beams` sectors and takes
@@ -62,7 +63,7 @@ pub(crate) fn choose(scan: &Scan<'_>, turn: f64, space: &Space, config: &BeamCon
     let arc = (readings as f64 * scan.angle_increment).min(TAU) / sectors as f64;
     let mut chosen = Chosen {
         beams: Vec::with_capacity(sectors),
-        silent: 0,
+        silent: Vec::new(),
     };
     for sector in 0..sectors {
         // Integer bounds: every reading lies in exactly one sector.
@@ -93,7 +94,10 @@ pub(crate) fn choose(scan: &Scan<'_>, turn: f64, space: &Space, config: &BeamCon
         });
         match best {
             Some((beam, _)) => chosen.beams.push(beam),
-            None => chosen.silent += 1,
+            None => {
+                let middle = scan.angle_min + middle * scan.angle_increment;
+                chosen.silent.push(middle);
+            }
         }
     }
     chosen
@@ -164,7 +168,7 @@ mod tests {
             &space(),
             &BeamConfig::default(),
         );
-        assert_eq!((chosen.beams.len(), chosen.silent), (180, 0));
+        assert_eq!((chosen.beams.len(), chosen.silent.len()), (180, 0));
     }
 
     #[test]
@@ -179,7 +183,7 @@ mod tests {
         let arc = 1f64.to_radians();
         let weights: Vec<f64> = chosen.beams.iter().map(|beam| beam.weight).collect();
         assert_eq!(weights, [arc / 0.20 + 0.05, 1.05]);
-        assert_eq!(chosen.silent, 178);
+        assert_eq!(chosen.silent.len(), 178);
     }
 
     #[test]
@@ -192,7 +196,7 @@ mod tests {
             &space(),
             &BeamConfig::default(),
         );
-        assert_eq!((chosen.beams.len(), chosen.silent), (1, 1));
+        assert_eq!((chosen.beams.len(), chosen.silent.len()), (1, 1));
     }
 
     #[test]

@@ -119,7 +119,7 @@ impl ScanProgram {
             profiles: Vec::new(),
             classes: space.directions.classes(),
             highest_possible: 0,
-            silent: chosen.silent,
+            silent: chosen.silent.len(),
             bearing_rounding: 0.0,
         };
         for beam in &chosen.beams {

@@ -6,6 +6,7 @@
 //! changes, a new one stands beside it under the next version. The crate holds
 //! no behaviour beyond conversions, and opens nothing.
 
+mod beams;
 mod boundary;
 mod field;
 mod ground_truth;
@@ -20,6 +21,7 @@ mod stamp;
 pub mod topic;
 mod votes;
 
+pub use beams::{Beam, BeamFate, BeamsHeader};
 pub use boundary::{BoundaryCell, BoundaryHeader};
 pub use field::{FieldHeader, FieldKind};
 pub use ground_truth::GroundTruth;

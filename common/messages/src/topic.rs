@@ -4,8 +4,8 @@ use bytemuck::Pod;
 use iceoryx2_bb_elementary_traits::zero_copy_send::ZeroCopySend;
 
 use crate::{
-    BoundaryCell, BoundaryHeader, FieldHeader, GroundTruth, HealthHeader, HypothesesHeader,
-    Hypothesis, MapHeader, Odometry, ScanHeader, Vote, VotesHeader,
+    Beam, BeamsHeader, BoundaryCell, BoundaryHeader, FieldHeader, GroundTruth, HealthHeader,
+    HypothesesHeader, Hypothesis, MapHeader, Odometry, ScanHeader, Vote, VotesHeader,
 };
 
 /// Plain data that one process may write and another may read in place.
@@ -71,6 +71,8 @@ topics! {
     Field = "field", FieldHeader, [u16] { depth: 1 };
     /// Where the robot may be, best first.
     Hypotheses = "hypotheses", HypothesesHeader, [Hypothesis] { depth: 16 };
+    /// What became of each beam at the best pose.
+    Beams = "beams", BeamsHeader, [Beam];
     /// The true pose of a scan, where a recording holds it; no items.
     GroundTruthTopic = "ground_truth", GroundTruth, [u8] { depth: 16 };
     /// How each node fares; the items are its last error as UTF-8.

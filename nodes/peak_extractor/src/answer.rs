@@ -1,11 +1,13 @@
 //! The node's one function: from a message of `votes` to one of `hypotheses`.
 
 use bytemuck::Zeroable;
-use engine::fit::Ends;
+use engine::fit::{BeamClass, Ends};
 use engine::peaks::{self, PeakConfig, Place, Places, Score};
 use engine::space::Space;
 use geometry::Pose;
-use messages::{HypothesesHeader, Hypothesis, Verdict, Vote, VotesHeader};
+use messages::{
+    Beam, BeamFate, BeamsHeader, HypothesesHeader, Hypothesis, Verdict, Vote, VotesHeader,
+};
 
 use crate::PeakError;
 use crate::check::{Checked, check, mount};
@@ -19,6 +21,10 @@ pub struct Answer {
     pub header: HypothesesHeader,
     /// Best first.
     pub places: Vec<Place>,
+    /// Header of `beams`.
+    pub beams_header: BeamsHeader,
+    /// Items of `beams`; none where the votes alone decide.
+    pub beams: Vec<Beam>,
     /// Where the laser sits on the robot, if that is known.
     pub base_from_laser: Option<Pose>,
 }
@@ -39,6 +45,7 @@ pub fn answer(
         return Ok(nothing(header));
     };
     let base_from_laser = mount(header)?;
+    let mut beams_seen = Vec::new();
     let places = match config.score {
         Score::Votes => peaks::by_votes(&input, config),
         Score::Fit => {
@@ -46,11 +53,23 @@ pub fn answer(
             let sides = (map.width as usize, map.height as usize);
             let space = Space::new(header.headings, map.frame.resolution_m, sides.0, sides.1)?;
             let ends = Ends::new(&scan, &space, &beams)?;
-            peaks::by_fit(&input, (&map.terrain, &ends), config)
+            let places = peaks::by_fit(&input, (&map.terrain, &ends), config);
+            beams_seen = judged(&ends, &places);
+            places
         }
     };
     Ok(Answer {
         header: described(header, &places, base_from_laser.is_some()),
+        beams_header: BeamsHeader {
+            stamp: header.stamp,
+            map_id: header.map_id,
+            map_from_laser: places
+                .places
+                .first()
+                .map_or(Pose::IDENTITY, |best| best.map_from_laser)
+                .into(),
+        },
+        beams: beams_seen,
         places: places.places,
         base_from_laser,
     })
@@ -69,6 +88,12 @@ pub fn nothing(votes: &VotesHeader) -> Answer {
     Answer {
         header,
         places: Vec::new(),
+        beams_header: BeamsHeader {
+            stamp: votes.stamp,
+            map_id: votes.map_id,
+            map_from_laser: Pose::IDENTITY.into(),
+        },
+        beams: Vec::new(),
         base_from_laser: None,
     }
 }
@@ -93,6 +118,32 @@ fn described(votes: &VotesHeader, places: &Places, mount_known: bool) -> Hypothe
         highest_possible: votes.highest_possible,
         mount_known: mount_known.into(),
         ..nothing(votes).header
+    }
+}
+
+/// All beams of a scan, as they fare at the best place.
+fn judged(ends: &Ends, places: &Places) -> Vec<Beam> {
+    let voted = ends.judged(&places.classes).map(|beam| Beam {
+        bearing: beam.bearing as f32,
+        range_m: beam.reading_m as f32,
+        weight: beam.weight as f32,
+        fate: fate(beam.class) as u32,
+    });
+    let silent = ends.silent().iter().map(|&bearing| Beam {
+        bearing: bearing as f32,
+        range_m: f32::INFINITY,
+        weight: 0.0,
+        fate: BeamFate::NoReturn as u32,
+    });
+    voted.chain(silent).collect()
+}
+
+fn fate(class: BeamClass) -> BeamFate {
+    match class {
+        BeamClass::Hit => BeamFate::Hit,
+        BeamClass::Short => BeamFate::Short,
+        BeamClass::Through => BeamFate::Through,
+        BeamClass::Unknown => BeamFate::Unknown,
     }
 }
 

@@ -34,6 +34,7 @@ pub fn run(graph: &Graph, config: &Config) -> Result<(), PeakError> {
         gaps: GapCounter::new(),
         last_refusal: String::new(),
         hypotheses: graph.publisher()?,
+        beams: graph.publisher()?,
         health: graph.health()?,
     };
     graph.run(&[&votes, &scans, &maps], TICK, |_| {
@@ -49,6 +50,7 @@ struct Node {
     gaps: GapCounter,
     last_refusal: String,
     hypotheses: Publisher<topic::Hypotheses>,
+    beams: Publisher<topic::Beams>,
     health: Health,
 }
 
@@ -127,7 +129,18 @@ impl Node {
         header.sent_ns = monotonic_ns();
         loan.send()?;
         self.health.count_sent(1);
+        // Only pictures are made of them.
+        if self.beams.has_subscribers() {
+            self.send_beams(answer)?;
+        }
         Ok(())
+    }
+
+    fn send_beams(&self, answer: &Answer) -> Result<(), TransportError> {
+        let mut loan = self.beams.loan(answer.beams.len())?;
+        *loan.header_mut() = answer.beams_header;
+        loan.items_mut().copy_from_slice(&answer.beams);
+        loan.send()
     }
 
     fn refuse(&mut self, counter: u64, error: &PeakError) -> Result<(), TransportError> {

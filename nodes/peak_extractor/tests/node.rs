@@ -9,7 +9,7 @@ use std::f64::consts::PI;
 
 use bytemuck::Zeroable;
 use engine::beams::BeamConfig;
-use engine::fit::{Ends, Terrain};
+use engine::fit::{BeamClass, Ends, Terrain};
 use engine::grid::{CellRules, Grid, GridFrame};
 use engine::localizer::{Localizer, LocalizerConfig, Outcome, Prior};
 use engine::peaks::{PeakConfig, PeakInput, Places, by_fit};
@@ -18,8 +18,8 @@ use engine::scan::Scan;
 use engine::space::Space;
 use geometry::Pose;
 use messages::{
-    HypothesesHeader, Hypothesis, MapHeader, NodeState, Pose2, ScanHeader, SearchOutcome, Stamp,
-    Verdict, Vote, VotesHeader, topic,
+    BeamFate, HypothesesHeader, Hypothesis, MapHeader, NodeState, Pose2, ScanHeader, SearchOutcome,
+    Stamp, Verdict, Vote, VotesHeader, topic,
 };
 use transport::testing::{Isolated, NodeProcess, wait_for, wait_for_health};
 use transport::{Graph, Publisher, Subscriber, monotonic_ns};
@@ -104,6 +104,7 @@ struct World {
     scans: Publisher<topic::Scan>,
     votes: Publisher<topic::Votes>,
     hypotheses: Subscriber<topic::Hypotheses>,
+    beams: Subscriber<topic::Beams>,
     health: Subscriber<topic::Health>,
     counter: Cell<u64>,
 }
@@ -116,6 +117,7 @@ impl World {
             scans: graph.publisher().unwrap(),
             votes: graph.publisher().unwrap(),
             hypotheses: graph.subscriber().unwrap(),
+            beams: graph.subscriber().unwrap(),
             health: graph.subscriber().unwrap(),
             counter: Cell::new(0),
             graph,
@@ -212,7 +214,9 @@ fn hypotheses_are_those_of_the_engine() {
     let node = world.start(&[]);
     world.wait_until(NodeState::Ready);
     for (x, y, heading) in [(3, 3, 40), (12, 6, 211)] {
-        let searched = searched(x, y, heading);
+        let mut searched = searched(x, y, heading);
+        // Nothing returned of the last three beams.
+        searched.ranges[357..].fill(f32::INFINITY);
         let Searched { ranges, outcome } = &searched;
         let (said, hypotheses) = world.ask(header(5, outcome), ranges, &outcome.found.votes);
 
@@ -235,6 +239,25 @@ fn hypotheses_are_those_of_the_engine() {
             let laser = base.then(MOUNT.into());
             assert!(laser.is_within(place.map_from_laser, 1e-12, 1e-12));
         }
+
+        let (header, beams) = wait_for(&world.graph, &world.beams, |header, beams| {
+            Some((*header, beams.to_vec()))
+        });
+        assert_eq!((header.stamp, header.map_id), (said.stamp, 5));
+        assert_eq!(header.map_from_laser, hypotheses[0].map_from_laser);
+        let count = |fate: BeamFate| beams.iter().filter(|beam| beam.fate == fate as u32).count();
+        // A sector of two beams is one that votes.
+        assert_eq!((beams.len(), count(BeamFate::NoReturn)), (180, 1));
+        let hits = expected
+            .classes
+            .iter()
+            .filter(|&&class| class == BeamClass::Hit);
+        assert_eq!(count(BeamFate::Hit), hits.count());
+        assert!(
+            beams
+                .iter()
+                .is_sorted_by_key(|beam| (beam.range_m == f32::INFINITY, beam.bearing))
+        );
     }
     node.stop();
 }

@@ -115,17 +115,9 @@ mod tests {
 
     fn ends(readings: &[(f64, f64)]) -> Ends {
         let end = |&(degrees, reading): &(f64, f64)| {
-            let (sin, cos) = degrees.to_radians().sin_cos();
-            End {
-                towards: (cos, sin),
-                reading,
-                weight: 1.0,
-            }
+            End::new(degrees.to_radians(), (0.1 * reading, reading), 1.0)
         };
-        Ends {
-            ends: readings.iter().map(end).collect(),
-            weight: readings.len() as f64,
-        }
+        Ends::of(readings.iter().map(end).collect(), Vec::new())
     }
 
     /// One cell is 0.1 m: σ is one cell.

@@ -2,7 +2,7 @@
 
 use super::BeamClass;
 use crate::EngineError;
-use crate::beams::{self, BeamConfig};
+use crate::beams::{self, Beam, BeamConfig};
 use crate::scan::Scan;
 use crate::space::Space;
 
@@ -10,6 +10,8 @@ use crate::space::Space;
 #[derive(Debug, Clone, PartialEq)]
 pub struct Ends {
     pub(super) ends: Vec<End>,
+    /// Bearings of beams of which nothing returned, radians.
+    silent: Vec<f64>,
     /// The weights of all beams together.
     pub(super) weight: f64,
 }
@@ -17,6 +19,10 @@ pub struct Ends {
 /// Where a beam ends.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(super) struct End {
+    /// In the laser's frame, radians.
+    pub bearing: f64,
+    /// Metres.
+    pub reading_m: f64,
     /// The unit vector along the beam, in the laser's frame.
     pub towards: (f64, f64),
     /// Cells.
@@ -33,26 +39,56 @@ impl Ends {
     /// If [`Scan::check`] refuses the scan.
     pub fn new(scan: &Scan<'_>, space: &Space, config: &BeamConfig) -> Result<Self, EngineError> {
         scan.check()?;
-        let chosen = beams::choose(scan, 0.0, space, config).beams;
-        let ends: Vec<End> = chosen
-            .iter()
-            .map(|beam| {
-                let (sin, cos) = beam.angle.sin_cos();
-                End {
-                    towards: (cos, sin),
-                    reading: beam.reading_m / space.resolution_m,
-                    weight: beam.weight,
-                }
-            })
-            .collect();
-        Ok(Ends {
+        let chosen = beams::choose(scan, 0.0, space, config);
+        let end = |beam: &Beam| {
+            let reading = beam.reading_m / space.resolution_m;
+            End::new(beam.angle, (beam.reading_m, reading), beam.weight)
+        };
+        let ends = chosen.beams.iter().map(end).collect();
+        Ok(Ends::of(ends, chosen.silent))
+    }
+
+    pub(super) fn of(ends: Vec<End>, silent: Vec<f64>) -> Self {
+        Ends {
             weight: ends.iter().map(|end| end.weight).sum(),
             ends,
-        })
+            silent,
+        }
     }
 }
 
+/// A beam, and what became of it.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct JudgedBeam {
+    /// In the laser's frame, counter-clockwise from ahead, radians.
+    pub bearing: f64,
+    /// Metres.
+    pub reading_m: f64,
+    /// How much it counted.
+    pub weight: f64,
+    /// What became of it.
+    pub class: BeamClass,
+}
+
 impl Ends {
+    /// The beams that voted, with their classes: those of
+    /// [`Terrain::classes`](super::Terrain::classes).
+    pub fn judged(&self, classes: &[BeamClass]) -> impl Iterator<Item = JudgedBeam> {
+        let both = self.ends.iter().zip(classes);
+        both.map(|(end, &class)| JudgedBeam {
+            bearing: end.bearing,
+            reading_m: end.reading_m,
+            weight: end.weight,
+            class,
+        })
+    }
+
+    /// Bearings of the beams that say nothing, in the laser's frame, radians.
+    #[must_use]
+    pub fn silent(&self) -> &[f64] {
+        &self.silent
+    }
+
     /// Share of the beams by weight that are of a class, 0..=1; `classes` are
     /// those of [`Terrain::classes`](super::Terrain::classes).
     #[must_use]
@@ -65,6 +101,18 @@ impl Ends {
 }
 
 impl End {
+    /// An end at a bearing; the reading in metres and in cells.
+    pub(super) fn new(bearing: f64, (reading_m, reading): (f64, f64), weight: f64) -> Self {
+        let (sin, cos) = bearing.sin_cos();
+        End {
+            bearing,
+            reading_m,
+            towards: (cos, sin),
+            reading,
+            weight,
+        }
+    }
+
     /// The direction of the beam where the laser is turned.
     #[inline]
     pub(super) fn direction(&self, (sin, cos): (f64, f64)) -> (f64, f64) {

@@ -24,7 +24,7 @@ mod terrain;
 
 pub use agreement::BeamClass;
 pub use config::FitConfig;
-pub use ends::Ends;
+pub use ends::{Ends, JudgedBeam};
 pub use refine::Refined;
 pub use terrain::Terrain;
 

@@ -185,18 +185,10 @@ mod tests {
             let reading = (0..4000)
                 .map(|step| 0.01 * f64::from(step))
                 .find(is_at_wall)?;
-            let (sin, cos) = angle.sin_cos();
-            Some(End {
-                towards: (cos, sin),
-                reading,
-                weight: 1.0,
-            })
+            Some(End::new(angle, (0.1 * reading, reading), 1.0))
         };
-        let ends: Vec<End> = (-180..180).step_by(3).filter_map(end).collect();
-        Ends {
-            weight: ends.len() as f64,
-            ends,
-        }
+        let ends = (-180..180).step_by(3).filter_map(end);
+        Ends::of(ends.collect(), Vec::new())
     }
 
     #[test]
@@ -258,10 +250,7 @@ mod tests {
 
     #[test]
     fn a_scan_without_beams_moves_nothing() {
-        let none = Ends {
-            ends: Vec::new(),
-            weight: 0.0,
-        };
+        let none = Ends::of(Vec::new(), Vec::new());
         let refined = terrain(&ROOM).refine(&none, TRUTH, false, &FitConfig::default());
         assert_eq!((refined.pose, refined.weight), (TRUTH, 0.0));
     }
