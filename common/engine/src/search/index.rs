@@ -70,8 +70,13 @@ impl SearchIndex {
     /// grid.
     #[must_use]
     pub fn within(mut self, limits: Limits) -> Self {
-        self.within = Within::new(limits);
+        self.limit(limits);
         self
+    }
+
+    /// Seeks poses only within these limits from now on.
+    pub fn limit(&mut self, limits: Limits) {
+        self.within = Within::new(limits);
     }
 
     /// Bytes that the index takes.

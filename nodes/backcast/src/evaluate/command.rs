@@ -33,8 +33,19 @@ pub(crate) struct Config {
     #[arg(long)]
     json: bool,
 
+    /// Leave out the true place: poses within so many metres of it are not
+    /// sought, 0..=1000. Then every answer is wrong, and none should be Unique
+    #[arg(long, value_name = "METRES", value_parser = radius)]
+    without_place: Option<f64>,
+
     #[command(flatten)]
     options: Options,
+}
+
+fn radius(text: &str) -> Result<f64, String> {
+    let allowed = |metres: &f64| (0.0..=1000.0).contains(metres);
+    let metres = text.parse().ok().filter(allowed);
+    metres.ok_or_else(|| "allowed are 0 to 1000 metres".into())
 }
 
 /// Evaluates one file after another. A file that cannot be evaluated is told on
@@ -58,7 +69,7 @@ pub(crate) fn run(config: &Config) -> Result<ExitCode, BackcastError> {
                 "{bag}: peak_rss_mb is that of all files so far: {error}"
             ));
         }
-        let evaluation = match evaluate(bag, &config.options, map.as_ref()) {
+        let evaluation = match evaluate(bag, config, map.as_ref()) {
             Ok(evaluation) => evaluation,
             Err(error) => {
                 say(&transport::with_causes(&error));
@@ -80,7 +91,7 @@ pub(crate) fn run(config: &Config) -> Result<ExitCode, BackcastError> {
 /// Evaluates one file; a damaged one not at all.
 fn evaluate(
     bag: &Path,
-    options: &Options,
+    config: &Config,
     map: Option<&OccupancyGrid>,
 ) -> Result<Evaluation, BackcastError> {
     let recording = Recording::open(bag)?;
@@ -91,10 +102,10 @@ fn evaluate(
     if truths.is_empty() {
         return Err(BackcastError::NoTruths { file: bag.into() });
     }
-    let mut session = Session::open(&recording, options, map)?;
+    let mut session = Session::open(&recording, &config.options, map)?;
     let name = bag.display().to_string();
     let progress = Progress::new(&name, session.scans.total());
-    let (judge, scans) = judge_all(&mut session, &truths, &progress)?;
+    let (judge, scans) = judge_all(&mut session, &truths, config.without_place, &progress)?;
     if let Some(complaint) = judge.complaint() {
         progress.say(&format!("{name}: {complaint}"));
     }
@@ -120,6 +131,7 @@ fn evaluate(
 fn judge_all(
     session: &mut Session<'_>,
     truths: &BTreeMap<i64, GroundTruth>,
+    without_place: Option<f64>,
     progress: &Progress,
 ) -> Result<(Judge, u64), BackcastError> {
     let mut judge = Judge::new();
@@ -128,6 +140,9 @@ fn judge_all(
         let scan = scan?;
         scans += 1;
         if let Some(truth) = truths.get(&scan.stamp_ns) {
+            if let Some(radius_m) = without_place {
+                session.world.leave_out(truth.pose, radius_m);
+            }
             let reply = session.ask(&scan)?;
             match reply.answer {
                 Ok(answer) => judge.answer(truth.pose, &answer.places, reply.cpu_ms),
