@@ -53,6 +53,65 @@ fn a_row_for_each_scan_under_the_columns_of_run() {
 }
 
 #[test]
+fn poses_are_sought_within_limits() {
+    let folder = folder(&[map_message(), scan_at(7, HERE)]);
+    let here = map_from_laser(HERE);
+    let (x, y, degrees) = (here.x, here.y, here.yaw.to_degrees());
+    let (left, bottom, right, top) = (x - 0.3, y - 0.3, x + 0.3, y + 0.3);
+    let found = |limits: &str| pose(&objects(folder.path(), limits)[0]["hypotheses"][0]);
+    assert_near(
+        found(&format!("--region '{left},{bottom} {right},{top}'")),
+        here,
+    );
+    assert_near(
+        found(&format!(
+            "--headings-within {},{}",
+            degrees - 5.0,
+            degrees + 5.0
+        )),
+        here,
+    );
+    // The other place is 2.3 m away: more than refining moves a pose.
+    let there = map_from_laser(THERE);
+    let (x, y) = (there.x, there.y);
+    let (left, bottom, right, top) = (x - 0.3, y - 0.3, x + 0.3, y + 0.3);
+    let elsewhere = found(&format!("--region '{left},{bottom} {right},{top}'"));
+    assert!(elsewhere.distance_to(here) > 1.0, "{elsewhere:?}");
+    let turned = found(&format!(
+        "--headings-within {},{}",
+        degrees + 100.0,
+        degrees + 170.0
+    ));
+    assert!(turned.angle_to(here) > 60f64.to_radians(), "{turned:?}");
+    // The pillar is three cells of 0.25 m from here, the walls are three and more.
+    assert_near(found("--robot-radius 0.7"), here);
+}
+
+#[test]
+fn limits_that_leave_no_pose_are_refused() {
+    let folder = folder(&[map_message(), scan_at(7, HERE)]);
+    let refused = |limits: &str| {
+        let (code, _, error) = run(folder.path(), &format!("locate --bag r.mcap {limits}"));
+        assert_ne!(code, 0);
+        error
+    };
+    let error = refused("--region '100,100 101,101'");
+    assert!(
+        error.contains("no open cell of the map lies in the region"),
+        "{error}"
+    );
+    let error = refused("--robot-radius 4");
+    assert!(error.contains("the robot's radius"), "{error}");
+    let error = refused("--headings-within 10");
+    assert!(error.contains("needed is FROM,TO in degrees"), "{error}");
+    let error = refused("--region 1,2");
+    assert!(
+        error.contains("1 corners; allowed are 2 to 1000"),
+        "{error}"
+    );
+}
+
+#[test]
 fn an_object_tells_votes_and_hypotheses() {
     let folder = folder(&[map_message(), mount_message(), scan_at(7, HERE)]);
     let object = &objects(folder.path(), "")[0];

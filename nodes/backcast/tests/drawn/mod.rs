@@ -153,11 +153,11 @@ pub(crate) fn record(path: &Path, messages: &[(&str, Message)]) {
     writer.finish().unwrap();
 }
 
-/// The program, its output in pipes.
+/// The program, its arguments as typed in a shell, its output in pipes.
 pub(crate) fn backcast(folder: &Path, arguments: &str) -> Command {
     let mut command = Command::new(env!("CARGO_BIN_EXE_backcast"));
     command
-        .args(arguments.split_whitespace())
+        .args(shlex::split(arguments).unwrap())
         .current_dir(folder)
         .stdin(Stdio::null())
         .stdout(Stdio::piped())
