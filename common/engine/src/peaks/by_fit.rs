@@ -35,7 +35,8 @@ pub fn by_fit(
         .map(|place| lead(best.score, place.score))
         .collect();
     likelihood::assign(&mut places, &leads, config);
-    let rivals = leads[1..].iter().filter(|&&lead| lead < config.least_lead);
+    let needed = config.needed_lead(best.score);
+    let rivals = leads[1..].iter().filter(|&&lead| lead < needed);
     let alternatives = rivals.count() as u32;
     let verdict = match () {
         () if best.score < config.least_score => Verdict::PoorFit,

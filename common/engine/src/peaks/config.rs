@@ -47,11 +47,15 @@ pub struct PeakConfig {
     /// Another place whose score lies behind the best by less makes the answer
     /// ambiguous, 0..=1. The lead is measured against what is missing of a
     /// perfect score: (best - other) / √(1.1 - best).
-    #[arg(long, value_name = "LEAD", default_value_t = 0.10, value_parser = parse_share)]
+    #[arg(long, value_name = "LEAD", default_value_t = 0.09, value_parser = parse_share)]
     pub least_lead: f64,
+    /// What a best place's score lacks of this must be made up for by its lead,
+    /// 0..=1: where the scan fits badly, the true place may not be on the map.
+    #[arg(long, value_name = "SCORE", default_value_t = 0.80, value_parser = parse_share)]
+    pub sure_score: f64,
     /// A best place with a lower score fits poorly: the scan may not be of this
     /// map, 0..=1.
-    #[arg(long, value_name = "SCORE", default_value_t = 0.65, value_parser = parse_share)]
+    #[arg(long, value_name = "SCORE", default_value_t = 0.60, value_parser = parse_share)]
     pub least_score: f64,
     /// Each such lead makes another place less likely by a factor of e, 0.001..=1.
     #[arg(long, value_name = "LEAD", default_value_t = 0.025, value_parser = parse_scale)]
@@ -79,6 +83,13 @@ fn parse_scale(text: &str) -> Result<f64, String> {
     crate::config::parse(text, 0.001..=1.0, "as a share")
 }
 
+impl PeakConfig {
+    /// The lead at which a best place with such a score stands alone.
+    pub(super) fn needed_lead(&self, score: f64) -> f64 {
+        self.least_lead + (self.sure_score - score).max(0.0)
+    }
+}
+
 impl Default for PeakConfig {
     fn default() -> Self {
         PeakConfig {
@@ -90,13 +101,31 @@ impl Default for PeakConfig {
             candidate_m: DISTINCT_M,
             candidate_deg: DISTINCT_DEG,
             fit: FitConfig::default(),
-            least_lead: 0.10,
-            least_score: 0.65,
+            least_lead: 0.09,
+            sure_score: 0.80,
+            least_score: 0.60,
             lead_scale: 0.025,
             even_score: 0.55,
             score_scale: 0.06,
             ambiguous_share: 0.92,
             poor_fit_share: 0.35,
         }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn what_a_score_lacks_is_made_up_for_by_the_lead() {
+        let config = PeakConfig::default();
+        let check = |score, expected: f64| {
+            let needed = config.needed_lead(score);
+            assert!((needed - expected).abs() < 1e-12, "{score}: {needed}");
+        };
+        check(0.95, 0.09);
+        check(0.80, 0.09);
+        check(0.70, 0.19);
     }
 }
