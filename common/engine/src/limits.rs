@@ -9,8 +9,6 @@ mod region;
 pub use config::{HeadingInterval, LimitsConfig};
 pub use region::Region;
 
-use geometry::Pose;
-
 use crate::EngineError;
 use crate::directions::Directions;
 use crate::fit::distance;
@@ -101,23 +99,6 @@ impl Limits {
         Some(cells)
     }
 
-    /// The same limits without the cells of their grid whose middles lie within
-    /// a radius, metres, of a point of the map.
-    #[must_use]
-    pub fn without(&self, frame: GridFrame, grid: &Grid, centre: Pose, radius_m: f64) -> Self {
-        let all = || vec![true; grid.cells().len()];
-        let mut cells = self.cells.clone().unwrap_or_else(all);
-        for (i, cell) in cells.iter_mut().enumerate() {
-            let (x, y) = ((i % self.width) as f64 + 0.5, (i / self.width) as f64 + 0.5);
-            *cell &= frame.map_from_cells(x, y, 0.0).distance_to(centre) > radius_m;
-        }
-        Limits {
-            width: self.width,
-            cells: Some(cells),
-            headings: self.headings.clone(),
-        }
-    }
-
     /// Whether poses in the cell at column `x` of row `y` are sought.
     #[must_use]
     pub fn hold_cell(&self, x: usize, y: usize) -> bool {
@@ -165,6 +146,8 @@ impl Limits {
 
 #[cfg(test)]
 mod tests {
+    use geometry::Pose;
+
     use super::*;
     use crate::grid::drawn::grid;
 
@@ -221,15 +204,6 @@ mod tests {
         let drawn_at = |radius| drawn(&limits(&config(radius)).unwrap());
         assert_eq!(drawn_at(0.5), ["------", "-++++-", "-++++-", "------"]);
         assert_eq!(limits(&config(0.6)).unwrap_err(), EngineError::NoCellWithin);
-    }
-
-    #[test]
-    fn a_place_can_be_left_out() {
-        let all = limits(&LimitsConfig::default()).unwrap();
-        // The middle of the grid's cell (2, 1).
-        let centre = FRAME.map_from_cells(2.5, 1.5, 0.0);
-        let others = all.without(FRAME, &grid(&ROOM), centre, 0.6);
-        assert_eq!(drawn(&others), ["++++++", "++-+++", "+---++", "++-+++"]);
     }
 
     #[test]

@@ -201,20 +201,6 @@ impl Localizer {
         &self.space
     }
 
-    /// Where poses are sought.
-    #[must_use]
-    pub fn limits(&self) -> &Limits {
-        &self.limits
-    }
-
-    /// Seeks poses only within these limits, those of its grid, from now on.
-    pub fn limit(&mut self, limits: Limits) {
-        if let Method::Search(index) = &mut self.method {
-            index.limit(limits.clone());
-        }
-        self.limits = limits;
-    }
-
     /// Searches all poses; `None` if `stop` said so before the end.
     ///
     /// # Errors

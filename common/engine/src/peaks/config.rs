@@ -47,7 +47,7 @@ pub struct PeakConfig {
     /// Another place whose score lies behind the best by less makes the answer
     /// ambiguous, 0..=1. The lead is measured against what is missing of a
     /// perfect score: (best - other) / √(1.1 - best).
-    #[arg(long, value_name = "LEAD", default_value_t = 0.09, value_parser = parse_share)]
+    #[arg(long, value_name = "LEAD", default_value_t = 0.10, value_parser = parse_share)]
     pub least_lead: f64,
     /// What a best place's score lacks of this must be made up for by its lead,
     /// 0..=1: where the scan fits badly, the true place may not be on the map.
@@ -101,7 +101,7 @@ impl Default for PeakConfig {
             candidate_m: DISTINCT_M,
             candidate_deg: DISTINCT_DEG,
             fit: FitConfig::default(),
-            least_lead: 0.09,
+            least_lead: 0.10,
             sure_score: 0.80,
             least_score: 0.60,
             lead_scale: 0.025,
@@ -124,8 +124,8 @@ mod tests {
             let needed = config.needed_lead(score);
             assert!((needed - expected).abs() < 1e-12, "{score}: {needed}");
         };
-        check(0.95, 0.09);
-        check(0.80, 0.09);
-        check(0.70, 0.19);
+        check(0.95, 0.10);
+        check(0.80, 0.10);
+        check(0.70, 0.20);
     }
 }

@@ -70,13 +70,8 @@ impl SearchIndex {
     /// grid.
     #[must_use]
     pub fn within(mut self, limits: Limits) -> Self {
-        self.limit(limits);
-        self
-    }
-
-    /// Seeks poses only within these limits from now on.
-    pub fn limit(&mut self, limits: Limits) {
         self.within = Within::new(limits);
+        self
     }
 
     /// Bytes that the index takes.

@@ -33,10 +33,11 @@ pub(crate) struct Config {
     #[arg(long)]
     json: bool,
 
-    /// Leave out the true place: poses within so many metres of it are not
-    /// sought, 0..=1000. Then every answer is wrong, and none should be Unique
+    /// Erase the map around each true pose: cells within so many metres become
+    /// unknown, 0..=1000. unique_wrong then tells how often a place that is not
+    /// on the map is taken for another
     #[arg(long, value_name = "METRES", value_parser = radius)]
-    without_place: Option<f64>,
+    erase_place: Option<f64>,
 
     #[command(flatten)]
     options: Options,
@@ -105,7 +106,7 @@ fn evaluate(
     let mut session = Session::open(&recording, &config.options, map)?;
     let name = bag.display().to_string();
     let progress = Progress::new(&name, session.scans.total());
-    let (judge, scans) = judge_all(&mut session, &truths, config.without_place, &progress)?;
+    let (judge, scans) = judge_all(&mut session, &truths, config.erase_place, &progress)?;
     if let Some(complaint) = judge.complaint() {
         progress.say(&format!("{name}: {complaint}"));
     }
@@ -131,7 +132,7 @@ fn evaluate(
 fn judge_all(
     session: &mut Session<'_>,
     truths: &BTreeMap<i64, GroundTruth>,
-    without_place: Option<f64>,
+    erase_place: Option<f64>,
     progress: &Progress,
 ) -> Result<(Judge, u64), BackcastError> {
     let mut judge = Judge::new();
@@ -140,8 +141,8 @@ fn judge_all(
         let scan = scan?;
         scans += 1;
         if let Some(truth) = truths.get(&scan.stamp_ns) {
-            if let Some(radius_m) = without_place {
-                session.world.leave_out(truth.pose, radius_m);
+            if let Some(radius_m) = erase_place {
+                session.erase(truth.pose, radius_m)?;
             }
             let reply = session.ask(&scan)?;
             match reply.answer {

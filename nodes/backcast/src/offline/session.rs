@@ -4,10 +4,15 @@
 use std::borrow::Cow;
 use std::path::{Path, PathBuf};
 
+use engine::grid::GridFrame;
+use engine::localizer::Prior;
+use geometry::Pose;
 use map::OccupancyGrid;
+use messages::UNKNOWN;
 use recording::{Recording, RecordingError};
 
 use super::heading::Headings;
+use super::options::EngineOptions;
 use super::scans::Scans;
 use super::world::{Answer, World};
 use super::{Options, TakenScan, cpu};
@@ -19,6 +24,9 @@ pub(crate) struct Session<'a> {
     pub(crate) world: World,
     /// Milliseconds of computing that preparing the map has cost.
     pub(crate) prepare_cpu_ms: f64,
+    map: Cow<'a, OccupancyGrid>,
+    map_file: PathBuf,
+    engine: EngineOptions,
     headings: Headings,
 }
 
@@ -40,7 +48,7 @@ impl<'a> Session<'a> {
     pub(crate) fn open(
         recording: &'a Recording,
         options: &Options,
-        given: Option<&OccupancyGrid>,
+        given: Option<&'a OccupancyGrid>,
     ) -> Result<Self, BackcastError> {
         let damage = |error| match error {
             RecordingError::NoTopic { .. } => damage_of(recording).unwrap_or(error),
@@ -52,18 +60,41 @@ impl<'a> Session<'a> {
             Some(map) => Cow::Borrowed(map),
             None => Cow::Owned(map_in(recording)?),
         };
-        let prepare = || World::prepare(&map, &options.engine, headings.source().prior());
+        let map_file = map_file(options, recording.path());
+        let prior = headings.source().prior();
+        let prepare = || prepared(&map, &map_file, &options.engine, prior);
         let (world, prepare_cpu_ms) = cpu::timed(prepare)?;
-        let world = world.map_err(|source| BackcastError::UnusableMap {
-            file: map_file(options, recording.path()),
-            source,
-        })?;
         Ok(Session {
             scans,
-            world,
+            world: world?,
             prepare_cpu_ms,
+            map,
+            map_file,
+            engine: options.engine.clone(),
             headings,
         })
+    }
+
+    /// Prepares the map anew, unknown within a radius, metres, of a point.
+    ///
+    /// # Errors
+    /// Nothing is left that could be used.
+    pub(crate) fn erase(&mut self, centre: Pose, radius_m: f64) -> Result<(), BackcastError> {
+        let mut map = self.map.clone().into_owned();
+        let frame = GridFrame {
+            resolution_m: map.resolution_m,
+            map_from_grid: map.map_from_grid,
+        };
+        let width = map.width as usize;
+        for (i, cell) in map.cells.iter_mut().enumerate() {
+            let (x, y) = ((i % width) as f64 + 0.5, (i / width) as f64 + 0.5);
+            if frame.map_from_cells(x, y, 0.0).distance_to(centre) <= radius_m {
+                *cell = UNKNOWN;
+            }
+        }
+        let prior = self.headings.source().prior();
+        self.world = prepared(&map, &self.map_file, &self.engine, prior)?;
+        Ok(())
     }
 
     /// Finds the place of a scan.
@@ -85,6 +116,18 @@ impl<'a> Session<'a> {
         let answer = found.map_err(BackcastError::Refused);
         Ok(Reply { cpu_ms, answer })
     }
+}
+
+fn prepared(
+    map: &OccupancyGrid,
+    file: &Path,
+    options: &EngineOptions,
+    prior: Prior,
+) -> Result<World, BackcastError> {
+    World::prepare(map, options, prior).map_err(|source| BackcastError::UnusableMap {
+        file: file.into(),
+        source,
+    })
 }
 
 /// The damage of a recording, as an error.

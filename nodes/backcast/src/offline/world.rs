@@ -5,12 +5,10 @@ use engine::EngineError;
 use engine::beams::BeamConfig;
 use engine::fit::{Ends, Terrain};
 use engine::grid::GridFrame;
-use engine::limits::Limits;
 use engine::localizer::{Localizer, Outcome, Prior};
 use engine::peaks::{self, PeakConfig, PeakInput, Places, Score};
 use engine::scan::Scan;
 use engine::space::Space;
-use geometry::Pose;
 use map::OccupancyGrid;
 
 use super::options::EngineOptions;
@@ -25,8 +23,6 @@ pub(crate) struct World {
     /// That of the map as it is.
     space: Space,
     cells: u64,
-    /// As they are set.
-    limits: Limits,
     beams: BeamConfig,
     peaks: PeakConfig,
 }
@@ -57,7 +53,6 @@ impl World {
         };
         let (sides, cells, rules) = ((width, height), &map.cells, options.cells);
         let config = options.localizer.clone();
-        let localizer = Localizer::of_map(frame, sides, cells, rules, config, prior)?;
         Ok(World {
             map_id: map.id(),
             terrain: Terrain::new(frame, sides, cells, rules)?,
@@ -68,8 +63,7 @@ impl World {
                 height,
             )?,
             beams: options.localizer.votes.beams,
-            limits: localizer.limits().clone(),
-            localizer,
+            localizer: Localizer::of_map(frame, sides, cells, rules, config, prior)?,
             cells: width as u64 * height as u64,
             peaks: options.peaks,
         })
@@ -78,15 +72,6 @@ impl World {
     /// Cells of the map.
     pub(crate) fn cells(&self) -> u64 {
         self.cells
-    }
-
-    /// Leaves out all poses within a radius, metres, of a point of the map, and
-    /// seeks again what was left out before.
-    pub(crate) fn leave_out(&mut self, centre: Pose, radius_m: f64) {
-        let localizer = &mut self.localizer;
-        let (frame, grid) = (localizer.frame(), localizer.grid());
-        let others = self.limits.without(frame, grid, centre, radius_m);
-        localizer.limit(others);
     }
 
     /// Searches all poses or, where the heading in the map is given in radians,
