@@ -44,63 +44,69 @@ pub(crate) struct Beam {
     pub weight: f64,
 }
 
-/// The beams that vote, by bearing, and those that say nothing.
-#[derive(Debug, Clone, PartialEq)]
+/// The beams that vote, by bearing, and those that say nothing; filled anew for
+/// each scan.
+#[derive(Debug, Clone, Default, PartialEq)]
 pub(crate) struct Chosen {
     pub beams: Vec<Beam>,
     /// The middles of the sectors that say nothing, radians.
     pub silent: Vec<f64>,
 }
 
-/// Divides the scan's arc evenly into at most `max_beams` sectors and takes
-/// from each the returned reading whose bearing lies nearest to the heading
-/// grid; of equally near ones that nearest to the sector's middle, then the
-/// first. A sector is silent where nothing returned, or from farther than the
-/// map reaches: nothing in it explains such a reading.
-pub(crate) fn choose(scan: &Scan<'_>, turn: f64, space: &Space, config: &BeamConfig) -> Chosen {
-    let readings = scan.ranges.len();
-    let sectors = readings.min(config.max_beams as usize);
-    let arc = (readings as f64 * scan.angle_increment).min(TAU) / sectors as f64;
-    let mut chosen = Chosen {
-        beams: Vec::with_capacity(sectors),
-        silent: Vec::new(),
-    };
-    for sector in 0..sectors {
-        // Integer bounds: every reading lies in exactly one sector.
-        let (start, end) = (
-            sector * readings / sectors,
-            (sector + 1) * readings / sectors,
-        );
-        let middle = (start + end - 1) as f64 / 2.0;
-        let candidates = (start..end).filter_map(|i| {
-            let reading_m = scan.reading(i).filter(|&m| m <= space.longest_m)?;
-            let (bearing, rounding) = space.directions.nearest(scan.bearing(i) + turn);
-            let weight = weight(reading_m * arc, config.beam_arc_m);
-            Some((
-                Beam {
-                    bearing,
-                    rounding,
-                    angle: scan.bearing(i),
-                    reading_m,
-                    weight,
-                },
-                (i as f64 - middle).abs(),
-            ))
-        });
-        let best = candidates.min_by(|(a, a_off), (b, b_off)| {
-            grid_distance(a)
-                .cmp(&grid_distance(b))
-                .then(a_off.total_cmp(b_off))
-        });
-        match best {
-            Some((beam, _)) => chosen.beams.push(beam),
-            None => {
-                let middle = scan.angle_min + middle * scan.angle_increment;
-                chosen.silent.push(middle);
+impl Chosen {
+    /// Divides the scan's arc evenly into at most `max_beams` sectors and takes
+    /// from each the returned reading whose bearing lies nearest to the heading
+    /// grid; of equally near ones that nearest to the sector's middle, then the
+    /// first. A sector is silent where nothing returned, or from farther than the
+    /// map reaches: nothing in it explains such a reading.
+    pub(crate) fn choose(
+        &mut self,
+        scan: &Scan<'_>,
+        turn: f64,
+        space: &Space,
+        config: &BeamConfig,
+    ) {
+        self.beams.clear();
+        self.silent.clear();
+        let readings = scan.ranges.len();
+        let sectors = readings.min(config.max_beams as usize);
+        let arc = (readings as f64 * scan.angle_increment).min(TAU) / sectors as f64;
+        for sector in 0..sectors {
+            // Integer bounds: every reading lies in exactly one sector.
+            let (start, end) = (
+                sector * readings / sectors,
+                (sector + 1) * readings / sectors,
+            );
+            let middle = (start + end - 1) as f64 / 2.0;
+            let candidates = (start..end).filter_map(|i| {
+                let reading_m = scan.reading(i).filter(|&m| m <= space.longest_m)?;
+                let (bearing, rounding) = space.directions.nearest(scan.bearing(i) + turn);
+                let weight = weight(reading_m * arc, config.beam_arc_m);
+                Some((
+                    Beam {
+                        bearing,
+                        rounding,
+                        angle: scan.bearing(i),
+                        reading_m,
+                        weight,
+                    },
+                    (i as f64 - middle).abs(),
+                ))
+            });
+            let best = candidates.min_by(|(a, a_off), (b, b_off)| {
+                grid_distance(a)
+                    .cmp(&grid_distance(b))
+                    .then(a_off.total_cmp(b_off))
+            });
+            match best {
+                Some((beam, _)) => self.beams.push(beam),
+                None => {
+                    let middle = scan.angle_min + middle * scan.angle_increment;
+                    self.silent.push(middle);
+                }
             }
         }
     }
-    chosen
 }
 
 /// `min(1, arc at the reading / full arc) + 0.05`; 1 where beams weigh the same.
@@ -121,6 +127,12 @@ fn grid_distance(beam: &Beam) -> i64 {
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    fn choose(scan: &Scan<'_>, turn: f64, space: &Space, config: &BeamConfig) -> Chosen {
+        let mut chosen = Chosen::default();
+        chosen.choose(scan, turn, space, config);
+        chosen
+    }
 
     fn half_degrees(ranges: &[f32]) -> Scan<'_> {
         Scan {

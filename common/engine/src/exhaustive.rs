@@ -15,8 +15,9 @@ use crate::votes::{CollectConfig, Collector, VoteSet};
 /// The poses with the most votes over all headings; `None` if `stop` said so
 /// before the end.
 ///
-/// Poses are sought within the limits, which are those of the grid. The outcome does not depend on how many
-/// accumulators there are; the first one works on this thread.
+/// Poses are sought within the limits, which are those of the grid. The outcome
+/// does not depend on how many accumulators there are; the first one works on
+/// this thread.
 ///
 /// # Panics
 /// If there is no accumulator, or one of them panics.
@@ -28,53 +29,102 @@ pub fn search<A: Accumulator + Send>(
     config: CollectConfig,
     stop: &dyn Fn() -> bool,
 ) -> Option<VoteSet> {
-    let step = accumulators.len();
-    let (own, others) = accumulators.split_first_mut().expect("an accumulator");
-    let fill = |first: usize, accumulator: &mut A, stop: &dyn Fn() -> bool| {
-        let mut share = Share::new(config);
-        for heading in (first..space.directions.count()).step_by(step) {
+    let shares = accumulators.iter_mut().map(Share::of);
+    let mut shares: Vec<_> = shares.collect();
+    let fill = |accumulator: &mut &mut A,
+                query: Query<'_>,
+                field: &mut Vec<u16>,
+                stop: &dyn Fn() -> bool| accumulator.fill(query, field, stop);
+    let mut found = VoteSet::default();
+    let collect = (config, &mut found);
+    count(&mut shares, fill, limits, (program, space), collect, stop)?;
+    Some(found)
+}
+
+/// The same by any way to fill in the intensities of all cells at a heading,
+/// one thread a share; the shares may have served other scans and maps.
+///
+/// # Panics
+/// If there is no share.
+pub(crate) fn count<T: Send>(
+    shares: &mut [Share<T>],
+    fill: impl Fn(&mut T, Query<'_>, &mut Vec<u16>, &dyn Fn() -> bool) -> Option<()> + Sync,
+    limits: &Limits,
+    scan: (&ScanProgram, &Space),
+    (config, found): (CollectConfig, &mut VoteSet),
+    stop: &dyn Fn() -> bool,
+) -> Option<()> {
+    let threads = shares.len();
+    let run = |thread: usize, share: &mut Share<T>, stop: &dyn Fn() -> bool| {
+        share.run((thread, threads), &fill, limits, scan, (config, stop))
+    };
+    let (own, others) = shares.split_first_mut().expect("a share");
+    let outcome = if others.is_empty() {
+        run(0, own, stop)
+    } else {
+        let stopped = AtomicBool::new(false);
+        let is_stopped = || stopped.load(Ordering::Relaxed);
+        std::thread::scope(|scope| {
+            let spawn = |(thread, share)| scope.spawn(move || run(thread, share, &is_stopped));
+            let threads: Vec<_> = (1..).zip(&mut *others).map(spawn).collect();
+            let own = run(0, own, stop);
+            stopped.store(own.is_none(), Ordering::Relaxed);
+            let joined = threads.into_iter().map(std::thread::ScopedJoinHandle::join);
+            let joined = joined.map(|share| share.unwrap_or_else(|panic| resume_unwind(panic)));
+            joined.fold(own, Option::and)
+        })
+    };
+    outcome?;
+    for other in others {
+        own.collector.merge(&other.collector);
+        own.poses += other.poses;
+    }
+    own.collector.finish(own.poses, found);
+    Some(())
+}
+
+/// What one thread finds, and what it finds it with.
+#[derive(Debug, Default)]
+pub(crate) struct Share<T> {
+    tool: T,
+    field: Vec<u16>,
+    collector: Collector,
+    poses: u64,
+}
+
+impl<T> Share<T> {
+    fn of(tool: T) -> Self {
+        Share {
+            tool,
+            field: Vec::new(),
+            collector: Collector::default(),
+            poses: 0,
+        }
+    }
+
+    /// Counts the poses at every `threads`-th heading.
+    fn run(
+        &mut self,
+        (thread, threads): (usize, usize),
+        fill: &impl Fn(&mut T, Query<'_>, &mut Vec<u16>, &dyn Fn() -> bool) -> Option<()>,
+        limits: &Limits,
+        (program, space): (&ScanProgram, &Space),
+        (config, stop): (CollectConfig, &dyn Fn() -> bool),
+    ) -> Option<()> {
+        self.collector.start(config);
+        self.poses = 0;
+        for heading in (thread..space.directions.count()).step_by(threads) {
             let query = Query {
                 program,
                 space,
                 heading,
             };
             if limits.hold_heading(heading) {
-                accumulator.fill(query, &mut share.field, stop)?;
-                share.collect(limits, heading);
+                fill(&mut self.tool, query, &mut self.field, stop)?;
+                self.collect(limits, heading);
             }
         }
-        Some(share)
-    };
-    let stopped = AtomicBool::new(false);
-    let is_stopped = || stopped.load(Ordering::Relaxed);
-    let shares: Option<Vec<Share>> = std::thread::scope(|scope| {
-        let spawn =
-            |(first, accumulator)| scope.spawn(move || fill(first, accumulator, &is_stopped));
-        let threads: Vec<_> = (1..).zip(others).map(spawn).collect();
-        let own = fill(0, own, stop);
-        stopped.store(own.is_none(), Ordering::Relaxed);
-        let joined = threads.into_iter().map(std::thread::ScopedJoinHandle::join);
-        let joined = joined.map(|share| share.unwrap_or_else(|panic| resume_unwind(panic)));
-        std::iter::once(own).chain(joined).collect()
-    });
-    let all = shares?.into_iter().reduce(Share::merged)?;
-    Some(all.collector.finish(all.poses))
-}
-
-/// What one accumulator found.
-struct Share {
-    field: Vec<u16>,
-    collector: Collector,
-    poses: u64,
-}
-
-impl Share {
-    fn new(config: CollectConfig) -> Self {
-        Share {
-            field: Vec::new(),
-            collector: Collector::new(config),
-            poses: 0,
-        }
+        Some(())
     }
 
     fn collect(&mut self, limits: &Limits, heading: usize) {
@@ -82,14 +132,6 @@ impl Share {
         limits.clear(&mut self.field, heading);
         self.collector
             .take_field(&self.field, limits.width(), heading as u16);
-    }
-
-    fn merged(self, other: Share) -> Share {
-        Share {
-            field: self.field,
-            collector: self.collector.merged(other.collector),
-            poses: self.poses + other.poses,
-        }
     }
 }
 

@@ -6,10 +6,11 @@
 use std::fmt;
 
 /// A set of instructions, from the plainest on.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
+#[derive(Debug, Clone, Copy, Default, PartialEq, Eq, PartialOrd, Ord)]
 pub enum InstructionSet {
     /// What every processor of the architecture has; on aarch64 with NEON, as
     /// far as the compiler uses it by itself.
+    #[default]
     Portable,
     /// AVX2 and POPCNT: x86-64 since Haswell and Zen.
     Avx2,

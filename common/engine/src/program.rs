@@ -5,7 +5,7 @@
 //! of them count the same votes.
 
 use crate::EngineError;
-use crate::beams::{self, Beam, BeamConfig};
+use crate::beams::{Beam, BeamConfig, Chosen};
 use crate::scan::Scan;
 use crate::space::Space;
 use crate::taper::TaperShape;
@@ -76,16 +76,17 @@ impl Taper<'_> {
     }
 }
 
-/// A scan, ready to vote on a grid.
-#[derive(Debug, Clone)]
+/// A scan, ready to vote on a grid; by default one of which nothing votes. It
+/// can be compiled anew for each scan, in the room of the one before.
+#[derive(Debug, Clone, Default)]
 pub struct ScanProgram {
+    chosen: Chosen,
     bearings: Vec<usize>,
     /// For beam `i` and class `c` at `i · classes + c`.
     tapers: Vec<TaperEntry>,
     profiles: Vec<u8>,
     classes: usize,
     highest_possible: u32,
-    silent: usize,
     bearing_rounding: f64,
 }
 
@@ -110,22 +111,37 @@ impl ScanProgram {
         space: &Space,
         config: &VoteConfig,
     ) -> Result<Self, EngineError> {
-        scan.check()?;
-        let chosen = beams::choose(scan, turn, space, &config.beams);
-        let full_vote = fitting_full_vote(&chosen.beams);
-        let mut program = ScanProgram {
-            bearings: Vec::with_capacity(chosen.beams.len()),
-            tapers: Vec::with_capacity(chosen.beams.len() * space.directions.classes()),
-            profiles: Vec::new(),
-            classes: space.directions.classes(),
-            highest_possible: 0,
-            silent: chosen.silent.len(),
-            bearing_rounding: 0.0,
-        };
-        for beam in &chosen.beams {
-            program.push(beam, f64::from(full_vote) * beam.weight, space, config);
-        }
+        let mut program = ScanProgram::default();
+        program.compile(scan, turn, space, config)?;
         Ok(program)
+    }
+
+    /// The same in the room of a scan before; where it is refused, that scan
+    /// stays.
+    ///
+    /// # Errors
+    /// See [`ScanProgram::new`].
+    pub fn compile(
+        &mut self,
+        scan: &Scan<'_>,
+        turn: f64,
+        space: &Space,
+        config: &VoteConfig,
+    ) -> Result<(), EngineError> {
+        scan.check()?;
+        self.chosen.choose(scan, turn, space, &config.beams);
+        let full_vote = fitting_full_vote(&self.chosen.beams);
+        self.bearings.clear();
+        self.tapers.clear();
+        self.profiles.clear();
+        self.classes = space.directions.classes();
+        self.highest_possible = 0;
+        self.bearing_rounding = 0.0;
+        for i in 0..self.chosen.beams.len() {
+            let beam = self.chosen.beams[i];
+            self.push(&beam, f64::from(full_vote) * beam.weight, space, config);
+        }
+        Ok(())
     }
 
     fn push(&mut self, beam: &Beam, peak: f64, space: &Space, config: &VoteConfig) {
@@ -134,13 +150,14 @@ impl ScanProgram {
         let sigma_cells = (sigma_m / space.resolution_m).clamp(1.0, MAX_SIGMA_CELLS);
         for class in 0..self.classes {
             let steps_per_cell = space.directions.steps_per_cell(class);
+            let start = self.profiles.len();
             let profile = config.taper.profile(peak, sigma_cells * steps_per_cell);
+            self.profiles.extend(profile);
             self.tapers.push(TaperEntry {
                 centre: (reading_cells * steps_per_cell + 0.5).floor() as u16,
-                start: self.profiles.len() as u32,
-                len: profile.len() as u32,
+                start: start as u32,
+                len: (self.profiles.len() - start) as u32,
             });
-            self.profiles.extend(profile);
         }
         self.bearings.push(beam.bearing);
         self.highest_possible += peak.round() as u32;
@@ -184,7 +201,7 @@ impl ScanProgram {
     /// Beams of the thinned scan whose reading says nothing.
     #[must_use]
     pub fn silent(&self) -> usize {
-        self.silent
+        self.chosen.silent.len()
     }
 
     /// The largest rounding of a bearing to the heading grid, radians.

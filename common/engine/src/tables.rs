@@ -6,8 +6,9 @@ use crate::program::ScanProgram;
 /// A table's size is a multiple of this: what one instruction can look up.
 pub(crate) const TABLE: usize = 64;
 
-/// The tables of all beams, for each class of directions.
-#[derive(Debug, Clone)]
+/// The tables of all beams, for each class of directions; made anew for each
+/// program.
+#[derive(Debug, Clone, Default)]
 pub(crate) struct VoteTables {
     classes: usize,
     /// For beam `i` and class `c` at `i · classes + c`.
@@ -34,28 +35,25 @@ pub(crate) struct VoteTable<'a> {
 }
 
 impl VoteTables {
-    pub(crate) fn new(program: &ScanProgram, directions: &Directions) -> Self {
+    pub(crate) fn make(&mut self, program: &ScanProgram, directions: &Directions) {
         let classes = directions.classes();
-        let mut tables = VoteTables {
-            classes,
-            entries: Vec::with_capacity(program.beams() * classes),
-            votes: Vec::new(),
-            is_short: true,
-        };
+        self.classes = classes;
+        self.entries.clear();
+        self.votes.clear();
+        self.is_short = true;
         for (beam, class) in (0..program.beams()).flat_map(|i| (0..classes).map(move |c| (i, c))) {
             let taper = program.taper(beam, class);
-            let start = tables.votes.len();
+            let start = self.votes.len();
             let size = (taper.profile.len() + 1).next_multiple_of(TABLE);
-            tables.votes.extend_from_slice(taper.profile);
-            tables.votes.resize(start + size, 0);
-            tables.entries.push(Entry {
+            self.votes.extend_from_slice(taper.profile);
+            self.votes.resize(start + size, 0);
+            self.entries.push(Entry {
                 centre: taper.centre,
                 start: start as u32,
                 size: size as u32,
             });
-            tables.is_short &= size == TABLE;
+            self.is_short &= size == TABLE;
         }
-        tables
     }
 
     /// The table of a beam for a class of directions.
@@ -106,7 +104,8 @@ mod tests {
         ) {
             let space = crate::space::Space::new(16, 0.1, 40, 40).unwrap();
             let program = scan.program(&space);
-            let tables = VoteTables::new(&program, &space.directions);
+            let mut tables = VoteTables::default();
+            tables.make(&program, &space.directions);
             for (beam, class) in (0..program.beams()).flat_map(|i| (0..3).map(move |c| (i, c))) {
                 let taper = program.taper(beam, class);
                 let plain: Vec<u16> = ranges.iter().map(|&range| 1 + u16::from(taper.votes(range))).collect();

@@ -31,12 +31,10 @@ impl TaperShape {
 
     /// Votes at 0, 1, 2, … steps from the reading: `round(peak · height)`, up
     /// to and without the first zero. Empty where even the peak rounds to zero.
-    #[must_use]
-    pub fn profile(self, peak: f64, sigma_steps: f64) -> Vec<u8> {
+    pub fn profile(self, peak: f64, sigma_steps: f64) -> impl Iterator<Item = u8> {
         (0..)
-            .map(|steps| (peak * self.height(f64::from(steps) / sigma_steps)).round() as u8)
+            .map(move |steps| (peak * self.height(f64::from(steps) / sigma_steps)).round() as u8)
             .take_while(|&votes| votes > 0)
-            .collect()
     }
 }
 
@@ -51,23 +49,27 @@ mod tests {
         TaperShape::Box,
     ];
 
+    fn profile(shape: TaperShape, peak: f64, sigma_steps: f64) -> Vec<u8> {
+        shape.profile(peak, sigma_steps).collect()
+    }
+
     #[test]
     fn shapes_have_their_widths() {
-        assert_eq!(TaperShape::Box.profile(15.0, 2.0), [15; 5]);
-        assert_eq!(TaperShape::Linear.profile(15.0, 2.0), [15, 11, 8, 4]);
+        assert_eq!(profile(TaperShape::Box, 15.0, 2.0), [15; 5]);
+        assert_eq!(profile(TaperShape::Linear, 15.0, 2.0), [15, 11, 8, 4]);
         assert_eq!(
-            TaperShape::Trapezoid.profile(15.0, 2.0),
+            profile(TaperShape::Trapezoid, 15.0, 2.0),
             [15, 15, 15, 10, 5]
         );
         // exp(-2) · 15 = 2.03 at two σ, exp(-4.5) · 15 = 0.17 at three.
-        assert_eq!(TaperShape::Gaussian.profile(15.0, 1.0), [15, 9, 2]);
+        assert_eq!(profile(TaperShape::Gaussian, 15.0, 1.0), [15, 9, 2]);
     }
 
     #[test]
     fn no_shape_rises_with_distance() {
         for shape in ALL {
             for sigma in [0.71, 1.0, 2.3, 18.0] {
-                let profile = shape.profile(15.75, sigma);
+                let profile = profile(shape, 15.75, sigma);
                 assert_eq!(profile.first(), Some(&16), "{shape:?} peaks at the reading");
                 assert!(profile.is_sorted_by(|a, b| a >= b), "{shape:?} {sigma}");
             }
@@ -76,6 +78,6 @@ mod tests {
 
     #[test]
     fn a_peak_that_rounds_to_nothing_has_no_votes() {
-        assert_eq!(TaperShape::Trapezoid.profile(0.4, 2.0), []);
+        assert_eq!(profile(TaperShape::Trapezoid, 0.4, 2.0), []);
     }
 }

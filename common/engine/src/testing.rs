@@ -123,7 +123,7 @@ pub(crate) fn plain_votes_within(
             });
         }
     }
-    collector.finish(0)
+    collector.finished(0)
 }
 
 /// What one may scan: readings from nothing to beyond the grid, any taper.

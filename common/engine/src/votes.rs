@@ -1,10 +1,14 @@
 //! The outcome of a search: the poses that have the most votes.
 
+mod of_field;
+
 use std::cmp::Reverse;
 
 use messages::Vote;
 
 use crate::space::Space;
+pub(crate) use of_field::FieldVotes;
+pub use of_field::of_field;
 
 /// What is collected of a search.
 #[derive(Debug, Clone, Copy, PartialEq, clap::Args)]
@@ -62,16 +66,15 @@ pub struct VoteSet {
 
 impl VoteSet {
     /// Adds poses below the certified floor until there are so many distinct
-    /// ones, best first.
-    pub(crate) fn add_candidates(&mut self, mut others: Vec<Vote>, space: &Space, wanted: usize) {
-        let mut distinct = Distinct::new(space, wanted);
+    /// ones, best first; none of `others` is left.
+    pub(crate) fn add_candidates(&mut self, others: &mut Vec<Vote>, mut distinct: Distinct<'_>) {
         self.votes.iter().for_each(|vote| {
             distinct.take(vote);
         });
         others.retain(|vote| vote.intensity < self.certified_floor);
         others.sort_unstable_by_key(order);
         others.retain(|vote| distinct.take(vote));
-        self.votes.append(&mut others);
+        self.votes.append(others);
         self.floor = self.votes.last().map_or(0, |vote| vote.intensity);
     }
 }
@@ -82,15 +85,17 @@ impl VoteSet {
 pub(crate) struct Distinct<'a> {
     space: &'a Space,
     wanted: usize,
-    kept: Vec<Vote>,
+    kept: &'a mut Vec<Vote>,
 }
 
 impl<'a> Distinct<'a> {
-    pub(crate) fn new(space: &'a Space, wanted: usize) -> Self {
+    /// Keeps none so far, of at most `wanted`, in the room of others before.
+    pub(crate) fn new(space: &'a Space, wanted: usize, kept: &'a mut Vec<Vote>) -> Self {
+        kept.clear();
         Distinct {
             space,
             wanted,
-            kept: Vec::with_capacity(wanted),
+            kept,
         }
     }
 
@@ -106,11 +111,12 @@ impl<'a> Distinct<'a> {
 
     /// Those of all poses.
     pub(crate) fn of(votes: &[Vote], space: &'a Space, wanted: usize) -> Vec<Vote> {
-        let mut distinct = Distinct::new(space, wanted);
+        let mut kept = Vec::new();
+        let mut distinct = Distinct::new(space, wanted, &mut kept);
         votes.iter().for_each(|vote| {
             distinct.take(vote);
         });
-        distinct.kept
+        kept
     }
 }
 
@@ -127,7 +133,7 @@ pub(crate) fn are_near(a: &Vote, b: &Vote, space: &Space) -> bool {
 ///
 /// The outcome does not depend on the order: the floor only rises, and only to
 /// levels that the final floor cannot lie below.
-#[derive(Debug)]
+#[derive(Debug, Default)]
 pub(crate) struct Collector {
     config: CollectConfig,
     votes: Vec<Vote>,
@@ -139,14 +145,20 @@ pub(crate) struct Collector {
 }
 
 impl Collector {
+    #[cfg(test)]
     pub(crate) fn new(config: CollectConfig) -> Self {
-        Collector {
-            config,
-            votes: Vec::new(),
-            best: 0,
-            crowded_below: 1,
-            cut: None,
-        }
+        let mut collector = Collector::default();
+        collector.start(config);
+        collector
+    }
+
+    /// Starts anew, in the room of what was collected before.
+    pub(crate) fn start(&mut self, config: CollectConfig) {
+        self.config = config;
+        self.votes.clear();
+        self.best = 0;
+        self.crowded_below = 1;
+        self.cut = None;
     }
 
     /// The least intensity that can still matter; at least 1.
@@ -198,17 +210,16 @@ impl Collector {
         self.best
     }
 
-    /// What one collector would hold that had taken the poses of both.
-    pub(crate) fn merged(mut self, other: Collector) -> Collector {
+    /// Becomes what one collector would be that had taken the poses of both.
+    pub(crate) fn merge(&mut self, other: &Collector) {
         self.crowded_below = self.crowded_below.max(other.crowded_below);
         self.hear_of(other.best);
-        for vote in other.votes {
+        for &vote in &other.votes {
             self.take(vote);
         }
         if other.cut == Some(self.best) {
             self.cut = other.cut;
         }
-        self
     }
 
     /// Drops what lies below the floor, then whole levels from below until
@@ -230,55 +241,28 @@ impl Collector {
         self.votes.truncate(kept.min(max_votes));
     }
 
-    /// The outcome, in order.
-    pub(crate) fn finish(mut self, poses_evaluated: u64) -> VoteSet {
+    /// The outcome, in order. Its votes are not copied: what the outcome had
+    /// before is room for those to come.
+    pub(crate) fn finish(&mut self, poses_evaluated: u64, outcome: &mut VoteSet) {
         self.make_room();
         self.votes.sort_unstable_by_key(order);
         let best_is_cut = self.cut == Some(self.best);
-        VoteSet {
-            floor: self.votes.last().map_or(0, |vote| vote.intensity),
-            certified_floor: self.floor().saturating_add(u16::from(best_is_cut)),
-            best: self.best,
-            truncated: best_is_cut || self.crowded_below > self.share_floor(),
-            poses_evaluated,
-            votes: self.votes,
-        }
+        outcome.floor = self.votes.last().map_or(0, |vote| vote.intensity);
+        outcome.certified_floor = self.floor().saturating_add(u16::from(best_is_cut));
+        outcome.best = self.best;
+        outcome.truncated = best_is_cut || self.crowded_below > self.share_floor();
+        outcome.poses_evaluated = poses_evaluated;
+        std::mem::swap(&mut outcome.votes, &mut self.votes);
+        self.votes.clear();
     }
-}
 
-/// The best poses of an intensity image, row by row, at one heading.
-#[must_use]
-pub fn of_field(field: &[u16], width: usize, heading: u16, config: CollectConfig) -> VoteSet {
-    let mut collector = Collector::new(config);
-    collector.take_field(field, width, heading);
-    collector.finish(field.len() as u64)
-}
-
-/// Cells along the side of the blocks of an image of which the best is a
-/// candidate.
-const BLOCK: usize = 8;
-
-/// The best pose of each block of an intensity image, row by row, at one
-/// heading; none of blocks without votes.
-pub(crate) fn best_of_blocks(field: &[u16], width: usize, heading: u16) -> Vec<Vote> {
-    let mut bests = Vec::new();
-    for (band, rows) in field.chunks(BLOCK * width).enumerate() {
-        for left in (0..width).step_by(BLOCK) {
-            let right = (left + BLOCK).min(width);
-            let cells = rows.chunks_exact(width).enumerate().flat_map(|(y, row)| {
-                let cells = (left..right).zip(&row[left..right]);
-                cells.map(move |(x, &intensity)| Vote {
-                    x: x as u16,
-                    y: (BLOCK * band + y) as u16,
-                    heading,
-                    intensity,
-                })
-            });
-            let best = cells.min_by_key(order).filter(|best| best.intensity > 0);
-            bests.extend(best);
-        }
+    /// The outcome as a value.
+    #[cfg(test)]
+    pub(crate) fn finished(mut self, poses_evaluated: u64) -> VoteSet {
+        let mut outcome = VoteSet::default();
+        self.finish(poses_evaluated, &mut outcome);
+        outcome
     }
-    bests
 }
 
 /// Most votes first, equal ones by (heading, y, x).
@@ -303,7 +287,7 @@ mod tests {
                 intensity,
             });
         }
-        collector.finish(0)
+        collector.finished(0)
     }
 
     fn levels(set: &VoteSet) -> Vec<u16> {
@@ -356,20 +340,6 @@ mod tests {
     }
 
     #[test]
-    fn each_block_of_an_image_has_one_best_pose() {
-        // Two blocks side by side, and one row of two more.
-        let (width, height) = (11, 9);
-        let mut field = vec![0; width * height];
-        (field[2 * width + 3], field[3 * width + 1]) = (5, 7);
-        (field[8], field[width + 10]) = (4, 4);
-        field[8 * width] = 1;
-        let bests = best_of_blocks(&field, width, 6);
-        let found: Vec<_> = bests.iter().map(|v| (v.x, v.y, v.intensity)).collect();
-        assert_eq!(found, [(1, 3, 7), (8, 0, 4), (0, 8, 1)]);
-        assert!(bests.iter().all(|vote| vote.heading == 6));
-    }
-
-    #[test]
     fn candidates_are_added_below_the_floor_while_distinct_ones_are_wanted() {
         let space = Space::new(360, 0.1, 100, 100).unwrap();
         let vote = |x, heading, intensity| Vote {
@@ -386,7 +356,9 @@ mod tests {
         // Near the best; far; near that; turned by more than 6.5 degrees; too many.
         let others = [(2, 3, 8), (9, 0, 5), (9, 6, 4), (0, 353, 7), (50, 0, 2)];
         let others = others.map(|(x, heading, intensity)| vote(x, heading, intensity));
-        set.add_candidates(others.to_vec(), &space, 3);
+        let mut kept = Vec::new();
+        let distinct = Distinct::new(&space, 3, &mut kept);
+        set.add_candidates(&mut others.to_vec(), distinct);
         assert_eq!(levels(&set), [10, 9, 7, 5]);
         assert_eq!((set.floor, set.certified_floor), (5, 9));
     }
@@ -409,14 +381,18 @@ mod tests {
             for (x, &intensity) in intensities.iter().enumerate().rev() {
                 backward.take(Vote { x: x as u16, y: 0, heading: 0, intensity });
             }
-            let backward = backward.finish(0);
+            let backward = backward.finished(0);
             prop_assert_eq!(&backward, &forward);
             // Nor does it who took them.
             let mut parts = [Collector::new(config), Collector::new(config), Collector::new(config)];
             for (x, &intensity) in intensities.iter().enumerate() {
                 parts[x % 3].take(Vote { x: x as u16, y: 0, heading: 0, intensity });
             }
-            let merged = parts.into_iter().reduce(Collector::merged).unwrap().finish(0);
+            let merge = |mut all: Collector, part| {
+                all.merge(&part);
+                all
+            };
+            let merged = parts.into_iter().reduce(merge).unwrap().finished(0);
             prop_assert_eq!(&merged, &forward);
             // Complete down to the certified floor.
             let certified = intensities.iter().filter(|&&i| i > 0 && i >= forward.certified_floor).count();

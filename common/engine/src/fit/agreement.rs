@@ -38,9 +38,21 @@ impl Terrain {
     /// What became of each beam at a pose, in the order of their bearings.
     #[must_use]
     pub fn classes(&self, ends: &Ends, pose: GridPose, config: &FitConfig) -> Vec<BeamClass> {
-        let mut classes = Vec::with_capacity(ends.ends.len());
-        self.judge(ends, pose, config, |_, _, class| classes.push(class));
+        let mut classes = Vec::new();
+        self.classify(ends, pose, config, &mut classes);
         classes
+    }
+
+    /// Fills in the same.
+    pub(crate) fn classify(
+        &self,
+        ends: &Ends,
+        pose: GridPose,
+        config: &FitConfig,
+        classes: &mut Vec<BeamClass>,
+    ) {
+        classes.clear();
+        self.judge(ends, pose, config, |_, _, class| classes.push(class));
     }
 
     fn judge(
@@ -117,7 +129,7 @@ mod tests {
         let end = |&(degrees, reading): &(f64, f64)| {
             End::new(degrees.to_radians(), (0.1 * reading, reading), 1.0)
         };
-        Ends::of(readings.iter().map(end).collect(), Vec::new())
+        Ends::of(readings.iter().map(end).collect())
     }
 
     /// One cell is 0.1 m: σ is one cell.

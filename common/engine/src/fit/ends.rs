@@ -2,16 +2,17 @@
 
 use super::BeamClass;
 use crate::EngineError;
-use crate::beams::{self, Beam, BeamConfig};
+use crate::beams::{Beam, BeamConfig, Chosen};
 use crate::scan::Scan;
 use crate::space::Space;
 
-/// The end points of a scan's beams, in cells.
-#[derive(Debug, Clone, PartialEq)]
+/// The end points of a scan's beams, in cells; by default those of a scan
+/// without beams. They can be found anew for each scan, in the room of the one
+/// before.
+#[derive(Debug, Clone, Default, PartialEq)]
 pub struct Ends {
+    chosen: Chosen,
     pub(super) ends: Vec<End>,
-    /// Bearings of beams of which nothing returned, radians.
-    silent: Vec<f64>,
     /// The weights of all beams together.
     pub(super) weight: f64,
 }
@@ -38,21 +39,40 @@ impl Ends {
     /// # Errors
     /// If [`Scan::check`] refuses the scan.
     pub fn new(scan: &Scan<'_>, space: &Space, config: &BeamConfig) -> Result<Self, EngineError> {
+        let mut ends = Ends::default();
+        ends.find(scan, space, config)?;
+        Ok(ends)
+    }
+
+    /// The same in the room of a scan before; where it is refused, that scan
+    /// stays.
+    ///
+    /// # Errors
+    /// See [`Ends::new`].
+    pub fn find(
+        &mut self,
+        scan: &Scan<'_>,
+        space: &Space,
+        config: &BeamConfig,
+    ) -> Result<(), EngineError> {
         scan.check()?;
-        let chosen = beams::choose(scan, 0.0, space, config);
+        self.chosen.choose(scan, 0.0, space, config);
         let end = |beam: &Beam| {
             let reading = beam.reading_m / space.resolution_m;
             End::new(beam.angle, (beam.reading_m, reading), beam.weight)
         };
-        let ends = chosen.beams.iter().map(end).collect();
-        Ok(Ends::of(ends, chosen.silent))
+        self.ends.clear();
+        self.ends.extend(self.chosen.beams.iter().map(end));
+        self.weight = self.ends.iter().map(|end| end.weight).sum();
+        Ok(())
     }
 
-    pub(super) fn of(ends: Vec<End>, silent: Vec<f64>) -> Self {
+    #[cfg(test)]
+    pub(super) fn of(ends: Vec<End>) -> Self {
         Ends {
             weight: ends.iter().map(|end| end.weight).sum(),
             ends,
-            silent,
+            chosen: Chosen::default(),
         }
     }
 }
@@ -86,7 +106,7 @@ impl Ends {
     /// Bearings of the beams that say nothing, in the laser's frame, radians.
     #[must_use]
     pub fn silent(&self) -> &[f64] {
-        &self.silent
+        &self.chosen.silent
     }
 
     /// Share of the beams by weight that are of a class, 0..=1; `classes` are

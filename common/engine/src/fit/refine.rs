@@ -188,7 +188,7 @@ mod tests {
             Some(End::new(angle, (0.1 * reading, reading), 1.0))
         };
         let ends = (-180..180).step_by(3).filter_map(end);
-        Ends::of(ends.collect(), Vec::new())
+        Ends::of(ends.collect())
     }
 
     #[test]
@@ -250,7 +250,7 @@ mod tests {
 
     #[test]
     fn a_scan_without_beams_moves_nothing() {
-        let none = Ends::of(Vec::new(), Vec::new());
+        let none = Ends::of(Vec::new());
         let refined = terrain(&ROOM).refine(&none, TRUTH, false, &FitConfig::default());
         assert_eq!((refined.pose, refined.weight), (TRUTH, 0.0));
     }

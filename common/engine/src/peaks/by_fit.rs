@@ -5,54 +5,73 @@ use geometry::{Covariance, Pose, wrap_angle};
 use messages::Verdict;
 use nalgebra::{Matrix3, Vector3};
 
-use super::summits::{Reach, Summit, summits};
-use super::{PeakConfig, PeakInput, Place, Places, in_map, likelihood};
+use super::summits::{self, Reach, Summit};
+use super::{PeakConfig, PeakInput, Place, Places, Workspace, in_map, likelihood};
 use crate::fit::{BeamClass, Ends, GridPose, Refined, Terrain};
 use crate::grid::GridFrame;
 
-/// Reads the places from the votes of a scan and from the scan itself, which
-/// must be of the same map. Its grid may be finer than that of the votes, with
-/// the same origin.
+/// Reads the places from the votes of a scan and from the scan itself, see
+/// [`Workspace::by_fit`].
 #[must_use]
-pub fn by_fit(
-    input: &PeakInput<'_>,
-    (terrain, ends): (&Terrain, &Ends),
-    config: &PeakConfig,
-) -> Places {
-    let reach = Reach::new(input, config.candidate_m, config.candidate_deg);
-    let mut places: Vec<Place> = summits(input, reach, config.max_candidates)
-        .iter()
-        .map(|summit| place(input, (terrain, ends), summit, config))
-        .collect();
-    // A stable sort: of equal ones, that with more votes comes first.
-    places.sort_by(|a, b| b.score.total_cmp(&a.score));
-    let mut places = distinct(places, config);
-    let Some(&best) = places.first() else {
-        return Places::none();
-    };
-    let leads: Vec<f64> = places
-        .iter()
-        .map(|place| lead(best.score, place.score))
-        .collect();
-    likelihood::assign(&mut places, &leads, config);
-    let needed = config.needed_lead(best.score);
-    let rivals = leads[1..].iter().filter(|&&lead| lead < needed);
-    let alternatives = rivals.count() as u32;
-    let verdict = match () {
-        () if best.score < config.least_score => Verdict::PoorFit,
-        () if alternatives > 0 => Verdict::Ambiguous,
-        () => Verdict::Unique,
-    };
-    places.truncate(config.max_hypotheses as usize);
-    let pose = grid_pose(terrain.frame, best.map_from_laser);
-    let classes = terrain.classes(ends, pose, &config.fit);
-    Places {
-        verdict,
-        alternatives,
-        confidence: places[0].probability,
-        inlier_share: ends.share(&classes, BeamClass::Hit),
-        classes,
-        places,
+pub fn by_fit(input: &PeakInput<'_>, scan: (&Terrain, &Ends), config: &PeakConfig) -> Places {
+    let mut workspace = Workspace::default();
+    workspace.by_fit(input, scan, config);
+    workspace.places
+}
+
+impl Workspace {
+    /// Reads the places from the votes of a scan and from the scan itself, which
+    /// must be of the same map. Its grid may be finer than that of the votes,
+    /// with the same origin.
+    pub fn by_fit(
+        &mut self,
+        input: &PeakInput<'_>,
+        (terrain, ends): (&Terrain, &Ends),
+        config: &PeakConfig,
+    ) -> &Places {
+        let reach = Reach::new(input, config.candidate_m, config.candidate_deg);
+        summits::find(input, reach, config.max_candidates, &mut self.summits);
+        self.refined.clear();
+        let places = self
+            .summits
+            .iter()
+            .map(|summit| place(input, (terrain, ends), summit, config));
+        self.refined.extend(places.enumerate());
+        // Of equal ones, that with more votes comes first.
+        self.refined.sort_unstable_by(|(i, a), (j, b)| {
+            let by_score = b.score.total_cmp(&a.score);
+            by_score.then(i.cmp(j))
+        });
+        self.places.clear();
+        keep_distinct(&self.refined, &mut self.places.places, config);
+        if let Some(best) = self.places.places.first().copied() {
+            let found = &mut self.places;
+            found.judge_by_fit(best, &mut self.leads, config);
+            let pose = grid_pose(terrain.frame, best.map_from_laser);
+            terrain.classify(ends, pose, &config.fit, &mut found.classes);
+            found.inlier_share = ends.share(&found.classes, BeamClass::Hit);
+        }
+        &self.places
+    }
+}
+
+impl Places {
+    /// What the scores of the places allow to say; keeps as many as are wanted.
+    fn judge_by_fit(&mut self, best: Place, leads: &mut Vec<f64>, config: &PeakConfig) {
+        let places = &mut self.places;
+        leads.clear();
+        leads.extend(places.iter().map(|place| lead(best.score, place.score)));
+        likelihood::assign(places, leads, config);
+        let needed = config.needed_lead(best.score);
+        let rivals = leads[1..].iter().filter(|&&lead| lead < needed);
+        self.alternatives = rivals.count() as u32;
+        self.verdict = match () {
+            () if best.score < config.least_score => Verdict::PoorFit,
+            () if self.alternatives > 0 => Verdict::Ambiguous,
+            () => Verdict::Unique,
+        };
+        places.truncate(config.max_hypotheses as usize);
+        self.confidence = places[0].probability;
     }
 }
 
@@ -67,11 +86,10 @@ fn grid_pose(frame: GridFrame, map_from_laser: Pose) -> GridPose {
     GridPose { x, y, heading }
 }
 
-/// The best of all poses that came to lie at one place.
-fn distinct(places: Vec<Place>, config: &PeakConfig) -> Vec<Place> {
+/// Keeps the best of all poses that came to lie at one place.
+fn keep_distinct(places: &[(usize, Place)], kept: &mut Vec<Place>, config: &PeakConfig) {
     let angle = config.same_place_deg.to_radians();
-    let mut kept: Vec<Place> = Vec::with_capacity(places.len());
-    for place in places {
+    for (_, place) in places {
         let is_near = |other: &&mut Place| {
             let pose = other.map_from_laser;
             pose.is_within(place.map_from_laser, config.same_place_m, angle)
@@ -81,10 +99,9 @@ fn distinct(places: Vec<Place>, config: &PeakConfig) -> Vec<Place> {
                 other.support += place.support;
                 other.intensity = other.intensity.max(place.intensity);
             }
-            None => kept.push(place),
+            None => kept.push(*place),
         }
     }
-    kept
 }
 
 /// The refined place of a candidate.

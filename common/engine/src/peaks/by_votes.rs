@@ -5,46 +5,55 @@ use geometry::{Covariance, wrap_angle};
 use messages::Verdict;
 use nalgebra::{Matrix3, Vector3};
 
-use super::summits::{Reach, Summit, summits};
-use super::{PeakConfig, PeakInput, Place, Places, in_map};
+use super::summits::{self, Reach, Summit};
+use super::{PeakConfig, PeakInput, Place, Places, Workspace, in_map};
 
 /// Votes from this share of a peak's height up make up its shape: below, the
 /// flanks of other peaks begin.
 const PEAK_BASE_SHARE: f64 = 0.85;
 
-/// Reads the places from the votes of a scan: the paper's method.
+/// Reads the places from the votes of a scan, see [`Workspace::by_votes`].
 #[must_use]
 pub fn by_votes(input: &PeakInput<'_>, config: &PeakConfig) -> Places {
-    let reach = Reach::new(input, config.same_place_m, config.same_place_deg);
-    let places: Vec<Place> = summits(input, reach, config.max_hypotheses)
-        .iter()
-        .map(|summit| place(input, summit, reach))
-        .collect();
-    let Some(best) = places.first() else {
-        return Places::none();
-    };
-    let rival = f64::from(best.intensity) * config.ambiguous_share;
-    let alternatives = places[1..]
-        .iter()
-        .filter(|place| f64::from(place.intensity) >= rival)
-        .count() as u32;
-    let next = places.get(1).map_or_else(
-        || input.certified_floor.saturating_sub(1),
-        |next| u32::from(next.intensity),
-    );
-    let confidence = (1.0 - f64::from(next) / f64::from(best.intensity)).clamp(0.0, 1.0);
-    let verdict = match () {
-        () if best.score < config.poor_fit_share => Verdict::PoorFit,
-        () if alternatives > 0 => Verdict::Ambiguous,
-        () => Verdict::Unique,
-    };
-    Places {
-        verdict,
-        alternatives,
-        confidence,
-        inlier_share: best.score,
-        classes: Vec::new(),
-        places,
+    let mut workspace = Workspace::default();
+    workspace.by_votes(input, config);
+    workspace.places
+}
+
+impl Workspace {
+    /// Reads the places from the votes of a scan: the paper's method.
+    pub fn by_votes(&mut self, input: &PeakInput<'_>, config: &PeakConfig) -> &Places {
+        let reach = Reach::new(input, config.same_place_m, config.same_place_deg);
+        let (summits, found) = (&mut self.summits, &mut self.places);
+        summits::find(input, reach, config.max_hypotheses, summits);
+        found.clear();
+        let places = summits.iter().map(|summit| place(input, summit, reach));
+        found.places.extend(places);
+        if let Some(best) = found.places.first().copied() {
+            found.judge_by_votes(best, input.certified_floor, config);
+        }
+        found
+    }
+}
+
+impl Places {
+    /// What the votes of the places allow to say.
+    fn judge_by_votes(&mut self, best: Place, certified_floor: u32, config: &PeakConfig) {
+        let rival = f64::from(best.intensity) * config.ambiguous_share;
+        let others = self.places[1..].iter();
+        let rivals = others.filter(|place| f64::from(place.intensity) >= rival);
+        self.alternatives = rivals.count() as u32;
+        let next = self.places.get(1).map_or_else(
+            || certified_floor.saturating_sub(1),
+            |next| u32::from(next.intensity),
+        );
+        self.confidence = (1.0 - f64::from(next) / f64::from(best.intensity)).clamp(0.0, 1.0);
+        self.verdict = match () {
+            () if best.score < config.poor_fit_share => Verdict::PoorFit,
+            () if self.alternatives > 0 => Verdict::Ambiguous,
+            () => Verdict::Unique,
+        };
+        self.inlier_share = best.score;
     }
 }
 

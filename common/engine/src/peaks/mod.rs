@@ -26,6 +26,7 @@ pub use by_fit::by_fit;
 pub use by_votes::by_votes;
 pub use config::{PeakConfig, Score};
 use sentence::Stand;
+use summits::Summit;
 
 /// The votes of one scan and what is needed to read them.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -128,8 +129,20 @@ impl Places {
         sentence::sentence(self.verdict, &stands)
     }
 
+    /// Becomes what there is to say of a scan of which nothing voted.
+    fn clear(&mut self) {
+        self.places.clear();
+        self.verdict = Verdict::NoScan;
+        self.alternatives = 0;
+        self.confidence = 0.0;
+        self.inlier_share = 0.0;
+        self.classes.clear();
+    }
+}
+
+impl Default for Places {
     /// A scan of which nothing voted.
-    fn none() -> Self {
+    fn default() -> Self {
         Places {
             places: Vec::new(),
             verdict: Verdict::NoScan,
@@ -139,6 +152,18 @@ impl Places {
             classes: Vec::new(),
         }
     }
+}
+
+/// What reading places takes, and the last ones. Kept from scan to scan: once
+/// there is room for all, nothing is allocated any more. It may serve any map.
+#[derive(Debug, Default)]
+pub struct Workspace {
+    summits: Vec<Summit>,
+    /// Places as they come to be refined, with their ranks by votes.
+    refined: Vec<(usize, Place)>,
+    /// Of the best place over each.
+    leads: Vec<f64>,
+    places: Places,
 }
 
 #[cfg(test)]

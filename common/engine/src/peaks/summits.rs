@@ -48,9 +48,9 @@ impl PeakInput<'_> {
     }
 }
 
-/// The best vote of each place, best first, at most so many.
-pub(super) fn summits(input: &PeakInput<'_>, reach: Reach, most: u32) -> Vec<Summit> {
-    let mut summits: Vec<Summit> = Vec::new();
+/// Fills in the best vote of each place, best first, at most so many.
+pub(super) fn find(input: &PeakInput<'_>, reach: Reach, most: u32, summits: &mut Vec<Summit>) {
+    summits.clear();
     for vote in input.votes {
         let near = |summit: &&mut Summit| input.are_near(&summit.vote, vote, reach);
         if let Some(summit) = summits.iter_mut().find(near) {
@@ -62,5 +62,4 @@ pub(super) fn summits(input: &PeakInput<'_>, reach: Reach, most: u32) -> Vec<Sum
             break;
         }
     }
-    summits
 }

@@ -11,7 +11,7 @@ use std::sync::atomic::Ordering;
 
 use messages::Vote;
 
-use super::bits;
+use super::bits::{self, Row};
 use super::descent::quarters;
 use super::interval_bounds::IntervalBounds;
 use super::intervals::{BlockIntervals, SIDE};
@@ -38,11 +38,29 @@ const LEAST_THIRTY_SECONDTHS: u32 = 31;
 /// Looks for candidates on one thread, whatever the search did.
 pub(super) struct Alternatives<'a> {
     task: &'a Task<'a>,
+    room: &'a mut Room,
+}
+
+/// What candidates are looked for with, kept from scan to scan.
+#[derive(Debug, Default)]
+pub(super) struct Room {
     bounds: SetBounds,
+    /// Headings at which a block of 8 × 8 cells may matter, a row a chunk.
+    masks: Vec<Row>,
     intervals: BlockIntervals,
     interval_bounds: IntervalBounds,
     outlook: Outlook,
+    coarse: Vec<Promise>,
+    fine: Vec<Promise>,
+    spots: Vec<Spot>,
+    /// Poses or spots that are distinct.
+    pub distinct: Vec<Vote>,
+    /// What was found.
+    pub votes: Vec<Vote>,
 }
+
+/// What a block promises; of equal ones the first comes first.
+type Promise = (u16, Reverse<u32>);
 
 /// A block of 4 × 4 cells at a heading.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
@@ -53,91 +71,88 @@ struct Spot {
 }
 
 impl<'a> Alternatives<'a> {
-    pub(super) fn new(task: &'a Task<'a>) -> Self {
-        Alternatives {
-            task,
-            bounds: task.programs.fine.bounds(task.headings()),
-            intervals: BlockIntervals::default(),
-            interval_bounds: IntervalBounds::new(),
-            outlook: Outlook::new(task.grid, &task.space.directions),
-        }
+    pub(super) fn new(task: &'a Task<'a>, room: &'a mut Room) -> Self {
+        room.bounds.fit(&task.programs.fine, task.headings());
+        room.outlook.prepare(task.grid, &task.space.directions);
+        Alternatives { task, room }
     }
 
-    /// Poses of the blocks that promise most, in no order, at most so many.
-    pub(super) fn find(&mut self, wanted: usize) -> Vec<Vote> {
+    /// Leaves in its room poses of the blocks that promise most, in no order, at
+    /// most so many.
+    pub(super) fn find(&mut self, wanted: usize) {
         let part = self.task.promises.len() / COARSE_PART;
-        let coarse = self.most_promising(part.max(COARSE_SHARE * wanted));
-        let mut fine = self.bound_all(&coarse);
-        keep_greatest(&mut fine, FINE_SHARE * wanted);
-        let spots = fine
-            .iter()
-            .filter_map(|&(_, Reverse(block))| self.best_spot(block as usize));
-        let mut spots: Vec<Spot> = spots.collect();
+        self.take_most_promising(part.max(COARSE_SHARE * wanted));
+        self.bound_all();
+        keep_greatest(&mut self.room.fine, FINE_SHARE * wanted);
+        self.room.spots.clear();
+        for i in 0..self.room.fine.len() {
+            let (_, Reverse(block)) = self.room.fine[i];
+            let spot = self.best_spot(block as usize);
+            self.room.spots.extend(spot);
+        }
+        let Room {
+            spots, distinct, ..
+        } = &mut *self.room;
         spots.sort_unstable_by(|a, b| b.cmp(a));
-        let mut distinct = Distinct::new(self.task.space, wanted);
-        spots.retain(|spot| distinct.take(&self.corner(spot)));
-        spots
-            .into_iter()
-            .filter_map(|spot| self.count(spot))
-            .collect()
-    }
-
-    /// A spot as a pose, by which spots are told apart.
-    fn corner(&self, spot: &Spot) -> Vote {
-        let (Reverse(block), Reverse(heading)) = (spot.block, spot.heading);
         let columns = self.task.index.intervals.columns;
-        Vote {
-            x: (block % columns * SIDE) as u16,
-            y: (block / columns * SIDE) as u16,
-            heading: heading as u16,
-            intensity: spot.bound,
+        let mut distinct = Distinct::new(self.task.space, wanted, distinct);
+        spots.retain(|spot| distinct.take(&spot.corner(columns)));
+        self.room.votes.clear();
+        for i in 0..self.room.spots.len() {
+            let vote = self.count(self.room.spots[i]);
+            self.room.votes.extend(vote);
         }
     }
 
-    /// The coarse blocks that promise most.
-    fn most_promising(&self, count: usize) -> Vec<(u16, Reverse<u32>)> {
+    /// Takes the coarse blocks that promise most.
+    fn take_most_promising(&mut self, count: usize) {
         let promises = self.task.promises.iter().zip(0..);
         let within = &self.task.index.within;
-        let mut blocks: Vec<_> = promises
+        let blocks = promises
             .map(|(promise, block)| (promise.load(Ordering::Relaxed), Reverse(block)))
-            .filter(|&(_, Reverse(block))| within.holds(Size::Coarse, block as usize))
-            .collect();
-        keep_greatest(&mut blocks, count);
-        blocks
+            .filter(|&(_, Reverse(block))| within.holds(Size::Coarse, block as usize));
+        self.room.coarse.clear();
+        self.room.coarse.extend(blocks);
+        keep_greatest(&mut self.room.coarse, count);
     }
 
-    /// The bounds of the 8 × 8 blocks in coarse ones.
-    fn bound_all(&mut self, coarse: &[(u16, Reverse<u32>)]) -> Vec<(u16, Reverse<u32>)> {
+    /// Bounds the 8 × 8 blocks in the coarse ones that were taken.
+    fn bound_all(&mut self) {
         let (index, program) = (self.task.index, &self.task.programs.fine);
         let sides = (index.fine.columns, index.fine.rows);
-        let within =
-            |block: &(u16, Reverse<u32>)| quarters(block.1.0 as usize, index.coarse.columns, sides);
+        let Room {
+            bounds,
+            coarse,
+            fine,
+            ..
+        } = &mut *self.room;
+        let within = |block: &Promise| quarters(block.1.0 as usize, index.coarse.columns, sides);
         let bound = |block: usize| {
-            program.bound(&index.fine, block, 0, &mut self.bounds);
-            (self.bounds.greatest(), Reverse(block as u32))
+            program.bound(&index.fine, block, 0, bounds);
+            (bounds.greatest(), Reverse(block as u32))
         };
         let blocks = coarse.iter().flat_map(within);
         let blocks = blocks.filter(|&block| index.within.holds(Size::Fine, block));
-        blocks.map(bound).collect()
+        fine.clear();
+        fine.extend(blocks.map(bound));
     }
 
     /// Where in an 8 × 8 block the bound of a small block is highest.
     fn best_spot(&mut self, block: usize) -> Option<Spot> {
-        let index = self.task.index;
-        self.task
-            .programs
-            .fine
-            .bound(&index.fine, block, 0, &mut self.bounds);
-        let greatest = u32::from(self.bounds.greatest());
+        let (index, program) = (self.task.index, &self.task.programs.fine);
+        let Room { bounds, masks, .. } = &mut *self.room;
+        program.bound(&index.fine, block, 0, bounds);
+        let greatest = u32::from(bounds.greatest());
         let least = (greatest * LEAST_THIRTY_SECONDTHS / 32) as u16;
-        let masks: Vec<_> = self.bounds.at_least(least.max(1), &self.bounds).collect();
+        masks.clear();
+        masks.extend(bounds.at_least(least.max(1), bounds));
         let sides = (index.intervals.columns, index.intervals.rows);
         let mut best = None;
         let smalls = quarters(block, index.fine.columns, sides);
         for small in smalls.filter(|&block| index.within.holds(Size::Small, block)) {
-            index.intervals.read(small, &mut self.intervals);
-            for (chunk, mask) in masks.iter().enumerate() {
-                let mut mask = *mask;
+            index.intervals.read(small, &mut self.room.intervals);
+            for chunk in 0..self.room.masks.len() {
+                let mut mask = self.room.masks[chunk];
                 while let Some((first, among)) = bits::take_window(&mut mask) {
                     let first = chunk * CHUNK + first;
                     best = best.max(self.best_in_window(small, first, among, best));
@@ -155,9 +170,14 @@ impl<'a> Alternatives<'a> {
         among: u64,
         so_far: Option<Spot>,
     ) -> Option<Spot> {
-        let (program, bounds) = (&self.task.programs.interval, &mut self.interval_bounds);
+        let program = &self.task.programs.interval;
+        let Room {
+            intervals,
+            interval_bounds: bounds,
+            ..
+        } = &mut *self.room;
         let least = so_far.map_or(1, |spot| spot.bound);
-        if !program.bound(&self.intervals, first, among, least, bounds) {
+        if !program.bound(intervals, first, among, least, bounds) {
             return None;
         }
         let spot = |lane| Spot {
@@ -175,23 +195,38 @@ impl<'a> Alternatives<'a> {
         } = self.task;
         let (Reverse(block), Reverse(heading)) = (spot.block, spot.heading);
         let map = (*grid, &index.within.limits);
-        self.outlook.enter(map, &index.intervals, block);
+        let outlook = &mut self.room.outlook;
+        outlook.enter(map, &index.intervals, block);
         let prepared = (*grid, &index.steps, &space.directions);
         let mut counts = [0; CELLS];
         for sector in 0..sectors::count(self.task.programs.beams) {
             let program = &self.task.programs.leaf;
-            program.add(&mut self.outlook, prepared, sector, heading, &mut counts);
+            program.add(outlook, prepared, sector, heading, &mut counts);
         }
-        let open = self.outlook.open();
+        let open = outlook.open();
         let votes = counts.iter().zip(&open).map(|(count, open)| count & open);
         let (intensity, Reverse(i)) = votes.zip((0..).map(Reverse)).max()?;
-        let (x, y) = self.outlook.cell(i);
+        let (x, y) = outlook.cell(i);
         (intensity > 0).then_some(Vote {
             x: x as u16,
             y: y as u16,
             heading: heading as u16,
             intensity,
         })
+    }
+}
+
+impl Spot {
+    /// The spot as a pose, by which spots are told apart; blocks lie in so many
+    /// columns.
+    fn corner(&self, columns: usize) -> Vote {
+        let (Reverse(block), Reverse(heading)) = (self.block, self.heading);
+        Vote {
+            x: (block % columns * SIDE) as u16,
+            y: (block / columns * SIDE) as u16,
+            heading: heading as u16,
+            intensity: self.bound,
+        }
     }
 }
 

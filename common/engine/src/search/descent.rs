@@ -20,6 +20,12 @@ use crate::votes::Collector;
 /// One thread's part of a search.
 pub(super) struct Descent<'a> {
     task: &'a Task<'a>,
+    room: &'a mut Room,
+}
+
+/// What a thread searches with, kept from scan to scan.
+#[derive(Debug, Default)]
+pub(super) struct Room {
     coarse_bounds: SetBounds,
     fine_bounds: SetBounds,
     intervals: BlockIntervals,
@@ -30,15 +36,18 @@ pub(super) struct Descent<'a> {
     masks: Vec<Row>,
     /// Headings at which blocks of 4 × 4 cells may matter.
     candidates: Vec<Candidate>,
-    collector: Collector,
-    poses_evaluated: u64,
+    /// The poses that matter.
+    pub collector: Collector,
+    /// How many were counted.
+    pub poses_evaluated: u64,
     tally: Tally,
 }
 
 /// How a part of a search ended.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(super) enum End {
-    /// With the poses that matter, and how many were counted.
-    Done(Collector, u64),
+    /// With the poses that matter.
+    Done,
     /// It was told to stop.
     Stopped,
     /// Counting every pose would take less than what is left.
@@ -49,9 +58,8 @@ impl End {
     /// How two parts ended together.
     pub(super) fn joined(self, other: End) -> End {
         match (self, other) {
-            (End::Done(a, poses), End::Done(b, others)) => End::Done(a.merged(b), poses + others),
-            (End::Hopeless, _) | (End::Done(..), End::Hopeless) => End::Hopeless,
-            (End::Stopped, _) | (End::Done(..), End::Stopped) => End::Stopped,
+            (End::Done, end) => end,
+            (end, _) => end,
         }
     }
 }
@@ -63,23 +71,26 @@ struct Candidate {
     bound: u16,
 }
 
+impl Room {
+    /// Makes room for a task; nothing is left of the one before.
+    fn start(&mut self, task: &Task<'_>) {
+        let programs = task.programs;
+        self.coarse_bounds.fit(&programs.coarse, task.headings());
+        self.fine_bounds.fit(&programs.fine, task.headings());
+        self.outlook.prepare(task.grid, &task.space.directions);
+        self.queue.clear();
+        self.masks.clear();
+        self.candidates.clear();
+        self.collector.start(task.config);
+        self.poses_evaluated = 0;
+        self.tally = Tally::default();
+    }
+}
+
 impl<'a> Descent<'a> {
-    pub(super) fn new(task: &'a Task<'a>) -> Self {
-        let headings = || task.headings();
-        Descent {
-            task,
-            coarse_bounds: task.programs.coarse.bounds(headings()),
-            fine_bounds: task.programs.fine.bounds(headings()),
-            intervals: BlockIntervals::default(),
-            interval_bounds: IntervalBounds::new(),
-            outlook: Outlook::new(task.grid, &task.space.directions),
-            queue: BinaryHeap::new(),
-            masks: Vec::new(),
-            candidates: Vec::new(),
-            collector: Collector::new(task.config),
-            poses_evaluated: 0,
-            tally: Tally::default(),
-        }
+    pub(super) fn new(task: &'a Task<'a>, room: &'a mut Room) -> Self {
+        room.start(task);
+        Descent { task, room }
     }
 
     /// Searches one of `parts` of the coarse blocks.
@@ -90,15 +101,15 @@ impl<'a> Descent<'a> {
         let within = &self.task.index.within;
         let own = (part..coarse.blocks()).step_by(parts);
         for index in own.filter(|&block| within.holds(Size::Coarse, block)) {
-            let (bound, promise) = program.rough(coarse, index, &mut self.coarse_bounds);
+            let (bound, promise) = program.rough(coarse, index, &mut self.room.coarse_bounds);
             self.task.promises[index].store(promise, Ordering::Relaxed);
             self.push(bound, promise, index, Level::Coarse);
         }
         let mut budget = Budget::new(self.task.brute_force, parts);
-        while let Some(block) = self.queue.pop() {
+        while let Some(block) = self.room.queue.pop() {
             let best = self.task.best.load(Ordering::Relaxed);
-            self.collector.hear_of(best);
-            if block.bound < self.collector.floor() {
+            self.room.collector.hear_of(best);
+            if block.bound < self.room.collector.floor() {
                 continue;
             }
             if stop() {
@@ -110,27 +121,30 @@ impl<'a> Descent<'a> {
                 Level::Fine { masks } => self.split_fine(index, masks as usize),
                 Level::Leaf { start, end } => self.count(index, start as usize..end as usize),
             }
-            budget.spend(level.number(), self.tally.take(self.task.programs.beams));
+            budget.spend(
+                level.number(),
+                self.room.tally.take(self.task.programs.beams),
+            );
             if budget.is_up() && budget.is_hopeless(self.left()) {
                 return End::Hopeless;
             }
         }
-        End::Done(self.collector, self.poses_evaluated)
+        End::Done
     }
 
     /// How many blocks of each level are left that may matter.
     fn left(&self) -> [usize; LEVELS] {
         let mut left = [0; LEVELS];
-        let floor = self.collector.floor();
-        for block in self.queue.iter().filter(|block| block.bound >= floor) {
+        let floor = self.room.collector.floor();
+        for block in self.room.queue.iter().filter(|block| block.bound >= floor) {
             left[block.level.number()] += 1;
         }
         left
     }
 
     fn push(&mut self, bound: u16, promise: u16, index: usize, level: Level) {
-        if bound >= self.collector.floor() {
-            self.queue.push(Block {
+        if bound >= self.room.collector.floor() {
+            self.room.queue.push(Block {
                 promise,
                 bound,
                 index: index as u32,
@@ -142,10 +156,10 @@ impl<'a> Descent<'a> {
     /// Bounds a block of 16 × 16 cells by all beams, and queues the 8 × 8 in it.
     fn split_coarse(&mut self, index: usize) {
         let (coarse, fine) = (&self.task.index.coarse, &self.task.index.fine);
-        let floor = self.collector.floor();
+        let floor = self.room.collector.floor();
         let program = &self.task.programs.coarse;
-        self.tally.bounds += 1;
-        if program.bound(coarse, index, floor, &mut self.coarse_bounds) {
+        self.room.tally.bounds += 1;
+        if program.bound(coarse, index, floor, &mut self.room.coarse_bounds) {
             let within = &self.task.index.within;
             let quarters = quarters(index, coarse.columns, (fine.columns, fine.rows));
             for block in quarters.filter(|&block| within.holds(Size::Fine, block)) {
@@ -157,20 +171,23 @@ impl<'a> Descent<'a> {
     /// Queues a block of 8 × 8 cells at the headings that the block around it
     /// leaves.
     fn queue_fine(&mut self, index: usize) {
-        let floor = self.collector.floor();
+        let floor = self.room.collector.floor();
         let (fine, program) = (&self.task.index.fine, &self.task.programs.fine);
-        self.tally.bounds += 1;
-        if !program.bound(fine, index, floor, &mut self.fine_bounds) {
+        self.room.tally.bounds += 1;
+        if !program.bound(fine, index, floor, &mut self.room.fine_bounds) {
             return;
         }
-        let start = self.masks.len();
-        self.masks
-            .extend(self.fine_bounds.at_least(floor, &self.coarse_bounds));
-        if self.masks[start..].iter().all(bits::is_empty) {
-            self.masks.truncate(start);
+        let start = self.room.masks.len();
+        self.room.masks.extend(
+            self.room
+                .fine_bounds
+                .at_least(floor, &self.room.coarse_bounds),
+        );
+        if self.room.masks[start..].iter().all(bits::is_empty) {
+            self.room.masks.truncate(start);
             return;
         }
-        let bound = self.fine_bounds.greatest();
+        let bound = self.room.fine_bounds.greatest();
         let masks = start as u32;
         self.push(bound, bound, index, Level::Fine { masks });
     }
@@ -187,19 +204,19 @@ impl<'a> Descent<'a> {
 
     /// Queues a block of 4 × 4 cells at the headings at which it may matter.
     fn queue_leaf(&mut self, index: usize, masks: usize) {
-        let floor = self.collector.floor();
+        let floor = self.room.collector.floor();
         let index_intervals = &self.task.index.intervals;
-        index_intervals.read(index, &mut self.intervals);
-        let start = self.candidates.len();
+        index_intervals.read(index, &mut self.room.intervals);
+        let start = self.room.candidates.len();
         for chunk in 0..self.task.space.directions.count().div_ceil(CHUNK) {
-            let mut mask = self.masks[masks + chunk];
+            let mut mask = self.room.masks[masks + chunk];
             while let Some((heading, among)) = bits::take_window(&mut mask) {
                 self.bound_leaf(chunk * CHUNK + heading, among, floor);
             }
         }
-        let candidates = self.candidates[start..].iter();
+        let candidates = self.room.candidates[start..].iter();
         if let Some(bound) = candidates.map(|candidate| candidate.bound).max() {
-            let (start, end) = (start as u32, self.candidates.len() as u32);
+            let (start, end) = (start as u32, self.room.candidates.len() as u32);
             self.push(bound, bound, index, Level::Leaf { start, end });
         }
     }
@@ -207,16 +224,16 @@ impl<'a> Descent<'a> {
     /// Notes the headings from `first` on at which the block whose intervals
     /// were read may matter.
     fn bound_leaf(&mut self, first: usize, among: u64, floor: u16) {
-        let (program, bounds) = (&self.task.programs.interval, &mut self.interval_bounds);
-        self.tally.windows += 1;
-        if !program.bound(&self.intervals, first, among, floor, bounds) {
+        let (program, bounds) = (&self.task.programs.interval, &mut self.room.interval_bounds);
+        self.room.tally.windows += 1;
+        if !program.bound(&self.room.intervals, first, among, floor, bounds) {
             return;
         }
         for lane in bits::ones(among) {
             let bound = bounds.all[lane];
             if bound >= floor {
                 let heading = (first + lane) as u16;
-                self.candidates.push(Candidate { heading, bound });
+                self.room.candidates.push(Candidate { heading, bound });
             }
         }
     }
@@ -226,13 +243,17 @@ impl<'a> Descent<'a> {
         let Task {
             index: map, grid, ..
         } = self.task;
-        self.outlook
+        self.room
+            .outlook
             .enter((*grid, &map.within.limits), &map.intervals, index);
         while let Some((first, among)) = self.next_headings(&mut candidates) {
-            let floor = self.collector.floor();
-            let (intervals, bounds) = (self.outlook.intervals(), &mut self.interval_bounds);
+            let floor = self.room.collector.floor();
+            let (intervals, bounds) = (
+                self.room.outlook.intervals(),
+                &mut self.room.interval_bounds,
+            );
             let program = &self.task.programs.interval;
-            self.tally.windows += 1;
+            self.room.tally.windows += 1;
             if program.bound(intervals, first, among, floor, bounds) {
                 self.count_at(first, among);
             }
@@ -242,10 +263,10 @@ impl<'a> Descent<'a> {
     /// Takes candidates less than [`HEADINGS`] behind the first: its heading,
     /// and those from there on that may still matter.
     fn next_headings(&self, candidates: &mut Range<usize>) -> Option<(usize, u64)> {
-        let floor = self.collector.floor();
-        let first = usize::from(self.candidates[candidates.clone()].first()?.heading);
+        let floor = self.room.collector.floor();
+        let first = usize::from(self.room.candidates[candidates.clone()].first()?.heading);
         let mut among = 0;
-        for candidate in &self.candidates[candidates.clone()] {
+        for candidate in &self.room.candidates[candidates.clone()] {
             let lane = usize::from(candidate.heading) - first;
             if lane >= HEADINGS {
                 break;
@@ -259,22 +280,22 @@ impl<'a> Descent<'a> {
     /// Counts sector by sector at headings from `first` on, until no pose can
     /// reach the floor with what the sectors left are bounded by.
     fn count_at(&mut self, first: usize, among: u64) {
-        let open = self.outlook.open();
+        let open = self.room.outlook.open();
         let Task {
             index, grid, space, ..
         } = self.task;
         let prepared = (*grid, &index.steps, &space.directions);
         let mut counts = [[0u16; CELLS]; HEADINGS];
-        let mut rest = self.interval_bounds.all;
+        let mut rest = self.room.interval_bounds.all;
         let mut alive = among;
-        let floor = self.collector.floor();
-        for (sector, bounds) in self.interval_bounds.sectors.iter().enumerate() {
+        let floor = self.room.collector.floor();
+        for (sector, bounds) in self.room.interval_bounds.sectors.iter().enumerate() {
             let mut still = 0;
             for lane in bits::ones(alive) {
-                self.tally.sectors += 1;
+                self.room.tally.sectors += 1;
                 let counts = &mut counts[lane];
                 let (program, heading) = (&self.task.programs.leaf, first + lane);
-                program.add(&mut self.outlook, prepared, sector, heading, counts);
+                program.add(&mut self.room.outlook, prepared, sector, heading, counts);
                 rest[lane] -= u16::from(bounds[lane]);
                 let counts = counts.iter().zip(&open);
                 let most = counts.map(|(&count, &open)| count & open).max();
@@ -285,17 +306,17 @@ impl<'a> Descent<'a> {
         for lane in bits::ones(alive) {
             self.take((first + lane) as u16, &counts[lane], &open);
         }
-        self.tally.looks = self.outlook.looks();
-        let best = self.collector.best();
+        self.room.tally.looks = self.room.outlook.looks();
+        let best = self.room.collector.best();
         self.task.best.fetch_max(best, Ordering::Relaxed);
     }
 
     fn take(&mut self, heading: u16, counts: &[u16; CELLS], open: &[u16; CELLS]) {
-        self.poses_evaluated += CELLS as u64;
+        self.room.poses_evaluated += CELLS as u64;
         for (i, &intensity) in counts.iter().enumerate() {
             if open[i] != 0 {
-                let (x, y) = self.outlook.cell(i);
-                self.collector.take(Vote {
+                let (x, y) = self.room.outlook.cell(i);
+                self.room.collector.take(Vote {
                     x: x as u16,
                     y: y as u16,
                     heading,

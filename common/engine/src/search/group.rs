@@ -33,6 +33,16 @@ impl Group {
         }
     }
 
+    pub(super) fn shift(&self) -> u32 {
+        self.shift
+    }
+
+    /// Lets go of all windows; their room stays.
+    pub(super) fn clear(&mut self) {
+        self.planes.iter_mut().flatten().for_each(Vec::clear);
+        self.possible = 0;
+    }
+
     pub(super) fn push(&mut self, plane: usize, window: Window) {
         self.possible += 1 << plane;
         if self.planes.len() <= plane {

@@ -1,24 +1,24 @@
 //! A map prepared for searches.
 
-use std::panic::resume_unwind;
-
-use super::alternatives::Alternatives;
+use super::alternatives::{self, Alternatives};
 use super::bins::Bins;
-use super::descent::{Descent, End};
+use super::block_bounds::Bounding;
+use super::descent::{self, End};
 use super::intervals::RangeIntervals;
-use super::set_bounds::SetProgram;
+use super::parts;
 use super::sets::RangeSets;
 use super::steps::BinSteps;
-use super::task::Task;
-use super::within::{Size, Within};
-use crate::exhaustive;
+use super::task::{Shared, Task};
+use super::within::Within;
+use crate::accumulator::Query;
+use crate::exhaustive::{self, Share};
 use crate::grid::Grid;
 use crate::instruction_set::InstructionSet;
 use crate::limits::Limits;
 use crate::program::ScanProgram;
 use crate::space::Space;
-use crate::sweep::FieldSweep;
-use crate::votes::{CollectConfig, VoteSet};
+use crate::sweep::{self, FieldSweep};
+use crate::votes::{CollectConfig, Distinct, VoteSet};
 
 /// Rows of the sets of 8 × 8 blocks stand for `1 << FINE_SHIFT` bins: a block
 /// smears distances by more.
@@ -32,18 +32,21 @@ pub struct SearchIndex {
     pub(super) fine: RangeSets,
     pub(super) coarse: RangeSets,
     pub(super) within: Within,
+    /// Where bounds do not help.
+    sweeps: FieldSweep,
 }
 
-/// Upper bounds of the intensities in square blocks, row by row from the
-/// lowest y.
-#[derive(Debug, Clone, PartialEq, Eq)]
-pub struct BlockBounds {
-    /// Cells along the side of a block.
-    pub side: usize,
-    /// Blocks along x.
-    pub columns: usize,
-    /// No pose in the block, at any heading, has more votes.
-    pub bounds: Vec<u16>,
+/// What searches need beside the map, kept from scan to scan: once there is room
+/// for all, nothing is allocated any more. It may serve any map.
+#[derive(Debug, Default)]
+pub struct Workspace {
+    shared: Shared,
+    /// One for each thread.
+    rooms: Vec<descent::Room>,
+    alternatives: alternatives::Room,
+    /// For counting every pose, one for each thread.
+    shares: Vec<Share<sweep::Workspace>>,
+    pub(super) bounding: Bounding,
 }
 
 impl SearchIndex {
@@ -63,6 +66,7 @@ impl SearchIndex {
             fine,
             coarse,
             within: Within::new(Limits::none(grid.width())),
+            sweeps: FieldSweep::new(grid),
         }
     }
 
@@ -77,7 +81,7 @@ impl SearchIndex {
     /// Bytes that the index takes.
     #[must_use]
     pub fn bytes(&self) -> usize {
-        self.intervals.bytes() + self.fine.bytes() + self.coarse.bytes()
+        self.intervals.bytes() + self.fine.bytes() + self.coarse.bytes() + self.sweeps.bytes()
     }
 
     /// The poses with the most votes; `None` if `stop` said so before the end.
@@ -94,9 +98,8 @@ impl SearchIndex {
         self.search_with((best, 1), grid, (program, space), config, stop)
     }
 
-    /// The same with a certain instruction set on a number of threads, with the
-    /// same outcome but for the number of poses that were counted. Where bounds
-    /// cannot tell blocks apart, all poses are counted.
+    /// The same with a certain instruction set on a number of threads, see
+    /// [`SearchIndex::search_in`].
     ///
     /// # Panics
     /// If the processor does not have the instruction set, or there is no
@@ -110,80 +113,76 @@ impl SearchIndex {
         config: CollectConfig,
         stop: &dyn Fn() -> bool,
     ) -> Option<VoteSet> {
-        let task = Task::new(instruction_set.checked(), self, grid, scan, config);
-        let mut found = match run(&task, threads, stop) {
-            End::Done(collector, poses) => collector.finish(poses),
-            End::Stopped => return None,
-            End::Hopeless => {
-                let how = (instruction_set, threads);
-                count_all(how, (grid, &self.within.limits), scan, config, stop)?
-            }
-        };
-        if config.candidates > 0 && found.best > 0 {
-            let alternatives = Alternatives::new(&task).find(config.candidates as usize);
-            found.add_candidates(alternatives, scan.1, config.candidates as usize);
-        }
+        let (mut workspace, mut found) = (Workspace::default(), VoteSet::default());
+        let how = (instruction_set, threads);
+        let collect = (config, &mut found);
+        self.search_in(&mut workspace, how, grid, scan, collect, stop)?;
         Some(found)
     }
 
-    /// Upper bounds of the intensities in all coarse blocks: where the robot
-    /// may be, roughly.
-    #[must_use]
-    pub fn block_bounds(&self, program: &ScanProgram, space: &Space) -> BlockBounds {
-        let (coarse, directions) = (&self.coarse, &space.directions);
-        let best = InstructionSet::best();
-        let set_program = SetProgram::new(program, directions, &self.steps, coarse.shift, best);
-        let mut bounds = set_program.bounds(self.within.headings(directions.count()));
-        let bound = |block| {
-            if !self.within.holds(Size::Coarse, block) {
-                return 0;
+    /// Fills in the poses with the most votes, in a workspace that may have
+    /// served other scans and maps; `None` if `stop` said so before the end.
+    ///
+    /// The outcome is the same with any instruction set and number of threads,
+    /// but for the number of poses that were counted. Where bounds cannot tell
+    /// blocks apart, all poses are counted.
+    ///
+    /// # Panics
+    /// If the processor does not have the instruction set, or there is no
+    /// thread.
+    pub fn search_in(
+        &self,
+        workspace: &mut Workspace,
+        (instruction_set, threads): (InstructionSet, usize),
+        grid: &Grid,
+        scan: (&ScanProgram, &Space),
+        (config, found): (CollectConfig, &mut VoteSet),
+        stop: &dyn Fn() -> bool,
+    ) -> Option<()> {
+        let Workspace {
+            shared,
+            rooms,
+            alternatives,
+            shares,
+            ..
+        } = workspace;
+        let task = Task::new(shared, instruction_set.checked(), self, grid, scan, config);
+        rooms.resize_with(threads, descent::Room::default);
+        match parts::run(&task, rooms, stop) {
+            End::Done => parts::finish(rooms, found),
+            End::Stopped => return None,
+            End::Hopeless => {
+                shares.resize_with(threads, Share::default);
+                let collect = (config, &mut *found);
+                self.count_all(instruction_set, shares, scan, collect, stop)?;
             }
-            set_program.bound(coarse, block, 0, &mut bounds);
-            bounds.greatest()
-        };
-        BlockBounds {
-            side: coarse.side,
-            columns: coarse.columns,
-            bounds: (0..coarse.blocks()).map(bound).collect(),
         }
+        let wanted = config.candidates as usize;
+        if wanted > 0 && found.best > 0 {
+            Alternatives::new(&task, alternatives).find(wanted);
+            let distinct = Distinct::new(scan.1, wanted, &mut alternatives.distinct);
+            found.add_candidates(&mut alternatives.votes, distinct);
+        }
+        Some(())
     }
-}
 
-/// Runs a search on a number of threads, of which this is one.
-fn run(task: &Task<'_>, threads: usize, stop: &dyn Fn() -> bool) -> End {
-    std::thread::scope(|scope| {
-        let part = |thread| Descent::new(task).run((thread, threads), &|| task.is_stopped());
-        let others = (1..threads).map(|thread| scope.spawn(move || part(thread)));
-        let others: Vec<_> = others.collect();
-        let own = Descent::new(task).run((0, threads), stop);
-        if !matches!(own, End::Done(..)) {
-            task.stop();
-        }
-        let joined = others.into_iter().map(std::thread::ScopedJoinHandle::join);
-        let joined = joined.map(|end| end.unwrap_or_else(|panic| resume_unwind(panic)));
-        joined.fold(own, End::joined)
-    })
-}
-
-/// Counts every pose.
-fn count_all(
-    (instruction_set, threads): (InstructionSet, usize),
-    (grid, limits): (&Grid, &Limits),
-    scan: (&ScanProgram, &Space),
-    config: CollectConfig,
-    stop: &dyn Fn() -> bool,
-) -> Option<VoteSet> {
-    let sweeps = FieldSweep::new(grid);
-    let accumulators = (0..threads).map(|_| sweeps.accumulator_with(instruction_set));
-    let mut accumulators: Vec<_> = accumulators.collect();
-    exhaustive::search(&mut accumulators, limits, scan, config, stop)
-}
-
-impl BlockBounds {
-    /// Blocks along y.
-    #[must_use]
-    pub fn rows(&self) -> usize {
-        self.bounds.len() / self.columns
+    /// Counts every pose.
+    fn count_all(
+        &self,
+        instruction_set: InstructionSet,
+        shares: &mut [Share<sweep::Workspace>],
+        scan: (&ScanProgram, &Space),
+        collect: (CollectConfig, &mut VoteSet),
+        stop: &dyn Fn() -> bool,
+    ) -> Option<()> {
+        let fill = |workspace: &mut sweep::Workspace,
+                    query: Query<'_>,
+                    field: &mut Vec<u16>,
+                    stop: &dyn Fn() -> bool| {
+            let sweeps = &self.sweeps;
+            sweeps.fill(instruction_set, query, workspace, field, stop)
+        };
+        exhaustive::count(shares, fill, &self.within.limits, scan, collect, stop)
     }
 }
 
@@ -257,8 +256,11 @@ mod tests {
             let is_held = |vote: &Vote| limits.hold_cell(vote.x.into(), vote.y.into())
                 && limits.hold_heading(vote.heading.into());
             prop_assert!(below.iter().all(is_held));
-            let counted = count_all(how, (&grid, &limits), scan, CollectConfig { candidates: 0, ..config }, &|| false);
-            prop_assert_eq!(counted.unwrap().votes, plain.votes);
+            let (mut shares, mut counted) = (Vec::new(), VoteSet::default());
+            shares.resize_with(threads, Share::default);
+            let collect = (CollectConfig { candidates: 0, ..config }, &mut counted);
+            prop_assert!(index.count_all(how.0, &mut shares, scan, collect, &|| false).is_some());
+            prop_assert_eq!(counted.votes, plain.votes);
         }
 
         #[test]
@@ -308,31 +310,20 @@ mod tests {
             let program = scan.program(&space);
             let (best, config) = (InstructionSet::best(), CollectConfig { candidates: 0, ..CollectConfig::default() });
             let index = SearchIndex::new(&grid, &space);
-            let task = Task::new(best, &index, &grid, (&program, &space), config);
+            let (mut shared, mut rooms) = (Shared::default(), Vec::new());
+            let task = Task::new(&mut shared, best, &index, &grid, (&program, &space), config);
             let task = task.with_brute_force(Cost(0.0));
+            rooms.resize_with(threads, descent::Room::default);
             // A search that is done after the first block has nothing to give up.
-            match run(&task, threads, &|| false) {
-                End::Done(collector, _) => {
+            match parts::run(&task, &mut rooms, &|| false) {
+                End::Done => {
                     let plain = plain_votes(&grid, &program, &space, config);
-                    prop_assert_eq!(collector.finish(0), plain);
+                    let mut found = VoteSet::default();
+                    parts::finish(&mut rooms, &mut found);
+                    prop_assert_eq!(VoteSet { poses_evaluated: 0, ..found }, plain);
                 }
                 End::Hopeless => (),
                 End::Stopped => prop_assert!(false, "nobody said stop"),
-            }
-        }
-
-        #[test]
-        fn no_pose_has_more_votes_than_the_bound_of_its_block(
-            grid in any_grid(), scan in any_scan(), headings in 1u32..8, heading in 0usize..64,
-        ) {
-            let space = space_of(&grid, headings * 8);
-            let program = scan.program(&space);
-            let blocks = SearchIndex::new(&grid, &space).block_bounds(&program, &space);
-            prop_assert_eq!(blocks.rows(), grid.height().div_ceil(blocks.side));
-            let field = reference::field(&grid, &program, &space, heading % space.directions.count());
-            for (i, &votes) in field.iter().enumerate() {
-                let (x, y) = (i % grid.width(), i / grid.width());
-                prop_assert!(votes <= blocks.bounds[y / blocks.side * blocks.columns + x / blocks.side]);
             }
         }
     }

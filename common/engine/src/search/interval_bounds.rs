@@ -4,6 +4,7 @@
 //! reading. Intervals of adjacent directions lie side by side, so one table
 //! look-up bounds a beam at 64 headings.
 
+use super::bits;
 use super::intervals::{self, BlockIntervals};
 use super::sectors;
 use super::steps::BinSteps;
@@ -26,8 +27,8 @@ pub(crate) struct IntervalBounds {
     pub sectors: Vec<[u8; HEADINGS]>,
 }
 
-impl IntervalBounds {
-    pub(crate) fn new() -> Self {
+impl Default for IntervalBounds {
+    fn default() -> Self {
         IntervalBounds {
             all: [0; HEADINGS],
             sectors: Vec::new(),
@@ -35,8 +36,8 @@ impl IntervalBounds {
     }
 }
 
-/// A scan program laid out for bounds from intervals.
-#[derive(Debug, Clone)]
+/// A scan program laid out for bounds from intervals; made anew for each scan.
+#[derive(Debug, Clone, Default)]
 pub(crate) struct IntervalProgram {
     directions: usize,
     instruction_set: InstructionSet,
@@ -57,25 +58,26 @@ struct IntervalBeam {
 }
 
 impl IntervalProgram {
-    pub(crate) fn new(
+    pub(crate) fn make(
+        &mut self,
         program: &ScanProgram,
         directions: &Directions,
         steps: &BinSteps,
         instruction_set: InstructionSet,
-    ) -> Self {
-        let order = sectors::order(program.beams());
-        let possible = |beams: &[usize]| beams.iter().map(|&beam| program.peak(beam)).sum();
-        let sectors = 0..=sectors::count(order.len());
-        IntervalProgram {
-            directions: directions.count(),
-            instruction_set,
-            possible_from: sectors
-                .map(|sector| possible(&order[(sector * sectors::BEAMS).min(order.len())..]))
-                .collect(),
-            beams: order
-                .into_iter()
-                .map(|beam| IntervalBeam::new(program, beam, directions, steps))
-                .collect(),
+    ) {
+        self.directions = directions.count();
+        self.instruction_set = instruction_set;
+        self.beams.clear();
+        self.possible_from.clear();
+        let sectors = sectors::count(program.beams());
+        self.possible_from.resize(sectors + 1, 0);
+        for (place, beam) in sectors::order(program.beams()).enumerate() {
+            self.possible_from[place / sectors::BEAMS] += program.peak(beam);
+            let beam = IntervalBeam::new(program, beam, directions, steps);
+            self.beams.push(beam);
+        }
+        for sector in (0..sectors).rev() {
+            self.possible_from[sector] += self.possible_from[sector + 1];
         }
     }
 
@@ -122,14 +124,17 @@ impl IntervalProgram {
         bounds.all = [0; HEADINGS];
         bounds.sectors.clear();
         let [near_first, near_last, far_first, far_last] = &block.rows;
-        let lanes: Vec<usize> = (0..HEADINGS)
-            .filter(|lane| among >> lane & 1 == 1)
-            .collect();
+        let (mut lanes, mut count) = ([0; HEADINGS], 0);
+        for lane in bits::ones(among) {
+            lanes[count] = lane;
+            count += 1;
+        }
+        let lanes = &lanes[..count];
         for (sector, beams) in self.beams.chunks(sectors::BEAMS).enumerate() {
             let mut bytes = [0u8; HEADINGS];
             for beam in beams {
                 let start = self.direction(beam, heading);
-                for &lane in &lanes {
+                for &lane in lanes {
                     let d = start + lane;
                     let votes = |first: u8, last: u8| {
                         let bin = beam.centre.min(last).max(first);

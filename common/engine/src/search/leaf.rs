@@ -15,8 +15,8 @@ use crate::instruction_set::InstructionSet;
 use crate::program::ScanProgram;
 use crate::tables::{TABLE, VoteTable, VoteTables};
 
-/// A scan program laid out for counting in blocks.
-#[derive(Debug, Clone)]
+/// A scan program laid out for counting in blocks; made anew for each scan.
+#[derive(Debug, Clone, Default)]
 pub(crate) struct LeafProgram {
     instruction_set: InstructionSet,
     /// The beams, sector by sector, and their bearings.
@@ -28,23 +28,22 @@ pub(crate) struct LeafProgram {
 }
 
 impl LeafProgram {
-    pub(crate) fn new(
+    pub(crate) fn make(
+        &mut self,
         program: &ScanProgram,
         directions: &Directions,
         instruction_set: InstructionSet,
-    ) -> Self {
-        let order = sectors::order(program.beams());
-        LeafProgram {
-            instruction_set,
-            bearings: order.iter().map(|&beam| program.bearing(beam)).collect(),
-            order,
-            tables: VoteTables::new(program, directions),
-            classes: directions
-                .all()
-                .iter()
-                .map(|direction| direction.class)
-                .collect(),
-        }
+    ) {
+        self.instruction_set = instruction_set;
+        self.order.clear();
+        self.order.extend(sectors::order(program.beams()));
+        let bearings = self.order.iter().map(|&beam| program.bearing(beam));
+        self.bearings.clear();
+        self.bearings.extend(bearings);
+        self.tables.make(program, directions);
+        let classes = directions.all().iter().map(|direction| direction.class);
+        self.classes.clear();
+        self.classes.extend(classes);
     }
 
     /// Adds the votes of a sector of beams at a heading to those of the block's
@@ -172,8 +171,10 @@ mod tests {
             let block = seed[0] % (intervals.columns * intervals.rows);
             let heading = seed[1] % directions.count();
             for instruction_set in InstructionSet::available() {
-                let leaf = LeafProgram::new(&program, directions, instruction_set);
-                let mut outlook = Outlook::new(&grid, directions);
+                let mut leaf = LeafProgram::default();
+                leaf.make(&program, directions, instruction_set);
+                let mut outlook = Outlook::default();
+                outlook.prepare(&grid, directions);
                 outlook.enter((&grid, &Limits::none(grid.width())), &intervals, block);
                 let mut counts = [0; CELLS];
                 for sector in 0..sectors::count(program.beams()) {

@@ -19,6 +19,7 @@
 mod alternatives;
 mod bins;
 mod bits;
+mod block_bounds;
 mod budget;
 mod descent;
 mod group;
@@ -28,6 +29,7 @@ mod intervals;
 mod lanes;
 mod leaf;
 mod outlook;
+mod parts;
 mod queue;
 mod rows;
 mod sectors;
@@ -39,5 +41,6 @@ mod task;
 mod top;
 mod within;
 
-pub use index::{BlockBounds, SearchIndex};
+pub use block_bounds::BlockBounds;
+pub use index::{SearchIndex, Workspace};
 pub use top::Top;

@@ -36,20 +36,32 @@ pub(crate) struct Outlook {
     looks: u64,
 }
 
-impl Outlook {
-    pub(crate) fn new(grid: &Grid, directions: &Directions) -> Self {
+impl Default for Outlook {
+    fn default() -> Self {
         Outlook {
-            by_direction: vec![[NO_RANGE; CELLS]; directions.count()],
-            looked_for: vec![0; directions.count()],
+            by_direction: Vec::new(),
+            looked_for: Vec::new(),
             number: 0,
             left: 0,
             bottom: 0,
             cells: [Cell::Blocked; CELLS],
             open: [0; CELLS],
             intervals: BlockIntervals::default(),
-            can_lose: grid.has_blocked(),
+            can_lose: false,
             looks: 0,
         }
+    }
+}
+
+impl Outlook {
+    /// Turns to a map. What was looked at before is forgotten with the next
+    /// block, whose number nothing has yet.
+    pub(crate) fn prepare(&mut self, grid: &Grid, directions: &Directions) {
+        let count = directions.count();
+        self.by_direction.resize(count, [NO_RANGE; CELLS]);
+        self.looked_for.resize(count, 0);
+        self.can_lose = grid.has_blocked();
+        self.looks = 0;
     }
 
     /// Turns to a block.
@@ -241,7 +253,8 @@ mod tests {
             let bins = Bins::new(directions);
             let steps = BinSteps::new(&bins, directions, grid.width().max(grid.height()) as u16);
             let intervals = RangeIntervals::new(&grid, directions, &bins);
-            let mut outlook = Outlook::new(&grid, directions);
+            let mut outlook = Outlook::default();
+            outlook.prepare(&grid, directions);
             for block in 0..intervals.columns * intervals.rows {
                 outlook.enter((&grid, &Limits::none(grid.width())), &intervals, block);
                 let open = outlook.open();

@@ -20,13 +20,15 @@ pub(crate) fn beams(sector: usize, beams: usize) -> Range<usize> {
 }
 
 /// The beams in order. Only the last sector may have less than [`BEAMS`].
-pub(crate) fn order(beams: usize) -> Vec<usize> {
+pub(crate) fn order(beams: usize) -> impl Iterator<Item = usize> {
     let full = beams / BEAMS;
-    let mut sectors: Vec<usize> = (0..full).collect();
-    sectors.sort_by_key(|&sector| (sector as u16).reverse_bits());
-    sectors.push(full);
-    let members = |sector: usize| self::beams(sector, beams);
-    sectors.into_iter().flat_map(members).collect()
+    // Numbers in the order of their bits from the last to the first.
+    let digits = full.next_power_of_two().ilog2();
+    let reversed = move |place: usize| (0..digits).fold(0, |all, i| 2 * all + (place >> i & 1));
+    let sectors = (0..1 << digits).map(reversed);
+    let sectors = sectors.filter(move |&sector| sector < full);
+    let members = move |sector: usize| self::beams(sector, beams);
+    sectors.chain([full]).flat_map(members)
 }
 
 #[cfg(test)]
@@ -36,7 +38,7 @@ mod tests {
     #[test]
     fn each_beam_comes_once_in_sectors_of_neighbours() {
         for count in [0, 1, 14, 15, 16, 180, 181, 400] {
-            let order = order(count);
+            let order: Vec<usize> = order(count).collect();
             let mut sorted = order.clone();
             sorted.sort_unstable();
             assert_eq!(sorted, (0..count).collect::<Vec<_>>());
@@ -49,7 +51,7 @@ mod tests {
             }
         }
         assert_eq!(
-            order(60)[..31],
+            order(60).take(31).collect::<Vec<_>>(),
             (0..15).chain(30..45).chain([15]).collect::<Vec<_>>()
         );
     }

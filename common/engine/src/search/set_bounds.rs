@@ -21,7 +21,7 @@ use crate::program::ScanProgram;
 /// Headings of a chunk: a row less what shifting takes up.
 pub(crate) const CHUNK: usize = 504;
 
-/// A scan program laid out for bounds from sets.
+/// A scan program laid out for bounds from sets; made anew for each scan.
 #[derive(Debug, Clone)]
 pub(crate) struct SetProgram {
     instruction_set: InstructionSet,
@@ -29,12 +29,15 @@ pub(crate) struct SetProgram {
     unit: u16,
     /// Planes that hold all sums.
     planes: usize,
-    groups: Vec<Group>,
+    /// One for each rest; those that have any beams come first.
+    groups: [Group; 8],
+    /// How many of them have.
+    used: usize,
     layout: SpanLayout,
 }
 
 /// Bounds of a block for all headings, and room to find them.
-#[derive(Debug, Clone)]
+#[derive(Debug, Clone, Default)]
 pub(crate) struct SetBounds {
     unit: u16,
     /// Sums in units, and which headings matter.
@@ -45,6 +48,20 @@ pub(crate) struct SetBounds {
 }
 
 impl SetBounds {
+    /// Makes room for the bounds by a program of a block at some headings, a row
+    /// a chunk; nothing is left of what another program had.
+    pub(crate) fn fit(&mut self, program: &SetProgram, headings: impl Iterator<Item = Row>) {
+        self.unit = program.unit;
+        self.chunks.clear();
+        let chunks = headings.map(|headings| ([EMPTY; bits::PLANES], headings));
+        self.chunks.extend(chunks);
+        self.spans.fit(&program.layout);
+        let carries = program.groups().iter().map(Group::windows).max();
+        for rows in &mut self.carries {
+            rows.resize(carries.unwrap_or(0) + 4, Aligned(EMPTY));
+        }
+    }
+
     /// The greatest bound.
     pub(crate) fn greatest(&self) -> u16 {
         let greatest = |(sums, valid): &(Planes, Row)| bits::greatest(sums, *valid);
@@ -64,49 +81,55 @@ impl SetBounds {
     }
 }
 
+impl Default for SetProgram {
+    fn default() -> Self {
+        SetProgram {
+            instruction_set: InstructionSet::Portable,
+            unit: 1,
+            planes: 0,
+            groups: [0, 1, 2, 3, 4, 5, 6, 7].map(Group::new),
+            used: 0,
+            layout: SpanLayout::default(),
+        }
+    }
+}
+
 impl SetProgram {
     /// Lays out a program for sets of which each row stands for `1 << shift`
     /// bins.
-    pub(crate) fn new(
+    pub(crate) fn make(
+        &mut self,
         program: &ScanProgram,
         directions: &Directions,
         steps: &BinSteps,
         shift: u32,
         instruction_set: InstructionSet,
-    ) -> Self {
+    ) {
         let peaks = (0..program.beams()).map(|beam| program.peak(beam));
         let unit = peaks.reduce(greatest_common_divisor).unwrap_or(1).max(1);
-        let mut layout = SpanLayout::new(directions.count(), shift);
-        let mut groups: Vec<Group> = (0..8).map(Group::new).collect();
+        (self.instruction_set, self.unit) = (instruction_set, unit);
+        self.layout.start(directions.count(), shift);
+        self.groups.sort_unstable_by_key(Group::shift);
+        self.groups.iter_mut().for_each(Group::clear);
         for beam in 0..program.beams() {
             let bearing = program.bearing(beam);
             for (plane, rows) in windows(program, beam, directions, steps, shift, unit) {
-                groups[bearing % 8].push(plane, layout.window(rows, bearing / 8));
+                let window = self.layout.window(rows, bearing / 8);
+                self.groups[bearing % 8].push(plane, window);
             }
         }
-        groups.retain(|group| group.possible > 0);
-        let possible: u16 = groups.iter().map(|group| group.possible).sum();
-        SetProgram {
-            instruction_set,
-            unit,
-            planes: possible
-                .checked_ilog2()
-                .map_or(0, |plane| plane as usize + 1),
-            groups,
-            layout,
-        }
+        self.groups
+            .sort_unstable_by_key(|group| (group.possible == 0, group.shift()));
+        self.used = self.groups.partition_point(|group| group.possible > 0);
+        let possible: u16 = self.groups.iter().map(|group| group.possible).sum();
+        self.planes = possible
+            .checked_ilog2()
+            .map_or(0, |plane| plane as usize + 1);
     }
 
-    /// Room for the bounds of a block at some headings, a row a chunk.
-    pub(crate) fn bounds(&self, headings: impl Iterator<Item = Row>) -> SetBounds {
-        let chunks = headings.map(|headings| ([EMPTY; bits::PLANES], headings));
-        let carries = self.groups.iter().map(Group::windows).max().unwrap_or(0);
-        SetBounds {
-            unit: self.unit,
-            chunks: chunks.collect(),
-            spans: Spans::new(&self.layout),
-            carries: std::array::from_fn(|_| vec![Aligned(EMPTY); carries + 4]),
-        }
+    /// Those that have beams.
+    fn groups(&self) -> &[Group] {
+        &self.groups[..self.used]
     }
 
     /// A quick bound of all votes in a block, from one group of beams, and what
@@ -117,7 +140,7 @@ impl SetProgram {
         block: usize,
         bounds: &mut SetBounds,
     ) -> (u16, u16) {
-        let Some((first, others)) = self.groups.split_first() else {
+        let Some((first, others)) = self.groups().split_first() else {
             return (0, 0);
         };
         self.run(&self.groups[..1], sets, block, 0, bounds);
@@ -138,7 +161,7 @@ impl SetProgram {
         bounds: &mut SetBounds,
     ) -> bool {
         let least = least.div_ceil(self.unit);
-        self.run(&self.groups, sets, block, least, bounds)
+        self.run(self.groups(), sets, block, least, bounds)
     }
 
     fn run(
@@ -313,9 +336,11 @@ mod tests {
             for sets in [&fine, &fine.joined()] {
                 let mut of_all_sets = Vec::new();
                 for instruction_set in InstructionSet::available() {
-                    let set_program = SetProgram::new(&program, directions, &steps, sets.shift, instruction_set);
+                    let mut set_program = SetProgram::default();
+                    set_program.make(&program, directions, &steps, sets.shift, instruction_set);
                     let all = Within::new(Limits::none(grid.width()));
-                    let mut bounds = set_program.bounds(all.headings(directions.count()));
+                    let mut bounds = SetBounds::default();
+                    bounds.fit(&set_program, all.headings(directions.count()));
                     let mut found = Vec::new();
                     for block in 0..sets.blocks() {
                         let (rough, _) = set_program.rough(sets, block, &mut bounds);

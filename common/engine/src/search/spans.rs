@@ -21,7 +21,7 @@ const LEAST_SPAN: usize = 4;
 const NONE: Range<usize> = usize::MAX..0;
 
 /// Where rows lie.
-#[derive(Debug, Clone)]
+#[derive(Debug, Clone, Default)]
 pub(crate) struct SpanLayout {
     /// Bytes of a row of sets.
     stride: usize,
@@ -36,7 +36,7 @@ pub(crate) struct SpanLayout {
 }
 
 /// The rows of one block.
-#[derive(Debug, Clone)]
+#[derive(Debug, Clone, Default)]
 pub(crate) struct Spans {
     bits: Vec<u8>,
     /// Rows of the last block.
@@ -51,33 +51,34 @@ pub(crate) struct Window {
 }
 
 impl SpanLayout {
-    pub(crate) fn new(directions: usize, shift: u32) -> Self {
-        let stride = directions / 8;
-        SpanLayout {
-            stride,
-            row: (2 * stride + READ).next_multiple_of(READ),
-            rows: (usize::from(Bins::NOTHING) >> shift) + 1,
-            needed: 0,
-            spans: Vec::new(),
-        }
+    /// Starts anew, with nothing that is read.
+    pub(crate) fn start(&mut self, directions: usize, shift: u32) {
+        self.stride = directions / 8;
+        self.row = (2 * self.stride + READ).next_multiple_of(READ);
+        self.rows = (usize::from(Bins::NOTHING) >> shift) + 1;
+        self.needed = 0;
+        self.spans.clear();
     }
 
     /// Where to read a window of rows of sets, from direction `8 · byte` on.
     pub(crate) fn window(&mut self, rows: Range<usize>, byte: usize) -> Window {
         self.needed = self.needed.max(rows.end);
-        let reads: Vec<usize> = if rows.len() <= Window::WIDE {
-            rows.collect()
-        } else {
-            let width = (rows.len() / LEAST_SPAN).ilog2() as usize;
-            let second = rows.end - (LEAST_SPAN << width);
-            self.need(width, rows.start..second + 1);
-            let at = |row: usize| (1 + width) * self.rows + row;
-            vec![at(rows.start), at(second)]
-        };
-        let last = reads.len() - 1;
+        if rows.len() <= Window::WIDE {
+            return self.reading(rows.len(), byte, |read| rows.start + read);
+        }
+        let width = (rows.len() / LEAST_SPAN).ilog2() as usize;
+        let second = rows.end - (LEAST_SPAN << width);
+        self.need(width, rows.start..second + 1);
+        let at = [rows.start, second].map(|row| (1 + width) * self.rows + row);
+        self.reading(at.len(), byte, |read| at[read])
+    }
+
+    /// A window of so many reads, each of a row; there is at least one.
+    fn reading(&self, reads: usize, byte: usize, row: impl Fn(usize) -> usize) -> Window {
+        let start = |read: usize| (row(read.min(reads - 1)) * self.row + byte) as u32;
         Window {
-            starts: std::array::from_fn(|i| (reads[i.min(last)] * self.row + byte) as u32),
-            reads: reads.len(),
+            starts: std::array::from_fn(start),
+            reads,
         }
     }
 
@@ -96,13 +97,13 @@ impl SpanLayout {
 }
 
 impl Spans {
-    pub(crate) fn new(layout: &SpanLayout) -> Self {
+    /// Makes room for a layout; nothing is left of what another one had.
+    pub(crate) fn fit(&mut self, layout: &SpanLayout) {
         // Spans of rows near the end reach beyond them.
         let rows = (1 + layout.spans.len()) * layout.rows + (LEAST_SPAN << layout.spans.len());
-        Spans {
-            bits: vec![0; rows * layout.row],
-            used: 0,
-        }
+        self.bits.clear();
+        self.bits.resize(rows * layout.row, 0);
+        self.used = 0;
     }
 
     /// Takes the rows of a block.

@@ -8,7 +8,6 @@ use super::index::SearchIndex;
 use super::interval_bounds::IntervalProgram;
 use super::leaf::LeafProgram;
 use super::set_bounds::SetProgram;
-use super::sets::RangeSets;
 use crate::grid::Grid;
 use crate::instruction_set::InstructionSet;
 use crate::program::ScanProgram;
@@ -21,9 +20,9 @@ pub(super) struct Task<'a> {
     pub grid: &'a Grid,
     pub space: &'a Space,
     pub config: CollectConfig,
-    pub programs: Programs,
+    pub programs: &'a Programs,
     /// What the best pose of each coarse block may have, as far as it was asked.
-    pub promises: Vec<AtomicU16>,
+    pub promises: &'a [AtomicU16],
     /// The most votes of any pose so far, whoever found it.
     pub best: AtomicU16,
     /// Whether all threads are to stop.
@@ -32,7 +31,15 @@ pub(super) struct Task<'a> {
     pub brute_force: Cost,
 }
 
+/// What the threads of a search share, kept from scan to scan.
+#[derive(Debug, Default)]
+pub(super) struct Shared {
+    pub programs: Programs,
+    promises: Vec<AtomicU16>,
+}
+
 /// A scan program laid out for each size of blocks.
+#[derive(Debug, Default)]
 pub(super) struct Programs {
     pub coarse: SetProgram,
     pub fine: SetProgram,
@@ -41,34 +48,50 @@ pub(super) struct Programs {
     pub beams: usize,
 }
 
+impl Programs {
+    fn make(
+        &mut self,
+        instruction_set: InstructionSet,
+        index: &SearchIndex,
+        program: &ScanProgram,
+        space: &Space,
+    ) {
+        let (directions, steps) = (&space.directions, &index.steps);
+        for (sets, set_program) in [
+            (&index.coarse, &mut self.coarse),
+            (&index.fine, &mut self.fine),
+        ] {
+            set_program.make(program, directions, steps, sets.shift, instruction_set);
+        }
+        self.interval
+            .make(program, directions, steps, instruction_set);
+        self.leaf.make(program, directions, instruction_set);
+        self.beams = program.beams();
+    }
+}
+
 impl<'a> Task<'a> {
     /// `instruction_set` must be available.
     pub(super) fn new(
+        shared: &'a mut Shared,
         instruction_set: InstructionSet,
         index: &'a SearchIndex,
         grid: &'a Grid,
         (program, space): (&ScanProgram, &'a Space),
         config: CollectConfig,
     ) -> Self {
-        let (directions, steps) = (&space.directions, &index.steps);
-        let set_program = |sets: &RangeSets| {
-            SetProgram::new(program, directions, steps, sets.shift, instruction_set)
-        };
+        shared.programs.make(instruction_set, index, program, space);
+        shared.promises.clear();
+        shared
+            .promises
+            .resize_with(index.coarse.blocks(), AtomicU16::default);
         Task {
             index,
             grid,
             space,
             config,
-            programs: Programs {
-                coarse: set_program(&index.coarse),
-                fine: set_program(&index.fine),
-                interval: IntervalProgram::new(program, directions, steps, instruction_set),
-                leaf: LeafProgram::new(program, directions, instruction_set),
-                beams: program.beams(),
-            },
-            promises: (0..index.coarse.blocks())
-                .map(|_| AtomicU16::new(0))
-                .collect(),
+            programs: &shared.programs,
+            promises: &shared.promises,
             best: AtomicU16::new(0),
             stopped: AtomicBool::new(false),
             brute_force: Cost::of_brute_force(instruction_set, grid, program, space),

@@ -5,7 +5,7 @@ use super::kernel::{self, Stretch, Sum};
 use super::lanes::{self, Lanes};
 use super::plan::{GROUPS, Plan};
 use super::transpose::{Square, transposed};
-use super::wide;
+use super::wide::{self, Rows};
 use crate::accumulator::{Accumulator, Query};
 use crate::grid::Grid;
 use crate::instruction_set::InstructionSet;
@@ -14,14 +14,21 @@ use crate::instruction_set::InstructionSet;
 /// second cache meanwhile.
 const TILE_ROWS: usize = 32;
 
-/// What a sweep needs beside the field; kept from scan to scan, so that nothing
-/// is allocated but once.
+/// What a sweep needs beside the field; kept from scan to scan, of any map, so
+/// that nothing is allocated but once.
 #[derive(Debug, Default)]
-struct Workspace {
+pub struct Workspace {
     plan: Plan,
-    store: Vec<Line>,
+    room: Room,
     bytes: Sums<u8>,
     words: Sums<u16>,
+}
+
+/// Rows of cells under way: those of a batch of beams, and of a wide beam.
+#[derive(Debug, Default)]
+struct Room {
+    store: Vec<Line>,
+    wide: Rows,
 }
 
 /// A cache line, which is read and written through pointers only.
@@ -73,6 +80,37 @@ impl FieldSweep {
         }
     }
 
+    /// Fills in the intensities of all cells like [`Accumulator::fill`], in a
+    /// workspace that may have served another grid.
+    ///
+    /// # Panics
+    /// If this processor does not have the instruction set.
+    pub fn fill(
+        &self,
+        instruction_set: InstructionSet,
+        query: Query<'_>,
+        workspace: &mut Workspace,
+        field: &mut Vec<u16>,
+        stop: &dyn Fn() -> bool,
+    ) -> Option<()> {
+        let sweeps = self;
+        let job = Job {
+            sweeps,
+            query,
+            stop,
+        };
+        match instruction_set.checked() {
+            // SAFETY: the instruction set was checked.
+            #[cfg(target_arch = "x86_64")]
+            InstructionSet::Avx512 => unsafe { job.run_avx512(workspace, field) },
+            // SAFETY: as above.
+            #[cfg(target_arch = "x86_64")]
+            InstructionSet::Avx2 => unsafe { job.run_avx2(workspace, field) },
+            // SAFETY: every processor has it.
+            _ => unsafe { job.run_with::<lanes::Portable, 1>(workspace, field) },
+        }
+    }
+
     /// Bytes that the prepared grid takes.
     #[must_use]
     pub fn bytes(&self) -> usize {
@@ -95,22 +133,8 @@ impl Accumulator for Sweep<'_> {
         field: &mut Vec<u16>,
         stop: &dyn Fn() -> bool,
     ) -> Option<()> {
-        let job = Job {
-            sweeps: self.sweeps,
-            query,
-            stop,
-        };
-        let workspace = &mut self.workspace;
-        match self.instruction_set {
-            // SAFETY: the instruction set was checked.
-            #[cfg(target_arch = "x86_64")]
-            InstructionSet::Avx512 => unsafe { job.run_avx512(workspace, field) },
-            // SAFETY: as above.
-            #[cfg(target_arch = "x86_64")]
-            InstructionSet::Avx2 => unsafe { job.run_avx2(workspace, field) },
-            // SAFETY: every processor has it.
-            _ => unsafe { job.run_with::<lanes::Portable, 1>(workspace, field) },
-        }
+        let (set, workspace) = (self.instruction_set, &mut self.workspace);
+        self.sweeps.fill(set, query, workspace, field, stop)
     }
 }
 
@@ -142,20 +166,20 @@ impl Job<'_> {
     ) -> Option<()> {
         let Workspace {
             plan,
-            store,
+            room,
             bytes,
             words,
         } = workspace;
         let sides = (self.sweeps.along_y.columns, self.sweeps.along_y.rows);
         plan.make::<L>(self.query, sides);
-        store.clear();
-        store.resize(plan.lines, Line([0; 64]));
+        room.store.clear();
+        room.store.resize(plan.lines, Line([0; 64]));
         field.resize(sides.0 * sides.1, 0);
         // Few beams have so few votes that bytes hold their sums.
         if self.query.program.highest_possible() <= 255 && plan.wide.is_empty() {
-            unsafe { self.fill::<L, u8, N>(plan, store, bytes, field) }
+            unsafe { self.fill::<L, u8, N>(plan, room, bytes, field) }
         } else {
-            unsafe { self.fill::<L, u16, N>(plan, store, words, field) }
+            unsafe { self.fill::<L, u16, N>(plan, room, words, field) }
         }
     }
 
@@ -163,7 +187,7 @@ impl Job<'_> {
     unsafe fn fill<L: Lanes, S: Sum, const N: usize>(
         &self,
         plan: &Plan,
-        store: &mut [Line],
+        room: &mut Room,
         sums: &mut Sums<S>,
         field: &mut [u16],
     ) -> Option<()> {
@@ -175,8 +199,8 @@ impl Job<'_> {
             sums.resize(bits.rows * stride(bits), S::default());
         }
         unsafe {
-            self.sweep_axis::<L, S, N>(plan, store, columns, 2)?;
-            self.sweep_axis::<L, S, N>(plan, store, rows, 0)?;
+            self.sweep_axis::<L, S, N>(plan, room, columns, 2)?;
+            self.sweep_axis::<L, S, N>(plan, room, rows, 0)?;
         }
         merge(
             &self.sweeps.along_y,
@@ -193,7 +217,7 @@ impl Job<'_> {
     unsafe fn sweep_axis<L: Lanes, S: Sum, const N: usize>(
         &self,
         plan: &Plan,
-        store: &mut [Line],
+        Room { store, wide }: &mut Room,
         sums: &mut [S],
         first_group: usize,
     ) -> Option<()> {
@@ -230,7 +254,7 @@ impl Job<'_> {
         for &beam in &plan.wide {
             let (direction, taper) = self.query.beam(beam);
             if direction.x_major == (first_group != 0) {
-                wide::add(bits, direction, &taper, sums, stride(bits));
+                wide::add(bits, direction, &taper, sums, stride(bits), wide);
             }
         }
         Some(())

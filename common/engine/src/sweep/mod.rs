@@ -28,4 +28,4 @@ mod plan;
 mod transpose;
 mod wide;
 
-pub use field::{FieldSweep, Sweep};
+pub use field::{FieldSweep, Sweep, Workspace};

@@ -13,6 +13,13 @@ use crate::program::Taper;
 /// Cells that vote side by side.
 const SIDE_BY_SIDE: usize = 32;
 
+/// The ranges of two rows of cells, with a margin on either side.
+#[derive(Debug, Default)]
+pub(super) struct Rows {
+    row: Vec<u16>,
+    next: Vec<u16>,
+}
+
 /// Adds the votes of a beam to the sums of all cells, row by row over the
 /// major axis.
 pub(super) fn add<S: Sum>(
@@ -21,10 +28,13 @@ pub(super) fn add<S: Sum>(
     taper: &Taper<'_>,
     sums: &mut [S],
     stride: usize,
+    Rows { row, next }: &mut Rows,
 ) {
-    // A margin on either side: what lies off the map is no range.
-    let mut next = vec![NO_RANGE; stride + 2];
-    let mut row = next.clone();
+    // What lies off the map is no range.
+    for row in [&mut *row, next] {
+        row.clear();
+        row.resize(stride + 2, NO_RANGE);
+    }
     for step in 0..bits.rows {
         let major = if direction.step > 0 {
             bits.rows - 1 - step
@@ -54,7 +64,7 @@ pub(super) fn add<S: Sum>(
         {
             vote(taper, ranges, sums);
         }
-        std::mem::swap(&mut row, &mut next);
+        std::mem::swap(row, next);
     }
 }
 

@@ -1,0 +1,47 @@
+//! The settings of a localizer.
+
+use crate::limits::LimitsConfig;
+use crate::program::VoteConfig;
+use crate::votes::CollectConfig;
+
+/// How scans are matched with the map.
+#[derive(Debug, Clone, PartialEq, clap::Args)]
+pub struct LocalizerConfig {
+    /// Headings a turn, a multiple of 8 from 8 to 3600.
+    #[arg(long, value_name = "COUNT", default_value_t = 360)]
+    pub headings: u32,
+    /// Threads of a search, 1..=64; the answer is the same with any number.
+    #[arg(long, value_name = "COUNT", default_value_t = 1, value_parser = clap::value_parser!(u8).range(1..=64))]
+    pub threads: u8,
+    /// How readings become votes.
+    #[command(flatten)]
+    pub votes: VoteConfig,
+    /// What is collected of a search.
+    #[command(flatten)]
+    pub collect: CollectConfig,
+    /// Where poses are sought.
+    #[command(flatten)]
+    pub limits: LimitsConfig,
+    /// Finer maps are searched in cells of at most this side, and what is found
+    /// is refined on the map as it is, metres, 0..=1; 0 searches each map as it
+    /// is.
+    #[arg(long, value_name = "METRES", default_value_t = 0.05, value_parser = parse_cell)]
+    pub search_cell: f64,
+}
+
+fn parse_cell(text: &str) -> Result<f64, String> {
+    crate::config::parse(text, 0.0..=1.0, "metres")
+}
+
+impl Default for LocalizerConfig {
+    fn default() -> Self {
+        LocalizerConfig {
+            headings: 360,
+            threads: 1,
+            votes: VoteConfig::default(),
+            collect: CollectConfig::default(),
+            limits: LimitsConfig::default(),
+            search_cell: 0.05,
+        }
+    }
+}
