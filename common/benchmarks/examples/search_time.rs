@@ -11,9 +11,9 @@ use benchmarks::worlds::{Kind, World};
 use clap::Parser;
 use engine::instruction_set::InstructionSet;
 use engine::program::ScanProgram;
-use engine::search::SearchIndex;
+use engine::search::{SearchIndex, Workspace};
 use engine::taper::TaperShape;
-use engine::votes::CollectConfig;
+use engine::votes::{CollectConfig, VoteSet};
 
 /// Times the exact search over all headings.
 #[derive(Debug, Parser)]
@@ -75,14 +75,17 @@ fn main() -> Result<(), BenchmarksError> {
     let available: Vec<_> = InstructionSet::available().collect();
     let wanted = options.instruction_set.unwrap_or(available.len() - 1);
     let instruction_set = available[wanted.min(available.len() - 1)];
+    let (mut workspace, mut found) = (Workspace::default(), VoteSet::default());
     let mut costs = Vec::new();
     let (mut share, mut poses, mut hits) = (0.0, 0, 0);
     for scan in &scans {
         let program = ScanProgram::new(&scan.scan(), 0.0, &space, &votes)?;
         let how = (instruction_set, options.threads);
-        let run = || index.search_with(how, &world.grid, (&program, &space), collect, &|| false);
-        let (found, cost) = cpu_ms(run);
-        let Some(found) = found else { continue };
+        let run = || {
+            let (scan, collect) = ((&program, &space), (collect, &mut found));
+            index.search_in(&mut workspace, how, &world.grid, scan, collect, &|| false)
+        };
+        let (_, cost) = cpu_ms(run);
         let best_share = f64::from(found.best) / f64::from(program.highest_possible());
         let hit = found.votes.first().is_some_and(|vote| {
             let (dx, dy) = (

@@ -4,7 +4,7 @@ use bytemuck::Zeroable;
 use engine::EngineError;
 use engine::beams::BeamConfig;
 use engine::grid::{CellRules, Grid};
-use engine::localizer::{Localizer, Outcome};
+use engine::localizer::{Localizer, Outcome, Workspace};
 use engine::scan::Scan;
 use engine::search::BlockBounds;
 use messages::{FieldHeader, FieldKind, ScanHeader, SearchOutcome, Vote, VotesHeader};
@@ -12,23 +12,12 @@ use messages::{FieldHeader, FieldKind, ScanHeader, SearchOutcome, Vote, VotesHea
 use crate::AccumulatorError;
 use crate::preparation::PreparedMap;
 
-/// What is sent about a scan that was answered.
-#[derive(Debug, Clone, PartialEq)]
-pub struct Answer {
-    /// Header of `votes`.
-    pub votes: VotesHeader,
-    /// Items of `votes`.
-    pub poses: Vec<Vote>,
-    /// The intensities of all cells, where the heading was known.
-    pub intensities: Option<Vec<u16>>,
-}
+/// What is sent about a scan that was answered: header and items of `votes`,
+/// which lie where the engine found them.
+pub type Answer<'a> = (VotesHeader, &'a [Vote]);
 
 /// Header and items of `field`.
-pub type Image = (FieldHeader, Vec<u16>);
-
-/// What the engine said about a scan: the poses with the most votes and, where
-/// the heading was known, the intensities of all cells.
-pub type Reply = (Outcome, Option<Vec<u16>>);
+pub type Image<'a> = (FieldHeader, &'a [u16]);
 
 /// The scan as the engine takes it, borrowed from the message.
 ///
@@ -48,56 +37,55 @@ pub fn scan<'a>(header: &ScanHeader, ranges: &'a [f32]) -> Result<Scan<'a>, Accu
 ///
 /// # Errors
 /// If the engine refuses the scan or the heading.
-pub fn ask(
+pub fn ask<'w>(
     localizer: &Localizer,
+    workspace: &'w mut Workspace,
     scan: &Scan<'_>,
     heading: Option<f64>,
     stop: &dyn Fn() -> bool,
-) -> Result<Option<Reply>, EngineError> {
+) -> Result<Option<&'w Outcome>, EngineError> {
     match heading {
-        None => Ok(localizer.search(scan, stop)?.map(|outcome| (outcome, None))),
-        Some(heading) => {
-            let found = localizer.search_at(scan, heading, stop)?;
-            Ok(found.map(|(outcome, field)| (outcome, Some(field))))
-        }
+        None => localizer.search_in(workspace, scan, stop),
+        Some(heading) => localizer.search_at_in(workspace, scan, heading, stop),
     }
 }
 
 /// What to send about a scan to which the engine replied within `engine_ns`.
 #[must_use]
-pub fn answered(
+pub fn answered<'w>(
     scan: &ScanHeader,
     map: &PreparedMap,
-    (outcome, intensities): Reply,
+    outcome: &'w Outcome,
     engine_ns: u64,
-) -> Answer {
+) -> Answer<'w> {
     let terms = Terms {
         map_id: map.map_id,
         rules: map.rules,
         beams: map.localizer.config().votes.beams,
         pooling: map.localizer.pooling() as u32,
     };
-    Answer {
-        votes: votes_header(scan, &terms, &outcome, engine_ns),
-        poses: outcome.found.votes,
-        intensities,
-    }
+    let votes = votes_header(scan, &terms, outcome, engine_ns);
+    (votes, &outcome.found.votes)
 }
 
-/// The image of an answered scan: the intensities of all cells where the
-/// heading was known, else their upper bounds, block by block.
+/// The image of the scan that was answered last in this workspace: the
+/// intensities of all cells where the heading was known, else their upper
+/// bounds, block by block.
 ///
 /// # Errors
 /// If the engine refuses the scan.
-pub fn image(answer: Answer, localizer: &Localizer, scan: &Scan<'_>) -> Result<Image, EngineError> {
-    let votes = &answer.votes;
-    match answer.intensities {
-        Some(intensities) => Ok((exact_header(votes, localizer.grid()), intensities)),
-        None => {
-            let blocks = localizer.block_bounds(scan)?;
-            Ok((bounds_header(votes, &blocks), blocks.bounds))
-        }
+pub fn image<'w>(
+    votes: &VotesHeader,
+    localizer: &Localizer,
+    workspace: &'w mut Workspace,
+    scan: &Scan<'_>,
+) -> Result<Image<'w>, EngineError> {
+    if votes.heading_known == 1 {
+        let header = exact_header(votes, localizer.grid());
+        return Ok((header, workspace.intensities()));
     }
+    let blocks = localizer.block_bounds(workspace, scan)?;
+    Ok((bounds_header(votes, blocks), &blocks.bounds))
 }
 
 /// Which map was searched, and how it and the scan were read.

@@ -9,7 +9,8 @@ use std::sync::atomic::{AtomicBool, Ordering};
 use std::time::{Duration, Instant};
 
 use engine::heading::{HeadingSource, History};
-use messages::topic;
+use engine::localizer::Workspace;
+use messages::{Vote, VotesHeader, topic};
 use transport::{Flow, GapCounter, Graph, Health, Sample, TransportError, with_causes};
 
 use crate::answer::{self, Answer, Image};
@@ -42,6 +43,7 @@ pub fn run(graph: &Graph, config: &Config) -> Result<(), AccumulatorError> {
         history: History::keeping(HEADINGS_KEPT),
         supply: Supply::new(config.localizer.clone(), config.prior()),
         map: None,
+        workspace: Workspace::default(),
         gaps: GapCounter::new(),
         last_refusal: String::new(),
         outputs,
@@ -57,6 +59,8 @@ struct Node {
     history: History,
     supply: Supply,
     map: Option<PreparedMap>,
+    /// For all maps, one after the other.
+    workspace: Workspace,
     gaps: GapCounter,
     last_refusal: String,
     outputs: Outputs,
@@ -88,36 +92,57 @@ impl Node {
         let lost = self.gaps.lost_before(scan.header().stamp.counter);
         self.health.count_received(1);
         self.health.count_dropped(lost);
-        match self.search(scan) {
-            Ok(Some(answer)) => self.send(scan, answer),
+        // What is sent lies in the workspace.
+        let mut workspace = std::mem::take(&mut self.workspace);
+        let done = match self.search(&mut workspace, scan) {
+            Ok(Some((votes, poses))) => self
+                .send_votes(&votes, poses)
+                .and_then(|()| self.send_field(&mut workspace, scan, &votes)),
             // Stopped half-way: nobody waits for the answer any more.
             Ok(None) => Ok(()),
             Err(error) => self.refuse(scan, &error),
-        }
+        };
+        self.workspace = workspace;
+        done
     }
 
-    fn search(&self, scan: &Sample<topic::Scan>) -> Result<Option<Answer>, AccumulatorError> {
+    fn search<'w>(
+        &self,
+        workspace: &'w mut Workspace,
+        scan: &Sample<topic::Scan>,
+    ) -> Result<Option<Answer<'w>>, AccumulatorError> {
         let map = self.map.as_ref().ok_or(AccumulatorError::NoMap)?;
         let heading = self.source.heading_of(scan.header(), &self.history)?;
         let borrowed = answer::scan(scan.header(), scan.items())?;
         let start = Instant::now();
-        let reply = answer::ask(&map.localizer, &borrowed, heading, &|| self.stopped())?;
+        let stop = || self.stopped();
+        let outcome = answer::ask(&map.localizer, workspace, &borrowed, heading, &stop)?;
         let engine_ns = start.elapsed().as_nanos() as u64;
-        Ok(reply.map(|reply| answer::answered(scan.header(), map, reply, engine_ns)))
+        Ok(outcome.map(|outcome| answer::answered(scan.header(), map, outcome, engine_ns)))
     }
 
     fn stopped(&self) -> bool {
         self.stop.load(Ordering::Relaxed)
     }
 
-    fn send(&mut self, scan: &Sample<topic::Scan>, answer: Answer) -> Result<(), TransportError> {
-        self.outputs.votes(&answer.votes, &answer.poses)?;
+    fn send_votes(&mut self, votes: &VotesHeader, poses: &[Vote]) -> Result<(), TransportError> {
+        self.outputs.votes(votes, poses)?;
         self.health.count_sent(1);
         self.last_refusal.clear();
+        Ok(())
+    }
+
+    /// Sends the image of the scan that was answered last, if one is due.
+    fn send_field(
+        &mut self,
+        workspace: &mut Workspace,
+        scan: &Sample<topic::Scan>,
+        votes: &VotesHeader,
+    ) -> Result<(), TransportError> {
         if self.outputs.is_field_due()
-            && let Some((header, intensities)) = self.image(scan, answer)
+            && let Some((header, intensities)) = self.image(workspace, scan, votes)
         {
-            self.outputs.field(&header, &intensities)?;
+            self.outputs.field(&header, intensities)?;
             self.health.count_sent(1);
         }
         Ok(())
@@ -125,10 +150,15 @@ impl Node {
 
     /// The image of a scan that was answered, so that nothing can be wrong with
     /// it any more.
-    fn image(&self, scan: &Sample<topic::Scan>, answer: Answer) -> Option<Image> {
+    fn image<'w>(
+        &self,
+        workspace: &'w mut Workspace,
+        scan: &Sample<topic::Scan>,
+        votes: &VotesHeader,
+    ) -> Option<Image<'w>> {
         let localizer = &self.map.as_ref()?.localizer;
         let borrowed = answer::scan(scan.header(), scan.items()).ok()?;
-        answer::image(answer, localizer, &borrowed).ok()
+        answer::image(votes, localizer, workspace, &borrowed).ok()
     }
 
     /// Answers a refused scan all the same, for its source may be waiting.

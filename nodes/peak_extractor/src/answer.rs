@@ -1,6 +1,7 @@
 //! The node's one function: from a message of `votes` to one of `hypotheses`.
 
 use bytemuck::Zeroable;
+use engine::EngineError;
 use engine::fit::{BeamClass, Ends};
 use engine::peaks::{self, PeakConfig, Place, Places, Score};
 use engine::space::Space;
@@ -14,17 +15,30 @@ use crate::check::{Checked, check, mount};
 use crate::maps::Maps;
 use crate::scans::Scans;
 
+/// What answering takes, kept from scan to scan. It may serve any map.
+#[derive(Debug, Default)]
+pub struct Workspace {
+    ends: Ends,
+    peaks: peaks::Workspace,
+    beams: Vec<Beam>,
+    space: Option<(Extent, Space)>,
+}
+
+/// What a space is made for: headings a turn, a cell's side in metres, and cells
+/// along x and y.
+type Extent = (u32, f64, usize, usize);
+
 /// What there is to say about a scan.
 #[derive(Debug, Clone, PartialEq)]
-pub struct Answer {
+pub struct Answer<'a> {
     /// All but the times of extracting and sending.
     pub header: HypothesesHeader,
     /// Best first.
-    pub places: Vec<Place>,
+    pub places: &'a [Place],
     /// Header of `beams`.
     pub beams_header: BeamsHeader,
     /// Items of `beams`; none where the votes alone decide.
-    pub beams: Vec<Beam>,
+    pub beams: &'a [Beam],
     /// Where the laser sits on the robot, if that is known.
     pub base_from_laser: Option<Pose>,
 }
@@ -35,31 +49,38 @@ pub struct Answer {
 /// # Errors
 /// If the votes are refused, see [`check`] and [`mount`], or their scan is not
 /// known; [`nothing`] is then what to say.
-pub fn answer(
+pub fn answer<'w>(
     header: &VotesHeader,
     votes: &[Vote],
     (maps, scans): (&mut Maps, &Scans),
     config: &PeakConfig,
-) -> Result<Answer, PeakError> {
+    workspace: &'w mut Workspace,
+) -> Result<Answer<'w>, PeakError> {
     let Some(Checked { input, map, beams }) = check(header, votes, maps)? else {
         return Ok(nothing(header));
     };
     let base_from_laser = mount(header)?;
-    let mut beams_seen = Vec::new();
+    let Workspace {
+        ends,
+        peaks,
+        beams: beams_seen,
+        space,
+    } = workspace;
+    beams_seen.clear();
     let places = match config.score {
-        Score::Votes => peaks::by_votes(&input, config),
+        Score::Votes => peaks.by_votes(&input, config),
         Score::Fit => {
             let scan = scans.get(header.stamp)?;
             let sides = (map.width as usize, map.height as usize);
-            let space = Space::new(header.headings, map.frame.resolution_m, sides.0, sides.1)?;
-            let ends = Ends::new(&scan, &space, &beams)?;
-            let places = peaks::by_fit(&input, (&map.terrain, &ends), config);
-            beams_seen = judged(&ends, &places);
+            let extent = (header.headings, map.frame.resolution_m, sides.0, sides.1);
+            ends.find(&scan, kept_or_made(space, extent)?, &beams)?;
+            let places = peaks.by_fit(&input, (&map.terrain, ends), config);
+            beams_seen.extend(judged(ends, places));
             places
         }
     };
     Ok(Answer {
-        header: described(header, &places, base_from_laser.is_some()),
+        header: described(header, places, base_from_laser.is_some()),
         beams_header: BeamsHeader {
             stamp: header.stamp,
             map_id: header.map_id,
@@ -70,14 +91,25 @@ pub fn answer(
                 .into(),
         },
         beams: beams_seen,
-        places: places.places,
+        places: &places.places,
         base_from_laser,
     })
 }
 
+/// The space of the scan before, where it is that of this scan, too.
+fn kept_or_made(kept: &mut Option<(Extent, Space)>, extent: Extent) -> Result<&Space, EngineError> {
+    if kept.as_ref().is_none_or(|(of, _)| *of != extent) {
+        let (headings, resolution_m, width, height) = extent;
+        let made = Space::new(headings, resolution_m, width, height)?;
+        *kept = Some((extent, made));
+    }
+    let (_, space) = kept.as_ref().expect("it was made");
+    Ok(space)
+}
+
 /// The answer to votes that say nothing, or that cannot be read.
 #[must_use]
-pub fn nothing(votes: &VotesHeader) -> Answer {
+pub fn nothing(votes: &VotesHeader) -> Answer<'static> {
     let header = HypothesesHeader {
         stamp: votes.stamp,
         map_id: votes.map_id,
@@ -87,18 +119,18 @@ pub fn nothing(votes: &VotesHeader) -> Answer {
     };
     Answer {
         header,
-        places: Vec::new(),
+        places: &[],
         beams_header: BeamsHeader {
             stamp: votes.stamp,
             map_id: votes.map_id,
             map_from_laser: Pose::IDENTITY.into(),
         },
-        beams: Vec::new(),
+        beams: &[],
         base_from_laser: None,
     }
 }
 
-impl Answer {
+impl Answer<'_> {
     /// The message's items, to be filled in place.
     pub fn hypotheses(&self) -> impl ExactSizeIterator<Item = Hypothesis> {
         let laser_from_base = self.base_from_laser.map_or(Pose::IDENTITY, Pose::inverse);
@@ -122,7 +154,7 @@ fn described(votes: &VotesHeader, places: &Places, mount_known: bool) -> Hypothe
 }
 
 /// All beams of a scan, as they fare at the best place.
-fn judged(ends: &Ends, places: &Places) -> Vec<Beam> {
+fn judged(ends: &Ends, places: &Places) -> impl Iterator<Item = Beam> {
     let voted = ends.judged(&places.classes).map(|beam| Beam {
         bearing: beam.bearing as f32,
         range_m: beam.reading_m as f32,
@@ -135,7 +167,7 @@ fn judged(ends: &Ends, places: &Places) -> Vec<Beam> {
         weight: 0.0,
         fate: BeamFate::NoReturn as u32,
     });
-    voted.chain(silent).collect()
+    voted.chain(silent)
 }
 
 fn fate(class: BeamClass) -> BeamFate {
@@ -231,12 +263,13 @@ mod tests {
         },
     ];
 
-    fn extract(header: &VotesHeader) -> Answer {
+    fn extract<'w>(header: &VotesHeader, workspace: &'w mut Workspace) -> Answer<'w> {
         let by_votes = PeakConfig {
             score: Score::Votes,
             ..PeakConfig::default()
         };
-        answer(header, &VOTES, (&mut maps(), &Scans::default()), &by_votes).unwrap()
+        let known = (&mut maps(), &Scans::default());
+        answer(header, &VOTES, known, &by_votes, workspace).unwrap()
     }
 
     #[test]
@@ -255,12 +288,15 @@ mod tests {
             highest_possible: 125,
             mount_known: 1,
         };
-        assert_eq!(extract(&header()).header, expected);
+        let mut workspace = Workspace::default();
+        assert_eq!(extract(&header(), &mut workspace).header, expected);
     }
 
     #[test]
     fn the_base_is_where_the_mount_puts_it() {
-        let hypotheses: Vec<Hypothesis> = extract(&header()).hypotheses().collect();
+        let mut workspace = Workspace::default();
+        let answer = extract(&header(), &mut workspace);
+        let hypotheses: Vec<Hypothesis> = answer.hypotheses().collect();
         assert_eq!(hypotheses.len(), 2);
         let laser = Pose::from(hypotheses[0].map_from_laser);
         let base = Pose::from(hypotheses[0].map_from_base);
@@ -281,7 +317,8 @@ mod tests {
             mount_known: 0,
             ..header()
         };
-        let answer = extract(&unknown);
+        let mut workspace = Workspace::default();
+        let answer = extract(&unknown, &mut workspace);
         assert_eq!(answer.header.mount_known, 0);
         for hypothesis in answer.hypotheses() {
             let laser = Pose::from(hypothesis.map_from_laser);
@@ -294,7 +331,9 @@ mod tests {
     fn the_fit_needs_the_scan_of_the_votes() {
         let mut scans = Scans::default();
         let config = PeakConfig::default();
-        let unknown = answer(&header(), &VOTES, (&mut maps(), &scans), &config);
+        let mut workspace = Workspace::default();
+        let known = (&mut maps(), &scans);
+        let unknown = answer(&header(), &VOTES, known, &config, &mut workspace);
         assert!(matches!(unknown, Err(PeakError::UnknownScan)));
         let scan = ScanHeader {
             stamp: header().stamp,
@@ -303,7 +342,8 @@ mod tests {
             ..Zeroable::zeroed()
         };
         scans.hear(&scan, &[1.0, 2.0]);
-        let said = answer(&header(), &VOTES, (&mut maps(), &scans), &config).unwrap();
+        let known = (&mut maps(), &scans);
+        let said = answer(&header(), &VOTES, known, &config, &mut workspace).unwrap();
         // The map is empty, so that nothing fits.
         assert_eq!(said.header.verdict, Verdict::PoorFit as u32);
         let hypotheses: Vec<Hypothesis> = said.hypotheses().collect();
@@ -320,7 +360,8 @@ mod tests {
                 ..header()
             };
             let known = (&mut maps(), &Scans::default());
-            let said = answer(&empty, &[], known, &PeakConfig::default()).unwrap();
+            let (config, mut workspace) = (PeakConfig::default(), Workspace::default());
+            let said = answer(&empty, &[], known, &config, &mut workspace).unwrap();
             assert_eq!(said, nothing(&empty));
             assert_eq!(said.header.verdict, Verdict::NoScan as u32);
             assert_eq!(

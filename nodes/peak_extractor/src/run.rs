@@ -9,7 +9,7 @@ use transport::{
     with_causes,
 };
 
-use crate::answer::{Answer, answer, nothing};
+use crate::answer::{Answer, Workspace, answer, nothing};
 use crate::maps::Maps;
 use crate::scans::Scans;
 use crate::{Config, PeakError};
@@ -31,6 +31,7 @@ pub fn run(graph: &Graph, config: &Config) -> Result<(), PeakError> {
         config: config.peaks,
         maps: Maps::default(),
         scans: Scans::default(),
+        workspace: Workspace::default(),
         gaps: GapCounter::new(),
         last_refusal: String::new(),
         hypotheses: graph.publisher()?,
@@ -47,6 +48,7 @@ struct Node {
     config: PeakConfig,
     maps: Maps,
     scans: Scans,
+    workspace: Workspace,
     gaps: GapCounter,
     last_refusal: String,
     hypotheses: Publisher<topic::Hypotheses>,
@@ -98,26 +100,29 @@ impl Node {
         let start = Instant::now();
         let header = votes.header();
         let known = (&mut self.maps, &self.scans);
-        let answered = answer(header, votes.items(), known, &self.config);
+        // What is sent lies in the workspace.
+        let mut workspace = std::mem::take(&mut self.workspace);
+        let answered = answer(header, votes.items(), known, &self.config, &mut workspace);
         let extract_ns = start.elapsed().as_nanos() as u64;
         // Votes have the counter of their scan: one that is missing here was
         // lost on one of its two ways.
         let lost = self.gaps.lost_before(header.stamp.counter);
         self.health.count_received(1);
         self.health.count_dropped(lost);
-        match answered {
+        let done = match answered {
             Ok(answer) => {
                 self.last_refusal.clear();
                 self.send(&answer, extract_ns)
             }
-            Err(error) => {
-                self.send(&nothing(header), extract_ns)?;
-                self.refuse(header.stamp.counter, &error)
-            }
-        }
+            Err(error) => self
+                .send(&nothing(header), extract_ns)
+                .and_then(|()| self.refuse(header.stamp.counter, &error)),
+        };
+        self.workspace = workspace;
+        done
     }
 
-    fn send(&mut self, answer: &Answer, extract_ns: u64) -> Result<(), TransportError> {
+    fn send(&mut self, answer: &Answer<'_>, extract_ns: u64) -> Result<(), TransportError> {
         let hypotheses = answer.hypotheses();
         let mut loan = self.hypotheses.loan(hypotheses.len())?;
         for (item, hypothesis) in loan.items_mut().iter_mut().zip(hypotheses) {
@@ -136,10 +141,10 @@ impl Node {
         Ok(())
     }
 
-    fn send_beams(&self, answer: &Answer) -> Result<(), TransportError> {
+    fn send_beams(&self, answer: &Answer<'_>) -> Result<(), TransportError> {
         let mut loan = self.beams.loan(answer.beams.len())?;
         *loan.header_mut() = answer.beams_header;
-        loan.items_mut().copy_from_slice(&answer.beams);
+        loan.items_mut().copy_from_slice(answer.beams);
         loan.send()
     }
 

@@ -146,7 +146,7 @@ fn judge_all(
             }
             let reply = session.ask(&scan)?;
             match reply.answer {
-                Ok(answer) => judge.answer(truth.pose, &answer.places, reply.cpu_ms),
+                Ok(answer) => judge.answer(truth.pose, answer.places, reply.cpu_ms),
                 Err(refusal) => judge.refusal(truth.pose, transport::with_causes(&refusal)),
             }
         }

@@ -46,9 +46,10 @@ pub(crate) fn run(config: &Config) -> Result<ExitCode, BackcastError> {
     while let Some(scan) = session.scans.next() {
         match scan {
             Ok(scan) => {
+                let map_id = session.world.map_id;
                 let reply = session.ask(&scan)?;
                 let line = match config.json {
-                    true => Object::new(&scan, session.world.map_id, &reply).json(),
+                    true => Object::new(&scan, map_id, &reply).json(),
                     false => row::text(scan.stamp_ns, &reply),
                 };
                 if progress.print(&line)?.is_break() {

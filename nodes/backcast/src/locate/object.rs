@@ -88,7 +88,7 @@ struct Hypothesis {
 }
 
 impl Object {
-    pub(super) fn new(scan: &TakenScan, map_id: u64, reply: &Reply) -> Self {
+    pub(super) fn new(scan: &TakenScan, map_id: u64, reply: &Reply<'_>) -> Self {
         let mut object = Object {
             stamp_ns: scan.stamp_ns,
             map_id: format!("{map_id:016x}"),
@@ -109,7 +109,7 @@ impl Object {
         object
     }
 
-    fn fill(&mut self, Answer { outcome, places }: &Answer, base_from_laser: Option<Pose>) {
+    fn fill(&mut self, Answer { outcome, places }: &Answer<'_>, base_from_laser: Option<Pose>) {
         self.verdict = places.verdict.as_str();
         self.alternatives = places.alternatives;
         self.says = Some(places.sentence());

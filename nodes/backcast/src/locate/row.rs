@@ -7,7 +7,7 @@ use crate::run::Line;
 
 /// The row, without the end of the line; after that of a refused scan stands
 /// the reason.
-pub(super) fn text(stamp_ns: i64, reply: &Reply) -> String {
+pub(super) fn text(stamp_ns: i64, reply: &Reply<'_>) -> String {
     let mut line = Line {
         stamp_ns,
         x: None,

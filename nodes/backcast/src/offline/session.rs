@@ -31,12 +31,12 @@ pub(crate) struct Session<'a> {
 }
 
 /// What came of one scan.
-pub(crate) struct Reply {
+pub(crate) struct Reply<'a> {
     /// Milliseconds of computing from the scan to the verdict or the refusal;
     /// decoding is not in it.
     pub(crate) cpu_ms: f64,
     /// The places, or why the scan is refused.
-    pub(crate) answer: Result<Answer, BackcastError>,
+    pub(crate) answer: Result<Answer<'a>, BackcastError>,
 }
 
 impl<'a> Session<'a> {
@@ -101,7 +101,7 @@ impl<'a> Session<'a> {
     ///
     /// # Errors
     /// The clock fails. A scan that is refused is a reply.
-    pub(crate) fn ask(&self, scan: &TakenScan) -> Result<Reply, BackcastError> {
+    pub(crate) fn ask(&mut self, scan: &TakenScan) -> Result<Reply<'_>, BackcastError> {
         let heading = match self.headings.of_scan(scan) {
             Ok(heading) => heading,
             Err(refusal) => {

@@ -5,7 +5,7 @@ use engine::EngineError;
 use engine::beams::BeamConfig;
 use engine::fit::{Ends, Terrain};
 use engine::grid::GridFrame;
-use engine::localizer::{Localizer, Outcome, Prior};
+use engine::localizer::{self, Localizer, Outcome, Prior};
 use engine::peaks::{self, PeakConfig, PeakInput, Places, Score};
 use engine::scan::Scan;
 use engine::space::Space;
@@ -25,15 +25,24 @@ pub(crate) struct World {
     cells: u64,
     beams: BeamConfig,
     peaks: PeakConfig,
+    workspace: Workspace,
+}
+
+/// What locating takes, kept from scan to scan.
+#[derive(Debug, Default)]
+struct Workspace {
+    localizer: localizer::Workspace,
+    ends: Ends,
+    peaks: peaks::Workspace,
 }
 
 /// What a scan says about the place.
-#[derive(Debug, Clone, PartialEq)]
-pub(crate) struct Answer {
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(crate) struct Answer<'a> {
     /// The votes, and how they were come by.
-    pub(crate) outcome: Outcome,
+    pub(crate) outcome: &'a Outcome,
     /// What they say, the verdict included.
-    pub(crate) places: Places,
+    pub(crate) places: &'a Places,
 }
 
 impl World {
@@ -66,6 +75,7 @@ impl World {
             localizer: Localizer::of_map(frame, sides, cells, rules, config, prior)?,
             cells: width as u64 * height as u64,
             peaks: options.peaks,
+            workspace: Workspace::default(),
         })
     }
 
@@ -80,24 +90,27 @@ impl World {
     /// # Errors
     /// The scan is refused.
     pub(crate) fn locate(
-        &self,
+        &mut self,
         scan: &Scan<'_>,
         heading: Option<f64>,
-    ) -> Result<Answer, EngineError> {
+    ) -> Result<Answer<'_>, EngineError> {
+        let Workspace {
+            localizer: workspace,
+            ends,
+            peaks,
+        } = &mut self.workspace;
+        let localizer = &self.localizer;
         let found = match heading {
-            Some(heading) => {
-                let found = self.localizer.search_at(scan, heading, &|| false)?;
-                found.map(|(outcome, _)| outcome)
-            }
-            None => self.localizer.search(scan, &|| false)?,
+            Some(heading) => localizer.search_at_in(workspace, scan, heading, &|| false)?,
+            None => localizer.search_in(workspace, scan, &|| false)?,
         };
         let outcome = found.expect("a search that nothing stops ends with an outcome");
-        let input = PeakInput::of(&outcome, self.localizer.frame());
+        let input = PeakInput::of(outcome, localizer.frame());
         let places = match self.peaks.score {
-            Score::Votes => peaks::by_votes(&input, &self.peaks),
+            Score::Votes => peaks.by_votes(&input, &self.peaks),
             Score::Fit => {
-                let ends = Ends::new(scan, &self.space, &self.beams)?;
-                peaks::by_fit(&input, (&self.terrain, &ends), &self.peaks)
+                ends.find(scan, &self.space, &self.beams)?;
+                peaks.by_fit(&input, (&self.terrain, ends), &self.peaks)
             }
         };
         Ok(Answer { outcome, places })
