@@ -141,16 +141,25 @@ impl AnyScan {
         self
     }
 
-    /// The scan, compiled for a space.
-    pub(crate) fn program(&self, space: &Space) -> ScanProgram {
-        let scan = Scan {
+    /// The scan as it comes.
+    pub(crate) fn scan(&self) -> Scan<'_> {
+        Scan {
             angle_min: self.angle_min,
             angle_increment: 0.9 * std::f64::consts::TAU / self.ranges.len() as f64,
             range_min_m: 0.0,
             range_max_m: 100.0,
             ranges: &self.ranges,
-        };
-        ScanProgram::new(&scan, 0.0, space, &self.config).expect("the scan is sound")
+        }
+    }
+
+    /// How it votes.
+    pub(crate) fn config(&self) -> VoteConfig {
+        self.config
+    }
+
+    /// The scan, compiled for a space.
+    pub(crate) fn program(&self, space: &Space) -> ScanProgram {
+        ScanProgram::new(&self.scan(), 0.0, space, &self.config).expect("the scan is sound")
     }
 }
 

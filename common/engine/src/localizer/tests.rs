@@ -2,10 +2,16 @@ use std::cell::Cell;
 use std::f64::consts::{FRAC_PI_2, PI};
 
 use geometry::Pose;
+use proptest::collection::vec;
+use proptest::prelude::*;
 
 use super::*;
+use crate::fit::{Ends, Terrain};
+use crate::grid::Cell;
 use crate::grid::drawn::grid;
+use crate::peaks::{self, PeakConfig, PeakInput};
 use crate::reference;
+use crate::testing::{AnyScan, RESOLUTION_M, any_grid, any_scan};
 
 /// An L-shaped room with a pillar: no pose looks like another.
 const ROOM: [&str; 12] = [
@@ -131,4 +137,67 @@ fn a_scan_in_which_nothing_returned_has_no_votes() {
         .unwrap();
     assert_eq!(outcome.found.votes, []);
     assert!(field.iter().all(|&intensity| intensity == 0));
+}
+
+/// A workspace for each step from a scan to its places.
+#[derive(Default)]
+struct All {
+    localizer: Workspace,
+    ends: Ends,
+    peaks: peaks::Workspace,
+}
+
+/// Everything there is to say of a scan, in one text.
+fn said(all: &mut All, grid: &Grid, scan: &AnyScan, heading: Option<f64>) -> Option<String> {
+    let frame = GridFrame {
+        resolution_m: RESOLUTION_M,
+        map_from_grid: Pose::new(1.0, -2.0, 0.3),
+    };
+    let config = LocalizerConfig {
+        headings: 48,
+        votes: scan.config(),
+        ..LocalizerConfig::default()
+    };
+    let prior = heading.map_or(Prior::None, |_| Prior::Heading);
+    let sides = (grid.width(), grid.height());
+    let occupied = |&cell: &Cell| if cell == Cell::Occupied { 100 } else { 0 };
+    let occupancy: Vec<u8> = grid.cells().iter().map(occupied).collect();
+    let terrain = Terrain::new(frame, sides, &occupancy, Default::default()).unwrap();
+    // Grids without obstacles or space are refused.
+    let localizer = Localizer::new(frame, grid.clone(), config, prior).ok()?;
+    let (workspace, scan) = (&mut all.localizer, scan.scan());
+    let mut text = String::new();
+    match heading {
+        None => text += &format!("{:?}", localizer.block_bounds(workspace, &scan).unwrap()),
+        Some(heading) => {
+            localizer
+                .search_at_in(workspace, &scan, heading, &|| false)
+                .unwrap();
+            text += &format!("{:?}", workspace.intensities());
+        }
+    }
+    let outcome = match heading {
+        None => localizer.search_in(workspace, &scan, &|| false),
+        Some(heading) => localizer.search_at_in(workspace, &scan, heading, &|| false),
+    };
+    let outcome = outcome.unwrap().unwrap();
+    let beams = &localizer.config().votes.beams;
+    all.ends.find(&scan, localizer.space(), beams).unwrap();
+    let (input, peaks) = (PeakInput::of(outcome, frame), PeakConfig::default());
+    let by_votes = format!("{:?}", all.peaks.by_votes(&input, &peaks));
+    let by_fit = all.peaks.by_fit(&input, (&terrain, &all.ends), &peaks);
+    Some(text + &format!("{outcome:?} {by_votes} {by_fit:?}"))
+}
+
+proptest! {
+    #[test]
+    fn a_workspace_that_served_other_scans_and_maps_changes_nothing(
+        worlds in vec((any_grid(), any_scan(), proptest::option::of(-3.0..3.0f64)), 2..6),
+    ) {
+        let mut all = All::default();
+        for (grid, scan, heading) in &worlds {
+            let fresh = said(&mut All::default(), grid, scan, *heading);
+            prop_assert_eq!(said(&mut all, grid, scan, *heading), fresh);
+        }
+    }
 }

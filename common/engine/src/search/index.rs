@@ -188,8 +188,10 @@ impl SearchIndex {
 
 #[cfg(test)]
 mod tests {
+    use proptest::collection::vec;
     use proptest::prelude::*;
 
+    use super::super::BlockBounds;
     use super::super::budget::Cost;
     use super::*;
     use crate::reference;
@@ -299,6 +301,36 @@ mod tests {
                     }
                     prop_assert_eq!(first.get_or_insert(found.clone()), &found, "{:?}", how);
                 }
+            }
+        }
+
+        #[test]
+        fn a_workspace_that_served_other_scans_and_maps_changes_nothing(
+            worlds in vec((any_limited_grid(), any_scan(), 1usize..4), 2..5), candidates in 0u32..9,
+        ) {
+            let config = CollectConfig { candidates, ..CollectConfig::default() };
+            let (mut workspace, mut found) = (Workspace::default(), VoteSet::default());
+            let mut blocks = BlockBounds::default();
+            for ((grid, limits, headings), scan, threads) in worlds {
+                let space = space_of(&grid, headings);
+                let (index, program) = (SearchIndex::new(&grid, &space), scan.program(&space));
+                let (index, scan) = (index.within(limits.clone()), (&program, &space));
+                for instruction_set in InstructionSet::available() {
+                    let how = (instruction_set, threads);
+                    let fresh = index.search_with(how, &grid, scan, config, &|| false).unwrap();
+                    let collect = (config, &mut found);
+                    prop_assert!(index.search_in(&mut workspace, how, &grid, scan, collect, &|| false).is_some());
+                    // How many poses threads count depends on who is first.
+                    found.poses_evaluated = fresh.poses_evaluated;
+                    prop_assert_eq!(&found, &fresh, "{:?}", how);
+                    let plain = plain_votes_within(&limits, &grid, &program, &space, CollectConfig { candidates: 0, ..config });
+                    workspace.shares.resize_with(threads, Share::default);
+                    let collect = (CollectConfig { candidates: 0, ..config }, &mut found);
+                    prop_assert!(index.count_all(instruction_set, &mut workspace.shares, scan, collect, &|| false).is_some());
+                    prop_assert_eq!(&found.votes, &plain.votes, "{:?}", how);
+                }
+                index.block_bounds_in(&mut workspace, scan, &mut blocks);
+                prop_assert_eq!(&blocks, &index.block_bounds(&program, &space));
             }
         }
 

@@ -1,0 +1,278 @@
+//! Nothing is allocated from scan to scan: once workspaces have room for all
+//! scans, searching them again, and fitting them, asks for no memory.
+//!
+//! Allocations are counted for each thread by itself, so tests may run side by
+//! side. Starting a thread allocates in the standard library: a search on two
+//! threads is held against a bare start of as many.
+#![allow(
+    clippy::unwrap_used,
+    reason = "the lint spares test functions but not what they share"
+)]
+
+use std::f64::consts::{FRAC_PI_2, TAU};
+
+use allocation_counter::measure;
+use engine::fit::{Ends, Terrain};
+use engine::grid::{CellRules, GridFrame};
+use engine::localizer::{Localizer, LocalizerConfig, Outcome, Prior, Workspace};
+use engine::peaks::{self, PeakConfig, PeakInput};
+use engine::reference;
+use engine::scan::Scan;
+use geometry::Pose;
+use messages::Verdict;
+
+const FRAME: GridFrame = GridFrame {
+    resolution_m: 0.1,
+    map_from_grid: Pose::new(-3.0, 2.0, 0.4),
+};
+
+/// Times that all scans are searched before it counts. Results lie in one of
+/// two buffers in turn: with an odd number of scans, each buffer has held each
+/// scan's results after two times.
+const WARM_UP: usize = 2;
+
+/// Numbers from 0 to 1 that are the same each time.
+struct Noise(u64);
+
+impl Noise {
+    fn next(&mut self) -> f64 {
+        // Knuth's MMIX generator; its high bits are the better ones.
+        self.0 = self.0.wrapping_mul(6_364_136_223_846_793_005);
+        self.0 = self.0.wrapping_add(1_442_695_040_888_963_407);
+        (self.0 >> 11) as f64 / (1u64 << 53) as f64
+    }
+}
+
+/// Occupancies of a map, and scans on it.
+struct World {
+    sides: (usize, usize),
+    occupancy: Vec<u8>,
+    scans: Vec<Vec<f32>>,
+}
+
+impl World {
+    /// Rooms with pillars at random, and a scan in each of some places.
+    fn rooms() -> World {
+        let (width, height) = (230, 170);
+        let mut noise = Noise(1);
+        let is_wall = |x: usize, y: usize| {
+            let on_wall =
+                x.is_multiple_of(46) || y.is_multiple_of(34) || x == width - 1 || y == height - 1;
+            let in_door = x % 46 > 18 && x % 46 < 28 || y % 34 > 12 && y % 34 < 22;
+            let is_outer = x == 0 || y == 0 || x == width - 1 || y == height - 1;
+            on_wall && (is_outer || !in_door)
+        };
+        let cells = (0..width * height).map(|i| {
+            let is_pillar = noise.next() < 0.004;
+            if is_pillar || is_wall(i % width, i / width) {
+                100
+            } else {
+                0
+            }
+        });
+        let mut world = World {
+            sides: (width, height),
+            occupancy: cells.collect(),
+            scans: Vec::new(),
+        };
+        let poses = [
+            (20, 15, 10),
+            (70, 20, 100),
+            (120, 80, 200),
+            (200, 150, 300),
+            (60, 120, 45),
+        ];
+        world.scans = poses.map(|pose| world.scan(pose, &mut noise)).to_vec();
+        world
+    }
+
+    /// Single cells at random, and scans that fit nowhere.
+    fn clutter() -> World {
+        let sides = (120, 120);
+        let mut noise = Noise(7);
+        let cells = (0..sides.0 * sides.1).map(|_| if noise.next() < 0.06 { 100 } else { 0 });
+        let occupancy = cells.collect();
+        let mut scan = || (0..361).map(|_| 2.5 * noise.next() as f32).collect();
+        World {
+            sides,
+            occupancy,
+            scans: vec![scan(), scan(), scan()],
+        }
+    }
+
+    fn localizer(&self, threads: u8, prior: Prior) -> Localizer {
+        let config = LocalizerConfig {
+            threads,
+            search_cell: 0.0,
+            ..LocalizerConfig::default()
+        };
+        let rules = CellRules::default();
+        Localizer::of_map(FRAME, self.sides, &self.occupancy, rules, config, prior).unwrap()
+    }
+
+    fn terrain(&self) -> Terrain {
+        Terrain::new(FRAME, self.sides, &self.occupancy, CellRules::default()).unwrap()
+    }
+
+    /// What a laser with half a turn of view reads at a pose of the grid, within
+    /// 3 cm; one beam in twenty does not return.
+    fn scan(&self, (x, y, heading): (i64, i64, usize), noise: &mut Noise) -> Vec<f32> {
+        let localizer = self.localizer(1, Prior::Heading);
+        let (grid, directions) = (localizer.grid(), &localizer.space().directions);
+        let beams = (0..361).map(|beam| {
+            let direction = directions.get(heading + 270 + beam / 2);
+            let steps = reference::range(grid, x, y, direction);
+            let error_m = 0.06 * noise.next() - 0.03;
+            match steps {
+                Some(steps) if noise.next() > 0.05 => {
+                    (f64::from(steps) / direction.steps_per_cell * FRAME.resolution_m + error_m)
+                        as f32
+                }
+                _ => f32::INFINITY,
+            }
+        });
+        beams.collect()
+    }
+
+    fn scans(&self) -> impl Iterator<Item = Scan<'_>> {
+        self.scans.iter().map(|ranges| Scan {
+            angle_min: -FRAC_PI_2,
+            angle_increment: TAU / 720.0,
+            range_min_m: 0.0,
+            range_max_m: 30.0,
+            ranges,
+        })
+    }
+}
+
+/// How often memory is asked for while all scans are worked on, after a
+/// warm-up.
+fn allocations(world: &World, mut work: impl FnMut(&Scan<'_>)) -> u64 {
+    for _ in 0..WARM_UP {
+        world.scans().for_each(|scan| work(&scan));
+    }
+    measure(|| world.scans().for_each(|scan| work(&scan))).count_total
+}
+
+#[test]
+fn what_allocates_is_counted() {
+    let world = World::rooms();
+    let localizer = world.localizer(1, Prior::None);
+    let fresh = allocations(&world, |scan| {
+        localizer.search(scan, &|| false).unwrap();
+    });
+    assert!(
+        fresh > 10,
+        "a fresh workspace for each scan has no room: {fresh}"
+    );
+}
+
+#[test]
+fn a_search_of_all_headings_allocates_nothing() {
+    let world = World::rooms();
+    let localizer = world.localizer(1, Prior::None);
+    let mut workspace = Workspace::default();
+    let mut best = 0;
+    let count = allocations(&world, |scan| {
+        let outcome = localizer.search_in(&mut workspace, scan, &|| false);
+        best = outcome.unwrap().unwrap().found.best;
+    });
+    assert!(best > 0, "something is found");
+    assert_eq!(count, 0);
+    let count = allocations(&world, |scan| {
+        localizer.block_bounds(&mut workspace, scan).unwrap();
+    });
+    assert_eq!(count, 0);
+}
+
+#[test]
+fn a_search_that_counts_every_pose_allocates_nothing() {
+    let world = World::clutter();
+    let localizer = world.localizer(1, Prior::None);
+    let all = (localizer.grid().cells().len() * localizer.space().directions.count()) as u64;
+    let mut workspace = Workspace::default();
+    let mut counted = 0;
+    let count = allocations(&world, |scan| {
+        let outcome = localizer.search_in(&mut workspace, scan, &|| false);
+        counted = outcome.unwrap().unwrap().found.poses_evaluated;
+    });
+    assert_eq!(counted, all, "bounds do not help here");
+    assert_eq!(count, 0);
+}
+
+#[test]
+fn a_search_at_a_heading_allocates_nothing() {
+    let world = World::rooms();
+    let localizer = world.localizer(1, Prior::Heading);
+    let mut workspace = Workspace::default();
+    let mut best = 0;
+    let count = allocations(&world, |scan| {
+        let outcome = localizer.search_at_in(&mut workspace, scan, 0.5, &|| false);
+        best = outcome.unwrap().unwrap().found.best;
+    });
+    assert!(best > 0, "something is found");
+    assert_eq!(count, 0);
+}
+
+#[test]
+fn the_second_stage_allocates_nothing() {
+    let world = World::rooms();
+    let (localizer, terrain) = (world.localizer(1, Prior::None), world.terrain());
+    let space = localizer.space();
+    let search = |scan: Scan<'_>| localizer.search(&scan, &|| false).unwrap().unwrap();
+    let outcomes: Vec<Outcome> = world.scans().map(search).collect();
+    let (mut ends, mut workspace) = (Ends::default(), peaks::Workspace::default());
+    let (config, mut next, mut candidates) = (PeakConfig::default(), 0, 0);
+    let count = allocations(&world, |scan| {
+        let outcome = &outcomes[next % outcomes.len()];
+        next += 1;
+        let input = PeakInput::of(outcome, FRAME);
+        let beams = &localizer.config().votes.beams;
+        ends.find(scan, space, beams).unwrap();
+        let places = workspace.by_fit(&input, (&terrain, &ends), &config);
+        assert_ne!(places.verdict, Verdict::NoScan);
+        candidates = candidates.max(places.places.len());
+        workspace.by_votes(&input, &config);
+    });
+    assert!(candidates > 32, "there is something to sort: {candidates}");
+    assert_eq!(count, 0);
+}
+
+#[test]
+fn a_search_on_two_threads_allocates_no_more_than_their_start() {
+    let world = World::rooms();
+    let localizer = world.localizer(2, Prior::None);
+    let mut workspace = Workspace::default();
+    let count = allocations(&world, |scan| {
+        localizer
+            .search_in(&mut workspace, scan, &|| false)
+            .unwrap();
+    });
+    let start = || {
+        std::thread::scope(|scope| {
+            let threads: Vec<_> = (1..2).map(|thread| scope.spawn(move || thread)).collect();
+            let joined = threads.into_iter().map(|thread| thread.join().unwrap());
+            joined.sum::<usize>()
+        })
+    };
+    let bare = allocations(&world, |_| assert_eq!(start(), 1));
+    assert_eq!(count, bare);
+}
+
+#[test]
+fn going_from_map_to_map_allocates_nothing() {
+    let (large, small) = (World::rooms(), World::clutter());
+    let localizers = [&large, &small].map(|world| world.localizer(1, Prior::Heading));
+    let mut workspace = Workspace::default();
+    let mut work = || {
+        for (world, localizer) in [&large, &small].into_iter().zip(&localizers) {
+            for scan in world.scans() {
+                localizer
+                    .search_at_in(&mut workspace, &scan, 0.0, &|| false)
+                    .unwrap();
+            }
+        }
+    };
+    (0..WARM_UP).for_each(|_| work());
+    assert_eq!(measure(work).count_total, 0);
+}
