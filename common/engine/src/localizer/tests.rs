@@ -7,7 +7,6 @@ use proptest::prelude::*;
 
 use super::*;
 use crate::fit::{Ends, Terrain};
-use crate::grid::Cell;
 use crate::grid::drawn::grid;
 use crate::peaks::{self, PeakConfig, PeakInput};
 use crate::reference;
@@ -160,7 +159,10 @@ fn said(all: &mut All, grid: &Grid, scan: &AnyScan, heading: Option<f64>) -> Opt
     };
     let prior = heading.map_or(Prior::None, |_| Prior::Heading);
     let sides = (grid.width(), grid.height());
-    let occupied = |&cell: &Cell| if cell == Cell::Occupied { 100 } else { 0 };
+    let occupied = |&cell: &grid::Cell| match cell {
+        grid::Cell::Occupied => 100,
+        _ => 0,
+    };
     let occupancy: Vec<u8> = grid.cells().iter().map(occupied).collect();
     let terrain = Terrain::new(frame, sides, &occupancy, Default::default()).unwrap();
     // Grids without obstacles or space are refused.
