@@ -1,0 +1,176 @@
+//! What a picture shows, from the back to the front.
+
+use crate::{Color, DrawingError, Image, Path, Rect, TextStyle, text};
+
+/// Most pixels along a side.
+pub const MAX_SIDE: u32 = 16_384;
+
+/// How a line is drawn.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Stroke {
+    /// Its colour.
+    pub color: Color,
+    /// Pixels.
+    pub width: f64,
+    /// Length of dashes and of the gaps between them, pixels; 0 draws through.
+    pub dash: f64,
+}
+
+impl Stroke {
+    /// A line without gaps.
+    #[must_use]
+    pub const fn new(color: Color, width: f64) -> Self {
+        Stroke {
+            color,
+            width,
+            dash: 0.0,
+        }
+    }
+}
+
+/// What is drawn.
+#[derive(Debug, Clone, PartialEq)]
+pub(crate) enum Item {
+    Fill(Path, Color),
+    Stroke(Path, Stroke),
+    /// Stretched over the rectangle.
+    Image(Image, Rect),
+    /// Items of which only what lies within the rectangle is seen.
+    Clip(Rect, Vec<Item>),
+}
+
+/// A picture in the making.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Scene {
+    width: u32,
+    height: u32,
+    title: String,
+    items: Vec<Item>,
+}
+
+impl Scene {
+    /// An empty picture of `width · height` pixels on a background. The title
+    /// is what a viewer of SVG says that it is; it is not drawn.
+    ///
+    /// # Errors
+    /// If a side is 0 or above [`MAX_SIDE`].
+    pub fn new(
+        width: u32,
+        height: u32,
+        title: impl Into<String>,
+        background: Color,
+    ) -> Result<Self, DrawingError> {
+        check_size(width, height)?;
+        let mut scene = Scene {
+            width,
+            height,
+            title: title.into(),
+            items: Vec::new(),
+        };
+        scene.fill(Path::rect(scene.area()), background);
+        Ok(scene)
+    }
+
+    /// Pixels along x.
+    #[must_use]
+    pub fn width(&self) -> u32 {
+        self.width
+    }
+
+    /// Pixels along y.
+    #[must_use]
+    pub fn height(&self) -> u32 {
+        self.height
+    }
+
+    /// The whole picture.
+    #[must_use]
+    pub fn area(&self) -> Rect {
+        Rect::new(0.0, 0.0, self.width.into(), self.height.into())
+    }
+
+    pub(crate) fn title(&self) -> &str {
+        &self.title
+    }
+
+    pub(crate) fn items(&self) -> &[Item] {
+        &self.items
+    }
+
+    /// Fills shapes.
+    pub fn fill(&mut self, path: Path, color: Color) {
+        if !path.is_empty() {
+            self.items.push(Item::Fill(path, color));
+        }
+    }
+
+    /// Draws lines.
+    pub fn stroke(&mut self, path: Path, stroke: Stroke) {
+        if !path.is_empty() {
+            self.items.push(Item::Stroke(path, stroke));
+        }
+    }
+
+    /// Draws an image, stretched over a rectangle; pixels stay square blocks.
+    pub fn image(&mut self, image: Image, over: Rect) {
+        self.items.push(Item::Image(image, over));
+    }
+
+    /// Writes a line of text at a point of its base line.
+    pub fn text(&mut self, content: &str, at: (f64, f64), style: &TextStyle) {
+        let path = text::outline(content, at, style);
+        if let Some((color, width)) = style.halo {
+            self.stroke(path.clone(), Stroke::new(color, width));
+        }
+        self.fill(path, style.color);
+    }
+
+    /// Draws what `draw` draws, and shows of it what lies within `area`.
+    pub fn clipped(&mut self, area: Rect, draw: impl FnOnce(&mut Scene)) {
+        let outside = std::mem::take(&mut self.items);
+        draw(self);
+        let inside = std::mem::replace(&mut self.items, outside);
+        self.items.push(Item::Clip(area, inside));
+    }
+}
+
+pub(crate) fn check_size(width: u32, height: u32) -> Result<(), DrawingError> {
+    let allowed = 1..=MAX_SIDE;
+    if allowed.contains(&width) && allowed.contains(&height) {
+        return Ok(());
+    }
+    Err(DrawingError::Size { width, height })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn sides_out_of_range_are_refused() {
+        let error = |width, height| {
+            let scene = Scene::new(width, height, "", Color::WHITE);
+            scene.unwrap_err().to_string()
+        };
+        assert_eq!(
+            error(0, 9),
+            "a picture of 0 x 9 pixels; allowed: 1 to 16384 along each side"
+        );
+        assert!(error(9, MAX_SIDE + 1).contains("9 x 16385"));
+    }
+
+    #[test]
+    fn what_is_clipped_is_one_item() {
+        let mut scene = Scene::new(9, 9, "", Color::WHITE).unwrap();
+        let area = Rect::new(1.0, 1.0, 2.0, 2.0);
+        scene.clipped(area, |scene| {
+            scene.fill(Path::circle((2.0, 2.0), 5.0), Color::rgb(0));
+            scene.fill(Path::new(), Color::rgb(0));
+        });
+        assert_eq!(scene.items().len(), 2, "the background and the clip");
+        let Some(Item::Clip(clip, inside)) = scene.items().last() else {
+            panic!("no clip: {scene:?}");
+        };
+        assert_eq!((*clip, inside.len()), (area, 1), "an empty path is nothing");
+    }
+}

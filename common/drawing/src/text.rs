@@ -1,0 +1,233 @@
+//! Text as outlines of DejaVu Sans, which is linked in. Letters stand side by
+//! side, from left to right; what the font lacks is an empty box.
+
+use std::sync::LazyLock;
+
+use ttf_parser::{Face, GlyphId, OutlineBuilder};
+
+use crate::path::Piece;
+use crate::{Color, Path};
+
+/// How heavy letters are.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Weight {
+    /// For most text.
+    Regular,
+    /// For titles.
+    Bold,
+}
+
+/// Which point of a line of text is given.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Anchor {
+    /// Its left end.
+    Start,
+    /// Its middle.
+    Middle,
+    /// Its right end.
+    End,
+}
+
+/// How text is written.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct TextStyle {
+    /// The em of the font, pixels; capitals are 0.73 of it.
+    pub size: f64,
+    /// How heavy.
+    pub weight: Weight,
+    /// Which point is given.
+    pub anchor: Anchor,
+    /// The letters' colour.
+    pub color: Color,
+    /// A rim behind the letters and its width, which keeps them legible on
+    /// anything.
+    pub halo: Option<(Color, f64)>,
+}
+
+impl TextStyle {
+    /// Regular text that starts at the point given, without a rim.
+    #[must_use]
+    pub const fn new(size: f64, color: Color) -> Self {
+        TextStyle {
+            size,
+            weight: Weight::Regular,
+            anchor: Anchor::Start,
+            color,
+            halo: None,
+        }
+    }
+
+    /// In bold.
+    #[must_use]
+    pub const fn bold(self) -> Self {
+        TextStyle {
+            weight: Weight::Bold,
+            ..self
+        }
+    }
+
+    /// With another point given.
+    #[must_use]
+    pub const fn anchored(self, anchor: Anchor) -> Self {
+        TextStyle { anchor, ..self }
+    }
+
+    /// With a rim.
+    #[must_use]
+    pub const fn with_halo(self, color: Color, width: f64) -> Self {
+        let halo = Some((color, width));
+        TextStyle { halo, ..self }
+    }
+
+    /// How wide a line of text is, pixels.
+    #[must_use]
+    pub fn width_of(&self, content: &str) -> f64 {
+        let face = face(self.weight);
+        let advances = content.chars().map(|letter| advance(face, letter).1);
+        advances.sum::<f64>() * self.scale(face)
+    }
+
+    fn scale(&self, face: &Face<'_>) -> f64 {
+        self.size / f64::from(face.units_per_em())
+    }
+}
+
+/// The outlines of a line of text at a point of its base line.
+pub(crate) fn outline(content: &str, (x, y): (f64, f64), style: &TextStyle) -> Path {
+    let face = face(style.weight);
+    let width = style.width_of(content);
+    let start = match style.anchor {
+        Anchor::Start => x,
+        Anchor::Middle => x - width / 2.0,
+        Anchor::End => x - width,
+    };
+    let mut pen = Pen {
+        path: Path::new(),
+        at: (start, y),
+        scale: style.scale(face),
+    };
+    for letter in content.chars() {
+        let (glyph, advance) = advance(face, letter);
+        // A glyph without an outline, such as a space, leaves its room free.
+        face.outline_glyph(glyph, &mut pen);
+        pen.at.0 += advance * pen.scale;
+    }
+    pen.path
+}
+
+fn face(weight: Weight) -> &'static Face<'static> {
+    static REGULAR: LazyLock<Face<'static>> = LazyLock::new(|| parse(dejavu::sans::regular()));
+    static BOLD: LazyLock<Face<'static>> = LazyLock::new(|| parse(dejavu::sans::bold()));
+    match weight {
+        Weight::Regular => &REGULAR,
+        Weight::Bold => &BOLD,
+    }
+}
+
+fn parse(font: &'static [u8]) -> Face<'static> {
+    Face::parse(font, 0).expect("the font that is linked in is sound")
+}
+
+/// The glyph of a letter, and how far the next one stands in the font's units.
+fn advance(face: &Face<'_>, letter: char) -> (GlyphId, f64) {
+    let glyph = face.glyph_index(letter).unwrap_or(GlyphId(0));
+    let advance = face.glyph_hor_advance(glyph).unwrap_or_default();
+    (glyph, advance.into())
+}
+
+/// Takes a glyph's outline from the font's units, y upwards, to the picture.
+struct Pen {
+    path: Path,
+    at: (f64, f64),
+    scale: f64,
+}
+
+impl Pen {
+    fn point(&self, x: f32, y: f32) -> (f64, f64) {
+        let (left, base) = self.at;
+        (
+            left + self.scale * f64::from(x),
+            base - self.scale * f64::from(y),
+        )
+    }
+}
+
+impl OutlineBuilder for Pen {
+    fn move_to(&mut self, x: f32, y: f32) {
+        let to = self.point(x, y);
+        self.path.pieces.push(Piece::Move(to));
+    }
+
+    fn line_to(&mut self, x: f32, y: f32) {
+        let to = self.point(x, y);
+        self.path.pieces.push(Piece::Line(to));
+    }
+
+    fn quad_to(&mut self, x1: f32, y1: f32, x: f32, y: f32) {
+        let (handle, to) = (self.point(x1, y1), self.point(x, y));
+        self.path.pieces.push(Piece::Quadratic(handle, to));
+    }
+
+    fn curve_to(&mut self, x1: f32, y1: f32, x2: f32, y2: f32, x: f32, y: f32) {
+        let handles = (self.point(x1, y1), self.point(x2, y2));
+        let to = self.point(x, y);
+        self.path
+            .pieces
+            .push(Piece::Cubic(handles.0, handles.1, to));
+    }
+
+    fn close(&mut self) {
+        self.path.close();
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    const STYLE: TextStyle = TextStyle::new(100.0, Color::rgb(0));
+
+    /// Left, right, top and bottom of the outlines' corners.
+    fn bounds(path: &Path) -> [f64; 4] {
+        let corners = path.pieces.iter().filter_map(|piece| match *piece {
+            Piece::Move(to) | Piece::Line(to) => Some(to),
+            _ => None,
+        });
+        corners.fold([f64::MAX, f64::MIN, f64::MAX, f64::MIN], |b, (x, y)| {
+            [b[0].min(x), b[1].max(x), b[2].min(y), b[3].max(y)]
+        })
+    }
+
+    #[test]
+    fn letters_stand_on_the_base_line_beside_each_other() {
+        let [left, right, top, bottom] = bounds(&outline("EE", (10.0, 200.0), &STYLE));
+        assert_eq!(bottom, 200.0);
+        // Capitals are 1493 of 2048 units high.
+        assert!((200.0 - top - 72.9).abs() < 0.05, "{top}");
+        let width = STYLE.width_of("EE");
+        assert!(left > 10.0 && right < 10.0 + width, "{left} {right}");
+        assert!(right - left > 0.8 * width, "{left} {right} {width}");
+    }
+
+    #[test]
+    fn the_point_given_is_the_anchor() {
+        let left = |anchor| bounds(&outline("E", (0.0, 0.0), &STYLE.anchored(anchor)))[0];
+        let width = STYLE.width_of("E");
+        let (start, middle, end) = (left(Anchor::Start), left(Anchor::Middle), left(Anchor::End));
+        assert!((start - middle - width / 2.0).abs() < 1e-9);
+        assert!((start - end - width).abs() < 1e-9);
+    }
+
+    #[test]
+    fn both_weights_have_what_is_written() {
+        for weight in [Weight::Regular, Weight::Bold] {
+            let face = face(weight);
+            for letter in "Az09 .,:%°±²·–≥σθ√#×".chars() {
+                assert!(face.glyph_index(letter).is_some(), "{weight:?} {letter}");
+            }
+        }
+        assert!(STYLE.bold().width_of("word") > STYLE.width_of("word"));
+        let unknown = outline("\u{10FFFF}", (0.0, 0.0), &STYLE);
+        assert!(!unknown.is_empty(), "a box");
+    }
+}
