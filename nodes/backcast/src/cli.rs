@@ -4,7 +4,7 @@ use std::process::ExitCode;
 
 use clap::{Parser, Subcommand};
 
-use crate::{bench, check, evaluate, locate, run};
+use crate::{bench, check, evaluate, locate, plot, run};
 
 /// Finds where a robot is from its laser and a map, with no initial guess.
 ///
@@ -36,6 +36,9 @@ enum Command {
     /// Judges the places that are found against the truth in recordings
     #[command(after_help = evaluate::NOTES)]
     Evaluate(evaluate::Config),
+    /// Draws a map, a scan at its places, votes or errors, as PNG or SVG
+    #[command(after_help = plot::NOTES)]
+    Plot(plot::Config),
     /// Measures the methods of global localization on generated worlds
     #[command(after_help = bench::NOTES)]
     Bench(bench::Config),
@@ -51,6 +54,7 @@ pub fn main() -> ExitCode {
         Some(Command::Check(config)) => check::run(&config),
         Some(Command::Locate(config)) => locate::run(&config),
         Some(Command::Evaluate(config)) => evaluate::run(&config),
+        Some(Command::Plot(config)) => plot::run(&config),
         Some(Command::Bench(config)) => bench::run(&config),
     };
     outcome.unwrap_or_else(|error| {
@@ -104,6 +108,12 @@ mod tests {
             "backcast --heading-from compass",
             "backcast --graph Big",
             "backcast --rate 2 check",
+            "backcast plot",
+            "backcast plot --bag r.mcap",
+            "backcast plot histogram --out p.png",
+            "backcast plot --out p.png --scan 0",
+            "backcast plot --out p.png --width 199",
+            "backcast plot sheet --out p.png --panels 65",
             "backcast bench",
             "backcast bench table3",
             "backcast bench search --kind caves",

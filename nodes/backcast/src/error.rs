@@ -4,6 +4,7 @@ use std::{io, path::PathBuf, process::ExitStatus};
 
 use benchmarks::BenchmarksError;
 use dataflow::DataflowError;
+use drawing::DrawingError;
 use engine::EngineError;
 use engine::heading::HeadingError;
 use map::MapError;
@@ -163,6 +164,40 @@ pub enum BackcastError {
         scans: u64,
         /// True poses in the recording.
         truths: usize,
+    },
+    /// A recording that has fewer scans than the number of the one asked for.
+    #[error(
+        "{}: there is no scan {wanted}; the scans taken are 1 to {found}",
+        file.display()
+    )]
+    NoSuchScan {
+        /// The recording.
+        file: PathBuf,
+        /// The number asked for, from 1.
+        wanted: u64,
+        /// Scans that are taken.
+        found: u64,
+    },
+    /// A scan that has no best place to draw anything at.
+    #[error("{}: scan {number} has no place on this map: {says}", file.display())]
+    NoPlace {
+        /// The recording.
+        file: PathBuf,
+        /// The scan's number, from 1.
+        number: u64,
+        /// The verdict in words.
+        says: String,
+    },
+    /// A picture cannot be made.
+    #[error(transparent)]
+    Drawing(#[from] DrawingError),
+    /// A picture cannot be stored.
+    #[error("cannot write the picture {}", file.display())]
+    Picture {
+        /// Its file.
+        file: PathBuf,
+        /// Why not.
+        source: io::Error,
     },
     /// A case of the bench cannot be set up.
     #[error(transparent)]

@@ -15,6 +15,7 @@ mod error;
 mod evaluate;
 mod locate;
 mod offline;
+mod plot;
 mod run;
 mod statistics;
 mod stdout;

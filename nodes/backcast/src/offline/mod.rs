@@ -1,4 +1,4 @@
-//! What `locate` and `evaluate` share: the scans of a recording, each asked for
+//! What `locate`, `evaluate` and `plot` share: the scans of a recording, each asked for
 //! its place on a map, in this process and without a graph.
 //!
 //! The engine is the graph's, with the same settings, so the votes are the same
@@ -16,5 +16,5 @@ mod world;
 pub(crate) use options::Options;
 pub(crate) use progress::{Progress, say};
 pub(crate) use scans::TakenScan;
-pub(crate) use session::{Reply, Session, damage_of};
-pub(crate) use world::Answer;
+pub(crate) use session::{Reply, Session, damage_of, map_in};
+pub(crate) use world::{Answer, BeamEnd, Field, ScanAt, World};

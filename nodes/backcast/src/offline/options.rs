@@ -1,4 +1,4 @@
-//! What both commands take on the command line.
+//! What all of them take on the command line.
 
 use std::path::PathBuf;
 

@@ -140,7 +140,11 @@ pub(crate) fn damage_of(recording: &Recording) -> Option<RecordingError> {
     })
 }
 
-fn map_in(recording: &Recording) -> Result<OccupancyGrid, BackcastError> {
+/// The map that a recording holds.
+///
+/// # Errors
+/// It holds none, or one that cannot be used.
+pub(crate) fn map_in(recording: &Recording) -> Result<OccupancyGrid, BackcastError> {
     if let Some(map) = recording.map()? {
         return Ok(map);
     }

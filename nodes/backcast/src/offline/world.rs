@@ -3,7 +3,7 @@
 
 use engine::EngineError;
 use engine::beams::BeamConfig;
-use engine::fit::{Ends, Terrain};
+use engine::fit::{BeamClass, Ends, GridPose, JudgedBeam, Terrain};
 use engine::grid::GridFrame;
 use engine::localizer::{self, Localizer, Outcome, Prior};
 use engine::peaks::{self, PeakConfig, PeakInput, Places, Score};
@@ -43,6 +43,55 @@ pub(crate) struct Answer<'a> {
     pub(crate) outcome: &'a Outcome,
     /// What they say, the verdict included.
     pub(crate) places: &'a Places,
+}
+
+/// A scan at a pose.
+#[derive(Debug, Clone, PartialEq)]
+pub(crate) struct ScanAt {
+    /// How well it fits the map there, at most 1.
+    pub(crate) score: f64,
+    /// In the order of their bearings.
+    pub(crate) ends: Vec<BeamEnd>,
+}
+
+/// Where a beam that votes ends, and what became of it.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(crate) struct BeamEnd {
+    /// In the map, metres.
+    pub(crate) at: (f64, f64),
+    pub(crate) class: BeamClass,
+}
+
+impl BeamEnd {
+    /// How far it lies from a pose, metres.
+    pub(crate) fn distance_to(&self, pose: Pose) -> f64 {
+        (self.at.0 - pose.x).hypot(self.at.1 - pose.y)
+    }
+}
+
+impl ScanAt {
+    /// How far a share of the beams, 0..=1, ends from a pose at most, metres; 0
+    /// without beams.
+    pub(crate) fn reach_m(&self, pose: Pose, share: f64) -> f64 {
+        let ends = self.ends.iter();
+        let mut distances: Vec<f64> = ends.map(|end| end.distance_to(pose)).collect();
+        distances.sort_by(f64::total_cmp);
+        let last = (share * distances.len() as f64).ceil() as usize;
+        let farthest = distances.get(last.saturating_sub(1));
+        farthest.copied().unwrap_or_default()
+    }
+}
+
+/// How many votes each position has at one heading.
+#[derive(Debug, Clone, PartialEq)]
+pub(crate) struct Field {
+    /// Where its cells lie; they can be larger than the map's.
+    pub(crate) frame: GridFrame,
+    /// Cells along x and y.
+    pub(crate) sides: (usize, usize),
+    /// Row by row from the lowest y.
+    pub(crate) intensities: Vec<u16>,
+    pub(crate) outcome: Outcome,
 }
 
 impl World {
@@ -115,4 +164,51 @@ impl World {
         };
         Ok(Answer { outcome, places })
     }
+
+    /// How a scan fits if it was taken at a pose of the map.
+    ///
+    /// # Errors
+    /// The scan is refused.
+    pub(crate) fn scan_at(
+        &self,
+        scan: &Scan<'_>,
+        map_from_laser: Pose,
+    ) -> Result<ScanAt, EngineError> {
+        let ends = Ends::new(scan, &self.space, &self.beams)?;
+        let frame = self.terrain.frame;
+        let (x, y, heading) = frame.cells_from_map(map_from_laser);
+        let pose = GridPose { x, y, heading };
+        let classes = self.terrain.classes(&ends, pose, &self.peaks.fit);
+        let beams = ends.judged(&classes).map(|beam| BeamEnd {
+            at: end_of(map_from_laser, beam),
+            class: beam.class,
+        });
+        Ok(ScanAt {
+            score: self.terrain.score(&ends, pose, &self.peaks.fit),
+            ends: beams.collect(),
+        })
+    }
+
+    /// The votes of all positions at a heading in the map, radians; the world
+    /// must be prepared for known headings.
+    ///
+    /// # Errors
+    /// The scan is refused.
+    pub(crate) fn field_at(&self, scan: &Scan<'_>, heading: f64) -> Result<Field, EngineError> {
+        let found = self.localizer.search_at(scan, heading, &|| false)?;
+        let (outcome, intensities) = found.expect("a search that nothing stops ends");
+        let grid = self.localizer.grid();
+        Ok(Field {
+            frame: self.localizer.frame(),
+            sides: (grid.width(), grid.height()),
+            intensities,
+            outcome,
+        })
+    }
+}
+
+/// Where a beam ends in the map if the scan was taken at a pose, metres.
+fn end_of(map_from_laser: Pose, beam: JudgedBeam) -> (f64, f64) {
+    let (sin, cos) = beam.bearing.sin_cos();
+    map_from_laser.transform(beam.reading_m * cos, beam.reading_m * sin)
 }

@@ -1,0 +1,121 @@
+//! Which part of the map is shown.
+
+use geometry::Pose;
+use map::OccupancyGrid;
+
+/// A rectangle along the map's axes, metres. Empty until a point is included.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(super) struct Extent {
+    min: (f64, f64),
+    max: (f64, f64),
+}
+
+impl Extent {
+    /// Nothing yet.
+    pub(super) const EMPTY: Extent = Extent {
+        min: (f64::INFINITY, f64::INFINITY),
+        max: (f64::NEG_INFINITY, f64::NEG_INFINITY),
+    };
+
+    /// What holds all points.
+    pub(super) fn of(points: impl IntoIterator<Item = (f64, f64)>) -> Self {
+        let mut extent = Extent::EMPTY;
+        extent.include(points);
+        extent
+    }
+
+    /// What holds the whole map.
+    pub(super) fn of_map(map: &OccupancyGrid) -> Self {
+        let width = f64::from(map.width) * map.resolution_m;
+        let height = f64::from(map.height) * map.resolution_m;
+        let corners = [(0.0, 0.0), (width, 0.0), (width, height), (0.0, height)];
+        Extent::of(corners.map(|(x, y)| map.map_from_grid.transform(x, y)))
+    }
+
+    /// What lies within so many metres of a pose, along each axis.
+    pub(super) fn around(pose: Pose, reach_m: f64) -> Self {
+        Extent {
+            min: (pose.x - reach_m, pose.y - reach_m),
+            max: (pose.x + reach_m, pose.y + reach_m),
+        }
+    }
+
+    /// Grows until it holds the points; those that are not finite are left out.
+    pub(super) fn include(&mut self, points: impl IntoIterator<Item = (f64, f64)>) {
+        for (x, y) in points {
+            if x.is_finite() && y.is_finite() {
+                self.min = (self.min.0.min(x), self.min.1.min(y));
+                self.max = (self.max.0.max(x), self.max.1.max(y));
+            }
+        }
+    }
+
+    /// What both hold; `other` where they have nothing in common.
+    pub(super) fn within(self, other: Extent) -> Self {
+        let min = (self.min.0.max(other.min.0), self.min.1.max(other.min.1));
+        let max = (self.max.0.min(other.max.0), self.max.1.min(other.max.1));
+        if min.0 < max.0 && min.1 < max.1 {
+            return Extent { min, max };
+        }
+        other
+    }
+
+    /// With a rim of a share of its longer side, and at least `least_m` along
+    /// each axis.
+    pub(super) fn with_rim(self, share: f64, least_m: f64) -> Self {
+        let rim = share * self.width().max(self.height());
+        let (x, y) = self.center();
+        let half = |length: f64| (length / 2.0 + rim).max(least_m / 2.0);
+        let (half_x, half_y) = (half(self.width()), half(self.height()));
+        Extent {
+            min: (x - half_x, y - half_y),
+            max: (x + half_x, y + half_y),
+        }
+    }
+
+    /// Metres along x.
+    pub(super) fn width(&self) -> f64 {
+        self.max.0 - self.min.0
+    }
+
+    /// Metres along y.
+    pub(super) fn height(&self) -> f64 {
+        self.max.1 - self.min.1
+    }
+
+    /// The middle.
+    pub(super) fn center(&self) -> (f64, f64) {
+        (
+            (self.min.0 + self.max.0) / 2.0,
+            (self.min.1 + self.max.1) / 2.0,
+        )
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn points_without_a_place_are_left_out() {
+        let extent = Extent::of([(1.0, 2.0), (f64::NAN, 50.0), (4.0, 3.0)]);
+        assert_eq!((extent.width(), extent.height()), (3.0, 1.0));
+        assert_eq!(extent.center(), (2.5, 2.5));
+    }
+
+    #[test]
+    fn a_rim_goes_around_and_little_is_not_blown_up() {
+        let extent = Extent::of([(0.0, 0.0), (10.0, 2.0)]).with_rim(0.1, 6.0);
+        assert_eq!((extent.width(), extent.height()), (12.0, 6.0));
+        assert_eq!(extent.center(), (5.0, 1.0));
+    }
+
+    #[test]
+    fn what_both_hold_is_cut_out() {
+        let one = Extent::of([(0.0, 0.0), (4.0, 4.0)]);
+        let other = Extent::of([(2.0, -1.0), (9.0, 3.0)]);
+        assert_eq!(one.within(other), Extent::of([(2.0, 0.0), (4.0, 3.0)]));
+        let far = Extent::of([(20.0, 20.0), (21.0, 21.0)]);
+        assert_eq!(one.within(far), far);
+    }
+}

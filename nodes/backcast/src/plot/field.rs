@@ -1,0 +1,162 @@
+//! The picture of the votes: how many each position has at the best heading,
+//! over the map, as in figures 4b, 5b and 6e to 6g of the paper.
+
+use drawing::{Color, Path, Scene, Stroke};
+use engine::grid::CellRules;
+use map::{OccupancyGrid, UNKNOWN};
+
+use super::ground::{self, Sampler};
+use super::marks;
+use super::page::{self, Entry, Heading, Page, Sample};
+use super::scan::Size;
+use super::subject::{Ground, Subject};
+use super::theme;
+use super::view::View;
+use crate::BackcastError;
+use crate::offline::Field;
+
+const HEIGHTS: (f64, f64) = (0.25, 0.8);
+
+/// The colour of a share of the most votes, 0..=1: from nothing to dark.
+pub(super) fn heat(share: f64) -> Color {
+    // The palest tenth of the scale is not told from paper.
+    let colorous::Color { r, g, b } =
+        colorous::YELLOW_ORANGE_RED.eval_continuous(share.clamp(0.0, 1.0));
+    let color = Color {
+        red: r,
+        green: g,
+        blue: b,
+        opacity: 1.0,
+    };
+    Color::WHITE.towards(color, 5.0 * share)
+}
+
+/// The lines above a picture of a field.
+pub(super) fn heading(subject: &Subject, field: &Field, bag: &str) -> Heading {
+    let best = field.outcome.found.best;
+    let degrees = field.outcome.known_heading.unwrap_or_default().to_degrees();
+    Heading {
+        title: format!(
+            "{bag} · scan {}: votes at heading {degrees:.1}°",
+            subject.number
+        ),
+        verdict: Some(subject.places.verdict),
+        says: format!(
+            "the best position has {best} of {} votes possible, from {} beams; {}",
+            field.outcome.highest_possible,
+            field.outcome.beams_used,
+            subject.places.sentence()
+        ),
+    }
+}
+
+/// What the colours mean.
+pub(super) fn scale(field: &Field) -> Entry {
+    let most = field.outcome.found.best;
+    (Sample::Scale(heat), format!("0 to {most} votes"))
+}
+
+/// Draws the picture.
+///
+/// # Errors
+/// The picture would be too large.
+pub(super) fn draw(
+    ground: &Ground<'_>,
+    (subject, field): (&Subject, &Field),
+    bag: &str,
+    size: Size,
+) -> Result<Scene, BackcastError> {
+    let extent = match size.whole {
+        true => ground.extent(),
+        false => subject.extent(ground),
+    };
+    let ratio = (extent.height() / extent.width()).clamp(HEIGHTS.0, HEIGHTS.1);
+    let height = (page::body_width(size.width) * ratio).round();
+    let mut legend = vec![
+        scale(field),
+        (Sample::Ellipse(theme::BEST), "most votes".to_owned()),
+    ];
+    if subject.truth.is_some() {
+        legend.push((Sample::Truth, "truth".to_owned()));
+    }
+    let heading = heading(subject, field, bag);
+    let mut page = Page::new(size.width, height, &heading, &legend)?;
+    let view = View::fitting(extent, page.body);
+    fill(&mut page.scene, ground, field, &view)?;
+    let unit = page.unit;
+    page.scene.clipped(view.area(), |scene| {
+        if let Some(truth) = &subject.truth {
+            marks::truth(scene, marks::stand(&view, truth.pose), 5.0 * unit);
+        }
+        if let Some(best) = best_position(field) {
+            let ring = Path::circle(view.at(best), 16.0 * unit);
+            scene.stroke(ring, Stroke::new(theme::BEST, 2.4 * unit));
+        }
+    });
+    marks::scale_bar(&mut page.scene, &view, unit);
+    page.frame(view.area());
+    Ok(page.scene)
+}
+
+/// Where most votes meet, in the map, metres.
+pub(super) fn best_position(field: &Field) -> Option<(f64, f64)> {
+    let best = field.outcome.found.votes.first()?;
+    let (x, y) = (f64::from(best.x) + 0.5, f64::from(best.y) + 0.5);
+    let pose = field.frame.map_from_cells(x, y, 0.0);
+    Some((pose.x, pose.y))
+}
+
+fn fill(
+    scene: &mut Scene,
+    ground: &Ground<'_>,
+    field: &Field,
+    view: &View,
+) -> Result<(), BackcastError> {
+    let map = ground.map;
+    let cells = Sampler::new(view, ground::frame_of(map), ground::sides_of(map));
+    let votes = Sampler::new(view, field.frame, field.sides);
+    let most = f64::from(field.outcome.found.best.max(1));
+    ground::fill(scene, view, |column, row| {
+        let mut highest = 0;
+        votes.each(column, row, |index| {
+            let intensity = index.and_then(|index| field.intensities.get(index));
+            highest = highest.max(intensity.copied().unwrap_or_default());
+        });
+        let (mut met, mut walls) = (0.0_f64, 0.0);
+        cells.each(column, row, |index| {
+            met += 1.0;
+            if index.is_some_and(|index| is_wall(map, ground.rules, index)) {
+                walls += 1.0;
+            }
+        });
+        let color = heat(f64::from(highest) / most);
+        color.towards(WALL, (walls / met.max(1.0)).sqrt())
+    })?;
+    Ok(())
+}
+
+/// Walls stand back behind the votes.
+pub(super) const WALL: Color = Color::rgb(0x7C_8896);
+
+pub(super) fn is_wall(map: &OccupancyGrid, rules: CellRules, index: usize) -> bool {
+    let value = map.cells.get(index).copied().unwrap_or(UNKNOWN);
+    value >= rules.occupied_from && value != UNKNOWN
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn more_votes_are_darker() {
+        let brightness = |share| {
+            let Color {
+                red, green, blue, ..
+            } = heat(share);
+            [red, green, blue].map(u32::from).iter().sum::<u32>()
+        };
+        assert_eq!(heat(0.0), Color::WHITE);
+        let steps: Vec<u32> = (0..=10).map(|i| brightness(f64::from(i) / 10.0)).collect();
+        assert!(steps.windows(2).all(|pair| pair[1] < pair[0]), "{steps:?}");
+    }
+}

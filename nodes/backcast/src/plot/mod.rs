@@ -1,0 +1,33 @@
+//! `backcast plot`: pictures of a map, of a scan at its places, of its votes,
+//! and of how far off the places are. PNG or SVG, by the name of the file.
+//!
+//! It asks the same engine as `locate` and judges nothing anew. One file a
+//! picture; those that are pure compute a scene from what they are given:
+//!
+//! ```text
+//! command ─ subject ─┬─ scan ─────┐
+//!                    ├─ field ────┤
+//!                    ├─ surface ──┼─ drawing
+//!                    ├─ sheet ────┤
+//!                    └─ errors ───┘
+//! map ───────────────── outline ──┘
+//! ```
+
+mod chart;
+mod command;
+mod errors;
+mod extent;
+mod field;
+mod ground;
+mod marks;
+mod outline;
+mod page;
+mod places;
+mod scan;
+mod sheet;
+mod subject;
+mod surface;
+mod theme;
+mod view;
+
+pub(crate) use command::{Config, NOTES, run};
