@@ -9,27 +9,28 @@ use super::theme;
 pub(super) struct Chart {
     area: Rect,
     seconds: (f64, f64),
-    /// Powers of ten, whole numbers.
-    decades: (i32, i32),
+    /// Powers of ten at the lower and at the upper end.
+    decades: (f64, f64),
 }
 
 impl Chart {
     /// A chart of values from the least to the most of what is given, above 0,
-    /// in whole decades, over the time from 0 to `seconds`.
-    pub(super) fn new(area: Rect, seconds: f64, values: (f64, f64)) -> Self {
-        let low = values.0.log10().floor() as i32;
-        let high = values.1.log10().ceil() as i32;
+    /// in whole decades, over the time from 0 to `seconds`. No value is above
+    /// `bound`, so the scale ends there.
+    pub(super) fn new(area: Rect, seconds: f64, values: (f64, f64), bound: f64) -> Self {
+        let low = values.0.log10().floor();
+        let high = values.1.log10().ceil().min(bound.log10());
         Chart {
             area,
             seconds: (0.0, seconds.max(f64::MIN_POSITIVE)),
-            decades: (low, high.max(low + 1)),
+            decades: (low, high.max(low + 1.0)),
         }
     }
 
     /// Where a value lies in the picture; what is off the scale lies on its end.
     pub(super) fn at(&self, seconds: f64, value: f64) -> (f64, f64) {
         let (first, last) = self.seconds;
-        let (low, high) = (f64::from(self.decades.0), f64::from(self.decades.1));
+        let (low, high) = self.decades;
         let share_x = (seconds - first) / (last - first);
         let share_y = (value.log10().clamp(low, high) - low) / (high - low);
         (
@@ -43,7 +44,8 @@ impl Chart {
     pub(super) fn draw_axes(&self, scene: &mut Scene, unit: f64, unit_of_values: &str) {
         let thin = Stroke::new(theme::GRATING, unit);
         let style = TextStyle::new(13.0 * unit, theme::QUIET);
-        for decade in self.decades.0..=self.decades.1 {
+        let (low, high) = self.decades;
+        for decade in low as i32..=high.floor() as i32 {
             let value = 10f64.powi(decade);
             let (_, y) = self.at(0.0, value);
             let line = Path::line((self.area.x, y), (self.area.right(), y));
@@ -105,13 +107,15 @@ mod tests {
     #[test]
     fn values_lie_by_their_decades_and_time_from_left_to_right() {
         let area = Rect::new(10.0, 20.0, 100.0, 60.0);
-        let chart = Chart::new(area, 50.0, (0.02, 4.0));
-        assert_eq!(chart.decades, (-2, 1));
+        let chart = Chart::new(area, 50.0, (0.02, 4.0), f64::INFINITY);
+        assert_eq!(chart.decades, (-2.0, 1.0));
         let near = |(x, y): (f64, f64), ex: f64, ey: f64| (x - ex).hypot(y - ey) < 1e-9;
         assert!(near(chart.at(0.0, 0.01), 10.0, 80.0));
         assert!(near(chart.at(25.0, 0.1), 60.0, 60.0));
         assert!(near(chart.at(50.0, 10.0), 110.0, 20.0));
         assert!(near(chart.at(50.0, 1e9), 110.0, 20.0), "on the end");
+        let bounded = Chart::new(area, 50.0, (0.02, 4.0), 5.0);
+        assert!(near(bounded.at(50.0, 5.0), 110.0, 20.0));
     }
 
     #[test]

@@ -69,6 +69,10 @@ pub(crate) struct Config {
     #[arg(long, value_name = "COUNT", value_parser = clap::value_parser!(u8).range(1..=64))]
     panels: Option<u8>,
 
+    /// Leave out /ground_truth, which may be of another map than --map
+    #[arg(long)]
+    no_truth: bool,
+
     /// Width of the picture, pixels, 200..=8000; its height follows
     #[arg(long, value_name = "PIXELS", default_value_t = 1200, value_parser = clap::value_parser!(u32).range(200..=8000))]
     width: u32,
@@ -137,6 +141,12 @@ impl Config {
         }
         if self.panels.is_some() && self.kind != Kind::Sheet {
             return usage("--panels is for the picture `sheet`".into());
+        }
+        if self.no_truth && matches!(self.kind, Kind::Map | Kind::Errors) {
+            return usage("--no-truth is for the pictures of scans".into());
+        }
+        if self.whole && matches!(self.kind, Kind::Map | Kind::Errors) {
+            return usage("--whole is for the pictures of scans".into());
         }
         let extension = self.out.extension().and_then(|name| name.to_str());
         match extension.map(str::to_ascii_lowercase).as_deref() {
@@ -207,13 +217,17 @@ impl<'a> Plot<'a> {
             Some(map) => map,
             None => map_in(recording)?,
         };
+        let truths = match config.no_truth {
+            true => BTreeMap::new(),
+            false => recording.ground_truths()?,
+        };
         Ok(Plot {
             config,
             bag: recording.path(),
             session: Session::open(recording, &config.options, Some(&map))?,
             map,
             recording,
-            truths: recording.ground_truths()?,
+            truths,
         })
     }
 

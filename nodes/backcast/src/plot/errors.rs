@@ -69,6 +69,7 @@ pub(super) fn draw(judged: &[Judged], bag: &str, width: u32) -> Result<Scene, Ba
         unit_of_values: " m",
         limit: most_m,
         least: LEAST.0,
+        bound: f64::INFINITY,
         value: |(metres, _)| metres,
     };
     let degrees = Series {
@@ -76,6 +77,7 @@ pub(super) fn draw(judged: &[Judged], bag: &str, width: u32) -> Result<Scene, Ba
         unit_of_values: "°",
         limit: most_deg,
         least: LEAST.1,
+        bound: 180.0,
         value: |(_, degrees)| degrees,
     };
     metres.draw(&mut page.scene, judged, area(body.y), unit);
@@ -90,6 +92,8 @@ struct Series {
     /// What counts as found.
     limit: f64,
     least: f64,
+    /// No error is above.
+    bound: f64,
     value: fn((f64, f64)) -> f64,
 }
 
@@ -101,7 +105,7 @@ impl Series {
         let (least, most) = values.fold((self.limit, 1.5 * self.limit), |(low, high), value| {
             (low.min(value), high.max(value))
         });
-        let chart = Chart::new(area, duration_s(judged), (least, most));
+        let chart = Chart::new(area, duration_s(judged), (least, most), self.bound);
         chart.draw_axes(scene, unit, self.unit_of_values);
         let word = format!("{}{}", self.limit, self.unit_of_values);
         chart.draw_limit(scene, unit, self.limit, &word);

@@ -86,7 +86,7 @@ pub(super) fn draw(
     let unit = page.unit;
     page.scene.clipped(view.area(), |scene| {
         if let Some(truth) = &subject.truth {
-            marks::truth(scene, marks::stand(&view, truth.pose), 5.0 * unit);
+            marks::truth(scene, marks::stand(&view, truth.pose), 7.0 * unit);
         }
         if let Some(best) = best_position(field) {
             let ring = Path::circle(view.at(best), 16.0 * unit);

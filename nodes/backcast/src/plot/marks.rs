@@ -26,12 +26,12 @@ pub(super) fn robot(scene: &mut Scene, stand: Stand, size: f64, color: Color) {
     scene.fill(path, color);
 }
 
-/// The true pose as a ring with its heading.
+/// The true pose as a ring with its heading, in which a robot fits.
 pub(super) fn truth(scene: &mut Scene, stand: Stand, size: f64) {
     let mut path = Path::circle(stand.0, size);
-    path.add_line(placed(stand, size, 0.0), placed(stand, 2.4 * size, 0.0));
-    scene.stroke(path.clone(), Stroke::new(Color::WHITE, 0.75 * size));
-    scene.stroke(path, Stroke::new(theme::TRUTH, 0.4 * size));
+    path.add_line(placed(stand, size, 0.0), placed(stand, 1.9 * size, 0.0));
+    scene.stroke(path.clone(), Stroke::new(Color::WHITE, 0.5 * size));
+    scene.stroke(path, Stroke::new(theme::TRUTH, 0.22 * size));
 }
 
 /// The ellipse of a covariance, and a fan of its heading's spread.

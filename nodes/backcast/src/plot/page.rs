@@ -175,8 +175,8 @@ fn draw_sample(scene: &mut Scene, sample: Sample, at: (f64, f64), unit: f64) -> 
         }
         Sample::Robot(color) => marks::robot(scene, (at, 0.0), 7.0 * unit, color),
         Sample::Truth => {
-            let ring = (at.0 - 4.0 * unit, at.1);
-            marks::truth(scene, (ring, 0.0), 5.0 * unit);
+            let ring = (at.0 - 3.0 * unit, at.1);
+            marks::truth(scene, (ring, 0.0), 6.5 * unit);
         }
         Sample::Line(stroke) => {
             let half = 9.0 * unit;

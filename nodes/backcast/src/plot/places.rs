@@ -12,9 +12,9 @@ use super::view::View;
 use crate::offline::{BeamEnd, ScanAt};
 
 /// Sizes of what is drawn, in the picture's units.
-const ROBOT: f64 = 10.0;
-const TRUTH: f64 = 6.5;
-const DOT: f64 = 2.3;
+pub(super) const ROBOT: f64 = 10.0;
+pub(super) const TRUTH: f64 = 12.0;
+const DOT: f64 = 2.4;
 const FAINT_DOT: f64 = 1.7;
 
 /// Draws all places, the best in front and with what became of its beams.
@@ -115,4 +115,103 @@ pub(super) fn legend(subject: &Subject) -> Vec<Entry> {
         entries.push((Sample::Truth, "truth".to_owned()));
     }
     entries
+}
+
+#[cfg(test)]
+mod tests {
+    use drawing::Rect;
+    use engine::peaks::{Place, Places};
+    use geometry::Covariance;
+    use messages::Verdict;
+
+    use super::super::extent::Extent;
+    use super::super::subject::Truth;
+    use super::*;
+
+    /// A robot at a pose, whose only beam hits something two metres ahead.
+    fn subject(pose: Pose) -> Subject {
+        let place = Place {
+            map_from_laser: pose,
+            covariance: Covariance::from_deviations(0.01, 0.01, 0.01),
+            score: 1.0,
+            probability: 1.0,
+            intensity: 1,
+            support: 1,
+        };
+        let scan = ScanAt {
+            score: 1.0,
+            ends: vec![BeamEnd {
+                at: pose.transform(2.0, 0.0),
+                class: BeamClass::Hit,
+            }],
+        };
+        Subject {
+            number: 1,
+            stamp_ns: 0,
+            places: Places {
+                places: vec![place],
+                verdict: Verdict::Unique,
+                alternatives: 0,
+                confidence: 1.0,
+                inlier_share: 1.0,
+                classes: vec![BeamClass::Hit],
+            },
+            shown: vec![Shown {
+                place,
+                rank: 1,
+                scan: scan.clone(),
+                opacity: 1.0,
+            }],
+            truth: Some(Truth {
+                pose,
+                scan,
+                off: Some((0.0, 0.0)),
+            }),
+        }
+    }
+
+    /// The middle of all pixels of a colour.
+    fn middle_of(scene: &Scene, color: Color) -> (f64, f64) {
+        let png = drawing::to_png(scene).unwrap();
+        let picture = image::load_from_memory(&png).unwrap().to_rgb8();
+        let wanted = image::Rgb([color.red, color.green, color.blue]);
+        let pixels = picture.enumerate_pixels();
+        let found: Vec<_> = pixels.filter(|(_, _, pixel)| **pixel == wanted).collect();
+        assert!(found.len() > 10, "{} pixels", found.len());
+        let sum = |of: fn(u32, u32) -> u32| {
+            let all = found.iter().map(|&(x, y, _)| f64::from(of(x, y)) + 0.5);
+            all.sum::<f64>() / found.len() as f64
+        };
+        (sum(|x, _| x), sum(|_, y| y))
+    }
+
+    #[test]
+    fn robot_and_hit_are_drawn_where_the_pose_says() {
+        let extent = Extent::of([(0.0, 0.0), (10.0, 8.0)]);
+        let view = View::fitting(extent, Rect::new(0.0, 0.0, 500.0, 400.0));
+        for pose in [Pose::new(3.0, 2.0, 0.0), Pose::new(6.0, 5.0, 2.5)] {
+            let mut scene = Scene::new(500, 400, "", Color::WHITE).unwrap();
+            draw(&mut scene, &view, &subject(pose), 1.0);
+            // 50 pixels a metre, y from the top.
+            let (x, y) = (50.0 * pose.x, 400.0 - 50.0 * pose.y);
+            let (robot_x, robot_y) = middle_of(&scene, theme::BEST);
+            // The dart's middle lies a little off the laser, and its rim is
+            // blended with the ellipse: a quarter of its length.
+            let off = (robot_x - x).hypot(robot_y - y);
+            assert!(off < ROBOT / 2.0, "{robot_x} {robot_y} for {pose:?}");
+            let (hit_color, _) = theme::of_class(BeamClass::Hit);
+            let (hit_x, hit_y) = middle_of(&scene, hit_color);
+            let (sin, cos) = pose.yaw.sin_cos();
+            let off = (hit_x - x - 100.0 * cos).hypot(hit_y - y + 100.0 * sin);
+            // A dot is symmetric: its middle is met to a share of a pixel.
+            assert!(off < 0.75, "{hit_x} {hit_y} for {pose:?}");
+        }
+    }
+
+    #[test]
+    fn the_legend_names_what_there_is_and_counts_beams() {
+        let entries = legend(&subject(Pose::IDENTITY));
+        let names: Vec<&str> = entries.iter().map(|(_, name)| name.as_str()).collect();
+        assert_eq!(names, ["best place", "hit 1", "2 σ", "truth"]);
+    }
 }

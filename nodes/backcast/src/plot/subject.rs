@@ -177,7 +177,7 @@ impl Subject {
     pub(super) fn heading(&self, bag: &str) -> Heading {
         let mut says = self.places.sentence();
         if let Some(truth) = &self.truth {
-            says = format!("{says}; {}", truth.says());
+            says = format!("{says} · {}", truth.says());
         }
         Heading {
             title: format!("{bag} · scan {}", self.number),

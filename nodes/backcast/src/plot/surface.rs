@@ -172,7 +172,7 @@ impl Relief {
             false => color.towards(SHADOW, -0.3 * light),
         };
         let walls = self.walls.get(index).copied().unwrap_or_default();
-        lit.towards(WALL, walls * (1.0 - highest))
+        lit.towards(WALL, walls * (1.0 - 4.0 * highest))
     }
 }
 
