@@ -5,8 +5,10 @@ use messages::Verdict;
 
 use super::theme;
 
-/// All lengths are meant for a picture this wide, and grow with it.
+/// All lengths are meant for a picture this wide.
 const WIDTH: f64 = 1200.0;
+/// They grow with the width, but by less, so that a small picture is legible.
+const GROWTH: f64 = 0.7;
 
 /// The lines above a picture.
 #[derive(Debug, Clone, PartialEq)]
@@ -54,7 +56,7 @@ pub(super) struct Page {
 
 /// How lengths grow in a picture of this width.
 pub(super) fn unit(width: u32) -> f64 {
-    f64::from(width) / WIDTH
+    (f64::from(width) / WIDTH).powf(GROWTH)
 }
 
 /// How wide the body of a picture is, in pixels.
@@ -263,7 +265,8 @@ mod tests {
         assert_eq!(page.body.height, 321.0);
         assert_eq!(page.body.width, body_width(600));
         let below = f64::from(page.scene.height()) - page.body.bottom();
-        // Half of a row and of the margin, to a whole pixel.
-        assert!((below - 23.0).abs() <= 0.5, "{below}");
+        // A row and the margin, to a whole pixel.
+        let expected = unit(600) * (LEGEND_ROW + MARGIN);
+        assert!((below - expected).abs() <= 0.5, "{below} {expected}");
     }
 }
