@@ -24,7 +24,7 @@ pub(crate) struct Session<'a> {
     pub(crate) world: World,
     /// Milliseconds of computing that preparing the map has cost.
     pub(crate) prepare_cpu_ms: f64,
-    map: Cow<'a, OccupancyGrid>,
+    pub(crate) map: Cow<'a, OccupancyGrid>,
     map_file: PathBuf,
     engine: EngineOptions,
     headings: Headings,

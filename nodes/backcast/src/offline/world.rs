@@ -9,6 +9,7 @@ use engine::localizer::{self, Localizer, Outcome, Prior};
 use engine::peaks::{self, PeakConfig, PeakInput, Places, Score};
 use engine::scan::Scan;
 use engine::space::Space;
+use geometry::Pose;
 use map::OccupancyGrid;
 
 use super::options::EngineOptions;

@@ -2,10 +2,9 @@
 
 use std::collections::BTreeMap;
 use std::fs;
-use std::path::{Path, PathBuf};
+use std::path::Path;
 use std::process::ExitCode;
 
-use clap::ValueEnum;
 use drawing::Scene;
 use engine::grid::Grid;
 use engine::localizer::Prior;
@@ -13,84 +12,13 @@ use map::OccupancyGrid;
 use messages::Verdict;
 use recording::{GroundTruth, Recording, RecordingError};
 
+use super::config::{Config, Format, Kind};
 use super::errors::Judged;
-use super::scan::Size;
 use super::sheet::Panel;
-use super::subject::{Ground, Subject};
+use super::subject::Subject;
 use super::{errors, field, outline, scan, sheet, surface};
-use crate::offline::{Field, Options, Progress, Session, TakenScan, World, damage_of, map_in};
+use crate::offline::{Field, Progress, Session, TakenScan, World, damage_of, map_in};
 use crate::{BackcastError, stdout};
-
-/// What stands below the options.
-pub(crate) const NOTES: &str = "\
-Colours of beams: green ends at an obstacle, orange before one, red behind one, violet behind
-unknown space. Places that fit about as well are fainter, and shown from near below the map.
-
-Exit codes: 0 drawn, 1 failed, 2 wrong use";
-
-/// What a picture shows.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]
-enum Kind {
-    /// The map with its boundary cells
-    Map,
-    /// A scan at each of its places, and what became of its beams
-    Scan,
-    /// The votes of each position at the best heading
-    Field,
-    /// The same as a surface, from above and from behind
-    Surface,
-    /// The errors of all scans against /ground_truth, by their verdicts
-    Errors,
-    /// Some scans at their places, side by side
-    Sheet,
-}
-
-/// What `backcast plot` takes.
-#[derive(Debug, clap::Args)]
-pub(crate) struct Config {
-    /// What the picture shows
-    #[arg(value_enum, default_value_t = Kind::Scan, value_name = "KIND")]
-    kind: Kind,
-
-    /// The recording: an MCAP file with ROS 2 messages
-    #[arg(long, value_name = "FILE")]
-    bag: Option<PathBuf>,
-
-    /// The picture: a file whose name ends with .png or .svg
-    #[arg(long, value_name = "FILE")]
-    out: PathBuf,
-
-    /// The scan: the N-th of those taken, as `locate` prints it in its N-th
-    /// line [default: 1]
-    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u64).range(1..))]
-    scan: Option<u64>,
-
-    /// Panels of a sheet, 1..=64: so many scans, evenly spread [default: 12]
-    #[arg(long, value_name = "COUNT", value_parser = clap::value_parser!(u8).range(1..=64))]
-    panels: Option<u8>,
-
-    /// Leave out /ground_truth, which may be of another map than --map
-    #[arg(long)]
-    no_truth: bool,
-
-    /// Width of the picture, pixels, 200..=8000; its height follows
-    #[arg(long, value_name = "PIXELS", default_value_t = 1200, value_parser = clap::value_parser!(u32).range(200..=8000))]
-    width: u32,
-
-    /// Show the whole map, not only the places and what the scan reaches
-    #[arg(long)]
-    whole: bool,
-
-    #[command(flatten)]
-    options: Options,
-}
-
-/// In what a picture is written.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-enum Format {
-    Png,
-    Svg,
-}
 
 /// Draws one picture and says how large it is.
 ///
@@ -106,7 +34,7 @@ pub(crate) fn run(config: &Config) -> Result<ExitCode, BackcastError> {
             let recording = Recording::open(bag)?;
             match config.kind {
                 Kind::Map => draw_map(config, given, Some(&recording))?,
-                _ => Plot::open(config, &recording, given)?.draw()?,
+                _ => Plot::open(config, &recording, given.as_ref())?.draw()?,
             }
         }
     };
@@ -122,56 +50,6 @@ pub(crate) fn run(config: &Config) -> Result<ExitCode, BackcastError> {
     let file = config.out.display();
     stdout::print(&format!("{file}: {width} x {height} pixels\n"))?;
     Ok(ExitCode::SUCCESS)
-}
-
-impl Config {
-    /// Checks what no option can check alone; opens nothing.
-    fn check(&self) -> Result<Format, BackcastError> {
-        self.options.check()?;
-        let usage = |text: String| Err(BackcastError::Usage(text));
-        if self.bag.is_none() && (self.kind != Kind::Map || self.options.map.is_none()) {
-            return usage(
-                "--bag is missing: only the picture `map` does without, and then needs --map"
-                    .into(),
-            );
-        }
-        let is_of_scan = matches!(self.kind, Kind::Scan | Kind::Field | Kind::Surface);
-        if self.scan.is_some() && !is_of_scan {
-            return usage("--scan is for the pictures `scan`, `field` and `surface`".into());
-        }
-        if self.panels.is_some() && self.kind != Kind::Sheet {
-            return usage("--panels is for the picture `sheet`".into());
-        }
-        if self.no_truth && matches!(self.kind, Kind::Map | Kind::Errors) {
-            return usage("--no-truth is for the pictures of scans".into());
-        }
-        if self.whole && matches!(self.kind, Kind::Map | Kind::Errors) {
-            return usage("--whole is for the pictures of scans".into());
-        }
-        let extension = self.out.extension().and_then(|name| name.to_str());
-        match extension.map(str::to_ascii_lowercase).as_deref() {
-            Some("png") => Ok(Format::Png),
-            Some("svg") => Ok(Format::Svg),
-            _ => usage(format!(
-                "--out {}: the name must end with .png or .svg",
-                self.out.display()
-            )),
-        }
-    }
-
-    fn size(&self) -> Size {
-        Size {
-            width: self.width,
-            whole: self.whole,
-        }
-    }
-
-    fn ground<'a>(&self, map: &'a OccupancyGrid) -> Ground<'a> {
-        Ground {
-            map,
-            rules: self.options.engine.cells,
-        }
-    }
 }
 
 /// The map that is given, else the one in the recording.
@@ -201,7 +79,6 @@ fn draw_map(
 struct Plot<'a> {
     config: &'a Config,
     bag: &'a Path,
-    map: OccupancyGrid,
     recording: &'a Recording,
     session: Session<'a>,
     truths: BTreeMap<i64, GroundTruth>,
@@ -211,12 +88,8 @@ impl<'a> Plot<'a> {
     fn open(
         config: &'a Config,
         recording: &'a Recording,
-        given: Option<OccupancyGrid>,
+        given: Option<&'a OccupancyGrid>,
     ) -> Result<Self, BackcastError> {
-        let map = match given {
-            Some(map) => map,
-            None => map_in(recording)?,
-        };
         let truths = match config.no_truth {
             true => BTreeMap::new(),
             false => recording.ground_truths()?,
@@ -224,8 +97,7 @@ impl<'a> Plot<'a> {
         Ok(Plot {
             config,
             bag: recording.path(),
-            session: Session::open(recording, &config.options, Some(&map))?,
-            map,
+            session: Session::open(recording, &config.options, given)?,
             recording,
             truths,
         })
@@ -247,7 +119,7 @@ impl<'a> Plot<'a> {
         let number = self.config.scan.unwrap_or(1);
         let scan = self.nth_scan(number)?;
         let subject = self.subject(number, &scan)?;
-        let (ground, name) = (self.config.ground(&self.map), self.name());
+        let (ground, name) = (self.config.ground(&self.session.map), self.name());
         let size = self.config.size();
         if self.config.kind == Kind::Scan {
             return scan::draw(&ground, &subject, &name, size);
@@ -296,7 +168,7 @@ impl<'a> Plot<'a> {
             });
         };
         let engine = &self.config.options.engine;
-        let world = World::prepare(&self.map, engine, Prior::Heading);
+        let world = World::prepare(&self.session.map, engine, Prior::Heading);
         let heading = best.place.map_from_laser.yaw;
         world
             .and_then(|world| world.field_at(&scan.borrowed(), heading))
@@ -370,7 +242,7 @@ impl<'a> Plot<'a> {
             });
             progress.step();
         }
-        let ground = self.config.ground(&self.map);
+        let ground = self.config.ground(&self.session.map);
         sheet::draw(&ground, &panels, &self.name(), self.config.size())
     }
 }

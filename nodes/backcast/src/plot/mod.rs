@@ -15,6 +15,7 @@
 
 mod chart;
 mod command;
+mod config;
 mod errors;
 mod extent;
 mod field;
@@ -30,4 +31,5 @@ mod surface;
 mod theme;
 mod view;
 
-pub(crate) use command::{Config, NOTES, run};
+pub(crate) use command::run;
+pub(crate) use config::{Config, NOTES};
