@@ -12,7 +12,21 @@ use crate::parse::reason;
 use crate::registry::Registry;
 use crate::{Damage, Kind};
 
-/// A part of the file that holds messages.
+/// A part of the file that holds messages: a chunk, or a run of messages outside
+/// of chunks.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub struct Part {
+    /// Whether it is a chunk.
+    pub is_chunk: bool,
+    /// Bytes in the file.
+    pub bytes: usize,
+    /// Messages in it.
+    pub messages: u64,
+    /// Log times of its messages, nanoseconds since 1970.
+    pub log_times_ns: (i64, i64),
+}
+
+/// What is known of a part.
 #[derive(Debug, Clone)]
 pub(crate) struct Block {
     /// Start of its first record.
@@ -49,6 +63,15 @@ impl Block {
             last_ns: i64::MIN,
             kinds: 0,
             counts: BTreeMap::new(),
+        }
+    }
+
+    pub(crate) fn part(&self) -> Part {
+        Part {
+            is_chunk: self.is_chunk,
+            bytes: self.bytes.len(),
+            messages: self.messages(),
+            log_times_ns: (self.first_ns, self.last_ns),
         }
     }
 

@@ -42,7 +42,10 @@ pub(crate) fn decode<T: DeserializeOwned>(bytes: &[u8]) -> Result<T, String> {
 }
 
 /// Encodes a message, little-endian.
-pub(crate) fn encode<T: Serialize>(message: &T) -> Result<Vec<u8>, cdr_encoding::Error> {
+///
+/// # Errors
+/// If a text or a list of it is longer than CDR can say.
+pub fn encode<T: Serialize>(message: &T) -> Result<Vec<u8>, cdr_encoding::Error> {
     let mut bytes = vec![LITTLE_ENDIAN[0], LITTLE_ENDIAN[1], 0, 0];
     bytes.extend(cdr_encoding::to_vec::<T, LittleEndian>(message)?);
     Ok(bytes)

@@ -1,11 +1,11 @@
-//! Reading recordings: MCAP files that hold ROS 2 messages in CDR.
+//! Recordings: MCAP files that hold ROS 2 messages in CDR.
 //!
 //! [`Recording::open`] checks a file from start to end, [`Recording::records`]
-//! gives its messages in the order of their log times, and [`mod@write`] makes
-//! small recordings for tests and examples. Damage is never repaired and never
-//! passed over: what lies before it is given out, then the error that says
-//! where it is. The crate decodes the five message types of [`Kind`], counts
-//! the others, and knows no graph.
+//! gives its messages in the order of their log times, and [`mod@write`] writes
+//! recordings. Damage is never repaired and never passed over: what lies before
+//! it is given out, then the error that says where it is. The crate decodes the
+//! five message types of [`Kind`], gives out all others as bytes, and knows no
+//! graph.
 
 mod block;
 mod cdr;
@@ -13,12 +13,14 @@ mod chunk;
 mod contents;
 mod damage;
 mod error;
+mod extras;
 mod feed;
 mod kind;
 mod message;
 mod mount;
 mod parse;
 mod pass;
+mod raw;
 mod reading;
 mod recording;
 mod registry;
@@ -32,12 +34,16 @@ mod topics;
 mod truth;
 pub mod write;
 
+pub use block::Part;
+pub use cdr::encode as encode_cdr;
 pub use chunk::MAX_CHUNK_BYTES;
 pub use damage::Damage;
 pub use error::RecordingError;
+pub use extras::{AttachedFile, MetadataRecord};
 pub use kind::Kind;
 pub use message::{Message, Record};
 pub use mount::Mount;
+pub use raw::{RawRecord, RawRecords};
 pub use reading::Records;
 pub use recording::Recording;
 pub use registry::Channel;

@@ -9,7 +9,7 @@ use crate::Damage;
 
 /// The fields of the record at byte `at`, or in the chunk there.
 ///
-/// Records that are not read for their fields come back as unknown ones: the
+/// Records that are not read for their fields come back as unknown ones. The
 /// library would panic on an attachment that is shorter than its fields.
 pub(crate) fn parse(opcode: u8, body: &[u8], at: u64) -> Result<Record<'_>, Damage> {
     let damaged = |reason| Damage::Record {
@@ -18,13 +18,19 @@ pub(crate) fn parse(opcode: u8, body: &[u8], at: u64) -> Result<Record<'_>, Dama
         reason,
     };
     match opcode {
-        op::SCHEMA | op::CHANNEL | op::CHUNK if lengths_fit(opcode, body).is_none() => {
+        op::SCHEMA | op::CHANNEL | op::CHUNK | op::ATTACHMENT | op::METADATA
+            if lengths_fit(opcode, body).is_none() =>
+        {
             let reason = "it ends within a field, or a field claims more bytes than are left";
             Err(damaged(reason.to_owned()))
         }
-        op::SCHEMA | op::CHANNEL | op::CHUNK | op::MESSAGE | op::STATISTICS => {
-            mcap::parse_record(opcode, body).map_err(|error| damaged(reason(&error)))
-        }
+        op::SCHEMA
+        | op::CHANNEL
+        | op::CHUNK
+        | op::MESSAGE
+        | op::STATISTICS
+        | op::ATTACHMENT
+        | op::METADATA => mcap::parse_record(opcode, body).map_err(|error| damaged(reason(&error))),
         _ => Ok(Record::Unknown {
             opcode,
             data: Cow::Borrowed(body),
@@ -43,10 +49,14 @@ pub(crate) fn parse(opcode: u8, body: &[u8], at: u64) -> Result<Record<'_>, Dama
 /// | schema | 2 | name, encoding, data |
 /// | channel | 4 | topic, encoding, metadata (within it: keys and values) |
 /// | chunk | 28 | compression |
+/// | attachment | 16 | name, media type; then data, with a length of eight bytes, and four bytes more |
+/// | metadata | 0 | name, entries (within it: keys and values) |
 fn lengths_fit(opcode: u8, body: &[u8]) -> Option<()> {
     let (before, fields) = match opcode {
         op::SCHEMA => (2, 3),
         op::CHANNEL => (4, 3),
+        op::ATTACHMENT => (16, 2),
+        op::METADATA => (0, 2),
         _ => (28, 1),
     };
     let mut last = &[][..];
@@ -54,8 +64,13 @@ fn lengths_fit(opcode: u8, body: &[u8]) -> Option<()> {
     for _ in 0..fields {
         (last, rest) = split_field(rest)?;
     }
-    while opcode == op::CHANNEL && !last.is_empty() {
+    while matches!(opcode, op::CHANNEL | op::METADATA) && !last.is_empty() {
         (_, last) = split_field(last)?;
+    }
+    if opcode == op::ATTACHMENT {
+        let (length, data) = rest.split_first_chunk()?;
+        let checksum = data.len().checked_sub(size_of::<u32>())?;
+        (u64::from_le_bytes(*length) <= checksum as u64).then_some(())?;
     }
     Some(())
 }
@@ -160,15 +175,20 @@ mod tests {
     }
 
     #[test]
-    fn an_attachment_shorter_than_its_fields_is_not_looked_into() {
+    fn an_attachment_shorter_than_its_fields_is_refused_before_the_library_panics() {
+        let claims = "it ends within a field, or a field claims more bytes than are left";
         let empty = [0; 32];
         let library =
             std::panic::catch_unwind(|| mcap::parse_record(op::ATTACHMENT, &empty).is_ok());
         assert!(library.is_err(), "the library has learnt it");
-        assert!(matches!(
-            parse(op::ATTACHMENT, &empty, 7),
-            Ok(Record::Unknown { .. })
-        ));
+        assert_eq!(refused(op::ATTACHMENT, &empty), claims);
+        // No texts, no data, and no checksum.
+        assert!(parse(op::ATTACHMENT, &[0; 36], 7).is_ok());
+        let mut claiming = [0; 36];
+        claiming[24] = 1;
+        assert_eq!(refused(op::ATTACHMENT, &claiming), claims);
+        let entries = [&[0; 4][..], &HUGE].concat();
+        assert_eq!(refused(op::METADATA, &entries), claims);
     }
 
     proptest::proptest! {

@@ -105,6 +105,9 @@ impl<'a> Pass<'a> {
             }
             (Part::Data, op::MESSAGE) => self.loose_message(body, place)?,
             (Part::Data, op::CHUNK) => self.chunk(body, &place)?,
+            (Part::Data, op::ATTACHMENT | op::METADATA) => {
+                self.survey.extras.add(opcode, body, &place)?;
+            }
             (Part::Data, op::FOOTER) => return misplaced("where the data goes on or ends"),
             (Part::Data, op::DATA_END) => {
                 self.close_loose();
@@ -115,8 +118,8 @@ impl<'a> Pass<'a> {
             }
             (Part::Summary { .. }, op::STATISTICS) => self.check_count(body, at)?,
             (Part::Summary { .. }, op::DATA_END) => return misplaced("behind the data"),
-            // Indexes and attachments hold no messages, and later versions may
-            // add what this one does not know.
+            // Indexes hold no messages, and later versions may add what this one
+            // does not know.
             _ => {}
         }
         Ok(())

@@ -1,16 +1,7 @@
-//! The messages of a recording in the order of their log times.
-//!
-//! A block (a chunk, or a run of messages outside of chunks) is unpacked when
-//! its first message is next; of its messages, those that are wanted are kept.
+//! The messages of a recording that are read, decoded, in the order of their log
+//! times.
 
-use std::cmp::Reverse;
-use std::collections::BinaryHeap;
-
-use mcap::records::{Record as Raw, op};
-
-use crate::block::Block;
-use crate::parse::parse;
-use crate::{Damage, Kind, Message, Record, Recording, RecordingError};
+use crate::{Damage, Kind, Message, RawRecord, RawRecords, Record, Recording, RecordingError};
 
 /// Iterates over a recording's messages by log time; where times are equal, in
 /// the order of the file.
@@ -18,92 +9,30 @@ use crate::{Damage, Kind, Message, Record, Recording, RecordingError};
 /// A message that does not decode is an error in its place, and the next one
 /// follows. Damage of the file is the last item.
 pub struct Records<'a> {
-    recording: &'a Recording,
-    /// Bits of the kinds that are wanted.
-    kinds: u8,
-    /// Blocks that are not unpacked yet, by first log time.
-    blocks: std::slice::Iter<'a, Block>,
-    next: BinaryHeap<Reverse<Pending>>,
-    damage: Option<Damage>,
-}
-
-/// A message that waits for its turn.
-struct Pending {
-    /// Log time, then place: of the block, and within it.
-    order: (i64, usize, usize),
-    channel: u16,
-    body: Vec<u8>,
+    raw: RawRecords<'a>,
 }
 
 impl<'a> Records<'a> {
     /// The messages of some kinds, and at the end what is damaged.
     pub(crate) fn new(recording: &'a Recording, kinds: &[Kind], damage: Option<Damage>) -> Self {
         Records {
-            recording,
-            kinds: kinds.iter().fold(0, |bits, kind| bits | kind.bit()),
-            blocks: recording.survey.blocks.iter(),
-            next: BinaryHeap::new(),
-            damage,
+            raw: RawRecords::new(recording, Some(kinds), damage),
         }
     }
 
-    /// Unpacks all blocks that may hold the next message.
-    fn fill(&mut self) -> Result<(), Damage> {
-        while let Some(block) = self.blocks.as_slice().first() {
-            if let Some(Reverse(next)) = self.next.peek()
-                && next.order.0 < block.first_ns
-            {
-                break;
-            }
-            self.blocks.next();
-            if block.kinds & self.kinds != 0 {
-                self.unpack(block)?;
-            }
-        }
-        Ok(())
-    }
-
-    fn unpack(&mut self, block: &Block) -> Result<(), Damage> {
-        let registry = &self.recording.survey.registry;
-        let kinds = self.kinds;
-        let mut place = 0;
-        block.each_record(self.recording.bytes(), |opcode, body| {
-            place += 1;
-            if opcode != op::MESSAGE {
-                return Ok(());
-            }
-            let Raw::Message { header, data } = parse(opcode, body, block.at as u64)? else {
-                return Ok(());
-            };
-            let channel = header.channel_id;
-            let kind = registry.channel(channel).and_then(|channel| channel.kind);
-            if kind.is_some_and(|kind| kind.bit() & kinds != 0) {
-                // The survey has seen that the time fits.
-                let log_time = i64::try_from(header.log_time).unwrap_or(i64::MAX);
-                self.next.push(Reverse(Pending {
-                    order: (log_time, block.at, place),
-                    channel,
-                    body: data.into_owned(),
-                }));
-            }
-            Ok(())
-        })
-    }
-
-    fn decode(&self, pending: &Pending) -> Option<Result<Record, RecordingError>> {
-        let channel = self.recording.survey.registry.channel(pending.channel)?;
-        let kind = channel.kind?;
-        let path = self.recording.path();
+    fn decode(&self, kind: Kind, raw: &RawRecord) -> Result<Record, RecordingError> {
+        let channel = raw.channel;
+        let path = self.raw.recording().path();
         if channel.encoding != "cdr" {
-            return Some(Err(RecordingError::NotCdr {
+            return Err(RecordingError::NotCdr {
                 path: path.to_owned(),
                 topic: channel.topic.to_string(),
                 schema: channel.schema.clone(),
                 encoding: channel.encoding.clone(),
-            }));
+            });
         }
-        let log_time_ns = pending.order.0;
-        Some(match Message::decode(kind, &pending.body) {
+        let log_time_ns = raw.log_time_ns;
+        match Message::decode(kind, &raw.body) {
             Ok(message) => Ok(Record {
                 topic: channel.topic.clone(),
                 log_time_ns,
@@ -116,18 +45,6 @@ impl<'a> Records<'a> {
                 kind,
                 reason,
             }),
-        })
-    }
-
-    /// Ends the iteration.
-    fn end(&mut self, damage: Damage) -> RecordingError {
-        self.blocks = [].iter();
-        self.next.clear();
-        self.damage = None;
-        RecordingError::Damaged {
-            path: self.recording.path().to_owned(),
-            readable: self.recording.survey.messages,
-            damage,
         }
     }
 }
@@ -136,36 +53,10 @@ impl Iterator for Records<'_> {
     type Item = Result<Record, RecordingError>;
 
     fn next(&mut self) -> Option<Self::Item> {
-        if let Err(damage) = self.fill() {
-            return Some(Err(self.end(damage)));
+        match self.raw.next()? {
+            Ok(raw) => Some(self.decode(raw.channel.kind?, &raw)),
+            Err(error) => Some(Err(error)),
         }
-        match self.next.pop() {
-            Some(Reverse(pending)) => self.decode(&pending),
-            None => {
-                let damage = self.damage.take()?;
-                Some(Err(self.end(damage)))
-            }
-        }
-    }
-}
-
-impl PartialEq for Pending {
-    fn eq(&self, other: &Self) -> bool {
-        self.order == other.order
-    }
-}
-
-impl Eq for Pending {}
-
-impl PartialOrd for Pending {
-    fn partial_cmp(&self, other: &Self) -> Option<std::cmp::Ordering> {
-        Some(self.cmp(other))
-    }
-}
-
-impl Ord for Pending {
-    fn cmp(&self, other: &Self) -> std::cmp::Ordering {
-        self.order.cmp(&other.order)
     }
 }
 

@@ -6,8 +6,12 @@ use std::sync::Arc;
 
 use memmap2::Mmap;
 
+use crate::block::{Block, Part};
 use crate::survey::Survey;
-use crate::{Channel, Damage, Kind, RecordingError, Records, topics};
+use crate::{
+    AttachedFile, Channel, Damage, Kind, MetadataRecord, RawRecords, RecordingError, Records,
+    topics,
+};
 
 /// A recording whose channels are known and whose checksums have been compared.
 #[derive(Debug)]
@@ -80,6 +84,29 @@ impl Recording {
         self.survey.registry.channels()
     }
 
+    /// The files in it.
+    #[must_use]
+    pub fn attachments(&self) -> &[AttachedFile] {
+        &self.survey.extras.attachments
+    }
+
+    /// The bytes of one of its [`Recording::attachments`]; none of another's.
+    #[must_use]
+    pub fn content_of(&self, file: &AttachedFile) -> &[u8] {
+        self.bytes().get(file.bytes.clone()).unwrap_or_default()
+    }
+
+    /// What is said of it as a whole.
+    #[must_use]
+    pub fn metadata(&self) -> &[MetadataRecord] {
+        &self.survey.extras.metadata
+    }
+
+    /// How its messages are packed: the parts of the file that hold them.
+    pub fn parts(&self) -> impl Iterator<Item = Part> {
+        self.survey.blocks.iter().map(Block::part)
+    }
+
     /// Readable messages of all channels.
     #[must_use]
     pub fn messages(&self) -> u64 {
@@ -109,6 +136,13 @@ impl Recording {
     #[must_use]
     pub fn records_of(&self, kinds: &[Kind]) -> Records<'_> {
         Records::new(self, kinds, self.survey.damage.clone())
+    }
+
+    /// The messages of all channels as they stand in the file, by log time, then
+    /// the damage if there is any.
+    #[must_use]
+    pub fn raw_records(&self) -> RawRecords<'_> {
+        RawRecords::new(self, None, self.survey.damage.clone())
     }
 
     /// The channel that holds messages of a kind: the only one, or the one with

@@ -10,6 +10,7 @@ use mcap::MAGIC;
 use crate::Damage;
 use crate::block::Block;
 use crate::damage::shown;
+use crate::extras::Extras;
 use crate::pass::Pass;
 use crate::registry::Registry;
 
@@ -17,6 +18,7 @@ use crate::registry::Registry;
 #[derive(Debug, Default)]
 pub(crate) struct Survey {
     pub(crate) registry: Registry,
+    pub(crate) extras: Extras,
     /// The sound parts with messages, by first log time, then place.
     pub(crate) blocks: Vec<Block>,
     /// Messages in them.

@@ -1,15 +1,22 @@
-//! A minimal writer of ROS 2 recordings, for tests and examples.
+//! Writing ROS 2 recordings.
 //!
-//! It writes the messages that this crate reads, with chunk, data and summary
-//! checksums, so that other tools read them too.
+//! With chunk, data and summary checksums, schemas and quality of service, so
+//! that other tools read them too. It writes what it is given in the order in
+//! which it is given; when to flush, split or stop is the caller's business.
 
-use std::collections::HashMap;
+mod encoded;
+mod qos;
+
+use std::borrow::Cow;
+use std::collections::{BTreeMap, HashMap};
 use std::fs::File;
 use std::io::{BufWriter, Cursor, Seek, Write};
 use std::path::Path;
 
-use mcap::records::MessageHeader;
-use mcap::{McapError, WriteOptions};
+use mcap::records::{MessageHeader, Metadata};
+use mcap::{Attachment, McapError, WriteOptions};
+
+pub use encoded::Encoded;
 
 use crate::parse::reason;
 use crate::ros::{LaserScan, OccupancyGridMsg, Odometry, PoseStamped, RosMessage, TfMessage};
@@ -34,6 +41,15 @@ pub struct RecordingWriter<W: Write + Seek> {
     /// By topic: the channel's number and its schema.
     channels: HashMap<String, (u16, String)>,
     sequence: u32,
+}
+
+/// What a channel is called and holds.
+struct Definition<'a> {
+    topic: &'a str,
+    schema: &'a str,
+    text: &'a str,
+    encoding: &'a str,
+    latched: bool,
 }
 
 impl RecordingWriter<BufWriter<File>> {
@@ -74,6 +90,8 @@ impl<W: Write + Seek> RecordingWriter<W> {
             .profile("ros2")
             .use_chunks(packing != Packing::Loose)
             .compression(compression)
+            // Chunks are small: threads of the packer's own would only wait.
+            .compression_threads(0)
             .create(sink)
             .map_err(failed)?;
         Ok(RecordingWriter {
@@ -97,8 +115,30 @@ impl<W: Write + Seek> RecordingWriter<W> {
         let body = message
             .encode()
             .map_err(|error| refused(error.to_string()))?;
-        let (schema, definition) = schema(message.kind());
-        self.write_bytes(topic, schema, definition, "cdr", log_time_ns, &body)
+        let kind = message.kind();
+        let definition = Definition {
+            topic,
+            schema: kind.schema(),
+            text: definition(kind),
+            encoding: "cdr",
+            latched: matches!(kind, Kind::Map | Kind::StaticTransforms),
+        };
+        self.write_body(&definition, log_time_ns, &body)
+    }
+
+    /// Writes a message that was encoded before.
+    ///
+    /// # Errors
+    /// As [`RecordingWriter::write`].
+    pub fn write_encoded(&mut self, message: &Encoded) -> Result<(), RecordingError> {
+        let definition = Definition {
+            topic: message.topic,
+            schema: message.schema,
+            text: message.definition,
+            encoding: "cdr",
+            latched: message.latched,
+        };
+        self.write_body(&definition, message.log_time_ns, &message.body)
     }
 
     /// Writes a message of any type whose bytes are given; the first one of a
@@ -116,25 +156,52 @@ impl<W: Write + Seek> RecordingWriter<W> {
         log_time_ns: i64,
         body: &[u8],
     ) -> Result<(), RecordingError> {
-        let log_time = u64::try_from(log_time_ns)
-            .map_err(|_| refused(format!("log time {log_time_ns} ns is before 1970")))?;
-        let channel_id = match self.channels.get(topic) {
-            Some((id, known)) if known == schema => *id,
-            Some((_, known)) => {
-                return Err(refused(format!("{topic} has {known}, not {schema}")));
-            }
-            None => self.add_channel(topic, schema, definition, encoding)?,
+        let definition = Definition {
+            topic,
+            schema,
+            text: definition,
+            encoding,
+            latched: false,
         };
-        self.sequence = self.sequence.wrapping_add(1);
-        let header = MessageHeader {
-            channel_id,
-            sequence: self.sequence,
+        self.write_body(&definition, log_time_ns, body)
+    }
+
+    /// Writes what is known of the recording as a whole, under a name.
+    ///
+    /// # Errors
+    /// If it cannot be written.
+    pub fn write_metadata(
+        &mut self,
+        name: &str,
+        entries: &BTreeMap<String, String>,
+    ) -> Result<(), RecordingError> {
+        let record = Metadata {
+            name: name.to_owned(),
+            metadata: entries.clone(),
+        };
+        self.writer.write_metadata(&record).map_err(failed)
+    }
+
+    /// Puts a file into the recording.
+    ///
+    /// # Errors
+    /// If the time is before 1970, or it cannot be written.
+    pub fn attach(
+        &mut self,
+        name: &str,
+        media_type: &str,
+        log_time_ns: i64,
+        data: &[u8],
+    ) -> Result<(), RecordingError> {
+        let log_time = checked_time(log_time_ns)?;
+        let attachment = Attachment {
             log_time,
-            publish_time: log_time,
+            create_time: log_time,
+            name: name.to_owned(),
+            media_type: media_type.to_owned(),
+            data: Cow::Borrowed(data),
         };
-        self.writer
-            .write_to_known_channel(&header, body)
-            .map_err(failed)
+        self.writer.attach(&attachment).map_err(failed)
     }
 
     /// Ends the chunk: what was written until now survives whatever follows.
@@ -154,18 +221,46 @@ impl<W: Write + Seek> RecordingWriter<W> {
         Ok(self.writer.into_inner())
     }
 
-    fn add_channel(
+    fn write_body(
         &mut self,
-        topic: &str,
-        schema: &str,
-        definition: &str,
-        encoding: &str,
-    ) -> Result<u16, RecordingError> {
+        definition: &Definition,
+        log_time_ns: i64,
+        body: &[u8],
+    ) -> Result<(), RecordingError> {
+        let log_time = checked_time(log_time_ns)?;
+        let (topic, schema) = (definition.topic, definition.schema);
+        let channel_id = match self.channels.get(topic) {
+            Some((id, known)) if known == schema => *id,
+            Some((_, known)) => {
+                return Err(refused(format!("{topic} has {known}, not {schema}")));
+            }
+            None => self.add_channel(definition)?,
+        };
+        self.sequence = self.sequence.wrapping_add(1);
+        let header = MessageHeader {
+            channel_id,
+            sequence: self.sequence,
+            log_time,
+            publish_time: log_time,
+        };
+        self.writer
+            .write_to_known_channel(&header, body)
+            .map_err(failed)
+    }
+
+    fn add_channel(&mut self, definition: &Definition) -> Result<u16, RecordingError> {
+        let &Definition {
+            topic,
+            schema,
+            encoding,
+            latched,
+            ..
+        } = definition;
         let schema_id = self
             .writer
-            .add_schema(schema, "ros2msg", definition.as_bytes())
+            .add_schema(schema, "ros2msg", definition.text.as_bytes())
             .map_err(failed)?;
-        let metadata = [("offered_qos_profiles".to_owned(), String::new())].into();
+        let metadata = [(qos::KEY.to_owned(), qos::offered(latched))].into();
         let id = self
             .writer
             .add_channel(schema_id, topic, encoding, &metadata)
@@ -174,6 +269,11 @@ impl<W: Write + Seek> RecordingWriter<W> {
             .insert(topic.to_owned(), (id, schema.to_owned()));
         Ok(id)
     }
+}
+
+fn checked_time(log_time_ns: i64) -> Result<u64, RecordingError> {
+    u64::try_from(log_time_ns)
+        .map_err(|_| refused(format!("log time {log_time_ns} ns is before 1970")))
 }
 
 #[allow(clippy::needless_pass_by_value, reason = "it is given to map_err")]
@@ -185,15 +285,14 @@ fn refused(reason: String) -> RecordingError {
     RecordingError::Write { reason }
 }
 
-fn schema(kind: Kind) -> (&'static str, &'static str) {
-    let definition = match kind {
+fn definition(kind: Kind) -> &'static str {
+    match kind {
         Kind::Scan => LaserScan::DEFINITION,
         Kind::Map => OccupancyGridMsg::DEFINITION,
         Kind::Odometry => Odometry::DEFINITION,
         Kind::PoseStamped => PoseStamped::DEFINITION,
         Kind::StaticTransforms => TfMessage::DEFINITION,
-    };
-    (kind.schema(), definition)
+    }
 }
 
 #[cfg(test)]

@@ -7,6 +7,9 @@ use super::ConversionError;
 /// How far a quaternion's squared length may be from 1, as in tf2.
 const ROTATION_TOLERANCE: f64 = 0.01;
 
+/// Where x, y and yaw stand among x, y, z and the rotations about them.
+const PLANAR_AXES: [usize; 3] = [0, 1, 5];
+
 /// `geometry_msgs/msg/Point`, metres.
 #[derive(Debug, Clone, Copy, PartialEq, Default, Serialize, Deserialize)]
 pub struct Point {
@@ -161,15 +164,45 @@ impl Pose {
 }
 
 impl PoseWithCovariance {
+    /// An estimate in the plane, with its covariance row by row over x, y and
+    /// yaw: m², m·rad, rad².
+    #[must_use]
+    pub fn from_planar(pose: geometry::Pose, covariance: [f64; 9]) -> Self {
+        let mut with = PoseWithCovariance {
+            pose: Pose::from_planar(pose),
+            ..PoseWithCovariance::default()
+        };
+        for (i, value) in covariance.into_iter().enumerate() {
+            with.covariance[PLANAR_AXES[i / 3]][PLANAR_AXES[i % 3]] = value;
+        }
+        with
+    }
+
     /// The covariance row by row over x, y and yaw: m², m·rad, rad².
     #[must_use]
     pub fn planar_covariance(&self) -> [f64; 9] {
-        let axes = [0, 1, 5];
-        std::array::from_fn(|i| self.covariance[axes[i / 3]][axes[i % 3]])
+        std::array::from_fn(|i| self.covariance[PLANAR_AXES[i / 3]][PLANAR_AXES[i % 3]])
     }
 }
 
 impl Twist {
+    /// A motion in the plane: m/s, m/s and rad/s.
+    #[must_use]
+    pub fn from_planar(motion: geometry::Pose) -> Self {
+        Twist {
+            linear: Vector3 {
+                x: motion.x,
+                y: motion.y,
+                z: 0.0,
+            },
+            angular: Vector3 {
+                x: 0.0,
+                y: 0.0,
+                z: motion.yaw,
+            },
+        }
+    }
+
     /// The motion in the plane: m/s, m/s and rad/s.
     #[must_use]
     pub fn planar(&self) -> geometry::Pose {
@@ -243,5 +276,11 @@ mod tests {
             with.planar_covariance(),
             [0.0, 1.0, 5.0, 10.0, 11.0, 15.0, 50.0, 51.0, 55.0]
         );
+        let planar = with.planar_covariance();
+        let back = PoseWithCovariance::from_planar(geometry::Pose::IDENTITY, planar);
+        assert_eq!(back.planar_covariance(), planar);
+        assert_eq!(back.covariance[0][2], 0.0);
+        let motion = geometry::Pose::new(1.0, 2.0, 0.5);
+        assert_eq!(Twist::from_planar(motion).planar(), motion);
     }
 }

@@ -1,34 +1,164 @@
-//! The ROS 2 messages that recordings are read for, one file each.
+//! The ROS 2 messages that recordings are read and written with, one file each.
 //!
 //! A struct has the fields of its `.msg` in their order, because CDR names
 //! none: the definition stands beside it as a constant, in the form in which a
 //! recording carries it. Conversions to the plane refuse what is no number or
 //! no rotation.
 
+pub mod backcast_msgs;
 mod conversion;
+mod diagnostic_array;
 mod geometry_msgs;
 mod laser_scan;
 mod occupancy_grid;
 mod odometry;
+mod pose_array;
 mod pose_stamped;
+mod pose_with_covariance_stamped;
 mod std_msgs;
 mod tf_message;
 
 pub use conversion::ConversionError;
+pub use diagnostic_array::{DiagnosticArray, DiagnosticStatus, KeyValue};
 pub use geometry_msgs::{
     Point, Pose, PoseWithCovariance, Quaternion, Transform, Twist, TwistWithCovariance, Vector3,
 };
 pub use laser_scan::LaserScan;
 pub use occupancy_grid::{MapMetaData, OccupancyGridMsg};
 pub use odometry::Odometry;
+pub use pose_array::PoseArray;
 pub use pose_stamped::PoseStamped;
+pub use pose_with_covariance_stamped::PoseWithCovarianceStamped;
 pub use std_msgs::{Header, Time};
 pub use tf_message::{TfMessage, TransformStamped};
 
 /// A message type, as recordings name and define it.
-pub trait RosMessage {
+pub trait RosMessage: serde::Serialize {
     /// The schema's name.
     const SCHEMA: &'static str;
     /// The schema's text (`ros2msg`): the fields, then those of each type used.
     const DEFINITION: &'static str;
+}
+
+#[cfg(test)]
+mod tests {
+    use super::backcast_msgs::{Hypotheses, Hypothesis, Pose2D, Vote, Votes};
+    use super::*;
+    use crate::cdr;
+
+    fn header() -> Header {
+        Header {
+            stamp: Time {
+                sec: 1_137_772_793,
+                nanosec: 5,
+            },
+            frame_id: "map".to_owned(),
+        }
+    }
+
+    fn assert_survives<M>(message: &M)
+    where
+        M: RosMessage + serde::de::DeserializeOwned + PartialEq + std::fmt::Debug,
+    {
+        let bytes = cdr::encode(message).unwrap();
+        assert_eq!(&cdr::decode::<M>(&bytes).unwrap(), message);
+    }
+
+    #[test]
+    fn messages_that_are_only_written_survive_their_bytes() {
+        let pose = geometry::Pose::new(1.5, -2.0, 0.5);
+        assert_survives(&PoseWithCovarianceStamped {
+            header: header(),
+            pose: PoseWithCovariance::from_planar(pose, [0.5; 9]),
+        });
+        assert_survives(&PoseArray {
+            header: header(),
+            poses: vec![Pose::from_planar(pose); 3],
+        });
+        assert_survives(&DiagnosticArray {
+            header: header(),
+            status: vec![DiagnosticStatus {
+                level: DiagnosticStatus::WARN,
+                name: "accumulator".to_owned(),
+                message: "no map".to_owned(),
+                hardware_id: "pid 7".to_owned(),
+                values: vec![KeyValue {
+                    key: "sent".to_owned(),
+                    value: "3".to_owned(),
+                }],
+            }],
+        });
+    }
+
+    #[test]
+    fn our_own_messages_survive_their_bytes() {
+        assert_survives(&Votes {
+            header: header(),
+            map_id: u64::MAX,
+            truncated: true,
+            mount_known: true,
+            base_from_laser: Pose2D {
+                x: 0.78,
+                y: 0.0,
+                theta: 0.1,
+            },
+            beam_arc_m: 0.2,
+            votes: vec![
+                Vote {
+                    x: 1,
+                    y: 2,
+                    heading: 3,
+                    intensity: u16::MAX,
+                };
+                5
+            ],
+            ..Votes::default()
+        });
+        assert_survives(&Hypotheses {
+            header: header(),
+            entered_ns: -1,
+            verdict: 2,
+            confidence: 0.25,
+            hypotheses: vec![
+                Hypothesis {
+                    map_from_laser: geometry::Pose::new(1.0, 2.0, 3.0).into(),
+                    covariance: [1e-4; 9],
+                    score: 0.9,
+                    support: 76,
+                    ..Hypothesis::default()
+                };
+                2
+            ],
+            ..Hypotheses::default()
+        });
+    }
+
+    /// Fields of a type are named by its definition in the order of the struct;
+    /// the text of a type that several messages use is the same in each.
+    #[test]
+    fn definitions_agree_on_the_types_that_they_share() {
+        let definitions = [
+            LaserScan::DEFINITION,
+            OccupancyGridMsg::DEFINITION,
+            Odometry::DEFINITION,
+            PoseStamped::DEFINITION,
+            TfMessage::DEFINITION,
+            PoseWithCovarianceStamped::DEFINITION,
+            PoseArray::DEFINITION,
+            DiagnosticArray::DEFINITION,
+            Votes::DEFINITION,
+            Hypotheses::DEFINITION,
+        ];
+        let mut known = std::collections::BTreeMap::new();
+        for definition in definitions {
+            let parts: Vec<&str> = definition.split(&"=".repeat(80)).collect();
+            assert!(parts.len() > 1, "{definition}");
+            for part in &parts[1..] {
+                let (name, fields) = part.trim_start().split_once('\n').unwrap();
+                assert!(name.starts_with("MSG: "), "{name}");
+                let other = known.entry(name).or_insert(fields.trim_end());
+                assert_eq!(*other, fields.trim_end(), "{name}");
+            }
+        }
+    }
 }

@@ -1,0 +1,108 @@
+//! `backcast_msgs/msg/Hypotheses`.
+
+use serde::{Deserialize, Serialize};
+
+use super::Pose2D;
+use crate::ros::{Header, RosMessage};
+
+/// Where the robot may be: topic `hypotheses` of the graph.
+#[derive(Debug, Clone, PartialEq, Default, Serialize, Deserialize)]
+pub struct Hypotheses {
+    /// When the scan was measured, and the frame of the map.
+    pub header: Header,
+    /// The host's `CLOCK_MONOTONIC` in nanoseconds when the scan entered the graph.
+    pub entered_ns: i64,
+    /// Counts the scans.
+    pub counter: u64,
+    /// The map that was searched; 0 where there was none.
+    pub map_id: u64,
+    /// `CLOCK_MONOTONIC` in nanoseconds when the hypotheses were sent.
+    pub sent_ns: i64,
+    /// Nanoseconds of computing, from scan to votes.
+    pub search_ns: u64,
+    /// Nanoseconds of computing, from votes to hypotheses.
+    pub extract_ns: u64,
+    /// What the scan allows to say.
+    pub verdict: u32,
+    /// Other places that fit about as well as the best.
+    pub alternatives: u32,
+    /// The probability of the best pose, 0..=1.
+    pub confidence: f32,
+    /// Share of the beams' weight that agrees with the best pose, 0..=1.
+    pub inlier_share: f32,
+    /// The highest intensity of any pose.
+    pub best: u32,
+    /// What a pose would have if every beam agreed fully.
+    pub highest_possible: u32,
+    /// Whether the laser's mount was given.
+    pub mount_known: bool,
+    /// Best first.
+    pub hypotheses: Vec<Hypothesis>,
+}
+
+/// `backcast_msgs/msg/Hypothesis`.
+#[derive(Debug, Clone, Copy, PartialEq, Default, Serialize, Deserialize)]
+pub struct Hypothesis {
+    /// Pose of the laser in the map.
+    pub map_from_laser: Pose2D,
+    /// Pose of the robot's base in the map.
+    pub map_from_base: Pose2D,
+    /// Of the laser's pose, row by row over x, y and yaw: m², m·rad, rad².
+    pub covariance: [f64; 9],
+    /// How well the scan fits the map there, at most 1.
+    pub score: f32,
+    /// How likely the robot is there, 0..=1.
+    pub probability: f32,
+    /// Votes of the best pose that led there.
+    pub intensity: u64,
+    /// Votes that led there.
+    pub support: u64,
+}
+
+impl RosMessage for Hypotheses {
+    const SCHEMA: &'static str = "backcast_msgs/msg/Hypotheses";
+    const DEFINITION: &'static str = "\
+# Where the robot may be, by one scan.
+uint32 NO_SCAN=0
+uint32 UNIQUE=1
+uint32 AMBIGUOUS=2
+uint32 POOR_FIT=3
+std_msgs/Header header
+int64 entered_ns
+uint64 counter
+uint64 map_id
+int64 sent_ns
+uint64 search_ns
+uint64 extract_ns
+uint32 verdict
+uint32 alternatives
+float32 confidence
+float32 inlier_share
+uint32 best
+uint32 highest_possible
+bool mount_known
+backcast_msgs/Hypothesis[] hypotheses
+================================================================================
+MSG: std_msgs/Header
+builtin_interfaces/Time stamp
+string frame_id
+================================================================================
+MSG: builtin_interfaces/Time
+int32 sec
+uint32 nanosec
+================================================================================
+MSG: backcast_msgs/Hypothesis
+geometry_msgs/Pose2D map_from_laser
+geometry_msgs/Pose2D map_from_base
+float64[9] covariance
+float32 score
+float32 probability
+uint64 intensity
+uint64 support
+================================================================================
+MSG: geometry_msgs/Pose2D
+float64 x
+float64 y
+float64 theta
+";
+}

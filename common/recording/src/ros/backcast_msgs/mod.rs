@@ -1,0 +1,43 @@
+//! Messages of our own, for what no message of ROS holds without loss: the
+//! graph's `votes` and `hypotheses` with every field of their headers.
+//!
+//! They are plain `ros2msg` and CDR, so a generic reader decodes them. Numbers
+//! that name a state stand as in the graph, with their names as constants in
+//! the definition; sequences stand last, since readers differ in how they align
+//! what follows an empty one. A field that is added makes another message, under
+//! another name.
+
+mod hypotheses;
+mod votes;
+
+pub use hypotheses::{Hypotheses, Hypothesis};
+pub use votes::{Vote, Votes};
+
+use serde::{Deserialize, Serialize};
+
+/// `geometry_msgs/msg/Pose2D` as ROS 2 has had it: metres and radians.
+#[derive(Debug, Clone, Copy, PartialEq, Default, Serialize, Deserialize)]
+pub struct Pose2D {
+    /// Metres.
+    pub x: f64,
+    /// Metres.
+    pub y: f64,
+    /// Radians, counter-clockwise.
+    pub theta: f64,
+}
+
+impl From<geometry::Pose> for Pose2D {
+    fn from(pose: geometry::Pose) -> Self {
+        Pose2D {
+            x: pose.x,
+            y: pose.y,
+            theta: pose.yaw,
+        }
+    }
+}
+
+impl From<Pose2D> for geometry::Pose {
+    fn from(pose: Pose2D) -> Self {
+        geometry::Pose::new(pose.x, pose.y, pose.theta)
+    }
+}

@@ -1,0 +1,131 @@
+//! `backcast_msgs/msg/Votes`.
+
+use serde::{Deserialize, Serialize};
+
+use super::Pose2D;
+use crate::ros::{Header, RosMessage};
+
+/// The outcome of one search: topic `votes` of the graph.
+#[derive(Debug, Clone, PartialEq, Default, Serialize, Deserialize)]
+pub struct Votes {
+    /// When the scan was measured, and the frame of the map.
+    pub header: Header,
+    /// The host's `CLOCK_MONOTONIC` in nanoseconds when the scan entered the graph.
+    pub entered_ns: i64,
+    /// Counts the scans.
+    pub counter: u64,
+    /// The map that was searched; 0 where there was none.
+    pub map_id: u64,
+    /// How many votes there are.
+    pub total: u64,
+    /// Nanoseconds of computing.
+    pub engine_ns: u64,
+    /// Poses whose intensity was computed one by one.
+    pub poses_evaluated: u64,
+    /// How the search ended.
+    pub outcome: u32,
+    /// Headings a turn.
+    pub headings: u32,
+    /// The least intensity among the votes.
+    pub floor: u32,
+    /// At and above it the votes are all that there are.
+    pub certified_floor: u32,
+    /// The highest intensity of any pose.
+    pub best: u32,
+    /// What a pose would have if every beam agreed fully.
+    pub highest_possible: u32,
+    /// Whether the floor was raised so that the votes fit.
+    pub truncated: bool,
+    /// Whether the heading was given.
+    pub heading_known: bool,
+    /// Whether the laser's mount was given.
+    pub mount_known: bool,
+    /// Beams that voted.
+    pub beams_used: u32,
+    /// Beams whose reading says nothing.
+    pub beams_silent: u32,
+    /// The given heading in the map frame, radians.
+    pub known_heading: f64,
+    /// The largest rounding of a bearing, radians.
+    pub bearing_rounding: f64,
+    /// Where the laser sits on the robot.
+    pub base_from_laser: Pose2D,
+    /// Occupancy from which a cell was taken as occupied, per cent.
+    pub occupied_from: u32,
+    /// Occupancy up to which a cell was taken as free, per cent.
+    pub free_to: u32,
+    /// Most beams of a scan that vote.
+    pub max_beams: u64,
+    /// Arc at the reading from which a beam counts fully, metres.
+    pub beam_arc_m: f64,
+    /// Most votes first.
+    pub votes: Vec<Vote>,
+}
+
+/// `backcast_msgs/msg/Vote`.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize, Deserialize)]
+pub struct Vote {
+    /// Cells along x from the grid's origin.
+    pub x: u16,
+    /// Cells along y from the grid's origin.
+    pub y: u16,
+    /// Index of the heading.
+    pub heading: u16,
+    /// Sum of the tapers of all beams.
+    pub intensity: u16,
+}
+
+impl RosMessage for Votes {
+    const SCHEMA: &'static str = "backcast_msgs/msg/Votes";
+    const DEFINITION: &'static str = "\
+# The outcome of one search: the poses that a scan votes for.
+uint32 FOUND=0
+uint32 NO_VOTES=1
+uint32 REFUSED=2
+std_msgs/Header header
+int64 entered_ns
+uint64 counter
+uint64 map_id
+uint64 total
+uint64 engine_ns
+uint64 poses_evaluated
+uint32 outcome
+uint32 headings
+uint32 floor
+uint32 certified_floor
+uint32 best
+uint32 highest_possible
+bool truncated
+bool heading_known
+bool mount_known
+uint32 beams_used
+uint32 beams_silent
+float64 known_heading
+float64 bearing_rounding
+geometry_msgs/Pose2D base_from_laser
+uint32 occupied_from
+uint32 free_to
+uint64 max_beams
+float64 beam_arc_m
+backcast_msgs/Vote[] votes
+================================================================================
+MSG: std_msgs/Header
+builtin_interfaces/Time stamp
+string frame_id
+================================================================================
+MSG: builtin_interfaces/Time
+int32 sec
+uint32 nanosec
+================================================================================
+MSG: geometry_msgs/Pose2D
+float64 x
+float64 y
+float64 theta
+================================================================================
+MSG: backcast_msgs/Vote
+uint16 x
+uint16 y
+uint16 heading
+uint16 intensity
+";
+}

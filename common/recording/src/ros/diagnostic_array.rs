@@ -1,0 +1,81 @@
+//! `diagnostic_msgs/msg/DiagnosticArray`.
+
+use serde::{Deserialize, Serialize};
+
+use super::{Header, RosMessage};
+
+/// How parts of a robot fare.
+#[derive(Debug, Clone, PartialEq, Default, Serialize, Deserialize)]
+pub struct DiagnosticArray {
+    /// When; the frame is not used.
+    pub header: Header,
+    /// One entry a part.
+    pub status: Vec<DiagnosticStatus>,
+}
+
+/// `diagnostic_msgs/msg/DiagnosticStatus`.
+#[derive(Debug, Clone, PartialEq, Default, Serialize, Deserialize)]
+pub struct DiagnosticStatus {
+    /// [`DiagnosticStatus::OK`], [`DiagnosticStatus::WARN`],
+    /// [`DiagnosticStatus::ERROR`] or [`DiagnosticStatus::STALE`].
+    pub level: u8,
+    /// The part.
+    pub name: String,
+    /// How it fares, in words.
+    pub message: String,
+    /// Which device it is.
+    pub hardware_id: String,
+    /// Figures.
+    pub values: Vec<KeyValue>,
+}
+
+impl DiagnosticStatus {
+    /// All is well.
+    pub const OK: u8 = 0;
+    /// Something is not as it should be.
+    pub const WARN: u8 = 1;
+    /// It does not work.
+    pub const ERROR: u8 = 2;
+    /// Nothing is heard of it.
+    pub const STALE: u8 = 3;
+}
+
+/// `diagnostic_msgs/msg/KeyValue`.
+#[derive(Debug, Clone, PartialEq, Default, Serialize, Deserialize)]
+pub struct KeyValue {
+    /// What the figure is.
+    pub key: String,
+    /// The figure.
+    pub value: String,
+}
+
+impl RosMessage for DiagnosticArray {
+    const SCHEMA: &'static str = "diagnostic_msgs/msg/DiagnosticArray";
+    const DEFINITION: &'static str = "\
+std_msgs/Header header
+diagnostic_msgs/DiagnosticStatus[] status
+================================================================================
+MSG: std_msgs/Header
+builtin_interfaces/Time stamp
+string frame_id
+================================================================================
+MSG: builtin_interfaces/Time
+int32 sec
+uint32 nanosec
+================================================================================
+MSG: diagnostic_msgs/DiagnosticStatus
+byte OK=0
+byte WARN=1
+byte ERROR=2
+byte STALE=3
+byte level
+string name
+string message
+string hardware_id
+diagnostic_msgs/KeyValue[] values
+================================================================================
+MSG: diagnostic_msgs/KeyValue
+string key
+string value
+";
+}
