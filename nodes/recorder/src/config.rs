@@ -1,0 +1,124 @@
+//! What a user can set.
+
+use std::path::PathBuf;
+use std::time::Duration;
+
+use clap::Parser;
+use messages::Name;
+
+use crate::{Event, duration};
+
+/// Writes what flows in the graph to an MCAP recording with ROS 2 messages.
+///
+/// Ends with 0, 1 on an error, 2 on wrong usage, and 3 when it recorded but lost
+/// data. Everything written is on its way to the disk within a second. A file
+/// that exists is kept; the recording goes to one with a number behind its name.
+#[derive(Debug, Clone, Parser)]
+#[command(name = "recorder", version)]
+pub struct Config {
+    /// The recording; with --keep, what saved ones are called after
+    #[arg(long, value_name = "FILE")]
+    pub output: PathBuf,
+
+    /// Begin another file when one has so many megabytes (10^6 bytes), at least 1
+    #[arg(long, value_name = "MB", value_parser = clap::value_parser!(u64).range(1..))]
+    pub split_size: Option<u64>,
+
+    /// Begin another file when one covers so much time, as 90s, 10m or 1.5h
+    #[arg(long, value_name = "TIME", value_parser = duration::parse)]
+    pub split_time: Option<Duration>,
+
+    /// Write nothing but keep the last so much time in memory, as 10m, and save it
+    /// on SIGUSR1 and on events
+    #[arg(long, value_name = "TIME", value_parser = duration::parse,
+          conflicts_with_all = ["split_size", "split_time"])]
+    pub keep: Option<Duration>,
+
+    /// Most megabytes (10^6 bytes) of memory for --keep; older messages go first
+    #[arg(long, value_name = "MB", default_value_t = 512, requires = "keep",
+          value_parser = clap::value_parser!(u64).range(1..))]
+    pub keep_size: u64,
+
+    /// The events on which --keep saves, with commas between
+    #[arg(
+        long,
+        value_name = "EVENTS",
+        value_delimiter = ',',
+        requires = "keep",
+        default_value = "lost-pose"
+    )]
+    pub save_on: Vec<Event>,
+
+    /// Files to put into the recording, with commas between
+    #[arg(long, value_name = "FILES", value_delimiter = ',')]
+    pub attach: Vec<PathBuf>,
+
+    /// Also record the intensity image, which the accumulator then computes
+    #[arg(long)]
+    pub field: bool,
+
+    /// The frame of the map in the recording
+    #[arg(long, value_name = "FRAME", default_value = "map", value_parser = frame)]
+    pub map_frame: String,
+
+    /// The robot's frame in the recording, where the laser's mount is known
+    #[arg(long, value_name = "FRAME", default_value = "base_link", value_parser = frame)]
+    pub base_frame: String,
+
+    /// Most megabytes (10^6 bytes) that may wait for a slow or full disk; what
+    /// comes then is dropped and counted
+    #[arg(long, value_name = "MB", default_value_t = 128,
+          value_parser = clap::value_parser!(u64).range(1..))]
+    pub queue_size: u64,
+}
+
+fn frame(text: &str) -> Result<String, String> {
+    match text.len() {
+        1..=Name::CAPACITY => Ok(text.into()),
+        bytes => Err(format!(
+            "it has {bytes} bytes, allowed are 1 to {}",
+            Name::CAPACITY
+        )),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use clap::CommandFactory;
+
+    use super::*;
+
+    fn parse(arguments: &str) -> Result<Config, String> {
+        let words = ["recorder"].into_iter().chain(arguments.split_whitespace());
+        Config::try_parse_from(words).map_err(|error| error.to_string())
+    }
+
+    #[test]
+    fn options() {
+        Config::command().debug_assert();
+        let config = parse("--output r.mcap").unwrap();
+        assert_eq!((config.keep, config.split_size), (None, None));
+        assert_eq!(config.base_frame, "base_link");
+        let config = parse("--output r --keep 10m --save-on lost-pose,degraded").unwrap();
+        assert_eq!(config.keep, Some(Duration::from_secs(600)));
+        assert_eq!(config.save_on, [Event::LostPose, Event::Degraded]);
+        assert_eq!(parse("--output r --attach a,b").unwrap().attach.len(), 2);
+    }
+
+    #[test]
+    fn what_is_refused_says_what_is_allowed() {
+        let refuse = |arguments: &str, expected: &str| {
+            let text = parse(arguments).unwrap_err();
+            assert!(text.contains(expected), "{arguments}: {text}");
+        };
+        refuse("", "--output");
+        refuse("--output r --split-size 0", "0 is not in 1..");
+        refuse("--output r --split-time soon", "as 90s, 10m");
+        refuse(
+            "--output r --keep 1m --split-time 1m",
+            "cannot be used with",
+        );
+        refuse("--output r --save-on lost-pose", "--keep");
+        refuse("--output r --base-frame=", "allowed are 1 to 32");
+    }
+}

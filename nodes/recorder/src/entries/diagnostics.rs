@@ -1,0 +1,84 @@
+//! A node's health as ROS says it.
+
+use messages::{HealthHeader, NodeState};
+use recording::ros::{DiagnosticArray, DiagnosticStatus, Header, KeyValue, Time};
+
+pub(super) fn of(stamp: Time, report: &HealthHeader, error: &str) -> DiagnosticArray {
+    let state = NodeState::from_code(report.state);
+    let name = state.map_or_else(|| format!("state {}", report.state), |s| format!("{s:?}"));
+    let message = match error {
+        "" => name,
+        error => format!("{name}: {error}"),
+    };
+    let figure = |key: &str, value: u64| KeyValue {
+        key: key.to_owned(),
+        value: value.to_string(),
+    };
+    let status = DiagnosticStatus {
+        level: level(state),
+        name: format!("backcast: {}", report.node),
+        message,
+        hardware_id: String::new(),
+        values: vec![
+            figure("received", report.received),
+            figure("sent", report.sent),
+            figure("dropped", report.dropped),
+            figure("refused", report.refused),
+            figure("pid", report.pid.into()),
+        ],
+    };
+    DiagnosticArray {
+        header: Header {
+            stamp,
+            frame_id: String::new(),
+        },
+        status: vec![status],
+    }
+}
+
+/// A node that waits for its map is no trouble yet.
+fn level(state: Option<NodeState>) -> u8 {
+    match state {
+        Some(NodeState::Waiting | NodeState::Ready) => DiagnosticStatus::OK,
+        Some(NodeState::Degraded) => DiagnosticStatus::WARN,
+        Some(NodeState::Stopped) => DiagnosticStatus::STALE,
+        None => DiagnosticStatus::ERROR,
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use bytemuck::Zeroable;
+    use messages::Name;
+
+    use super::*;
+
+    #[test]
+    fn state_and_last_error_are_told_in_words() {
+        let report = HealthHeader {
+            node: Name::new("accumulator"),
+            state: NodeState::Degraded as u32,
+            dropped: 3,
+            ..HealthHeader::zeroed()
+        };
+        let status = of(Time::default(), &report, "no map").status.remove(0);
+        assert_eq!(
+            (&*status.name, &*status.message),
+            ("backcast: accumulator", "Degraded: no map")
+        );
+        assert_eq!(status.level, DiagnosticStatus::WARN);
+        assert_eq!(
+            (&*status.values[2].key, &*status.values[2].value),
+            ("dropped", "3")
+        );
+        let foreign = HealthHeader {
+            state: 99,
+            ..report
+        };
+        let status = of(Time::default(), &foreign, "").status.remove(0);
+        assert_eq!(
+            (status.level, &*status.message),
+            (DiagnosticStatus::ERROR, "state 99")
+        );
+    }
+}

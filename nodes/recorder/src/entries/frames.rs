@@ -1,0 +1,239 @@
+//! The tree of frames: how the map, the odometry, the robot and its lasers lie to
+//! each other.
+//!
+//! ```text
+//! map ──► odom ──► base_link ──► laser      with odometry and a known mount
+//! map ──► base_link ──► laser               without odometry
+//! map ──► laser                             without a known mount
+//! ```
+//!
+//! A frame has one parent, so the robot hangs below the odometry as soon as
+//! there is one. The map's transform is given only where the verdict is Unique.
+
+use std::collections::VecDeque;
+
+use geometry::Pose;
+use messages::{HypothesesHeader, Hypothesis, Odometry, ScanHeader, Verdict};
+use recording::ros::{Header, TfMessage, Time, TransformStamped};
+
+use super::{answers, planar, transforms};
+
+/// Odometry that is kept until the hypotheses of its scan come.
+const KEPT: usize = 256;
+
+#[derive(Debug)]
+pub(super) struct Frames {
+    map: String,
+    base: String,
+    /// The laser that was heard last, and its mount if it is known.
+    laser: Option<(String, Option<Pose>)>,
+    mounts: Vec<TransformStamped>,
+    odometry: VecDeque<Odometry>,
+}
+
+impl Frames {
+    pub(super) fn new(map: &str, base: &str) -> Self {
+        Frames {
+            map: map.to_owned(),
+            base: base.to_owned(),
+            laser: None,
+            mounts: Vec::new(),
+            odometry: VecDeque::with_capacity(KEPT),
+        }
+    }
+
+    /// Takes a scan's header; gives all mounts where its own is new.
+    pub(super) fn hear_scan(&mut self, scan: &ScanHeader, stamp: Time) -> Option<TfMessage> {
+        let frame = scan.frame.as_str();
+        let mount = (scan.mount_known != 0).then(|| Pose::from(scan.base_from_laser));
+        let is_known = |laser: &(String, _)| laser.0 == frame && laser.1 == mount;
+        if self.laser.as_ref().is_some_and(is_known) {
+            return None;
+        }
+        self.laser = Some((frame.to_owned(), mount));
+        let transform = stamped(stamp, &self.base, frame, mount?);
+        let known = self.mounts.iter_mut().find(|m| m.child_frame_id == frame);
+        match known {
+            Some(known) if known.transform == transform.transform => return None,
+            Some(known) => *known = transform,
+            None => self.mounts.push(transform),
+        }
+        Some(transforms(self.mounts.clone()))
+    }
+
+    /// Takes odometry; gives the robot's place in its frame.
+    pub(super) fn hear_odometry(&mut self, odometry: &Odometry, stamp: Time) -> TfMessage {
+        if self.odometry.len() == KEPT {
+            self.odometry.pop_front();
+        }
+        self.odometry.push_back(*odometry);
+        let (child, odom_from_robot) = self.robot_in(odometry);
+        let parent = odometry.frame.as_str();
+        transforms(vec![stamped(stamp, parent, &child, odom_from_robot)])
+    }
+
+    /// Where the map's frame lies, by the best hypothesis of a scan.
+    pub(super) fn localized(
+        &self,
+        header: &HypothesesHeader,
+        best: &Hypothesis,
+        stamp: Time,
+    ) -> Option<TfMessage> {
+        if Verdict::from_code(header.verdict) != Some(Verdict::Unique) {
+            return None;
+        }
+        let (laser, mount) = self.laser.as_ref()?;
+        let map_from_robot = answers::robot(header, best);
+        let odometry = self.odometry_at(header.stamp.measured_ns);
+        let transform = match odometry {
+            // Its frame is the laser's, or the mount tells how the two lie.
+            Some(odometry) if mount.is_some() || odometry.child_frame.as_str() == laser => {
+                let (_, odom_from_robot) = self.robot_in(odometry);
+                let map_from_odom = map_from_robot.then(odom_from_robot.inverse());
+                stamped(stamp, &self.map, odometry.frame.as_str(), map_from_odom)
+            }
+            Some(_) => stamped(stamp, &self.map, laser, map_from_robot),
+            None if mount.is_some() => stamped(stamp, &self.map, &self.base, map_from_robot),
+            None => stamped(stamp, &self.map, laser, map_from_robot),
+        };
+        Some(transforms(vec![transform]))
+    }
+
+    /// The robot's frame and its place in the odometry's: where the odometry is
+    /// of a laser whose mount is known, that of the base.
+    fn robot_in(&self, odometry: &Odometry) -> (String, Pose) {
+        let child = odometry.child_frame.as_str();
+        let odom_from_child = Pose::from(odometry.odom_from_child);
+        match &self.laser {
+            Some((laser, Some(base_from_laser))) if laser == child => {
+                let odom_from_base = odom_from_child.then(base_from_laser.inverse());
+                (self.base.clone(), odom_from_base)
+            }
+            _ => (child.to_owned(), odom_from_child),
+        }
+    }
+
+    /// The newest odometry up to this time, else the first.
+    fn odometry_at(&self, measured_ns: i64) -> Option<&Odometry> {
+        let by_then = |odometry: &&Odometry| odometry.stamp.measured_ns <= measured_ns;
+        let newest = self.odometry.iter().rev().find(by_then);
+        newest.or(self.odometry.front())
+    }
+}
+
+fn stamped(stamp: Time, parent: &str, child: &str, parent_from_child: Pose) -> TransformStamped {
+    TransformStamped {
+        header: Header {
+            stamp,
+            frame_id: parent.to_owned(),
+        },
+        child_frame_id: child.to_owned(),
+        transform: planar::transform(parent_from_child),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use bytemuck::Zeroable;
+    use messages::{Name, Pose2};
+
+    use super::*;
+
+    const AHEAD: Pose2 = Pose2 {
+        x: 0.5,
+        y: 0.0,
+        yaw: 0.0,
+    };
+
+    fn at(x: f64) -> Pose2 {
+        Pose2 {
+            x,
+            y: 0.0,
+            yaw: 0.0,
+        }
+    }
+
+    fn scan(mount_known: bool) -> ScanHeader {
+        ScanHeader {
+            frame: Name::new("laser"),
+            base_from_laser: if mount_known { AHEAD } else { at(0.0) },
+            mount_known: mount_known.into(),
+            ..ScanHeader::zeroed()
+        }
+    }
+
+    fn odometry(child: &str, x: f64) -> Odometry {
+        Odometry {
+            odom_from_child: at(x),
+            frame: Name::new("odom"),
+            child_frame: Name::new(child),
+            ..Odometry::zeroed()
+        }
+    }
+
+    /// `parent->child x` of the only transform.
+    fn shown(message: Option<TfMessage>) -> String {
+        let transforms = message
+            .map(|message| message.transforms)
+            .unwrap_or_default();
+        let show = |t: &TransformStamped| {
+            let (parent, x) = (&t.header.frame_id, t.transform.translation.x);
+            format!("{parent}->{} {x}", t.child_frame_id)
+        };
+        transforms.iter().map(show).collect::<Vec<_>>().join(", ")
+    }
+
+    /// The laser is at 10, the base half a metre behind.
+    fn localized(frames: &Frames, mount_known: bool, verdict: Verdict) -> String {
+        let header = HypothesesHeader {
+            verdict: verdict as u32,
+            mount_known: mount_known.into(),
+            ..HypothesesHeader::zeroed()
+        };
+        let best = Hypothesis {
+            map_from_laser: at(10.0),
+            map_from_base: at(9.5),
+            ..Hypothesis::zeroed()
+        };
+        shown(frames.localized(&header, &best, Time::default()))
+    }
+
+    #[test]
+    fn without_odometry_the_map_holds_the_robot() {
+        let mut frames = Frames::new("map", "base_link");
+        assert_eq!(localized(&frames, false, Verdict::Unique), "");
+        assert_eq!(shown(frames.hear_scan(&scan(false), Time::default())), "");
+        assert_eq!(localized(&frames, false, Verdict::Unique), "map->laser 10");
+        let mounts = frames.hear_scan(&scan(true), Time::default());
+        assert_eq!(shown(mounts), "base_link->laser 0.5");
+        assert_eq!(shown(frames.hear_scan(&scan(true), Time::default())), "");
+        assert_eq!(
+            localized(&frames, true, Verdict::Unique),
+            "map->base_link 9.5"
+        );
+        assert_eq!(localized(&frames, true, Verdict::Ambiguous), "");
+    }
+
+    #[test]
+    fn with_odometry_the_map_holds_its_frame() {
+        let mut frames = Frames::new("map", "base_link");
+        frames.hear_scan(&scan(true), Time::default());
+        let base = frames.hear_odometry(&odometry("base_link", 2.0), Time::default());
+        assert_eq!(shown(Some(base)), "odom->base_link 2");
+        assert_eq!(localized(&frames, true, Verdict::Unique), "map->odom 7.5");
+        // The laser of the odometry hangs below the base already.
+        let laser = frames.hear_odometry(&odometry("laser", 2.0), Time::default());
+        assert_eq!(shown(Some(laser)), "odom->base_link 1.5");
+        assert_eq!(localized(&frames, true, Verdict::Unique), "map->odom 8");
+    }
+
+    #[test]
+    fn where_nobody_knows_how_laser_and_base_lie_neither_is_moved() {
+        let mut frames = Frames::new("map", "base_link");
+        frames.hear_scan(&scan(false), Time::default());
+        frames.hear_odometry(&odometry("base_link", 2.0), Time::default());
+        assert_eq!(localized(&frames, false, Verdict::Unique), "map->laser 10");
+        frames.hear_odometry(&odometry("laser", 2.0), Time::default());
+        assert_eq!(localized(&frames, false, Verdict::Unique), "map->odom 8");
+    }
+}

@@ -1,0 +1,124 @@
+//! The map and the intensity image as ROS says them.
+
+use std::collections::BTreeMap;
+
+use messages::{FieldHeader, MapHeader, Topic, topic};
+use recording::ros::{Header, MapMetaData, OccupancyGridMsg};
+
+use super::planar;
+use crate::RecorderError;
+
+/// The map; its header and load time are filled in by the caller.
+pub(super) fn occupancy_grid(
+    map: &MapHeader,
+    cells: &[u8],
+) -> Result<OccupancyGridMsg, RecorderError> {
+    check_size(topic::Map::NAME, map.width, map.height, cells.len())?;
+    Ok(OccupancyGridMsg {
+        header: Header::default(),
+        info: MapMetaData {
+            resolution: map.resolution_m as f32,
+            width: map.width,
+            height: map.height,
+            origin: planar::pose(map.map_from_grid.into()),
+            ..MapMetaData::default()
+        },
+        // Unknown is 255, and -1 in the message: the same bits.
+        data: cells.iter().map(|&cell| cell.cast_signed()).collect(),
+    })
+}
+
+/// The intensities, as per cent of what a pose would have if every beam agreed.
+pub(super) fn field(
+    header: Header,
+    field: &FieldHeader,
+    items: &[u16],
+    map: &MapHeader,
+) -> Result<OccupancyGridMsg, RecorderError> {
+    check_size(topic::Field::NAME, field.width, field.height, items.len())?;
+    let full = field.highest_possible.max(1);
+    let percent = |&item: &u16| (u32::from(item) * 100 / full).min(100) as i8;
+    Ok(OccupancyGridMsg {
+        info: MapMetaData {
+            map_load_time: header.stamp,
+            resolution: (map.resolution_m * f64::from(field.block)) as f32,
+            width: field.width,
+            height: field.height,
+            origin: planar::pose(map.map_from_grid.into()),
+        },
+        header,
+        data: items.iter().map(percent).collect(),
+    })
+}
+
+/// What the recording says about its map.
+pub(super) fn metadata(map: &MapHeader) -> BTreeMap<String, String> {
+    let entry = |key: &str, value: String| (key.to_owned(), value);
+    BTreeMap::from([
+        entry("map_id", format!("{:016x}", map.map_id)),
+        entry("width", map.width.to_string()),
+        entry("height", map.height.to_string()),
+        entry("resolution_m", map.resolution_m.to_string()),
+    ])
+}
+
+fn check_size(
+    topic: &'static str,
+    width: u32,
+    height: u32,
+    found: usize,
+) -> Result<(), RecorderError> {
+    if u64::from(width) * u64::from(height) == found as u64 {
+        return Ok(());
+    }
+    Err(RecorderError::Size {
+        topic,
+        width,
+        height,
+        found,
+    })
+}
+
+#[cfg(test)]
+mod tests {
+    use bytemuck::Zeroable;
+
+    use super::*;
+
+    fn map() -> MapHeader {
+        MapHeader {
+            width: 2,
+            height: 2,
+            resolution_m: 0.05,
+            map_id: 0x1f,
+            ..MapHeader::zeroed()
+        }
+    }
+
+    #[test]
+    fn a_map_comes_back_from_its_message() {
+        let message = occupancy_grid(&map(), &[0, 100, 255, 7]).unwrap();
+        let grid = message.to_grid().unwrap();
+        assert_eq!(
+            (grid.cells, grid.resolution_m),
+            (vec![0, 100, 255, 7], 0.05)
+        );
+        assert_eq!(metadata(&map())["map_id"], "000000000000001f");
+    }
+
+    #[test]
+    fn intensities_are_shares_of_the_highest_possible() {
+        let header = FieldHeader {
+            width: 3,
+            height: 1,
+            block: 16,
+            highest_possible: 200,
+            ..FieldHeader::zeroed()
+        };
+        let message = field(Header::default(), &header, &[0, 100, 201], &map()).unwrap();
+        assert_eq!(message.data, [0, 50, 100]);
+        assert_eq!(message.info.resolution, 0.8);
+        let error = field(Header::default(), &header, &[0], &map()).unwrap_err();
+        assert!(matches!(error, RecorderError::Size { found: 1, .. }));
+    }
+}

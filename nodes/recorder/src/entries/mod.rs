@@ -1,0 +1,385 @@
+//! From samples of the graph to what a recording holds, each with its time.
+//!
+//! Pure. Times are those of the measurements, not of their arrival: of a scan,
+//! its votes and its hypotheses alike, so that a recording that is played and
+//! recorded again has the same times. What has no measurement (the map, the
+//! mount, health) waits for the first one, and then stands at its time.
+
+mod answers;
+mod diagnostics;
+mod frames;
+mod maps;
+mod measurements;
+mod planar;
+
+use std::collections::BTreeMap;
+
+use messages::{
+    FieldHeader, GroundTruth, HealthHeader, HypothesesHeader, Hypothesis, MapHeader, Odometry,
+    ScanHeader, Stamp, Topic, Vote, VotesHeader, topic,
+};
+use recording::ros::{Header, OccupancyGridMsg, RosMessage, TfMessage, Time};
+use recording::write::Encoded;
+
+use crate::{RecorderError, topics};
+use frames::Frames;
+
+/// Reports that wait for the first measurement at most; the newest are kept.
+const MAX_WAITING: usize = 256;
+
+/// What goes into a recording.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub(crate) enum Entry {
+    /// A message.
+    Message(Encoded),
+    /// What holds from now on, under a name.
+    Metadata(&'static str, BTreeMap<String, String>),
+}
+
+/// Makes entries of samples.
+#[derive(Debug)]
+pub(crate) struct Entries {
+    frames: Frames,
+    map_frame: String,
+    /// The newest measurement: where the clock of measurements meets the host's.
+    newest: Option<Stamp>,
+    /// The map that was recorded last, or is to be.
+    map: Option<MapHeader>,
+    waiting_map: Option<OccupancyGridMsg>,
+    waiting_health: Vec<(HealthHeader, String)>,
+    made: Vec<Entry>,
+}
+
+impl Entries {
+    pub(crate) fn new(map_frame: &str, base_frame: &str) -> Self {
+        Entries {
+            frames: Frames::new(map_frame, base_frame),
+            map_frame: map_frame.to_owned(),
+            newest: None,
+            map: None,
+            waiting_map: None,
+            waiting_health: Vec::new(),
+            made: Vec::new(),
+        }
+    }
+
+    /// What was made since the last call.
+    pub(crate) fn take(&mut self) -> Vec<Entry> {
+        std::mem::take(&mut self.made)
+    }
+
+    pub(crate) fn scan(&mut self, scan: &ScanHeader, ranges: &[f32]) -> Result<(), RecorderError> {
+        let at = self.measured(scan.stamp, topic::Scan::NAME)?;
+        if let Some(mounts) = self.frames.hear_scan(scan, at.stamp) {
+            self.latched(topics::TF_STATIC, at.ns, &mounts)?;
+        }
+        self.message(
+            topics::SCAN,
+            at.ns,
+            &measurements::scan(at.stamp, scan, ranges),
+        )
+    }
+
+    pub(crate) fn odometry(&mut self, odometry: &Odometry) -> Result<(), RecorderError> {
+        let at = self.measured(odometry.stamp, topic::OdometryTopic::NAME)?;
+        let transform = self.frames.hear_odometry(odometry, at.stamp);
+        self.message(topics::TF, at.ns, &transform)?;
+        let message = measurements::odometry(at.stamp, odometry);
+        self.message(topics::ODOM, at.ns, &message)
+    }
+
+    pub(crate) fn ground_truth(&mut self, truth: &GroundTruth) -> Result<(), RecorderError> {
+        let at = self.measured(truth.stamp, topic::GroundTruthTopic::NAME)?;
+        let message = measurements::ground_truth(at.stamp, truth);
+        self.message(topics::GROUND_TRUTH, at.ns, &message)
+    }
+
+    pub(crate) fn votes(
+        &mut self,
+        votes: &VotesHeader,
+        items: &[Vote],
+    ) -> Result<(), RecorderError> {
+        let at = self.measured(votes.stamp, topic::Votes::NAME)?;
+        let message = answers::votes(self.in_map(at.stamp), votes, items);
+        self.message(topics::OWN_VOTES, at.ns, &message)
+    }
+
+    pub(crate) fn hypotheses(
+        &mut self,
+        header: &HypothesesHeader,
+        items: &[Hypothesis],
+    ) -> Result<(), RecorderError> {
+        let at = self.measured(header.stamp, topic::Hypotheses::NAME)?;
+        let in_map = self.in_map(at.stamp);
+        let own = answers::hypotheses(in_map.clone(), header, items);
+        self.message(topics::OWN_HYPOTHESES, at.ns, &own)?;
+        let array = answers::poses(in_map.clone(), header, items);
+        self.message(topics::HYPOTHESES, at.ns, &array)?;
+        let Some(best) = items.first() else {
+            return Ok(());
+        };
+        let pose = answers::best(in_map, header, best);
+        self.message(topics::POSE, at.ns, &pose)?;
+        if let Some(transform) = self.frames.localized(header, best, at.stamp) {
+            self.message(topics::TF, at.ns, &transform)?;
+        }
+        Ok(())
+    }
+
+    /// Takes a map, unless it is the one that was taken last: a server that was
+    /// started again sends it again.
+    pub(crate) fn map(
+        &mut self,
+        map: &MapHeader,
+        cells: &[u8],
+        now_ns: i64,
+    ) -> Result<(), RecorderError> {
+        let message = maps::occupancy_grid(map, cells)?;
+        let known = self.map.replace(*map);
+        if known.is_some_and(|known| known.map_id == map.map_id) {
+            return Ok(());
+        }
+        self.waiting_map = Some(message);
+        match self.clock_ns(now_ns) {
+            Some(ns) => self.release(ns),
+            None => Ok(()),
+        }
+    }
+
+    /// Takes an intensity image; one of a map that is not known is left out.
+    pub(crate) fn field(
+        &mut self,
+        field: &FieldHeader,
+        items: &[u16],
+    ) -> Result<(), RecorderError> {
+        let at = self.measured(field.stamp, topic::Field::NAME)?;
+        let Some(map) = self.map.filter(|map| map.map_id == field.map_id) else {
+            return Ok(());
+        };
+        let message = maps::field(self.in_map(at.stamp), field, items, &map)?;
+        self.message(topics::FIELD, at.ns, &message)
+    }
+
+    /// Takes a node's report, at the host's time `now_ns`.
+    pub(crate) fn health(
+        &mut self,
+        report: &HealthHeader,
+        error: &[u8],
+        now_ns: i64,
+    ) -> Result<(), RecorderError> {
+        if self.waiting_health.len() == MAX_WAITING {
+            self.waiting_health.remove(0);
+        }
+        let error = String::from_utf8_lossy(error).into_owned();
+        self.waiting_health.push((*report, error));
+        match self.clock_ns(now_ns) {
+            Some(ns) => self.release(ns),
+            None => Ok(()),
+        }
+    }
+
+    /// Makes entries of what still waits, where nothing was ever measured: at
+    /// `wall_ns`, nanoseconds since 1970.
+    pub(crate) fn finish(&mut self, wall_ns: i64) -> Result<(), RecorderError> {
+        self.release(wall_ns)
+    }
+
+    /// The clock of the measurements now.
+    fn clock_ns(&self, now_ns: i64) -> Option<i64> {
+        let newest = self.newest?;
+        let since_ns = now_ns.saturating_sub(newest.entered_ns).max(0);
+        Some(newest.measured_ns.saturating_add(since_ns))
+    }
+
+    /// Checks a measurement's stamp, and lets go of what waited for it.
+    fn measured(&mut self, stamp: Stamp, topic: &'static str) -> Result<Moment, RecorderError> {
+        let at = Moment::of(stamp.measured_ns, topic)?;
+        let first = self.newest.is_none();
+        if self
+            .newest
+            .is_none_or(|newest| newest.entered_ns <= stamp.entered_ns)
+        {
+            self.newest = Some(stamp);
+        }
+        if first {
+            self.release(at.ns)?;
+        }
+        Ok(at)
+    }
+
+    fn release(&mut self, ns: i64) -> Result<(), RecorderError> {
+        let at = Moment::of(ns, topic::Map::NAME)?;
+        if let (Some(mut map), Some(header)) = (self.waiting_map.take(), self.map) {
+            map.header = self.in_map(at.stamp);
+            map.info.map_load_time = at.stamp;
+            self.made
+                .push(Entry::Metadata("backcast/map", maps::metadata(&header)));
+            self.latched(topics::MAP, at.ns, &map)?;
+        }
+        for (report, error) in std::mem::take(&mut self.waiting_health) {
+            let message = diagnostics::of(at.stamp, &report, &error);
+            self.message(topics::DIAGNOSTICS, at.ns, &message)?;
+        }
+        Ok(())
+    }
+
+    fn in_map(&self, stamp: Time) -> Header {
+        Header {
+            stamp,
+            frame_id: self.map_frame.clone(),
+        }
+    }
+
+    fn message<M: RosMessage>(
+        &mut self,
+        topic: &'static str,
+        ns: i64,
+        message: &M,
+    ) -> Result<(), RecorderError> {
+        let encoded = Encoded::new(topic, ns, message)?;
+        self.made.push(Entry::Message(encoded));
+        Ok(())
+    }
+
+    fn latched<M: RosMessage>(
+        &mut self,
+        topic: &'static str,
+        ns: i64,
+        message: &M,
+    ) -> Result<(), RecorderError> {
+        let encoded = Encoded::latched(topic, ns, message)?;
+        self.made.push(Entry::Message(encoded));
+        Ok(())
+    }
+}
+
+/// A time that a message of ROS can say.
+#[derive(Debug, Clone, Copy)]
+struct Moment {
+    ns: i64,
+    stamp: Time,
+}
+
+impl Moment {
+    fn of(ns: i64, topic: &'static str) -> Result<Self, RecorderError> {
+        match Time::from_ns(ns) {
+            Some(stamp) if ns >= 0 => Ok(Moment { ns, stamp }),
+            _ => Err(RecorderError::Stamp {
+                topic,
+                stamp_ns: ns,
+            }),
+        }
+    }
+}
+
+fn transforms(transforms: Vec<recording::ros::TransformStamped>) -> TfMessage {
+    TfMessage { transforms }
+}
+
+#[cfg(test)]
+mod tests {
+    use bytemuck::Zeroable;
+    use messages::{Name, Verdict};
+
+    use super::*;
+
+    fn stamp(measured_ns: i64, entered_ns: i64) -> Stamp {
+        Stamp {
+            measured_ns,
+            entered_ns,
+            counter: 0,
+        }
+    }
+
+    fn scan(at: Stamp) -> ScanHeader {
+        ScanHeader {
+            stamp: at,
+            frame: Name::new("laser"),
+            ..ScanHeader::zeroed()
+        }
+    }
+
+    fn map(id: u64) -> MapHeader {
+        MapHeader {
+            map_id: id,
+            width: 2,
+            height: 1,
+            resolution_m: 0.05,
+            ..MapHeader::zeroed()
+        }
+    }
+
+    /// Topics and times of what was made, metadata by its name at time 0.
+    fn made(entries: &mut Entries) -> Vec<(&'static str, i64)> {
+        let show = |entry| match entry {
+            Entry::Message(message) => (message.topic, message.log_time_ns),
+            Entry::Metadata(name, _) => (name, 0),
+        };
+        entries.take().into_iter().map(show).collect()
+    }
+
+    #[test]
+    fn what_has_no_measurement_waits_for_the_first_one() {
+        let mut entries = Entries::new("map", "base_link");
+        entries.map(&map(1), &[0, 100], 5).unwrap();
+        entries.health(&HealthHeader::zeroed(), b"", 6).unwrap();
+        assert_eq!(made(&mut entries), []);
+        entries.scan(&scan(stamp(1000, 10)), &[1.0]).unwrap();
+        let expected = [
+            ("backcast/map", 0),
+            ("/map", 1000),
+            ("/diagnostics", 1000),
+            ("/scan", 1000),
+        ];
+        assert_eq!(made(&mut entries), expected);
+        // From then on the host's clock tells how much later it is.
+        entries.health(&HealthHeader::zeroed(), b"", 40).unwrap();
+        entries.map(&map(1), &[0, 100], 50).unwrap();
+        entries.map(&map(2), &[0, 0], 60).unwrap();
+        let expected = [("/diagnostics", 1030), ("backcast/map", 0), ("/map", 1050)];
+        assert_eq!(made(&mut entries), expected);
+    }
+
+    #[test]
+    fn without_any_measurement_the_wall_clock_counts() {
+        let mut entries = Entries::new("map", "base_link");
+        entries.map(&map(1), &[0, 100], 5).unwrap();
+        entries.finish(77).unwrap();
+        assert_eq!(made(&mut entries), [("backcast/map", 0), ("/map", 77)]);
+    }
+
+    #[test]
+    fn times_that_ros_cannot_say_are_refused() {
+        let mut entries = Entries::new("map", "base_link");
+        for ns in [-1, i64::MAX] {
+            let error = entries.scan(&scan(stamp(ns, 0)), &[]).unwrap_err();
+            assert!(
+                error.to_string().starts_with("topic scan: a stamp of"),
+                "{error}"
+            );
+        }
+        assert_eq!(made(&mut entries), []);
+        let error = entries.map(&map(1), &[0], 5).unwrap_err().to_string();
+        assert_eq!(error, "topic map: 2 x 1 cells are claimed, 1 are there");
+    }
+
+    #[test]
+    fn hypotheses_stand_in_several_forms_and_no_hypothesis_has_no_pose() {
+        let mut entries = Entries::new("map", "base_link");
+        let header = HypothesesHeader {
+            stamp: stamp(1000, 10),
+            verdict: Verdict::Unique as u32,
+            ..HypothesesHeader::zeroed()
+        };
+        entries.scan(&scan(stamp(1000, 10)), &[1.0]).unwrap();
+        made(&mut entries);
+        entries.hypotheses(&header, &[]).unwrap();
+        let empty = [("/backcast/hypotheses", 1000), ("/hypotheses", 1000)];
+        assert_eq!(made(&mut entries), empty);
+        entries
+            .hypotheses(&header, &[Hypothesis::zeroed()])
+            .unwrap();
+        let one = [&empty[..], &[("/pose", 1000), ("/tf", 1000)]].concat();
+        assert_eq!(made(&mut entries), one);
+    }
+}

@@ -1,0 +1,112 @@
+//! What happened that is worth a look at the minutes before it.
+
+use messages::{HealthHeader, NodeState, Verdict};
+
+/// Scans in a row that must be without a place after it was known.
+const LOST_AFTER: u32 = 5;
+
+/// Something on which a black box is saved.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, clap::ValueEnum)]
+pub enum Event {
+    /// The place was known, and is not for five scans in a row
+    LostPose,
+    /// A node works no more as it should
+    Degraded,
+}
+
+impl std::fmt::Display for Event {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        f.write_str(match self {
+            Event::LostPose => "the pose was lost",
+            Event::Degraded => "a node is degraded",
+        })
+    }
+}
+
+/// Looks out for events.
+#[derive(Debug, Default)]
+pub(crate) struct Lookout {
+    /// Scans since the last known place, if there was one; none once the loss
+    /// was noticed.
+    unknown_for: Option<u32>,
+    /// The nodes that are degraded.
+    degraded: Vec<String>,
+}
+
+impl Lookout {
+    /// Takes the verdict on a scan, by its number.
+    pub(crate) fn verdict(&mut self, code: u32) -> Option<Event> {
+        if Verdict::from_code(code) == Some(Verdict::Unique) {
+            self.unknown_for = Some(0);
+            return None;
+        }
+        let scans = self.unknown_for.as_mut()?;
+        *scans += 1;
+        if *scans < LOST_AFTER {
+            return None;
+        }
+        self.unknown_for = None;
+        Some(Event::LostPose)
+    }
+
+    /// Takes a node's report.
+    pub(crate) fn health(&mut self, report: &HealthHeader) -> Option<Event> {
+        let node = report.node.as_str();
+        let known = self.degraded.iter().position(|other| other == node);
+        let is_degraded = NodeState::from_code(report.state) == Some(NodeState::Degraded);
+        match (known, is_degraded) {
+            (None, true) => {
+                self.degraded.push(node.to_owned());
+                Some(Event::Degraded)
+            }
+            (Some(at), false) => {
+                self.degraded.swap_remove(at);
+                None
+            }
+            _ => None,
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use bytemuck::Zeroable;
+    use messages::Name;
+
+    use super::*;
+
+    #[test]
+    fn a_pose_is_lost_once_and_only_after_it_was_known() {
+        let mut lookout = Lookout::default();
+        let mut lost = |verdicts: &[Verdict]| -> Vec<usize> {
+            let events = verdicts
+                .iter()
+                .map(|verdict| lookout.verdict(*verdict as u32));
+            let seen = events.enumerate().filter(|(_, event)| event.is_some());
+            seen.map(|(at, _)| at).collect()
+        };
+        assert!(lost(&[Verdict::PoorFit; 9]).is_empty());
+        assert!(lost(&[Verdict::Unique]).is_empty());
+        assert!(lost(&[Verdict::Ambiguous; 4]).is_empty());
+        assert!(lost(&[Verdict::Unique]).is_empty());
+        assert_eq!(lost(&[Verdict::PoorFit; 20]), [4]);
+    }
+
+    #[test]
+    fn a_node_is_reported_when_it_becomes_degraded() {
+        let mut lookout = Lookout::default();
+        let mut hear = |node: &str, state: NodeState| {
+            lookout.health(&HealthHeader {
+                node: Name::new(node),
+                state: state as u32,
+                ..HealthHeader::zeroed()
+            })
+        };
+        assert_eq!(hear("a", NodeState::Ready), None);
+        assert_eq!(hear("a", NodeState::Degraded), Some(Event::Degraded));
+        assert_eq!(hear("a", NodeState::Degraded), None);
+        assert_eq!(hear("b", NodeState::Degraded), Some(Event::Degraded));
+        assert_eq!(hear("a", NodeState::Ready), None);
+        assert_eq!(hear("a", NodeState::Degraded), Some(Event::Degraded));
+    }
+}

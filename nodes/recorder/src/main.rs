@@ -1,0 +1,21 @@
+//! Starts the node; see the library.
+
+use std::process::ExitCode;
+
+use clap::Parser;
+use recorder::Config;
+
+/// Finished, but lost data.
+const LOST_DATA: u8 = 3;
+
+fn main() -> ExitCode {
+    let config = Config::parse();
+    let mut lost_data = false;
+    let code = transport::node::main("recorder", |graph| {
+        recorder::run(graph, &config).map(|summary| lost_data = summary.lost_data())
+    });
+    if lost_data {
+        return ExitCode::from(LOST_DATA);
+    }
+    code
+}

@@ -1,0 +1,138 @@
+//! The topics that are recorded.
+
+use std::cell::RefCell;
+
+use messages::{Topic, topic};
+use transport::{GapCounter, Graph, Input, Subscriber, TransportError};
+
+use super::Recorder;
+use crate::RecorderError;
+
+pub(super) struct Inputs {
+    map: Counted<topic::Map>,
+    odometry: Counted<topic::OdometryTopic>,
+    truths: Counted<topic::GroundTruthTopic>,
+    scans: Counted<topic::Scan>,
+    votes: Counted<topic::Votes>,
+    field: Option<Counted<topic::Field>>,
+    hypotheses: Counted<topic::Hypotheses>,
+    health: Counted<topic::Health>,
+}
+
+/// A subscriber that knows what it has missed.
+struct Counted<T: Topic> {
+    subscriber: Subscriber<T>,
+    gaps: RefCell<GapCounter>,
+}
+
+impl<T: Topic> Counted<T> {
+    fn open(graph: &Graph) -> Result<Self, TransportError> {
+        Ok(Counted {
+            subscriber: graph.subscriber()?,
+            gaps: RefCell::default(),
+        })
+    }
+
+    fn lost_before(&self, counter: u64) -> u64 {
+        self.gaps.borrow_mut().lost_before(counter)
+    }
+}
+
+impl Inputs {
+    /// The field is subscribed to only where it is wanted, for it is computed
+    /// only then.
+    pub(super) fn open(graph: &Graph, field: bool) -> Result<Self, TransportError> {
+        Ok(Inputs {
+            map: Counted::open(graph)?,
+            odometry: Counted::open(graph)?,
+            truths: Counted::open(graph)?,
+            scans: Counted::open(graph)?,
+            votes: Counted::open(graph)?,
+            field: field.then(|| Counted::open(graph)).transpose()?,
+            hypotheses: Counted::open(graph)?,
+            health: Counted::open(graph)?,
+        })
+    }
+
+    pub(super) fn all(&self) -> Vec<&dyn Input> {
+        let field = self
+            .field
+            .as_ref()
+            .map(|field| -> &dyn Input { &field.subscriber });
+        let others: [&dyn Input; 7] = [
+            &self.map.subscriber,
+            &self.odometry.subscriber,
+            &self.truths.subscriber,
+            &self.scans.subscriber,
+            &self.votes.subscriber,
+            &self.hypotheses.subscriber,
+            &self.health.subscriber,
+        ];
+        others.into_iter().chain(field).collect()
+    }
+
+    /// Takes everything that has come, measurements before their answers.
+    pub(super) fn take(&self, to: &mut Recorder) -> Result<(), RecorderError> {
+        while let Some(map) = self.map.subscriber.receive()? {
+            let outcome = to
+                .entries
+                .map(map.header(), map.items(), Recorder::now_ns());
+            to.taken(0, outcome)?;
+        }
+        self.take_measurements(to)?;
+        self.take_answers(to)?;
+        while let Some(report) = self.health.subscriber.receive()? {
+            let (header, error) = (report.header(), report.items());
+            let outcome = to.entries.health(header, error, Recorder::now_ns());
+            to.taken(0, outcome)?;
+            let event = to.lookout.health(header);
+            to.happened(event)?;
+        }
+        Ok(())
+    }
+
+    fn take_measurements(&self, to: &mut Recorder) -> Result<(), RecorderError> {
+        while let Some(sample) = self.odometry.subscriber.receive()? {
+            let lost = self.odometry.lost_before(sample.header().stamp.counter);
+            let outcome = to.entries.odometry(sample.header());
+            to.taken(lost, outcome)?;
+        }
+        while let Some(sample) = self.truths.subscriber.receive()? {
+            let lost = self.truths.lost_before(sample.header().stamp.counter);
+            let outcome = to.entries.ground_truth(sample.header());
+            to.taken(lost, outcome)?;
+        }
+        while let Some(sample) = self.scans.subscriber.receive()? {
+            let lost = self.scans.lost_before(sample.header().stamp.counter);
+            let outcome = to.entries.scan(sample.header(), sample.items());
+            to.taken(lost, outcome)?;
+        }
+        Ok(())
+    }
+
+    fn take_answers(&self, to: &mut Recorder) -> Result<(), RecorderError> {
+        while let Some(sample) = self.votes.subscriber.receive()? {
+            let lost = self.votes.lost_before(sample.header().stamp.counter);
+            let outcome = to.entries.votes(sample.header(), sample.items());
+            to.taken(lost, outcome)?;
+        }
+        // Images are left out by choice where they come too fast.
+        while let Some(sample) = self
+            .field
+            .as_ref()
+            .map_or(Ok(None), |f| f.subscriber.receive())?
+        {
+            let outcome = to.entries.field(sample.header(), sample.items());
+            to.taken(0, outcome)?;
+        }
+        while let Some(sample) = self.hypotheses.subscriber.receive()? {
+            let header = sample.header();
+            let lost = self.hypotheses.lost_before(header.stamp.counter);
+            let outcome = to.entries.hypotheses(header, sample.items());
+            to.taken(lost, outcome)?;
+            let event = to.lookout.verdict(header.verdict);
+            to.happened(event)?;
+        }
+        Ok(())
+    }
+}

@@ -1,0 +1,210 @@
+//! The thread that packs and writes.
+
+use std::sync::atomic::{AtomicUsize, Ordering};
+use std::sync::mpsc::{Receiver, RecvTimeoutError, Sender, channel};
+use std::sync::{Arc, Mutex, PoisonError};
+use std::thread::JoinHandle;
+use std::time::{Duration, Instant};
+
+use transport::with_causes;
+
+use crate::entries::Entry;
+use crate::writing::{BlackBox, Limits, Parts, Preamble, Store, Tally};
+use crate::{Config, RecorderError};
+
+/// How long something may lie in memory before it is on its way to the disk;
+/// well below the promised second.
+const FLUSH_PERIOD: Duration = Duration::from_millis(500);
+
+/// A million bytes.
+const MEGABYTE: u64 = 1_000_000;
+
+/// How the writer fares.
+#[derive(Debug, Clone, PartialEq, Eq, Default)]
+pub(super) struct Status {
+    pub(super) tally: Tally,
+    /// Why it cannot write now.
+    pub(super) problem: Option<String>,
+}
+
+enum Command {
+    Put(Entry),
+    Save(String),
+}
+
+/// The end from which it gets its work. What waits for it is bounded: more is
+/// dropped, and nobody waits.
+pub(super) struct Writer {
+    commands: Sender<Command>,
+    thread: JoinHandle<Status>,
+    status: Arc<Mutex<Status>>,
+    queued_bytes: Arc<AtomicUsize>,
+    capacity_bytes: usize,
+    /// Messages that did not fit into the queue.
+    dropped: u64,
+}
+
+impl Writer {
+    /// Creates the file and starts the thread.
+    ///
+    /// # Errors
+    /// If one of them cannot be.
+    pub(super) fn start(graph: &str, config: &Config) -> Result<Self, RecorderError> {
+        let preamble = Preamble::new(config, graph)?;
+        let output = config.output.clone();
+        let store = match config.keep {
+            None => Store::Parts(Parts::new(output, limits(config), preamble)?),
+            Some(keep) => {
+                let capacity = bytes(config.keep_size);
+                Store::BlackBox(BlackBox::new(output, keep, capacity, preamble))
+            }
+        };
+        let (commands, waiting) = channel();
+        let status = Arc::new(Mutex::default());
+        let queued_bytes = Arc::new(AtomicUsize::new(0));
+        let mut desk = Desk {
+            store,
+            waiting,
+            queued_bytes: Arc::clone(&queued_bytes),
+            status: Arc::clone(&status),
+            problem: None,
+        };
+        let thread = std::thread::Builder::new()
+            .name("writer".into())
+            .spawn(move || desk.work())
+            .map_err(RecorderError::Thread)?;
+        Ok(Writer {
+            commands,
+            thread,
+            status,
+            queued_bytes,
+            capacity_bytes: bytes(config.queue_size),
+            dropped: 0,
+        })
+    }
+
+    /// Hands over an entry, or drops it where too much waits already.
+    pub(super) fn put(&mut self, entry: Entry) -> Result<(), RecorderError> {
+        let size = size(&entry);
+        let queued = self.queued_bytes.fetch_add(size, Ordering::Relaxed);
+        if queued + size > self.capacity_bytes && queued > 0 {
+            self.queued_bytes.fetch_sub(size, Ordering::Relaxed);
+            self.dropped += 1;
+            return Ok(());
+        }
+        self.send(Command::Put(entry))
+    }
+
+    /// Asks it to save a black box.
+    pub(super) fn save(&self, why: &str) -> Result<(), RecorderError> {
+        self.send(Command::Save(why.to_owned()))
+    }
+
+    pub(super) fn status(&self) -> Status {
+        let mut status = self
+            .status
+            .lock()
+            .unwrap_or_else(PoisonError::into_inner)
+            .clone();
+        status.tally.dropped += self.dropped;
+        status
+    }
+
+    /// Waits until all is written.
+    ///
+    /// # Errors
+    /// If the thread has panicked.
+    pub(super) fn finish(self) -> Result<Status, RecorderError> {
+        drop(self.commands);
+        let mut status = self.thread.join().map_err(|_| RecorderError::ThreadEnded)?;
+        status.tally.dropped += self.dropped;
+        Ok(status)
+    }
+
+    fn send(&self, command: Command) -> Result<(), RecorderError> {
+        self.commands
+            .send(command)
+            .map_err(|_| RecorderError::ThreadEnded)
+    }
+}
+
+/// What the thread works with.
+struct Desk {
+    store: Store,
+    waiting: Receiver<Command>,
+    queued_bytes: Arc<AtomicUsize>,
+    status: Arc<Mutex<Status>>,
+    problem: Option<String>,
+}
+
+impl Desk {
+    /// Writes until nobody sends any more.
+    fn work(&mut self) -> Status {
+        let mut flush_at = Instant::now() + FLUSH_PERIOD;
+        loop {
+            let patience = flush_at.saturating_duration_since(Instant::now());
+            match self.waiting.recv_timeout(patience) {
+                Ok(command) => self.obey(command),
+                Err(RecvTimeoutError::Timeout) => {}
+                Err(RecvTimeoutError::Disconnected) => break,
+            }
+            if Instant::now() >= flush_at {
+                let flushed = self.store.flush();
+                self.note(flushed);
+                flush_at = Instant::now() + FLUSH_PERIOD;
+            }
+        }
+        let finished = self.store.finish();
+        self.note(finished);
+        self.current()
+    }
+
+    fn obey(&mut self, command: Command) {
+        match command {
+            Command::Put(entry) => {
+                let size = size(&entry);
+                if let Err(error) = self.store.put(entry) {
+                    self.problem = Some(with_causes(&error));
+                }
+                self.queued_bytes.fetch_sub(size, Ordering::Relaxed);
+            }
+            Command::Save(why) => {
+                let saved = self.store.save(&why);
+                self.note(saved);
+            }
+        }
+    }
+
+    /// Publishes how it fares, after an attempt to write.
+    fn note(&mut self, outcome: Result<(), RecorderError>) {
+        self.problem = outcome.err().map(|error| with_causes(&error));
+        let current = self.current();
+        *self.status.lock().unwrap_or_else(PoisonError::into_inner) = current;
+    }
+
+    fn current(&self) -> Status {
+        Status {
+            tally: self.store.tally(),
+            problem: self.problem.clone(),
+        }
+    }
+}
+
+fn limits(config: &Config) -> Limits {
+    Limits {
+        split_bytes: config.split_size.map(|size| size.saturating_mul(MEGABYTE)),
+        split_time: config.split_time,
+        waiting_bytes: bytes(config.queue_size),
+    }
+}
+
+fn bytes(megabytes: u64) -> usize {
+    usize::try_from(megabytes.saturating_mul(MEGABYTE)).unwrap_or(usize::MAX)
+}
+
+fn size(entry: &Entry) -> usize {
+    match entry {
+        Entry::Message(message) => message.body.len(),
+        Entry::Metadata(..) => 0,
+    }
+}

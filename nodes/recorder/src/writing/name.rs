@@ -1,0 +1,71 @@
+//! Names of files that do not exist yet.
+
+use std::fs::File;
+use std::io::ErrorKind;
+use std::path::{Path, PathBuf};
+
+use crate::RecorderError;
+
+/// Most numbers that are tried.
+const MOST: u32 = 100_000;
+
+/// Creates the file `path`, or where it exists the first of `stem_1.mcap`,
+/// `stem_2.mcap` and so on that does not; with `numbered`, `stem_0.mcap` and so
+/// on, as rosbag2 calls the parts of a bag.
+///
+/// # Errors
+/// If it cannot be created, or all names are taken.
+pub(super) fn create(path: &Path, numbered: bool) -> Result<(PathBuf, File), RecorderError> {
+    let plain = (!numbered).then(|| path.to_owned());
+    let first = u32::from(!numbered);
+    let candidates = plain
+        .into_iter()
+        .chain((first..MOST).map(|n| with_number(path, n)));
+    for candidate in candidates {
+        match File::create_new(&candidate) {
+            Ok(file) => return Ok((candidate, file)),
+            Err(error) if error.kind() == ErrorKind::AlreadyExists => {}
+            Err(source) => {
+                return Err(RecorderError::Create {
+                    path: candidate,
+                    source,
+                });
+            }
+        }
+    }
+    Err(RecorderError::NoFreeName {
+        path: path.to_owned(),
+        tried: MOST,
+    })
+}
+
+fn with_number(path: &Path, number: u32) -> PathBuf {
+    let stem = path.file_stem().unwrap_or_default().to_string_lossy();
+    let suffix = path
+        .extension()
+        .unwrap_or("mcap".as_ref())
+        .to_string_lossy();
+    path.with_file_name(format!("{stem}_{number}.{suffix}"))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn what_exists_is_kept() {
+        let folder = tempfile::TempDir::new().unwrap();
+        let path = folder.path().join("drive.mcap");
+        let name = |numbered| {
+            let (path, _) = create(&path, numbered).unwrap();
+            path.file_name().unwrap().to_string_lossy().into_owned()
+        };
+        assert_eq!(
+            [name(false), name(false), name(false)],
+            ["drive.mcap", "drive_1.mcap", "drive_2.mcap"]
+        );
+        assert_eq!([name(true), name(true)], ["drive_0.mcap", "drive_3.mcap"]);
+        let nowhere = create(Path::new("/no/such/r.mcap"), false).unwrap_err();
+        assert!(nowhere.to_string().contains("/no/such/r.mcap"), "{nowhere}");
+    }
+}

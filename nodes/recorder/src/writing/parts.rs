@@ -1,0 +1,279 @@
+//! A recording in one file, or in parts by size and time.
+
+use std::io::Write;
+use std::path::PathBuf;
+use std::time::Duration;
+
+use recording::write::{Encoded, Packing, RecordingWriter};
+
+use super::staged::{Progress, Staged};
+use super::{Preamble, Tally, name};
+use crate::RecorderError;
+use crate::entries::Entry;
+
+/// When a part ends, and how much may wait for the disk.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(crate) struct Limits {
+    /// Bytes of a part.
+    pub(crate) split_bytes: Option<u64>,
+    /// What a part covers, by the times of its messages.
+    pub(crate) split_time: Option<Duration>,
+    /// Bytes in memory beyond which messages are dropped.
+    pub(crate) waiting_bytes: usize,
+}
+
+/// The parts, of which the last one is written to.
+pub(crate) struct Parts {
+    path: PathBuf,
+    limits: Limits,
+    preamble: Preamble,
+    part: Option<Part>,
+    tally: Tally,
+}
+
+struct Part {
+    path: PathBuf,
+    writer: RecordingWriter<Staged>,
+    progress: Progress,
+    /// Of its first message.
+    first_ns: Option<i64>,
+    /// Whether the disk took all that was flushed.
+    flushed: bool,
+}
+
+impl Parts {
+    /// Begins the first file.
+    ///
+    /// # Errors
+    /// If it cannot be created or written.
+    pub(crate) fn new(
+        path: PathBuf,
+        limits: Limits,
+        preamble: Preamble,
+    ) -> Result<Self, RecorderError> {
+        let mut parts = Parts {
+            path,
+            limits,
+            preamble,
+            part: None,
+            tally: Tally::default(),
+        };
+        parts.begin(None)?;
+        parts.flush()?;
+        Ok(parts)
+    }
+
+    pub(super) fn put(&mut self, entry: &Entry) -> Result<(), RecorderError> {
+        if let Entry::Message(message) = entry {
+            self.split_before(message)?;
+        }
+        self.preamble.note(entry);
+        let Some(part) = &mut self.part else {
+            return Err(RecorderError::ThreadEnded);
+        };
+        match entry {
+            Entry::Metadata(name, entries) => part.writer.write_metadata(name, entries)?,
+            Entry::Message(_) if part.progress.waiting() > self.limits.waiting_bytes => {
+                self.tally.dropped += 1;
+            }
+            Entry::Message(message) => {
+                part.writer.write_encoded(message)?;
+                part.first_ns.get_or_insert(message.log_time_ns);
+                self.tally.recorded += 1;
+            }
+        }
+        Ok(())
+    }
+
+    pub(super) fn flush(&mut self) -> Result<(), RecorderError> {
+        let Some(part) = &mut self.part else {
+            return Ok(());
+        };
+        part.flushed = false;
+        part.writer.flush()?;
+        part.flushed = true;
+        Ok(())
+    }
+
+    pub(super) fn finish(&mut self) -> Result<(), RecorderError> {
+        let Some(part) = self.part.take() else {
+            return Ok(());
+        };
+        let path = part.path;
+        let mut file = part.writer.finish()?;
+        file.flush()
+            .map_err(|source| RecorderError::Finish { path, source })
+    }
+
+    pub(super) fn tally(&self) -> Tally {
+        self.tally
+    }
+
+    /// Ends the part if it is full; not while the disk is, for a part that is
+    /// ended could not be tried again.
+    fn split_before(&mut self, message: &Encoded) -> Result<(), RecorderError> {
+        let is_full = self
+            .part
+            .as_ref()
+            .is_some_and(|part| self.limits.reached(part, message));
+        if !is_full {
+            return Ok(());
+        }
+        if self.flush().is_err() {
+            return Ok(());
+        }
+        self.finish()?;
+        self.begin(Some(message.log_time_ns))
+    }
+
+    fn begin(&mut self, from_ns: Option<i64>) -> Result<(), RecorderError> {
+        let numbered = self.limits.split_bytes.is_some() || self.limits.split_time.is_some();
+        let (path, file) = name::create(&self.path, numbered)?;
+        tracing::info!("recording to {}", path.display());
+        let progress = Progress::default();
+        let sink = Staged::new(file, progress.clone());
+        let mut writer = RecordingWriter::new(sink, Packing::Zstd)?;
+        self.preamble.write(&mut writer, from_ns)?;
+        self.part = Some(Part {
+            path,
+            writer,
+            progress,
+            first_ns: from_ns,
+            flushed: true,
+        });
+        self.tally.files += 1;
+        Ok(())
+    }
+}
+
+impl Limits {
+    fn reached(&self, part: &Part, next: &Encoded) -> bool {
+        // The chunk that is being packed comes on top: about a second's messages.
+        let by_size = self
+            .split_bytes
+            .is_some_and(|limit| part.progress.all() >= limit);
+        let by_time = part
+            .first_ns
+            .zip(self.split_time)
+            .is_some_and(|(first_ns, limit)| {
+                i128::from(next.log_time_ns) - i128::from(first_ns) >= limit.as_nanos() as i128
+            });
+        part.flushed && part.first_ns.is_some() && (by_size || by_time)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use recording::{MAP, Recording};
+    use tempfile::TempDir;
+
+    use super::*;
+
+    const SECOND: i64 = 1_000_000_000;
+
+    fn message(topic: &'static str, second: i64, latched: bool) -> Entry {
+        Entry::Message(Encoded {
+            topic,
+            schema: "n",
+            definition: "int64 n",
+            latched,
+            log_time_ns: second * SECOND,
+            // Bytes that do not pack: the file grows by about as many.
+            body: (0..2000)
+                .map(|i: u32| (i.wrapping_mul(2_654_435_761) >> 13) as u8)
+                .collect(),
+        })
+    }
+
+    fn parts(folder: &TempDir, split_bytes: Option<u64>, split_time: Option<u64>) -> Parts {
+        let limits = Limits {
+            split_bytes,
+            split_time: split_time.map(Duration::from_secs),
+            waiting_bytes: 1 << 20,
+        };
+        let path = folder.path().join("r.mcap");
+        Parts::new(path, limits, Preamble::empty()).unwrap()
+    }
+
+    fn opened(folder: &TempDir, name: &str) -> Recording {
+        let recording = Recording::open(folder.path().join(name)).unwrap();
+        assert_eq!(recording.damage(), None, "{name}");
+        recording
+    }
+
+    fn topics(recording: &Recording) -> Vec<(String, i64)> {
+        let records = recording.raw_records().map(Result::unwrap);
+        records
+            .map(|r| (r.channel.topic.to_string(), r.log_time_ns / SECOND))
+            .collect()
+    }
+
+    #[test]
+    fn parts_by_time_each_begin_with_what_is_latched() {
+        let folder = TempDir::new().unwrap();
+        let mut parts = parts(&folder, None, Some(10));
+        parts.put(&message(MAP, 0, true)).unwrap();
+        for second in [0, 9, 10, 11, 35] {
+            parts.put(&message("/n", second, false)).unwrap();
+        }
+        parts.finish().unwrap();
+        assert_eq!((parts.tally().files, parts.tally().recorded), (3, 6));
+        let named = |name: &str, second| (name.to_owned(), second);
+        let expected = [
+            vec![named(MAP, 0), named("/n", 0), named("/n", 9)],
+            vec![named(MAP, 10), named("/n", 10), named("/n", 11)],
+            vec![named(MAP, 35), named("/n", 35)],
+        ];
+        for (number, expected) in expected.iter().enumerate() {
+            assert_eq!(
+                topics(&opened(&folder, &format!("r_{number}.mcap"))),
+                *expected
+            );
+        }
+    }
+
+    #[test]
+    fn parts_by_size_end_with_the_flush_that_fills_them() {
+        let folder = TempDir::new().unwrap();
+        let mut parts = parts(&folder, Some(5000), None);
+        for second in 0..9 {
+            parts.put(&message("/n", second, false)).unwrap();
+            parts.flush().unwrap();
+        }
+        parts.finish().unwrap();
+        let files = parts.tally().files;
+        assert!(files > 1);
+        let all: u64 = (0..files)
+            .map(|n| opened(&folder, &format!("r_{n}.mcap")).messages())
+            .sum();
+        assert_eq!(all, 9);
+    }
+
+    #[test]
+    fn what_was_flushed_is_readable_whatever_follows() {
+        let folder = TempDir::new().unwrap();
+        let mut parts = parts(&folder, None, None);
+        parts.put(&message("/n", 1, false)).unwrap();
+        parts.flush().unwrap();
+        parts.put(&message("/n", 2, false)).unwrap();
+        let recording = Recording::open(folder.path().join("r.mcap")).unwrap();
+        assert_eq!(recording.messages(), 1);
+        parts.finish().unwrap();
+        assert_eq!(opened(&folder, "r.mcap").messages(), 2);
+    }
+
+    #[test]
+    fn what_does_not_fit_into_memory_is_dropped_and_counted() {
+        let folder = TempDir::new().unwrap();
+        let mut parts = parts(&folder, None, None);
+        parts.limits.waiting_bytes = 0;
+        parts.put(&message("/n", 1, false)).unwrap();
+        // The beginning of the chunk waits already.
+        parts.put(&message("/n", 2, false)).unwrap();
+        parts.flush().unwrap();
+        parts.put(&message("/n", 3, false)).unwrap();
+        parts.finish().unwrap();
+        assert_eq!((parts.tally().recorded, parts.tally().dropped), (2, 1));
+        assert_eq!(opened(&folder, "r.mcap").messages(), 2);
+    }
+}

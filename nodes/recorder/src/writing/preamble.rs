@@ -1,0 +1,137 @@
+//! What stands at the head of each file: who wrote it and how, and the files
+//! that belong to it.
+
+use std::collections::BTreeMap;
+use std::io::{Seek, Write};
+use std::path::Path;
+use std::time::{SystemTime, UNIX_EPOCH};
+
+use recording::RecordingError;
+use recording::write::{Encoded, RecordingWriter};
+
+use crate::entries::Entry;
+use crate::{Config, RecorderError};
+
+/// The head of a file, and what of its content must be known from its head on.
+#[derive(Debug)]
+pub(crate) struct Preamble {
+    metadata: BTreeMap<String, String>,
+    files: Vec<File>,
+    /// What was said last under each name, and on each latched topic.
+    said: BTreeMap<&'static str, BTreeMap<String, String>>,
+    latched: BTreeMap<&'static str, Encoded>,
+}
+
+#[derive(Debug)]
+struct File {
+    name: String,
+    media_type: &'static str,
+    content: Vec<u8>,
+    /// When it was read, nanoseconds since 1970.
+    read_ns: i64,
+}
+
+impl Preamble {
+    /// Reads the files that the configuration names.
+    ///
+    /// # Errors
+    /// If one cannot be read.
+    pub(crate) fn new(config: &Config, graph: &str) -> Result<Self, RecorderError> {
+        let entry = |key: &str, value: String| (key.to_owned(), value);
+        let arguments: Vec<String> = std::env::args().skip(1).collect();
+        Ok(Preamble {
+            metadata: BTreeMap::from([
+                entry("version", env!("CARGO_PKG_VERSION").to_owned()),
+                entry("git_commit", env!("BACKCAST_COMMIT").to_owned()),
+                entry("graph", graph.to_owned()),
+                entry("arguments", arguments.join(" ")),
+            ]),
+            files: config
+                .attach
+                .iter()
+                .map(|path| read(path))
+                .collect::<Result<_, _>>()?,
+            said: BTreeMap::new(),
+            latched: BTreeMap::new(),
+        })
+    }
+
+    /// Notes what later files need at their head.
+    pub(super) fn note(&mut self, entry: &Entry) {
+        match entry {
+            Entry::Message(message) if message.latched => {
+                self.latched.insert(message.topic, message.clone());
+            }
+            Entry::Message(_) => {}
+            Entry::Metadata(name, entries) => {
+                self.said.insert(name, entries.clone());
+            }
+        }
+    }
+
+    /// Writes the head of a file whose messages begin at `from_ns`.
+    pub(super) fn write<W: Write + Seek>(
+        &self,
+        writer: &mut RecordingWriter<W>,
+        from_ns: Option<i64>,
+    ) -> Result<(), RecordingError> {
+        writer.write_metadata("backcast", &self.metadata)?;
+        for (name, entries) in &self.said {
+            writer.write_metadata(name, entries)?;
+        }
+        for file in &self.files {
+            writer.attach(&file.name, file.media_type, file.read_ns, &file.content)?;
+        }
+        for message in self.latched.values() {
+            let log_time_ns = from_ns.unwrap_or(message.log_time_ns);
+            writer.write_encoded(&Encoded {
+                log_time_ns,
+                ..message.clone()
+            })?;
+        }
+        Ok(())
+    }
+}
+
+fn read(path: &Path) -> Result<File, RecorderError> {
+    let content = std::fs::read(path).map_err(|source| RecorderError::Attach {
+        path: path.to_owned(),
+        source,
+    })?;
+    let suffix = path.extension().unwrap_or_default().to_string_lossy();
+    let media_type = match &*suffix {
+        "yaml" | "yml" => "application/yaml",
+        "png" => "image/png",
+        "pgm" => "image/x-portable-graymap",
+        "json" => "application/json",
+        _ => "application/octet-stream",
+    };
+    let name = path.file_name().unwrap_or(path.as_os_str());
+    Ok(File {
+        name: name.to_string_lossy().into_owned(),
+        media_type,
+        content,
+        read_ns: wall_ns(),
+    })
+}
+
+/// The wall clock, nanoseconds since 1970; 0 where it is set before that.
+pub(crate) fn wall_ns() -> i64 {
+    let since = SystemTime::now().duration_since(UNIX_EPOCH);
+    since.map_or(0, |since| {
+        i64::try_from(since.as_nanos()).unwrap_or(i64::MAX)
+    })
+}
+
+#[cfg(test)]
+impl Preamble {
+    /// One that says nothing, for tests.
+    pub(super) fn empty() -> Self {
+        Preamble {
+            metadata: BTreeMap::new(),
+            files: Vec::new(),
+            said: BTreeMap::new(),
+            latched: BTreeMap::new(),
+        }
+    }
+}

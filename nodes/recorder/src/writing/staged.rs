@@ -1,0 +1,214 @@
+//! A file that is written in whole steps: what comes between two of them stays
+//! in memory.
+//!
+//! If the disk takes a step only in part, the file is cut back to the step
+//! before, so that it always ends with a whole chunk, and the step is tried
+//! again later. A process that is killed loses what was not flushed.
+
+use std::fs::File;
+use std::io::{self, Seek, SeekFrom, Write};
+use std::os::unix::fs::FileExt;
+use std::sync::Arc;
+use std::sync::atomic::{AtomicU64, AtomicUsize, Ordering};
+
+/// How many bytes wait in memory, and how many there are in all; shared, for the
+/// writer owns the file.
+#[derive(Debug, Clone, Default)]
+pub(super) struct Progress(Arc<Counts>);
+
+#[derive(Debug, Default)]
+struct Counts {
+    waiting: AtomicUsize,
+    all: AtomicU64,
+}
+
+impl Progress {
+    pub(super) fn waiting(&self) -> usize {
+        self.0.waiting.load(Ordering::Relaxed)
+    }
+
+    pub(super) fn all(&self) -> u64 {
+        self.0.all.load(Ordering::Relaxed)
+    }
+
+    fn set(&self, waiting: usize, written: u64) {
+        self.0.waiting.store(waiting, Ordering::Relaxed);
+        self.0
+            .all
+            .store(written + waiting as u64, Ordering::Relaxed);
+    }
+}
+
+#[derive(Debug)]
+pub(super) struct Staged<F = File> {
+    file: F,
+    /// Bytes in the file.
+    written: u64,
+    /// What follows them.
+    step: Vec<u8>,
+    /// Where the next byte goes, from the start of the file.
+    position: u64,
+    progress: Progress,
+}
+
+/// What is asked of a file.
+pub(super) trait Storage {
+    fn write_all_at(&self, bytes: &[u8], at: u64) -> io::Result<()>;
+    fn cut(&self, length: u64) -> io::Result<()>;
+}
+
+impl Storage for File {
+    fn write_all_at(&self, bytes: &[u8], at: u64) -> io::Result<()> {
+        FileExt::write_all_at(self, bytes, at)
+    }
+
+    fn cut(&self, length: u64) -> io::Result<()> {
+        self.set_len(length)
+    }
+}
+
+impl<F: Storage> Staged<F> {
+    /// Writes to an empty file.
+    pub(super) fn new(file: F, progress: Progress) -> Self {
+        Staged {
+            file,
+            written: 0,
+            step: Vec::new(),
+            position: 0,
+            progress,
+        }
+    }
+
+    fn offset(&self) -> io::Result<usize> {
+        let offset = self.position.checked_sub(self.written);
+        offset
+            .and_then(|offset| usize::try_from(offset).ok())
+            .filter(|offset| *offset <= self.step.len())
+            .ok_or_else(|| io::Error::other("what is on the disk already cannot be changed"))
+    }
+}
+
+impl<F: Storage> Write for Staged<F> {
+    fn write(&mut self, bytes: &[u8]) -> io::Result<usize> {
+        let offset = self.offset()?;
+        let overwritten = bytes.len().min(self.step.len() - offset);
+        let (over, new) = bytes.split_at(overwritten);
+        self.step[offset..offset + overwritten].copy_from_slice(over);
+        self.step.extend_from_slice(new);
+        self.position += bytes.len() as u64;
+        self.progress.set(self.step.len(), self.written);
+        Ok(bytes.len())
+    }
+
+    /// Takes the step.
+    fn flush(&mut self) -> io::Result<()> {
+        if let Err(error) = self.file.write_all_at(&self.step, self.written) {
+            // Where even that fails, a reader finds the last chunk cut short.
+            let _ = self.file.cut(self.written);
+            return Err(error);
+        }
+        self.written += self.step.len() as u64;
+        self.step.clear();
+        self.progress.set(0, self.written);
+        Ok(())
+    }
+}
+
+impl<F: Storage> Seek for Staged<F> {
+    fn seek(&mut self, to: SeekFrom) -> io::Result<u64> {
+        let end = self.written + self.step.len() as u64;
+        let position = match to {
+            SeekFrom::Start(at) => Some(at),
+            SeekFrom::Current(by) => self.position.checked_add_signed(by),
+            SeekFrom::End(by) => end.checked_add_signed(by),
+        };
+        self.position = position
+            .filter(|at| (self.written..=end).contains(at))
+            .ok_or_else(|| io::Error::other(format!("a seek to {to:?} leaves the current step")))?;
+        Ok(self.position)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use std::cell::{Cell, RefCell};
+    use std::rc::Rc;
+
+    use recording::Recording;
+    use recording::write::{Packing, RecordingWriter};
+
+    use super::*;
+
+    /// A disk with room for so many bytes; what does not fit is written in part.
+    #[derive(Debug, Clone, Default)]
+    struct SmallDisk {
+        bytes: Rc<RefCell<Vec<u8>>>,
+        room: Rc<Cell<usize>>,
+    }
+
+    impl Storage for SmallDisk {
+        fn write_all_at(&self, bytes: &[u8], at: u64) -> io::Result<()> {
+            let mut all = self.bytes.borrow_mut();
+            assert_eq!(all.len() as u64, at);
+            let fits = bytes.len().min(self.room.get().saturating_sub(all.len()));
+            all.extend(&bytes[..fits]);
+            match fits == bytes.len() {
+                true => Ok(()),
+                false => Err(io::Error::from(io::ErrorKind::StorageFull)),
+            }
+        }
+
+        fn cut(&self, length: u64) -> io::Result<()> {
+            self.bytes.borrow_mut().truncate(length as usize);
+            Ok(())
+        }
+    }
+
+    #[test]
+    fn a_full_disk_keeps_whole_chunks_and_nothing_is_lost_once_there_is_room() {
+        let disk = SmallDisk::default();
+        disk.room.set(1000);
+        let progress = Progress::default();
+        let sink = Staged::new(disk.clone(), progress.clone());
+        let mut writer = RecordingWriter::new(sink, Packing::Zstd).unwrap();
+        let mut refused = 0;
+        for number in 0..100i64 {
+            let body = number.to_le_bytes();
+            writer
+                .write_bytes("/n", "n", "int64 n", "cdr", number, &body)
+                .unwrap();
+            match writer.flush() {
+                Ok(()) => assert_eq!(progress.waiting(), 0),
+                Err(error) => {
+                    assert!(error.to_string().contains("no storage space"), "{error}");
+                    assert!(progress.waiting() > 0);
+                    refused += 1;
+                }
+            }
+            let so_far = Recording::from_bytes("r.mcap", disk.bytes.borrow().clone()).unwrap();
+            assert_eq!(so_far.messages() + refused, number as u64 + 1);
+        }
+        assert!((1..100).contains(&refused));
+        disk.room.set(usize::MAX);
+        writer.finish().unwrap().flush().unwrap();
+        let whole = Recording::from_bytes("r.mcap", disk.bytes.borrow().clone()).unwrap();
+        assert_eq!((whole.messages(), whole.damage()), (100, None));
+        assert_eq!(progress.all(), disk.bytes.borrow().len() as u64);
+    }
+
+    #[test]
+    fn what_is_on_the_disk_is_never_changed() {
+        let disk = SmallDisk::default();
+        disk.room.set(usize::MAX);
+        let mut staged = Staged::new(disk.clone(), Progress::default());
+        staged.write_all(b"abcd").unwrap();
+        staged.seek(SeekFrom::Start(1)).unwrap();
+        staged.write_all(b"X").unwrap();
+        staged.seek(SeekFrom::End(0)).unwrap();
+        staged.flush().unwrap();
+        assert_eq!(*disk.bytes.borrow(), b"aXcd");
+        assert!(staged.seek(SeekFrom::Start(3)).is_err());
+        assert!(staged.seek(SeekFrom::Current(1)).is_err());
+        assert_eq!(staged.seek(SeekFrom::Current(0)).unwrap(), 4);
+    }
+}

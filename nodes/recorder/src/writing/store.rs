@@ -1,0 +1,79 @@
+//! Where entries go: to files at once, or to a black box.
+
+use super::{BlackBox, Parts};
+use crate::RecorderError;
+use crate::entries::Entry;
+
+/// What was done so far.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+pub(crate) struct Tally {
+    /// Messages that are in a file, or on the way to it.
+    pub(crate) recorded: u64,
+    /// Messages that are lost because they came faster than they could be
+    /// written.
+    pub(crate) dropped: u64,
+    /// Files begun.
+    pub(crate) files: u64,
+}
+
+/// One of the two ways to record.
+pub(crate) enum Store {
+    Parts(Parts),
+    BlackBox(BlackBox),
+}
+
+impl Store {
+    /// Takes an entry; says whether there was room.
+    ///
+    /// # Errors
+    /// If it cannot be written for another reason than a full disk.
+    pub(crate) fn put(&mut self, entry: Entry) -> Result<(), RecorderError> {
+        match self {
+            Store::Parts(parts) => parts.put(&entry),
+            Store::BlackBox(black_box) => {
+                black_box.put(entry);
+                Ok(())
+            }
+        }
+    }
+
+    /// Brings to the disk what is there.
+    ///
+    /// # Errors
+    /// If the disk does not take it; it is kept and tried again.
+    pub(crate) fn flush(&mut self) -> Result<(), RecorderError> {
+        match self {
+            Store::Parts(parts) => parts.flush(),
+            Store::BlackBox(_) => Ok(()),
+        }
+    }
+
+    /// Saves a black box; nothing for files, which are saved already.
+    ///
+    /// # Errors
+    /// If it cannot be written.
+    pub(crate) fn save(&mut self, why: &str) -> Result<(), RecorderError> {
+        match self {
+            Store::Parts(_) => Ok(()),
+            Store::BlackBox(black_box) => black_box.save(why),
+        }
+    }
+
+    /// Ends the file.
+    ///
+    /// # Errors
+    /// If the disk does not take the rest.
+    pub(crate) fn finish(&mut self) -> Result<(), RecorderError> {
+        match self {
+            Store::Parts(parts) => parts.finish(),
+            Store::BlackBox(_) => Ok(()),
+        }
+    }
+
+    pub(crate) fn tally(&self) -> Tally {
+        match self {
+            Store::Parts(parts) => parts.tally(),
+            Store::BlackBox(black_box) => black_box.tally(),
+        }
+    }
+}
