@@ -22,5 +22,5 @@ pub use error::MapError;
 pub use grid::{
     MAX_CELLS, MAX_ORIGIN_M, MAX_RESOLUTION_M, MAX_SIDE, MIN_RESOLUTION_M, OccupancyGrid, UNKNOWN,
 };
-pub use load::load;
+pub use load::{image_of, load};
 pub use save::save;

@@ -2,7 +2,7 @@
 
 use std::fs::File;
 use std::io::{self, Read};
-use std::path::Path;
+use std::path::{Path, PathBuf};
 
 use crate::description::Description;
 use crate::raster::Raster;
@@ -43,6 +43,15 @@ pub fn load(yaml: impl AsRef<Path>) -> Result<OccupancyGrid, MapError> {
         description.map_from_grid,
         cells(&raster, &description),
     )
+}
+
+/// The image that the description at `yaml` names, which need not be there.
+///
+/// # Errors
+/// Says what about the description is not sound.
+pub fn image_of(yaml: impl AsRef<Path>) -> Result<PathBuf, MapError> {
+    let yaml = yaml.as_ref();
+    Ok(Description::parse(&read_text(yaml)?, yaml)?.image)
 }
 
 /// Images run from the top down, grids from the lowest y up.

@@ -49,8 +49,8 @@ pub struct Config {
     )]
     pub save_on: Vec<Event>,
 
-    /// Files to put into the recording, with commas between
-    #[arg(long, value_name = "FILES", value_delimiter = ',')]
+    /// A file to put into the recording; may be given again
+    #[arg(long, value_name = "FILE")]
     pub attach: Vec<PathBuf>,
 
     /// Also record the intensity image, which the accumulator then computes
@@ -102,7 +102,13 @@ mod tests {
         let config = parse("--output r --keep 10m --save-on lost-pose,degraded").unwrap();
         assert_eq!(config.keep, Some(Duration::from_secs(600)));
         assert_eq!(config.save_on, [Event::LostPose, Event::Degraded]);
-        assert_eq!(parse("--output r --attach a,b").unwrap().attach.len(), 2);
+        assert_eq!(
+            parse("--output r --attach a --attach b,c")
+                .unwrap()
+                .attach
+                .len(),
+            2
+        );
     }
 
     #[test]

@@ -18,10 +18,11 @@ use super::{
     process::{Process, executable},
     supervision::{AfterEnd, Restarts, is_over, is_source},
 };
-use crate::BackcastError;
+use crate::{BackcastError, cli::LOST_DATA};
 
-/// What a process has to end in order once it is asked to. All of stopping
-/// stays below a second.
+/// What a process has to end in order once it is asked to. Those that send
+/// nothing and then all others have as long; each of the two stays below a
+/// second.
 const GRACE: Duration = Duration::from_millis(700);
 /// What the last lines of ended processes may take to reach the console: only a
 /// process that left its group still holds a pipe open then.
@@ -43,6 +44,8 @@ struct Member {
     node: Node,
     restarts: Restarts,
     state: State,
+    /// Whether it said so with its exit code.
+    lost_data: bool,
 }
 
 enum State {
@@ -61,6 +64,7 @@ impl Crew {
         let member = |node: Node| Member {
             restarts: Restarts::new(node.restart),
             state: State::Due(now),
+            lost_data: false,
             node,
         };
         Crew {
@@ -100,30 +104,49 @@ impl Crew {
     /// Ends every process: in order if it does so within the grace, else at
     /// once. What it said last has reached the console then.
     ///
+    /// Those that send nothing go first: a sender takes along what nobody has
+    /// taken yet.
+    ///
     /// # Errors
     /// A process cannot be signalled or waited for.
     pub(crate) fn stop(&mut self) -> Result<(), BackcastError> {
-        self.for_each_running(|process| process.signal(Signal::SIGTERM))?;
-        let deadline = Instant::now() + GRACE;
-        while self.collect_ended()? > 0 && Instant::now() < deadline {
-            thread::sleep(STOP_POLL);
-        }
-        self.for_each_running(Process::kill)?;
-        for member in &mut self.members {
-            member.state = State::Done;
-        }
+        self.stop_those(|node| node.outputs.is_empty())?;
+        self.stop_those(|_| true)?;
         self.output_open = None;
         // Nothing is ever sent: this waits for the last sender to be dropped.
         let _ = self.output_closed.recv_timeout(LAST_LINES);
         Ok(())
     }
 
+    /// The nodes that said with their exit code that they lost data, when they
+    /// were ended.
+    pub(crate) fn losers(&self) -> Vec<String> {
+        let losers = self.members.iter().filter(|member| member.lost_data);
+        losers.map(|member| member.node.id.clone()).collect()
+    }
+
+    fn stop_those(&mut self, meant: impl Fn(&Node) -> bool) -> Result<(), BackcastError> {
+        self.for_each_running(&meant, |process| process.signal(Signal::SIGTERM))?;
+        let deadline = Instant::now() + GRACE;
+        while self.collect_ended(&meant)? > 0 && Instant::now() < deadline {
+            thread::sleep(STOP_POLL);
+        }
+        self.for_each_running(&meant, Process::kill)?;
+        for member in self.members.iter_mut().filter(|member| meant(&member.node)) {
+            member.state = State::Done;
+        }
+        Ok(())
+    }
+
     /// The number of processes that have not ended.
-    fn collect_ended(&mut self) -> Result<usize, BackcastError> {
+    fn collect_ended(&mut self, meant: impl Fn(&Node) -> bool) -> Result<usize, BackcastError> {
         let mut running = 0;
-        for member in &mut self.members {
+        for member in self.members.iter_mut().filter(|member| meant(&member.node)) {
             match member.poll()? {
-                Some(_) => member.state = State::Done,
+                Some(status) => {
+                    member.state = State::Done;
+                    member.lost_data = status.code() == Some(LOST_DATA.into());
+                }
                 None => running += usize::from(matches!(member.state, State::Running(_))),
             }
         }
@@ -132,9 +155,10 @@ impl Crew {
 
     fn for_each_running(
         &mut self,
+        meant: impl Fn(&Node) -> bool,
         mut act: impl FnMut(&mut Process) -> io::Result<()>,
     ) -> Result<(), BackcastError> {
-        for member in &mut self.members {
+        for member in self.members.iter_mut().filter(|member| meant(&member.node)) {
             if let State::Running(process) = &mut member.state {
                 act(process).map_err(|e| not_supervised(&member.node, process.pid(), e))?;
             }

@@ -7,10 +7,10 @@ use dataflow::{Dataflow, Node};
 use engine::heading::{HeadingConfig, HeadingFrom, HeadingSource};
 use messages::{Topic, topic};
 
+use super::arguments::{REPLAYER, find, set, unset, value};
 use super::options::{Options, Rate};
 use crate::BackcastError;
 
-const REPLAYER: &str = "replayer";
 const ACCUMULATOR: &str = "accumulator";
 const MAX_AGE: &str = "--heading-max-age-s";
 
@@ -85,35 +85,8 @@ fn forward_heading(
 /// lost: the option says so, or the descriptor does.
 pub(crate) fn plays_at_max(dataflow: &Dataflow) -> bool {
     let max = Rate::Max.to_string();
-    let joined = format!("--rate={max}");
-    dataflow
-        .nodes
-        .iter()
-        .filter(|n| n.executable() == REPLAYER)
-        .any(|n| n.args.contains(&joined) || n.args.windows(2).any(|w| w == ["--rate", &max]))
-}
-
-fn find<'d>(
-    dataflow: &'d mut Dataflow,
-    executable: &'static str,
-    option: &'static str,
-    file: &Path,
-) -> Result<&'d mut Node, BackcastError> {
-    let found: Vec<_> = dataflow
-        .nodes
-        .iter()
-        .map(|n| n.executable().to_owned())
-        .collect();
-    dataflow
-        .nodes
-        .iter_mut()
-        .find(|n| n.executable() == executable)
-        .ok_or_else(|| BackcastError::NoNodeForOption {
-            option,
-            executable,
-            file: file.to_owned(),
-            found: found.join(", "),
-        })
+    let mut replayers = dataflow.nodes.iter().filter(|n| n.executable() == REPLAYER);
+    replayers.any(|n| value(n, "--rate") == Some(&max))
 }
 
 fn check_wired(node: &Node, source: HeadingFrom, file: &Path) -> Result<(), BackcastError> {
@@ -130,30 +103,6 @@ fn check_wired(node: &Node, source: HeadingFrom, file: &Path) -> Result<(), Back
         node: node.id.clone(),
         file: file.to_owned(),
     })
-}
-
-fn set(node: &mut Node, option: &str, value: Option<&str>) {
-    unset(node, option, value.is_some());
-    // With `=`, a negative number is not taken for an option.
-    let argument = value.map_or(option.to_owned(), |value| format!("{option}={value}"));
-    node.args.push(argument);
-}
-
-/// Removes `--option`, `--option value` and `--option=value`.
-fn unset(node: &mut Node, option: &str, takes_value: bool) {
-    let mut kept = Vec::with_capacity(node.args.len());
-    let mut args = std::mem::take(&mut node.args).into_iter();
-    while let Some(arg) = args.next() {
-        let joined = arg
-            .strip_prefix(option)
-            .is_some_and(|rest| rest.starts_with('='));
-        if arg == option && takes_value {
-            args.next();
-        } else if arg != option && !joined {
-            kept.push(arg);
-        }
-    }
-    node.args = kept;
 }
 
 #[cfg(test)]

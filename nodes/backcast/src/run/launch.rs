@@ -16,6 +16,7 @@ use super::{
     journal::Journal,
     options::Config,
     output::{Output, Reader},
+    record,
     watch::Watch,
 };
 use crate::{
@@ -34,6 +35,14 @@ const LAST_ANSWERS: Duration = Duration::from_secs(20);
 /// What a slow reader of our output has left, unless the run ended by itself.
 const LAST_OUTPUT: Duration = Duration::from_millis(100);
 
+/// How a run ended in order.
+#[derive(Debug)]
+struct Course {
+    end: End,
+    /// Nodes that lost data, by their own account.
+    losers: Vec<String>,
+}
+
 /// Why a run has ended in order.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 enum End {
@@ -46,8 +55,8 @@ enum End {
 /// Runs the graph until it ends, or is ended by a signal.
 ///
 /// The exit code is 0, or 3 where the graph played as fast as it answers and
-/// something was lost all the same. At the pace of the recording a slow machine
-/// may drop scans; the summary counts them.
+/// something was lost all the same, or a node said so when it was ended. At the
+/// pace of the recording a slow machine may drop scans; the summary counts them.
 ///
 /// # Errors
 /// Anything that keeps the graph from running as described. Every process has
@@ -57,6 +66,12 @@ pub(crate) fn run(config: &Config) -> Result<ExitCode, BackcastError> {
     let graph = config.options.graph_name()?;
     let mut descriptor = descriptor::load(&config.dataflow)?;
     forward::apply(&config.options, &mut descriptor.dataflow, &descriptor.file)?;
+    record::add(
+        &config.options.record,
+        &mut descriptor.dataflow,
+        &descriptor.file,
+        &descriptor.folder,
+    )?;
     build::build_all(&descriptor.dataflow, &descriptor.folder)?;
     remove_leftovers(&graph)?;
 
@@ -64,11 +79,13 @@ pub(crate) fn run(config: &Config) -> Result<ExitCode, BackcastError> {
     let mut journal = Journal::new(Output::start(io::stdout())?, config.options.json);
     let outcome = launch(descriptor, &graph, &mut journal);
     let cleared = clear(&graph);
-    let finished = matches!(outcome, Ok(End::Finished));
+    let finished = outcome
+        .as_ref()
+        .is_ok_and(|course| course.end == End::Finished);
     let summary_wanted = outcome.is_ok() || journal.report.any_answer();
     let summary = journal.finish(summary_wanted, (!finished).then_some(LAST_OUTPUT));
     // What came first says most.
-    outcome?;
+    let losers = outcome?.losers;
     cleared?;
     let summary = summary?;
     if finished && lossless && summary.lost_data() {
@@ -76,6 +93,10 @@ pub(crate) fn run(config: &Config) -> Result<ExitCode, BackcastError> {
             LAUNCHER,
             "data was lost, though nothing may be at `--rate max`",
         );
+        return Ok(ExitCode::from(LOST_DATA));
+    }
+    if !losers.is_empty() {
+        say(LAUNCHER, &format!("{} lost data", losers.join(", ")));
         return Ok(ExitCode::from(LOST_DATA));
     }
     Ok(ExitCode::SUCCESS)
@@ -87,7 +108,7 @@ fn launch(
     descriptor: Descriptor,
     name: &GraphName,
     journal: &mut Journal,
-) -> Result<End, BackcastError> {
+) -> Result<Course, BackcastError> {
     let graph = Graph::join_named(LAUNCHER, name)?;
     let watch = Watch::new(&graph)?;
     say(
@@ -103,7 +124,8 @@ fn launch(
     let end = end?;
     stopped?;
     heard?;
-    Ok(end)
+    let losers = crew.losers();
+    Ok(Course { end, losers })
 }
 
 /// Supervises the crew and enters what is heard, until the end.

@@ -5,9 +5,10 @@
 //! runs without it. What is decided (restarts, the end of the run, figures and
 //! lines) is decided in pure files; `launch` does the work.
 
-mod build;
-mod console;
-mod crew;
+pub(crate) mod arguments;
+pub(crate) mod build;
+pub(crate) mod console;
+pub(crate) mod crew;
 mod forward;
 mod journal;
 mod launch;
@@ -16,6 +17,7 @@ mod options;
 mod output;
 mod pairs;
 mod process;
+mod record;
 mod report;
 mod summary;
 mod supervision;

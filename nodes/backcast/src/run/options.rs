@@ -41,6 +41,9 @@ pub(crate) struct Options {
     #[command(flatten)]
     pub(crate) heading: HeadingConfig,
 
+    #[command(flatten)]
+    pub(crate) record: RecordOptions,
+
     /// The graph's name, by which other tools join it: 1 to 20 of a-z 0-9 - _
     /// [default: $BACKCAST_GRAPH, or a name of its own]
     #[arg(long, value_name = "NAME", value_parser = GraphName::new)]
@@ -49,6 +52,36 @@ pub(crate) struct Options {
     /// Print JSON, an object a line; the last one holds the summary
     #[arg(long)]
     pub(crate) json: bool,
+}
+
+/// What is recorded, and how.
+#[derive(Debug, Clone, Default, Args)]
+pub(crate) struct RecordOptions {
+    /// Record the graph to this MCAP file
+    #[arg(long, value_name = "FILE")]
+    pub(crate) record: Option<PathBuf>,
+
+    /// With --record: keep the last so much time in memory, as 10m, and save it
+    /// when a pose is lost or the recorder gets SIGUSR1
+    #[arg(long, value_name = "TIME", requires = "record")]
+    pub(crate) keep: Option<String>,
+
+    /// With --record: begin another file after so much time, as 10m
+    #[arg(
+        long,
+        value_name = "TIME",
+        requires = "record",
+        conflicts_with = "keep"
+    )]
+    pub(crate) split_time: Option<String>,
+
+    /// With --record: begin another file after so many megabytes
+    #[arg(long, value_name = "MB", requires = "record", conflicts_with = "keep")]
+    pub(crate) split_size: Option<String>,
+
+    /// With --record: also the intensity image, which is then computed
+    #[arg(long, requires = "record")]
+    pub(crate) record_field: bool,
 }
 
 impl Options {

@@ -1,0 +1,127 @@
+//! Arguments of a node in a descriptor: found, read, replaced.
+
+use std::path::Path;
+
+use dataflow::{Dataflow, Node};
+
+use crate::BackcastError;
+
+/// Plays recordings.
+pub(crate) const REPLAYER: &str = "replayer";
+/// Serves the map.
+pub(crate) const MAP_SERVER: &str = "map_server";
+
+/// The node with an executable, for which an option is meant. `file` is named in
+/// errors.
+///
+/// # Errors
+/// The graph has none.
+pub(crate) fn find<'d>(
+    dataflow: &'d mut Dataflow,
+    executable: &'static str,
+    option: &'static str,
+    file: &Path,
+) -> Result<&'d mut Node, BackcastError> {
+    let found: Vec<_> = dataflow
+        .nodes
+        .iter()
+        .map(|n| n.executable().to_owned())
+        .collect();
+    dataflow
+        .nodes
+        .iter_mut()
+        .find(|n| n.executable() == executable)
+        .ok_or_else(|| BackcastError::NoNodeForOption {
+            option,
+            executable,
+            file: file.to_owned(),
+            found: found.join(", "),
+        })
+}
+
+/// Gives a node an option, in place of what it has.
+pub(crate) fn set(node: &mut Node, option: &str, value: Option<&str>) {
+    unset(node, option, value.is_some());
+    // With `=`, a negative number is not taken for an option.
+    let argument = value.map_or(option.to_owned(), |value| format!("{option}={value}"));
+    node.args.push(argument);
+}
+
+/// Removes `--option`, `--option value` and `--option=value`.
+pub(crate) fn unset(node: &mut Node, option: &str, takes_value: bool) {
+    let mut kept = Vec::with_capacity(node.args.len());
+    let mut args = std::mem::take(&mut node.args).into_iter();
+    while let Some(arg) = args.next() {
+        let joined = arg
+            .strip_prefix(option)
+            .is_some_and(|rest| rest.starts_with('='));
+        if arg == option && takes_value {
+            args.next();
+        } else if arg != option && !joined {
+            kept.push(arg);
+        }
+    }
+    node.args = kept;
+}
+
+/// The value of an option, as `--option value` or `--option=value`; the last one
+/// where there are several.
+pub(crate) fn value<'n>(node: &'n Node, option: &str) -> Option<&'n str> {
+    let after = |words: &'n [String]| (words[0] == option).then_some(words.get(1)).flatten();
+    let joined = |word: &'n String| word.strip_prefix(option)?.strip_prefix('=');
+    let found = (0..node.args.len()).filter_map(|at| {
+        let words = node.args.get(at..)?;
+        joined(words.first()?).or_else(|| after(words).map(String::as_str))
+    });
+    found.last()
+}
+
+/// Adds a word to an option that takes a list with commas, unless it is there.
+pub(crate) fn add_to_list(node: &mut Node, option: &str, word: &str) {
+    let list = match value(node, option) {
+        Some(list) if list.split(',').any(|other| other == word) => return,
+        Some(list) if !list.is_empty() => format!("{list},{word}"),
+        _ => word.to_owned(),
+    };
+    set(node, option, Some(&list));
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn node(args: &str) -> Node {
+        let text = format!("nodes:\n  - {{id: r, path: bin/replayer, args: \"{args}\"}}\n");
+        let topics = dataflow::Topics {
+            names: &[],
+            shared: &[],
+        };
+        dataflow::parse(&text, &topics).unwrap().nodes.remove(0)
+    }
+
+    #[test]
+    fn values_stand_behind_a_space_or_an_equals_sign() {
+        for (args, expected) in [
+            ("--rate max", Some("max")),
+            ("x --rate=2 y", Some("2")),
+            ("--rate 1 --rate=3", Some("3")),
+            ("--rated=1 rate 2", None),
+            ("--rate", None),
+            ("", None),
+        ] {
+            assert_eq!(value(&node(args), "--rate"), expected, "{args}");
+        }
+    }
+
+    #[test]
+    fn lists_grow_by_what_they_lack() {
+        let grown = |args: &str| {
+            let mut node = node(args);
+            add_to_list(&mut node, "--wait-for", "b");
+            node.args
+        };
+        assert_eq!(grown(""), ["--wait-for=b"]);
+        assert_eq!(grown("--wait-for a"), ["--wait-for=a,b"]);
+        assert_eq!(grown("--wait-for a,b x"), ["--wait-for", "a,b", "x"]);
+    }
+}
