@@ -7,6 +7,8 @@
 //! map ──► laser                             without a known mount
 //! ```
 //!
+//! Transforms that are made of others are made of them as they are recorded, so
+//! that they come out the same when the recording is played and recorded again.
 //! A frame has one parent, so the robot hangs below the odometry as soon as
 //! there is one. The map's transform is given only where the verdict is Unique.
 
@@ -45,7 +47,8 @@ impl Frames {
     /// Takes a scan's header; gives all mounts where its own is new.
     pub(super) fn hear_scan(&mut self, scan: &ScanHeader, stamp: Time) -> Option<TfMessage> {
         let frame = scan.frame.as_str();
-        let mount = (scan.mount_known != 0).then(|| Pose::from(scan.base_from_laser));
+        let mount =
+            (scan.mount_known != 0).then(|| planar::as_recorded(scan.base_from_laser.into()));
         let is_known = |laser: &(String, _)| laser.0 == frame && laser.1 == mount;
         if self.laser.as_ref().is_some_and(is_known) {
             return None;
@@ -103,7 +106,7 @@ impl Frames {
     /// of a laser whose mount is known, that of the base.
     fn robot_in(&self, odometry: &Odometry) -> (String, Pose) {
         let child = odometry.child_frame.as_str();
-        let odom_from_child = Pose::from(odometry.odom_from_child);
+        let odom_from_child = planar::as_recorded(odometry.odom_from_child.into());
         match &self.laser {
             Some((laser, Some(base_from_laser))) if laser == child => {
                 let odom_from_base = odom_from_child.then(base_from_laser.inverse());

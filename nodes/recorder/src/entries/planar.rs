@@ -23,6 +23,12 @@ pub(super) fn pose(pose: Pose) -> ros::Pose {
     ros::Pose::from_planar(Pose::new(pose.x, pose.y, rounded(pose.yaw)))
 }
 
+/// A pose as whoever reads the recording gets it: the same as given, or its yaw
+/// off by less than a step.
+pub(super) fn as_recorded(of: Pose) -> Pose {
+    pose(of).planar().unwrap_or(of)
+}
+
 /// An estimate with its covariance over x, y and yaw.
 pub(super) fn estimate(of: Pose, covariance: [f64; 9]) -> ros::PoseWithCovariance {
     ros::PoseWithCovariance {
@@ -55,6 +61,7 @@ mod tests {
         let first = pose(Pose::new(1.0, 2.0, yaw));
         let read = first.planar().unwrap();
         assert_eq!(pose(read), first, "{yaw}");
+        assert_eq!(as_recorded(read), read, "{yaw}");
         assert!((read.yaw - wrap_angle(yaw)).abs() < 1e-12, "{yaw}");
     }
 
