@@ -24,6 +24,8 @@ pub struct Part {
     pub messages: u64,
     /// Log times of its messages, nanoseconds since 1970.
     pub log_times_ns: (i64, i64),
+    /// Messages with an earlier time than the one before them.
+    pub unsorted: u64,
 }
 
 /// What is known of a part.
@@ -37,6 +39,10 @@ pub(crate) struct Block {
     /// Log times of its messages, nanoseconds.
     pub(crate) first_ns: i64,
     pub(crate) last_ns: i64,
+    /// Messages with an earlier time than the one before them, whose time is
+    /// `newest_ns`.
+    unsorted: u64,
+    newest_ns: i64,
     /// The kinds among them, as bits.
     pub(crate) kinds: u8,
     /// Messages by channel.
@@ -61,6 +67,8 @@ impl Block {
             bytes,
             first_ns: i64::MAX,
             last_ns: i64::MIN,
+            unsorted: 0,
+            newest_ns: i64::MIN,
             kinds: 0,
             counts: BTreeMap::new(),
         }
@@ -72,6 +80,7 @@ impl Block {
             bytes: self.bytes.len(),
             messages: self.messages(),
             log_times_ns: (self.first_ns, self.last_ns),
+            unsorted: self.unsorted,
         }
     }
 
@@ -102,6 +111,8 @@ impl Block {
             missing: "channel",
             id,
         })?;
+        self.unsorted += u64::from(log_time < self.newest_ns);
+        self.newest_ns = log_time;
         self.first_ns = self.first_ns.min(log_time);
         self.last_ns = self.last_ns.max(log_time);
         self.kinds |= channel.kind.map_or(0, Kind::bit);

@@ -79,6 +79,12 @@ impl Recording {
         &self.path
     }
 
+    /// Its size in bytes.
+    #[must_use]
+    pub fn size(&self) -> u64 {
+        self.bytes().len() as u64
+    }
+
     /// All channels, also those whose messages are only counted.
     pub fn channels(&self) -> impl Iterator<Item = &Channel> {
         self.survey.registry.channels()

@@ -4,7 +4,7 @@ use std::process::ExitCode;
 
 use clap::{Parser, Subcommand};
 
-use crate::{bench, check, evaluate, locate, plot, run};
+use crate::{bench, check, doctor, evaluate, info, locate, plot, regress, run};
 
 /// Finds where a robot is from its laser and a map, with no initial guess.
 ///
@@ -39,6 +39,15 @@ enum Command {
     /// Draws a map, a scan at its places, votes or errors, as PNG or SVG
     #[command(after_help = plot::NOTES)]
     Plot(plot::Config),
+    /// Lists what a recording holds
+    #[command(after_help = EXIT_CODES)]
+    Info(info::Config),
+    /// Says what is wrong with a recording
+    #[command(after_help = doctor::NOTES)]
+    Doctor(doctor::Config),
+    /// Replays recordings through the graph and compares with what is expected
+    #[command(after_help = regress::NOTES)]
+    Regress(regress::Config),
     /// Measures the methods of global localization on generated worlds
     #[command(after_help = bench::NOTES)]
     Bench(bench::Config),
@@ -55,6 +64,9 @@ pub fn main() -> ExitCode {
         Some(Command::Locate(config)) => locate::run(&config),
         Some(Command::Evaluate(config)) => evaluate::run(&config),
         Some(Command::Plot(config)) => plot::run(&config),
+        Some(Command::Info(config)) => info::run(&config),
+        Some(Command::Doctor(config)) => doctor::run(&config),
+        Some(Command::Regress(config)) => regress::run(&config),
         Some(Command::Bench(config)) => bench::run(&config),
     };
     outcome.unwrap_or_else(|error| {

@@ -199,6 +199,43 @@ pub enum BackcastError {
         /// Why not.
         source: io::Error,
     },
+    /// There is no recording to replay.
+    #[error(
+        "{} holds no folder with recording.mcap and map.yaml, and is none",
+        folder.display()
+    )]
+    NoCases {
+        /// Where they were looked for.
+        folder: PathBuf,
+    },
+    /// A file of a regression test cannot be read or written.
+    #[error("cannot {action} {}", file.display())]
+    RegressionFile {
+        /// What was tried, as a verb.
+        action: &'static str,
+        /// With what.
+        file: PathBuf,
+        /// Why it failed.
+        source: io::Error,
+    },
+    /// What is expected of a recording is not written as it should be.
+    #[error("{} does not say what is expected: --accept writes it anew", file.display())]
+    Expectation {
+        /// The file.
+        file: PathBuf,
+        /// Where and why.
+        source: serde_json::Error,
+    },
+    /// A graph did not answer every scan.
+    #[error("{}: {answered} of {scans} scans were answered; the graph's own lines say why", recording.display())]
+    Unanswered {
+        /// The recording.
+        recording: PathBuf,
+        /// Its scans.
+        scans: usize,
+        /// Scans with votes and hypotheses.
+        answered: usize,
+    },
     /// A case of the bench cannot be set up.
     #[error(transparent)]
     Benchmarks(#[from] BenchmarksError),
@@ -226,6 +263,7 @@ impl BackcastError {
             Self::NoDescriptor { .. }
             | Self::NoNodeForOption { .. }
             | Self::NotWired { .. }
+            | Self::NoCases { .. }
             | Self::Usage(_)
             | Self::Setting(_)
             | Self::Logging(_) => 2,

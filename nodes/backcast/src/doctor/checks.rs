@@ -1,0 +1,260 @@
+//! What is asked of a recording, one function a question.
+
+use std::collections::BTreeSet;
+
+use recording::{GROUND_TRUTH, Kind, Recording};
+
+use super::ailment::Ailment;
+use super::patient::{Patient, Seen};
+use transport::with_causes;
+
+/// A gap is worth a note from so many usual distances on.
+const GAP_FACTOR: i64 = 5;
+
+/// Share of silent readings from which a laser seems to look into nothing.
+const MOSTLY_SILENT: f64 = 0.9;
+
+/// Everything that is found, the worst first.
+pub(super) fn all(recording: &Recording, patient: &Patient) -> Vec<Ailment> {
+    let checks = [
+        damage(recording),
+        undecodable(patient),
+        topics(recording, patient),
+        map(recording),
+        mount(recording, patient),
+        frames(patient),
+        stamps(patient),
+        gaps(patient),
+        scans(patient),
+        truths(recording, patient),
+        order(recording),
+    ];
+    let mut all: Vec<Ailment> = checks.into_iter().flatten().collect();
+    all.sort_by_key(|ailment| std::cmp::Reverse(ailment.severity));
+    all
+}
+
+fn damage(recording: &Recording) -> Vec<Ailment> {
+    let damage = recording.damage().map(|damage| {
+        let messages = recording.messages();
+        Ailment::lost(format!(
+            "{damage}; {messages} messages before that are readable"
+        ))
+    });
+    damage.into_iter().collect()
+}
+
+fn undecodable(patient: &Patient) -> Vec<Ailment> {
+    let finding = |(topic, seen): (&String, &Seen)| {
+        let reason = seen.first_reason.as_ref()?;
+        let count = seen.undecodable;
+        Some(Ailment::lost(format!(
+            "{topic}: {count} messages do not decode; the first: {reason}"
+        )))
+    };
+    patient.channels.iter().filter_map(finding).collect()
+}
+
+/// Whether it is clear what is meant, and all is there that localizing needs.
+fn topics(recording: &Recording, patient: &Patient) -> Vec<Ailment> {
+    let kinds = [Kind::Scan, Kind::Map, Kind::Odometry];
+    let unclear = kinds
+        .into_iter()
+        .filter_map(|kind| recording.topic(kind).err());
+    let mut found: Vec<Ailment> = unclear.map(|e| Ailment::problem(with_causes(&e))).collect();
+    if patient.of_kind(Kind::Scan).next().is_none() {
+        found.push(Ailment::problem(
+            "no laser scans: there is nothing to localize",
+        ));
+    }
+    if patient.of_kind(Kind::Map).next().is_none() {
+        found.push(Ailment::note("no map: commands need --map"));
+    }
+    found
+}
+
+fn map(recording: &Recording) -> Vec<Ailment> {
+    match recording.map() {
+        Err(error) => vec![Ailment::problem(with_causes(&error))],
+        Ok(None) => Vec::new(),
+        Ok(Some(grid)) => {
+            let found = format!("{:016x}", grid.id());
+            let named = recording.metadata().iter().filter_map(|record| {
+                let is_map = record.name == "backcast/map";
+                is_map.then(|| record.entries.get("map_id")).flatten()
+            });
+            let mut others = named.filter(|id| **id != found).peekable();
+            // A map that was changed while recording is named, too.
+            let several = recording
+                .channels()
+                .any(|c| c.kind == Some(Kind::Map) && c.messages > 1);
+            match others.next() {
+                Some(id) if !several => vec![Ailment::problem(format!(
+                    "the map is {found}, but the metadata says {id}"
+                ))],
+                _ => Vec::new(),
+            }
+        }
+    }
+}
+
+/// Whether the place of each laser on the robot is known.
+fn mount(recording: &Recording, patient: &Patient) -> Vec<Ailment> {
+    let lasers: BTreeSet<&String> = patient
+        .of_kind(Kind::Scan)
+        .flat_map(|(_, seen)| &seen.frames)
+        .collect();
+    let finding = |laser: &&String| match recording.base_from_laser(laser) {
+        Ok(Some(_)) => None,
+        Ok(None) => Some(Ailment::note(format!(
+            "/tf_static does not say where {laser:?} sits on the robot: poses are of the laser"
+        ))),
+        Err(error) => Some(Ailment::problem(with_causes(&error))),
+    };
+    lasers.iter().filter_map(finding).collect()
+}
+
+/// Whether frames are named, one to a channel, and poses share the map's.
+fn frames(patient: &Patient) -> Vec<Ailment> {
+    let mut found = Vec::new();
+    for (topic, seen) in &patient.channels {
+        if seen
+            .frames
+            .iter()
+            .chain(&seen.children)
+            .any(String::is_empty)
+        {
+            found.push(Ailment::problem(format!(
+                "{topic}: a message names no frame"
+            )));
+        }
+        if seen.frames.len() > 1 && seen.kind != Some(Kind::StaticTransforms) {
+            let frames: Vec<&str> = seen.frames.iter().map(String::as_str).collect();
+            let frames = frames.join(", ");
+            found.push(Ailment::problem(format!(
+                "{topic}: several frames, {frames}"
+            )));
+        }
+    }
+    let maps = patient
+        .of_kind(Kind::Map)
+        .flat_map(|(_, seen)| &seen.frames);
+    let maps: BTreeSet<&String> = maps.collect();
+    if let Some(truths) = patient.channels.get(GROUND_TRUTH)
+        && let Some(other) = truths.frames.iter().find(|frame| !maps.contains(frame))
+        && let Some(map) = maps.first()
+    {
+        found.push(Ailment::problem(format!(
+            "{GROUND_TRUTH} is in frame {other:?}, the map in {map:?}"
+        )));
+    }
+    let lasers = patient
+        .of_kind(Kind::Scan)
+        .flat_map(|(_, seen)| &seen.frames);
+    let known = patient.of_kind(Kind::StaticTransforms);
+    let known = known.flat_map(|(_, seen)| seen.frames.iter().chain(&seen.children));
+    let known: BTreeSet<&String> = known.chain(lasers).collect();
+    for (topic, seen) in patient.of_kind(Kind::Odometry) {
+        if let Some(child) = seen.children.iter().find(|child| !known.contains(child)) {
+            found.push(Ailment::note(format!(
+                "{topic} moves {child:?}, which neither a scan nor /tf_static names"
+            )));
+        }
+    }
+    found
+}
+
+/// Whether stamps rise from message to message.
+fn stamps(patient: &Patient) -> Vec<Ailment> {
+    let mut found = Vec::new();
+    for (topic, seen) in &patient.channels {
+        let count = |is: fn(i64, i64) -> bool| {
+            let pairs = seen.stamps_ns.windows(2);
+            pairs.filter(|pair| is(pair[0], pair[1])).count()
+        };
+        let back = count(|before, after| after < before);
+        if back > 0 {
+            found.push(Ailment::problem(format!(
+                "{topic}: stamps go back {back} times"
+            )));
+        }
+        let same = count(|before, after| after == before);
+        if same > 0 && seen.kind == Some(Kind::Scan) {
+            found.push(Ailment::problem(format!(
+                "{topic}: {same} scans have the stamp before"
+            )));
+        }
+    }
+    found
+}
+
+fn gaps(patient: &Patient) -> Vec<Ailment> {
+    let finding = |(topic, seen): (&String, &Seen)| {
+        let steps = seen
+            .stamps_ns
+            .windows(2)
+            .map(|pair| pair[1].saturating_sub(pair[0]));
+        let mut steps: Vec<i64> = steps.filter(|step| *step > 0).collect();
+        steps.sort_unstable();
+        let (usual, longest) = (*steps.get(steps.len() / 2)?, *steps.last()?);
+        let gaps = steps
+            .iter()
+            .filter(|step| **step > GAP_FACTOR.saturating_mul(usual))
+            .count();
+        let (usual, longest) = (usual as f64 * 1e-9, longest as f64 * 1e-9);
+        (gaps > 0).then(|| {
+            Ailment::note(format!(
+                "{topic}: {gaps} gaps, the longest of {longest:.2} s where {usual:.2} s is usual"
+            ))
+        })
+    };
+    patient.of_kind(Kind::Scan).filter_map(finding).collect()
+}
+
+fn scans(patient: &Patient) -> Vec<Ailment> {
+    let mut found = Vec::new();
+    for (topic, seen) in patient.of_kind(Kind::Scan) {
+        if let Some(oddity) = &seen.first_oddity {
+            let odd = seen.odd_scans;
+            found.push(Ailment::problem(format!(
+                "{topic}: {odd} odd scans; of the first {oddity}"
+            )));
+        }
+        let share = seen.silent as f64 / seen.readings.max(1) as f64;
+        if share > MOSTLY_SILENT {
+            let percent = 100.0 * share;
+            found.push(Ailment::note(format!(
+                "{topic}: {percent:.0} % of the readings say nothing"
+            )));
+        }
+    }
+    found
+}
+
+/// Whether true poses are sound and belong to scans.
+fn truths(recording: &Recording, patient: &Patient) -> Vec<Ailment> {
+    let truths = match recording.ground_truths() {
+        Ok(truths) => truths,
+        Err(error) => return vec![Ailment::problem(with_causes(&error))],
+    };
+    let scans = patient
+        .of_kind(Kind::Scan)
+        .flat_map(|(_, seen)| &seen.stamps_ns);
+    let scans: BTreeSet<&i64> = scans.collect();
+    match truths.keys().filter(|stamp| !scans.contains(stamp)).count() {
+        0 => Vec::new(),
+        orphans => vec![Ailment::note(format!(
+            "{orphans} of {} true poses have the stamp of no scan",
+            truths.len()
+        ))],
+    }
+}
+
+fn order(recording: &Recording) -> Vec<Ailment> {
+    match recording.parts().map(|part| part.unsorted).sum() {
+        0 => Vec::new(),
+        unsorted => vec![Ailment::note(format!(
+            "{unsorted} messages stand in the file behind later ones; readers sort them"
+        ))],
+    }
+}

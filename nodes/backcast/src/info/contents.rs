@@ -1,0 +1,102 @@
+//! What there is to say about a recording.
+
+use std::collections::BTreeMap;
+
+use recording::Recording;
+use serde::Serialize;
+
+/// A recording in figures. Stamps are nanoseconds since 1970.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+pub(crate) struct Contents {
+    pub(crate) recording: String,
+    pub(crate) bytes: u64,
+    pub(crate) messages: u64,
+    pub(crate) first_ns: Option<i64>,
+    pub(crate) last_ns: Option<i64>,
+    pub(crate) chunks: usize,
+    pub(crate) channels: Vec<Channel>,
+    pub(crate) metadata: Vec<Metadata>,
+    pub(crate) attachments: Vec<Attachment>,
+    /// What is wrong with the file; all else is of what lies before.
+    pub(crate) damage: Option<String>,
+}
+
+#[derive(Debug, Clone, PartialEq, Serialize)]
+pub(crate) struct Channel {
+    pub(crate) topic: String,
+    pub(crate) schema: String,
+    pub(crate) encoding: String,
+    pub(crate) messages: u64,
+    /// Messages a second over the whole recording; none below two messages.
+    pub(crate) hz: Option<f64>,
+}
+
+#[derive(Debug, Clone, PartialEq, Serialize)]
+pub(crate) struct Metadata {
+    pub(crate) name: String,
+    pub(crate) entries: BTreeMap<String, String>,
+}
+
+#[derive(Debug, Clone, PartialEq, Serialize)]
+pub(crate) struct Attachment {
+    pub(crate) name: String,
+    pub(crate) media_type: String,
+    pub(crate) bytes: usize,
+}
+
+impl Contents {
+    pub(crate) fn of(recording: &Recording) -> Self {
+        let range = recording.time_range_ns();
+        let seconds = range.map_or(0.0, |(first, last)| {
+            last.saturating_sub(first) as f64 * 1e-9
+        });
+        Contents {
+            recording: recording.path().display().to_string(),
+            bytes: recording.size(),
+            messages: recording.messages(),
+            first_ns: range.map(|(first, _)| first),
+            last_ns: range.map(|(_, last)| last),
+            chunks: recording.parts().filter(|part| part.is_chunk).count(),
+            channels: channels(recording, seconds),
+            metadata: recording.metadata().iter().map(metadata).collect(),
+            attachments: recording.attachments().iter().map(attachment).collect(),
+            damage: recording.damage().map(ToString::to_string),
+        }
+    }
+
+    /// As an object on one line.
+    pub(crate) fn json(&self) -> String {
+        // Texts and numbers always serialize.
+        serde_json::to_string(self).unwrap_or_default() + "\n"
+    }
+}
+
+/// By topic; one that is defined several times is listed once for each.
+fn channels(recording: &Recording, seconds: f64) -> Vec<Channel> {
+    let channel = |channel: &recording::Channel| Channel {
+        topic: channel.topic.to_string(),
+        schema: channel.schema.clone(),
+        encoding: channel.encoding.clone(),
+        messages: channel.messages,
+        hz: (channel.messages > 1 && seconds > 0.0)
+            .then(|| (channel.messages - 1) as f64 / seconds),
+    };
+    let mut channels: Vec<Channel> = recording.channels().map(channel).collect();
+    channels.sort_by(|a, b| a.topic.cmp(&b.topic));
+    channels
+}
+
+fn metadata(record: &recording::MetadataRecord) -> Metadata {
+    Metadata {
+        name: record.name.clone(),
+        entries: record.entries.clone(),
+    }
+}
+
+fn attachment(file: &recording::AttachedFile) -> Attachment {
+    Attachment {
+        name: file.name.clone(),
+        media_type: file.media_type.clone(),
+        bytes: file.len(),
+    }
+}

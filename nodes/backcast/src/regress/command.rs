@@ -1,0 +1,137 @@
+//! What `backcast regress` does.
+
+use std::path::PathBuf;
+use std::process::ExitCode;
+use std::time::Instant;
+
+use transport::{GraphName, with_causes};
+
+use super::case::{self, Case};
+use super::compare::{differences, table};
+use super::junit::{self, Outcome};
+use super::play;
+use crate::descriptor::{self, DEFAULT_FILE};
+use crate::offline::say;
+use crate::run::build;
+use crate::{BackcastError, stdout};
+
+/// What stands below the options.
+pub(crate) const NOTES: &str = "\
+A case is a folder with recording.mcap, map.yaml and expected.json. Votes, verdicts and counts must
+come out exactly; positions within 1 mm, headings within 0.01 degrees, scores within 0.001.
+
+Exit codes: 0 all as expected or accepted, 1 differences or a graph that fails, 2 wrong use";
+
+/// What `backcast regress` takes.
+#[derive(Debug, clap::Args)]
+pub(crate) struct Config {
+    /// Folders that are cases, or hold some
+    #[arg(default_value = "recordings", value_name = "FOLDER")]
+    folders: Vec<PathBuf>,
+
+    /// The graph; it plays each recording on its map, at --rate max
+    #[arg(long, default_value = DEFAULT_FILE, value_name = "FILE")]
+    dataflow: PathBuf,
+
+    /// Expect from now on what was found
+    #[arg(long)]
+    accept: bool,
+
+    /// Write the outcome for a build server
+    #[arg(long, value_name = "FILE")]
+    junit: Option<PathBuf>,
+}
+
+/// Replays one recording after another; one whose graph fails is told, and the
+/// next one follows.
+///
+/// # Errors
+/// There is nothing to replay, the graph cannot be built, or a file cannot be
+/// written.
+pub(crate) fn run(config: &Config) -> Result<ExitCode, BackcastError> {
+    transport::node::start_logging().map_err(BackcastError::Logging)?;
+    let mut cases = Vec::new();
+    for folder in &config.folders {
+        cases.extend(Case::all_in(folder)?);
+    }
+    let descriptor = descriptor::load(&config.dataflow)?;
+    build::build_all(&descriptor.dataflow, &descriptor.folder)?;
+    let mut outcomes = Vec::new();
+    for case in &cases {
+        let outcome = replay(config, case);
+        stdout::print(&text(&outcome, config.accept))?;
+        outcomes.push(outcome);
+    }
+    if let Some(file) = &config.junit {
+        let report = junit::report(&outcomes).map_err(std::io::Error::other);
+        report
+            .and_then(|text| std::fs::write(file, text))
+            .map_err(|source| case::failed("write", file, source))?;
+    }
+    let is_good = |outcome: &Outcome| match config.accept {
+        true => outcome.result.is_ok(),
+        false => outcome.is_as_expected(),
+    };
+    match outcomes.iter().all(is_good) {
+        true => Ok(ExitCode::SUCCESS),
+        false => Ok(ExitCode::FAILURE),
+    }
+}
+
+fn replay(config: &Config, case: &Case) -> Outcome {
+    let start = Instant::now();
+    let mut outcome = Outcome {
+        name: case.name.clone(),
+        scans: 0,
+        took: start.elapsed(),
+        result: Ok(Vec::new()),
+    };
+    match judge(config, case, &mut outcome) {
+        Ok(()) => {}
+        Err(error) => {
+            say(&format!("{}: {}", case.name, with_causes(&error)));
+            outcome.result = Err(with_causes(&error));
+        }
+    }
+    outcome.took = start.elapsed();
+    outcome
+}
+
+fn judge(config: &Config, case: &Case, outcome: &mut Outcome) -> Result<(), BackcastError> {
+    let expected = case.expected();
+    let mut descriptor = descriptor::load(&config.dataflow)?;
+    play::direct(&mut descriptor, case)?;
+    let name = GraphName::new(&format!("rg{}", std::process::id()))?;
+    let found = play::play(descriptor, &name, &case.recording())?;
+    outcome.scans = found.len();
+    if config.accept {
+        // What is not written as it should be is written anew.
+        let before = expected.ok().flatten().unwrap_or_default();
+        outcome.result = Ok(differences(&before, &found));
+        return case.accept(&found);
+    }
+    outcome.result = match expected? {
+        Some(expected) => Ok(differences(&expected, &found)),
+        None => Err("there is no expected.json: --accept writes it".to_owned()),
+    };
+    Ok(())
+}
+
+fn text(outcome: &Outcome, accepted: bool) -> String {
+    let Outcome {
+        name, scans, took, ..
+    } = outcome;
+    let seconds = took.as_secs_f64();
+    let word = match (&outcome.result, accepted) {
+        (Ok(_), true) => "accepted: ",
+        _ => "",
+    };
+    let verdict = outcome
+        .complaint()
+        .unwrap_or_else(|| "as expected".to_owned());
+    let line = format!("{name}: {scans} scans in {seconds:.1} s, {word}{verdict}\n");
+    match &outcome.result {
+        Ok(differences) if !differences.is_empty() => line + &table(differences),
+        _ => line,
+    }
+}

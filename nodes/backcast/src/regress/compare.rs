@@ -1,0 +1,195 @@
+//! Differences between what is expected and what was found. Pure.
+
+use std::collections::BTreeMap;
+
+use super::answer::Answer;
+
+/// Far below what any laser resolves, far above rounding.
+pub(super) const POSITION_M: f64 = 0.001;
+/// As for the position.
+pub(super) const HEADING_DEG: f64 = 0.01;
+/// Of scores and probabilities, which are shares of 1 kept in 32 bits: below
+/// what moves a verdict, above the rounding of exponential functions.
+pub(super) const SHARE: f64 = 0.001;
+
+/// One value that is not as expected.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub(super) struct Difference {
+    pub(super) stamp_ns: i64,
+    /// Its name, or "scan" where one is missing.
+    pub(super) what: &'static str,
+    pub(super) expected: String,
+    pub(super) found: String,
+}
+
+/// All differences, by the stamps of the scans.
+pub(super) fn differences(expected: &[Answer], found: &[Answer]) -> Vec<Difference> {
+    let mut pairs: BTreeMap<i64, (Vec<&Answer>, Vec<&Answer>)> = BTreeMap::new();
+    for answer in expected {
+        pairs.entry(answer.stamp_ns).or_default().0.push(answer);
+    }
+    for answer in found {
+        pairs.entry(answer.stamp_ns).or_default().1.push(answer);
+    }
+    let mut all = Vec::new();
+    for (stamp_ns, (expected, found)) in pairs {
+        let mut scan = Scan {
+            stamp_ns,
+            all: &mut all,
+        };
+        scan.note(
+            "scan",
+            expected.len() == found.len(),
+            expected.len(),
+            found.len(),
+        );
+        for (expected, found) in expected.iter().zip(&found) {
+            scan.compare(expected, found);
+        }
+    }
+    all
+}
+
+/// One scan whose values are compared.
+struct Scan<'a> {
+    stamp_ns: i64,
+    all: &'a mut Vec<Difference>,
+}
+
+impl Scan<'_> {
+    fn compare(&mut self, expected: &Answer, found: &Answer) {
+        macro_rules! exact {
+            ($($field:ident),+) => {
+                $({
+                    let (expected, found) = (&expected.$field, &found.$field);
+                    self.note(stringify!($field), expected == found, expected, found);
+                })+
+            };
+        }
+        exact!(
+            best,
+            floor,
+            certified_floor,
+            highest_possible,
+            votes,
+            beams_used
+        );
+        exact!(verdict, alternatives, hypotheses);
+        let share = |share: Option<f32>| share.map(f64::from);
+        self.near("x_m", expected.x_m, found.x_m, POSITION_M);
+        self.near("y_m", expected.y_m, found.y_m, POSITION_M);
+        // Headings are compared on the circle.
+        let turned = expected
+            .heading_deg
+            .zip(found.heading_deg)
+            .map(|(expected, found)| {
+                expected + (found - expected + 180.0).rem_euclid(360.0) - 180.0
+            });
+        let heading = turned.or(found.heading_deg);
+        self.near("heading_deg", expected.heading_deg, heading, HEADING_DEG);
+        self.near("score", share(expected.score), share(found.score), SHARE);
+        let (confidence, now) = (Some(expected.confidence), Some(found.confidence));
+        self.near("confidence", share(confidence), share(now), SHARE);
+    }
+
+    fn near(&mut self, what: &'static str, expected: Option<f64>, found: Option<f64>, by: f64) {
+        let is_near = match (expected, found) {
+            (Some(expected), Some(found)) => (expected - found).abs() <= by,
+            (expected, found) => expected.is_none() && found.is_none(),
+        };
+        let shown = |value: Option<f64>| value.map_or("none".to_owned(), |v| format!("{v:.4}"));
+        self.note(what, is_near, shown(expected), shown(found));
+    }
+
+    fn note(
+        &mut self,
+        what: &'static str,
+        is_as_expected: bool,
+        expected: impl ToString,
+        found: impl ToString,
+    ) {
+        if !is_as_expected {
+            self.all.push(Difference {
+                stamp_ns: self.stamp_ns,
+                what,
+                expected: expected.to_string(),
+                found: found.to_string(),
+            });
+        }
+    }
+}
+
+/// The differences as a table.
+pub(super) fn table(differences: &[Difference]) -> String {
+    let mut text = format!(
+        "  {:>20} {:<16} {:>14} {:>14}\n",
+        "stamp ns", "what", "expected", "found"
+    );
+    for difference in differences {
+        let Difference {
+            stamp_ns,
+            what,
+            expected,
+            found,
+        } = difference;
+        text += &format!("  {stamp_ns:>20} {what:<16} {expected:>14} {found:>14}\n");
+    }
+    text
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn answer(stamp_ns: i64) -> Answer {
+        Answer {
+            stamp_ns,
+            best: 800,
+            verdict: "Unique".to_owned(),
+            x_m: Some(1.0),
+            y_m: Some(2.0),
+            heading_deg: Some(179.999),
+            score: Some(0.9),
+            ..Answer::default()
+        }
+    }
+
+    /// What differs from the plain answer.
+    fn spoilt(spoil: fn(&mut Answer)) -> Vec<&'static str> {
+        let mut found = answer(1);
+        spoil(&mut found);
+        let differences = differences(&[answer(1)], &[found]);
+        differences
+            .iter()
+            .map(|difference| difference.what)
+            .collect()
+    }
+
+    #[test]
+    fn integers_are_compared_exactly_and_poses_within_a_millimetre() {
+        assert!(spoilt(|_| {}).is_empty());
+        assert_eq!(spoilt(|a| a.best += 1), ["best"]);
+        assert_eq!(spoilt(|a| a.verdict = "PoorFit".to_owned()), ["verdict"]);
+        assert!(spoilt(|a| a.x_m = Some(1.0009)).is_empty());
+        assert_eq!(spoilt(|a| a.x_m = Some(1.0011)), ["x_m"]);
+        assert!(
+            spoilt(|a| a.heading_deg = Some(-179.999)).is_empty(),
+            "past the half turn"
+        );
+        assert_eq!(spoilt(|a| a.heading_deg = Some(-179.9)), ["heading_deg"]);
+        assert_eq!(spoilt(|a| a.score = None), ["score"]);
+        assert_eq!(spoilt(|a| a.confidence = f32::NAN), ["confidence"]);
+    }
+
+    #[test]
+    fn scans_that_are_missing_or_more_are_told() {
+        let (one, two) = (answer(1), answer(2));
+        let both = [one.clone(), two.clone()];
+        let missing = differences(&both, &[one.clone()]);
+        assert_eq!(missing.len(), 1);
+        assert_eq!((missing[0].stamp_ns, missing[0].what), (2, "scan"));
+        assert_eq!((&*missing[0].expected, &*missing[0].found), ("1", "0"));
+        let more = differences(&[one], &both);
+        assert!(table(&more).contains("2 scan"), "{}", table(&more));
+    }
+}

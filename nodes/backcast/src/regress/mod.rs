@@ -1,0 +1,14 @@
+//! `backcast regress`: replays recordings through the graph and compares every
+//! answer with what is expected.
+//!
+//! `case` finds the recordings, `play` runs the graph, `answer` is what is
+//! compared, `compare` compares (pure), `junit` tells a build server.
+
+mod answer;
+mod case;
+mod command;
+mod compare;
+mod junit;
+mod play;
+
+pub(crate) use command::{Config, NOTES, run};

@@ -1,0 +1,151 @@
+//! Plays a recording through a graph of its own and collects the answers.
+
+use std::path::Path;
+use std::time::{Duration, Instant};
+
+use messages::{HypothesesHeader, Hypothesis, VotesHeader, topic};
+use recording::{Kind, Recording};
+use transport::{Flow, Graph, GraphName, Subscriber, TransportError, remove_leftovers};
+
+use super::answer::Answer;
+use super::case::Case;
+use crate::BackcastError;
+use crate::descriptor::Descriptor;
+use crate::run::arguments::{MAP_SERVER, REPLAYER, find, set, unset};
+use crate::run::crew::Crew;
+
+/// The name under which the graph is joined.
+const NAME: &str = "regress";
+/// Between two looks at the processes.
+const TICK: Duration = Duration::from_millis(20);
+/// How long the last answers may take once the source is done.
+const PATIENCE: Duration = Duration::from_secs(20);
+
+/// Lets the graph play this recording, on its map, as fast as it answers.
+///
+/// # Errors
+/// The graph has no replayer or no map server.
+pub(super) fn direct(descriptor: &mut Descriptor, case: &Case) -> Result<(), BackcastError> {
+    let Descriptor { dataflow, file, .. } = descriptor;
+    let replayer = find(dataflow, REPLAYER, "the recording", file)?;
+    set(
+        replayer,
+        "--recording",
+        Some(&case.recording().to_string_lossy()),
+    );
+    set(replayer, "--rate", Some("max"));
+    unset(replayer, "--loop", false);
+    let server = find(dataflow, MAP_SERVER, "the map", file)?;
+    set(server, "--map", Some(&case.map().to_string_lossy()));
+    for node in &mut dataflow.nodes {
+        // What goes wrong is told; what goes well is in the table.
+        node.env
+            .insert(0, ("RUST_LOG".to_owned(), "warn".to_owned()));
+    }
+    Ok(())
+}
+
+/// The answers to all scans, by their coming.
+///
+/// # Errors
+/// The graph does not run, or leaves scans without an answer.
+pub(super) fn play(
+    descriptor: Descriptor,
+    name: &GraphName,
+    recording: &Path,
+) -> Result<Vec<Answer>, BackcastError> {
+    let scans = scans_of(recording)?;
+    remove_leftovers(name)?;
+    let outcome = collect(descriptor, name, scans);
+    let cleared = remove_leftovers(name);
+    let answers = outcome?;
+    cleared?;
+    match answers.len() == scans {
+        true => Ok(answers),
+        false => Err(BackcastError::Unanswered {
+            recording: recording.to_owned(),
+            scans,
+            answered: answers.len(),
+        }),
+    }
+}
+
+fn scans_of(path: &Path) -> Result<usize, BackcastError> {
+    let recording = Recording::open(path)?;
+    let topic = recording.required_topic(Kind::Scan)?;
+    let of_topic = recording
+        .channels()
+        .filter(|channel| channel.topic == topic);
+    Ok(of_topic.map(|channel| channel.messages as usize).sum())
+}
+
+fn collect(
+    descriptor: Descriptor,
+    name: &GraphName,
+    scans: usize,
+) -> Result<Vec<Answer>, BackcastError> {
+    let graph = Graph::join_named(NAME, name)?;
+    let votes = graph.subscriber::<topic::Votes>()?;
+    let hypotheses = graph.subscriber::<topic::Hypotheses>()?;
+    let mut heard = Heard::default();
+    let mut crew = Crew::new(descriptor.dataflow.nodes, &descriptor.folder, name);
+    let mut last_progress = Instant::now();
+    let outcome = graph.run(&[&votes, &hypotheses], TICK, |_| {
+        let now = Instant::now();
+        let over = crew.is_over();
+        if heard.take(&votes, &hypotheses)? || !over {
+            last_progress = now;
+        }
+        if heard.is_complete(scans) || over && now - last_progress >= PATIENCE {
+            return Ok(Flow::Stop);
+        }
+        crew.tick(now)?;
+        Ok::<_, BackcastError>(Flow::Continue)
+    });
+    let stopped = crew.stop();
+    outcome?;
+    stopped?;
+    Ok(heard.answers())
+}
+
+/// What came until now.
+#[derive(Default)]
+struct Heard {
+    votes: Vec<VotesHeader>,
+    hypotheses: Vec<(HypothesesHeader, Vec<Hypothesis>)>,
+}
+
+impl Heard {
+    /// Says whether anything came.
+    fn take(
+        &mut self,
+        votes: &Subscriber<topic::Votes>,
+        hypotheses: &Subscriber<topic::Hypotheses>,
+    ) -> Result<bool, TransportError> {
+        let before = self.votes.len() + self.hypotheses.len();
+        while let Some(sample) = votes.receive()? {
+            self.votes.push(*sample.header());
+        }
+        while let Some(sample) = hypotheses.receive()? {
+            let answer = (*sample.header(), sample.items().to_vec());
+            self.hypotheses.push(answer);
+        }
+        Ok(self.votes.len() + self.hypotheses.len() > before)
+    }
+
+    fn is_complete(&self, scans: usize) -> bool {
+        self.votes.len() >= scans && self.hypotheses.len() >= scans
+    }
+
+    /// Votes and hypotheses that belong to one scan.
+    fn answers(&self) -> Vec<Answer> {
+        let of = |(header, items): &(HypothesesHeader, Vec<Hypothesis>)| {
+            let votes = self
+                .votes
+                .iter()
+                .find(|votes| votes.stamp == header.stamp)?;
+            Some(Answer::of(votes, header, items))
+        };
+        self.hypotheses.iter().filter_map(of).collect()
+    }
+}
