@@ -15,6 +15,7 @@ const GROUPS: [&[&str]; 2] = [
         "boundary_extractor",
         "accumulator",
         "peak_extractor",
+        "recorder",
     ],
     &["backcast"],
 ];

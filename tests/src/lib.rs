@@ -5,6 +5,7 @@
 pub mod answers;
 pub mod building;
 pub mod executables;
+pub mod recorded;
 pub mod world;
 
 use std::path::PathBuf;

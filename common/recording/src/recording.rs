@@ -163,6 +163,37 @@ impl Recording {
         Ok(channel.map(|channel| channel.topic.clone()))
     }
 
+    /// As [`Recording::topic`], where channels go by other names: `name_of` gives
+    /// that of each, or `None` for one that is not meant. The result is the
+    /// channel's own name.
+    ///
+    /// # Errors
+    /// If several could be meant.
+    pub fn topic_renamed(
+        &self,
+        kind: Kind,
+        name_of: impl Fn(&str) -> Option<String>,
+    ) -> Result<Option<Arc<str>>, RecordingError> {
+        let renamed = |channel: &Channel| {
+            let topic = name_of(&channel.topic)?.into();
+            let own = channel.topic.clone();
+            let channel = Channel {
+                topic,
+                ..channel.clone()
+            };
+            Some((channel, own))
+        };
+        let renamed: Vec<(Channel, Arc<str>)> = self.channels().filter_map(renamed).collect();
+        let channels: Vec<&Channel> = renamed.iter().map(|(channel, _)| channel).collect();
+        let Some(chosen) = topics::choose(&channels, kind, &self.path)? else {
+            return Ok(None);
+        };
+        let own = renamed
+            .iter()
+            .find(|(channel, _)| std::ptr::eq(channel, chosen));
+        Ok(own.map(|(_, own)| own.clone()))
+    }
+
     /// As [`Recording::topic`], where there must be one.
     ///
     /// # Errors

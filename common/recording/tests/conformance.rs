@@ -1,5 +1,6 @@
 //! The published suite of the MCAP format, if it is there: every file opens as
-//! sound, and holds the messages that the suite says it does.
+//! sound, and holds the messages, attachments and metadata that the suite says it
+//! does, byte for byte.
 #![allow(
     clippy::unwrap_used,
     reason = "the lint spares test functions but not what they share"
@@ -9,14 +10,14 @@ use std::path::{Path, PathBuf};
 use std::process::Command;
 
 use recording::Recording;
-use serde_json::Value;
+use serde_json::{Map, Value};
 
 /// The suite is larger than this repository, and stands beside it.
 const SUITE: &str = "../../../shared/data/mcap_conformance/data.tar.gz";
 const FILES: usize = 416;
 
 #[test]
-fn every_file_of_the_suite_is_sound() {
+fn every_file_of_the_suite_is_read_as_the_suite_says() {
     let suite = Path::new(env!("CARGO_MANIFEST_DIR")).join(SUITE);
     if !suite.exists() {
         eprintln!(
@@ -37,20 +38,89 @@ fn every_file_of_the_suite_is_sound() {
 
     let files = recordings(folder.path());
     assert_eq!(files.len(), FILES);
+    let mut compared = Compared::default();
     for file in files {
         let expected = std::fs::read(file.with_extension("json")).unwrap();
         let expected: Value = serde_json::from_slice(&expected).unwrap();
-        let expected = messages(&expected);
-        let recording = Recording::open(&file).unwrap();
-        let name = file.display();
-        assert_eq!(recording.damage(), None, "{name}");
-        assert_eq!(recording.messages(), expected.len() as u64, "{name}");
-        let times = expected.iter().min().zip(expected.iter().max());
-        let times = times.map(|(first, last)| (*first, *last));
-        assert_eq!(recording.time_range_ns(), times, "{name}");
-        // They are of no type that is decoded.
-        assert_eq!(recording.records().count(), 0, "{name}");
+        compare(&file, &expected, &mut compared);
     }
+    assert_eq!(compared, ALL);
+}
+
+/// What was compared in all files.
+#[derive(Debug, Default, PartialEq, Eq)]
+struct Compared {
+    messages: usize,
+    attachments: usize,
+    metadata: usize,
+}
+
+/// What the suite holds.
+const ALL: Compared = Compared {
+    messages: 1768,
+    attachments: 14,
+    metadata: 14,
+};
+
+fn compare(file: &Path, expected: &Value, compared: &mut Compared) {
+    let name = file.display();
+    let recording = Recording::open(file).unwrap();
+    assert_eq!(recording.damage(), None, "{name}");
+
+    // The suite's messages stand in the order of their times, equal ones in that
+    // of the file.
+    let mut messages = of_type(expected, "Message");
+    messages.sort_by_key(|message| number(&message["log_time"]));
+    assert_eq!(recording.messages(), messages.len() as u64, "{name}");
+    let found: Vec<_> = recording.raw_records().map(Result::unwrap).collect();
+    assert_eq!(found.len(), messages.len(), "{name}");
+    for (found, message) in found.iter().zip(&messages) {
+        assert_eq!(found.log_time_ns, number(&message["log_time"]), "{name}");
+        assert_eq!(
+            found.publish_time_ns as i64,
+            number(&message["publish_time"]),
+            "{name}"
+        );
+        assert_eq!(found.body, bytes(&message["data"]), "{name}");
+        let channels = of_type(expected, "Channel");
+        let channel = channels
+            .iter()
+            .find(|channel| channel["id"] == message["channel_id"]);
+        let channel = channel.expect("the suite names its channels");
+        assert_eq!(*found.channel.topic, channel["topic"], "{name}");
+        assert_eq!(
+            found.channel.encoding, channel["message_encoding"],
+            "{name}"
+        );
+    }
+
+    let attachments = of_type(expected, "Attachment");
+    assert_eq!(recording.attachments().len(), attachments.len(), "{name}");
+    for (found, attachment) in recording.attachments().iter().zip(&attachments) {
+        assert_eq!(found.name, attachment["name"], "{name}");
+        assert_eq!(found.media_type, attachment["media_type"], "{name}");
+        assert_eq!(
+            found.log_time_ns as i64,
+            number(&attachment["log_time"]),
+            "{name}"
+        );
+        assert_eq!(
+            recording.content_of(found),
+            bytes(&attachment["data"]),
+            "{name}"
+        );
+    }
+
+    let metadata = of_type(expected, "Metadata");
+    assert_eq!(recording.metadata().len(), metadata.len(), "{name}");
+    for (found, metadata) in recording.metadata().iter().zip(&metadata) {
+        assert_eq!(found.name, metadata["name"], "{name}");
+        let entries = serde_json::to_value(&found.entries).unwrap();
+        assert_eq!(entries, metadata["metadata"], "{name}");
+    }
+    compared.messages += messages.len();
+    compared.attachments += attachments.len();
+    compared.metadata += metadata.len();
 }
 
 fn recordings(folder: &Path) -> Vec<PathBuf> {
@@ -66,17 +136,30 @@ fn recordings(folder: &Path) -> Vec<PathBuf> {
     found
 }
 
-/// The log times of a file's messages, in its order.
-fn messages(expected: &Value) -> Vec<i64> {
+/// The fields of all records of a type, in the order of the file.
+fn of_type(expected: &Value, kind: &str) -> Vec<Map<String, Value>> {
     let records = expected["records"].as_array().expect("a list of records");
-    let is_message = |record: &&Value| record["type"] == "Message";
-    records.iter().filter(is_message).map(log_time).collect()
+    let of_kind = records.iter().filter(|record| record["type"] == kind);
+    of_kind.map(fields).collect()
 }
 
-/// Fields are pairs of a name and a number as text.
-fn log_time(record: &Value) -> i64 {
+/// Fields are pairs of a name and a value.
+fn fields(record: &Value) -> Map<String, Value> {
     let fields = record["fields"].as_array().expect("a list of fields");
-    let field = fields.iter().find(|field| field[0] == "log_time");
-    let text = field.and_then(|field| field[1].as_str());
-    text.and_then(|text| text.parse().ok()).expect("a number")
+    let pair = |field: &Value| {
+        let name = field[0].as_str().expect("a name");
+        (name.to_owned(), field[1].clone())
+    };
+    fields.iter().map(pair).collect()
+}
+
+/// Numbers are texts.
+fn number(value: &Value) -> i64 {
+    let text = value.as_str().expect("a number as text");
+    text.parse().expect("a number")
+}
+
+fn bytes(value: &Value) -> Vec<u8> {
+    let bytes = value.as_array().expect("a list of bytes");
+    bytes.iter().map(|byte| number(byte) as u8).collect()
 }

@@ -4,7 +4,7 @@ use std::process::ExitCode;
 
 use clap::{Parser, Subcommand};
 
-use crate::{bench, check, doctor, evaluate, info, locate, plot, regress, run};
+use crate::{bench, check, convert, doctor, evaluate, info, locate, plot, regress, run};
 
 /// Finds where a robot is from its laser and a map, with no initial guess.
 ///
@@ -45,6 +45,9 @@ enum Command {
     /// Says what is wrong with a recording
     #[command(after_help = doctor::NOTES)]
     Doctor(doctor::Config),
+    /// Converts laser logs of CARMEN to recordings and back
+    #[command(after_help = convert::NOTES)]
+    Convert(convert::Config),
     /// Replays recordings through the graph and compares with what is expected
     #[command(after_help = regress::NOTES)]
     Regress(regress::Config),
@@ -66,6 +69,7 @@ pub fn main() -> ExitCode {
         Some(Command::Plot(config)) => plot::run(&config),
         Some(Command::Info(config)) => info::run(&config),
         Some(Command::Doctor(config)) => doctor::run(&config),
+        Some(Command::Convert(config)) => convert::run(&config),
         Some(Command::Regress(config)) => regress::run(&config),
         Some(Command::Bench(config)) => bench::run(&config),
     };

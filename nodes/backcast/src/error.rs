@@ -208,9 +208,9 @@ pub enum BackcastError {
         /// Where they were looked for.
         folder: PathBuf,
     },
-    /// A file of a regression test cannot be read or written.
+    /// A file cannot be read or written.
     #[error("cannot {action} {}", file.display())]
-    RegressionFile {
+    File {
         /// What was tried, as a verb.
         action: &'static str,
         /// With what.
@@ -226,6 +226,9 @@ pub enum BackcastError {
         /// Where and why.
         source: serde_json::Error,
     },
+    /// A laser log cannot be read or written on.
+    #[error("the log cannot be read or written to its end")]
+    Log(#[source] io::Error),
     /// A graph did not answer every scan.
     #[error("{}: {answered} of {scans} scans were answered; the graph's own lines say why", recording.display())]
     Unanswered {

@@ -5,7 +5,7 @@ use std::path::PathBuf;
 use clap::Parser;
 use messages::Name;
 
-use crate::Rate;
+use crate::{Rate, Remap};
 
 /// Plays a recording into the graph: scans, odometry and true poses.
 ///
@@ -28,6 +28,28 @@ pub struct Config {
     #[arg(long = "loop")]
     pub looped: bool,
 
+    /// Begins so many seconds after the recording's first message
+    #[arg(long, value_name = "SECONDS", value_parser = seconds)]
+    pub start: Option<f64>,
+
+    /// Ends so many seconds after the recording's first message
+    #[arg(long, value_name = "SECONDS", value_parser = seconds)]
+    pub end: Option<f64>,
+
+    /// The channels that may be played, with commas between; all others are left
+    /// out
+    #[arg(long, value_name = "TOPICS", value_delimiter = ',')]
+    pub topics: Vec<String>,
+
+    /// Takes a channel for another, as /front/scan:=/scan; with commas between
+    #[arg(long, value_name = "FROM:=TO", value_delimiter = ',')]
+    pub remap: Vec<Remap>,
+
+    /// Begins paused: a line on standard input plays on to the next scan, `p`
+    /// plays and pauses, `q` ends
+    #[arg(long)]
+    pub pause: bool,
+
     /// Nodes that must be ready before playing starts, with commas between.
     #[arg(long, value_name = "NODES", value_delimiter = ',', value_parser = node)]
     pub wait_for: Vec<String>,
@@ -46,6 +68,13 @@ fn node(text: &str) -> Result<String, String> {
             "it has {bytes} bytes, allowed are 1 to {}",
             Name::CAPACITY
         )),
+    }
+}
+
+fn seconds(text: &str) -> Result<f64, String> {
+    match text.parse() {
+        Ok(seconds) if (0.0..=1e9).contains(&seconds) => Ok(seconds),
+        _ => Err("allowed are 0 to 1e9 seconds".into()),
     }
 }
 
@@ -76,6 +105,9 @@ mod tests {
         let config = parse("--recording a --rate max --wait-for b,c --patience 2").unwrap();
         assert_eq!((config.rate, config.patience), (Rate::Max, 2.0));
         assert_eq!(config.wait_for, ["b", "c"]);
+        let config = parse("--recording a --topics /s,/o --remap /f:=/scan --start 1").unwrap();
+        assert_eq!((config.topics.len(), config.start), (2, Some(1.0)));
+        assert_eq!(config.remap[0].to_string(), "/f:=/scan");
     }
 
     #[test]
@@ -87,6 +119,8 @@ mod tests {
         refuse("", "--recording");
         refuse("--recording a --rate 0", "0.001 to 1000, and max");
         refuse("--recording a --patience 0", "0.1 to 3600 seconds");
+        refuse("--recording a --start=-1", "0 to 1e9 seconds");
+        refuse("--recording a --remap /f=/scan", "FROM:=TO");
         refuse(
             "--recording a --wait-for b,,c",
             "0 bytes, allowed are 1 to 32",

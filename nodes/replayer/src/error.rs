@@ -1,5 +1,7 @@
 //! What can go wrong with a recording and on the way into the graph.
 
+use std::path::PathBuf;
+
 use recording::RecordingError;
 use recording::ros::ConversionError;
 
@@ -32,6 +34,19 @@ pub enum ReplayerError {
         /// What is wrong.
         reason: Box<ConversionError>,
     },
+    /// Topics that were asked for are not there.
+    #[error("{} has no {}; it has {}", path.display(), unknown.join(", "), found.join(", "))]
+    UnknownTopics {
+        /// The recording.
+        path: PathBuf,
+        /// Of --topics and --remap.
+        unknown: Vec<String>,
+        /// The recording's channels.
+        found: Vec<String>,
+    },
+    /// Standard input cannot be read.
+    #[error("cannot read what is typed")]
+    Keyboard(#[source] std::io::Error),
     /// The graph failed.
     #[error(transparent)]
     Transport(#[from] transport::TransportError),
@@ -43,7 +58,9 @@ impl ReplayerError {
         match self {
             ReplayerError::Frame { .. } | ReplayerError::Pose { .. } => true,
             ReplayerError::Recording(error) => matches!(**error, RecordingError::Message { .. }),
-            ReplayerError::Transport(_) => false,
+            ReplayerError::UnknownTopics { .. }
+            | ReplayerError::Keyboard(_)
+            | ReplayerError::Transport(_) => false,
         }
     }
 }

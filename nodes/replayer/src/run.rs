@@ -1,5 +1,6 @@
 //! Reads the clock, waits and sends.
 
+mod keyboard;
 mod outlet;
 
 use std::sync::Arc;
@@ -11,10 +12,13 @@ use recording::Recording;
 use transport::{Flow, Graph, Subscriber, monotonic_ns};
 
 use crate::order::InOrder;
+use crate::pause::Pause;
 use crate::readiness::Readiness;
 use crate::schedule::{Action, Schedule};
+use crate::selection::Selection;
 use crate::source::{Channels, Source, Timed};
 use crate::{Config, Rate, ReplayerError};
+use keyboard::{Heard, Keyboard};
 use outlet::Outlet;
 
 /// The longest time without a look at answers, signals and health.
@@ -55,7 +59,8 @@ pub fn run(graph: &Graph, config: &Config) -> Result<Summary, ReplayerError> {
     let mut outlet = Outlet::open(graph)?;
     let answers = graph.subscriber::<topic::Hypotheses>()?;
     let recording = Recording::open(&config.recording)?;
-    let channels = Channels::of(&recording)?;
+    let selection = select(config, &recording)?;
+    let channels = Channels::of(&recording, &selection)?;
     wait_for_nodes(graph, config, &mut outlet)?;
     let stop = graph.stop_flag();
     if stop.load(Ordering::Relaxed) {
@@ -65,8 +70,11 @@ pub fn run(graph: &Graph, config: &Config) -> Result<Summary, ReplayerError> {
     outlet.health.state(NodeState::Ready)?;
     let mut player = Player {
         recording: &recording,
-        items: InOrder::new(Source::new(&recording, channels.clone())),
+        items: InOrder::new(Source::new(&recording, channels.clone(), selection.clone())),
         channels,
+        selection,
+        pause: Pause::new(config.pause),
+        keyboard: listen(config.pause)?,
         config,
         gap_ns,
         scans_before: 0,
@@ -81,9 +89,41 @@ pub fn run(graph: &Graph, config: &Config) -> Result<Summary, ReplayerError> {
     player.conclude()
 }
 
+/// What is to be played.
+fn select(config: &Config, recording: &Recording) -> Result<Selection, ReplayerError> {
+    let selection = Selection::new(config, recording);
+    let unknown = selection.unknown(recording);
+    if unknown.is_empty() {
+        return Ok(selection);
+    }
+    Err(ReplayerError::UnknownTopics {
+        path: recording.path().to_owned(),
+        unknown,
+        found: recording
+            .channels()
+            .map(|channel| channel.topic.to_string())
+            .collect(),
+    })
+}
+
+fn listen(pause: bool) -> Result<Option<Keyboard>, ReplayerError> {
+    if !pause {
+        return Ok(None);
+    }
+    tracing::info!("paused: Enter plays to the next scan, p plays and pauses, q ends");
+    let input = std::io::BufReader::new(std::io::stdin());
+    Keyboard::read(input)
+        .map(Some)
+        .map_err(ReplayerError::Keyboard)
+}
+
 /// Says what will be played; returns the usual time between two scans.
 fn announce(recording: &Recording, channels: &Channels, config: &Config) -> i64 {
     let scans = channels.scans(recording);
+    if let Some(damage) = recording.damage() {
+        let messages = recording.messages();
+        tracing::warn!("{damage}; the {messages} messages before that are played");
+    }
     let (first_ns, last_ns) = recording.time_range_ns().unwrap_or((0, 0));
     let duration_ns = last_ns.saturating_sub(first_ns);
     tracing::info!(
@@ -128,6 +168,9 @@ fn wait_for_nodes(
 struct Player<'r> {
     recording: &'r Recording,
     channels: Channels,
+    selection: Selection,
+    pause: Pause,
+    keyboard: Option<Keyboard>,
     config: &'r Config,
     /// The usual time between two scans of the recording.
     gap_ns: i64,
@@ -151,6 +194,22 @@ impl Player<'_> {
                 self.outlet.count_answer()?;
             }
             self.outlet.health.tick()?;
+            match self
+                .keyboard
+                .as_ref()
+                .map(|keyboard| keyboard.take(&mut self.pause))
+            {
+                Some(Heard::Quit) => return Ok(Flow::Stop),
+                Some(Heard::Resumed) => self.schedule.resume(),
+                Some(Heard::Nothing) | None => {}
+            }
+            if self.pause.is_paused() && self.pending.is_some() {
+                if !self.pause.may_step() {
+                    return Ok(Flow::Continue);
+                }
+                self.step_on()?;
+                continue;
+            }
             let pending_ns = self.pending.as_ref().map(|timed| timed.log_time_ns);
             let now_ns = monotonic_ns();
             match self.schedule.next(pending_ns, now_ns) {
@@ -171,6 +230,15 @@ impl Player<'_> {
             }
         }
         Ok(Flow::Continue)
+    }
+
+    /// Sends what is next, however early.
+    fn step_on(&mut self) -> Result<(), ReplayerError> {
+        if let Some(scan) = self.pending.as_ref().filter(|item| item.is_scan()) {
+            tracing::info!("scan of {:.3} s", scan.stamp_ns() as f64 * 1e-9);
+            self.pause.stepped();
+        }
+        self.send()
     }
 
     fn send(&mut self) -> Result<(), ReplayerError> {
@@ -206,7 +274,8 @@ impl Player<'_> {
             return false;
         }
         self.scans_before = scans;
-        self.items = InOrder::new(Source::new(self.recording, self.channels.clone()));
+        let (channels, selection) = (self.channels.clone(), self.selection.clone());
+        self.items = InOrder::new(Source::new(self.recording, channels, selection));
         self.schedule.start_over(self.gap_ns);
         true
     }

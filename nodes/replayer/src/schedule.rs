@@ -97,6 +97,12 @@ impl Schedule {
         self.not_before_ns = self.last_due_ns.saturating_add(self.scaled(gap_ns));
     }
 
+    /// Playing goes on after a pause: the next message is due at once.
+    pub(crate) fn resume(&mut self) {
+        self.anchor = None;
+        self.not_before_ns = i64::MIN;
+    }
+
     fn due(&mut self, log_ns: i64, now_ns: i64) -> i64 {
         if self.rate == Rate::Max {
             return now_ns;
@@ -212,5 +218,17 @@ mod tests {
         assert_eq!(schedule.next(at(0), 603 * MS), Action::Send);
         let due = 1100 * MS;
         assert_eq!(schedule.next(at(1000), 604 * MS), Action::SleepUntil(due));
+    }
+
+    #[test]
+    fn a_pause_is_not_made_up_for() {
+        let mut schedule = Schedule::new(Rate::Factor(1.0), 1.0);
+        assert_eq!(schedule.next(at(0), 0), Action::Send);
+        schedule.resume();
+        assert_eq!(schedule.next(at(100), 900 * MS), Action::Send);
+        assert_eq!(
+            schedule.next(at(200), 901 * MS),
+            Action::SleepUntil(1000 * MS)
+        );
     }
 }

@@ -7,10 +7,11 @@ use std::collections::BTreeMap;
 use std::sync::Arc;
 
 use messages::{GroundTruth, Odometry, Pose2, ScanHeader};
-use recording::{Kind, Message, Record, Recording, RecordingError, Records};
+use recording::{Channel, Kind, Message, Record, Recording, RecordingError, Records};
 
 use crate::ReplayerError;
 use crate::convert::{Place, scan_header};
+use crate::selection::Selection;
 
 /// A message that is ready but for its moment.
 #[derive(Debug, Clone, PartialEq)]
@@ -54,11 +55,18 @@ pub(crate) struct Channels {
 impl Channels {
     /// # Errors
     /// If there are no scans, or it is not clear which ones are meant.
-    pub(crate) fn of(recording: &Recording) -> Result<Self, RecordingError> {
+    pub(crate) fn of(recording: &Recording, selection: &Selection) -> Result<Self, RecordingError> {
+        let topic = |kind| recording.topic_renamed(kind, |topic| selection.name_of(topic));
+        let describe = |channel: &Channel| format!("{} ({})", channel.topic, channel.schema);
+        let no_scans = || RecordingError::NoTopic {
+            path: recording.path().to_owned(),
+            kind: Kind::Scan,
+            found: recording.channels().map(describe).collect(),
+        };
         Ok(Channels {
-            scan: recording.required_topic(Kind::Scan)?,
-            odometry: recording.topic(Kind::Odometry)?,
-            truth: recording.topic(Kind::PoseStamped)?,
+            scan: topic(Kind::Scan)?.ok_or_else(no_scans)?,
+            odometry: topic(Kind::Odometry)?,
+            truth: topic(Kind::PoseStamped)?,
         })
     }
 
@@ -83,15 +91,17 @@ impl Channels {
 pub(crate) struct Source<'a> {
     recording: &'a Recording,
     channels: Channels,
+    selection: Selection,
     records: Records<'a>,
     mounts: BTreeMap<String, Option<Pose2>>,
 }
 
 impl<'a> Source<'a> {
-    pub(crate) fn new(recording: &'a Recording, channels: Channels) -> Self {
+    pub(crate) fn new(recording: &'a Recording, channels: Channels, selection: Selection) -> Self {
         Source {
             recording,
             channels,
+            selection,
             records: recording.records_of(&[Kind::Scan, Kind::Odometry, Kind::PoseStamped]),
             mounts: BTreeMap::new(),
         }
@@ -139,9 +149,15 @@ impl Iterator for Source<'_> {
         loop {
             let converted = match self.records.next()? {
                 Ok(record) if !self.channels.has(&record.topic) => continue,
+                Ok(record) if !self.selection.covers(record.log_time_ns) => continue,
                 Err(
                     RecordingError::Message { topic, .. } | RecordingError::NotCdr { topic, .. },
                 ) if !self.channels.has(&topic) => {
+                    continue;
+                }
+                Err(RecordingError::Message { log_time_ns, .. })
+                    if !self.selection.covers(log_time_ns) =>
+                {
                     continue;
                 }
                 Ok(record) => self.convert(record).transpose(),
@@ -202,7 +218,8 @@ mod tests {
     }
 
     fn play(recording: &Recording) -> Vec<Result<Timed, ReplayerError>> {
-        Source::new(recording, Channels::of(recording).unwrap()).collect()
+        let all = Selection::all();
+        Source::new(recording, Channels::of(recording, &all).unwrap(), all).collect()
     }
 
     #[test]
@@ -305,7 +322,9 @@ mod tests {
     #[test]
     fn a_recording_without_scans_says_what_it_has() {
         let recording = recording(&[("/ground_truth", truth(0))]);
-        let text = Channels::of(&recording).unwrap_err().to_string();
+        let text = Channels::of(&recording, &Selection::all())
+            .unwrap_err()
+            .to_string();
         for expected in ["world.mcap", "LaserScan", "/ground_truth"] {
             assert!(text.contains(expected), "{text}");
         }

@@ -281,6 +281,61 @@ fn a_recording_without_scans_is_an_error_that_says_what_it_has() {
 }
 
 #[test]
+fn a_part_is_played_of_the_channels_that_are_named() {
+    let mut world = World::new("part");
+    let mut messages = Vec::new();
+    for at in [SECOND, 2 * SECOND, 3 * SECOND] {
+        messages.push(("/scan", at, scan(at)));
+        messages.push(("/front/scan", at + 5, scan(at + 5)));
+        messages.push(("/odom", at, odometry(at)));
+    }
+    let options = [
+        "--start",
+        "1",
+        "--end",
+        "1.5",
+        "--rate",
+        "max",
+        "--topics",
+        "/front/scan",
+    ];
+    world.start(&record(&messages), &options);
+    let (stamp, _) = world.next_scan();
+    assert_eq!(stamp.measured_ns, 2 * SECOND + 5);
+    world.answer(stamp);
+    let (status, log) = world.finish();
+    assert_eq!(status.code(), Some(0), "{log}");
+    assert!(log.contains("played scans=1 answers=1"), "{log}");
+    assert!(
+        world.odometry.receive().unwrap().is_none(),
+        "it is not named"
+    );
+}
+
+#[test]
+fn a_channel_takes_the_name_of_another() {
+    let mut world = World::new("remap");
+    let messages = [
+        ("/scan", 1, scan(1)),
+        ("/front/scan", 2, scan(2)),
+        ("/rear/scan", 3, scan(3)),
+    ];
+    let bytes = record(&messages);
+    world.start(&bytes, &["--rate", "max", "--remap", "/front/scan:=/scan"]);
+    let (stamp, _) = world.next_scan();
+    assert_eq!(stamp.measured_ns, 2);
+    world.answer(stamp);
+    assert_eq!(world.finish().0.code(), Some(0));
+    world.start(&bytes, &["--topics", "/scam"]);
+    let (status, log) = world.finish();
+    assert_eq!(status.code(), Some(1));
+    assert!(
+        log.contains("has no /scam; it has /scan, /front/scan"),
+        "{log}"
+    );
+}
+
+#[test]
 fn a_recording_that_is_cut_short_is_played_as_far_as_it_goes() {
     let mut world = World::new("cut");
     let messages = [

@@ -88,7 +88,7 @@ impl Case {
 }
 
 pub(super) fn failed(action: &'static str, file: &Path, source: io::Error) -> BackcastError {
-    BackcastError::RegressionFile {
+    BackcastError::File {
         action,
         file: file.to_owned(),
         source,

@@ -1,0 +1,94 @@
+//! Pausing and single steps, by lines that somebody types. Pure.
+
+/// What a line asks for.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(crate) enum Wish {
+    /// Play on to the next scan.
+    Step,
+    /// Play, or pause.
+    Toggle,
+    /// End.
+    Quit,
+}
+
+impl Wish {
+    /// `p`, `q`, or anything else for a step.
+    pub(crate) fn of(line: &str) -> Self {
+        match line.trim() {
+            "p" => Wish::Toggle,
+            "q" => Wish::Quit,
+            _ => Wish::Step,
+        }
+    }
+}
+
+/// Whether playing is held up.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(crate) struct Pause {
+    paused: bool,
+    /// Scans that may be sent all the same.
+    steps: u32,
+}
+
+impl Pause {
+    pub(crate) fn new(paused: bool) -> Self {
+        Pause { paused, steps: 0 }
+    }
+
+    pub(crate) fn is_paused(self) -> bool {
+        self.paused
+    }
+
+    /// Whether something may be sent while paused.
+    pub(crate) fn may_step(self) -> bool {
+        self.steps > 0
+    }
+
+    /// A scan was sent while paused.
+    pub(crate) fn stepped(&mut self) {
+        self.steps = self.steps.saturating_sub(1);
+    }
+
+    /// A step while playing pauses before the scan after the next.
+    pub(crate) fn step(&mut self) {
+        self.paused = true;
+        self.steps = self.steps.saturating_add(1);
+    }
+
+    pub(crate) fn toggle(&mut self) {
+        *self = Pause::new(!self.paused);
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn steps_let_one_scan_pass_each() {
+        let mut pause = Pause::new(true);
+        assert!(pause.is_paused() && !pause.may_step());
+        pause.step();
+        pause.step();
+        pause.stepped();
+        assert!(pause.may_step());
+        pause.stepped();
+        assert!(!pause.may_step());
+        pause.toggle();
+        assert!(!pause.is_paused());
+        pause.step();
+        assert!(pause.is_paused() && pause.may_step());
+    }
+
+    #[test]
+    fn lines_are_wishes() {
+        for (line, wish) in [
+            ("", Wish::Step),
+            ("n\n", Wish::Step),
+            (" p\n", Wish::Toggle),
+            ("q", Wish::Quit),
+        ] {
+            assert_eq!(Wish::of(line), wish, "{line:?}");
+        }
+    }
+}

@@ -1,0 +1,121 @@
+//! Which part of a recording is played: channels, their names, and time.
+
+use std::fmt;
+use std::str::FromStr;
+
+use recording::Recording;
+
+use crate::Config;
+
+/// One channel goes by the name of another.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub struct Remap {
+    from: String,
+    to: String,
+}
+
+impl FromStr for Remap {
+    type Err = String;
+
+    fn from_str(text: &str) -> Result<Self, String> {
+        match text.split_once(":=") {
+            Some((from, to)) if !from.is_empty() && !to.is_empty() => Ok(Remap {
+                from: from.to_owned(),
+                to: to.to_owned(),
+            }),
+            _ => Err("allowed is FROM:=TO, as /front/scan:=/scan".to_owned()),
+        }
+    }
+}
+
+impl fmt::Display for Remap {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        write!(f, "{}:={}", self.from, self.to)
+    }
+}
+
+/// What is played of a recording.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub(crate) struct Selection {
+    topics: Vec<String>,
+    remap: Vec<Remap>,
+    /// First and last log time, nanoseconds.
+    from_ns: i64,
+    to_ns: i64,
+}
+
+impl Selection {
+    pub(crate) fn new(config: &Config, recording: &Recording) -> Self {
+        let first_ns = recording.time_range_ns().map_or(0, |(first, _)| first);
+        // At most 1e18, which fits.
+        let after = |seconds: f64| first_ns.saturating_add((seconds * 1e9) as i64);
+        Selection {
+            topics: config.topics.clone(),
+            remap: config.remap.clone(),
+            from_ns: config.start.map_or(i64::MIN, after),
+            to_ns: config.end.map_or(i64::MAX, after),
+        }
+    }
+
+    /// The name by which a channel goes; `None` where it is left out.
+    pub(crate) fn name_of(&self, topic: &str) -> Option<String> {
+        if !self.topics.is_empty() && !self.topics.iter().any(|meant| meant == topic) {
+            return None;
+        }
+        let remap = self.remap.iter().find(|remap| remap.from == topic);
+        // A channel whose name another one takes gives way.
+        let is_taken = || self.remap.iter().any(|remap| remap.to == topic);
+        match remap {
+            Some(remap) => Some(remap.to.clone()),
+            None if is_taken() => None,
+            None => Some(topic.to_owned()),
+        }
+    }
+
+    pub(crate) fn covers(&self, log_time_ns: i64) -> bool {
+        (self.from_ns..=self.to_ns).contains(&log_time_ns)
+    }
+
+    /// Topics that were named, but that the recording does not have.
+    pub(crate) fn unknown(&self, recording: &Recording) -> Vec<String> {
+        let named = self
+            .topics
+            .iter()
+            .chain(self.remap.iter().map(|remap| &remap.from));
+        let is_unknown = |name: &&String| !recording.channels().any(|c| *c.topic == ***name);
+        named.filter(is_unknown).cloned().collect()
+    }
+}
+
+#[cfg(test)]
+impl Selection {
+    /// Everything, for tests.
+    pub(crate) fn all() -> Self {
+        Selection {
+            topics: Vec::new(),
+            remap: Vec::new(),
+            from_ns: i64::MIN,
+            to_ns: i64::MAX,
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn channels_are_left_out_and_renamed() {
+        let all = Selection::all();
+        assert_eq!(all.name_of("/scan").as_deref(), Some("/scan"));
+        let some = Selection {
+            topics: vec!["/front".to_owned(), "/scan".to_owned()],
+            remap: vec!["/front:=/scan".parse().unwrap()],
+            ..Selection::all()
+        };
+        assert_eq!(some.name_of("/front").as_deref(), Some("/scan"));
+        assert_eq!(some.name_of("/scan"), None, "its name is taken");
+        assert_eq!(some.name_of("/odom"), None);
+        assert!(":=/scan".parse::<Remap>().is_err());
+    }
+}

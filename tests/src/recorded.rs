@@ -1,0 +1,63 @@
+//! A recording that a graph made of a recording.
+
+use std::path::Path;
+use std::process::Command;
+
+use crate::executables;
+
+/// Plays `recording` through a graph with the executables of this test run, and
+/// records that to `output`.
+pub fn record(recording: &Path, map: &Path, output: &Path) {
+    let descriptor = output.with_extension("yaml");
+    std::fs::write(&descriptor, graph(recording, map)).unwrap();
+    let outcome = Command::new(executables::path("backcast"))
+        .arg("run")
+        .arg(&descriptor)
+        .args(["--rate", "max", "--record"])
+        .arg(output)
+        .output()
+        .unwrap();
+    let said = String::from_utf8_lossy(&outcome.stderr);
+    assert_eq!(outcome.status.code(), Some(0), "{said}");
+}
+
+fn graph(recording: &Path, map: &Path) -> String {
+    let path = |name: &str| executables::path(name).display().to_string();
+    let (recording, map) = (recording.display(), map.display());
+    format!(
+        "nodes:
+  - id: replayer
+    path: {}
+    args: --recording {recording} --wait-for accumulator,peak_extractor
+    inputs: {{ hypotheses: peak_extractor/hypotheses }}
+    outputs: [scan, odometry, ground_truth]
+  - id: map_server
+    path: {}
+    args: --map {map}
+    outputs: [map]
+  - id: boundary_extractor
+    path: {}
+    inputs: {{ map: map_server/map }}
+    outputs: [boundary]
+  - id: accumulator
+    path: {}
+    inputs:
+      scan: replayer/scan
+      map: map_server/map
+      boundary: boundary_extractor/boundary
+    outputs: [votes, field]
+  - id: peak_extractor
+    path: {}
+    inputs:
+      votes: accumulator/votes
+      scan: replayer/scan
+      map: map_server/map
+    outputs: [hypotheses]
+",
+        path("replayer"),
+        path("map_server"),
+        path("boundary_extractor"),
+        path("accumulator"),
+        path("peak_extractor"),
+    )
+}

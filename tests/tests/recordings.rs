@@ -1,0 +1,265 @@
+//! Recordings that the graph makes: the same when they are played and recorded
+//! again, and read alike by the tools of others.
+#![allow(
+    clippy::unwrap_used,
+    reason = "the lint spares test functions but not what they share"
+)]
+
+use std::collections::BTreeMap;
+use std::path::{Path, PathBuf};
+use std::process::Command;
+
+use recording::{Kind, Message, Recording};
+use serde_json::{Value, json};
+use tempfile::TempDir;
+use tests::recorded::record;
+use tests::world::World;
+
+/// Topics whose messages tell how long something took, or when it was sent.
+const TIMED: [&str; 3] = ["/backcast/votes", "/backcast/hypotheses", "/diagnostics"];
+
+/// The versions of the Python readers that are compared with.
+const READERS: [&str; 3] = ["mcap==1.6.0", "mcap-ros2-support==0.6.0", "rosbags==0.11.9"];
+
+/// By topic: log times and bytes, in their order.
+fn messages(path: &Path) -> BTreeMap<String, Vec<(i64, Vec<u8>)>> {
+    let recording = Recording::open(path).unwrap();
+    assert_eq!(recording.damage(), None);
+    let mut messages: BTreeMap<String, Vec<_>> = BTreeMap::new();
+    for record in recording.raw_records() {
+        let record = record.unwrap();
+        let topic = messages
+            .entry(record.channel.topic.to_string())
+            .or_default();
+        topic.push((record.log_time_ns, record.body));
+    }
+    messages
+}
+
+#[test]
+fn a_recording_of_a_recording_is_the_same_message_for_message() {
+    let world = World::of("malaga_corridor");
+    let folder = TempDir::new().unwrap();
+    let (first, second) = (folder.path().join("a.mcap"), folder.path().join("b.mcap"));
+    record(&world.recording(), &world.map(), &first);
+    record(&first, &world.map(), &second);
+    let (first, second) = (messages(&first), messages(&second));
+    let topics: Vec<&String> = first.keys().collect();
+    assert_eq!(topics, second.keys().collect::<Vec<_>>());
+    for (topic, messages) in &first {
+        let times = |messages: &[(i64, Vec<u8>)]| -> Vec<i64> {
+            messages.iter().map(|(time, _)| *time).collect()
+        };
+        match TIMED.contains(&topic.as_str()) {
+            false => assert!(*messages == second[topic], "{topic} differs"),
+            true if topic == "/diagnostics" => {}
+            true => assert_eq!(times(messages), times(&second[topic]), "{topic}"),
+        }
+    }
+    // The recording itself comes back too, but for what the graph does not
+    // carry: the height of the laser and the last bits of angles.
+    let original = messages(&world.recording());
+    for topic in ["/scan", "/odom", "/ground_truth", "/map", "/tf_static"] {
+        assert_eq!(first[topic].len(), original[topic].len(), "{topic}");
+    }
+    for topic in [
+        "/hypotheses",
+        "/pose",
+        "/backcast/votes",
+        "/backcast/hypotheses",
+    ] {
+        assert_eq!(first[topic].len(), original["/scan"].len(), "{topic}");
+    }
+}
+
+/// What is compared: counts of all channels, and values of some.
+fn as_we_read(path: &Path) -> Value {
+    let recording = Recording::open(path).unwrap();
+    let count = |c: &recording::Channel| (c.topic.to_string(), json!(c.messages));
+    let counts: serde_json::Map<String, Value> = recording.channels().map(count).collect();
+    let (mut scans, mut truths, mut odometry, mut maps) = (vec![], vec![], vec![], vec![]);
+    for record in recording.records() {
+        let record = record.unwrap();
+        match record.message {
+            Message::Scan(scan) => {
+                let finite = scan.ranges.iter().filter(|range| range.is_finite());
+                // Sums of millimetres as integers do not depend on their order.
+                let sum: i64 = finite
+                    .map(|range| (f64::from(*range) * 1000.0).round() as i64)
+                    .sum();
+                scans.push(json!([
+                    scan.header.stamp.as_ns(),
+                    scan.ranges.len(),
+                    sum,
+                    scan.header.frame_id
+                ]));
+            }
+            Message::PoseStamped(pose) => {
+                truths.push(json!([
+                    record.log_time_ns,
+                    pose.pose.position.x,
+                    pose.pose.orientation.z
+                ]));
+            }
+            Message::Odometry(message) => {
+                odometry.push(json!([
+                    message.pose.pose.position.x,
+                    message.child_frame_id
+                ]));
+            }
+            Message::Map(map) => {
+                let sum: i64 = map.data.iter().map(|&cell| i64::from(cell)).sum();
+                maps.push(json!([map.info.width, map.info.height, sum]));
+            }
+            Message::StaticTransforms(_) => {}
+        }
+    }
+    json!({"counts": counts, "scans": scans, "truths": truths, "odometry": odometry, "maps": maps})
+}
+
+/// The same by a reader of others, as JSON on its standard output.
+const SCRIPT: &str = r#"
+import json, math, sys
+from collections import Counter
+from pathlib import Path
+
+reader, path = sys.argv[1:]
+counts = Counter()
+out = {"scans": [], "truths": [], "odometry": [], "maps": []}
+own = {"votes": [], "hypotheses": []}
+
+def ns(stamp):
+    return stamp.sec * 10**9 + stamp.nanosec
+
+def take(topic, log_time, m):
+    counts[topic] += 1
+    if topic == "/scan":
+        total = sum(int(math.floor(float(r) * 1000 + 0.5)) for r in m.ranges if math.isfinite(r))
+        out["scans"].append([ns(m.header.stamp), len(m.ranges), total, m.header.frame_id])
+    elif topic == "/ground_truth":
+        out["truths"].append([log_time, m.pose.position.x, m.pose.orientation.z])
+    elif topic == "/odom":
+        out["odometry"].append([m.pose.pose.position.x, m.child_frame_id])
+    elif topic == "/map":
+        out["maps"].append([m.info.width, m.info.height, sum(int(c) for c in m.data)])
+    elif topic == "/backcast/votes":
+        own["votes"].append([m.counter, m.best, m.total, len(m.votes), m.votes[0].intensity])
+    elif topic == "/backcast/hypotheses":
+        best = m.hypotheses[0]
+        own["hypotheses"].append([m.counter, m.verdict, m.best, best.map_from_laser.x, len(best.covariance)])
+
+if reader == "mcap":
+    from mcap_ros2.reader import read_ros2_messages
+    for m in read_ros2_messages(path):
+        take(m.channel.topic, m.log_time_ns, m.ros_msg)
+else:
+    from rosbags.highlevel import AnyReader
+    with AnyReader([Path(path)]) as bag:
+        for connection, time, data in bag.messages():
+            take(connection.topic, time, bag.deserialize(data, connection.msgtype))
+
+out["counts"] = counts
+print(json.dumps({"read": out, "own": own}))
+"#;
+
+/// A Python with the readers, in the target folder; `None` where it cannot be
+/// made, as without a network.
+fn python() -> Option<PathBuf> {
+    let test = std::env::current_exe().unwrap();
+    let folder = test.ancestors().nth(3).unwrap().join("python_readers");
+    let python = folder.join("bin/python");
+    let run = |program: &Path, arguments: &[&str]| {
+        let outcome = Command::new(program).args(arguments).output();
+        outcome.is_ok_and(|outcome| outcome.status.success())
+    };
+    let has_readers = || run(&python, &["-c", "import mcap_ros2, rosbags"]);
+    if has_readers() {
+        return Some(python);
+    }
+    let made = run(
+        Path::new("python3"),
+        &["-m", "venv", folder.to_str().unwrap()],
+    ) && run(
+        &python,
+        &[&["-m", "pip", "install", "-q"], &READERS[..]].concat(),
+    ) && has_readers();
+    made.then_some(python)
+}
+
+fn as_read_by(python: &Path, reader: &str, path: &Path) -> Value {
+    let outcome = Command::new(python)
+        .args(["-c", SCRIPT, reader, path.to_str().unwrap()])
+        .output()
+        .unwrap();
+    let said = String::from_utf8_lossy(&outcome.stderr);
+    assert!(outcome.status.success(), "{reader}: {said}");
+    serde_json::from_slice(&outcome.stdout).unwrap()
+}
+
+#[test]
+fn the_readers_of_others_agree() {
+    let Some(python) = python() else {
+        eprintln!("SKIPPED: no Python with {READERS:?}: there is no python3, or no network");
+        return;
+    };
+    let world = World::of("malaga_corridor");
+    let folder = TempDir::new().unwrap();
+    let path = folder.path().join("a.mcap");
+    record(&world.recording(), &world.map(), &path);
+    let ours = as_we_read(&path);
+    assert_eq!(ours["scans"].as_array().unwrap().len(), 37);
+    let by_mcap = as_read_by(&python, "mcap", &path);
+    let by_rosbags = as_read_by(&python, "rosbags", &path);
+    assert_eq!(by_mcap["read"], ours, "mcap-ros2-support");
+    assert_eq!(by_rosbags["read"], ours, "rosbags");
+    // Our own messages, by schemas that they have never seen.
+    assert_eq!(by_mcap["own"], by_rosbags["own"]);
+    for (number, votes) in by_mcap["own"]["votes"]
+        .as_array()
+        .unwrap()
+        .iter()
+        .enumerate()
+    {
+        assert_eq!(votes[0], number);
+        assert_eq!(votes[2], votes[3], "all votes are there");
+        assert_eq!(votes[1], votes[4], "the first is the best");
+    }
+    let poses = by_mcap["own"]["hypotheses"].as_array().unwrap();
+    assert_eq!(poses.len(), 37);
+    assert!(
+        poses.iter().all(|pose| pose[1] == 1 && pose[4] == 9),
+        "{poses:?}"
+    );
+}
+
+#[test]
+fn what_the_graph_recorded_evaluates_as_the_original() {
+    let world = World::of("malaga_corridor");
+    let folder = TempDir::new().unwrap();
+    let path = folder.path().join("a.mcap");
+    record(&world.recording(), &world.map(), &path);
+    let ranges = |path: &Path| -> Vec<Vec<f32>> {
+        let recording = Recording::open(path).unwrap();
+        let scans =
+            recording
+                .records_of(&[Kind::Scan])
+                .map(|record| match record.unwrap().message {
+                    Message::Scan(scan) => scan.ranges,
+                    other => panic!("asked for scans, got {:?}", other.kind()),
+                });
+        scans.collect()
+    };
+    assert_eq!(ranges(&path), ranges(&world.recording()));
+    let truths = |path: &Path| Recording::open(path).unwrap().ground_truths().unwrap();
+    let (original, recorded) = (truths(&world.recording()), truths(&path));
+    assert_eq!(original.len(), recorded.len());
+    for (stamp, truth) in original {
+        // The yaw is rounded to 2⁻⁴⁰ rad.
+        assert!(
+            truth.pose.is_within(recorded[&stamp].pose, 0.0, 1e-12),
+            "{stamp}"
+        );
+    }
+    let map = |path: &Path| Recording::open(path).unwrap().map().unwrap().unwrap();
+    assert_eq!(map(&path).cells, map(&world.recording()).cells);
+}
