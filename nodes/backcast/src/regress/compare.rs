@@ -40,8 +40,8 @@ pub(super) fn differences(expected: &[Answer], found: &[Answer]) -> Vec<Differen
         scan.note(
             "scan",
             expected.len() == found.len(),
-            expected.len(),
-            found.len(),
+            &expected.len(),
+            &found.len(),
         );
         for (expected, found) in expected.iter().zip(&found) {
             scan.compare(expected, found);
@@ -98,15 +98,15 @@ impl Scan<'_> {
             (expected, found) => expected.is_none() && found.is_none(),
         };
         let shown = |value: Option<f64>| value.map_or("none".to_owned(), |v| format!("{v:.4}"));
-        self.note(what, is_near, shown(expected), shown(found));
+        self.note(what, is_near, &shown(expected), &shown(found));
     }
 
     fn note(
         &mut self,
         what: &'static str,
         is_as_expected: bool,
-        expected: impl ToString,
-        found: impl ToString,
+        expected: &impl ToString,
+        found: &impl ToString,
     ) {
         if !is_as_expected {
             self.all.push(Difference {

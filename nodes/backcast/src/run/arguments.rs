@@ -69,11 +69,11 @@ pub(crate) fn unset(node: &mut Node, option: &str, takes_value: bool) {
 pub(crate) fn value<'n>(node: &'n Node, option: &str) -> Option<&'n str> {
     let after = |words: &'n [String]| (words[0] == option).then_some(words.get(1)).flatten();
     let joined = |word: &'n String| word.strip_prefix(option)?.strip_prefix('=');
-    let found = (0..node.args.len()).filter_map(|at| {
+    let mut found = (0..node.args.len()).filter_map(|at| {
         let words = node.args.get(at..)?;
         joined(words.first()?).or_else(|| after(words).map(String::as_str))
     });
-    found.last()
+    found.next_back()
 }
 
 /// Adds a word to an option that takes a list with commas, unless it is there.

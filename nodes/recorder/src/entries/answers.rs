@@ -40,6 +40,7 @@ pub(super) fn votes(header: Header, votes: &VotesHeader, items: &[Vote]) -> own:
         occupied_from: votes.occupied_from,
         free_to: votes.free_to,
         max_beams: votes.max_beams,
+        pooling: votes.pooling,
         beam_arc_m: votes.beam_arc_m,
         votes: items.iter().map(vote).collect(),
     }

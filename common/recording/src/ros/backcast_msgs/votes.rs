@@ -55,7 +55,9 @@ pub struct Votes {
     /// Occupancy up to which a cell was taken as free, per cent.
     pub free_to: u32,
     /// Most beams of a scan that vote.
-    pub max_beams: u64,
+    pub max_beams: u32,
+    /// Cells of the map along the side of a cell that was searched.
+    pub pooling: u32,
     /// Arc at the reading from which a beam counts fully, metres.
     pub beam_arc_m: f64,
     /// Most votes first.
@@ -65,9 +67,9 @@ pub struct Votes {
 /// `backcast_msgs/msg/Vote`.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize, Deserialize)]
 pub struct Vote {
-    /// Cells along x from the grid's origin.
+    /// Cells that were searched along x from the grid's origin.
     pub x: u16,
-    /// Cells along y from the grid's origin.
+    /// Cells that were searched along y from the grid's origin.
     pub y: u16,
     /// Index of the heading.
     pub heading: u16,
@@ -105,7 +107,8 @@ float64 bearing_rounding
 geometry_msgs/Pose2D base_from_laser
 uint32 occupied_from
 uint32 free_to
-uint64 max_beams
+uint32 max_beams
+uint32 pooling
 float64 beam_arc_m
 backcast_msgs/Vote[] votes
 ================================================================================
