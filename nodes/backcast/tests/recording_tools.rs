@@ -16,9 +16,18 @@ use drawn::{
 use recording::Message;
 use serde_json::Value;
 
+/// The room in a frame with a name.
+fn framed_map() -> (&'static str, Message) {
+    let (topic, mut message) = map_message();
+    if let Message::Map(map) = &mut message {
+        map.header.frame_id = "map".to_owned();
+    }
+    (topic, message)
+}
+
 fn sound() -> tempfile::TempDir {
     folder(&[
-        map_message(),
+        framed_map(),
         mount_message(),
         odometry_at(1, HERE),
         scan_at(1, HERE),
@@ -27,6 +36,13 @@ fn sound() -> tempfile::TempDir {
         scan_at(2, THERE),
         truth_at(2, THERE),
     ])
+}
+
+fn elsewhere((topic, mut message): (&'static str, Message)) -> (&'static str, Message) {
+    if let Message::PoseStamped(pose) = &mut message {
+        pose.header.frame_id = "world".to_owned();
+    }
+    (topic, message)
 }
 
 /// The severities and findings of `doctor --json`.
@@ -125,7 +141,20 @@ fn what_will_not_work_is_a_problem() {
         let is_meant = |(s, f): &(String, String)| s == severity && f.contains(part);
         assert!(found.iter().any(is_meant), "{part}: {found:?}");
     };
-    finds(&[map_message()], 1, "problem", "no laser scans");
+    finds(&[framed_map()], 1, "problem", "no laser scans");
+    finds(
+        &[map_message()],
+        1,
+        "problem",
+        "/map: a message names no frame",
+    );
+    let elsewhere = [framed_map(), scan_at(1, HERE), elsewhere(truth_at(1, HERE))];
+    finds(
+        &elsewhere,
+        1,
+        "problem",
+        "is in frame \"world\", the map in \"map\"",
+    );
     finds(&[scan_at(1, HERE)], 0, "note", "no map");
     finds(
         &[scan_at(1, HERE)],

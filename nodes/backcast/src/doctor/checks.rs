@@ -139,7 +139,7 @@ fn frames(patient: &Patient) -> Vec<Ailment> {
     let maps = patient
         .of_kind(Kind::Map)
         .flat_map(|(_, seen)| &seen.frames);
-    let maps: BTreeSet<&String> = maps.collect();
+    let maps: BTreeSet<&String> = maps.filter(|frame| !frame.is_empty()).collect();
     if let Some(truths) = patient.channels.get(GROUND_TRUTH)
         && let Some(other) = truths.frames.iter().find(|frame| !maps.contains(frame))
         && let Some(map) = maps.first()
