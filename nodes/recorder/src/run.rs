@@ -14,7 +14,7 @@ use transport::{Flow, Graph, Health, monotonic_ns, with_causes};
 use crate::entries::Entries;
 use crate::events::Lookout;
 use crate::writing::wall_ns;
-use crate::{Config, RecorderError};
+use crate::{Config, Event, RecorderError};
 use inputs::Inputs;
 use writer::{Status, Writer};
 
@@ -65,7 +65,7 @@ pub fn run(graph: &Graph, config: &Config) -> Result<Summary, RecorderError> {
 struct Recorder {
     entries: Entries,
     lookout: Lookout,
-    save_on: Vec<crate::Event>,
+    save_on: Vec<Event>,
     save: Arc<AtomicBool>,
     writer: Writer,
     health: Health,
@@ -164,7 +164,7 @@ impl Recorder {
         Ok(())
     }
 
-    fn happened(&mut self, event: Option<crate::Event>) -> Result<(), RecorderError> {
+    fn happened(&mut self, event: Option<Event>) -> Result<(), RecorderError> {
         match event.filter(|event| self.save_on.contains(event)) {
             Some(event) => {
                 // What led to it comes before.

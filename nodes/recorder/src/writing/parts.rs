@@ -63,7 +63,16 @@ impl Parts {
         Ok(parts)
     }
 
+    /// Takes an entry; a message that cannot be written is counted as dropped.
     pub(super) fn put(&mut self, entry: &Entry) -> Result<(), RecorderError> {
+        let outcome = self.try_put(entry);
+        if outcome.is_err() && matches!(entry, Entry::Message(_)) {
+            self.tally.dropped += 1;
+        }
+        outcome
+    }
+
+    fn try_put(&mut self, entry: &Entry) -> Result<(), RecorderError> {
         if let Entry::Message(message) = entry {
             self.split_before(message)?;
         }
@@ -112,6 +121,10 @@ impl Parts {
     /// Ends the part if it is full; not while the disk is, for a part that is
     /// ended could not be tried again.
     fn split_before(&mut self, message: &Encoded) -> Result<(), RecorderError> {
+        if self.part.is_none() {
+            // The part before could not be ended.
+            return self.begin(Some(message.log_time_ns));
+        }
         let is_full = self
             .part
             .as_ref()
@@ -260,6 +273,18 @@ mod tests {
         assert_eq!(recording.messages(), 1);
         parts.finish().unwrap();
         assert_eq!(opened(&folder, "r.mcap").messages(), 2);
+    }
+
+    #[test]
+    fn a_part_that_could_not_be_ended_is_followed_by_another() {
+        let folder = TempDir::new().unwrap();
+        let mut parts = parts(&folder, None, Some(10));
+        parts.put(&message(MAP, 0, true)).unwrap();
+        parts.part = None;
+        parts.put(&message("/n", 1, false)).unwrap();
+        parts.finish().unwrap();
+        assert_eq!(parts.tally().files, 2);
+        assert_eq!(opened(&folder, "r_1.mcap").messages(), 2, "with the map");
     }
 
     #[test]
