@@ -4,36 +4,68 @@ use std::path::PathBuf;
 
 use clap::{ArgAction, ArgGroup, CommandFactory, Parser, ValueEnum, error::ErrorKind};
 use messages::{Name, Pose2};
+use sick::cola::Encoding;
+use sick::lms2xx::{Baud, RangeMode, Unit};
 
 use crate::scan::ScanSettings;
 
 /// Reads scans from a SICK laser scanner and publishes them as `scan`.
 #[derive(Debug, Clone, Parser)]
 #[command(name = "lms_reader", version)]
-#[command(group(ArgGroup::new("source").required(true).args(["tcp", "capture"])))]
+#[command(group(ArgGroup::new("source").required(true).args(["tcp", "serial", "capture"])))]
 pub struct Config {
-    /// The device: HOST:PORT; devices listen on port 2112 (CoLa B).
+    /// The device: HOST:PORT; devices listen on port 2112 or 2111.
     #[arg(long, value_name = "HOST:PORT", value_parser = address)]
     pub tcp: Option<String>,
 
-    /// A file of CoLa B telegrams back to back, instead of a device. At its end
+    /// An LMS200, 211, 220, 221 or 291 on a serial line, such as /dev/ttyUSB0.
+    #[arg(long, value_name = "DEVICE")]
+    pub serial: Option<PathBuf>,
+
+    /// The encoding of --tcp and --capture: devices are set to one of them.
+    #[arg(long, value_enum, default_value_t = Protocol::ColaB, conflicts_with = "serial")]
+    pub protocol: Protocol,
+
+    /// The baud rate that the serial device is switched to: 9600, 19200, 38400
+    /// or 500000. Left out, the one at which it answers is kept.
+    #[arg(long, value_name = "RATE", value_parser = baud, conflicts_with_all = ["tcp", "capture"])]
+    pub baud: Option<Baud>,
+
+    /// Degrees that a scan covers, half of them to each side: 100 or 180 with
+    /// --serial, else up to 360. Left out, the device's setting is kept.
+    #[arg(long, value_name = "DEGREES", value_parser = field, conflicts_with = "capture")]
+    pub field: Option<f64>,
+
+    /// Degrees from beam to beam: 0.25, 0.5 or 1 with --serial, else whatever
+    /// the device can. Left out, the device's setting is kept.
+    #[arg(long, value_name = "DEGREES", value_parser = resolution, conflicts_with = "capture")]
+    pub resolution: Option<f64>,
+
+    /// Metres that the serial device measures: 8, 16 or 32 in millimetres, 80
+    /// in centimetres. Left out, its setting is kept; else it is written to the
+    /// device's memory, which lasts for some 10,000 times.
+    #[arg(long, value_name = "METRES", value_parser = range, conflicts_with_all = ["tcp", "capture"])]
+    pub range: Option<Reach>,
+
+    /// A file of CoLa telegrams back to back, instead of a device. At its end
     /// the node waits for subscribers to take the last scans, up to 30 seconds.
     #[arg(long, value_name = "FILE")]
     pub capture: Option<PathBuf>,
 
     /// Starts the capture over at its end.
-    #[arg(long = "loop", conflicts_with = "tcp")]
+    #[arg(long = "loop", conflicts_with_all = ["tcp", "serial"])]
     pub looped: bool,
 
     /// How fast the capture plays.
-    #[arg(long, value_enum, default_value_t = Rate::Device, conflicts_with = "tcp")]
+    #[arg(long, value_enum, default_value_t = Rate::Device, conflicts_with_all = ["tcp", "serial"])]
     pub rate: Rate,
 
-    /// Whether to ask the device to send scans (`sEN LMDscandata 1`).
+    /// Whether to speak to a device on the network: read what it is, set it up
+    /// as asked and start the scans (`sEN LMDscandata 1`). Else it only listens.
     #[arg(long, value_name = "BOOL", default_value_t = true, action = ArgAction::Set)]
     pub start_stream: bool,
 
-    /// Seconds without a byte after which a connection is given up, 0.2 to 3600.
+    /// Seconds without a byte (--tcp) or a telegram (--serial) after which a connection is given up, 0.2 to 3600.
     #[arg(long, value_name = "SECONDS", default_value_t = 5.0, value_parser = silence)]
     pub silence: f64,
 
@@ -54,6 +86,35 @@ pub struct Config {
     /// is the farthest that any of these devices sees.
     #[arg(long, value_name = "METRES", default_value_t = 80.0, value_parser = metres)]
     pub range_max_m: f32,
+}
+
+/// The encoding of CoLa telegrams.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]
+pub enum Protocol {
+    /// Text.
+    ColaA,
+    /// Binary.
+    ColaB,
+}
+
+impl Protocol {
+    /// As the codec calls it.
+    #[must_use]
+    pub const fn encoding(self) -> Encoding {
+        match self {
+            Protocol::ColaA => Encoding::Text,
+            Protocol::ColaB => Encoding::Binary,
+        }
+    }
+}
+
+/// How far an LMS2xx measures, and in which unit.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub struct Reach {
+    /// The bits of a distance.
+    pub mode: RangeMode,
+    /// The unit of a distance.
+    pub unit: Unit,
 }
 
 /// How fast a capture plays.
@@ -81,6 +142,7 @@ impl Config {
 
     /// Checks what no option can check alone.
     fn check(&self) -> Result<(), String> {
+        self.check_serial()?;
         if self.range_min_m < self.range_max_m {
             return Ok(());
         }
@@ -88,6 +150,26 @@ impl Config {
             "--range-max-m is {} and --range-min-m {}: the maximum must be larger",
             self.range_max_m, self.range_min_m
         ))
+    }
+
+    /// The variants of the LMS2xx are few.
+    fn check_serial(&self) -> Result<(), String> {
+        if self.serial.is_none() {
+            return Ok(());
+        }
+        if !self.start_stream {
+            return Err("--start-stream false: a serial device must be asked what it sends".into());
+        }
+        match (self.field, self.resolution) {
+            (None | Some(100.0 | 180.0), None | Some(0.5 | 1.0))
+            | (None | Some(100.0), Some(0.25)) => Ok(()),
+            (field, resolution) => Err(format!(
+                "--field {} and --resolution {}: with --serial allowed are 100 or 180 at 0.5 or 1, \
+                 and 100 at 0.25",
+                field.unwrap_or(180.0),
+                resolution.unwrap_or(0.5)
+            )),
+        }
     }
 
     /// What the messages carry beside the telegrams.
@@ -110,6 +192,37 @@ fn address(text: &str) -> Result<String, String> {
         Some((host, Ok(1u16..))) if !host.is_empty() => Ok(text.into()),
         _ => Err("expected is HOST:PORT with a port from 1 to 65535".into()),
     }
+}
+
+fn baud(text: &str) -> Result<Baud, String> {
+    let baud = text.parse().ok().and_then(Baud::from_rate);
+    baud.ok_or_else(|| "allowed are 9600, 19200, 38400 and 500000".into())
+}
+
+fn field(text: &str) -> Result<f64, String> {
+    degrees(text, 1.0, 360.0)
+}
+
+fn resolution(text: &str) -> Result<f64, String> {
+    degrees(text, 0.01, 5.0)
+}
+
+fn degrees(text: &str, least: f64, most: f64) -> Result<f64, String> {
+    match text.parse() {
+        Ok(degrees) if (least..=most).contains(&degrees) => Ok(degrees),
+        _ => Err(format!("allowed are {least} to {most} degrees")),
+    }
+}
+
+fn range(text: &str) -> Result<Reach, String> {
+    let (mode, unit) = match text {
+        "8" => (RangeMode::Range8Fields, Unit::Millimetre),
+        "16" => (RangeMode::Range16Fields, Unit::Millimetre),
+        "32" => (RangeMode::Range32Field, Unit::Millimetre),
+        "80" => (RangeMode::Range8Fields, Unit::Centimetre),
+        _ => return Err("allowed are 8, 16, 32 and 80".into()),
+    };
+    Ok(Reach { mode, unit })
 }
 
 fn silence(text: &str) -> Result<f64, String> {
@@ -179,6 +292,15 @@ mod tests {
     }
 
     #[test]
+    fn a_serial_device() {
+        let config = parse("--serial /dev/ttyUSB0 --baud 500000 --range 80 --field 100").unwrap();
+        let range = config.range.unwrap();
+        assert_eq!(config.baud, Some(Baud::B500000));
+        assert_eq!((range.mode.mask(), range.unit), (0x1fff, Unit::Centimetre));
+        assert!(parse("--serial a --resolution 0.25 --field 100").is_ok());
+    }
+
+    #[test]
     fn a_mount_behind_the_base_turned_around() {
         let config = parse("--capture a.bin --mount -0.1,0.2,180 --rate max --loop").unwrap();
         let mount = config.mount.unwrap();
@@ -200,6 +322,17 @@ mod tests {
         refuse("--tcp a:1 --rate max", "cannot be used with");
         refuse("--tcp 192.168.0.1", "HOST:PORT with a port from 1 to 65535");
         refuse("--tcp a:0", "1 to 65535");
+        refuse("--tcp a:1 --serial b", "cannot be used with");
+        refuse("--serial a --loop", "cannot be used with");
+        refuse("--serial a --protocol cola-a", "cannot be used with");
+        refuse("--tcp a:1 --baud 9600", "cannot be used with");
+        refuse("--serial a --baud 57600", "38400 and 500000");
+        refuse("--serial a --field 90", "100 or 180 at 0.5 or 1");
+        refuse("--serial a --field 180 --resolution 0.25", "100 at 0.25");
+        refuse("--serial a --range 10", "8, 16, 32 and 80");
+        refuse("--serial a --start-stream false", "must be asked");
+        refuse("--tcp a:1 --field 0", "1 to 360 degrees");
+        refuse("--tcp a:1 --resolution x", "0.01 to 5 degrees");
         refuse("--tcp a:1 --mount 1,2", "X,Y,YAW_DEG");
         refuse("--tcp a:1 --mount 1,2,x", "X,Y,YAW_DEG");
         refuse("--tcp a:1 --mount 1,2,3,4", "X,Y,YAW_DEG");

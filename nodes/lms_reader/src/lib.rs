@@ -1,19 +1,23 @@
 //! Node `lms_reader`: scans from a SICK laser scanner, published as `scan`.
 //!
-//! `cola_b` turns bytes into telegrams and `scan` telegrams into messages, both
-//! pure; `run` reads from the device or a capture and sends. It speaks CoLa B
-//! and asks the device for nothing but to send scans: it neither logs in nor
-//! changes parameters.
+//! `sick` turns bytes into telegrams; `scan` and `lms2xx_scan` turn telegrams into
+//! messages; `cola_setup` and `lms2xx_setup` say what is asked of a device before
+//! scans come; all pure. `run` reads from the device or a capture and sends. A
+//! device is told to send scans; its settings stay as they are unless the
+//! configuration asks for others.
 
+mod attempts;
 mod backoff;
-pub mod cola_b;
+mod cola_setup;
 mod complaints;
 mod config;
 mod error;
+mod lms2xx_scan;
+mod lms2xx_setup;
 mod pace;
 mod run;
 pub mod scan;
 
-pub use config::{Config, Rate};
+pub use config::{Config, Protocol, Rate, Reach};
 pub use error::LmsError;
 pub use run::run;

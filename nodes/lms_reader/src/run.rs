@@ -2,6 +2,7 @@
 
 mod capture;
 mod outlet;
+mod serial;
 mod tcp;
 
 use std::time::{SystemTime, UNIX_EPOCH};
@@ -22,10 +23,11 @@ use outlet::Outlet;
 /// the configuration names no source.
 pub fn run(graph: &Graph, config: &Config) -> Result<(), LmsError> {
     let mut outlet = Outlet::open(graph, config.scan_settings())?;
-    match (&config.tcp, &config.capture) {
-        (Some(address), _) => tcp::run(address, config, &mut outlet),
-        (None, Some(path)) => capture::run(path, config, &mut outlet),
-        (None, None) => Err(LmsError::NoSource),
+    match (&config.tcp, &config.serial, &config.capture) {
+        (Some(address), _, _) => tcp::run(address, config, &mut outlet),
+        (None, Some(device), _) => serial::run(device, config, &mut outlet),
+        (None, None, Some(path)) => capture::run(path, config, &mut outlet),
+        (None, None, None) => Err(LmsError::NoSource),
     }
 }
 

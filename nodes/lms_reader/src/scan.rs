@@ -4,9 +4,9 @@
 //! a range is good for; it only tells readings from codes.
 
 use messages::{Name, Pose2, ScanHeader, Stamp};
+use sick::cola::{Channel, LmdScanData};
 
 use crate::LmsError;
-use crate::cola_b::{Channel, LmdScanData};
 
 /// Raw distances below this are codes, not distances: 0 nothing came back, 1
 /// dazzled, 2 implausible, the others reserved (SICK's operating instructions,
@@ -65,7 +65,7 @@ pub fn distances<'a>(data: &LmdScanData<'a>) -> Result<Channel<'a>, LmsError> {
 /// is late by most of a scan. How the two clocks drift apart is not followed.
 ///
 /// # Errors
-/// [`LmsError::Scan`] and [`LmsError::Field`] where the telegram makes no scan.
+/// [`LmsError::Scan`] where the telegram makes no scan.
 pub fn header(
     data: &LmdScanData<'_>,
     distances: &Channel<'_>,
@@ -108,7 +108,7 @@ pub fn header(
 pub fn fill_ranges(distances: &Channel<'_>, ranges: &mut [f32]) {
     let scale = f64::from(distances.scale_factor);
     let offset = f64::from(distances.scale_offset);
-    for (range, raw) in ranges.iter_mut().zip(distances.values()) {
+    for (range, raw) in ranges.iter_mut().zip(distances.values) {
         *range = if raw < FIRST_DISTANCE {
             f32::INFINITY
         } else {
@@ -156,6 +156,7 @@ fn delay_ns(data: &LmdScanData<'_>) -> Result<i64, LmsError> {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use sick::cola::Encoding;
 
     const RECEIVED: Received = Received {
         realtime_ns: 1_700_000_000_000_000_000,
@@ -217,7 +218,7 @@ mod tests {
 
         fn scan(&self) -> Result<(ScanHeader, Vec<f32>), LmsError> {
             let bytes = self.telegram();
-            let data = LmdScanData::read(&bytes)?;
+            let data = LmdScanData::read(Encoding::Binary, &bytes)?;
             let distances = distances(&data)?;
             let header = header(&data, &distances, &settings(), RECEIVED)?;
             let mut ranges = vec![0.0; distances.len()];
@@ -283,7 +284,7 @@ mod tests {
     #[test]
     fn the_settings_are_passed_on() {
         let bytes = World::default().telegram();
-        let data = LmdScanData::read(&bytes).unwrap();
+        let data = LmdScanData::read(Encoding::Binary, &bytes).unwrap();
         let channel = distances(&data).unwrap();
         let mount = Pose2 {
             x: 0.78,

@@ -8,15 +8,15 @@
 use std::io::{Read, Write};
 use std::net::{TcpListener, TcpStream};
 
-use lms_reader::cola_b::{START_SCAN_DATA, frame};
 use messages::{NodeState, topic};
+use sick::cola::{Answer, Command, Encoding, Fault, Framer, Telegram};
 use transport::Graph;
 use transport::testing::{Isolated, NodeProcess, wait_for_health, wait_until};
 
-const CAPTURE: &[u8] = include_bytes!("data/tim781_colab_telegrams.bin");
+const CAPTURE: &[u8] = include_bytes!("../../../common/sick/tests/data/tim781_colab_telegrams.bin");
 const CAPTURE_PATH: &str = concat!(
     env!("CARGO_MANIFEST_DIR"),
-    "/tests/data/tim781_colab_telegrams.bin"
+    "/../../common/sick/tests/data/tim781_colab_telegrams.bin"
 );
 const TELEGRAM: usize = 3374;
 
@@ -120,13 +120,31 @@ fn usage_errors_end_with_two() {
     assert_eq!(node.exit_code(), Some(2));
 }
 
-/// Takes the node's connection and its request.
+/// Takes the node's connection; says to it what a device of few words does,
+/// until it wants scans.
 fn accept(listener: &TcpListener) -> TcpStream {
     let (mut stream, _) = listener.accept().unwrap();
-    let mut request = vec![0; frame(START_SCAN_DATA).len()];
-    stream.read_exact(&mut request).unwrap();
-    assert_eq!(request, frame(START_SCAN_DATA));
-    stream
+    let mut framer = Framer::new(Encoding::Binary);
+    let mut piece = [0; 1000];
+    loop {
+        let count = stream.read(&mut piece).unwrap();
+        assert!(count > 0, "the node has gone");
+        framer.push(&piece[..count]);
+        while let Some(next) = framer.next_frame() {
+            let command = next.unwrap().telegram;
+            let subscribe = Telegram::Command(Command::SubscribeScans(true));
+            let answer = match command == subscribe {
+                true => Answer::ScansSubscribed(true),
+                false => Answer::Fault(Fault::UNKNOWN_VARIABLE),
+            };
+            let mut bytes = Vec::new();
+            Encoding::Binary.frame(&Telegram::Answer(answer), &mut bytes);
+            stream.write_all(&bytes).unwrap();
+            if command == subscribe {
+                return stream;
+            }
+        }
+    }
 }
 
 #[test]
@@ -140,7 +158,6 @@ fn a_device_that_goes_and_comes_back() {
     let node = start(&graph, &["--tcp", &address]);
 
     let mut stream = accept(&listener);
-    stream.write_all(&frame(b"sEA LMDscandata \x01")).unwrap();
     // Pieces that respect no telegram.
     for piece in CAPTURE[..2 * TELEGRAM].chunks(1000) {
         stream.write_all(piece).unwrap();
@@ -195,5 +212,5 @@ fn a_silent_device_is_given_up_and_tried_again() {
     let _again = accept(&listener);
     node.interrupt();
     let (_, log) = node.finish();
-    assert!(log.contains("not a byte for 0.2 s"), "{log}");
+    assert!(log.contains("nothing came for 0.2 s"), "{log}");
 }

@@ -5,10 +5,11 @@ use std::io::{ErrorKind, Read};
 use std::path::Path;
 use std::time::{Duration, Instant};
 
+use sick::cola::{Framer, Telegram};
+
 use super::outlet::Outlet;
-use crate::cola_b::Framer;
 use crate::pace::Pace;
-use crate::{Config, LmsError, Rate};
+use crate::{Config, LmsError, Protocol, Rate};
 
 /// How long the end waits for subscribers that are busy with what was sent: a
 /// search takes seconds at most, and each may have a few scans before it.
@@ -18,7 +19,7 @@ const PATIENCE: Duration = Duration::from_secs(30);
 pub(super) fn run(path: &Path, config: &Config, outlet: &mut Outlet) -> Result<(), LmsError> {
     let mut pacer = (config.rate == Rate::Device).then(|| (Instant::now(), Pace::default()));
     loop {
-        play(path, &mut pacer, outlet)?;
+        play(path, config.protocol, &mut pacer, outlet)?;
         if outlet.stopped() {
             break;
         }
@@ -45,6 +46,7 @@ pub(super) fn run(path: &Path, config: &Config, outlet: &mut Outlet) -> Result<(
 
 fn play(
     path: &Path,
+    protocol: Protocol,
     pacer: &mut Option<(Instant, Pace)>,
     outlet: &mut Outlet,
 ) -> Result<(), LmsError> {
@@ -53,7 +55,7 @@ fn play(
         source,
     };
     let mut file = File::open(path).map_err(failed)?;
-    let mut framer = Framer::default();
+    let mut framer = Framer::new(protocol.encoding());
     let mut piece = [0; 1 << 14];
     let mut more = true;
     while more && !outlet.stopped() {
@@ -77,8 +79,13 @@ fn send_all(
     outlet: &mut Outlet,
 ) -> Result<(), LmsError> {
     while let Some(next) = framer.next_frame() {
-        let Some(data) = outlet.hear(next)? else {
-            continue;
+        let data = match outlet.take(next)? {
+            Some(Telegram::ScanData(data)) => data,
+            Some(other) => {
+                tracing::debug!(?other, "skipped a telegram");
+                continue;
+            }
+            None => continue,
         };
         if let Some((start, pace)) = pacer {
             outlet.wait_until(*start + pace.due(data.time_of_transmission_us))?;
@@ -86,7 +93,7 @@ fn send_all(
         if outlet.stopped() {
             break;
         }
-        outlet.publish(&data, super::now())?;
+        outlet.publish_cola(&data, super::now())?;
         outlet.tick()?;
     }
     Ok(())

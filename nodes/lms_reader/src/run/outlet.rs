@@ -4,12 +4,15 @@ use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, Ordering};
 use std::time::{Duration, Instant};
 
-use messages::{NodeState, topic};
+use messages::{NodeState, ScanHeader, topic};
+use sick::cola::LmdScanData;
+use sick::lms2xx::Status;
+use sick::{Frame, SickError};
 use transport::{Graph, Health, Publisher, TransportError, with_causes};
 
 use crate::LmsError;
-use crate::cola_b::{Frame, LmdScanData, Telegram};
 use crate::complaints::Complaints;
+use crate::lms2xx_scan::WholeScan;
 use crate::scan::{self, Received, ScanSettings};
 
 /// How long the stop flag may go unseen.
@@ -30,7 +33,8 @@ pub(super) struct Outlet {
     settings: ScanSettings,
     complaints: Complaints,
     link: Link,
-    device_status: [u8; 2],
+    /// As the device codes it; 0 is in order.
+    device_status: u16,
     /// Sound telegrams of any kind.
     pub(super) telegrams: u64,
     pub(super) sent: u64,
@@ -46,7 +50,7 @@ impl Outlet {
             settings,
             complaints: Complaints::default(),
             link: Link::Untried,
-            device_status: [0, 0],
+            device_status: 0,
             telegrams: 0,
             sent: 0,
             refused: 0,
@@ -89,34 +93,26 @@ impl Outlet {
         self.health.tick()
     }
 
-    /// The scan in a telegram, if there is one; anything wrong is reported.
-    pub(super) fn hear<'a>(
+    /// The telegram in a frame; what is none is reported.
+    pub(super) fn take<T>(
         &mut self,
-        next: Result<Frame<'a>, LmsError>,
-    ) -> Result<Option<LmdScanData<'a>>, LmsError> {
+        next: Result<Frame<'_, T>, SickError>,
+    ) -> Result<Option<T>, LmsError> {
         let frame = match next {
             Ok(frame) => frame,
-            Err(error) => return self.refuse(&error).map(|()| None),
+            Err(error) => return self.refuse(&error.into()).map(|()| None),
         };
         self.telegrams += 1;
         self.health.count_received(1);
         if frame.skipped > 0 {
             tracing::debug!(bytes = frame.skipped, "skipped to the next telegram");
         }
-        match frame.telegram {
-            Telegram::ScanData(data) => return Ok(Some(data)),
-            Telegram::ScanDataStarted(true) => tracing::info!("the device sends scans"),
-            Telegram::ScanDataStarted(false) => self.refuse(&LmsError::NotStarted)?,
-            Telegram::Fault(code) => self.refuse(&LmsError::Fault { code })?,
-            Telegram::Other(command) => {
-                tracing::debug!(command = %command.escape_ascii(), "skipped a telegram");
-            }
-        }
-        Ok(None)
+        Ok(Some(frame.telegram))
     }
 
-    /// Sends a scan; one that cannot be laid out is reported as refused.
-    pub(super) fn publish(
+    /// Sends the scan of a CoLa telegram; one that cannot be laid out is
+    /// reported as refused.
+    pub(super) fn publish_cola(
         &mut self,
         data: &LmdScanData<'_>,
         received: Received,
@@ -125,23 +121,55 @@ impl Outlet {
             let header = scan::header(data, &distances, &self.settings, received)?;
             Ok((distances, header))
         });
-        let (distances, mut header) = match made {
+        let (distances, header) = match made {
             Ok(made) => made,
             Err(error) => return self.refuse(&error),
         };
+        self.publish(header, distances.len(), |ranges| {
+            scan::fill_ranges(&distances, ranges);
+        })?;
+        let found = data.status;
+        self.judge(u16::from_be_bytes(found), || LmsError::DeviceStatus {
+            found,
+        })?;
+        Ok(())
+    }
+
+    /// Sends the scan of an LMS2xx; one that cannot be laid out is reported as
+    /// refused.
+    pub(super) fn publish_lms2xx(
+        &mut self,
+        scan: &WholeScan<'_>,
+        status: Status,
+        received: Received,
+    ) -> Result<(), LmsError> {
+        let header = match scan.header(&self.settings, received) {
+            Ok(header) => header,
+            Err(error) => return self.refuse(&error),
+        };
+        self.publish(header, scan.len(), |ranges| scan.fill_ranges(ranges))?;
+        let code = if status.is_in_order() { 0 } else { status.0 };
+        self.judge(code.into(), || LmsError::LmsStatus { found: status })?;
+        Ok(())
+    }
+
+    fn publish(
+        &mut self,
+        mut header: ScanHeader,
+        beams: usize,
+        fill: impl FnOnce(&mut [f32]),
+    ) -> Result<(), LmsError> {
         header.stamp.counter = self.sent;
-        let mut loan = self.publisher.loan(distances.len())?;
+        let mut loan = self.publisher.loan(beams)?;
         *loan.header_mut() = header;
-        scan::fill_ranges(&distances, loan.items_mut());
+        fill(loan.items_mut());
         loan.send()?;
         self.sent += 1;
         self.health.count_sent(1);
         if self.link != Link::Up {
-            let (serial, beams) = (data.serial_number, distances.len());
-            tracing::info!(serial, beams, "scans arrive");
+            tracing::info!(beams, "scans arrive");
             self.link = Link::Up;
         }
-        self.judge(data.status)?;
         Ok(())
     }
 
@@ -159,7 +187,7 @@ impl Outlet {
         Ok(())
     }
 
-    fn refuse(&mut self, error: &LmsError) -> Result<(), LmsError> {
+    pub(super) fn refuse(&mut self, error: &LmsError) -> Result<(), LmsError> {
         self.refused += 1;
         self.health.count_refused(1);
         if let Some(held_back) = self.complaints.note(transport::monotonic_ns()) {
@@ -172,15 +200,23 @@ impl Outlet {
     }
 
     /// A device in order makes the node ready.
-    fn judge(&mut self, status: [u8; 2]) -> Result<(), TransportError> {
+    fn judge(
+        &mut self,
+        status: u16,
+        problem: impl FnOnce() -> LmsError,
+    ) -> Result<(), TransportError> {
         if status != self.device_status {
             self.device_status = status;
-            let problem = LmsError::DeviceStatus { found: status }.to_string();
-            tracing::warn!("{problem}");
-            self.health.error(&problem)?;
+            if status == 0 {
+                tracing::info!("the device is in order again");
+            } else {
+                let problem = problem().to_string();
+                tracing::warn!("{problem}");
+                self.health.error(&problem)?;
+            }
         }
         self.health.state(match status {
-            [0, 0] => NodeState::Ready,
+            0 => NodeState::Ready,
             _ => NodeState::Degraded,
         })
     }

@@ -4,9 +4,11 @@ use std::io::{ErrorKind, Read, Write};
 use std::net::{TcpStream, ToSocketAddrs};
 use std::time::{Duration, Instant};
 
+use sick::cola::{Encoding, Framer, Telegram};
+
 use super::outlet::{Outlet, SLICE};
 use crate::backoff::Backoff;
-use crate::cola_b::{Framer, START_SCAN_DATA, frame};
+use crate::cola_setup::{Setup, Wanted};
 use crate::{Config, LmsError};
 
 /// How long an attempt to connect, or to send the request, may take. A device
@@ -19,8 +21,7 @@ pub(super) fn run(address: &str, config: &Config, outlet: &mut Outlet) -> Result
     let mut backoff = Backoff::default();
     while !outlet.stopped() {
         let before = outlet.sent;
-        let outcome = connect(address, config.start_stream)
-            .and_then(|stream| listen(stream, address, config.silence, outlet));
+        let outcome = Connection::open(address, config).and_then(|mut c| c.listen(outlet));
         match outcome {
             Ok(()) => break,
             Err(error @ LmsError::Transport(_)) => return Err(error),
@@ -32,27 +33,6 @@ pub(super) fn run(address: &str, config: &Config, outlet: &mut Outlet) -> Result
         outlet.wait_until(Instant::now() + backoff.next_wait())?;
     }
     Ok(())
-}
-
-fn connect(address: &str, start_stream: bool) -> Result<TcpStream, LmsError> {
-    let failed = |what| {
-        move |source| LmsError::Device {
-            address: address.into(),
-            what,
-            source,
-        }
-    };
-    let mut stream = try_each(address).map_err(failed("connect"))?;
-    stream
-        .set_read_timeout(Some(SLICE))
-        .and_then(|()| stream.set_write_timeout(Some(ATTEMPT)))
-        .map_err(failed("set up the connection"))?;
-    if start_stream {
-        stream
-            .write_all(&frame(START_SCAN_DATA))
-            .map_err(failed("ask for scans"))?;
-    }
-    Ok(stream)
 }
 
 /// Tries all that a name stands for; the last failure counts.
@@ -67,52 +47,114 @@ fn try_each(address: &str) -> std::io::Result<TcpStream> {
     Err(failure)
 }
 
-/// Reads until the stop flag is set, which alone is a success.
-fn listen(
-    mut stream: TcpStream,
-    address: &str,
+/// A connection and what has been said on it.
+struct Connection<'a> {
+    address: &'a str,
     silence_s: f64,
-    outlet: &mut Outlet,
-) -> Result<(), LmsError> {
-    let mut framer = Framer::default();
-    let mut piece = [0; 1 << 14];
-    let mut heard = Instant::now();
-    while !outlet.stopped() {
-        match stream.read(&mut piece) {
-            Ok(0) => {
-                return Err(LmsError::Closed {
-                    address: address.into(),
-                });
-            }
-            Ok(count) => {
-                let received = super::now();
-                heard = Instant::now();
-                framer.push(piece.get(..count).unwrap_or_default());
-                while let Some(next) = framer.next_frame() {
-                    if let Some(data) = outlet.hear(next)? {
-                        outlet.publish(&data, received)?;
-                    }
-                }
-            }
-            Err(error) if is_pause(error.kind()) => {
-                if heard.elapsed().as_secs_f64() > silence_s {
-                    return Err(LmsError::Silent {
-                        address: address.into(),
-                        seconds: silence_s,
+    encoding: Encoding,
+    stream: TcpStream,
+    /// None where the device is only listened to.
+    setup: Option<Setup>,
+    framer: Framer,
+    /// Is filled and sent, again and again.
+    command: Vec<u8>,
+}
+
+impl<'a> Connection<'a> {
+    fn open(address: &'a str, config: &Config) -> Result<Self, LmsError> {
+        let failed = |what| move |source| failed(address, what, source);
+        let stream = try_each(address).map_err(failed("connect"))?;
+        stream
+            .set_read_timeout(Some(SLICE))
+            .and_then(|()| stream.set_write_timeout(Some(ATTEMPT)))
+            .map_err(failed("set up the connection"))?;
+        let encoding = config.protocol.encoding();
+        let wanted = Wanted::of(config.field, config.resolution);
+        Ok(Connection {
+            address,
+            silence_s: config.silence,
+            encoding,
+            stream,
+            setup: config.start_stream.then(|| Setup::new(wanted)),
+            framer: Framer::new(encoding),
+            command: Vec::new(),
+        })
+    }
+
+    /// Reads until the stop flag is set, which alone is a success.
+    fn listen(&mut self, outlet: &mut Outlet) -> Result<(), LmsError> {
+        let mut piece = [0; 1 << 14];
+        let mut heard = Instant::now();
+        while !outlet.stopped() {
+            self.speak()?;
+            match self.stream.read(&mut piece) {
+                Ok(0) => {
+                    return Err(LmsError::Closed {
+                        address: self.address.into(),
                     });
                 }
+                Ok(count) => {
+                    heard = Instant::now();
+                    self.hear(piece.get(..count).unwrap_or_default(), outlet)?;
+                }
+                Err(error) if is_pause(error.kind()) => {
+                    if heard.elapsed().as_secs_f64() > self.silence_s {
+                        return Err(LmsError::Silent {
+                            address: self.address.into(),
+                            seconds: self.silence_s,
+                        });
+                    }
+                }
+                Err(source) => return Err(failed(self.address, "read", source)),
             }
-            Err(source) => {
-                return Err(LmsError::Device {
-                    address: address.into(),
-                    what: "read",
-                    source,
-                });
+            outlet.tick()?;
+        }
+        Ok(())
+    }
+
+    /// Says what is to be said now.
+    fn speak(&mut self) -> Result<(), LmsError> {
+        let Some(setup) = &mut self.setup else {
+            return Ok(());
+        };
+        if let Some(command) = setup.next(transport::monotonic_ns())? {
+            self.command.clear();
+            self.encoding
+                .frame(&Telegram::Command(command), &mut self.command);
+            self.stream
+                .write_all(&self.command)
+                .map_err(|source| failed(self.address, "send a command", source))?;
+        }
+        if setup.is_done() {
+            tracing::info!("the device sends scans");
+            self.setup = None;
+        }
+        Ok(())
+    }
+
+    fn hear(&mut self, piece: &[u8], outlet: &mut Outlet) -> Result<(), LmsError> {
+        let received = super::now();
+        self.framer.push(piece);
+        while let Some(next) = self.framer.next_frame() {
+            match (outlet.take(next)?, &mut self.setup) {
+                (Some(Telegram::ScanData(data)), _) => outlet.publish_cola(&data, received)?,
+                (Some(Telegram::Answer(answer)), Some(setup)) => {
+                    setup.hear(&answer)?;
+                }
+                (Some(other), _) => tracing::debug!(?other, "skipped a telegram"),
+                (None, _) => {}
             }
         }
-        outlet.tick()?;
+        Ok(())
     }
-    Ok(())
+}
+
+fn failed(address: &str, what: &'static str, source: std::io::Error) -> LmsError {
+    LmsError::Device {
+        address: address.into(),
+        what,
+        source,
+    }
 }
 
 fn is_pause(kind: ErrorKind) -> bool {

@@ -1,7 +1,9 @@
 //! The channels of a scan telegram: one value for each angle.
 
+use super::Values;
 use super::cursor::{Cursor, field_error};
-use crate::LmsError;
+use super::writer::Writer;
+use crate::SickError;
 
 /// Values over equally spaced angles.
 ///
@@ -14,7 +16,7 @@ use crate::LmsError;
 /// | 2 | angular step | u16, 1/10000° |
 /// | 2 | count | u16 |
 /// | count · width | values | u16 or u8 |
-#[derive(Debug, Clone, Copy, PartialEq)]
+#[derive(Debug, Clone, Copy)]
 pub struct Channel<'a> {
     /// What the values are.
     pub name: [u8; 5],
@@ -26,14 +28,14 @@ pub struct Channel<'a> {
     pub start_angle_raw_1e4_deg: i32,
     /// From one value to the next.
     pub step_raw_1e4_deg: u16,
-    width: usize,
-    values: &'a [u8],
+    /// First angle first; at most 65535 can be sent.
+    pub values: Values<'a>,
 }
 
 impl<'a> Channel<'a> {
-    fn read(cursor: &mut Cursor<'a>, width: usize) -> Result<Self, LmsError> {
+    fn read(cursor: &mut Cursor<'a>, width: usize) -> Result<Self, SickError> {
         let offset = cursor.offset();
-        let name = cursor.bytes("channel name")?;
+        let name = cursor.letters("channel name")?;
         if !name.iter().all(u8::is_ascii_alphanumeric) {
             let found = name.escape_ascii();
             return Err(field_error(
@@ -49,31 +51,49 @@ impl<'a> Channel<'a> {
             scale_offset: cursor.f32("scale offset")?,
             start_angle_raw_1e4_deg: cursor.i32("start angle")?,
             step_raw_1e4_deg: cursor.u16("angular step")?,
-            width,
             values: {
                 let count = usize::from(cursor.u16("count")?);
-                cursor.take("values", count * width)?
+                Values::read(cursor, count, width)?
             },
         })
+    }
+
+    fn write(&self, writer: &mut Writer<'_>, width: usize) {
+        writer.characters(&self.name);
+        writer.f32(self.scale_factor);
+        writer.f32(self.scale_offset);
+        writer.i32(self.start_angle_raw_1e4_deg);
+        writer.u16(self.step_raw_1e4_deg);
+        writer.u16(self.values.len() as u16);
+        self.values.write(writer, width);
     }
 
     /// Number of values.
     #[must_use]
     pub fn len(&self) -> usize {
-        self.values.len() / self.width
+        self.values.len()
     }
 
     /// Whether there is no value.
     #[must_use]
     pub fn is_empty(&self) -> bool {
-        self.values.is_empty()
+        self.len() == 0
     }
+}
 
-    /// The raw values, first angle first.
-    pub fn values(&self) -> impl ExactSizeIterator<Item = u16> + use<'a> {
-        self.values
-            .chunks_exact(self.width)
-            .map(|bytes| bytes.iter().fold(0, |value, &b| value << 8 | u16::from(b)))
+/// Equal where all fields and values are, however they are encoded.
+impl PartialEq for Channel<'_> {
+    fn eq(&self, other: &Self) -> bool {
+        let fields = |c: &Self| {
+            (
+                c.name,
+                c.scale_factor,
+                c.scale_offset,
+                c.start_angle_raw_1e4_deg,
+                c.step_raw_1e4_deg,
+            )
+        };
+        fields(self) == fields(other) && self.values.eq(other.values)
     }
 }
 
@@ -84,10 +104,18 @@ impl<'a> Channel<'a> {
 /// | 2 | count | u16 |
 /// | … | channels | see [`Channel`] |
 #[derive(Debug, Clone)]
-pub struct Channels<'a> {
-    left: u16,
-    width: usize,
-    cursor: Cursor<'a>,
+pub struct Channels<'a>(Place<'a>);
+
+#[derive(Debug, Clone)]
+enum Place<'a> {
+    /// In a telegram.
+    Read {
+        left: u16,
+        width: usize,
+        cursor: Cursor<'a>,
+    },
+    /// In memory.
+    Listed(&'a [Channel<'a>]),
 }
 
 impl<'a> Channels<'a> {
@@ -96,9 +124,9 @@ impl<'a> Channels<'a> {
         cursor: &mut Cursor<'a>,
         field: &'static str,
         width: usize,
-    ) -> Result<Self, LmsError> {
+    ) -> Result<Self, SickError> {
         let left = cursor.u16(field)?;
-        let block = Channels {
+        let block = Place::Read {
             left,
             width,
             cursor: cursor.clone(),
@@ -106,7 +134,14 @@ impl<'a> Channels<'a> {
         for _ in 0..left {
             Channel::read(cursor, width)?;
         }
-        Ok(block)
+        Ok(Channels(block))
+    }
+
+    pub(super) fn write(&self, writer: &mut Writer<'_>, width: usize) {
+        writer.u16(self.clone().count() as u16);
+        for channel in self.clone() {
+            channel.write(writer, width);
+        }
     }
 
     /// The channel of this name.
@@ -116,18 +151,48 @@ impl<'a> Channels<'a> {
     }
 }
 
+impl<'a> From<&'a [Channel<'a>]> for Channels<'a> {
+    fn from(channels: &'a [Channel<'a>]) -> Self {
+        Channels(Place::Listed(channels))
+    }
+}
+
+impl PartialEq for Channels<'_> {
+    fn eq(&self, other: &Self) -> bool {
+        self.clone().eq(other.clone())
+    }
+}
+
 impl<'a> Iterator for Channels<'a> {
     type Item = Channel<'a>;
 
     fn next(&mut self) -> Option<Self::Item> {
-        self.left = self.left.checked_sub(1)?;
-        Channel::read(&mut self.cursor, self.width).ok()
+        match &mut self.0 {
+            Place::Read {
+                left,
+                width,
+                cursor,
+            } => {
+                *left = left.checked_sub(1)?;
+                Channel::read(cursor, *width).ok()
+            }
+            Place::Listed(channels) => {
+                let (first, rest) = channels.split_first()?;
+                *channels = rest;
+                Some(*first)
+            }
+        }
     }
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::cola::Encoding;
+
+    fn over(bytes: &[u8]) -> Cursor<'_> {
+        Cursor::new(Encoding::Binary, bytes, 0)
+    }
 
     fn channel(name: &[u8; 5], values: &[u8], count: u16) -> Vec<u8> {
         let mut bytes = name.to_vec();
@@ -150,28 +215,25 @@ mod tests {
             channel(b"DIST1", &[1, 2, 3, 4], 2),
             channel(b"DIST2", &[5, 6], 1),
         ]);
-        let mut cursor = Cursor::new(&bytes);
+        let mut cursor = over(&bytes);
         let channels = Channels::read(&mut cursor, "channels", 2).unwrap();
         cursor.end().unwrap();
         let first = channels.named(b"DIST1").unwrap();
-        assert_eq!(first.values().collect::<Vec<_>>(), [0x0102, 0x0304]);
+        assert_eq!(first.values.collect::<Vec<_>>(), [0x0102, 0x0304]);
         assert_eq!((first.len(), first.step_raw_1e4_deg), (2, 1667));
         assert_eq!(first.start_angle_raw_1e4_deg, -50_000);
         assert_eq!(channels.clone().count(), 2);
         assert!(channels.named(b"RSSI1").is_none());
 
         let bytes = block(&[channel(b"RSSI1", &[7, 8], 2)]);
-        let mut channels = Channels::read(&mut Cursor::new(&bytes), "channels", 1).unwrap();
-        assert_eq!(
-            channels.next().unwrap().values().collect::<Vec<_>>(),
-            [7, 8]
-        );
+        let mut channels = Channels::read(&mut over(&bytes), "channels", 1).unwrap();
+        assert_eq!(channels.next().unwrap().values.collect::<Vec<_>>(), [7, 8]);
     }
 
     #[test]
     fn a_count_beyond_the_content_and_a_foreign_name_are_refused() {
         let bytes = block(&[channel(b"DIST1", &[1, 2, 3, 4], 3)]);
-        let text = Channels::read(&mut Cursor::new(&bytes), "channels", 2)
+        let text = Channels::read(&mut over(&bytes), "channels", 2)
             .unwrap_err()
             .to_string();
         assert_eq!(
@@ -179,7 +241,7 @@ mod tests {
             "byte 23 of the telegram: `values` takes 6 bytes, 4 are left of the content"
         );
         let bytes = block(&[channel(b"DI\0T1", &[], 0)]);
-        let text = Channels::read(&mut Cursor::new(&bytes), "channels", 2)
+        let text = Channels::read(&mut over(&bytes), "channels", 2)
             .unwrap_err()
             .to_string();
         assert!(text.contains(r"`channel name` is DI\x00T1"), "{text}");

@@ -4,12 +4,21 @@
 //! is read and checked, in order, to the last byte; what the values mean for a
 //! robot is not decided here.
 
+use super::Encoding;
 use super::channel::Channels;
 use super::cursor::{Cursor, field_error};
 use super::tail::{self, DeviceTime, Event, Position};
-use crate::LmsError;
+use super::writer::Writer;
+use crate::SickError;
 
-/// A scan telegram. Offsets count from the start of the content.
+/// Bytes before the first field.
+const COMMAND: usize = 16;
+
+/// The event and the variable of this name.
+pub(super) const NAME: &[u8] = b"LMDscandata";
+
+/// A scan telegram. Offsets count from the start of the content in CoLa B; in
+/// CoLa A each number is a word, and each u8 of a pair is one of its own.
 ///
 /// | offset | bytes | field | |
 /// |---|---|---|---|
@@ -36,7 +45,7 @@ use crate::LmsError;
 /// | … | 2 (+ 1 + n) | comment | u16 flag, u8 length, characters |
 /// | … | 2 (+ 11) | time | u16 flag, [`DeviceTime`] |
 /// | … | 2 (+ 16) | event | u16 flag, [`Event`] |
-#[derive(Debug, Clone)]
+#[derive(Debug, Clone, PartialEq)]
 pub struct LmdScanData<'a> {
     /// Of the layout.
     pub version: u16,
@@ -93,13 +102,18 @@ pub struct Encoder {
 
 /// The encoders; iterating reads them in place.
 #[derive(Debug, Clone)]
-pub struct Encoders<'a> {
-    left: u16,
-    cursor: Cursor<'a>,
+pub struct Encoders<'a>(Place<'a>);
+
+#[derive(Debug, Clone)]
+enum Place<'a> {
+    /// In a telegram.
+    Read { left: u16, cursor: Cursor<'a> },
+    /// In memory.
+    Listed(&'a [Encoder]),
 }
 
 impl Encoder {
-    fn read(cursor: &mut Cursor<'_>) -> Result<Self, LmsError> {
+    fn read(cursor: &mut Cursor<'_>) -> Result<Self, SickError> {
         Ok(Encoder {
             position: cursor.u32("encoder position")?,
             speed: cursor.u16("encoder speed")?,
@@ -108,16 +122,37 @@ impl Encoder {
 }
 
 impl<'a> Encoders<'a> {
-    fn read(cursor: &mut Cursor<'a>) -> Result<Self, LmsError> {
+    fn read(cursor: &mut Cursor<'a>) -> Result<Self, SickError> {
         let left = cursor.u16_upto("number of encoders", 3, "0 to 3")?;
-        let encoders = Encoders {
+        let encoders = Place::Read {
             left,
             cursor: cursor.clone(),
         };
         for _ in 0..left {
             Encoder::read(cursor)?;
         }
-        Ok(encoders)
+        Ok(Encoders(encoders))
+    }
+
+    fn write(&self, writer: &mut Writer<'_>) {
+        writer.u16(self.clone().count() as u16);
+        for encoder in self.clone() {
+            writer.u32(encoder.position);
+            writer.u16(encoder.speed);
+        }
+    }
+}
+
+impl<'a> From<&'a [Encoder]> for Encoders<'a> {
+    /// At most three can be sent.
+    fn from(encoders: &'a [Encoder]) -> Self {
+        Encoders(Place::Listed(encoders.get(..3).unwrap_or(encoders)))
+    }
+}
+
+impl PartialEq for Encoders<'_> {
+    fn eq(&self, other: &Self) -> bool {
+        self.clone().eq(other.clone())
     }
 }
 
@@ -125,8 +160,17 @@ impl Iterator for Encoders<'_> {
     type Item = Encoder;
 
     fn next(&mut self) -> Option<Encoder> {
-        self.left = self.left.checked_sub(1)?;
-        Encoder::read(&mut self.cursor).ok()
+        match &mut self.0 {
+            Place::Read { left, cursor } => {
+                *left = left.checked_sub(1)?;
+                Encoder::read(cursor).ok()
+            }
+            Place::Listed(encoders) => {
+                let (first, rest) = encoders.split_first()?;
+                *encoders = rest;
+                Some(*first)
+            }
+        }
     }
 }
 
@@ -134,13 +178,14 @@ impl<'a> LmdScanData<'a> {
     /// Reads the whole content of a telegram.
     ///
     /// # Errors
-    /// [`LmsError::Short`], [`LmsError::Field`] or [`LmsError::Trailing`], with
+    /// [`SickError::Short`], [`SickError::Field`] or [`SickError::Trailing`], with
     /// the place.
-    pub fn read(content: &'a [u8]) -> Result<Self, LmsError> {
-        let mut cursor = Cursor::new(content);
+    pub fn read(encoding: Encoding, content: &'a [u8]) -> Result<Self, SickError> {
+        let mut cursor = Cursor::new(Encoding::Binary, content, 0);
+        let command = cursor.take("command and name", COMMAND)?;
+        let mut cursor = Cursor::new(encoding, cursor.rest(), COMMAND);
         let cursor = &mut cursor;
-        let command = cursor.bytes("command and name")?;
-        if !matches!(&command, b"sSN LMDscandata " | b"sRA LMDscandata ") {
+        if !matches!(command, b"sSN LMDscandata " | b"sRA LMDscandata ") {
             let found = command.escape_ascii();
             return Err(field_error(
                 "command and name",
@@ -153,13 +198,13 @@ impl<'a> LmdScanData<'a> {
             version: cursor.u16_upto("version", 1, "0 or 1")?,
             device_number: cursor.u16("device number")?,
             serial_number: cursor.u32("serial number")?,
-            status: cursor.bytes("device status")?,
+            status: cursor.pair("device status")?,
             telegram_counter: cursor.u16("telegram counter")?,
             scan_counter: cursor.u16("scan counter")?,
             time_since_start_up_us: cursor.u32("time since start-up")?,
             time_of_transmission_us: cursor.u32("time of transmission")?,
-            digital_inputs: cursor.bytes("digital inputs")?,
-            digital_outputs: cursor.bytes("digital outputs")?,
+            digital_inputs: cursor.pair("digital inputs")?,
+            digital_outputs: cursor.pair("digital outputs")?,
             layer_angle_raw: cursor.i16("layer angle")?,
             scan_frequency_raw_1e2_hz: cursor.u32("scan frequency")?,
             measurement_frequency_raw: cursor.u32("measurement frequency")?,
@@ -177,14 +222,61 @@ impl<'a> LmdScanData<'a> {
         cursor.end()?;
         Ok(data)
     }
+
+    /// Appends the content of a telegram that is pushed.
+    pub fn write(&self, encoding: Encoding, out: &mut Vec<u8>) {
+        let mut writer = Writer::command(encoding, b"sSN", NAME, out);
+        self.write_header(&mut writer);
+        self.encoders.write(&mut writer);
+        self.channels_16_bit.write(&mut writer, 2);
+        self.channels_8_bit.write(&mut writer, 1);
+        self.write_tail(&mut writer);
+    }
+
+    fn write_header(&self, writer: &mut Writer<'_>) {
+        writer.u16(self.version);
+        writer.u16(self.device_number);
+        writer.u32(self.serial_number);
+        writer.pair(self.status);
+        writer.u16(self.telegram_counter);
+        writer.u16(self.scan_counter);
+        writer.u32(self.time_since_start_up_us);
+        writer.u32(self.time_of_transmission_us);
+        writer.pair(self.digital_inputs);
+        writer.pair(self.digital_outputs);
+        writer.u16(self.layer_angle_raw.cast_unsigned());
+        writer.u32(self.scan_frequency_raw_1e2_hz);
+        writer.u32(self.measurement_frequency_raw);
+    }
+
+    fn write_tail(&self, writer: &mut Writer<'_>) {
+        writer.flag(self.position.is_some());
+        if let Some(position) = self.position {
+            position.write(writer);
+        }
+        for text in [self.name, self.comment] {
+            writer.flag(text.is_some());
+            if let Some(text) = text {
+                tail::write_text(text, writer);
+            }
+        }
+        writer.flag(self.time.is_some());
+        if let Some(time) = self.time {
+            time.write(writer);
+        }
+        writer.flag(self.event.is_some());
+        if let Some(event) = self.event {
+            event.write(writer);
+        }
+    }
 }
 
 /// A block behind its flag.
 fn optional<'a, T>(
     cursor: &mut Cursor<'a>,
     flag: &'static str,
-    read: impl FnOnce(&mut Cursor<'a>) -> Result<T, LmsError>,
-) -> Result<Option<T>, LmsError> {
+    read: impl FnOnce(&mut Cursor<'a>) -> Result<T, SickError>,
+) -> Result<Option<T>, SickError> {
     if cursor.flag(flag)? {
         return read(cursor).map(Some);
     }
@@ -224,7 +316,7 @@ mod tests {
     #[test]
     fn every_field_of_a_full_telegram() {
         let bytes = full();
-        let data = LmdScanData::read(&bytes).unwrap();
+        let data = LmdScanData::read(Encoding::Binary, &bytes).unwrap();
         assert_eq!((data.version, data.device_number), (1, 7));
         assert_eq!(data.serial_number, 0x0001_0203);
         assert_eq!(data.status, [0, 2]);
@@ -245,7 +337,7 @@ mod tests {
         assert_eq!(data.encoders.collect::<Vec<_>>(), [encoder]);
         assert_eq!(data.channels_16_bit.count(), 0);
         let narrow = data.channels_8_bit.named(b"RSSI1").unwrap();
-        assert_eq!(narrow.values().collect::<Vec<_>>(), [200, 201]);
+        assert_eq!(narrow.values.collect::<Vec<_>>(), [200, 201]);
         let position = data.position.unwrap();
         assert_eq!(
             (position.place, position.rotation_kind),
@@ -266,16 +358,33 @@ mod tests {
     }
 
     #[test]
+    fn every_field_survives_both_encodings() {
+        let bytes = full();
+        let data = LmdScanData::read(Encoding::Binary, &bytes).unwrap();
+        let mut again = Vec::new();
+        data.write(Encoding::Binary, &mut again);
+        assert_eq!(again, bytes);
+        let mut text = Vec::new();
+        data.write(Encoding::Text, &mut text);
+        let expected = "sSN LMDscandata 1 7 10203 0 2 FFFF 0 FFFFFFF0 10 3 0 7 0 F5B2 1388 168 \
+                        1 9 FFFE 0 1 RSSI1 3F800000 0 0 1388 2 C8 C9 \
+                        1 3F800000 40000000 40400000 3DCCCCCD 3E4CCCCD 3E99999A 3 \
+                        1 3 LMS 1 2 hi 1 7B2 1 1 0 32 E 21340 1 FDIN 5 6 FFFFFFFF";
+        assert_eq!(String::from_utf8(text.clone()).unwrap(), expected);
+        assert_eq!(LmdScanData::read(Encoding::Text, &text).unwrap(), data);
+    }
+
+    #[test]
     fn every_shorter_and_every_longer_telegram_is_refused() {
         let mut bytes = full();
         for end in 0..bytes.len() {
-            let error = LmdScanData::read(&bytes[..end]).unwrap_err();
-            assert!(matches!(error, LmsError::Short { .. }), "{end}: {error}");
+            let error = LmdScanData::read(Encoding::Binary, &bytes[..end]).unwrap_err();
+            assert!(matches!(error, SickError::Short { .. }), "{end}: {error}");
         }
         bytes.push(0);
-        let error = LmdScanData::read(&bytes).unwrap_err();
+        let error = LmdScanData::read(Encoding::Binary, &bytes).unwrap_err();
         assert!(
-            matches!(error, LmsError::Trailing { left: 1, .. }),
+            matches!(error, SickError::Trailing { left: 1, .. }),
             "{error}"
         );
     }
@@ -285,7 +394,9 @@ mod tests {
         let refuse = |at: usize, value: u8, expected: &str| {
             let mut bytes = full();
             bytes[at] = value;
-            let text = LmdScanData::read(&bytes).unwrap_err().to_string();
+            let text = LmdScanData::read(Encoding::Binary, &bytes)
+                .unwrap_err()
+                .to_string();
             assert!(text.contains(expected), "{text}");
         };
         refuse(
@@ -311,16 +422,16 @@ mod tests {
             mut bytes in proptest::collection::vec(proptest::num::u8::ANY, 0..300),
             edits in proptest::collection::vec((0usize..200, proptest::num::u8::ANY), 1..6),
         ) {
-            let _ = LmdScanData::read(&bytes);
+            let _ = LmdScanData::read(Encoding::Binary, &bytes);
             bytes.splice(0..0, *b"sSN LMDscandata \0\x01");
-            let _ = LmdScanData::read(&bytes);
+            let _ = LmdScanData::read(Encoding::Binary, &bytes);
             let mut edited = full();
             for (at, value) in edits {
                 if let Some(byte) = edited.get_mut(at) { *byte = value; }
             }
-            if let Ok(data) = LmdScanData::read(&edited) {
+            if let Ok(data) = LmdScanData::read(Encoding::Binary, &edited) {
                 // What was accepted can be iterated to the end.
-                let _ = data.channels_16_bit.chain(data.channels_8_bit).map(|c| c.values().count()).sum::<usize>();
+                let _ = data.channels_16_bit.chain(data.channels_8_bit).map(|c| c.values.count()).sum::<usize>();
                 let _ = data.encoders.count();
             }
         }

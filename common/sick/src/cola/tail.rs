@@ -1,7 +1,8 @@
 //! The optional blocks at the end of a scan telegram.
 
 use super::cursor::{Cursor, field_error};
-use crate::LmsError;
+use super::writer::Writer;
+use crate::SickError;
 
 /// Where the device is mounted, as it was told.
 ///
@@ -66,19 +67,28 @@ pub struct Event {
 }
 
 impl Position {
-    pub(super) fn read(cursor: &mut Cursor<'_>) -> Result<Self, LmsError> {
-        let mut axes =
-            |field| Ok::<_, LmsError>([cursor.f32(field)?, cursor.f32(field)?, cursor.f32(field)?]);
+    pub(super) fn read(cursor: &mut Cursor<'_>) -> Result<Self, SickError> {
+        let mut axes = |field| {
+            Ok::<_, SickError>([cursor.f32(field)?, cursor.f32(field)?, cursor.f32(field)?])
+        };
         Ok(Position {
             place: axes("position")?,
             rotation: axes("rotation")?,
             rotation_kind: cursor.u8_upto("kind of rotation", 3, "0 to 3")?,
         })
     }
+
+    pub(super) fn write(&self, writer: &mut Writer<'_>) {
+        for value in self.place.into_iter().chain(self.rotation) {
+            writer.f32(value);
+        }
+        writer.u8(self.rotation_kind);
+    }
 }
 
 impl DeviceTime {
-    pub(super) fn read(cursor: &mut Cursor<'_>) -> Result<Self, LmsError> {
+    pub(super) fn read(cursor: &mut Cursor<'_>) -> Result<Self, SickError> {
+        let offset;
         let time = DeviceTime {
             year: cursor.u16("year")?,
             month: cursor.u8_upto("month", 12, "0 to 12")?,
@@ -86,12 +96,14 @@ impl DeviceTime {
             hour: cursor.u8_upto("hour", 23, "0 to 23")?,
             minute: cursor.u8_upto("minute", 59, "0 to 59")?,
             second: cursor.u8_upto("second", 60, "0 to 60")?,
-            microsecond: cursor.u32("microsecond")?,
+            microsecond: {
+                offset = cursor.offset();
+                cursor.u32("microsecond")?
+            },
         };
         if time.microsecond < 1_000_000 {
             return Ok(time);
         }
-        let offset = cursor.offset() - 4;
         Err(field_error(
             "microsecond",
             offset,
@@ -99,46 +111,72 @@ impl DeviceTime {
             "0 to 999999",
         ))
     }
+
+    pub(super) fn write(&self, writer: &mut Writer<'_>) {
+        writer.u16(self.year);
+        for value in [self.month, self.day, self.hour, self.minute, self.second] {
+            writer.u8(value);
+        }
+        writer.u32(self.microsecond);
+    }
 }
 
 impl Event {
-    pub(super) fn read(cursor: &mut Cursor<'_>) -> Result<Self, LmsError> {
+    pub(super) fn read(cursor: &mut Cursor<'_>) -> Result<Self, SickError> {
         Ok(Event {
-            kind: cursor.bytes("kind of event")?,
+            kind: cursor.letters("kind of event")?,
             encoder_position: cursor.u32("encoder position of the event")?,
             time_us: cursor.u32("time of the event")?,
             angle_raw_1e4_deg: cursor.i32("angle of the event")?,
         })
     }
+
+    pub(super) fn write(&self, writer: &mut Writer<'_>) {
+        writer.characters(&self.kind);
+        writer.u32(self.encoder_position);
+        writer.u32(self.time_us);
+        writer.i32(self.angle_raw_1e4_deg);
+    }
 }
 
 /// A name or comment: its length in one byte, then its characters.
-pub(super) fn text<'a>(cursor: &mut Cursor<'a>, field: &'static str) -> Result<&'a [u8], LmsError> {
+pub(super) fn text<'a>(
+    cursor: &mut Cursor<'a>,
+    field: &'static str,
+) -> Result<&'a [u8], SickError> {
     let length = cursor.u8(field)?;
-    cursor.take(field, usize::from(length))
+    cursor.characters(field, usize::from(length))
+}
+
+/// Writes a name or comment; what is beyond 255 characters is left out.
+pub(super) fn write_text(text: &[u8], writer: &mut Writer<'_>) {
+    let text = text.get(..255).unwrap_or(text);
+    writer.u8(text.len() as u8);
+    writer.characters(text);
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::cola::Encoding;
+
+    fn over(bytes: &[u8]) -> Cursor<'_> {
+        Cursor::new(Encoding::Binary, bytes, 0)
+    }
 
     #[test]
     fn a_clock_out_of_range_is_refused_with_its_place() {
         let mut bytes = [0x07, 0xe8, 2, 29, 23, 59, 59, 0, 0x0f, 0x42, 0x3f];
-        let time = DeviceTime::read(&mut Cursor::new(&bytes)).unwrap();
+        let time = DeviceTime::read(&mut over(&bytes)).unwrap();
         assert_eq!((time.year, time.day, time.microsecond), (2024, 29, 999_999));
         bytes[10] += 1;
-        let text = DeviceTime::read(&mut Cursor::new(&bytes))
-            .unwrap_err()
-            .to_string();
+        let text = DeviceTime::read(&mut over(&bytes)).unwrap_err().to_string();
         assert_eq!(
             text,
             "byte 7 of the telegram: `microsecond` is 1000000, allowed is 0 to 999999"
         );
         bytes[4] = 24;
-        let text = DeviceTime::read(&mut Cursor::new(&bytes))
-            .unwrap_err()
-            .to_string();
+        let text = DeviceTime::read(&mut over(&bytes)).unwrap_err().to_string();
         assert!(
             text.contains("byte 4") && text.contains("`hour` is 24"),
             "{text}"

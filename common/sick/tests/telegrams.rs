@@ -5,10 +5,10 @@
     reason = "the lint spares test functions but not what they share"
 )]
 
-use lms_reader::LmsError;
-use lms_reader::cola_b::{Frame, Framer, LmdScanData, Telegram};
 use proptest::prelude::*;
 use serde_json::Value;
+use sick::cola::{Encoding, Framer, LmdScanData, Telegram};
+use sick::{Frame, SickError};
 
 const CAPTURE: &[u8] = include_bytes!("data/tim781_colab_telegrams.bin");
 const MANIFEST: &str = include_str!("data/tim781_manifest.json");
@@ -18,9 +18,9 @@ const TELEGRAM: usize = 3374;
 /// Feeds pieces; hands each frame or error to `see` in order.
 fn read<'a>(
     pieces: impl IntoIterator<Item = &'a [u8]>,
-    mut see: impl FnMut(Result<Frame<'_>, LmsError>),
+    mut see: impl FnMut(Result<Frame<'_, Telegram<'_>>, SickError>),
 ) {
-    let mut framer = Framer::default();
+    let mut framer = Framer::new(Encoding::Binary);
     for piece in pieces {
         framer.push(piece);
         while let Some(next) = framer.next_frame() {
@@ -56,7 +56,7 @@ fn every_field_of_the_real_telegrams() {
     assert_eq!((index, manifest.len()), (16, 16));
 }
 
-fn check(frame: &Frame<'_>, expected: &Value, index: usize) {
+fn check(frame: &Frame<'_, Telegram<'_>>, expected: &Value, index: usize) {
     let Telegram::ScanData(data) = &frame.telegram else {
         panic!("telegram {index} is {:?}", frame.telegram);
     };
@@ -93,8 +93,8 @@ fn check_channels(data: &LmdScanData<'_>, expected: &[Value]) {
         assert_eq!(degrees(channel.start_angle_raw_1e4_deg.into()), expected[3]);
         assert_eq!(degrees(channel.step_raw_1e4_deg.into()), expected[4]);
         assert_eq!(channel.len() as u64, expected[5].as_u64().unwrap());
-        let least = channel.values().min().map(u64::from);
-        let most = channel.values().max().map(u64::from);
+        let least = channel.values.min().map(u64::from);
+        let most = channel.values.max().map(u64::from);
         assert_eq!((least, most), (expected[6].as_u64(), expected[7].as_u64()));
     }
     assert_eq!(data.channels_8_bit.clone().count(), 0);
@@ -115,6 +115,21 @@ fn check_tail(data: &LmdScanData<'_>, content: &[u8], expected: &str) {
     assert_eq!(time.minute, 50);
     let hex = format!("{:02x}{:08x}", time.second, time.microsecond);
     assert_eq!(hex, expected[expected.len() - 14..expected.len() - 4]);
+}
+
+#[test]
+fn the_real_telegrams_say_the_same_in_text_and_binary_again() {
+    read([CAPTURE], |next| {
+        let frame = next.unwrap();
+        let mut binary = Vec::new();
+        frame.telegram.write(Encoding::Binary, &mut binary);
+        assert_eq!(binary, frame.content);
+        let mut text = Vec::new();
+        frame.telegram.write(Encoding::Text, &mut text);
+        assert!(text.is_ascii());
+        let read = Telegram::read(Encoding::Text, &text).unwrap();
+        assert_eq!(read, frame.telegram);
+    });
 }
 
 #[test]

@@ -1,0 +1,119 @@
+//! What a device answers.
+
+use super::cursor::Cursor;
+use super::writer::Writer;
+use super::{Encoding, Fault, ScanConfig, Value, Variable, lmd_scan_data};
+use crate::SickError;
+
+/// An answer.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Answer<'a> {
+    /// `sRA`: what a variable holds.
+    Value(Value<'a>),
+    /// `sWA`: a variable was written.
+    Written(Variable),
+    /// `sAN SetAccessMode`: whether the login succeeded.
+    AccessMode(bool),
+    /// `sAN mLMPsetscancfg`: u8, 0 where the device now scans as this says.
+    ScanConfigSet {
+        /// 0 done, 1 wrong frequency, 2 wrong resolution, 3 both it and the
+        /// field are wrong, 4 wrong field, 5 other error.
+        status: u8,
+        /// How the device scans now.
+        config: ScanConfig,
+    },
+    /// `sAN mEEwriteall`: whether the settings were kept.
+    ParametersStored(bool),
+    /// `sAN LMCstartmeas`: u8, 0 where it was done, 1 where it is not allowed.
+    MeasurementStarted(u8),
+    /// `sAN Run`: whether the device runs.
+    Running(bool),
+    /// `sEA LMDscandata`: whether it sends every scan.
+    ScansSubscribed(bool),
+    /// `sFA`: the device refuses.
+    Fault(Fault),
+}
+
+impl<'a> Answer<'a> {
+    /// Reads the parameters of an answer; `None` where it is not understood.
+    pub(super) fn read(
+        letters: &[u8; 3],
+        name: &[u8],
+        cursor: &mut Cursor<'a>,
+    ) -> Result<Option<Self>, SickError> {
+        let variable = Variable::named(name);
+        let answer = match (letters, variable) {
+            (b"sRA", Some(variable)) => Answer::Value(Value::read(variable, cursor)?),
+            (b"sWA", Some(variable)) => Answer::Written(variable),
+            (b"sAN", _) => match Self::read_result(name, cursor)? {
+                Some(result) => result,
+                None => return Ok(None),
+            },
+            (b"sEA", _) if name == lmd_scan_data::NAME => {
+                Answer::ScansSubscribed(cursor.bool("start or stop")?)
+            }
+            _ => return Ok(None),
+        };
+        cursor.end()?;
+        Ok(Some(answer))
+    }
+
+    fn read_result(name: &[u8], cursor: &mut Cursor<'a>) -> Result<Option<Self>, SickError> {
+        Ok(Some(match name {
+            b"SetAccessMode" => Answer::AccessMode(cursor.bool("success")?),
+            b"mLMPsetscancfg" => Answer::ScanConfigSet {
+                status: cursor.u8_upto("status", 5, "0 to 5")?,
+                config: ScanConfig::read(cursor)?,
+            },
+            b"mEEwriteall" => Answer::ParametersStored(cursor.bool("success")?),
+            b"LMCstartmeas" => Answer::MeasurementStarted(cursor.bool("error")?.into()),
+            b"Run" => Answer::Running(cursor.bool("success")?),
+            _ => return Ok(None),
+        }))
+    }
+
+    /// Reads what follows `sFA`: in CoLa B two bytes with or without a space
+    /// before them.
+    pub(super) fn read_fault(encoding: Encoding, rest: &[u8]) -> Result<Self, SickError> {
+        let code = match rest {
+            [b' ', code @ ..] if encoding == Encoding::Text || rest.len() == 3 => code,
+            code => code,
+        };
+        let mut cursor = Cursor::new(encoding, code, 3 + rest.len() - code.len());
+        let fault = cursor.u16("error code")?;
+        cursor.end()?;
+        Ok(Answer::Fault(Fault(fault)))
+    }
+
+    /// Appends the content.
+    pub fn write(&self, encoding: Encoding, out: &mut Vec<u8>) {
+        match self {
+            Answer::Value(value) => {
+                let name = value.variable().name().as_bytes();
+                value.write(&mut Writer::command(encoding, b"sRA", name, out));
+            }
+            Answer::Written(variable) => Writer::bare(b"sWA", variable.name().as_bytes(), out),
+            Answer::AccessMode(success) => {
+                Writer::command(encoding, b"sAN", b"SetAccessMode", out).bool(*success);
+            }
+            Answer::ScanConfigSet { status, config } => {
+                let mut writer = Writer::command(encoding, b"sAN", b"mLMPsetscancfg", out);
+                writer.u8(*status);
+                config.write(&mut writer);
+            }
+            Answer::ParametersStored(success) => {
+                Writer::command(encoding, b"sAN", b"mEEwriteall", out).bool(*success);
+            }
+            Answer::MeasurementStarted(error) => {
+                Writer::command(encoding, b"sAN", b"LMCstartmeas", out).u8(*error);
+            }
+            Answer::Running(success) => {
+                Writer::command(encoding, b"sAN", b"Run", out).bool(*success);
+            }
+            Answer::ScansSubscribed(on) => {
+                Writer::command(encoding, b"sEA", lmd_scan_data::NAME, out).bool(*on);
+            }
+            Answer::Fault(fault) => Writer::fault(encoding, fault.0, out),
+        }
+    }
+}

@@ -1,0 +1,133 @@
+//! CoLa A frames.
+//!
+//! | bytes | what |
+//! |---|---|
+//! | 1 | start: `02` |
+//! | n | content: printable characters |
+//! | 1 | end: `03` |
+//!
+//! There is no checksum: a changed digit goes unseen. What is noticed is a
+//! telegram that is cut off or whose words cannot be read.
+
+use crate::SickError;
+use crate::framer::{Judgement, Pending};
+
+/// The longest content that is believed: each byte of the longest CoLa B
+/// telegram may take three characters.
+pub const MAX_CONTENT: usize = 3 * super::cola_b::MAX_CONTENT;
+
+const START: u8 = 2;
+const END: u8 = 3;
+
+/// Appends a telegram around what `write` appends.
+pub fn frame(out: &mut Vec<u8>, write: impl FnOnce(&mut Vec<u8>)) {
+    out.push(START);
+    write(out);
+    out.push(END);
+}
+
+pub(super) fn judge(pending: Pending<'_>) -> Judgement {
+    let offset = pending.offset;
+    let (&found, rest) = match pending.bytes.split_first() {
+        Some((&START, rest)) => match rest.first() {
+            None => return Judgement::Incomplete,
+            Some(found) => (found, rest),
+        },
+        Some((&found, _)) => {
+            return Judgement::Rejected(SickError::NoTelegram {
+                offset,
+                found,
+                expected: "a CoLa A telegram starts with 02",
+            });
+        }
+        None => return Judgement::Incomplete,
+    };
+    if found != b's' {
+        return Judgement::Rejected(SickError::NotACommand { offset, found });
+    }
+    match rest.iter().position(|&byte| byte == START || byte == END) {
+        Some(length) if length > MAX_CONTENT => Judgement::Rejected(SickError::Endless { offset }),
+        Some(length) if rest.get(length) == Some(&START) => {
+            Judgement::Rejected(SickError::CutOff {
+                offset,
+                present: length + 1,
+            })
+        }
+        Some(length) => Judgement::Frame {
+            prefix: 1,
+            length,
+            suffix: 1,
+        },
+        None if rest.len() > MAX_CONTENT => Judgement::Rejected(SickError::Endless { offset }),
+        None => Judgement::Incomplete,
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use crate::cola::{Encoding, Framer};
+
+    /// What a stream holds: `content@offset` of telegrams, `!` and an error's text.
+    fn read(pieces: &[&[u8]]) -> Vec<String> {
+        let mut framer = Framer::new(Encoding::Text);
+        let mut seen = Vec::new();
+        let mut drain = |framer: &mut Framer| {
+            while let Some(next) = framer.next_frame() {
+                seen.push(match next {
+                    Ok(f) => format!("{}@{}", String::from_utf8_lossy(f.content), f.offset),
+                    Err(error) => format!("!{error}"),
+                });
+            }
+        };
+        for piece in pieces {
+            framer.push(piece);
+            drain(&mut framer);
+        }
+        framer.finish();
+        drain(&mut framer);
+        seen
+    }
+
+    #[test]
+    fn telegrams_come_back_to_back_and_between_garbage() {
+        let seen = read(&[b"\x02sAN one\x03\x02sAN two\x03"]);
+        assert_eq!(seen, ["sAN one@0", "sAN two@9"]);
+        let seen = read(&[b"x\x02\x02sAN one\x03y\x02sAN two\x03"]);
+        assert_eq!(seen.len(), 4, "{seen:?}");
+        assert_eq!((&*seen[1], &*seen[3]), ("sAN one@2", "sAN two@12"));
+    }
+
+    #[test]
+    fn a_telegram_without_its_end_costs_itself_alone() {
+        let seen = read(&[b"\x02sAN on\x02sAN two\x03\x02sAN"]);
+        assert!(seen[0].contains("cut off by another one after 7 bytes"));
+        assert_eq!(seen[1], "sAN two@7");
+        assert!(seen[2].contains("ends 4 bytes into"), "{seen:?}");
+    }
+
+    #[test]
+    fn binary_telegrams_are_refused() {
+        let seen = read(&[b"\x02\x02\x02\x02\0\0\0\x07sAN one\x42"]);
+        assert!(
+            seen[0].contains("starts with 0x02, every command"),
+            "{seen:?}"
+        );
+    }
+
+    proptest::proptest! {
+        #[test]
+        fn any_split_gives_the_same(
+            contents in proptest::collection::vec("s[a-z ]{2,20}", 0..6),
+            garbage in proptest::collection::vec(0u8..4, 0..12),
+            cut in 1usize..9,
+        ) {
+            let mut stream = garbage.clone();
+            for content in &contents {
+                stream.extend([&[2], content.as_bytes(), &[3]].concat());
+                stream.extend(&garbage);
+            }
+            let pieces: Vec<&[u8]> = stream.chunks(cut).collect();
+            proptest::prop_assert_eq!(read(&pieces), read(&[&stream]));
+        }
+    }
+}

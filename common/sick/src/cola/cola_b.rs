@@ -1,0 +1,236 @@
+//! CoLa B frames.
+//!
+//! | bytes | what |
+//! |---|---|
+//! | 4 | start: `02 02 02 02` |
+//! | 4 | length of the content, u32 |
+//! | n | content: a command of three letters, a space, a name, parameters |
+//! | 1 | XOR of the content |
+//!
+//! The checksum alone is weak: a length that is too large by two takes in the
+//! checksum and a byte of the next start, whose XOR equals the byte after.
+
+use super::Cola;
+use crate::SickError;
+use crate::framer::{Judgement, Pending};
+
+/// Bytes that start every telegram.
+const START: [u8; 4] = [2; 4];
+/// The shortest content: a command of three letters.
+pub const MIN_CONTENT: usize = 3;
+/// The longest content that is believed. Five echoes with distance and
+/// remission at the finest resolution of the LMS5xx take about 23 kB.
+pub const MAX_CONTENT: usize = 1 << 17;
+/// Bytes before the content: start and length.
+const PREFIX: usize = 8;
+
+/// Appends a telegram around what `write` appends.
+pub fn frame(out: &mut Vec<u8>, write: impl FnOnce(&mut Vec<u8>)) {
+    let start = out.len();
+    out.extend_from_slice(&START);
+    out.extend_from_slice(&[0; 4]);
+    write(out);
+    let content = out.get(start + PREFIX..).unwrap_or_default();
+    let length = u32::try_from(content.len()).unwrap_or(u32::MAX);
+    let checksum = content.iter().fold(0, |parity, byte| parity ^ byte);
+    if let Some(claim) = out.get_mut(start + 4..start + PREFIX) {
+        claim.copy_from_slice(&length.to_be_bytes());
+    }
+    out.push(checksum);
+}
+
+pub(super) fn judge(cola: &Cola, pending: Pending<'_>) -> Judgement {
+    let offset = pending.offset;
+    let Some((&start, rest)) = pending.bytes.split_first_chunk::<4>() else {
+        return Judgement::Incomplete;
+    };
+    if start != START {
+        return Judgement::Rejected(SickError::NoStart {
+            offset,
+            found: start,
+        });
+    }
+    let Some((&claim, rest)) = rest.split_first_chunk::<4>() else {
+        return Judgement::Incomplete;
+    };
+    let found = u32::from_be_bytes(claim);
+    let length = found as usize;
+    if !(MIN_CONTENT..=MAX_CONTENT).contains(&length) {
+        return Judgement::Rejected(SickError::Length { offset, found });
+    }
+    match (rest.first(), rest.get(length)) {
+        (Some(&found), _) if found != b's' => {
+            Judgement::Rejected(SickError::NotACommand { offset, found })
+        }
+        (_, Some(&found)) => {
+            let computed = cola.xor(pending.at + PREFIX, length);
+            if computed == found {
+                return Judgement::Frame {
+                    prefix: PREFIX,
+                    length,
+                    suffix: 1,
+                };
+            }
+            Judgement::Rejected(SickError::Checksum {
+                offset,
+                length,
+                found: found.into(),
+                computed: computed.into(),
+            })
+        }
+        _ => Judgement::Incomplete,
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::START;
+    use crate::cola::{Encoding, Framer};
+
+    fn frame(content: &[u8]) -> Vec<u8> {
+        let mut out = Vec::new();
+        super::frame(&mut out, |out| out.extend(content));
+        out
+    }
+
+    /// What a stream holds: `content@offset` of telegrams, `!` and an error's text.
+    fn read(pieces: &[&[u8]]) -> Vec<String> {
+        let mut framer = Framer::new(Encoding::Binary);
+        let mut seen = Vec::new();
+        let mut drain = |framer: &mut Framer| {
+            while let Some(next) = framer.next_frame() {
+                seen.push(match next {
+                    Ok(f) => format!("{}@{}", String::from_utf8_lossy(f.content), f.offset),
+                    Err(error) => format!("!{error}"),
+                });
+            }
+        };
+        for piece in pieces {
+            framer.push(piece);
+            drain(&mut framer);
+        }
+        framer.finish();
+        drain(&mut framer);
+        seen
+    }
+
+    fn telegrams(contents: &[&str]) -> Vec<u8> {
+        contents.iter().flat_map(|c| frame(c.as_bytes())).collect()
+    }
+
+    #[test]
+    fn telegrams_come_back_to_back() {
+        let stream = telegrams(&["sAN one", "sSN two"]);
+        assert_eq!(read(&[&stream]), ["sAN one@0", "sSN two@16"]);
+    }
+
+    #[test]
+    fn garbage_between_telegrams_costs_none_of_them() {
+        // The stray 02 is the nastiest: it looks like the start of the next start.
+        let stream = [telegrams(&["sAN one"]), vec![9, 2], telegrams(&["sAN two"])].concat();
+        let seen = read(&[&stream]);
+        assert_eq!(seen.len(), 3, "{seen:?}");
+        assert!(seen[1].contains("byte 16"), "{seen:?}");
+        assert_eq!(seen[2], "sAN two@18");
+    }
+
+    #[test]
+    fn a_wrong_checksum_is_reported_and_the_next_telegram_read() {
+        let mut stream = telegrams(&["sAN one", "sAN two"]);
+        stream[10] ^= 0x40;
+        let seen = read(&[&stream]);
+        assert!(seen[0].starts_with("!byte 0 of the stream: the checksum of 7"));
+        assert_eq!(seen[1..], ["sAN two@16"]);
+    }
+
+    #[test]
+    fn a_length_that_swallows_the_next_telegrams_gives_them_back() {
+        let mut stream = telegrams(&["sAN one", "sAN two", "sAN three"]);
+        stream[7] += 16;
+        let seen = read(&[&stream]);
+        assert_eq!(seen[1..], ["sAN two@16", "sAN three@32"]);
+        // The same where the claim reaches beyond the end of the stream.
+        stream[6] = 0x10;
+        let seen = read(&[&stream]);
+        assert!(seen[0].contains("ends 50 bytes into"), "{seen:?}");
+        assert_eq!(seen[1..], ["sAN two@16", "sAN three@32"]);
+    }
+
+    #[test]
+    fn a_length_too_large_by_two_fits_the_checksum_but_not_the_content() {
+        let scan = b"sSN LMDscandata \0\x01";
+        let stream = [frame(b"sEA LMDscandata \x01"), frame(b"sAN two")].concat();
+        let mut damaged = stream.clone();
+        damaged[7] += 2;
+        let seen = read(&[&damaged]);
+        assert!(seen[0].contains("cannot be read"), "{seen:?}");
+        assert_eq!(seen[1..], [format!("sAN two@{}", stream.len() - 16)]);
+        let seen = read(&[&frame(scan)]);
+        assert!(
+            seen[0].contains("`device number` takes 2 bytes"),
+            "{seen:?}"
+        );
+    }
+
+    #[test]
+    fn a_start_inside_the_content_is_content() {
+        let inner = String::from_utf8(telegrams(&["sAN in"])).unwrap();
+        let stream = telegrams(&[&format!("sSN {inner}"), "sAN out"]);
+        let seen = read(&[&stream]);
+        assert_eq!(seen.len(), 2);
+        assert!(seen[1].starts_with("sAN out"));
+    }
+
+    #[test]
+    fn refusals_say_what_is_allowed() {
+        let huge = [&START[..], &[0x40, 0, 0, 0, b's']].concat();
+        assert!(read(&[&huge])[0].contains("1073741824 bytes of content, allowed are 3 to 131072"));
+        let other = [&START[..], &[0, 0, 0, 3, b'x', 0, 0, 0]].concat();
+        assert!(read(&[&other])[0].contains("starts with 0x78, every command with 's'"));
+        assert!(read(&[b"\x02sSN LMDscandata"])[0].contains("set the device to CoLa binary"));
+        assert!(read(&[&telegrams(&["sAN one"])[..9]])[0].contains("ends 9 bytes into"));
+    }
+
+    #[test]
+    fn memory_is_bounded_by_the_longest_telegram() {
+        let mut framer = Framer::new(Encoding::Binary);
+        let telegram = frame(b"sAN a telegram of the usual kind");
+        for _ in 0..10_000 {
+            framer.push(&telegram);
+            assert!(matches!(framer.next_frame(), Some(Ok(_))));
+        }
+        assert!(framer.capacity() < 1024, "{}", framer.capacity());
+    }
+
+    proptest::proptest! {
+        #[test]
+        fn any_split_gives_the_same(
+            contents in proptest::collection::vec("s[a-z \u{2}]{2,20}", 0..6),
+            garbage in proptest::collection::vec(0u8..4, 0..12),
+            cuts in proptest::collection::vec(1usize..9, 1..20),
+        ) {
+            let mut stream = garbage.clone();
+            for content in &contents {
+                stream.extend(frame(content.as_bytes()));
+                stream.extend(&garbage);
+            }
+            let mut pieces = Vec::new();
+            let mut rest = &stream[..];
+            for cut in cuts.iter().cycle() {
+                let (piece, tail) = rest.split_at((*cut).min(rest.len()));
+                pieces.push(piece);
+                rest = tail;
+                if rest.is_empty() { break; }
+            }
+            proptest::prop_assert_eq!(read(&pieces), read(&[&stream]));
+        }
+
+        #[test]
+        fn no_bytes_panic(bytes in proptest::collection::vec(proptest::num::u8::ANY, 0..400)) {
+            let _ = read(&[&bytes]);
+            // Mostly starts, so that the rules behind them are reached as well.
+            let starts: Vec<u8> = bytes.iter().map(|b| if *b < 200 { 2 } else { b & 3 }).collect();
+            let _ = read(&[&starts]);
+        }
+    }
+}

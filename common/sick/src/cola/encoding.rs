@@ -1,0 +1,91 @@
+//! The two encodings, and a framer for either.
+
+use super::{Telegram, cola_a, cola_b};
+use crate::SickError;
+use crate::framer::{self, Judgement, Pending, Protocol};
+
+/// How telegrams are written.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+pub enum Encoding {
+    /// CoLa A: text between 02 and 03, no checksum.
+    Text,
+    /// CoLa B: big-endian numbers, a length and a checksum.
+    #[default]
+    Binary,
+}
+
+impl Encoding {
+    /// Appends a telegram with everything around it. A content beyond
+    /// [`cola_b::MAX_CONTENT`] would not be read again.
+    pub fn frame(self, telegram: &Telegram<'_>, out: &mut Vec<u8>) {
+        match self {
+            Encoding::Text => cola_a::frame(out, |out| telegram.write(self, out)),
+            Encoding::Binary => cola_b::frame(out, |out| telegram.write(self, out)),
+        }
+    }
+}
+
+/// CoLa as a protocol: an encoding, and what its checksum needs.
+#[derive(Debug, Default)]
+pub struct Cola {
+    encoding: Encoding,
+    /// XOR of the buffered bytes up to and including the same index, and of an
+    /// arbitrary constant that drops out of every difference: it gives the
+    /// checksum of any stretch at once, so that even a stream of nothing but
+    /// false starts costs linear time.
+    parity: Vec<u8>,
+}
+
+/// Finds CoLa telegrams of either direction in a stream.
+pub type Framer = framer::Framer<Cola>;
+
+impl Framer {
+    /// A framer at the start of a stream in this encoding.
+    #[must_use]
+    pub fn new(encoding: Encoding) -> Self {
+        Framer::of(Cola {
+            encoding,
+            parity: Vec::new(),
+        })
+    }
+}
+
+impl Cola {
+    /// XOR of `length` buffered bytes from `start` on, of which one is before.
+    pub(super) fn xor(&self, start: usize, length: usize) -> u8 {
+        let upto = |end: usize| self.parity.get(end - 1).copied().unwrap_or(0);
+        upto(start + length) ^ upto(start)
+    }
+}
+
+impl Protocol for Cola {
+    type Telegram<'a> = Telegram<'a>;
+
+    fn extend(&mut self, piece: &[u8]) {
+        if self.encoding == Encoding::Text {
+            return;
+        }
+        let mut parity = self.parity.last().copied().unwrap_or(0);
+        self.parity.extend(piece.iter().map(|byte| {
+            parity ^= byte;
+            parity
+        }));
+    }
+
+    fn release(&mut self, count: usize) {
+        if self.encoding == Encoding::Binary {
+            self.parity.drain(..count);
+        }
+    }
+
+    fn judge(&self, pending: Pending<'_>) -> Judgement {
+        match self.encoding {
+            Encoding::Text => cola_a::judge(pending),
+            Encoding::Binary => cola_b::judge(self, pending),
+        }
+    }
+
+    fn read<'a>(&self, content: &'a [u8]) -> Result<Telegram<'a>, SickError> {
+        Telegram::read(self.encoding, content)
+    }
+}

@@ -1,0 +1,85 @@
+//! Why a device refused a command.
+
+use std::fmt;
+
+/// SICK's number of an error; it displays with its meaning.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub struct Fault(pub u16);
+
+/// The meanings by their numbers (SICK, "Telegram listing", error codes).
+const MEANINGS: [&str; 27] = [
+    "no error",
+    "the user level does not allow this method",
+    "unknown method",
+    "unknown variable",
+    "a condition is violated, such as a value out of its range",
+    "invalid data",
+    "unknown error",
+    "too many bytes",
+    "too few bytes",
+    "unknown type",
+    "the user level does not allow writing this variable",
+    "unknown command for the name server",
+    "unknown CoLa command",
+    "the method is still busy",
+    "an array is longer than allowed",
+    "unknown event",
+    "a number of CoLa A is too large",
+    "an invalid character in CoLa A",
+    "no message from the operating system",
+    "no answer from the operating system",
+    "internal error",
+    "the hub address is corrupted",
+    "the hub address cannot be decoded",
+    "the hub address is too long",
+    "a blank is missing in the hub address",
+    "asynchronous methods are suppressed",
+    "complex arrays are not supported",
+];
+
+impl Fault {
+    /// The user level does not allow a method.
+    pub const METHOD_DENIED: Fault = Fault(1);
+    /// There is no such method.
+    pub const UNKNOWN_METHOD: Fault = Fault(2);
+    /// There is no such variable.
+    pub const UNKNOWN_VARIABLE: Fault = Fault(3);
+    /// A value is out of its range.
+    pub const OUT_OF_RANGE: Fault = Fault(4);
+    /// The parameters cannot be read.
+    pub const INVALID_DATA: Fault = Fault(5);
+    /// The user level does not allow writing.
+    pub const WRITE_DENIED: Fault = Fault(0xa);
+    /// There is no such command.
+    pub const UNKNOWN_COMMAND: Fault = Fault(0xc);
+    /// There is no such event.
+    pub const UNKNOWN_EVENT: Fault = Fault(0xf);
+
+    /// What SICK says that the number means.
+    #[must_use]
+    pub fn meaning(self) -> &'static str {
+        let meaning = MEANINGS.get(usize::from(self.0));
+        meaning.copied().unwrap_or("not in SICK's listing")
+    }
+}
+
+impl fmt::Display for Fault {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        write!(f, "{:#x}: {}", self.0, self.meaning())
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn numbers_come_with_their_meaning() {
+        assert_eq!(
+            Fault::UNKNOWN_COMMAND.to_string(),
+            "0xc: unknown CoLa command"
+        );
+        assert_eq!(Fault(0x1a).meaning(), "complex arrays are not supported");
+        assert_eq!(Fault(999).to_string(), "0x3e7: not in SICK's listing");
+    }
+}

@@ -1,0 +1,44 @@
+//! CoLa, the command language of SICK's newer devices, in both encodings.
+//!
+//! Commands, answers and scans are the same in both; numbers are big-endian in
+//! CoLa B, and in CoLa A words of hexadecimal digits, or of decimal ones after a
+//! sign, with a space before each.
+//!
+//! | host sends | device answers | |
+//! |---|---|---|
+//! | `sRN` name | `sRA` name value | reads a variable |
+//! | `sWN` name value | `sWA` name | writes a variable |
+//! | `sMN` name arguments | `sAN` name result | calls a method |
+//! | `sEN` name 0 or 1 | `sEA` name 0 or 1, then `sSN` name value | subscribes to an event |
+//! | anything | `sFA` code | the device refuses |
+//!
+//! Understood is what a stream of scans and its set-up need ([`Command`],
+//! [`Answer`]); the rest stays [`Telegram::Other`].
+
+mod answer;
+mod channel;
+pub mod cola_a;
+pub mod cola_b;
+mod command;
+mod cursor;
+mod encoding;
+mod fault;
+mod lmd_scan_data;
+mod settings;
+mod tail;
+mod telegram;
+mod values;
+mod variable;
+mod writer;
+
+pub use answer::Answer;
+pub use channel::{Channel, Channels};
+pub use command::{AUTHORIZED_CLIENT, Command, Method, PASSWORD_AUTHORIZED_CLIENT};
+pub use encoding::{Cola, Encoding, Framer};
+pub use fault::Fault;
+pub use lmd_scan_data::{Encoder, Encoders, LmdScanData};
+pub use settings::{OutputRange, ScanConfig, ScanDataConfig};
+pub use tail::{DeviceTime, Event, Position};
+pub use telegram::Telegram;
+pub use values::Values;
+pub use variable::{Value, Variable};

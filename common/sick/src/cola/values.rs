@@ -1,0 +1,110 @@
+//! The values of a channel, wherever they lie.
+
+use super::Encoding;
+use super::cursor::{Cursor, leading_hex};
+use super::writer::Writer;
+use crate::SickError;
+
+/// Values of 16 bits, or of 8 that are read as such; iterating decodes them in
+/// place.
+#[derive(Debug, Clone, Copy)]
+pub struct Values<'a> {
+    place: Place<'a>,
+    count: usize,
+}
+
+#[derive(Debug, Clone, Copy)]
+enum Place<'a> {
+    /// Big-endian, two bytes each.
+    Wide(&'a [u8]),
+    /// A byte each.
+    Narrow(&'a [u8]),
+    /// Hexadecimal words with a space between.
+    Words(&'a [u8]),
+    /// In memory.
+    Listed(&'a [u16]),
+}
+
+impl<'a> Values<'a> {
+    /// Takes `count` values of `width` bytes off a content, and checks them.
+    pub(super) fn read(
+        cursor: &mut Cursor<'a>,
+        count: usize,
+        width: usize,
+    ) -> Result<Self, SickError> {
+        let place = match (cursor.encoding(), width) {
+            (Encoding::Text, _) => {
+                let text = cursor.rest();
+                for _ in 0..count {
+                    cursor.number("values", 8 * width as u32)?;
+                }
+                Place::Words(text)
+            }
+            (Encoding::Binary, 1) => Place::Narrow(cursor.take("values", count)?),
+            (Encoding::Binary, _) => Place::Wide(cursor.take("values", count * 2)?),
+        };
+        Ok(Values { place, count })
+    }
+
+    pub(super) fn write(self, writer: &mut Writer<'_>, width: usize) {
+        for value in self {
+            match width {
+                1 => writer.u8(value as u8),
+                _ => writer.u16(value),
+            }
+        }
+    }
+}
+
+impl<'a> From<&'a [u16]> for Values<'a> {
+    fn from(values: &'a [u16]) -> Self {
+        Values {
+            place: Place::Listed(values),
+            count: values.len(),
+        }
+    }
+}
+
+impl Iterator for Values<'_> {
+    type Item = u16;
+
+    fn next(&mut self) -> Option<u16> {
+        self.count = self.count.checked_sub(1)?;
+        match &mut self.place {
+            Place::Wide(bytes) => {
+                let (value, rest) = bytes.split_first_chunk::<2>()?;
+                *bytes = rest;
+                Some(u16::from_be_bytes(*value))
+            }
+            Place::Narrow(bytes) => {
+                let (value, rest) = bytes.split_first()?;
+                *bytes = rest;
+                Some((*value).into())
+            }
+            Place::Words(text) => next_word(text),
+            Place::Listed(values) => {
+                let (value, rest) = values.split_first()?;
+                *values = rest;
+                Some(*value)
+            }
+        }
+    }
+
+    fn size_hint(&self) -> (usize, Option<usize>) {
+        (self.count, Some(self.count))
+    }
+}
+
+impl ExactSizeIterator for Values<'_> {}
+
+/// Takes a word off text that has been checked.
+fn next_word(text: &mut &[u8]) -> Option<u16> {
+    if let Some((value, length)) = leading_hex(text) {
+        *text = text.get(length + 1..).unwrap_or_default();
+        return Some(value as u16);
+    }
+    let mut cursor = Cursor::new(Encoding::Text, text, 0);
+    let value = cursor.number("values", 16).ok()?;
+    *text = cursor.rest();
+    Some(value as u16)
+}

@@ -1,0 +1,101 @@
+//! Appends fields to a content, in either encoding.
+//!
+//! It mirrors the cursor: what one writes the other reads.
+
+use super::Encoding;
+
+#[derive(Debug)]
+pub(crate) struct Writer<'a> {
+    out: &'a mut Vec<u8>,
+    encoding: Encoding,
+}
+
+impl<'a> Writer<'a> {
+    /// Begins a content that has fields: the command's letters and its name.
+    pub(crate) fn command(
+        encoding: Encoding,
+        letters: &[u8; 3],
+        name: &[u8],
+        out: &'a mut Vec<u8>,
+    ) -> Self {
+        Writer::bare(letters, name, out);
+        if encoding == Encoding::Binary {
+            out.push(b' ');
+        }
+        Writer { out, encoding }
+    }
+
+    /// Writes a content without fields.
+    pub(crate) fn bare(letters: &[u8; 3], name: &[u8], out: &mut Vec<u8>) {
+        out.extend_from_slice(letters);
+        out.push(b' ');
+        out.extend_from_slice(name);
+    }
+
+    /// Writes that a command is refused.
+    pub(crate) fn fault(encoding: Encoding, code: u16, out: &'a mut Vec<u8>) {
+        out.extend_from_slice(b"sFA");
+        Writer { out, encoding }.u16(code);
+    }
+
+    fn word(&mut self, value: u32) {
+        self.out.push(b' ');
+        let digits = (32 - value.leading_zeros()).div_ceil(4).max(1);
+        for digit in (0..digits).rev() {
+            let digit = (value >> (4 * digit) & 0xf) as u8;
+            self.out.push(match digit {
+                0..10 => b'0' + digit,
+                _ => b'A' + digit - 10,
+            });
+        }
+    }
+
+    pub(crate) fn u8(&mut self, value: u8) {
+        match self.encoding {
+            Encoding::Binary => self.out.push(value),
+            Encoding::Text => self.word(value.into()),
+        }
+    }
+
+    pub(crate) fn u16(&mut self, value: u16) {
+        match self.encoding {
+            Encoding::Binary => self.out.extend_from_slice(&value.to_be_bytes()),
+            Encoding::Text => self.word(value.into()),
+        }
+    }
+
+    pub(crate) fn u32(&mut self, value: u32) {
+        match self.encoding {
+            Encoding::Binary => self.out.extend_from_slice(&value.to_be_bytes()),
+            Encoding::Text => self.word(value),
+        }
+    }
+
+    pub(crate) fn i32(&mut self, value: i32) {
+        self.u32(value.cast_unsigned());
+    }
+
+    pub(crate) fn f32(&mut self, value: f32) {
+        self.u32(value.to_bits());
+    }
+
+    pub(crate) fn bool(&mut self, value: bool) {
+        self.u8(value.into());
+    }
+
+    pub(crate) fn flag(&mut self, value: bool) {
+        self.u16(value.into());
+    }
+
+    pub(crate) fn pair(&mut self, values: [u8; 2]) {
+        values.into_iter().for_each(|value| self.u8(value));
+    }
+
+    /// Characters whose number the reader knows.
+    pub(crate) fn characters(&mut self, characters: &[u8]) {
+        if self.encoding == Encoding::Text {
+            self.out.push(b' ');
+        }
+        self.out.extend_from_slice(characters);
+    }
+}

@@ -1,0 +1,74 @@
+//! What can be set in installation mode, to be read, changed and written back.
+
+use super::fields::Fields;
+use super::range_mode::{RangeMode, Unit};
+use crate::SickError;
+
+/// Devices differ in how much they send.
+const LONGEST: usize = 64;
+const MODE: usize = 5;
+const UNIT: usize = 6;
+
+/// `F4` and `F7`, from the first byte behind the code; what is not named here
+/// is kept as it is.
+///
+/// | offset | bytes | field | |
+/// |---|---|---|---|
+/// | 0 | 2 | blanking | u16 |
+/// | 2 | 1 | stop threshold | u8 |
+/// | 3 | 1 | peak threshold or sensitivity | u8 |
+/// | 4 | 1 | availability | bit 1: counters behind the readings |
+/// | 5 | 1 | measuring mode | see [`RangeMode`] |
+/// | 6 | 1 | unit | see [`Unit`] |
+/// | 7 | … | fields, restart, contours | 27 bytes on most devices |
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub struct Configuration {
+    bytes: [u8; LONGEST],
+    length: usize,
+    /// How far it measures.
+    pub range_mode: RangeMode,
+    /// Of distances.
+    pub unit: Unit,
+}
+
+impl Configuration {
+    /// The configuration of a device that was never set up but for these.
+    #[must_use]
+    pub fn new(range_mode: RangeMode, unit: Unit) -> Self {
+        Configuration {
+            bytes: [0; LONGEST],
+            length: 34,
+            range_mode,
+            unit,
+        }
+    }
+
+    pub(super) fn read(fields: &mut Fields<'_>) -> Result<Self, SickError> {
+        let all = fields.rest();
+        let length = all.len().min(LONGEST);
+        let mut bytes = [0; LONGEST];
+        let kept = bytes.iter_mut().zip(all);
+        kept.for_each(|(place, byte)| *place = *byte);
+        fields.take("blanking and thresholds", MODE)?;
+        let modes = "0 to 6, 0x0f or 0x3f";
+        let range_mode = fields.known("measuring mode", RangeMode::from_code, modes)?;
+        let unit = fields.known("unit", Unit::from_code, "0 or 1")?;
+        fields.take("the rest", length.saturating_sub(UNIT + 1))?;
+        // Kept once, in the fields that may be changed.
+        bytes[MODE] = 0;
+        bytes[UNIT] = 0;
+        Ok(Configuration {
+            bytes,
+            length,
+            range_mode,
+            unit,
+        })
+    }
+
+    pub(super) fn write(&self, out: &mut Vec<u8>) {
+        let mut bytes = self.bytes;
+        bytes[MODE] = self.range_mode.code();
+        bytes[UNIT] = self.unit.code();
+        out.extend(bytes.iter().take(self.length));
+    }
+}

@@ -1,0 +1,125 @@
+//! Puts interleaved partial scans together.
+//!
+//! The mirror turns once for each part, and each part has one value a degree:
+//! at half a degree two parts make a scan, at a quarter four. Parts count only
+//! in their order, so that what is lost costs the whole scan and never mixes two.
+
+use super::scan::Scan;
+
+/// Collects the parts of one scan.
+#[derive(Debug, Clone)]
+pub struct PartialScans {
+    width_deg: usize,
+    parts: usize,
+    /// The part that is awaited.
+    next: usize,
+    readings: Vec<u16>,
+    /// Parts that belonged to no whole scan.
+    dropped: u64,
+}
+
+impl PartialScans {
+    /// For scans of this field and resolution; `None` where a degree is no
+    /// multiple of the resolution in quarters.
+    #[must_use]
+    pub fn new(width_deg: u16, resolution_raw_1e2_deg: u16) -> Option<Self> {
+        let parts = match resolution_raw_1e2_deg {
+            100 => 1,
+            50 => 2,
+            25 => 4,
+            _ => return None,
+        };
+        let width_deg = usize::from(width_deg);
+        Some(PartialScans {
+            width_deg,
+            parts,
+            next: 0,
+            readings: vec![0; width_deg * parts + 1],
+            dropped: 0,
+        })
+    }
+
+    /// Takes a part; gives the readings of the whole scan with its last one.
+    pub fn add(&mut self, scan: &Scan<'_>) -> Option<&[u16]> {
+        let step = usize::from(scan.part?.quarter()) * self.parts;
+        let part = step / 4;
+        let expected = self.width_deg + usize::from(part == 0);
+        if part == 0 {
+            self.dropped += self.next as u64;
+            self.next = 0;
+        }
+        if step % 4 != 0 || part != self.next || scan.readings.len() != expected {
+            self.dropped += 1 + self.next as u64;
+            self.next = 0;
+            return None;
+        }
+        let places = self.readings.iter_mut().skip(part).step_by(self.parts);
+        for (place, reading) in places.zip(scan.readings) {
+            *place = reading;
+        }
+        self.next += 1;
+        if self.next < self.parts {
+            return None;
+        }
+        self.next = 0;
+        Some(&self.readings)
+    }
+
+    /// Parts that belonged to no whole scan.
+    #[must_use]
+    pub fn dropped(&self) -> u64 {
+        self.dropped
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::lms2xx::{Part, Unit};
+
+    /// Adds the part of this quarter, whose readings are their own index in the
+    /// whole scan.
+    fn add(scans: &mut PartialScans, quarter: u8, parts: u16) -> Option<Vec<u16>> {
+        let first = u16::from(quarter) * parts / 4;
+        let count = if quarter == 0 { 101 } else { 100 };
+        let readings: Vec<u16> = (0..count).map(|degree| degree * parts + first).collect();
+        let scan = Scan {
+            unit: Unit::Centimetre,
+            part: Part::at_quarter(quarter),
+            sub_range: None,
+            readings: readings[..].into(),
+            counters: None,
+        };
+        scans.add(&scan).map(<[u16]>::to_vec)
+    }
+
+    #[test]
+    fn parts_interleave_at_every_resolution() {
+        for (resolution, quarters) in [(100, vec![0]), (50, vec![0, 2]), (25, vec![0, 1, 2, 3])] {
+            let parts = quarters.len() as u16;
+            let mut scans = PartialScans::new(100, resolution).unwrap();
+            let (&last, before) = quarters.split_last().unwrap();
+            for &quarter in before {
+                assert_eq!(add(&mut scans, quarter, parts), None);
+            }
+            let whole = add(&mut scans, last, parts).unwrap();
+            assert_eq!(whole, (0..=100 * parts).collect::<Vec<_>>());
+            assert_eq!(scans.dropped(), 0);
+        }
+        assert!(PartialScans::new(100, 33).is_none());
+    }
+
+    #[test]
+    fn a_lost_part_costs_its_scan_and_no_other() {
+        let mut scans = PartialScans::new(100, 25).unwrap();
+        for quarter in [0, 1, 3, 0, 1, 2] {
+            assert_eq!(add(&mut scans, quarter, 4), None);
+        }
+        assert!(add(&mut scans, 3, 4).is_some());
+        assert_eq!(scans.dropped(), 3);
+        // A scan at half a degree has no part at a quarter.
+        let mut scans = PartialScans::new(100, 50).unwrap();
+        assert_eq!(add(&mut scans, 1, 2), None);
+        assert_eq!(scans.dropped(), 1);
+    }
+}

@@ -1,0 +1,156 @@
+//! Measured values: whole scans, partial ones and sub-ranges.
+
+use super::fields::Fields;
+use super::range_mode::Unit;
+use crate::SickError;
+
+/// Bits 0 to 9 of the head.
+const COUNT: u16 = 0x03ff;
+/// Bit 13 of the head.
+const IS_PARTIAL: u16 = 1 << 13;
+
+/// `B0`, or `B7` where it is a sub-range.
+///
+/// | bytes | field | |
+/// |---|---|---|
+/// | 1 | code | `B0` or `B7` |
+/// | 2 + 2 | first and last value, from 1 | u16, `B7` only |
+/// | 2 | head | bits 0–9 count, 11–12 partial scan, 13 whether it is one, 14–15 unit |
+/// | 2 · count | readings | u16 each, right to left |
+/// | 2 | counters of scan and telegram | u8 each, where the device is set so |
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Scan<'a> {
+    /// Of the distances.
+    pub unit: Unit,
+    /// Which part of a scan, where it is one.
+    pub part: Option<Part>,
+    /// First and last value that were asked for, from 1.
+    pub sub_range: Option<(u16, u16)>,
+    /// The readings, right to left. At most 401 fit into a telegram.
+    pub readings: Readings<'a>,
+    /// Counters of scans and of telegrams, where the device sends them.
+    pub counters: Option<(u8, u8)>,
+}
+
+/// A partial scan has one value a degree, this many quarters of a degree from
+/// the start.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub struct Part(u8);
+
+impl Part {
+    /// The part that begins at 0 to 3 quarters of a degree.
+    #[must_use]
+    pub const fn at_quarter(quarter: u8) -> Option<Self> {
+        if quarter < 4 {
+            Some(Part(quarter))
+        } else {
+            None
+        }
+    }
+
+    /// Quarters of a degree from the start.
+    #[must_use]
+    pub const fn quarter(self) -> u8 {
+        self.0
+    }
+}
+
+/// Readings of 16 bits; iterating decodes them in place.
+#[derive(Debug, Clone, Copy)]
+pub struct Readings<'a>(Place<'a>);
+
+#[derive(Debug, Clone, Copy)]
+enum Place<'a> {
+    Bytes(&'a [u8]),
+    Listed(&'a [u16]),
+}
+
+impl<'a> Scan<'a> {
+    pub(super) fn read(fields: &mut Fields<'a>, has_sub_range: bool) -> Result<Self, SickError> {
+        let sub_range = match has_sub_range {
+            true => Some((fields.u16("first value")?, fields.u16("last value")?)),
+            false => None,
+        };
+        let head = fields.u16("count and unit")?;
+        let unit = (head >> 14) as u8;
+        let unit = Unit::from_code(unit).ok_or(SickError::Field {
+            field: "unit",
+            offset: if has_sub_range { 5 } else { 1 },
+            found: unit.to_string(),
+            allowed: "0 or 1",
+        })?;
+        let readings = fields.take("readings", usize::from(head & COUNT) * 2)?;
+        let counters = match fields.rest() {
+            [] => None,
+            _ => Some((
+                fields.u8("counter of scans")?,
+                fields.u8("counter of telegrams")?,
+            )),
+        };
+        Ok(Scan {
+            unit,
+            part: (head & IS_PARTIAL != 0).then_some(Part((head >> 11 & 3) as u8)),
+            sub_range,
+            readings: Readings(Place::Bytes(readings)),
+            counters,
+        })
+    }
+
+    pub(super) fn write(&self, out: &mut Vec<u8>) {
+        let mut u16 = |value: u16| out.extend_from_slice(&value.to_le_bytes());
+        if let Some((first, last)) = self.sub_range {
+            u16(first);
+            u16(last);
+        }
+        let part = self
+            .part
+            .map_or(0, |part| IS_PARTIAL | u16::from(part.quarter()) << 11);
+        let count = self.readings.len() as u16 & COUNT;
+        u16(count | part | u16::from(self.unit.code()) << 14);
+        self.readings.for_each(u16);
+        if let Some((scan, telegram)) = self.counters {
+            out.extend_from_slice(&[scan, telegram]);
+        }
+    }
+}
+
+impl<'a> From<&'a [u16]> for Readings<'a> {
+    fn from(readings: &'a [u16]) -> Self {
+        Readings(Place::Listed(readings))
+    }
+}
+
+impl PartialEq for Readings<'_> {
+    fn eq(&self, other: &Self) -> bool {
+        self.clone().eq(*other)
+    }
+}
+
+impl Iterator for Readings<'_> {
+    type Item = u16;
+
+    fn next(&mut self) -> Option<u16> {
+        match &mut self.0 {
+            Place::Bytes(bytes) => {
+                let (reading, rest) = bytes.split_first_chunk::<2>()?;
+                *bytes = rest;
+                Some(u16::from_le_bytes(*reading))
+            }
+            Place::Listed(readings) => {
+                let (reading, rest) = readings.split_first()?;
+                *readings = rest;
+                Some(*reading)
+            }
+        }
+    }
+
+    fn size_hint(&self) -> (usize, Option<usize>) {
+        let count = match self.0 {
+            Place::Bytes(bytes) => bytes.len() / 2,
+            Place::Listed(readings) => readings.len(),
+        };
+        (count, Some(count))
+    }
+}
+
+impl ExactSizeIterator for Readings<'_> {}

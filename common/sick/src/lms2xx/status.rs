@@ -1,0 +1,123 @@
+//! How a device fares: the byte behind every answer, and the long status.
+
+use super::fields::Fields;
+use super::range_mode::{RangeMode, Unit};
+use crate::SickError;
+
+/// The status byte behind every answer.
+///
+/// | bits | |
+/// |---|---|
+/// | 0–2 | 0 in order, 1 information, 2 warning, 3 error, 4 fatal error |
+/// | 6 | implausible measured values |
+/// | 7 | the window is dirty |
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+pub struct Status(pub u8);
+
+impl Status {
+    /// 0 in order, 1 information, 2 warning, 3 error, 4 fatal error.
+    #[must_use]
+    pub const fn level(self) -> u8 {
+        self.0 & 7
+    }
+
+    /// Whether measured values are implausible.
+    #[must_use]
+    pub const fn is_implausible(self) -> bool {
+        self.0 & 1 << 6 != 0
+    }
+
+    /// Whether the window is dirty.
+    #[must_use]
+    pub const fn is_polluted(self) -> bool {
+        self.0 & 1 << 7 != 0
+    }
+
+    /// Whether neither an error nor the window stands against the readings.
+    #[must_use]
+    pub const fn is_in_order(self) -> bool {
+        self.level() < 3 && !self.is_implausible() && !self.is_polluted()
+    }
+}
+
+/// `B1`, as far as it matters here. Offsets count from the code.
+///
+/// | offset | bytes | field | |
+/// |---|---|---|---|
+/// | 1 | 7 | version of the software | characters |
+/// | 8 | 1 | operating mode | see [`super::Mode`] |
+/// | 9 | 1 | whether there is an error | u8 |
+/// | 67 | 2 | turns of the mirror | u16, 1/min |
+/// | 102 | 1 | measuring mode | see [`RangeMode`] |
+/// | 107 | 2 | field | u16, degrees |
+/// | 109 | 2 | resolution | u16, 1/100° |
+/// | 122 | 1 | unit | see [`Unit`] |
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub struct DeviceStatus {
+    /// Of the device's software.
+    pub version: [u8; 7],
+    /// Code of the operating mode.
+    pub mode: u8,
+    /// Whether the device has an error.
+    pub has_error: bool,
+    /// Turns of the mirror a minute.
+    pub turns: u16,
+    /// How far it measures.
+    pub range_mode: RangeMode,
+    /// 100 or 180.
+    pub width_deg: u16,
+    /// 25, 50 or 100.
+    pub resolution_raw_1e2_deg: u16,
+    /// Of distances.
+    pub unit: Unit,
+}
+
+/// Bytes of the answer without its status byte.
+const LENGTH: usize = 150;
+
+impl DeviceStatus {
+    pub(super) fn read(fields: &mut Fields<'_>) -> Result<Self, SickError> {
+        let version = fields.array("version")?;
+        let mode = fields.u8("operating mode")?;
+        let has_error = fields.u8("error")? != 0;
+        fields.skip_to(67)?;
+        let turns = fields.u16("turns")?;
+        fields.skip_to(102)?;
+        let modes = "0 to 6, 0x0f or 0x3f";
+        let range_mode = fields.known("measuring mode", RangeMode::from_code, modes)?;
+        fields.skip_to(107)?;
+        let width_deg = fields.u16("field")?;
+        let resolution_raw_1e2_deg = fields.u16("resolution")?;
+        fields.skip_to(122)?;
+        let unit = fields.known("unit", Unit::from_code, "0 or 1")?;
+        let left = fields.rest().len();
+        fields.take("the rest", left)?;
+        Ok(DeviceStatus {
+            version,
+            mode,
+            has_error,
+            turns,
+            range_mode,
+            width_deg,
+            resolution_raw_1e2_deg,
+            unit,
+        })
+    }
+
+    /// What is not known is written as 0.
+    pub(super) fn write(&self, out: &mut Vec<u8>) {
+        let start = out.len() - 1;
+        out.resize(start + LENGTH, 0);
+        let mut put = |at: usize, bytes: &[u8]| {
+            let place = out.get_mut(start + at..start + at + bytes.len());
+            place.unwrap_or_default().copy_from_slice(bytes);
+        };
+        put(1, &self.version);
+        put(8, &[self.mode, self.has_error.into()]);
+        put(67, &self.turns.to_le_bytes());
+        put(102, &[self.range_mode.code()]);
+        put(107, &self.width_deg.to_le_bytes());
+        put(109, &self.resolution_raw_1e2_deg.to_le_bytes());
+        put(122, &[self.unit.code()]);
+    }
+}

@@ -1,0 +1,53 @@
+//! When to say something again that nobody answered.
+//!
+//! Pure: the caller says when.
+
+/// How often a command is sent before it counts as unanswered.
+pub(crate) const TRIES: u32 = 3;
+
+/// The attempts at one command.
+#[derive(Debug, Default)]
+pub(crate) struct Attempts {
+    sent_ns: Option<i64>,
+    count: u32,
+}
+
+/// What to do about a command.
+#[derive(Debug, PartialEq, Eq)]
+pub(crate) enum Attempt {
+    /// Send it.
+    Send,
+    /// The answer may still come.
+    Wait,
+    /// It was sent often enough.
+    GiveUp,
+}
+
+impl Attempts {
+    /// What to do at `now_ns` about a command whose answer takes up to `patience_ns`.
+    pub(crate) fn next(&mut self, now_ns: i64, patience_ns: i64) -> Attempt {
+        match self.sent_ns {
+            Some(sent_ns) if now_ns - sent_ns < patience_ns => Attempt::Wait,
+            Some(_) if self.count >= TRIES => Attempt::GiveUp,
+            _ => {
+                self.sent_ns = Some(now_ns);
+                self.count += 1;
+                Attempt::Send
+            }
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn three_times_with_a_pause_then_no_more() {
+        let mut attempts = Attempts::default();
+        let times = [0, 9, 10, 19, 20, 29, 30];
+        let seen = times.map(|now| attempts.next(now, 10));
+        use Attempt::{GiveUp, Send, Wait};
+        assert_eq!(seen, [Send, Wait, Send, Wait, Send, Wait, GiveUp]);
+    }
+}

@@ -1,0 +1,384 @@
+//! What is said to a CoLa device before its scans come.
+//!
+//! Pure: answers and the time in, the next command out. It asks what the device
+//! is, changes what the configuration asks for and nothing else, reads it back,
+//! and subscribes to the scans. A login is needed for changes alone.
+
+use std::collections::VecDeque;
+
+use sick::cola::{
+    AUTHORIZED_CLIENT, Answer, Command, Method, OutputRange, PASSWORD_AUTHORIZED_CLIENT,
+    ScanConfig, Value, Variable,
+};
+
+use crate::LmsError;
+use crate::attempts::{Attempt, Attempts, TRIES};
+
+/// How long most answers may take.
+const PATIENCE_NS: i64 = 1_000_000_000;
+/// The mirror may have to change its speed.
+const SLOW_NS: i64 = 10_000_000_000;
+/// Straight ahead.
+const AHEAD_RAW: i32 = 900_000;
+
+/// The settings that the device must have; the others stay.
+#[derive(Debug, Clone, Copy, Default, PartialEq, Eq)]
+pub(crate) struct Wanted {
+    /// The whole field, half of it to each side of ahead.
+    pub(crate) field_raw_1e4_deg: Option<i32>,
+    pub(crate) resolution_raw_1e4_deg: Option<u32>,
+}
+
+impl Wanted {
+    pub(crate) fn of(field_deg: Option<f64>, resolution_deg: Option<f64>) -> Self {
+        Wanted {
+            field_raw_1e4_deg: field_deg.map(|deg| (deg * 1e4).round() as i32),
+            resolution_raw_1e4_deg: resolution_deg.map(|deg| (deg * 1e4).round() as u32),
+        }
+    }
+}
+
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+enum Step {
+    Identify,
+    AskState,
+    Login,
+    ReadScanConfig,
+    SetResolution,
+    CheckResolution,
+    ReadRange,
+    SetRange,
+    CheckRange,
+    Run,
+    Subscribe,
+}
+
+/// The dialogue with one device.
+#[derive(Debug)]
+pub(crate) struct Setup {
+    wanted: Wanted,
+    steps: VecDeque<Step>,
+    attempts: Attempts,
+    /// As the device had it.
+    scan: Option<ScanConfig>,
+    range: Option<OutputRange>,
+}
+
+impl Setup {
+    pub(crate) fn new(wanted: Wanted) -> Self {
+        let mut steps = VecDeque::from([Step::Identify, Step::AskState]);
+        if wanted != Wanted::default() {
+            steps.push_back(Step::Login);
+        }
+        if wanted.resolution_raw_1e4_deg.is_some() {
+            let change = [Step::ReadScanConfig, Step::SetResolution];
+            steps.extend(change.into_iter().chain([Step::CheckResolution]));
+        }
+        if wanted.field_raw_1e4_deg.is_some() {
+            steps.extend([Step::ReadRange, Step::SetRange, Step::CheckRange]);
+        }
+        if wanted != Wanted::default() {
+            steps.push_back(Step::Run);
+        }
+        steps.push_back(Step::Subscribe);
+        Setup {
+            wanted,
+            steps,
+            attempts: Attempts::default(),
+            scan: None,
+            range: None,
+        }
+    }
+
+    /// What to send now, if anything.
+    ///
+    /// # Errors
+    /// [`LmsError::NoAnswer`].
+    pub(crate) fn next(&mut self, now_ns: i64) -> Result<Option<Command<'static>>, LmsError> {
+        while let Some(&step) = self.steps.front() {
+            let command = self.command(step);
+            let patience_ns = if step == Step::SetResolution {
+                SLOW_NS
+            } else {
+                PATIENCE_NS
+            };
+            match self.attempts.next(now_ns, patience_ns) {
+                Attempt::Send => return Ok(Some(command)),
+                Attempt::Wait => return Ok(None),
+                Attempt::GiveUp if step.is_optional() => self.advance(),
+                Attempt::GiveUp => {
+                    return Err(LmsError::NoAnswer {
+                        command: format!("{command:?}"),
+                        tries: TRIES,
+                    });
+                }
+            }
+        }
+        Ok(None)
+    }
+
+    /// Takes an answer; what does not belong to the last command is let pass.
+    ///
+    /// # Errors
+    /// If the device refuses, or has other settings than it was told.
+    pub(crate) fn hear(&mut self, answer: &Answer<'_>) -> Result<(), LmsError> {
+        let Some(&step) = self.steps.front() else {
+            return Ok(());
+        };
+        let heard = match (step, answer) {
+            (_, Answer::Fault(fault)) if step.is_optional() => {
+                tracing::debug!(%fault, ?step, "the device does not say");
+                true
+            }
+            (_, Answer::Fault(fault)) => {
+                return Err(LmsError::Fault {
+                    command: format!("{:?}", self.command(step)),
+                    fault: *fault,
+                });
+            }
+            (Step::Identify, Answer::Value(Value::DeviceIdent { name, version })) => {
+                let (name, version) = (name.escape_ascii(), version.escape_ascii());
+                tracing::info!(%name, %version, "the device says what it is");
+                true
+            }
+            (Step::AskState, Answer::Value(Value::DeviceState(state))) => {
+                tracing::info!(state, "0 busy, 1 ready, 2 error, 3 standby");
+                true
+            }
+            (Step::Login, Answer::AccessMode(success)) => done("log in", *success)?,
+            (Step::Run, Answer::Running(success)) => done("run", *success)?,
+            (Step::Subscribe, Answer::ScansSubscribed(on)) => done("send scans", *on)?,
+            _ => self.hear_settings(step, answer)?,
+        };
+        if heard {
+            self.advance();
+        }
+        Ok(())
+    }
+
+    fn hear_settings(&mut self, step: Step, answer: &Answer<'_>) -> Result<bool, LmsError> {
+        match (step, answer) {
+            (Step::ReadScanConfig, Answer::Value(Value::ScanConfig(config))) => {
+                self.scan = Some(*config);
+                Ok(true)
+            }
+            (Step::SetResolution, Answer::ScanConfigSet { status, .. }) => {
+                same("change the resolution", status, &0)
+            }
+            (Step::CheckResolution, Answer::Value(Value::ScanConfig(config))) => {
+                let found = Some(config.resolution_raw_1e4_deg);
+                same(
+                    "keep the resolution",
+                    &found,
+                    &self.wanted.resolution_raw_1e4_deg,
+                )
+            }
+            (Step::ReadRange, Answer::Value(Value::OutputRange(range))) => {
+                self.range = Some(*range);
+                Ok(true)
+            }
+            (Step::SetRange, Answer::Written(Variable::OutputRange)) => Ok(true),
+            (Step::CheckRange, Answer::Value(Value::OutputRange(range))) => {
+                same("keep the field", &Some(*range), &self.wanted_range())
+            }
+            _ => Ok(false),
+        }
+    }
+
+    /// Whether all has been said.
+    pub(crate) fn is_done(&self) -> bool {
+        self.steps.is_empty()
+    }
+
+    fn advance(&mut self) {
+        self.steps.pop_front();
+        self.attempts = Attempts::default();
+    }
+
+    fn command(&self, step: Step) -> Command<'static> {
+        match step {
+            Step::Identify => Command::Read(Variable::DeviceIdent),
+            Step::AskState => Command::Read(Variable::DeviceState),
+            Step::Login => Command::Call(Method::SetAccessMode {
+                level: AUTHORIZED_CLIENT,
+                password: PASSWORD_AUTHORIZED_CLIENT,
+            }),
+            Step::ReadScanConfig | Step::CheckResolution => Command::Read(Variable::ScanConfig),
+            Step::SetResolution => match self.wanted_scan() {
+                Some(config) => Command::Call(Method::SetScanConfig(config)),
+                None => Command::Read(Variable::ScanConfig),
+            },
+            Step::ReadRange | Step::CheckRange => Command::Read(Variable::OutputRange),
+            Step::SetRange => match self.wanted_range() {
+                Some(range) => Command::Write(Value::OutputRange(range)),
+                None => Command::Read(Variable::OutputRange),
+            },
+            Step::Run => Command::Call(Method::Run),
+            Step::Subscribe => Command::SubscribeScans(true),
+        }
+    }
+
+    fn wanted_scan(&self) -> Option<ScanConfig> {
+        Some(ScanConfig {
+            resolution_raw_1e4_deg: self.wanted.resolution_raw_1e4_deg?,
+            ..self.scan?
+        })
+    }
+
+    fn wanted_range(&self) -> Option<OutputRange> {
+        let half = self.wanted.field_raw_1e4_deg? / 2;
+        Some(OutputRange {
+            start_angle_raw_1e4_deg: AHEAD_RAW - half,
+            stop_angle_raw_1e4_deg: AHEAD_RAW + half,
+            ..self.range?
+        })
+    }
+}
+
+impl Step {
+    /// Whether scans may come without it.
+    fn is_optional(self) -> bool {
+        matches!(self, Step::Identify | Step::AskState)
+    }
+}
+
+fn done(what: &'static str, success: bool) -> Result<bool, LmsError> {
+    same(what, &success, &true)
+}
+
+fn same<T: PartialEq + std::fmt::Debug>(
+    what: &'static str,
+    found: &T,
+    expected: &T,
+) -> Result<bool, LmsError> {
+    if found == expected {
+        return Ok(true);
+    }
+    Err(LmsError::Refused {
+        what,
+        found: format!("{found:?}"),
+        expected: format!("{expected:?}"),
+    })
+}
+
+#[cfg(test)]
+mod tests {
+    use sick::cola::Fault;
+
+    use super::*;
+
+    const SCAN: ScanConfig = ScanConfig {
+        frequency_raw_1e2_hz: 2500,
+        resolution_raw_1e4_deg: 2500,
+        start_angle_raw_1e4_deg: -450_000,
+        stop_angle_raw_1e4_deg: 2_250_000,
+    };
+    const RANGE: OutputRange = OutputRange {
+        resolution_raw_1e4_deg: 5000,
+        start_angle_raw_1e4_deg: -450_000,
+        stop_angle_raw_1e4_deg: 2_250_000,
+    };
+
+    #[test]
+    fn without_wishes_nothing_is_changed() {
+        let mut setup = Setup::new(Wanted::default());
+        let ident = Command::Read(Variable::DeviceIdent);
+        assert_eq!(setup.next(0).unwrap(), Some(ident));
+        assert_eq!(setup.next(1).unwrap(), None);
+        setup.hear(&Answer::Fault(Fault::UNKNOWN_VARIABLE)).unwrap();
+        let state = Command::Read(Variable::DeviceState);
+        assert_eq!(setup.next(2).unwrap(), Some(state));
+        setup.hear(&Answer::Value(Value::DeviceState(1))).unwrap();
+        let subscribe = Command::SubscribeScans(true);
+        assert_eq!(setup.next(3).unwrap(), Some(subscribe));
+        // An answer to something else changes nothing.
+        setup.hear(&Answer::Running(true)).unwrap();
+        assert!(!setup.is_done());
+        setup.hear(&Answer::ScansSubscribed(true)).unwrap();
+        assert!(setup.is_done());
+        assert_eq!(setup.next(i64::MAX).unwrap(), None);
+    }
+
+    /// Answers as a device does that takes over what it is told, but for `range`.
+    fn play(setup: &mut Setup, range: Option<OutputRange>) -> Result<Vec<String>, LmsError> {
+        let (mut scan, mut output) = (SCAN, RANGE);
+        let mut said = Vec::new();
+        while let Some(command) = setup.next(0)? {
+            said.push(format!("{command:?}"));
+            setup.hear(&match command {
+                Command::Read(Variable::DeviceIdent) => Answer::Value(Value::DeviceIdent {
+                    name: b"LMS",
+                    version: b"1",
+                }),
+                Command::Read(Variable::DeviceState) => Answer::Value(Value::DeviceState(1)),
+                Command::Read(Variable::ScanConfig) => Answer::Value(Value::ScanConfig(scan)),
+                Command::Read(Variable::OutputRange) => Answer::Value(Value::OutputRange(output)),
+                Command::Call(Method::SetAccessMode { .. }) => Answer::AccessMode(true),
+                Command::Call(Method::SetScanConfig(config)) => {
+                    scan = config;
+                    Answer::ScanConfigSet { status: 0, config }
+                }
+                Command::Write(Value::OutputRange(wanted)) => {
+                    output = range.unwrap_or(wanted);
+                    Answer::Written(Variable::OutputRange)
+                }
+                Command::Call(Method::Run) => Answer::Running(true),
+                Command::SubscribeScans(on) => Answer::ScansSubscribed(on),
+                other => panic!("{other:?}"),
+            })?;
+        }
+        Ok(said)
+    }
+
+    #[test]
+    fn wishes_are_set_and_read_back() {
+        let mut setup = Setup::new(Wanted::of(Some(180.0), Some(0.5)));
+        let said = play(&mut setup, None).unwrap();
+        assert_eq!(said.len(), 11, "{said:#?}");
+        assert!(
+            said[4].contains("resolution_raw_1e4_deg: 5000"),
+            "{said:#?}"
+        );
+        assert!(said[4].contains("frequency_raw_1e2_hz: 2500"), "{said:#?}");
+        assert!(said[7].contains("start_angle_raw_1e4_deg: 0, stop_angle_raw_1e4_deg: 1800000"));
+        assert!(setup.is_done());
+    }
+
+    #[test]
+    fn a_device_that_keeps_its_own_settings_is_an_error() {
+        let mut setup = Setup::new(Wanted::of(Some(180.0), None));
+        let error = play(&mut setup, Some(RANGE)).unwrap_err().to_string();
+        assert!(error.contains("did not keep the field"), "{error}");
+    }
+
+    #[test]
+    fn refusals_and_silence_name_the_command() {
+        let mut setup = Setup::new(Wanted::of(Some(180.0), None));
+        let mut hear = |answer| {
+            setup.next(0).unwrap();
+            setup.hear(&answer)
+        };
+        hear(Answer::Fault(Fault::UNKNOWN_VARIABLE)).unwrap();
+        hear(Answer::Fault(Fault::UNKNOWN_VARIABLE)).unwrap();
+        let error = hear(Answer::AccessMode(false)).unwrap_err().to_string();
+        assert!(
+            error.contains("did not log in: it answers false"),
+            "{error}"
+        );
+        let error = hear(Answer::Fault(Fault::METHOD_DENIED)).unwrap_err();
+        let error = error.to_string();
+        assert!(error.contains("SetAccessMode"), "{error}");
+        assert!(error.contains("does not allow this method"), "{error}");
+        let mut now_ns = 0;
+        let error = loop {
+            now_ns += SLOW_NS;
+            if let Err(error) = setup.next(now_ns) {
+                break error.to_string();
+            }
+        };
+        assert!(
+            error.contains("SetAccessMode") && error.contains("3 times"),
+            "{error}"
+        );
+    }
+}

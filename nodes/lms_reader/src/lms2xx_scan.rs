@@ -1,0 +1,203 @@
+//! From the readings of an LMS2xx to the message of topic `scan`.
+//!
+//! Pure: the caller says when the telegram came. It tells distances from codes
+//! and decides nothing else.
+
+use messages::{Pose2, ScanHeader, Stamp};
+use sick::lms2xx::{Readings, Scan, Unit};
+
+use crate::LmsError;
+use crate::lms2xx_setup::Format;
+use crate::scan::{Received, ScanSettings};
+
+/// The mirror turns 75 times a second, seconds a turn.
+const TURN_S: f64 = 1.0 / 75.0;
+
+/// A scan with nothing missing.
+#[derive(Debug, Clone, Copy)]
+pub(crate) struct WholeScan<'a> {
+    pub(crate) format: Format,
+    pub(crate) unit: Unit,
+    /// First and last reading that were asked for, from 1.
+    pub(crate) sub_range: Option<(u16, u16)>,
+    pub(crate) readings: Readings<'a>,
+    /// How long the telegram took on the line, nanoseconds.
+    pub(crate) line_ns: i64,
+}
+
+impl<'a> WholeScan<'a> {
+    /// Of a telegram that holds a whole scan.
+    pub(crate) fn of(scan: &Scan<'a>, format: Format, line_ns: i64) -> Self {
+        WholeScan {
+            format,
+            unit: scan.unit,
+            sub_range: scan.sub_range,
+            readings: scan.readings,
+            line_ns,
+        }
+    }
+
+    pub(crate) fn len(&self) -> usize {
+        self.readings.len()
+    }
+
+    /// The header of the scan, with counter 0.
+    ///
+    /// The stamp is the time of reception less that on the line and that of the
+    /// scan: below one degree the mirror turns several times for it, so the
+    /// beams are not in the order of time.
+    ///
+    /// # Errors
+    /// [`LmsError::Readings`] where these are not those of the format.
+    pub(crate) fn header(
+        &self,
+        settings: &ScanSettings,
+        received: Received,
+    ) -> Result<ScanHeader, LmsError> {
+        let first = self.first()?;
+        let step_deg = f64::from(self.format.resolution_raw_1e2_deg) * 0.01;
+        let start_deg = -0.5 * f64::from(self.format.width_deg) + f64::from(first - 1) * step_deg;
+        let turns = 100.0 / f64::from(self.format.resolution_raw_1e2_deg);
+        let scan_time_s = TURN_S * turns;
+        let before_ns = self.line_ns + (scan_time_s * 1e9) as i64;
+        Ok(ScanHeader {
+            stamp: Stamp {
+                measured_ns: received.realtime_ns - before_ns,
+                entered_ns: received.monotonic_ns,
+                counter: 0,
+            },
+            angle_min: start_deg.to_radians(),
+            angle_increment: step_deg.to_radians(),
+            time_increment_s: if turns == 1.0 { TURN_S / 360.0 } else { 0.0 },
+            scan_time_s,
+            range_min_m: settings.range_min_m,
+            range_max_m: settings.range_max_m,
+            base_from_laser: settings.base_from_laser.unwrap_or(Pose2 {
+                x: 0.0,
+                y: 0.0,
+                yaw: 0.0,
+            }),
+            mount_known: u64::from(settings.base_from_laser.is_some()),
+            frame: settings.frame,
+        })
+    }
+
+    /// The number of the first reading, after a look at how many there are.
+    fn first(&self) -> Result<u16, LmsError> {
+        let Format {
+            width_deg,
+            resolution_raw_1e2_deg: step,
+            ..
+        } = self.format;
+        let all = usize::from(width_deg) * 100 / usize::from(step.max(1)) + 1;
+        let (first, last) = match self.sub_range {
+            Some((first, last)) => (first, usize::from(last)),
+            None => (1, all),
+        };
+        let expected = (last + 1).saturating_sub(usize::from(first));
+        if first >= 1 && last <= all && expected == self.len() && expected > 0 {
+            return Ok(first);
+        }
+        Err(LmsError::Readings {
+            found: self.len(),
+            expected,
+            field: format!("those from {first} to {last} of {width_deg}° at {step}/100°"),
+        })
+    }
+
+    /// Writes the distances in metres, infinity where nothing came back;
+    /// `ranges` has as many places as there are readings.
+    pub(crate) fn fill_ranges(&self, ranges: &mut [f32]) {
+        let metres = self.unit.metres();
+        for (range, reading) in ranges.iter_mut().zip(self.readings) {
+            let distance = self.format.range_mode.distance(reading);
+            *range = distance.map_or(f32::INFINITY, |d| (f64::from(d) * metres) as f32);
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use messages::Name;
+    use sick::lms2xx::RangeMode;
+
+    use super::*;
+
+    const RECEIVED: Received = Received {
+        realtime_ns: 1_700_000_000_000_000_000,
+        monotonic_ns: 77,
+    };
+
+    fn settings() -> ScanSettings {
+        ScanSettings {
+            range_min_m: 0.05,
+            range_max_m: 80.0,
+            base_from_laser: None,
+            frame: Name::new("laser"),
+        }
+    }
+
+    fn scan(readings: &[u16], width_deg: u16, resolution_raw_1e2_deg: u16) -> WholeScan<'_> {
+        WholeScan {
+            format: Format {
+                range_mode: RangeMode::Range8Fields,
+                width_deg,
+                resolution_raw_1e2_deg,
+            },
+            unit: Unit::Centimetre,
+            sub_range: None,
+            readings: readings.into(),
+            line_ns: 1_000_000,
+        }
+    }
+
+    #[test]
+    fn the_middle_reading_is_ahead() {
+        for (count, width, step) in [(361, 180, 50), (181, 180, 100), (401, 100, 25)] {
+            let readings = vec![0; count];
+            let header = scan(&readings, width, step)
+                .header(&settings(), RECEIVED)
+                .unwrap();
+            let middle = header.angle_min + (count / 2) as f64 * header.angle_increment;
+            // Halves and quarters are exact in degrees; radians round once or twice.
+            assert!(middle.abs() < 1e-15, "{middle}");
+        }
+    }
+
+    #[test]
+    fn codes_and_field_bits_are_no_distances() {
+        let readings = [0, 1, 0xe000 | 1234, 8182, 8183, 0x1fff];
+        let mut ranges = [0.0; 6];
+        scan(&readings, 180, 100).fill_ranges(&mut ranges);
+        let inf = f32::INFINITY;
+        assert_eq!(ranges, [0.0, 0.01, 12.34, 81.82, inf, inf]);
+    }
+
+    #[test]
+    fn the_stamp_is_back_at_the_first_beam() {
+        let readings = [0; 361];
+        let header = scan(&readings, 180, 50)
+            .header(&settings(), RECEIVED)
+            .unwrap();
+        // A millisecond on the line and two turns.
+        let before = RECEIVED.realtime_ns - header.stamp.measured_ns;
+        assert_eq!((before, header.stamp.entered_ns), (27_666_666, 77));
+        assert_eq!(header.time_increment_s, 0.0);
+    }
+
+    #[test]
+    fn sub_ranges_begin_where_they_say_and_others_are_refused() {
+        let readings = [0; 91];
+        let part = WholeScan {
+            sub_range: Some((46, 136)),
+            ..scan(&readings, 180, 100)
+        };
+        let header = part.header(&settings(), RECEIVED).unwrap();
+        assert_eq!(header.angle_min, (-45f64).to_radians());
+        for sub_range in [None, Some((0, 90)), Some((92, 182)), Some((5, 4))] {
+            let wrong = WholeScan { sub_range, ..part };
+            let error = wrong.header(&settings(), RECEIVED).unwrap_err().to_string();
+            assert!(error.contains("the device sent 91 readings"), "{error}");
+        }
+    }
+}

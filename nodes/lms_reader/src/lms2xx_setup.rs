@@ -1,0 +1,512 @@
+//! What is said to an LMS2xx before its scans come.
+//!
+//! Pure: answers and the time in, the next action out. The device keeps its baud
+//! rate while it has power, so each is tried until it answers. Then it is asked
+//! what it is and how it measures, changed where the configuration asks for it,
+//! read back, and told to send every scan.
+
+use std::collections::VecDeque;
+
+use sick::lms2xx::{
+    Answer, Baud, Command, Configuration, DEFAULT_PASSWORD, DeviceStatus, Mode, RangeMode,
+};
+
+use crate::attempts::{Attempt, Attempts, TRIES};
+use crate::{LmsError, Reach};
+
+/// How long most answers may take: two scans may be under way at 38400 baud.
+const PATIENCE_NS: i64 = 700_000_000;
+/// The device writes its memory.
+const SLOW_NS: i64 = 15_000_000_000;
+
+/// The settings that the device must have; the others stay.
+#[derive(Debug, Clone, Copy, Default)]
+pub(crate) struct Wanted {
+    pub(crate) baud: Option<Baud>,
+    pub(crate) width_deg: Option<u16>,
+    pub(crate) resolution_raw_1e2_deg: Option<u16>,
+    pub(crate) reach: Option<Reach>,
+}
+
+/// How the device measures.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(crate) struct Format {
+    pub(crate) range_mode: RangeMode,
+    pub(crate) width_deg: u16,
+    pub(crate) resolution_raw_1e2_deg: u16,
+}
+
+/// What to do next.
+#[derive(Debug, PartialEq, Eq)]
+pub(crate) enum Action {
+    /// Send this.
+    Send(Command<'static>),
+    /// Change the port's baud rate.
+    Baud(Baud),
+    /// Nothing, for now.
+    Wait,
+}
+
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+enum Step {
+    /// Try this baud rate.
+    Try(Baud),
+    Hail,
+    SwitchBaud(Baud),
+    AskType,
+    AskStatus,
+    SetVariant,
+    AskConfiguration,
+    Install,
+    SetConfiguration,
+    Start,
+}
+
+/// The dialogue with one device.
+#[derive(Debug)]
+pub(crate) struct Setup {
+    wanted: Wanted,
+    steps: VecDeque<Step>,
+    attempts: Attempts,
+    /// Rates that have not been tried.
+    rates: VecDeque<Baud>,
+    tried: Vec<u32>,
+    baud: Option<Baud>,
+    status: Option<DeviceStatus>,
+    configuration: Option<Configuration>,
+}
+
+impl Setup {
+    /// `last` is the rate at which the device answered before.
+    pub(crate) fn new(wanted: Wanted, last: Option<Baud>) -> Self {
+        let likely = [Baud::B38400, Baud::B9600, Baud::B500000, Baud::B19200];
+        let mut rates = VecDeque::new();
+        for rate in [last, wanted.baud].into_iter().flatten().chain(likely) {
+            if !rates.contains(&rate) {
+                rates.push_back(rate);
+            }
+        }
+        Setup {
+            wanted,
+            steps: VecDeque::new(),
+            attempts: Attempts::default(),
+            rates,
+            tried: Vec::new(),
+            baud: None,
+            status: None,
+            configuration: None,
+        }
+    }
+
+    /// What to do now.
+    ///
+    /// # Errors
+    /// [`LmsError::NoBaud`] or [`LmsError::NoAnswer`].
+    pub(crate) fn next(&mut self, now_ns: i64) -> Result<Action, LmsError> {
+        if self.baud.is_none() && self.steps.is_empty() {
+            self.try_another_rate()?;
+        }
+        let Some(&step) = self.steps.front() else {
+            return Ok(Action::Wait);
+        };
+        if let Step::Try(baud) = step {
+            self.advance();
+            return Ok(Action::Baud(baud));
+        }
+        let patience_ns = match step {
+            Step::SetConfiguration => SLOW_NS,
+            _ => PATIENCE_NS,
+        };
+        let command = self.command(step);
+        match self.attempts.next(now_ns, patience_ns) {
+            Attempt::Send => Ok(Action::Send(command)),
+            Attempt::Wait => Ok(Action::Wait),
+            Attempt::GiveUp if self.baud.is_none() => {
+                self.steps.clear();
+                self.next(now_ns)
+            }
+            Attempt::GiveUp => Err(LmsError::NoAnswer {
+                command: format!("{command:?}"),
+                tries: TRIES,
+            }),
+        }
+    }
+
+    fn try_another_rate(&mut self) -> Result<(), LmsError> {
+        let Some(baud) = self.rates.pop_front() else {
+            return Err(LmsError::NoBaud {
+                rates: std::mem::take(&mut self.tried),
+            });
+        };
+        tracing::debug!(baud = baud.rate(), "trying a baud rate");
+        self.tried.push(baud.rate());
+        self.steps = VecDeque::from([Step::Try(baud), Step::Hail]);
+        self.attempts = Attempts::default();
+        Ok(())
+    }
+
+    /// Takes an answer; what does not belong to the last command is let pass.
+    ///
+    /// # Errors
+    /// If the device refuses, or has other settings than it was told.
+    pub(crate) fn hear(&mut self, answer: &Answer<'_>) -> Result<(), LmsError> {
+        let Some(&step) = self.steps.front() else {
+            return Ok(());
+        };
+        match (step, answer) {
+            (Step::Hail, Answer::ModeSet(_)) => self.hailed(),
+            (Step::SwitchBaud(baud), Answer::ModeSet(result)) => {
+                done("change its baud rate", *result == 0, result)?;
+                self.steps = VecDeque::from([Step::SwitchBaud(baud), Step::Try(baud), Step::Hail]);
+                self.rates = VecDeque::from([baud]);
+                self.tried.push(baud.rate());
+                self.baud = None;
+            }
+            (Step::AskType, Answer::Type(text)) => {
+                tracing::info!(device = %text.escape_ascii(), "the device says what it is");
+            }
+            (Step::AskStatus, Answer::Status(status)) => self.heard_status(status),
+            (Step::SetVariant, Answer::VariantSet { .. }) => self.heard_variant(answer)?,
+            (Step::AskConfiguration, Answer::Configuration(configuration)) => {
+                self.heard_configuration(*configuration);
+            }
+            (Step::Install, Answer::ModeSet(result)) => {
+                done("enter the installation mode", *result == 0, result)?;
+            }
+            (
+                Step::SetConfiguration,
+                Answer::ConfigurationSet {
+                    done: is_done,
+                    configuration,
+                },
+            ) => {
+                let kept = Some(*configuration) == self.wanted_configuration();
+                done("change its range", *is_done && kept, configuration)?;
+                self.configuration = Some(*configuration);
+            }
+            (Step::Start, Answer::ModeSet(result)) => done("send scans", *result == 0, result)?,
+            _ => return Ok(()),
+        }
+        self.advance();
+        Ok(())
+    }
+
+    fn hailed(&mut self) {
+        let found = self.tried.last().copied().and_then(Baud::from_rate);
+        self.baud = found;
+        tracing::info!(baud = found.map(Baud::rate), "the device answers");
+        self.steps = match self.wanted.baud {
+            Some(wanted) if found != Some(wanted) => {
+                VecDeque::from([Step::Hail, Step::SwitchBaud(wanted)])
+            }
+            _ => VecDeque::from([
+                Step::Hail,
+                Step::AskType,
+                Step::AskStatus,
+                Step::AskConfiguration,
+                Step::Start,
+            ]),
+        };
+    }
+
+    fn heard_status(&mut self, status: &DeviceStatus) {
+        let width = self.wanted.width_deg.unwrap_or(status.width_deg);
+        let resolution = self.wanted.resolution_raw_1e2_deg;
+        let resolution = resolution.unwrap_or(status.resolution_raw_1e2_deg);
+        if (width, resolution) != (status.width_deg, status.resolution_raw_1e2_deg) {
+            self.steps.insert(1, Step::SetVariant);
+        }
+        tracing::info!(
+            version = %status.version.escape_ascii(),
+            field_deg = status.width_deg,
+            resolution_deg = f64::from(status.resolution_raw_1e2_deg) * 0.01,
+            error = status.has_error,
+            "the device says how it measures"
+        );
+        self.status = Some(*status);
+    }
+
+    fn heard_variant(&mut self, answer: &Answer<'_>) -> Result<(), LmsError> {
+        let wanted = self.wanted_variant();
+        if let (
+            Answer::VariantSet {
+                done: is_done,
+                width_deg,
+                resolution_raw_1e2_deg,
+            },
+            Some(status),
+        ) = (answer, &mut self.status)
+        {
+            let found = (*width_deg, *resolution_raw_1e2_deg);
+            done(
+                "change field and resolution",
+                *is_done && Some(found) == wanted,
+                &found,
+            )?;
+            (status.width_deg, status.resolution_raw_1e2_deg) = found;
+        }
+        Ok(())
+    }
+
+    fn heard_configuration(&mut self, configuration: Configuration) {
+        self.configuration = Some(configuration);
+        if self.wanted_configuration() != Some(configuration) {
+            self.steps.insert(1, Step::Install);
+            self.steps.insert(2, Step::SetConfiguration);
+        }
+    }
+
+    /// How the device measures, once it sends every scan.
+    pub(crate) fn format(&self) -> Option<Format> {
+        if self.baud.is_none() || !self.steps.is_empty() {
+            return None;
+        }
+        let status = self.status?;
+        Some(Format {
+            range_mode: self.configuration?.range_mode,
+            width_deg: status.width_deg,
+            resolution_raw_1e2_deg: status.resolution_raw_1e2_deg,
+        })
+    }
+
+    /// The rate at which the device answered.
+    pub(crate) fn baud(&self) -> Option<Baud> {
+        self.baud
+    }
+
+    fn advance(&mut self) {
+        self.steps.pop_front();
+        self.attempts = Attempts::default();
+    }
+
+    fn command(&self, step: Step) -> Command<'static> {
+        match step {
+            // It answers, and no scans come between the next answers.
+            Step::Try(_) | Step::Hail => Command::SetMode(Mode::OnRequest),
+            Step::SwitchBaud(baud) => Command::SetMode(Mode::Baud(baud)),
+            Step::AskType => Command::RequestType,
+            Step::AskStatus => Command::RequestStatus,
+            Step::SetVariant => match self.wanted_variant() {
+                Some((width_deg, resolution_raw_1e2_deg)) => Command::SetVariant {
+                    width_deg,
+                    resolution_raw_1e2_deg,
+                },
+                None => Command::RequestStatus,
+            },
+            Step::AskConfiguration => Command::RequestConfiguration,
+            Step::Install => Command::SetMode(Mode::Installation {
+                password: DEFAULT_PASSWORD,
+            }),
+            Step::SetConfiguration => match self.wanted_configuration() {
+                Some(configuration) => Command::SetConfiguration(configuration),
+                None => Command::RequestConfiguration,
+            },
+            Step::Start => Command::SetMode(Mode::Continuous),
+        }
+    }
+
+    fn wanted_variant(&self) -> Option<(u16, u16)> {
+        let status = self.status?;
+        let resolution = self.wanted.resolution_raw_1e2_deg;
+        Some((
+            self.wanted.width_deg.unwrap_or(status.width_deg),
+            resolution.unwrap_or(status.resolution_raw_1e2_deg),
+        ))
+    }
+
+    fn wanted_configuration(&self) -> Option<Configuration> {
+        let mut configuration = self.configuration?;
+        if let Some(reach) = self.wanted.reach {
+            configuration.range_mode = reach.mode;
+            configuration.unit = reach.unit;
+        }
+        Some(configuration)
+    }
+}
+
+fn done(what: &'static str, success: bool, found: &impl std::fmt::Debug) -> Result<(), LmsError> {
+    if success {
+        return Ok(());
+    }
+    Err(LmsError::Refused {
+        what,
+        found: format!("{found:?}"),
+        expected: "that it is done".into(),
+    })
+}
+
+#[cfg(test)]
+mod tests {
+    use sick::lms2xx::Unit;
+
+    use super::*;
+
+    /// A device at this rate that does what it is told; what was said to it.
+    struct Device {
+        baud: Baud,
+        port: Baud,
+        status: DeviceStatus,
+        configuration: Configuration,
+        said: Vec<String>,
+    }
+
+    fn device(baud: Baud) -> Device {
+        Device {
+            baud,
+            port: Baud::B19200,
+            status: DeviceStatus {
+                version: *b"V02.10 ",
+                mode: 0x24,
+                has_error: false,
+                turns: 4500,
+                range_mode: RangeMode::Range8Fields,
+                width_deg: 180,
+                resolution_raw_1e2_deg: 100,
+                unit: Unit::Centimetre,
+            },
+            configuration: Configuration::new(RangeMode::Range8Fields, Unit::Centimetre),
+            said: Vec::new(),
+        }
+    }
+
+    impl Device {
+        fn hear(&mut self, command: &Command<'_>) -> Option<Answer<'static>> {
+            if self.port != self.baud {
+                return None;
+            }
+            self.said.push(format!("{command:?}"));
+            Some(match *command {
+                Command::SetMode(Mode::Baud(baud)) => {
+                    self.baud = baud;
+                    Answer::ModeSet(0)
+                }
+                Command::SetMode(_) => Answer::ModeSet(0),
+                Command::RequestType => Answer::Type(b"LMS200"),
+                Command::RequestStatus => Answer::Status(self.status),
+                Command::SetVariant {
+                    width_deg,
+                    resolution_raw_1e2_deg,
+                } => Answer::VariantSet {
+                    done: true,
+                    width_deg,
+                    resolution_raw_1e2_deg,
+                },
+                Command::RequestConfiguration => Answer::Configuration(self.configuration),
+                Command::SetConfiguration(configuration) => Answer::ConfigurationSet {
+                    done: true,
+                    configuration,
+                },
+                other => panic!("{other:?}"),
+            })
+        }
+
+        /// Lets them speak until scans come or nothing happens any more.
+        fn speak(&mut self, setup: &mut Setup) -> Result<(), LmsError> {
+            let mut now_ns = 0;
+            while setup.format().is_none() {
+                now_ns += PATIENCE_NS;
+                match setup.next(now_ns)? {
+                    Action::Baud(baud) => self.port = baud,
+                    Action::Send(command) => {
+                        if let Some(answer) = self.hear(&command) {
+                            setup.hear(&answer)?;
+                        }
+                    }
+                    Action::Wait => {}
+                }
+            }
+            Ok(())
+        }
+    }
+
+    #[test]
+    fn the_baud_rate_is_found_and_nothing_changed() {
+        for baud in Baud::ALL {
+            let mut device = device(baud);
+            let mut setup = Setup::new(Wanted::default(), None);
+            device.speak(&mut setup).unwrap();
+            assert_eq!((setup.baud(), device.port), (Some(baud), baud));
+            let expected = Format {
+                range_mode: RangeMode::Range8Fields,
+                width_deg: 180,
+                resolution_raw_1e2_deg: 100,
+            };
+            assert_eq!(setup.format(), Some(expected));
+            assert_eq!(device.said.len(), 5, "{:#?}", device.said);
+        }
+    }
+
+    #[test]
+    fn wishes_are_set_and_read_back() {
+        let reach = Reach {
+            mode: RangeMode::Range32Field,
+            unit: Unit::Millimetre,
+        };
+        let wanted = Wanted {
+            baud: Some(Baud::B500000),
+            width_deg: Some(100),
+            resolution_raw_1e2_deg: Some(25),
+            reach: Some(reach),
+        };
+        let mut device = device(Baud::B9600);
+        let mut setup = Setup::new(wanted, None);
+        device.speak(&mut setup).unwrap();
+        assert_eq!((device.baud, device.port), (Baud::B500000, Baud::B500000));
+        let expected = Format {
+            range_mode: RangeMode::Range32Field,
+            width_deg: 100,
+            resolution_raw_1e2_deg: 25,
+        };
+        assert_eq!(setup.format(), Some(expected));
+        let said = device.said.join("\n");
+        assert!(
+            said.contains("Installation") && said.contains("SetVariant"),
+            "{said}"
+        );
+    }
+
+    #[test]
+    fn nobody_there_names_the_rates_that_were_tried() {
+        let mut setup = Setup::new(Wanted::default(), Some(Baud::B500000));
+        let mut now_ns = 0;
+        let error = loop {
+            now_ns += PATIENCE_NS;
+            if let Err(error) = setup.next(now_ns) {
+                break error.to_string();
+            }
+        };
+        assert!(error.contains("(500000, 38400, 9600, 19200)"), "{error}");
+    }
+
+    #[test]
+    fn a_device_that_refuses_is_an_error() {
+        let mut device = device(Baud::B38400);
+        let wanted = Wanted {
+            width_deg: Some(100),
+            ..Wanted::default()
+        };
+        let mut setup = Setup::new(wanted, None);
+        let error = loop {
+            match setup.next(0).unwrap() {
+                Action::Baud(baud) => device.port = baud,
+                Action::Send(Command::SetVariant { .. }) => {
+                    break setup.hear(&Answer::VariantSet {
+                        done: false,
+                        width_deg: 180,
+                        resolution_raw_1e2_deg: 100,
+                    });
+                }
+                Action::Send(command) => {
+                    let answer = device.hear(&command).unwrap();
+                    setup.hear(&answer).unwrap();
+                }
+                Action::Wait => panic!("nothing to wait for"),
+            }
+        };
+        let error = error.unwrap_err().to_string();
+        assert!(
+            error.contains("did not change field and resolution"),
+            "{error}"
+        );
+    }
+}

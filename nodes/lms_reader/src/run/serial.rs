@@ -1,0 +1,207 @@
+//! Scans from an LMS2xx on a serial line.
+
+use std::io::{ErrorKind, Read, Write};
+use std::path::Path;
+use std::time::{Duration, Instant};
+
+use serialport::{ClearBuffer, SerialPort, TTYPort};
+use sick::lms2xx::{Answer, Baud, Command, PartialScans, Reply, ReplyFramer, Scan, Status};
+
+use super::outlet::{Outlet, SLICE};
+use crate::backoff::Backoff;
+use crate::lms2xx_scan::WholeScan;
+use crate::lms2xx_setup::{Action, Format, Setup, Wanted};
+use crate::{Config, LmsError};
+
+/// The device wants 55 µs between two bytes that it receives.
+const BYTE_GAP: Duration = Duration::from_micros(60);
+
+/// Keeps the line until the stop flag is set.
+pub(super) fn run(device: &Path, config: &Config, outlet: &mut Outlet) -> Result<(), LmsError> {
+    let mut backoff = Backoff::default();
+    let mut last_baud = None;
+    while !outlet.stopped() {
+        let before = outlet.sent;
+        let outcome = Line::open(device, config, last_baud).and_then(|mut line| {
+            let outcome = line.listen(outlet);
+            last_baud = line.setup.baud().or(last_baud);
+            outcome
+        });
+        match outcome {
+            Ok(()) => break,
+            Err(error @ LmsError::Transport(_)) => return Err(error),
+            Err(error) => outlet.lost(&error)?,
+        }
+        if outlet.sent > before {
+            backoff.reset();
+        }
+        outlet.wait_until(Instant::now() + backoff.next_wait())?;
+    }
+    Ok(())
+}
+
+fn wanted(config: &Config) -> Wanted {
+    Wanted {
+        baud: config.baud,
+        width_deg: config.field.map(|deg| deg as u16),
+        resolution_raw_1e2_deg: config.resolution.map(|deg| (deg * 100.0) as u16),
+        reach: config.range,
+    }
+}
+
+/// An open line and what has been said on it.
+struct Line<'a> {
+    name: &'a Path,
+    silence_s: f64,
+    port: TTYPort,
+    setup: Setup,
+    framer: ReplyFramer,
+    parts: Option<PartialScans>,
+    /// When the last telegram came.
+    heard: Instant,
+    /// Is filled and sent, again and again.
+    command: Vec<u8>,
+}
+
+impl<'a> Line<'a> {
+    fn open(name: &'a Path, config: &Config, last_baud: Option<Baud>) -> Result<Self, LmsError> {
+        let path = name.to_string_lossy();
+        let builder = serialport::new(path, Baud::B9600.rate()).timeout(SLICE);
+        let port = builder
+            .open_native()
+            .map_err(|error| failed(name, "open it", error))?;
+        Ok(Line {
+            name,
+            silence_s: config.silence,
+            port,
+            setup: Setup::new(wanted(config), last_baud),
+            framer: ReplyFramer::default(),
+            parts: None,
+            heard: Instant::now(),
+            command: Vec::new(),
+        })
+    }
+
+    /// Reads until the stop flag is set, which alone is a success.
+    fn listen(&mut self, outlet: &mut Outlet) -> Result<(), LmsError> {
+        let mut piece = [0; 1 << 12];
+        while !outlet.stopped() {
+            match self.setup.next(transport::monotonic_ns())? {
+                Action::Send(command) => self.send(&command)?,
+                Action::Baud(baud) => self.switch(baud)?,
+                Action::Wait => {}
+            }
+            match self.port.read(&mut piece) {
+                Ok(count) => {
+                    let received = super::now();
+                    self.framer.push(piece.get(..count).unwrap_or_default());
+                    self.hear(outlet, received)?;
+                }
+                Err(error)
+                    if matches!(error.kind(), ErrorKind::TimedOut | ErrorKind::Interrupted) => {}
+                Err(error) => return Err(failed(self.name, "read", error)),
+            }
+            if self.setup.format().is_some() && self.heard.elapsed().as_secs_f64() > self.silence_s
+            {
+                return Err(LmsError::Silent {
+                    address: self.name.display().to_string(),
+                    seconds: self.silence_s,
+                });
+            }
+            outlet.tick()?;
+        }
+        Ok(())
+    }
+
+    fn hear(
+        &mut self,
+        outlet: &mut Outlet,
+        received: crate::scan::Received,
+    ) -> Result<(), LmsError> {
+        while let Some(next) = self.framer.next_frame() {
+            // Before the rate is known, everything may be garbage.
+            let Some(baud) = self.setup.baud() else {
+                if let Ok(frame) = next
+                    && let Reply::Answer(answer, _) = frame.telegram
+                {
+                    self.setup.hear(&answer)?;
+                }
+                self.heard = Instant::now();
+                continue;
+            };
+            let Some(Reply::Answer(answer, status)) = outlet.take(next)? else {
+                continue;
+            };
+            self.heard = Instant::now();
+            match (answer, self.setup.format()) {
+                (Answer::Started(_), _) => return Err(LmsError::Restarted),
+                (Answer::Scan(scan), Some(format)) => {
+                    publish(
+                        &scan,
+                        status,
+                        (format, baud, received),
+                        &mut self.parts,
+                        outlet,
+                    )?;
+                }
+                _ => self.setup.hear(&answer)?,
+            }
+        }
+        Ok(())
+    }
+
+    fn send(&mut self, command: &Command<'_>) -> Result<(), LmsError> {
+        self.command.clear();
+        command.frame(&mut self.command);
+        for byte in &self.command {
+            self.port
+                .write_all(std::slice::from_ref(byte))
+                .map_err(|error| failed(self.name, "write", error))?;
+            std::thread::sleep(BYTE_GAP);
+        }
+        Ok(())
+    }
+
+    /// What came at another rate is no use.
+    fn switch(&mut self, baud: Baud) -> Result<(), LmsError> {
+        self.port
+            .set_baud_rate(baud.rate())
+            .and_then(|()| self.port.clear(ClearBuffer::Input))
+            .map_err(|error| failed(self.name, "set the baud rate", error))?;
+        self.framer = ReplyFramer::default();
+        Ok(())
+    }
+}
+
+/// Sends a scan, or keeps a part of one until the rest is there.
+fn publish(
+    scan: &Scan<'_>,
+    status: Status,
+    (format, baud, received): (Format, Baud, crate::scan::Received),
+    parts: &mut Option<PartialScans>,
+    outlet: &mut Outlet,
+) -> Result<(), LmsError> {
+    // Start, eight data bits and stop; head, CRC and two bytes a reading.
+    let bytes = 10 + 2 * scan.readings.len() as i64;
+    let line_ns = bytes * 10 * 1_000_000_000 / i64::from(baud.rate());
+    let whole = WholeScan::of(scan, format, line_ns);
+    if scan.part.is_none() {
+        return outlet.publish_lms2xx(&whole, status, received);
+    }
+    if parts.is_none() {
+        *parts = PartialScans::new(format.width_deg, format.resolution_raw_1e2_deg);
+    }
+    if let Some(readings) = parts.as_mut().and_then(|parts| parts.add(scan)) {
+        let readings = readings.into();
+        return outlet.publish_lms2xx(&WholeScan { readings, ..whole }, status, received);
+    }
+    Ok(())
+}
+
+fn failed(name: &Path, what: &'static str, error: impl Into<std::io::Error>) -> LmsError {
+    LmsError::Device {
+        address: name.display().to_string(),
+        what,
+        source: error.into(),
+    }
+}
