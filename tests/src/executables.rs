@@ -5,10 +5,10 @@ use std::path::{Path, PathBuf};
 use std::process::Command;
 use std::sync::OnceLock;
 
-/// Everything that a graph on a recording needs, in the groups in which
+/// Everything that the graphs of the tests need, in the groups in which
 /// `cargo run` and the descriptor build it: cargo would build what they depend
 /// on anew for another group.
-const GROUPS: [&[&str]; 2] = [
+const GROUPS: [&[&str]; 3] = [
     &[
         "replayer",
         "map_server",
@@ -17,6 +17,7 @@ const GROUPS: [&[&str]; 2] = [
         "peak_extractor",
         "recorder",
     ],
+    &["emulator", "lms_reader"],
     &["backcast"],
 ];
 

@@ -136,8 +136,11 @@ impl Parts {
 fn scans(encoding: Encoding, stream: &[u8], piece: usize) -> Vec<Vec<u8>> {
     let mut framer = Framer::new(encoding);
     let mut found = Vec::new();
-    for piece in stream.chunks(piece) {
+    for piece in stream.chunks(piece).chain([&[][..]]) {
         framer.push(piece);
+        if piece.is_empty() {
+            framer.finish();
+        }
         while let Some(next) = framer.next_frame() {
             if let Ok(frame) = next
                 && matches!(frame.telegram, Telegram::ScanData(_))

@@ -1,0 +1,423 @@
+//! A device that speaks CoLa: answers, refusals and scan telegrams.
+//!
+//! Pure: commands in, answers out. It refuses what a device refuses: changes
+//! without a login, values that it cannot do, names that it does not know.
+
+use sick::cola::{
+    AUTHORIZED_CLIENT, Answer, Channel, Channels, Command, Encoding, Fault, LmdScanData, Method,
+    OutputRange, PASSWORD_AUTHORIZED_CLIENT, ScanConfig, ScanDataConfig, Telegram, Value, Variable,
+};
+
+use crate::sweep::Sweep;
+
+/// Distances below are codes.
+const FIRST_DISTANCE: f64 = 16.0;
+/// The farthest that sixteen bits of millimetres say.
+const FARTHEST_M: f32 = 65.535;
+
+/// One client of the device.
+#[derive(Debug, Default)]
+pub(crate) struct Session {
+    /// Whether it may change settings.
+    logged_in: bool,
+    /// Whether every scan is sent to it.
+    pub(crate) subscribed: bool,
+}
+
+/// The device, as all clients see it.
+#[derive(Debug)]
+pub(crate) struct ColaDevice {
+    encoding: Encoding,
+    /// How it scans when it is switched on.
+    full: ScanConfig,
+    scan: ScanConfig,
+    range: OutputRange,
+    data: ScanDataConfig,
+    /// Millimetres in a unit of distance: 2 where the recording reaches far.
+    scale: f32,
+    /// Is filled and sent, again and again.
+    distances: Vec<u16>,
+}
+
+impl ColaDevice {
+    pub(crate) fn new(encoding: Encoding, sweep: &Sweep) -> Self {
+        let full = ScanConfig {
+            frequency_raw_1e2_hz: (100.0 / sweep.scan_time_s).round() as u32,
+            resolution_raw_1e4_deg: sweep.step_raw.unsigned_abs(),
+            start_angle_raw_1e4_deg: sweep.start_raw,
+            stop_angle_raw_1e4_deg: sweep.stop_raw(),
+        };
+        let ranges = sweep.scans.iter().flatten();
+        let is_far = ranges
+            .filter(|range| range.is_finite())
+            .any(|&range| range > FARTHEST_M);
+        ColaDevice {
+            encoding,
+            full,
+            scan: full,
+            range: OutputRange {
+                resolution_raw_1e4_deg: full.resolution_raw_1e4_deg,
+                start_angle_raw_1e4_deg: full.start_angle_raw_1e4_deg,
+                stop_angle_raw_1e4_deg: full.stop_angle_raw_1e4_deg,
+            },
+            data: ScanDataConfig {
+                channels: [1, 0],
+                remission: false,
+                remission_16_bit: true,
+                remission_unit: 0,
+                encoders: [0, 0],
+                position: false,
+                name: false,
+                comment: false,
+                time: false,
+                interval: 1,
+            },
+            scale: if is_far { 2.0 } else { 1.0 },
+            distances: Vec::new(),
+        }
+    }
+
+    /// The answer to a telegram; `None` to one that is no command.
+    pub(crate) fn hear(
+        &mut self,
+        session: &mut Session,
+        telegram: &Telegram<'_>,
+    ) -> Option<Answer<'static>> {
+        match telegram {
+            Telegram::Command(command) => {
+                Some(self.obey(session, command).unwrap_or_else(Answer::Fault))
+            }
+            Telegram::Other(content) => Some(Answer::Fault(match content.get(..3) {
+                Some(b"sRN" | b"sWN") => Fault::UNKNOWN_VARIABLE,
+                Some(b"sMN") => Fault::UNKNOWN_METHOD,
+                Some(b"sEN") => Fault::UNKNOWN_EVENT,
+                _ => Fault::UNKNOWN_COMMAND,
+            })),
+            Telegram::ScanData(_) | Telegram::Answer(_) => None,
+        }
+    }
+
+    fn obey(
+        &mut self,
+        session: &mut Session,
+        command: &Command<'_>,
+    ) -> Result<Answer<'static>, Fault> {
+        match command {
+            Command::Read(variable) => Ok(Answer::Value(self.value(*variable))),
+            // A recording has no scan of this very moment.
+            Command::ReadScan => Err(Fault::UNKNOWN_COMMAND),
+            Command::Write(_) if !session.logged_in => Err(Fault::WRITE_DENIED),
+            Command::Write(value) => self.write(value),
+            Command::Call(method) => self.call(session, method),
+            Command::SubscribeScans(on) => {
+                session.subscribed = *on;
+                Ok(Answer::ScansSubscribed(*on))
+            }
+        }
+    }
+
+    fn value(&self, variable: Variable) -> Value<'static> {
+        match variable {
+            Variable::DeviceIdent => Value::DeviceIdent {
+                name: b"LMS111 emulated",
+                version: env!("CARGO_PKG_VERSION").as_bytes(),
+            },
+            Variable::DeviceState => Value::DeviceState(1),
+            Variable::ScanConfig => Value::ScanConfig(self.scan),
+            Variable::ScanDataConfig => Value::ScanDataConfig(self.data),
+            Variable::OutputRange => Value::OutputRange(self.range),
+            Variable::HostEncoding => Value::HostEncoding(self.encoding == Encoding::Binary),
+        }
+    }
+
+    fn write(&mut self, value: &Value<'_>) -> Result<Answer<'static>, Fault> {
+        match value {
+            Value::ScanDataConfig(data) if data.interval >= 1 && !data.remission => {
+                self.data = *data;
+            }
+            Value::OutputRange(range) if self.can_send(range) => self.range = *range,
+            // It would not understand its client any more.
+            Value::HostEncoding(binary) if *binary == (self.encoding == Encoding::Binary) => {}
+            Value::DeviceIdent { .. } | Value::DeviceState(_) | Value::ScanConfig(_) => {
+                return Err(Fault::WRITE_DENIED);
+            }
+            _ => return Err(Fault::OUT_OF_RANGE),
+        }
+        Ok(Answer::Written(value.variable()))
+    }
+
+    fn can_send(&self, range: &OutputRange) -> bool {
+        let (start, stop) = (range.start_angle_raw_1e4_deg, range.stop_angle_raw_1e4_deg);
+        let full = self.full.start_angle_raw_1e4_deg..=self.full.stop_angle_raw_1e4_deg;
+        let step = self.full.resolution_raw_1e4_deg.cast_signed();
+        let is_beam = |angle: i32| {
+            full.contains(&angle) && (angle - self.full.start_angle_raw_1e4_deg) % step == 0
+        };
+        is_beam(start) && is_beam(stop) && start < stop
+    }
+
+    fn call(&mut self, session: &mut Session, method: &Method) -> Result<Answer<'static>, Fault> {
+        let needs_login = !matches!(method, Method::SetAccessMode { .. } | Method::Run);
+        if needs_login && !session.logged_in {
+            return Err(Fault::METHOD_DENIED);
+        }
+        Ok(match method {
+            Method::SetAccessMode { level, password } => {
+                session.logged_in =
+                    *level == AUTHORIZED_CLIENT && *password == PASSWORD_AUTHORIZED_CLIENT;
+                Answer::AccessMode(session.logged_in)
+            }
+            Method::SetScanConfig(config) => {
+                let status = self.set_scan_config(config);
+                Answer::ScanConfigSet {
+                    status,
+                    config: self.scan,
+                }
+            }
+            Method::StoreParameters => Answer::ParametersStored(true),
+            Method::StartMeasurement => Answer::MeasurementStarted(0),
+            Method::Run => {
+                session.logged_in = false;
+                Answer::Running(true)
+            }
+        })
+    }
+
+    /// 0 where it was done, else what is wrong.
+    fn set_scan_config(&mut self, config: &ScanConfig) -> u8 {
+        let resolution = config.resolution_raw_1e4_deg;
+        let can_resolve = resolution <= u32::from(u16::MAX)
+            && resolution.checked_rem(self.full.resolution_raw_1e4_deg) == Some(0)
+            && resolution > 0;
+        let field = (
+            config.start_angle_raw_1e4_deg,
+            config.stop_angle_raw_1e4_deg,
+        );
+        let full = (
+            self.full.start_angle_raw_1e4_deg,
+            self.full.stop_angle_raw_1e4_deg,
+        );
+        match (can_resolve, field == full) {
+            _ if config.frequency_raw_1e2_hz != self.full.frequency_raw_1e2_hz => 1,
+            (false, true) => 2,
+            (false, false) => 3,
+            (true, false) => 4,
+            (true, true) => {
+                self.scan = *config;
+                self.range.resolution_raw_1e4_deg = resolution;
+                0
+            }
+        }
+    }
+
+    /// Appends the telegram of a scan of the recording, unless it is one that is
+    /// left out; `counter` are the scans before it, `now_us` is the device's clock.
+    pub(crate) fn write_scan(
+        &mut self,
+        sweep: &Sweep,
+        scan: usize,
+        counter: u64,
+        now_us: u64,
+        out: &mut Vec<u8>,
+    ) {
+        if !counter.is_multiple_of(u64::from(self.data.interval)) {
+            return;
+        }
+        self.fill_distances(sweep, scan);
+        let channels = [Channel {
+            name: *b"DIST1",
+            scale_factor: self.scale,
+            scale_offset: 0.0,
+            start_angle_raw_1e4_deg: self.range.start_angle_raw_1e4_deg,
+            step_raw_1e4_deg: self.range.resolution_raw_1e4_deg as u16,
+            values: self.distances[..].into(),
+        }];
+        let data = LmdScanData {
+            version: 1,
+            device_number: 1,
+            serial_number: 1,
+            status: [0, 0],
+            telegram_counter: counter as u16,
+            scan_counter: counter as u16,
+            time_since_start_up_us: now_us as u32,
+            time_of_transmission_us: now_us as u32,
+            digital_inputs: [0, 0],
+            digital_outputs: [0, 0],
+            layer_angle_raw: 0,
+            scan_frequency_raw_1e2_hz: self.scan.frequency_raw_1e2_hz,
+            measurement_frequency_raw: 0,
+            encoders: (&[][..]).into(),
+            channels_16_bit: Channels::from(&channels[..]),
+            channels_8_bit: Channels::from(&[][..]),
+            position: None,
+            name: self.data.name.then_some(&b"emulated"[..]),
+            comment: None,
+            time: None,
+            event: None,
+        };
+        self.encoding.frame(&Telegram::ScanData(data), out);
+    }
+
+    fn fill_distances(&mut self, sweep: &Sweep, scan: usize) {
+        let range = self.range;
+        let angles = range.start_angle_raw_1e4_deg..=range.stop_angle_raw_1e4_deg;
+        let unit_m = f64::from(self.scale) * 1e-3;
+        self.distances.clear();
+        let beams = angles.step_by(range.resolution_raw_1e4_deg.max(1) as usize);
+        self.distances.extend(beams.map(|angle| {
+            let range = sweep.range(scan, angle).map(f64::from);
+            let units = range.map_or(0.0, |metres| (metres / unit_m).round());
+            match (FIRST_DISTANCE..=f64::from(u16::MAX)).contains(&units) {
+                true => units as u16,
+                false => 0,
+            }
+        }));
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::sweep::five_beams;
+
+    fn device() -> ColaDevice {
+        ColaDevice::new(Encoding::Binary, &five_beams(1.0))
+    }
+
+    fn ask(
+        device: &mut ColaDevice,
+        session: &mut Session,
+        command: Command<'_>,
+    ) -> Answer<'static> {
+        device.hear(session, &Telegram::Command(command)).unwrap()
+    }
+
+    const LOGIN: Command<'_> = Command::Call(Method::SetAccessMode {
+        level: AUTHORIZED_CLIENT,
+        password: PASSWORD_AUTHORIZED_CLIENT,
+    });
+
+    #[test]
+    fn nothing_changes_without_a_login() {
+        let (mut device, mut session) = (device(), Session::default());
+        let range = Command::Write(Value::OutputRange(device.range));
+        assert_eq!(
+            ask(&mut device, &mut session, range),
+            Answer::Fault(Fault::WRITE_DENIED)
+        );
+        for method in [Method::SetScanConfig(device.scan), Method::StoreParameters] {
+            let answer = ask(&mut device, &mut session, Command::Call(method));
+            assert_eq!(answer, Answer::Fault(Fault::METHOD_DENIED));
+        }
+        let wrong = Command::Call(Method::SetAccessMode {
+            level: 3,
+            password: 1,
+        });
+        assert_eq!(
+            ask(&mut device, &mut session, wrong),
+            Answer::AccessMode(false)
+        );
+        assert_eq!(
+            ask(&mut device, &mut session, LOGIN),
+            Answer::AccessMode(true)
+        );
+        let written = Answer::Written(Variable::OutputRange);
+        assert_eq!(ask(&mut device, &mut session, range), written);
+        // Another client has not logged in, and this one logs out.
+        let fault = Answer::Fault(Fault::WRITE_DENIED);
+        assert_eq!(ask(&mut device, &mut Session::default(), range), fault);
+        ask(&mut device, &mut session, Command::Call(Method::Run));
+        assert_eq!(ask(&mut device, &mut session, range), fault);
+    }
+
+    #[test]
+    fn what_the_recording_does_not_have_is_refused() {
+        let (mut device, mut session) = (device(), Session::default());
+        ask(&mut device, &mut session, LOGIN);
+        let range = OutputRange {
+            stop_angle_raw_1e4_deg: 930_000,
+            ..device.range
+        };
+        let write = Command::Write(Value::OutputRange(range));
+        assert_eq!(
+            ask(&mut device, &mut session, write),
+            Answer::Fault(Fault::OUT_OF_RANGE)
+        );
+        let mut status = |config| match ask(
+            &mut device,
+            &mut session,
+            Command::Call(Method::SetScanConfig(config)),
+        ) {
+            Answer::ScanConfigSet { status, .. } => status,
+            other => panic!("{other:?}"),
+        };
+        let full = ColaDevice::new(Encoding::Binary, &five_beams(1.0)).full;
+        assert_eq!(
+            status(ScanConfig {
+                frequency_raw_1e2_hz: 1,
+                ..full
+            }),
+            1
+        );
+        assert_eq!(
+            status(ScanConfig {
+                resolution_raw_1e4_deg: 5000,
+                ..full
+            }),
+            2
+        );
+        assert_eq!(
+            status(ScanConfig {
+                start_angle_raw_1e4_deg: 0,
+                ..full
+            }),
+            4
+        );
+        assert_eq!(
+            status(ScanConfig {
+                resolution_raw_1e4_deg: 20_000,
+                ..full
+            }),
+            0
+        );
+    }
+
+    #[test]
+    fn unknown_names_are_refused_by_kind() {
+        let (mut device, mut session) = (device(), Session::default());
+        let mut fault = |content: &[u8]| {
+            device
+                .hear(&mut session, &Telegram::Other(content))
+                .unwrap()
+        };
+        assert_eq!(fault(b"sRN STlms"), Answer::Fault(Fault::UNKNOWN_VARIABLE));
+        assert_eq!(
+            fault(b"sMN mSCreboot"),
+            Answer::Fault(Fault::UNKNOWN_METHOD)
+        );
+        assert_eq!(
+            fault(b"sEN LIDinputstate"),
+            Answer::Fault(Fault::UNKNOWN_EVENT)
+        );
+        assert_eq!(fault(b"sXX"), Answer::Fault(Fault::UNKNOWN_COMMAND));
+    }
+
+    #[test]
+    fn scans_are_rounded_to_the_devices_unit() {
+        let (mut device, sweep) = (device(), five_beams(1.0));
+        let mut content = Vec::new();
+        device.write_scan(&sweep, 0, 65_537, 9, &mut content);
+        let content = &content[8..content.len() - 1];
+        let scan = LmdScanData::read(Encoding::Binary, content).unwrap();
+        let channel = scan.channels_16_bit.named(b"DIST1").unwrap();
+        // 70 m takes steps of two millimetres, and a millimetre would be a code.
+        assert_eq!(channel.scale_factor, 2.0);
+        assert_eq!(
+            channel.values.collect::<Vec<_>>(),
+            [500, 0, 1002, 35_000, 0]
+        );
+        assert_eq!(channel.start_angle_raw_1e4_deg, 880_000);
+        assert_eq!((channel.step_raw_1e4_deg, scan.scan_counter), (10_000, 1));
+        assert_eq!(scan.scan_frequency_raw_1e2_hz, 5000);
+    }
+}

@@ -1,0 +1,158 @@
+//! What a user can set.
+
+use std::fmt;
+use std::path::PathBuf;
+use std::str::FromStr;
+
+use clap::{ArgGroup, Parser, ValueEnum};
+use sick::cola::Encoding;
+use sick::lms2xx::Baud;
+
+use crate::FaultPlan;
+
+/// Plays a recording as a SICK laser scanner.
+///
+/// The recording begins when somebody wants scans. Without --loop the node ends
+/// with it, once its clients have taken everything.
+#[derive(Debug, Clone, Parser)]
+#[command(name = "emulator", version)]
+#[command(group(ArgGroup::new("device").required(true).args(["listen", "pty"])))]
+pub struct Config {
+    /// The recording: an MCAP file with ROS 2 messages.
+    #[arg(long, value_name = "FILE")]
+    pub recording: PathBuf,
+
+    /// Is an LMS1xx, LMS5xx or TiM on this socket: tcp://HOST:PORT.
+    #[arg(long, value_name = "ADDRESS", value_parser = listen)]
+    pub listen: Option<String>,
+
+    /// The encoding of --listen.
+    #[arg(long, value_enum, default_value_t = Protocol::ColaB, conflicts_with = "pty")]
+    pub protocol: Protocol,
+
+    /// Is an LMS2xx on a pseudo-terminal; this link leads to it.
+    #[arg(long, value_name = "LINK")]
+    pub pty: Option<PathBuf>,
+
+    /// The baud rate of the LMS2xx when it is switched on: 9600, 19200, 38400
+    /// or 500000. At any other it hears and says garbage.
+    #[arg(long, value_name = "RATE", default_value = "9600", value_parser = baud)]
+    pub baud: Baud,
+
+    /// Times the original speed, 0.001 to 1000.
+    #[arg(long, value_name = "FACTOR", default_value_t = Rate(1.0))]
+    pub rate: Rate,
+
+    /// Starts over at the end.
+    #[arg(long = "loop")]
+    pub looped: bool,
+
+    /// Faults with commas between: crc=P, drop=P and garbage=P damage, omit and
+    /// precede telegrams with this probability; stall=DURATION is silent for so
+    /// long after one telegram in a hundred; reset=DURATION is how often the
+    /// device is started anew; split and merge cut telegrams into pieces and
+    /// send several at once. CoLa A has no checksum: there crc goes unnoticed.
+    #[arg(long, value_name = "FAULTS", default_value = "")]
+    pub fault: FaultPlan,
+
+    /// Where the randomness of faults starts.
+    #[arg(long, value_name = "NUMBER", default_value_t = 1)]
+    pub seed: u64,
+}
+
+/// The encoding of CoLa telegrams.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]
+pub enum Protocol {
+    /// Text.
+    ColaA,
+    /// Binary.
+    ColaB,
+}
+
+impl Protocol {
+    /// As the codec calls it.
+    #[must_use]
+    pub const fn encoding(self) -> Encoding {
+        match self {
+            Protocol::ColaA => Encoding::Text,
+            Protocol::ColaB => Encoding::Binary,
+        }
+    }
+}
+
+/// Times the original speed.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Rate(pub f64);
+
+impl FromStr for Rate {
+    type Err = String;
+
+    fn from_str(text: &str) -> Result<Self, String> {
+        match text.parse() {
+            Ok(factor) if (0.001..=1000.0).contains(&factor) => Ok(Rate(factor)),
+            _ => Err("allowed are 0.001 to 1000".into()),
+        }
+    }
+}
+
+impl fmt::Display for Rate {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        self.0.fmt(f)
+    }
+}
+
+fn listen(text: &str) -> Result<String, String> {
+    let address = text.strip_prefix("tcp://");
+    let port = address.and_then(|address| address.rsplit_once(':'));
+    match (
+        address,
+        port.map(|(host, port)| (host, port.parse::<u16>())),
+    ) {
+        (Some(address), Some((host, Ok(_)))) if !host.is_empty() => Ok(address.into()),
+        _ => Err("expected is tcp://HOST:PORT with a port from 0 to 65535".into()),
+    }
+}
+
+fn baud(text: &str) -> Result<Baud, String> {
+    let baud = text.parse().ok().and_then(Baud::from_rate);
+    baud.ok_or_else(|| "allowed are 9600, 19200, 38400 and 500000".into())
+}
+
+#[cfg(test)]
+mod tests {
+    use clap::CommandFactory;
+
+    use super::*;
+
+    fn parse(arguments: &str) -> Result<Config, String> {
+        let words = ["emulator"].into_iter().chain(arguments.split_whitespace());
+        Config::try_parse_from(words).map_err(|error| error.to_string())
+    }
+
+    #[test]
+    fn options() {
+        Config::command().debug_assert();
+        let config = parse("--recording a --listen tcp://127.0.0.1:2112").unwrap();
+        assert_eq!(config.listen.as_deref(), Some("127.0.0.1:2112"));
+        assert_eq!((config.baud, config.rate), (Baud::B9600, Rate(1.0)));
+        let config = parse("--recording a --pty b --baud 500000 --fault drop=0.5,split").unwrap();
+        assert_eq!((config.baud, config.fault.drop), (Baud::B500000, 0.5));
+        assert!(config.fault.split && !config.fault.merge);
+    }
+
+    #[test]
+    fn what_is_refused_says_what_is_allowed() {
+        let refuse = |arguments: &str, expected: &str| {
+            let text = parse(&format!("--recording a {arguments}")).unwrap_err();
+            assert!(text.contains(expected), "{arguments}: {text}");
+        };
+        refuse("", "--listen");
+        refuse("--pty b --listen tcp://a:1", "cannot be used with");
+        refuse("--pty b --protocol cola-a", "cannot be used with");
+        refuse("--listen 127.0.0.1:2112", "tcp://HOST:PORT");
+        refuse("--listen tcp://a:x", "0 to 65535");
+        refuse("--pty b --baud 1", "38400 and 500000");
+        refuse("--pty b --rate 0", "0.001 to 1000");
+        refuse("--pty b --fault crc=2", "0 to 1");
+    }
+}

@@ -1,0 +1,219 @@
+//! An LMS2xx on a pseudo-terminal.
+
+use std::io::{ErrorKind, Read, Write};
+use std::path::{Path, PathBuf};
+
+use serialport::{SerialPort, TTYPort};
+use sick::SickError;
+use sick::lms2xx::{Baud, CommandFramer, Reply};
+use transport::monotonic_ns;
+
+use super::{Common, PATIENCE_NS, SLICE};
+use crate::EmulatorError;
+use crate::lms2xx_device::Lms2xxDevice;
+
+/// What nobody reads is lost on a line; the terminal keeps about twice as much.
+const MOST_UNREAD: u32 = 2048;
+
+pub(super) fn run(link: &Path, baud: Baud, common: Common) -> Result<(), EmulatorError> {
+    let device = Lms2xxDevice::new(baud, &common.sweep)?;
+    let mut terminal = Terminal::open(link, device, common)?;
+    let mut over_ns = None;
+    while !terminal.common.stopped() {
+        terminal.listen()?;
+        let now_ns = monotonic_ns();
+        if terminal.common.faults.resets(now_ns) {
+            tracing::info!("started anew");
+            let reply = terminal.device.restart();
+            terminal.say(now_ns, |_, out| reply.frame(out))?;
+        }
+        if terminal.device.is_wanted() {
+            terminal.common.start()?;
+        }
+        while let Some((scan, _)) = terminal.common.player.take(now_ns) {
+            terminal.say_scan(now_ns, scan)?;
+        }
+        let is_over = terminal.common.player.is_over();
+        if is_over || !terminal.common.faults.holds_back() {
+            terminal.write()?;
+        }
+        terminal.common.health.tick()?;
+        if is_over {
+            let over_ns = *over_ns.get_or_insert(now_ns);
+            if terminal.unread()? == 0 || now_ns - over_ns > PATIENCE_NS {
+                tracing::info!("the recording has been played");
+                break;
+            }
+        }
+    }
+    Ok(())
+}
+
+struct Terminal {
+    common: Common,
+    device: Lms2xxDevice,
+    framer: CommandFramer,
+    master: TTYPort,
+    /// The client's side: held open, or the master would be hung up while no
+    /// client is there.
+    slave: TTYPort,
+    unsent: Vec<u8>,
+    _link: Link,
+}
+
+impl Terminal {
+    fn open(link: &Path, device: Lms2xxDevice, common: Common) -> Result<Self, EmulatorError> {
+        let (mut master, slave) = TTYPort::pair().map_err(|error| failed("open it", error))?;
+        master
+            .set_timeout(SLICE)
+            .map_err(|error| failed("set it up", error))?;
+        let name = slave.name().unwrap_or_default();
+        let link = Link::make(link, Path::new(&name))?;
+        let (terminal, baud) = (link.0.display(), device.baud.rate());
+        tracing::info!(%terminal, baud, scans = common.sweep.scans.len(), "listening");
+        Ok(Terminal {
+            common,
+            device,
+            framer: CommandFramer::default(),
+            master,
+            slave,
+            unsent: Vec::new(),
+            _link: link,
+        })
+    }
+
+    /// Waits for commands as long as nothing else is due, and answers them.
+    fn listen(&mut self) -> Result<(), EmulatorError> {
+        self.master
+            .set_timeout(self.common.pause())
+            .map_err(|error| failed("set it up", error))?;
+        let mut piece = [0; 1 << 10];
+        match self.master.read(&mut piece) {
+            Ok(count) if self.is_understood()? => {
+                self.framer.push(piece.get(..count).unwrap_or_default());
+            }
+            // At another rate these were no bytes.
+            Ok(_) => {}
+            Err(error) if matches!(error.kind(), ErrorKind::TimedOut | ErrorKind::Interrupted) => {}
+            Err(error) => return Err(failed("read", error)),
+        }
+        self.answer()
+    }
+
+    fn answer(&mut self) -> Result<(), EmulatorError> {
+        let now_ns = monotonic_ns();
+        let mut next_baud = self.device.baud;
+        while let Some(next) = self.framer.next_frame() {
+            let start = self.unsent.len();
+            match next {
+                Ok(frame) => {
+                    tracing::debug!(command = ?frame.telegram, "heard");
+                    next_baud = self.device.hear(&frame.telegram, &mut self.unsent);
+                    self.common.health.count_received(1);
+                }
+                Err(SickError::Checksum { .. } | SickError::Unreadable { .. }) => {
+                    Reply::Refused.frame(&mut self.unsent);
+                }
+                Err(_) => {}
+            }
+            self.common.faults.damage(&mut self.unsent, start, now_ns);
+        }
+        if next_baud != self.device.baud {
+            // What is said until here is said at the old rate.
+            self.write()?;
+            self.device.baud = next_baud;
+        }
+        Ok(())
+    }
+
+    fn say_scan(&mut self, now_ns: i64, scan: usize) -> Result<(), EmulatorError> {
+        let start = self.unsent.len();
+        self.device
+            .write_scan(&self.common.sweep, scan, &mut self.unsent);
+        if self.unsent.len() > start {
+            self.common.faults.damage(&mut self.unsent, start, now_ns);
+            self.common.health.count_sent(1);
+        }
+        Ok(())
+    }
+
+    fn say(
+        &mut self,
+        now_ns: i64,
+        write: impl FnOnce(&Lms2xxDevice, &mut Vec<u8>),
+    ) -> Result<(), EmulatorError> {
+        let start = self.unsent.len();
+        write(&self.device, &mut self.unsent);
+        self.common.faults.damage(&mut self.unsent, start, now_ns);
+        Ok(())
+    }
+
+    /// Sends everything; what nobody reads is lost.
+    fn write(&mut self) -> Result<(), EmulatorError> {
+        if self.unsent.is_empty() {
+            return Ok(());
+        }
+        if !self.is_understood()? {
+            self.unsent = self.common.faults.noise(self.unsent.len());
+        }
+        if self.unread()? < MOST_UNREAD {
+            let mut rest = &self.unsent[..];
+            while !rest.is_empty() {
+                let piece = self.common.faults.piece(rest.len());
+                let (piece, more) = rest.split_at(piece);
+                self.master
+                    .write_all(piece)
+                    .map_err(|error| failed("write", error))?;
+                rest = more;
+            }
+        }
+        self.unsent.clear();
+        Ok(())
+    }
+
+    /// Whether the client's side has the device's baud rate.
+    fn is_understood(&self) -> Result<bool, EmulatorError> {
+        let baud = self.master.baud_rate();
+        let baud = baud.map_err(|error| failed("read the baud rate", error))?;
+        Ok(baud == self.device.baud.rate())
+    }
+
+    /// Bytes that the client has not read.
+    fn unread(&self) -> Result<u32, EmulatorError> {
+        let unread = self.slave.bytes_to_read();
+        unread.map_err(|error| failed("look at what is unread", error))
+    }
+}
+
+fn failed(what: &'static str, error: impl Into<std::io::Error>) -> EmulatorError {
+    EmulatorError::Terminal {
+        what,
+        source: error.into(),
+    }
+}
+
+/// A link that is removed in the end.
+struct Link(PathBuf);
+
+impl Link {
+    /// Takes the place of another link, such as one that was left, but of
+    /// nothing else.
+    fn make(path: &Path, target: &Path) -> Result<Self, EmulatorError> {
+        let failed = |source| EmulatorError::Link {
+            path: path.into(),
+            source,
+        };
+        if path.is_symlink() {
+            std::fs::remove_file(path).map_err(failed)?;
+        }
+        std::os::unix::fs::symlink(target, path).map_err(failed)?;
+        Ok(Link(path.into()))
+    }
+}
+
+impl Drop for Link {
+    fn drop(&mut self) {
+        // There is nobody left to tell.
+        let _ = std::fs::remove_file(&self.0);
+    }
+}

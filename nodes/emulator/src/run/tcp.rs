@@ -1,0 +1,235 @@
+//! A CoLa device on a socket, for any number of clients.
+
+use std::io::{ErrorKind, Read, Write};
+use std::net::{SocketAddr, TcpListener, TcpStream};
+use std::os::fd::AsFd;
+use std::time::Duration;
+
+use nix::errno::Errno;
+use nix::poll::{PollFd, PollFlags, PollTimeout, poll};
+use sick::SickError;
+use sick::cola::{Answer, Encoding, Fault, Framer, Telegram};
+use transport::monotonic_ns;
+
+use super::{Common, PATIENCE_NS};
+use crate::EmulatorError;
+use crate::cola_device::{ColaDevice, Session};
+use crate::faults::Faults;
+
+/// A client that leaves so much unread is given up, bytes.
+const MOST_UNREAD: usize = 1 << 22;
+
+pub(super) fn run(
+    address: &str,
+    encoding: Encoding,
+    mut common: Common,
+) -> Result<(), EmulatorError> {
+    let failed = |source| EmulatorError::Listen {
+        address: address.into(),
+        source,
+    };
+    let listener = TcpListener::bind(address).map_err(failed)?;
+    listener.set_nonblocking(true).map_err(failed)?;
+    let local = listener.local_addr().map_err(failed)?;
+    let mut device = ColaDevice::new(encoding, &common.sweep);
+    tracing::info!(address = %local, ?encoding, scans = common.sweep.scans.len(), "listening");
+    let mut clients: Vec<Client> = Vec::new();
+    let started_ns = monotonic_ns();
+    let mut over_ns = None;
+    while !common.stopped() {
+        wait(&listener, &clients, common.pause())?;
+        accept(&listener, encoding, &mut clients);
+        let now_ns = monotonic_ns();
+        if common.faults.resets(now_ns) {
+            tracing::info!("started anew: all clients are disconnected");
+            device = ColaDevice::new(encoding, &common.sweep);
+            clients.clear();
+        }
+        for client in &mut clients {
+            client.hear(&mut device, &mut common, now_ns)?;
+        }
+        if clients.iter().any(|client| client.session.subscribed) {
+            common.start()?;
+        }
+        let now_us = (now_ns - started_ns).unsigned_abs() / 1000;
+        play(&mut device, &mut clients, &mut common, (now_ns, now_us));
+        let is_over = common.player.is_over();
+        for client in &mut clients {
+            client.write(&mut common.faults, is_over);
+        }
+        clients.retain(Client::is_there);
+        common.health.tick()?;
+        if is_over {
+            let over_ns = *over_ns.get_or_insert(now_ns);
+            let unread = clients.iter().any(|client| !client.unsent.is_empty());
+            if !unread || now_ns - over_ns > PATIENCE_NS {
+                tracing::info!("the recording has been played");
+                break;
+            }
+        }
+    }
+    Ok(())
+}
+
+/// Sends each scan that is due to all that want it.
+fn play(
+    device: &mut ColaDevice,
+    clients: &mut [Client],
+    common: &mut Common,
+    (now_ns, now_us): (i64, u64),
+) {
+    while let Some((scan, counter)) = common.player.take(now_ns) {
+        for client in clients
+            .iter_mut()
+            .filter(|client| client.session.subscribed)
+        {
+            let start = client.unsent.len();
+            device.write_scan(&common.sweep, scan, counter, now_us, &mut client.unsent);
+            common.faults.damage(&mut client.unsent, start, now_ns);
+            common.health.count_sent(1);
+        }
+    }
+}
+
+/// Sleeps until a client says something, comes or can take more, or the time is
+/// over.
+fn wait(
+    listener: &TcpListener,
+    clients: &[Client],
+    timeout: Duration,
+) -> Result<(), EmulatorError> {
+    let mut fds = vec![PollFd::new(listener.as_fd(), PollFlags::POLLIN)];
+    fds.extend(clients.iter().map(|client| {
+        let mut flags = PollFlags::POLLIN;
+        flags.set(PollFlags::POLLOUT, client.is_full);
+        PollFd::new(client.stream.as_fd(), flags)
+    }));
+    // Whole milliseconds, rounded up: never early, and it does not spin.
+    let millis = timeout.as_micros().div_ceil(1000) as u16;
+    match poll(&mut fds, PollTimeout::from(millis)) {
+        Ok(_) | Err(Errno::EINTR) => Ok(()),
+        Err(error) => Err(EmulatorError::Wait(error.into())),
+    }
+}
+
+fn accept(listener: &TcpListener, encoding: Encoding, clients: &mut Vec<Client>) {
+    // One that fails has gone again; there is nothing to wait for.
+    while let Ok((stream, address)) = listener.accept() {
+        let ready = stream
+            .set_nonblocking(true)
+            .and_then(|()| stream.set_nodelay(true));
+        match ready {
+            Ok(()) => {
+                tracing::info!(client = %address, "connected");
+                clients.push(Client::new(stream, address, encoding));
+            }
+            Err(error) => tracing::warn!(client = %address, %error, "cannot be served"),
+        }
+    }
+}
+
+struct Client {
+    stream: TcpStream,
+    address: SocketAddr,
+    encoding: Encoding,
+    framer: Framer,
+    session: Session,
+    /// What it has not been sent yet.
+    unsent: Vec<u8>,
+    /// Whether it takes no more at the moment.
+    is_full: bool,
+    has_gone: bool,
+}
+
+impl Client {
+    fn new(stream: TcpStream, address: SocketAddr, encoding: Encoding) -> Self {
+        Client {
+            stream,
+            address,
+            encoding,
+            framer: Framer::new(encoding),
+            session: Session::default(),
+            unsent: Vec::new(),
+            is_full: false,
+            has_gone: false,
+        }
+    }
+
+    /// Takes its commands and answers them.
+    fn hear(
+        &mut self,
+        device: &mut ColaDevice,
+        common: &mut Common,
+        now_ns: i64,
+    ) -> Result<(), EmulatorError> {
+        let mut piece = [0; 1 << 12];
+        loop {
+            match self.stream.read(&mut piece) {
+                Ok(0) => {
+                    self.has_gone = true;
+                    break;
+                }
+                Ok(count) => self.framer.push(piece.get(..count).unwrap_or_default()),
+                Err(error) if error.kind() == ErrorKind::Interrupted => {}
+                Err(error) if error.kind() == ErrorKind::WouldBlock => break,
+                Err(_) => {
+                    self.has_gone = true;
+                    break;
+                }
+            }
+        }
+        while let Some(next) = self.framer.next_frame() {
+            let answer = match next {
+                Ok(frame) => device.hear(&mut self.session, &frame.telegram),
+                Err(SickError::Unreadable { .. }) => Some(Answer::Fault(Fault::INVALID_DATA)),
+                Err(_) => None,
+            };
+            let Some(answer) = answer else { continue };
+            tracing::debug!(client = %self.address, ?answer, "answered");
+            let start = self.unsent.len();
+            self.encoding
+                .frame(&Telegram::Answer(answer), &mut self.unsent);
+            common.faults.damage(&mut self.unsent, start, now_ns);
+            common.health.count_received(1);
+        }
+        Ok(())
+    }
+
+    /// Sends what it takes.
+    fn write(&mut self, faults: &mut Faults, is_over: bool) {
+        self.is_full = false;
+        if !is_over && faults.holds_back() {
+            return;
+        }
+        let mut sent = 0;
+        while let Some(rest) = self.unsent.get(sent..)
+            && !rest.is_empty()
+        {
+            let piece = rest.get(..faults.piece(rest.len())).unwrap_or(rest);
+            match self.stream.write(piece) {
+                Ok(count) => sent += count,
+                Err(error) if error.kind() == ErrorKind::Interrupted => {}
+                Err(error) if error.kind() == ErrorKind::WouldBlock => {
+                    self.is_full = true;
+                    break;
+                }
+                Err(_) => {
+                    self.has_gone = true;
+                    break;
+                }
+            }
+        }
+        self.unsent.drain(..sent);
+        if self.unsent.len() > MOST_UNREAD {
+            tracing::warn!(client = %self.address, "too slow, disconnected");
+            self.has_gone = true;
+        }
+    }
+
+    fn is_there(&self) -> bool {
+        if self.has_gone {
+            tracing::info!(client = %self.address, "disconnected");
+        }
+        !self.has_gone
+    }
+}

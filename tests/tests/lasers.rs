@@ -1,0 +1,168 @@
+//! A recording through an emulated device and its reader: every scan arrives as
+//! the device's resolution allows, and faults never let a wrong one through.
+#![allow(
+    clippy::unwrap_used,
+    reason = "the lint spares test functions but not what they share"
+)]
+
+use std::net::TcpListener;
+use std::path::PathBuf;
+use std::time::Duration;
+
+use messages::topic;
+use tests::executables;
+use tests::world::World;
+use transport::testing::{Isolated, NodeProcess};
+use transport::{Flow, Graph, Subscriber, TransportError};
+
+/// How the two are joined.
+enum Cable {
+    Tcp(&'static str),
+    Serial,
+}
+
+/// A device and its reader in a graph.
+struct Robot {
+    emulator: NodeProcess,
+    reader: NodeProcess,
+    scans: Subscriber<topic::Scan>,
+    health: Subscriber<topic::Health>,
+    graph: Graph,
+    _folder: Option<tempfile::TempDir>,
+    _isolated: Isolated,
+}
+
+impl Robot {
+    fn start(tag: &str, cable: &Cable, emulator: &[&str]) -> Self {
+        let isolated = Isolated::new(tag);
+        let graph = isolated.join("test");
+        let scans = graph.subscriber().unwrap();
+        let health = graph.subscriber().unwrap();
+        let start = |name: &str, arguments: &[&str]| {
+            NodeProcess::start(executables::path(name).to_str().unwrap(), &graph, arguments)
+        };
+        let recording = World::of("malaga_corridor").recording();
+        let recording = ["--recording", recording.to_str().unwrap()];
+        let (folder, device, reader) = ends(cable);
+        let device: Vec<&str> = device.iter().map(String::as_str).collect();
+        let reader: Vec<&str> = reader.iter().map(String::as_str).collect();
+        Robot {
+            emulator: start("emulator", &[&recording[..], &device, emulator].concat()),
+            reader: start("lms_reader", &reader),
+            scans,
+            health,
+            graph,
+            _folder: folder,
+            _isolated: isolated,
+        }
+    }
+
+    /// The next scans, until `is_enough` says so of them and of what the reader
+    /// has refused.
+    fn collect(&self, is_enough: impl Fn(usize, u64) -> bool) -> Vec<Vec<f32>> {
+        let mut taken = Vec::new();
+        let mut refused = 0;
+        let step = |_| {
+            while let Some(scan) = self.scans.receive()? {
+                let header = scan.header();
+                assert_eq!(header.angle_min, (-90f64).to_radians());
+                assert_eq!(header.angle_increment, 0.5f64.to_radians());
+                taken.push(scan.items().to_vec());
+            }
+            while let Some(report) = self.health.receive()? {
+                if report.header().node.as_str() == "lms_reader" {
+                    refused = report.header().refused;
+                }
+            }
+            Ok::<_, TransportError>(match is_enough(taken.len(), refused) {
+                true => Flow::Stop,
+                false => Flow::Continue,
+            })
+        };
+        let inputs: [&dyn transport::Input; 2] = [&self.scans, &self.health];
+        self.graph
+            .run(&inputs, Duration::from_millis(100), step)
+            .unwrap();
+        taken
+    }
+}
+
+/// The arguments of device and reader, and the folder of the link between them.
+fn ends(cable: &Cable) -> (Option<tempfile::TempDir>, Vec<String>, Vec<String>) {
+    let words = |words: &[&str]| words.iter().map(|&word| word.to_owned()).collect();
+    match cable {
+        Cable::Tcp(protocol) => {
+            let free = TcpListener::bind("127.0.0.1:0").unwrap();
+            let address = free.local_addr().unwrap().to_string();
+            let listen = format!("tcp://{address}");
+            (
+                None,
+                words(&["--listen", &listen, "--protocol", protocol]),
+                words(&["--tcp", &address, "--protocol", protocol]),
+            )
+        }
+        Cable::Serial => {
+            let folder = tempfile::tempdir().unwrap();
+            let link: PathBuf = folder.path().join("laser");
+            let link = link.to_str().unwrap();
+            let (device, reader) = (
+                words(&["--pty", link, "--baud", "9600"]),
+                words(&["--serial", link, "--baud", "500000"]),
+            );
+            (Some(folder), device, reader)
+        }
+    }
+}
+
+/// Plays the recording once and compares every reading; returns the scans.
+fn every_scan_arrives(tag: &str, cable: &Cable, unit_m: f32) -> Vec<Vec<f32>> {
+    let recorded = World::of("malaga_corridor").scans();
+    // Four scans may wait for this test, that is four fifths of a second.
+    let robot = Robot::start(tag, cable, &["--rate", "1"]);
+    let arrived = robot.collect(|scans, _| scans == recorded.len());
+    for (index, (arrived, recorded)) in arrived.iter().zip(&recorded).enumerate() {
+        assert_eq!(arrived.len(), recorded.ranges.len());
+        for (beam, (&arrived, &recorded)) in arrived.iter().zip(&recorded.ranges).enumerate() {
+            // Half a unit, and what f32 rounds at 80 m.
+            let is_near = (arrived - recorded).abs() <= unit_m / 2.0 + 1e-5;
+            assert!(
+                arrived == recorded || is_near,
+                "scan {index}, beam {beam}: {arrived} is not {recorded}"
+            );
+        }
+    }
+    robot.reader.stop();
+    assert_eq!(robot.emulator.exit_code(), Some(0));
+    arrived
+}
+
+/// Plays the recording over and over a bad cable: what arrives is one of `sound`.
+fn nothing_wrong_gets_through(tag: &str, cable: &Cable, sound: &[Vec<f32>]) {
+    let faults = "crc=0.01,drop=0.01,garbage=0.01,split,merge";
+    let robot = Robot::start(tag, cable, &["--loop", "--rate", "20", "--fault", faults]);
+    let arrived = robot.collect(|scans, refused| scans >= 300 && refused >= 2);
+    for (index, scan) in arrived.iter().enumerate() {
+        assert!(sound.contains(scan), "scan {index} was never recorded");
+    }
+    robot.reader.stop();
+    robot.emulator.stop();
+}
+
+#[test]
+fn lms2xx_on_a_serial_line() {
+    // 80 m in steps of a centimetre.
+    let sound = every_scan_arrives("lms", &Cable::Serial, 0.01);
+    nothing_wrong_gets_through("lmsfaults", &Cable::Serial, &sound);
+}
+
+#[test]
+fn cola_b_on_a_socket() {
+    // 80 m in steps of two millimetres, so that 16 bits suffice.
+    let sound = every_scan_arrives("colab", &Cable::Tcp("cola-b"), 0.002);
+    nothing_wrong_gets_through("colabfaults", &Cable::Tcp("cola-b"), &sound);
+}
+
+#[test]
+fn cola_a_on_a_socket() {
+    every_scan_arrives("colaa", &Cable::Tcp("cola-a"), 0.002);
+}
