@@ -24,18 +24,14 @@ const GROUPS: [&[&str]; 3] = [
 /// The path of an executable, built in the profile of the tests.
 #[must_use]
 pub fn path(name: &str) -> PathBuf {
-    static FOLDER: OnceLock<PathBuf> = OnceLock::new();
-    FOLDER.get_or_init(build).join(name)
-}
-
-fn build() -> PathBuf {
+    static BUILT: [OnceLock<()>; GROUPS.len()] = [const { OnceLock::new() }; GROUPS.len()];
     // The tests lie in `<target>/<profile>/deps`, executables one above.
     let test = std::env::current_exe().unwrap();
-    let folder = test.ancestors().nth(2).unwrap().to_owned();
-    for packages in GROUPS {
-        build_group(packages, &folder);
-    }
-    folder
+    let folder = test.ancestors().nth(2).unwrap();
+    let group = GROUPS.iter().position(|group| group.contains(&name));
+    let group = group.unwrap_or_else(|| panic!("{name} is in no group"));
+    BUILT[group].get_or_init(|| build_group(GROUPS[group], folder));
+    folder.join(name)
 }
 
 fn build_group(packages: &[&str], folder: &Path) {

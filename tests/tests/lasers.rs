@@ -120,6 +120,7 @@ fn every_scan_arrives(tag: &str, cable: &Cable, unit_m: f32) -> Vec<Vec<f32>> {
     // Four scans may wait for this test, that is four fifths of a second.
     let robot = Robot::start(tag, cable, &["--rate", "1"]);
     let arrived = robot.collect(|scans, _| scans == recorded.len());
+    assert_eq!(arrived.len(), recorded.len());
     for (index, (arrived, recorded)) in arrived.iter().zip(&recorded).enumerate() {
         assert_eq!(arrived.len(), recorded.ranges.len());
         for (beam, (&arrived, &recorded)) in arrived.iter().zip(&recorded.ranges).enumerate() {

@@ -7,6 +7,7 @@
 use super::Encoding;
 use super::channel::Channels;
 use super::cursor::{Cursor, field_error};
+use super::encoders::Encoders;
 use super::tail::{self, DeviceTime, Event, Position};
 use super::writer::Writer;
 use crate::SickError;
@@ -89,89 +90,6 @@ pub struct LmdScanData<'a> {
     pub time: Option<DeviceTime>,
     /// An event at an input, if there was one.
     pub event: Option<Event>,
-}
-
-/// An incremental encoder.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub struct Encoder {
-    /// Ticks.
-    pub position: u32,
-    /// Ticks per millimetre.
-    pub speed: u16,
-}
-
-/// The encoders; iterating reads them in place.
-#[derive(Debug, Clone)]
-pub struct Encoders<'a>(Place<'a>);
-
-#[derive(Debug, Clone)]
-enum Place<'a> {
-    /// In a telegram.
-    Read { left: u16, cursor: Cursor<'a> },
-    /// In memory.
-    Listed(&'a [Encoder]),
-}
-
-impl Encoder {
-    fn read(cursor: &mut Cursor<'_>) -> Result<Self, SickError> {
-        Ok(Encoder {
-            position: cursor.u32("encoder position")?,
-            speed: cursor.u16("encoder speed")?,
-        })
-    }
-}
-
-impl<'a> Encoders<'a> {
-    fn read(cursor: &mut Cursor<'a>) -> Result<Self, SickError> {
-        let left = cursor.u16_upto("number of encoders", 3, "0 to 3")?;
-        let encoders = Place::Read {
-            left,
-            cursor: cursor.clone(),
-        };
-        for _ in 0..left {
-            Encoder::read(cursor)?;
-        }
-        Ok(Encoders(encoders))
-    }
-
-    fn write(&self, writer: &mut Writer<'_>) {
-        writer.u16(self.clone().count() as u16);
-        for encoder in self.clone() {
-            writer.u32(encoder.position);
-            writer.u16(encoder.speed);
-        }
-    }
-}
-
-impl<'a> From<&'a [Encoder]> for Encoders<'a> {
-    /// At most three can be sent.
-    fn from(encoders: &'a [Encoder]) -> Self {
-        Encoders(Place::Listed(encoders.get(..3).unwrap_or(encoders)))
-    }
-}
-
-impl PartialEq for Encoders<'_> {
-    fn eq(&self, other: &Self) -> bool {
-        self.clone().eq(other.clone())
-    }
-}
-
-impl Iterator for Encoders<'_> {
-    type Item = Encoder;
-
-    fn next(&mut self) -> Option<Encoder> {
-        match &mut self.0 {
-            Place::Read { left, cursor } => {
-                *left = left.checked_sub(1)?;
-                Encoder::read(cursor).ok()
-            }
-            Place::Listed(encoders) => {
-                let (first, rest) = encoders.split_first()?;
-                *encoders = rest;
-                Some(*first)
-            }
-        }
-    }
 }
 
 impl<'a> LmdScanData<'a> {
@@ -286,6 +204,7 @@ fn optional<'a, T>(
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::cola::Encoder;
 
     /// A telegram in which every optional block is there, field by field.
     fn full() -> Vec<u8> {

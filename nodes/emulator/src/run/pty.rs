@@ -12,8 +12,13 @@ use super::{Common, PATIENCE_NS, SLICE};
 use crate::EmulatorError;
 use crate::lms2xx_device::Lms2xxDevice;
 
-/// What nobody reads is lost on a line; the terminal keeps about twice as much.
-const MOST_UNREAD: u32 = 2048;
+/// What nobody reads is lost on a line; the terminal counts up to 4095.
+const MOST_UNREAD: u32 = 3300;
+
+/// How long nothing must be unread before the terminal is closed, which takes
+/// along what it has not handed over, nanoseconds. It hands over in the
+/// background, and what is under way there is not counted.
+const REST_NS: i64 = 500_000_000;
 
 pub(super) fn run(link: &Path, baud: Baud, common: Common) -> Result<(), EmulatorError> {
     let device = Lms2xxDevice::new(baud, &common.sweep)?;
@@ -40,7 +45,8 @@ pub(super) fn run(link: &Path, baud: Baud, common: Common) -> Result<(), Emulato
         terminal.common.health.tick()?;
         if is_over {
             let over_ns = *over_ns.get_or_insert(now_ns);
-            if terminal.unread()? == 0 || now_ns - over_ns > PATIENCE_NS {
+            let rested_ns = now_ns - over_ns;
+            if rested_ns > PATIENCE_NS || rested_ns > REST_NS && terminal.unread()? == 0 {
                 tracing::info!("the recording has been played");
                 break;
             }
