@@ -73,12 +73,25 @@ fn nodes_never_depend_on_nodes() {
 
 #[test]
 fn the_engine_knows_no_process_socket_clock_or_file() {
-    let dependencies = dependencies();
-    let all = folders("common");
     let allowed = BTreeSet::from(["geometry", "messages"].map(str::to_owned));
-    let known: BTreeSet<_> = dependencies["engine"].intersection(&all).cloned().collect();
-    assert_eq!(known, allowed);
-    for path in files(&tests::root().join("common/engine/src")) {
+    assert_eq!(known("engine"), allowed);
+    is_pure("common/engine/src");
+}
+
+#[test]
+fn the_codecs_of_lasers_know_no_socket_clock_or_file_and_nothing_of_ours() {
+    assert_eq!(known("sick"), BTreeSet::new());
+    is_pure("common/sick/src");
+}
+
+/// The crates under `common` that this one links.
+fn known(name: &str) -> BTreeSet<String> {
+    let all = folders("common");
+    dependencies()[name].intersection(&all).cloned().collect()
+}
+
+fn is_pure(folder: &str) {
+    for path in files(&tests::root().join(folder)) {
         let text = std::fs::read_to_string(&path).unwrap();
         for forbidden in [
             "std::fs",

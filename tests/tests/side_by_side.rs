@@ -12,7 +12,7 @@ use tests::executables;
 
 fn start() -> Child {
     // Built first, so that the runs below find nothing to build.
-    executables::path("replayer");
+    let _ = executables::path("replayer");
     let backcast = executables::path("backcast");
     Command::new(backcast)
         .args(["run", "--rate", "max", "--json"])

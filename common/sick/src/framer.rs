@@ -27,6 +27,14 @@ pub trait Protocol {
     /// # Errors
     /// Where it cannot be read.
     fn read<'a>(&self, content: &'a [u8]) -> Result<Self::Telegram<'a>, SickError>;
+
+    /// Reads a content that has been read just before, without an error.
+    ///
+    /// # Errors
+    /// None in that case.
+    fn read_again<'a>(&self, content: &'a [u8]) -> Result<Self::Telegram<'a>, SickError> {
+        self.read(content)
+    }
 }
 
 /// The part of the stream that has not been judged.
@@ -186,7 +194,7 @@ impl<P: Protocol> Framer<P> {
         Ok(Frame {
             offset,
             content,
-            telegram: self.protocol.read(content)?,
+            telegram: self.protocol.read_again(content)?,
             skipped: std::mem::take(&mut self.skipped),
         })
     }

@@ -21,7 +21,10 @@ impl Player {
     /// `times_ns` are at least one.
     pub(crate) fn new(times_ns: &[i64], rate: f64, looped: bool) -> Self {
         let first = times_ns.first().copied().unwrap_or(0);
-        let times_ns: Vec<i64> = times_ns.iter().map(|time| time - first).collect();
+        let times_ns: Vec<i64> = times_ns
+            .iter()
+            .map(|time| time.saturating_sub(first))
+            .collect();
         let gaps = times_ns.len().saturating_sub(1).max(1) as i64;
         let gap_ns = (times_ns.last().copied().unwrap_or(0) / gaps).max(1_000_000);
         Player {

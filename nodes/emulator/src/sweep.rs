@@ -13,6 +13,9 @@ use crate::EmulatorError;
 /// Straight ahead, in the device's convention.
 pub(crate) const AHEAD_RAW: i32 = 900_000;
 
+/// A turn to either side, 1/10000°.
+const TURN: std::ops::RangeInclusive<i64> = -3_600_000..=3_600_000;
+
 /// The scans of a recording. Angles are in 1/10000°, in the device's convention:
 /// 0 is right, 90° ahead.
 #[derive(Debug, Clone, PartialEq)]
@@ -67,8 +70,18 @@ impl Sweep {
                 allowed: "0.0001° to 6.5535°, counter-clockwise".into(),
             });
         }
+        let start_raw = raw(scan.angle_min);
+        let sweep_raw = (scan.ranges.len() as i64 - 1) * i64::from(step_raw);
+        if !TURN.contains(&i64::from(start_raw)) || !TURN.contains(&sweep_raw) {
+            return Err(EmulatorError::Scan {
+                scan: 0,
+                field: "the angle from the first beam to the last",
+                found: sweep_raw as f64 * 1e-4,
+                allowed: "0° to 360°, from -360° on".into(),
+            });
+        }
         Ok(Sweep {
-            start_raw: raw(scan.angle_min) + AHEAD_RAW,
+            start_raw: start_raw + AHEAD_RAW,
             step_raw,
             count: scan.ranges.len(),
             scan_time_s: f64::from(scan.scan_time),
@@ -110,9 +123,13 @@ impl Sweep {
     /// Where the recording does not say how long a scan takes, it is the usual
     /// time between two.
     fn measure_time(&mut self) {
-        let mut gaps: Vec<i64> = self.times_ns.windows(2).map(|w| w[1] - w[0]).collect();
+        let mut gaps: Vec<i64> = self
+            .times_ns
+            .windows(2)
+            .map(|w| w[1].saturating_sub(w[0]))
+            .collect();
         gaps.sort_unstable();
-        if !(self.scan_time_s > 0.0) {
+        if self.scan_time_s.is_nan() || self.scan_time_s <= 0.0 {
             let median = gaps.get(gaps.len() / 2).copied().unwrap_or(0);
             self.scan_time_s = (median as f64 * 1e-9).max(0.001);
         }
@@ -164,5 +181,23 @@ mod tests {
         assert_eq!(sweep.range(0, 750_000), None);
         assert_eq!(sweep.range(0, 1_050_000), None);
         assert_eq!(sweep.range(1, 800_000), None);
+    }
+
+    #[test]
+    fn beams_that_no_device_has_are_refused() {
+        let refuse = |angle_min: f32, angle_increment: f32, expected: &str| {
+            let scan = LaserScan {
+                angle_min,
+                angle_increment,
+                ranges: vec![1.0; 100],
+                ..LaserScan::default()
+            };
+            let error = Sweep::first(0, scan).unwrap_err().to_string();
+            assert!(error.contains(expected), "{error}");
+        };
+        refuse(1.0, -0.01, "counter-clockwise");
+        refuse(1.0, 0.2, "0.0001° to 6.5535°");
+        refuse(1.0, 0.1, "is 567.2");
+        refuse(1e9, 0.01, "0° to 360°");
     }
 }

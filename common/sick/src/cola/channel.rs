@@ -129,7 +129,7 @@ impl<'a> Channels<'a> {
         let block = Place::Read {
             left,
             width,
-            cursor: cursor.clone(),
+            cursor: cursor.clone().checked(),
         };
         for _ in 0..left {
             Channel::read(cursor, width)?;

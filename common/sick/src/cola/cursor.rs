@@ -5,6 +5,7 @@
 //! reads past the end and never skips.
 
 use super::Encoding;
+use super::words::{leading_hex, length_of_words};
 use crate::SickError;
 
 #[derive(Debug, Clone)]
@@ -12,12 +13,43 @@ pub(crate) struct Cursor<'a> {
     rest: &'a [u8],
     at: usize,
     encoding: Encoding,
+    /// Whether the same bytes have been read before, to their end.
+    is_checked: bool,
 }
 
 impl<'a> Cursor<'a> {
     /// Over `rest`, which begins `at` bytes into the content.
     pub(crate) fn new(encoding: Encoding, rest: &'a [u8], at: usize) -> Self {
-        Cursor { rest, at, encoding }
+        Cursor {
+            rest,
+            at,
+            encoding,
+            is_checked: false,
+        }
+    }
+
+    /// Over the same bytes, which are known to be sound from now on.
+    pub(crate) fn checked(mut self) -> Self {
+        self.is_checked = true;
+        self
+    }
+
+    /// Takes numbers of text, after a look at each the first time.
+    pub(crate) fn numbers(
+        &mut self,
+        field: &'static str,
+        count: usize,
+        bits: u32,
+    ) -> Result<&'a [u8], SickError> {
+        let text = self.rest;
+        if self.is_checked {
+            self.take(field, length_of_words(text, count))?;
+            return Ok(text);
+        }
+        for _ in 0..count {
+            self.number(field, bits)?;
+        }
+        Ok(text)
     }
 
     pub(crate) fn encoding(&self) -> Encoding {
@@ -261,35 +293,6 @@ impl<'a> Cursor<'a> {
             left: self.rest.len(),
         }
     }
-}
-
-/// The value of each hexadecimal digit, 0xff for other characters.
-const DIGITS: [u8; 256] = {
-    let mut digits = [0xff; 256];
-    let mut value = 0;
-    while value < 16 {
-        digits[b"0123456789ABCDEF"[value] as usize] = value as u8;
-        digits[b"0123456789abcdef"[value] as usize] = value as u8;
-        value += 1;
-    }
-    digits
-};
-
-/// The word of 1 to 8 hexadecimal digits that `text` starts with, and its
-/// length; a space or the end follows it.
-pub(super) fn leading_hex(text: &[u8]) -> Option<(u32, usize)> {
-    let mut value = 0u32;
-    for (length, &byte) in text.iter().enumerate() {
-        let digit = DIGITS[usize::from(byte)];
-        if digit == 0xff {
-            return (byte == b' ' && (1..=8).contains(&length)).then_some((value, length));
-        }
-        if length == 8 {
-            return None;
-        }
-        value = value << 4 | u32::from(digit);
-    }
-    (!text.is_empty()).then_some((value, text.len()))
 }
 
 pub(crate) fn field_error(

@@ -1,6 +1,6 @@
 //! The two encodings, and a framer for either.
 
-use super::{Telegram, cola_a, cola_b};
+use super::{LmdScanData, Telegram, cola_a, cola_b};
 use crate::SickError;
 use crate::framer::{self, Judgement, Pending, Protocol};
 
@@ -87,5 +87,12 @@ impl Protocol for Cola {
 
     fn read<'a>(&self, content: &'a [u8]) -> Result<Telegram<'a>, SickError> {
         Telegram::read(self.encoding, content)
+    }
+
+    fn read_again<'a>(&self, content: &'a [u8]) -> Result<Telegram<'a>, SickError> {
+        match LmdScanData::is_in(content) {
+            true => LmdScanData::read_checked(self.encoding, content).map(Telegram::ScanData),
+            false => self.read(content),
+        }
     }
 }

@@ -99,11 +99,10 @@ impl<'a> LmdScanData<'a> {
     /// [`SickError::Short`], [`SickError::Field`] or [`SickError::Trailing`], with
     /// the place.
     pub fn read(encoding: Encoding, content: &'a [u8]) -> Result<Self, SickError> {
-        let mut cursor = Cursor::new(Encoding::Binary, content, 0);
-        let command = cursor.take("command and name", COMMAND)?;
-        let mut cursor = Cursor::new(encoding, cursor.rest(), COMMAND);
-        let cursor = &mut cursor;
-        if !matches!(command, b"sSN LMDscandata " | b"sRA LMDscandata ") {
+        let mut whole = Cursor::new(Encoding::Binary, content, 0);
+        let command = whole.take("command and name", COMMAND)?;
+        let fields = whole.rest();
+        if !LmdScanData::is_in(command) {
             let found = command.escape_ascii();
             return Err(field_error(
                 "command and name",
@@ -112,6 +111,21 @@ impl<'a> LmdScanData<'a> {
                 "sSN LMDscandata or sRA LMDscandata",
             ));
         }
+        LmdScanData::read_fields(&mut Cursor::new(encoding, fields, COMMAND))
+    }
+
+    /// Reads a content that has been read before.
+    pub(super) fn read_checked(encoding: Encoding, content: &'a [u8]) -> Result<Self, SickError> {
+        let fields = content.get(COMMAND..).unwrap_or_default();
+        LmdScanData::read_fields(&mut Cursor::new(encoding, fields, COMMAND).checked())
+    }
+
+    /// Whether a content says that it is a scan.
+    pub(super) fn is_in(content: &[u8]) -> bool {
+        content.starts_with(b"sSN LMDscandata ") || content.starts_with(b"sRA LMDscandata ")
+    }
+
+    fn read_fields(cursor: &mut Cursor<'a>) -> Result<Self, SickError> {
         let data = LmdScanData {
             version: cursor.u16_upto("version", 1, "0 or 1")?,
             device_number: cursor.u16("device number")?,

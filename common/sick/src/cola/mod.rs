@@ -30,6 +30,7 @@ mod tail;
 mod telegram;
 mod values;
 mod variable;
+mod words;
 mod writer;
 
 pub use answer::Answer;

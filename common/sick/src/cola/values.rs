@@ -1,7 +1,8 @@
 //! The values of a channel, wherever they lie.
 
 use super::Encoding;
-use super::cursor::{Cursor, leading_hex};
+use super::cursor::Cursor;
+use super::words::leading_hex;
 use super::writer::Writer;
 use crate::SickError;
 
@@ -34,11 +35,7 @@ impl<'a> Values<'a> {
     ) -> Result<Self, SickError> {
         let place = match (cursor.encoding(), width) {
             (Encoding::Text, _) => {
-                let text = cursor.rest();
-                for _ in 0..count {
-                    cursor.number("values", 8 * width as u32)?;
-                }
-                Place::Words(text)
+                Place::Words(cursor.numbers("values", count, 8 * width as u32)?)
             }
             (Encoding::Binary, 1) => Place::Narrow(cursor.take("values", count)?),
             (Encoding::Binary, _) => Place::Wide(cursor.take("values", count * 2)?),

@@ -48,7 +48,7 @@ impl PartialScans {
             self.dropped += self.next as u64;
             self.next = 0;
         }
-        if step % 4 != 0 || part != self.next || scan.readings.len() != expected {
+        if !step.is_multiple_of(4) || part != self.next || scan.readings.len() != expected {
             self.dropped += 1 + self.next as u64;
             self.next = 0;
             return None;

@@ -122,7 +122,7 @@ impl<'a> From<&'a [u16]> for Readings<'a> {
 
 impl PartialEq for Readings<'_> {
     fn eq(&self, other: &Self) -> bool {
-        self.clone().eq(*other)
+        (*self).eq(*other)
     }
 }
 
