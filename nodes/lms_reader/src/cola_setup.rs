@@ -142,7 +142,10 @@ impl Setup {
                 true
             }
             (Step::AskState, Answer::Value(Value::DeviceState(state))) => {
-                tracing::info!(state, "0 busy, 1 ready, 2 error, 3 standby");
+                tracing::info!(
+                    state,
+                    "the device says how it fares: 0 busy, 1 ready, 2 error, 3 standby"
+                );
                 true
             }
             (Step::Login, Answer::AccessMode(success)) => done("log in", *success)?,

@@ -59,7 +59,7 @@ pub(super) fn length_of_words(text: &[u8], count: usize) -> usize {
 /// The high bit of each byte that is a space.
 fn spaces(chunk: u64) -> u64 {
     let differs = chunk ^ SPACES;
-    !((differs & LOWS) + LOWS | differs | LOWS)
+    !(((differs & LOWS) + LOWS) | differs | LOWS)
 }
 
 /// The value of eight digits, the first in the low byte.
