@@ -1,0 +1,23 @@
+//! Any stream of CoLa B: nothing panics, and what is read can be written and
+//! read again as it was.
+#![no_main]
+
+use libfuzzer_sys::fuzz_target;
+use sick::cola::{Encoding, Framer, Telegram};
+
+fuzz_target!(|stream: &[u8]| {
+    let mut framer = Framer::new(Encoding::Binary);
+    let mut written = Vec::new();
+    for piece in stream.chunks(97) {
+        framer.push(piece);
+        while let Some(next) = framer.next_frame() {
+            let Ok(frame) = next else { continue };
+            written.clear();
+            frame.telegram.write(Encoding::Binary, &mut written);
+            let again = Telegram::read(Encoding::Binary, &written);
+            assert_eq!(again.as_ref(), Ok(&frame.telegram));
+        }
+    }
+    framer.finish();
+    while framer.next_frame().is_some() {}
+});
