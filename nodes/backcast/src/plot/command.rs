@@ -8,6 +8,7 @@ use std::process::ExitCode;
 use drawing::Scene;
 use engine::grid::Grid;
 use engine::localizer::Prior;
+use geometry::Pose;
 use map::OccupancyGrid;
 use messages::Verdict;
 use recording::{GroundTruth, Recording, RecordingError};
@@ -151,10 +152,10 @@ impl<'a> Plot<'a> {
         })
     }
 
-    fn subject(&self, number: u64, scan: &TakenScan) -> Result<Subject, BackcastError> {
-        let answer = self.session.ask(scan)?.answer?;
+    fn subject(&mut self, number: u64, scan: &TakenScan) -> Result<Subject, BackcastError> {
+        let places = self.session.ask(scan)?.answer?.places.clone();
         let truth = self.truths.get(&scan.stamp_ns).map(|truth| truth.pose);
-        Subject::new((number, scan), answer.places, truth, &self.session.world)
+        Subject::new((number, scan), places, truth, &self.session.world)
             .map_err(BackcastError::Refused)
     }
 
@@ -188,7 +189,7 @@ impl<'a> Plot<'a> {
         while let Some(scan) = self.session.scans.next() {
             let scan = scan?;
             scans += 1;
-            if let Some(truth) = self.truths.get(&scan.stamp_ns) {
+            if let Some(truth) = self.truths.get(&scan.stamp_ns).map(|truth| truth.pose) {
                 judged.push(self.judge(&scan, truth)?);
             }
             progress.step();
@@ -203,16 +204,13 @@ impl<'a> Plot<'a> {
         errors::draw(&judged, &self.name(), self.config.width)
     }
 
-    fn judge(&self, scan: &TakenScan, truth: &GroundTruth) -> Result<Judged, BackcastError> {
+    fn judge(&mut self, scan: &TakenScan, truth: Pose) -> Result<Judged, BackcastError> {
         let places = self.session.ask(scan)?.answer.ok();
         let places = places.map(|answer| answer.places);
-        let best = places.as_ref().and_then(|places| places.places.first());
+        let best = places.and_then(|places| places.places.first());
         let off = best.map(|best| {
             let best = best.map_from_laser;
-            (
-                best.distance_to(truth.pose),
-                best.angle_to(truth.pose).to_degrees(),
-            )
+            (best.distance_to(truth), best.angle_to(truth).to_degrees())
         });
         Ok(Judged {
             stamp_ns: scan.stamp_ns,

@@ -185,7 +185,7 @@ mod tests {
     fn scans_that_are_missing_or_more_are_told() {
         let (one, two) = (answer(1), answer(2));
         let both = [one.clone(), two.clone()];
-        let missing = differences(&both, &[one.clone()]);
+        let missing = differences(&both, std::slice::from_ref(&one));
         assert_eq!(missing.len(), 1);
         assert_eq!((missing[0].stamp_ns, missing[0].what), (2, "scan"));
         assert_eq!((&*missing[0].expected, &*missing[0].found), ("1", "0"));

@@ -53,10 +53,14 @@ impl Writer {
         let preamble = Preamble::new(config, graph)?;
         let output = config.output.clone();
         let store = match config.keep {
-            None => Store::Parts(Parts::new(output, limits(config), preamble)?),
+            None => {
+                let parts = Parts::new(output, limits(config), preamble)?;
+                Store::Parts(Box::new(parts))
+            }
             Some(keep) => {
                 let capacity = bytes(config.keep_size);
-                Store::BlackBox(BlackBox::new(output, keep, capacity, preamble))
+                let black_box = BlackBox::new(output, keep, capacity, preamble);
+                Store::BlackBox(Box::new(black_box))
             }
         };
         let (commands, waiting) = channel();

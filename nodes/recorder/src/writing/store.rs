@@ -18,8 +18,8 @@ pub(crate) struct Tally {
 
 /// One of the two ways to record.
 pub(crate) enum Store {
-    Parts(Parts),
-    BlackBox(BlackBox),
+    Parts(Box<Parts>),
+    BlackBox(Box<BlackBox>),
 }
 
 impl Store {
