@@ -32,7 +32,7 @@ pub fn of_graph(
 ) -> Answers {
     // Before a graph is joined: meanwhile files that others make may not be
     // executable, as iceoryx2 changes the mask of the whole process.
-    executables::path("accumulator");
+    let _ = executables::path("accumulator");
     let isolated = Isolated::new(tag);
     let graph = isolated.join("test");
     let votes = graph.subscriber::<topic::Votes>().unwrap();

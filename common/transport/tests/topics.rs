@@ -72,6 +72,7 @@ round_trips! {
     votes_arrive: topic::Votes,
     field_arrives: topic::Field,
     hypotheses_arrive: topic::Hypotheses,
+    beams_arrive: topic::Beams,
     ground_truth_arrives: topic::GroundTruthTopic,
     health_arrives: topic::Health,
 }
