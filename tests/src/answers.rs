@@ -30,9 +30,6 @@ pub fn of_graph(
     scans: usize,
     accumulator: &[&str],
 ) -> Answers {
-    // Before a graph is joined: meanwhile files that others make may not be
-    // executable, as iceoryx2 changes the mask of the whole process.
-    let _ = executables::path("accumulator");
     let isolated = Isolated::new(tag);
     let graph = isolated.join("test");
     let votes = graph.subscriber::<topic::Votes>().unwrap();

@@ -35,7 +35,10 @@ pub fn path(name: &str) -> PathBuf {
 }
 
 fn build_group(packages: &[&str], folder: &Path) {
-    let mut command = Command::new(env!("CARGO"));
+    // While a graph is joined, iceoryx2 changes the mask of the whole process;
+    // what cargo makes would not be executable.
+    let mut command = Command::new("sh");
+    command.args(["-c", "umask 022 && exec \"$0\" \"$@\"", env!("CARGO")]);
     command.current_dir(crate::root());
     command.args(["build", "--quiet", "--locked"]);
     command.arg("--target-dir").arg(folder.parent().unwrap());

@@ -6,7 +6,7 @@
 )]
 
 use std::net::TcpListener;
-use std::path::{Path, PathBuf};
+use std::path::PathBuf;
 use std::time::Duration;
 
 use messages::topic;
@@ -34,15 +34,12 @@ struct Robot {
 
 impl Robot {
     fn start(tag: &str, cable: &Cable, emulator: &[&str]) -> Self {
-        // Before a graph is joined: meanwhile files that others make may not be
-        // executable, as iceoryx2 changes the mask of the whole process.
-        let paths = ["emulator", "lms_reader"].map(executables::path);
         let isolated = Isolated::new(tag);
         let graph = isolated.join("test");
         let scans = graph.subscriber().unwrap();
         let health = graph.subscriber().unwrap();
-        let start = |path: &Path, arguments: &[&str]| {
-            NodeProcess::start(path.to_str().unwrap(), &graph, arguments)
+        let start = |name: &str, arguments: &[&str]| {
+            NodeProcess::start(executables::path(name).to_str().unwrap(), &graph, arguments)
         };
         let recording = World::of("malaga_corridor").recording();
         let recording = ["--recording", recording.to_str().unwrap()];
@@ -50,8 +47,8 @@ impl Robot {
         let device: Vec<&str> = device.iter().map(String::as_str).collect();
         let reader: Vec<&str> = reader.iter().map(String::as_str).collect();
         Robot {
-            emulator: start(&paths[0], &[&recording[..], &device, emulator].concat()),
-            reader: start(&paths[1], &reader),
+            emulator: start("emulator", &[&recording[..], &device, emulator].concat()),
+            reader: start("lms_reader", &reader),
             scans,
             health,
             graph,

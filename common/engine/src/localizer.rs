@@ -32,14 +32,13 @@ pub struct Localizer {
     grid: Grid,
     space: Space,
     config: LocalizerConfig,
-    limits: Limits,
     method: Method,
 }
 
 #[derive(Debug, Clone)]
 enum Method {
     Search(Box<SearchIndex>),
-    Sweep(FieldSweep),
+    Sweep(FieldSweep, Limits),
 }
 
 /// What answering scans takes beside the map, and the last answer. Kept from
@@ -139,10 +138,10 @@ impl Localizer {
         let limits = Limits::new(&config.limits, frame, &grid, &space.directions)?;
         let method = match prior {
             Prior::None => {
-                let index = SearchIndex::new(&grid, &space).within(limits.clone());
+                let index = SearchIndex::new(&grid, &space).within(limits);
                 Method::Search(Box::new(index))
             }
-            Prior::Heading => Method::Sweep(FieldSweep::new(&grid)),
+            Prior::Heading => Method::Sweep(FieldSweep::new(&grid), limits),
         };
         Ok(Localizer {
             frame,
@@ -150,7 +149,6 @@ impl Localizer {
             grid,
             space,
             config,
-            limits,
             method,
         })
     }
@@ -300,7 +298,7 @@ impl Localizer {
         heading: f64,
         stop: &dyn Fn() -> bool,
     ) -> Result<Option<&'w Outcome>, EngineError> {
-        let Method::Sweep(sweeps) = &self.method else {
+        let Method::Sweep(sweeps, limits) = &self.method else {
             panic!("this localizer was prepared for unknown headings");
         };
         if !heading.is_finite() {
@@ -329,7 +327,7 @@ impl Localizer {
         if sweeps.fill(best, query, sweep, field, stop).is_none() {
             return Ok(None);
         }
-        self.limits.clear(field, index);
+        limits.clear(field, index);
         let image = (&field[..], self.grid.width());
         let how = (self.config.collect, &self.space);
         field_votes.collect(image, index as u16, how, &mut outcome.found);
