@@ -7,12 +7,14 @@
 
 mod cpu;
 mod heading;
+mod layout;
 mod options;
 mod progress;
 mod scans;
 mod session;
 mod world;
 
+pub(crate) use layout::{frame_of, sides_of};
 pub(crate) use options::Options;
 pub(crate) use progress::{Progress, say};
 pub(crate) use scans::TakenScan;

@@ -4,7 +4,6 @@
 use std::borrow::Cow;
 use std::path::{Path, PathBuf};
 
-use engine::grid::GridFrame;
 use engine::localizer::Prior;
 use geometry::Pose;
 use map::OccupancyGrid;
@@ -12,6 +11,7 @@ use messages::UNKNOWN;
 use recording::{Recording, RecordingError};
 
 use super::heading::Headings;
+use super::layout::{frame_of, sides_of};
 use super::options::EngineOptions;
 use super::scans::Scans;
 use super::world::{Answer, World};
@@ -81,11 +81,7 @@ impl<'a> Session<'a> {
     /// Nothing is left that could be used.
     pub(crate) fn erase(&mut self, centre: Pose, radius_m: f64) -> Result<(), BackcastError> {
         let mut map = self.map.clone().into_owned();
-        let frame = GridFrame {
-            resolution_m: map.resolution_m,
-            map_from_grid: map.map_from_grid,
-        };
-        let width = map.width as usize;
+        let (frame, (width, _)) = (frame_of(&map), sides_of(&map));
         for (i, cell) in map.cells.iter_mut().enumerate() {
             let (x, y) = ((i % width) as f64 + 0.5, (i / width) as f64 + 0.5);
             if frame.map_from_cells(x, y, 0.0).distance_to(centre) <= radius_m {

@@ -12,6 +12,7 @@ use engine::space::Space;
 use geometry::Pose;
 use map::OccupancyGrid;
 
+use super::layout::{frame_of, sides_of};
 use super::options::EngineOptions;
 
 /// A map and all settings.
@@ -105,12 +106,8 @@ impl World {
         options: &EngineOptions,
         prior: Prior,
     ) -> Result<Self, EngineError> {
-        let (width, height) = (map.width as usize, map.height as usize);
-        let frame = GridFrame {
-            resolution_m: map.resolution_m,
-            map_from_grid: map.map_from_grid,
-        };
-        let (sides, cells, rules) = ((width, height), &map.cells, options.cells);
+        let (frame, sides) = (frame_of(map), sides_of(map));
+        let (cells, rules) = (&map.cells, options.cells);
         let config = options.localizer.clone();
         Ok(World {
             map_id: map.id(),
@@ -118,12 +115,12 @@ impl World {
             space: Space::new(
                 options.localizer.headings,
                 frame.resolution_m,
-                width,
-                height,
+                sides.0,
+                sides.1,
             )?,
             beams: options.localizer.votes.beams,
             localizer: Localizer::of_map(frame, sides, cells, rules, config, prior)?,
-            cells: width as u64 * height as u64,
+            cells: u64::from(map.width) * u64::from(map.height),
             peaks: options.peaks,
             workspace: Workspace::default(),
         })

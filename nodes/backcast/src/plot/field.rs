@@ -13,7 +13,7 @@ use super::subject::{Ground, Subject};
 use super::theme;
 use super::view::View;
 use crate::BackcastError;
-use crate::offline::Field;
+use crate::offline::{Field, frame_of, sides_of};
 
 const HEIGHTS: (f64, f64) = (0.25, 0.8);
 
@@ -66,10 +66,7 @@ pub(super) fn draw(
     bag: &str,
     size: Size,
 ) -> Result<Scene, BackcastError> {
-    let extent = match size.whole {
-        true => ground.extent(),
-        false => subject.extent(ground),
-    };
+    let extent = subject.extent(ground, size.whole);
     let ratio = (extent.height() / extent.width()).clamp(HEIGHTS.0, HEIGHTS.1);
     let height = (page::body_width(size.width) * ratio).round();
     let mut legend = vec![
@@ -113,7 +110,7 @@ fn fill(
     view: &View,
 ) -> Result<(), BackcastError> {
     let map = ground.map;
-    let cells = Sampler::new(view, ground::frame_of(map), ground::sides_of(map));
+    let cells = Sampler::new(view, frame_of(map), sides_of(map));
     let votes = Sampler::new(view, field.frame, field.sides);
     let most = f64::from(field.outcome.found.best.max(1));
     ground::fill(scene, view, |column, row| {

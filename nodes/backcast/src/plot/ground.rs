@@ -9,6 +9,7 @@ use map::{OccupancyGrid, UNKNOWN};
 
 use super::theme;
 use super::view::View;
+use crate::offline::{frame_of, sides_of};
 
 /// Looks at most that often along each axis of a pixel.
 const MOST_LOOKS: f64 = 12.0;
@@ -65,19 +66,6 @@ impl Sampler {
         let inside = x >= 0.0 && y >= 0.0 && x < width as f64 && y < height as f64;
         inside.then(|| y as usize * width + x as usize)
     }
-}
-
-/// Where a map's cells lie.
-pub(super) fn frame_of(map: &OccupancyGrid) -> GridFrame {
-    GridFrame {
-        resolution_m: map.resolution_m,
-        map_from_grid: map.map_from_grid,
-    }
-}
-
-/// Sides of a map, cells.
-pub(super) fn sides_of(map: &OccupancyGrid) -> (usize, usize) {
-    (map.width as usize, map.height as usize)
 }
 
 /// Fills a view with an image of so many pixels.

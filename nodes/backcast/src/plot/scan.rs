@@ -59,10 +59,7 @@ pub(super) fn draw(
     bag: &str,
     size: Size,
 ) -> Result<Scene, BackcastError> {
-    let extent = match size.whole {
-        true => ground.extent(),
-        false => subject.extent(ground),
-    };
+    let extent = subject.extent(ground, size.whole);
     let near = worth_comparing(subject);
     let (unit, width) = (page::unit(size.width), page::body_width(size.width));
     let ratio = extent.height() / extent.width();

@@ -2,7 +2,6 @@
 
 use drawing::{Anchor, Color, Path, Rect, Scene, TextStyle};
 
-use super::extent::Extent;
 use super::marks;
 use super::page::{self, Heading, Page, Sample};
 use super::places;
@@ -66,7 +65,7 @@ pub(super) fn draw(
 fn shape(ground: &Ground<'_>, panels: &[Panel], size: Size) -> f64 {
     let ratio = |panel: &Panel| match panel {
         Panel::Scan(subject) => {
-            let extent = extent(ground, subject, size);
+            let extent = subject.extent(ground, size.whole);
             Some(extent.height() / extent.width())
         }
         Panel::Refused(..) => None,
@@ -75,13 +74,6 @@ fn shape(ground: &Ground<'_>, panels: &[Panel], size: Size) -> f64 {
     ratios.sort_by(f64::total_cmp);
     let middle = ratios.get(ratios.len() / 2).copied();
     middle.unwrap_or_default().clamp(HEIGHTS.0, HEIGHTS.1)
-}
-
-fn extent(ground: &Ground<'_>, subject: &Subject, size: Size) -> Extent {
-    match size.whole {
-        true => ground.extent(),
-        false => subject.extent(ground),
-    }
 }
 
 /// As many columns as make the sheet a little wider than high.
@@ -101,7 +93,7 @@ fn draw_panel(
     match panel {
         Panel::Scan(subject) => {
             write_caption(&mut page.scene, subject, (area, caption), unit);
-            let view = View::fitting(extent(ground, subject, size), picture);
+            let view = View::fitting(subject.extent(ground, size.whole), picture);
             ground.draw(&mut page.scene, &view)?;
             places::draw(&mut page.scene, &view, subject, 0.75 * unit);
             marks::scale_bar(&mut page.scene, &view, 0.85 * unit);

@@ -155,9 +155,9 @@ impl Subject {
         self.truth.as_ref().filter(|truth| !truth.is_met())
     }
 
-    /// What matters of the map: the place, those that fit about as well, and the
-    /// truth, each with what most of the scan reaches there.
-    pub(super) fn extent(&self, ground: &Ground<'_>) -> Extent {
+    /// The whole map, or what matters of it: the place, those that fit about as
+    /// well, and the truth, each with what most of the scan reaches there.
+    pub(super) fn extent(&self, ground: &Ground<'_>, whole: bool) -> Extent {
         let mut extent = Extent::EMPTY;
         let rivals = self.places.alternatives as usize;
         for shown in self.shown.iter().take(1 + rivals) {
@@ -167,7 +167,7 @@ impl Subject {
             extent.include(reached(truth.pose, &truth.scan));
         }
         let all = ground.extent();
-        match self.shown.is_empty() && self.truth.is_none() {
+        match whole || self.shown.is_empty() && self.truth.is_none() {
             true => all,
             false => extent.with_rim(0.04, 6.0).within(all),
         }

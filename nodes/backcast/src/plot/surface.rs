@@ -7,14 +7,14 @@ use drawing::{Anchor, Color, Path, Rect, Scene, Stroke, TextStyle};
 
 use super::extent::Extent;
 use super::field::{self, WALL};
-use super::ground::{self, Sampler};
+use super::ground::Sampler;
 use super::page::{self, Page, Sample};
 use super::scan::Size;
 use super::subject::{Ground, Subject};
 use super::theme;
 use super::view::View;
 use crate::BackcastError;
-use crate::offline::Field;
+use crate::offline::{Field, frame_of, sides_of};
 
 /// Patches along the longer side: finer ones are not told apart.
 const PATCHES: f64 = 150.0;
@@ -94,7 +94,7 @@ impl Relief {
         let view = View::fitting(extent, Rect::new(0.0, 0.0, columns, rows));
         let votes = Sampler::new(&view, field.frame, field.sides);
         let map = ground.map;
-        let cells = Sampler::new(&view, ground::frame_of(map), ground::sides_of(map));
+        let cells = Sampler::new(&view, frame_of(map), sides_of(map));
         let most = f64::from(field.outcome.found.best.max(1));
         let (columns, rows) = (columns as u32, rows as u32);
         let mut relief = Relief {
@@ -186,10 +186,7 @@ pub(super) fn draw(
     bag: &str,
     size: Size,
 ) -> Result<Scene, BackcastError> {
-    let extent = match size.whole {
-        true => ground.extent(),
-        false => subject.extent(ground),
-    };
+    let extent = subject.extent(ground, size.whole);
     let relief = Relief::of(ground, field, extent);
     let width = page::body_width(size.width);
     let heading = field::heading(subject, field, bag);
