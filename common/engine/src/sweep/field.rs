@@ -3,8 +3,8 @@
 use super::bits::BitGrid;
 use super::kernel::{self, Stretch, Sum};
 use super::lanes::{self, Lanes};
+use super::merge;
 use super::plan::{GROUPS, Plan};
-use super::transpose::{Square, transposed};
 use super::wide::{self, Rows};
 use crate::accumulator::{Accumulator, Query};
 use crate::grid::Grid;
@@ -196,19 +196,22 @@ impl Job<'_> {
             (&mut *rows, &self.sweeps.along_y),
             (columns, &self.sweeps.along_x),
         ] {
-            sums.resize(bits.rows * stride(bits), S::default());
+            // Squares of eight rows are merged.
+            sums.resize(bits.rows.next_multiple_of(8) * stride(bits), S::default());
         }
         unsafe {
             self.sweep_axis::<L, S, N>(plan, room, columns, 2)?;
             self.sweep_axis::<L, S, N>(plan, room, rows, 0)?;
         }
-        merge(
-            &self.sweeps.along_y,
-            rows,
-            columns,
-            stride(&self.sweeps.along_x),
-            field,
-        );
+        let rows = merge::Sums {
+            sums: rows,
+            stride: stride(&self.sweeps.along_y),
+        };
+        let columns = merge::Sums {
+            sums: columns,
+            stride: stride(&self.sweeps.along_x),
+        };
+        merge::merge(&self.sweeps.along_y, &rows, &columns, field);
         Some(())
     }
 
@@ -262,61 +265,6 @@ impl Job<'_> {
 }
 
 /// Cells from one row of sums to the next.
-fn stride(bits: &BitGrid) -> usize {
+pub(super) fn stride(bits: &BitGrid) -> usize {
     bits.columns.next_multiple_of(64)
 }
-
-/// Adds up the sums along both axes where cells are open.
-#[inline(always)]
-fn merge<S: Sum>(bits: &BitGrid, rows: &[S], columns: &[S], height: usize, field: &mut [u16]) {
-    for bottom in (0..bits.rows).step_by(8) {
-        for left in (0..bits.columns).step_by(8) {
-            merge_square(bits, rows, columns, height, (left, bottom), field);
-        }
-    }
-}
-
-#[inline(always)]
-fn merge_square<S: Sum>(
-    bits: &BitGrid,
-    rows: &[S],
-    columns: &[S],
-    height: usize,
-    (left, bottom): (usize, usize),
-    field: &mut [u16],
-) {
-    let width = stride(bits);
-    let mut square: Square = [[0; 8]; 8];
-    for (x, square) in (left..bits.columns).zip(&mut square) {
-        *square = S::octet(&columns[x * height + bottom..]);
-    }
-    let square = transposed(&square);
-    for (y, square) in (bottom..bits.rows).zip(square) {
-        let mut sums = S::octet(&rows[y * width + left..]);
-        let open = &OPEN[usize::from(bits.open_octet(y, left))];
-        for ((sum, other), open) in sums.iter_mut().zip(square).zip(open) {
-            *sum = (*sum + other) & open;
-        }
-        let row = &mut field[y * bits.columns..][..bits.columns];
-        if let Some(octet) = row[left..].first_chunk_mut() {
-            *octet = sums;
-            continue;
-        }
-        for (to, sum) in row[left..].iter_mut().zip(sums) {
-            *to = sum;
-        }
-    }
-}
-
-/// All ones where a bit is set.
-static OPEN: [[u16; 8]; 256] = {
-    let mut masks = [[0; 8]; 256];
-    let mut i = 0;
-    while i < 8 * 256 {
-        if (i / 8) >> (i % 8) & 1 == 1 {
-            masks[i / 8][i % 8] = u16::MAX;
-        }
-        i += 1;
-    }
-    masks
-};

@@ -10,12 +10,16 @@ use std::ops::{AddAssign, Range};
 
 use super::bits::BitGrid;
 use super::lanes::Lanes;
+use super::octet::Octet;
 use super::plan::{MOST_BEAMS, SweptBeam};
 
 /// Where votes are added up: rows of bytes or of 16 bits.
 pub(super) trait Sum: Copy + Default + From<u8> + AddAssign {
-    /// Eight sums from the beginning of many.
-    fn octet(sums: &[Self]) -> [u16; 8];
+    /// Eight sums.
+    ///
+    /// # Safety
+    /// There must be eight to read.
+    unsafe fn octet(from: *const Self) -> Octet;
 
     /// Adds votes to the sums of as many cells, or sets those.
     ///
@@ -26,10 +30,8 @@ pub(super) trait Sum: Copy + Default + From<u8> + AddAssign {
 
 impl Sum for u16 {
     #[inline(always)]
-    fn octet(sums: &[u16]) -> [u16; 8] {
-        let mut octet = [0; 8];
-        octet.copy_from_slice(&sums[..8]);
-        octet
+    unsafe fn octet(from: *const u16) -> Octet {
+        unsafe { Octet::of_words(from) }
     }
 
     #[inline(always)]
@@ -40,12 +42,8 @@ impl Sum for u16 {
 
 impl Sum for u8 {
     #[inline(always)]
-    fn octet(sums: &[u8]) -> [u16; 8] {
-        let mut octet = [0; 8];
-        for (octet, &sum) in octet.iter_mut().zip(&sums[..8]) {
-            *octet = u16::from(sum);
-        }
-        octet
+    unsafe fn octet(from: *const u8) -> Octet {
+        unsafe { Octet::of_bytes(from) }
     }
 
     #[inline(always)]

@@ -24,8 +24,9 @@ mod kernel;
               processor has, and rows with margins that hold what is read and written"
 )]
 mod lanes;
+mod merge;
+mod octet;
 mod plan;
-mod transpose;
 mod wide;
 
 pub use field::{FieldSweep, Sweep, Workspace};
