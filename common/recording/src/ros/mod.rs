@@ -7,6 +7,7 @@
 
 pub mod backcast_msgs;
 mod conversion;
+mod definition;
 mod diagnostic_array;
 mod geometry_msgs;
 mod laser_scan;
