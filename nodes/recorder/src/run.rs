@@ -9,11 +9,10 @@ use std::time::Duration;
 
 use messages::NodeState;
 use signal_hook::consts::SIGUSR1;
-use transport::{Flow, Graph, Health, monotonic_ns, with_causes};
+use transport::{Flow, Graph, Health, monotonic_ns, wall_ns, with_causes};
 
 use crate::entries::Entries;
 use crate::events::Lookout;
-use crate::writing::wall_ns;
 use crate::{Config, Event, RecorderError};
 use inputs::Inputs;
 use writer::{Status, Writer};

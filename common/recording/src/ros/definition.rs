@@ -21,6 +21,11 @@ std_msgs/Header
 builtin_interfaces/Time stamp
 string frame_id
 ",
+            Time
+        )
+    };
+    (Time) => {
+        $crate::ros::definition::part!(
             "\
 builtin_interfaces/Time
 int32 sec
