@@ -110,9 +110,21 @@ impl<'p> Bag<'p> {
         let found: String = database
             .query_row(check, (), |row| row.get(0))
             .map_err(refused)?;
-        match found.as_str() {
-            "ok" => Ok(Bag { path, database }),
-            found => Err(damaged(path, found)),
+        if found != "ok" {
+            return Err(damaged(path, &found));
+        }
+        // SQLite takes what a last page lacks for zeros.
+        let page: u64 = database
+            .query_row("PRAGMA page_size", (), |row| row.get(0))
+            .map_err(refused)?;
+        let unreadable = |source| RecordingError::Open {
+            path: path.to_owned(),
+            source,
+        };
+        let length = std::fs::metadata(path).map_err(unreadable)?.len();
+        match length.checked_rem(page) {
+            Some(0) => Ok(Bag { path, database }),
+            _ => Err(damaged(path, "it ends within a page")),
         }
     }
 

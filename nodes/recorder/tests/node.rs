@@ -297,6 +297,8 @@ fn a_full_disk_is_told_and_nothing_is_lost_once_there_is_room() {
     );
     let node = env!("CARGO_BIN_EXE_recorder");
     let mut world = World::start_by("full", "/bin/sh", &["-c", &script, node], &[]);
+    world.send_scan();
+    world.wait_for_written(1);
     let mut noise = 1u64;
     let told = loop {
         world.send_noise(&mut noise);
