@@ -114,7 +114,7 @@ impl<'p> Bag<'p> {
             return Err(damaged(path, &found));
         }
         // SQLite takes what a last page lacks for zeros.
-        let page: u64 = database
+        let page: u32 = database
             .query_row("PRAGMA page_size", (), |row| row.get(0))
             .map_err(refused)?;
         let unreadable = |source| RecordingError::Open {
@@ -122,7 +122,7 @@ impl<'p> Bag<'p> {
             source,
         };
         let length = std::fs::metadata(path).map_err(unreadable)?.len();
-        match length.checked_rem(page) {
+        match length.checked_rem(page.into()) {
             Some(0) => Ok(Bag { path, database }),
             _ => Err(damaged(path, "it ends within a page")),
         }
