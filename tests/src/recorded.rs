@@ -1,4 +1,4 @@
-//! A recording that a graph made of a recording.
+//! A graph that plays a recording, and the recording that it makes of it.
 
 use std::path::Path;
 use std::process::Command;
@@ -21,7 +21,10 @@ pub fn record(recording: &Path, map: &Path, output: &Path) {
     assert_eq!(outcome.status.code(), Some(0), "{said}");
 }
 
-fn graph(recording: &Path, map: &Path) -> String {
+/// The descriptor of a graph that plays `recording`, with the executables of this
+/// test run.
+#[must_use]
+pub fn graph(recording: &Path, map: &Path) -> String {
     let path = |name: &str| executables::path(name).display().to_string();
     let (recording, map) = (recording.display(), map.display());
     format!(

@@ -6,17 +6,25 @@
 )]
 
 use std::collections::BTreeMap;
+use std::io::{BufRead, BufReader};
 use std::path::{Path, PathBuf};
-use std::process::Command;
+use std::process::{Command, Stdio};
 
+use nix::sys::signal::{Signal, kill};
+use nix::unistd::Pid;
+use recording::write::{Packing, RecordingWriter};
 use recording::{Kind, Message, Recording};
 use serde_json::{Value, json};
 use tempfile::TempDir;
-use tests::recorded::record;
+use tests::executables;
+use tests::recorded::{graph, record};
 use tests::world::World;
 
 /// Topics whose messages tell how long something took, or when it was sent.
-const TIMED: [&str; 3] = ["/backcast/votes", "/backcast/hypotheses", "/diagnostics"];
+const TIMED: [&str; 3] = ["/backcast/votes", "/backcast/hypotheses", "/backcast/beams"];
+
+/// Topics on which nodes speak of themselves.
+const SPOKEN: [&str; 2] = ["/diagnostics", "/rosout"];
 
 /// The versions of the Python readers that are compared with.
 const READERS: [&str; 3] = ["mcap==1.6.0", "mcap-ros2-support==0.6.0", "rosbags==0.11.9"];
@@ -50,10 +58,12 @@ fn a_recording_of_a_recording_is_the_same_message_for_message() {
         let times = |messages: &[(i64, Vec<u8>)]| -> Vec<i64> {
             messages.iter().map(|(time, _)| *time).collect()
         };
-        match TIMED.contains(&topic.as_str()) {
-            false => assert!(*messages == second[topic], "{topic} differs"),
-            true if topic == "/diagnostics" => {}
-            true => assert_eq!(times(messages), times(&second[topic]), "{topic}"),
+        match topic.as_str() {
+            spoken if SPOKEN.contains(&spoken) => assert!(!messages.is_empty()),
+            timed if TIMED.contains(&timed) => {
+                assert_eq!(times(messages), times(&second[topic]), "{topic}");
+            }
+            _ => assert!(*messages == second[topic], "{topic} differs"),
         }
     }
     // The recording itself comes back too, but for what the graph does not
@@ -67,9 +77,121 @@ fn a_recording_of_a_recording_is_the_same_message_for_message() {
         "/pose",
         "/backcast/votes",
         "/backcast/hypotheses",
+        "/backcast/beams",
     ] {
         assert_eq!(first[topic].len(), original["/scan"].len(), "{topic}");
     }
+}
+
+#[test]
+fn a_launcher_that_is_asked_to_save_asks_the_recorder() {
+    let world = World::of("malaga_corridor");
+    let folder = TempDir::new().unwrap();
+    let descriptor = folder.path().join("graph.yaml");
+    std::fs::write(&descriptor, graph(&world.recording(), &world.map())).unwrap();
+    let output = folder.path().join("box.mcap");
+    let mut launcher = Command::new(executables::path("backcast"))
+        .arg("run")
+        .arg(&descriptor)
+        .args([
+            "--json", "--rate", "max", "--loop", "--keep", "1m", "--record",
+        ])
+        .arg(&output)
+        .stdout(Stdio::piped())
+        .spawn()
+        .unwrap();
+    let mut poses = BufReader::new(launcher.stdout.take().unwrap()).lines();
+    // The source has waited for the recorder.
+    poses.next().unwrap().unwrap();
+    let pid = Pid::from_raw(launcher.id().cast_signed());
+    kill(pid, Signal::SIGUSR1).unwrap();
+    let is_whole = || Recording::open(&output).is_ok_and(|r| r.damage().is_none());
+    while !is_whole() {
+        std::thread::yield_now();
+    }
+    kill(pid, Signal::SIGTERM).unwrap();
+    assert_eq!(launcher.wait().unwrap().code(), Some(0));
+    let saved = Recording::open(&output).unwrap();
+    let reason = &saved.metadata()[0].entries["reason"];
+    assert_eq!(reason, "asked by SIGUSR1");
+    assert!(saved.topic(Kind::Scan).unwrap().is_some());
+}
+
+/// A case whose recording ends in the middle: its folder, and the scans that are
+/// left.
+fn cut_short(folder: &TempDir) -> (PathBuf, u64) {
+    let world = World::of("malaga_corridor");
+    let case = folder.path().join("cut");
+    std::fs::create_dir(&case).unwrap();
+    for file in ["map.yaml", "map.png", "expected.json"] {
+        std::fs::copy(world.folder.join(file), case.join(file)).unwrap();
+    }
+    let mut writer = RecordingWriter::in_memory(Packing::Zstd).unwrap();
+    for record in Recording::open(world.recording()).unwrap().raw_records() {
+        let record = record.unwrap();
+        let (channel, time) = (record.channel, record.log_time_ns);
+        writer
+            .write_bytes(
+                &channel.topic,
+                &channel.schema,
+                "",
+                "cdr",
+                time,
+                &record.body,
+            )
+            .unwrap();
+        writer.flush().unwrap();
+    }
+    let bytes = writer.finish().unwrap().into_inner();
+    let path = case.join("recording.mcap");
+    std::fs::write(&path, &bytes[..bytes.len() / 2]).unwrap();
+    let cut = Recording::open(&path).unwrap();
+    let mut channels = cut.channels();
+    let scans = channels.find(|channel| &*channel.topic == "/scan").unwrap();
+    (case, scans.messages)
+}
+
+#[test]
+fn what_a_recording_has_lost_is_told_and_drawn() {
+    let folder = TempDir::new().unwrap();
+    let (case, scans) = cut_short(&folder);
+    assert!((1..37).contains(&scans), "{scans}");
+    let descriptor = folder.path().join("graph.yaml");
+    let recording = case.join("recording.mcap");
+    std::fs::write(&descriptor, graph(&recording, &case.join("map.yaml"))).unwrap();
+
+    let played = Command::new(executables::path("backcast"))
+        .args(["run", "--rate", "max"])
+        .arg(&descriptor)
+        .output()
+        .unwrap();
+    let said = String::from_utf8_lossy(&played.stderr);
+    assert_eq!(played.status.code(), Some(3), "{said}");
+    assert!(said.contains("the file is cut short"), "{said}");
+    assert!(said.contains("replayer lost data"), "{said}");
+    let printed = String::from_utf8_lossy(&played.stdout);
+    let all = format!("scans      {scans}, answered {scans}");
+    assert!(printed.contains(&all), "{printed}");
+
+    let pictures = folder.path().join("pictures");
+    let compared = Command::new(executables::path("backcast"))
+        .arg("regress")
+        .arg(&case)
+        .arg("--dataflow")
+        .arg(&descriptor)
+        .arg("--pictures")
+        .arg(&pictures)
+        .output()
+        .unwrap();
+    assert_eq!(compared.status.code(), Some(1));
+    let verdict = String::from_utf8_lossy(&compared.stdout);
+    // What was played is as expected; the other scans are missing.
+    let missing = 37 - scans;
+    let told = format!("was played and compared, with {missing} differences");
+    assert!(verdict.contains("the file is cut short"), "{verdict}");
+    assert!(verdict.contains(&told), "{verdict}");
+    let drawn = std::fs::read_dir(&pictures).unwrap().count() as u64;
+    assert_eq!(drawn, missing.min(20));
 }
 
 /// What is compared: counts of all channels, and values of some.
@@ -126,7 +248,7 @@ from pathlib import Path
 reader, path = sys.argv[1:]
 counts = Counter()
 out = {"scans": [], "truths": [], "odometry": [], "maps": []}
-own = {"votes": [], "hypotheses": []}
+own = {"votes": [], "hypotheses": [], "beams": [], "log": []}
 
 def ns(stamp):
     return stamp.sec * 10**9 + stamp.nanosec
@@ -147,6 +269,10 @@ def take(topic, log_time, m):
     elif topic == "/backcast/hypotheses":
         best = m.hypotheses[0]
         own["hypotheses"].append([m.counter, m.verdict, m.best, best.map_from_laser.x, len(best.covariance)])
+    elif topic == "/backcast/beams":
+        own["beams"].append([m.counter, m.map_from_laser.x, len(m.beams), m.beams[0].range_m])
+    elif topic == "/rosout":
+        own["log"].append([ns(m.stamp), m.level, m.name, m.msg])
 
 if reader == "mcap":
     from mcap_ros2.reader import read_ros2_messages
@@ -224,12 +350,67 @@ fn the_readers_of_others_agree() {
         assert_eq!(votes[2], votes[3], "all votes are there");
         assert_eq!(votes[1], votes[4], "the first is the best");
     }
+    let said = by_mcap["own"]["log"].as_array().unwrap();
+    let is_of = |line: &Value| line[2] == "recorder" && line[1] == 20;
+    assert!(said.iter().any(is_of), "{said:?}");
+    let beams = by_mcap["own"]["beams"].as_array().unwrap();
+    assert!(beams.iter().all(|beam| beam[2] == 180), "{beams:?}");
     let poses = by_mcap["own"]["hypotheses"].as_array().unwrap();
     assert_eq!(poses.len(), 37);
     assert!(
         poses.iter().all(|pose| pose[1] == 1 && pose[4] == 9),
         "{poses:?}"
     );
+}
+
+/// Writes a recording anew as a bag in SQLite.
+const BAG_SCRIPT: &str = r#"
+import sys
+from pathlib import Path
+from rosbags.highlevel import AnyReader
+from rosbags.rosbag2 import StoragePlugin, Writer
+
+recording, folder = Path(sys.argv[1]), Path(sys.argv[2])
+with AnyReader([recording]) as reader:
+    plugin = StoragePlugin.SQLITE3
+    with Writer(folder, version=9, storage_plugin=plugin) as writer:
+        known = {}
+        for connection, time, data in reader.messages():
+            if connection.topic not in known:
+                known[connection.topic] = writer.add_connection(
+                    connection.topic, connection.msgtype, typestore=reader.typestore)
+            writer.write(known[connection.topic], time, data)
+"#;
+
+#[test]
+fn bags_of_others_in_sqlite_read_as_the_recording() {
+    let Some(python) = python() else {
+        eprintln!("SKIPPED: no Python with {READERS:?}: there is no python3, or no network");
+        return;
+    };
+    let original = World::of("malaga_corridor").recording();
+    let folder = TempDir::new().unwrap();
+    let bag = folder.path().join("bag");
+    let outcome = Command::new(&python)
+        .args(["-c", BAG_SCRIPT])
+        .args([&original, &bag])
+        .output()
+        .unwrap();
+    let said = String::from_utf8_lossy(&outcome.stderr);
+    assert!(outcome.status.success(), "{said}");
+    assert_eq!(messages(&bag), messages(&original));
+
+    let converted = folder.path().join("converted.mcap");
+    let outcome = Command::new(executables::path("backcast"))
+        .arg("convert")
+        .args([&bag, &converted])
+        .output()
+        .unwrap();
+    let said = String::from_utf8_lossy(&outcome.stderr);
+    assert_eq!(outcome.status.code(), Some(0), "{said}");
+    assert_eq!(as_we_read(&converted), as_we_read(&original));
+    let by_mcap = as_read_by(&python, "mcap", &converted);
+    assert_eq!(by_mcap["read"], as_we_read(&original));
 }
 
 #[test]

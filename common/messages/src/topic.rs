@@ -5,7 +5,7 @@ use iceoryx2_bb_elementary_traits::zero_copy_send::ZeroCopySend;
 
 use crate::{
     Beam, BeamsHeader, BoundaryCell, BoundaryHeader, FieldHeader, GroundTruth, HealthHeader,
-    HypothesesHeader, Hypothesis, MapHeader, Odometry, ScanHeader, Vote, VotesHeader,
+    HypothesesHeader, Hypothesis, LogHeader, MapHeader, Odometry, ScanHeader, Vote, VotesHeader,
 };
 
 /// Plain data that one process may write and another may read in place.
@@ -25,6 +25,8 @@ pub trait Topic: 'static {
     type Item: Message;
     /// Whether the newest sample is kept for those who join later.
     const LATCHED: bool = false;
+    /// How many samples of a publisher are kept for them.
+    const HISTORY: usize = if Self::LATCHED { 1 } else { 0 };
     /// Samples that a slow subscriber may lag behind before the oldest is
     /// dropped; the transport counts what it drops.
     const DEPTH: usize = 4;
@@ -51,6 +53,7 @@ macro_rules! topics {
         pub const NAMES: &[&str] = &[$($name),+];
     };
     (@const latched $value:expr) => { const LATCHED: bool = $value; };
+    (@const history $value:expr) => { const HISTORY: usize = $value; };
     (@const depth $value:expr) => { const DEPTH: usize = $value; };
     (@const publishers $value:expr) => { const MAX_PUBLISHERS: usize = $value; };
     (@const subscribers $value:expr) => { const MAX_SUBSCRIBERS: usize = $value; };
@@ -77,6 +80,8 @@ topics! {
     GroundTruthTopic = "ground_truth", GroundTruth, [u8] { depth: 16 };
     /// How each node fares; the items are its last error as UTF-8.
     Health = "health", HealthHeader, [u8] { latched: true, depth: 8, publishers: 24, subscribers: 8 };
+    /// What each node logs, a line at a time; the items are the line as UTF-8.
+    Log = "log", LogHeader, [u8] { latched: true, history: 16, depth: 64, publishers: 24, subscribers: 8 };
 }
 
 #[cfg(test)]

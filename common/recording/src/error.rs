@@ -27,6 +27,14 @@ pub enum RecordingError {
         /// What is wrong, and where.
         damage: Damage,
     },
+    /// A bag in SQLite that cannot be read, or whose content is not sound.
+    #[error("the bag {}: {reason}", path.display())]
+    Bag {
+        /// The file.
+        path: PathBuf,
+        /// What SQLite says, or what is not allowed.
+        reason: String,
+    },
     /// A channel of a type in use whose messages are encoded in another way.
     #[error("{}: {topic} has {schema} encoded as {encoding:?}; allowed: \"cdr\", as ROS 2 writes it", path.display())]
     NotCdr {

@@ -1,4 +1,5 @@
-//! Recordings: MCAP files that hold ROS 2 messages in CDR.
+//! Recordings: MCAP files that hold ROS 2 messages in CDR; with the feature
+//! `rosbag2` also bags in SQLite, as ROS 2 wrote them before.
 //!
 //! [`Recording::open`] checks a file from start to end, [`Recording::records`]
 //! gives its messages in the order of their log times, and [`mod@write`] writes
@@ -7,6 +8,8 @@
 //! five message types of [`Kind`], gives out all others as bytes, and knows no
 //! graph.
 
+#[cfg(feature = "rosbag2")]
+mod bag;
 mod block;
 mod cdr;
 mod chunk;
@@ -34,6 +37,8 @@ mod topics;
 mod truth;
 pub mod write;
 
+#[cfg(feature = "rosbag2")]
+pub use bag::{is_bag, write_bag};
 pub use block::Part;
 pub use cdr::encode as encode_cdr;
 pub use chunk::MAX_CHUNK_BYTES;

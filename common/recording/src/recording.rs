@@ -28,25 +28,32 @@ enum Bytes {
 }
 
 impl Recording {
-    /// Opens a file and reads it once from start to end.
+    /// Opens a file, or with the feature `rosbag2` a bag in SQLite or a folder of
+    /// such, and reads it once from start to end.
     ///
     /// A file that is cut short or damaged opens as far as it is sound; the
     /// damage is the last item of [`Recording::records`]. The file is mapped:
     /// it may grow, but must not be cut while it is open.
     ///
     /// # Errors
-    /// If it cannot be read, or does not even start as a recording.
+    /// If it cannot be read, or does not even start as a recording; of a bag in
+    /// SQLite, any damage.
     pub fn open(path: impl AsRef<Path>) -> Result<Self, RecordingError> {
         let path = path.as_ref();
-        let unreadable = |source| RecordingError::Open {
-            path: path.to_owned(),
-            source,
-        };
-        let file = File::open(path).map_err(unreadable)?;
+        #[cfg(feature = "rosbag2")]
+        if crate::is_bag(path) {
+            return Recording::mapped(path, &crate::bag::as_recording(path)?);
+        }
+        let file = File::open(path).map_err(|source| unreadable(path, source))?;
+        Recording::mapped(path, &file)
+    }
+
+    /// A file that errors call `path`.
+    fn mapped(path: &Path, file: &File) -> Result<Self, RecordingError> {
         // SAFETY: the map is only read. Should another process write to the
         // file, bytes change under the reader, which checks each as if it came
         // from anywhere; should one cut it, the system ends this process.
-        let map = unsafe { Mmap::map(&file) }.map_err(unreadable)?;
+        let map = unsafe { Mmap::map(file) }.map_err(|source| unreadable(path, source))?;
         Recording::new(path.to_owned(), Bytes::Mapped(map))
     }
 
@@ -209,6 +216,13 @@ impl Recording {
 
     pub(crate) fn bytes(&self) -> &[u8] {
         self.bytes.as_slice()
+    }
+}
+
+fn unreadable(path: &Path, source: std::io::Error) -> RecordingError {
+    RecordingError::Open {
+        path: path.to_owned(),
+        source,
     }
 }
 

@@ -121,7 +121,7 @@ impl<W: Write + Seek> RecordingWriter<W> {
             schema: kind.schema(),
             text: definition(kind),
             encoding: "cdr",
-            latched: matches!(kind, Kind::Map | Kind::StaticTransforms),
+            latched: is_latched(kind),
         };
         self.write_body(&definition, log_time_ns, &body)
     }
@@ -142,7 +142,8 @@ impl<W: Write + Seek> RecordingWriter<W> {
     }
 
     /// Writes a message of any type whose bytes are given; the first one of a
-    /// topic decides its encoding.
+    /// topic decides its encoding. Where the type is one of [`Kind`], late joiners
+    /// get it as [`RecordingWriter::write`] says.
     ///
     /// # Errors
     /// If the topic has another schema, the time is before 1970, or it cannot be
@@ -161,7 +162,7 @@ impl<W: Write + Seek> RecordingWriter<W> {
             schema,
             text: definition,
             encoding,
-            latched: false,
+            latched: Kind::of(schema, topic).is_some_and(is_latched),
         };
         self.write_body(&definition, log_time_ns, body)
     }
@@ -285,7 +286,12 @@ fn refused(reason: String) -> RecordingError {
     RecordingError::Write { reason }
 }
 
-fn definition(kind: Kind) -> &'static str {
+fn is_latched(kind: Kind) -> bool {
+    matches!(kind, Kind::Map | Kind::StaticTransforms)
+}
+
+/// The schema's text of a kind.
+pub(crate) fn definition(kind: Kind) -> &'static str {
     match kind {
         Kind::Scan => LaserScan::DEFINITION,
         Kind::Map => OccupancyGridMsg::DEFINITION,

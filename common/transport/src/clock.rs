@@ -1,4 +1,7 @@
-//! The clock of latencies. Of no use for dates: it counts from the host's start.
+//! The clock of latencies, which counts from the host's start and is of no use for
+//! dates; and the one of dates, which may be set.
+
+use std::time::{SystemTime, UNIX_EPOCH};
 
 use nix::time::{ClockId, clock_gettime};
 
@@ -9,6 +12,15 @@ pub fn monotonic_ns() -> i64 {
     // The clock exists on every Linux, and 292 years of nanoseconds fit.
     let now = clock_gettime(ClockId::CLOCK_MONOTONIC).expect("Linux has a monotonic clock");
     now.tv_sec() * 1_000_000_000 + now.tv_nsec()
+}
+
+/// The wall clock, nanoseconds since 1970; 0 where it is set before that.
+#[must_use]
+pub fn wall_ns() -> i64 {
+    let since = SystemTime::now().duration_since(UNIX_EPOCH);
+    since.map_or(0, |since| {
+        i64::try_from(since.as_nanos()).unwrap_or(i64::MAX)
+    })
 }
 
 #[cfg(test)]

@@ -46,7 +46,8 @@ impl Graph {
     /// waits for the next input or tick. A signal ends the sleep at once; a flag
     /// that the program sets itself is seen with the next input or tick. Before
     /// each call, the publishers of this graph connect with late joiners, who thus
-    /// wait for a latched sample a tick at most, or as long as `step` takes.
+    /// wait for a latched sample a tick at most, or as long as `step` takes. What
+    /// the process logs is sent after each call.
     ///
     /// # Errors
     /// What `step` returns, and [`TransportError`] if waiting or serving fails.
@@ -70,7 +71,9 @@ impl Graph {
             };
             if input || wake.tick {
                 self.publishers().serve_late_joiners()?;
-                if step(wake)? == Flow::Stop {
+                let flow = step(wake)?;
+                self.send_log()?;
+                if flow == Flow::Stop {
                     break;
                 }
             }

@@ -3,18 +3,22 @@
 //! Makes what a node needs: ends of topics, a health reporter, a stop flag. It
 //! sends and waits for nothing itself.
 
+use std::cell::RefCell;
 use std::sync::Arc;
 use std::sync::atomic::AtomicBool;
 use std::time::Duration;
 
 use iceoryx2::node::Node;
 use iceoryx2::prelude::{NodeBuilder, NodeName, SignalHandlingMode, ipc};
-use messages::{HealthHeader, Name, Topic};
+use messages::{HealthHeader, LogHeader, Name, Topic};
 
 use crate::idle::IdlePublishers;
+use crate::log_sender::LogSender;
 use crate::membership::Membership;
 use crate::signals::Signals;
-use crate::{GraphName, Health, Publisher, Subscriber, TransportError, log, root};
+use crate::{
+    GraphName, Health, Publisher, Subscriber, TransportError, log, log_lines, root, with_causes,
+};
 
 /// How long joining waits for another process that is cleaning up after a dead
 /// one, whose place may be needed.
@@ -27,6 +31,8 @@ pub struct Graph {
     node: Node<ipc::Service>,
     signals: Signals,
     publishers: IdlePublishers,
+    /// Where the process logs through `tracing`.
+    log: Option<RefCell<LogSender>>,
 }
 
 impl Graph {
@@ -66,13 +72,20 @@ impl Graph {
             .create::<ipc::Service>()
             .map_err(|e| failed(format!("{e:?}")))?;
         node.blocking_cleanup_dead_nodes(CLEANUP_WAIT);
-        Ok(Graph {
+        let mut graph = Graph {
             node_name: node_name.into(),
             membership,
             node,
             signals,
             publishers: IdlePublishers::default(),
-        })
+            log: None,
+        };
+        if log_lines::are_kept() {
+            // No line makes it grow, as with health.
+            let publisher = graph.publisher_for(LogHeader::TEXT_CAPACITY)?;
+            graph.log = Some(RefCell::new(LogSender::new(node_name, publisher)));
+        }
+        Ok(graph)
     }
 
     /// The graph's name.
@@ -135,12 +148,28 @@ impl Graph {
         Ok(publisher)
     }
 
+    /// Sends what was logged since the last call.
+    pub(crate) fn send_log(&self) -> Result<(), TransportError> {
+        match &self.log {
+            Some(log) => log.borrow_mut().send_waiting(),
+            None => Ok(()),
+        }
+    }
+
     pub(crate) fn signals(&self) -> &Signals {
         &self.signals
     }
 
     pub(crate) fn publishers(&self) -> &IdlePublishers {
         &self.publishers
+    }
+}
+
+impl Drop for Graph {
+    fn drop(&mut self) {
+        if let Err(error) = self.send_log() {
+            tracing::warn!("the last log lines were not sent: {}", with_causes(&error));
+        }
     }
 }
 

@@ -42,8 +42,9 @@
 //! | `publisher`, `loan`, `idle` | sending; filling in place; late joiners |
 //! | `subscriber`, `gaps` | receiving; counting what was lost |
 //! | `event_loop`, `signals` | waiting for inputs, ticks, SIGINT and SIGTERM |
-//! | `health`, `clock` | a node's report on itself; the clock of latencies |
+//! | `health`, `clock` | a node's report on itself; the clocks |
 //! | `node`, `log` | `main` of a node: logging, exit code |
+//! | `log_lines`, `log_sender` | what a node logs, on its way to topic `log` |
 //! | `space` | room in shared memory, looked up before it is used |
 //! | `leftovers` | removing what a graph leaves |
 //! | `error`, `causes` | what can go wrong; an error with its causes on one line |
@@ -61,9 +62,9 @@
 //!   all the same (the publisher was killed in between), the next tick finds the
 //!   sample. It does not matter who starts first: an end that comes is connected
 //!   by the next send, receive or tick of the other one.
-//! - **Late joiners get the newest sample of a latched topic** within a tick of
-//!   its publisher, which must be in [`Graph::run`]; the topic has none any more
-//!   when its publisher has gone.
+//! - **Late joiners get the newest sample of a latched topic**, or the newest
+//!   [`messages::Topic::HISTORY`], within a tick of its publisher, which must be
+//!   in [`Graph::run`]; the topic has none any more when its publisher has gone.
 //! - **Graphs do not hear each other**, nor do users: the prefix of every file
 //!   holds user and graph, and no prefix begins another one.
 //! - **The dead make way.** Whoever joins cleans up after members that were
@@ -78,7 +79,7 @@
 //! # Memory
 //!
 //! A publisher has one segment in `/dev/shm` for
-//! `MAX_SUBSCRIBERS · (DEPTH + 4) + 1 if latched + 2 + 1` chunks, each as large as
+//! `MAX_SUBSCRIBERS · (DEPTH + 4) + HISTORY + 2 + 1` chunks, each as large as
 //! its largest sample so far, rounded up to a power of two. The file is sparse:
 //! chunks are taken last in, first out, and only those count that were ever in
 //! use at the same time. For a map of 8 million cells that is 43 chunks of 8 MiB:
@@ -102,6 +103,8 @@ mod idle;
 mod leftovers;
 mod loan;
 mod log;
+mod log_lines;
+mod log_sender;
 mod membership;
 pub mod node;
 mod publisher;
@@ -113,7 +116,7 @@ mod subscriber;
 pub mod testing;
 
 pub use causes::with_causes;
-pub use clock::monotonic_ns;
+pub use clock::{monotonic_ns, wall_ns};
 pub use error::TransportError;
 pub use event_loop::{Flow, Wake};
 pub use gaps::GapCounter;

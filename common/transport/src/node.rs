@@ -8,15 +8,17 @@ use std::error::Error;
 use std::io::IsTerminal;
 use std::process::ExitCode;
 
-use tracing_subscriber::EnvFilter;
 use tracing_subscriber::filter::LevelFilter;
+use tracing_subscriber::layer::SubscriberExt;
+use tracing_subscriber::util::SubscriberInitExt;
+use tracing_subscriber::{EnvFilter, Layer};
 
-use crate::{Graph, with_causes};
+use crate::{Graph, log_lines, with_causes};
 
 /// The environment variable that picks the form of log lines: `text` or `json`.
 pub const LOG_FORMAT_VARIABLE: &str = "BACKCAST_LOG_FORMAT";
 
-/// Runs one node: starts logging to standard error, joins the graph as `name`
+/// Runs one node: starts logging to standard error and topic `log`, joins the graph as `name`
 /// and calls `run`.
 ///
 /// Returns 0 if `run` did, 1 if it or joining failed, 2 if a logging variable
@@ -26,20 +28,25 @@ pub fn main<E: Error + 'static>(name: &str, run: impl FnOnce(&Graph) -> Result<(
         eprintln!("{name}: {problem}");
         return ExitCode::from(2);
     }
-    let outcome = Graph::join(name)
-        .map_err(|error| with_causes(&error))
-        .and_then(|graph| run(&graph).map_err(|error| with_causes(&error)));
-    match outcome {
+    let graph = match Graph::join(name) {
+        Ok(graph) => graph,
+        Err(error) => return failed(&error),
+    };
+    // The graph hears of an error before it is left.
+    match run(&graph) {
         Ok(()) => ExitCode::SUCCESS,
-        Err(problem) => {
-            tracing::error!("{problem}");
-            ExitCode::FAILURE
-        }
+        Err(error) => failed(&error),
     }
 }
 
-/// Sends events of `tracing` to standard error: `RUST_LOG` filters them (`info`
-/// where it is unset), [`LOG_FORMAT_VARIABLE`] picks their form.
+fn failed(error: &(dyn Error + 'static)) -> ExitCode {
+    tracing::error!("{}", with_causes(error));
+    ExitCode::FAILURE
+}
+
+/// Sends events of `tracing` to standard error, and to topic `log` of a graph that
+/// is joined later: `RUST_LOG` filters them (`info` where it is unset),
+/// [`LOG_FORMAT_VARIABLE`] picks their form on standard error.
 ///
 /// # Errors
 /// A sentence that names the variable, its value and what is allowed; or that
@@ -50,20 +57,24 @@ pub fn start_logging() -> Result<(), String> {
         .with_default_directive(LevelFilter::INFO.into())
         .parse(&filter)
         .map_err(|error| format!("{} is {filter:?}: {error}", EnvFilter::DEFAULT_ENV))?;
-    let builder = tracing_subscriber::fmt()
-        .with_env_filter(filter)
+    let console = tracing_subscriber::fmt::layer()
         .with_ansi(std::io::stderr().is_terminal())
         .with_writer(std::io::stderr);
-    let started = match variable(LOG_FORMAT_VARIABLE, "text")?.as_str() {
-        "text" => builder.try_init(),
-        "json" => builder.json().try_init(),
+    let console = match variable(LOG_FORMAT_VARIABLE, "text")?.as_str() {
+        "text" => console.boxed(),
+        "json" => console.json().boxed(),
         other => {
             return Err(format!(
                 "{LOG_FORMAT_VARIABLE} is {other:?}: allowed are text and json"
             ));
         }
     };
-    started.map_err(|error| format!("cannot start logging: {error}"))
+    tracing_subscriber::registry()
+        .with(filter)
+        .with(console)
+        .with(log_lines::keep())
+        .try_init()
+        .map_err(|error| format!("cannot start logging: {error}"))
 }
 
 fn variable(name: &str, default: &str) -> Result<String, String> {

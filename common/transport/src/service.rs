@@ -35,7 +35,7 @@ pub(crate) fn open_samples<T: Topic>(
     node.service_builder(&name)
         .publish_subscribe::<[T::Item]>()
         .user_header::<Header<T::Header>>()
-        .history_size(usize::from(T::LATCHED))
+        .history_size(T::HISTORY)
         .subscriber_max_buffer_size(T::DEPTH)
         .subscriber_max_borrowed_samples(MAX_BORROWED)
         .max_publishers(T::MAX_PUBLISHERS)

@@ -75,6 +75,7 @@ round_trips! {
     beams_arrive: topic::Beams,
     ground_truth_arrives: topic::GroundTruthTopic,
     health_arrives: topic::Health,
+    log_arrives: topic::Log,
 }
 
 #[test]

@@ -45,7 +45,7 @@ enum Command {
     /// Says what is wrong with a recording
     #[command(after_help = doctor::NOTES)]
     Doctor(doctor::Config),
-    /// Converts laser logs of CARMEN to recordings and back
+    /// Converts laser logs of CARMEN and bags in SQLite to recordings, and back to logs
     #[command(after_help = convert::NOTES)]
     Convert(convert::Config),
     /// Replays recordings through the graph and compares with what is expected

@@ -10,10 +10,10 @@ use crate::BackcastError;
 /// Where the descriptor is looked for.
 pub(crate) const DEFAULT_FILE: &str = "dataflow.yaml";
 
-/// The ports that a descriptor may use. Every node sends its health.
+/// The ports that a descriptor may use. Every node sends its health and its log.
 const TOPICS: Topics = Topics {
     names: topic::NAMES,
-    shared: &[topic::Health::NAME],
+    shared: &[topic::Health::NAME, topic::Log::NAME],
 };
 
 /// A descriptor and its folder.

@@ -239,6 +239,9 @@ pub enum BackcastError {
         /// Scans with votes and hypotheses.
         answered: usize,
     },
+    /// SIGUSR1 cannot be caught.
+    #[error("cannot catch SIGUSR1")]
+    Signal(#[source] io::Error),
     /// A case of the bench cannot be set up.
     #[error(transparent)]
     Benchmarks(#[from] BenchmarksError),

@@ -8,12 +8,12 @@ use std::sync::atomic::{AtomicBool, Ordering};
 use std::time::Duration;
 
 use messages::NodeState;
+use nix::time::{ClockId, clock_gettime};
 use signal_hook::consts::SIGUSR1;
-use transport::{Flow, Graph, Health, monotonic_ns, with_causes};
+use transport::{Flow, Graph, Health, monotonic_ns, wall_ns, with_causes};
 
 use crate::entries::Entries;
 use crate::events::Lookout;
-use crate::writing::wall_ns;
 use crate::{Config, Event, RecorderError};
 use inputs::Inputs;
 use writer::{Status, Writer};
@@ -203,11 +203,19 @@ impl Recorder {
             files,
             ..
         } = summary;
-        tracing::info!(recorded, dropped, refused, files, "recorded");
+        let cpu = format!("{:.2} s", cpu_s());
+        tracing::info!(recorded, dropped, refused, files, cpu, "recorded");
         Ok(summary)
     }
 
     fn now_ns() -> i64 {
         monotonic_ns()
     }
+}
+
+/// Processor time of all threads until now, seconds.
+fn cpu_s() -> f64 {
+    // The clock exists on every Linux; where it did not, nothing would be said.
+    let spent = clock_gettime(ClockId::CLOCK_PROCESS_CPUTIME_ID);
+    spent.map_or(f64::NAN, |spent| Duration::from(spent).as_secs_f64())
 }

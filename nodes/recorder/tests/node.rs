@@ -37,6 +37,11 @@ struct World {
 
 impl World {
     fn start(tag: &str, arguments: &[&str]) -> Self {
+        World::start_by(tag, env!("CARGO_BIN_EXE_recorder"), &[], arguments)
+    }
+
+    /// Starts it by another program, which is given `first` before the rest.
+    fn start_by(tag: &str, program: &str, first: &[&str], arguments: &[&str]) -> Self {
         let isolated = Isolated::new(tag);
         let graph = isolated.join("test");
         let health = graph.subscriber::<topic::Health>().unwrap();
@@ -44,9 +49,9 @@ impl World {
         let (scans, hypotheses) = (graph.publisher().unwrap(), graph.publisher().unwrap());
         let folder = TempDir::new().unwrap();
         let output = folder.path().join("r.mcap");
-        let first = ["--output", output.to_str().unwrap()];
-        let arguments = first.iter().chain(arguments);
-        let node = NodeProcess::start(env!("CARGO_BIN_EXE_recorder"), &graph, arguments);
+        let output = ["--output", output.to_str().unwrap()];
+        let arguments = first.iter().chain(&output).chain(arguments);
+        let node = NodeProcess::start(program, &graph, arguments);
         let is_ready = |report: &messages::HealthHeader| {
             report.node.as_str() == "recorder" && report.state == NodeState::Ready as u32
         };
@@ -99,6 +104,39 @@ impl World {
         while !self.scans.is_settled().unwrap() {
             std::thread::yield_now();
         }
+    }
+
+    /// Sends a scan that takes much room, and waits until it was taken.
+    fn send_noise(&mut self, state: &mut u64) {
+        let mut loan = self.scans.loan(LARGE).unwrap();
+        *loan.header_mut() = ScanHeader {
+            stamp: self.stamp(),
+            frame: Name::new("laser"),
+            ..ScanHeader::zeroed()
+        };
+        for range in loan.items_mut() {
+            // A linear congruential generator by Knuth; its upper bits are good.
+            *state = state
+                .wrapping_mul(6_364_136_223_846_793_005)
+                .wrapping_add(1_442_695_040_888_963_407);
+            *range = (*state >> 40) as f32;
+        }
+        loan.send().unwrap();
+        self.sent += 1;
+        while !self.scans.is_settled().unwrap() {
+            std::thread::yield_now();
+        }
+    }
+
+    /// What the node says that is wrong with it, if it has said so by now.
+    fn degraded(&self) -> Option<String> {
+        while let Some(report) = self.health.receive().unwrap() {
+            let is_degraded = report.header().state == NodeState::Degraded as u32;
+            if report.header().node.as_str() == "recorder" && is_degraded {
+                return Some(String::from_utf8(report.items().to_vec()).unwrap());
+            }
+        }
+        None
     }
 
     fn send_hypothesis(&mut self, verdict: Verdict) {
@@ -162,6 +200,7 @@ fn what_is_sent_is_recorded() {
     let recording = Recording::open(&path).unwrap();
     assert_eq!(recording.damage(), None);
     assert_eq!((counts(&path)["/scan"], counts(&path)["/map"]), (20, 1));
+    assert!(counts(&path)["/rosout"] > 0, "the recorder's own lines");
     assert_eq!(recording.map().unwrap().unwrap().cells, [0, 100]);
     assert_eq!(
         recording.metadata()[1].entries["map_id"],
@@ -241,6 +280,49 @@ fn wait_for_file(world: &World, name: &str) {
     while !is_whole() {
         std::thread::yield_now();
     }
+}
+
+/// The file may grow to so many bytes, as on a disk that fills up; more than the
+/// segments of shared memory that the node makes.
+const ROOM: usize = 8 << 20;
+/// Beams of a scan, most of it noise that does not pack.
+const LARGE: usize = 100_000;
+
+#[test]
+fn a_full_disk_is_told_and_nothing_is_lost_once_there_is_room() {
+    // The limit is asked for in blocks, of 512 bytes or of 1024.
+    let script = format!(
+        "trap '' XFSZ; ulimit -S -f {}; exec \"$0\" \"$@\"",
+        ROOM / 1024
+    );
+    let node = env!("CARGO_BIN_EXE_recorder");
+    let mut world = World::start_by("full", "/bin/sh", &["-c", &script, node], &[]);
+    world.send_scan();
+    world.wait_for_written(1);
+    let mut noise = 1u64;
+    let told = loop {
+        world.send_noise(&mut noise);
+        if let Some(told) = world.degraded() {
+            break told;
+        }
+    };
+    assert!(told.contains("File too large"), "{told}");
+    let before = Recording::open(world.path("r.mcap")).unwrap();
+    assert!(before.messages() > 0 && before.size() <= ROOM as u64);
+
+    let outcome = std::process::Command::new("prlimit")
+        .args(["--pid", &world.pid.to_string(), "--fsize=unlimited"])
+        .status();
+    assert!(outcome.unwrap().success(), "prlimit is part of util-linux");
+    let is_ready = |report: &messages::HealthHeader| {
+        report.node.as_str() == "recorder" && report.state == NodeState::Ready as u32
+    };
+    wait_for_health(&world.graph, &world.health, is_ready);
+    world.send_noise(&mut noise);
+    world.take_node().stop();
+    let whole = Recording::open(world.path("r.mcap")).unwrap();
+    assert_eq!(whole.damage(), None);
+    assert_eq!(counts(&world.path("r.mcap"))["/scan"], world.sent);
 }
 
 #[test]

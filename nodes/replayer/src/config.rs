@@ -10,12 +10,13 @@ use crate::{Rate, Remap};
 /// Plays a recording into the graph: scans, odometry and true poses.
 ///
 /// Ends with 0 when everything was played, 1 on an error, 2 on wrong usage, and
-/// 3 when it finished but lost data: a scan without an answer, or a message that
-/// could not be used.
+/// 3 when it finished but lost data: a scan without an answer, a message that
+/// could not be used, or all that follows where the recording is damaged.
 #[derive(Debug, Clone, Parser)]
 #[command(name = "replayer", version)]
 pub struct Config {
-    /// The recording: an MCAP file with ROS 2 messages.
+    /// The recording: an MCAP file with ROS 2 messages, or a bag of rosbag2 in SQLite
+    /// (.db3, or its folder).
     #[arg(long, value_name = "FILE")]
     pub recording: PathBuf,
 

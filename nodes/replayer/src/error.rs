@@ -65,6 +65,16 @@ impl ReplayerError {
     }
 }
 
+impl ReplayerError {
+    /// Whether the recording is damaged, so that what lay before has been played.
+    pub(crate) fn is_damage(&self) -> bool {
+        match self {
+            ReplayerError::Recording(error) => matches!(**error, RecordingError::Damaged { .. }),
+            _ => false,
+        }
+    }
+}
+
 impl From<RecordingError> for ReplayerError {
     fn from(error: RecordingError) -> Self {
         ReplayerError::Recording(Box::new(error))

@@ -9,7 +9,7 @@ use std::time::Duration;
 
 use messages::{NodeState, topic};
 use recording::Recording;
-use transport::{Flow, Graph, Subscriber, monotonic_ns};
+use transport::{Flow, Graph, Subscriber, monotonic_ns, with_causes};
 
 use crate::order::InOrder;
 use crate::pause::Pause;
@@ -40,21 +40,23 @@ pub struct Summary {
     pub unanswered: u64,
     /// Messages that could not be used.
     pub refused: u64,
+    /// Whether the recording is damaged and could be played to there only.
+    pub damaged: bool,
 }
 
 impl Summary {
     /// Whether it finished but lost data on the way.
     #[must_use]
     pub fn lost_data(&self) -> bool {
-        self.finished && self.unanswered + self.refused > 0
+        self.finished && (self.damaged || self.unanswered + self.refused > 0)
     }
 }
 
 /// Plays the recording until it ends or the stop flag is set.
 ///
 /// # Errors
-/// If there is no recording with scans, if it is damaged (what lies before the
-/// damage is played), or if the graph fails.
+/// If there is no recording with scans, or if the graph fails. Of one that is
+/// damaged, what lies before the damage is played.
 pub fn run(graph: &Graph, config: &Config) -> Result<Summary, ReplayerError> {
     let mut outlet = Outlet::open(graph)?;
     let answers = graph.subscriber::<topic::Hypotheses>()?;
@@ -281,14 +283,15 @@ impl Player<'_> {
     }
 
     /// Says how it went.
-    fn conclude(self) -> Result<Summary, ReplayerError> {
-        let summary = self.outlet.summary;
+    fn conclude(mut self) -> Result<Summary, ReplayerError> {
+        let mut summary = self.outlet.summary;
         let Summary {
             finished,
             scans,
             answers,
             unanswered,
             refused,
+            damaged: _,
         } = summary;
         let how = match finished {
             true => "played",
@@ -296,6 +299,13 @@ impl Player<'_> {
         };
         tracing::info!(scans, answers, unanswered, refused, "{how}");
         match self.failure {
+            Some(error) if finished && error.is_damage() => {
+                let lost = with_causes(&error);
+                tracing::error!("what follows was lost: {lost}");
+                self.outlet.health.error(&lost)?;
+                summary.damaged = true;
+                Ok(summary)
+            }
             Some(error) if finished => Err(error),
             _ => Ok(summary),
         }

@@ -356,11 +356,11 @@ fn a_recording_that_is_cut_short_is_played_as_far_as_it_goes() {
         world.answer(stamp);
     }
     let (status, log) = world.finish();
-    assert_eq!(status.code(), Some(1), "{log}");
+    assert_eq!(status.code(), Some(3), "{log}");
     let played = format!("played scans={readable} answers={readable}");
     assert!(log.contains(&played), "{log}");
     assert!(
-        log.contains("world.mcap") && log.contains("cut short"),
+        log.contains("what follows was lost") && log.contains("world.mcap: the file is cut short"),
         "{log}"
     );
 }

@@ -2,6 +2,7 @@
 
 use serde::{Deserialize, Serialize};
 
+use super::definition::definition;
 use super::{Header, RosMessage};
 
 /// How parts of a robot fare.
@@ -51,19 +52,14 @@ pub struct KeyValue {
 
 impl RosMessage for DiagnosticArray {
     const SCHEMA: &'static str = "diagnostic_msgs/msg/DiagnosticArray";
-    const DEFINITION: &'static str = "\
+    const DEFINITION: &'static str = definition!(
+        "\
 std_msgs/Header header
 diagnostic_msgs/DiagnosticStatus[] status
-================================================================================
-MSG: std_msgs/Header
-builtin_interfaces/Time stamp
-string frame_id
-================================================================================
-MSG: builtin_interfaces/Time
-int32 sec
-uint32 nanosec
-================================================================================
-MSG: diagnostic_msgs/DiagnosticStatus
+",
+        Header,
+        "\
+diagnostic_msgs/DiagnosticStatus
 byte OK=0
 byte WARN=1
 byte ERROR=2
@@ -73,9 +69,11 @@ string name
 string message
 string hardware_id
 diagnostic_msgs/KeyValue[] values
-================================================================================
-MSG: diagnostic_msgs/KeyValue
+",
+        "\
+diagnostic_msgs/KeyValue
 string key
 string value
-";
+",
+    );
 }

@@ -2,6 +2,7 @@
 
 use serde::{Deserialize, Serialize};
 
+use super::definition::definition;
 use super::{Header, RosMessage};
 
 /// One turn of a laser.
@@ -31,7 +32,8 @@ pub struct LaserScan {
 
 impl RosMessage for LaserScan {
     const SCHEMA: &'static str = "sensor_msgs/msg/LaserScan";
-    const DEFINITION: &'static str = "\
+    const DEFINITION: &'static str = definition!(
+        "\
 std_msgs/Header header
 float32 angle_min
 float32 angle_max
@@ -42,13 +44,7 @@ float32 range_min
 float32 range_max
 float32[] ranges
 float32[] intensities
-================================================================================
-MSG: std_msgs/Header
-builtin_interfaces/Time stamp
-string frame_id
-================================================================================
-MSG: builtin_interfaces/Time
-int32 sec
-uint32 nanosec
-";
+",
+        Header,
+    );
 }

@@ -7,9 +7,11 @@
 
 pub mod backcast_msgs;
 mod conversion;
+mod definition;
 mod diagnostic_array;
 mod geometry_msgs;
 mod laser_scan;
+mod log;
 mod occupancy_grid;
 mod odometry;
 mod pose_array;
@@ -24,6 +26,7 @@ pub use geometry_msgs::{
     Point, Pose, PoseWithCovariance, Quaternion, Transform, Twist, TwistWithCovariance, Vector3,
 };
 pub use laser_scan::LaserScan;
+pub use log::Log;
 pub use occupancy_grid::{MapMetaData, OccupancyGridMsg};
 pub use odometry::Odometry;
 pub use pose_array::PoseArray;
@@ -42,7 +45,7 @@ pub trait RosMessage: serde::Serialize {
 
 #[cfg(test)]
 mod tests {
-    use super::backcast_msgs::{Hypotheses, Hypothesis, Pose2D, Vote, Votes};
+    use super::backcast_msgs::{Beam, Beams, Hypotheses, Hypothesis, Pose2D, Vote, Votes};
     use super::*;
     use crate::cdr;
 
@@ -91,6 +94,18 @@ mod tests {
     }
 
     #[test]
+    fn a_log_line_survives_its_bytes() {
+        assert_survives(&Log {
+            stamp: header().stamp,
+            level: 30,
+            name: "accumulator".to_owned(),
+            msg: "no map".to_owned(),
+            line: 7,
+            ..Log::default()
+        });
+    }
+
+    #[test]
     fn our_own_messages_survive_their_bytes() {
         assert_survives(&Votes {
             header: header(),
@@ -131,6 +146,18 @@ mod tests {
             ],
             ..Hypotheses::default()
         });
+        assert_survives(&Beams {
+            header: header(),
+            beams: vec![
+                Beam {
+                    range_m: f32::INFINITY,
+                    fate: 4,
+                    ..Beam::default()
+                };
+                3
+            ],
+            ..Beams::default()
+        });
     }
 
     /// Fields of a type are named by its definition in the order of the struct;
@@ -146,8 +173,10 @@ mod tests {
             PoseWithCovarianceStamped::DEFINITION,
             PoseArray::DEFINITION,
             DiagnosticArray::DEFINITION,
+            Log::DEFINITION,
             Votes::DEFINITION,
             Hypotheses::DEFINITION,
+            Beams::DEFINITION,
         ];
         let mut known = std::collections::BTreeMap::new();
         for definition in definitions {

@@ -3,6 +3,7 @@
 use map::OccupancyGrid;
 use serde::{Deserialize, Serialize};
 
+use super::definition::definition;
 use super::{ConversionError, Header, Pose, RosMessage, Time};
 
 /// A map.
@@ -86,41 +87,23 @@ fn shortest_decimal(value: f32) -> f64 {
 
 impl RosMessage for OccupancyGridMsg {
     const SCHEMA: &'static str = "nav_msgs/msg/OccupancyGrid";
-    const DEFINITION: &'static str = "\
+    const DEFINITION: &'static str = definition!(
+        "\
 std_msgs/Header header
 nav_msgs/MapMetaData info
 int8[] data
-================================================================================
-MSG: std_msgs/Header
-builtin_interfaces/Time stamp
-string frame_id
-================================================================================
-MSG: builtin_interfaces/Time
-int32 sec
-uint32 nanosec
-================================================================================
-MSG: nav_msgs/MapMetaData
+",
+        Header,
+        "\
+nav_msgs/MapMetaData
 builtin_interfaces/Time map_load_time
 float32 resolution
 uint32 width
 uint32 height
 geometry_msgs/Pose origin
-================================================================================
-MSG: geometry_msgs/Pose
-geometry_msgs/Point position
-geometry_msgs/Quaternion orientation
-================================================================================
-MSG: geometry_msgs/Point
-float64 x
-float64 y
-float64 z
-================================================================================
-MSG: geometry_msgs/Quaternion
-float64 x 0
-float64 y 0
-float64 z 0
-float64 w 1
-";
+",
+        Pose,
+    );
 }
 
 #[cfg(test)]

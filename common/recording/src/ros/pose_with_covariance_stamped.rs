@@ -2,6 +2,7 @@
 
 use serde::{Deserialize, Serialize};
 
+use super::definition::definition;
 use super::{Header, PoseWithCovariance, RosMessage};
 
 /// A pose with how sure it is.
@@ -15,35 +16,12 @@ pub struct PoseWithCovarianceStamped {
 
 impl RosMessage for PoseWithCovarianceStamped {
     const SCHEMA: &'static str = "geometry_msgs/msg/PoseWithCovarianceStamped";
-    const DEFINITION: &'static str = "\
+    const DEFINITION: &'static str = definition!(
+        "\
 std_msgs/Header header
 geometry_msgs/PoseWithCovariance pose
-================================================================================
-MSG: std_msgs/Header
-builtin_interfaces/Time stamp
-string frame_id
-================================================================================
-MSG: builtin_interfaces/Time
-int32 sec
-uint32 nanosec
-================================================================================
-MSG: geometry_msgs/PoseWithCovariance
-geometry_msgs/Pose pose
-float64[36] covariance
-================================================================================
-MSG: geometry_msgs/Pose
-geometry_msgs/Point position
-geometry_msgs/Quaternion orientation
-================================================================================
-MSG: geometry_msgs/Point
-float64 x
-float64 y
-float64 z
-================================================================================
-MSG: geometry_msgs/Quaternion
-float64 x 0
-float64 y 0
-float64 z 0
-float64 w 1
-";
+",
+        Header,
+        PoseWithCovariance,
+    );
 }

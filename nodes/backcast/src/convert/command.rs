@@ -5,8 +5,8 @@ use std::io::{BufReader, BufWriter, Write};
 use std::path::{Path, PathBuf};
 use std::process::ExitCode;
 
-use recording::Recording;
 use recording::write::{Packing, RecordingWriter};
+use recording::{Kind, Recording, is_bag};
 
 use super::{to_carmen, to_recording};
 use crate::BackcastError;
@@ -15,14 +15,15 @@ use crate::offline::say;
 
 /// What stands below the options.
 pub(crate) const NOTES: &str = "\
-.log and .clf are CARMEN's laser logs, .mcap a recording with ROS 2 messages.
+.log and .clf are CARMEN's laser logs, .mcap a recording with ROS 2 messages, .db3 (or a folder of
+such) a bag of rosbag2 in SQLite, of which all topics are converted.
 
 Exit codes: 0 done, 1 failed, 2 wrong use, 3 done but something could not be read";
 
 /// What `backcast convert` takes.
 #[derive(Debug, clap::Args)]
 pub(crate) struct Config {
-    /// The file to read: .log, .clf or .mcap
+    /// The file to read: .log, .clf, .mcap or .db3, or the folder of a bag
     #[arg(value_name = "FROM")]
     from: PathBuf,
 
@@ -74,13 +75,18 @@ pub(super) struct Report {
 /// The files' kinds do not go together, one cannot be read or written, or the
 /// one to write exists.
 pub(crate) fn run(config: &Config) -> Result<ExitCode, BackcastError> {
-    let report = match (kind(&config.from), kind(&config.to)) {
+    let from = match is_bag(&config.from) {
+        true => "db3",
+        false => kind(&config.from),
+    };
+    let report = match (from, kind(&config.to)) {
         ("log" | "clf", "mcap") => log_to_recording(config)?,
-        ("mcap", "log" | "clf") => recording_to_log(config)?,
+        ("mcap" | "db3", "log" | "clf") => recording_to_log(config)?,
+        ("db3", "mcap") => bag_to_recording(config)?,
         (from, to) => {
             return Err(BackcastError::Usage(format!(
-                "from .{from} to .{to} is no conversion; allowed are .log and .clf to .mcap, and \
-                 .mcap to .log"
+                "from .{from} to .{to} is no conversion; allowed are .log, .clf and .db3 to \
+                 .mcap, and .mcap and .db3 to .log"
             )));
         }
     };
@@ -134,6 +140,27 @@ fn recording_to_log(config: &Config) -> Result<Report, BackcastError> {
     let converted = to_carmen::convert(&recording, &mut log);
     log.flush().map_err(failed("write", &config.to))?;
     converted
+}
+
+fn bag_to_recording(config: &Config) -> Result<Report, BackcastError> {
+    let mut writer = RecordingWriter::new(create(&config.to)?, Packing::Zstd)?;
+    let messages = recording::write_bag(&config.from, &mut writer)?;
+    writer
+        .finish()?
+        .flush()
+        .map_err(failed("write", &config.to))?;
+    say(&format!("{messages} messages of all topics"));
+    // Read again, which also tells whether it can be.
+    let recording = Recording::open(&config.to)?;
+    let of = |kind| {
+        let channels = recording.channels().filter(|c| c.kind == Some(kind));
+        channels.map(|channel| channel.messages).sum()
+    };
+    Ok(Report {
+        scans: of(Kind::Scan),
+        odometry: of(Kind::Odometry),
+        ..Report::default()
+    })
 }
 
 fn create(path: &Path) -> Result<BufWriter<File>, BackcastError> {

@@ -12,10 +12,13 @@
 //!                    └─ errors ───┘
 //! map ───────────────── outline ──┘
 //! ```
+//!
+//! `difference` is drawn by `backcast regress`.
 
 mod chart;
 mod command;
 mod config;
+mod difference;
 mod errors;
 mod extent;
 mod field;
@@ -33,3 +36,4 @@ mod view;
 
 pub(crate) use command::run;
 pub(crate) use config::{Config, NOTES};
+pub(crate) use difference::{Contrast, draw as draw_contrast};

@@ -1,6 +1,6 @@
 //! What `backcast regress` does.
 
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 use std::process::ExitCode;
 use std::time::Instant;
 
@@ -9,7 +9,8 @@ use transport::{GraphName, with_causes};
 use super::case::{self, Case};
 use super::compare::{differences, table};
 use super::junit::{self, Outcome};
-use super::play;
+use super::pictures::{self, Drawn};
+use super::play::{self, Played};
 use crate::descriptor::{self, DEFAULT_FILE};
 use crate::offline::say;
 use crate::run::build;
@@ -20,7 +21,8 @@ pub(crate) const NOTES: &str = "\
 A case is a folder with recording.mcap, map.yaml and expected.json. Votes, verdicts and counts must
 come out exactly; positions within 1 mm, headings within 0.01 degrees, scores within 0.001.
 
-Exit codes: 0 all as expected or accepted, 1 differences or a graph that fails, 2 wrong use";
+Exit codes: 0 all as expected or accepted, 1 differences, a graph that fails or a recording that is
+damaged, 2 wrong use";
 
 /// What `backcast regress` takes.
 #[derive(Debug, clap::Args)]
@@ -36,6 +38,11 @@ pub(crate) struct Config {
     /// Expect from now on what was found
     #[arg(long)]
     accept: bool,
+
+    /// Draw each scan that differs, at most 20 a recording, where it is expected
+    /// and where it was found
+    #[arg(long, value_name = "FOLDER")]
+    pictures: Option<PathBuf>,
 
     /// Write the outcome for a build server
     #[arg(long, value_name = "FILE")]
@@ -102,19 +109,48 @@ fn judge(config: &Config, case: &Case, outcome: &mut Outcome) -> Result<(), Back
     let mut descriptor = descriptor::load(&config.dataflow)?;
     play::direct(&mut descriptor, case)?;
     let name = GraphName::new(&format!("rg{}", std::process::id()))?;
-    let found = play::play(descriptor, &name, &case.recording())?;
+    let Played {
+        answers: found,
+        damage,
+    } = play::play(descriptor, &name, &case.recording())?;
     outcome.scans = found.len();
-    if config.accept {
-        // What is not written as it should be is written anew.
-        let before = expected.ok().flatten().unwrap_or_default();
-        outcome.result = Ok(differences(&before, &found));
-        return case.accept(&found);
-    }
-    outcome.result = match expected? {
-        Some(expected) => Ok(differences(&expected, &found)),
-        None => Err("there is no expected.json: --accept writes it".to_owned()),
+    // What is not written as it should be can be written anew.
+    let expected = match config.accept {
+        true => Some(expected.ok().flatten().unwrap_or_default()),
+        false => expected?,
     };
-    Ok(())
+    let Some(expected) = expected else {
+        outcome.result = Err("there is no expected.json: --accept writes it".to_owned());
+        return Ok(());
+    };
+    let all = differences(&expected, &found);
+    if let Some(folder) = &config.pictures {
+        let drawn = pictures::write(folder, case, (&expected, &found), &all)?;
+        tell(&case.name, folder, drawn);
+    }
+    if let Some(damage) = damage {
+        // What is cut off would be missed for ever.
+        outcome.result = Err(format!(
+            "{damage}; only what lies before was played and compared, with {} differences",
+            all.len()
+        ));
+        return Ok(());
+    }
+    outcome.result = Ok(all);
+    match config.accept {
+        true => case.accept(&found),
+        false => Ok(()),
+    }
+}
+
+fn tell(case: &str, folder: &Path, drawn: Drawn) {
+    let Drawn { pictures, scans } = drawn;
+    if scans > 0 {
+        let folder = folder.display();
+        say(&format!(
+            "{case}: {pictures} pictures in {folder}, of {scans} scans that differ"
+        ));
+    }
 }
 
 fn text(outcome: &Outcome, accepted: bool) -> String {

@@ -2,13 +2,15 @@
 //! answer with what is expected.
 //!
 //! `case` finds the recordings, `play` runs the graph, `answer` is what is
-//! compared, `compare` compares (pure), `junit` tells a build server.
+//! compared, `compare` compares (pure), `junit` tells a build server, `pictures`
+//! shows what differs.
 
 mod answer;
 mod case;
 mod command;
 mod compare;
 mod junit;
+mod pictures;
 mod play;
 
 pub(crate) use command::{Config, NOTES, run};

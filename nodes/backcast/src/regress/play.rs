@@ -45,7 +45,16 @@ pub(super) fn direct(descriptor: &mut Descriptor, case: &Case) -> Result<(), Bac
     Ok(())
 }
 
-/// The answers to all scans, by their coming.
+/// What came of a recording.
+#[derive(Debug, Clone, PartialEq)]
+pub(super) struct Played {
+    /// The answers to all scans, by their coming.
+    pub(super) answers: Vec<Answer>,
+    /// Why the recording was not played to its end, if it was not.
+    pub(super) damage: Option<String>,
+}
+
+/// Plays what is readable of a recording.
 ///
 /// # Errors
 /// The graph does not run, or leaves scans without an answer.
@@ -53,15 +62,15 @@ pub(super) fn play(
     descriptor: Descriptor,
     name: &GraphName,
     recording: &Path,
-) -> Result<Vec<Answer>, BackcastError> {
-    let scans = scans_of(recording)?;
+) -> Result<Played, BackcastError> {
+    let (scans, damage) = look_at(recording)?;
     remove_leftovers(name)?;
     let outcome = collect(descriptor, name, scans);
     let cleared = remove_leftovers(name);
     let answers = outcome?;
     cleared?;
     match answers.len() == scans {
-        true => Ok(answers),
+        true => Ok(Played { answers, damage }),
         false => Err(BackcastError::Unanswered {
             recording: recording.to_owned(),
             scans,
@@ -70,13 +79,15 @@ pub(super) fn play(
     }
 }
 
-fn scans_of(path: &Path) -> Result<usize, BackcastError> {
+/// How many scans it has, and how it is damaged.
+fn look_at(path: &Path) -> Result<(usize, Option<String>), BackcastError> {
     let recording = Recording::open(path)?;
     let topic = recording.required_topic(Kind::Scan)?;
     let of_topic = recording
         .channels()
         .filter(|channel| channel.topic == topic);
-    Ok(of_topic.map(|channel| channel.messages as usize).sum())
+    let scans = of_topic.map(|channel| channel.messages as usize).sum();
+    Ok((scans, recording.damage().map(ToString::to_string)))
 }
 
 fn collect(

@@ -118,11 +118,30 @@ impl Crew {
         Ok(())
     }
 
-    /// The nodes that said with their exit code that they lost data, when they
-    /// were ended.
+    /// The nodes that said with their exit code that they lost data, by themselves
+    /// or when they were ended.
     pub(crate) fn losers(&self) -> Vec<String> {
         let losers = self.members.iter().filter(|member| member.lost_data);
         losers.map(|member| member.node.id.clone()).collect()
+    }
+
+    /// Sends `signal` to the processes of one executable; returns how many there
+    /// are.
+    ///
+    /// # Errors
+    /// One cannot be signalled.
+    pub(crate) fn signal(
+        &mut self,
+        executable: &str,
+        signal: Signal,
+    ) -> Result<usize, BackcastError> {
+        let mut signalled = 0;
+        let meant = |node: &Node| node.executable() == executable;
+        self.for_each_running(meant, |process| {
+            signalled += 1;
+            process.signal(signal)
+        })?;
+        Ok(signalled)
     }
 
     fn stop_those(&mut self, meant: impl Fn(&Node) -> bool) -> Result<(), BackcastError> {
@@ -145,7 +164,7 @@ impl Crew {
             match member.poll()? {
                 Some(status) => {
                     member.state = State::Done;
-                    member.lost_data = status.code() == Some(LOST_DATA.into());
+                    member.lost_data = lost_data(status);
                 }
                 None => running += usize::from(matches!(member.state, State::Running(_))),
             }
@@ -195,7 +214,9 @@ impl Member {
         let Some(status) = self.poll()? else {
             return Ok(false);
         };
-        self.state = match self.restarts.after_end(status.success()) {
+        // Who did all that could be done, and lost data, would not do better anew.
+        self.lost_data = lost_data(status);
+        self.state = match self.restarts.after_end(status.success() || self.lost_data) {
             AfterEnd::Done => State::Done,
             AfterEnd::Restart(delay) => {
                 let id = &self.node.id;
@@ -226,6 +247,11 @@ impl Member {
             .poll()
             .map_err(|e| not_supervised(&self.node, pid, e))
     }
+}
+
+/// Whether a process said so.
+fn lost_data(status: ExitStatus) -> bool {
+    status.code() == Some(LOST_DATA.into())
 }
 
 fn not_supervised(node: &Node, pid: i32, source: io::Error) -> BackcastError {

@@ -3,9 +3,15 @@
 use std::{
     io,
     process::ExitCode,
+    sync::{
+        Arc,
+        atomic::{AtomicBool, Ordering},
+    },
     time::{Duration, Instant},
 };
 
+use nix::sys::signal::Signal;
+use signal_hook::consts::SIGUSR1;
 use transport::{Flow, Graph, GraphName, TransportError, remove_leftovers};
 
 use super::{
@@ -16,7 +22,7 @@ use super::{
     journal::Journal,
     options::Config,
     output::{Output, Reader},
-    record,
+    record::{self, RECORDER},
     watch::Watch,
 };
 use crate::{
@@ -88,15 +94,15 @@ pub(crate) fn run(config: &Config) -> Result<ExitCode, BackcastError> {
     let losers = outcome?.losers;
     cleared?;
     let summary = summary?;
+    if !losers.is_empty() {
+        say(LAUNCHER, &format!("{} lost data", losers.join(", ")));
+        return Ok(ExitCode::from(LOST_DATA));
+    }
     if finished && lossless && summary.lost_data() {
         say(
             LAUNCHER,
             "data was lost, though nothing may be at `--rate max`",
         );
-        return Ok(ExitCode::from(LOST_DATA));
-    }
-    if !losers.is_empty() {
-        say(LAUNCHER, &format!("{} lost data", losers.join(", ")));
         return Ok(ExitCode::from(LOST_DATA));
     }
     Ok(ExitCode::SUCCESS)
@@ -117,7 +123,9 @@ fn launch(
     );
     journal.begin();
     let mut crew = Crew::new(descriptor.dataflow.nodes, &descriptor.folder, name);
-    let end = stay(&graph, &watch, &mut crew, journal);
+    let save = Arc::new(AtomicBool::new(false));
+    signal_hook::flag::register(SIGUSR1, Arc::clone(&save)).map_err(BackcastError::Signal)?;
+    let end = stay(&graph, (&watch, &save), &mut crew, journal);
     let stopped = crew.stop();
     // Nodes that are stopped send a last report on their health.
     let heard = watch.take(journal);
@@ -128,10 +136,11 @@ fn launch(
     Ok(Course { end, losers })
 }
 
-/// Supervises the crew and enters what is heard, until the end.
+/// Supervises the crew and enters what is heard, until the end. Recorders are asked
+/// to save where `save` is set.
 fn stay(
     graph: &Graph,
-    watch: &Watch,
+    (watch, save): (&Watch, &AtomicBool),
     crew: &mut Crew,
     journal: &mut Journal,
 ) -> Result<End, BackcastError> {
@@ -153,6 +162,12 @@ fn stay(
         if over && (journal.report.all_answered() || !patient) {
             end = End::Finished;
             return Ok(Flow::Stop);
+        }
+        if save.swap(false, Ordering::Relaxed) && crew.signal(RECORDER, Signal::SIGUSR1)? == 0 {
+            say(
+                LAUNCHER,
+                "SIGUSR1 saves what a recorder keeps, but none runs",
+            );
         }
         if crew.tick(now)? || now - last_cleanup >= CLEANUP_PERIOD {
             graph.cleanup_dead_nodes();

@@ -16,7 +16,7 @@ use nix::{
     errno::Errno,
     sys::{
         prctl,
-        signal::{Signal, killpg},
+        signal::{SigHandler, Signal, killpg, signal},
         wait::{Id, WaitPidFlag, WaitStatus, waitid},
     },
     unistd::{Pid, getpid, getppid},
@@ -60,7 +60,7 @@ impl Process {
             .stdout(Stdio::piped())
             .stderr(Stdio::piped())
             .process_group(0);
-        die_with_parent(&mut command);
+        prepare_signals(&mut command);
         let mut child = command.spawn()?;
         let pid = i32::try_from(child.id()).map_err(io::Error::other)?;
         let (stdout, stderr) = (child.stdout.take(), child.stderr.take());
@@ -131,10 +131,14 @@ impl Drop for Process {
     }
 }
 
-fn die_with_parent(command: &mut Command) {
+/// Asks for SIGTERM when we die; and SIGUSR1, which we pass on, does no harm before
+/// the program that is started has said what it means.
+fn prepare_signals(command: &mut Command) {
     let parent = getpid();
     let ask = move || {
         prctl::set_pdeathsig(Signal::SIGTERM)?;
+        // SAFETY: to ignore a signal calls nothing.
+        unsafe { signal(Signal::SIGUSR1, SigHandler::SigIgn) }?;
         // A parent that died before the question was asked is not told of.
         if getppid() != parent {
             return Err(Errno::ESRCH.into());

@@ -13,7 +13,7 @@ use super::arguments::{MAP_SERVER, REPLAYER, add_to_list, value};
 use super::options::RecordOptions;
 use crate::BackcastError;
 
-const RECORDER: &str = "recorder";
+pub(super) const RECORDER: &str = "recorder";
 
 /// A recorder that failed is started again so often, and goes on in another file.
 const RESTART: Restart = Restart {

@@ -1,8 +1,8 @@
-//! Votes and hypotheses: without loss in messages of our own, and as poses for
+//! Votes, hypotheses and beams: without loss in messages of our own, and as poses for
 //! every tool.
 
 use geometry::Pose;
-use messages::{HypothesesHeader, Hypothesis, Vote, VotesHeader};
+use messages::{Beam, BeamsHeader, HypothesesHeader, Hypothesis, Vote, VotesHeader};
 use recording::ros::backcast_msgs as own;
 use recording::ros::{Header, PoseArray, PoseWithCovarianceStamped};
 
@@ -76,6 +76,23 @@ pub(super) fn hypotheses(
         highest_possible: from.highest_possible,
         mount_known: from.mount_known != 0,
         hypotheses: items.iter().map(hypothesis).collect(),
+    }
+}
+
+pub(super) fn beams(header: Header, from: &BeamsHeader, items: &[Beam]) -> own::Beams {
+    let beam = |beam: &Beam| own::Beam {
+        bearing: beam.bearing,
+        range_m: beam.range_m,
+        weight: beam.weight,
+        fate: beam.fate,
+    };
+    own::Beams {
+        header,
+        entered_ns: from.stamp.entered_ns,
+        counter: from.stamp.counter,
+        map_id: from.map_id,
+        map_from_laser: Pose::from(from.map_from_laser).into(),
+        beams: items.iter().map(beam).collect(),
     }
 }
 

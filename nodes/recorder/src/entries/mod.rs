@@ -8,15 +8,16 @@
 mod answers;
 mod diagnostics;
 mod frames;
+mod log;
 mod maps;
 mod measurements;
 mod planar;
 
-use std::collections::BTreeMap;
+use std::collections::{BTreeMap, VecDeque};
 
 use messages::{
-    FieldHeader, GroundTruth, HealthHeader, HypothesesHeader, Hypothesis, MapHeader, Odometry,
-    ScanHeader, Stamp, Topic, Vote, VotesHeader, topic,
+    Beam, BeamsHeader, FieldHeader, GroundTruth, HealthHeader, HypothesesHeader, Hypothesis,
+    LogHeader, MapHeader, Odometry, ScanHeader, Stamp, Topic, Vote, VotesHeader, topic,
 };
 use recording::ros::{Header, OccupancyGridMsg, RosMessage, TfMessage, Time};
 use recording::write::Encoded;
@@ -24,7 +25,8 @@ use recording::write::Encoded;
 use crate::{RecorderError, topics};
 use frames::Frames;
 
-/// Reports that wait for the first measurement at most; the newest are kept.
+/// Reports, and lines, that wait for the first measurement at most; the newest are
+/// kept.
 const MAX_WAITING: usize = 256;
 
 /// What goes into a recording.
@@ -46,7 +48,8 @@ pub(crate) struct Entries {
     /// The map that was recorded last, or is to be.
     map: Option<MapHeader>,
     waiting_map: Option<OccupancyGridMsg>,
-    waiting_health: Vec<(HealthHeader, String)>,
+    waiting_health: VecDeque<(HealthHeader, String)>,
+    waiting_log: VecDeque<(LogHeader, String)>,
     made: Vec<Entry>,
 }
 
@@ -58,7 +61,8 @@ impl Entries {
             newest: None,
             map: None,
             waiting_map: None,
-            waiting_health: Vec::new(),
+            waiting_health: VecDeque::new(),
+            waiting_log: VecDeque::new(),
             made: Vec::new(),
         }
     }
@@ -126,6 +130,16 @@ impl Entries {
         Ok(())
     }
 
+    pub(crate) fn beams(
+        &mut self,
+        beams: &BeamsHeader,
+        items: &[Beam],
+    ) -> Result<(), RecorderError> {
+        let at = self.measured(beams.stamp, topic::Beams::NAME)?;
+        let message = answers::beams(self.in_map(at.stamp), beams, items);
+        self.message(topics::OWN_BEAMS, at.ns, &message)
+    }
+
     /// Takes a map, unless it is the one that was taken last: a server that was
     /// started again sends it again.
     pub(crate) fn map(
@@ -167,12 +181,17 @@ impl Entries {
         error: &[u8],
         now_ns: i64,
     ) -> Result<(), RecorderError> {
-        if self.waiting_health.len() == MAX_WAITING {
-            self.waiting_health.remove(0);
-        }
-        let error = String::from_utf8_lossy(error).into_owned();
-        self.waiting_health.push((*report, error));
+        wait(&mut self.waiting_health, *report, error);
         match self.clock_ns(now_ns) {
+            Some(ns) => self.release(ns),
+            None => Ok(()),
+        }
+    }
+
+    /// Takes a line of a node's log, which stands at the time when it was written.
+    pub(crate) fn log(&mut self, line: &LogHeader, text: &[u8]) -> Result<(), RecorderError> {
+        wait(&mut self.waiting_log, *line, text);
+        match self.clock_ns(line.written_ns) {
             Some(ns) => self.release(ns),
             None => Ok(()),
         }
@@ -220,6 +239,10 @@ impl Entries {
             let message = diagnostics::of(at.stamp, &report, &error);
             self.message(topics::DIAGNOSTICS, at.ns, &message)?;
         }
+        for (line, text) in std::mem::take(&mut self.waiting_log) {
+            let message = log::of(at.stamp, &line, &text);
+            self.message(topics::ROSOUT, at.ns, &message)?;
+        }
         Ok(())
     }
 
@@ -251,6 +274,14 @@ impl Entries {
         self.made.push(Entry::Message(encoded));
         Ok(())
     }
+}
+
+/// Adds what waits; the oldest makes room.
+fn wait<H>(waiting: &mut VecDeque<(H, String)>, header: H, text: &[u8]) {
+    if waiting.len() == MAX_WAITING {
+        waiting.pop_front();
+    }
+    waiting.push_back((header, String::from_utf8_lossy(text).into_owned()));
 }
 
 /// A time that a message of ROS can say.
@@ -323,12 +354,14 @@ mod tests {
         let mut entries = Entries::new("map", "base_link");
         entries.map(&map(1), &[0, 100], 5).unwrap();
         entries.health(&HealthHeader::zeroed(), b"", 6).unwrap();
+        entries.log(&LogHeader::zeroed(), b"hello").unwrap();
         assert_eq!(made(&mut entries), []);
         entries.scan(&scan(stamp(1000, 10)), &[1.0]).unwrap();
         let expected = [
             ("backcast/map", 0),
             ("/map", 1000),
             ("/diagnostics", 1000),
+            ("/rosout", 1000),
             ("/scan", 1000),
         ];
         assert_eq!(made(&mut entries), expected);
@@ -338,6 +371,12 @@ mod tests {
         entries.map(&map(2), &[0, 0], 60).unwrap();
         let expected = [("/diagnostics", 1030), ("backcast/map", 0), ("/map", 1050)];
         assert_eq!(made(&mut entries), expected);
+        let line = LogHeader {
+            written_ns: 70,
+            ..LogHeader::zeroed()
+        };
+        entries.log(&line, b"hello").unwrap();
+        assert_eq!(made(&mut entries), [("/rosout", 1060)]);
     }
 
     #[test]

@@ -1,8 +1,9 @@
 //! The topics that are recorded.
 
 use std::cell::RefCell;
+use std::collections::BTreeMap;
 
-use messages::{Topic, topic};
+use messages::{LogHeader, Topic, topic};
 use transport::{GapCounter, Graph, Input, Subscriber, TransportError};
 
 use super::Recorder;
@@ -16,7 +17,11 @@ pub(super) struct Inputs {
     votes: Counted<topic::Votes>,
     field: Option<Counted<topic::Field>>,
     hypotheses: Counted<topic::Hypotheses>,
+    beams: Counted<topic::Beams>,
     health: Counted<topic::Health>,
+    log: Subscriber<topic::Log>,
+    /// By process, for each counts its own lines.
+    log_gaps: RefCell<BTreeMap<u32, GapCounter>>,
 }
 
 /// A subscriber that knows what it has missed.
@@ -50,7 +55,10 @@ impl Inputs {
             votes: Counted::open(graph)?,
             field: field.then(|| Counted::open(graph)).transpose()?,
             hypotheses: Counted::open(graph)?,
+            beams: Counted::open(graph)?,
             health: Counted::open(graph)?,
+            log: graph.subscriber()?,
+            log_gaps: RefCell::default(),
         })
     }
 
@@ -59,14 +67,16 @@ impl Inputs {
             .field
             .as_ref()
             .map(|field| -> &dyn Input { &field.subscriber });
-        let others: [&dyn Input; 7] = [
+        let others: [&dyn Input; 9] = [
             &self.map.subscriber,
             &self.odometry.subscriber,
             &self.truths.subscriber,
             &self.scans.subscriber,
             &self.votes.subscriber,
             &self.hypotheses.subscriber,
+            &self.beams.subscriber,
             &self.health.subscriber,
+            &self.log,
         ];
         others.into_iter().chain(field).collect()
     }
@@ -88,7 +98,18 @@ impl Inputs {
             let event = to.lookout.health(header);
             to.happened(event)?;
         }
+        while let Some(line) = self.log.receive()? {
+            let header = line.header();
+            let lost = self.lines_lost_before(header);
+            let outcome = to.entries.log(header, line.items());
+            to.taken(lost, outcome)?;
+        }
         Ok(())
+    }
+
+    fn lines_lost_before(&self, line: &LogHeader) -> u64 {
+        let mut gaps = self.log_gaps.borrow_mut();
+        gaps.entry(line.pid).or_default().lost_before(line.counter)
     }
 
     fn take_measurements(&self, to: &mut Recorder) -> Result<(), RecorderError> {
@@ -133,6 +154,10 @@ impl Inputs {
             to.taken(0, outcome)?;
             let event = to.lookout.verdict(header.verdict);
             to.happened(event)?;
+        }
+        while let Some(sample) = self.beams.subscriber.receive()? {
+            let outcome = to.entries.beams(sample.header(), sample.items());
+            to.taken(0, outcome)?;
         }
         Ok(())
     }

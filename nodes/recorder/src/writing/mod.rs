@@ -12,5 +12,5 @@ mod store;
 
 pub(crate) use black_box::BlackBox;
 pub(crate) use parts::{Limits, Parts};
-pub(crate) use preamble::{Preamble, wall_ns};
+pub(crate) use preamble::Preamble;
 pub(crate) use store::{Store, Tally};

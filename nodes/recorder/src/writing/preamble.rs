@@ -4,10 +4,10 @@
 use std::collections::BTreeMap;
 use std::io::{Seek, Write};
 use std::path::Path;
-use std::time::{SystemTime, UNIX_EPOCH};
 
 use recording::RecordingError;
 use recording::write::{Encoded, RecordingWriter};
+use transport::wall_ns;
 
 use crate::entries::Entry;
 use crate::{Config, RecorderError};
@@ -112,14 +112,6 @@ fn read(path: &Path) -> Result<File, RecorderError> {
         media_type,
         content,
         read_ns: wall_ns(),
-    })
-}
-
-/// The wall clock, nanoseconds since 1970; 0 where it is set before that.
-pub(crate) fn wall_ns() -> i64 {
-    let since = SystemTime::now().duration_since(UNIX_EPOCH);
-    since.map_or(0, |since| {
-        i64::try_from(since.as_nanos()).unwrap_or(i64::MAX)
     })
 }
 

@@ -3,6 +3,7 @@
 use serde::{Deserialize, Serialize};
 
 use super::Pose2D;
+use crate::ros::definition::definition;
 use crate::ros::{Header, RosMessage};
 
 /// Where the robot may be: topic `hypotheses` of the graph.
@@ -61,7 +62,8 @@ pub struct Hypothesis {
 
 impl RosMessage for Hypotheses {
     const SCHEMA: &'static str = "backcast_msgs/msg/Hypotheses";
-    const DEFINITION: &'static str = "\
+    const DEFINITION: &'static str = definition!(
+        "\
 # Where the robot may be, by one scan.
 uint32 NO_SCAN=0
 uint32 UNIQUE=1
@@ -82,16 +84,10 @@ uint32 best
 uint32 highest_possible
 bool mount_known
 backcast_msgs/Hypothesis[] hypotheses
-================================================================================
-MSG: std_msgs/Header
-builtin_interfaces/Time stamp
-string frame_id
-================================================================================
-MSG: builtin_interfaces/Time
-int32 sec
-uint32 nanosec
-================================================================================
-MSG: backcast_msgs/Hypothesis
+",
+        Header,
+        "\
+backcast_msgs/Hypothesis
 geometry_msgs/Pose2D map_from_laser
 geometry_msgs/Pose2D map_from_base
 float64[9] covariance
@@ -99,10 +95,7 @@ float32 score
 float32 probability
 uint64 intensity
 uint64 support
-================================================================================
-MSG: geometry_msgs/Pose2D
-float64 x
-float64 y
-float64 theta
-";
+",
+        Pose2D,
+    );
 }

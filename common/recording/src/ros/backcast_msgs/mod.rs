@@ -1,5 +1,5 @@
 //! Messages of our own, for what no message of ROS holds without loss: the
-//! graph's `votes` and `hypotheses` with every field of their headers.
+//! graph's `votes`, `hypotheses` and `beams` with every field of their headers.
 //!
 //! They are plain `ros2msg` and CDR, so a generic reader decodes them. Numbers
 //! that name a state stand as in the graph, with their names as constants in
@@ -7,9 +7,11 @@
 //! what follows an empty one. A field that is added makes another message, under
 //! another name.
 
+mod beams;
 mod hypotheses;
 mod votes;
 
+pub use beams::{Beam, Beams};
 pub use hypotheses::{Hypotheses, Hypothesis};
 pub use votes::{Vote, Votes};
 

@@ -3,6 +3,7 @@
 use serde::{Deserialize, Serialize};
 
 use super::Pose2D;
+use crate::ros::definition::definition;
 use crate::ros::{Header, RosMessage};
 
 /// The outcome of one search: topic `votes` of the graph.
@@ -79,7 +80,8 @@ pub struct Vote {
 
 impl RosMessage for Votes {
     const SCHEMA: &'static str = "backcast_msgs/msg/Votes";
-    const DEFINITION: &'static str = "\
+    const DEFINITION: &'static str = definition!(
+        "\
 # The outcome of one search: the poses that a scan votes for.
 uint32 FOUND=0
 uint32 NO_VOTES=1
@@ -111,24 +113,15 @@ uint32 max_beams
 uint32 pooling
 float64 beam_arc_m
 backcast_msgs/Vote[] votes
-================================================================================
-MSG: std_msgs/Header
-builtin_interfaces/Time stamp
-string frame_id
-================================================================================
-MSG: builtin_interfaces/Time
-int32 sec
-uint32 nanosec
-================================================================================
-MSG: geometry_msgs/Pose2D
-float64 x
-float64 y
-float64 theta
-================================================================================
-MSG: backcast_msgs/Vote
+",
+        Header,
+        Pose2D,
+        "\
+backcast_msgs/Vote
 uint16 x
 uint16 y
 uint16 heading
 uint16 intensity
-";
+",
+    );
 }

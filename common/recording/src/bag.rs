@@ -1,0 +1,370 @@
+//! Bags of rosbag2 in SQLite (`.db3`), written anew as recordings.
+//!
+//! SQLite keeps no checksums of what is stored: its structure is checked before
+//! anything is taken, and a bag that is damaged is refused as a whole, but a bit
+//! that flipped within a message goes unnoticed. `metadata.yaml` is not needed,
+//! for all that it says stands in the bag. Packed bags are refused.
+//!
+//! | table | column | what it holds |
+//! |---|---|---|
+//! | `topics` | `id`, `name`, `type`, `serialization_format` | the channels |
+//! | `messages` | `topic_id`, `timestamp`, `data` | nanoseconds since 1970; the message as it was sent |
+//! | `message_definitions` | `topic_type`, `encoding`, `encoded_message_definition` | the schemas' text; not in bags before ROS 2 Iron |
+
+use std::collections::HashMap;
+use std::fs::File;
+use std::io::{BufWriter, Read, Seek, Write};
+use std::path::{Path, PathBuf};
+
+use rusqlite::types::ValueRef;
+use rusqlite::{Connection, OpenFlags, Row};
+
+use crate::write::{Packing, RecordingWriter, definition};
+use crate::{Kind, RecordingError};
+
+/// How a database of SQLite 3 begins.
+const MAGIC: &[u8] = b"SQLite format 3\0";
+
+/// How what zstd packed begins.
+const ZSTD_MAGIC: &[u8] = &[0x28, 0xb5, 0x2f, 0xfd];
+
+/// The messages with their topics. The order of equal times is that of writing.
+const MESSAGES: &str = "SELECT name, type, serialization_format, timestamp, data \
+     FROM messages LEFT JOIN topics ON topics.id = messages.topic_id \
+     ORDER BY timestamp, messages.id";
+
+const DEFINITIONS: &str = "SELECT topic_type, encoded_message_definition \
+     FROM message_definitions WHERE encoding = 'ros2msg'";
+
+/// Whether it is a bag in SQLite, or a folder that holds some.
+#[must_use]
+pub fn is_bag(path: impl AsRef<Path>) -> bool {
+    let path = path.as_ref();
+    if path.is_dir() {
+        return !files_in(path).is_empty();
+    }
+    let mut start = [0; MAGIC.len()];
+    let read = File::open(path).and_then(|mut file| file.read_exact(&mut start));
+    read.is_ok() && start == MAGIC
+}
+
+/// Writes what a bag holds, or all bags of a folder one after the other; returns
+/// the number of messages.
+///
+/// # Errors
+/// If a bag is damaged, packed, or no bag of rosbag2, or the recording cannot be
+/// written.
+pub fn write_bag<W: Write + Seek>(
+    path: impl AsRef<Path>,
+    writer: &mut RecordingWriter<W>,
+) -> Result<u64, RecordingError> {
+    let path = path.as_ref();
+    let files = match path.is_dir() {
+        true => files_in(path),
+        false => vec![path.to_owned()],
+    };
+    let messages = files.iter().map(|file| Bag::open(file)?.write(writer));
+    messages.sum()
+}
+
+/// The bag as a recording, in a file that has no name and goes when it is closed.
+pub(crate) fn as_recording(path: &Path) -> Result<File, RecordingError> {
+    let sink = tempfile::tempfile().map_err(|error| write_failed(&error))?;
+    let mut writer = RecordingWriter::new(BufWriter::new(sink), Packing::Plain)?;
+    write_bag(path, &mut writer)?;
+    let buffered = writer.finish()?;
+    buffered
+        .into_inner()
+        .map_err(|error| write_failed(error.error()))
+}
+
+fn write_failed(error: &std::io::Error) -> RecordingError {
+    let folder = std::env::temp_dir();
+    RecordingError::Write {
+        reason: format!("a temporary file in {}: {error}", folder.display()),
+    }
+}
+
+/// The bags of a folder by name. One that cannot be listed has none.
+fn files_in(folder: &Path) -> Vec<PathBuf> {
+    let entries = std::fs::read_dir(folder).into_iter().flatten().flatten();
+    let is_named = |path: &PathBuf| path.extension().is_some_and(|name| name == "db3");
+    let mut files: Vec<PathBuf> = entries.map(|entry| entry.path()).filter(is_named).collect();
+    files.sort();
+    files
+}
+
+/// An open database.
+struct Bag<'p> {
+    path: &'p Path,
+    database: Connection,
+}
+
+impl<'p> Bag<'p> {
+    /// Opens a bag for reading and checks its structure.
+    fn open(path: &'p Path) -> Result<Self, RecordingError> {
+        let flags = OpenFlags::SQLITE_OPEN_READ_ONLY | OpenFlags::SQLITE_OPEN_NO_MUTEX;
+        let refused = |error: rusqlite::Error| refused(path, error.to_string());
+        let database = Connection::open_with_flags(path, flags).map_err(refused)?;
+        let check = "PRAGMA quick_check(1)";
+        let found: String = database
+            .query_row(check, (), |row| row.get(0))
+            .map_err(refused)?;
+        if found != "ok" {
+            return Err(damaged(path, &found));
+        }
+        // SQLite takes what a last page lacks for zeros.
+        let page: u32 = database
+            .query_row("PRAGMA page_size", (), |row| row.get(0))
+            .map_err(refused)?;
+        let unreadable = |source| RecordingError::Open {
+            path: path.to_owned(),
+            source,
+        };
+        let length = std::fs::metadata(path).map_err(unreadable)?.len();
+        match length.checked_rem(page.into()) {
+            Some(0) => Ok(Bag { path, database }),
+            _ => Err(damaged(path, "it ends within a page")),
+        }
+    }
+
+    fn write<W: Write + Seek>(
+        &self,
+        writer: &mut RecordingWriter<W>,
+    ) -> Result<u64, RecordingError> {
+        let definitions = self.definitions()?;
+        let mut query = self.database.prepare(MESSAGES).map_err(self.failed())?;
+        let mut rows = query.query(()).map_err(self.failed())?;
+        let mut messages = 0;
+        while let Some(row) = rows.next().map_err(self.failed())? {
+            let message = self.message(row)?;
+            let (topic, schema) = (&*message.topic, &*message.schema);
+            let own = Kind::ALL.into_iter().find(|kind| kind.schema() == schema);
+            let text = definitions.get(schema).map(String::as_str);
+            let text = text.or(own.map(definition)).unwrap_or_default();
+            let time = message.time_ns;
+            writer.write_bytes(topic, schema, text, &message.encoding, time, message.data)?;
+            messages += 1;
+        }
+        Ok(messages)
+    }
+
+    /// The texts of the schemas that the bag defines, by name.
+    fn definitions(&self) -> Result<HashMap<String, String>, RecordingError> {
+        let has_any = self
+            .database
+            .table_exists(None, "message_definitions")
+            .map_err(self.failed())?;
+        if !has_any {
+            return Ok(HashMap::new());
+        }
+        let mut query = self.database.prepare(DEFINITIONS).map_err(self.failed())?;
+        let pairs = query.query_map((), |row| Ok((row.get(0)?, row.get(1)?)));
+        let pairs = pairs.map_err(self.failed())?;
+        pairs.collect::<Result<_, _>>().map_err(self.failed())
+    }
+
+    fn message<'r>(&self, row: &'r Row<'_>) -> Result<Message<'r>, RecordingError> {
+        let topic: Option<String> = row.get(0).map_err(self.failed())?;
+        let topic =
+            topic.ok_or_else(|| damaged(self.path, "a message of a topic that is not there"))?;
+        let data = match row.get_ref(4).map_err(self.failed())? {
+            ValueRef::Blob(data) => data,
+            other => {
+                let found = other.data_type();
+                let reason = format!("a message of {topic} is of type {found}; allowed: blob");
+                return Err(refused(self.path, reason));
+            }
+        };
+        if data.starts_with(ZSTD_MAGIC) {
+            let reason = format!(
+                "the messages of {topic} are packed; allowed: bags as rosbag2 writes them without \
+                 compression, and MCAP"
+            );
+            return Err(refused(self.path, reason));
+        }
+        Ok(Message {
+            topic,
+            schema: row.get(1).map_err(self.failed())?,
+            encoding: row.get(2).map_err(self.failed())?,
+            time_ns: row.get(3).map_err(self.failed())?,
+            data,
+        })
+    }
+
+    fn failed(&self) -> impl Fn(rusqlite::Error) -> RecordingError {
+        |error| refused(self.path, error.to_string())
+    }
+}
+
+/// A row of the table.
+struct Message<'r> {
+    topic: String,
+    schema: String,
+    encoding: String,
+    time_ns: i64,
+    data: &'r [u8],
+}
+
+fn damaged(path: &Path, found: &str) -> RecordingError {
+    let advice = "what can be saved of it, `sqlite3 FILE .recover` saves";
+    refused(path, format!("it is damaged: {}; {advice}", found.trim()))
+}
+
+fn refused(path: &Path, reason: String) -> RecordingError {
+    RecordingError::Bag {
+        path: path.to_owned(),
+        reason,
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use tempfile::TempDir;
+
+    use super::*;
+    use crate::{Record, Recording, sample};
+
+    /// The tables as rosbag2 has made them since ROS 2 Foxy.
+    const TABLES: &str = "
+        CREATE TABLE topics(id INTEGER PRIMARY KEY, name TEXT NOT NULL, type TEXT NOT NULL,
+            serialization_format TEXT NOT NULL, offered_qos_profiles TEXT NOT NULL);
+        CREATE TABLE messages(id INTEGER PRIMARY KEY, topic_id INTEGER NOT NULL,
+            timestamp INTEGER NOT NULL, data BLOB NOT NULL);
+        CREATE INDEX timestamp_idx ON messages (timestamp ASC);";
+
+    /// A bag of the sample's messages, the newest first.
+    fn bag(folder: &TempDir, name: &str, records: &[Record]) -> PathBuf {
+        let path = folder.path().join(name);
+        let database = Connection::open(&path).unwrap();
+        database.execute_batch(TABLES).unwrap();
+        for record in records.iter().rev() {
+            let (topic, schema) = (&*record.topic, record.message.kind().schema());
+            let add = "INSERT INTO topics SELECT NULL, ?1, ?2, 'cdr', '' \
+                       WHERE NOT EXISTS (SELECT 1 FROM topics WHERE name = ?1)";
+            database.execute(add, (topic, schema)).unwrap();
+            let add = "INSERT INTO messages SELECT NULL, id, ?2, ?3 FROM topics WHERE name = ?1";
+            let body = record.message.encode().unwrap();
+            database
+                .execute(add, (topic, record.log_time_ns, body))
+                .unwrap();
+        }
+        path
+    }
+
+    fn read(path: &Path) -> Vec<Record> {
+        let recording = Recording::open(path).unwrap();
+        assert_eq!(recording.damage(), None);
+        recording.records().map(Result::unwrap).collect()
+    }
+
+    /// What is wrong with a sound bag after a change.
+    fn refusal(change: &str) -> String {
+        let folder = TempDir::new().unwrap();
+        let path = bag(&folder, "r.db3", &sample::records());
+        Connection::open(&path)
+            .unwrap()
+            .execute_batch(change)
+            .unwrap();
+        Recording::open(&path).unwrap_err().to_string()
+    }
+
+    #[test]
+    fn a_bag_reads_as_the_recording_does() {
+        let folder = TempDir::new().unwrap();
+        let path = bag(&folder, "r.db3", &sample::records());
+        let records = read(&path);
+        assert_eq!(records.len(), sample::records().len());
+        assert!(records.is_sorted_by_key(|record| record.log_time_ns));
+        assert!(
+            sample::records()
+                .iter()
+                .all(|record| records.contains(record))
+        );
+        let recording = Recording::open(&path).unwrap();
+        assert_eq!(recording.path(), path);
+        assert_eq!(recording.map().unwrap().unwrap(), sample::grid());
+        assert_eq!(recording.ground_truths().unwrap().len(), sample::SCANS);
+    }
+
+    #[test]
+    fn a_folder_is_read_with_all_its_parts() {
+        let folder = TempDir::new().unwrap();
+        assert!(!is_bag(folder.path()));
+        let records = sample::records();
+        let (first, second) = records.split_at(7);
+        // The parts of a bag are numbered, and their order by name may be another.
+        bag(&folder, "r_2.db3", first);
+        bag(&folder, "r_10.db3", second);
+        std::fs::write(folder.path().join("metadata.yaml"), "not needed").unwrap();
+        let found = read(folder.path());
+        assert_eq!(found.len(), records.len());
+        assert!(records.iter().all(|record| found.contains(record)));
+    }
+
+    #[test]
+    fn definitions_of_the_bag_are_kept() {
+        let folder = TempDir::new().unwrap();
+        let path = bag(&folder, "r.db3", &sample::records()[..2]);
+        let define = "CREATE TABLE message_definitions(id INTEGER PRIMARY KEY, topic_type TEXT,
+                encoding TEXT, encoded_message_definition TEXT, type_description_hash TEXT);
+            INSERT INTO message_definitions VALUES
+                (1, 'nav_msgs/msg/OccupancyGrid', 'ros2msg', 'of the bag', ''),
+                (2, 'tf2_msgs/msg/TFMessage', 'ros2idl', 'of another kind', '');";
+        Connection::open(&path)
+            .unwrap()
+            .execute_batch(define)
+            .unwrap();
+        let mut writer = RecordingWriter::in_memory(Packing::Plain).unwrap();
+        assert_eq!(write_bag(&path, &mut writer).unwrap(), 2);
+        let bytes = writer.finish().unwrap().into_inner();
+        let has = |text: &str| bytes.windows(text.len()).any(|w| w == text.as_bytes());
+        assert!(has("of the bag") && !has("of another kind"));
+        assert!(
+            has("geometry_msgs/TransformStamped[] transforms"),
+            "our own"
+        );
+    }
+
+    #[test]
+    fn what_is_not_sound_is_refused_with_the_reason() {
+        for (change, expected) in [
+            (
+                "DELETE FROM topics WHERE name = '/scan'",
+                "a topic that is not there",
+            ),
+            (
+                "UPDATE messages SET data = 'text' WHERE id = 1",
+                "is of type Text; allowed: blob",
+            ),
+            (
+                "UPDATE messages SET data = x'28b52ffd00'",
+                "are packed; allowed: bags",
+            ),
+            (
+                "UPDATE messages SET timestamp = -1",
+                "log time -1 ns is before 1970",
+            ),
+            ("UPDATE messages SET timestamp = 'noon'", "timestamp"),
+            ("DROP TABLE messages", "no such table: messages"),
+        ] {
+            let refusal = refusal(change);
+            assert!(refusal.contains(expected), "{change}: {refusal}");
+        }
+    }
+
+    #[test]
+    fn a_bag_that_is_cut_short_is_refused() {
+        let folder = TempDir::new().unwrap();
+        let path = bag(&folder, "r.db3", &sample::records());
+        let bytes = std::fs::read(&path).unwrap();
+        for length in [MAGIC.len(), 100, 4096, bytes.len() / 2, bytes.len() - 1] {
+            std::fs::write(&path, &bytes[..length]).unwrap();
+            let refusal = Recording::open(&path).unwrap_err();
+            assert!(
+                matches!(refusal, RecordingError::Bag { .. }),
+                "{length}: {refusal}"
+            );
+        }
+    }
+}

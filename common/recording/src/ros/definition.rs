@@ -1,0 +1,105 @@
+//! The text of a message's definition, put together when the crate is compiled.
+//!
+//! What several messages are made of stands here once.
+
+/// The fields of a message, then each type that it is made of: by name where
+/// several messages share it, which brings along the types that it is made of
+/// itself, or as its name and fields.
+macro_rules! definition {
+    ($fields:literal $(, $part:tt)+ $(,)?) => {
+        concat!($fields $(, $crate::ros::definition::part!($part))+)
+    };
+}
+
+/// A type with the rule above it.
+macro_rules! part {
+    (Header) => {
+        definition!(
+            "",
+            "\
+std_msgs/Header
+builtin_interfaces/Time stamp
+string frame_id
+",
+            Time
+        )
+    };
+    (Time) => {
+        $crate::ros::definition::part!(
+            "\
+builtin_interfaces/Time
+int32 sec
+uint32 nanosec
+"
+        )
+    };
+    (PoseWithCovariance) => {
+        definition!(
+            "",
+            "\
+geometry_msgs/PoseWithCovariance
+geometry_msgs/Pose pose
+float64[36] covariance
+",
+            Pose
+        )
+    };
+    (Pose) => {
+        definition!(
+            "",
+            "\
+geometry_msgs/Pose
+geometry_msgs/Point position
+geometry_msgs/Quaternion orientation
+",
+            "\
+geometry_msgs/Point
+float64 x
+float64 y
+float64 z
+",
+            Quaternion
+        )
+    };
+    (Quaternion) => {
+        $crate::ros::definition::part!(
+            "\
+geometry_msgs/Quaternion
+float64 x 0
+float64 y 0
+float64 z 0
+float64 w 1
+"
+        )
+    };
+    (Vector3) => {
+        $crate::ros::definition::part!(
+            "\
+geometry_msgs/Vector3
+float64 x
+float64 y
+float64 z
+"
+        )
+    };
+    (Pose2D) => {
+        $crate::ros::definition::part!(
+            "\
+geometry_msgs/Pose2D
+float64 x
+float64 y
+float64 theta
+"
+        )
+    };
+    ($name_and_fields:literal) => {
+        concat!(
+            "\
+================================================================================
+MSG: ",
+            $name_and_fields
+        )
+    };
+}
+
+pub(super) use {definition, part};

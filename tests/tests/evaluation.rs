@@ -1,0 +1,101 @@
+//! The graph and `backcast evaluate`, which asks the engine alone, find the same on
+//! recordings of other robots, where these are at hand.
+#![allow(
+    clippy::unwrap_used,
+    reason = "the lint spares test functions but not what they share"
+)]
+
+use std::path::{Path, PathBuf};
+use std::process::Command;
+
+use recording::Recording;
+use serde_json::Value;
+use tempfile::TempDir;
+use tests::executables;
+use tests::recorded::graph;
+
+/// Independent scans of two buildings.
+const FILES: [&str; 2] = ["fr079_queries.mcap", "seattle_queries.mcap"];
+
+/// What is counted by both.
+const COUNTS: [&str; 6] = [
+    "truths",
+    "success_50cm_10deg",
+    "success_20cm_3deg",
+    "top16_recall",
+    "unique",
+    "unique_wrong",
+];
+
+/// What is measured by both, with its percentiles. True headings take another way
+/// through angles in the graph, which changes their last bits.
+const ERRORS: [&str; 4] = [
+    "/error_m/median",
+    "/error_m/p90",
+    "/error_deg/median",
+    "/error_deg/p90",
+];
+const ROUNDING: f64 = 1e-9;
+
+/// The folder of the recordings, beside the project or beside a folder that it is
+/// in.
+fn data() -> Option<PathBuf> {
+    let folders = tests::root().canonicalize().unwrap();
+    let mut candidates = folders
+        .ancestors()
+        .map(|f| f.join("shared/data/evaluation"));
+    candidates.find(|folder| folder.is_dir())
+}
+
+/// The last line that a command prints, as JSON.
+fn last_line(command: &mut Command) -> Value {
+    let outcome = command.output().unwrap();
+    let said = String::from_utf8_lossy(&outcome.stderr);
+    assert_eq!(outcome.status.code(), Some(0), "{said}");
+    let lines = String::from_utf8(outcome.stdout).unwrap();
+    serde_json::from_str(lines.lines().last().unwrap()).unwrap()
+}
+
+fn of_graph(recording: &Path, folder: &TempDir) -> Value {
+    let map = Recording::open(recording).unwrap().map().unwrap().unwrap();
+    let yaml = folder.path().join("map.yaml");
+    map::save(&map, &yaml).unwrap();
+    let descriptor = folder.path().join("graph.yaml");
+    std::fs::write(&descriptor, graph(recording, &yaml)).unwrap();
+    let mut command = Command::new(executables::path("backcast"));
+    let line = last_line(
+        command
+            .args(["run", "--json", "--rate", "max"])
+            .arg(descriptor),
+    );
+    line["summary"].clone()
+}
+
+#[test]
+fn the_graph_finds_what_evaluate_finds() {
+    let Some(data) = data() else {
+        eprintln!("SKIPPED: there is no folder shared/data/evaluation beside the project");
+        return;
+    };
+    for file in FILES {
+        let recording = data.join(file);
+        let folder = TempDir::new().unwrap();
+        let by_graph = of_graph(&recording, &folder);
+        let mut command = Command::new(executables::path("backcast"));
+        let by_engine = last_line(command.args(["evaluate", "--json"]).arg(&recording));
+        for count in COUNTS {
+            assert!(by_engine[count].is_number(), "{file}: {count}");
+            assert_eq!(by_graph[count], by_engine[count], "{file}: {count}");
+        }
+        for error in ERRORS {
+            let of = |found: &Value| found.pointer(error).unwrap().as_f64().unwrap();
+            let (graph, engine) = (of(&by_graph), of(&by_engine));
+            assert!(
+                (graph - engine).abs() < ROUNDING,
+                "{file}: {graph} {engine}"
+            );
+        }
+        assert_eq!(by_graph["answered"], by_engine["scans"], "{file}");
+        assert_eq!(by_graph["dropped"], 0, "{file}");
+    }
+}
