@@ -122,6 +122,7 @@ function watch(name) {
   shownMap = "";
   store.clear();
   view.setCells(null);
+  setFollow(true);
   connection = new Connection(name, handlers);
   connection.field(view.layers.field);
 }

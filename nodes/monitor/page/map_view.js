@@ -5,11 +5,13 @@ import { cellColors, fieldColors, palette } from "./colors.js";
 
 const MAX_SIDE = 8192; // pixels of an image along a side
 const SIGMAS = 2.448; // of an ellipse that holds 95 %
+const NEAR_M = 34; // what a view that begins shows at least
+const LEASH = 0.3; // how far off the middle a followed robot may go, of the view
 
 export class MapView {
   camera = new Camera();
   layers = { beams: true, hypotheses: true, track: true, field: false };
-  follow = false;
+  follow = true;
   selection = null; // two corners of a region that is being chosen
   #levels = [];
   #fieldImage = null;
@@ -32,10 +34,13 @@ export class MapView {
   setCells(cells) {
     this.store.cells = cells;
     this.#levels = cells ? pyramid(cells, this.store.map.width, this.store.map.height) : [];
+    this.#extent = cells ? knownExtent(this.#levels.at(-1)) : null;
     this.#paintMap();
-    this.fit();
+    this.begin();
   }
+  #extent = null;
 
+  /** All that is known of the map. */
   fit() {
     const box = this.#box();
     if (box) this.camera.fit(box);
@@ -43,13 +48,26 @@ export class MapView {
     this.draw();
   }
 
-  /** The map's outline in its own frame. */
+  /** A small map as a whole, a large one around the robot. */
+  begin() {
+    const { camera } = this;
+    const box = this.#box();
+    if (!box) return this.draw();
+    camera.fit(box);
+    const near = Math.min(camera.width, camera.height) / NEAR_M;
+    if (camera.scale < near) camera.scale = near;
+    const best = this.store.answer?.hypotheses[0];
+    if (best) [camera.x, camera.y] = [best.laser.x, best.laser.y];
+    this.draw();
+  }
+
+  /** The outline of what is known, in the map's frame. */
   #box() {
     const { map } = this.store;
-    if (!map) return null;
+    if (!map || !this.#extent) return null;
     const { x, y, yaw } = map.map_from_grid;
-    const [w, h] = [map.width * map.resolution_m, map.height * map.resolution_m];
-    const turned = [[0, 0], [w, 0], [w, h], [0, h]].map(([a, b]) => [
+    const [left, bottom, right, top] = this.#extent.map((cells) => cells * map.resolution_m);
+    const turned = [[left, bottom], [right, bottom], [right, top], [left, top]].map(([a, b]) => [
       x + a * Math.cos(yaw) - b * Math.sin(yaw), y + a * Math.sin(yaw) + b * Math.cos(yaw)]);
     const [xs, ys] = [turned.map((p) => p[0]), turned.map((p) => p[1])];
     return { left: Math.min(...xs), right: Math.max(...xs), bottom: Math.min(...ys), top: Math.max(...ys) };
@@ -64,7 +82,7 @@ export class MapView {
     const first = this.camera.width <= 1;
     this.camera.width = clientWidth;
     this.camera.height = clientHeight;
-    if (first) this.fit();
+    if (first) this.begin();
     this.draw();
   }
 
@@ -100,7 +118,7 @@ export class MapView {
   #drawNow() {
     const { camera, colors, store, layers } = this;
     const best = store.answer?.hypotheses[0];
-    if (this.follow && best) [camera.x, camera.y] = [best.laser.x, best.laser.y];
+    if (this.follow && best) this.#keepInView(best.laser);
     const c = this.canvas.getContext("2d");
     c.setTransform(1, 0, 0, 1, 0, 0);
     c.fillStyle = colors.ground;
@@ -113,6 +131,14 @@ export class MapView {
     if (layers.hypotheses) this.#drawOthers(c);
     if (best) this.#drawBest(c, best);
     this.ondrawn?.();
+  }
+
+  /** The view stays where it is as long as the robot is well within. */
+  #keepInView({ x, y }) {
+    const { camera } = this;
+    const [right, up] = [camera.width, camera.height].map((side) => (LEASH * side) / camera.scale);
+    camera.x = Math.min(x + right, Math.max(x - right, camera.x));
+    camera.y = Math.min(y + up, Math.max(y - up, camera.y));
   }
 
   /** The map and the field, as images in the frame of the grid. */
@@ -216,7 +242,7 @@ export class MapView {
       c.globalAlpha = i < near ? 1 : Math.min(0.75, Math.max(0.18, score));
       if (i < Math.max(8, near)) this.#drawEllipse(c, x, y, ellipse, this.colors.other, this.colors.otherSoft);
       this.#drawArrow(c, x, y, laser.yaw, i < near ? 9 : 6, this.colors.other);
-      if (i < 9) {
+      if (i < near || (i < 5 && this.camera.scale > 14)) {
         c.fillStyle = this.colors.other;
         c.fillText(String(i + 2), x + 12 * Math.cos(laser.yaw + 2.600), y - 12 * Math.sin(laser.yaw + 2.600));
       }
@@ -284,6 +310,19 @@ function pyramid(cells, width, height) {
     if (width <= 256 && height <= 256) return levels;
     [cells, width, height] = halved(cells, width, height);
   }
+}
+
+/** Left, bottom, right and top of the known cells, in cells of the map. */
+function knownExtent({ cells, width, height, factor }) {
+  let [left, bottom, right, top] = [width, height, 0, 0];
+  cells.forEach((value, i) => {
+    if (value > 100) return;
+    const [x, y] = [i % width, Math.floor(i / width)];
+    [left, right] = [Math.min(left, x), Math.max(right, x + 1)];
+    [bottom, top] = [Math.min(bottom, y), Math.max(top, y + 1)];
+  });
+  const box = right > left ? [left, bottom, right, top] : [0, 0, width, height];
+  return box.map((side) => side * factor);
 }
 
 /** The most occupied of four cells; unknown only where all are. */

@@ -17,7 +17,15 @@ function element(tag, attributes = {}, ...children) {
   return made;
 }
 
-const fixed = (value, digits) => (Number.isFinite(value) ? value.toFixed(digits).replace("-", "−") : "–");
+/** A number with a true minus, and none before zero. */
+function fixed(value, digits) {
+  if (!Number.isFinite(value)) return "–";
+  const text = value.toFixed(digits);
+  return Number(text) === 0 ? text.replace("-", "") : text.replace("-", "−");
+}
+
+/** A share in words that tell almost none from none. */
+const percent = (share) => (share > 0 && share < 0.005 ? "<1 %" : `${Math.round(share * 100)} %`);
 const degrees = (radians) => (radians * 180) / Math.PI;
 
 /** A stamp as a time of day here. */
@@ -60,7 +68,7 @@ export function showPlaces({ answer }) {
     element("i", {}, String(i + 1)),
     element("span", {}, `${fixed(laser.x, 1)}, ${fixed(laser.y, 1)}, ${fixed(degrees(laser.yaw), 0)}°`),
     element("progress", { max: 1, value: Math.max(0, Math.min(1, score)), title: `score ${fixed(score, 2)}` }),
-    element("b", { title: "probability" }, `${Math.round(probability * 100)} %`)));
+    element("b", { title: "probability" }, percent(probability))));
   if (places.length > PLACES) rows.push(element("li", { className: "more" }, `and ${places.length - PLACES} that fit worse`));
   if (!places.length) rows.push(element("li", { className: "more" }, "none"));
   $("places").replaceChildren(...rows);
@@ -84,7 +92,7 @@ function drawSpark(canvas, values, colors) {
   const c = canvas.getContext("2d");
   c.scale(ratio, ratio);
   const top = Math.max(...values, 1) * 1.100;
-  const x = (i) => width - 2 - ((values.length - 1 - i) * (width - 4)) / 159;
+  const x = (i) => width - 2 - ((values.length - 1 - i) * (width - 4)) / 119;
   const y = (v) => height - 2 - (v / top) * (height - 6);
   c.beginPath();
   values.forEach((v, i) => c.lineTo(x(i), y(v)));

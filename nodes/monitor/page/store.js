@@ -1,7 +1,7 @@
 // What is known of the robot that is watched. No page, no network.
 
 const TRACK = 3000;
-const LATENCIES = 160;
+const LATENCIES = 120;
 const EVENTS = 200;
 
 export class Store {

@@ -17,6 +17,8 @@ pub(super) struct Inputs {
     field: Option<Counted<topic::Field>>,
     hypotheses: Counted<topic::Hypotheses>,
     health: Counted<topic::Health>,
+    /// Only where there is something to save.
+    saves: Option<Subscriber<topic::Save>>,
 }
 
 /// A subscriber that knows what it has missed.
@@ -41,7 +43,9 @@ impl<T: Topic> Counted<T> {
 impl Inputs {
     /// The field is subscribed to only where it is wanted, for it is computed
     /// only then.
-    pub(super) fn open(graph: &Graph, field: bool) -> Result<Self, TransportError> {
+    ///
+    /// Wishes to save are heard where the last minutes are kept.
+    pub(super) fn open(graph: &Graph, field: bool, keeps: bool) -> Result<Self, TransportError> {
         Ok(Inputs {
             map: Counted::open(graph)?,
             odometry: Counted::open(graph)?,
@@ -51,6 +55,7 @@ impl Inputs {
             field: field.then(|| Counted::open(graph)).transpose()?,
             hypotheses: Counted::open(graph)?,
             health: Counted::open(graph)?,
+            saves: keeps.then(|| graph.subscriber()).transpose()?,
         })
     }
 
@@ -68,7 +73,8 @@ impl Inputs {
             &self.hypotheses.subscriber,
             &self.health.subscriber,
         ];
-        others.into_iter().chain(field).collect()
+        let saves = self.saves.as_ref().map(|saves| -> &dyn Input { saves });
+        others.into_iter().chain(field).chain(saves).collect()
     }
 
     /// Takes everything that has come, measurements before their answers.
@@ -87,6 +93,12 @@ impl Inputs {
             to.taken(0, outcome)?;
             let event = to.lookout.health(header);
             to.happened(event)?;
+        }
+        // What it is about has come before.
+        if let Some(saves) = &self.saves
+            && saves.newest()?.is_some()
+        {
+            to.save("asked by the graph")?;
         }
         Ok(())
     }
