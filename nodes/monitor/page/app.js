@@ -41,8 +41,8 @@ const handlers = {
       lostAt = Date.now();
       delay = null;
       if (wasLive) store.event("the connection was lost", "bad");
-    } else if (wasLive) {
-      store.event("connected again");
+    } else if (word === "live") {
+      store.event(wasLive ? "connected again" : `connected to ${robot}`);
     }
     wasLive ||= word === "live";
     link = word;
@@ -95,11 +95,15 @@ function showLink() {
   }
 }
 
-/** Shows what has changed, at most once a frame. */
-function show() {
+const PANEL_MS = 80; // nobody reads faster
+let shownAt = 0;
+
+/** Shows what has changed. */
+function show(now) {
   requestAnimationFrame(show);
-  if (!dirty || document.hidden) return;
+  if (!dirty || now - shownAt < PANEL_MS) return;
   dirty = false;
+  shownAt = now;
   showAnswer(store);
   showPlaces(store);
   showTiming(store, theme());
@@ -111,7 +115,8 @@ function show() {
   $("save").disabled = !store.abilities.save;
   $("save").title = store.abilities.save ? "" : "No recorder keeps the last minutes: backcast run --record FILE --keep 10m";
   const word = link === "lost" ? "disconnected" : $("verdict").textContent.toLowerCase();
-  document.title = `${word} · ${robot} · Backcast`;
+  const title = `${word} · ${robot} · Backcast`;
+  if (document.title !== title) document.title = title;
 }
 setInterval(() => { dirty = true; showLink(); }, 500);
 
@@ -248,4 +253,4 @@ document.addEventListener("keydown", (event) => {
 });
 
 start();
-show();
+requestAnimationFrame(show);

@@ -41,7 +41,7 @@ export function fieldColors(colors, low) {
   for (let value = 0; value < 256; value++) {
     const t = Math.max(0, (value - low) / Math.max(1, 255 - low));
     const color = t < 0.5 ? mix(first, middle, t * 2) : mix(middle, last, t * 2 - 1);
-    table[value] = packed(color, Math.round(225 * Math.min(1, t * 1.600)));
+    table[value] = packed(color, Math.round(185 * Math.min(1, t * 1.800)));
   }
   return table;
 }

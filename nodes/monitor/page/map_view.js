@@ -98,7 +98,7 @@ export class MapView {
     if (field) {
       // Most of an image is about as high: what stands out is shown.
       const sorted = Uint8Array.from(field.pixels).filter((v) => v > 0).sort();
-      const low = sorted[Math.floor(sorted.length * 0.7)] ?? 0;
+      const low = sorted[Math.floor(sorted.length * 0.8)] ?? 0;
       const table = fieldColors(this.colors, low);
       this.#fieldImage = painted(field.pixels, field.width, field.height, table);
     }

@@ -7,6 +7,11 @@ const STALE_MS = 2000;
 
 export const $ = (id) => document.getElementById(id);
 
+/** Writes only what changes: what is read aloud is read once. */
+function write(id, text) {
+  if ($(id).textContent !== text) $(id).textContent = text;
+}
+
 function element(tag, attributes = {}, ...children) {
   const made = document.createElement(tag);
   for (const [name, value] of Object.entries(attributes)) {
@@ -42,20 +47,20 @@ export function showAnswer({ answer, answeredAt }) {
   const stale = !answer || quiet > STALE_MS;
   $("verdict-card").classList.toggle("stale", stale);
   if (!answer) {
-    $("verdict").textContent = "Waiting";
+    write("verdict", "Waiting");
     $("verdict").dataset.verdict = "";
-    $("says").textContent = "Waiting for the first scan.";
+    write("says", "Waiting for the first scan.");
   } else {
-    $("verdict").textContent = stale ? "No answers" : WORDS[answer.verdict] ?? answer.verdict;
+    write("verdict", stale ? "No answers" : WORDS[answer.verdict] ?? answer.verdict);
     $("verdict").dataset.verdict = stale ? "" : answer.verdict;
     const seconds = Math.floor(quiet / 1000);
-    $("says").textContent = stale ? `No scan was answered for ${seconds} s. The last one: ${answer.says}.` : `${answer.says}.`.replace("?.", "?");
+    write("says", stale ? `No scan was answered for ${seconds} s. The last one: ${answer.says}.` : `${answer.says}.`.replace("?.", "?"));
   }
-  $("stamp").textContent = answer ? clock(answer.stamp_s) : "";
+  write("stamp", answer ? clock(answer.stamp_s) : "");
   const best = answer?.hypotheses[0];
-  $("pose-x").textContent = fixed(best?.laser.x, 2);
-  $("pose-y").textContent = fixed(best?.laser.y, 2);
-  $("pose-yaw").textContent = fixed(best && degrees(best.laser.yaw), 1);
+  write("pose-x", fixed(best?.laser.x, 2));
+  write("pose-y", fixed(best?.laser.y, 2));
+  write("pose-yaw", fixed(best && degrees(best.laser.yaw), 1));
   const ellipse = best?.ellipse;
   $("spread").textContent = ellipse
     ? `± ${fixed(ellipse.major_m * 100, 1)} cm along, ${fixed(ellipse.minor_m * 100, 1)} cm across, ${fixed(degrees(ellipse.yaw), 2)}°` : "";
@@ -63,7 +68,7 @@ export function showAnswer({ answer, answeredAt }) {
 
 export function showPlaces({ answer }) {
   const places = answer?.hypotheses ?? [];
-  $("place-count").textContent = places.length || "";
+  write("place-count", `${places.length || ""}`);
   const rows = places.slice(0, PLACES).map(({ laser, score, probability }, i) => element("li", { className: "num" },
     element("i", {}, String(i + 1)),
     element("span", {}, `${fixed(laser.x, 1)}, ${fixed(laser.y, 1)}, ${fixed(degrees(laser.yaw), 0)}°`),
@@ -75,7 +80,7 @@ export function showPlaces({ answer }) {
 }
 
 export function showTiming({ answer, latencies }, theme) {
-  $("latency").textContent = answer ? fixed(answer.latency_ms, answer.latency_ms < 100 ? 1 : 0) : "–";
+  write("latency", answer ? fixed(answer.latency_ms, answer.latency_ms < 100 ? 1 : 0) : "–");
   const sorted = [...latencies].sort((a, b) => a - b);
   const at = (share) => sorted[Math.min(sorted.length - 1, Math.floor(sorted.length * share))];
   $("timing").textContent = sorted.length
@@ -109,7 +114,7 @@ function drawSpark(canvas, values, colors) {
 export function showNodes({ nodes, answer }) {
   const all = [...nodes.values()].sort((a, b) => a.name.localeCompare(b.name));
   const well = all.filter(({ state }) => state === "ready").length;
-  $("node-count").textContent = all.length ? `${well} of ${all.length} ready` : "";
+  write("node-count", all.length ? `${well} of ${all.length} ready` : "");
   const took = { accumulator: answer?.search_ms, peak_extractor: answer?.extract_ms };
   $("nodes").replaceChildren(...all.map((node) => nodeRow(node, took[node.name])));
 }
@@ -134,7 +139,11 @@ function nodeRow(node, took) {
   return row;
 }
 
+let shownEvent = null;
+
 export function showEvents({ events }) {
+  if (events[0] === shownEvent) return;
+  shownEvent = events[0];
   $("events").replaceChildren(...events.map(({ at, text, level }) => element("li", { "data-level": level },
     element("time", {}, at.toLocaleTimeString("en-GB")), element("span", {}, text))));
 }

@@ -44,6 +44,8 @@ pub fn run(graph: &Graph, config: &Config) -> Result<(), MonitorError> {
     };
     let server = Server::start(config, vec![robot], token)?;
     announce(&server, config, shown.as_deref());
+    // What a monitor before this one wished for is not known here, so it ends.
+    node.outputs.region(&[])?;
     node.health.state(NodeState::Ready)?;
     graph.run(&inputs.all(), TICK, |wake| {
         if !server.is_running() {

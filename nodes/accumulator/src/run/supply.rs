@@ -101,9 +101,11 @@ impl Supply {
         health.count_received(1);
         match region(wish.items()) {
             Ok(region) => {
-                self.config.limits.region = region.or_else(|| self.configured.clone());
-                self.wishes += 1;
-                Ok(true)
+                let region = region.or_else(|| self.configured.clone());
+                let is_new = region != self.config.limits.region;
+                self.config.limits.region = region;
+                self.wishes += u64::from(is_new);
+                Ok(is_new)
             }
             Err(problem) => {
                 tracing::warn!("a region is refused: {problem}");

@@ -58,8 +58,7 @@ pub(crate) fn frame(header: &FieldHeader, items: &[u16]) -> Option<Vec<u8>> {
 }
 
 fn pixels(items: &[u16], width: usize, factor: usize, best: u32) -> Vec<u8> {
-    let scale = 255.0 / f64::from(best.max(1));
-    let byte = |value: u16| (f64::from(value) * scale).min(255.0) as u8;
+    let byte = |value: u16| (u32::from(value) * 255 / best.max(1)).min(255) as u8;
     let rows = items.chunks(width * factor);
     let mut pixels = Vec::new();
     for rows in rows {
