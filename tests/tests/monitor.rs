@@ -211,3 +211,38 @@ fn an_operator_sees_the_graph_and_what_befalls_it() {
         "document.getElementById('lost').hidden && document.body.dataset.link === 'live'",
     );
 }
+
+#[test]
+fn a_terminal_sees_the_same() {
+    let world = World::of("malaga_corridor");
+    let graph = Graph::start(&world);
+    let address = graph.url.strip_prefix("http://").unwrap();
+    let top = |arguments: &[&str]| {
+        let outcome = Command::new(executables::path("backcast"))
+            .arg("top")
+            .args(arguments)
+            .output()
+            .unwrap();
+        let said = [outcome.stdout, outcome.stderr].concat();
+        (outcome.status.code(), String::from_utf8(said).unwrap())
+    };
+    // The first scans come when the map is prepared.
+    let shown = loop {
+        let (code, shown) = top(&["--once", address]);
+        assert_eq!(code, Some(0), "{shown}");
+        if shown.contains("Unique") {
+            break shown;
+        }
+    };
+    assert!(shown.starts_with("r7  Unique"), "{shown}");
+    assert!(shown.contains("peak_extractor"), "{shown}");
+    let (code, said) = top(&["--robot", "other", address]);
+    assert_eq!(code, Some(1));
+    assert!(
+        said.contains("knows no robot \"other\"; it knows r7"),
+        "{said}"
+    );
+    let (code, said) = top(&["127.0.0.1:1"]);
+    assert_eq!(code, Some(1));
+    assert!(said.contains("no monitor answers at 127.0.0.1:1"), "{said}");
+}

@@ -244,6 +244,9 @@ fn the_map_is_a_byte_a_cell() {
     };
     let (status, _, cells) = world.raw(request("").as_bytes());
     assert_eq!((status, cells), (200, vec![0, 100, 255, 0, 0, 100]));
+    let (status, _, cells) =
+        world.raw(request("If-None-Match: \"0000000000000abc\"\r\n").as_bytes());
+    assert_eq!((status, cells.len()), (304, 0), "the reader has it");
     let (_, head, packed) = world.raw(request("Accept-Encoding: gzip\r\n").as_bytes());
     assert!(head.contains("content-encoding: gzip"), "{head}");
     let mut cells = Vec::new();

@@ -5,7 +5,7 @@ use std::sync::Arc;
 use axum::Json;
 use axum::extract::{Path, State};
 use axum::http::header::{
-    ACCEPT_ENCODING, CACHE_CONTROL, CONTENT_ENCODING, CONTENT_TYPE, ETAG, VARY,
+    ACCEPT_ENCODING, CACHE_CONTROL, CONTENT_ENCODING, CONTENT_TYPE, ETAG, IF_NONE_MATCH, VARY,
 };
 use axum::http::{HeaderMap, StatusCode};
 use axum::response::{IntoResponse, Response};
@@ -43,12 +43,18 @@ pub(super) async fn map(
         return Err(Refusal::new(StatusCode::NOT_FOUND, "there is no map yet"));
     };
     let etag = format!("\"{}\"", map.info.id);
+    let is_known = headers
+        .get(IF_NONE_MATCH)
+        .is_some_and(|known| known.as_bytes() == etag.as_bytes());
     let described = [
         (CONTENT_TYPE, "application/octet-stream".to_owned()),
         (CACHE_CONTROL, "no-cache".to_owned()),
         (ETAG, etag),
         (VARY, "accept-encoding".to_owned()),
     ];
+    if is_known {
+        return Ok((StatusCode::NOT_MODIFIED, described).into_response());
+    }
     let accepted = headers.get(ACCEPT_ENCODING).and_then(|v| v.to_str().ok());
     if !accepted.is_some_and(|accepted| accepted.contains("gzip")) {
         return Ok((described, map.cells().to_vec()).into_response());
