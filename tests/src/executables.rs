@@ -15,6 +15,7 @@ const GROUPS: [&[&str]; 3] = [
         "boundary_extractor",
         "accumulator",
         "peak_extractor",
+        "monitor",
         "recorder",
     ],
     &["emulator", "lms_reader"],

@@ -4,8 +4,9 @@ use bytemuck::Pod;
 use iceoryx2_bb_elementary_traits::zero_copy_send::ZeroCopySend;
 
 use crate::{
-    Beam, BeamsHeader, BoundaryCell, BoundaryHeader, FieldHeader, GroundTruth, HealthHeader,
-    HypothesesHeader, Hypothesis, LogHeader, MapHeader, Odometry, ScanHeader, Vote, VotesHeader,
+    Beam, BeamsHeader, BoundaryCell, BoundaryHeader, Corner, FieldHeader, GroundTruth,
+    HealthHeader, HypothesesHeader, Hypothesis, LogHeader, MapHeader, Odometry, RegionHeader,
+    SaveHeader, ScanHeader, Vote, VotesHeader,
 };
 
 /// Plain data that one process may write and another may read in place.
@@ -78,6 +79,10 @@ topics! {
     Beams = "beams", BeamsHeader, [Beam];
     /// The true pose of a scan, where a recording holds it; no items.
     GroundTruthTopic = "ground_truth", GroundTruth, [u8] { depth: 16 };
+    /// Where poses are to be sought from now on; no items where everywhere.
+    Region = "region", RegionHeader, [Corner] { latched: true, depth: 1 };
+    /// A wish that the recorder save the last minutes; no items.
+    Save = "save", SaveHeader, [u8];
     /// How each node fares; the items are its last error as UTF-8.
     Health = "health", HealthHeader, [u8] { latched: true, depth: 8, publishers: 24, subscribers: 8 };
     /// What each node logs, a line at a time; the items are the line as UTF-8.

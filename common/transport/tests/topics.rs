@@ -74,6 +74,8 @@ round_trips! {
     hypotheses_arrive: topic::Hypotheses,
     beams_arrive: topic::Beams,
     ground_truth_arrives: topic::GroundTruthTopic,
+    regions_arrive: topic::Region,
+    wishes_to_save_arrive: topic::Save,
     health_arrives: topic::Health,
     log_arrives: topic::Log,
 }

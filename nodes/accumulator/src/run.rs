@@ -72,9 +72,7 @@ impl Node {
     /// Looks at the maps between any two scans, for a search may take long.
     fn step(&mut self, inputs: &Inputs) -> Result<Flow, AccumulatorError> {
         while !self.stopped() {
-            let prepared = self
-                .supply
-                .poll(&inputs.maps, &inputs.boundaries, &mut self.health)?;
+            let prepared = self.supply.poll(inputs, &mut self.health)?;
             self.map = prepared.or(self.map.take());
             self.health.tick()?;
             let scan = inputs.scans.receive()?;

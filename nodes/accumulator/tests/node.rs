@@ -9,10 +9,12 @@ mod world;
 
 use engine::localizer::{Outcome, Prior};
 use messages::{
-    BoundaryCell, FieldHeader, FieldKind, NodeState, SearchOutcome, Vote, VotesHeader, topic,
+    BoundaryCell, Corner, FieldHeader, FieldKind, NodeState, SearchOutcome, Vote, VotesHeader,
+    topic,
 };
+use transport::Publisher;
 use transport::testing::{Isolated, wait_for, wait_for_health};
-use world::{MOUNT, ROOM, World, localizer, ranges, scan};
+use world::{FRAME, MOUNT, ROOM, World, localizer, ranges, scan};
 
 /// The same room after somebody has moved the pillar and opened a door.
 const CHANGED: [&str; 9] = [
@@ -288,6 +290,48 @@ fn a_map_that_is_taken_back_is_in_use_again() {
     world.wait_until(NodeState::Ready);
     let (votes, _) = world.ask(&ranges(&ROOM, 3, 3, 40));
     assert_eq!(votes.map_id, 5);
+    node.stop();
+}
+
+/// Corners of a box of the grid, in cells, as somebody wishes for them.
+fn wish(regions: &Publisher<topic::Region>, corners: &[(f64, f64)]) {
+    let corner = |&(x, y): &(f64, f64)| {
+        let side = FRAME.resolution_m;
+        let (x, y) = FRAME.map_from_grid.transform(x * side, y * side);
+        Corner { x, y }
+    };
+    let mut loan = regions.loan(corners.len()).unwrap();
+    for (item, corner) in loan.items_mut().iter_mut().zip(corners.iter().map(corner)) {
+        *item = corner;
+    }
+    loan.send().unwrap();
+}
+
+#[test]
+fn a_region_that_somebody_wishes_for_holds_until_it_is_taken_back() {
+    let isolated = Isolated::new("region");
+    let world = World::new(&isolated);
+    let regions = world.graph.publisher::<topic::Region>().unwrap();
+    world.publish_map(5, &ROOM);
+    world.publish_boundary(5, &ROOM);
+    let node = world.start(&[]);
+    world.wait_until(NodeState::Ready);
+    let ranges = ranges(&ROOM, 12, 6, 211);
+    let found = || world.ask(&ranges).1[0].x;
+    assert_eq!(found(), 12);
+    // Scans are answered by the map as it was until it is prepared anew.
+    wish(&regions, &[(0.0, 0.0), (6.0, 0.0), (6.0, 9.0), (0.0, 9.0)]);
+    while found() >= 6 {}
+    // What is no region changes nothing.
+    wish(&regions, &[(0.0, 0.0), (f64::NAN, 1.0)]);
+    let (_, error) = wait_for_health(&world.graph, &world.health, |report| report.refused == 1);
+    assert!(
+        error.contains("a region is refused: a corner at NaN"),
+        "{error}"
+    );
+    assert!(found() < 6);
+    wish(&regions, &[]);
+    while found() != 12 {}
     node.stop();
 }
 

@@ -56,6 +56,27 @@ pub enum BackcastError {
         /// The descriptor.
         file: PathBuf,
     },
+    /// A monitor does not answer, or not as one does.
+    #[error("no monitor answers at {address}: is a graph running? ({reason})")]
+    NoMonitor {
+        /// Host and port.
+        address: String,
+        /// What went wrong.
+        reason: String,
+    },
+    /// The monitor does not know the robot.
+    #[error("the monitor at {address} knows no robot {robot:?}; it knows {}", known.join(", "))]
+    NoRobot {
+        /// Host and port.
+        address: String,
+        /// As it was given.
+        robot: String,
+        /// The robots that it knows.
+        known: Vec<String>,
+    },
+    /// The terminal cannot be used.
+    #[error("cannot use the terminal")]
+    Terminal(#[source] io::Error),
     /// Options that do not go together.
     #[error("{0}")]
     Usage(String),

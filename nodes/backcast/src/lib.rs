@@ -23,5 +23,6 @@ mod regress;
 mod run;
 mod statistics;
 mod stdout;
+mod top;
 
 pub use error::BackcastError;

@@ -50,7 +50,7 @@ impl Summary {
 /// If the file cannot be created, or the graph fails. A disk that is full later
 /// is reported in `health`.
 pub fn run(graph: &Graph, config: &Config) -> Result<Summary, RecorderError> {
-    let inputs = Inputs::open(graph, config.field)?;
+    let inputs = Inputs::open(graph, config.field, config.keep.is_some())?;
     let mut recorder = Recorder::new(graph, config)?;
     recorder.health.state(NodeState::Ready)?;
     graph.run(&inputs.all(), TICK, |_| {
@@ -166,15 +166,17 @@ impl Recorder {
 
     fn happened(&mut self, event: Option<Event>) -> Result<(), RecorderError> {
         match event.filter(|event| self.save_on.contains(event)) {
-            Some(event) => {
-                // What led to it comes before.
-                for entry in self.entries.take() {
-                    self.writer.put(entry)?;
-                }
-                self.writer.save(&event.to_string())
-            }
+            Some(event) => self.save(&event.to_string()),
             None => Ok(()),
         }
+    }
+
+    /// Saves what is kept, and all that came before.
+    fn save(&mut self, why: &str) -> Result<(), RecorderError> {
+        for entry in self.entries.take() {
+            self.writer.put(entry)?;
+        }
+        self.writer.save(why)
     }
 
     fn conclude(mut self) -> Result<Summary, RecorderError> {

@@ -274,6 +274,20 @@ fn a_black_box_is_saved_when_asked_and_when_the_pose_is_lost() {
     assert_eq!(counts(&world.path("r_1.mcap"))["/hypotheses"], 6);
 }
 
+#[test]
+fn a_black_box_is_saved_when_the_graph_wishes() {
+    let mut world = World::start("wish", &["--keep", "1s"]);
+    let saves = world.graph.publisher::<topic::Save>().unwrap();
+    world.send_map();
+    world.send_scan();
+    saves.loan(0).unwrap().send().unwrap();
+    wait_for_file(&world, "r.mcap");
+    let saved = Recording::open(world.path("r.mcap")).unwrap();
+    assert_eq!(saved.metadata()[0].entries["reason"], "asked by the graph");
+    drop(saves);
+    world.take_node().stop();
+}
+
 /// Waits until a file is complete.
 fn wait_for_file(world: &World, name: &str) {
     let is_whole = || Recording::open(world.path(name)).is_ok_and(|r| r.damage().is_none());

@@ -9,6 +9,8 @@ pub(super) struct Inputs {
     pub(super) scans: Subscriber<topic::Scan>,
     pub(super) maps: Subscriber<topic::Map>,
     pub(super) boundaries: Subscriber<topic::Boundary>,
+    /// Wishes where to search.
+    pub(super) regions: Subscriber<topic::Region>,
     odometry: Option<Subscriber<topic::OdometryTopic>>,
     truths: Option<Subscriber<topic::GroundTruthTopic>>,
 }
@@ -21,13 +23,14 @@ impl Inputs {
             scans: graph.subscriber()?,
             maps: graph.subscriber()?,
             boundaries: graph.subscriber()?,
+            regions: graph.subscriber()?,
             odometry: by_odometry.then(|| graph.subscriber()).transpose()?,
             truths: by_truth.then(|| graph.subscriber()).transpose()?,
         })
     }
 
     pub(super) fn all(&self) -> Vec<&dyn Input> {
-        let always: [&dyn Input; 3] = [&self.scans, &self.maps, &self.boundaries];
+        let always: [&dyn Input; 4] = [&self.scans, &self.maps, &self.boundaries, &self.regions];
         let odometry = self.odometry.iter().map(|input| input as &dyn Input);
         let truths = self.truths.iter().map(|input| input as &dyn Input);
         always.into_iter().chain(odometry).chain(truths).collect()

@@ -2,10 +2,12 @@
 
 use std::time::Instant;
 
+use engine::limits::Region;
 use engine::localizer::{LocalizerConfig, Prior};
-use messages::{NodeState, topic};
+use messages::{Corner, NodeState, topic};
 use transport::{Health, Sample, Subscriber, TransportError, with_causes};
 
+use super::inputs::Inputs;
 use crate::AccumulatorError;
 use crate::background::Background;
 use crate::preparation::{Job, Key, PreparedMap};
@@ -14,18 +16,25 @@ use crate::preparation::{Job, Key, PreparedMap};
 /// localizer at a time, always for what came last.
 pub(super) struct Supply {
     config: LocalizerConfig,
+    /// Where poses are sought unless somebody wishes otherwise.
+    configured: Option<Region>,
+    /// Counts the regions that were wished for.
+    wishes: u64,
     prior: Prior,
     map: Option<Sample<topic::Map>>,
     boundary: Option<Sample<topic::Boundary>>,
     /// To be prepared, once nothing else is.
-    wanted: Option<Key>,
+    wanted: Option<Order>,
     under_way: Option<UnderWay>,
     /// Of the map that was handed out last.
-    handed_out: Option<Key>,
+    handed_out: Option<Order>,
 }
 
+/// What to prepare, and the number of the wish for a region that it is to heed.
+type Order = (Key, u64);
+
 struct UnderWay {
-    key: Key,
+    order: Order,
     since: Instant,
     work: Background<Result<PreparedMap, AccumulatorError>>,
 }
@@ -33,6 +42,8 @@ struct UnderWay {
 impl Supply {
     pub(super) fn new(config: LocalizerConfig, prior: Prior) -> Self {
         Supply {
+            configured: config.limits.region.clone(),
+            wishes: 0,
             config,
             prior,
             map: None,
@@ -51,11 +62,11 @@ impl Supply {
     /// refused is reported in `health`.
     pub(super) fn poll(
         &mut self,
-        maps: &Subscriber<topic::Map>,
-        boundaries: &Subscriber<topic::Boundary>,
+        inputs: &Inputs,
         health: &mut Health,
     ) -> Result<Option<PreparedMap>, AccumulatorError> {
-        if self.receive(maps, boundaries, health)? {
+        let wished = self.hear_wish(&inputs.regions, health)?;
+        if self.receive(&inputs.maps, &inputs.boundaries, health)? || wished {
             self.consider(health)?;
         }
         let prepared = self.finish(health)?;
@@ -77,13 +88,41 @@ impl Supply {
         Ok(came > 0)
     }
 
+    /// Takes a wish for a region: none is for what is configured. One that cannot
+    /// be used is refused, and the one before holds.
+    fn hear_wish(
+        &mut self,
+        regions: &Subscriber<topic::Region>,
+        health: &mut Health,
+    ) -> Result<bool, TransportError> {
+        let Some(wish) = regions.newest()? else {
+            return Ok(false);
+        };
+        health.count_received(1);
+        match region(wish.items()) {
+            Ok(region) => {
+                let region = region.or_else(|| self.configured.clone());
+                let is_new = region != self.config.limits.region;
+                self.config.limits.region = region;
+                self.wishes += u64::from(is_new);
+                Ok(is_new)
+            }
+            Err(problem) => {
+                tracing::warn!("a region is refused: {problem}");
+                health.count_refused(1);
+                health.error(&format!("a region is refused: {problem}"))?;
+                Ok(false)
+            }
+        }
+    }
+
     /// Decides what there is to prepare. Samples that came last replace what was
     /// wanted before them.
     fn consider(&mut self, health: &mut Health) -> Result<(), TransportError> {
         self.wanted = None;
         if let (Some(map), Some(boundary)) = (&self.map, &self.boundary) {
             match Key::of(map.header(), boundary.header()) {
-                Ok(key) => self.wanted = key,
+                Ok(key) => self.wanted = key.map(|key| (key, self.wishes)),
                 Err(error) => refuse(map.header().map_id, &error, health)?,
             }
         }
@@ -91,13 +130,13 @@ impl Supply {
     }
 
     fn finish(&mut self, health: &mut Health) -> Result<Option<PreparedMap>, AccumulatorError> {
-        let Some(UnderWay { key, since, work }) = self
+        let Some(UnderWay { order, since, work }) = self
             .under_way
             .take_if(|under_way| under_way.work.is_finished())
         else {
             return Ok(None);
         };
-        let map_id = key.map_id;
+        let map_id = order.0.map_id;
         let outcome = work
             .finish()
             .map_err(|reason| AccumulatorError::PreparationDied { map_id, reason })?;
@@ -116,7 +155,7 @@ impl Supply {
             seconds = since.elapsed().as_secs_f64(),
             "map prepared"
         );
-        self.handed_out = Some(key);
+        self.handed_out = Some(order);
         health.state(NodeState::Ready)?;
         Ok(Some(prepared))
     }
@@ -125,10 +164,10 @@ impl Supply {
         let (None, Some(map), Some(boundary)) = (&self.under_way, &self.map, &self.boundary) else {
             return Ok(());
         };
-        let Some(key) = self.wanted.take() else {
+        let Some(order) = self.wanted.take() else {
             return Ok(());
         };
-        if self.handed_out == Some(key) {
+        if self.handed_out == Some(order) {
             // Served again, or taken back after another one was refused.
             return Ok(health.state(NodeState::Ready)?);
         }
@@ -140,20 +179,29 @@ impl Supply {
         );
         let job = match job {
             Ok(job) => job,
-            Err(error) => return Ok(refuse(key.map_id, &error, health)?),
+            Err(error) => return Ok(refuse(order.0.map_id, &error, health)?),
         };
         let (config, prior) = (self.config.clone(), self.prior);
         let work = Background::start("prepare map", move || job.prepare(config, prior));
         self.under_way = Some(UnderWay {
-            key,
+            order,
             since: Instant::now(),
             work: work.map_err(|source| AccumulatorError::Thread {
-                map_id: key.map_id,
+                map_id: order.0.map_id,
                 source,
             })?,
         });
         Ok(())
     }
+}
+
+/// The region with these corners; none is everywhere.
+fn region(corners: &[Corner]) -> Result<Option<Region>, String> {
+    let corners: Vec<[f64; 2]> = corners.iter().map(|&Corner { x, y }| [x, y]).collect();
+    if corners.is_empty() {
+        return Ok(None);
+    }
+    Region::new(&corners).map(Some)
 }
 
 /// Scans are answered as before.

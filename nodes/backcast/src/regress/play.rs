@@ -11,7 +11,7 @@ use super::answer::Answer;
 use super::case::Case;
 use crate::BackcastError;
 use crate::descriptor::Descriptor;
-use crate::run::arguments::{MAP_SERVER, REPLAYER, find, set, unset};
+use crate::run::arguments::{MAP_SERVER, REPLAYER, find, leave_out_monitors, set, unset};
 use crate::run::crew::Crew;
 
 /// The name under which the graph is joined.
@@ -27,6 +27,7 @@ const PATIENCE: Duration = Duration::from_secs(20);
 /// The graph has no replayer or no map server.
 pub(super) fn direct(descriptor: &mut Descriptor, case: &Case) -> Result<(), BackcastError> {
     let Descriptor { dataflow, file, .. } = descriptor;
+    leave_out_monitors(dataflow);
     let replayer = find(dataflow, REPLAYER, "the recording", file)?;
     set(
         replayer,

@@ -11,6 +11,13 @@ pub(crate) const REPLAYER: &str = "replayer";
 /// Serves the map.
 pub(crate) const MAP_SERVER: &str = "map_server";
 
+const MONITOR: &str = "monitor";
+
+/// Takes away what only shows the graph.
+pub(crate) fn leave_out_monitors(dataflow: &mut Dataflow) {
+    dataflow.nodes.retain(|node| node.executable() != MONITOR);
+}
+
 /// The node with an executable, for which an option is meant. `file` is named in
 /// errors.
 ///

@@ -7,7 +7,7 @@ use dataflow::{Dataflow, Node};
 use engine::heading::{HeadingConfig, HeadingFrom, HeadingSource};
 use messages::{Topic, topic};
 
-use super::arguments::{REPLAYER, find, set, unset, value};
+use super::arguments::{REPLAYER, find, leave_out_monitors, set, unset, value};
 use super::options::{Options, Rate};
 use crate::BackcastError;
 
@@ -31,6 +31,9 @@ pub(crate) fn apply(
     if options.repeat {
         let node = find(dataflow, REPLAYER, "--loop", file)?;
         set(node, "--loop", None);
+    }
+    if options.no_monitor {
+        leave_out_monitors(dataflow);
     }
     forward_heading(&options.heading, dataflow, file)
 }
@@ -228,6 +231,25 @@ mod tests {
         let said = error.to_string();
         assert!(said.contains("--loop is for the replayer"), "{said}");
         assert!(said.contains("its executables are accumulator"), "{said}");
+    }
+
+    #[test]
+    fn monitors_stay_unless_they_are_left_out() {
+        let text = "nodes: [{id: a, path: bin/accumulator}, {id: page, path: bin/monitor}]";
+        let topics = dataflow::Topics {
+            names: messages::topic::NAMES,
+            shared: &[],
+        };
+        let nodes = |no_monitor| {
+            let options = Options {
+                no_monitor,
+                ..Options::default()
+            };
+            applied(&options, dataflow::parse(text, &topics).unwrap())
+                .unwrap()
+                .len()
+        };
+        assert_eq!((nodes(false), nodes(true)), (2, 1));
     }
 
     #[test]

@@ -44,6 +44,10 @@ pub(crate) struct Options {
     #[command(flatten)]
     pub(crate) record: RecordOptions,
 
+    /// Leave out the web page to watch the graph
+    #[arg(long)]
+    pub(crate) no_monitor: bool,
+
     /// The graph's name, by which other tools join it: 1 to 20 of a-z 0-9 - _
     /// [default: $BACKCAST_GRAPH, or a name of its own]
     #[arg(long, value_name = "NAME", value_parser = GraphName::new)]

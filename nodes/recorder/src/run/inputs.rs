@@ -22,6 +22,8 @@ pub(super) struct Inputs {
     log: Subscriber<topic::Log>,
     /// By process, for each counts its own lines.
     log_gaps: RefCell<BTreeMap<u32, GapCounter>>,
+    /// Only where there is something to save.
+    saves: Option<Subscriber<topic::Save>>,
 }
 
 /// A subscriber that knows what it has missed.
@@ -46,7 +48,9 @@ impl<T: Topic> Counted<T> {
 impl Inputs {
     /// The field is subscribed to only where it is wanted, for it is computed
     /// only then.
-    pub(super) fn open(graph: &Graph, field: bool) -> Result<Self, TransportError> {
+    ///
+    /// Wishes to save are heard where the last minutes are kept.
+    pub(super) fn open(graph: &Graph, field: bool, keeps: bool) -> Result<Self, TransportError> {
         Ok(Inputs {
             map: Counted::open(graph)?,
             odometry: Counted::open(graph)?,
@@ -59,6 +63,7 @@ impl Inputs {
             health: Counted::open(graph)?,
             log: graph.subscriber()?,
             log_gaps: RefCell::default(),
+            saves: keeps.then(|| graph.subscriber()).transpose()?,
         })
     }
 
@@ -78,7 +83,8 @@ impl Inputs {
             &self.health.subscriber,
             &self.log,
         ];
-        others.into_iter().chain(field).collect()
+        let saves = self.saves.as_ref().map(|saves| -> &dyn Input { saves });
+        others.into_iter().chain(field).chain(saves).collect()
     }
 
     /// Takes everything that has come, measurements before their answers.
@@ -103,6 +109,12 @@ impl Inputs {
             let lost = self.lines_lost_before(header);
             let outcome = to.entries.log(header, line.items());
             to.taken(lost, outcome)?;
+        }
+        // What it is about has come before.
+        if let Some(saves) = &self.saves
+            && saves.newest()?.is_some()
+        {
+            to.save("asked by the graph")?;
         }
         Ok(())
     }

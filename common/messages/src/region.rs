@@ -1,0 +1,39 @@
+//! Where poses are to be sought.
+
+use bytemuck::{Pod, Zeroable};
+use iceoryx2_bb_derive_macros::ZeroCopySend;
+use iceoryx2_bb_elementary_traits::zero_copy_send::ZeroCopySend;
+
+use crate::Stamp;
+
+/// Header of topic `region`; the items are the corners of a polygon in turn, two
+/// of an upright rectangle, or none where poses are sought everywhere.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Pod, Zeroable, ZeroCopySend)]
+#[type_name("RegionHeader/v1")]
+#[repr(C)]
+pub struct RegionHeader {
+    /// When it was wished for; the counter counts the wishes.
+    pub stamp: Stamp,
+}
+
+/// A corner, metres in the map.
+#[derive(Debug, Clone, Copy, PartialEq, Pod, Zeroable, ZeroCopySend)]
+#[type_name("Corner/v1")]
+#[repr(C)]
+pub struct Corner {
+    /// Metres.
+    pub x: f64,
+    /// Metres.
+    pub y: f64,
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    crate::pin_layout!(RegionHeader, size 24, align 8, { stamp: 0 });
+
+    mod corner {
+        use super::*;
+        crate::pin_layout!(Corner, size 16, align 8, { x: 0, y: 8 });
+    }
+}

@@ -1,0 +1,22 @@
+//! A wish that the last minutes be saved.
+
+use bytemuck::{Pod, Zeroable};
+use iceoryx2_bb_derive_macros::ZeroCopySend;
+use iceoryx2_bb_elementary_traits::zero_copy_send::ZeroCopySend;
+
+use crate::Stamp;
+
+/// The message of topic `save`.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Pod, Zeroable, ZeroCopySend)]
+#[type_name("SaveHeader/v1")]
+#[repr(C)]
+pub struct SaveHeader {
+    /// When it was wished for; the counter counts the wishes.
+    pub stamp: Stamp,
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    crate::pin_layout!(SaveHeader, size 24, align 8, { stamp: 0 });
+}

@@ -1,0 +1,12 @@
+//! `backcast top`: a running graph in the terminal, by the API of its monitor.
+//!
+//! `known` reads what the monitor tells, `lines` puts it into words, both pure;
+//! `source` asks and listens, `screen` shows.
+
+mod command;
+mod known;
+mod lines;
+mod screen;
+mod source;
+
+pub(crate) use command::{Config, run};

@@ -1,0 +1,62 @@
+//! The terminal: drawn when something is new, restored in the end.
+
+use std::sync::mpsc::Receiver;
+use std::time::Duration;
+
+use ratatui::DefaultTerminal;
+use ratatui::crossterm::event::{self, Event, KeyCode, KeyModifiers};
+use ratatui::widgets::Paragraph;
+
+use super::known::Known;
+use super::lines;
+use super::source::Told;
+use crate::BackcastError;
+
+/// Between two looks at what was told and at the keys.
+const FRAME: Duration = Duration::from_millis(50);
+
+/// Shows what is known and what is told, until somebody wants no more.
+///
+/// # Errors
+/// The terminal fails.
+pub(super) fn show(mut known: Known, told: &Receiver<Told>) -> Result<(), BackcastError> {
+    let mut terminal = ratatui::try_init().map_err(BackcastError::Terminal)?;
+    let shown = follow(&mut terminal, &mut known, told);
+    ratatui::try_restore().map_err(BackcastError::Terminal)?;
+    shown
+}
+
+fn follow(
+    terminal: &mut DefaultTerminal,
+    known: &mut Known,
+    told: &Receiver<Told>,
+) -> Result<(), BackcastError> {
+    let mut is_new = true;
+    loop {
+        for message in told.try_iter() {
+            is_new = true;
+            match message {
+                Ok(message) => known.hear(message),
+                Err(problem) => known.lost = Some(problem),
+            }
+        }
+        if std::mem::take(&mut is_new) {
+            let draw = |frame: &mut ratatui::Frame<'_>| {
+                frame.render_widget(Paragraph::new(lines::text(known)), frame.area());
+            };
+            terminal.draw(draw).map_err(BackcastError::Terminal)?;
+        }
+        if event::poll(FRAME).map_err(BackcastError::Terminal)? {
+            match event::read().map_err(BackcastError::Terminal)? {
+                Event::Key(key) if ends(key.code, key.modifiers) => return Ok(()),
+                // The window may have another size.
+                _ => is_new = true,
+            }
+        }
+    }
+}
+
+fn ends(code: KeyCode, modifiers: KeyModifiers) -> bool {
+    matches!(code, KeyCode::Char('q') | KeyCode::Esc)
+        || code == KeyCode::Char('c') && modifiers.contains(KeyModifiers::CONTROL)
+}

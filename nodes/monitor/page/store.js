@@ -1,0 +1,90 @@
+// What is known of the robot that is watched. No page, no network.
+
+const TRACK = 3000;
+const LATENCIES = 120;
+const EVENTS = 200;
+
+export class Store {
+  constructor() {
+    this.clear();
+    this.events = [];
+  }
+
+  clear() {
+    Object.assign(this, {
+      robot: "", map: null, cells: null, answer: null, answeredAt: 0, beams: null, field: null,
+      nodes: new Map(), track: [], region: [], latencies: [], missed: 0,
+      abilities: { region: false, save: false },
+    });
+  }
+
+  /** Takes a message; returns which part it changed. */
+  hear(message) {
+    switch (message.type) {
+      case "snapshot": return this.#snapshot(message);
+      case "map": this.map = message; this.field = null; return "map";
+      case "answer": return this.#answer(message);
+      case "beams": this.beams = message; return "beams";
+      case "node": return this.#node(message);
+      case "region": this.region = message.corners; return "region";
+      case "abilities": this.abilities = message; return "abilities";
+      case "missed":
+        this.missed += message.messages;
+        this.event(`${message.messages} messages were missed: this page is too slow`, "warn");
+        return "missed";
+      default: return "nothing";
+    }
+  }
+
+  #snapshot({ robot, map, answer, beams, nodes, track, region, abilities }) {
+    Object.assign(this, { robot, map, answer, beams, track, region, abilities });
+    if (answer) this.answeredAt = performance.now();
+    this.nodes = new Map(nodes.map((node) => [node.name, node]));
+    return "snapshot";
+  }
+
+  #answer(answer) {
+    const verdict = this.answer?.verdict;
+    if (verdict !== answer.verdict) {
+      const level = { Unique: "good", Ambiguous: "warn", PoorFit: "bad" }[answer.verdict] ?? "warn";
+      this.event(`${answer.verdict}: ${answer.says}`, level);
+    }
+    const other = this.answer && this.answer.map_id !== answer.map_id;
+    if (other) this.track = [];
+    this.answer = answer;
+    this.answeredAt = performance.now();
+    const best = answer.hypotheses[0];
+    if (best) this.track.push([best.laser.x, best.laser.y, answer.verdict[0]]);
+    if (this.track.length > TRACK) this.track.shift();
+    this.latencies.push(answer.latency_ms);
+    if (this.latencies.length > LATENCIES) this.latencies.shift();
+    return "answer";
+  }
+
+  #node(node) {
+    const before = this.nodes.get(node.name);
+    if (before?.state !== node.state) {
+      const level = { silent: "bad", degraded: "warn" }[node.state] ?? "good";
+      const word = node.state === "silent" ? "does not report any more" : `is ${node.state}`;
+      this.event(`${node.name} ${word}`, level);
+    }
+    if (before && node.restarts > before.restarts) this.event(`${node.name} was started again`, "warn");
+    if (node.last_error && node.last_error !== before?.last_error) {
+      this.event(`${node.name}: ${node.last_error}`, "warn");
+    }
+    this.nodes.set(node.name, node);
+    return "nodes";
+  }
+
+  /** Takes a binary message: the length of a head, the head as JSON, pixels. */
+  image(buffer) {
+    const length = new DataView(buffer).getUint32(0, true);
+    const head = JSON.parse(new TextDecoder().decode(new Uint8Array(buffer, 4, length)));
+    this.field = { ...head, pixels: new Uint8Array(buffer, 4 + length) };
+  }
+
+  event(text, level = "good") {
+    this.events.unshift({ at: new Date(), text, level });
+    this.events.length = Math.min(this.events.length, EVENTS);
+  }
+}

@@ -1,0 +1,94 @@
+//! What a user can set.
+
+use std::net::SocketAddr;
+use std::path::PathBuf;
+
+use clap::Parser;
+
+/// Serves a web page to watch the graph, and an API with the same content.
+///
+/// Listens on this machine alone unless --listen says otherwise. Where the port
+/// is taken, it takes the next free one and says which.
+#[derive(Debug, Clone, Parser)]
+#[command(name = "monitor", version)]
+pub struct Config {
+    /// Where to listen; port 0 is any that is free. Beyond this machine whoever
+    /// reaches the port can read, and nothing is encrypted
+    #[arg(long, value_name = "ADDRESS:PORT", default_value = "127.0.0.1:7440")]
+    pub listen: SocketAddr,
+
+    /// Another name under which browsers may reach the page; addresses and
+    /// localhost are allowed as they are. May be given again
+    #[arg(long, value_name = "NAME", value_parser = host)]
+    pub host: Vec<String>,
+
+    /// What the robot of this graph is called [default: the name of the machine]
+    #[arg(long, value_name = "NAME", value_parser = robot)]
+    pub robot: Option<String>,
+
+    /// A file with the token that write actions need, at least 16 characters
+    /// [default: a new one, shown in the log]
+    #[arg(long, value_name = "FILE")]
+    pub token_file: Option<PathBuf>,
+}
+
+impl Config {
+    /// The robot's name.
+    #[must_use]
+    pub fn robot(&self) -> String {
+        let given = self.robot.clone();
+        given.unwrap_or_else(|| {
+            let host = gethostname::gethostname().to_string_lossy().into_owned();
+            robot(&host).unwrap_or_else(|_| "robot".to_owned())
+        })
+    }
+}
+
+/// It stands in addresses.
+fn robot(text: &str) -> Result<String, String> {
+    let is_plain = |c: char| c.is_ascii_alphanumeric() || "-_.".contains(c);
+    if (1..=64).contains(&text.len()) && text.chars().all(is_plain) {
+        return Ok(text.to_owned());
+    }
+    Err("allowed are 1 to 64 of a-z A-Z 0-9 - _ .".to_owned())
+}
+
+fn host(text: &str) -> Result<String, String> {
+    let is_plain = |c: char| c.is_ascii_alphanumeric() || "-.".contains(c);
+    if (1..=253).contains(&text.len()) && text.chars().all(is_plain) {
+        return Ok(text.to_ascii_lowercase());
+    }
+    Err("needed is the name of a host, without scheme and port".to_owned())
+}
+
+#[cfg(test)]
+mod tests {
+    use clap::CommandFactory;
+
+    use super::*;
+
+    fn parse(arguments: &str) -> Result<Config, String> {
+        let words = ["monitor"].into_iter().chain(arguments.split_whitespace());
+        Config::try_parse_from(words).map_err(|error| error.to_string())
+    }
+
+    #[test]
+    fn only_this_machine_is_served_unless_asked_for() {
+        Config::command().debug_assert();
+        let config = parse("").unwrap();
+        assert!(config.listen.ip().is_loopback());
+        assert!(!config.robot().is_empty());
+        assert_eq!(parse("--robot r-7").unwrap().robot(), "r-7");
+    }
+
+    #[test]
+    fn what_is_refused_says_what_is_allowed() {
+        let refuse = |arguments: &str, expected: &str| {
+            let text = parse(arguments).unwrap_err();
+            assert!(text.contains(expected), "{arguments}: {text}");
+        };
+        refuse("--robot a/b", "allowed are 1 to 64");
+        refuse("--host http://a", "name of a host");
+        refuse("--listen 7440", "invalid socket address");
+    }
+}

@@ -1,0 +1,328 @@
+//! One robot: what is known of it, and whoever watches it.
+//!
+//! It stands between the thread of a source, which tells it what happens, and
+//! the server, which asks. Both hold the lock for as long as it takes to copy.
+//! Another source of robots, on another machine, would tell its own ones the
+//! same.
+
+use std::sync::atomic::{AtomicUsize, Ordering};
+use std::sync::mpsc::{Receiver, SyncSender, sync_channel};
+use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
+
+use axum::body::Bytes;
+use axum::extract::ws::Utf8Bytes;
+use messages::{
+    Beam, BeamsHeader, FieldHeader, HealthHeader, HypothesesHeader, Hypothesis, MapHeader,
+};
+use serde::Serialize;
+use tokio::sync::{broadcast, watch};
+
+use crate::told::{Answer, Beams, Map, Message, Region, Roster, Snapshot, Track, field_frame};
+
+/// Messages that may wait for a slow reader; beyond, it loses the oldest.
+const QUEUE: usize = 64;
+
+/// Wishes that may wait for the graph.
+const WISHES: usize = 8;
+
+/// What somebody with the token wants of the graph.
+#[derive(Debug, Clone, PartialEq)]
+pub(crate) enum Wish {
+    /// Poses be sought between these corners; everywhere where there are none.
+    Region(Vec<[f64; 2]>),
+    /// A black box be saved.
+    Save,
+}
+
+/// Whether a node listens to wishes.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize)]
+pub(crate) struct Abilities {
+    /// An accumulator takes regions.
+    pub(crate) region: bool,
+    /// A recorder saves its black box.
+    pub(crate) save: bool,
+}
+
+/// A robot that can be watched.
+#[derive(Debug)]
+pub(crate) struct Robot {
+    name: String,
+    known: Mutex<Known>,
+    news: broadcast::Sender<Utf8Bytes>,
+    field: watch::Sender<Option<Bytes>>,
+    field_viewers: AtomicUsize,
+    wishes: SyncSender<Wish>,
+}
+
+#[derive(Debug, Default)]
+struct Known {
+    map: Option<Arc<Map>>,
+    answer: Option<Answer>,
+    beams: Option<Beams>,
+    roster: Roster,
+    track: Track,
+    region: Vec<[f64; 2]>,
+    abilities: Abilities,
+}
+
+/// Somebody who watches: all that is known, and what comes after it.
+pub(crate) struct Watching {
+    pub(crate) snapshot: Utf8Bytes,
+    pub(crate) news: broadcast::Receiver<Utf8Bytes>,
+}
+
+/// A look at the field, which is computed as long as there is one.
+pub(crate) struct FieldView {
+    robot: Arc<Robot>,
+    pub(crate) images: watch::Receiver<Option<Bytes>>,
+}
+
+/// What a source tells.
+impl Robot {
+    /// A robot of which nothing is known yet, and the wishes for it.
+    pub(crate) fn new(name: String) -> (Arc<Self>, Receiver<Wish>) {
+        let (wishes, wished) = sync_channel(WISHES);
+        let robot = Robot {
+            name,
+            known: Mutex::default(),
+            news: broadcast::Sender::new(QUEUE),
+            field: watch::Sender::new(None),
+            field_viewers: AtomicUsize::new(0),
+            wishes,
+        };
+        (Arc::new(robot), wished)
+    }
+
+    /// Takes a map; says whether it could be used.
+    pub(crate) fn hear_map(&self, header: &MapHeader, cells: &[u8]) -> bool {
+        let Some(map) = Map::new(header, cells) else {
+            return false;
+        };
+        let mut known = self.known();
+        self.tell(&Message::Map(&map.info));
+        known.map = Some(Arc::new(map));
+        true
+    }
+
+    /// Takes the answer to a scan, at a time of the host's clock.
+    pub(crate) fn hear_answer(&self, header: &HypothesesHeader, items: &[Hypothesis], now_ns: i64) {
+        let answer = Answer::new(header, items, now_ns);
+        let mut known = self.known();
+        self.tell(&Message::Answer(&answer));
+        known.track.hear(&answer);
+        known.answer = Some(answer);
+    }
+
+    /// Takes what became of the beams of a scan.
+    pub(crate) fn hear_beams(&self, header: &BeamsHeader, items: &[Beam]) {
+        let beams = Beams::new(header, items);
+        let mut known = self.known();
+        self.tell(&Message::Beams(&beams));
+        known.beams = Some(beams);
+    }
+
+    /// Takes a report on a node; says whether there was room for it.
+    pub(crate) fn hear_health(&self, header: &HealthHeader, error: &[u8]) -> bool {
+        let mut known = self.known();
+        let report = known.roster.hear(header, error);
+        report
+            .inspect(|report| self.tell(&Message::Node(report)))
+            .is_some()
+    }
+
+    /// Takes an intensity image; says whether it could be used.
+    pub(crate) fn hear_field(&self, header: &FieldHeader, items: &[u16]) -> bool {
+        let frame = field_frame(header, items);
+        let is_sound = frame.is_some();
+        if let Some(frame) = frame {
+            self.field.send_replace(Some(frame.into()));
+        }
+        is_sound
+    }
+
+    /// Takes the region in which poses are sought from now on.
+    pub(crate) fn hear_region(&self, corners: Vec<[f64; 2]>) {
+        let mut known = self.known();
+        self.tell(&Message::Region(Region { corners: &corners }));
+        known.region = corners;
+    }
+
+    /// Takes who listens to wishes.
+    pub(crate) fn hear_abilities(&self, abilities: Abilities) {
+        let mut known = self.known();
+        if known.abilities != abilities {
+            known.abilities = abilities;
+            self.tell(&Message::Abilities(abilities));
+        }
+    }
+
+    /// Looks for nodes that have become silent.
+    pub(crate) fn look_for_silence(&self, now_ns: i64) {
+        for report in self.known().roster.newly_silent(now_ns) {
+            self.tell(&Message::Node(report));
+        }
+    }
+
+    /// Whether anybody looks at the field.
+    pub(crate) fn is_field_viewed(&self) -> bool {
+        self.field_viewers.load(Ordering::Relaxed) > 0
+    }
+
+    /// Puts it into words once for all who watch, if there are any. The lock is
+    /// held meanwhile, so that who comes misses nothing and hears nothing twice.
+    fn tell(&self, message: &Message<'_>) {
+        if self.news.receiver_count() > 0 {
+            // Nobody may be left by now.
+            let _ = self.news.send(text(message));
+        }
+    }
+}
+
+/// What the server asks.
+impl Robot {
+    pub(crate) fn name(&self) -> &str {
+        &self.name
+    }
+
+    /// All that is known, and all that comes from now on.
+    pub(crate) fn watch(&self) -> Watching {
+        let known = self.known();
+        Watching {
+            news: self.news.subscribe(),
+            snapshot: self.snapshot_of(&known),
+        }
+    }
+
+    /// All that is known.
+    pub(crate) fn snapshot(&self) -> Utf8Bytes {
+        self.snapshot_of(&self.known())
+    }
+
+    /// The map, if there is one.
+    pub(crate) fn map(&self) -> Option<Arc<Map>> {
+        self.known().map.clone()
+    }
+
+    pub(crate) fn abilities(&self) -> Abilities {
+        self.known().abilities
+    }
+
+    /// Hands a wish to the source; says whether it has room for one.
+    pub(crate) fn wish(&self, wish: Wish) -> bool {
+        self.wishes.try_send(wish).is_ok()
+    }
+
+    /// Looks at the field from now on.
+    pub(crate) fn view_field(self: &Arc<Self>) -> FieldView {
+        self.field_viewers.fetch_add(1, Ordering::Relaxed);
+        let mut images = self.field.subscribe();
+        // An image from before may be of another place.
+        images.mark_unchanged();
+        FieldView {
+            robot: Arc::clone(self),
+            images,
+        }
+    }
+
+    fn snapshot_of(&self, known: &Known) -> Utf8Bytes {
+        text(&Message::Snapshot(Snapshot {
+            robot: &self.name,
+            map: known.map.as_ref().map(|map| &map.info),
+            answer: known.answer.as_ref(),
+            beams: known.beams.as_ref(),
+            nodes: known.roster.reports().collect(),
+            track: known.track.points().collect(),
+            region: &known.region,
+            abilities: known.abilities,
+        }))
+    }
+
+    fn known(&self) -> MutexGuard<'_, Known> {
+        self.known.lock().unwrap_or_else(PoisonError::into_inner)
+    }
+}
+
+impl Drop for FieldView {
+    fn drop(&mut self) {
+        self.robot.field_viewers.fetch_sub(1, Ordering::Relaxed);
+    }
+}
+
+/// A message as JSON.
+pub(crate) fn text(message: &Message<'_>) -> Utf8Bytes {
+    // All keys are strings and numbers that are none become null: nothing fails.
+    serde_json::to_string(message).unwrap_or_default().into()
+}
+
+#[cfg(test)]
+mod tests {
+    use bytemuck::Zeroable;
+    use messages::Verdict;
+    use serde_json::Value;
+
+    use super::*;
+
+    fn json(text: &str) -> Value {
+        serde_json::from_str(text).unwrap()
+    }
+
+    fn hear(robot: &Robot, counter: u64) {
+        let mut header = HypothesesHeader {
+            verdict: Verdict::Unique as u32,
+            ..HypothesesHeader::zeroed()
+        };
+        header.stamp.counter = counter;
+        robot.hear_answer(&header, &[Hypothesis::zeroed()], 0);
+    }
+
+    #[test]
+    fn who_comes_hears_what_is_known_and_then_all_that_follows() {
+        let (robot, _wishes) = Robot::new("r".into());
+        hear(&robot, 1);
+        let mut watching = robot.watch();
+        hear(&robot, 2);
+        let snapshot = json(&watching.snapshot);
+        assert_eq!(
+            (&snapshot["type"], &snapshot["robot"]),
+            (&"snapshot".into(), &"r".into())
+        );
+        assert_eq!(snapshot["answer"]["counter"], 1);
+        assert_eq!(snapshot["track"][0], serde_json::json!([0.0, 0.0, "U"]));
+        let news = json(&watching.news.try_recv().unwrap());
+        assert_eq!(
+            (&news["type"], &news["counter"]),
+            (&"answer".into(), &2.into())
+        );
+        assert!(watching.news.try_recv().is_err());
+    }
+
+    #[test]
+    fn who_is_slow_loses_the_oldest_and_hears_how_many() {
+        let (robot, _wishes) = Robot::new("r".into());
+        let mut watching = robot.watch();
+        for counter in 0..QUEUE as u64 + 3 {
+            hear(&robot, counter);
+        }
+        let lagged = watching.news.try_recv().unwrap_err();
+        assert_eq!(lagged, broadcast::error::TryRecvError::Lagged(3));
+        assert_eq!(json(&watching.news.try_recv().unwrap())["counter"], 3);
+    }
+
+    #[test]
+    fn the_field_is_wanted_as_long_as_somebody_looks() {
+        let (robot, _wishes) = Robot::new("r".into());
+        assert!(!robot.is_field_viewed());
+        let view = robot.view_field();
+        assert!(robot.is_field_viewed());
+        drop(view);
+        assert!(!robot.is_field_viewed());
+    }
+
+    #[test]
+    fn wishes_are_bounded() {
+        let (robot, wishes) = Robot::new("r".into());
+        assert!((0..WISHES).all(|_| robot.wish(Wish::Save)));
+        assert!(!robot.wish(Wish::Save));
+        assert_eq!(wishes.try_iter().count(), WISHES);
+    }
+}

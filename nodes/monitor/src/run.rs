@@ -1,0 +1,128 @@
+//! Listens to the graph, and lets the server tell.
+
+mod inputs;
+mod outputs;
+
+use std::sync::Arc;
+use std::sync::mpsc::Receiver;
+use std::time::Duration;
+
+use messages::{NodeState, topic};
+use transport::{Flow, Graph, Health, Subscriber, TransportError, monotonic_ns};
+
+use crate::robot::{Robot, Wish};
+use crate::server::Server;
+use crate::token::Token;
+use crate::{Config, MonitorError};
+use inputs::Inputs;
+use outputs::Outputs;
+
+/// How long a wish, an image and a silent node may wait.
+const TICK: Duration = Duration::from_millis(50);
+
+/// Serves the page until the stop flag is set.
+///
+/// # Errors
+/// If it cannot listen, the token cannot be read, or the graph fails.
+pub fn run(graph: &Graph, config: &Config) -> Result<(), MonitorError> {
+    let token = match &config.token_file {
+        Some(path) => Token::read(path)?,
+        None => Token::random()?,
+    };
+    let shown = config
+        .token_file
+        .is_none()
+        .then(|| token.reveal().to_owned());
+    let (robot, wishes) = Robot::new(config.robot());
+    let inputs = Inputs::open(graph)?;
+    let mut node = Node {
+        robot: Arc::clone(&robot),
+        wishes,
+        field: None,
+        outputs: Outputs::open(graph)?,
+        health: graph.health()?,
+    };
+    let server = Server::start(config, vec![robot], token)?;
+    announce(&server, config, shown.as_deref());
+    // What a monitor before this one wished for is not known here, so it ends.
+    node.outputs.region(&[])?;
+    node.health.state(NodeState::Ready)?;
+    graph.run(&inputs.all(), TICK, |wake| {
+        if !server.is_running() {
+            let ended = std::io::Error::other("its thread has ended");
+            return Err(MonitorError::Server(ended));
+        }
+        node.step(graph, &inputs, wake.tick)?;
+        Ok(Flow::Continue)
+    })
+}
+
+fn announce(server: &Server, config: &Config, token: Option<&str>) {
+    let address = server.address();
+    tracing::info!("watch it on http://{address}");
+    if let Some(token) = token {
+        tracing::info!("to change something there: http://{address}/#token={token}");
+    }
+    if !address.ip().is_loopback() {
+        tracing::warn!("whoever reaches {address} can read, and nothing is encrypted");
+    }
+    if config.listen.port() != 0 && address.port() != config.listen.port() {
+        tracing::info!("port {} is taken", config.listen.port());
+    }
+}
+
+struct Node {
+    robot: Arc<Robot>,
+    wishes: Receiver<Wish>,
+    /// There while somebody looks at it, for it is computed only then.
+    field: Option<Subscriber<topic::Field>>,
+    outputs: Outputs,
+    health: Health,
+}
+
+impl Node {
+    fn step(&mut self, graph: &Graph, inputs: &Inputs, tick: bool) -> Result<(), TransportError> {
+        inputs.take(&self.robot, &mut self.health)?;
+        if tick {
+            self.follow_field(graph)?;
+            self.grant_wishes()?;
+            self.robot.hear_abilities(self.outputs.abilities());
+            self.robot.look_for_silence(monotonic_ns());
+        }
+        self.health.tick()
+    }
+
+    fn follow_field(&mut self, graph: &Graph) -> Result<(), TransportError> {
+        match (self.robot.is_field_viewed(), &self.field) {
+            (true, None) => self.field = Some(graph.subscriber()?),
+            (false, Some(_)) => self.field = None,
+            _ => {}
+        }
+        let newest = self.field.as_ref().map_or(Ok(None), Subscriber::newest)?;
+        if let Some(image) = newest {
+            self.health.count_received(1);
+            if !self.robot.hear_field(image.header(), image.items()) {
+                inputs::refuse(&mut self.health, "an image contradicts its header")?;
+            }
+        }
+        Ok(())
+    }
+
+    fn grant_wishes(&mut self) -> Result<(), TransportError> {
+        while let Ok(wish) = self.wishes.try_recv() {
+            match wish {
+                Wish::Region(corners) => {
+                    tracing::info!(corners = corners.len(), "a region to search in was set");
+                    self.outputs.region(&corners)?;
+                    self.robot.hear_region(corners);
+                }
+                Wish::Save => {
+                    tracing::info!("the recorder is asked to save the last minutes");
+                    self.outputs.save()?;
+                }
+            }
+            self.health.count_sent(1);
+        }
+        Ok(())
+    }
+}

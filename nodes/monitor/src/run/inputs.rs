@@ -1,0 +1,62 @@
+//! The topics that are always heard.
+
+use messages::topic;
+use transport::{Graph, Health, Input, Subscriber, TransportError, monotonic_ns};
+
+use crate::robot::Robot;
+
+/// All but the field, which is subscribed to when somebody looks.
+pub(super) struct Inputs {
+    maps: Subscriber<topic::Map>,
+    hypotheses: Subscriber<topic::Hypotheses>,
+    beams: Subscriber<topic::Beams>,
+    health: Subscriber<topic::Health>,
+}
+
+impl Inputs {
+    pub(super) fn open(graph: &Graph) -> Result<Self, TransportError> {
+        Ok(Inputs {
+            maps: graph.subscriber()?,
+            hypotheses: graph.subscriber()?,
+            beams: graph.subscriber()?,
+            health: graph.subscriber()?,
+        })
+    }
+
+    pub(super) fn all(&self) -> [&dyn Input; 4] {
+        [&self.maps, &self.hypotheses, &self.beams, &self.health]
+    }
+
+    /// Takes all that has come, a map before what was found in it.
+    pub(super) fn take(&self, to: &Robot, health: &mut Health) -> Result<(), TransportError> {
+        if let Some(map) = self.maps.newest()? {
+            health.count_received(1);
+            if !to.hear_map(map.header(), map.items()) {
+                refuse(health, "a map contradicts its header")?;
+            }
+        }
+        while let Some(answer) = self.hypotheses.receive()? {
+            // A gap may be a scan that was never answered. What this node is too
+            // slow for is only not seen, and no loss of the graph's.
+            health.count_received(1);
+            to.hear_answer(answer.header(), answer.items(), monotonic_ns());
+        }
+        if let Some(beams) = self.beams.newest()? {
+            health.count_received(1);
+            to.hear_beams(beams.header(), beams.items());
+        }
+        while let Some(report) = self.health.receive()? {
+            health.count_received(1);
+            if !to.hear_health(report.header(), report.items()) {
+                refuse(health, "there are more nodes than are shown")?;
+            }
+        }
+        Ok(())
+    }
+}
+
+/// Counts what cannot be shown.
+pub(super) fn refuse(health: &mut Health, problem: &str) -> Result<(), TransportError> {
+    health.count_refused(1);
+    health.error(problem)
+}

@@ -1,0 +1,59 @@
+//! What those with the token may ask of the graph.
+
+use messages::{Corner, RegionHeader, SaveHeader, Stamp, topic};
+use transport::{Graph, Publisher, TransportError, monotonic_ns};
+
+use crate::robot::Abilities;
+
+pub(super) struct Outputs {
+    regions: Publisher<topic::Region>,
+    saves: Publisher<topic::Save>,
+    sent: u64,
+}
+
+impl Outputs {
+    pub(super) fn open(graph: &Graph) -> Result<Self, TransportError> {
+        Ok(Outputs {
+            regions: graph.publisher()?,
+            saves: graph.publisher()?,
+            sent: 0,
+        })
+    }
+
+    /// Who would hear it.
+    pub(super) fn abilities(&self) -> Abilities {
+        Abilities {
+            region: self.regions.has_subscribers(),
+            save: self.saves.has_subscribers(),
+        }
+    }
+
+    /// Sends corners, metres in the map; none for everywhere.
+    pub(super) fn region(&mut self, corners: &[[f64; 2]]) -> Result<(), TransportError> {
+        let stamp = self.stamp();
+        let mut loan = self.regions.loan(corners.len())?;
+        *loan.header_mut() = RegionHeader { stamp };
+        for (item, &[x, y]) in loan.items_mut().iter_mut().zip(corners) {
+            *item = Corner { x, y };
+        }
+        loan.send()
+    }
+
+    pub(super) fn save(&mut self) -> Result<(), TransportError> {
+        let stamp = self.stamp();
+        let mut loan = self.saves.loan(0)?;
+        *loan.header_mut() = SaveHeader { stamp };
+        loan.send()
+    }
+
+    /// Nothing was measured: it is a wish of this moment.
+    fn stamp(&mut self) -> Stamp {
+        let counter = self.sent;
+        self.sent += 1;
+        Stamp {
+            measured_ns: 0,
+            entered_ns: monotonic_ns(),
+            counter,
+        }
+    }
+}

@@ -1,0 +1,160 @@
+//! HTTP and WebSocket, on a thread of its own.
+//!
+//! | address | |
+//! |---|---|
+//! | `GET /` | the page |
+//! | `GET /api/v1/robots` | the robots' names |
+//! | `GET /api/v1/robots/{robot}` | all that is known, as the stream begins |
+//! | `GET /api/v1/robots/{robot}/map` | a byte a cell |
+//! | `GET /api/v1/robots/{robot}/stream` | WebSocket: what happens |
+//! | `PUT`, `DELETE /api/v1/robots/{robot}/region` | where to search; needs the token |
+//! | `POST /api/v1/robots/{robot}/save` | save the last minutes; needs the token |
+
+mod actions;
+mod gate;
+mod listening;
+mod page;
+mod reading;
+mod refusal;
+mod stream;
+
+use std::net::SocketAddr;
+use std::sync::Arc;
+use std::thread::JoinHandle;
+
+use axum::Router;
+use axum::extract::DefaultBodyLimit;
+use axum::routing::{get, post, put};
+use tokio::sync::{Semaphore, oneshot};
+
+use crate::robot::Robot;
+use crate::token::Token;
+use crate::{Config, MonitorError};
+use listening::Guarded;
+use refusal::Refusal;
+
+/// Most bytes of a request's body.
+const MAX_BODY: usize = 64 * 1024;
+
+/// Most who watch at the same time.
+const MAX_WATCHERS: usize = 64;
+
+/// What all requests are answered from.
+pub(crate) struct Site {
+    robots: Vec<Arc<Robot>>,
+    token: Token,
+    /// Names under which browsers may reach it, beside addresses.
+    hosts: Vec<String>,
+    watchers: Arc<Semaphore>,
+}
+
+impl Site {
+    fn new(robots: Vec<Arc<Robot>>, token: Token, hosts: Vec<String>) -> Self {
+        Site {
+            robots,
+            token,
+            hosts,
+            watchers: Arc::new(Semaphore::new(MAX_WATCHERS)),
+        }
+    }
+
+    fn robot(&self, name: &str) -> Result<&Arc<Robot>, Refusal> {
+        let found = self.robots.iter().find(|robot| robot.name() == name);
+        found.ok_or_else(|| Refusal::unknown_robot(name, &self.robots))
+    }
+}
+
+/// All addresses.
+fn router(site: Arc<Site>) -> Router {
+    let robot = "/api/v1/robots/{robot}";
+    Router::new()
+        .route("/", get(page::index))
+        .route("/{file}", get(page::file))
+        .route("/api/v1/robots", get(reading::robots))
+        .route(robot, get(reading::robot))
+        .route(&format!("{robot}/map"), get(reading::map))
+        .route(&format!("{robot}/stream"), get(stream::open))
+        .route(
+            &format!("{robot}/region"),
+            put(actions::search_in).delete(actions::search_everywhere),
+        )
+        .route(&format!("{robot}/save"), post(actions::save))
+        .fallback(refusal::nothing_here)
+        .layer(DefaultBodyLimit::max(MAX_BODY))
+        .layer(axum::middleware::from_fn_with_state(
+            Arc::clone(&site),
+            gate::guard,
+        ))
+        .with_state(site)
+}
+
+/// The server, which ends when this is dropped.
+pub(crate) struct Server {
+    address: SocketAddr,
+    stop: Option<oneshot::Sender<()>>,
+    thread: Option<JoinHandle<()>>,
+}
+
+impl Server {
+    /// Listens and starts the thread.
+    ///
+    /// # Errors
+    /// It cannot listen, or start a thread.
+    pub(crate) fn start(
+        config: &Config,
+        robots: Vec<Arc<Robot>>,
+        token: Token,
+    ) -> Result<Self, MonitorError> {
+        let listener = listening::bind(config.listen)?;
+        let address = listener.local_addr().map_err(MonitorError::Server)?;
+        let runtime = tokio::runtime::Builder::new_current_thread()
+            .enable_all()
+            .build()
+            .map_err(MonitorError::Server)?;
+        let app = router(Arc::new(Site::new(robots, token, config.host.clone())));
+        let (stop, stopped) = oneshot::channel();
+        let listener = {
+            let _inside = runtime.enter();
+            Guarded::new(listener).map_err(MonitorError::Server)?
+        };
+        let work = move || {
+            runtime.block_on(async {
+                tokio::select! {
+                    // It only returns what cannot happen: it tries for ever.
+                    _ = axum::serve(listener, app) => {}
+                    _ = stopped => {}
+                }
+            });
+            runtime.shutdown_background();
+        };
+        let thread = std::thread::Builder::new()
+            .name("server".into())
+            .spawn(work)
+            .map_err(MonitorError::Server)?;
+        Ok(Server {
+            address,
+            stop: Some(stop),
+            thread: Some(thread),
+        })
+    }
+
+    /// Where it listens.
+    pub(crate) fn address(&self) -> SocketAddr {
+        self.address
+    }
+
+    /// Whether it still does.
+    pub(crate) fn is_running(&self) -> bool {
+        self.thread.as_ref().is_some_and(|t| !t.is_finished())
+    }
+}
+
+impl Drop for Server {
+    fn drop(&mut self) {
+        drop(self.stop.take());
+        if let Some(thread) = self.thread.take() {
+            // A panic has been printed already.
+            let _ = thread.join();
+        }
+    }
+}

@@ -1,0 +1,77 @@
+//! What changes the graph: the token is needed.
+
+use std::sync::Arc;
+
+use axum::Json;
+use axum::extract::rejection::JsonRejection;
+use axum::extract::{Path, State};
+use axum::http::{HeaderMap, StatusCode};
+use engine::limits::Region;
+use serde::Deserialize;
+
+use super::gate::authorize;
+use super::{Refusal, Site};
+use crate::robot::{Abilities, Wish};
+
+/// Where to search.
+#[derive(Debug, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub(super) struct Wanted {
+    /// Metres in the map: two of an upright rectangle, or all of any polygon.
+    corners: Vec<[f64; 2]>,
+}
+
+/// Lets poses be sought in a region alone.
+pub(super) async fn search_in(
+    State(site): State<Arc<Site>>,
+    Path(name): Path<String>,
+    headers: HeaderMap,
+    wanted: Result<Json<Wanted>, JsonRejection>,
+) -> Result<StatusCode, Refusal> {
+    authorize(&site, &headers)?;
+    let Json(Wanted { corners }) =
+        wanted.map_err(|error| Refusal::new(error.status(), error.body_text()))?;
+    Region::new(&corners)
+        .map_err(|problem| Refusal::new(StatusCode::UNPROCESSABLE_ENTITY, problem))?;
+    wish(&site, &name, Wish::Region(corners))
+}
+
+/// Lets poses be sought everywhere.
+pub(super) async fn search_everywhere(
+    State(site): State<Arc<Site>>,
+    Path(name): Path<String>,
+    headers: HeaderMap,
+) -> Result<StatusCode, Refusal> {
+    authorize(&site, &headers)?;
+    wish(&site, &name, Wish::Region(Vec::new()))
+}
+
+/// Lets the recorder save its black box.
+pub(super) async fn save(
+    State(site): State<Arc<Site>>,
+    Path(name): Path<String>,
+    headers: HeaderMap,
+) -> Result<StatusCode, Refusal> {
+    authorize(&site, &headers)?;
+    wish(&site, &name, Wish::Save)
+}
+
+fn wish(site: &Site, name: &str, wish: Wish) -> Result<StatusCode, Refusal> {
+    let robot = site.robot(name)?;
+    let Abilities { region, save } = robot.abilities();
+    let (able, who) = match wish {
+        Wish::Region(_) => (region, "no accumulator takes a region"),
+        Wish::Save => (
+            save,
+            "no recorder keeps the last minutes: backcast run --record FILE --keep 10m",
+        ),
+    };
+    if !able {
+        return Err(Refusal::new(StatusCode::CONFLICT, who));
+    }
+    if !robot.wish(wish) {
+        let problem = "the graph is busy with what it was asked before";
+        return Err(Refusal::new(StatusCode::SERVICE_UNAVAILABLE, problem));
+    }
+    Ok(StatusCode::ACCEPTED)
+}

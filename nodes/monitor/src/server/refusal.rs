@@ -1,0 +1,51 @@
+//! Answers that say no, as JSON with the reason.
+
+use std::sync::Arc;
+
+use axum::Json;
+use axum::http::{StatusCode, Uri};
+use axum::response::{IntoResponse, Response};
+use serde_json::json;
+
+use crate::robot::Robot;
+
+/// A status and its reason.
+#[derive(Debug)]
+pub(super) struct Refusal {
+    status: StatusCode,
+    problem: String,
+}
+
+impl Refusal {
+    pub(super) fn new(status: StatusCode, problem: impl Into<String>) -> Self {
+        Refusal {
+            status,
+            problem: problem.into(),
+        }
+    }
+
+    pub(super) fn unknown_robot(name: &str, robots: &[Arc<Robot>]) -> Self {
+        let names: Vec<&str> = robots.iter().map(|robot| robot.name()).collect();
+        let problem = format!("there is no robot {name:?}; there is {}", names.join(", "));
+        Refusal::new(StatusCode::NOT_FOUND, problem)
+    }
+
+    #[cfg(test)]
+    pub(super) fn status(&self) -> StatusCode {
+        self.status
+    }
+}
+
+impl IntoResponse for Refusal {
+    fn into_response(self) -> Response {
+        (self.status, Json(json!({ "error": self.problem }))).into_response()
+    }
+}
+
+/// Of every other address.
+pub(super) async fn nothing_here(uri: Uri) -> Refusal {
+    Refusal::new(
+        StatusCode::NOT_FOUND,
+        format!("there is nothing at {}", uri.path()),
+    )
+}

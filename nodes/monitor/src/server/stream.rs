@@ -1,0 +1,154 @@
+//! A WebSocket: first all that is known, then what happens.
+//!
+//! The reader may ask for the field, and send its clock to get it back. Who does
+//! not read is disconnected; who reads slowly loses messages, is told so and gets
+//! all that is known anew.
+
+use std::sync::Arc;
+use std::time::Duration;
+
+use axum::body::Bytes;
+use axum::extract::ws::{CloseFrame, Message as Frame, Utf8Bytes, WebSocket, WebSocketUpgrade};
+use axum::extract::{Path, State};
+use axum::http::StatusCode;
+use axum::response::Response;
+use serde::Deserialize;
+use tokio::sync::OwnedSemaphorePermit;
+use tokio::sync::broadcast::error::RecvError;
+
+use super::{Refusal, Site};
+use crate::robot::{FieldView, Robot, Watching, text};
+use crate::told::Message;
+
+/// Most bytes of a message to us.
+const MAX_MESSAGE: usize = 1024;
+
+/// How long a reader may take for one message.
+const PATIENCE: Duration = Duration::from_secs(10);
+
+/// The reader spoke what we do not understand.
+const POLICY_VIOLATION: u16 = 1008;
+
+/// What a reader may say.
+#[derive(Debug, Deserialize)]
+#[serde(tag = "type", rename_all = "snake_case", deny_unknown_fields)]
+enum Said {
+    /// Whether it looks at the field.
+    Field {
+        /// It does from now on.
+        on: bool,
+    },
+    /// A look at its clock, to be sent back.
+    Ping {
+        /// In its own unit.
+        t: f64,
+    },
+}
+
+/// Begins to stream.
+pub(super) async fn open(
+    State(site): State<Arc<Site>>,
+    Path(name): Path<String>,
+    upgrade: WebSocketUpgrade,
+) -> Result<Response, Refusal> {
+    let robot = Arc::clone(site.robot(&name)?);
+    let permit = Arc::clone(&site.watchers).try_acquire_owned();
+    let permit = permit.map_err(|_| {
+        let problem = "as many watch already as may";
+        Refusal::new(StatusCode::SERVICE_UNAVAILABLE, problem)
+    })?;
+    Ok(upgrade
+        .max_message_size(MAX_MESSAGE)
+        .max_frame_size(MAX_MESSAGE)
+        .on_upgrade(|socket| serve(socket, robot, permit)))
+}
+
+async fn serve(socket: WebSocket, robot: Arc<Robot>, _permit: OwnedSemaphorePermit) {
+    let Watching { snapshot, news } = robot.watch();
+    let mut reader = Reader {
+        socket,
+        robot,
+        field: None,
+    };
+    // The reader is gone: nobody is left to be told.
+    if reader.send(Frame::Text(snapshot)).await.is_some() {
+        reader.follow(news).await;
+    }
+}
+
+struct Reader {
+    socket: WebSocket,
+    robot: Arc<Robot>,
+    field: Option<FieldView>,
+}
+
+impl Reader {
+    /// Passes on what happens until the reader goes.
+    async fn follow(
+        &mut self,
+        mut news: tokio::sync::broadcast::Receiver<Utf8Bytes>,
+    ) -> Option<()> {
+        loop {
+            tokio::select! {
+                told = news.recv() => match told {
+                    Ok(told) => self.send(Frame::Text(told)).await?,
+                    Err(RecvError::Lagged(messages)) => {
+                        self.send(Frame::Text(text(&Message::Missed { messages }))).await?;
+                        let Watching { snapshot, news: next } = self.robot.watch();
+                        news = next;
+                        self.send(Frame::Text(snapshot)).await?;
+                    }
+                    Err(RecvError::Closed) => return None,
+                },
+                image = next_image(&mut self.field) => {
+                    self.send(Frame::Binary(image?)).await?;
+                }
+                said = self.socket.recv() => self.hear(said?.ok()?).await?,
+            }
+        }
+    }
+
+    async fn hear(&mut self, frame: Frame) -> Option<()> {
+        let Frame::Text(said) = frame else {
+            // Pings are answered by the library; the end comes as none.
+            return matches!(frame, Frame::Ping(_) | Frame::Pong(_)).then_some(());
+        };
+        match serde_json::from_str(&said) {
+            Ok(Said::Ping { t }) => self.send(Frame::Text(text(&Message::Pong { t }))).await,
+            Ok(Said::Field { on }) => {
+                self.field = on.then(|| self.robot.view_field());
+                Some(())
+            }
+            Err(error) => {
+                let mut reason = error.to_string();
+                // A reason has 123 bytes at most.
+                reason.truncate(reason.floor_char_boundary(120));
+                let close = CloseFrame {
+                    code: POLICY_VIOLATION,
+                    reason: reason.into(),
+                };
+                self.send(Frame::Close(Some(close))).await?;
+                None
+            }
+        }
+    }
+
+    async fn send(&mut self, frame: Frame) -> Option<()> {
+        let sent = tokio::time::timeout(PATIENCE, self.socket.send(frame)).await;
+        sent.ok()?.ok()
+    }
+}
+
+/// Waits for an image; for ever where nobody looks.
+async fn next_image(field: &mut Option<FieldView>) -> Option<Bytes> {
+    let Some(view) = field else {
+        return std::future::pending().await;
+    };
+    loop {
+        view.images.changed().await.ok()?;
+        let image = view.images.borrow_and_update().clone();
+        if image.is_some() {
+            return image;
+        }
+    }
+}

@@ -1,0 +1,212 @@
+//! What a scan says of the pose.
+
+use engine::peaks::sentence::{Stand, sentence};
+use geometry::{Covariance, Pose};
+use messages::{HypothesesHeader, Hypothesis, Verdict};
+use serde::Serialize;
+
+use super::{PoseTold, ms};
+
+/// Most places that are told; the engine keeps 64.
+const MAX_PLACES: usize = 64;
+
+/// The answer to one scan.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+pub(crate) struct Answer {
+    /// Counts the scans.
+    pub(crate) counter: u64,
+    /// When the scan was measured, since 1970.
+    pub(crate) stamp_s: f64,
+    /// The map that was searched, as hexadecimal digits.
+    pub(crate) map_id: String,
+    /// The verdict, or `?` for one that this version does not know.
+    pub(crate) verdict: &'static str,
+    /// The verdict in words.
+    pub(crate) says: String,
+    /// Other places that fit about as well.
+    pub(crate) alternatives: u32,
+    /// The probability of the best place.
+    pub(crate) confidence: f32,
+    /// Share of the beams' weight that agrees with it.
+    pub(crate) inlier_share: f32,
+    /// From the scan's entry into the graph to the answer.
+    pub(crate) latency_ms: f64,
+    /// Of that, the search.
+    pub(crate) search_ms: f64,
+    /// Of that, what followed.
+    pub(crate) extract_ms: f64,
+    /// From the scan's entry to this message.
+    pub(crate) age_ms: f64,
+    /// Where the robot may be, best first.
+    pub(crate) hypotheses: Vec<Place>,
+}
+
+/// One place.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+pub(crate) struct Place {
+    /// Of the laser in the map.
+    pub(crate) laser: PoseTold,
+    /// Of the robot's base, where the laser's mount is known.
+    pub(crate) base: Option<PoseTold>,
+    /// How well the scan fits.
+    pub(crate) score: f32,
+    /// How likely the robot is there.
+    pub(crate) probability: f32,
+    /// Votes that led there.
+    pub(crate) support: u64,
+    /// The ellipse of one standard deviation.
+    pub(crate) ellipse: Option<Ellipse>,
+}
+
+/// Of a covariance.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize)]
+pub(crate) struct Ellipse {
+    /// Half of the long axis.
+    pub(crate) major_m: f64,
+    /// Half of the short one.
+    pub(crate) minor_m: f64,
+    /// Of the long axis to the map's x.
+    pub(crate) angle: f64,
+    /// Standard deviation of the heading.
+    pub(crate) yaw: f64,
+}
+
+impl Answer {
+    /// Reads a message of `hypotheses` at a time of the host's clock.
+    pub(crate) fn new(header: &HypothesesHeader, items: &[Hypothesis], now_ns: i64) -> Self {
+        let verdict = Verdict::from_code(header.verdict);
+        let since_entry = |ns: i64| ms(ns.saturating_sub(header.stamp.entered_ns));
+        let told = items.iter().filter(|h| is_pose(h)).take(MAX_PLACES);
+        let mount_known = header.mount_known == 1;
+        let stands: Vec<Stand> = told.clone().filter_map(stand).collect();
+        let meant = stands.len().min(1 + header.alternatives as usize);
+        Answer {
+            counter: header.stamp.counter,
+            stamp_s: header.stamp.measured_ns as f64 / 1e9,
+            map_id: format!("{:016x}", header.map_id),
+            verdict: verdict.map_or("?", Verdict::as_str),
+            says: verdict.map_or_else(String::new, |verdict| {
+                sentence(verdict, stands.get(..meant).unwrap_or_default())
+            }),
+            alternatives: header.alternatives,
+            confidence: header.confidence,
+            inlier_share: header.inlier_share,
+            latency_ms: since_entry(header.sent_ns),
+            search_ms: header.search_ns as f64 / 1e6,
+            extract_ms: header.extract_ns as f64 / 1e6,
+            age_ms: since_entry(now_ns),
+            hypotheses: match verdict {
+                Some(Verdict::NoScan) => Vec::new(),
+                _ => told.map(|h| place(h, mount_known)).collect(),
+            },
+        }
+    }
+}
+
+fn is_pose(hypothesis: &&Hypothesis) -> bool {
+    Pose::from(hypothesis.map_from_laser).is_finite()
+}
+
+fn covariance(hypothesis: &Hypothesis) -> Option<Covariance> {
+    let is_finite = hypothesis.covariance.iter().all(|c| c.is_finite());
+    is_finite.then(|| Covariance::from_rows(hypothesis.covariance))
+}
+
+fn stand(hypothesis: &Hypothesis) -> Option<Stand> {
+    Some(Stand {
+        map_from_laser: hypothesis.map_from_laser.into(),
+        covariance: covariance(hypothesis)?,
+        score: hypothesis.score.into(),
+    })
+}
+
+fn place(hypothesis: &Hypothesis, mount_known: bool) -> Place {
+    let ellipse = covariance(hypothesis).map(|covariance| {
+        let ellipse = covariance.ellipse();
+        let [.., yaw_variance] = hypothesis.covariance;
+        Ellipse {
+            major_m: ellipse.major_m,
+            minor_m: ellipse.minor_m,
+            angle: ellipse.angle,
+            yaw: yaw_variance.max(0.0).sqrt(),
+        }
+    });
+    Place {
+        laser: hypothesis.map_from_laser.into(),
+        base: mount_known.then(|| hypothesis.map_from_base.into()),
+        score: hypothesis.score,
+        probability: hypothesis.probability,
+        support: hypothesis.support,
+        ellipse,
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use bytemuck::Zeroable;
+    use messages::{Pose2, Stamp};
+
+    use super::*;
+
+    fn header(verdict: Verdict) -> HypothesesHeader {
+        HypothesesHeader {
+            stamp: Stamp {
+                measured_ns: 1_500_000_000,
+                entered_ns: 1_000_000,
+                counter: 7,
+            },
+            sent_ns: 21_000_000,
+            verdict: verdict as u32,
+            ..Zeroable::zeroed()
+        }
+    }
+
+    fn hypothesis(x: f64) -> Hypothesis {
+        Hypothesis {
+            map_from_laser: Pose2 {
+                x,
+                y: 2.0,
+                yaw: 0.5,
+            },
+            covariance: [0.04, 0.0, 0.0, 0.0, 0.01, 0.0, 0.0, 0.0, 0.0009],
+            score: 0.9,
+            ..Zeroable::zeroed()
+        }
+    }
+
+    #[test]
+    fn an_answer_is_told_in_numbers_and_words() {
+        let answer = Answer::new(&header(Verdict::Unique), &[hypothesis(1.0)], 31_000_000);
+        assert_eq!((answer.counter, answer.verdict), (7, "Unique"));
+        assert_eq!((answer.latency_ms, answer.age_ms), (20.0, 30.0));
+        assert_eq!(answer.says, "one place fits, 90 % of the scan agrees");
+        let ellipse = answer.hypotheses[0].ellipse.unwrap();
+        assert!((ellipse.major_m - 0.2).abs() < 1e-12);
+        assert!((ellipse.yaw - 0.03).abs() < 1e-12);
+        assert_eq!(answer.hypotheses[0].base, None, "no mount is known");
+    }
+
+    #[test]
+    fn what_is_no_pose_is_left_out_and_what_is_no_spread_has_no_ellipse() {
+        let mut spread = hypothesis(3.0);
+        spread.covariance[0] = f64::NAN;
+        let items = [hypothesis(f64::NAN), hypothesis(f64::INFINITY), spread];
+        let answer = Answer::new(&header(Verdict::PoorFit), &items, 0);
+        assert_eq!(answer.hypotheses.len(), 1);
+        assert_eq!(answer.hypotheses[0].ellipse, None);
+        let many = vec![hypothesis(1.0); 100_000];
+        let answer = Answer::new(&header(Verdict::Ambiguous), &many, i64::MAX);
+        assert_eq!(answer.hypotheses.len(), MAX_PLACES);
+    }
+
+    #[test]
+    fn without_a_verdict_there_is_no_place() {
+        let answer = Answer::new(&header(Verdict::NoScan), &[hypothesis(1.0)], 0);
+        assert!(answer.hypotheses.is_empty());
+        let unknown = HypothesesHeader {
+            verdict: 99,
+            ..header(Verdict::NoScan)
+        };
+        assert_eq!(Answer::new(&unknown, &[], 0).verdict, "?");
+    }
+}

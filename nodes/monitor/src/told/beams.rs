@@ -1,0 +1,105 @@
+//! What became of the beams of a scan.
+
+use messages::{Beam, BeamFate, BeamsHeader};
+use serde::Serialize;
+
+use super::PoseTold;
+
+/// Most beams that are told: as many as a picture can show.
+const MAX_BEAMS: usize = 1440;
+
+/// The beams of one scan that returned, column by column.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+pub(crate) struct Beams {
+    /// Of the scan.
+    pub(crate) counter: u64,
+    /// Where they were compared with the map.
+    pub(crate) laser: PoseTold,
+    /// In the laser's frame, to a tenth of a milliradian.
+    pub(crate) bearing: Vec<f64>,
+    /// To a millimetre.
+    pub(crate) range_m: Vec<f64>,
+    /// `hit`, `short`, `through` or `unknown`, by the first letter.
+    pub(crate) fate: String,
+    /// Beams of which nothing returned.
+    pub(crate) silent: usize,
+}
+
+impl Beams {
+    /// Reads a message of `beams`. What is no number is left out.
+    pub(crate) fn new(header: &BeamsHeader, items: &[Beam]) -> Self {
+        let is_number = |beam: &&Beam| beam.bearing.is_finite() && beam.range_m.is_finite();
+        let told = items
+            .iter()
+            .filter(is_number)
+            .filter_map(|beam| letter(beam).map(|letter| (beam, letter)))
+            .take(MAX_BEAMS);
+        let mut beams = Beams {
+            counter: header.stamp.counter,
+            laser: header.map_from_laser.into(),
+            bearing: Vec::new(),
+            range_m: Vec::new(),
+            fate: String::new(),
+            silent: items.len(),
+        };
+        for (beam, letter) in told {
+            beams.bearing.push(rounded(beam.bearing, 1e4));
+            beams.range_m.push(rounded(beam.range_m, 1e3));
+            beams.fate.push(letter);
+            beams.silent -= 1;
+        }
+        beams
+    }
+}
+
+/// A digit more would not be seen.
+fn rounded(number: f32, steps: f64) -> f64 {
+    (f64::from(number) * steps).round() / steps
+}
+
+fn letter(beam: &Beam) -> Option<char> {
+    match BeamFate::from_code(beam.fate)? {
+        BeamFate::Hit => Some('h'),
+        BeamFate::Short => Some('s'),
+        BeamFate::Through => Some('t'),
+        BeamFate::Unknown => Some('u'),
+        BeamFate::NoReturn => None,
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use bytemuck::Zeroable;
+
+    use super::*;
+
+    #[test]
+    fn beams_are_columns_and_what_did_not_return_is_counted() {
+        let beam = |bearing, range_m, fate: BeamFate| Beam {
+            bearing,
+            range_m,
+            weight: 1.0,
+            fate: fate as u32,
+        };
+        let unknown_code = Beam {
+            fate: 9,
+            ..Beam::zeroed()
+        };
+        let items = [
+            beam(0.5, 2.0004, BeamFate::Hit),
+            beam(0.6, f32::INFINITY, BeamFate::NoReturn),
+            beam(f32::NAN, 1.0, BeamFate::Hit),
+            unknown_code,
+            beam(0.75, 4.0, BeamFate::Through),
+        ];
+        let beams = Beams::new(&BeamsHeader::zeroed(), &items);
+        assert_eq!(beams.bearing, [0.5, 0.75]);
+        assert_eq!(beams.range_m, [2.0, 4.0]);
+        assert_eq!((beams.fate.as_str(), beams.silent), ("ht", 3));
+        let many = vec![beam(0.0, 1.0, BeamFate::Short); 1_000_000];
+        assert_eq!(
+            Beams::new(&BeamsHeader::zeroed(), &many).fate.len(),
+            MAX_BEAMS
+        );
+    }
+}

@@ -1,0 +1,114 @@
+//! The map: what it is, and its cells.
+
+use std::io::Write;
+use std::sync::OnceLock;
+
+use flate2::Compression;
+use flate2::write::GzEncoder;
+use messages::MapHeader;
+use serde::Serialize;
+
+use super::PoseTold;
+
+/// What a map is; its cells are asked for by its id.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+pub(crate) struct MapInfo {
+    /// Hash of cells and geometry, as hexadecimal digits.
+    pub(crate) id: String,
+    /// Cells along x.
+    pub(crate) width: u32,
+    /// Cells along y.
+    pub(crate) height: u32,
+    /// Side of a cell.
+    pub(crate) resolution_m: f64,
+    /// The lower left corner of the first cell, and the turn of the axes.
+    pub(crate) map_from_grid: PoseTold,
+}
+
+/// A map with its cells.
+#[derive(Debug)]
+pub(crate) struct Map {
+    pub(crate) info: MapInfo,
+    cells: Vec<u8>,
+    packed: OnceLock<Vec<u8>>,
+}
+
+impl Map {
+    /// Reads a message of `map`; `None` where it contradicts itself.
+    pub(crate) fn new(header: &MapHeader, cells: &[u8]) -> Option<Self> {
+        let sides = (header.width as usize).checked_mul(header.height as usize);
+        let is_sound = sides == Some(cells.len())
+            && !cells.is_empty()
+            && header.resolution_m > 0.0
+            && header.resolution_m.is_finite()
+            && geometry::Pose::from(header.map_from_grid).is_finite();
+        is_sound.then(|| Map {
+            info: MapInfo {
+                id: format!("{:016x}", header.map_id),
+                width: header.width,
+                height: header.height,
+                resolution_m: header.resolution_m,
+                map_from_grid: header.map_from_grid.into(),
+            },
+            cells: cells.to_vec(),
+            packed: OnceLock::new(),
+        })
+    }
+
+    /// A byte for each cell, row by row from the lowest y: 0 free to 100
+    /// occupied, 255 unknown.
+    pub(crate) fn cells(&self) -> &[u8] {
+        &self.cells
+    }
+
+    /// The cells, packed by gzip. Takes a while the first time.
+    pub(crate) fn packed(&self) -> &[u8] {
+        self.packed.get_or_init(|| {
+            let mut packer = GzEncoder::new(Vec::new(), Compression::fast());
+            // Nothing can go wrong in memory; if it did, the cells would be short
+            // and the reader would say so.
+            let _ = packer.write_all(&self.cells);
+            packer.finish().unwrap_or_default()
+        })
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use std::io::Read;
+
+    use bytemuck::Zeroable;
+
+    use super::*;
+
+    fn header(width: u32, height: u32, resolution_m: f64) -> MapHeader {
+        MapHeader {
+            map_id: 0xab,
+            width,
+            height,
+            resolution_m,
+            ..MapHeader::zeroed()
+        }
+    }
+
+    #[test]
+    fn cells_unpack_to_what_they_were() {
+        let cells: Vec<u8> = (0..200).collect();
+        let map = Map::new(&header(20, 10, 0.05), &cells).unwrap();
+        assert_eq!(map.info.id, "00000000000000ab");
+        let mut unpacked = Vec::new();
+        let mut reader = flate2::read::GzDecoder::new(map.packed());
+        reader.read_to_end(&mut unpacked).unwrap();
+        assert_eq!(unpacked, cells);
+        assert_eq!(map.cells(), cells);
+    }
+
+    #[test]
+    fn contradictions_are_refused() {
+        assert!(Map::new(&header(3, 2, 0.05), &[0; 5]).is_none());
+        assert!(Map::new(&header(0, 0, 0.05), &[]).is_none());
+        assert!(Map::new(&header(1, 1, f64::NAN), &[0]).is_none());
+        assert!(Map::new(&header(1, 1, 0.0), &[0]).is_none());
+        assert!(Map::new(&header(u32::MAX, u32::MAX, 0.05), &[0]).is_none());
+    }
+}

@@ -1,0 +1,219 @@
+//! The nodes of a graph and how they fare.
+
+use messages::{HealthHeader, NodeState};
+use serde::Serialize;
+
+/// Nodes that are kept; a graph has a dozen.
+const CAPACITY: usize = 64;
+
+/// A node reports each second. One that has not for so long is silent.
+const SILENT_AFTER_NS: i64 = 2_500_000_000;
+
+/// Rates are taken over at least so long.
+const RATE_NS: i64 = 900_000_000;
+
+/// How a node fares.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+pub(crate) struct NodeReport {
+    pub(crate) name: String,
+    /// `waiting`, `ready`, `degraded`, `stopped`, or `silent` where no report
+    /// came for a while.
+    pub(crate) state: &'static str,
+    pub(crate) pid: u32,
+    pub(crate) received: u64,
+    pub(crate) sent: u64,
+    pub(crate) dropped: u64,
+    pub(crate) refused: u64,
+    /// Samples received a second.
+    pub(crate) received_hz: f64,
+    /// Samples sent a second.
+    pub(crate) sent_hz: f64,
+    /// How often another process took its place since the monitor started.
+    pub(crate) restarts: u32,
+    /// Empty where there was none.
+    pub(crate) last_error: String,
+    /// How old the last report is.
+    pub(crate) quiet_s: f64,
+}
+
+/// All nodes that have reported.
+#[derive(Debug, Default)]
+pub(crate) struct Roster(Vec<Entry>);
+
+#[derive(Debug)]
+struct Entry {
+    report: NodeReport,
+    /// Of the last report.
+    heard_ns: i64,
+    /// Counters at the time from which rates are taken.
+    base: (i64, u64, u64),
+}
+
+impl Roster {
+    /// Takes a report; `None` where there are too many nodes.
+    pub(crate) fn hear(&mut self, header: &HealthHeader, error: &[u8]) -> Option<&NodeReport> {
+        let name = header.node.as_str();
+        let at = match self.0.iter().position(|entry| entry.report.name == name) {
+            Some(at) => at,
+            None if self.0.len() < CAPACITY => {
+                self.0.push(Entry::new(header));
+                self.0.sort_by(|a, b| a.report.name.cmp(&b.report.name));
+                self.0.iter().position(|entry| entry.report.name == name)?
+            }
+            None => return None,
+        };
+        let entry = self.0.get_mut(at)?;
+        entry.hear(header, error);
+        Some(&entry.report)
+    }
+
+    /// The nodes that have become silent by now, each once.
+    pub(crate) fn newly_silent(&mut self, now_ns: i64) -> Vec<&NodeReport> {
+        let mut silent = Vec::new();
+        for entry in &mut self.0 {
+            let quiet_ns = now_ns.saturating_sub(entry.heard_ns);
+            entry.report.quiet_s = (quiet_ns as f64 / 1e8).round() / 10.0;
+            let is_expected = !matches!(entry.report.state, "silent" | "stopped");
+            if is_expected && quiet_ns > SILENT_AFTER_NS {
+                entry.report.state = "silent";
+                entry.report.received_hz = 0.0;
+                entry.report.sent_hz = 0.0;
+                silent.push(&entry.report);
+            }
+        }
+        silent
+    }
+
+    /// All nodes, by name.
+    pub(crate) fn reports(&self) -> impl Iterator<Item = &NodeReport> {
+        self.0.iter().map(|entry| &entry.report)
+    }
+}
+
+impl Entry {
+    fn new(header: &HealthHeader) -> Self {
+        Entry {
+            report: NodeReport {
+                name: header.node.as_str().to_owned(),
+                state: "waiting",
+                pid: header.pid,
+                received: 0,
+                sent: 0,
+                dropped: 0,
+                refused: 0,
+                received_hz: 0.0,
+                sent_hz: 0.0,
+                restarts: 0,
+                last_error: String::new(),
+                quiet_s: 0.0,
+            },
+            heard_ns: header.sent_ns,
+            base: (header.sent_ns, header.received, header.sent),
+        }
+    }
+
+    fn hear(&mut self, header: &HealthHeader, error: &[u8]) {
+        let report = &mut self.report;
+        if report.pid != header.pid {
+            report.pid = header.pid;
+            report.restarts = report.restarts.saturating_add(1);
+            self.base = (header.sent_ns, header.received, header.sent);
+        }
+        let (since_ns, received, sent) = self.base;
+        let passed_ns = header.sent_ns.saturating_sub(since_ns);
+        if passed_ns >= RATE_NS {
+            let rate = |now: u64, before: u64| {
+                let count = now.saturating_sub(before) as f64;
+                (count / (passed_ns as f64 / 1e9) * 10.0).round() / 10.0
+            };
+            report.received_hz = rate(header.received, received);
+            report.sent_hz = rate(header.sent, sent);
+            self.base = (header.sent_ns, header.received, header.sent);
+        }
+        report.state = match NodeState::from_code(header.state) {
+            Some(NodeState::Waiting) => "waiting",
+            Some(NodeState::Ready) => "ready",
+            Some(NodeState::Stopped) => "stopped",
+            // A state that this version does not know is worth a look.
+            Some(NodeState::Degraded) | None => "degraded",
+        };
+        report.received = header.received;
+        report.sent = header.sent;
+        report.dropped = header.dropped;
+        report.refused = header.refused;
+        let error = error.get(..HealthHeader::ERROR_CAPACITY).unwrap_or(error);
+        report.last_error = String::from_utf8_lossy(error).into_owned();
+        report.quiet_s = 0.0;
+        self.heard_ns = header.sent_ns;
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use bytemuck::Zeroable;
+    use messages::Name;
+
+    use super::*;
+
+    const SECOND: i64 = 1_000_000_000;
+
+    fn report(name: &str, pid: u32, at_ns: i64, received: u64) -> HealthHeader {
+        HealthHeader {
+            node: Name::new(name),
+            pid,
+            sent_ns: at_ns,
+            received,
+            state: NodeState::Ready as u32,
+            ..HealthHeader::zeroed()
+        }
+    }
+
+    #[test]
+    fn rates_come_from_the_counters_of_one_process() {
+        let mut roster = Roster::default();
+        roster.hear(&report("a", 1, 0, 100), b"");
+        let heard = roster.hear(&report("a", 1, 2 * SECOND, 130), b"");
+        assert_eq!(heard.unwrap().received_hz, 15.0);
+        // The next process counts from zero.
+        let heard = roster.hear(&report("a", 2, 3 * SECOND, 0), b"").unwrap();
+        assert_eq!((heard.restarts, heard.received_hz), (1, 15.0));
+        let heard = roster.hear(&report("a", 2, 4 * SECOND, 5), b"").unwrap();
+        assert_eq!(heard.received_hz, 5.0);
+    }
+
+    #[test]
+    fn a_node_that_does_not_report_is_silent_until_it_does() {
+        let mut roster = Roster::default();
+        roster.hear(&report("a", 1, 0, 0), b"");
+        let ended = HealthHeader {
+            state: NodeState::Stopped as u32,
+            ..report("b", 1, 0, 0)
+        };
+        roster.hear(&ended, b"");
+        assert!(roster.newly_silent(2 * SECOND).is_empty());
+        let silent: Vec<String> = roster
+            .newly_silent(3 * SECOND)
+            .iter()
+            .map(|report| report.name.clone())
+            .collect();
+        assert_eq!(silent, ["a"], "who said that it ends is expected to");
+        assert!(roster.newly_silent(4 * SECOND).is_empty(), "told once");
+        let heard = roster.hear(&report("a", 1, 5 * SECOND, 0), b"").unwrap();
+        assert_eq!(heard.state, "ready");
+    }
+
+    #[test]
+    fn nodes_and_errors_are_bounded() {
+        let mut roster = Roster::default();
+        for i in 0..CAPACITY {
+            assert!(roster.hear(&report(&i.to_string(), 1, 0, 0), b"").is_some());
+        }
+        assert!(roster.hear(&report("one more", 1, 0, 0), b"").is_none());
+        let long = vec![0xff; 10_000];
+        let heard = roster.hear(&report("1", 1, 0, 0), &long).unwrap();
+        assert_eq!(
+            heard.last_error.chars().count(),
+            HealthHeader::ERROR_CAPACITY
+        );
+    }
+}

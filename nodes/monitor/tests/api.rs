@@ -1,0 +1,451 @@
+//! The API as anybody sees it from outside: over TCP, with a graph behind it.
+#![allow(
+    clippy::unwrap_used,
+    reason = "the lint spares test functions but not what they share"
+)]
+
+use std::io::{BufRead, BufReader, Read, Write};
+use std::net::{SocketAddr, TcpListener, TcpStream};
+use std::path::Path;
+
+use bytemuck::Zeroable;
+use messages::{
+    BeamsHeader, Corner, FieldHeader, HypothesesHeader, Hypothesis, MapHeader, Pose2, Verdict,
+    topic,
+};
+use serde_json::{Value, json};
+use tempfile::TempDir;
+use transport::testing::{Isolated, NodeProcess, wait_for, wait_for_health};
+use transport::{Flow, Graph, Publisher, TransportError};
+use tungstenite::{Message, WebSocket, client};
+
+const TOKEN: &str = "0123456789abcdef";
+
+/// The node in a graph of its own, and what it may be asked.
+struct World {
+    node: Option<NodeProcess>,
+    address: SocketAddr,
+    hypotheses: Publisher<topic::Hypotheses>,
+    beams: Publisher<topic::Beams>,
+    maps: Publisher<topic::Map>,
+    graph: Graph,
+    _isolated: Isolated,
+    _folder: TempDir,
+}
+
+/// A port that was free a moment ago; should somebody take it meanwhile, the node
+/// takes another one and the test fails to find it there.
+fn free_port() -> SocketAddr {
+    let listener = TcpListener::bind("127.0.0.1:0").unwrap();
+    listener.local_addr().unwrap()
+}
+
+impl World {
+    fn new(test: &str) -> World {
+        let isolated = Isolated::new(test);
+        let graph = isolated.join("test");
+        let folder = tempfile::tempdir().unwrap();
+        let token = folder.path().join("token");
+        std::fs::write(&token, TOKEN).unwrap();
+        let health = graph.subscriber::<topic::Health>().unwrap();
+        let address = free_port();
+        let mut world = World {
+            node: None,
+            address,
+            hypotheses: graph.publisher().unwrap(),
+            beams: graph.publisher().unwrap(),
+            maps: graph.publisher().unwrap(),
+            graph,
+            _isolated: isolated,
+            _folder: folder,
+        };
+        world.serve_map();
+        world.node = Some(start(&world.graph, address, &token));
+        wait_for_health(&world.graph, &health, |report| {
+            report.node.as_str() == "monitor" && report.state == 1
+        });
+        world
+    }
+
+    fn serve_map(&self) {
+        let mut loan = self.maps.loan(6).unwrap();
+        *loan.header_mut() = MapHeader {
+            map_id: 0xabc,
+            width: 3,
+            height: 2,
+            resolution_m: 0.05,
+            ..MapHeader::zeroed()
+        };
+        loan.items_mut().copy_from_slice(&[0, 100, 255, 0, 0, 100]);
+        loan.send().unwrap();
+    }
+
+    fn answer(&self, counter: u64, x: f64) {
+        let mut loan = self.hypotheses.loan(1).unwrap();
+        let header = loan.header_mut();
+        *header = HypothesesHeader {
+            map_id: 0xabc,
+            verdict: Verdict::Unique as u32,
+            ..HypothesesHeader::zeroed()
+        };
+        header.stamp.counter = counter;
+        loan.items_mut()[0] = Hypothesis {
+            map_from_laser: Pose2 {
+                x,
+                y: 2.0,
+                yaw: 0.5,
+            },
+            ..Hypothesis::zeroed()
+        };
+        loan.send().unwrap();
+    }
+
+    /// Sends a request as it stands; returns status, head and body.
+    fn raw(&self, request: &[u8]) -> (u16, String, Vec<u8>) {
+        let mut stream = TcpStream::connect(self.address).unwrap();
+        // The server may have answered, and gone, before it has read all.
+        let _ = stream.write_all(request);
+        let mut reader = BufReader::new(stream);
+        let mut head = String::new();
+        while !head.ends_with("\r\n\r\n") {
+            assert!(reader.read_line(&mut head).unwrap() > 0, "{head}");
+        }
+        let status = head.split(' ').nth(1).unwrap().parse().unwrap();
+        let mut body = Vec::new();
+        let _ = reader.read_to_end(&mut body);
+        (status, head, body)
+    }
+
+    fn ask(&self, method: &str, path: &str, headers: &[&str], body: &str) -> (u16, String) {
+        let host = format!("Host: {}", self.address);
+        let length = format!("Content-Length: {}", body.len());
+        let given = headers.iter().any(|header| header.starts_with("Host:"));
+        let own = [host.as_str()];
+        let lines: Vec<&str> = headers
+            .iter()
+            .chain(if given { &[][..] } else { &own[..] })
+            .chain(&[length.as_str(), "Connection: close"])
+            .copied()
+            .collect();
+        let request = format!(
+            "{method} {path} HTTP/1.1\r\n{}\r\n\r\n{body}",
+            lines.join("\r\n")
+        );
+        let (status, _, body) = self.raw(request.as_bytes());
+        (status, String::from_utf8(body).unwrap())
+    }
+
+    fn get(&self, path: &str) -> Value {
+        let (status, body) = self.ask("GET", path, &[], "");
+        assert_eq!(status, 200, "{path}: {body}");
+        serde_json::from_str(&body).unwrap()
+    }
+
+    /// Asks until the answer is as it should be; the graph goes on meanwhile.
+    fn wait_for_state(&self, is_awaited: impl Fn(&Value) -> bool) -> Value {
+        let mut found = None;
+        let tick = std::time::Duration::from_millis(20);
+        self.graph
+            .run(&[], tick, |_| {
+                found = Some(self.get("/api/v1/robots/r")).filter(&is_awaited);
+                let flow = if found.is_some() {
+                    Flow::Stop
+                } else {
+                    Flow::Continue
+                };
+                Ok::<_, TransportError>(flow)
+            })
+            .unwrap();
+        found.unwrap()
+    }
+
+    fn stream(&self) -> WebSocket<TcpStream> {
+        let url = format!("ws://{}/api/v1/robots/r/stream", self.address);
+        let stream = TcpStream::connect(self.address).unwrap();
+        client(url, stream).unwrap().0
+    }
+}
+
+impl Drop for World {
+    fn drop(&mut self) {
+        if let Some(node) = self.node.take()
+            && !std::thread::panicking()
+        {
+            node.stop();
+        }
+    }
+}
+
+fn start(graph: &Graph, address: SocketAddr, token: &Path) -> NodeProcess {
+    let (address, token) = (address.to_string(), token.to_str().unwrap());
+    NodeProcess::start(
+        env!("CARGO_BIN_EXE_monitor"),
+        graph,
+        ["--listen", &address, "--robot", "r", "--token-file", token],
+    )
+}
+
+fn next(socket: &mut WebSocket<TcpStream>) -> Value {
+    loop {
+        if let Message::Text(text) = socket.read().unwrap() {
+            return serde_json::from_str(&text).unwrap();
+        }
+    }
+}
+
+fn next_of(socket: &mut WebSocket<TcpStream>, kind: &str) -> Value {
+    loop {
+        let message = next(socket);
+        if message["type"] == kind {
+            return message;
+        }
+    }
+}
+
+#[test]
+fn what_flows_in_the_graph_is_told() {
+    let world = World::new("told");
+    let robots = world.get("/api/v1/robots");
+    assert_eq!(robots["robots"], json!(["r"]));
+    let known = world.wait_for_state(|known| !known["map"].is_null());
+    assert_eq!(known["map"]["id"], "0000000000000abc");
+    let mut socket = world.stream();
+    assert_eq!(next(&mut socket)["type"], "snapshot");
+    world.answer(7, 1.5);
+    let answer = next_of(&mut socket, "answer");
+    assert_eq!(answer["verdict"], "Unique");
+    assert_eq!(answer["hypotheses"][0]["laser"]["x"], 1.5);
+    let mut loan = world.beams.loan(1).unwrap();
+    *loan.header_mut() = BeamsHeader::zeroed();
+    loan.send().unwrap();
+    assert_eq!(next_of(&mut socket, "beams")["fate"], "h");
+    // Who comes later is told the same at once.
+    let known = world.get("/api/v1/robots/r");
+    assert_eq!(known["answer"]["counter"], 7);
+    let names: Vec<&Value> = known["nodes"]
+        .as_array()
+        .unwrap()
+        .iter()
+        .map(|n| &n["name"])
+        .collect();
+    assert_eq!(names, ["monitor"]);
+}
+
+#[test]
+fn the_map_is_a_byte_a_cell() {
+    let world = World::new("map");
+    world.wait_for_state(|known| !known["map"].is_null());
+    let path = "/api/v1/robots/r/map";
+    let request = |more: &str| {
+        format!(
+            "GET {path} HTTP/1.1\r\nHost: {}\r\n{more}Connection: close\r\n\r\n",
+            world.address
+        )
+    };
+    let (status, _, cells) = world.raw(request("").as_bytes());
+    assert_eq!((status, cells), (200, vec![0, 100, 255, 0, 0, 100]));
+    let (status, _, cells) =
+        world.raw(request("If-None-Match: \"0000000000000abc\"\r\n").as_bytes());
+    assert_eq!((status, cells.len()), (304, 0), "the reader has it");
+    let (_, head, packed) = world.raw(request("Accept-Encoding: gzip\r\n").as_bytes());
+    assert!(head.contains("content-encoding: gzip"), "{head}");
+    let mut cells = Vec::new();
+    flate2::read::GzDecoder::new(&packed[..])
+        .read_to_end(&mut cells)
+        .unwrap();
+    assert_eq!(cells, [0, 100, 255, 0, 0, 100]);
+}
+
+#[test]
+fn the_field_flows_while_somebody_looks() {
+    let world = World::new("field");
+    let fields = world.graph.publisher::<topic::Field>().unwrap();
+    assert!(!fields.has_subscribers());
+    let mut socket = world.stream();
+    socket
+        .send(Message::text(
+            json!({"type": "field", "on": true}).to_string(),
+        ))
+        .unwrap();
+    let tick = std::time::Duration::from_millis(20);
+    let wait = |wanted: bool| {
+        world
+            .graph
+            .run(&[], tick, |_| {
+                let reached = fields.has_subscribers() == wanted;
+                Ok::<_, TransportError>(if reached { Flow::Stop } else { Flow::Continue })
+            })
+            .unwrap();
+    };
+    wait(true);
+    let mut loan = fields.loan(2).unwrap();
+    *loan.header_mut() = FieldHeader {
+        width: 2,
+        height: 1,
+        best: 10,
+        ..FieldHeader::zeroed()
+    };
+    loan.items_mut().copy_from_slice(&[10, 0]);
+    loan.send().unwrap();
+    let image = loop {
+        if let Message::Binary(image) = socket.read().unwrap() {
+            break image;
+        }
+    };
+    assert_eq!(image[image.len() - 2..], [255, 0]);
+    drop(socket);
+    wait(false);
+}
+
+#[test]
+fn writing_needs_the_token_and_somebody_who_listens() {
+    let world = World::new("token");
+    let path = "/api/v1/robots/r/region";
+    let body = r#"{"corners":[[0,0],[2,3]]}"#;
+    let json = "Content-Type: application/json";
+    let token = format!("Authorization: Bearer {TOKEN}");
+    let put = |headers: &[&str], body: &str| world.ask("PUT", path, headers, body).0;
+    assert_eq!(put(&[json], body), 401);
+    assert_eq!(
+        put(&[json, "Authorization: Bearer 0123456789abcdeX"], body),
+        403
+    );
+    assert_eq!(
+        put(&[json, "Authorization: Basic 0123456789abcdef"], body),
+        401
+    );
+    assert_eq!(put(&[json, &token], body), 409, "nobody takes a region");
+    assert_eq!(
+        world.ask("POST", "/api/v1/robots/r/save", &[&token], "").0,
+        409
+    );
+
+    let regions = world.graph.subscriber::<topic::Region>().unwrap();
+    let saves = world.graph.subscriber::<topic::Save>().unwrap();
+    world.wait_for_state(|known| known["abilities"] == json!({"region": true, "save": true}));
+    assert_eq!(put(&[json, &token], body), 202);
+    let corners = wait_for(&world.graph, &regions, |_, corners| {
+        (!corners.is_empty()).then(|| corners.to_vec())
+    });
+    assert_eq!(
+        corners,
+        [Corner { x: 0.0, y: 0.0 }, Corner { x: 2.0, y: 3.0 }]
+    );
+    let known = world.wait_for_state(|known| known["region"] != json!([]));
+    assert_eq!(known["region"], json!([[0.0, 0.0], [2.0, 3.0]]));
+    assert_eq!(world.ask("DELETE", path, &[&token], "").0, 202);
+    wait_for(&world.graph, &regions, |_, corners| {
+        corners.is_empty().then_some(())
+    });
+    assert_eq!(
+        world.ask("POST", "/api/v1/robots/r/save", &[&token], "").0,
+        202
+    );
+    wait_for(&world.graph, &saves, |_, _| Some(()));
+}
+
+#[test]
+fn nonsense_is_refused_with_a_reason() {
+    let world = World::new("nonsense");
+    let regions = world.graph.subscriber::<topic::Region>().unwrap();
+    world.wait_for_state(|known| known["abilities"]["region"] == true);
+    let token = format!("Authorization: Bearer {TOKEN}");
+    let headers = [token.as_str(), "Content-Type: application/json"];
+    let put = |body: &str| {
+        world
+            .ask("PUT", "/api/v1/robots/r/region", &headers, body)
+            .0
+    };
+    assert_eq!(put("{"), 400);
+    assert_eq!(put(r#"{"corners":[[0,0],[1,1]],"more":1}"#), 422);
+    assert_eq!(put(r#"{"corners":[[0,0]]}"#), 422);
+    assert_eq!(put(r#"{"corners":[[0,0],[1e300,1]]}"#), 422);
+    assert_eq!(put(r#"{"corners":[[0,0],[null,1]]}"#), 422);
+    let many = format!(r#"{{"corners":[{}[0,0]]}}"#, "[0,0],".repeat(1000));
+    assert_eq!(put(&many), 422);
+    assert_eq!(
+        put(&format!(
+            r#"{{"corners":[{}[0,0]]}}"#,
+            "[0,0],".repeat(100_000)
+        )),
+        413
+    );
+    let sent = regions.newest().unwrap();
+    assert!(sent.is_none_or(|sent| sent.items().is_empty()), "no region");
+    let (status, body) = world.ask("GET", "/api/v1/robots/other", &[], "");
+    assert_eq!(status, 404);
+    assert!(body.contains("there is no robot"), "{body}");
+    assert_eq!(world.ask("GET", "/../etc/passwd", &[], "").0, 404);
+    assert_eq!(world.ask("POST", "/", &[], "").0, 405);
+}
+
+#[test]
+fn other_sites_are_refused() {
+    let world = World::new("sites");
+    let ask = |headers: &[&str]| world.ask("GET", "/api/v1/robots", headers, "").0;
+    assert_eq!(ask(&["Origin: http://evil.example"]), 403);
+    assert_eq!(ask(&["Origin: null"]), 403);
+    assert_eq!(ask(&[&format!("Origin: http://{}", world.address)]), 200);
+    assert_eq!(ask(&["Host: evil.example"]), 421);
+    assert_eq!(ask(&["Sec-Fetch-Site: cross-site"]), 403);
+    // A WebSocket is not kept from other sites by browsers.
+    let upgrade = [
+        "Connection: Upgrade",
+        "Upgrade: websocket",
+        "Sec-WebSocket-Version: 13",
+        "Sec-WebSocket-Key: dGhlIHNhbXBsZSBub25jZQ==",
+        "Origin: http://evil.example",
+    ];
+    let (status, _) = world.ask("GET", "/api/v1/robots/r/stream", &upgrade, "");
+    assert_eq!(status, 403);
+    let (_, head, _) = world.raw(
+        format!(
+            "GET / HTTP/1.1\r\nHost: {}\r\nConnection: close\r\n\r\n",
+            world.address
+        )
+        .as_bytes(),
+    );
+    assert!(
+        head.contains("content-security-policy: default-src 'none'"),
+        "{head}"
+    );
+}
+
+#[test]
+fn hostile_sizes_end_the_connection_and_nothing_else() {
+    let world = World::new("hostile");
+    let mut socket = world.stream();
+    next(&mut socket);
+    // More than a message to the monitor may have.
+    let sent = socket.send(Message::text("x".repeat(1 << 20)));
+    let ended =
+        sent.is_err() || std::iter::from_fn(|| Some(socket.read())).any(|read| read.is_err());
+    assert!(ended);
+    let mut socket = world.stream();
+    socket.send(Message::text("{\"type\":\"reboot\"}")).unwrap();
+    let closed = loop {
+        if let Message::Close(frame) = socket.read().unwrap() {
+            break frame.unwrap();
+        }
+    };
+    assert_eq!(u16::from(closed.code), 1008);
+    assert!(closed.reason.contains("reboot"), "{}", closed.reason);
+    // A head without end is cut off, and garbage is no request.
+    let head = format!(
+        "GET / HTTP/1.1\r\nHost: x\r\nX: {}\r\n\r\n",
+        "x".repeat(1 << 20)
+    );
+    assert!((400..500).contains(&world.raw(head.as_bytes()).0));
+    assert_eq!(world.raw(b"\x16\x03\x01 hello\r\n\r\n").0, 400);
+    assert_eq!(world.get("/api/v1/robots")["robots"], json!(["r"]));
+}
+
+#[test]
+fn as_many_watch_as_may() {
+    let world = World::new("many");
+    let sockets: Vec<_> = (0..64).map(|_| world.stream()).collect();
+    let url = format!("ws://{}/api/v1/robots/r/stream", world.address);
+    let refused = client(url, TcpStream::connect(world.address).unwrap());
+    assert!(refused.is_err(), "the 65th is refused");
+    drop(sockets);
+}

@@ -1,0 +1,109 @@
+//! A headless Chromium that looks at a page, by way of WebDriver.
+
+use std::io::{BufRead, BufReader};
+use std::process::{Child, Command, Stdio};
+use std::time::Duration;
+
+use fantoccini::wd::TimeoutConfiguration;
+use fantoccini::{Client, ClientBuilder};
+use hyper_util::client::legacy::connect::HttpConnector;
+use serde_json::{Value, json};
+
+/// A browser with a window; it ends with this.
+pub struct Browser {
+    client: Client,
+    runtime: tokio::runtime::Runtime,
+    driver: Child,
+}
+
+impl Browser {
+    /// Opens a window of so many pixels; below 500 it is that of a telephone.
+    /// `None` where Chromium or its driver is not installed.
+    #[must_use]
+    pub fn open(width: u32, height: u32) -> Option<Self> {
+        let chromium = Command::new("chromium").arg("--version").output();
+        if !chromium.is_ok_and(|outcome| outcome.status.success()) {
+            return None;
+        }
+        let mut driver = Command::new("chromedriver")
+            .arg("--port=0")
+            .stdout(Stdio::piped())
+            .stderr(Stdio::null())
+            .spawn()
+            .ok()?;
+        let lines = BufReader::new(driver.stdout.take().unwrap()).lines();
+        let mut ports = lines.map_while(|line| {
+            let line = line.unwrap();
+            let port = line.split("successfully on port ").nth(1);
+            Some(port.map(|port| port.trim_end_matches('.').to_owned()))
+        });
+        let port = ports.find_map(|port| port).unwrap();
+        let runtime = tokio::runtime::Builder::new_current_thread()
+            .enable_all()
+            .build()
+            .unwrap();
+        // As root, Chromium runs without its sandbox only; the page is ours.
+        let mut options = json!({ "args": [
+            "--headless=new", "--no-sandbox", "--disable-gpu", "--disable-dev-shm-usage",
+            format!("--window-size={width},{height}"),
+        ] });
+        if width < 500 {
+            // No window is so narrow; a telephone's page is.
+            options["mobileEmulation"] = json!({ "deviceMetrics":
+                { "width": width, "height": height, "pixelRatio": 2.0, "touch": true } });
+        }
+        let capabilities = json!({ "goog:chromeOptions": options });
+        let Value::Object(capabilities) = capabilities else {
+            unreachable!("it was written as an object")
+        };
+        let client = runtime.block_on(async {
+            ClientBuilder::new(HttpConnector::new())
+                .capabilities(capabilities)
+                .connect(&format!("http://127.0.0.1:{port}"))
+                .await
+                .unwrap()
+        });
+        let browser = Browser {
+            client,
+            runtime,
+            driver,
+        };
+        // Tests wait as long as it takes.
+        let day = Some(Duration::from_secs(86_400));
+        let patience = TimeoutConfiguration::new(day, day, None);
+        let set = browser.client.update_timeouts(patience);
+        browser.runtime.block_on(set).unwrap();
+        Some(browser)
+    }
+
+    /// Goes to an address.
+    pub fn visit(&self, url: &str) {
+        self.runtime.block_on(self.client.goto(url)).unwrap();
+    }
+
+    /// What a script returns.
+    #[must_use]
+    pub fn run(&self, script: &str) -> Value {
+        let ran = self.client.execute(script, Vec::new());
+        self.runtime.block_on(ran).unwrap()
+    }
+
+    /// Waits until an expression is true on the page.
+    pub fn wait_until(&self, expression: &str) {
+        let script = format!(
+            "const done = arguments[0];
+             const look = () => ({expression}) ? done() : setTimeout(look, 20);
+             look();"
+        );
+        let waited = self.client.execute_async(&script, Vec::new());
+        self.runtime.block_on(waited).unwrap();
+    }
+}
+
+impl Drop for Browser {
+    fn drop(&mut self) {
+        let _ = self.runtime.block_on(self.client.clone().close());
+        let _ = self.driver.kill();
+        let _ = self.driver.wait();
+    }
+}

@@ -1,0 +1,248 @@
+//! The monitor's page in a browser, with a whole graph behind it.
+#![allow(
+    clippy::unwrap_used,
+    reason = "the lint spares test functions but not what they share"
+)]
+
+use std::io::{BufRead, BufReader};
+use std::process::{Child, Command, Stdio};
+use std::thread::JoinHandle;
+
+use nix::sys::signal::{Signal, kill};
+use nix::unistd::Pid;
+use tempfile::TempDir;
+use tests::browser::Browser;
+use tests::executables;
+use tests::world::World;
+
+const TOKEN: &str = "0123456789abcdef";
+
+/// A graph that plays a recording again and again, with a monitor.
+struct Graph {
+    launcher: Child,
+    log: Option<JoinHandle<()>>,
+    url: String,
+    _folder: TempDir,
+}
+
+impl Graph {
+    fn start(world: &World) -> Graph {
+        let folder = TempDir::new().unwrap();
+        let token = folder.path().join("token");
+        std::fs::write(&token, TOKEN).unwrap();
+        let descriptor = folder.path().join("g.yaml");
+        std::fs::write(&descriptor, nodes(world, &token.display().to_string())).unwrap();
+        let mut launcher = Command::new(executables::path("backcast"))
+            .args(["run", "--loop"])
+            .arg(&descriptor)
+            .env_remove("BACKCAST_GRAPH")
+            .env_remove("RUST_LOG")
+            .stdout(Stdio::null())
+            .stderr(Stdio::piped())
+            .spawn()
+            .unwrap();
+        let mut lines = BufReader::new(launcher.stderr.take().unwrap()).lines();
+        let url = lines.find_map(|line| {
+            let line = line.unwrap();
+            line.split("watch it on ").nth(1).map(str::to_owned)
+        });
+        // What comes later is read all the same, or its writers would wait.
+        let log = std::thread::spawn(move || lines.for_each(drop));
+        Graph {
+            launcher,
+            log: Some(log),
+            url: url.unwrap(),
+            _folder: folder,
+        }
+    }
+}
+
+impl Drop for Graph {
+    fn drop(&mut self) {
+        let _ = kill(
+            Pid::from_raw(self.launcher.id().cast_signed()),
+            Signal::SIGINT,
+        );
+        let _ = self.launcher.wait();
+        if let Some(log) = self.log.take() {
+            let _ = log.join();
+        }
+    }
+}
+
+/// What is killed here is not started again before the test is over.
+fn nodes(world: &World, token: &str) -> String {
+    let path = |name: &str| executables::path(name).display().to_string();
+    let (recording, map) = (world.recording(), world.map());
+    format!(
+        "nodes:
+  - id: replayer
+    path: {}
+    args: --recording {} --wait-for accumulator,peak_extractor
+    inputs: {{ hypotheses: peak_extractor/hypotheses }}
+    outputs: [scan, odometry, ground_truth]
+  - id: map_server
+    path: {}
+    args: --map {}
+    outputs: [map]
+  - id: boundary_extractor
+    path: {}
+    inputs: {{ map: map_server/map }}
+    outputs: [boundary]
+  - id: accumulator
+    path: {}
+    inputs: {{ scan: replayer/scan, map: map_server/map, boundary: boundary_extractor/boundary }}
+    outputs: [votes, field]
+    restart_policy: on-failure
+    restart_delay: 86400
+  - id: peak_extractor
+    path: {}
+    inputs: {{ votes: accumulator/votes, scan: replayer/scan, map: map_server/map }}
+    outputs: [hypotheses, beams]
+  - id: monitor
+    path: {}
+    args: --listen 127.0.0.1:0 --robot r7 --token-file {token}
+",
+        path("replayer"),
+        recording.display(),
+        path("map_server"),
+        map.display(),
+        path("boundary_extractor"),
+        path("accumulator"),
+        path("peak_extractor"),
+        path("monitor"),
+    )
+}
+
+/// The process of a node, as the API tells it.
+fn process(browser: &Browser, node: &str) -> Pid {
+    browser.wait_until(&format!(
+        "(window.asked ??= fetch('/api/v1/robots/r7').then((r) => r.json()).then((known) => {{
+            window.pid = known.nodes.find((n) => n.name === '{node}').pid;
+            window.asked = undefined;
+            window.of = '{node}';
+        }})) && window.of === '{node}'"
+    ));
+    let pid = browser.run("return window.pid").as_i64().unwrap();
+    Pid::from_raw(pid.try_into().unwrap())
+}
+
+/// Colours of the canvas in a coarse raster.
+const COLORS: &str = "(() => {
+    const canvas = document.getElementById('map');
+    const c = canvas.getContext('2d');
+    const found = new Set();
+    for (let x = 3; x < canvas.width; x += 7) {
+        for (let y = 3; y < canvas.height; y += 7) {
+            found.add(c.getImageData(x, y, 1, 1).data.slice(0, 3).join());
+        }
+    }
+    return found;
+})()";
+
+const POSE: &str = "document.getElementById('pose-x').textContent";
+
+#[test]
+fn an_operator_sees_the_graph_and_what_befalls_it() {
+    let Some(browser) = Browser::open(1280, 800) else {
+        eprintln!("SKIPPED: the page is not looked at: there is no chromium or no chromedriver");
+        return;
+    };
+    let world = World::of("malaga_corridor");
+    let graph = Graph::start(&world);
+    browser.visit(&format!("{}/#token={TOKEN}", graph.url));
+
+    // The map: what is free, what is a wall, and what was found there.
+    browser.wait_until("document.getElementById('verdict').dataset.verdict === 'Unique'");
+    browser.wait_until(&format!(
+        "{COLORS}.has('252,253,253') && {COLORS}.size > 10"
+    ));
+    assert_eq!(
+        browser.run("return location.hash"),
+        "",
+        "no token stays in the address"
+    );
+
+    // The pose moves, and the graph is well.
+    let first = browser.run(&format!("return {POSE}"));
+    browser.wait_until(&format!("{POSE} !== {first} && {POSE} !== '–'"));
+    browser.wait_until("document.querySelectorAll('.nodes [data-state=ready]').length === 6");
+
+    // A region in which to search, as an operator chooses it by keys.
+    browser.wait_until("!document.getElementById('region').disabled");
+    let _ = browser.run(
+        "document.getElementById('region').click();
+         document.getElementById('map').dispatchEvent(
+             new KeyboardEvent('keydown', { key: 'Enter', bubbles: true }))",
+    );
+    browser.wait_until("!document.getElementById('everywhere').disabled");
+
+    // It fits a telephone.
+    let telephone = Browser::open(375, 800).unwrap();
+    telephone.visit(&graph.url);
+    telephone.wait_until("document.getElementById('verdict').dataset.verdict === 'Unique'");
+    assert_eq!(telephone.run("return innerWidth"), 375);
+    assert_eq!(
+        telephone.run("return document.documentElement.scrollWidth"),
+        375
+    );
+    drop(telephone);
+
+    // A node that was killed turns red.
+    kill(process(&browser, "accumulator"), Signal::SIGKILL).unwrap();
+    browser.wait_until(
+        "(() => {
+            const name = document.querySelector('[data-node=accumulator][data-state=silent] .name span');
+            if (!name) return false;
+            const [red, green, blue] = getComputedStyle(name).color.match(/\\d+/g).map(Number);
+            return red > 2 * green && red > 2 * blue;
+        })()",
+    );
+    browser.wait_until("document.getElementById('verdict').textContent === 'No answers'");
+
+    // A monitor that hangs is a lost connection, until it goes on.
+    let monitor = process(&browser, "monitor");
+    kill(monitor, Signal::SIGSTOP).unwrap();
+    browser.wait_until(
+        "!document.getElementById('lost').hidden && document.body.dataset.link === 'lost'",
+    );
+    kill(monitor, Signal::SIGCONT).unwrap();
+    browser.wait_until(
+        "document.getElementById('lost').hidden && document.body.dataset.link === 'live'",
+    );
+}
+
+#[test]
+fn a_terminal_sees_the_same() {
+    let world = World::of("malaga_corridor");
+    let graph = Graph::start(&world);
+    let address = graph.url.strip_prefix("http://").unwrap();
+    let top = |arguments: &[&str]| {
+        let outcome = Command::new(executables::path("backcast"))
+            .arg("top")
+            .args(arguments)
+            .output()
+            .unwrap();
+        let said = [outcome.stdout, outcome.stderr].concat();
+        (outcome.status.code(), String::from_utf8(said).unwrap())
+    };
+    // The first scans come when the map is prepared.
+    let shown = loop {
+        let (code, shown) = top(&["--once", address]);
+        assert_eq!(code, Some(0), "{shown}");
+        if shown.contains("Unique") {
+            break shown;
+        }
+    };
+    assert!(shown.starts_with("r7  Unique"), "{shown}");
+    assert!(shown.contains("peak_extractor"), "{shown}");
+    let (code, said) = top(&["--robot", "other", address]);
+    assert_eq!(code, Some(1));
+    assert!(
+        said.contains("knows no robot \"other\"; it knows r7"),
+        "{said}"
+    );
+    let (code, said) = top(&["127.0.0.1:1"]);
+    assert_eq!(code, Some(1));
+    assert!(said.contains("no monitor answers at 127.0.0.1:1"), "{said}");
+}
