@@ -4,7 +4,7 @@ use std::fmt;
 use std::path::PathBuf;
 use std::str::FromStr;
 
-use clap::{ArgGroup, Parser, ValueEnum};
+use clap::{ArgGroup, Parser};
 use sick::cola::Encoding;
 use sick::lms2xx::Baud;
 
@@ -27,8 +27,8 @@ pub struct Config {
     pub listen: Option<String>,
 
     /// The encoding of --listen.
-    #[arg(long, value_enum, default_value_t = Protocol::ColaB, conflicts_with = "pty")]
-    pub protocol: Protocol,
+    #[arg(long, value_enum, default_value_t = Encoding::Binary, conflicts_with = "pty")]
+    pub protocol: Encoding,
 
     /// Is an LMS2xx on a pseudo-terminal; this link leads to it.
     #[arg(long, value_name = "LINK")]
@@ -58,26 +58,6 @@ pub struct Config {
     /// Where the randomness of faults starts.
     #[arg(long, value_name = "NUMBER", default_value_t = 1)]
     pub seed: u64,
-}
-
-/// The encoding of CoLa telegrams.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]
-pub enum Protocol {
-    /// Text.
-    ColaA,
-    /// Binary.
-    ColaB,
-}
-
-impl Protocol {
-    /// As the codec calls it.
-    #[must_use]
-    pub const fn encoding(self) -> Encoding {
-        match self {
-            Protocol::ColaA => Encoding::Text,
-            Protocol::ColaB => Encoding::Binary,
-        }
-    }
 }
 
 /// Times the original speed.

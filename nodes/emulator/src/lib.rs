@@ -15,7 +15,7 @@ mod player;
 mod run;
 mod sweep;
 
-pub use config::{Config, Protocol, Rate};
+pub use config::{Config, Rate};
 pub use error::EmulatorError;
 pub use faults::FaultPlan;
 pub use run::run;

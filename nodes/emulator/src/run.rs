@@ -36,7 +36,7 @@ pub fn run(graph: &Graph, config: &Config) -> Result<(), EmulatorError> {
         sweep,
     };
     match (&config.listen, &config.pty) {
-        (Some(address), _) => tcp::run(address, config.protocol.encoding(), common),
+        (Some(address), _) => tcp::run(address, config.protocol, common),
         (None, Some(link)) => pty::run(link, config.baud, common),
         // The command line allows nothing else.
         (None, None) => Ok(()),

@@ -23,8 +23,8 @@ pub struct Config {
     pub serial: Option<PathBuf>,
 
     /// The encoding of --tcp and --capture: devices are set to one of them.
-    #[arg(long, value_enum, default_value_t = Protocol::ColaB, conflicts_with = "serial")]
-    pub protocol: Protocol,
+    #[arg(long, value_enum, default_value_t = Encoding::Binary, conflicts_with = "serial")]
+    pub protocol: Encoding,
 
     /// The baud rate that the serial device is switched to: 9600, 19200, 38400
     /// or 500000. Left out, the one at which it answers is kept.
@@ -86,26 +86,6 @@ pub struct Config {
     /// is the farthest that any of these devices sees.
     #[arg(long, value_name = "METRES", default_value_t = 80.0, value_parser = metres)]
     pub range_max_m: f32,
-}
-
-/// The encoding of CoLa telegrams.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]
-pub enum Protocol {
-    /// Text.
-    ColaA,
-    /// Binary.
-    ColaB,
-}
-
-impl Protocol {
-    /// As the codec calls it.
-    #[must_use]
-    pub const fn encoding(self) -> Encoding {
-        match self {
-            Protocol::ColaA => Encoding::Text,
-            Protocol::ColaB => Encoding::Binary,
-        }
-    }
 }
 
 /// How far an LMS2xx measures, and in which unit.

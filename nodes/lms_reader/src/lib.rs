@@ -18,6 +18,6 @@ mod pace;
 mod run;
 pub mod scan;
 
-pub use config::{Config, Protocol, Rate, Reach};
+pub use config::{Config, Rate, Reach};
 pub use error::LmsError;
 pub use run::run;

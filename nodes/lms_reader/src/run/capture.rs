@@ -5,11 +5,11 @@ use std::io::{ErrorKind, Read};
 use std::path::Path;
 use std::time::{Duration, Instant};
 
-use sick::cola::{Framer, Telegram};
+use sick::cola::{Encoding, Framer, Telegram};
 
 use super::outlet::Outlet;
 use crate::pace::Pace;
-use crate::{Config, LmsError, Protocol, Rate};
+use crate::{Config, LmsError, Rate};
 
 /// How long the end waits for subscribers that are busy with what was sent: a
 /// search takes seconds at most, and each may have a few scans before it.
@@ -46,7 +46,7 @@ pub(super) fn run(path: &Path, config: &Config, outlet: &mut Outlet) -> Result<(
 
 fn play(
     path: &Path,
-    protocol: Protocol,
+    encoding: Encoding,
     pacer: &mut Option<(Instant, Pace)>,
     outlet: &mut Outlet,
 ) -> Result<(), LmsError> {
@@ -55,7 +55,7 @@ fn play(
         source,
     };
     let mut file = File::open(path).map_err(failed)?;
-    let mut framer = Framer::new(protocol.encoding());
+    let mut framer = Framer::new(encoding);
     let mut piece = [0; 1 << 14];
     let mut more = true;
     while more && !outlet.stopped() {

@@ -7,7 +7,6 @@ use std::time::{Duration, Instant};
 use sick::cola::{Encoding, Framer, Telegram};
 
 use super::outlet::{Outlet, SLICE};
-use crate::backoff::Backoff;
 use crate::cola_setup::{Setup, Wanted};
 use crate::{Config, LmsError};
 
@@ -18,21 +17,9 @@ const ATTEMPT: Duration = Duration::from_millis(500);
 /// Keeps a connection until the stop flag is set. (Looking up a host's name
 /// may take as long as the system's resolver does; a number needs no look-up.)
 pub(super) fn run(address: &str, config: &Config, outlet: &mut Outlet) -> Result<(), LmsError> {
-    let mut backoff = Backoff::default();
-    while !outlet.stopped() {
-        let before = outlet.sent;
-        let outcome = Connection::open(address, config).and_then(|mut c| c.listen(outlet));
-        match outcome {
-            Ok(()) => break,
-            Err(error @ LmsError::Transport(_)) => return Err(error),
-            Err(error) => outlet.lost(&error)?,
-        }
-        if outlet.sent > before {
-            backoff.reset();
-        }
-        outlet.wait_until(Instant::now() + backoff.next_wait())?;
-    }
-    Ok(())
+    super::keep(outlet, |outlet| {
+        Connection::open(address, config).and_then(|mut c| c.listen(outlet))
+    })
 }
 
 /// Tries all that a name stands for; the last failure counts.
@@ -68,7 +55,7 @@ impl<'a> Connection<'a> {
             .set_read_timeout(Some(SLICE))
             .and_then(|()| stream.set_write_timeout(Some(ATTEMPT)))
             .map_err(failed("set up the connection"))?;
-        let encoding = config.protocol.encoding();
+        let encoding = config.protocol;
         let wanted = Wanted::of(config.field, config.resolution);
         Ok(Connection {
             address,
