@@ -25,4 +25,4 @@ pub use rate::Rate;
 pub use schedule::{Action, Schedule};
 pub use selection::{Remap, Selection};
 pub use source::{Channels, Content, Source, Timed};
-pub use waiting::wait_for_nodes;
+pub use waiting::{Awaited, wait_for_nodes};

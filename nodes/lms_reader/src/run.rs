@@ -25,7 +25,7 @@ use outlet::Outlet;
 pub fn run(graph: &Graph, config: &Config) -> Result<(), LmsError> {
     let mut outlet = Outlet::open(graph, config.scan_settings())?;
     match (&config.tcp, &config.serial, &config.capture) {
-        (Some(address), _, _) => tcp::run(address, config, &mut outlet),
+        (Some(address), _, _) => tcp::run(&graph.name().resolve(address), config, &mut outlet),
         (None, Some(device), _) => serial::run(device, config, &mut outlet),
         (None, None, Some(path)) => capture::run(path, config, &mut outlet),
         (None, None, None) => Err(LmsError::NoSource),

@@ -3,17 +3,13 @@
 use std::fs::File;
 use std::io::{ErrorKind, Read};
 use std::path::Path;
-use std::time::{Duration, Instant};
+use std::time::Instant;
 
 use sick::cola::{Encoding, Framer, Telegram};
 
 use super::outlet::Outlet;
 use crate::pace::Pace;
 use crate::{Config, LmsError, Rate};
-
-/// How long the end waits for subscribers that are busy with what was sent: a
-/// search takes seconds at most, and each may have a few scans before it.
-const PATIENCE: Duration = Duration::from_secs(30);
 
 /// Plays the capture to its end, or over and over, until the stop flag is set.
 pub(super) fn run(path: &Path, config: &Config, outlet: &mut Outlet) -> Result<(), LmsError> {
@@ -36,12 +32,7 @@ pub(super) fn run(path: &Path, config: &Config, outlet: &mut Outlet) -> Result<(
     }
     let (sent, refused) = (outlet.sent, outlet.refused);
     tracing::info!(sent, refused, "the capture has been played");
-    // A publisher takes along what nobody has looked at.
-    if !outlet.wait_until_taken(Instant::now() + PATIENCE)? && !outlet.stopped() {
-        let seconds = PATIENCE.as_secs();
-        tracing::warn!("not all subscribers took the last scans within {seconds} s");
-    }
-    Ok(())
+    outlet.finish()
 }
 
 fn play(

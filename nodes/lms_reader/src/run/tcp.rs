@@ -8,7 +8,7 @@ use sick::cola::{Encoding, Framer, Telegram};
 
 use super::outlet::{Outlet, SLICE};
 use crate::cola_setup::{Setup, Wanted};
-use crate::{Config, LmsError};
+use crate::{Config, LmsError, Stamps};
 
 /// How long an attempt to connect, or to send the request, may take. A device
 /// is near, and a stop must not wait for long.
@@ -18,7 +18,14 @@ const ATTEMPT: Duration = Duration::from_millis(500);
 /// may take as long as the system's resolver does; a number needs no look-up.)
 pub(super) fn run(address: &str, config: &Config, outlet: &mut Outlet) -> Result<(), LmsError> {
     super::keep(outlet, |outlet| {
-        Connection::open(address, config).and_then(|mut c| c.listen(outlet))
+        let outcome = Connection::open(address, config).and_then(|mut c| c.listen(outlet));
+        match outcome {
+            Err(LmsError::Closed { .. }) if config.until_closed && outlet.sent > 0 => {
+                tracing::info!(sent = outlet.sent, "the device has sent everything");
+                outlet.finish()
+            }
+            other => other,
+        }
     })
 }
 
@@ -56,7 +63,11 @@ impl<'a> Connection<'a> {
             .and_then(|()| stream.set_write_timeout(Some(ATTEMPT)))
             .map_err(failed("set up the connection"))?;
         let encoding = config.protocol;
-        let wanted = Wanted::of(config.field, config.resolution);
+        let wanted = Wanted::of(
+            config.field,
+            config.resolution,
+            config.stamps == Stamps::Device,
+        );
         Ok(Connection {
             address,
             silence_s: config.silence,
