@@ -31,14 +31,14 @@ pub enum BackcastError {
     },
     /// An option is for a node that the graph does not have.
     #[error(
-        "{option} is for the {executable}, but no node in {} has a path that ends with `{executable}`; its executables are {found}",
+        "{option} is for the {executable}, but no node in {} has a path that ends so; its executables are {found}",
         file.display()
     )]
     NoNodeForOption {
         /// The option.
         option: &'static str,
         /// Whose option it is.
-        executable: &'static str,
+        executable: String,
         /// The descriptor.
         file: PathBuf,
         /// What the graph has instead.

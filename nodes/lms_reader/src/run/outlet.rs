@@ -199,7 +199,11 @@ impl Outlet {
         if let Link::Lost(reason) = &lost
             && self.link != lost
         {
-            tracing::warn!("{reason}; trying again");
+            match self.link {
+                // A device may come up after the node.
+                Link::Untried => tracing::info!("{reason}; trying again"),
+                _ => tracing::warn!("{reason}; trying again"),
+            }
             self.health.error(reason)?;
         }
         self.link = lost;
