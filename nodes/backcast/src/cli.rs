@@ -4,7 +4,7 @@ use std::process::ExitCode;
 
 use clap::{Parser, Subcommand};
 
-use crate::{bench, check, convert, doctor, evaluate, info, locate, plot, regress, run};
+use crate::{bench, check, convert, doctor, evaluate, info, locate, plot, probe, regress, run};
 
 /// Finds where a robot is from its laser and a map, with no initial guess.
 ///
@@ -51,6 +51,9 @@ enum Command {
     /// Replays recordings through the graph and compares with what is expected
     #[command(after_help = regress::NOTES)]
     Regress(regress::Config),
+    /// Says which laser is there, how it is set and what it sees
+    #[command(after_help = probe::NOTES)]
+    Probe(probe::Config),
     /// Measures the methods of global localization on generated worlds
     #[command(after_help = bench::NOTES)]
     Bench(bench::Config),
@@ -71,6 +74,7 @@ pub fn main() -> ExitCode {
         Some(Command::Doctor(config)) => doctor::run(&config),
         Some(Command::Convert(config)) => convert::run(&config),
         Some(Command::Regress(config)) => regress::run(&config),
+        Some(Command::Probe(config)) => probe::run(&config),
         Some(Command::Bench(config)) => bench::run(&config),
     };
     outcome.unwrap_or_else(|error| {

@@ -88,6 +88,10 @@ impl Protocol for Cola {
         }
     }
 
+    fn stands_alone(&self, content: &[u8]) -> bool {
+        self.encoding == Encoding::Binary && LmdScanData::is_in(content)
+    }
+
     fn read<'a>(&self, content: &'a [u8]) -> Result<Telegram<'a>, SickError> {
         Telegram::read(self.encoding, content)
     }
