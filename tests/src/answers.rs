@@ -30,6 +30,28 @@ pub fn of_graph(
     scans: usize,
     accumulator: &[&str],
 ) -> Answers {
+    let source = [
+        "--rate",
+        "max",
+        "--wait-for",
+        "accumulator,peak_extractor",
+        "--recording",
+        recording.to_str().unwrap(),
+    ];
+    of_graph_fed_by(tag, map, scans, accumulator, &("replayer", &source), None)
+}
+
+/// Lets `player` feed a graph of its own, by way of `reader` where there is one,
+/// until `scans` scans are answered; the player ends by itself then.
+#[must_use]
+pub fn of_graph_fed_by(
+    tag: &str,
+    map: &Path,
+    scans: usize,
+    accumulator: &[&str],
+    player: &(&str, &[&str]),
+    reader: Option<&(&str, &[&str])>,
+) -> Answers {
     let isolated = Isolated::new(tag);
     let graph = isolated.join("test");
     let votes = graph.subscriber::<topic::Votes>().unwrap();
@@ -37,25 +59,16 @@ pub fn of_graph(
     let start = |name: &str, arguments: &[&str]| {
         NodeProcess::start(executables::path(name).to_str().unwrap(), &graph, arguments)
     };
-    let nodes = [
+    let mut nodes = vec![
         start("map_server", &["--map", map.to_str().unwrap()]),
         start("boundary_extractor", &[]),
         start("accumulator", accumulator),
         start("peak_extractor", &[]),
     ];
-    let source = [
-        "--rate",
-        "max",
-        "--wait-for",
-        "accumulator,peak_extractor",
-        "--recording",
-    ];
-    let source = start(
-        "replayer",
-        &[source.as_slice(), &[recording.to_str().unwrap()]].concat(),
-    );
+    nodes.extend(reader.map(|(name, arguments)| start(name, arguments)));
+    let source = start(player.0, player.1);
     let answers = collect(&graph, &votes, &hypotheses, scans);
-    assert_eq!(source.exit_code(), Some(0), "the replayer lost something");
+    assert_eq!(source.exit_code(), Some(0), "the player lost something");
     for node in nodes {
         node.stop();
     }

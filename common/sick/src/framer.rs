@@ -22,6 +22,13 @@ pub trait Protocol {
     /// What stands at the first pending byte.
     fn judge(&self, pending: Pending<'_>) -> Judgement;
 
+    /// Whether a telegram with this content stands in no other one: where a longer
+    /// one that is not complete would hold it, that one's length is wrong. Without
+    /// this, damage to a length would cost as much as the length claims.
+    fn stands_alone(&self, _content: &[u8]) -> bool {
+        false
+    }
+
     /// Reads a content that was judged to be a telegram's.
     ///
     /// # Errors
@@ -93,6 +100,8 @@ pub struct Framer<P> {
     released: u64,
     /// Bytes rejected since the last telegram.
     skipped: u64,
+    /// The first byte after `at` where a telegram may begin that stands alone.
+    looked: usize,
     ended: bool,
 }
 
@@ -106,6 +115,7 @@ impl<P: Protocol> Framer<P> {
             at: 0,
             released: 0,
             skipped: 0,
+            looked: 0,
             ended: false,
         }
     }
@@ -131,8 +141,8 @@ impl<P: Protocol> Framer<P> {
     /// says how many.
     pub fn next_frame(&mut self) -> Option<Result<Frame<'_, P::Telegram<'_>>, SickError>> {
         loop {
-            match self.judge() {
-                Judgement::Incomplete => return None,
+            match self.judge(self.at) {
+                Judgement::Incomplete => return Some(Err(self.look_ahead()?)),
                 Judgement::Frame {
                     prefix,
                     length,
@@ -150,17 +160,42 @@ impl<P: Protocol> Framer<P> {
         }
     }
 
-    fn judge(&self) -> Judgement {
-        let bytes = self.bytes.get(self.at..).unwrap_or_default();
-        let offset = self.released + self.at as u64;
+    /// What is pending may claim more bytes than it has: looks for a telegram
+    /// behind its first byte that refutes it, and goes there.
+    fn look_ahead(&mut self) -> Option<SickError> {
+        let mut first_open = None;
+        for at in self.looked.max(self.at + 1)..self.bytes.len() {
+            match self.judge(at) {
+                Judgement::Frame { prefix, length, .. } => {
+                    let start = at + prefix;
+                    let content = self.bytes.get(start..start + length);
+                    if self.protocol.stands_alone(content.unwrap_or_default()) {
+                        let offset = self.released + self.at as u64;
+                        let present = at - self.at;
+                        self.at = at;
+                        self.skipped += present as u64;
+                        return Some(SickError::CutOff { offset, present });
+                    }
+                }
+                Judgement::Incomplete => _ = first_open.get_or_insert(at),
+                Judgement::Rejected(_) => {}
+            }
+        }
+        self.looked = first_open.unwrap_or(self.bytes.len());
+        None
+    }
+
+    fn judge(&self, at: usize) -> Judgement {
+        let bytes = self.bytes.get(at..).unwrap_or_default();
+        let offset = self.released + at as u64;
         if bytes.is_empty() {
             return Judgement::Incomplete;
         }
         let judgement = self.protocol.judge(Pending {
             bytes,
-            at: self.at,
+            at,
             offset,
-            in_step: self.skipped == 0,
+            in_step: self.skipped == 0 && at == self.at,
         });
         match judgement {
             Judgement::Incomplete if self.ended => Judgement::Rejected(SickError::Truncated {
@@ -205,6 +240,7 @@ impl<P: Protocol> Framer<P> {
             self.bytes.drain(..self.at);
             self.protocol.release(self.at);
             self.released += self.at as u64;
+            self.looked = self.looked.saturating_sub(self.at);
             self.at = 0;
         }
     }

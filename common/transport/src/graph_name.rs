@@ -3,6 +3,10 @@
 //! A name is checked once, here; everything derived from it (the prefix of
 //! files in shared memory) may rely on its characters and length.
 
+use std::net::Ipv4Addr;
+
+use twox_hash::XxHash3_64;
+
 use crate::TransportError;
 
 /// The environment variable that names the graph which a process joins.
@@ -43,6 +47,25 @@ impl GraphName {
         }
     }
 
+    /// An address of this machine alone that is the graph's own: what its nodes
+    /// say to each other over sockets does not meet another graph. Two names share
+    /// one in 16 million times.
+    #[must_use]
+    pub fn loopback(&self) -> Ipv4Addr {
+        // All of 127.0.0.0/8 is this machine; 127.0.0.x stays free for others.
+        let [b, c, d, ..] = XxHash3_64::oneshot(self.0.as_bytes()).to_le_bytes();
+        Ipv4Addr::new(127, b.max(1), c, d.clamp(1, 254))
+    }
+
+    /// HOST:PORT where the host `graph` means [`GraphName::loopback`].
+    #[must_use]
+    pub fn resolve(&self, address: &str) -> String {
+        match address.strip_prefix("graph:") {
+            Some(port) => format!("{}:{port}", self.loopback()),
+            None => address.to_owned(),
+        }
+    }
+
     /// The text.
     #[must_use]
     pub fn as_str(&self) -> &str {
@@ -59,6 +82,23 @@ impl std::fmt::Display for GraphName {
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn each_has_its_own_loopback_address() {
+        let address = |name: &str| GraphName::new(name).unwrap().loopback();
+        assert!(address("backcast").is_loopback());
+        assert_eq!(address("bc7"), address("bc7"));
+        let name = GraphName::new("bc7").unwrap();
+        assert_eq!(
+            name.resolve("graph:2112"),
+            format!("{}:2112", address("bc7"))
+        );
+        assert_eq!(name.resolve("10.0.0.9:2112"), "10.0.0.9:2112");
+        let all: std::collections::BTreeSet<_> =
+            (0..1000).map(|pid| address(&format!("bc{pid}"))).collect();
+        // By chance two of a thousand share one in 3 % of all choices of names.
+        assert!(all.len() >= 999, "{}", all.len());
+    }
 
     #[test]
     fn takes_short_plain_names_only() {

@@ -4,7 +4,9 @@ use std::process::ExitCode;
 
 use clap::{Parser, Subcommand};
 
-use crate::{bench, check, convert, doctor, evaluate, info, locate, plot, regress, run, top};
+use crate::{
+    bench, check, convert, doctor, evaluate, info, locate, plot, probe, regress, run, top,
+};
 
 /// Finds where a robot is from its laser and a map, with no initial guess.
 ///
@@ -54,6 +56,9 @@ enum Command {
     /// Shows a running graph in the terminal
     #[command(after_help = EXIT_CODES)]
     Top(top::Config),
+    /// Says which laser is there, how it is set and what it sees
+    #[command(after_help = probe::NOTES)]
+    Probe(probe::Config),
     /// Measures the methods of global localization on generated worlds
     #[command(after_help = bench::NOTES)]
     Bench(bench::Config),
@@ -75,6 +80,7 @@ pub fn main() -> ExitCode {
         Some(Command::Convert(config)) => convert::run(&config),
         Some(Command::Regress(config)) => regress::run(&config),
         Some(Command::Top(config)) => top::run(&config),
+        Some(Command::Probe(config)) => probe::run(&config),
         Some(Command::Bench(config)) => bench::run(&config),
     };
     outcome.unwrap_or_else(|error| {

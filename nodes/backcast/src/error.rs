@@ -31,14 +31,14 @@ pub enum BackcastError {
     },
     /// An option is for a node that the graph does not have.
     #[error(
-        "{option} is for the {executable}, but no node in {} has a path that ends with `{executable}`; its executables are {found}",
+        "{option} is for the {executable}, but no node in {} has a path that ends so; its executables are {found}",
         file.display()
     )]
     NoNodeForOption {
         /// The option.
         option: &'static str,
         /// Whose option it is.
-        executable: &'static str,
+        executable: String,
         /// The descriptor.
         file: PathBuf,
         /// What the graph has instead.
@@ -278,6 +278,30 @@ pub enum BackcastError {
     /// Standard output takes no more.
     #[error("cannot write to standard output")]
     Output(#[source] io::Error),
+    /// A laser cannot be reached, or hung up.
+    #[error("{address}: no device can be reached; check its power, cable and address")]
+    DeviceNotReached {
+        /// As it was given, with the port that was tried last.
+        address: String,
+        /// Why not.
+        source: io::Error,
+    },
+    /// Something is there, but no laser that we know.
+    #[error(
+        "{address}: no laser answers; tried {tried}; {}",
+        match heard {
+            0 => "nothing came".to_owned(),
+            n => format!("{n} bytes came that are no answer: is it another device, or in use?"),
+        }
+    )]
+    DeviceNotUnderstood {
+        /// As it was given, with the port that was tried last.
+        address: String,
+        /// Bytes that came.
+        heard: usize,
+        /// In which ways it was asked.
+        tried: String,
+    },
     /// The current directory cannot be told.
     #[error("cannot tell the current directory")]
     Folder(#[source] io::Error),

@@ -19,6 +19,7 @@ mod info;
 mod locate;
 mod offline;
 mod plot;
+mod probe;
 mod regress;
 mod run;
 mod statistics;

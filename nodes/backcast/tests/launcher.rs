@@ -252,7 +252,10 @@ fn wrong_use_and_wrong_graphs_have_their_exit_codes() {
 
     let (code, _, said) = run(&["id: a"], &["--rate", "max"]);
     assert_eq!(code, 2, "{said}");
-    assert!(said.contains("--rate is for the replayer"), "{said}");
+    assert!(
+        said.contains("--rate is for the replayer or emulator"),
+        "{said}"
+    );
 
     let (code, _, said) = run(&["id: a", "id: a"], &[]);
     assert_eq!(code, 1, "{said}");

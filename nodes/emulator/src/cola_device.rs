@@ -4,8 +4,9 @@
 //! without a login, values that it cannot do, names that it does not know.
 
 use sick::cola::{
-    AUTHORIZED_CLIENT, Answer, Channel, Channels, Command, Encoding, Fault, LmdScanData, Method,
-    OutputRange, PASSWORD_AUTHORIZED_CLIENT, ScanConfig, ScanDataConfig, Telegram, Value, Variable,
+    AUTHORIZED_CLIENT, Answer, Channel, Channels, Command, DeviceTime, Encoding, Fault,
+    LmdScanData, Method, OutputRange, PASSWORD_AUTHORIZED_CLIENT, ScanConfig, ScanDataConfig,
+    Telegram, Value, Variable,
 };
 
 use crate::sweep::Sweep;
@@ -69,7 +70,7 @@ impl ColaDevice {
                 position: false,
                 name: false,
                 comment: false,
-                time: false,
+                time: true,
                 interval: 1,
             },
             scale: if is_far { 2.0 } else { 1.0 },
@@ -252,10 +253,16 @@ impl ColaDevice {
             position: None,
             name: self.data.name.then_some(&b"emulated"[..]),
             comment: None,
-            time: None,
+            time: self.time(sweep, scan),
             event: None,
         };
         self.encoding.frame(&Telegram::ScanData(data), out);
+    }
+
+    /// The device's clock stands at the recording's time.
+    fn time(&self, sweep: &Sweep, scan: usize) -> Option<DeviceTime> {
+        let stamp_us = sweep.stamps_us.get(scan).filter(|_| self.data.time)?;
+        DeviceTime::from_unix_us(*stamp_us)
     }
 
     fn fill_distances(&mut self, sweep: &Sweep, scan: usize) {

@@ -1,10 +1,9 @@
 //! What a user can set.
 
-use std::fmt;
 use std::path::PathBuf;
-use std::str::FromStr;
 
-use clap::{ArgGroup, Parser, ValueEnum};
+use clap::{ArgGroup, Parser};
+use playback::Rate;
 use sick::cola::Encoding;
 use sick::lms2xx::Baud;
 
@@ -12,8 +11,10 @@ use crate::FaultPlan;
 
 /// Plays a recording as a SICK laser scanner.
 ///
-/// The recording begins when somebody wants scans. Without --loop the node ends
-/// with it, once its clients have taken everything.
+/// The recording begins when somebody wants scans; what else is in it goes to
+/// `odometry` and `ground_truth`. Without --loop the node ends with it, once its
+/// clients have taken everything: with 0, or 3 where a scan got no answer at --rate
+/// max or a message could not be used.
 #[derive(Debug, Clone, Parser)]
 #[command(name = "emulator", version)]
 #[command(group(ArgGroup::new("device").required(true).args(["listen", "pty"])))]
@@ -22,13 +23,14 @@ pub struct Config {
     #[arg(long, value_name = "FILE")]
     pub recording: PathBuf,
 
-    /// Is an LMS1xx, LMS5xx or TiM on this socket: tcp://HOST:PORT.
+    /// Is an LMS1xx, LMS5xx or TiM on this socket: tcp://HOST:PORT. The host
+    /// `graph` is an address on this machine that no other graph has.
     #[arg(long, value_name = "ADDRESS", value_parser = listen)]
     pub listen: Option<String>,
 
     /// The encoding of --listen.
-    #[arg(long, value_enum, default_value_t = Protocol::ColaB, conflicts_with = "pty")]
-    pub protocol: Protocol,
+    #[arg(long, value_enum, default_value_t = Encoding::Binary, conflicts_with = "pty")]
+    pub protocol: Encoding,
 
     /// Is an LMS2xx on a pseudo-terminal; this link leads to it.
     #[arg(long, value_name = "LINK")]
@@ -39,8 +41,9 @@ pub struct Config {
     #[arg(long, value_name = "RATE", default_value = "9600", value_parser = baud)]
     pub baud: Baud,
 
-    /// Times the original speed, 0.001 to 1000.
-    #[arg(long, value_name = "FACTOR", default_value_t = Rate(1.0))]
+    /// Times the original speed, 0.001 to 1000; or max: the next scan follows
+    /// the answer to the one before on `hypotheses`.
+    #[arg(long, value_name = "FACTOR|max", default_value_t = Rate::Factor(1.0))]
     pub rate: Rate,
 
     /// Starts over at the end.
@@ -55,49 +58,23 @@ pub struct Config {
     #[arg(long, value_name = "FAULTS", default_value = "")]
     pub fault: FaultPlan,
 
+    /// Nodes that must be ready before playing starts, with commas between.
+    #[arg(long, value_name = "NODES", value_delimiter = ',')]
+    pub wait_for: Vec<String>,
+
+    /// Seconds that an answer may take at --rate max, 0.1 to 3600.
+    #[arg(long, value_name = "SECONDS", default_value_t = 30.0, value_parser = patience)]
+    pub patience: f64,
+
     /// Where the randomness of faults starts.
     #[arg(long, value_name = "NUMBER", default_value_t = 1)]
     pub seed: u64,
 }
 
-/// The encoding of CoLa telegrams.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]
-pub enum Protocol {
-    /// Text.
-    ColaA,
-    /// Binary.
-    ColaB,
-}
-
-impl Protocol {
-    /// As the codec calls it.
-    #[must_use]
-    pub const fn encoding(self) -> Encoding {
-        match self {
-            Protocol::ColaA => Encoding::Text,
-            Protocol::ColaB => Encoding::Binary,
-        }
-    }
-}
-
-/// Times the original speed.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Rate(pub f64);
-
-impl FromStr for Rate {
-    type Err = String;
-
-    fn from_str(text: &str) -> Result<Self, String> {
-        match text.parse() {
-            Ok(factor) if (0.001..=1000.0).contains(&factor) => Ok(Rate(factor)),
-            _ => Err("allowed are 0.001 to 1000".into()),
-        }
-    }
-}
-
-impl fmt::Display for Rate {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        self.0.fmt(f)
+fn patience(text: &str) -> Result<f64, String> {
+    match text.parse() {
+        Ok(seconds) if (0.1..=3600.0).contains(&seconds) => Ok(seconds),
+        _ => Err("allowed are 0.1 to 3600 seconds".into()),
     }
 }
 
@@ -134,7 +111,7 @@ mod tests {
         Config::command().debug_assert();
         let config = parse("--recording a --listen tcp://127.0.0.1:2112").unwrap();
         assert_eq!(config.listen.as_deref(), Some("127.0.0.1:2112"));
-        assert_eq!((config.baud, config.rate), (Baud::B9600, Rate(1.0)));
+        assert_eq!((config.baud, config.rate), (Baud::B9600, Rate::Factor(1.0)));
         let config = parse("--recording a --pty b --baud 500000 --fault drop=0.5,split").unwrap();
         assert_eq!((config.baud, config.fault.drop), (Baud::B500000, 0.5));
         assert!(config.fault.split && !config.fault.merge);
@@ -152,7 +129,8 @@ mod tests {
         refuse("--listen 127.0.0.1:2112", "tcp://HOST:PORT");
         refuse("--listen tcp://a:x", "0 to 65535");
         refuse("--pty b --baud 1", "38400 and 500000");
-        refuse("--pty b --rate 0", "0.001 to 1000");
+        refuse("--pty b --rate 0", "0.001 to 1000, and max");
+        refuse("--pty b --patience 0", "0.1 to 3600 seconds");
         refuse("--pty b --fault crc=2", "0 to 1");
     }
 }

@@ -2,6 +2,7 @@
 
 use std::path::PathBuf;
 
+use playback::PlaybackError;
 use recording::RecordingError;
 
 /// What was tried, what was found and what is allowed.
@@ -10,6 +11,9 @@ pub enum EmulatorError {
     /// The recording cannot be read.
     #[error(transparent)]
     Recording(#[from] Box<RecordingError>),
+    /// A message of the recording cannot be read.
+    #[error(transparent)]
+    Playback(#[from] PlaybackError),
     /// The recording has no scan.
     #[error("{}: there is no scan in it", path.display())]
     Empty {

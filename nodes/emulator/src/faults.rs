@@ -100,17 +100,18 @@ impl Faults {
     }
 
     /// Changes the telegram that begins at `start`, the last in `out`, or takes
-    /// it away.
-    pub(crate) fn damage(&mut self, out: &mut Vec<u8>, start: usize, now_ns: i64) {
+    /// it away. Says whether it is as it was.
+    pub(crate) fn damage(&mut self, out: &mut Vec<u8>, start: usize, now_ns: i64) -> bool {
         let stalls = self.plan.stall.is_some() && self.happens(1.0 / STALL_EVERY);
         if now_ns < self.silent_until_ns || self.happens(self.plan.drop) {
             out.truncate(start);
-            return;
+            return false;
         }
         if let (true, Some(stall)) = (stalls, self.plan.stall) {
             self.silent_until_ns = now_ns + stall.as_nanos() as i64;
         }
-        if self.happens(self.plan.crc) && out.len() > start {
+        let is_damaged = self.happens(self.plan.crc) && out.len() > start;
+        if is_damaged {
             let at = self.rng.random_range(start..out.len());
             let bit = self.rng.random_range(0..8);
             if let Some(byte) = out.get_mut(at) {
@@ -122,6 +123,7 @@ impl Faults {
             let garbage = self.noise(count);
             out.splice(start..start, garbage);
         }
+        !is_damaged
     }
 
     /// Whether what there is to send waits for more.

@@ -204,20 +204,12 @@ impl Lms2xxDevice {
 
 #[cfg(test)]
 mod tests {
-    use recording::ros::LaserScan;
-
     use super::*;
 
     /// 361 beams over 180° that see their own number in centimetres.
     fn sweep() -> Sweep {
-        let scan = LaserScan {
-            angle_min: -90f32.to_radians(),
-            angle_increment: 0.5f32.to_radians(),
-            scan_time: 0.1,
-            ranges: (0..361).map(|beam| beam as f32 * 0.01).collect(),
-            ..LaserScan::default()
-        };
-        Sweep::first(0, scan).unwrap()
+        let ranges = (0..361).map(|beam| beam as f32 * 0.01).collect();
+        crate::sweep::beams(-90.0, 0.5, 0.1, ranges).unwrap()
     }
 
     fn device() -> Lms2xxDevice {

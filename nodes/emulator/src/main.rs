@@ -5,7 +5,17 @@ use std::process::ExitCode;
 use clap::Parser;
 use emulator::Config;
 
+/// Finished, but lost data.
+const LOST_DATA: u8 = 3;
+
 fn main() -> ExitCode {
     let config = Config::parse();
-    transport::node::main("emulator", |graph| emulator::run(graph, &config))
+    let mut lost_data = false;
+    let code = transport::node::main("emulator", |graph| {
+        emulator::run(graph, &config).map(|summary| lost_data = summary.lost_data())
+    });
+    if lost_data {
+        return ExitCode::from(LOST_DATA);
+    }
+    code
 }

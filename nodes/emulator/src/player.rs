@@ -1,73 +1,149 @@
-//! Which scan is due when.
+//! What of the drive is due when.
 //!
-//! Pure: the caller passes the clock in. Each scan is due at its original
-//! distance from the first one, so that no error adds up.
+//! Pure: the caller passes the clock in. It begins when somebody wants scans, and
+//! keeps the recording's times, or waits for the answer to each scan. An answer
+//! carries no sign of the telegram that it goes back to: it is that to the last
+//! scan if its scan came in after that was sent.
 
-/// Plays times that ascend.
+use messages::Stamp;
+use playback::{Action, Rate, Schedule};
+
+use crate::drive::Happening;
+
+/// What is to be done now.
+#[derive(Debug, PartialEq)]
+pub(crate) enum Due<'a> {
+    /// The scan is sent, after so many others.
+    Scan { index: usize, counter: u64 },
+    /// Odometry or a true pose is.
+    Other(&'a Happening),
+}
+
+/// Plays happenings whose times ascend.
 #[derive(Debug)]
 pub(crate) struct Player {
-    /// Of each scan, after the first one, nanoseconds.
-    times_ns: Vec<i64>,
-    /// From the last scan to the first of the next round.
+    happenings: Vec<(i64, Happening)>,
+    /// From the last of them to the first of the next round, nanoseconds.
     gap_ns: i64,
-    rate: f64,
+    rate: Rate,
     looped: bool,
-    started_ns: Option<i64>,
+    schedule: Schedule,
+    has_started: bool,
+    is_over: bool,
+    next: usize,
+    /// When something is due, where that is known.
+    wake_ns: Option<i64>,
     /// Scans that were due so far, of all rounds.
     counter: u64,
+    /// Scans whose answer was waited for in vain.
+    pub(crate) unanswered: u64,
 }
 
 impl Player {
-    /// `times_ns` are at least one.
-    pub(crate) fn new(times_ns: &[i64], rate: f64, looped: bool) -> Self {
-        let first = times_ns.first().copied().unwrap_or(0);
-        let times_ns: Vec<i64> = times_ns
-            .iter()
-            .map(|time| time.saturating_sub(first))
-            .collect();
-        let gaps = times_ns.len().saturating_sub(1).max(1) as i64;
-        let gap_ns = (times_ns.last().copied().unwrap_or(0) / gaps).max(1_000_000);
+    pub(crate) fn new(
+        happenings: Vec<(i64, Happening)>,
+        rate: Rate,
+        looped: bool,
+        patience_s: f64,
+    ) -> Self {
+        let is_scan = |(_, happening): &&(i64, Happening)| matches!(happening, Happening::Scan(_));
+        let gaps = happenings.iter().filter(is_scan).count().saturating_sub(1);
+        let time = |entry: Option<&(i64, Happening)>| entry.map_or(0, |(log_ns, _)| *log_ns);
+        let whole_ns = time(happenings.last()).saturating_sub(time(happenings.first()));
         Player {
-            times_ns,
-            gap_ns,
+            gap_ns: (whole_ns / gaps.max(1) as i64).max(1_000_000),
+            happenings,
             rate,
             looped,
-            started_ns: None,
+            schedule: Schedule::new(rate, patience_s),
+            has_started: false,
+            is_over: false,
+            next: 0,
+            wake_ns: None,
             counter: 0,
+            unanswered: 0,
         }
     }
 
     /// Begins, unless it has begun.
-    pub(crate) fn start(&mut self, now_ns: i64) {
-        self.started_ns.get_or_insert(now_ns);
+    pub(crate) fn start(&mut self) {
+        self.has_started = true;
     }
 
-    /// When the next scan is due; `None` before the start and after the end.
-    pub(crate) fn due_ns(&self) -> Option<i64> {
-        let started_ns = self.started_ns?;
-        if self.is_over() {
-            return None;
-        }
-        let scans = self.times_ns.len() as u64;
-        let round_ns = self.times_ns.last()? + self.gap_ns;
-        let recorded_ns = self.times_ns.get((self.counter % scans) as usize)?;
-        let since_ns = round_ns * (self.counter / scans) as i64 + recorded_ns;
-        Some(started_ns + (since_ns as f64 / self.rate) as i64)
+    /// When something is due at the latest look; `None` where only a client or an
+    /// answer leads on.
+    pub(crate) fn wake_ns(&self) -> Option<i64> {
+        self.wake_ns
     }
 
-    /// The scan that is due at `now_ns`: its index and how many were before it.
-    pub(crate) fn take(&mut self, now_ns: i64) -> Option<(usize, u64)> {
-        if self.due_ns()? > now_ns {
-            return None;
+    /// Whether an answer is waited for.
+    pub(crate) fn awaits_answer(&self) -> bool {
+        self.rate == Rate::Max && self.schedule.awaited().is_some()
+    }
+
+    /// What is due at `now_ns`, the next of it.
+    pub(crate) fn take(&mut self, now_ns: i64) -> Option<Due<'_>> {
+        self.wake_ns = None;
+        while self.has_started && !self.is_over {
+            let pending_ns = self.happenings.get(self.next).map(|(log_ns, _)| *log_ns);
+            match self.schedule.next(pending_ns, now_ns) {
+                Action::Send => return self.advance(),
+                Action::SleepUntil(due_ns) => {
+                    self.wake_ns = Some(due_ns);
+                    break;
+                }
+                Action::AwaitAnswer => break,
+                Action::GiveUp(stamp) => {
+                    self.unanswered += 1;
+                    tracing::warn!(scan = stamp.counter, "got no answer on `hypotheses`");
+                }
+                Action::Done => self.is_over = true,
+            }
         }
-        let counter = self.counter;
-        self.counter += 1;
-        Some(((counter % self.times_ns.len() as u64) as usize, counter))
+        None
+    }
+
+    fn advance(&mut self) -> Option<Due<'_>> {
+        let at = self.next;
+        self.next += 1;
+        if self.looped && self.next == self.happenings.len() {
+            self.next = 0;
+            self.schedule.start_over(self.gap_ns);
+        }
+        let (_, happening) = self.happenings.get(at)?;
+        Some(match happening {
+            &Happening::Scan(index) => {
+                self.counter += 1;
+                let counter = self.counter - 1;
+                Due::Scan { index, counter }
+            }
+            other => Due::Other(other),
+        })
+    }
+
+    /// The last scan went out as it should, at `now_ns`: it will be answered.
+    pub(crate) fn sent(&mut self, now_ns: i64) {
+        if self.rate == Rate::Max {
+            self.schedule.scan_sent(Stamp {
+                measured_ns: 0,
+                entered_ns: now_ns,
+                counter: self.counter.saturating_sub(1),
+            });
+        }
+    }
+
+    /// A scan was answered that came in at `entered_ns`.
+    pub(crate) fn answered(&mut self, entered_ns: i64) {
+        if let Some(awaited) = self.schedule.awaited()
+            && entered_ns >= awaited.entered_ns
+        {
+            self.schedule.answered(awaited);
+        }
     }
 
     /// Whether nothing comes any more.
     pub(crate) fn is_over(&self) -> bool {
-        !self.looped && self.counter >= self.times_ns.len() as u64
+        self.is_over
     }
 }
 
@@ -77,30 +153,66 @@ mod tests {
 
     const MS: i64 = 1_000_000;
 
+    fn player(times_ms: &[i64], rate: Rate, looped: bool) -> Player {
+        let scans = times_ms.iter().enumerate();
+        let happenings = scans.map(|(i, ms)| (ms * MS, Happening::Scan(i))).collect();
+        Player::new(happenings, rate, looped, 1.0)
+    }
+
+    fn scan(index: usize, counter: u64) -> Option<Due<'static>> {
+        Some(Due::Scan { index, counter })
+    }
+
     #[test]
     fn the_original_distances_from_the_start_on() {
-        let mut player = Player::new(&[700 * MS, 800 * MS, 950 * MS], 0.5, false);
+        let mut player = player(&[700, 800, 950], Rate::Factor(0.5), false);
         assert_eq!(player.take(i64::MAX), None, "nobody wants scans yet");
-        player.start(5 * MS);
-        player.start(77 * MS);
-        assert_eq!(player.take(5 * MS), Some((0, 0)));
+        player.start();
+        assert_eq!(player.take(5 * MS), scan(0, 0));
         assert_eq!(player.take(204 * MS), None);
-        assert_eq!(player.take(205 * MS), Some((1, 1)));
+        assert_eq!(player.wake_ns(), Some(205 * MS));
+        assert_eq!(player.take(205 * MS), scan(1, 1));
         // A late look does not shift what comes after.
-        assert_eq!(player.due_ns(), Some(505 * MS));
-        assert_eq!(player.take(600 * MS), Some((2, 2)));
-        assert!(player.is_over() && player.due_ns().is_none());
+        assert_eq!(player.take(206 * MS), None);
+        assert_eq!(player.wake_ns(), Some(505 * MS));
+        assert_eq!(player.take(600 * MS), scan(2, 2));
+        assert!(!player.is_over());
+        assert_eq!(player.take(600 * MS), None);
+        assert!(player.is_over() && player.wake_ns().is_none());
     }
 
     #[test]
     fn a_new_round_keeps_the_usual_distance() {
-        let mut player = Player::new(&[0, 100 * MS, 200 * MS], 1.0, true);
-        player.start(0);
+        let mut player = player(&[0, 100, 200], Rate::Factor(1.0), true);
+        player.start();
         for step in 0..10 {
-            assert_eq!(player.due_ns(), Some(step * 100 * MS));
-            let expected = Some(((step % 3) as usize, step as u64));
-            assert_eq!(player.take(step * 100 * MS), expected);
+            let at_ns = step * 100 * MS;
+            if step > 0 {
+                assert_eq!(player.take(at_ns - 1), None, "{step}");
+            }
+            assert_eq!(player.take(at_ns), scan((step % 3) as usize, step as u64));
         }
         assert!(!player.is_over());
+    }
+
+    #[test]
+    fn at_max_each_scan_waits_for_an_answer_to_the_one_before() {
+        let mut player = player(&[0, 100, 200], Rate::Max, false);
+        player.start();
+        assert_eq!(player.take(10), scan(0, 0));
+        player.sent(10);
+        assert!(player.awaits_answer());
+        player.answered(9);
+        assert_eq!(player.take(11), None, "that scan came in before");
+        player.answered(12);
+        assert_eq!(player.take(13), scan(1, 1));
+        // One that was lost on the way is not waited for.
+        assert_eq!(player.take(14), scan(2, 2));
+        player.sent(14);
+        assert_eq!(player.take(15), None);
+        assert!(!player.is_over(), "the last answer is waited for as well");
+        assert_eq!(player.take(14 + 1000 * MS), None);
+        assert!(player.is_over());
+        assert_eq!(player.unanswered, 1);
     }
 }

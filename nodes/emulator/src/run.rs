@@ -7,39 +7,57 @@ use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, Ordering};
 use std::time::Duration;
 
-use messages::NodeState;
-use transport::{Graph, Health, monotonic_ns};
+use messages::{NodeState, topic};
+use playback::{Awaited, Poses};
+use transport::{Graph, Health, Subscriber, TransportError, monotonic_ns, with_causes};
 
+use crate::drive::{Drive, Happening};
 use crate::faults::Faults;
-use crate::player::Player;
+use crate::player::{Due, Player};
 use crate::sweep::Sweep;
 use crate::{Config, EmulatorError};
 
 /// How long the stop flag may go unseen.
 const SLICE: Duration = Duration::from_millis(20);
 
+/// How long an answer may go unseen that is waited for: it does not end the wait
+/// for clients.
+const ANSWER_SLICE: Duration = Duration::from_millis(1);
+
 /// How long the end waits for clients to take the last scans, nanoseconds.
 const PATIENCE_NS: i64 = 10_000_000_000;
+
+/// What a run did.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+pub struct Summary {
+    /// Whether it came to its end; false where it was stopped.
+    pub finished: bool,
+    /// Scans whose answer was waited for in vain.
+    pub unanswered: u64,
+    /// Messages of the recording that could not be used.
+    pub refused: u64,
+}
+
+impl Summary {
+    /// Whether it finished but lost data on the way.
+    #[must_use]
+    pub fn lost_data(&self) -> bool {
+        self.finished && self.unanswered + self.refused > 0
+    }
+}
 
 /// Plays the recording until it ends or the stop flag is set.
 ///
 /// # Errors
 /// If the graph fails, the recording cannot be played as this device, or the
 /// socket or pseudo-terminal cannot be had.
-pub fn run(graph: &Graph, config: &Config) -> Result<(), EmulatorError> {
-    let sweep = Sweep::open(&config.recording)?;
-    let common = Common {
-        player: Player::new(&sweep.times_ns, config.rate.0, config.looped),
-        faults: Faults::new(config.fault.clone(), config.seed, monotonic_ns()),
-        health: graph.health()?,
-        stop: graph.stop_flag(),
-        sweep,
-    };
+pub fn run(graph: &Graph, config: &Config) -> Result<Summary, EmulatorError> {
+    let common = Common::open(graph, config)?;
     match (&config.listen, &config.pty) {
-        (Some(address), _) => tcp::run(address, config.protocol.encoding(), common),
+        (Some(address), _) => tcp::run(&graph.name().resolve(address), config.protocol, common),
         (None, Some(link)) => pty::run(link, config.baud, common),
         // The command line allows nothing else.
-        (None, None) => Ok(()),
+        (None, None) => Ok(Summary::default()),
     }
 }
 
@@ -48,26 +66,98 @@ struct Common {
     sweep: Sweep,
     player: Player,
     faults: Faults,
+    poses: Poses,
+    answers: Subscriber<topic::Hypotheses>,
+    awaited: Awaited,
     health: Health,
     stop: Arc<AtomicBool>,
+    refused: u64,
 }
 
+/// A scan of the recording, and how many were sent before.
+type Scan = (usize, u64);
+
 impl Common {
+    fn open(graph: &Graph, config: &Config) -> Result<Self, EmulatorError> {
+        let Drive {
+            sweep,
+            happenings,
+            refused,
+        } = Drive::open(&config.recording)?;
+        let mut health = graph.health()?;
+        for error in &refused {
+            tracing::warn!("{}", with_causes(error));
+            health.count_refused(1);
+        }
+        let (rate, patience_s) = (config.rate, config.patience);
+        Ok(Common {
+            player: Player::new(happenings, rate, config.looped, patience_s),
+            faults: Faults::new(config.fault.clone(), config.seed, monotonic_ns()),
+            poses: Poses::open(graph)?,
+            answers: graph.subscriber()?,
+            awaited: Awaited::new(graph, &config.wait_for)?,
+            health,
+            stop: graph.stop_flag(),
+            refused: refused.len() as u64,
+            sweep,
+        })
+    }
+
     fn stopped(&self) -> bool {
         self.stop.load(Ordering::Relaxed)
     }
 
     /// How long there is nothing to do but to listen.
     fn pause(&self) -> Duration {
-        let until_ns = self.player.due_ns().unwrap_or(i64::MAX);
+        let most = match self.player.awaits_answer() {
+            true => ANSWER_SLICE,
+            false => SLICE,
+        };
+        let until_ns = self.player.wake_ns().unwrap_or(i64::MAX);
         let left_ns = until_ns.saturating_sub(monotonic_ns()).max(0);
-        SLICE.min(Duration::from_nanos(left_ns.unsigned_abs()))
+        most.min(Duration::from_nanos(left_ns.unsigned_abs()))
     }
 
-    /// Somebody wants scans: the recording begins.
+    /// Somebody wants scans: the recording begins, once the graph is ready.
     fn start(&mut self) -> Result<(), EmulatorError> {
-        self.player.start(monotonic_ns());
-        self.health.state(NodeState::Ready)?;
+        if self.awaited.are_ready()? {
+            self.player.start();
+            self.health.state(NodeState::Ready)?;
+        }
         Ok(())
+    }
+
+    /// The next scan that is due at `now_ns`; what is due before it is published.
+    fn next_scan(&mut self, now_ns: i64) -> Result<Option<Scan>, TransportError> {
+        while let Some(answer) = self.answers.receive()? {
+            self.player.answered(answer.header().stamp.entered_ns);
+        }
+        while let Some(due) = self.player.take(now_ns) {
+            match due {
+                Due::Scan { index, counter } => return Ok(Some((index, counter))),
+                Due::Other(Happening::Odometry(odometry)) => {
+                    self.poses.send_odometry(**odometry)?;
+                }
+                Due::Other(Happening::GroundTruth(truth)) => self.poses.send_truth(**truth)?,
+                Due::Other(Happening::Scan(_)) => {}
+            }
+        }
+        Ok(None)
+    }
+
+    /// How it went.
+    fn conclude(&self, finished: bool) -> Summary {
+        let unanswered = self.player.unanswered;
+        let how = if finished {
+            "has been played"
+        } else {
+            "was stopped"
+        };
+        tracing::info!(unanswered, refused = self.refused, "the recording {how}");
+        Summary {
+            finished,
+            unanswered,
+            refused: self.refused,
+        }
     }
 }

@@ -3,10 +3,7 @@
 //! All have the same beams. A beam is asked for by its angle, and there is none
 //! between those that were recorded.
 
-use std::path::Path;
-
-use recording::ros::LaserScan;
-use recording::{Kind, Message, Recording};
+use messages::ScanHeader;
 
 use crate::EmulatorError;
 
@@ -29,40 +26,26 @@ pub(crate) struct Sweep {
     /// From one scan to the next, seconds.
     pub(crate) scan_time_s: f64,
     /// Log times, nanoseconds.
-    pub(crate) times_ns: Vec<i64>,
+    times_ns: Vec<i64>,
+    /// When each was measured, microseconds since 1970.
+    pub(crate) stamps_us: Vec<i64>,
     /// Metres; not finite where nothing came back.
     pub(crate) scans: Vec<Vec<f32>>,
 }
 
 impl Sweep {
-    /// Reads all scans of a recording.
+    /// The first scan, recorded at `time_ns`.
     ///
     /// # Errors
-    /// If it cannot be read, holds no scans, or scans that differ in their beams.
-    pub(crate) fn open(path: &Path) -> Result<Self, EmulatorError> {
-        let recording = Recording::open(path)?;
-        let topic = recording.required_topic(Kind::Scan)?;
-        let mut sweep: Option<Sweep> = None;
-        for record in recording.records_of(&[Kind::Scan]) {
-            let record = record?;
-            if let Message::Scan(scan) = record.message
-                && record.topic == topic
-            {
-                match &mut sweep {
-                    Some(sweep) => sweep.add(record.log_time_ns, scan)?,
-                    None => sweep = Some(Sweep::first(record.log_time_ns, scan)?),
-                }
-            }
-        }
-        let mut sweep = sweep.ok_or_else(|| EmulatorError::Empty { path: path.into() })?;
-        sweep.measure_time();
-        Ok(sweep)
-    }
-
-    pub(crate) fn first(time_ns: i64, scan: LaserScan) -> Result<Self, EmulatorError> {
-        let raw = |radians: f32| (f64::from(radians).to_degrees() * 1e4).round() as i32;
+    /// If no device has such beams.
+    pub(crate) fn first(
+        time_ns: i64,
+        scan: &ScanHeader,
+        ranges: Vec<f32>,
+    ) -> Result<Self, EmulatorError> {
+        let raw = |radians: f64| (radians.to_degrees() * 1e4).round() as i32;
         let step_raw = raw(scan.angle_increment);
-        if !(1..=65_535).contains(&step_raw) || scan.ranges.is_empty() {
+        if !(1..=65_535).contains(&step_raw) || ranges.is_empty() {
             return Err(EmulatorError::Scan {
                 scan: 0,
                 field: "the angle from beam to beam",
@@ -71,7 +54,7 @@ impl Sweep {
             });
         }
         let start_raw = raw(scan.angle_min);
-        let sweep_raw = (scan.ranges.len() as i64 - 1) * i64::from(step_raw);
+        let sweep_raw = (ranges.len() as i64 - 1) * i64::from(step_raw);
         if !TURN.contains(&i64::from(start_raw)) || !TURN.contains(&sweep_raw) {
             return Err(EmulatorError::Scan {
                 scan: 0,
@@ -83,16 +66,26 @@ impl Sweep {
         Ok(Sweep {
             start_raw: start_raw + AHEAD_RAW,
             step_raw,
-            count: scan.ranges.len(),
-            scan_time_s: f64::from(scan.scan_time),
+            count: ranges.len(),
+            scan_time_s: scan.scan_time_s,
             times_ns: vec![time_ns],
-            scans: vec![scan.ranges],
+            stamps_us: vec![scan.stamp.measured_ns.div_euclid(1000)],
+            scans: vec![ranges],
         })
     }
 
-    fn add(&mut self, time_ns: i64, scan: LaserScan) -> Result<(), EmulatorError> {
+    /// The next scan.
+    ///
+    /// # Errors
+    /// If its beams are not those of the first.
+    pub(crate) fn add(
+        &mut self,
+        time_ns: i64,
+        scan: &ScanHeader,
+        ranges: Vec<f32>,
+    ) -> Result<(), EmulatorError> {
         let index = self.scans.len();
-        let other = Sweep::first(time_ns, scan)?;
+        let other = Sweep::first(time_ns, scan, ranges)?;
         let differs = |field, found: f64, allowed: f64| EmulatorError::Scan {
             scan: index,
             field,
@@ -116,13 +109,14 @@ impl Sweep {
             return Err(differs(field, found, allowed));
         }
         self.times_ns.push(time_ns);
+        self.stamps_us.extend(other.stamps_us);
         self.scans.extend(other.scans);
         Ok(())
     }
 
     /// Where the recording does not say how long a scan takes, it is the usual
     /// time between two.
-    fn measure_time(&mut self) {
+    pub(crate) fn measure_time(&mut self) {
         let mut gaps: Vec<i64> = self
             .times_ns
             .windows(2)
@@ -155,15 +149,31 @@ impl Sweep {
 
 /// A small world for the tests of this crate: five beams from right to left.
 #[cfg(test)]
-pub(crate) fn five_beams(angle_increment_deg: f32) -> Sweep {
-    let scan = LaserScan {
-        angle_min: (-2.0 * angle_increment_deg).to_radians(),
-        angle_increment: angle_increment_deg.to_radians(),
-        scan_time: 0.02,
-        ranges: vec![1.0, f32::INFINITY, 2.004, 70.0, 0.001],
-        ..LaserScan::default()
-    };
-    Sweep::first(0, scan).unwrap()
+pub(crate) fn five_beams(angle_increment_deg: f64) -> Sweep {
+    let ranges = vec![1.0, f32::INFINITY, 2.004, 70.0, 0.001];
+    beams(
+        -2.0 * angle_increment_deg,
+        angle_increment_deg,
+        0.02,
+        ranges,
+    )
+    .unwrap()
+}
+
+/// A scan measured at 2006-01-20 15:59:53.5, for the tests of this crate.
+#[cfg(test)]
+pub(crate) fn beams(
+    first_deg: f64,
+    step_deg: f64,
+    scan_time_s: f64,
+    ranges: Vec<f32>,
+) -> Result<Sweep, EmulatorError> {
+    let mut header: ScanHeader = bytemuck::Zeroable::zeroed();
+    header.angle_min = first_deg.to_radians();
+    header.angle_increment = step_deg.to_radians();
+    header.scan_time_s = scan_time_s;
+    header.stamp.measured_ns = 1_137_772_793_500_000_999;
+    Sweep::first(0, &header, ranges)
 }
 
 #[cfg(test)]
@@ -185,15 +195,10 @@ mod tests {
 
     #[test]
     fn beams_that_no_device_has_are_refused() {
-        let refuse = |angle_min: f32, angle_increment: f32, expected: &str| {
-            let scan = LaserScan {
-                angle_min,
-                angle_increment,
-                ranges: vec![1.0; 100],
-                ..LaserScan::default()
-            };
-            let error = Sweep::first(0, scan).unwrap_err().to_string();
-            assert!(error.contains(expected), "{error}");
+        let refuse = |angle_min: f64, angle_increment: f64, expected: &str| {
+            let (first, step) = (angle_min.to_degrees(), angle_increment.to_degrees());
+            let error = beams(first, step, 0.1, vec![1.0; 100]).unwrap_err();
+            assert!(error.to_string().contains(expected), "{error}");
         };
         refuse(1.0, -0.01, "counter-clockwise");
         refuse(1.0, 0.2, "0.0001° to 6.5535°");

@@ -8,7 +8,7 @@ use std::collections::VecDeque;
 
 use sick::cola::{
     AUTHORIZED_CLIENT, Answer, Command, Method, OutputRange, PASSWORD_AUTHORIZED_CLIENT,
-    ScanConfig, Value, Variable,
+    ScanConfig, ScanDataConfig, Value, Variable,
 };
 
 use crate::LmsError;
@@ -27,11 +27,14 @@ pub(crate) struct Wanted {
     /// The whole field, half of it to each side of ahead.
     pub(crate) field_raw_1e4_deg: Option<i32>,
     pub(crate) resolution_raw_1e4_deg: Option<u32>,
+    /// Whether each scan says when it was measured.
+    pub(crate) time: bool,
 }
 
 impl Wanted {
-    pub(crate) fn of(field_deg: Option<f64>, resolution_deg: Option<f64>) -> Self {
+    pub(crate) fn of(field_deg: Option<f64>, resolution_deg: Option<f64>, time: bool) -> Self {
         Wanted {
+            time,
             field_raw_1e4_deg: field_deg.map(|deg| (deg * 1e4).round() as i32),
             resolution_raw_1e4_deg: resolution_deg.map(|deg| (deg * 1e4).round() as u32),
         }
@@ -49,6 +52,10 @@ enum Step {
     ReadRange,
     SetRange,
     CheckRange,
+    ReadContents,
+    /// Left out where the contents are as wanted.
+    AddTime,
+    CheckContents,
     Run,
     Subscribe,
 }
@@ -62,12 +69,17 @@ pub(crate) struct Setup {
     /// As the device had it.
     scan: Option<ScanConfig>,
     range: Option<OutputRange>,
+    contents: Option<ScanDataConfig>,
 }
 
 impl Setup {
     pub(crate) fn new(wanted: Wanted) -> Self {
         let mut steps = VecDeque::from([Step::Identify, Step::AskState]);
-        if wanted != Wanted::default() {
+        if wanted.time {
+            steps.push_back(Step::ReadContents);
+        }
+        let changes = wanted.field_raw_1e4_deg.is_some() || wanted.resolution_raw_1e4_deg.is_some();
+        if changes {
             steps.push_back(Step::Login);
         }
         if wanted.resolution_raw_1e4_deg.is_some() {
@@ -77,7 +89,7 @@ impl Setup {
         if wanted.field_raw_1e4_deg.is_some() {
             steps.extend([Step::ReadRange, Step::SetRange, Step::CheckRange]);
         }
-        if wanted != Wanted::default() {
+        if changes {
             steps.push_back(Step::Run);
         }
         steps.push_back(Step::Subscribe);
@@ -87,6 +99,7 @@ impl Setup {
             attempts: Attempts::default(),
             scan: None,
             range: None,
+            contents: None,
         }
     }
 
@@ -181,10 +194,38 @@ impl Setup {
                 Ok(true)
             }
             (Step::SetRange, Answer::Written(Variable::OutputRange)) => Ok(true),
+            (Step::ReadContents, Answer::Value(Value::ScanDataConfig(contents))) => {
+                self.heard_contents(*contents);
+                Ok(true)
+            }
+            (Step::AddTime, Answer::Written(Variable::ScanDataConfig)) => Ok(true),
+            (Step::CheckContents, Answer::Value(Value::ScanDataConfig(contents))) => {
+                same("send the time of a scan", &contents.time, &true)
+            }
             (Step::CheckRange, Answer::Value(Value::OutputRange(range))) => {
                 same("keep the field", &Some(*range), &self.wanted_range())
             }
             _ => Ok(false),
+        }
+    }
+
+    /// The time is asked for where the device leaves it out.
+    fn heard_contents(&mut self, contents: ScanDataConfig) {
+        self.contents = Some(contents);
+        if contents.time {
+            return;
+        }
+        let changes = [Step::AddTime, Step::CheckContents];
+        let at = match self.steps.iter().position(|&step| step == Step::Login) {
+            Some(login) => login + 1,
+            None => {
+                self.steps.insert(1, Step::Login);
+                self.steps.insert(2, Step::Run);
+                2
+            }
+        };
+        for (index, step) in changes.into_iter().enumerate() {
+            self.steps.insert(at + index, step);
         }
     }
 
@@ -215,6 +256,14 @@ impl Setup {
             Step::SetRange => match self.wanted_range() {
                 Some(range) => Command::Write(Value::OutputRange(range)),
                 None => Command::Read(Variable::OutputRange),
+            },
+            Step::ReadContents | Step::CheckContents => Command::Read(Variable::ScanDataConfig),
+            Step::AddTime => match self.contents {
+                Some(contents) => Command::Write(Value::ScanDataConfig(ScanDataConfig {
+                    time: true,
+                    ..contents
+                })),
+                None => Command::Read(Variable::ScanDataConfig),
             },
             Step::Run => Command::Call(Method::Run),
             Step::Subscribe => Command::SubscribeScans(true),
@@ -265,123 +314,4 @@ fn same<T: PartialEq + std::fmt::Debug>(
 }
 
 #[cfg(test)]
-mod tests {
-    use sick::cola::Fault;
-
-    use super::*;
-
-    const SCAN: ScanConfig = ScanConfig {
-        frequency_raw_1e2_hz: 2500,
-        resolution_raw_1e4_deg: 2500,
-        start_angle_raw_1e4_deg: -450_000,
-        stop_angle_raw_1e4_deg: 2_250_000,
-    };
-    const RANGE: OutputRange = OutputRange {
-        resolution_raw_1e4_deg: 5000,
-        start_angle_raw_1e4_deg: -450_000,
-        stop_angle_raw_1e4_deg: 2_250_000,
-    };
-
-    #[test]
-    fn without_wishes_nothing_is_changed() {
-        let mut setup = Setup::new(Wanted::default());
-        let ident = Command::Read(Variable::DeviceIdent);
-        assert_eq!(setup.next(0).unwrap(), Some(ident));
-        assert_eq!(setup.next(1).unwrap(), None);
-        setup.hear(&Answer::Fault(Fault::UNKNOWN_VARIABLE)).unwrap();
-        let state = Command::Read(Variable::DeviceState);
-        assert_eq!(setup.next(2).unwrap(), Some(state));
-        setup.hear(&Answer::Value(Value::DeviceState(1))).unwrap();
-        let subscribe = Command::SubscribeScans(true);
-        assert_eq!(setup.next(3).unwrap(), Some(subscribe));
-        // An answer to something else changes nothing.
-        setup.hear(&Answer::Running(true)).unwrap();
-        assert!(!setup.is_done());
-        setup.hear(&Answer::ScansSubscribed(true)).unwrap();
-        assert!(setup.is_done());
-        assert_eq!(setup.next(i64::MAX).unwrap(), None);
-    }
-
-    /// Answers as a device does that takes over what it is told, but for `range`.
-    fn play(setup: &mut Setup, range: Option<OutputRange>) -> Result<Vec<String>, LmsError> {
-        let (mut scan, mut output) = (SCAN, RANGE);
-        let mut said = Vec::new();
-        while let Some(command) = setup.next(0)? {
-            said.push(format!("{command:?}"));
-            setup.hear(&match command {
-                Command::Read(Variable::DeviceIdent) => Answer::Value(Value::DeviceIdent {
-                    name: b"LMS",
-                    version: b"1",
-                }),
-                Command::Read(Variable::DeviceState) => Answer::Value(Value::DeviceState(1)),
-                Command::Read(Variable::ScanConfig) => Answer::Value(Value::ScanConfig(scan)),
-                Command::Read(Variable::OutputRange) => Answer::Value(Value::OutputRange(output)),
-                Command::Call(Method::SetAccessMode { .. }) => Answer::AccessMode(true),
-                Command::Call(Method::SetScanConfig(config)) => {
-                    scan = config;
-                    Answer::ScanConfigSet { status: 0, config }
-                }
-                Command::Write(Value::OutputRange(wanted)) => {
-                    output = range.unwrap_or(wanted);
-                    Answer::Written(Variable::OutputRange)
-                }
-                Command::Call(Method::Run) => Answer::Running(true),
-                Command::SubscribeScans(on) => Answer::ScansSubscribed(on),
-                other => panic!("{other:?}"),
-            })?;
-        }
-        Ok(said)
-    }
-
-    #[test]
-    fn wishes_are_set_and_read_back() {
-        let mut setup = Setup::new(Wanted::of(Some(180.0), Some(0.5)));
-        let said = play(&mut setup, None).unwrap();
-        assert_eq!(said.len(), 11, "{said:#?}");
-        assert!(
-            said[4].contains("resolution_raw_1e4_deg: 5000"),
-            "{said:#?}"
-        );
-        assert!(said[4].contains("frequency_raw_1e2_hz: 2500"), "{said:#?}");
-        assert!(said[7].contains("start_angle_raw_1e4_deg: 0, stop_angle_raw_1e4_deg: 1800000"));
-        assert!(setup.is_done());
-    }
-
-    #[test]
-    fn a_device_that_keeps_its_own_settings_is_an_error() {
-        let mut setup = Setup::new(Wanted::of(Some(180.0), None));
-        let error = play(&mut setup, Some(RANGE)).unwrap_err().to_string();
-        assert!(error.contains("did not keep the field"), "{error}");
-    }
-
-    #[test]
-    fn refusals_and_silence_name_the_command() {
-        let mut setup = Setup::new(Wanted::of(Some(180.0), None));
-        let mut hear = |answer| {
-            setup.next(0).unwrap();
-            setup.hear(&answer)
-        };
-        hear(Answer::Fault(Fault::UNKNOWN_VARIABLE)).unwrap();
-        hear(Answer::Fault(Fault::UNKNOWN_VARIABLE)).unwrap();
-        let error = hear(Answer::AccessMode(false)).unwrap_err().to_string();
-        assert!(
-            error.contains("did not log in: it answers false"),
-            "{error}"
-        );
-        let error = hear(Answer::Fault(Fault::METHOD_DENIED)).unwrap_err();
-        let error = error.to_string();
-        assert!(error.contains("SetAccessMode"), "{error}");
-        assert!(error.contains("does not allow this method"), "{error}");
-        let mut now_ns = 0;
-        let error = loop {
-            now_ns += SLOW_NS;
-            if let Err(error) = setup.next(now_ns) {
-                break error.to_string();
-            }
-        };
-        assert!(
-            error.contains("SetAccessMode") && error.contains("3 times"),
-            "{error}"
-        );
-    }
-}
+mod tests;

@@ -14,7 +14,8 @@ use crate::scan::ScanSettings;
 #[command(name = "lms_reader", version)]
 #[command(group(ArgGroup::new("source").required(true).args(["tcp", "serial", "capture"])))]
 pub struct Config {
-    /// The device: HOST:PORT; devices listen on port 2112 or 2111.
+    /// The device: HOST:PORT; devices listen on port 2112 or 2111. The host
+    /// `graph` is where the emulator of this graph listens.
     #[arg(long, value_name = "HOST:PORT", value_parser = address)]
     pub tcp: Option<String>,
 
@@ -23,8 +24,8 @@ pub struct Config {
     pub serial: Option<PathBuf>,
 
     /// The encoding of --tcp and --capture: devices are set to one of them.
-    #[arg(long, value_enum, default_value_t = Protocol::ColaB, conflicts_with = "serial")]
-    pub protocol: Protocol,
+    #[arg(long, value_enum, default_value_t = Encoding::Binary, conflicts_with = "serial")]
+    pub protocol: Encoding,
 
     /// The baud rate that the serial device is switched to: 9600, 19200, 38400
     /// or 500000. Left out, the one at which it answers is kept.
@@ -65,6 +66,15 @@ pub struct Config {
     #[arg(long, value_name = "BOOL", default_value_t = true, action = ArgAction::Set)]
     pub start_stream: bool,
 
+    /// Whose time a scan of --tcp or --capture gets.
+    #[arg(long, value_enum, default_value_t = Stamps::Host, conflicts_with = "serial")]
+    pub stamps: Stamps,
+
+    /// Ends when the device closes the connection after it has sent scans,
+    /// instead of connecting anew: for devices that play a recording.
+    #[arg(long, conflicts_with_all = ["serial", "capture"])]
+    pub until_closed: bool,
+
     /// Seconds without a byte (--tcp) or a telegram (--serial) after which a connection is given up, 0.2 to 3600.
     #[arg(long, value_name = "SECONDS", default_value_t = 5.0, value_parser = silence)]
     pub silence: f64,
@@ -88,26 +98,6 @@ pub struct Config {
     pub range_max_m: f32,
 }
 
-/// The encoding of CoLa telegrams.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]
-pub enum Protocol {
-    /// Text.
-    ColaA,
-    /// Binary.
-    ColaB,
-}
-
-impl Protocol {
-    /// As the codec calls it.
-    #[must_use]
-    pub const fn encoding(self) -> Encoding {
-        match self {
-            Protocol::ColaA => Encoding::Text,
-            Protocol::ColaB => Encoding::Binary,
-        }
-    }
-}
-
 /// How far an LMS2xx measures, and in which unit.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct Reach {
@@ -125,6 +115,17 @@ pub enum Rate {
     /// As fast as it can be read: a subscriber that is slower gets the newest
     /// scans alone.
     Max,
+}
+
+/// Whose time a scan gets.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]
+pub enum Stamps {
+    /// The host's, when the first beam was shot: the device's counter of
+    /// microseconds is followed.
+    Host,
+    /// The device's date and time, which must be set, by NTP say; telegrams are
+    /// made to carry it.
+    Device,
 }
 
 impl Config {
@@ -180,6 +181,7 @@ impl Config {
             range_max_m: self.range_max_m,
             base_from_laser: self.mount,
             frame: self.frame,
+            stamps: self.stamps,
         }
     }
 }
@@ -337,6 +339,8 @@ mod tests {
         refuse("--tcp a:1 --mount 1,2,x", "X,Y,YAW_DEG");
         refuse("--tcp a:1 --mount 1,2,3,4", "X,Y,YAW_DEG");
         refuse("--tcp a:1 --mount 1,2,3,x", "X,Y,YAW_DEG");
+        refuse("--serial a --stamps device", "cannot be used with");
+        refuse("--serial a --until-closed", "cannot be used with");
         refuse("--tcp a:1 --silence 0", "0.2 to 3600");
         refuse("--tcp a:1 --range-min-m nan", "finite");
         refuse("--tcp a:1 --range-max-m 0.01", "the maximum must be larger");

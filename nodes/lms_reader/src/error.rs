@@ -39,6 +39,12 @@ pub enum LmsError {
         /// Of which field and resolution.
         field: String,
     },
+    /// The device does not say when it measured, though it is to be asked.
+    #[error("the telegram does not say the date and time of the scan (--stamps device): {found}")]
+    NoTime {
+        /// What it has instead.
+        found: String,
+    },
     /// The device refused a command.
     #[error("the device refuses {command} with CoLa error {fault}")]
     Fault {

@@ -2,12 +2,13 @@
 //!
 //! `sick` turns bytes into telegrams; `scan` and `lms2xx_scan` turn telegrams into
 //! messages; `cola_setup` and `lms2xx_setup` say what is asked of a device before
-//! scans come; all pure. `run` reads from the device or a capture and sends. A
+//! scans come; `clock` brings the device's time to the host's; all pure. `run` reads from the device or a capture and sends. A
 //! device is told to send scans; its settings stay as they are unless the
 //! configuration asks for others.
 
 mod attempts;
 mod backoff;
+mod clock;
 mod cola_setup;
 mod complaints;
 mod config;
@@ -18,6 +19,6 @@ mod pace;
 mod run;
 pub mod scan;
 
-pub use config::{Config, Protocol, Rate, Reach};
+pub use config::{Config, Rate, Reach, Stamps};
 pub use error::LmsError;
 pub use run::run;

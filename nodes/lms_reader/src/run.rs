@@ -5,10 +5,11 @@ mod outlet;
 mod serial;
 mod tcp;
 
-use std::time::{SystemTime, UNIX_EPOCH};
+use std::time::{Instant, SystemTime, UNIX_EPOCH};
 
 use transport::Graph;
 
+use crate::backoff::Backoff;
 use crate::scan::Received;
 use crate::{Config, LmsError};
 use outlet::Outlet;
@@ -24,11 +25,33 @@ use outlet::Outlet;
 pub fn run(graph: &Graph, config: &Config) -> Result<(), LmsError> {
     let mut outlet = Outlet::open(graph, config.scan_settings())?;
     match (&config.tcp, &config.serial, &config.capture) {
-        (Some(address), _, _) => tcp::run(address, config, &mut outlet),
+        (Some(address), _, _) => tcp::run(&graph.name().resolve(address), config, &mut outlet),
         (None, Some(device), _) => serial::run(device, config, &mut outlet),
         (None, None, Some(path)) => capture::run(path, config, &mut outlet),
         (None, None, None) => Err(LmsError::NoSource),
     }
+}
+
+/// Opens and reads a device anew, later each time that no scan came of it, until
+/// reading ends with success.
+fn keep(
+    outlet: &mut Outlet,
+    mut listen: impl FnMut(&mut Outlet) -> Result<(), LmsError>,
+) -> Result<(), LmsError> {
+    let mut backoff = Backoff::default();
+    while !outlet.stopped() {
+        let before = outlet.sent;
+        match listen(outlet) {
+            Ok(()) => break,
+            Err(error @ LmsError::Transport(_)) => return Err(error),
+            Err(error) => outlet.lost(&error)?,
+        }
+        if outlet.sent > before {
+            backoff.reset();
+        }
+        outlet.wait_until(Instant::now() + backoff.next_wait())?;
+    }
+    Ok(())
 }
 
 fn now() -> Received {

@@ -6,7 +6,8 @@
 use messages::{Name, Pose2, ScanHeader, Stamp};
 use sick::cola::{Channel, LmdScanData};
 
-use crate::LmsError;
+use crate::clock::DeviceClock;
+use crate::{LmsError, Stamps};
 
 /// Raw distances below this are codes, not distances: 0 nothing came back, 1
 /// dazzled, 2 implausible, the others reserved (SICK's operating instructions,
@@ -31,6 +32,8 @@ pub struct ScanSettings {
     pub base_from_laser: Option<Pose2>,
     /// The laser's frame.
     pub frame: Name,
+    /// Whose time the scan gets.
+    pub stamps: Stamps,
 }
 
 /// When the last byte of a telegram was here.
@@ -56,13 +59,40 @@ pub fn distances<'a>(data: &LmdScanData<'a>) -> Result<Channel<'a>, LmsError> {
     })
 }
 
-/// The header of the scan, with counter 0.
+/// When the first beam was shot, nanoseconds since 1970.
 ///
-/// The stamp is the time of reception less what the device's clock counted
-/// from "time since start-up" to "time of transmission". SICK documents the
-/// former as the moment before the measurement starts. A TiM781 is seen to put
-/// 6 to 7 ms between the two although its scan takes 50 ms, so there the stamp
-/// is late by most of a scan. How the two clocks drift apart is not followed.
+/// By the host's clock it is when `clock` says that the telegram was transmitted,
+/// less what the device counted from "time since start-up" to "time of
+/// transmission". SICK documents the former as the moment before the measurement
+/// starts. A TiM781 is seen to put 6 to 7 ms between the two although its scan
+/// takes 50 ms, so there the stamp is late by most of a scan.
+///
+/// # Errors
+/// [`LmsError::Scan`] where the device's times make no sense, [`LmsError::NoTime`]
+/// where its date and time are wanted and it does not say them.
+pub(crate) fn measured_ns(
+    data: &LmdScanData<'_>,
+    settings: &ScanSettings,
+    received: Received,
+    clock: &mut DeviceClock,
+) -> Result<i64, LmsError> {
+    if settings.stamps == Stamps::Device {
+        let unix_us = data.time.and_then(|time| time.unix_us());
+        return unix_us
+            .map(|us| us.saturating_mul(1000))
+            .ok_or_else(|| LmsError::NoTime {
+                found: data
+                    .time
+                    .map_or("it has no time".into(), |time| format!("{time:?}")),
+            });
+    }
+    let delay_ns = delay_ns(data)?;
+    let sent_ns = clock.host_ns(data.time_of_transmission_us, received.monotonic_ns);
+    let on_the_way_ns = received.monotonic_ns - sent_ns;
+    Ok(received.realtime_ns - on_the_way_ns - delay_ns)
+}
+
+/// The header of the scan that was measured at `measured_ns`, with counter 0.
 ///
 /// # Errors
 /// [`LmsError::Scan`] where the telegram makes no scan.
@@ -70,6 +100,7 @@ pub fn header(
     data: &LmdScanData<'_>,
     distances: &Channel<'_>,
     settings: &ScanSettings,
+    measured_ns: i64,
     received: Received,
 ) -> Result<ScanHeader, LmsError> {
     let step_deg = f64::from(distances.step_raw_1e4_deg) * 1e-4;
@@ -81,12 +112,12 @@ pub fn header(
     };
     Ok(ScanHeader {
         stamp: Stamp {
-            measured_ns: received.realtime_ns - delay_ns(data)?,
+            measured_ns,
             entered_ns: received.monotonic_ns,
             counter: 0,
         },
-        angle_min: angle_deg.to_radians(),
-        angle_increment: step_deg.to_radians(),
+        angle_min: recordable(angle_deg.to_radians()),
+        angle_increment: recordable(step_deg.to_radians()),
         // From the turn of the mirror: firmware disagrees about the unit of the
         // measurement frequency, and a step takes its share of a turn anyway.
         time_increment_s: scan_time_s * step_deg / 360.0,
@@ -101,6 +132,12 @@ pub fn header(
         mount_known: u64::from(settings.base_from_laser.is_some()),
         frame: settings.frame,
     })
+}
+
+/// An angle as recordings hold it (`sensor_msgs/LaserScan` has single precision), so
+/// that a recording of the graph gives the same answers to the last bit.
+pub(crate) fn recordable(radians: f64) -> f64 {
+    f64::from(radians as f32)
 }
 
 /// Writes the distances in metres, infinity where nothing came back; `ranges`
@@ -156,7 +193,7 @@ fn delay_ns(data: &LmdScanData<'_>) -> Result<i64, LmsError> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use sick::cola::Encoding;
+    use sick::cola::{DeviceTime, Encoding};
 
     const RECEIVED: Received = Received {
         realtime_ns: 1_700_000_000_000_000_000,
@@ -169,6 +206,7 @@ mod tests {
             range_max_m: 25.0,
             base_from_laser: None,
             frame: Name::new("laser"),
+            stamps: Stamps::Host,
         }
     }
 
@@ -220,7 +258,9 @@ mod tests {
             let bytes = self.telegram();
             let data = LmdScanData::read(Encoding::Binary, &bytes)?;
             let distances = distances(&data)?;
-            let header = header(&data, &distances, &settings(), RECEIVED)?;
+            let mut clock = DeviceClock::default();
+            let measured_ns = measured_ns(&data, &settings(), RECEIVED, &mut clock)?;
+            let header = header(&data, &distances, &settings(), measured_ns, RECEIVED)?;
             let mut ranges = vec![0.0; distances.len()];
             fill_ranges(&distances, &mut ranges);
             Ok((header, ranges))
@@ -234,13 +274,16 @@ mod tests {
     #[test]
     fn ninety_degrees_of_the_device_is_ahead() {
         let (header, ranges) = World::default().scan().unwrap();
-        assert_eq!(header.angle_min, (-135f64).to_radians());
-        // 0.3333 is not a binary fraction: one rounding of the product.
-        assert!((header.angle_increment.to_degrees() - 0.3333).abs() < 1e-12);
+        assert_eq!(header.angle_min, f64::from((-135f64).to_radians() as f32));
+        // Single precision has 24 bits.
+        assert!((header.angle_increment.to_degrees() - 0.3333).abs() < 0.3333 * 6e-8);
         assert_eq!(ranges.len(), 811);
         // Beam 405 of 811 at steps of 0.3333° is 0.0135° short of ahead.
         let ahead = header.angle_min + 405.0 * header.angle_increment;
-        assert!((ahead.to_degrees() + 0.0135).abs() < 1e-9, "{ahead}");
+        assert!(
+            (ahead.to_degrees() + 0.0135).abs() < 135.0 * 6e-8,
+            "{ahead}"
+        );
     }
 
     #[test]
@@ -255,6 +298,28 @@ mod tests {
             assert_eq!(header.stamp.measured_ns, RECEIVED.realtime_ns - 6_000_000);
             assert_eq!(header.stamp.entered_ns, 77);
         }
+    }
+
+    #[test]
+    fn the_devices_date_and_time_are_taken_as_they_are() {
+        let bytes = World::default().telegram();
+        let mut data = LmdScanData::read(Encoding::Binary, &bytes).unwrap();
+        let settings = ScanSettings {
+            stamps: Stamps::Device,
+            ..settings()
+        };
+        let measured =
+            |data: &_| measured_ns(data, &settings, RECEIVED, &mut DeviceClock::default());
+        let error = measured(&data).unwrap_err().to_string();
+        assert!(
+            error.contains("--stamps device): it has no time"),
+            "{error}"
+        );
+        data.time = DeviceTime::from_unix_us(1_137_772_793_094_057);
+        assert_eq!(measured(&data).unwrap(), 1_137_772_793_094_057_000);
+        data.time = data.time.map(|time| DeviceTime { month: 0, ..time });
+        let error = measured(&data).unwrap_err().to_string();
+        assert!(error.contains("month: 0"), "{error}");
     }
 
     #[test]
@@ -295,7 +360,8 @@ mod tests {
             base_from_laser: Some(mount),
             ..settings()
         };
-        let with = header(&data, &channel, &settings, RECEIVED).unwrap();
+        let with = header(&data, &channel, &settings, 5, RECEIVED).unwrap();
+        assert_eq!(with.stamp.measured_ns, 5);
         assert_eq!((with.base_from_laser, with.mount_known), (mount, 1));
         assert_eq!((with.range_min_m, with.range_max_m), (0.05, 25.0));
         assert_eq!(with.frame.as_str(), "laser");

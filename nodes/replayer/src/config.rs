@@ -4,8 +4,7 @@ use std::path::PathBuf;
 
 use clap::Parser;
 use messages::Name;
-
-use crate::{Rate, Remap};
+use playback::{Rate, Remap};
 
 /// Plays a recording into the graph: scans, odometry and true poses.
 ///

@@ -2,38 +2,18 @@
 
 use std::path::PathBuf;
 
+use playback::PlaybackError;
 use recording::RecordingError;
-use recording::ros::ConversionError;
 
 /// What was tried, what was found and what is allowed.
 #[derive(Debug, thiserror::Error)]
 pub enum ReplayerError {
-    /// The recording, or a message of it, cannot be read.
+    /// The recording cannot be opened.
     #[error(transparent)]
     Recording(#[from] Box<RecordingError>),
-    /// A frame's name does not fit into a message.
-    #[error(
-        "the message of {topic} at log time {log_time_ns} ns: the frame {frame:?} has {} bytes, \
-         at most {} are allowed", frame.len(), messages::Name::CAPACITY
-    )]
-    Frame {
-        /// The channel.
-        topic: String,
-        /// Nanoseconds since 1970.
-        log_time_ns: i64,
-        /// The name.
-        frame: String,
-    },
-    /// A pose is none.
-    #[error("the message of {topic} at log time {log_time_ns} ns cannot be used: {reason}")]
-    Pose {
-        /// The channel.
-        topic: String,
-        /// Nanoseconds since 1970.
-        log_time_ns: i64,
-        /// What is wrong.
-        reason: Box<ConversionError>,
-    },
+    /// The recording, or a message of it, cannot be read.
+    #[error(transparent)]
+    Playback(#[from] PlaybackError),
     /// Topics that were asked for are not there.
     #[error("{} has no {}; it has {}", path.display(), unknown.join(", "), found.join(", "))]
     UnknownTopics {
@@ -50,29 +30,6 @@ pub enum ReplayerError {
     /// The graph failed.
     #[error(transparent)]
     Transport(#[from] transport::TransportError),
-}
-
-impl ReplayerError {
-    /// Whether it is about one message, so that the next one may be played.
-    pub(crate) fn is_about_one_message(&self) -> bool {
-        match self {
-            ReplayerError::Frame { .. } | ReplayerError::Pose { .. } => true,
-            ReplayerError::Recording(error) => matches!(**error, RecordingError::Message { .. }),
-            ReplayerError::UnknownTopics { .. }
-            | ReplayerError::Keyboard(_)
-            | ReplayerError::Transport(_) => false,
-        }
-    }
-}
-
-impl ReplayerError {
-    /// Whether the recording is damaged, so that what lay before has been played.
-    pub(crate) fn is_damage(&self) -> bool {
-        match self {
-            ReplayerError::Recording(error) => matches!(**error, RecordingError::Damaged { .. }),
-            _ => false,
-        }
-    }
 }
 
 impl From<RecordingError> for ReplayerError {

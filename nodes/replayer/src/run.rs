@@ -8,24 +8,20 @@ use std::sync::atomic::{AtomicBool, Ordering};
 use std::time::Duration;
 
 use messages::{NodeState, topic};
+use playback::{
+    Action, Channels, InOrder, PlaybackError, Rate, Schedule, Selection, Source, Timed,
+    wait_for_nodes,
+};
 use recording::Recording;
 use transport::{Flow, Graph, Subscriber, monotonic_ns, with_causes};
 
-use crate::order::InOrder;
 use crate::pause::Pause;
-use crate::readiness::Readiness;
-use crate::schedule::{Action, Schedule};
-use crate::selection::Selection;
-use crate::source::{Channels, Source, Timed};
-use crate::{Config, Rate, ReplayerError};
+use crate::{Config, ReplayerError};
 use keyboard::{Heard, Keyboard};
 use outlet::Outlet;
 
 /// The longest time without a look at answers, signals and health.
 const TICK: Duration = Duration::from_millis(50);
-
-/// Between two lines that say who is waited for, nanoseconds.
-const REMINDER_NS: i64 = 5_000_000_000;
 
 /// What a run did.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
@@ -63,7 +59,7 @@ pub fn run(graph: &Graph, config: &Config) -> Result<Summary, ReplayerError> {
     let recording = Recording::open(&config.recording)?;
     let selection = select(config, &recording)?;
     let channels = Channels::of(&recording, &selection)?;
-    wait_for_nodes(graph, config, &mut outlet)?;
+    wait_for_nodes(graph, &config.wait_for, &mut outlet.health)?;
     let stop = graph.stop_flag();
     if stop.load(Ordering::Relaxed) {
         return Ok(Summary::default());
@@ -93,7 +89,8 @@ pub fn run(graph: &Graph, config: &Config) -> Result<Summary, ReplayerError> {
 
 /// What is to be played.
 fn select(config: &Config, recording: &Recording) -> Result<Selection, ReplayerError> {
-    let selection = Selection::new(config, recording);
+    let selection =
+        Selection::of(&config.topics, &config.remap).within(recording, config.start, config.end);
     let unknown = selection.unknown(recording);
     if unknown.is_empty() {
         return Ok(selection);
@@ -138,35 +135,6 @@ fn announce(recording: &Recording, channels: &Channels, config: &Config) -> i64 
     duration_ns / i64::try_from(scans).unwrap_or(i64::MAX).max(1)
 }
 
-/// Waits until all nodes that the configuration names are ready.
-fn wait_for_nodes(
-    graph: &Graph,
-    config: &Config,
-    outlet: &mut Outlet,
-) -> Result<(), ReplayerError> {
-    let mut readiness = Readiness::of(&config.wait_for);
-    if readiness.missing().is_empty() {
-        return Ok(());
-    }
-    let reports = graph.subscriber::<topic::Health>()?;
-    let mut reminder_ns = i64::MIN;
-    graph.run(&[&reports], TICK, |_| {
-        while let Some(report) = reports.receive()? {
-            readiness.hear(report.header());
-        }
-        let missing = readiness.missing();
-        if missing.is_empty() {
-            return Ok(Flow::Stop);
-        }
-        if monotonic_ns() >= reminder_ns {
-            reminder_ns = monotonic_ns().saturating_add(REMINDER_NS);
-            tracing::info!("waiting for {}", missing.join(", "));
-        }
-        outlet.health.tick()?;
-        Ok(Flow::Continue)
-    })
-}
-
 struct Player<'r> {
     recording: &'r Recording,
     channels: Channels,
@@ -176,12 +144,12 @@ struct Player<'r> {
     config: &'r Config,
     /// The usual time between two scans of the recording.
     gap_ns: i64,
-    items: InOrder<Source<'r>, ReplayerError>,
+    items: InOrder<Source<'r>, PlaybackError>,
     /// Scans sent before this round.
     scans_before: u64,
     pending: Option<Timed>,
     /// What ended the recording before its end.
-    failure: Option<ReplayerError>,
+    failure: Option<PlaybackError>,
     schedule: Schedule,
     outlet: Outlet,
     stop: Arc<AtomicBool>,
@@ -306,7 +274,7 @@ impl Player<'_> {
                 summary.damaged = true;
                 Ok(summary)
             }
-            Some(error) if finished => Err(error),
+            Some(error) if finished => Err(error.into()),
             _ => Ok(summary),
         }
     }

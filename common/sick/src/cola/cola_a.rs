@@ -65,27 +65,10 @@ pub(super) fn judge(pending: Pending<'_>) -> Judgement {
 
 #[cfg(test)]
 mod tests {
-    use crate::cola::{Encoding, Framer};
+    use crate::cola::{Encoding, encoding};
 
-    /// What a stream holds: `content@offset` of telegrams, `!` and an error's text.
     fn read(pieces: &[&[u8]]) -> Vec<String> {
-        let mut framer = Framer::new(Encoding::Text);
-        let mut seen = Vec::new();
-        let mut drain = |framer: &mut Framer| {
-            while let Some(next) = framer.next_frame() {
-                seen.push(match next {
-                    Ok(f) => format!("{}@{}", String::from_utf8_lossy(f.content), f.offset),
-                    Err(error) => format!("!{error}"),
-                });
-            }
-        };
-        for piece in pieces {
-            framer.push(piece);
-            drain(&mut framer);
-        }
-        framer.finish();
-        drain(&mut framer);
-        seen
+        encoding::seen(Encoding::Text, pieces)
     }
 
     #[test]

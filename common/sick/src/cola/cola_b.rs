@@ -85,7 +85,7 @@ pub(super) fn judge(cola: &Cola, pending: Pending<'_>) -> Judgement {
 #[cfg(test)]
 mod tests {
     use super::START;
-    use crate::cola::{Encoding, Framer};
+    use crate::cola::{Encoding, Framer, encoding};
 
     fn frame(content: &[u8]) -> Vec<u8> {
         let mut out = Vec::new();
@@ -93,25 +93,8 @@ mod tests {
         out
     }
 
-    /// What a stream holds: `content@offset` of telegrams, `!` and an error's text.
     fn read(pieces: &[&[u8]]) -> Vec<String> {
-        let mut framer = Framer::new(Encoding::Binary);
-        let mut seen = Vec::new();
-        let mut drain = |framer: &mut Framer| {
-            while let Some(next) = framer.next_frame() {
-                seen.push(match next {
-                    Ok(f) => format!("{}@{}", String::from_utf8_lossy(f.content), f.offset),
-                    Err(error) => format!("!{error}"),
-                });
-            }
-        };
-        for piece in pieces {
-            framer.push(piece);
-            drain(&mut framer);
-        }
-        framer.finish();
-        drain(&mut framer);
-        seen
+        encoding::seen(Encoding::Binary, pieces)
     }
 
     fn telegrams(contents: &[&str]) -> Vec<u8> {

@@ -6,11 +6,14 @@ use crate::framer::{self, Judgement, Pending, Protocol};
 
 /// How telegrams are written.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+#[cfg_attr(feature = "clap", derive(clap::ValueEnum))]
 pub enum Encoding {
     /// CoLa A: text between 02 and 03, no checksum.
+    #[cfg_attr(feature = "clap", value(name = "cola-a"))]
     Text,
     /// CoLa B: big-endian numbers, a length and a checksum.
     #[default]
+    #[cfg_attr(feature = "clap", value(name = "cola-b"))]
     Binary,
 }
 
@@ -85,6 +88,10 @@ impl Protocol for Cola {
         }
     }
 
+    fn stands_alone(&self, content: &[u8]) -> bool {
+        self.encoding == Encoding::Binary && LmdScanData::is_in(content)
+    }
+
     fn read<'a>(&self, content: &'a [u8]) -> Result<Telegram<'a>, SickError> {
         Telegram::read(self.encoding, content)
     }
@@ -95,4 +102,26 @@ impl Protocol for Cola {
             false => self.read(content),
         }
     }
+}
+
+/// What a stream holds: `content@offset` of telegrams, `!` and an error's text.
+#[cfg(test)]
+pub(super) fn seen(encoding: Encoding, pieces: &[&[u8]]) -> Vec<String> {
+    let mut framer = Framer::new(encoding);
+    let mut seen = Vec::new();
+    let mut drain = |framer: &mut Framer| {
+        while let Some(next) = framer.next_frame() {
+            seen.push(match next {
+                Ok(f) => format!("{}@{}", String::from_utf8_lossy(f.content), f.offset),
+                Err(error) => format!("!{error}"),
+            });
+        }
+    };
+    for piece in pieces {
+        framer.push(piece);
+        drain(&mut framer);
+    }
+    framer.finish();
+    drain(&mut framer);
+    seen
 }

@@ -1,5 +1,7 @@
 //! The optional blocks at the end of a scan telegram.
 
+use chrono::{DateTime, Datelike, NaiveDate, Timelike};
+
 use super::cursor::{Cursor, field_error};
 use super::writer::Writer;
 use crate::SickError;
@@ -87,6 +89,34 @@ impl Position {
 }
 
 impl DeviceTime {
+    /// This many microseconds after 1970 began, in UTC; `None` outside the years
+    /// 0 to 65535.
+    #[must_use]
+    pub fn from_unix_us(unix_us: i64) -> Option<Self> {
+        let time = DateTime::from_timestamp_micros(unix_us)?;
+        Some(DeviceTime {
+            year: u16::try_from(time.year()).ok()?,
+            month: time.month() as u8,
+            day: time.day() as u8,
+            hour: time.hour() as u8,
+            minute: time.minute() as u8,
+            second: time.second() as u8,
+            microsecond: time.timestamp_subsec_micros(),
+        })
+    }
+
+    /// Microseconds since 1970 began, where it is UTC; `None` where there is no
+    /// such day, as on devices that nobody told the time. A second 60 is the first
+    /// of the next minute.
+    #[must_use]
+    pub fn unix_us(&self) -> Option<i64> {
+        let (month, day) = (self.month.into(), self.day.into());
+        let date = NaiveDate::from_ymd_opt(self.year.into(), month, day)?;
+        let minute = date.and_hms_opt(self.hour.into(), self.minute.into(), 0)?;
+        let within = i64::from(self.second) * 1_000_000 + i64::from(self.microsecond);
+        Some(minute.and_utc().timestamp_micros() + within)
+    }
+
     pub(super) fn read(cursor: &mut Cursor<'_>) -> Result<Self, SickError> {
         let offset;
         let time = DeviceTime {
@@ -162,6 +192,32 @@ mod tests {
 
     fn over(bytes: &[u8]) -> Cursor<'_> {
         Cursor::new(Encoding::Binary, bytes, 0)
+    }
+
+    #[test]
+    fn a_clock_counts_from_1970() {
+        let first = DeviceTime {
+            year: 1970,
+            month: 1,
+            day: 1,
+            hour: 0,
+            minute: 0,
+            second: 0,
+            microsecond: 0,
+        };
+        assert_eq!(first.unix_us(), Some(0));
+        // `date --date=@1137772793.094057 --utc` is 2006-01-20 15:59:53.
+        let drive = DeviceTime::from_unix_us(1_137_772_793_094_057).unwrap();
+        let parts = (drive.year, drive.month, drive.day, drive.second);
+        assert_eq!(parts, (2006, 1, 20, 53));
+        assert_eq!(drive.unix_us(), Some(1_137_772_793_094_057));
+        let leap = DeviceTime {
+            second: 60,
+            ..first
+        };
+        assert_eq!(leap.unix_us(), Some(60_000_000));
+        assert_eq!(DeviceTime { day: 0, ..first }.unix_us(), None);
+        assert_eq!(DeviceTime::from_unix_us(i64::MIN), None);
     }
 
     #[test]

@@ -7,6 +7,9 @@ use crate::framer::{Framer, Judgement, Pending, Protocol};
 /// The longest payload.
 pub const MAX_PAYLOAD: usize = 812;
 
+/// Bytes of a payload with twenty readings.
+const SHORTEST_SCAN: usize = 44;
+
 const START: u8 = 2;
 /// Bytes before the payload: start, address and length.
 const PREFIX: usize = 4;
@@ -42,6 +45,11 @@ impl Protocol for FromDevice {
             };
         }
         judge(pending, |address| matches!(address, 0x80 | 0x81))
+    }
+
+    fn stands_alone(&self, content: &[u8]) -> bool {
+        // Shorter ones may come about by chance: the checksum has 16 bits.
+        matches!(content, [0xb0 | 0xb7, ..]) && content.len() >= SHORTEST_SCAN
     }
 
     fn read<'a>(&self, content: &'a [u8]) -> Result<Reply<'a>, SickError> {

@@ -73,7 +73,7 @@ impl<'a> Scan<'a> {
         };
         let head = fields.u16("count and unit")?;
         let unit = (head >> 14) as u8;
-        let unit = Unit::from_code(unit).ok_or(SickError::Field {
+        let unit = Unit::from_code(unit).ok_or_else(|| SickError::Field {
             field: "unit",
             offset: if has_sub_range { 5 } else { 1 },
             found: unit.to_string(),

@@ -61,7 +61,11 @@ pub(crate) fn run(config: &Config) -> Result<ExitCode, BackcastError> {
     for folder in &config.folders {
         cases.extend(Case::all_in(folder)?);
     }
-    let descriptor = descriptor::load(&config.dataflow)?;
+    let mut descriptor = descriptor::load(&config.dataflow)?;
+    // What replays is the same for all cases, and is built with the others.
+    if let Some(case) = cases.first() {
+        play::direct(&mut descriptor, case)?;
+    }
     build::build_all(&descriptor.dataflow, &descriptor.folder)?;
     let mut outcomes = Vec::new();
     for case in &cases {

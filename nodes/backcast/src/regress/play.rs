@@ -11,8 +11,9 @@ use super::answer::Answer;
 use super::case::Case;
 use crate::BackcastError;
 use crate::descriptor::Descriptor;
-use crate::run::arguments::{MAP_SERVER, REPLAYER, find, leave_out_monitors, set, unset};
+use crate::run::arguments::{MAP_SERVER, find, leave_out_monitors, set, unset};
 use crate::run::crew::Crew;
+use crate::run::replay;
 
 /// The name under which the graph is joined.
 const NAME: &str = "regress";
@@ -21,22 +22,17 @@ const TICK: Duration = Duration::from_millis(20);
 /// How long the last answers may take once the source is done.
 const PATIENCE: Duration = Duration::from_secs(20);
 
-/// Lets the graph play this recording, on its map, as fast as it answers.
+/// Lets the graph replay this recording, on its map, as fast as it answers.
 ///
 /// # Errors
-/// The graph has no replayer or no map server.
+/// The graph has no map server.
 pub(super) fn direct(descriptor: &mut Descriptor, case: &Case) -> Result<(), BackcastError> {
     let Descriptor { dataflow, file, .. } = descriptor;
     leave_out_monitors(dataflow);
-    let replayer = find(dataflow, REPLAYER, "the recording", file)?;
-    set(
-        replayer,
-        "--recording",
-        Some(&case.recording().to_string_lossy()),
-    );
+    let replayer = replay::play(dataflow, &case.recording());
     set(replayer, "--rate", Some("max"));
     unset(replayer, "--loop", false);
-    let server = find(dataflow, MAP_SERVER, "the map", file)?;
+    let server = find(dataflow, &[MAP_SERVER], "the map", file)?;
     set(server, "--map", Some(&case.map().to_string_lossy()));
     for node in &mut dataflow.nodes {
         // What goes wrong is told; what goes well is in the table.

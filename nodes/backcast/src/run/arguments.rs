@@ -8,6 +8,10 @@ use crate::BackcastError;
 
 /// Plays recordings.
 pub(crate) const REPLAYER: &str = "replayer";
+/// Plays them as a laser.
+pub(crate) const EMULATOR: &str = "emulator";
+/// Those that take --recording, --rate, --loop and --wait-for.
+pub(crate) const PLAYERS: [&str; 2] = [REPLAYER, EMULATOR];
 /// Serves the map.
 pub(crate) const MAP_SERVER: &str = "map_server";
 
@@ -18,14 +22,15 @@ pub(crate) fn leave_out_monitors(dataflow: &mut Dataflow) {
     dataflow.nodes.retain(|node| node.executable() != MONITOR);
 }
 
-/// The node with an executable, for which an option is meant. `file` is named in
+/// The first node with one of these executables, for which an option is meant.
+/// `file` is named in
 /// errors.
 ///
 /// # Errors
 /// The graph has none.
 pub(crate) fn find<'d>(
     dataflow: &'d mut Dataflow,
-    executable: &'static str,
+    executables: &[&'static str],
     option: &'static str,
     file: &Path,
 ) -> Result<&'d mut Node, BackcastError> {
@@ -37,10 +42,10 @@ pub(crate) fn find<'d>(
     dataflow
         .nodes
         .iter_mut()
-        .find(|n| n.executable() == executable)
+        .find(|n| executables.contains(&n.executable()))
         .ok_or_else(|| BackcastError::NoNodeForOption {
             option,
-            executable,
+            executable: executables.join(" or "),
             file: file.to_owned(),
             found: found.join(", "),
         })

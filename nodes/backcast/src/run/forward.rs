@@ -7,8 +7,9 @@ use dataflow::{Dataflow, Node};
 use engine::heading::{HeadingConfig, HeadingFrom, HeadingSource};
 use messages::{Topic, topic};
 
-use super::arguments::{REPLAYER, find, leave_out_monitors, set, unset, value};
+use super::arguments::{PLAYERS, find, leave_out_monitors, set, unset, value};
 use super::options::{Options, Rate};
+use super::replay;
 use crate::BackcastError;
 
 const ACCUMULATOR: &str = "accumulator";
@@ -24,12 +25,16 @@ pub(crate) fn apply(
     dataflow: &mut Dataflow,
     file: &Path,
 ) -> Result<(), BackcastError> {
+    if let Some(recording) = &options.replay {
+        let recording = std::path::absolute(recording).map_err(BackcastError::Folder)?;
+        replay::play(dataflow, &recording);
+    }
     if let Some(rate) = options.rate {
-        let node = find(dataflow, REPLAYER, "--rate", file)?;
+        let node = find(dataflow, &PLAYERS, "--rate", file)?;
         set(node, "--rate", Some(&rate.to_string()));
     }
     if options.repeat {
-        let node = find(dataflow, REPLAYER, "--loop", file)?;
+        let node = find(dataflow, &PLAYERS, "--loop", file)?;
         set(node, "--loop", None);
     }
     if options.no_monitor {
@@ -51,7 +56,7 @@ fn forward_heading(
         HeadingSource::Fixed(_) => "--heading",
         HeadingSource::Odometry { .. } | HeadingSource::Truth => "--heading-from",
     };
-    let node = find(dataflow, ACCUMULATOR, option, file)?;
+    let node = find(dataflow, &[ACCUMULATOR], option, file)?;
     let values = [
         (
             "--heading",
@@ -88,8 +93,8 @@ fn forward_heading(
 /// lost: the option says so, or the descriptor does.
 pub(crate) fn plays_at_max(dataflow: &Dataflow) -> bool {
     let max = Rate::Max.to_string();
-    let mut replayers = dataflow.nodes.iter().filter(|n| n.executable() == REPLAYER);
-    replayers.any(|n| value(n, "--rate") == Some(&max))
+    let mut nodes = dataflow.nodes.iter();
+    nodes.any(|n| PLAYERS.contains(&n.executable()) && value(n, "--rate") == Some(&max))
 }
 
 fn check_wired(node: &Node, source: HeadingFrom, file: &Path) -> Result<(), BackcastError> {

@@ -5,6 +5,7 @@
 //! runs without it. What is decided (restarts, the end of the run, figures and
 //! lines) is decided in pure files; `launch` does the work.
 
+mod added;
 pub(crate) mod arguments;
 pub(crate) mod build;
 pub(crate) mod console;
@@ -18,6 +19,7 @@ mod output;
 mod pairs;
 mod process;
 mod record;
+pub(crate) mod replay;
 mod report;
 mod summary;
 mod supervision;

@@ -29,6 +29,10 @@ impl Config {
 /// The options of `run`, which may also stand without the command.
 #[derive(Debug, Clone, Default, Args)]
 pub(crate) struct Options {
+    /// Replay this recording in place of whatever feeds the graph, a laser say
+    #[arg(long, value_name = "FILE")]
+    pub(crate) replay: Option<PathBuf>,
+
     /// Play so many times as fast as it was recorded, or `max`: wait for each
     /// answer and lose nothing
     #[arg(long, value_name = "FACTOR|max")]

@@ -7,9 +7,10 @@
 use std::path::{Path, PathBuf};
 use std::time::Duration;
 
-use dataflow::{Command, Dataflow, Node, Place, Restart, RestartPolicy};
+use dataflow::{Dataflow, Node, Place, Restart, RestartPolicy};
 
-use super::arguments::{MAP_SERVER, REPLAYER, add_to_list, value};
+use super::added;
+use super::arguments::{MAP_SERVER, PLAYERS, add_to_list, value};
 use super::options::RecordOptions;
 use crate::BackcastError;
 
@@ -59,17 +60,17 @@ pub(crate) fn add(
     );
     let node = Node {
         id: RECORDER.to_owned(),
-        path: path(dataflow),
+        path: added::path(dataflow, RECORDER),
         path_place: Place::START,
         args,
         env: Vec::new(),
-        build: build(dataflow),
+        build: added::build(dataflow, RECORDER),
         inputs: Vec::new(),
         outputs: Vec::new(),
         restart: RESTART,
     };
     for source in &mut dataflow.nodes {
-        if source.executable() == REPLAYER {
+        if PLAYERS.contains(&source.executable()) {
             add_to_list(source, "--wait-for", RECORDER);
         }
     }
@@ -92,48 +93,6 @@ fn check(output: &Path, options: &RecordOptions, dataflow: &Dataflow) -> Result<
         )));
     }
     Ok(())
-}
-
-/// Beside the first executable of the graph.
-fn path(dataflow: &Dataflow) -> String {
-    let folder = dataflow
-        .nodes
-        .iter()
-        .find_map(|node| node.path.rsplit_once('/'));
-    folder.map_or(RECORDER.to_owned(), |(folder, _)| {
-        format!("{folder}/{RECORDER}")
-    })
-}
-
-/// As the first node is built, if cargo builds it. It joins the packages that
-/// are built together, for cargo builds what packages share anew for each set of
-/// packages that share it differently.
-fn build(dataflow: &mut Dataflow) -> Vec<Command> {
-    let Some(like) = dataflow.nodes.iter().find(|n| n.build.iter().any(is_cargo)) else {
-        return Vec::new();
-    };
-    let before = like.build.clone();
-    let mut build = before.clone();
-    for command in build.iter_mut().filter(|command| is_cargo(command)) {
-        command
-            .args
-            .extend(["--package", RECORDER].map(str::to_owned));
-    }
-    for node in dataflow
-        .nodes
-        .iter_mut()
-        .filter(|node| node.build == before)
-    {
-        node.build.clone_from(&build);
-    }
-    build
-}
-
-fn is_cargo(command: &Command) -> bool {
-    let names_packages = |arg: &String| arg == "--package" || arg == "-p";
-    command.program == "cargo"
-        && command.args.first().is_some_and(|first| first == "build")
-        && command.args.iter().any(names_packages)
 }
 
 /// The descriptor, and the map that is served with its image, as far as they are

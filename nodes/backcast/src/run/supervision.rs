@@ -60,7 +60,7 @@ impl Restarts {
 }
 
 /// What is measured enters the graph with these; all else follows from them.
-const MEASUREMENTS: [&str; 3] = [
+pub(crate) const MEASUREMENTS: [&str; 3] = [
     topic::Scan::NAME,
     topic::OdometryTopic::NAME,
     topic::GroundTruthTopic::NAME,

@@ -8,7 +8,7 @@ use sick::SickError;
 use sick::lms2xx::{Baud, CommandFramer, Reply};
 use transport::monotonic_ns;
 
-use super::{Common, PATIENCE_NS, SLICE};
+use super::{Common, PATIENCE_NS, SLICE, Summary};
 use crate::EmulatorError;
 use crate::lms2xx_device::Lms2xxDevice;
 
@@ -20,7 +20,7 @@ const MOST_UNREAD: u32 = 3300;
 /// background, and what is under way there is not counted.
 const REST_NS: i64 = 500_000_000;
 
-pub(super) fn run(link: &Path, baud: Baud, common: Common) -> Result<(), EmulatorError> {
+pub(super) fn run(link: &Path, baud: Baud, common: Common) -> Result<Summary, EmulatorError> {
     let device = Lms2xxDevice::new(baud, &common.sweep)?;
     let mut terminal = Terminal::open(link, device, common)?;
     let mut over_ns = None;
@@ -35,7 +35,7 @@ pub(super) fn run(link: &Path, baud: Baud, common: Common) -> Result<(), Emulato
         if terminal.device.is_wanted() {
             terminal.common.start()?;
         }
-        while let Some((scan, _)) = terminal.common.player.take(now_ns) {
+        while let Some((scan, _)) = terminal.common.next_scan(now_ns)? {
             terminal.say_scan(now_ns, scan)?;
         }
         let is_over = terminal.common.player.is_over();
@@ -47,12 +47,11 @@ pub(super) fn run(link: &Path, baud: Baud, common: Common) -> Result<(), Emulato
             let over_ns = *over_ns.get_or_insert(now_ns);
             let rested_ns = now_ns - over_ns;
             if rested_ns > PATIENCE_NS || rested_ns > REST_NS && terminal.unread()? == 0 {
-                tracing::info!("the recording has been played");
-                break;
+                return Ok(terminal.common.conclude(true));
             }
         }
     }
-    Ok(())
+    Ok(terminal.common.conclude(false))
 }
 
 struct Terminal {
@@ -137,7 +136,9 @@ impl Terminal {
         self.device
             .write_scan(&self.common.sweep, scan, &mut self.unsent);
         if self.unsent.len() > start {
-            self.common.faults.damage(&mut self.unsent, start, now_ns);
+            if self.common.faults.damage(&mut self.unsent, start, now_ns) {
+                self.common.player.sent(now_ns);
+            }
             self.common.health.count_sent(1);
         }
         Ok(())

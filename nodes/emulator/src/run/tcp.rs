@@ -9,9 +9,9 @@ use nix::errno::Errno;
 use nix::poll::{PollFd, PollFlags, PollTimeout, poll};
 use sick::SickError;
 use sick::cola::{Answer, Encoding, Fault, Framer, Telegram};
-use transport::monotonic_ns;
+use transport::{TransportError, monotonic_ns};
 
-use super::{Common, PATIENCE_NS};
+use super::{Common, PATIENCE_NS, Summary};
 use crate::EmulatorError;
 use crate::cola_device::{ColaDevice, Session};
 use crate::faults::Faults;
@@ -23,7 +23,7 @@ pub(super) fn run(
     address: &str,
     encoding: Encoding,
     mut common: Common,
-) -> Result<(), EmulatorError> {
+) -> Result<Summary, EmulatorError> {
     let failed = |source| EmulatorError::Listen {
         address: address.into(),
         source,
@@ -52,7 +52,7 @@ pub(super) fn run(
             common.start()?;
         }
         let now_us = (now_ns - started_ns).unsigned_abs() / 1000;
-        play(&mut device, &mut clients, &mut common, (now_ns, now_us));
+        play(&mut device, &mut clients, &mut common, (now_ns, now_us))?;
         let is_over = common.player.is_over();
         for client in &mut clients {
             client.write(&mut common.faults, is_over);
@@ -63,12 +63,11 @@ pub(super) fn run(
             let over_ns = *over_ns.get_or_insert(now_ns);
             let unread = clients.iter().any(|client| !client.unsent.is_empty());
             if !unread || now_ns - over_ns > PATIENCE_NS {
-                tracing::info!("the recording has been played");
-                break;
+                return Ok(common.conclude(true));
             }
         }
     }
-    Ok(())
+    Ok(common.conclude(false))
 }
 
 /// Sends each scan that is due to all that want it.
@@ -77,18 +76,23 @@ fn play(
     clients: &mut [Client],
     common: &mut Common,
     (now_ns, now_us): (i64, u64),
-) {
-    while let Some((scan, counter)) = common.player.take(now_ns) {
+) -> Result<(), TransportError> {
+    while let Some((scan, counter)) = common.next_scan(now_ns)? {
+        let mut is_sent = false;
         for client in clients
             .iter_mut()
             .filter(|client| client.session.subscribed)
         {
             let start = client.unsent.len();
             device.write_scan(&common.sweep, scan, counter, now_us, &mut client.unsent);
-            common.faults.damage(&mut client.unsent, start, now_ns);
+            is_sent |= common.faults.damage(&mut client.unsent, start, now_ns);
             common.health.count_sent(1);
         }
+        if is_sent {
+            common.player.sent(now_ns);
+        }
     }
+    Ok(())
 }
 
 /// Sleeps until a client says something, comes or can take more, or the time is

@@ -3,17 +3,13 @@
 use std::fs::File;
 use std::io::{ErrorKind, Read};
 use std::path::Path;
-use std::time::{Duration, Instant};
+use std::time::Instant;
 
-use sick::cola::{Framer, Telegram};
+use sick::cola::{Encoding, Framer, Telegram};
 
 use super::outlet::Outlet;
 use crate::pace::Pace;
-use crate::{Config, LmsError, Protocol, Rate};
-
-/// How long the end waits for subscribers that are busy with what was sent: a
-/// search takes seconds at most, and each may have a few scans before it.
-const PATIENCE: Duration = Duration::from_secs(30);
+use crate::{Config, LmsError, Rate};
 
 /// Plays the capture to its end, or over and over, until the stop flag is set.
 pub(super) fn run(path: &Path, config: &Config, outlet: &mut Outlet) -> Result<(), LmsError> {
@@ -36,17 +32,12 @@ pub(super) fn run(path: &Path, config: &Config, outlet: &mut Outlet) -> Result<(
     }
     let (sent, refused) = (outlet.sent, outlet.refused);
     tracing::info!(sent, refused, "the capture has been played");
-    // A publisher takes along what nobody has looked at.
-    if !outlet.wait_until_taken(Instant::now() + PATIENCE)? && !outlet.stopped() {
-        let seconds = PATIENCE.as_secs();
-        tracing::warn!("not all subscribers took the last scans within {seconds} s");
-    }
-    Ok(())
+    outlet.finish()
 }
 
 fn play(
     path: &Path,
-    protocol: Protocol,
+    encoding: Encoding,
     pacer: &mut Option<(Instant, Pace)>,
     outlet: &mut Outlet,
 ) -> Result<(), LmsError> {
@@ -55,7 +46,7 @@ fn play(
         source,
     };
     let mut file = File::open(path).map_err(failed)?;
-    let mut framer = Framer::new(protocol.encoding());
+    let mut framer = Framer::new(encoding);
     let mut piece = [0; 1 << 14];
     let mut more = true;
     while more && !outlet.stopped() {

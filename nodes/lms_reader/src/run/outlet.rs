@@ -11,12 +11,17 @@ use sick::{Frame, SickError};
 use transport::{Graph, Health, Publisher, TransportError, with_causes};
 
 use crate::LmsError;
+use crate::clock::DeviceClock;
 use crate::complaints::Complaints;
 use crate::lms2xx_scan::WholeScan;
 use crate::scan::{self, Received, ScanSettings};
 
 /// How long the stop flag may go unseen.
 pub(super) const SLICE: Duration = Duration::from_millis(20);
+
+/// How long the end waits for subscribers that are busy with what was sent: a
+/// search takes seconds at most, and each may have a few scans before it.
+const PATIENCE: Duration = Duration::from_secs(30);
 
 /// What was last said about the source.
 #[derive(PartialEq)]
@@ -32,6 +37,8 @@ pub(super) struct Outlet {
     stop: Arc<AtomicBool>,
     settings: ScanSettings,
     complaints: Complaints,
+    /// Of the device that sends now.
+    clock: DeviceClock,
     link: Link,
     /// As the device codes it; 0 is in order.
     device_status: u16,
@@ -49,6 +56,7 @@ impl Outlet {
             stop: graph.stop_flag(),
             settings,
             complaints: Complaints::default(),
+            clock: DeviceClock::default(),
             link: Link::Untried,
             device_status: 0,
             telegrams: 0,
@@ -74,9 +82,19 @@ impl Outlet {
         Ok(())
     }
 
+    /// The end of all scans: waits until subscribers have taken the last ones, for
+    /// a publisher takes along what nobody has looked at.
+    pub(super) fn finish(&mut self) -> Result<(), LmsError> {
+        if !self.wait_until_taken(Instant::now() + PATIENCE)? && !self.stopped() {
+            let seconds = PATIENCE.as_secs();
+            tracing::warn!("not all subscribers took the last scans within {seconds} s");
+        }
+        Ok(())
+    }
+
     /// Waits until every subscriber is done with what was sent, until `deadline`
     /// or the stop flag; says whether they are.
-    pub(super) fn wait_until_taken(&mut self, deadline: Instant) -> Result<bool, TransportError> {
+    fn wait_until_taken(&mut self, deadline: Instant) -> Result<bool, TransportError> {
         loop {
             if self.publisher.is_settled()? {
                 return Ok(true);
@@ -118,7 +136,9 @@ impl Outlet {
         received: Received,
     ) -> Result<(), LmsError> {
         let made = scan::distances(data).and_then(|distances| {
-            let header = scan::header(data, &distances, &self.settings, received)?;
+            let (settings, clock) = (&self.settings, &mut self.clock);
+            let measured_ns = scan::measured_ns(data, settings, received, clock)?;
+            let header = scan::header(data, &distances, settings, measured_ns, received)?;
             Ok((distances, header))
         });
         let (distances, header) = match made {
@@ -179,10 +199,15 @@ impl Outlet {
         if let Link::Lost(reason) = &lost
             && self.link != lost
         {
-            tracing::warn!("{reason}; trying again");
+            match self.link {
+                // A device may come up after the node.
+                Link::Untried => tracing::info!("{reason}; trying again"),
+                _ => tracing::warn!("{reason}; trying again"),
+            }
             self.health.error(reason)?;
         }
         self.link = lost;
+        self.clock = DeviceClock::default();
         self.health.state(NodeState::Degraded)?;
         Ok(())
     }

@@ -8,7 +8,6 @@ use serialport::{ClearBuffer, SerialPort, TTYPort};
 use sick::lms2xx::{Answer, Baud, Command, PartialScans, Reply, ReplyFramer, Scan, Status};
 
 use super::outlet::{Outlet, SLICE};
-use crate::backoff::Backoff;
 use crate::lms2xx_scan::WholeScan;
 use crate::lms2xx_setup::{Action, Format, Setup, Wanted};
 use crate::{Config, LmsError};
@@ -18,26 +17,13 @@ const BYTE_GAP: Duration = Duration::from_micros(60);
 
 /// Keeps the line until the stop flag is set.
 pub(super) fn run(device: &Path, config: &Config, outlet: &mut Outlet) -> Result<(), LmsError> {
-    let mut backoff = Backoff::default();
     let mut last_baud = None;
-    while !outlet.stopped() {
-        let before = outlet.sent;
-        let outcome = Line::open(device, config, last_baud).and_then(|mut line| {
-            let outcome = line.listen(outlet);
-            last_baud = line.setup.baud().or(last_baud);
-            outcome
-        });
-        match outcome {
-            Ok(()) => break,
-            Err(error @ LmsError::Transport(_)) => return Err(error),
-            Err(error) => outlet.lost(&error)?,
-        }
-        if outlet.sent > before {
-            backoff.reset();
-        }
-        outlet.wait_until(Instant::now() + backoff.next_wait())?;
-    }
-    Ok(())
+    super::keep(outlet, |outlet| {
+        let mut line = Line::open(device, config, last_baud)?;
+        let outcome = line.listen(outlet);
+        last_baud = line.setup.baud().or(last_baud);
+        outcome
+    })
 }
 
 fn wanted(config: &Config) -> Wanted {

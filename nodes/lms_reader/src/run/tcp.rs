@@ -7,9 +7,8 @@ use std::time::{Duration, Instant};
 use sick::cola::{Encoding, Framer, Telegram};
 
 use super::outlet::{Outlet, SLICE};
-use crate::backoff::Backoff;
 use crate::cola_setup::{Setup, Wanted};
-use crate::{Config, LmsError};
+use crate::{Config, LmsError, Stamps};
 
 /// How long an attempt to connect, or to send the request, may take. A device
 /// is near, and a stop must not wait for long.
@@ -18,21 +17,16 @@ const ATTEMPT: Duration = Duration::from_millis(500);
 /// Keeps a connection until the stop flag is set. (Looking up a host's name
 /// may take as long as the system's resolver does; a number needs no look-up.)
 pub(super) fn run(address: &str, config: &Config, outlet: &mut Outlet) -> Result<(), LmsError> {
-    let mut backoff = Backoff::default();
-    while !outlet.stopped() {
-        let before = outlet.sent;
+    super::keep(outlet, |outlet| {
         let outcome = Connection::open(address, config).and_then(|mut c| c.listen(outlet));
         match outcome {
-            Ok(()) => break,
-            Err(error @ LmsError::Transport(_)) => return Err(error),
-            Err(error) => outlet.lost(&error)?,
+            Err(LmsError::Closed { .. }) if config.until_closed && outlet.sent > 0 => {
+                tracing::info!(sent = outlet.sent, "the device has sent everything");
+                outlet.finish()
+            }
+            other => other,
         }
-        if outlet.sent > before {
-            backoff.reset();
-        }
-        outlet.wait_until(Instant::now() + backoff.next_wait())?;
-    }
-    Ok(())
+    })
 }
 
 /// Tries all that a name stands for; the last failure counts.
@@ -68,8 +62,12 @@ impl<'a> Connection<'a> {
             .set_read_timeout(Some(SLICE))
             .and_then(|()| stream.set_write_timeout(Some(ATTEMPT)))
             .map_err(failed("set up the connection"))?;
-        let encoding = config.protocol.encoding();
-        let wanted = Wanted::of(config.field, config.resolution);
+        let encoding = config.protocol;
+        let wanted = Wanted::of(
+            config.field,
+            config.resolution,
+            config.stamps == Stamps::Device,
+        );
         Ok(Connection {
             address,
             silence_s: config.silence,

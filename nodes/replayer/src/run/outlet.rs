@@ -1,18 +1,14 @@
 //! Where messages leave the node and troubles are reported.
 
-use messages::{GroundTruth, NodeState, Odometry, ScanHeader, Stamp, topic};
+use messages::{NodeState, ScanHeader, Stamp, topic};
+use playback::{Content, PlaybackError, Poses, Timed};
 use transport::{Graph, Health, Publisher, TransportError, monotonic_ns, with_causes};
 
 use super::Summary;
-use crate::ReplayerError;
-use crate::source::{Content, Timed};
 
 pub(super) struct Outlet {
     scans: Publisher<topic::Scan>,
-    odometry: Publisher<topic::OdometryTopic>,
-    truths: Publisher<topic::GroundTruthTopic>,
-    odometry_sent: u64,
-    truths_sent: u64,
+    poses: Poses,
     pub(super) health: Health,
     pub(super) summary: Summary,
 }
@@ -21,10 +17,7 @@ impl Outlet {
     pub(super) fn open(graph: &Graph) -> Result<Self, TransportError> {
         Ok(Outlet {
             scans: graph.publisher()?,
-            odometry: graph.publisher()?,
-            truths: graph.publisher()?,
-            odometry_sent: 0,
-            truths_sent: 0,
+            poses: Poses::open(graph)?,
             health: graph.health()?,
             summary: Summary::default(),
         })
@@ -40,8 +33,8 @@ impl Outlet {
         self.health.count_sent(1);
         match timed.content {
             Content::Scan(header, ranges) => self.send_scan(*header, &ranges).map(Some),
-            Content::Odometry(odometry) => self.send_odometry(*odometry).map(|()| None),
-            Content::GroundTruth(truth) => self.send_truth(*truth).map(|()| None),
+            Content::Odometry(odometry) => self.poses.send_odometry(*odometry).map(|()| None),
+            Content::GroundTruth(truth) => self.poses.send_truth(*truth).map(|()| None),
         }
     }
 
@@ -60,24 +53,6 @@ impl Outlet {
         Ok(header.stamp)
     }
 
-    fn send_odometry(&mut self, mut odometry: Odometry) -> Result<(), TransportError> {
-        let mut loan = self.odometry.loan(0)?;
-        odometry.stamp.counter = self.odometry_sent;
-        odometry.stamp.entered_ns = monotonic_ns();
-        *loan.header_mut() = odometry;
-        self.odometry_sent += 1;
-        loan.send()
-    }
-
-    fn send_truth(&mut self, mut truth: GroundTruth) -> Result<(), TransportError> {
-        let mut loan = self.truths.loan(0)?;
-        truth.stamp.counter = self.truths_sent;
-        truth.stamp.entered_ns = monotonic_ns();
-        *loan.header_mut() = truth;
-        self.truths_sent += 1;
-        loan.send()
-    }
-
     /// An answer came, to whichever scan.
     pub(super) fn count_answer(&mut self) -> Result<(), TransportError> {
         self.summary.answers += 1;
@@ -86,7 +61,7 @@ impl Outlet {
     }
 
     /// A message of the recording cannot be used.
-    pub(super) fn refuse(&mut self, error: &ReplayerError) -> Result<(), TransportError> {
+    pub(super) fn refuse(&mut self, error: &PlaybackError) -> Result<(), TransportError> {
         self.summary.refused += 1;
         self.health.count_refused(1);
         self.complain(&with_causes(error))

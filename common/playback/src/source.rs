@@ -9,33 +9,40 @@ use std::sync::Arc;
 use messages::{GroundTruth, Odometry, Pose2, ScanHeader};
 use recording::{Channel, Kind, Message, Record, Recording, RecordingError, Records};
 
-use crate::ReplayerError;
+use crate::PlaybackError;
 use crate::convert::{Place, scan_header};
 use crate::selection::Selection;
 
 /// A message that is ready but for its moment.
 #[derive(Debug, Clone, PartialEq)]
-pub(crate) struct Timed {
+pub struct Timed {
     /// When it was recorded, nanoseconds.
-    pub(crate) log_time_ns: i64,
-    pub(crate) content: Content,
+    pub log_time_ns: i64,
+    /// The message.
+    pub content: Content,
 }
 
 /// What it says.
 #[derive(Debug, Clone, PartialEq)]
-pub(crate) enum Content {
+pub enum Content {
+    /// Without its counter and its entry into the graph.
     Scan(Box<ScanHeader>, Vec<f32>),
+    /// Likewise.
     Odometry(Box<Odometry>),
+    /// Likewise.
     GroundTruth(Box<GroundTruth>),
 }
 
 impl Timed {
-    pub(crate) fn is_scan(&self) -> bool {
+    /// Whether it is a scan.
+    #[must_use]
+    pub fn is_scan(&self) -> bool {
         matches!(self.content, Content::Scan(..))
     }
 
     /// When it was measured, nanoseconds.
-    pub(crate) fn stamp_ns(&self) -> i64 {
+    #[must_use]
+    pub fn stamp_ns(&self) -> i64 {
         match &self.content {
             Content::Scan(header, _) => header.stamp.measured_ns,
             Content::Odometry(odometry) => odometry.stamp.measured_ns,
@@ -46,16 +53,18 @@ impl Timed {
 
 /// The channels that are played.
 #[derive(Debug, Clone)]
-pub(crate) struct Channels {
+pub struct Channels {
     scan: Arc<str>,
     odometry: Option<Arc<str>>,
     truth: Option<Arc<str>>,
 }
 
 impl Channels {
+    /// Those of the selection.
+    ///
     /// # Errors
     /// If there are no scans, or it is not clear which ones are meant.
-    pub(crate) fn of(recording: &Recording, selection: &Selection) -> Result<Self, RecordingError> {
+    pub fn of(recording: &Recording, selection: &Selection) -> Result<Self, RecordingError> {
         let topic = |kind| recording.topic_renamed(kind, |topic| selection.name_of(topic));
         let describe = |channel: &Channel| format!("{} ({})", channel.topic, channel.schema);
         let no_scans = || RecordingError::NoTopic {
@@ -71,7 +80,8 @@ impl Channels {
     }
 
     /// Readable messages of the channel with scans.
-    pub(crate) fn scans(&self, recording: &Recording) -> u64 {
+    #[must_use]
+    pub fn scans(&self, recording: &Recording) -> u64 {
         let mut channels = recording.channels();
         let scan = channels.find(|channel| channel.topic == self.scan);
         scan.map_or(0, |channel| channel.messages)
@@ -88,7 +98,7 @@ impl Channels {
 }
 
 /// The messages by log time; damage of the file is the last item.
-pub(crate) struct Source<'a> {
+pub struct Source<'a> {
     recording: &'a Recording,
     channels: Channels,
     selection: Selection,
@@ -97,7 +107,9 @@ pub(crate) struct Source<'a> {
 }
 
 impl<'a> Source<'a> {
-    pub(crate) fn new(recording: &'a Recording, channels: Channels, selection: Selection) -> Self {
+    /// Before the first of them.
+    #[must_use]
+    pub fn new(recording: &'a Recording, channels: Channels, selection: Selection) -> Self {
         Source {
             recording,
             channels,
@@ -107,7 +119,7 @@ impl<'a> Source<'a> {
         }
     }
 
-    fn convert(&mut self, record: Record) -> Result<Option<Timed>, ReplayerError> {
+    fn convert(&mut self, record: Record) -> Result<Option<Timed>, PlaybackError> {
         let place = Place {
             topic: &record.topic,
             log_time_ns: record.log_time_ns,
@@ -143,7 +155,7 @@ impl<'a> Source<'a> {
 }
 
 impl Iterator for Source<'_> {
-    type Item = Result<Timed, ReplayerError>;
+    type Item = Result<Timed, PlaybackError>;
 
     fn next(&mut self) -> Option<Self::Item> {
         loop {
@@ -217,7 +229,7 @@ mod tests {
         Recording::from_bytes("world.mcap", bytes).unwrap()
     }
 
-    fn play(recording: &Recording) -> Vec<Result<Timed, ReplayerError>> {
+    fn play(recording: &Recording) -> Vec<Result<Timed, PlaybackError>> {
         let all = Selection::all();
         Source::new(recording, Channels::of(recording, &all).unwrap(), all).collect()
     }

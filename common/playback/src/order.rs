@@ -14,7 +14,7 @@ use crate::source::Timed;
 const WINDOW_NS: i64 = 500_000_000;
 
 /// An iterator over the same items, errors included, in playing order.
-pub(crate) struct InOrder<I, E> {
+pub struct InOrder<I, E> {
     items: I,
     ended: bool,
     newest_ns: i64,
@@ -22,7 +22,8 @@ pub(crate) struct InOrder<I, E> {
 }
 
 impl<E, I: Iterator<Item = Result<Timed, E>>> InOrder<I, E> {
-    pub(crate) fn new(items: I) -> Self {
+    /// Of items by log time.
+    pub fn new(items: I) -> Self {
         InOrder {
             items,
             ended: false,

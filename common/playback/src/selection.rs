@@ -5,8 +5,6 @@ use std::str::FromStr;
 
 use recording::Recording;
 
-use crate::Config;
-
 /// One channel goes by the name of another.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct Remap {
@@ -36,7 +34,7 @@ impl fmt::Display for Remap {
 
 /// What is played of a recording.
 #[derive(Debug, Clone, PartialEq, Eq)]
-pub(crate) struct Selection {
+pub struct Selection {
     topics: Vec<String>,
     remap: Vec<Remap>,
     /// First and last log time, nanoseconds.
@@ -45,20 +43,43 @@ pub(crate) struct Selection {
 }
 
 impl Selection {
-    pub(crate) fn new(config: &Config, recording: &Recording) -> Self {
+    /// Everything.
+    #[must_use]
+    pub fn all() -> Self {
+        Selection {
+            topics: Vec::new(),
+            remap: Vec::new(),
+            from_ns: i64::MIN,
+            to_ns: i64::MAX,
+        }
+    }
+
+    /// These topics alone, unless there are none; some of them go by other names.
+    #[must_use]
+    pub fn of(topics: &[String], remap: &[Remap]) -> Self {
+        Selection {
+            topics: topics.to_owned(),
+            remap: remap.to_owned(),
+            ..Selection::all()
+        }
+    }
+
+    /// What lies so many seconds after the recording's first message, at most 1e9.
+    #[must_use]
+    pub fn within(self, recording: &Recording, start: Option<f64>, end: Option<f64>) -> Self {
         let first_ns = recording.time_range_ns().map_or(0, |(first, _)| first);
         // At most 1e18, which fits.
         let after = |seconds: f64| first_ns.saturating_add((seconds * 1e9) as i64);
         Selection {
-            topics: config.topics.clone(),
-            remap: config.remap.clone(),
-            from_ns: config.start.map_or(i64::MIN, after),
-            to_ns: config.end.map_or(i64::MAX, after),
+            from_ns: start.map_or(i64::MIN, after),
+            to_ns: end.map_or(i64::MAX, after),
+            ..self
         }
     }
 
     /// The name by which a channel goes; `None` where it is left out.
-    pub(crate) fn name_of(&self, topic: &str) -> Option<String> {
+    #[must_use]
+    pub fn name_of(&self, topic: &str) -> Option<String> {
         if !self.topics.is_empty() && !self.topics.iter().any(|meant| meant == topic) {
             return None;
         }
@@ -72,31 +93,21 @@ impl Selection {
         }
     }
 
-    pub(crate) fn covers(&self, log_time_ns: i64) -> bool {
+    /// Whether a message of this log time is played.
+    #[must_use]
+    pub fn covers(&self, log_time_ns: i64) -> bool {
         (self.from_ns..=self.to_ns).contains(&log_time_ns)
     }
 
     /// Topics that were named, but that the recording does not have.
-    pub(crate) fn unknown(&self, recording: &Recording) -> Vec<String> {
+    #[must_use]
+    pub fn unknown(&self, recording: &Recording) -> Vec<String> {
         let named = self
             .topics
             .iter()
             .chain(self.remap.iter().map(|remap| &remap.from));
         let is_unknown = |name: &&String| !recording.channels().any(|c| *c.topic == ***name);
         named.filter(is_unknown).cloned().collect()
-    }
-}
-
-#[cfg(test)]
-impl Selection {
-    /// Everything, for tests.
-    pub(crate) fn all() -> Self {
-        Selection {
-            topics: Vec::new(),
-            remap: Vec::new(),
-            from_ns: i64::MIN,
-            to_ns: i64::MAX,
-        }
     }
 }
 

@@ -6,7 +6,7 @@
 use messages::{GroundTruth, Name, Odometry, Pose2, ScanHeader, Stamp};
 use recording::ros::{self, LaserScan, PoseStamped, Time};
 
-use crate::ReplayerError;
+use crate::PlaybackError;
 
 /// Where a message stands, for errors.
 pub(crate) struct Place<'a> {
@@ -15,21 +15,21 @@ pub(crate) struct Place<'a> {
 }
 
 impl Place<'_> {
-    pub(crate) fn name(&self, frame: &str) -> Result<Name, ReplayerError> {
+    pub(crate) fn name(&self, frame: &str) -> Result<Name, PlaybackError> {
         if frame.len() <= Name::CAPACITY {
             return Ok(Name::new(frame));
         }
-        Err(ReplayerError::Frame {
+        Err(PlaybackError::Frame {
             topic: self.topic.into(),
             log_time_ns: self.log_time_ns,
             frame: frame.into(),
         })
     }
 
-    fn pose(&self, pose: &ros::Pose) -> Result<Pose2, ReplayerError> {
+    fn pose(&self, pose: &ros::Pose) -> Result<Pose2, PlaybackError> {
         match pose.planar() {
             Ok(pose) => Ok(pose.into()),
-            Err(reason) => Err(ReplayerError::Pose {
+            Err(reason) => Err(PlaybackError::Pose {
                 topic: self.topic.into(),
                 log_time_ns: self.log_time_ns,
                 reason: Box::new(reason),
@@ -37,7 +37,7 @@ impl Place<'_> {
         }
     }
 
-    pub(crate) fn odometry(&self, message: &ros::Odometry) -> Result<Odometry, ReplayerError> {
+    pub(crate) fn odometry(&self, message: &ros::Odometry) -> Result<Odometry, PlaybackError> {
         Ok(Odometry {
             stamp: measured(message.header.stamp),
             odom_from_child: self.pose(&message.pose.pose)?,
@@ -48,7 +48,7 @@ impl Place<'_> {
         })
     }
 
-    pub(crate) fn ground_truth(&self, message: &PoseStamped) -> Result<GroundTruth, ReplayerError> {
+    pub(crate) fn ground_truth(&self, message: &PoseStamped) -> Result<GroundTruth, PlaybackError> {
         Ok(GroundTruth {
             stamp: measured(message.header.stamp),
             map_from_laser: self.pose(&message.pose)?,

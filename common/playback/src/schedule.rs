@@ -10,7 +10,7 @@ use crate::Rate;
 
 /// What to do now. Times are `CLOCK_MONOTONIC` in nanoseconds.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub(crate) enum Action {
+pub enum Action {
     /// Send the pending message.
     Send,
     /// It is due at this time.
@@ -32,7 +32,7 @@ struct Anchor {
 
 /// The state of playing.
 #[derive(Debug)]
-pub(crate) struct Schedule {
+pub struct Schedule {
     rate: Rate,
     patience_ns: i64,
     anchor: Option<Anchor>,
@@ -44,7 +44,9 @@ pub(crate) struct Schedule {
 }
 
 impl Schedule {
-    pub(crate) fn new(rate: Rate, patience_s: f64) -> Self {
+    /// Nothing played yet; an answer may take `patience_s` seconds.
+    #[must_use]
+    pub fn new(rate: Rate, patience_s: f64) -> Self {
         Schedule {
             rate,
             patience_ns: (patience_s * 1e9) as i64,
@@ -57,7 +59,7 @@ impl Schedule {
 
     /// What to do at `now_ns`, where the next message was recorded at
     /// `pending_ns`, or there is none.
-    pub(crate) fn next(&mut self, pending_ns: Option<i64>, now_ns: i64) -> Action {
+    pub fn next(&mut self, pending_ns: Option<i64>, now_ns: i64) -> Action {
         if let Some(stamp) = self.awaited
             && (self.rate == Rate::Max || pending_ns.is_none())
         {
@@ -80,25 +82,31 @@ impl Schedule {
     }
 
     /// A scan was sent with this stamp.
-    pub(crate) fn scan_sent(&mut self, stamp: Stamp) {
+    pub fn scan_sent(&mut self, stamp: Stamp) {
         self.awaited = Some(stamp);
     }
 
+    /// The scan whose answer is waited for.
+    #[must_use]
+    pub fn awaited(&self) -> Option<Stamp> {
+        self.awaited
+    }
+
     /// An answer came that carries this stamp.
-    pub(crate) fn answered(&mut self, stamp: Stamp) {
+    pub fn answered(&mut self, stamp: Stamp) {
         if self.awaited == Some(stamp) {
             self.awaited = None;
         }
     }
 
     /// The recording starts over, `gap_ns` of its time after its last message.
-    pub(crate) fn start_over(&mut self, gap_ns: i64) {
+    pub fn start_over(&mut self, gap_ns: i64) {
         self.anchor = None;
         self.not_before_ns = self.last_due_ns.saturating_add(self.scaled(gap_ns));
     }
 
     /// Playing goes on after a pause: the next message is due at once.
-    pub(crate) fn resume(&mut self) {
+    pub fn resume(&mut self) {
         self.anchor = None;
         self.not_before_ns = i64::MIN;
     }

@@ -1,0 +1,51 @@
+//! Sends the messages of a recording that are no scans.
+
+use messages::{GroundTruth, Odometry, topic};
+use transport::{Graph, Publisher, TransportError, monotonic_ns};
+
+/// Where odometry and true poses enter the graph.
+pub struct Poses {
+    odometry: Publisher<topic::OdometryTopic>,
+    truths: Publisher<topic::GroundTruthTopic>,
+    odometry_sent: u64,
+    truths_sent: u64,
+}
+
+impl Poses {
+    /// # Errors
+    /// The graph refuses.
+    pub fn open(graph: &Graph) -> Result<Self, TransportError> {
+        Ok(Poses {
+            odometry: graph.publisher()?,
+            truths: graph.publisher()?,
+            odometry_sent: 0,
+            truths_sent: 0,
+        })
+    }
+
+    /// Sends it now, with the next counter.
+    ///
+    /// # Errors
+    /// The graph fails.
+    pub fn send_odometry(&mut self, mut odometry: Odometry) -> Result<(), TransportError> {
+        let mut loan = self.odometry.loan(0)?;
+        odometry.stamp.counter = self.odometry_sent;
+        odometry.stamp.entered_ns = monotonic_ns();
+        *loan.header_mut() = odometry;
+        self.odometry_sent += 1;
+        loan.send()
+    }
+
+    /// Sends it now, with the next counter.
+    ///
+    /// # Errors
+    /// The graph fails.
+    pub fn send_truth(&mut self, mut truth: GroundTruth) -> Result<(), TransportError> {
+        let mut loan = self.truths.loan(0)?;
+        truth.stamp.counter = self.truths_sent;
+        truth.stamp.entered_ns = monotonic_ns();
+        *loan.header_mut() = truth;
+        self.truths_sent += 1;
+        loan.send()
+    }
+}

@@ -1,0 +1,77 @@
+//! Waits until the nodes that answer are there.
+
+use std::time::Duration;
+
+use messages::topic;
+use transport::{Flow, Graph, Health, Subscriber, TransportError, monotonic_ns};
+
+use crate::readiness::Readiness;
+
+/// The longest time without a look at signals and health.
+const TICK: Duration = Duration::from_millis(50);
+
+/// Between two lines that say who is waited for, nanoseconds.
+const REMINDER_NS: i64 = 5_000_000_000;
+
+/// The nodes that must be ready before playing starts.
+pub struct Awaited {
+    reports: Subscriber<topic::Health>,
+    readiness: Readiness,
+    reminder_ns: i64,
+    are_ready: bool,
+}
+
+impl Awaited {
+    /// Nodes by their names.
+    ///
+    /// # Errors
+    /// The graph refuses.
+    pub fn new(graph: &Graph, names: &[String]) -> Result<Self, TransportError> {
+        Ok(Awaited {
+            reports: graph.subscriber()?,
+            readiness: Readiness::of(names),
+            reminder_ns: i64::MIN,
+            are_ready: false,
+        })
+    }
+
+    /// Whether all have been ready at once; says in the log who is missing.
+    ///
+    /// # Errors
+    /// The graph fails.
+    pub fn are_ready(&mut self) -> Result<bool, TransportError> {
+        while let Some(report) = self.reports.receive()? {
+            self.readiness.hear(report.header());
+        }
+        let missing = self.readiness.missing();
+        self.are_ready |= missing.is_empty();
+        if !self.are_ready && monotonic_ns() >= self.reminder_ns {
+            self.reminder_ns = monotonic_ns().saturating_add(REMINDER_NS);
+            tracing::info!("waiting for {}", missing.join(", "));
+        }
+        Ok(self.are_ready)
+    }
+}
+
+/// Waits until all these nodes are ready, or the stop flag is set.
+///
+/// # Errors
+/// The graph fails.
+pub fn wait_for_nodes(
+    graph: &Graph,
+    names: &[String],
+    health: &mut Health,
+) -> Result<(), TransportError> {
+    if names.is_empty() {
+        return Ok(());
+    }
+    let mut awaited = Awaited::new(graph, names)?;
+    // The loop below has the listener while it runs; reports are taken on ticks.
+    graph.run(&[], TICK, |_| {
+        if awaited.are_ready()? {
+            return Ok(Flow::Stop);
+        }
+        health.tick()?;
+        Ok(Flow::Continue)
+    })
+}

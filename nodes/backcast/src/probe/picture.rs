@@ -1,0 +1,123 @@
+//! A scan drawn in characters of two by four dots (Unicode's Braille patterns).
+//! Pure. The laser is in the middle, ahead is up.
+
+use std::f64::consts::{FRAC_PI_2, TAU};
+
+/// Of a character.
+const DOTS: (usize, usize) = (2, 4);
+/// The bit of each dot, by row and column.
+const BITS: [[u8; 2]; 4] = [[0x01, 0x08], [0x02, 0x10], [0x04, 0x20], [0x40, 0x80]];
+/// A character is about twice as high as wide, so dots are square.
+const ROWS_PER_COLUMN: f64 = 0.5;
+
+/// What a scan looks like: bearings in radians counter-clockwise from ahead, and
+/// distances in metres.
+pub(super) struct Seen {
+    pub(super) points: Vec<(f64, f64)>,
+}
+
+impl Seen {
+    /// A picture so many characters wide, with the reach of its sides below it.
+    pub(super) fn draw(&self, columns: usize) -> String {
+        let rows = ((columns as f64 * ROWS_PER_COLUMN) as usize).max(2);
+        let reach_m = self.reach();
+        let mut canvas = vec![0u8; columns * rows];
+        let (width, height) = (columns * DOTS.0, rows * DOTS.1);
+        let dots_per_m = (width.min(height) as f64 / 2.0 - 1.0) / reach_m;
+        let mut set = |x_m: f64, y_m: f64| {
+            let x = width as f64 / 2.0 + x_m * dots_per_m;
+            let y = height as f64 / 2.0 - y_m * dots_per_m;
+            if x < 0.0 || y < 0.0 {
+                return;
+            }
+            let (x, y) = (x as usize, y as usize);
+            let at = y / DOTS.1 * columns + x / DOTS.0;
+            if x < width
+                && let Some(character) = canvas.get_mut(at)
+            {
+                *character |= BITS[y % DOTS.1][x % DOTS.0];
+            }
+        };
+        for (bearing, range) in &self.points {
+            let angle = FRAC_PI_2 + bearing;
+            set(range * angle.cos(), range * angle.sin());
+        }
+        // The laser is a ring of a dot's width.
+        for step in 0..16 {
+            let angle = TAU * f64::from(step) / 16.0;
+            set(
+                1.5 / dots_per_m * angle.cos(),
+                1.5 / dots_per_m * angle.sin(),
+            );
+        }
+        let rows = canvas.chunks(columns).map(|row| {
+            let row: String = row.iter().map(|&dots| braille(dots)).collect();
+            row.trim_end_matches(braille(0)).to_owned() + "\n"
+        });
+        let text: String = rows.collect();
+        let text = text.trim_matches('\n');
+        format!(
+            "{text}\nahead is up; from the laser (the ring) to the farthest side {reach_m:.1} m\n"
+        )
+    }
+
+    /// Nine tenths of the points lie within, so that one far one does not make
+    /// the rest a speck; metres.
+    fn reach(&self) -> f64 {
+        let mut ranges: Vec<f64> = self.points.iter().map(|(_, range)| *range).collect();
+        ranges.sort_unstable_by(f64::total_cmp);
+        let most = ranges.get(ranges.len().saturating_sub(1) * 9 / 10);
+        most.map_or(1.0, |range| range * 1.1).max(0.1)
+    }
+}
+
+fn braille(dots: u8) -> char {
+    char::from_u32(0x2800 + u32::from(dots)).unwrap_or(' ')
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_wall_ahead_is_a_line_above_the_laser() {
+        let wall = (-40..=40).map(|deg| f64::from(deg).to_radians());
+        let points = wall.map(|bearing| (bearing, 1.0 / bearing.cos())).collect();
+        let picture = Seen { points }.draw(20);
+        let lines: Vec<&str> = picture.lines().collect();
+        // The wall is one row of characters and the laser is below it; nothing is
+        // behind.
+        let is_long = |line: &&str| line.trim_matches(braille(0)).chars().count() > 8;
+        assert!(is_long(&lines[0]), "{picture}");
+        assert_eq!(
+            lines
+                .iter()
+                .rev()
+                .skip(1)
+                .filter(|line| is_long(line))
+                .count(),
+            1
+        );
+        assert!(picture.contains("1.4 m"), "{picture}");
+    }
+
+    #[test]
+    fn left_is_left() {
+        let points = vec![(FRAC_PI_2, 1.0)];
+        let picture = Seen { points }.draw(20);
+        let middle = picture.lines().next().unwrap();
+        let marks: Vec<usize> = middle
+            .chars()
+            .enumerate()
+            .filter(|(_, c)| *c != braille(0))
+            .map(|(i, _)| i)
+            .collect();
+        assert!(marks[0] < 3 && *marks.last().unwrap() <= 11, "{picture}");
+    }
+
+    #[test]
+    fn nothing_seen_is_drawn_too() {
+        let picture = Seen { points: vec![] }.draw(1);
+        assert!(picture.contains("1.0 m"), "{picture}");
+    }
+}

@@ -1,0 +1,130 @@
+//! A replayer in place of whatever feeds a graph: a laser, an emulated one, or
+//! another replayer. So a recording can be replayed exactly through any graph.
+
+use std::path::Path;
+use std::time::Duration;
+
+use dataflow::{Dataflow, Input, Node, Place, Restart, RestartPolicy};
+use messages::{Topic, topic};
+
+use super::added;
+use super::arguments::{REPLAYER, set};
+use super::supervision::{MEASUREMENTS, is_source};
+
+/// Started again it would begin anew.
+const RESTART: Restart = Restart {
+    policy: RestartPolicy::Never,
+    max_restarts: 0,
+    delay: Duration::ZERO,
+};
+
+/// Lets the graph's replayer play this recording; a graph that is fed by others
+/// gets a replayer instead of them.
+pub(crate) fn play<'d>(dataflow: &'d mut Dataflow, recording: &Path) -> &'d mut Node {
+    let at = dataflow
+        .nodes
+        .iter()
+        .position(|node| node.executable() == REPLAYER)
+        .unwrap_or_else(|| replace_sources(dataflow));
+    let replayer = &mut dataflow.nodes[at];
+    set(replayer, "--recording", Some(&recording.to_string_lossy()));
+    replayer
+}
+
+/// Takes the sources out and puts a replayer first.
+fn replace_sources(dataflow: &mut Dataflow) -> usize {
+    let replayer = replayer(dataflow);
+    dataflow.nodes.retain(|node| !is_source(node));
+    let senders: Vec<String> = dataflow.nodes.iter().map(|node| node.id.clone()).collect();
+    for input in dataflow.nodes.iter_mut().flat_map(|node| &mut node.inputs) {
+        if !senders.contains(&input.from) {
+            input.from.clone_from(&replayer.id);
+        }
+    }
+    dataflow.nodes.insert(0, replayer);
+    0
+}
+
+fn replayer(dataflow: &mut Dataflow) -> Node {
+    let sends = |topic: &str| {
+        let mut nodes = dataflow.nodes.iter();
+        nodes.find(|node| node.outputs.iter().any(|output| output == topic))
+    };
+    let answers = sends(topic::Hypotheses::NAME).map(|node| Input {
+        topic: topic::Hypotheses::NAME.to_owned(),
+        from: node.id.clone(),
+    });
+    let inputs = answers.into_iter().collect();
+    let takes_scans = |node: &&Node| {
+        let mut inputs = node.inputs.iter();
+        inputs.any(|input| input.topic == topic::Scan::NAME)
+    };
+    let takers = dataflow.nodes.iter().filter(takes_scans);
+    let takers: Vec<&str> = takers.map(Node::executable).collect();
+    let args = match takers.is_empty() {
+        true => Vec::new(),
+        false => vec![format!("--wait-for={}", takers.join(","))],
+    };
+    Node {
+        id: REPLAYER.to_owned(),
+        path: added::path(dataflow, REPLAYER),
+        path_place: Place::START,
+        args,
+        env: Vec::new(),
+        build: added::build(dataflow, REPLAYER),
+        inputs,
+        outputs: MEASUREMENTS.map(str::to_owned).into(),
+        restart: RESTART,
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn parsed(text: &str) -> Dataflow {
+        let topics = dataflow::Topics {
+            names: messages::topic::NAMES,
+            shared: &[],
+        };
+        dataflow::parse(text, &topics).unwrap()
+    }
+
+    #[test]
+    fn a_laser_gives_way_to_a_replayer() {
+        let mut dataflow = parsed(
+            "nodes:
+  - {id: sim, path: bin/emulator, args: --recording a, build: cargo build -p emulator, outputs: [odometry], inputs: {hypotheses: p/hypotheses}}
+  - {id: laser, path: bin/lms_reader, args: --tcp a, outputs: [scan]}
+  - {id: a, path: bin/accumulator, inputs: {scan: laser/scan, odometry: sim/odometry, map: m/map}, outputs: [votes]}
+  - {id: p, path: bin/peak_extractor, inputs: {scan: laser/scan, votes: a/votes}, outputs: [hypotheses]}
+  - {id: m, path: bin/map_server, outputs: [map], build: cargo build -p emulator}
+",
+        );
+        play(&mut dataflow, Path::new("/r.mcap"));
+        let ids: Vec<&str> = dataflow.nodes.iter().map(|node| &*node.id).collect();
+        assert_eq!(ids, ["replayer", "a", "p", "m"]);
+        let replayer = &dataflow.nodes[0];
+        assert_eq!(replayer.path, "bin/replayer");
+        let args = [
+            "--wait-for=accumulator,peak_extractor",
+            "--recording=/r.mcap",
+        ];
+        assert_eq!(replayer.args, args);
+        assert_eq!(replayer.inputs[0].from, "p");
+        let from: Vec<&str> = dataflow.nodes[1].inputs.iter().map(|i| &*i.from).collect();
+        assert!(from.contains(&"m"));
+        assert_eq!(from.iter().filter(|from| **from == "replayer").count(), 2);
+        let build = "cargo build -p emulator --package replayer";
+        assert_eq!(dataflow.nodes[3].build[0].to_string(), build);
+    }
+
+    #[test]
+    fn a_replayer_stays_where_it_is() {
+        let text =
+            "nodes: [{id: r, path: bin/replayer, args: --recording a --start 3, outputs: [scan]}]";
+        let mut dataflow = parsed(text);
+        let replayer = play(&mut dataflow, Path::new("b"));
+        assert_eq!(replayer.args, ["--start", "3", "--recording=b"]);
+    }
+}

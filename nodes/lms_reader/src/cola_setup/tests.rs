@@ -1,0 +1,171 @@
+use sick::cola::Fault;
+
+use super::*;
+
+const SCAN: ScanConfig = ScanConfig {
+    frequency_raw_1e2_hz: 2500,
+    resolution_raw_1e4_deg: 2500,
+    start_angle_raw_1e4_deg: -450_000,
+    stop_angle_raw_1e4_deg: 2_250_000,
+};
+const RANGE: OutputRange = OutputRange {
+    resolution_raw_1e4_deg: 5000,
+    start_angle_raw_1e4_deg: -450_000,
+    stop_angle_raw_1e4_deg: 2_250_000,
+};
+
+const CONTENTS: ScanDataConfig = ScanDataConfig {
+    channels: [1, 0],
+    remission: false,
+    remission_16_bit: true,
+    remission_unit: 0,
+    encoders: [0, 0],
+    position: false,
+    name: false,
+    comment: false,
+    time: false,
+    interval: 1,
+};
+
+#[test]
+fn without_wishes_nothing_is_changed() {
+    let mut setup = Setup::new(Wanted::default());
+    let ident = Command::Read(Variable::DeviceIdent);
+    assert_eq!(setup.next(0).unwrap(), Some(ident));
+    assert_eq!(setup.next(1).unwrap(), None);
+    setup.hear(&Answer::Fault(Fault::UNKNOWN_VARIABLE)).unwrap();
+    let state = Command::Read(Variable::DeviceState);
+    assert_eq!(setup.next(2).unwrap(), Some(state));
+    setup.hear(&Answer::Value(Value::DeviceState(1))).unwrap();
+    let subscribe = Command::SubscribeScans(true);
+    assert_eq!(setup.next(3).unwrap(), Some(subscribe));
+    // An answer to something else changes nothing.
+    setup.hear(&Answer::Running(true)).unwrap();
+    assert!(!setup.is_done());
+    setup.hear(&Answer::ScansSubscribed(true)).unwrap();
+    assert!(setup.is_done());
+    assert_eq!(setup.next(i64::MAX).unwrap(), None);
+}
+
+/// Answers as a device does that takes over what it is told, but for `range`.
+fn play(setup: &mut Setup, range: Option<OutputRange>) -> Result<Vec<String>, LmsError> {
+    let (mut scan, mut output, mut contents) = (SCAN, RANGE, CONTENTS);
+    let mut said = Vec::new();
+    while let Some(command) = setup.next(0)? {
+        said.push(format!("{command:?}"));
+        setup.hear(&match command {
+            Command::Read(Variable::DeviceIdent) => Answer::Value(Value::DeviceIdent {
+                name: b"LMS",
+                version: b"1",
+            }),
+            Command::Read(Variable::DeviceState) => Answer::Value(Value::DeviceState(1)),
+            Command::Read(Variable::ScanConfig) => Answer::Value(Value::ScanConfig(scan)),
+            Command::Read(Variable::OutputRange) => Answer::Value(Value::OutputRange(output)),
+            Command::Call(Method::SetAccessMode { .. }) => Answer::AccessMode(true),
+            Command::Call(Method::SetScanConfig(config)) => {
+                scan = config;
+                Answer::ScanConfigSet { status: 0, config }
+            }
+            Command::Write(Value::OutputRange(wanted)) => {
+                output = range.unwrap_or(wanted);
+                Answer::Written(Variable::OutputRange)
+            }
+            Command::Read(Variable::ScanDataConfig) => {
+                Answer::Value(Value::ScanDataConfig(contents))
+            }
+            Command::Write(Value::ScanDataConfig(wanted)) => {
+                contents = wanted;
+                Answer::Written(Variable::ScanDataConfig)
+            }
+            Command::Call(Method::Run) => Answer::Running(true),
+            Command::SubscribeScans(on) => Answer::ScansSubscribed(on),
+            other => panic!("{other:?}"),
+        })?;
+    }
+    Ok(said)
+}
+
+#[test]
+fn wishes_are_set_and_read_back() {
+    let mut setup = Setup::new(Wanted::of(Some(180.0), Some(0.5), false));
+    let said = play(&mut setup, None).unwrap();
+    assert_eq!(said.len(), 11, "{said:#?}");
+    assert!(
+        said[4].contains("resolution_raw_1e4_deg: 5000"),
+        "{said:#?}"
+    );
+    assert!(said[4].contains("frequency_raw_1e2_hz: 2500"), "{said:#?}");
+    assert!(said[7].contains("start_angle_raw_1e4_deg: 0, stop_angle_raw_1e4_deg: 1800000"));
+    assert!(setup.is_done());
+}
+
+#[test]
+fn the_time_of_a_scan_is_asked_for_where_it_is_left_out() {
+    let mut setup = Setup::new(Wanted::of(None, None, true));
+    let said = play(&mut setup, None).unwrap();
+    // What it is and how it fares, its contents, login, change, check, run, scans.
+    assert_eq!(said.len(), 8, "{said:#?}");
+    assert!(said[3].contains("SetAccessMode"), "{said:#?}");
+    assert!(said[4].contains("Write") && said[4].contains("time: true"));
+    assert!(setup.is_done());
+    let mut setup = Setup::new(Wanted::of(Some(180.0), None, true));
+    let said = play(&mut setup, None).unwrap();
+    let logins = said.iter().filter(|said| said.contains("SetAccessMode"));
+    assert_eq!((logins.count(), said.len()), (1, 11), "{said:#?}");
+}
+
+#[test]
+fn a_device_that_sends_the_time_already_is_not_changed() {
+    let mut setup = Setup::new(Wanted::of(None, None, true));
+    for answer in [
+        Answer::Fault(Fault::UNKNOWN_VARIABLE),
+        Answer::Fault(Fault::UNKNOWN_VARIABLE),
+        Answer::Value(Value::ScanDataConfig(ScanDataConfig {
+            time: true,
+            ..CONTENTS
+        })),
+    ] {
+        setup.next(0).unwrap();
+        setup.hear(&answer).unwrap();
+    }
+    let subscribe = Command::SubscribeScans(true);
+    assert_eq!(setup.next(0).unwrap(), Some(subscribe));
+}
+
+#[test]
+fn a_device_that_keeps_its_own_settings_is_an_error() {
+    let mut setup = Setup::new(Wanted::of(Some(180.0), None, false));
+    let error = play(&mut setup, Some(RANGE)).unwrap_err().to_string();
+    assert!(error.contains("did not keep the field"), "{error}");
+}
+
+#[test]
+fn refusals_and_silence_name_the_command() {
+    let mut setup = Setup::new(Wanted::of(Some(180.0), None, false));
+    let mut hear = |answer| {
+        setup.next(0).unwrap();
+        setup.hear(&answer)
+    };
+    hear(Answer::Fault(Fault::UNKNOWN_VARIABLE)).unwrap();
+    hear(Answer::Fault(Fault::UNKNOWN_VARIABLE)).unwrap();
+    let error = hear(Answer::AccessMode(false)).unwrap_err().to_string();
+    assert!(
+        error.contains("did not log in: it answers false"),
+        "{error}"
+    );
+    let error = hear(Answer::Fault(Fault::METHOD_DENIED)).unwrap_err();
+    let error = error.to_string();
+    assert!(error.contains("SetAccessMode"), "{error}");
+    assert!(error.contains("does not allow this method"), "{error}");
+    let mut now_ns = 0;
+    let error = loop {
+        now_ns += SLOW_NS;
+        if let Err(error) = setup.next(now_ns) {
+            break error.to_string();
+        }
+    };
+    assert!(
+        error.contains("SetAccessMode") && error.contains("3 times"),
+        "{error}"
+    );
+}
