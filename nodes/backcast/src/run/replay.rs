@@ -55,9 +55,12 @@ fn replayer(dataflow: &mut Dataflow) -> Node {
         from: node.id.clone(),
     });
     let inputs = answers.into_iter().collect();
+    // Those that only look on need not be waited for.
+    let steps = [topic::Votes::NAME, topic::Hypotheses::NAME];
     let takes_scans = |node: &&Node| {
-        let mut inputs = node.inputs.iter();
+        let (mut inputs, mut outputs) = (node.inputs.iter(), node.outputs.iter());
         inputs.any(|input| input.topic == topic::Scan::NAME)
+            && outputs.any(|output| steps.contains(&output.as_str()))
     };
     let takers = dataflow.nodes.iter().filter(takes_scans);
     let takers: Vec<&str> = takers.map(Node::executable).collect();
