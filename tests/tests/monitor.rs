@@ -94,7 +94,7 @@ fn nodes(world: &World, token: &str) -> String {
     inputs: {{ scan: replayer/scan, map: map_server/map, boundary: boundary_extractor/boundary }}
     outputs: [votes, field]
     restart_policy: on-failure
-    restart_delay: 86400
+    restart_delay: 3600
   - id: peak_extractor
     path: {}
     inputs: {{ votes: accumulator/votes, scan: replayer/scan, map: map_server/map }}
