@@ -23,8 +23,7 @@ pub(crate) fn leave_out_monitors(dataflow: &mut Dataflow) {
 }
 
 /// The first node with one of these executables, for which an option is meant.
-/// `file` is named in
-/// errors.
+/// `file` is named in errors.
 ///
 /// # Errors
 /// The graph has none.
