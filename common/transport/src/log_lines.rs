@@ -16,6 +16,9 @@ use tracing_subscriber::layer::Context;
 
 use crate::{monotonic_ns, wall_ns};
 
+/// The target of events that the console alone may see: secrets, say.
+pub const CONSOLE_ONLY: &str = "console_only";
+
 /// Lines that wait at most, so that a subscriber has room for all of them and for
 /// the one that tells of losses.
 const CAPACITY: usize = topic::Log::DEPTH - 1;
@@ -96,7 +99,7 @@ pub(crate) struct KeepLines;
 
 impl<S: Subscriber> Layer<S> for KeepLines {
     fn on_event(&self, event: &Event<'_>, _: Context<'_, S>) {
-        if SENDING.get() {
+        if SENDING.get() || event.metadata().target() == CONSOLE_ONLY {
             return;
         }
         let mut text = Text::default();

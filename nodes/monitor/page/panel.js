@@ -139,11 +139,11 @@ function nodeRow(node, took) {
   return row;
 }
 
-let shownEvent = null;
+let shownEvents = null;
 
 export function showEvents({ events }) {
-  if (events[0] === shownEvent) return;
-  shownEvent = events[0];
+  if (events === shownEvents) return;
+  shownEvents = events;
   $("events").replaceChildren(...events.map(({ at, text, level }) => element("li", { "data-level": level },
     element("time", {}, at.toLocaleTimeString("en-GB")), element("span", {}, text))));
 }

@@ -26,6 +26,7 @@ export class Store {
       case "answer": return this.#answer(message);
       case "beams": this.beams = message; return "beams";
       case "node": return this.#node(message);
+      case "log": return this.#log(message);
       case "region": this.region = message.corners; return "region";
       case "abilities": this.abilities = message; return "abilities";
       case "missed":
@@ -36,10 +37,11 @@ export class Store {
     }
   }
 
-  #snapshot({ robot, map, answer, beams, nodes, track, region, abilities }) {
+  #snapshot({ robot, map, answer, beams, nodes, track, log, region, abilities }) {
     Object.assign(this, { robot, map, answer, beams, track, region, abilities });
     if (answer) this.answeredAt = performance.now();
     this.nodes = new Map(nodes.map((node) => [node.name, node]));
+    for (const line of log) this.#log(line);
     return "snapshot";
   }
 
@@ -76,6 +78,15 @@ export class Store {
     return "nodes";
   }
 
+  /** Takes a line of a node's log, if it is not there already. */
+  #log({ node, pid, counter, level, at_s, text }) {
+    const key = `${node} ${pid} ${counter}`;
+    if (this.events.some((event) => event.key === key)) return "log";
+    const grave = { debug: "faint", info: "info", warn: "warn", error: "bad" }[level] ?? "info";
+    this.#insert({ at: new Date(at_s * 1000), text: `${node}: ${text}`, level: grave, key });
+    return "log";
+  }
+
   /** Takes a binary message: the length of a head, the head as JSON, pixels. */
   image(buffer) {
     const length = new DataView(buffer).getUint32(0, true);
@@ -84,7 +95,12 @@ export class Store {
   }
 
   event(text, level = "good") {
-    this.events.unshift({ at: new Date(), text, level });
-    this.events.length = Math.min(this.events.length, EVENTS);
+    this.#insert({ at: new Date(), text, level });
+  }
+
+  /** Newest first, wherever it comes from. */
+  #insert(event) {
+    const at = this.events.findIndex((other) => other.at <= event.at);
+    this.events = this.events.toSpliced(at < 0 ? this.events.length : at, 0, event).slice(0, EVENTS);
   }
 }

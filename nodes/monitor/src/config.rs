@@ -27,7 +27,7 @@ pub struct Config {
     pub robot: Option<String>,
 
     /// A file with the token that write actions need, at least 16 characters
-    /// [default: a new one, shown in the log]
+    /// [default: a new one, shown on the console]
     #[arg(long, value_name = "FILE")]
     pub token_file: Option<PathBuf>,
 }

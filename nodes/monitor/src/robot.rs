@@ -12,12 +12,15 @@ use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
 use axum::body::Bytes;
 use axum::extract::ws::Utf8Bytes;
 use messages::{
-    Beam, BeamsHeader, FieldHeader, HealthHeader, HypothesesHeader, Hypothesis, MapHeader,
+    Beam, BeamsHeader, FieldHeader, HealthHeader, HypothesesHeader, Hypothesis, LogHeader,
+    MapHeader,
 };
 use serde::Serialize;
 use tokio::sync::{broadcast, watch};
 
-use crate::told::{Answer, Beams, Map, Message, Region, Roster, Snapshot, Track, field_frame};
+use crate::told::{
+    Answer, Beams, Log, LogLine, Map, Message, Region, Roster, Snapshot, Track, field_frame,
+};
 
 /// Messages that may wait for a slow reader; beyond, it loses the oldest.
 const QUEUE: usize = 64;
@@ -61,6 +64,7 @@ struct Known {
     beams: Option<Beams>,
     roster: Roster,
     track: Track,
+    log: Log,
     region: Vec<[f64; 2]>,
     abilities: Abilities,
 }
@@ -128,6 +132,14 @@ impl Robot {
         report
             .inspect(|report| self.tell(&Message::Node(report)))
             .is_some()
+    }
+
+    /// Takes a line of a node's log.
+    pub(crate) fn hear_log(&self, header: &LogHeader, text: &[u8]) {
+        let line = LogLine::new(header, text);
+        let mut known = self.known();
+        self.tell(&Message::Log(&line));
+        known.log.hear(line);
     }
 
     /// Takes an intensity image; says whether it could be used.
@@ -232,6 +244,7 @@ impl Robot {
             beams: known.beams.as_ref(),
             nodes: known.roster.reports().collect(),
             track: known.track.points().collect(),
+            log: known.log.lines().collect(),
             region: &known.region,
             abilities: known.abilities,
         }))

@@ -8,7 +8,7 @@ use std::sync::mpsc::Receiver;
 use std::time::Duration;
 
 use messages::{NodeState, topic};
-use transport::{Flow, Graph, Health, Subscriber, TransportError, monotonic_ns};
+use transport::{CONSOLE_ONLY, Flow, Graph, Health, Subscriber, TransportError, monotonic_ns};
 
 use crate::robot::{Robot, Wish};
 use crate::server::Server;
@@ -61,7 +61,8 @@ fn announce(server: &Server, config: &Config, token: Option<&str>) {
     let address = server.address();
     tracing::info!("watch it on http://{address}");
     if let Some(token) = token {
-        tracing::info!("to change something there: http://{address}/#token={token}");
+        let place = format!("http://{address}/#token={token}");
+        tracing::info!(target: CONSOLE_ONLY, "to change something there: {place}");
     }
     if !address.ip().is_loopback() {
         tracing::warn!("whoever reaches {address} can read, and nothing is encrypted");

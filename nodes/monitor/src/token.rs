@@ -59,7 +59,7 @@ mod tests {
     fn random_tokens_differ_and_know_themselves() {
         let (one, other) = (Token::random().unwrap(), Token::random().unwrap());
         assert_eq!(one.reveal().len(), 32);
-        assert!(one.is(&one.reveal().to_owned()));
+        assert!(one.is(one.reveal()));
         assert!(!one.is(other.reveal()) && !one.is(""));
     }
 

@@ -7,6 +7,7 @@
 mod answer;
 mod beams;
 mod field;
+mod log;
 mod map;
 mod roster;
 mod track;
@@ -14,6 +15,7 @@ mod track;
 pub(crate) use answer::Answer;
 pub(crate) use beams::Beams;
 pub(crate) use field::frame as field_frame;
+pub(crate) use log::{Log, LogLine};
 pub(crate) use map::{Map, MapInfo};
 pub(crate) use roster::{NodeReport, Roster};
 pub(crate) use track::{Track, TrackPoint};
@@ -37,6 +39,8 @@ pub(crate) enum Message<'a> {
     Beams(&'a Beams),
     /// How a node fares.
     Node(&'a NodeReport),
+    /// What a node logs.
+    Log(&'a LogLine),
     /// Where poses are sought.
     Region(Region<'a>),
     /// Who listens to wishes.
@@ -69,6 +73,7 @@ pub(crate) struct Snapshot<'a> {
     pub(crate) beams: Option<&'a Beams>,
     pub(crate) nodes: Vec<&'a NodeReport>,
     pub(crate) track: Vec<&'a TrackPoint>,
+    pub(crate) log: Vec<&'a LogLine>,
     pub(crate) region: &'a [[f64; 2]],
     pub(crate) abilities: Abilities,
 }

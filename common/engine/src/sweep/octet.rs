@@ -17,6 +17,7 @@ impl Octet {
     /// There must be eight bytes to read.
     #[inline(always)]
     pub(super) unsafe fn of_bytes(from: *const u8) -> Self {
+        // SAFETY: promised by the caller.
         unsafe {
             let bytes = _mm_loadl_epi64(from.cast());
             Octet(_mm_unpacklo_epi8(bytes, _mm_setzero_si128()))
@@ -27,6 +28,7 @@ impl Octet {
     /// There must be eight numbers to read.
     #[inline(always)]
     pub(super) unsafe fn of_words(from: *const u16) -> Self {
+        // SAFETY: promised by the caller.
         unsafe { Octet(_mm_loadu_si128(from.cast())) }
     }
 

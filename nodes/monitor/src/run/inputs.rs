@@ -11,6 +11,7 @@ pub(super) struct Inputs {
     hypotheses: Subscriber<topic::Hypotheses>,
     beams: Subscriber<topic::Beams>,
     health: Subscriber<topic::Health>,
+    log: Subscriber<topic::Log>,
 }
 
 impl Inputs {
@@ -20,11 +21,19 @@ impl Inputs {
             hypotheses: graph.subscriber()?,
             beams: graph.subscriber()?,
             health: graph.subscriber()?,
+            log: graph.subscriber()?,
         })
     }
 
-    pub(super) fn all(&self) -> [&dyn Input; 4] {
-        [&self.maps, &self.hypotheses, &self.beams, &self.health]
+    pub(super) fn all(&self) -> [&dyn Input; 5] {
+        let Inputs {
+            maps,
+            hypotheses,
+            beams,
+            health,
+            log,
+        } = self;
+        [maps, hypotheses, beams, health, log]
     }
 
     /// Takes all that has come, a map before what was found in it.
@@ -50,6 +59,10 @@ impl Inputs {
             if !to.hear_health(report.header(), report.items()) {
                 refuse(health, "there are more nodes than are shown")?;
             }
+        }
+        while let Some(line) = self.log.receive()? {
+            health.count_received(1);
+            to.hear_log(line.header(), line.items());
         }
         Ok(())
     }

@@ -76,7 +76,7 @@ impl Answer {
     pub(crate) fn new(header: &HypothesesHeader, items: &[Hypothesis], now_ns: i64) -> Self {
         let verdict = Verdict::from_code(header.verdict);
         let since_entry = |ns: i64| ms(ns.saturating_sub(header.stamp.entered_ns));
-        let told = items.iter().filter(|h| is_pose(h)).take(MAX_PLACES);
+        let told = items.iter().filter(is_pose).take(MAX_PLACES);
         let mount_known = header.mount_known == 1;
         let stands: Vec<Stand> = told.clone().filter_map(stand).collect();
         let meant = stands.len().min(1 + header.alternatives as usize);
