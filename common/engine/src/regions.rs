@@ -288,20 +288,17 @@ mod tests {
         found.map(rounded).collect()
     }
 
-    /// Ten transducers past a wall on the left, a metre in all, each a step of
-    /// `turn` degrees from the other.
-    fn drive(axis: f64, turn: f64, wall: (f64, f64)) -> Vec<Echo> {
-        let step = |i| f64::from(i) / 9.0;
-        (0..10)
-            .map(|i| echo(step(i), 0.0, axis + f64::from(i) * turn, wall))
-            .collect()
+    /// What one transducer reads of a wall on a metre of way, at ten places.
+    fn drive(axis: f64, wall: (f64, f64)) -> Vec<Echo> {
+        let places = (0..10).map(|i| f64::from(i) / 9.0);
+        places.map(|x| echo(x, 0.0, axis, wall)).collect()
     }
 
     #[test]
     fn a_wall_that_is_passed_has_its_true_bearing_not_that_of_the_axis() {
         let all: Vec<usize> = (0..10).collect();
         for normal in [80.0, 90.0, 100.0] {
-            let found = found(&drive(90.0, 0.0, (normal, 2.0)));
+            let found = found(&drive(90.0, (normal, 2.0)));
             let [(bearing, depth_cm, echoes)] = &found[..] else {
                 panic!("{found:?}");
             };
@@ -329,8 +326,8 @@ mod tests {
 
     #[test]
     fn two_walls_are_two_regions_and_cross_talk_is_in_none() {
-        let mut echoes = drive(90.0, 0.0, (90.0, 2.0));
-        echoes.extend(drive(-90.0, 0.0, (-90.0, 1.0)).into_iter().take(8));
+        let mut echoes = drive(90.0, (90.0, 2.0));
+        echoes.extend(drive(-90.0, (-90.0, 1.0)).into_iter().take(8));
         // What cannot be: three that agree with nothing, in the left one's cone.
         for (i, range_m) in [(2, 0.7), (4, 4.1), (6, 3.0)] {
             echoes[i].range_m = range_m;
@@ -343,7 +340,7 @@ mod tests {
     #[test]
     fn regions_vote_where_their_walls_were_met() {
         // The axis is ten degrees off the wall's normal, at 100 degrees.
-        let echoes = drive(90.0, 0.0, (100.0, 2.0));
+        let echoes = drive(90.0, (100.0, 2.0));
         let regions = regions(&echoes, &RegionConfig::default());
         let ranges = at_regions(&echoes, &regions);
         let points: Vec<_> = (0..BEARINGS)

@@ -1,5 +1,9 @@
 //! `backcast simulate`: what it records is found again, and what cannot be driven
 //! is refused.
+#![allow(
+    clippy::unwrap_used,
+    reason = "the lint spares test functions but not what they share"
+)]
 
 mod drawn;
 
