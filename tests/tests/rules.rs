@@ -84,6 +84,13 @@ fn the_codecs_of_lasers_know_no_socket_clock_or_file_and_nothing_of_ours() {
     is_pure("common/sick/src");
 }
 
+#[test]
+fn the_simulation_knows_no_engine_process_clock_or_file() {
+    let allowed = BTreeSet::from(["geometry", "map"].map(str::to_owned));
+    assert_eq!(known("simulation"), allowed);
+    is_pure("common/simulation/src");
+}
+
 /// The crates under `common` that this one links.
 fn known(name: &str) -> BTreeSet<String> {
     let all = folders("common");

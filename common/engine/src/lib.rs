@@ -37,6 +37,7 @@ pub mod localizer;
 pub mod peaks;
 pub mod program;
 pub mod reference;
+pub mod regions;
 pub mod scan;
 pub mod scatter;
 pub mod search;

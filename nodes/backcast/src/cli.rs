@@ -5,7 +5,7 @@ use std::process::ExitCode;
 use clap::{Parser, Subcommand};
 
 use crate::{
-    bench, check, convert, doctor, evaluate, info, locate, plot, probe, regress, run, top,
+    bench, check, convert, doctor, evaluate, info, locate, plot, probe, regress, run, simulate, top,
 };
 
 /// Finds where a robot is from its laser and a map, with no initial guess.
@@ -62,6 +62,9 @@ enum Command {
     /// Measures the methods of global localization on generated worlds
     #[command(after_help = bench::NOTES)]
     Bench(bench::Config),
+    /// Records a drive through a map as a laser or a ring of sonars would see it
+    #[command(after_help = "Exit codes: 0 recorded, 1 failed, 2 wrong use")]
+    Simulate(Box<simulate::Config>),
 }
 
 /// Runs the command that the process was started with.
@@ -82,6 +85,7 @@ pub fn main() -> ExitCode {
         Some(Command::Top(config)) => top::run(&config),
         Some(Command::Probe(config)) => probe::run(&config),
         Some(Command::Bench(config)) => bench::run(&config),
+        Some(Command::Simulate(config)) => simulate::run(&config),
     };
     outcome.unwrap_or_else(|error| {
         eprintln!("backcast: {}", transport::with_causes(&error));
@@ -148,6 +152,8 @@ mod tests {
             "backcast bench table1 --p-over-n 0",
             "backcast bench table1 --noise 26",
             "backcast bench table2 --headings 361",
+            "backcast simulate --map m.yaml --path 0,0 --out r.mcap",
+            "backcast simulate --map m.yaml --path 0,0,1,1 --out r.mcap --beams 1",
         ] {
             let error = parse(line).expect_err(line);
             assert_eq!(error.exit_code(), 2, "{line}");

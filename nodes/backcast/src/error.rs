@@ -9,6 +9,7 @@ use engine::EngineError;
 use engine::heading::HeadingError;
 use map::MapError;
 use recording::RecordingError;
+use simulation::SimulationError;
 use transport::TransportError;
 
 /// Why a command failed.
@@ -263,6 +264,9 @@ pub enum BackcastError {
     /// SIGUSR1 cannot be caught.
     #[error("cannot catch SIGUSR1")]
     Signal(#[source] io::Error),
+    /// A drive cannot be simulated.
+    #[error(transparent)]
+    Simulation(#[from] SimulationError),
     /// A case of the bench cannot be set up.
     #[error(transparent)]
     Benchmarks(#[from] BenchmarksError),

@@ -1,0 +1,255 @@
+//! Regions of constant depth against σ_θ of Eq. 1 and against neither, on a
+//! simulated drive of a ring of sonars; the heading is unknown:
+//!
+//! ```text
+//! cargo run --release -p benchmarks --example sonar_regions -- --sonar \
+//!     --map recordings/sonar_ring/map.yaml --path "0.8,4.8 2.2,4.8 2.2,2.7 5.4,2.7"
+//! ```
+
+use std::error::Error;
+use std::fmt;
+use std::path::PathBuf;
+
+use clap::Parser;
+use engine::EngineError;
+use engine::grid::{CellRules, GridFrame};
+use engine::localizer::{Localizer, LocalizerConfig, Prior, Workspace};
+use engine::peaks::{PeakConfig, PeakInput, by_votes};
+use engine::program::VoteConfig;
+use engine::regions::{self, Echo, RegionConfig};
+use engine::scan::Scan;
+use geometry::Pose;
+use map::OccupancyGrid;
+use simulation::{Bearings, Drive, DriveConfig, Path};
+
+/// Right is a pose this near to the truth, metres and radians.
+const RIGHT: (f64, f64) = (0.5, 10.0 * std::f64::consts::PI / 180.0);
+
+/// Places among which the truth may be in the second count.
+const PLACES: usize = 5;
+
+/// Compares what the echoes of a ring of sonars can be read as.
+#[derive(Debug, Parser)]
+struct Options {
+    /// The map, a YAML file
+    #[arg(long)]
+    map: PathBuf,
+    /// Corners of the drive: "X,Y X,Y …"
+    #[arg(long)]
+    path: Path,
+    /// Ways by the odometry whose scans are read as one, metres
+    #[arg(long, value_delimiter = ',', default_value = "0,1,2,3")]
+    ways: Vec<f64>,
+    /// Standard deviation of a reading, as the votes have it, metres
+    #[arg(long, default_value_t = 0.1)]
+    sigma: f64,
+    #[command(flatten)]
+    drive: DriveConfig,
+}
+
+/// What echoes are made into.
+#[derive(Debug, Clone, Copy)]
+enum Reading {
+    /// Each on the axis of its transducer: the paper with no σ_θ.
+    Axes,
+    /// Each over its cone: σ_θ.
+    Cones,
+    /// Regions of constant depth.
+    Regions,
+}
+
+impl fmt::Display for Reading {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.pad(match self {
+            Reading::Axes => "axes",
+            Reading::Cones => "cones",
+            Reading::Regions => "regions",
+        })
+    }
+}
+
+impl Reading {
+    fn ranges(self, echoes: &[Echo], half_width: f64) -> Vec<f32> {
+        match self {
+            Reading::Axes => regions::spread(echoes, 0.0),
+            Reading::Cones => regions::spread(echoes, half_width),
+            Reading::Regions => {
+                let config = RegionConfig {
+                    half_width,
+                    ..RegionConfig::default()
+                };
+                regions::at_regions(echoes, &regions::regions(echoes, &config))
+            }
+        }
+    }
+}
+
+/// A scan of the drive.
+struct Taken {
+    /// How far the robot had come by its odometry, metres.
+    way_m: f64,
+    odom_from_laser: Pose,
+    map_from_laser: Pose,
+    ranges: Vec<f32>,
+}
+
+/// How the ring looks about.
+struct Ring {
+    bearings: Bearings,
+    range_max_m: f32,
+    /// Radians.
+    half_width: f64,
+}
+
+impl Ring {
+    /// All echoes of a window of scans, in the frame of the last.
+    fn echoes(&self, window: &[Taken]) -> Result<Vec<Echo>, EngineError> {
+        let mut echoes = Vec::new();
+        let Some(last) = window.last() else {
+            return Ok(echoes);
+        };
+        for taken in window {
+            let scan = Scan {
+                angle_min: self.bearings.get(0),
+                angle_increment: f64::from(self.bearings.angle_increment),
+                range_min_m: 0.0,
+                range_max_m: self.range_max_m,
+                ranges: &taken.ranges,
+            };
+            let last_from_taken = last.odom_from_laser.inverse().then(taken.odom_from_laser);
+            echoes.extend(Echo::of(&scan, last_from_taken)?);
+        }
+        Ok(echoes)
+    }
+}
+
+/// Counts over the scans of a drive.
+#[derive(Debug, Default)]
+struct Tally {
+    scans: usize,
+    echoes: usize,
+    beams: u32,
+    right: usize,
+    among: usize,
+}
+
+impl Tally {
+    fn print(&self, way_m: f64, reading: Reading) {
+        let scans = self.scans.max(1) as f64;
+        let percent = |count: usize| 100.0 * count as f64 / scans;
+        println!(
+            "{way_m:>5.1}  {:>6.1}  {reading:<8}  {:>5.1}  {:>7.0}  {:>9.0}  {:>5}",
+            self.echoes as f64 / scans,
+            f64::from(self.beams) / scans,
+            percent(self.right),
+            percent(self.among),
+            self.scans,
+        );
+    }
+}
+
+fn main() -> Result<(), Box<dyn Error>> {
+    let options = Options::parse();
+    if !options.drive.sonar.sonar {
+        return Err("regions are those of a ring of sonars: --sonar is needed".into());
+    }
+    let map = map::load(&options.map)?;
+    let drive = Drive::new(&map, &options.path, &options.drive)?;
+    let ring = Ring {
+        bearings: drive.bearings(),
+        range_max_m: options.drive.range_max_m() as f32,
+        half_width: options.drive.sonar.beam_width.to_radians() / 2.0,
+    };
+    let drive = taken(drive, options.drive.mount.0);
+    let localizer = localizer(&map, options.sigma)?;
+    println!("way_m  echoes  read_as   beams  right_%  in_five_%  scans");
+    for &way_m in &options.ways {
+        for reading in [Reading::Axes, Reading::Cones, Reading::Regions] {
+            tally(&localizer, &ring, (&drive, way_m), reading)?.print(way_m, reading);
+        }
+    }
+    Ok(())
+}
+
+fn taken(drive: Drive, base_from_laser: Pose) -> Vec<Taken> {
+    let mut way_m = 0.0;
+    let mut before: Option<Pose> = None;
+    let scans = drive.map(|snapshot| {
+        let after = snapshot.odom_from_base;
+        way_m += before.map_or(0.0, |before| before.distance_to(after));
+        before = Some(after);
+        Taken {
+            way_m,
+            odom_from_laser: after.then(base_from_laser),
+            map_from_laser: snapshot.map_from_laser,
+            ranges: snapshot.ranges,
+        }
+    });
+    scans.collect()
+}
+
+/// The paper's votes: every beam counts the same.
+fn localizer(map: &OccupancyGrid, sigma_m: f64) -> Result<Localizer, EngineError> {
+    let mut votes = VoteConfig {
+        sigma_m,
+        ..VoteConfig::default()
+    };
+    votes.beams.max_beams = regions::BEARINGS as u32;
+    votes.beams.beam_arc_m = 0.0;
+    let config = LocalizerConfig {
+        votes,
+        ..LocalizerConfig::default()
+    };
+    let frame = GridFrame {
+        resolution_m: map.resolution_m,
+        map_from_grid: map.map_from_grid,
+    };
+    let sides = (map.width as usize, map.height as usize);
+    let rules = CellRules::default();
+    Localizer::of_map(frame, sides, &map.cells, rules, config, Prior::None)
+}
+
+/// Locates at each scan that ends a window of a way.
+fn tally(
+    localizer: &Localizer,
+    ring: &Ring,
+    (drive, way_m): (&[Taken], f64),
+    reading: Reading,
+) -> Result<Tally, EngineError> {
+    let (mut tally, mut workspace) = (Tally::default(), Workspace::default());
+    for (i, last) in drive.iter().enumerate() {
+        // What the robot has not driven yet is no window.
+        if last.way_m < way_m {
+            continue;
+        }
+        let first = drive[..i].partition_point(|taken| taken.way_m < last.way_m - way_m);
+        let first = if way_m > 0.0 { first } else { i };
+        let echoes = ring.echoes(&drive[first..=i])?;
+        let ranges = reading.ranges(&echoes, ring.half_width);
+        let scan = Scan {
+            angle_min: -std::f64::consts::PI,
+            angle_increment: regions::STEP,
+            range_min_m: 0.0,
+            range_max_m: f32::MAX,
+            ranges: &ranges,
+        };
+        let outcome = localizer.search_in(&mut workspace, &scan, &|| false)?;
+        let outcome = outcome.expect("a search that nothing stops ends with an outcome");
+        let input = PeakInput::of(outcome, localizer.frame());
+        let found = by_votes(&input, &PeakConfig::default());
+        let places = found.places.iter().take(PLACES);
+        let is_right: Vec<bool> = places
+            .map(|place| {
+                place
+                    .map_from_laser
+                    .is_within(last.map_from_laser, RIGHT.0, RIGHT.1)
+            })
+            .collect();
+        tally.scans += 1;
+        tally.echoes += echoes.len();
+        tally.beams += outcome.beams_used;
+        tally.right += usize::from(is_right.first() == Some(&true));
+        tally.among += usize::from(is_right.contains(&true));
+    }
+    Ok(tally)
+}

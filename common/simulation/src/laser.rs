@@ -1,0 +1,48 @@
+//! A laser: one ray a beam, all at one moment.
+
+use std::f64::consts::PI;
+
+use geometry::Pose;
+
+use crate::Bearings;
+use crate::config::parse_field_of_view;
+use crate::noise::Receiver;
+use crate::scene::Scene;
+
+/// Where a laser looks. Its default is that of the recordings: half a turn, two
+/// beams a degree.
+#[derive(Debug, Clone, Copy, PartialEq, clap::Args)]
+pub struct LaserConfig {
+    /// From the first beam to the last, degrees, 1..=360; ahead is the middle
+    /// [default: 180].
+    #[arg(long, value_name = "DEGREES", value_parser = parse_field_of_view, conflicts_with = "sonar")]
+    pub field_of_view: Option<f64>,
+    /// Beams of a scan, 2..=65536 [default: 361].
+    #[arg(long, value_name = "COUNT", value_parser = clap::value_parser!(u32).range(2..=65_536), conflicts_with = "sonar")]
+    pub beams: Option<u32>,
+}
+
+impl LaserConfig {
+    /// The bearings of the beams.
+    #[must_use]
+    pub fn bearings(&self) -> Bearings {
+        let beams = self.beams.map_or(361, |beams| beams as usize);
+        Bearings::over(self.field_of_view.unwrap_or(PI), beams)
+    }
+}
+
+/// The readings of all beams, metres.
+pub(crate) fn scan(
+    scene: &Scene,
+    map_from_laser: Pose,
+    bearings: Bearings,
+    receiver: &mut Receiver,
+) -> Vec<f32> {
+    let Pose { x, y, yaw } = map_from_laser;
+    let range_max_m = receiver.range_max_m;
+    let reading = |beam| {
+        let angle = yaw + bearings.get(beam);
+        receiver.reading(scene.range(x, y, angle, range_max_m))
+    };
+    (0..bearings.count).map(reading).collect()
+}

@@ -1,0 +1,34 @@
+//! Drives through a map, as a laser or a ring of sonars would see them.
+//!
+//! [`Drive`] takes a map, a [`Path`] and a [`DriveConfig`] and gives a
+//! [`Snapshot`] for each scan: the true pose, the odometry and the readings.
+//! Rays are cast continuously through the occupied cells as squares, not along
+//! the engine's lines of cells, so that what is tested with the readings is not
+//! what made them. Everything is seeded: the same numbers give the same drive.
+//! It knows no file, no clock and no engine, and refuses a path through an
+//! obstacle.
+
+mod angles;
+mod config;
+mod drive;
+mod error;
+mod laser;
+mod noise;
+mod obstacles;
+mod odometry;
+mod path;
+mod people;
+mod scene;
+mod sonar;
+#[cfg(test)]
+mod testing;
+
+pub use angles::Bearings;
+pub use config::{DriveConfig, Mount};
+pub use drive::{Drive, Snapshot};
+pub use error::SimulationError;
+pub use laser::LaserConfig;
+pub use noise::Noise;
+pub use odometry::OdometryConfig;
+pub use path::Path;
+pub use sonar::{SonarConfig, TRANSDUCERS_DEG};

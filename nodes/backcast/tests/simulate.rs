@@ -1,0 +1,126 @@
+//! `backcast simulate`: what it records is found again, and what cannot be driven
+//! is refused.
+#![allow(
+    clippy::unwrap_used,
+    reason = "the lint spares test functions but not what they share"
+)]
+
+mod drawn;
+
+use drawn::{recordings, run};
+use recording::Recording;
+use serde_json::Value;
+use tempfile::TempDir;
+
+const START_NS: i64 = 1_700_000_000_000_000_000;
+
+/// Along the corridor of the recording, and into a turn.
+const CORRIDOR: &str = "3.5,-10.4 6.5,-10.9 9,-10.9 14.5,-10.3";
+
+/// A folder, and a file `r.mcap` in it that was simulated.
+fn simulated(options: &str) -> TempDir {
+    let folder = tempfile::tempdir().unwrap();
+    let (code, stdout, stderr) = simulate(&folder, options);
+    assert_eq!((code, stderr.as_str()), (0, ""), "{stdout}");
+    assert!(stdout.starts_with("r.mcap: "), "{stdout}");
+    folder
+}
+
+fn simulate(folder: &TempDir, options: &str) -> (i32, String, String) {
+    let map = recordings().join("malaga_corridor/map.yaml");
+    let line = format!("simulate --map {} --out r.mcap {options}", map.display());
+    run(folder.path(), &line)
+}
+
+fn evaluate(folder: &TempDir, options: &str) -> Value {
+    let line = format!("evaluate --json {options} r.mcap");
+    let (code, stdout, stderr) = run(folder.path(), &line);
+    assert_eq!(code, 0, "{stderr}");
+    serde_json::from_str(&stdout).unwrap()
+}
+
+#[test]
+fn each_scan_of_a_laser_is_found_where_it_was_taken() {
+    let folder = simulated(&format!(
+        "--path '{CORRIDOR}' --rate 1 --people 3 --outliers 0.02 --mount 0.4,0,0"
+    ));
+    let judged = evaluate(&folder, "");
+    // 11.2 m at 0.5 m/s and some turns, a scan a second.
+    assert!(judged["scans"].as_u64().unwrap() > 20, "{judged}");
+    assert_eq!(judged["truths"], judged["scans"]);
+    assert_eq!(judged["success_20cm_3deg"], 1.0, "{judged}");
+    assert_eq!(judged["unique_wrong"], 0.0, "{judged}");
+    // Readings end where a cell begins and the fit takes its middle: half a cell of
+    // 5 cm along each axis, and the noise. A cell is allowed.
+    assert!(
+        judged["error_m"]["median"].as_f64().unwrap() < 0.05,
+        "{judged}"
+    );
+}
+
+#[test]
+fn a_recording_is_the_same_byte_for_byte_by_its_seed() {
+    let bytes = |seed: u32| {
+        let options = format!("--path '4,-10.5 5,-10.6' --people 2 --outliers 0.1 --seed {seed}");
+        std::fs::read(simulated(&options).path().join("r.mcap")).unwrap()
+    };
+    assert_eq!(bytes(7), bytes(7));
+    assert_ne!(bytes(7), bytes(8));
+}
+
+#[test]
+fn the_topics_are_those_of_a_robot() {
+    let folder = simulated("--path '4,-10.5 5,-10.6' --rate 2 --sonar --mount 0.1,0,0");
+    let recording = Recording::open(folder.path().join("r.mcap")).unwrap();
+    let counts: Vec<_> = recording
+        .channels()
+        .map(|channel| (channel.topic.to_string(), channel.messages))
+        .collect();
+    // 1.005 m at 0.5 m/s, twice a second, and one at the start.
+    let expected = [
+        ("/map", 1),
+        ("/tf_static", 1),
+        ("/odom", 5),
+        ("/ground_truth", 5),
+        ("/scan", 5),
+    ];
+    assert_eq!(counts.len(), expected.len());
+    for (topic, messages) in expected {
+        assert!(counts.contains(&(topic.to_owned(), messages)), "{counts:?}");
+    }
+    let mount = recording.base_from_laser("laser").unwrap().unwrap();
+    assert_eq!(mount.base_from_laser.x, 0.1);
+    let first = recording.records().next().unwrap().unwrap();
+    assert_eq!(first.log_time_ns, START_NS);
+}
+
+#[test]
+fn what_cannot_be_driven_is_refused_and_nothing_is_written() {
+    let folder = tempfile::tempdir().unwrap();
+    let cases = [
+        (
+            "--path '4,-10.5 400,0'",
+            1,
+            "corner 2 of the path, 400,0, is not on the map",
+        ),
+        (
+            "--path '4,-10.5 4,-14'",
+            1,
+            "from corner 1 to corner 2 meets an obstacle at 4.00,",
+        ),
+        ("--path '4,-10.5'", 2, "1 corners; allowed are 2 to 10000"),
+        ("--path '4,-10.5 5,-10.5' --noise x", 2, "\"x\" is no noise"),
+        (
+            "--path '4,-10.5 5,-10.5' --sonar --beams 9",
+            2,
+            "cannot be used with",
+        ),
+        ("--path '4,-10.5 5,-10.5' --beam-width 9", 2, "--sonar"),
+    ];
+    for (options, expected, message) in cases {
+        let (code, _, stderr) = simulate(&folder, options);
+        assert_eq!(code, expected, "{options}: {stderr}");
+        assert!(stderr.contains(message), "{options}: {stderr}");
+        assert!(!folder.path().join("r.mcap").exists(), "{options}");
+    }
+}
