@@ -128,17 +128,6 @@ impl World {
         }
     }
 
-    /// What the node says that is wrong with it, if it has said so by now.
-    fn degraded(&self) -> Option<String> {
-        while let Some(report) = self.health.receive().unwrap() {
-            let is_degraded = report.header().state == NodeState::Degraded as u32;
-            if report.header().node.as_str() == "recorder" && is_degraded {
-                return Some(String::from_utf8(report.items().to_vec()).unwrap());
-            }
-        }
-        None
-    }
-
     fn send_hypothesis(&mut self, verdict: Verdict) {
         let mut loan = self.hypotheses.loan(1).unwrap();
         *loan.header_mut() = HypothesesHeader {
@@ -314,12 +303,14 @@ fn a_full_disk_is_told_and_nothing_is_lost_once_there_is_room() {
     world.send_scan();
     world.wait_for_written(1);
     let mut noise = 1u64;
-    let told = loop {
+    // More than there is room for, and less than may wait in memory.
+    for _ in 0..3 * ROOM / (4 * LARGE) {
         world.send_noise(&mut noise);
-        if let Some(told) = world.degraded() {
-            break told;
-        }
+    }
+    let is_degraded = |report: &messages::HealthHeader| {
+        report.node.as_str() == "recorder" && report.state == NodeState::Degraded as u32
     };
+    let (_, told) = wait_for_health(&world.graph, &world.health, is_degraded);
     assert!(told.contains("File too large"), "{told}");
     let before = Recording::open(world.path("r.mcap")).unwrap();
     assert!(before.messages() > 0 && before.size() <= ROOM as u64);
