@@ -203,11 +203,11 @@ impl Job<'_> {
             self.sweep_axis::<L, S, N>(plan, room, columns, 2)?;
             self.sweep_axis::<L, S, N>(plan, room, rows, 0)?;
         }
-        let rows = merge::Sums {
+        let rows = merge::Plane {
             sums: rows,
             stride: stride(&self.sweeps.along_y),
         };
-        let columns = merge::Sums {
+        let columns = merge::Plane {
             sums: columns,
             stride: stride(&self.sweeps.along_x),
         };

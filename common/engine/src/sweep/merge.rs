@@ -13,13 +13,13 @@ const BLOCK: usize = 64;
 /// Sides of a square that is turned over.
 const SQUARE: usize = 8;
 
-/// Sums of votes row by row, from each row to the next so many.
-pub(super) struct Sums<'a, S> {
+/// The sums of votes along one axis: row by row, from each row to the next so many.
+pub(super) struct Plane<'a, S> {
     pub sums: &'a [S],
     pub stride: usize,
 }
 
-impl<S> Sums<'_, S> {
+impl<S> Plane<'_, S> {
     /// Whether squares that cover so many rows and columns can be read.
     fn cover(&self, rows: usize, columns: usize) -> bool {
         self.stride >= columns.next_multiple_of(SQUARE)
@@ -36,8 +36,8 @@ impl<S> Sums<'_, S> {
 #[inline(never)]
 pub(super) fn merge<S: Sum>(
     bits: &BitGrid,
-    rows: &Sums<'_, S>,
-    columns: &Sums<'_, S>,
+    rows: &Plane<'_, S>,
+    columns: &Plane<'_, S>,
     field: &mut [u16],
 ) {
     assert!(rows.cover(bits.rows, bits.columns) && columns.cover(bits.columns, bits.rows));
@@ -58,8 +58,8 @@ pub(super) fn merge<S: Sum>(
 #[inline(always)]
 unsafe fn square<S: Sum>(
     bits: &BitGrid,
-    rows: &Sums<'_, S>,
-    columns: &Sums<'_, S>,
+    rows: &Plane<'_, S>,
+    columns: &Plane<'_, S>,
     (left, bottom): (usize, usize),
     field: &mut [u16],
 ) {
