@@ -25,6 +25,12 @@ pub fn record(recording: &Path, map: &Path, output: &Path) {
 /// test run.
 #[must_use]
 pub fn graph(recording: &Path, map: &Path) -> String {
+    graph_with(recording, map, "")
+}
+
+/// The same with lines that say more of the accumulator, each indented by four.
+#[must_use]
+pub fn graph_with(recording: &Path, map: &Path, accumulator: &str) -> String {
     let path = |name: &str| executables::path(name).display().to_string();
     let (recording, map) = (recording.display(), map.display());
     format!(
@@ -49,13 +55,13 @@ pub fn graph(recording: &Path, map: &Path) -> String {
       map: map_server/map
       boundary: boundary_extractor/boundary
     outputs: [votes, field]
-  - id: peak_extractor
+{accumulator}  - id: peak_extractor
     path: {}
     inputs:
       votes: accumulator/votes
       scan: replayer/scan
       map: map_server/map
-    outputs: [hypotheses]
+    outputs: [hypotheses, beams]
 ",
         path("replayer"),
         path("map_server"),

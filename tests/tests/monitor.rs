@@ -13,6 +13,7 @@ use nix::unistd::Pid;
 use tempfile::TempDir;
 use tests::browser::Browser;
 use tests::executables;
+use tests::recorded::graph_with;
 use tests::world::World;
 
 const TOKEN: &str = "0123456789abcdef";
@@ -70,47 +71,17 @@ impl Drop for Graph {
     }
 }
 
-/// What is killed here is not started again before the test is over.
+/// The accumulator, which is killed here, is not started again before the test is
+/// over.
 fn nodes(world: &World, token: &str) -> String {
-    let path = |name: &str| executables::path(name).display().to_string();
-    let (recording, map) = (world.recording(), world.map());
+    let later = "    restart_policy: on-failure\n    restart_delay: 3600\n";
+    let graph = graph_with(&world.recording(), &world.map(), later);
+    let monitor = executables::path("monitor").display().to_string();
     format!(
-        "nodes:
-  - id: replayer
-    path: {}
-    args: --recording {} --wait-for accumulator,peak_extractor
-    inputs: {{ hypotheses: peak_extractor/hypotheses }}
-    outputs: [scan, odometry, ground_truth]
-  - id: map_server
-    path: {}
-    args: --map {}
-    outputs: [map]
-  - id: boundary_extractor
-    path: {}
-    inputs: {{ map: map_server/map }}
-    outputs: [boundary]
-  - id: accumulator
-    path: {}
-    inputs: {{ scan: replayer/scan, map: map_server/map, boundary: boundary_extractor/boundary }}
-    outputs: [votes, field]
-    restart_policy: on-failure
-    restart_delay: 3600
-  - id: peak_extractor
-    path: {}
-    inputs: {{ votes: accumulator/votes, scan: replayer/scan, map: map_server/map }}
-    outputs: [hypotheses, beams]
-  - id: monitor
-    path: {}
+        "{graph}  - id: monitor
+    path: {monitor}
     args: --listen 127.0.0.1:0 --robot r7 --token-file {token}
-",
-        path("replayer"),
-        recording.display(),
-        path("map_server"),
-        map.display(),
-        path("boundary_extractor"),
-        path("accumulator"),
-        path("peak_extractor"),
-        path("monitor"),
+"
     )
 }
 
