@@ -103,6 +103,14 @@ impl Ends {
         })
     }
 
+    /// How many beams of equal weight would make scores that chance moves as much:
+    /// Kish's effective sample size, (Σ w)² / Σ w².
+    #[must_use]
+    pub fn effective_beams(&self) -> f64 {
+        let squares: f64 = self.ends.iter().map(|end| end.weight * end.weight).sum();
+        self.weight * self.weight / squares.max(f64::MIN_POSITIVE)
+    }
+
     /// Bearings of the beams that say nothing, in the laser's frame, radians.
     #[must_use]
     pub fn silent(&self) -> &[f64] {

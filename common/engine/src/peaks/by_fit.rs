@@ -46,7 +46,7 @@ impl Workspace {
         keep_distinct(&self.refined, &mut self.places.places, config);
         if let Some(best) = self.places.places.first().copied() {
             let found = &mut self.places;
-            found.judge_by_fit(best, &mut self.leads, config);
+            found.judge_by_fit((best, ends.effective_beams()), &mut self.leads, config);
             let pose = grid_pose(terrain.frame, best.map_from_laser);
             terrain.classify(ends, pose, &config.fit, &mut found.classes);
             found.inlier_share = ends.share(&found.classes, BeamClass::Hit);
@@ -57,12 +57,17 @@ impl Workspace {
 
 impl Places {
     /// What the scores of the places allow to say; keeps as many as are wanted.
-    fn judge_by_fit(&mut self, best: Place, leads: &mut Vec<f64>, config: &PeakConfig) {
+    fn judge_by_fit(
+        &mut self,
+        (best, beams): (Place, f64),
+        leads: &mut Vec<f64>,
+        config: &PeakConfig,
+    ) {
         let places = &mut self.places;
         leads.clear();
         leads.extend(places.iter().map(|place| lead(best.score, place.score)));
         likelihood::assign(places, leads, config);
-        let needed = config.needed_lead(best.score);
+        let needed = config.needed_lead(best.score, beams);
         let rivals = leads[1..].iter().filter(|&&lead| lead < needed);
         self.alternatives = rivals.count() as u32;
         self.verdict = match () {

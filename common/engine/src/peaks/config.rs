@@ -53,6 +53,11 @@ pub struct PeakConfig {
     /// 0..=1: where the scan fits badly, the true place may not be on the map.
     #[arg(long, value_name = "SCORE", default_value_t = 0.80, value_parser = parse_share)]
     pub sure_score: f64,
+    /// A scan of fewer beams needs a lead that is larger by the root of what it
+    /// lacks, for chance makes its scores differ so much more, 1..=1000. A beam of
+    /// little weight counts for less than one.
+    #[arg(long, value_name = "COUNT", default_value_t = 100, value_parser = clap::value_parser!(u32).range(1..=1000))]
+    pub sure_beams: u32,
     /// A best place with a lower score fits poorly: the scan may not be of this
     /// map, 0..=1.
     #[arg(long, value_name = "SCORE", default_value_t = 0.60, value_parser = parse_share)]
@@ -84,9 +89,14 @@ fn parse_scale(text: &str) -> Result<f64, String> {
 }
 
 impl PeakConfig {
-    /// The lead at which a best place with such a score stands alone.
-    pub(super) fn needed_lead(&self, score: f64) -> f64 {
-        self.least_lead + (self.sure_score - score).max(0.0)
+    /// The lead at which a best place with such a score, of so many beams, stands
+    /// alone.
+    pub(super) fn needed_lead(&self, score: f64, beams: f64) -> f64 {
+        let lead = self.least_lead + (self.sure_score - score).max(0.0);
+        // Scores are means over the beams.
+        lead * (f64::from(self.sure_beams) / beams.max(1.0))
+            .max(1.0)
+            .sqrt()
     }
 }
 
@@ -103,6 +113,7 @@ impl Default for PeakConfig {
             fit: FitConfig::default(),
             least_lead: 0.10,
             sure_score: 0.80,
+            sure_beams: 100,
             least_score: 0.60,
             lead_scale: 0.025,
             even_score: 0.55,
@@ -118,14 +129,15 @@ mod tests {
     use super::*;
 
     #[test]
-    fn what_a_score_lacks_is_made_up_for_by_the_lead() {
+    fn what_a_scan_lacks_is_made_up_for_by_the_lead() {
         let config = PeakConfig::default();
-        let check = |score, expected: f64| {
-            let needed = config.needed_lead(score);
+        let check = |score, beams, expected: f64| {
+            let needed = config.needed_lead(score, beams);
             assert!((needed - expected).abs() < 1e-12, "{score}: {needed}");
         };
-        check(0.95, 0.10);
-        check(0.80, 0.10);
-        check(0.70, 0.20);
+        check(0.95, 180.0, 0.10);
+        check(0.80, 100.0, 0.10);
+        check(0.70, 100.0, 0.20);
+        check(0.80, 25.0, 0.20);
     }
 }
