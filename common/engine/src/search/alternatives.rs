@@ -190,18 +190,16 @@ impl<'a> Alternatives<'a> {
 
     /// The best pose of a spot; `None` where nobody can stand or nothing votes.
     fn count(&mut self, spot: Spot) -> Option<Vote> {
-        let Task {
-            index, grid, space, ..
-        } = self.task;
+        let index = self.task.index;
         let (Reverse(block), Reverse(heading)) = (spot.block, spot.heading);
-        let map = (*grid, &index.within.limits);
+        let map = (self.task.grid, &index.within.limits);
         let outlook = &mut self.room.outlook;
         outlook.enter(map, &index.intervals, block);
-        let prepared = (*grid, &index.steps, &space.directions);
+        let view = self.task.view();
         let mut counts = [0; CELLS];
         for sector in 0..sectors::count(self.task.programs.beams) {
             let program = &self.task.programs.leaf;
-            program.add(outlook, prepared, sector, heading, &mut counts);
+            program.add(outlook, &view, sector, heading, &mut counts);
         }
         let open = outlook.open();
         let votes = counts.iter().zip(&open).map(|(count, open)| count & open);

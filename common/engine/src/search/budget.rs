@@ -46,7 +46,7 @@ pub(super) struct Budget {
 const BOUND_PER_BEAM: f64 = 7.0;
 const WINDOW_PER_BEAM: f64 = 2.5;
 const SECTOR: f64 = 60.0;
-const LOOK: f64 = 250.0;
+const LOOK: f64 = 90.0;
 
 /// The first look, as a share of what brute force costs. Until the best pose is
 /// found the floor is low and much seems to be left, so looking earlier gives up

@@ -281,10 +281,7 @@ impl<'a> Descent<'a> {
     /// reach the floor with what the sectors left are bounded by.
     fn count_at(&mut self, first: usize, among: u64) {
         let open = self.room.outlook.open();
-        let Task {
-            index, grid, space, ..
-        } = self.task;
-        let prepared = (*grid, &index.steps, &space.directions);
+        let view = self.task.view();
         let mut counts = [[0u16; CELLS]; HEADINGS];
         let mut rest = self.room.interval_bounds.all;
         let mut alive = among;
@@ -295,7 +292,7 @@ impl<'a> Descent<'a> {
                 self.room.tally.sectors += 1;
                 let counts = &mut counts[lane];
                 let (program, heading) = (&self.task.programs.leaf, first + lane);
-                program.add(&mut self.room.outlook, prepared, sector, heading, counts);
+                program.add(&mut self.room.outlook, &view, sector, heading, counts);
                 rest[lane] -= u16::from(bounds[lane]);
                 let counts = counts.iter().zip(&open);
                 let most = counts.map(|(&count, &open)| count & open).max();

@@ -5,6 +5,7 @@ use super::bins::Bins;
 use super::block_bounds::Bounding;
 use super::descent::{self, End};
 use super::intervals::RangeIntervals;
+use super::obstacles::Obstacles;
 use super::parts;
 use super::sets::RangeSets;
 use super::steps::BinSteps;
@@ -31,6 +32,7 @@ pub struct SearchIndex {
     pub(super) intervals: RangeIntervals,
     pub(super) fine: RangeSets,
     pub(super) coarse: RangeSets,
+    pub(super) obstacles: Obstacles,
     pub(super) within: Within,
     /// Where bounds do not help.
     sweeps: FieldSweep,
@@ -65,6 +67,7 @@ impl SearchIndex {
             intervals,
             fine,
             coarse,
+            obstacles: Obstacles::new(grid),
             within: Within::new(Limits::none(grid.width())),
             sweeps: FieldSweep::new(grid),
         }
@@ -81,7 +84,8 @@ impl SearchIndex {
     /// Bytes that the index takes.
     #[must_use]
     pub fn bytes(&self) -> usize {
-        self.intervals.bytes() + self.fine.bytes() + self.coarse.bytes() + self.sweeps.bytes()
+        let blocks = self.intervals.bytes() + self.fine.bytes() + self.coarse.bytes();
+        blocks + self.obstacles.bytes() + self.sweeps.bytes()
     }
 
     /// The poses with the most votes; `None` if `stop` said so before the end.

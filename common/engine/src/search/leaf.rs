@@ -6,11 +6,9 @@
 
 use std::ops::Range;
 
-use super::outlook::{CELLS, Outlook};
+use super::outlook::{CELLS, Outlook, View};
 use super::sectors;
-use super::steps::BinSteps;
 use crate::directions::Directions;
-use crate::grid::Grid;
 use crate::instruction_set::InstructionSet;
 use crate::program::ScanProgram;
 use crate::tables::{TABLE, VoteTable, VoteTables};
@@ -51,14 +49,14 @@ impl LeafProgram {
     pub(crate) fn add(
         &self,
         outlook: &mut Outlook,
-        (grid, steps, directions): (&Grid, &BinSteps, &Directions),
+        view: &View<'_>,
         sector: usize,
         heading: usize,
         counts: &mut [u16; CELLS],
     ) {
         let beams = sectors::beams(sector, self.bearings.len());
         for beam in beams.clone() {
-            outlook.look(grid, steps, directions, self.direction(beam, heading));
+            outlook.look(view, self.direction(beam, heading));
         }
         match self.instruction_set {
             // SAFETY: the processor has the instruction set, or it would not be chosen.
@@ -152,6 +150,8 @@ mod tests {
 
     use super::super::bins::Bins;
     use super::super::intervals::RangeIntervals;
+    use super::super::obstacles::Obstacles;
+    use super::super::steps::BinSteps;
     use super::*;
     use crate::limits::Limits;
     use crate::reference;
@@ -168,6 +168,8 @@ mod tests {
             let bins = Bins::new(directions);
             let steps = BinSteps::new(&bins, directions, grid.width().max(grid.height()) as u16);
             let intervals = RangeIntervals::new(&grid, directions, &bins);
+            let obstacles = Obstacles::new(&grid);
+            let view = View { grid: &grid, obstacles: &obstacles, steps: &steps, directions };
             let block = seed[0] % (intervals.columns * intervals.rows);
             let heading = seed[1] % directions.count();
             for instruction_set in InstructionSet::available() {
@@ -178,7 +180,7 @@ mod tests {
                 outlook.enter((&grid, &Limits::none(grid.width())), &intervals, block);
                 let mut counts = [0; CELLS];
                 for sector in 0..sectors::count(program.beams()) {
-                    leaf.add(&mut outlook, (&grid, &steps, directions), sector, heading, &mut counts);
+                    leaf.add(&mut outlook, &view, sector, heading, &mut counts);
                 }
                 for (i, &count) in counts.iter().enumerate() {
                     let (x, y) = outlook.cell(i);

@@ -7,6 +7,7 @@ use super::budget::Cost;
 use super::index::SearchIndex;
 use super::interval_bounds::IntervalProgram;
 use super::leaf::LeafProgram;
+use super::outlook::View;
 use super::set_bounds::SetProgram;
 use crate::grid::Grid;
 use crate::instruction_set::InstructionSet;
@@ -104,6 +105,16 @@ impl<'a> Task<'a> {
         Task {
             brute_force,
             ..self
+        }
+    }
+
+    /// What poses of the map see.
+    pub(super) fn view(&self) -> View<'a> {
+        View {
+            grid: self.grid,
+            obstacles: &self.index.obstacles,
+            steps: &self.index.steps,
+            directions: &self.space.directions,
         }
     }
 
