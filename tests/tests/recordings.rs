@@ -353,6 +353,12 @@ fn the_readers_of_others_agree() {
     let said = by_mcap["own"]["log"].as_array().unwrap();
     let is_of = |line: &Value| line[2] == "recorder" && line[1] == 20;
     assert!(said.iter().any(is_of), "{said:?}");
+    // What the launcher did before there was a recorder, too.
+    let started = |line: &Value| {
+        let text = line[3].as_str().unwrap();
+        line[2] == "backcast" && text.starts_with("accumulator runs as process")
+    };
+    assert!(said.iter().any(started), "{said:?}");
     let beams = by_mcap["own"]["beams"].as_array().unwrap();
     assert!(beams.iter().all(|beam| beam[2] == 180), "{beams:?}");
     let poses = by_mcap["own"]["hypotheses"].as_array().unwrap();

@@ -66,6 +66,23 @@ pub enum EngineError {
     /// The scan has more readings than a scan can have.
     #[error("the scan has {0} ranges: at most 65536 are allowed")]
     TooManyRanges(usize),
+    /// The scan is none of a ring of sonars.
+    #[error(
+        "the scan has {found} readings: a ring of sonars, as which it is to be read, has at most \
+         {allowed}"
+    )]
+    TooManyEchoes {
+        /// That returned.
+        found: usize,
+        /// That are taken.
+        allowed: usize,
+    },
+    /// The odometry says no pose.
+    #[error(
+        "the odometry is at x {} m, y {} m, yaw {} rad: each must be finite",
+        .0.x, .0.y, .0.yaw
+    )]
+    Odometry(Pose),
     /// The scan's first bearing is unusable.
     #[error("angle_min is {0}: it must be finite, in radians, within two turns")]
     AngleMin(f64),

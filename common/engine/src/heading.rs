@@ -1,13 +1,14 @@
 //! Where a scan's heading comes from, if it is known.
 //!
 //! What odometry and the ground truth said is kept, and a scan picks what
-//! belongs to it. A heading that is too old is refused, never stretched.
+//! belongs to it, for its heading or for its pose on the way. Odometry that is too
+//! old is refused, never stretched.
 
 mod config;
 
 use std::collections::VecDeque;
 
-use geometry::wrap_angle;
+use geometry::{Pose, wrap_angle};
 use messages::{GroundTruth, Name, Odometry, ScanHeader};
 
 pub use config::{HeadingConfig, HeadingFrom};
@@ -37,8 +38,8 @@ pub enum HeadingSource {
 pub enum HeadingError {
     /// No odometry tells it.
     #[error(
-        "the heading is to come from odometry, but none is known that was \
-         measured at {scan_ns} ns or before"
+        "the scan needs odometry, but none is known that was measured at {scan_ns} ns or \
+         before"
     )]
     NoOdometry {
         /// When the scan was measured, nanoseconds.
@@ -69,14 +70,14 @@ pub enum HeadingError {
 /// What was said about headings.
 #[derive(Debug, Clone)]
 pub struct History {
-    odometry: Recent<OdometryYaw>,
+    odometry: Recent<Driven>,
     truths: Recent<Truth>,
 }
 
 #[derive(Debug, Clone, Copy)]
-struct OdometryYaw {
+struct Driven {
     measured_ns: i64,
-    yaw: f64,
+    odom_from_child: Pose,
     child_frame: Name,
 }
 
@@ -98,9 +99,9 @@ impl History {
 
     /// Takes note of odometry.
     pub fn hear_odometry(&mut self, odometry: &Odometry) {
-        self.odometry.push(OdometryYaw {
+        self.odometry.push(Driven {
             measured_ns: odometry.stamp.measured_ns,
-            yaw: odometry.odom_from_child.yaw,
+            odom_from_child: odometry.odom_from_child.into(),
             child_frame: odometry.child_frame,
         });
     }
@@ -111,6 +112,32 @@ impl History {
             measured_ns: truth.stamp.measured_ns,
             yaw: truth.map_from_laser.yaw,
         });
+    }
+
+    /// The laser's pose by the odometry when it measured `scan`; as for headings, a
+    /// laser whose mount is not known is taken to sit where the odometry is about.
+    ///
+    /// # Errors
+    /// If no odometry was measured within `max_age_ns` nanoseconds before the scan.
+    pub fn odom_from_laser(
+        &self,
+        scan: &ScanHeader,
+        max_age_ns: i64,
+    ) -> Result<Pose, HeadingError> {
+        let odometry = odometry_of(scan, self, max_age_ns)?;
+        Ok(odometry
+            .odom_from_child
+            .then(odometry.child_from_laser(scan)))
+    }
+}
+
+impl Driven {
+    fn child_from_laser(&self, scan: &ScanHeader) -> Pose {
+        if self.child_frame == scan.frame || scan.mount_known != 1 {
+            Pose::IDENTITY
+        } else {
+            scan.base_from_laser.into()
+        }
     }
 }
 
@@ -144,12 +171,9 @@ impl HeadingSource {
             HeadingSource::Truth => truth_of(scan, history).map(Some),
             HeadingSource::Odometry { offset, max_age_ns } => {
                 let odometry = odometry_of(scan, history, max_age_ns)?;
-                let mount = if odometry.child_frame == scan.frame || scan.mount_known != 1 {
-                    0.0
-                } else {
-                    scan.base_from_laser.yaw
-                };
-                Ok(Some(wrap_angle(odometry.yaw + mount + offset)))
+                let mount = odometry.child_from_laser(scan).yaw;
+                let yaw = odometry.odom_from_child.yaw;
+                Ok(Some(wrap_angle(yaw + mount + offset)))
             }
         }
     }
@@ -170,7 +194,7 @@ fn odometry_of(
     scan: &ScanHeader,
     history: &History,
     allowed_ns: i64,
-) -> Result<OdometryYaw, HeadingError> {
+) -> Result<Driven, HeadingError> {
     let scan_ns = scan.stamp.measured_ns;
     let before = history.odometry.readings.iter();
     let newest = before
@@ -351,6 +375,35 @@ mod tests {
             ..known
         };
         assert_eq!(heading(BY_ODOMETRY, &later, &history), 0.75);
+    }
+
+    #[test]
+    fn the_laser_sits_on_what_the_odometry_is_about() {
+        let mut history = History::keeping(KEPT);
+        let of_base = Odometry {
+            child_frame: Name::new("base_link"),
+            ..odometry(10, std::f64::consts::FRAC_PI_2)
+        };
+        history.hear_odometry(&of_base);
+        let mounted = ScanHeader {
+            base_from_laser: Pose2 {
+                x: 0.5,
+                y: 0.0,
+                yaw: 0.25,
+            },
+            mount_known: 1,
+            ..scan(12)
+        };
+        let pose = history.odom_from_laser(&mounted, 2).unwrap();
+        let expected = Pose::new(3.0, 4.5, std::f64::consts::FRAC_PI_2 + 0.25);
+        assert!(pose.is_within(expected, 1e-12, 1e-12), "{pose:?}");
+        assert_eq!(
+            history.odom_from_laser(&mounted, 1),
+            Err(HeadingError::OldOdometry {
+                age_ns: 2,
+                allowed_ns: 1
+            })
+        );
     }
 
     #[test]

@@ -6,7 +6,10 @@
 //! Navigation, 1992), which [`regions`] finds, and σ_θ of Eq. 1, which [`spread`]
 //! stands for. A ring has too few transducers for regions within one scan, so
 //! both take the echoes of several scans, moved by the odometry into the frame of
-//! the last. They make the ranges of one scan; nothing here votes.
+//! the last; [`Window`] keeps them. They make the ranges of one scan; nothing here
+//! votes.
+
+mod window;
 
 use std::f64::consts::{PI, TAU};
 
@@ -14,6 +17,8 @@ use geometry::{Pose, angle_between};
 
 use crate::EngineError;
 use crate::scan::Scan;
+
+pub use window::{SonarConfig, Window};
 
 /// Bearings of a turn at which regions are sought, and of the scans that are
 /// made here, which begin behind: one a degree.

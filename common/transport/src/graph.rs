@@ -4,6 +4,7 @@
 //! sends and waits for nothing itself.
 
 use std::cell::RefCell;
+use std::rc::Rc;
 use std::sync::Arc;
 use std::sync::atomic::AtomicBool;
 use std::time::Duration;
@@ -32,7 +33,7 @@ pub struct Graph {
     signals: Signals,
     publishers: IdlePublishers,
     /// Where the process logs through `tracing`.
-    log: Option<RefCell<LogSender>>,
+    log: Option<Rc<RefCell<LogSender>>>,
 }
 
 impl Graph {
@@ -83,7 +84,8 @@ impl Graph {
         if log_lines::are_kept() {
             // No line makes it grow, as with health.
             let publisher = graph.publisher_for(LogHeader::TEXT_CAPACITY)?;
-            graph.log = Some(RefCell::new(LogSender::new(node_name, publisher)));
+            let sender = LogSender::new(node_name, publisher);
+            graph.log = Some(Rc::new(RefCell::new(sender)));
         }
         Ok(graph)
     }
@@ -110,6 +112,18 @@ impl Graph {
         self.publisher_for::<T>(1)
     }
 
+    /// A sender for topic `T` whose samples have up to `items` items: for samples of
+    /// changing size, since a publisher that grows takes along what a subscriber has
+    /// not looked at when it ends. It grows all the same if it is asked for more.
+    ///
+    /// # Errors
+    /// As [`Graph::publisher`].
+    pub fn publisher_for<T: Topic>(&self, items: usize) -> Result<Publisher<T>, TransportError> {
+        let publisher = Publisher::create(&self.node, items)?;
+        self.publishers.add(publisher.for_event_loop());
+        Ok(publisher)
+    }
+
     /// A receiver for topic `T`.
     ///
     /// # Errors
@@ -127,7 +141,7 @@ impl Graph {
         // No error message makes it grow: what it says last, just before it goes,
         // then lies in memory that its subscribers know already.
         let publisher = self.publisher_for(HealthHeader::ERROR_CAPACITY)?;
-        Health::new(&self.node_name, publisher)
+        Health::new(&self.node_name, publisher, self.log.clone())
     }
 
     /// A flag that SIGINT and SIGTERM set: to be looked at in long computations.
@@ -142,14 +156,12 @@ impl Graph {
         self.node.try_cleanup_dead_nodes().cleanups
     }
 
-    fn publisher_for<T: Topic>(&self, items: usize) -> Result<Publisher<T>, TransportError> {
-        let publisher = Publisher::create(&self.node, items)?;
-        self.publishers.add(publisher.for_event_loop());
-        Ok(publisher)
-    }
-
-    /// Sends what was logged since the last call.
-    pub(crate) fn send_log(&self) -> Result<(), TransportError> {
+    /// Sends what was logged since the last call, if the process logs through
+    /// [`crate::node::start_logging`]. [`Graph::run`] does so after each step.
+    ///
+    /// # Errors
+    /// As [`Publisher::loan`] and [`crate::Loan::send`].
+    pub fn send_log(&self) -> Result<(), TransportError> {
         match &self.log {
             Some(log) => log.borrow_mut().send_waiting(),
             None => Ok(()),

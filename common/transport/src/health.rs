@@ -2,9 +2,13 @@
 //!
 //! It says what it is told; what makes a node ready or degraded, the node knows.
 
+use std::cell::RefCell;
+use std::rc::Rc;
+
 use messages::topic;
 use messages::{HealthHeader, Name, NodeState};
 
+use crate::log_sender::LogSender;
 use crate::{Publisher, TransportError, monotonic_ns, with_causes};
 
 /// Between two reports, nanoseconds.
@@ -16,12 +20,15 @@ pub struct Health {
     publisher: Publisher<topic::Health>,
     report: HealthHeader,
     last_error: String,
+    /// The node's, for nodes that have a loop of their own.
+    log: Option<Rc<RefCell<LogSender>>>,
 }
 
 impl Health {
     pub(crate) fn new(
         node: &str,
         publisher: Publisher<topic::Health>,
+        log: Option<Rc<RefCell<LogSender>>>,
     ) -> Result<Self, TransportError> {
         let mut health = Health {
             publisher,
@@ -32,6 +39,7 @@ impl Health {
                 ..bytemuck::Zeroable::zeroed()
             },
             last_error: String::new(),
+            log,
         };
         health.send()?;
         Ok(health)
@@ -81,11 +89,20 @@ impl Health {
         self.send()
     }
 
-    /// Sends a report if the last one is a second old.
+    /// Forgets the last error, where it turned out to be none; told with the next
+    /// report.
+    pub fn forget_error(&mut self) {
+        self.last_error.clear();
+    }
+
+    /// Sends a report if the last one is a second old, and what was logged.
     ///
     /// # Errors
     /// As [`Publisher::loan`] and [`crate::Loan::send`].
     pub fn tick(&mut self) -> Result<(), TransportError> {
+        if let Some(log) = &self.log {
+            log.borrow_mut().send_waiting()?;
+        }
         if monotonic_ns() - self.report.sent_ns < PERIOD_NS {
             return Ok(());
         }

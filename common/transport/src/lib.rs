@@ -125,6 +125,6 @@ pub use graph_name::{GRAPH_VARIABLE, GraphName};
 pub use health::Health;
 pub use leftovers::remove_leftovers;
 pub use loan::Loan;
-pub use log_lines::CONSOLE_ONLY;
+pub use log_lines::{CONSOLE_ONLY, log_in_graph};
 pub use publisher::Publisher;
 pub use subscriber::{Input, Sample, Subscriber};

@@ -39,6 +39,17 @@ pub(crate) struct Line {
     pub(crate) text: String,
 }
 
+impl Line {
+    fn now(level: LogLevel, text: String) -> Self {
+        Line {
+            written_ns: monotonic_ns(),
+            wall_ns: wall_ns(),
+            level,
+            text,
+        }
+    }
+}
+
 /// Lines in their order.
 #[derive(Debug)]
 struct Waiting {
@@ -69,6 +80,15 @@ impl Waiting {
 pub(crate) fn keep() -> KeepLines {
     waiting().kept = true;
     KeepLines
+}
+
+/// Keeps a line for topic `log` that is no event: what the process has printed
+/// already, in a form of its own. Without a log there it goes nowhere.
+pub fn log_in_graph(level: LogLevel, text: &str) {
+    let mut waiting = waiting();
+    if waiting.kept {
+        waiting.put(Line::now(level, text.to_owned()));
+    }
 }
 
 /// Whether there is one.
@@ -104,12 +124,8 @@ impl<S: Subscriber> Layer<S> for KeepLines {
         }
         let mut text = Text::default();
         event.record(&mut text);
-        waiting().put(Line {
-            written_ns: monotonic_ns(),
-            wall_ns: wall_ns(),
-            level: level(event.metadata().level()),
-            text: text.message + &text.fields,
-        });
+        let level = level(event.metadata().level());
+        waiting().put(Line::now(level, text.message + &text.fields));
     }
 }
 

@@ -19,6 +19,7 @@ fn lines_arrive_with_their_level_and_losses_are_told() {
     tracing::warn!(scan = 7, "no map for {}", "it");
     let other = std::thread::spawn(|| tracing::info!("{}", "ä".repeat(2000)));
     other.join().unwrap();
+    transport::log_in_graph(LogLevel::Error, "printed already");
 
     let mut heard: Vec<(LogHeader, String)> = Vec::new();
     let mut flooded = false;
@@ -27,7 +28,7 @@ fn lines_arrive_with_their_level_and_losses_are_told() {
             let text = String::from_utf8(line.items().to_vec()).unwrap();
             heard.push((*line.header(), text));
         }
-        if heard.len() >= 2 && !flooded {
+        if heard.len() >= 3 && !flooded {
             (0..FLOOD).for_each(|number| tracing::info!("line {number}"));
             flooded = true;
         }
@@ -45,6 +46,11 @@ fn lines_arrive_with_their_level_and_losses_are_told() {
     // Cut between characters of two bytes.
     assert_eq!(heard[1].1, "ä".repeat(LogHeader::TEXT_CAPACITY / 2));
     assert!(heard[0].0.written_ns <= heard[1].0.written_ns);
+    let (printed, text) = &heard[2];
+    assert_eq!(
+        (printed.level, &text[..]),
+        (LogLevel::Error as u32, "printed already")
+    );
     let (last, text) = heard.last().unwrap();
     assert_eq!(last.dropped, 37);
     let arrived = heard.iter().filter(|(_, text)| text.starts_with("line"));

@@ -4,6 +4,7 @@ use clap::{CommandFactory, Parser, error::ErrorKind};
 use engine::directions::Directions;
 use engine::heading::HeadingConfig;
 use engine::localizer::{LocalizerConfig, Prior};
+use engine::regions::SonarConfig;
 
 /// Most votes in a message: what the readers of `votes` are made for.
 const MAX_VOTES: u32 = 65_536;
@@ -20,6 +21,10 @@ pub struct Config {
     /// What is known of the heading.
     #[command(flatten)]
     pub heading: HeadingConfig,
+
+    /// What scans are read as.
+    #[command(flatten)]
+    pub sonar: SonarConfig,
 
     /// Most images on `field` a second, 0.1..=100. They are sent while somebody
     /// subscribes: the intensities of all cells where the heading is known, else
@@ -102,6 +107,9 @@ mod tests {
         assert_eq!(config.localizer, LocalizerConfig::default());
         assert_eq!(config.prior(), Prior::None);
         assert_eq!(parse("--heading 0").unwrap().prior(), Prior::Heading);
+        assert!(config.sonar.window().is_none());
+        let sonar = parse("--sonar-way 2 --sonar-cone 25").unwrap().sonar;
+        assert_eq!((sonar.sonar_way, sonar.sonar_cone), (Some(2.0), 25.0));
     }
 
     #[test]
@@ -111,6 +119,8 @@ mod tests {
             assert!(text.contains(expected), "{arguments}: {text}");
         };
         refuse("--heading-offset 10", "needs --heading-from odometry");
+        refuse("--sonar-cone 20", "--sonar-way");
+        refuse("--sonar-way 0", "0.1 to 5 metres");
         refuse("--field-rate 0", "0.1 to 100 images a second");
         refuse("--headings 100", "multiple of 8");
         refuse("--max-votes 65537", "at most 65536");

@@ -4,8 +4,8 @@
 //! Each scan is answered by exactly one message of `votes`, also where it is
 //! refused or explains nothing. A new map is prepared in the background while
 //! scans are answered with the one before. The search itself is the engine's;
-//! `preparation` knows what a map has to be, `answer` what a message says. Only `run` touches the graph and the
-//! clock.
+//! `preparation` knows what a map has to be, `answer` what a message says, `sonar` what
+//! wide beams are read as. Only `run` touches the graph and the clock.
 
 pub mod answer;
 mod background;
@@ -14,6 +14,7 @@ mod error;
 mod pace;
 pub mod preparation;
 mod run;
+pub mod sonar;
 
 pub use config::Config;
 pub use error::AccumulatorError;

@@ -10,11 +10,13 @@ use std::time::{Duration, Instant};
 
 use engine::heading::{HeadingSource, History};
 use engine::localizer::Workspace;
+use engine::scan::Scan;
 use messages::{Vote, VotesHeader, topic};
 use transport::{Flow, GapCounter, Graph, Health, Sample, TransportError, with_causes};
 
 use crate::answer::{self, Answer, Image};
 use crate::preparation::PreparedMap;
+use crate::sonar::Sonar;
 use crate::{AccumulatorError, Config};
 use inputs::Inputs;
 use outputs::Outputs;
@@ -24,9 +26,9 @@ use supply::Supply;
 /// scan comes.
 const TICK: Duration = Duration::from_millis(50);
 
-/// Readings of each kind that are kept to take headings from: ten seconds of
-/// odometry at 100 Hz.
-const HEADINGS_KEPT: usize = 1024;
+/// Readings of each kind that are kept to take headings and poses from: ten seconds
+/// of odometry at 100 Hz.
+const POSES_KEPT: usize = 1024;
 
 /// Answers each scan with its votes until the stop flag is set.
 ///
@@ -35,14 +37,15 @@ const HEADINGS_KEPT: usize = 1024;
 /// that is refused is reported in `health`.
 pub fn run(graph: &Graph, config: &Config) -> Result<(), AccumulatorError> {
     let source = config.heading.source();
-    let inputs = Inputs::open(graph, source)?;
+    let inputs = Inputs::open(graph, config)?;
     let outputs = Outputs::open(graph, config)?;
     let mut node = Node {
         source,
         headings: config.localizer.headings,
-        history: History::keeping(HEADINGS_KEPT),
+        history: History::keeping(POSES_KEPT),
         supply: Supply::new(config.localizer.clone(), config.prior()),
         map: None,
+        sonar: config.sonar.window().map(Sonar::new),
         workspace: Workspace::default(),
         gaps: GapCounter::new(),
         last_refusal: String::new(),
@@ -59,6 +62,8 @@ struct Node {
     history: History,
     supply: Supply,
     map: Option<PreparedMap>,
+    /// What scans are read through, where they are those of sonars.
+    sonar: Option<Sonar>,
     /// For all maps, one after the other.
     workspace: Workspace,
     gaps: GapCounter,
@@ -77,7 +82,7 @@ impl Node {
             self.health.tick()?;
             let scan = inputs.scans.receive()?;
             // What was sent before the scan has come by now.
-            inputs.hear_headings(&mut self.history, &mut self.health)?;
+            inputs.hear_poses(&mut self.history, &mut self.health)?;
             match scan {
                 Some(scan) => self.answer(&scan)?,
                 None => return Ok(Flow::Continue),
@@ -90,9 +95,10 @@ impl Node {
         let lost = self.gaps.lost_before(scan.header().stamp.counter);
         self.health.count_received(1);
         self.health.count_dropped(lost);
+        let read = self.read_through(scan);
         // What is sent lies in the workspace.
         let mut workspace = std::mem::take(&mut self.workspace);
-        let done = match self.search(&mut workspace, scan) {
+        let done = match read.and_then(|()| self.search(&mut workspace, scan)) {
             Ok(Some((votes, poses))) => self
                 .send_votes(&votes, poses)
                 .and_then(|()| self.send_field(&mut workspace, scan, &votes)),
@@ -104,6 +110,20 @@ impl Node {
         done
     }
 
+    /// Joins the scan with those before it, if it is one of sonars.
+    fn read_through(&mut self, scan: &Sample<topic::Scan>) -> Result<(), AccumulatorError> {
+        match &mut self.sonar {
+            Some(sonar) => sonar.hear(scan.header(), scan.items(), &self.history),
+            None => Ok(()),
+        }
+    }
+
+    /// What is to vote.
+    fn readings<'a>(&'a self, scan: &'a Sample<topic::Scan>) -> Result<Scan<'a>, AccumulatorError> {
+        let as_it_came = answer::scan(scan.header(), scan.items())?;
+        Ok(self.sonar.as_ref().map_or(as_it_came, Sonar::scan))
+    }
+
     fn search<'w>(
         &self,
         workspace: &'w mut Workspace,
@@ -111,7 +131,7 @@ impl Node {
     ) -> Result<Option<Answer<'w>>, AccumulatorError> {
         let map = self.map.as_ref().ok_or(AccumulatorError::NoMap)?;
         let heading = self.source.heading_of(scan.header(), &self.history)?;
-        let borrowed = answer::scan(scan.header(), scan.items())?;
+        let borrowed = self.readings(scan)?;
         let start = Instant::now();
         let stop = || self.stopped();
         let outcome = answer::ask(&map.localizer, workspace, &borrowed, heading, &stop)?;
@@ -155,7 +175,7 @@ impl Node {
         votes: &VotesHeader,
     ) -> Option<Image<'w>> {
         let localizer = &self.map.as_ref()?.localizer;
-        let borrowed = answer::scan(scan.header(), scan.items()).ok()?;
+        let borrowed = self.readings(scan).ok()?;
         answer::image(votes, localizer, workspace, &borrowed).ok()
     }
 

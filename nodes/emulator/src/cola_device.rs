@@ -62,16 +62,8 @@ impl ColaDevice {
                 stop_angle_raw_1e4_deg: full.stop_angle_raw_1e4_deg,
             },
             data: ScanDataConfig {
-                channels: [1, 0],
-                remission: false,
-                remission_16_bit: true,
-                remission_unit: 0,
-                encoders: [0, 0],
-                position: false,
-                name: false,
-                comment: false,
                 time: true,
-                interval: 1,
+                ..ScanDataConfig::DISTANCES
             },
             scale: if is_far { 2.0 } else { 1.0 },
             distances: Vec::new(),

@@ -19,7 +19,8 @@ use crate::FaultPlan;
 #[command(name = "emulator", version)]
 #[command(group(ArgGroup::new("device").required(true).args(["listen", "pty"])))]
 pub struct Config {
-    /// The recording: an MCAP file with ROS 2 messages.
+    /// The recording: an MCAP file with ROS 2 messages, or a bag of rosbag2 in SQLite
+    /// (.db3, or its folder).
     #[arg(long, value_name = "FILE")]
     pub recording: PathBuf,
 

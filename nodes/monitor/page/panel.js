@@ -135,7 +135,10 @@ function nodeRow(node, took) {
   const row = element("li", { "data-state": node.state, "data-node": node.name },
     element("div", { className: "name" }, element("i"), element("span", {}, node.name), element("em", {}, node.state)));
   if (more.textContent) row.append(more);
-  if (node.last_error) row.append(element("div", { className: "more error" }, node.last_error));
+  if (node.last_error) {
+    const past = node.state === "ready" ? "earlier: " : "";
+    row.append(element("div", { className: "more error" }, past + node.last_error));
+  }
   return row;
 }
 

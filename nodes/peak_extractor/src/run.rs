@@ -2,6 +2,7 @@
 
 use std::time::{Duration, Instant};
 
+use engine::beams::BeamConfig;
 use engine::peaks::PeakConfig;
 use messages::{NodeState, topic};
 use transport::{
@@ -34,8 +35,9 @@ pub fn run(graph: &Graph, config: &Config) -> Result<(), PeakError> {
         workspace: Workspace::default(),
         gaps: GapCounter::new(),
         last_refusal: String::new(),
-        hypotheses: graph.publisher()?,
-        beams: graph.publisher()?,
+        hypotheses: graph.publisher_for(config.peaks.max_hypotheses as usize)?,
+        // As many as vote by default; whoever lets more vote has it grow.
+        beams: graph.publisher_for(BeamConfig::default().max_beams as usize)?,
         health: graph.health()?,
     };
     graph.run(&[&votes, &scans, &maps], TICK, |_| {

@@ -118,6 +118,20 @@ impl OutputRange {
 }
 
 impl ScanDataConfig {
+    /// The distances of the first echo of each scan, and nothing beside.
+    pub const DISTANCES: ScanDataConfig = ScanDataConfig {
+        channels: [1, 0],
+        remission: false,
+        remission_16_bit: true,
+        remission_unit: 0,
+        encoders: [0, 0],
+        position: false,
+        name: false,
+        comment: false,
+        time: false,
+        interval: 1,
+    };
+
     pub(super) fn read(cursor: &mut Cursor<'_>) -> Result<Self, SickError> {
         Ok(ScanDataConfig {
             channels: cursor.pair("data channels")?,

@@ -78,16 +78,8 @@ mod tests {
     };
 
     const DATA: ScanDataConfig = ScanDataConfig {
-        channels: [1, 0],
-        remission: false,
-        remission_16_bit: true,
-        remission_unit: 0,
-        encoders: [0, 0],
-        position: false,
-        name: false,
-        comment: false,
         time: true,
-        interval: 1,
+        ..ScanDataConfig::DISTANCES
     };
 
     const RANGE: OutputRange = OutputRange {

@@ -4,6 +4,8 @@ use engine::heading::{HeadingSource, History};
 use messages::topic;
 use transport::{Graph, Health, Input, Subscriber, TransportError};
 
+use crate::Config;
+
 /// The node's subscribers; odometry and truth only where they are looked at.
 pub(super) struct Inputs {
     pub(super) scans: Subscriber<topic::Scan>,
@@ -16,8 +18,10 @@ pub(super) struct Inputs {
 }
 
 impl Inputs {
-    pub(super) fn open(graph: &Graph, source: HeadingSource) -> Result<Self, TransportError> {
-        let by_odometry = matches!(source, HeadingSource::Odometry { .. });
+    pub(super) fn open(graph: &Graph, config: &Config) -> Result<Self, TransportError> {
+        let source = config.heading.source();
+        let by_odometry =
+            matches!(source, HeadingSource::Odometry { .. }) || config.sonar.sonar_way.is_some();
         let by_truth = source == HeadingSource::Truth;
         Ok(Inputs {
             scans: graph.subscriber()?,
@@ -36,8 +40,8 @@ impl Inputs {
         always.into_iter().chain(odometry).chain(truths).collect()
     }
 
-    /// Takes down all headings that have come.
-    pub(super) fn hear_headings(
+    /// Takes down all odometry and truths that have come.
+    pub(super) fn hear_poses(
         &self,
         history: &mut History,
         health: &mut Health,

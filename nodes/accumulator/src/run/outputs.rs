@@ -16,7 +16,7 @@ pub(super) struct Outputs {
 impl Outputs {
     pub(super) fn open(graph: &Graph, config: &Config) -> Result<Self, TransportError> {
         Ok(Outputs {
-            votes: graph.publisher()?,
+            votes: graph.publisher_for(config.localizer.collect.max_votes as usize)?,
             field: graph.publisher()?,
             field_pace: Pace::new(config.field_rate),
         })

@@ -10,7 +10,7 @@ use std::{
 
 use dataflow::{Dataflow, Node};
 
-use super::console::{LAUNCHER, say};
+use super::console::note;
 use crate::BackcastError;
 
 /// Builds every node, in the order of the descriptor and in its `folder`. Two
@@ -23,7 +23,7 @@ pub(crate) fn build_all(dataflow: &Dataflow, folder: &Path) -> Result<(), Backca
     let with_build = || dataflow.nodes.iter().filter(|n| !n.build.is_empty());
     let ids: Vec<&str> = with_build().map(|n| n.id.as_str()).collect();
     if !ids.is_empty() {
-        say(LAUNCHER, &format!("building {}", ids.join(", ")));
+        note(&format!("building {}", ids.join(", ")));
     }
     let mut built = HashSet::new();
     with_build()

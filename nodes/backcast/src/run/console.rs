@@ -1,5 +1,6 @@
 //! Standard error: our own remarks and the output of the nodes, each line whole
-//! and marked with who said it. Standard output is left to the poses.
+//! and marked with who said it. Standard output is left to the poses. What the
+//! launcher remarks while it is in the graph is sent there, too, on topic `log`.
 
 use std::{
     io::{self, BufRead, BufReader, Read, Write},
@@ -7,12 +8,27 @@ use std::{
     thread,
 };
 
+use messages::LogLevel;
+use transport::log_in_graph;
+
 /// Longer lines are broken, so that a node which never ends its line cannot
 /// fill our memory.
 const MAX_LINE_BYTES: u64 = 1 << 16;
 
 /// As whom the launcher speaks.
 pub(crate) const LAUNCHER: &str = "backcast";
+
+/// What the launcher does, on the console and in the graph's log.
+pub(crate) fn note(line: &str) {
+    say(LAUNCHER, line);
+    log_in_graph(LogLevel::Info, line);
+}
+
+/// What the launcher does not like, on the console and in the graph's log.
+pub(crate) fn warn(line: &str) {
+    say(LAUNCHER, line);
+    log_in_graph(LogLevel::Warn, line);
+}
 
 /// Writes a line. A standard error that is closed is nobody's loss but its own.
 pub(crate) fn say(who: &str, line: &str) {

@@ -10,11 +10,12 @@ use std::{
 };
 
 use dataflow::Node;
+use messages::LogLevel;
 use nix::sys::signal::Signal;
-use transport::GraphName;
+use transport::{GraphName, log_in_graph};
 
 use super::{
-    console::{LAUNCHER, say},
+    console::warn,
     process::{Process, executable},
     supervision::{AfterEnd, Restarts, is_over, is_source},
 };
@@ -205,6 +206,9 @@ impl Member {
                 source,
             }
         })?;
+        // The console need not have it.
+        let started = format!("{} runs as process {}", self.node.id, process.pid());
+        log_in_graph(LogLevel::Info, &started);
         self.state = State::Running(process);
         Ok(())
     }
@@ -220,10 +224,7 @@ impl Member {
             AfterEnd::Done => State::Done,
             AfterEnd::Restart(delay) => {
                 let id = &self.node.id;
-                say(
-                    LAUNCHER,
-                    &format!("{id} ended with {status} and is started again"),
-                );
+                warn(&format!("{id} ended with {status} and is started again"));
                 State::Due(now + delay)
             }
             AfterEnd::Failed => {

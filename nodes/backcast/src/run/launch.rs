@@ -10,13 +10,16 @@ use std::{
     time::{Duration, Instant},
 };
 
+use messages::LogLevel;
 use nix::sys::signal::Signal;
 use signal_hook::consts::SIGUSR1;
-use transport::{Flow, Graph, GraphName, TransportError, remove_leftovers};
+use transport::{
+    Flow, Graph, GraphName, TransportError, log_in_graph, remove_leftovers, with_causes,
+};
 
 use super::{
     build,
-    console::{LAUNCHER, say},
+    console::{LAUNCHER, note, say, warn},
     crew::Crew,
     forward,
     journal::Journal,
@@ -117,15 +120,18 @@ fn launch(
 ) -> Result<Course, BackcastError> {
     let graph = Graph::join_named(LAUNCHER, name)?;
     let watch = Watch::new(&graph)?;
-    say(
-        LAUNCHER,
-        &format!("graph {name} is starting; Ctrl-C stops it"),
-    );
+    note(&format!("graph {name} is starting; Ctrl-C stops it"));
     journal.begin();
     let mut crew = Crew::new(descriptor.dataflow.nodes, &descriptor.folder, name);
     let save = Arc::new(AtomicBool::new(false));
     signal_hook::flag::register(SIGUSR1, Arc::clone(&save)).map_err(BackcastError::Signal)?;
     let end = stay(&graph, (&watch, &save), &mut crew, journal);
+    if let Err(error) = &end {
+        // The console hears of it when all have ended, a recorder has to before.
+        log_in_graph(LogLevel::Error, &with_causes(error));
+        // What came first says most.
+        let _ = graph.send_log();
+    }
     let stopped = crew.stop();
     // Nodes that are stopped send a last report on their health.
     let heard = watch.take(journal);
@@ -164,10 +170,7 @@ fn stay(
             return Ok(Flow::Stop);
         }
         if save.swap(false, Ordering::Relaxed) && crew.signal(RECORDER, Signal::SIGUSR1)? == 0 {
-            say(
-                LAUNCHER,
-                "SIGUSR1 saves what a recorder keeps, but none runs",
-            );
+            warn("SIGUSR1 saves what a recorder keeps, but none runs");
         }
         if crew.tick(now)? || now - last_cleanup >= CLEANUP_PERIOD {
             graph.cleanup_dead_nodes();

@@ -125,7 +125,12 @@ fn node_lines(node: &Node) -> Vec<Line<'static>> {
         Span::from(counts),
     ])];
     if !node.last_error.is_empty() {
-        lines.push(Line::from(format!("     {}", node.last_error)).fg(Color::Yellow));
+        let (past, color) = match node.state.as_str() {
+            "ready" => ("earlier: ", Color::DarkGray),
+            _ => ("", Color::Yellow),
+        };
+        let error = format!("     {past}{}", node.last_error);
+        lines.push(Line::from(error).fg(color));
     }
     lines
 }

@@ -14,18 +14,7 @@ const RANGE: OutputRange = OutputRange {
     stop_angle_raw_1e4_deg: 2_250_000,
 };
 
-const CONTENTS: ScanDataConfig = ScanDataConfig {
-    channels: [1, 0],
-    remission: false,
-    remission_16_bit: true,
-    remission_unit: 0,
-    encoders: [0, 0],
-    position: false,
-    name: false,
-    comment: false,
-    time: false,
-    interval: 1,
-};
+const CONTENTS: ScanDataConfig = ScanDataConfig::DISTANCES;
 
 #[test]
 fn without_wishes_nothing_is_changed() {

@@ -184,6 +184,10 @@ impl Outlet {
         *loan.header_mut() = header;
         fill(loan.items_mut());
         loan.send()?;
+        if self.sent == 0 {
+            // That the device came up after the node was no error.
+            self.health.forget_error();
+        }
         self.sent += 1;
         self.health.count_sent(1);
         if self.link != Link::Up {

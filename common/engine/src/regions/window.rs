@@ -1,0 +1,297 @@
+//! The scans of the last metres of way, read as one.
+//!
+//! Which echoes are kept is decided here, and nothing of what they mean. A scan
+//! whose way is not yet driven has no readings; one without odometry has none to
+//! be asked for.
+
+use std::collections::VecDeque;
+use std::f64::consts::PI;
+
+use geometry::Pose;
+
+use super::{Echo, RegionConfig, STEP, at_regions, regions};
+use crate::EngineError;
+use crate::scan::Scan;
+
+/// Scans of a window at most: those of the longest way, and of turns on the spot.
+const MOST_SCANS: usize = 128;
+
+/// Readings of a scan at most. No ring has as many sonars, a laser has more.
+const MOST_ECHOES: usize = 64;
+
+/// Of scans that were taken nearer to each other than this, the last stands for
+/// all: metres, radians.
+const APART: (f64, f64) = (0.05, PI / 60.0);
+
+/// For the wide beams of sonars.
+#[derive(Debug, Clone, Copy, PartialEq, clap::Args)]
+pub struct SonarConfig {
+    /// For a ring of sonars: each scan is read as the regions of constant depth among
+    /// the echoes of so many metres of way, 0.1..=5, which is known by the odometry
+    /// (five times a second at least). Until that much is driven, nothing votes; 2 is
+    /// a good value.
+    #[arg(long, value_name = "METRES", value_parser = way)]
+    pub sonar_way: Option<f64>,
+
+    /// The full width of a sonar's cone, degrees, 1..=90.
+    #[arg(long, value_name = "DEGREES", default_value_t = 30.0, value_parser = cone)]
+    #[arg(requires = "sonar_way")]
+    pub sonar_cone: f64,
+}
+
+fn way(text: &str) -> Result<f64, String> {
+    crate::config::parse(text, 0.1..=5.0, "metres")
+}
+
+fn cone(text: &str) -> Result<f64, String> {
+    crate::config::parse(text, 1.0..=90.0, "degrees")
+}
+
+impl SonarConfig {
+    /// The window to read scans through, if any.
+    #[must_use]
+    pub fn window(&self) -> Option<Window> {
+        let config = RegionConfig {
+            half_width: self.sonar_cone.to_radians() / 2.0,
+            ..RegionConfig::default()
+        };
+        self.sonar_way.map(|way_m| Window::new(way_m, config))
+    }
+}
+
+/// The scans of the last metres of way.
+#[derive(Debug, Clone)]
+pub struct Window {
+    way_m: f64,
+    config: RegionConfig,
+    /// Oldest first.
+    taken: VecDeque<Taken>,
+}
+
+#[derive(Debug, Clone)]
+struct Taken {
+    measured_ns: i64,
+    odom_from_laser: Pose,
+    /// Driven to here since the window began, metres.
+    way_m: f64,
+    /// In the frame of this scan.
+    echoes: Vec<Echo>,
+}
+
+impl Window {
+    /// A window of so many metres, with nothing in it.
+    #[must_use]
+    pub fn new(way_m: f64, config: RegionConfig) -> Self {
+        Window {
+            way_m,
+            config,
+            taken: VecDeque::new(),
+        }
+    }
+
+    /// Takes in a scan, and leaves out what is behind the window then. One that was
+    /// measured before the last begins anew, as a recording does that is played again.
+    ///
+    /// # Errors
+    /// If [`Scan::check`] refuses the scan, it has more readings than any ring of
+    /// sonars, or the odometry is no number; the window stays as it was.
+    pub fn add(
+        &mut self,
+        scan: &Scan<'_>,
+        measured_ns: i64,
+        odom_from_laser: Pose,
+    ) -> Result<(), EngineError> {
+        if !odom_from_laser.is_finite() {
+            return Err(EngineError::Odometry(odom_from_laser));
+        }
+        let echoes: Vec<Echo> = Echo::of(scan, Pose::IDENTITY)?.collect();
+        if echoes.len() > MOST_ECHOES {
+            return Err(EngineError::TooManyEchoes {
+                found: echoes.len(),
+                allowed: MOST_ECHOES,
+            });
+        }
+        if self.newest_ns().is_some_and(|newest| newest > measured_ns) {
+            self.taken.clear();
+        }
+        self.leave_out_if_near(odom_from_laser);
+        let way_m = self.taken.back().map_or(0.0, |last| {
+            last.way_m + last.odom_from_laser.distance_to(odom_from_laser)
+        });
+        self.taken.push_back(Taken {
+            measured_ns,
+            odom_from_laser,
+            way_m,
+            echoes,
+        });
+        self.leave_behind(way_m);
+        Ok(())
+    }
+
+    /// What the newest scan is read as: at each whole degree from behind on, metres
+    /// to where a region's echo met its wall, NaN where there is none.
+    #[must_use]
+    pub fn ranges(&self) -> Vec<f32> {
+        let echoes = if self.is_driven() {
+            self.echoes()
+        } else {
+            Vec::new()
+        };
+        at_regions(&echoes, &regions(&echoes, &self.config))
+    }
+
+    /// The scan of such ranges.
+    #[must_use]
+    pub fn scan(ranges: &[f32]) -> Scan<'_> {
+        Scan {
+            angle_min: -PI,
+            angle_increment: STEP,
+            range_min_m: 0.0,
+            // They reach as far as an echo from the other end of the way.
+            range_max_m: f32::MAX,
+            ranges,
+        }
+    }
+
+    fn newest_ns(&self) -> Option<i64> {
+        self.taken.back().map(|newest| newest.measured_ns)
+    }
+
+    /// Leaves out the newest scan if the one before it is near, and this pose, too:
+    /// what is measured here stands for it.
+    fn leave_out_if_near(&mut self, odom_from_laser: Pose) {
+        let mut newest_first = self.taken.iter().rev().map(|taken| taken.odom_from_laser);
+        let (Some(newest), Some(before)) = (newest_first.next(), newest_first.next()) else {
+            return;
+        };
+        let is_near = |pose: Pose| pose.is_within(before, APART.0, APART.1);
+        if is_near(newest) && is_near(odom_from_laser) {
+            self.taken.pop_back();
+        }
+    }
+
+    fn leave_behind(&mut self, newest_m: f64) {
+        let is_behind = |taken: &Taken| newest_m - taken.way_m > self.way_m;
+        while self.taken.len() > MOST_SCANS || self.taken.front().is_some_and(is_behind) {
+            self.taken.pop_front();
+        }
+    }
+
+    fn is_driven(&self) -> bool {
+        (self.taken.back()).is_some_and(|newest| newest.way_m >= self.way_m)
+    }
+
+    /// All echoes, in the frame of the newest scan.
+    fn echoes(&self) -> Vec<Echo> {
+        let newest = self.taken.back().map(|newest| newest.odom_from_laser);
+        let newest_from_odom = newest.unwrap_or(Pose::IDENTITY).inverse();
+        let echoes = self.taken.iter().flat_map(|taken| {
+            let newest_from_taken = newest_from_odom.then(taken.odom_from_laser);
+            taken.echoes.iter().map(move |echo| Echo {
+                scan_from_transducer: newest_from_taken.then(echo.scan_from_transducer),
+                ..*echo
+            })
+        });
+        echoes.collect()
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// A wall along the left, two metres from the line on which the robot drives
+    /// along x, as a sonar reads it that looks to the left.
+    fn read(window: &mut Window, measured_ns: i64, x: f64) -> Vec<f32> {
+        let scan = Scan {
+            angle_min: PI / 2.0,
+            angle_increment: 1.0,
+            range_min_m: 0.0,
+            range_max_m: 5.0,
+            ranges: &[2.0],
+        };
+        window
+            .add(&scan, measured_ns, Pose::new(x, 0.0, 0.0))
+            .unwrap();
+        window.ranges()
+    }
+
+    fn window() -> Window {
+        Window::new(1.0, RegionConfig::default())
+    }
+
+    fn readings(ranges: &[f32]) -> usize {
+        Window::scan(ranges).check().unwrap();
+        ranges.iter().filter(|range| range.is_finite()).count()
+    }
+
+    /// Drives eleven times a tenth of a metre.
+    fn driven(window: &mut Window) -> Vec<usize> {
+        let steps = (0..=11i32).map(|i| read(window, i.into(), f64::from(i) / 10.0));
+        steps.map(|ranges| readings(&ranges)).collect()
+    }
+
+    #[test]
+    fn what_was_passed_on_the_way_votes_once_it_is_driven() {
+        let mut window = window();
+        let readings = driven(&mut window);
+        assert_eq!(readings[..10], [0; 10]);
+        // Rounding decides whether ten tenths are a metre; echoes from the far end
+        // of the way lie nearer to each other than a degree.
+        assert!(readings[11] >= 8, "{readings:?}");
+        let ranges = window.ranges();
+        // To the left, in front of it nothing, and behind what was seen from there.
+        let at = |degrees: i64| ranges[(degrees + 180) as usize];
+        assert!((at(90) - 2.0).abs() < 0.05, "{}", at(90));
+        assert!((1..80).all(|degrees| at(degrees).is_nan()));
+        assert!((95..115).any(|degrees| at(degrees).is_finite()));
+        assert!(window.taken.len() <= 12);
+    }
+
+    #[test]
+    fn a_robot_that_stands_forgets_nothing_and_fills_no_memory() {
+        let mut window = window();
+        let before = driven(&mut window)[11];
+        for i in 0..1000 {
+            let ranges = read(&mut window, 100 + i, 1.1 + 0.001 * (i % 3) as f64);
+            assert!(readings(&ranges) >= before - 1, "{i}");
+        }
+        assert!(window.taken.len() <= 14, "{}", window.taken.len());
+        for i in 0..1000 {
+            let turned = Pose::new(1.1, 0.0, i as f64);
+            let scan = Scan {
+                range_max_m: 5.0,
+                ..Window::scan(&[2.0])
+            };
+            window.add(&scan, 2000 + i, turned).unwrap();
+        }
+        assert_eq!(window.taken.len(), MOST_SCANS);
+    }
+
+    #[test]
+    fn a_recording_that_starts_anew_has_its_way_before_it() {
+        let mut window = window();
+        driven(&mut window);
+        assert_eq!(readings(&read(&mut window, 3, 0.0)), 0);
+        assert_eq!(window.taken.len(), 1);
+    }
+
+    #[test]
+    fn what_is_no_ring_of_sonars_is_refused() {
+        let mut window = window();
+        let many = [1.0; MOST_ECHOES + 1];
+        let laser = Scan {
+            angle_increment: 0.01,
+            ..Window::scan(&many)
+        };
+        let refused = window.add(&laser, 0, Pose::IDENTITY);
+        assert!(matches!(
+            refused,
+            Err(EngineError::TooManyEchoes { found: 65, .. })
+        ));
+        let lost = Pose::new(f64::NAN, 0.0, 0.0);
+        let refused = window.add(&Window::scan(&[1.0]), 0, lost);
+        assert!(matches!(refused, Err(EngineError::Odometry(_))));
+        assert_eq!(window.taken.len(), 0);
+    }
+}
