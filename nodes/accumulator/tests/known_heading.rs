@@ -119,7 +119,10 @@ fn headings_come_from_odometry_of_the_base() {
     let (votes, _) = world.ask(&ranges);
     assert_eq!(votes.outcome, SearchOutcome::Refused as u32);
     let (_, error) = wait_for_health(&world.graph, &world.health, |report| report.refused == 1);
-    assert!(error.contains("scan 0 is refused: the scan needs odometry"), "{error}");
+    assert!(
+        error.contains("scan 0 is refused: the scan needs odometry"),
+        "{error}"
+    );
 
     let report = |measured_ns, yaw| {
         let mut loan = odometry.loan(0).unwrap();
