@@ -1,7 +1,10 @@
 //! A graph that plays a recording, and the recording that it makes of it.
 
+use std::collections::BTreeMap;
 use std::path::Path;
 use std::process::Command;
+
+use recording::Recording;
 
 use crate::executables;
 
@@ -69,4 +72,20 @@ pub fn graph_with(recording: &Path, map: &Path, accumulator: &str) -> String {
         path("accumulator"),
         path("peak_extractor"),
     )
+}
+
+/// The messages of a recording by topic: log times and bytes, in their order.
+#[must_use]
+pub fn messages(path: &Path) -> BTreeMap<String, Vec<(i64, Vec<u8>)>> {
+    let recording = Recording::open(path).unwrap();
+    assert_eq!(recording.damage(), None);
+    let mut messages: BTreeMap<String, Vec<_>> = BTreeMap::new();
+    for record in recording.raw_records() {
+        let record = record.unwrap();
+        let topic = messages
+            .entry(record.channel.topic.to_string())
+            .or_default();
+        topic.push((record.log_time_ns, record.body));
+    }
+    messages
 }

@@ -1,11 +1,10 @@
 //! Recordings that the graph makes: the same when they are played and recorded
-//! again, and read alike by the tools of others.
+//! again, and told of what they have lost.
 #![allow(
     clippy::unwrap_used,
     reason = "the lint spares test functions but not what they share"
 )]
 
-use std::collections::BTreeMap;
 use std::io::{BufRead, BufReader};
 use std::path::{Path, PathBuf};
 use std::process::{Command, Stdio};
@@ -14,10 +13,9 @@ use nix::sys::signal::{Signal, kill};
 use nix::unistd::Pid;
 use recording::write::{Packing, RecordingWriter};
 use recording::{Kind, Message, Recording};
-use serde_json::{Value, json};
 use tempfile::TempDir;
 use tests::executables;
-use tests::recorded::{graph, record};
+use tests::recorded::{graph, messages, record};
 use tests::world::World;
 
 /// Topics whose messages tell how long something took, or when it was sent.
@@ -25,24 +23,6 @@ const TIMED: [&str; 3] = ["/backcast/votes", "/backcast/hypotheses", "/backcast/
 
 /// Topics on which nodes speak of themselves.
 const SPOKEN: [&str; 2] = ["/diagnostics", "/rosout"];
-
-/// The versions of the Python readers that are compared with.
-const READERS: [&str; 3] = ["mcap==1.6.0", "mcap-ros2-support==0.6.0", "rosbags==0.11.9"];
-
-/// By topic: log times and bytes, in their order.
-fn messages(path: &Path) -> BTreeMap<String, Vec<(i64, Vec<u8>)>> {
-    let recording = Recording::open(path).unwrap();
-    assert_eq!(recording.damage(), None);
-    let mut messages: BTreeMap<String, Vec<_>> = BTreeMap::new();
-    for record in recording.raw_records() {
-        let record = record.unwrap();
-        let topic = messages
-            .entry(record.channel.topic.to_string())
-            .or_default();
-        topic.push((record.log_time_ns, record.body));
-    }
-    messages
-}
 
 #[test]
 fn a_recording_of_a_recording_is_the_same_message_for_message() {
@@ -192,231 +172,6 @@ fn what_a_recording_has_lost_is_told_and_drawn() {
     assert!(verdict.contains(&told), "{verdict}");
     let drawn = std::fs::read_dir(&pictures).unwrap().count() as u64;
     assert_eq!(drawn, missing.min(20));
-}
-
-/// What is compared: counts of all channels, and values of some.
-fn as_we_read(path: &Path) -> Value {
-    let recording = Recording::open(path).unwrap();
-    let count = |c: &recording::Channel| (c.topic.to_string(), json!(c.messages));
-    let counts: serde_json::Map<String, Value> = recording.channels().map(count).collect();
-    let (mut scans, mut truths, mut odometry, mut maps) = (vec![], vec![], vec![], vec![]);
-    for record in recording.records() {
-        let record = record.unwrap();
-        match record.message {
-            Message::Scan(scan) => {
-                let finite = scan.ranges.iter().filter(|range| range.is_finite());
-                // Sums of millimetres as integers do not depend on their order.
-                let sum: i64 = finite
-                    .map(|range| (f64::from(*range) * 1000.0).round() as i64)
-                    .sum();
-                scans.push(json!([
-                    scan.header.stamp.as_ns(),
-                    scan.ranges.len(),
-                    sum,
-                    scan.header.frame_id
-                ]));
-            }
-            Message::PoseStamped(pose) => {
-                truths.push(json!([
-                    record.log_time_ns,
-                    pose.pose.position.x,
-                    pose.pose.orientation.z
-                ]));
-            }
-            Message::Odometry(message) => {
-                odometry.push(json!([
-                    message.pose.pose.position.x,
-                    message.child_frame_id
-                ]));
-            }
-            Message::Map(map) => {
-                let sum: i64 = map.data.iter().map(|&cell| i64::from(cell)).sum();
-                maps.push(json!([map.info.width, map.info.height, sum]));
-            }
-            Message::StaticTransforms(_) => {}
-        }
-    }
-    json!({"counts": counts, "scans": scans, "truths": truths, "odometry": odometry, "maps": maps})
-}
-
-/// The same by a reader of others, as JSON on its standard output.
-const SCRIPT: &str = r#"
-import json, math, sys
-from collections import Counter
-from pathlib import Path
-
-reader, path = sys.argv[1:]
-counts = Counter()
-out = {"scans": [], "truths": [], "odometry": [], "maps": []}
-own = {"votes": [], "hypotheses": [], "beams": [], "log": []}
-
-def ns(stamp):
-    return stamp.sec * 10**9 + stamp.nanosec
-
-def take(topic, log_time, m):
-    counts[topic] += 1
-    if topic == "/scan":
-        total = sum(int(math.floor(float(r) * 1000 + 0.5)) for r in m.ranges if math.isfinite(r))
-        out["scans"].append([ns(m.header.stamp), len(m.ranges), total, m.header.frame_id])
-    elif topic == "/ground_truth":
-        out["truths"].append([log_time, m.pose.position.x, m.pose.orientation.z])
-    elif topic == "/odom":
-        out["odometry"].append([m.pose.pose.position.x, m.child_frame_id])
-    elif topic == "/map":
-        out["maps"].append([m.info.width, m.info.height, sum(int(c) for c in m.data)])
-    elif topic == "/backcast/votes":
-        own["votes"].append([m.counter, m.best, m.total, len(m.votes), m.votes[0].intensity])
-    elif topic == "/backcast/hypotheses":
-        best = m.hypotheses[0]
-        own["hypotheses"].append([m.counter, m.verdict, m.best, best.map_from_laser.x, len(best.covariance)])
-    elif topic == "/backcast/beams":
-        own["beams"].append([m.counter, m.map_from_laser.x, len(m.beams), m.beams[0].range_m])
-    elif topic == "/rosout":
-        own["log"].append([ns(m.stamp), m.level, m.name, m.msg])
-
-if reader == "mcap":
-    from mcap_ros2.reader import read_ros2_messages
-    for m in read_ros2_messages(path):
-        take(m.channel.topic, m.log_time_ns, m.ros_msg)
-else:
-    from rosbags.highlevel import AnyReader
-    with AnyReader([Path(path)]) as bag:
-        for connection, time, data in bag.messages():
-            take(connection.topic, time, bag.deserialize(data, connection.msgtype))
-
-out["counts"] = counts
-print(json.dumps({"read": out, "own": own}))
-"#;
-
-/// A Python with the readers, in the target folder; `None` where it cannot be
-/// made, as without a network.
-fn python() -> Option<PathBuf> {
-    let test = std::env::current_exe().unwrap();
-    let folder = test.ancestors().nth(3).unwrap().join("python_readers");
-    let python = folder.join("bin/python");
-    let run = |program: &Path, arguments: &[&str]| {
-        let outcome = Command::new(program).args(arguments).output();
-        outcome.is_ok_and(|outcome| outcome.status.success())
-    };
-    let has_readers = || run(&python, &["-c", "import mcap_ros2, rosbags"]);
-    if has_readers() {
-        return Some(python);
-    }
-    let made = run(
-        Path::new("python3"),
-        &["-m", "venv", folder.to_str().unwrap()],
-    ) && run(
-        &python,
-        &[&["-m", "pip", "install", "-q"], &READERS[..]].concat(),
-    ) && has_readers();
-    made.then_some(python)
-}
-
-fn as_read_by(python: &Path, reader: &str, path: &Path) -> Value {
-    let outcome = Command::new(python)
-        .args(["-c", SCRIPT, reader, path.to_str().unwrap()])
-        .output()
-        .unwrap();
-    let said = String::from_utf8_lossy(&outcome.stderr);
-    assert!(outcome.status.success(), "{reader}: {said}");
-    serde_json::from_slice(&outcome.stdout).unwrap()
-}
-
-#[test]
-fn the_readers_of_others_agree() {
-    let Some(python) = python() else {
-        eprintln!("SKIPPED: no Python with {READERS:?}: there is no python3, or no network");
-        return;
-    };
-    let world = World::of("malaga_corridor");
-    let folder = TempDir::new().unwrap();
-    let path = folder.path().join("a.mcap");
-    record(&world.recording(), &world.map(), &path);
-    let ours = as_we_read(&path);
-    assert_eq!(ours["scans"].as_array().unwrap().len(), 37);
-    let by_mcap = as_read_by(&python, "mcap", &path);
-    let by_rosbags = as_read_by(&python, "rosbags", &path);
-    assert_eq!(by_mcap["read"], ours, "mcap-ros2-support");
-    assert_eq!(by_rosbags["read"], ours, "rosbags");
-    // Our own messages, by schemas that they have never seen.
-    assert_eq!(by_mcap["own"], by_rosbags["own"]);
-    for (number, votes) in by_mcap["own"]["votes"]
-        .as_array()
-        .unwrap()
-        .iter()
-        .enumerate()
-    {
-        assert_eq!(votes[0], number);
-        assert_eq!(votes[2], votes[3], "all votes are there");
-        assert_eq!(votes[1], votes[4], "the first is the best");
-    }
-    let said = by_mcap["own"]["log"].as_array().unwrap();
-    let is_of = |line: &Value| line[2] == "recorder" && line[1] == 20;
-    assert!(said.iter().any(is_of), "{said:?}");
-    // What the launcher did before there was a recorder, too.
-    let started = |line: &Value| {
-        let text = line[3].as_str().unwrap();
-        line[2] == "backcast" && text.starts_with("accumulator runs as process")
-    };
-    assert!(said.iter().any(started), "{said:?}");
-    let beams = by_mcap["own"]["beams"].as_array().unwrap();
-    assert!(beams.iter().all(|beam| beam[2] == 180), "{beams:?}");
-    let poses = by_mcap["own"]["hypotheses"].as_array().unwrap();
-    assert_eq!(poses.len(), 37);
-    assert!(
-        poses.iter().all(|pose| pose[1] == 1 && pose[4] == 9),
-        "{poses:?}"
-    );
-}
-
-/// Writes a recording anew as a bag in SQLite.
-const BAG_SCRIPT: &str = r#"
-import sys
-from pathlib import Path
-from rosbags.highlevel import AnyReader
-from rosbags.rosbag2 import StoragePlugin, Writer
-
-recording, folder = Path(sys.argv[1]), Path(sys.argv[2])
-with AnyReader([recording]) as reader:
-    plugin = StoragePlugin.SQLITE3
-    with Writer(folder, version=9, storage_plugin=plugin) as writer:
-        known = {}
-        for connection, time, data in reader.messages():
-            if connection.topic not in known:
-                known[connection.topic] = writer.add_connection(
-                    connection.topic, connection.msgtype, typestore=reader.typestore)
-            writer.write(known[connection.topic], time, data)
-"#;
-
-#[test]
-fn bags_of_others_in_sqlite_read_as_the_recording() {
-    let Some(python) = python() else {
-        eprintln!("SKIPPED: no Python with {READERS:?}: there is no python3, or no network");
-        return;
-    };
-    let original = World::of("malaga_corridor").recording();
-    let folder = TempDir::new().unwrap();
-    let bag = folder.path().join("bag");
-    let outcome = Command::new(&python)
-        .args(["-c", BAG_SCRIPT])
-        .args([&original, &bag])
-        .output()
-        .unwrap();
-    let said = String::from_utf8_lossy(&outcome.stderr);
-    assert!(outcome.status.success(), "{said}");
-    assert_eq!(messages(&bag), messages(&original));
-
-    let converted = folder.path().join("converted.mcap");
-    let outcome = Command::new(executables::path("backcast"))
-        .arg("convert")
-        .args([&bag, &converted])
-        .output()
-        .unwrap();
-    let said = String::from_utf8_lossy(&outcome.stderr);
-    assert_eq!(outcome.status.code(), Some(0), "{said}");
-    assert_eq!(as_we_read(&converted), as_we_read(&original));
-    let by_mcap = as_read_by(&python, "mcap", &converted);
-    assert_eq!(by_mcap["read"], as_we_read(&original));
 }
 
 #[test]

@@ -226,13 +226,7 @@ fn tally(
         let first = if way_m > 0.0 { first } else { i };
         let echoes = ring.echoes(&drive[first..=i])?;
         let ranges = reading.ranges(&echoes, ring.half_width);
-        let scan = Scan {
-            angle_min: -std::f64::consts::PI,
-            angle_increment: regions::STEP,
-            range_min_m: 0.0,
-            range_max_m: f32::MAX,
-            ranges: &ranges,
-        };
+        let scan = regions::scan_of(&ranges);
         let outcome = localizer.search_in(&mut workspace, &scan, &|| false)?;
         let outcome = outcome.expect("a search that nothing stops ends with an outcome");
         let input = PeakInput::of(outcome, localizer.frame());

@@ -143,14 +143,16 @@ impl Direction {
     /// The next cell of a ray.
     #[must_use]
     pub fn advance(&self, x: i64, y: i64) -> (i64, i64) {
-        let (major, minor) = if self.x_major { (x, y) } else { (y, x) };
+        let (major, minor) = self.swap((x, y));
         let next_major = major + self.step;
         let next_minor = minor + self.minor(next_major) - self.minor(major);
-        if self.x_major {
-            (next_major, next_minor)
-        } else {
-            (next_minor, next_major)
-        }
+        self.swap((next_major, next_minor))
+    }
+
+    /// Column and row as indices along major and minor axis, or the other way round.
+    #[inline(always)]
+    pub(crate) fn swap<T>(&self, pair: (T, T)) -> (T, T) {
+        swap_unless(self.x_major, pair)
     }
 
     /// The opposite direction, on the same lines.
@@ -167,6 +169,13 @@ impl Direction {
     pub fn steps(&self, cells: f64) -> f64 {
         (cells * self.steps_per_cell + 0.5).floor()
     }
+}
+
+/// What belongs to x and y as what belongs to major and minor axis, or the other
+/// way round.
+#[inline(always)]
+pub(crate) fn swap_unless<T>(x_major: bool, (a, b): (T, T)) -> (T, T) {
+    if x_major { (a, b) } else { (b, a) }
 }
 
 /// Cosine and sine of `2π class / count` in the first octant, exact on the

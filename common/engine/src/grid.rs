@@ -135,6 +135,13 @@ impl Grid {
         &self.cells
     }
 
+    /// Column and row of each cell that is of a kind, row by row.
+    pub(crate) fn places(&self, is: impl Fn(Cell) -> bool) -> impl Iterator<Item = (usize, usize)> {
+        let cells = self.cells.iter().enumerate();
+        let cells = cells.filter(move |&(_, &cell)| is(cell));
+        cells.map(|(i, _)| (i % self.width, i / self.width))
+    }
+
     /// Free cells, the paper's n; unknown ones do not count.
     #[must_use]
     pub fn free_cells(&self) -> usize {

@@ -24,6 +24,7 @@
 pub mod accumulator;
 pub mod beams;
 pub mod boundary;
+pub mod chessboard;
 mod config;
 pub mod directions;
 mod error;

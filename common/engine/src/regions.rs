@@ -25,7 +25,20 @@ pub use window::{SonarConfig, Window};
 pub const BEARINGS: usize = 360;
 
 /// From one bearing to the next, radians.
-pub const STEP: f64 = TAU / BEARINGS as f64;
+const STEP: f64 = TAU / BEARINGS as f64;
+
+/// The scan of ranges at these bearings, metres.
+#[must_use]
+pub fn scan_of(ranges: &[f32]) -> Scan<'_> {
+    Scan {
+        angle_min: -PI,
+        angle_increment: STEP,
+        range_min_m: 0.0,
+        // They reach as far as an echo from the other end of the way.
+        range_max_m: f32::MAX,
+        ranges,
+    }
+}
 
 /// One reading of a wide beam, and from where.
 #[derive(Debug, Clone, Copy, PartialEq)]

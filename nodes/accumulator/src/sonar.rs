@@ -3,7 +3,7 @@
 //! Where the robot was is looked up here; what its echoes mean is the engine's.
 
 use engine::heading::History;
-use engine::regions::Window;
+use engine::regions::{self, Window};
 use engine::scan::Scan;
 use messages::ScanHeader;
 
@@ -51,6 +51,6 @@ impl Sonar {
     /// What the scan that was heard last is read as.
     #[must_use]
     pub fn scan(&self) -> Scan<'_> {
-        Window::scan(&self.ranges)
+        regions::scan_of(&self.ranges)
     }
 }

@@ -1,5 +1,6 @@
 //! How many cells around one are free of obstacles: what lets a ray leap.
 
+use engine::chessboard;
 use engine::directions::Direction;
 use engine::grid::Cell;
 
@@ -30,28 +31,8 @@ impl Clearance {
             clearance.cells[at] = if cell == Cell::Open { u8::MAX } else { 0 };
             clearance.occupied[at] = cell == Cell::Occupied;
         }
-        clearance.spread();
+        chessboard::spread(&mut clearance.cells, stride);
         clearance
-    }
-
-    /// Two passes give the distance over the larger axis exactly.
-    fn spread(&mut self) {
-        let stride = self.stride;
-        let inner = |row: usize| row * stride + 1..(row + 1) * stride - 1;
-        let rows = self.cells.len() / stride;
-        for i in (1..rows - 1).flat_map(inner) {
-            let before = [i - 1, i - stride - 1, i - stride, i - stride + 1];
-            self.relax(i, before);
-        }
-        for i in (1..rows - 1).rev().flat_map(|row| inner(row).rev()) {
-            let behind = [i + 1, i + stride + 1, i + stride, i + stride - 1];
-            self.relax(i, behind);
-        }
-    }
-
-    fn relax(&mut self, i: usize, near: [usize; 4]) {
-        let through = near.iter().map(|&near| self.cells[near]).min().unwrap_or(0);
-        self.cells[i] = self.cells[i].min(through.saturating_add(1));
     }
 
     fn at(&self, x: usize, y: usize) -> usize {

@@ -9,7 +9,7 @@ use std::f64::consts::PI;
 
 use geometry::Pose;
 
-use super::{Echo, RegionConfig, STEP, at_regions, regions};
+use super::{Echo, RegionConfig, at_regions, regions};
 use crate::EngineError;
 use crate::scan::Scan;
 
@@ -140,19 +140,6 @@ impl Window {
         at_regions(&echoes, &regions(&echoes, &self.config))
     }
 
-    /// The scan of such ranges.
-    #[must_use]
-    pub fn scan(ranges: &[f32]) -> Scan<'_> {
-        Scan {
-            angle_min: -PI,
-            angle_increment: STEP,
-            range_min_m: 0.0,
-            // They reach as far as an echo from the other end of the way.
-            range_max_m: f32::MAX,
-            ranges,
-        }
-    }
-
     fn newest_ns(&self) -> Option<i64> {
         self.taken.back().map(|newest| newest.measured_ns)
     }
@@ -199,6 +186,7 @@ impl Window {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::regions::scan_of;
 
     /// A wall along the left, two metres from the line on which the robot drives
     /// along x, as a sonar reads it that looks to the left.
@@ -221,7 +209,7 @@ mod tests {
     }
 
     fn readings(ranges: &[f32]) -> usize {
-        Window::scan(ranges).check().unwrap();
+        scan_of(ranges).check().unwrap();
         ranges.iter().filter(|range| range.is_finite()).count()
     }
 
@@ -261,7 +249,7 @@ mod tests {
             let turned = Pose::new(1.1, 0.0, i as f64);
             let scan = Scan {
                 range_max_m: 5.0,
-                ..Window::scan(&[2.0])
+                ..scan_of(&[2.0])
             };
             window.add(&scan, 2000 + i, turned).unwrap();
         }
@@ -282,7 +270,7 @@ mod tests {
         let many = [1.0; MOST_ECHOES + 1];
         let laser = Scan {
             angle_increment: 0.01,
-            ..Window::scan(&many)
+            ..scan_of(&many)
         };
         let refused = window.add(&laser, 0, Pose::IDENTITY);
         assert!(matches!(
@@ -290,7 +278,7 @@ mod tests {
             Err(EngineError::TooManyEchoes { found: 65, .. })
         ));
         let lost = Pose::new(f64::NAN, 0.0, 0.0);
-        let refused = window.add(&Window::scan(&[1.0]), 0, lost);
+        let refused = window.add(&scan_of(&[1.0]), 0, lost);
         assert!(matches!(refused, Err(EngineError::Odometry(_))));
         assert_eq!(window.taken.len(), 0);
     }

@@ -7,7 +7,7 @@
 use super::intervals::SIDE;
 use super::obstacles::{ROWS, Rays};
 use super::outlook::CELLS;
-use crate::directions::Direction;
+use crate::directions::{Direction, swap_unless};
 use crate::grid::{Cell, Grid};
 use crate::program::NO_RANGE;
 
@@ -31,11 +31,7 @@ const RAYS: usize = ROWS as usize;
 impl Bundle {
     pub(super) fn new(direction: &Direction, (left, bottom): (usize, usize)) -> Self {
         let x_major = direction.x_major;
-        let (major, minor) = if x_major {
-            (left, bottom)
-        } else {
-            (bottom, left)
-        };
+        let (major, minor) = direction.swap((left, bottom));
         let backward = direction.step < 0;
         let major = major as i64 + if backward { SIDE as i64 - 1 } else { 0 };
         let shift = |column: usize| {
@@ -106,12 +102,7 @@ impl Bundle {
             .enumerate()
             .filter(|(_, hit)| **hit != NO_RANGE)
         {
-            let (major, minor) = rays.cell(i, i64::from(*hit));
-            let (x, y) = if self.x_major {
-                (major, minor)
-            } else {
-                (minor, major)
-            };
+            let (x, y) = rays.cell(i, i64::from(*hit));
             if grid.get(x, y) == Some(Cell::Blocked) {
                 *hit = NO_RANGE;
             }
@@ -133,11 +124,8 @@ impl Bundle {
                 column
             };
             for minor in 0..SIDE {
-                let i = if self.x_major {
-                    minor * SIDE + major
-                } else {
-                    major * SIDE + minor
-                };
+                let (x, y) = swap_unless(self.x_major, (major, minor));
+                let i = y * SIDE + x;
                 let hit = &mut hits[self.first[column] + minor];
                 *hit = match cells[i] {
                     Cell::Open => *hit,

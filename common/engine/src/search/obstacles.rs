@@ -4,7 +4,8 @@
 //! time. In a row of bits over the minor axis, rays side by side are bits side by
 //! side, and eight rows make one word. Where nothing is near they leap.
 
-use crate::directions::Direction;
+use crate::chessboard;
+use crate::directions::{Direction, swap_unless};
 use crate::grid::{Cell, Grid};
 
 /// Bits before the first and after the last column, for rays that leave the map.
@@ -28,7 +29,8 @@ pub(crate) struct Obstacles {
 }
 
 /// How far away the nearest obstacle of each tile of the map is, in tiles: the
-/// larger of the distances along x and y, 0 in a tile that holds one.
+/// larger of the distances along x and y, 0 in a tile that holds one. Tiles without
+/// any lie all around the map.
 #[derive(Debug, Clone)]
 struct Clearance {
     columns: usize,
@@ -95,17 +97,11 @@ impl Obstacles {
 
 impl Rows {
     fn new(grid: &Grid, x_major: bool) -> Self {
-        let (width, height) = (grid.width(), grid.height());
-        let (majors, minors) = match x_major {
-            true => (width, height),
-            false => (height, width),
-        };
+        let (majors, minors) = swap_unless(x_major, (grid.width(), grid.height()));
         let stride = (minors + 2 * MARGIN as usize).div_ceil(8);
         let mut bits = vec![0; stride * (majors + 2 * ROWS as usize)];
-        let cells = grid.cells().iter().enumerate();
-        for (i, _) in cells.filter(|&(_, &cell)| cell != Cell::Open) {
-            let (x, y) = (i % width, i / width);
-            let (major, minor) = if x_major { (x, y) } else { (y, x) };
+        for cell in grid.places(|cell| cell != Cell::Open) {
+            let (major, minor) = swap_unless(x_major, cell);
             let bit = minor + MARGIN as usize;
             bits[(major + ROWS as usize) * stride + bit / 8] |= 1 << (bit % 8);
         }
@@ -121,48 +117,24 @@ impl Rows {
 impl Clearance {
     /// Of a map; what lies beyond it is no obstacle.
     fn new(grid: &Grid) -> Self {
-        let tiles = |cells: usize| cells.div_ceil(1 << TILE);
+        let tiles = |cells: usize| cells.div_ceil(1 << TILE) + 2;
         let (columns, rows) = (tiles(grid.width()), tiles(grid.height()));
         let mut clearance = Clearance {
             columns,
             tiles: vec![u8::MAX; columns * rows],
         };
-        let cells = grid.cells().iter().enumerate();
-        for (i, _) in cells.filter(|&(_, &cell)| cell != Cell::Open) {
-            let (x, y) = (i % grid.width(), i / grid.width());
-            clearance.tiles[(y >> TILE) * columns + (x >> TILE)] = 0;
+        for (x, y) in grid.places(|cell| cell != Cell::Open) {
+            let tile = clearance.tile(x, y);
+            clearance.tiles[tile] = 0;
         }
-        clearance.spread();
+        chessboard::spread(&mut clearance.tiles, columns);
         clearance
     }
 
-    /// Two passes over the tiles, each from the four neighbours that it has been
-    /// to: with steps of one in all eight directions that is exact.
-    fn spread(&mut self) {
-        let (columns, count) = (self.columns, self.tiles.len());
-        for i in 0..count {
-            self.hear(i, i % columns, |back| i.checked_sub(back));
-        }
-        for i in (0..count).rev() {
-            let from = |on: usize| Some(i + on).filter(|&i| i < count);
-            self.hear(i, columns - 1 - i % columns, from);
-        }
-    }
-
-    /// One tile hears of those before it, `behind` of which are in its row.
-    fn hear(&mut self, i: usize, behind: usize, at: impl Fn(usize) -> Option<usize>) {
-        let columns = self.columns;
-        let ahead = columns - 1 - behind;
-        let neighbours = [
-            (behind > 0, 1),
-            (behind > 0, columns + 1),
-            (true, columns),
-            (ahead > 0, columns.saturating_sub(1)),
-        ];
-        let neighbours = neighbours.into_iter().filter(|&(is, _)| is);
-        let heard = neighbours.filter_map(|(_, back)| at(back));
-        let least = heard.map(|i| self.tiles[i]).min().unwrap_or(u8::MAX);
-        self.tiles[i] = self.tiles[i].min(least.saturating_add(1));
+    /// The tile of a cell.
+    #[inline(always)]
+    fn tile(&self, x: usize, y: usize) -> usize {
+        ((y >> TILE) + 1) * self.columns + (x >> TILE) + 1
     }
 }
 
@@ -171,15 +143,12 @@ impl Rays<'_> {
     /// is near its middle; 0 where that is not known.
     #[inline(always)]
     pub(crate) fn free(&self, position: i64) -> i64 {
-        let (major, minor) = self.cell(MIDDLE as usize, position);
+        let (major, minor) = self.at(MIDDLE as usize, position);
         if !(0..self.rows.minors).contains(&minor) {
             return 0;
         }
-        let (x, y) = match self.direction.x_major {
-            true => (major, minor),
-            false => (minor, major),
-        };
-        let tile = (y >> TILE) as usize * self.clearance.columns + (x >> TILE) as usize;
+        let (x, y) = self.direction.swap((major, minor));
+        let tile = self.clearance.tile(x as usize, y as usize);
         let tiles = i64::from(self.clearance.tiles[tile]);
         // Between a cell and the nearest obstacle lie whole tiles, all but one;
         // with each position a ray comes nearer by one cell at most.
@@ -195,8 +164,14 @@ impl Rays<'_> {
         }
     }
 
-    /// The cell of ray `i` at a position, along the major and the minor axis.
+    /// The cell of ray `i` at a position, as column and row.
     pub(crate) fn cell(&self, i: usize, position: i64) -> (i64, i64) {
+        self.direction.swap(self.at(i, position))
+    }
+
+    /// The same along the major and the minor axis.
+    #[inline(always)]
+    fn at(&self, i: usize, position: i64) -> (i64, i64) {
         let major = self.major + self.direction.step * position;
         (major, self.offset + i as i64 + self.direction.minor(major))
     }
@@ -247,23 +222,20 @@ mod tests {
             let obstacles = Obstacles::new(&grid);
             let (x, y) = ((seed[0] % grid.width()) as i64, (seed[1] % grid.height()) as i64);
             for direction in space_of(&grid, headings * 8).directions.all() {
-                let start = if direction.x_major { (x, y) } else { (y, x) };
-                let rays = obstacles.rays(direction, start);
-                prop_assert_eq!(rays.cell(0, 0), start);
+                let rays = obstacles.rays(direction, direction.swap((x, y)));
+                prop_assert_eq!(rays.cell(0, 0), (x, y));
                 if skip >= rays.positions() {
                     continue;
                 }
                 let ends = rays.ends(skip);
                 for (i, j) in (0..8).flat_map(|i| (0..8).map(move |j| (i, j))) {
-                    let (major, minor) = rays.cell(i, skip + j);
-                    let (x, y) = if direction.x_major { (major, minor) } else { (minor, major) };
+                    let (x, y) = rays.cell(i, skip + j);
                     let expected = grid.get(x, y).is_some_and(|cell| cell != Cell::Open);
                     let found = ends.unwrap_or(0) >> (8 * j + i as i64) & 1;
                     prop_assert_eq!(found == 1, expected, "{:?} {:?}", (i, j), direction);
                 }
                 for (i, on) in (0..8).flat_map(|i| (0..rays.free(skip)).map(move |on| (i, on))) {
-                    let (major, minor) = rays.cell(i, skip + on);
-                    let (x, y) = if direction.x_major { (major, minor) } else { (minor, major) };
+                    let (x, y) = rays.cell(i, skip + on);
                     prop_assert!(grid.get(x, y).is_none_or(|cell| cell == Cell::Open));
                 }
             }

@@ -1,5 +1,6 @@
 //! A grid as rows of bits, laid out for sweeps along either axis.
 
+use crate::directions::swap_unless;
 use crate::grid::{Cell, Grid};
 
 /// Bits of a word.
@@ -23,12 +24,7 @@ pub(crate) struct BitGrid {
 impl BitGrid {
     /// Rows lie along y where `x_major` and along x where not.
     pub(crate) fn new(grid: &Grid, x_major: bool) -> Self {
-        let (width, height) = (grid.width(), grid.height());
-        let (rows, columns) = if x_major {
-            (width, height)
-        } else {
-            (height, width)
-        };
+        let (rows, columns) = swap_unless(x_major, (grid.width(), grid.height()));
         let mut bits = BitGrid {
             rows,
             columns,
@@ -46,14 +42,8 @@ impl BitGrid {
 
     fn collect(&self, grid: &Grid, x_major: bool, kind: Cell) -> Vec<u64> {
         let mut bits = vec![0; self.rows * self.words];
-        for (i, _) in grid
-            .cells()
-            .iter()
-            .enumerate()
-            .filter(|&(_, &cell)| cell == kind)
-        {
-            let (x, y) = (i % grid.width(), i / grid.width());
-            let (row, column) = if x_major { (x, y) } else { (y, x) };
+        for cell in grid.places(|cell| cell == kind) {
+            let (row, column) = swap_unless(x_major, cell);
             bits[row * self.words + column / WORD] |= 1 << (column % WORD);
         }
         bits

@@ -89,11 +89,7 @@ impl Plan {
         let (mut line, mut votes) = (0, 0);
         for i in 0..self.beams.len() {
             let beam = &mut self.beams[i];
-            let columns = if beam.direction.x_major {
-                height
-            } else {
-                width
-            };
+            let (_, columns) = beam.direction.swap((width, height));
             let lines = row_bytes::<L>(columns, beam.is_far).div_ceil(64);
             beam.row = 64 * line;
             line += lines;

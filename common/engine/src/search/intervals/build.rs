@@ -12,7 +12,7 @@ use super::pool::pool;
 use super::strip::{Row, RowLayout, StripMasks};
 use super::transpose::{TILE, WORD, transpose};
 use super::{PACKED, SIDE};
-use crate::directions::Directions;
+use crate::directions::{Directions, swap_unless};
 use crate::grid::Grid;
 use crate::instruction_set::InstructionSet;
 use crate::search::bins::Bins;
@@ -111,11 +111,7 @@ fn sweep_avx512(source: Source<'_>, part: &Part, bands: &[Band<'_>]) {
 fn sweep<L: Lanes>(lanes: L, source: Source<'_>, part: &Part, bands: &[Band<'_>]) {
     let (width, height) = (source.grid.width(), source.grid.height());
     let longest = (width.max(height) - 1) as u16;
-    let (majors, minors) = if part.x_major {
-        (width, height)
-    } else {
-        (height, width)
-    };
+    let (majors, minors) = swap_unless(part.x_major, (width, height));
     let row_blocks = width.div_ceil(SIDE);
     let (strips, blocks) = (majors.div_ceil(SIDE), minors.div_ceil(SIDE));
     let layout = RowLayout::new(blocks);

@@ -6,6 +6,7 @@
 //! the same lane of 16 vectors.
 
 use super::SIDE;
+use crate::directions::swap_unless;
 use crate::grid::{Cell, Grid};
 use crate::program::NO_RANGE;
 use crate::search::lanes::Lanes;
@@ -112,13 +113,8 @@ impl StripMasks {
 
     /// Takes the cells of a strip, a row of blocks or a column of them.
     pub(super) fn fill(&mut self, grid: &Grid, x_major: bool, strip: usize) {
-        let (width, height) = (grid.width(), grid.height());
-        let (majors, minors) = if x_major {
-            (width, height)
-        } else {
-            (height, width)
-        };
-        let (major_stride, minor_stride) = if x_major { (1, width) } else { (width, 1) };
+        let (majors, minors) = swap_unless(x_major, (grid.width(), grid.height()));
+        let (major_stride, minor_stride) = swap_unless(x_major, (1, grid.width()));
         for (row, (pass, lose)) in self.pass.iter_mut().zip(&mut self.lose).enumerate() {
             let major = SIDE * strip + row;
             for plane in 0..SIDE {

@@ -1,0 +1,58 @@
+//! Distances on a chessboard: the larger of those along x and along y.
+
+/// Lowers each cell to its distance from the nearest lower ones: to the least of
+/// any cell's value and its chessboard distance from there, saturated at 255. The
+/// outermost rows and columns count, and stay as they are.
+///
+/// Two passes, each from the four neighbours that it has been to: with steps of one
+/// in all eight directions that is exact.
+pub fn spread(cells: &mut [u8], columns: usize) {
+    if columns == 0 {
+        return;
+    }
+    let inner = |row: usize| row * columns + 1..(row + 1) * columns - 1;
+    let rows = 1..(cells.len() / columns).saturating_sub(1);
+    for i in rows.clone().flat_map(inner) {
+        let before = [i - 1, i - columns - 1, i - columns, i - columns + 1];
+        lower(cells, i, before);
+    }
+    for i in rows.rev().flat_map(|row| inner(row).rev()) {
+        let behind = [i + 1, i + columns + 1, i + columns, i + columns - 1];
+        lower(cells, i, behind);
+    }
+}
+
+fn lower(cells: &mut [u8], i: usize, near: [usize; 4]) {
+    for near in near {
+        cells[i] = cells[i].min(cells[near].saturating_add(1));
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use proptest::prelude::*;
+
+    use super::*;
+
+    proptest! {
+        #[test]
+        fn each_cell_has_its_distance_from_the_nearest_lower_one(
+            columns in 0usize..9, rows in 0usize..9, values in prop::collection::vec(
+                prop_oneof![4 => Just(255u8), 1 => 0u8..4, 1 => 250u8..=255], 81,
+            ),
+        ) {
+            let before = &values[..columns * rows];
+            let mut after = before.to_vec();
+            spread(&mut after, columns);
+            for (i, &found) in after.iter().enumerate() {
+                let (x, y) = (i % columns, i / columns);
+                let is_outermost = x == 0 || y == 0 || x == columns - 1 || y == rows - 1;
+                let away = |j: usize| (j % columns).abs_diff(x).max((j / columns).abs_diff(y));
+                let through = |j: usize| usize::from(before[j]) + away(j);
+                let nearest = (0..before.len()).map(through).min();
+                let expected = if is_outermost { before[i] } else { nearest.unwrap().min(255) as u8 };
+                prop_assert_eq!(found, expected);
+            }
+        }
+    }
+}
