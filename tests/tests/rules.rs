@@ -158,7 +158,8 @@ fn zenoh_is_linked_only_where_machines_are_joined() {
 #[test]
 fn only_what_is_asked_over_a_network_has_a_runtime_for_it() {
     for (name, dependencies) in dependencies() {
-        let may = ZENOH_NODES.contains(&name.as_str()) || name == "tests";
+        let may =
+            ZENOH_NODES.contains(&name.as_str()) || ["dashboard", "tests"].contains(&name.as_str());
         for library in ["tokio", "axum"] {
             assert!(
                 may || !dependencies.contains(library),

@@ -1,7 +1,6 @@
 //! What a user can set.
 
 use std::net::SocketAddr;
-use std::path::PathBuf;
 
 use clap::Parser;
 
@@ -17,19 +16,13 @@ pub struct Config {
     #[arg(long, value_name = "ADDRESS:PORT", default_value = "127.0.0.1:7440")]
     pub listen: SocketAddr,
 
-    /// Another name under which browsers may reach the page; addresses and
-    /// localhost are allowed as they are. May be given again
-    #[arg(long, value_name = "NAME", value_parser = host)]
-    pub host: Vec<String>,
-
     /// What the robot of this graph is called [default: the name of the machine]
     #[arg(long, value_name = "NAME", value_parser = robot)]
     pub robot: Option<String>,
 
-    /// A file with the token that write actions need, at least 16 characters
-    /// [default: a new one, shown on the console]
-    #[arg(long, value_name = "FILE")]
-    pub token_file: Option<PathBuf>,
+    /// Who may reach the page.
+    #[command(flatten)]
+    pub page: dashboard::Options,
 }
 
 impl Config {
@@ -51,14 +44,6 @@ fn robot(text: &str) -> Result<String, String> {
         return Ok(text.to_owned());
     }
     Err("allowed are 1 to 64 of a-z A-Z 0-9 - _ .".to_owned())
-}
-
-fn host(text: &str) -> Result<String, String> {
-    let is_plain = |c: char| c.is_ascii_alphanumeric() || "-.".contains(c);
-    if (1..=253).contains(&text.len()) && text.chars().all(is_plain) {
-        return Ok(text.to_ascii_lowercase());
-    }
-    Err("needed is the name of a host, without scheme and port".to_owned())
 }
 
 #[cfg(test)]

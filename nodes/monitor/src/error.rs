@@ -1,44 +1,11 @@
 //! What keeps the monitor from running.
 
-use std::io;
-use std::net::SocketAddr;
-use std::path::PathBuf;
-
 /// What was tried, what was found and what is allowed.
 #[derive(Debug, thiserror::Error)]
 pub enum MonitorError {
-    /// It cannot listen there.
-    #[error("cannot listen on {address}, nor on the {tried} ports after it")]
-    Listen {
-        /// Where.
-        address: SocketAddr,
-        /// Ports that were tried beyond.
-        tried: u16,
-        /// What the system says.
-        source: io::Error,
-    },
-    /// The thread of the server cannot be started.
-    #[error("cannot start the server")]
-    Server(#[source] io::Error),
-    /// The token cannot be read.
-    #[error("cannot read the token in {}", path.display())]
-    TokenFile {
-        /// The file.
-        path: PathBuf,
-        /// What the system says.
-        source: io::Error,
-    },
-    /// The token could be guessed, or cannot be sent.
-    #[error("the token in {} has {found} characters; needed are 16 to 256 of ASCII without spaces", path.display())]
-    Token {
-        /// The file.
-        path: PathBuf,
-        /// Characters that it has.
-        found: usize,
-    },
-    /// The system gives no random numbers.
-    #[error("the system gives no random numbers for a token: {0}")]
-    Random(getrandom::Error),
+    /// The page cannot be served.
+    #[error(transparent)]
+    Dashboard(#[from] dashboard::DashboardError),
     /// The graph failed.
     #[error(transparent)]
     Transport(#[from] transport::TransportError),

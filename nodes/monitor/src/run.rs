@@ -7,12 +7,10 @@ use std::sync::Arc;
 use std::sync::mpsc::Receiver;
 use std::time::Duration;
 
+use dashboard::{Robot, Robots, Server, Wish};
 use messages::{NodeState, topic};
 use transport::{CONSOLE_ONLY, Flow, Graph, Health, Subscriber, TransportError, monotonic_ns};
 
-use crate::robot::{Robot, Wish};
-use crate::server::Server;
-use crate::token::Token;
 use crate::{Config, MonitorError};
 use inputs::Inputs;
 use outputs::Outputs;
@@ -25,14 +23,6 @@ const TICK: Duration = Duration::from_millis(50);
 /// # Errors
 /// If it cannot listen, the token cannot be read, or the graph fails.
 pub fn run(graph: &Graph, config: &Config) -> Result<(), MonitorError> {
-    let token = match &config.token_file {
-        Some(path) => Token::read(path)?,
-        None => Token::random()?,
-    };
-    let shown = config
-        .token_file
-        .is_none()
-        .then(|| token.reveal().to_owned());
     let (robot, wishes) = Robot::new(config.robot());
     let inputs = Inputs::open(graph)?;
     let mut node = Node {
@@ -42,25 +32,22 @@ pub fn run(graph: &Graph, config: &Config) -> Result<(), MonitorError> {
         outputs: Outputs::open(graph)?,
         health: graph.health()?,
     };
-    let server = Server::start(config, vec![robot], token)?;
-    announce(&server, config, shown.as_deref());
+    let server = Server::start(config.listen, &config.page, Robots::from_iter([robot]))?;
+    announce(&server, config);
     // What a monitor before this one wished for is not known here, so it ends.
     node.outputs.region(&[])?;
     node.health.state(NodeState::Ready)?;
     graph.run(&inputs.all(), TICK, |wake| {
-        if !server.is_running() {
-            let ended = std::io::Error::other("its thread has ended");
-            return Err(MonitorError::Server(ended));
-        }
+        server.check()?;
         node.step(graph, &inputs, wake.tick)?;
         Ok(Flow::Continue)
     })
 }
 
-fn announce(server: &Server, config: &Config, token: Option<&str>) {
+fn announce(server: &Server, config: &Config) {
     let address = server.address();
     tracing::info!("watch it on http://{address}");
-    if let Some(token) = token {
+    if let Some(token) = server.token() {
         let place = format!("http://{address}/#token={token}");
         tracing::info!(target: CONSOLE_ONLY, "to change something there: {place}");
     }

@@ -1,9 +1,8 @@
 //! The topics that are always heard.
 
+use dashboard::Robot;
 use messages::topic;
 use transport::{Graph, Health, Input, Subscriber, TransportError, monotonic_ns};
-
-use crate::robot::Robot;
 
 /// All but the field, which is subscribed to when somebody looks.
 pub(super) struct Inputs {

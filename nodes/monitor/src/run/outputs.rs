@@ -1,9 +1,8 @@
 //! What those with the token may ask of the graph.
 
+use dashboard::Abilities;
 use messages::{Corner, RegionHeader, SaveHeader, Stamp, topic};
 use transport::{Graph, Publisher, TransportError, monotonic_ns};
-
-use crate::robot::Abilities;
 
 pub(super) struct Outputs {
     regions: Publisher<topic::Region>,

@@ -1,13 +1,9 @@
 //! Answers that say no, as JSON with the reason.
 
-use std::sync::Arc;
-
 use axum::Json;
 use axum::http::{StatusCode, Uri};
 use axum::response::{IntoResponse, Response};
 use serde_json::json;
-
-use crate::robot::Robot;
 
 /// A status and its reason.
 #[derive(Debug)]
@@ -24,9 +20,11 @@ impl Refusal {
         }
     }
 
-    pub(super) fn unknown_robot(name: &str, robots: &[Arc<Robot>]) -> Self {
-        let names: Vec<&str> = robots.iter().map(|robot| robot.name()).collect();
-        let problem = format!("there is no robot {name:?}; there is {}", names.join(", "));
+    pub(super) fn unknown_robot(name: &str, names: &[String]) -> Self {
+        let problem = match names {
+            [] => format!("there is no robot {name:?}, nor any other"),
+            _ => format!("there is no robot {name:?}; there is {}", names.join(", ")),
+        };
         Refusal::new(StatusCode::NOT_FOUND, problem)
     }
 

@@ -4,7 +4,7 @@ use std::path::Path;
 
 use subtle::ConstantTimeEq;
 
-use crate::MonitorError;
+use crate::DashboardError;
 
 /// Something that only those who may change the graph know.
 pub(crate) struct Token(String);
@@ -14,14 +14,14 @@ impl Token {
     ///
     /// # Errors
     /// The file cannot be read, or holds none.
-    pub(crate) fn read(path: &Path) -> Result<Self, MonitorError> {
-        let text = std::fs::read_to_string(path).map_err(|source| MonitorError::TokenFile {
+    pub(crate) fn read(path: &Path) -> Result<Self, DashboardError> {
+        let text = std::fs::read_to_string(path).map_err(|source| DashboardError::TokenFile {
             path: path.to_owned(),
             source,
         })?;
         let token = text.trim();
         if !(16..=256).contains(&token.len()) || !token.bytes().all(|b| b.is_ascii_graphic()) {
-            return Err(MonitorError::Token {
+            return Err(DashboardError::Token {
                 path: path.to_owned(),
                 found: token.chars().count(),
             });
@@ -33,9 +33,9 @@ impl Token {
     ///
     /// # Errors
     /// The system has no random numbers.
-    pub(crate) fn random() -> Result<Self, MonitorError> {
+    pub(crate) fn random() -> Result<Self, DashboardError> {
         let mut bytes = [0; 16];
-        getrandom::fill(&mut bytes).map_err(MonitorError::Random)?;
+        getrandom::fill(&mut bytes).map_err(DashboardError::Random)?;
         let hex = bytes.iter().map(|byte| format!("{byte:02x}"));
         Ok(Token(hex.collect()))
     }

@@ -51,7 +51,7 @@ pub(super) async fn open(
     Path(name): Path<String>,
     upgrade: WebSocketUpgrade,
 ) -> Result<Response, Refusal> {
-    let robot = Arc::clone(site.robot(&name)?);
+    let robot = site.robot(&name)?;
     let permit = Arc::clone(&site.watchers).try_acquire_owned();
     let permit = permit.map_err(|_| {
         let problem = "as many watch already as may";

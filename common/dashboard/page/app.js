@@ -85,7 +85,7 @@ async function loadMap() {
 function showLink() {
   document.body.dataset.link = link;
   const age = delay === null ? null : Math.round(delay + (store.answer?.age_ms ?? 0));
-  const words = { live: age === null ? "live" : `live · ${age} ms`, lost: "disconnected", connecting: "connecting" };
+  const words = { live: age === null ? "live" : `live · ${age} ms`, lost: "disconnected", connecting: "connecting", alone: "no robot yet" };
   $("link-text").textContent = frozen && link === "live" ? "frozen" : words[link];
   $("lost").hidden = link !== "lost";
   if (link === "lost") {
@@ -132,23 +132,41 @@ function watch(name) {
   connection.field(view.layers.field);
 }
 
-/** Finds the robots; tries until there is somebody to answer. */
-async function start() {
-  takeToken();
-  applyTheme();
+const ROBOTS_MS = 1000; // how soon another robot is seen
+let asked = new URLSearchParams(location.search).get("robot");
+
+/** Finds the robots, also those that come later. */
+async function find() {
   try {
-    const { robots } = await (await fetch("/api/v1/robots")).json();
-    const asked = new URLSearchParams(location.search).get("robot");
+    offer((await (await fetch("/api/v1/robots")).json()).robots);
+  } catch {
+    if (!robot) handlers.state("lost");
+  }
+  setTimeout(find, ROBOTS_MS);
+}
+
+function offer(robots) {
+  const known = Array.from($("robot").options, ({ value }) => value);
+  if (robots.join() !== known.join()) {
     $("robot").replaceChildren(...robots.map((name) => new Option(name, name)));
+    $("robot").value = robot;
     $("robot").hidden = robots.length < 2;
     $("robot-name").hidden = robots.length >= 2;
-    const first = robots.includes(asked) ? asked : robots[0];
+  }
+  const first = robots.includes(asked) ? asked : robot || robots[0];
+  if (first === asked) asked = null;
+  if (first && first !== robot) {
     $("robot").value = first;
     watch(first);
-  } catch {
-    handlers.state("lost");
-    setTimeout(start, 1000);
+  } else if (!first) {
+    handlers.state("alone");
   }
+}
+
+function start() {
+  takeToken();
+  applyTheme();
+  find();
 }
 
 function setLayer(name, on = !view.layers[name]) {
@@ -220,7 +238,10 @@ $("freeze").onclick = () => setFrozen(!frozen);
 $("picture").onclick = picture;
 $("theme").onclick = switchTheme;
 $("help").onclick = () => $("keys-dialog").showModal();
-$("robot").onchange = () => watch($("robot").value);
+$("robot").onchange = () => {
+  asked = null;
+  watch($("robot").value);
+};
 $("region").onclick = () => { setChoosing(!choosing); $("map").focus(); };
 $("everywhere").onclick = () => ask(robot, "DELETE", "region", null, "Poses are sought everywhere again.");
 $("save").onclick = () => ask(robot, "POST", "save", null, "The recorder saves the last minutes.");

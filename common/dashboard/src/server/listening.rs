@@ -11,7 +11,7 @@ use tokio::io::{AsyncRead, AsyncWrite, ReadBuf};
 use tokio::net::{TcpListener, TcpStream};
 use tokio::sync::{OwnedSemaphorePermit, Semaphore};
 
-use crate::MonitorError;
+use crate::DashboardError;
 
 /// Ports that are tried beyond the one that was asked for.
 const NEXT_PORTS: u16 = 100;
@@ -23,7 +23,7 @@ const MAX_CONNECTIONS: usize = 256;
 ///
 /// # Errors
 /// None is free, or the address is not this machine's.
-pub(super) fn bind(wanted: SocketAddr) -> Result<StdListener, MonitorError> {
+pub(super) fn bind(wanted: SocketAddr) -> Result<StdListener, DashboardError> {
     let mut address = wanted;
     loop {
         match StdListener::bind(address) {
@@ -34,7 +34,7 @@ pub(super) fn bind(wanted: SocketAddr) -> Result<StdListener, MonitorError> {
                 address.set_port(address.port() + 1);
             }
             Err(source) => {
-                return Err(MonitorError::Listen {
+                return Err(DashboardError::Listen {
                     address: wanted,
                     tried: address.port() - wanted.port(),
                     source,

@@ -2,8 +2,6 @@
 //!
 //! It stands between the thread of a source, which tells it what happens, and
 //! the server, which asks. Both hold the lock for as long as it takes to copy.
-//! Another source of robots, on another machine, would tell its own ones the
-//! same.
 
 use std::sync::atomic::{AtomicUsize, Ordering};
 use std::sync::mpsc::{Receiver, SyncSender, sync_channel};
@@ -30,7 +28,7 @@ const WISHES: usize = 8;
 
 /// What somebody with the token wants of the graph.
 #[derive(Debug, Clone, PartialEq)]
-pub(crate) enum Wish {
+pub enum Wish {
     /// Poses be sought between these corners; everywhere where there are none.
     Region(Vec<[f64; 2]>),
     /// A black box be saved.
@@ -39,16 +37,16 @@ pub(crate) enum Wish {
 
 /// Whether a node listens to wishes.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize)]
-pub(crate) struct Abilities {
+pub struct Abilities {
     /// An accumulator takes regions.
-    pub(crate) region: bool,
+    pub region: bool,
     /// A recorder saves its black box.
-    pub(crate) save: bool,
+    pub save: bool,
 }
 
 /// A robot that can be watched.
 #[derive(Debug)]
-pub(crate) struct Robot {
+pub struct Robot {
     name: String,
     known: Mutex<Known>,
     news: broadcast::Sender<Utf8Bytes>,
@@ -83,8 +81,10 @@ pub(crate) struct FieldView {
 
 /// What a source tells.
 impl Robot {
-    /// A robot of which nothing is known yet, and the wishes for it.
-    pub(crate) fn new(name: String) -> (Arc<Self>, Receiver<Wish>) {
+    /// A robot of which nothing is known yet, and the wishes for it. The name stands in
+    /// addresses.
+    #[must_use]
+    pub fn new(name: String) -> (Arc<Self>, Receiver<Wish>) {
         let (wishes, wished) = sync_channel(WISHES);
         let robot = Robot {
             name,
@@ -98,7 +98,7 @@ impl Robot {
     }
 
     /// Takes a map; says whether it could be used.
-    pub(crate) fn hear_map(&self, header: &MapHeader, cells: &[u8]) -> bool {
+    pub fn hear_map(&self, header: &MapHeader, cells: &[u8]) -> bool {
         let Some(map) = Map::new(header, cells) else {
             return false;
         };
@@ -109,7 +109,7 @@ impl Robot {
     }
 
     /// Takes the answer to a scan, at a time of the host's clock.
-    pub(crate) fn hear_answer(&self, header: &HypothesesHeader, items: &[Hypothesis], now_ns: i64) {
+    pub fn hear_answer(&self, header: &HypothesesHeader, items: &[Hypothesis], now_ns: i64) {
         let answer = Answer::new(header, items, now_ns);
         let mut known = self.known();
         self.tell(&Message::Answer(&answer));
@@ -118,7 +118,7 @@ impl Robot {
     }
 
     /// Takes what became of the beams of a scan.
-    pub(crate) fn hear_beams(&self, header: &BeamsHeader, items: &[Beam]) {
+    pub fn hear_beams(&self, header: &BeamsHeader, items: &[Beam]) {
         let beams = Beams::new(header, items);
         let mut known = self.known();
         self.tell(&Message::Beams(&beams));
@@ -126,7 +126,7 @@ impl Robot {
     }
 
     /// Takes a report on a node; says whether there was room for it.
-    pub(crate) fn hear_health(&self, header: &HealthHeader, error: &[u8]) -> bool {
+    pub fn hear_health(&self, header: &HealthHeader, error: &[u8]) -> bool {
         let mut known = self.known();
         let report = known.roster.hear(header, error);
         report
@@ -135,7 +135,7 @@ impl Robot {
     }
 
     /// Takes a line of a node's log.
-    pub(crate) fn hear_log(&self, header: &LogHeader, text: &[u8]) {
+    pub fn hear_log(&self, header: &LogHeader, text: &[u8]) {
         let line = LogLine::new(header, text);
         let mut known = self.known();
         self.tell(&Message::Log(&line));
@@ -143,7 +143,7 @@ impl Robot {
     }
 
     /// Takes an intensity image; says whether it could be used.
-    pub(crate) fn hear_field(&self, header: &FieldHeader, items: &[u16]) -> bool {
+    pub fn hear_field(&self, header: &FieldHeader, items: &[u16]) -> bool {
         let frame = field_frame(header, items);
         let is_sound = frame.is_some();
         if let Some(frame) = frame {
@@ -153,14 +153,14 @@ impl Robot {
     }
 
     /// Takes the region in which poses are sought from now on.
-    pub(crate) fn hear_region(&self, corners: Vec<[f64; 2]>) {
+    pub fn hear_region(&self, corners: Vec<[f64; 2]>) {
         let mut known = self.known();
         self.tell(&Message::Region(Region { corners: &corners }));
         known.region = corners;
     }
 
     /// Takes who listens to wishes.
-    pub(crate) fn hear_abilities(&self, abilities: Abilities) {
+    pub fn hear_abilities(&self, abilities: Abilities) {
         let mut known = self.known();
         if known.abilities != abilities {
             known.abilities = abilities;
@@ -169,14 +169,15 @@ impl Robot {
     }
 
     /// Looks for nodes that have become silent.
-    pub(crate) fn look_for_silence(&self, now_ns: i64) {
+    pub fn look_for_silence(&self, now_ns: i64) {
         for report in self.known().roster.newly_silent(now_ns) {
             self.tell(&Message::Node(report));
         }
     }
 
     /// Whether anybody looks at the field.
-    pub(crate) fn is_field_viewed(&self) -> bool {
+    #[must_use]
+    pub fn is_field_viewed(&self) -> bool {
         self.field_viewers.load(Ordering::Relaxed) > 0
     }
 
@@ -192,7 +193,9 @@ impl Robot {
 
 /// What the server asks.
 impl Robot {
-    pub(crate) fn name(&self) -> &str {
+    /// Its name.
+    #[must_use]
+    pub fn name(&self) -> &str {
         &self.name
     }
 

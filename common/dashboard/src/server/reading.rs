@@ -15,8 +15,7 @@ use super::{Refusal, Site};
 
 /// The robots' names.
 pub(super) async fn robots(State(site): State<Arc<Site>>) -> Json<Value> {
-    let names: Vec<&str> = site.robots.iter().map(|robot| robot.name()).collect();
-    Json(json!({ "version": env!("CARGO_PKG_VERSION"), "robots": names }))
+    Json(json!({ "version": env!("CARGO_PKG_VERSION"), "robots": site.robots.names() }))
 }
 
 /// All that is known of a robot.

@@ -27,9 +27,8 @@ use axum::extract::DefaultBodyLimit;
 use axum::routing::{get, post, put};
 use tokio::sync::{Semaphore, oneshot};
 
-use crate::robot::Robot;
 use crate::token::Token;
-use crate::{Config, MonitorError};
+use crate::{DashboardError, Options, Robot, Robots};
 use listening::Guarded;
 use refusal::Refusal;
 
@@ -41,7 +40,7 @@ const MAX_WATCHERS: usize = 64;
 
 /// What all requests are answered from.
 pub(crate) struct Site {
-    robots: Vec<Arc<Robot>>,
+    robots: Robots,
     token: Token,
     /// Names under which browsers may reach it, beside addresses.
     hosts: Vec<String>,
@@ -49,7 +48,7 @@ pub(crate) struct Site {
 }
 
 impl Site {
-    fn new(robots: Vec<Arc<Robot>>, token: Token, hosts: Vec<String>) -> Self {
+    fn new(robots: Robots, token: Token, hosts: Vec<String>) -> Self {
         Site {
             robots,
             token,
@@ -58,9 +57,9 @@ impl Site {
         }
     }
 
-    fn robot(&self, name: &str) -> Result<&Arc<Robot>, Refusal> {
-        let found = self.robots.iter().find(|robot| robot.name() == name);
-        found.ok_or_else(|| Refusal::unknown_robot(name, &self.robots))
+    fn robot(&self, name: &str) -> Result<Arc<Robot>, Refusal> {
+        let found = self.robots.get(name);
+        found.ok_or_else(|| Refusal::unknown_robot(name, &self.robots.names()))
     }
 }
 
@@ -89,33 +88,45 @@ fn router(site: Arc<Site>) -> Router {
 }
 
 /// The server, which ends when this is dropped.
-pub(crate) struct Server {
+#[derive(Debug)]
+pub struct Server {
     address: SocketAddr,
+    /// Where to change something, if nobody else knows the token.
+    token: Option<String>,
     stop: Option<oneshot::Sender<()>>,
     thread: Option<JoinHandle<()>>,
 }
 
 impl Server {
-    /// Listens and starts the thread.
+    /// Listens there or, where the port is taken, on the next free one, and starts the
+    /// thread.
     ///
     /// # Errors
-    /// It cannot listen, or start a thread.
-    pub(crate) fn start(
-        config: &Config,
-        robots: Vec<Arc<Robot>>,
-        token: Token,
-    ) -> Result<Self, MonitorError> {
-        let listener = listening::bind(config.listen)?;
-        let address = listener.local_addr().map_err(MonitorError::Server)?;
+    /// It cannot listen or start a thread, or the token cannot be read.
+    pub fn start(
+        listen: SocketAddr,
+        options: &Options,
+        robots: Robots,
+    ) -> Result<Self, DashboardError> {
+        let (token, shown) = match &options.token_file {
+            Some(path) => (Token::read(path)?, None),
+            None => {
+                let token = Token::random()?;
+                let shown = token.reveal().to_owned();
+                (token, Some(shown))
+            }
+        };
+        let listener = listening::bind(listen)?;
+        let address = listener.local_addr().map_err(DashboardError::Server)?;
         let runtime = tokio::runtime::Builder::new_current_thread()
             .enable_all()
             .build()
-            .map_err(MonitorError::Server)?;
-        let app = router(Arc::new(Site::new(robots, token, config.host.clone())));
+            .map_err(DashboardError::Server)?;
+        let app = router(Arc::new(Site::new(robots, token, options.host.clone())));
         let (stop, stopped) = oneshot::channel();
         let listener = {
             let _inside = runtime.enter();
-            Guarded::new(listener).map_err(MonitorError::Server)?
+            Guarded::new(listener).map_err(DashboardError::Server)?
         };
         let work = move || {
             runtime.block_on(async {
@@ -130,22 +141,37 @@ impl Server {
         let thread = std::thread::Builder::new()
             .name("server".into())
             .spawn(work)
-            .map_err(MonitorError::Server)?;
+            .map_err(DashboardError::Server)?;
         Ok(Server {
             address,
+            token: shown,
             stop: Some(stop),
             thread: Some(thread),
         })
     }
 
     /// Where it listens.
-    pub(crate) fn address(&self) -> SocketAddr {
+    #[must_use]
+    pub fn address(&self) -> SocketAddr {
         self.address
     }
 
+    /// The token that write actions need, unless the user has it in a file.
+    #[must_use]
+    pub fn token(&self) -> Option<&str> {
+        self.token.as_deref()
+    }
+
     /// Whether it still does.
-    pub(crate) fn is_running(&self) -> bool {
-        self.thread.as_ref().is_some_and(|t| !t.is_finished())
+    ///
+    /// # Errors
+    /// If its thread has ended.
+    pub fn check(&self) -> Result<(), DashboardError> {
+        if self.thread.as_ref().is_some_and(|t| !t.is_finished()) {
+            return Ok(());
+        }
+        let ended = std::io::Error::other("its thread has ended");
+        Err(DashboardError::Server(ended))
     }
 }
 

@@ -1,0 +1,28 @@
+//! A web page to watch robots, and the API behind it.
+//!
+//! | file | what it is about |
+//! |---|---|
+//! | `told` | what the page is told, from the messages of a graph; pure |
+//! | `robot` | what is known of one robot, and whoever watches it |
+//! | `robots` | those that are known |
+//! | `server` | HTTP and WebSocket: the gate, the API, the page |
+//!
+//! Where the messages come from is up to whoever uses it: a source tells a
+//! [`Robot`] what happens, and takes the wishes that it is given. Nobody waits for
+//! those who watch: a message is put into words once and handed to all of them, and
+//! who is too slow loses some and is told how many. The crate localizes nothing, and
+//! shows nothing that no node said.
+
+mod error;
+mod options;
+mod robot;
+mod robots;
+mod server;
+mod token;
+mod told;
+
+pub use error::DashboardError;
+pub use options::Options;
+pub use robot::{Abilities, Robot, Wish};
+pub use robots::Robots;
+pub use server::Server;

@@ -1,0 +1,41 @@
+//! What a user can set of it.
+
+use std::path::PathBuf;
+
+/// Who may reach the page, and change something there.
+#[derive(Debug, Clone, Default, clap::Args)]
+pub struct Options {
+    /// Another name under which browsers may reach the page; addresses and
+    /// localhost are allowed as they are. May be given again
+    #[arg(long, value_name = "NAME", value_parser = host)]
+    pub host: Vec<String>,
+
+    /// A file with the token that write actions need, at least 16 characters
+    /// [default: a new one, shown on the console]
+    #[arg(long, value_name = "FILE")]
+    pub token_file: Option<PathBuf>,
+}
+
+fn host(text: &str) -> Result<String, String> {
+    let is_plain = |c: char| c.is_ascii_alphanumeric() || "-.".contains(c);
+    if (1..=253).contains(&text.len()) && text.chars().all(is_plain) {
+        return Ok(text.to_ascii_lowercase());
+    }
+    Err("needed is the name of a host, without scheme and port".to_owned())
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_host_is_a_name_alone() {
+        assert_eq!(host("Robot7.local").unwrap(), "robot7.local");
+        for refused in ["http://a", "a:7440", "a/b", ""] {
+            assert!(
+                host(refused).unwrap_err().contains("name of a host"),
+                "{refused}"
+            );
+        }
+    }
+}

@@ -1,0 +1,82 @@
+//! The robots that are known.
+
+use std::sync::{Arc, PoisonError, RwLock};
+
+use crate::Robot;
+
+/// Robots in the order of their names. Clones share them: a source adds, the server
+/// asks.
+#[derive(Debug, Clone, Default)]
+pub struct Robots {
+    all: Arc<RwLock<Vec<Arc<Robot>>>>,
+}
+
+impl Robots {
+    /// Robots that are known at once at most.
+    pub const MOST: usize = 256;
+
+    /// Adds a robot; says whether it could: there may be one of the name, or
+    /// [`Robots::MOST`] others.
+    pub fn add(&self, robot: Arc<Robot>) -> bool {
+        let mut all = self.all.write().unwrap_or_else(PoisonError::into_inner);
+        let place = all.binary_search_by(|other| other.name().cmp(robot.name()));
+        match place {
+            Err(place) if all.len() < Self::MOST => {
+                all.insert(place, robot);
+                true
+            }
+            _ => false,
+        }
+    }
+
+    /// The robot of a name, if there is one.
+    #[must_use]
+    pub fn get(&self, name: &str) -> Option<Arc<Robot>> {
+        let all = self.all.read().unwrap_or_else(PoisonError::into_inner);
+        let place = all.binary_search_by(|robot| robot.name().cmp(name)).ok()?;
+        Some(Arc::clone(&all[place]))
+    }
+
+    /// Their names.
+    #[must_use]
+    pub fn names(&self) -> Vec<String> {
+        let all = self.all.read().unwrap_or_else(PoisonError::into_inner);
+        all.iter().map(|robot| robot.name().to_owned()).collect()
+    }
+}
+
+impl FromIterator<Arc<Robot>> for Robots {
+    fn from_iter<I: IntoIterator<Item = Arc<Robot>>>(robots: I) -> Self {
+        let all = Robots::default();
+        for robot in robots {
+            all.add(robot);
+        }
+        all
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn robot(name: &str) -> Arc<Robot> {
+        Robot::new(name.to_owned()).0
+    }
+
+    #[test]
+    fn robots_are_found_by_their_names() {
+        let robots: Robots = ["r2", "r10", "a"].map(robot).into_iter().collect();
+        assert_eq!(robots.names(), ["a", "r10", "r2"]);
+        assert_eq!(robots.get("r10").unwrap().name(), "r10");
+        assert!(robots.get("r1").is_none());
+        assert!(!robots.add(robot("a")), "it is there already");
+    }
+
+    #[test]
+    fn made_up_names_do_not_fill_the_memory() {
+        let robots = Robots::default();
+        let added = (0..1000).filter(|i| robots.add(robot(&i.to_string())));
+        assert_eq!(added.count(), Robots::MOST);
+        assert_eq!(robots.names().len(), Robots::MOST);
+    }
+}
