@@ -38,9 +38,10 @@ pub struct Wake {
 }
 
 impl Graph {
-    /// Calls `step` at once, then whenever one of `inputs` has something or a
-    /// `tick` has passed, until it returns [`Flow::Stop`] or an error, or until
-    /// the stop flag is set. In between it sleeps, unless `tick` is zero.
+    /// Calls `step` at once, then whenever one of `inputs` has something, a
+    /// [`crate::Waker`] wakes or a `tick` has passed, until it returns
+    /// [`Flow::Stop`] or an error, or until the stop flag is set. In between it
+    /// sleeps, unless `tick` is zero.
     ///
     /// `step` is to take all samples that its subscribers have; one left there
     /// waits for the next input or tick. A signal ends the sleep at once; a flag
@@ -78,8 +79,8 @@ impl Graph {
                 }
             }
             wait(&waitset, ticks.remaining())?;
-            self.signals().drain();
-            input = take_notifications(inputs)?;
+            let woken = self.signals().drain();
+            input = take_notifications(inputs)? || woken;
         }
         Ok(())
     }

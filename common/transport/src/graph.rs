@@ -18,7 +18,8 @@ use crate::log_sender::LogSender;
 use crate::membership::Membership;
 use crate::signals::Signals;
 use crate::{
-    GraphName, Health, Publisher, Subscriber, TransportError, log, log_lines, root, with_causes,
+    GraphName, Health, Publisher, Subscriber, TransportError, Waker, log, log_lines, root,
+    with_causes,
 };
 
 /// How long joining waits for another process that is cleaning up after a dead
@@ -148,6 +149,14 @@ impl Graph {
     #[must_use]
     pub fn stop_flag(&self) -> Arc<AtomicBool> {
         self.signals.flag()
+    }
+
+    /// A handle by which another thread ends the sleep of [`Graph::run`].
+    ///
+    /// # Errors
+    /// If the process has no file descriptor left.
+    pub fn waker(&self) -> Result<Waker, TransportError> {
+        self.signals.waker()
     }
 
     /// Frees what members that died have left, so that others can take their

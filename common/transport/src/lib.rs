@@ -41,7 +41,7 @@
 //! | `service`, `header` | a topic in terms of iceoryx2: quality of service, types |
 //! | `publisher`, `loan`, `idle` | sending; filling in place; late joiners |
 //! | `subscriber`, `gaps` | receiving; counting what was lost |
-//! | `event_loop`, `signals` | waiting for inputs, ticks, SIGINT and SIGTERM |
+//! | `event_loop`, `signals`, `waker` | waiting for inputs, ticks, SIGINT and SIGTERM, other threads |
 //! | `health`, `clock` | a node's report on itself; the clocks |
 //! | `node`, `log` | `main` of a node: logging, exit code |
 //! | `log_lines`, `log_sender` | what a node logs, on its way to topic `log` |
@@ -114,6 +114,7 @@ mod signals;
 mod space;
 mod subscriber;
 pub mod testing;
+mod waker;
 
 pub use causes::with_causes;
 pub use clock::{monotonic_ns, wall_ns};
@@ -128,3 +129,4 @@ pub use loan::Loan;
 pub use log_lines::{CONSOLE_ONLY, log_in_graph};
 pub use publisher::Publisher;
 pub use subscriber::{Input, Sample, Subscriber};
+pub use waker::Waker;

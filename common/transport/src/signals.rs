@@ -2,7 +2,8 @@
 //!
 //! A flag alone would be seen a tick late, and a signal between looking at the
 //! flag and falling asleep would interrupt nothing. So each signal also writes
-//! to a socket pair whose other end the event loop waits on.
+//! to a socket pair whose other end the event loop waits on. Other threads end its
+//! sleep in the same way.
 
 use std::io::Read;
 use std::os::fd::AsRawFd;
@@ -15,12 +16,14 @@ use signal_hook::SigId;
 use signal_hook::consts::{SIGINT, SIGTERM};
 
 use crate::TransportError;
+use crate::waker::Waker;
 
 /// Catches the signals until it is dropped.
 #[derive(Debug)]
 pub(crate) struct Signals {
     stop: Arc<AtomicBool>,
     woken: UnixStream,
+    waker: UnixStream,
     descriptor: FileDescriptor,
     registrations: Vec<SigId>,
 }
@@ -33,11 +36,13 @@ impl Signals {
     fn try_catch() -> Result<Self, std::io::Error> {
         let (woken, waker) = UnixStream::pair()?;
         woken.set_nonblocking(true)?;
+        waker.set_nonblocking(true)?;
         let descriptor = FileDescriptor::non_owning_new(woken.as_raw_fd())
             .ok_or_else(|| std::io::Error::other("the socket has no valid descriptor"))?;
         let mut signals = Signals {
             stop: Arc::new(AtomicBool::new(false)),
             woken,
+            waker,
             descriptor,
             registrations: Vec::new(),
         };
@@ -45,7 +50,8 @@ impl Signals {
             // Actions run in this order: whoever is woken finds the flag set.
             let flag = signal_hook::flag::register(signal, Arc::clone(&signals.stop))?;
             signals.registrations.push(flag);
-            let pipe = signal_hook::low_level::pipe::register(signal, waker.try_clone()?)?;
+            let end = signals.waker.try_clone()?;
+            let pipe = signal_hook::low_level::pipe::register(signal, end)?;
             signals.registrations.push(pipe);
         }
         Ok(signals)
@@ -59,10 +65,21 @@ impl Signals {
         self.stop.load(Ordering::Relaxed)
     }
 
-    /// Takes what the signals wrote, so that the next wait can sleep.
-    pub(crate) fn drain(&self) {
-        let mut bytes = [0; 16];
-        while (&self.woken).read(&mut bytes).is_ok_and(|read| read > 0) {}
+    /// An end for another thread.
+    pub(crate) fn waker(&self) -> Result<Waker, TransportError> {
+        let end = self.waker.try_clone();
+        end.map(Waker::new).map_err(TransportError::Signals)
+    }
+
+    /// Takes what signals and wakers wrote, so that the next wait can sleep;
+    /// returns whether there was something.
+    pub(crate) fn drain(&self) -> bool {
+        let mut bytes = [0; 256];
+        let mut any = false;
+        while (&self.woken).read(&mut bytes).is_ok_and(|read| read > 0) {
+            any = true;
+        }
+        any
     }
 }
 

@@ -1,0 +1,68 @@
+//! Ends the event loop's sleep from another thread.
+//!
+//! For what comes from elsewhere than the graph: a network library that calls
+//! back on threads of its own. It carries nothing but the wake-up.
+
+use std::io::Write;
+use std::os::unix::net::UnixStream;
+
+/// Wakes the event loop of the graph that it was taken from; may go to any thread.
+#[derive(Debug)]
+pub struct Waker(UnixStream);
+
+impl Waker {
+    pub(crate) fn new(end: UnixStream) -> Self {
+        Waker(end)
+    }
+
+    /// Lets [`crate::Graph::run`] call its step once more, at once or after the
+    /// one that runs.
+    pub fn wake(&self) {
+        // Where the socket is full, wake-ups are waiting already; where nobody
+        // holds the other end, nobody sleeps.
+        let _ = (&self.0).write(&[0]);
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use std::time::Duration;
+
+    use crate::testing::Isolated;
+    use crate::{Flow, TransportError};
+
+    #[test]
+    fn a_sleeping_event_loop_is_woken() {
+        let isolated = Isolated::new("waker");
+        let graph = isolated.join("test");
+        let waker = graph.waker().unwrap();
+        let mut steps = 0;
+        let thread = std::thread::spawn(move || waker.wake());
+        // Without the waker, the second step would come in a day.
+        let day = Duration::from_secs(86_400);
+        let outcome = graph.run(&[], day, |wake| {
+            steps += 1;
+            assert_eq!(wake.tick, steps == 1);
+            let flow = if steps == 2 {
+                Flow::Stop
+            } else {
+                Flow::Continue
+            };
+            Ok::<_, TransportError>(flow)
+        });
+        outcome.unwrap();
+        thread.join().unwrap();
+    }
+
+    #[test]
+    fn more_wake_ups_than_anybody_takes_hold_nobody_up() {
+        let isolated = Isolated::new("wakers");
+        let graph = isolated.join("test");
+        let waker = graph.waker().unwrap();
+        for _ in 0..1_000_000 {
+            waker.wake();
+        }
+        assert!(graph.signals().drain());
+        assert!(!graph.signals().drain());
+    }
+}
