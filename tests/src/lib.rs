@@ -6,6 +6,8 @@ pub mod answers;
 pub mod browser;
 pub mod building;
 pub mod executables;
+pub mod machine;
+pub mod network;
 pub mod recorded;
 pub mod world;
 

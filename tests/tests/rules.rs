@@ -10,12 +10,12 @@ use std::process::Command;
 
 use serde_json::Value;
 
-/// The only nodes that may link zenoh: the others must build in a minute.
+/// The only nodes that may link zenoh, by themselves or with `network`: the others
+/// must build in a minute.
 const ZENOH_NODES: [&str; 4] = ["bridge", "monitor", "locate_server", "ros2_gateway"];
 
-/// The workspace's crates, each with the names of what it links; what only its
-/// tests use does not count.
-fn dependencies() -> BTreeMap<String, BTreeSet<String>> {
+/// What cargo knows of the workspace.
+fn metadata() -> Value {
     let output = Command::new(env!("CARGO"))
         .args(["metadata", "--format-version", "1", "--no-deps", "--locked"])
         .current_dir(tests::root())
@@ -26,7 +26,13 @@ fn dependencies() -> BTreeMap<String, BTreeSet<String>> {
         "{}",
         String::from_utf8_lossy(&output.stderr)
     );
-    let metadata: Value = serde_json::from_slice(&output.stdout).unwrap();
+    serde_json::from_slice(&output.stdout).unwrap()
+}
+
+/// The workspace's crates, each with the names of what it links; what only its
+/// tests use does not count.
+fn dependencies() -> BTreeMap<String, BTreeSet<String>> {
+    let metadata = metadata();
     let name = |value: &Value| value["name"].as_str().unwrap().to_owned();
     let linked = |package: &Value| {
         let all = package["dependencies"].as_array().unwrap().iter();
@@ -91,6 +97,12 @@ fn the_simulation_knows_no_engine_process_clock_or_file() {
     is_pure("common/simulation/src");
 }
 
+#[test]
+fn what_crosses_a_network_is_read_without_one() {
+    assert_eq!(known("wire"), BTreeSet::from(["messages".to_owned()]));
+    is_pure("common/wire/src");
+}
+
 /// The crates under `common` that this one links.
 fn known(name: &str) -> BTreeSet<String> {
     let all = folders("common");
@@ -143,16 +155,34 @@ fn each_crate_has_the_name_of_its_folder() {
 
 #[test]
 fn zenoh_is_linked_only_where_machines_are_joined() {
+    let links_zenoh = |name: &str| name.starts_with("zenoh") || name == "network";
     for (name, dependencies) in dependencies() {
-        if !ZENOH_NODES.contains(&name.as_str()) {
-            assert!(
-                !dependencies
-                    .iter()
-                    .any(|dependency| dependency.starts_with("zenoh")),
-                "{name}"
-            );
-        }
+        let may = ZENOH_NODES.contains(&name.as_str()) || name == "network";
+        let does = dependencies.iter().any(|name| links_zenoh(name));
+        assert!(may || !does, "{name}");
     }
+}
+
+#[test]
+fn the_first_command_builds_every_node_but_those_that_link_zenoh() {
+    let metadata = metadata();
+    let members = metadata["workspace_default_members"].as_array().unwrap();
+    let built: BTreeSet<_> = members
+        .iter()
+        .map(|id| {
+            let (path, _) = id.as_str().unwrap().split_once('#').unwrap();
+            path.rsplit('/').next().unwrap().to_owned()
+        })
+        .collect();
+    let links_zenoh = |node: &String| {
+        let linked = &dependencies()[node];
+        linked.iter().any(|name| name.starts_with("zenoh"))
+    };
+    let expected: BTreeSet<_> = folders("nodes")
+        .into_iter()
+        .filter(|node| !links_zenoh(node))
+        .collect();
+    assert_eq!(built, expected);
 }
 
 #[test]

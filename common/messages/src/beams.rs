@@ -3,12 +3,13 @@
 use bytemuck::{Pod, Zeroable};
 use iceoryx2_bb_derive_macros::ZeroCopySend;
 use iceoryx2_bb_elementary_traits::zero_copy_send::ZeroCopySend;
+use serde::{Deserialize, Serialize};
 
 use crate::{Pose2, Stamp};
 
 /// Header of topic `beams`; the items are the beams that voted, by bearing, and
 /// behind them those of which nothing returned.
-#[derive(Debug, Clone, Copy, PartialEq, Pod, Zeroable, ZeroCopySend)]
+#[derive(Debug, Clone, Copy, PartialEq, Pod, Zeroable, ZeroCopySend, Serialize, Deserialize)]
 #[type_name("BeamsHeader/v1")]
 #[repr(C)]
 pub struct BeamsHeader {
@@ -21,7 +22,7 @@ pub struct BeamsHeader {
 }
 
 /// One beam.
-#[derive(Debug, Clone, Copy, PartialEq, Pod, Zeroable, ZeroCopySend)]
+#[derive(Debug, Clone, Copy, PartialEq, Pod, Zeroable, ZeroCopySend, Serialize, Deserialize)]
 #[type_name("Beam/v1")]
 #[repr(C)]
 pub struct Beam {

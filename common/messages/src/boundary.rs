@@ -3,6 +3,7 @@
 use bytemuck::{Pod, Zeroable};
 use iceoryx2_bb_derive_macros::ZeroCopySend;
 use iceoryx2_bb_elementary_traits::zero_copy_send::ZeroCopySend;
+use serde::{Deserialize, Serialize};
 
 use crate::Stamp;
 
@@ -10,7 +11,9 @@ use crate::Stamp;
 ///
 /// It carries the rules by which cells were classed, so that whoever uses the
 /// boundary classes the map in the same way.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Pod, Zeroable, ZeroCopySend)]
+#[derive(
+    Debug, Clone, Copy, PartialEq, Eq, Pod, Zeroable, ZeroCopySend, Serialize, Deserialize,
+)]
 #[type_name("BoundaryHeader/v1")]
 #[repr(C)]
 pub struct BoundaryHeader {
@@ -33,7 +36,9 @@ pub struct BoundaryHeader {
 }
 
 /// A boundary cell: column and row.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Pod, Zeroable, ZeroCopySend)]
+#[derive(
+    Debug, Clone, Copy, PartialEq, Eq, Hash, Pod, Zeroable, ZeroCopySend, Serialize, Deserialize,
+)]
 #[type_name("BoundaryCell/v1")]
 #[repr(C)]
 pub struct BoundaryCell {

@@ -3,12 +3,13 @@
 use bytemuck::{Pod, Zeroable};
 use iceoryx2_bb_derive_macros::ZeroCopySend;
 use iceoryx2_bb_elementary_traits::zero_copy_send::ZeroCopySend;
+use serde::{Deserialize, Serialize};
 
 use crate::Stamp;
 
 /// Header of topic `field`; the items are `width · height` intensities, row by
 /// row from the lowest y.
-#[derive(Debug, Clone, Copy, PartialEq, Pod, Zeroable, ZeroCopySend)]
+#[derive(Debug, Clone, Copy, PartialEq, Pod, Zeroable, ZeroCopySend, Serialize, Deserialize)]
 #[type_name("FieldHeader/v1")]
 #[repr(C)]
 pub struct FieldHeader {

@@ -3,12 +3,15 @@
 use bytemuck::{Pod, Zeroable};
 use iceoryx2_bb_derive_macros::ZeroCopySend;
 use iceoryx2_bb_elementary_traits::zero_copy_send::ZeroCopySend;
+use serde::{Deserialize, Serialize};
 
 use crate::Name;
 
 /// Header of topic `health`; the items are the last error as UTF-8, at most
 /// [`HealthHeader::ERROR_CAPACITY`] bytes, empty where there was none.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Pod, Zeroable, ZeroCopySend)]
+#[derive(
+    Debug, Clone, Copy, PartialEq, Eq, Pod, Zeroable, ZeroCopySend, Serialize, Deserialize,
+)]
 #[type_name("HealthHeader/v1")]
 #[repr(C)]
 pub struct HealthHeader {

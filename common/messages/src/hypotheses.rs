@@ -3,11 +3,12 @@
 use bytemuck::{Pod, Zeroable};
 use iceoryx2_bb_derive_macros::ZeroCopySend;
 use iceoryx2_bb_elementary_traits::zero_copy_send::ZeroCopySend;
+use serde::{Deserialize, Serialize};
 
 use crate::{Pose2, Stamp};
 
 /// Header of topic `hypotheses`; the items are distinct poses, best first.
-#[derive(Debug, Clone, Copy, PartialEq, Pod, Zeroable, ZeroCopySend)]
+#[derive(Debug, Clone, Copy, PartialEq, Pod, Zeroable, ZeroCopySend, Serialize, Deserialize)]
 #[type_name("HypothesesHeader/v2")]
 #[repr(C)]
 pub struct HypothesesHeader {
@@ -38,7 +39,7 @@ pub struct HypothesesHeader {
 }
 
 /// One place where the robot may be.
-#[derive(Debug, Clone, Copy, PartialEq, Pod, Zeroable, ZeroCopySend)]
+#[derive(Debug, Clone, Copy, PartialEq, Pod, Zeroable, ZeroCopySend, Serialize, Deserialize)]
 #[type_name("Hypothesis/v2")]
 #[repr(C)]
 pub struct Hypothesis {

@@ -3,8 +3,9 @@
 //! Every type is `repr(C)`, plain data without padding, `usize` or pointers, so
 //! that a process can read it where another one wrote it. The version is part
 //! of the type name that the transport compares; a released layout never
-//! changes, a new one stands beside it under the next version. The crate holds
-//! no behaviour beyond conversions, and opens nothing.
+//! changes, a new one stands beside it under the next version. Headers and items
+//! are also serde structures, field by field, for what leaves the machine. The
+//! crate holds no behaviour beyond conversions, and opens nothing.
 
 mod beams;
 mod boundary;

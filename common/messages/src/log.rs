@@ -3,12 +3,15 @@
 use bytemuck::{Pod, Zeroable};
 use iceoryx2_bb_derive_macros::ZeroCopySend;
 use iceoryx2_bb_elementary_traits::zero_copy_send::ZeroCopySend;
+use serde::{Deserialize, Serialize};
 
 use crate::Name;
 
 /// Header of topic `log`; the items are the line as UTF-8 without its end, at
 /// most [`LogHeader::TEXT_CAPACITY`] bytes.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Pod, Zeroable, ZeroCopySend)]
+#[derive(
+    Debug, Clone, Copy, PartialEq, Eq, Pod, Zeroable, ZeroCopySend, Serialize, Deserialize,
+)]
 #[type_name("LogHeader/v1")]
 #[repr(C)]
 pub struct LogHeader {

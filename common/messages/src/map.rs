@@ -3,6 +3,7 @@
 use bytemuck::{Pod, Zeroable};
 use iceoryx2_bb_derive_macros::ZeroCopySend;
 use iceoryx2_bb_elementary_traits::zero_copy_send::ZeroCopySend;
+use serde::{Deserialize, Serialize};
 
 use crate::{Pose2, Stamp};
 
@@ -11,7 +12,7 @@ pub const UNKNOWN: u8 = 255;
 
 /// Header of topic `map`; the items are `width · height` cells, row by row from
 /// the lowest y: 0 free to 100 occupied, [`UNKNOWN`] unknown.
-#[derive(Debug, Clone, Copy, PartialEq, Pod, Zeroable, ZeroCopySend)]
+#[derive(Debug, Clone, Copy, PartialEq, Pod, Zeroable, ZeroCopySend, Serialize, Deserialize)]
 #[type_name("MapHeader/v1")]
 #[repr(C)]
 pub struct MapHeader {

@@ -3,6 +3,7 @@
 use bytemuck::{Pod, Zeroable};
 use iceoryx2_bb_derive_macros::ZeroCopySend;
 use iceoryx2_bb_elementary_traits::zero_copy_send::ZeroCopySend;
+use serde::{Deserialize, Deserializer, Serialize, Serializer, de::Error};
 
 /// UTF-8 text of at most 32 bytes, filled up with zeros: a frame or a node.
 #[derive(Clone, Copy, PartialEq, Eq, Pod, Zeroable, ZeroCopySend)]
@@ -33,6 +34,26 @@ impl Name {
             .position(|&b| b == 0)
             .unwrap_or(Self::CAPACITY);
         std::str::from_utf8(&self.0[..end]).unwrap_or("")
+    }
+}
+
+impl Serialize for Name {
+    fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
+        serializer.serialize_str(self.as_str())
+    }
+}
+
+impl<'de> Deserialize<'de> for Name {
+    /// Text that does not fit is refused, not cut.
+    fn deserialize<D: Deserializer<'de>>(deserializer: D) -> Result<Self, D::Error> {
+        let text = String::deserialize(deserializer)?;
+        if text.len() > Self::CAPACITY {
+            let length = text.len();
+            let most = Self::CAPACITY;
+            let problem = format!("a name of {length} bytes: allowed are at most {most}");
+            return Err(D::Error::custom(problem));
+        }
+        Ok(Name::new(&text))
     }
 }
 

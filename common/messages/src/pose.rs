@@ -4,9 +4,10 @@ use bytemuck::{Pod, Zeroable};
 use geometry::Pose;
 use iceoryx2_bb_derive_macros::ZeroCopySend;
 use iceoryx2_bb_elementary_traits::zero_copy_send::ZeroCopySend;
+use serde::{Deserialize, Serialize};
 
 /// Metres and radians; the field that holds it names the frames.
-#[derive(Debug, Clone, Copy, PartialEq, Pod, Zeroable, ZeroCopySend)]
+#[derive(Debug, Clone, Copy, PartialEq, Pod, Zeroable, ZeroCopySend, Serialize, Deserialize)]
 #[type_name("Pose2/v1")]
 #[repr(C)]
 pub struct Pose2 {

@@ -3,12 +3,15 @@
 use bytemuck::{Pod, Zeroable};
 use iceoryx2_bb_derive_macros::ZeroCopySend;
 use iceoryx2_bb_elementary_traits::zero_copy_send::ZeroCopySend;
+use serde::{Deserialize, Serialize};
 
 use crate::Stamp;
 
 /// Header of topic `region`; the items are the corners of a polygon in turn, two
 /// of an upright rectangle, or none where poses are sought everywhere.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Pod, Zeroable, ZeroCopySend)]
+#[derive(
+    Debug, Clone, Copy, PartialEq, Eq, Pod, Zeroable, ZeroCopySend, Serialize, Deserialize,
+)]
 #[type_name("RegionHeader/v1")]
 #[repr(C)]
 pub struct RegionHeader {
@@ -17,7 +20,7 @@ pub struct RegionHeader {
 }
 
 /// A corner, metres in the map.
-#[derive(Debug, Clone, Copy, PartialEq, Pod, Zeroable, ZeroCopySend)]
+#[derive(Debug, Clone, Copy, PartialEq, Pod, Zeroable, ZeroCopySend, Serialize, Deserialize)]
 #[type_name("Corner/v1")]
 #[repr(C)]
 pub struct Corner {

@@ -3,12 +3,13 @@
 use bytemuck::{Pod, Zeroable};
 use iceoryx2_bb_derive_macros::ZeroCopySend;
 use iceoryx2_bb_elementary_traits::zero_copy_send::ZeroCopySend;
+use serde::{Deserialize, Serialize};
 
 use crate::{Name, Pose2, Stamp};
 
 /// Header of topic `scan`; the items are ranges in metres. Beam `i` points to
 /// `angle_min + i · angle_increment` in the laser's frame.
-#[derive(Debug, Clone, Copy, PartialEq, Pod, Zeroable, ZeroCopySend)]
+#[derive(Debug, Clone, Copy, PartialEq, Pod, Zeroable, ZeroCopySend, Serialize, Deserialize)]
 #[type_name("ScanHeader/v1")]
 #[repr(C)]
 pub struct ScanHeader {

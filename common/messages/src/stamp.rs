@@ -3,10 +3,13 @@
 use bytemuck::{Pod, Zeroable};
 use iceoryx2_bb_derive_macros::ZeroCopySend;
 use iceoryx2_bb_elementary_traits::zero_copy_send::ZeroCopySend;
+use serde::{Deserialize, Serialize};
 
 /// The origin of a measurement. Every step copies the stamp of its input
 /// onward, so latency is always now minus `entered_ns`.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Pod, Zeroable, ZeroCopySend)]
+#[derive(
+    Debug, Clone, Copy, PartialEq, Eq, Default, Pod, Zeroable, ZeroCopySend, Serialize, Deserialize,
+)]
 #[type_name("Stamp/v1")]
 #[repr(C)]
 pub struct Stamp {
@@ -19,8 +22,36 @@ pub struct Stamp {
     pub counter: u64,
 }
 
+impl Stamp {
+    /// Whether both are of the same measurement. When it entered does not count: each
+    /// machine says that by its own clock.
+    #[must_use]
+    pub fn is_of(self, other: Stamp) -> bool {
+        (self.measured_ns, self.counter) == (other.measured_ns, other.counter)
+    }
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
     crate::pin_layout!(Stamp, size 24, align 8, { measured_ns: 0, entered_ns: 8, counter: 16 });
+
+    #[test]
+    fn a_measurement_is_the_same_on_each_machine() {
+        let here = Stamp {
+            measured_ns: 5,
+            entered_ns: 100,
+            counter: 7,
+        };
+        let there = Stamp {
+            entered_ns: 900,
+            ..here
+        };
+        assert!(here.is_of(there));
+        assert!(!here.is_of(Stamp { counter: 8, ..here }));
+        assert!(!here.is_of(Stamp {
+            measured_ns: 6,
+            ..here
+        }));
+    }
 }

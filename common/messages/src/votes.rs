@@ -3,13 +3,14 @@
 use bytemuck::{Pod, Zeroable};
 use iceoryx2_bb_derive_macros::ZeroCopySend;
 use iceoryx2_bb_elementary_traits::zero_copy_send::ZeroCopySend;
+use serde::{Deserialize, Serialize};
 
 use crate::{Pose2, Stamp};
 
 /// Header of topic `votes`; the items are poses by falling intensity, equal ones
 /// by (heading, y, x): all at or above `certified_floor`, and distinct candidates
 /// below.
-#[derive(Debug, Clone, Copy, PartialEq, Pod, Zeroable, ZeroCopySend)]
+#[derive(Debug, Clone, Copy, PartialEq, Pod, Zeroable, ZeroCopySend, Serialize, Deserialize)]
 #[type_name("VotesHeader/v3")]
 #[repr(C)]
 pub struct VotesHeader {
@@ -88,7 +89,9 @@ impl SearchOutcome {
 }
 
 /// A pose of the search grid and its intensity.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Pod, Zeroable, ZeroCopySend)]
+#[derive(
+    Debug, Clone, Copy, PartialEq, Eq, Hash, Pod, Zeroable, ZeroCopySend, Serialize, Deserialize,
+)]
 #[type_name("Vote/v1")]
 #[repr(C)]
 pub struct Vote {

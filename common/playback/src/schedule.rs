@@ -94,7 +94,7 @@ impl Schedule {
 
     /// An answer came that carries this stamp.
     pub fn answered(&mut self, stamp: Stamp) {
-        if self.awaited == Some(stamp) {
+        if self.awaited.is_some_and(|awaited| awaited.is_of(stamp)) {
             self.awaited = None;
         }
     }
@@ -197,10 +197,14 @@ mod tests {
         assert_eq!(schedule.next(at(0), 0), Action::Send);
         schedule.scan_sent(stamp(0, 0));
         assert_eq!(schedule.next(at(9999), MS), Action::AwaitAnswer);
-        // The same counter from another source is another scan.
-        schedule.answered(stamp(0, 7));
+        // The same counter from another source is another scan; when it entered is
+        // for each machine to say.
+        schedule.answered(Stamp {
+            measured_ns: 7,
+            ..stamp(0, 0)
+        });
         assert_eq!(schedule.next(at(9999), MS), Action::AwaitAnswer);
-        schedule.answered(stamp(0, 0));
+        schedule.answered(stamp(0, 7));
         assert_eq!(schedule.next(at(9999), MS), Action::Send);
         assert_eq!(schedule.next(None, MS), Action::Done);
     }

@@ -24,7 +24,17 @@ pub const LOG_FORMAT_VARIABLE: &str = "BACKCAST_LOG_FORMAT";
 /// Returns 0 if `run` did, 1 if it or joining failed, 2 if a logging variable
 /// holds something that is not allowed.
 pub fn main<E: Error + 'static>(name: &str, run: impl FnOnce(&Graph) -> Result<(), E>) -> ExitCode {
-    if let Err(problem) = start_logging() {
+    main_hearing(name, "", run)
+}
+
+/// As [`main`], for a node that is to log more than `info` where nobody says what:
+/// `filter` is then what `RUST_LOG` would hold.
+pub fn main_hearing<E: Error + 'static>(
+    name: &str,
+    filter: &str,
+    run: impl FnOnce(&Graph) -> Result<(), E>,
+) -> ExitCode {
+    if let Err(problem) = start_logging_by(filter) {
         eprintln!("{name}: {problem}");
         return ExitCode::from(2);
     }
@@ -52,7 +62,11 @@ fn failed(error: &(dyn Error + 'static)) -> ExitCode {
 /// A sentence that names the variable, its value and what is allowed; or that
 /// logging has been started already.
 pub fn start_logging() -> Result<(), String> {
-    let filter = variable(EnvFilter::DEFAULT_ENV, "")?;
+    start_logging_by("")
+}
+
+fn start_logging_by(default: &str) -> Result<(), String> {
+    let filter = variable(EnvFilter::DEFAULT_ENV, default)?;
     let filter = EnvFilter::builder()
         .with_default_directive(LevelFilter::INFO.into())
         .parse(&filter)

@@ -38,7 +38,7 @@ impl Scans {
     /// If it did not come, or too long ago.
     pub fn get(&self, stamp: Stamp) -> Result<Scan<'_>, PeakError> {
         let mut newest_first = self.kept.iter().rev();
-        let found = newest_first.find(|(header, _)| header.stamp == stamp);
+        let found = newest_first.find(|(header, _)| header.stamp.is_of(stamp));
         let (header, ranges) = found.ok_or(PeakError::UnknownScan)?;
         Ok(Scan::of(header, ranges))
     }

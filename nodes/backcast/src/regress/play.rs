@@ -151,7 +151,7 @@ impl Heard {
             let votes = self
                 .votes
                 .iter()
-                .find(|votes| votes.stamp == header.stamp)?;
+                .find(|votes| votes.stamp.is_of(header.stamp))?;
             Some(Answer::of(votes, header, items))
         };
         self.hypotheses.iter().filter_map(of).collect()

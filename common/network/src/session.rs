@@ -1,0 +1,274 @@
+//! Opens the session.
+
+use std::ffi::OsStr;
+use std::path::Path;
+use std::sync::mpsc::{Receiver, TryRecvError, channel};
+use std::time::Duration;
+
+use serde_json::Value;
+use transport::{Flow, Graph, TransportError};
+use zenoh::{Config, Session, Wait};
+
+use crate::{Cause, NetworkError, Options};
+
+/// How soon the end of opening is seen, and how often health is reported before.
+const TICK: Duration = Duration::from_millis(100);
+
+const MODE: &str = "mode";
+const LISTEN: &str = "listen/endpoints";
+const CONNECT: &str = "connect/endpoints";
+const SCOUTING: &str = "scouting/multicast/enabled";
+
+/// What a node logs that joins a network, in the words of `RUST_LOG`: also who is let
+/// in, and who is not and why, of which Zenoh would be silent.
+pub const LOG: &str = "info,zenoh_transport::unicast::establishment::accept=debug";
+
+/// Where a node listens that nobody told: on this machine alone.
+const LOOPBACK: &str = r#"["tcp/127.0.0.1:7447"]"#;
+
+/// What a file with Zenoh's configuration may end with.
+const EXTENSIONS: [&str; 2] = ["json5", "json"];
+
+/// What holds where the user's file names nothing else.
+const DEFAULTS: [(&str, &str); 7] = [
+    // Those who connect to the same machine are to hear each other: peers hand
+    // nothing on.
+    (MODE, "'router'"),
+    // Nobody is called over the network that was not named.
+    (SCOUTING, "false"),
+    ("scouting/delay", "0"),
+    // Who is named is called until they are there, each second at least.
+    ("connect/timeout_ms", "-1"),
+    (
+        "connect/retry",
+        "{ period_init_ms: 500, period_max_ms: 1000, period_increase_factor: 2 }",
+    ),
+    // A cable that was pulled is noticed after so many milliseconds. Zenoh waits for
+    // ten seconds; TCP alone would then try again as late as that.
+    ("transport/link/tx/lease", "4000"),
+    // The largest message that is put together, bytes: a map and its frame. Zenoh's
+    // own limit is 1 GiB.
+    ("transport/link/rx/max_message_size", "67174400"),
+];
+
+/// Opens the session, however long that takes: as a client, Zenoh waits for whom it
+/// is to connect to. Meanwhile `tick` is called now and then. None if the process is
+/// to end before.
+///
+/// # Errors
+/// If the file or an option cannot be used, Zenoh cannot listen where it was told
+/// to, or `tick` fails.
+pub fn open(
+    graph: &Graph,
+    options: &Options,
+    mut tick: impl FnMut() -> Result<(), TransportError>,
+) -> Result<Option<Session>, NetworkError> {
+    let settings = settings(options)?;
+    let [mode, listen, connect] =
+        [MODE, LISTEN, CONNECT].map(|key| settings.get_json(key).unwrap_or_default());
+    tracing::info!(%mode, %listen, %connect, "joining the network");
+    let opening = start(graph, settings)?;
+    let mut opened = None;
+    graph.run(&[], TICK, |_| {
+        tick()?;
+        opened = match opening.try_recv() {
+            Ok(outcome) => Some(outcome),
+            Err(TryRecvError::Empty) => return Ok::<_, NetworkError>(Flow::Continue),
+            Err(TryRecvError::Disconnected) => Some(Err("it was given up".into())),
+        };
+        Ok(Flow::Stop)
+    })?;
+    let session = opened.transpose().map_err(NetworkError::Session)?;
+    if let Some(session) = &session {
+        tracing::info!(session = %session.zid(), "joined the network");
+    }
+    Ok(session)
+}
+
+fn start(
+    graph: &Graph,
+    settings: Config,
+) -> Result<Receiver<Result<Session, Cause>>, TransportError> {
+    let (sender, opening) = channel();
+    let waker = graph.waker()?;
+    std::thread::spawn(move || {
+        // Nobody listens where the process ends meanwhile.
+        let _ = sender.send(zenoh::open(settings).wait());
+        waker.wake();
+    });
+    Ok(opening)
+}
+
+/// What [`open`] tells Zenoh.
+///
+/// # Errors
+/// If the file or an option cannot be used.
+pub fn settings(options: &Options) -> Result<Config, NetworkError> {
+    let (mut settings, named) = match &options.config {
+        None => (Config::default(), Value::Null),
+        Some(file) => read(file)?,
+    };
+    let mut defaults = DEFAULTS.to_vec();
+    for (key, given) in [(CONNECT, &options.connect), (LISTEN, &options.listen)] {
+        if !given.is_empty() {
+            set(&mut settings, key, &list(given))?;
+        }
+    }
+    if options.listen.is_empty() {
+        let calls = settings.get_json(CONNECT).ok() != Config::default().get_json(CONNECT).ok();
+        defaults.push((LISTEN, if calls { "[]" } else { LOOPBACK }));
+    }
+    for (key, value) in defaults {
+        if !is_named(&named, key) {
+            set(&mut settings, key, value)?;
+        }
+    }
+    Ok(settings)
+}
+
+/// The settings in a file, and the file as it stands: a setting that it names is the
+/// user's, even where Zenoh would have taken the same without it.
+fn read(file: &Path) -> Result<(Config, Value), NetworkError> {
+    let extension = file.extension().and_then(OsStr::to_str);
+    if !extension.is_some_and(|found| EXTENSIONS.contains(&found)) {
+        let file = file.to_owned();
+        return Err(NetworkError::Format { file });
+    }
+    let failed = |source| NetworkError::ConfigFile {
+        file: file.to_owned(),
+        source,
+    };
+    let text = std::fs::read_to_string(file).map_err(|source| failed(source.into()))?;
+    let named = json5::from_str(&text).map_err(|source| failed(source.into()))?;
+    Ok((Config::from_file(file).map_err(failed)?, named))
+}
+
+/// Whether a file names a setting, or a part of it.
+fn is_named(file: &Value, key: &str) -> bool {
+    file.pointer(&format!("/{key}")).is_some()
+}
+
+fn set(settings: &mut Config, key: &'static str, value: &str) -> Result<(), NetworkError> {
+    let failed = |source: Cause| NetworkError::Setting {
+        key,
+        value: value.to_owned(),
+        source,
+    };
+    settings.insert_json5(key, value).map_err(failed)
+}
+
+/// As JSON; Debug escapes what JSON does.
+fn list(endpoints: &[String]) -> String {
+    format!("{endpoints:?}")
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// The session's settings where this is in a file, and the option that follows
+    /// is given on the command line.
+    fn check(option: [&str; 2], file: Option<&str>, expected: [&str; 4]) {
+        let folder = tempfile::tempdir().unwrap();
+        let path = folder.path().join("zenoh.json5");
+        let endpoints = |name| (option[0] == name).then(|| option[1].to_owned());
+        let mut options = Options {
+            config: None,
+            listen: endpoints("--listen").into_iter().collect(),
+            connect: endpoints("--connect").into_iter().collect(),
+        };
+        if let Some(text) = file {
+            std::fs::write(&path, text).unwrap();
+            options.config = Some(path);
+        }
+        let settings = settings(&options).unwrap();
+        let keys = [MODE, LISTEN, CONNECT, SCOUTING];
+        let found = keys.map(|key| settings.get_json(key).unwrap());
+        assert_eq!(found, expected, "{option:?} {file:?}");
+    }
+
+    const NONE: [&str; 2] = ["", ""];
+    const ROUTER: &str = r#""router""#;
+
+    #[test]
+    fn nothing_listens_beyond_this_machine_unless_told() {
+        let here = r#"["tcp/127.0.0.1:7447"]"#;
+        check(NONE, None, [ROUTER, here, "[]", "false"]);
+        let peer = Some("{ mode: 'peer' }");
+        check(NONE, peer, [r#""peer""#, here, "[]", "false"]);
+        let there = r#"["tcp/10.0.0.1:7447"]"#;
+        let connect = ["--connect", "tcp/10.0.0.1:7447"];
+        check(connect, None, [ROUTER, "[]", there, "false"]);
+        let listen = ["--listen", "tcp/10.0.0.1:7447"];
+        check(listen, None, [ROUTER, there, "[]", "false"]);
+    }
+
+    #[test]
+    fn the_file_counts_and_options_count_more() {
+        let file = Some(
+            "{ listen: { endpoints: ['tcp/0.0.0.0:1'] }, \
+             scouting: { multicast: { enabled: true } } }",
+        );
+        let everywhere = r#"["tcp/0.0.0.0:1"]"#;
+        check(NONE, file, [ROUTER, everywhere, "[]", "true"]);
+        let option = ["--listen", "tcp/127.0.0.1:2"];
+        let here = r#"["tcp/127.0.0.1:2"]"#;
+        check(option, file, [ROUTER, here, "[]", "true"]);
+    }
+
+    /// A setting stays where the file names it, be it what Zenoh takes by itself.
+    #[test]
+    fn what_the_file_names_stays_as_it_is() {
+        let file = "{ mode: 'peer', scouting: { multicast: { enabled: true } }, \
+             listen: { endpoints: { router: ['tcp/[::]:7447'], peer: ['tcp/[::]:0'] } }, \
+             transport: { link: { tx: { lease: 10000 } } }, connect: { retry: {} } }";
+        let settings = with_file("zenoh.json5", file).unwrap();
+        let found = |key| settings.get_json(key).unwrap();
+        assert_eq!(found(LISTEN), Config::default().get_json(LISTEN).unwrap());
+        for (key, expected) in [
+            (MODE, "\"peer\""),
+            (SCOUTING, "true"),
+            ("transport/link/tx/lease", "10000"),
+        ] {
+            assert_eq!(found(key), expected);
+        }
+        let retry = found("connect/retry");
+        assert!(!retry.contains("500"), "{retry}");
+        // What it does not name is ours.
+        assert_eq!(found("transport/link/rx/max_message_size"), "67174400");
+    }
+
+    fn with_file(name: &str, text: &str) -> Result<Config, NetworkError> {
+        let folder = tempfile::tempdir().unwrap();
+        let path = folder.path().join(name);
+        std::fs::write(&path, text).unwrap();
+        settings(&Options {
+            config: Some(path),
+            ..Options::default()
+        })
+    }
+
+    #[test]
+    fn a_file_that_is_none_of_zenohs_is_refused_by_name() {
+        for (name, text) in [
+            ("zenoh.json5", "{ listne: {} }"),
+            ("zenoh.json5", "{ mode:"),
+            ("zenoh.json5", ""),
+            ("zenoh.yaml", "mode: peer"),
+            ("zenoh", "{}"),
+        ] {
+            let error = with_file(name, text).unwrap_err();
+            assert!(error.to_string().contains(name), "{error}");
+        }
+    }
+
+    #[test]
+    fn an_endpoint_that_is_none_is_refused() {
+        let options = Options {
+            listen: vec!["somewhere".into()],
+            ..Options::default()
+        };
+        let error = settings(&options).unwrap_err();
+        assert!(error.to_string().contains("somewhere"), "{error}");
+    }
+}

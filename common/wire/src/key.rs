@@ -1,0 +1,63 @@
+//! The keys under which topics and signs of life stand.
+//!
+//! The robot is a part of its own, so that rules of access can name it.
+
+use crate::{Wire, WireError};
+
+/// The longest name of a robot, bytes.
+pub const MAX_ROBOT_BYTES: usize = 64;
+
+/// Checks the name of a robot: it stands in keys, where `/`, `*`, `$`, `?`, `#`
+/// and `@` mean something.
+///
+/// # Errors
+/// [`WireError::Robot`] if it is empty, too long, or holds another character than
+/// those allowed.
+pub fn robot(text: &str) -> Result<String, WireError> {
+    let is_plain = |c: char| c.is_ascii_alphanumeric() || "-_.".contains(c);
+    if (1..=MAX_ROBOT_BYTES).contains(&text.len()) && text.chars().all(is_plain) {
+        return Ok(text.to_owned());
+    }
+    let found = text.chars().take(2 * MAX_ROBOT_BYTES).collect();
+    Err(WireError::Robot { found })
+}
+
+/// Where a robot's topic stands: `backcast/<robot>/<topic>`.
+#[must_use]
+pub fn key<T: Wire>(robot: &str) -> String {
+    format!("backcast/{robot}/{}", T::NAME)
+}
+
+/// Where the liveliness token of one process of the robot stands:
+/// `backcast/<robot>/alive/<session>`, or below it that of a node.
+#[must_use]
+pub fn alive(robot: &str, session: &str, node: Option<&str>) -> String {
+    let session = format!("backcast/{robot}/alive/{session}");
+    node.map_or_else(|| session.clone(), |node| format!("{session}/{node}"))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use messages::topic;
+
+    #[test]
+    fn keys_name_robot_and_topic() {
+        assert_eq!(key::<topic::Scan>("r2"), "backcast/r2/scan");
+        assert_eq!(alive("r2", "a1", None), "backcast/r2/alive/a1");
+        assert_eq!(
+            alive("r2", "a1", Some("engine")),
+            "backcast/r2/alive/a1/engine"
+        );
+    }
+
+    #[test]
+    fn names_that_mean_something_in_a_key_are_refused() {
+        assert_eq!(robot("R2-d.2_x").unwrap(), "R2-d.2_x");
+        let long = "x".repeat(MAX_ROBOT_BYTES + 1);
+        for name in ["", "a/b", "*", "a*", "$x", "a?", "a#", "@a", "ä", &long] {
+            let error = robot(name).unwrap_err().to_string();
+            assert!(error.contains("1 to 64 of a-z A-Z 0-9 - _ ."), "{error}");
+        }
+    }
+}

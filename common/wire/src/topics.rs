@@ -1,0 +1,162 @@
+//! What each topic is on a network: its schema, its limits, its times.
+//!
+//! A topic's schema changes its version whenever its header or its items do.
+
+use messages::{Topic, topic};
+use serde::Serialize;
+use serde::de::DeserializeOwned;
+
+use crate::{WireError, checks};
+
+/// A topic that may leave the machine.
+pub trait Wire:
+    Topic<Header: Serialize + DeserializeOwned, Item: Serialize + DeserializeOwned>
+{
+    /// Name and version of the payload's structure.
+    const SCHEMA: &'static str;
+    /// Most bytes of a payload, before it is compressed and as it comes.
+    const MAX_BYTES: usize;
+    /// Whether payloads are compressed.
+    const COMPRESSED: bool;
+    /// Whether a late joiner on another machine is to get the newest sample: of
+    /// what is said once and holds until it is said anew.
+    const KEPT: bool;
+    /// Whether its publisher computes it only while somebody subscribes, so that
+    /// nobody is to subscribe on behalf of nobody.
+    const ON_DEMAND: bool;
+
+    /// Refuses what contradicts itself, or holds no number where one must be.
+    ///
+    /// # Errors
+    /// [`WireError::Field`], with the field and what it may hold.
+    fn check(header: &Self::Header, items: &[Self::Item]) -> Result<(), WireError>;
+
+    /// Calls `change` with each time of the host's clock in the header.
+    fn each_time(header: &mut Self::Header, change: impl FnMut(&mut i64));
+}
+
+/// Something to be done with a topic that is known by name alone.
+pub trait Visit {
+    /// What comes of it.
+    type Output;
+    /// Does it with `T`.
+    fn visit<T: Wire>(self) -> Self::Output;
+}
+
+const KIB: usize = 1 << 10;
+const MIB: usize = 1 << 20;
+
+macro_rules! wire {
+    ($($topic:ident = $schema:literal, $bytes:expr, $check:ident, [$($time:ident $(. $part:ident)?),*] $(, $trait:ident)*;)+) => {
+        $(
+            impl Wire for topic::$topic {
+                const SCHEMA: &'static str = $schema;
+                const MAX_BYTES: usize = $bytes;
+                const COMPRESSED: bool = wire!(@compressed $($trait)*);
+                const KEPT: bool = wire!(@kept $($trait)*);
+                const ON_DEMAND: bool = wire!(@on_demand $($trait)*);
+                fn check(
+                    header: &Self::Header,
+                    items: &[Self::Item],
+                ) -> Result<(), WireError> {
+                    checks::$check(header, items)
+                }
+                fn each_time(header: &mut Self::Header, mut change: impl FnMut(&mut i64)) {
+                    $(change(&mut header.$time$(.$part)?);)*
+                }
+            }
+        )+
+
+        /// Does something with the topic called `name`, if there is one.
+        pub fn by_name<V: Visit>(name: &str, visitor: V) -> Option<V::Output> {
+            $(
+                if name == <topic::$topic as Topic>::NAME {
+                    return Some(visitor.visit::<topic::$topic>());
+                }
+            )+
+            None
+        }
+    };
+    (@compressed) => { false };
+    (@compressed compressed $($rest:ident)*) => { true };
+    (@compressed $other:ident $($rest:ident)*) => { wire!(@compressed $($rest)*) };
+    (@on_demand) => { false };
+    (@on_demand on_demand $($rest:ident)*) => { true };
+    (@on_demand $other:ident $($rest:ident)*) => { wire!(@on_demand $($rest)*) };
+    (@kept) => { false };
+    (@kept kept $($rest:ident)*) => { true };
+    (@kept $other:ident $($rest:ident)*) => { wire!(@kept $($rest)*) };
+}
+
+wire! {
+    Scan = "Scan/v1", MIB, scan, [stamp.entered_ns];
+    OdometryTopic = "Odometry/v1", 4 * KIB, odometry, [stamp.entered_ns];
+    Map = "Map/v1", 64 * MIB, map, [stamp.entered_ns], compressed, kept;
+    Boundary = "Boundary/v1", 32 * MIB, boundary, [stamp.entered_ns], compressed, kept;
+    Votes = "Votes/v3", 16 * MIB, votes, [stamp.entered_ns];
+    Field = "Field/v1", 64 * MIB, field, [stamp.entered_ns], compressed, on_demand;
+    Hypotheses = "Hypotheses/v2", MIB, hypotheses, [stamp.entered_ns, sent_ns];
+    Beams = "Beams/v1", MIB, beams, [stamp.entered_ns];
+    GroundTruthTopic = "GroundTruth/v1", 4 * KIB, ground_truth, [stamp.entered_ns];
+    Region = "Region/v1", 64 * KIB, region, [stamp.entered_ns], kept;
+    Save = "Save/v1", 4 * KIB, save, [stamp.entered_ns];
+    Health = "Health/v1", 4 * KIB, health, [sent_ns];
+    Log = "Log/v1", 4 * KIB, log, [written_ns];
+}
+
+#[cfg(test)]
+mod tests {
+    use iceoryx2_bb_elementary_traits::zero_copy_send::ZeroCopySend;
+
+    use super::*;
+
+    struct Schema;
+    impl Visit for Schema {
+        type Output = (&'static str, &'static str);
+        fn visit<T: Wire>(self) -> Self::Output {
+            (T::NAME, T::SCHEMA)
+        }
+    }
+
+    #[test]
+    fn every_topic_has_a_schema_of_its_own() {
+        let mut schemas = Vec::new();
+        for name in topic::NAMES {
+            let (found, schema) = by_name(name, Schema).unwrap();
+            assert_eq!(found, *name);
+            schemas.push(schema);
+        }
+        schemas.sort_unstable();
+        schemas.dedup();
+        assert_eq!(schemas.len(), topic::NAMES.len());
+        assert!(by_name("scam", Schema).is_none());
+    }
+
+    /// A layout that changes takes its schema along.
+    #[test]
+    fn schemas_have_the_versions_of_the_messages() {
+        struct Version;
+        impl Visit for Version {
+            type Output = (&'static str, &'static str);
+            fn visit<T: Wire>(self) -> Self::Output {
+                // SAFETY: the name is only shown.
+                (T::SCHEMA, unsafe { T::Header::type_name() })
+            }
+        }
+        for name in topic::NAMES {
+            let (schema, header) = by_name(name, Version).unwrap();
+            let (schema_name, schema_version) = schema.split_once('/').unwrap();
+            let (header_name, header_version) = header.split_once('/').unwrap();
+            assert!(header_name.starts_with(schema_name), "{header}, {schema}");
+            assert_eq!(header_version, schema_version, "{header}, {schema}");
+        }
+    }
+
+    #[test]
+    fn what_is_said_once_is_kept() {
+        const { assert!(topic::Map::KEPT && topic::Map::COMPRESSED) };
+        const { assert!(topic::Boundary::KEPT && topic::Region::KEPT) };
+        const { assert!(topic::Field::COMPRESSED && topic::Field::ON_DEMAND) };
+        const { assert!(!topic::Scan::KEPT && !topic::Scan::ON_DEMAND) };
+    }
+}

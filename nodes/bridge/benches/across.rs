@@ -1,0 +1,179 @@
+//! Prints what the network adds: from a new map to its arrival, and from scan to pose
+//! without the time that the engine computes, on one machine and over a cable between
+//! two network namespaces.
+//!
+//!     cargo bench -p bridge --bench across
+//!
+//! It needs the right to make network namespaces, as the tests do.
+#![allow(clippy::unwrap_used, reason = "it fails where a test would")]
+
+use std::time::Instant;
+
+use bytemuck::Zeroable;
+use messages::{MapHeader, Name, NodeState, ScanHeader, Stamp, topic};
+use recording::ros::LaserScan;
+use tests::machine::{ENGINE, LASER, Machine};
+use tests::network::Namespace;
+use tests::world::World;
+use transport::monotonic_ns;
+use transport::testing::{NodeProcess, wait_for, wait_for_health, wait_until};
+
+/// Times that the recording is gone through.
+const ROUNDS: usize = 4;
+/// Maps that are sent.
+const MAPS: u64 = 40;
+/// Cells along x and y: 3 MB.
+const SIDES: (u32, u32) = (2000, 1500);
+/// The hub of the network, and who calls there.
+const LISTEN: [&str; 2] = ["--listen", "tcp/0.0.0.0:7447"];
+const CONNECT: [&str; 2] = ["--connect", "tcp/10.77.1.1:7447"];
+
+fn machine<'a>(tag: &str, descriptor: &str, place: &'a Namespace) -> Machine<'a> {
+    Machine::new(tag, env!("CARGO_BIN_EXE_bridge"), descriptor, Some(place))
+}
+
+fn main() {
+    let world = World::of("malaga_corridor");
+    let places = [Namespace::new(), Namespace::new()];
+    places[0].connect(&places[1], "cable1", ["10.77.1.1/24", "10.77.1.2/24"]);
+    println!("{:<38} {:>8} {:>8}", "milliseconds", "median", "p90");
+    map_to_one(&places, &world);
+    map_to_other(&places, &world);
+    scan_on_one(&places, &world);
+    scan_over_both(&places, &world);
+}
+
+fn map_to_one(places: &[Namespace; 2], world: &World) {
+    let machine = machine("map1", LASER, &places[0]);
+    maps(&machine, &machine, world).print("3 MB of map, one machine");
+}
+
+fn map_to_other(places: &[Namespace; 2], world: &World) {
+    let laser = machine("map2a", LASER, &places[0]);
+    let engine = machine("map2b", ENGINE, &places[1]);
+    let bridges = [laser.bridge(&LISTEN), engine.bridge(&CONNECT)];
+    maps(&laser, &engine, world).print("3 MB of map, two machines");
+    bridges.into_iter().for_each(NodeProcess::stop);
+}
+
+fn scan_on_one(places: &[Namespace; 2], world: &World) {
+    let machine = machine("scan1", LASER, &places[0]);
+    let mut nodes = machine.engine();
+    nodes.push(machine.map_server(&world.map()));
+    scans(&machine, world).print("scan to pose, one machine");
+    nodes.into_iter().for_each(NodeProcess::stop);
+}
+
+fn scan_over_both(places: &[Namespace; 2], world: &World) {
+    let laser = machine("scan2a", LASER, &places[0]);
+    let engine = machine("scan2b", ENGINE, &places[1]);
+    let mut nodes = engine.engine();
+    nodes.extend([
+        laser.bridge(&LISTEN),
+        engine.bridge(&CONNECT),
+        laser.map_server(&world.map()),
+    ]);
+    scans(&laser, world).print("scan to pose and back, two machines");
+    nodes.into_iter().for_each(NodeProcess::stop);
+}
+
+/// Sends maps on one machine until each has come to the other.
+fn maps(from: &Machine<'_>, to: &Machine<'_>, world: &World) -> Times {
+    let publisher = from.graph.publisher::<topic::Map>().unwrap();
+    let received = to.graph.subscriber::<topic::Map>().unwrap();
+    let (width, height) = SIDES;
+    let mut cells = repeated(world);
+    let mut times = Vec::new();
+    for map_id in 1..=MAPS {
+        // Each is another one, by a single cell.
+        cells[map_id as usize] ^= 1;
+        let start = Instant::now();
+        let mut loan = publisher.loan(cells.len()).unwrap();
+        *loan.header_mut() = MapHeader {
+            stamp: stamp(map_id),
+            map_id,
+            width,
+            height,
+            resolution_m: 0.05,
+            ..Zeroable::zeroed()
+        };
+        loan.items_mut().copy_from_slice(&cells);
+        loan.send().unwrap();
+        wait_until(&to.graph, &received, |header, _| header.map_id == map_id);
+        times.push(start.elapsed().as_secs_f64() * 1e3);
+    }
+    // The first one waits for the bridges to find each other.
+    times.remove(0);
+    Times(times)
+}
+
+/// The map of the recording, side by side until it is large enough.
+fn repeated(world: &World) -> Vec<u8> {
+    let map = map::load(world.map()).unwrap();
+    let (width, height) = SIDES;
+    let cell = |x, y| map.cells[((y % map.height) * map.width + x % map.width) as usize];
+    let rows = 0..height;
+    rows.flat_map(|y| (0..width).map(move |x| cell(x, y)))
+        .collect()
+}
+
+/// Sends scans on one machine, each after the answer to the one before; the times
+/// without those of computing.
+fn scans(laser: &Machine<'_>, world: &World) -> Times {
+    // Wherever they are, their health is heard here.
+    let health = laser.graph.subscriber().unwrap();
+    for node in ["accumulator", "peak_extractor"] {
+        wait_for_health(&laser.graph, &health, |report| {
+            report.node.as_str() == node && report.state == NodeState::Ready as u32
+        });
+    }
+    let publisher = laser.graph.publisher::<topic::Scan>().unwrap();
+    let answers = laser.graph.subscriber::<topic::Hypotheses>().unwrap();
+    let recorded = world.scans();
+    let mut times = Vec::new();
+    for (counter, scan) in (0..ROUNDS).flat_map(|_| &recorded).enumerate() {
+        let counter = counter as u64;
+        let start = Instant::now();
+        let mut loan = publisher.loan(scan.ranges.len()).unwrap();
+        *loan.header_mut() = header(scan, counter);
+        loan.items_mut().copy_from_slice(&scan.ranges);
+        loan.send().unwrap();
+        let computing_ns = wait_for(&laser.graph, &answers, |header, _| {
+            let computing_ns = header.search_ns + header.extract_ns;
+            (header.stamp.counter == counter).then_some(computing_ns)
+        });
+        times.push(start.elapsed().as_secs_f64() * 1e3 - computing_ns as f64 / 1e6);
+    }
+    Times(times)
+}
+
+fn header(scan: &LaserScan, counter: u64) -> ScanHeader {
+    ScanHeader {
+        stamp: stamp(counter),
+        angle_min: scan.angle_min.into(),
+        angle_increment: scan.angle_increment.into(),
+        range_min_m: scan.range_min,
+        range_max_m: scan.range_max,
+        frame: Name::new("laser"),
+        ..Zeroable::zeroed()
+    }
+}
+
+fn stamp(counter: u64) -> Stamp {
+    Stamp {
+        measured_ns: counter as i64,
+        entered_ns: monotonic_ns(),
+        counter,
+    }
+}
+
+/// Milliseconds.
+struct Times(Vec<f64>);
+
+impl Times {
+    fn print(mut self, what: &str) {
+        self.0.sort_by(f64::total_cmp);
+        let at = |share: f64| self.0[(share * (self.0.len() - 1) as f64).round() as usize];
+        println!("{what:<38} {:>8.2} {:>8.2}", at(0.5), at(0.9));
+    }
+}

@@ -1,0 +1,106 @@
+//! Signs of life: a liveliness token for the bridge, and one for each node whose
+//! health it hears.
+//!
+//! Tokens go when the process that holds them is killed or cut off, without
+//! anybody asking: whoever watches hears of it from Zenoh.
+
+use std::collections::BTreeMap;
+
+use messages::{HealthHeader, NodeState, topic};
+use transport::{Graph, Subscriber, TransportError, monotonic_ns};
+use zenoh::liveliness::LivelinessToken;
+use zenoh::{Session, Wait};
+
+use crate::BridgeError;
+
+/// A node that said nothing for so long is taken for dead, nanoseconds; it
+/// speaks each second.
+const SILENCE_NS: i64 = 5_000_000_000;
+
+/// Holds the tokens of one graph.
+pub(crate) struct Alive {
+    session: Session,
+    robot: String,
+    _bridge: LivelinessToken,
+    /// None where health comes in: what is heard is then not of this machine.
+    health: Option<Subscriber<topic::Health>>,
+    nodes: BTreeMap<String, Node>,
+}
+
+struct Node {
+    _token: LivelinessToken,
+    heard_ns: i64,
+}
+
+impl Alive {
+    pub(crate) fn open(
+        graph: &Graph,
+        session: &Session,
+        robot: &str,
+        health_comes_in: bool,
+    ) -> Result<Self, BridgeError> {
+        let health = if health_comes_in {
+            None
+        } else {
+            Some(graph.subscriber()?)
+        };
+        Ok(Alive {
+            session: session.clone(),
+            robot: robot.to_owned(),
+            _bridge: declare(session, robot, None)?,
+            health,
+            nodes: BTreeMap::new(),
+        })
+    }
+
+    /// Hears who is there, and lets go of who is not.
+    pub(crate) fn step(&mut self) -> Result<(), BridgeError> {
+        let now_ns = monotonic_ns();
+        while let Some(report) = self.next()? {
+            let name = report.node.as_str();
+            if report.state == NodeState::Stopped as u32 {
+                self.nodes.remove(name);
+            } else if wire::robot(name).is_ok() {
+                self.hear(name, report.sent_ns)?;
+            }
+        }
+        self.nodes
+            .retain(|_, node| now_ns.saturating_sub(node.heard_ns) < SILENCE_NS);
+        Ok(())
+    }
+
+    fn next(&self) -> Result<Option<HealthHeader>, TransportError> {
+        let Some(health) = &self.health else {
+            return Ok(None);
+        };
+        Ok(health.receive()?.map(|sample| *sample.header()))
+    }
+
+    fn hear(&mut self, name: &str, heard_ns: i64) -> Result<(), BridgeError> {
+        if let Some(node) = self.nodes.get_mut(name) {
+            node.heard_ns = heard_ns;
+            return Ok(());
+        }
+        let token = declare(&self.session, &self.robot, Some(name))?;
+        let node = Node {
+            _token: token,
+            heard_ns,
+        };
+        self.nodes.insert(name.to_owned(), node);
+        Ok(())
+    }
+}
+
+fn declare(
+    session: &Session,
+    robot: &str,
+    node: Option<&str>,
+) -> Result<LivelinessToken, BridgeError> {
+    let key = wire::alive(robot, &session.zid().to_string(), node);
+    let token = session.liveliness().declare_token(key.clone());
+    token.wait().map_err(|source| BridgeError::Key {
+        action: "be alive at",
+        key,
+        source,
+    })
+}

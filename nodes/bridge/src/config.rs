@@ -1,0 +1,74 @@
+//! What a user can set.
+
+use std::path::PathBuf;
+
+use clap::Parser;
+
+use crate::Rate;
+
+/// Joins graphs on several machines over Zenoh.
+///
+/// Listens on this machine alone unless told otherwise. Which topics go out and
+/// come in is in the descriptor: the inputs of the bridge go out, its outputs
+/// come in.
+#[derive(Debug, Clone, Parser)]
+#[command(name = "bridge", version)]
+pub struct Config {
+    /// What the robot is called, a part of every key. All bridges of one robot
+    /// have the same [default: the name of the machine]
+    #[arg(long, value_name = "NAME", value_parser = wire::robot)]
+    pub robot: Option<String>,
+
+    /// The descriptor that says which topics go out and come in
+    #[arg(long, value_name = "FILE", default_value = "dataflow.yaml")]
+    pub dataflow: PathBuf,
+
+    /// The id of this bridge in it
+    #[arg(long, value_name = "ID", default_value = "bridge")]
+    pub id: String,
+
+    /// Most messages a second of a live topic that go out, 0.001 to 10000, as field=2.
+    /// May be given again [default: field=2, the others as they come]
+    #[arg(long, value_name = "TOPIC=HZ")]
+    pub rate: Vec<Rate>,
+
+    /// How it joins the network.
+    #[command(flatten)]
+    pub network: network::Options,
+}
+
+impl Config {
+    /// The robot's name.
+    #[must_use]
+    pub fn robot(&self) -> String {
+        let given = self.robot.clone();
+        given.unwrap_or_else(|| {
+            let host = gethostname::gethostname().to_string_lossy().into_owned();
+            wire::robot(&host).unwrap_or_else(|_| "robot".to_owned())
+        })
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn parse(arguments: &[&str]) -> Result<Config, String> {
+        let all = ["bridge"].iter().chain(arguments);
+        Config::try_parse_from(all).map_err(|error| error.to_string())
+    }
+
+    #[test]
+    fn what_is_refused_says_what_is_allowed() {
+        let error = parse(&["--robot", "a/b"]).unwrap_err();
+        assert!(error.contains("1 to 64 of a-z A-Z 0-9 - _ ."), "{error}");
+        let error = parse(&["--rate", "scam=1"]).unwrap_err();
+        assert!(error.contains("scan, odometry"), "{error}");
+    }
+
+    #[test]
+    fn the_robot_has_a_name_that_can_stand_in_keys() {
+        assert_eq!(parse(&["--robot", "r2"]).unwrap().robot(), "r2");
+        assert!(wire::robot(&parse(&[]).unwrap().robot()).is_ok());
+    }
+}

@@ -1,0 +1,57 @@
+//! What keeps the bridge from running.
+
+use std::path::PathBuf;
+
+use dataflow::DataflowError;
+use network::{Cause, NetworkError};
+use transport::TransportError;
+use wire::WireError;
+
+/// What was tried, what was found and what is allowed.
+#[derive(Debug, thiserror::Error)]
+pub enum BridgeError {
+    /// The descriptor cannot be used.
+    #[error("cannot tell which topics go out and come in")]
+    Dataflow(#[from] DataflowError),
+    /// The descriptor has no such node.
+    #[error("{} has no node {id:?}: allowed are {allowed}", file.display())]
+    NoSuchNode {
+        /// The descriptor.
+        file: PathBuf,
+        /// The id that was looked for.
+        id: String,
+        /// The ids that are there.
+        allowed: String,
+    },
+    /// A topic would go round in circles.
+    #[error(
+        "topic {topic} goes out and comes in: it would come back for ever; \
+         take it out of the inputs or the outputs of the bridge"
+    )]
+    Circle {
+        /// The topic.
+        topic: String,
+    },
+    /// The session cannot be opened.
+    #[error(transparent)]
+    Network(#[from] NetworkError),
+    /// A key cannot be used.
+    #[error("cannot {action} {key}")]
+    Key {
+        /// What was tried.
+        action: &'static str,
+        /// The key.
+        key: String,
+        /// What Zenoh says.
+        source: Cause,
+    },
+    /// The system gives no random number.
+    #[error("cannot draw a random number to be known by")]
+    Random(#[source] getrandom::Error),
+    /// A message cannot leave or enter.
+    #[error(transparent)]
+    Wire(#[from] WireError),
+    /// The graph fails.
+    #[error(transparent)]
+    Transport(#[from] TransportError),
+}

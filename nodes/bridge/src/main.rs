@@ -1,0 +1,11 @@
+//! Starts the node; see the library.
+
+use std::process::ExitCode;
+
+use bridge::Config;
+use clap::Parser;
+
+fn main() -> ExitCode {
+    let config = Config::parse();
+    transport::node::main_hearing("bridge", network::LOG, |graph| bridge::run(graph, &config))
+}

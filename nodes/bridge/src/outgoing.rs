@@ -1,0 +1,169 @@
+//! A topic on its way out.
+//!
+//! Of a live topic a sample is dropped where the network is slower than the
+//! graph: the next one is fresher. What is kept for late joiners is sent for good, and
+//! holds up nobody.
+
+use std::rc::Rc;
+use std::time::Duration;
+
+use transport::{Graph, Input, Sample, Subscriber, TransportError, monotonic_ns};
+use wire::{Preamble, Wire};
+use zenoh::bytes::Encoding;
+use zenoh::qos::{CongestionControl, Priority};
+use zenoh::{Session, Wait};
+use zenoh_ext::{AdvancedPublisher, AdvancedPublisherBuilderExt, CacheConfig, MissDetectionConfig};
+
+use crate::exit::{Aside, Exit};
+use crate::rates::Limit;
+use crate::report::Report;
+use crate::{BridgeError, Rate};
+
+/// How soon a reader learns that it missed the newest of what is kept.
+const HEARTBEAT: Duration = Duration::from_millis(500);
+
+/// Sends one topic.
+pub(crate) struct Outgoing<T: Wire> {
+    /// None while nobody would get what is computed on demand.
+    subscriber: Option<Rc<Subscriber<T>>>,
+    key: String,
+    exit: Exit,
+    limit: Limit,
+    next: Preamble,
+}
+
+impl<T: Wire> Outgoing<T> {
+    pub(crate) fn open(
+        graph: &Graph,
+        session: &Session,
+        robot: &str,
+        sender: u64,
+        rates: &[Rate],
+    ) -> Result<Self, BridgeError> {
+        let subscriber = if T::ON_DEMAND {
+            None
+        } else {
+            Some(Rc::new(graph.subscriber()?))
+        };
+        let key = wire::key::<T>(robot);
+        let publisher = declare::<T>(session, &key)?;
+        let exit = if T::KEPT {
+            Exit::Aside(Aside::new(publisher))
+        } else {
+            Exit::Here(publisher)
+        };
+        Ok(Outgoing {
+            subscriber,
+            key,
+            exit,
+            limit: Limit::of::<T>(rates),
+            next: Preamble {
+                sender,
+                sequence: 0,
+                clock_ns: 0,
+            },
+        })
+    }
+
+    /// What the event loop waits for.
+    pub(crate) fn input(&self) -> Option<Rc<dyn Input>> {
+        let subscriber = self.subscriber.clone()?;
+        Some(subscriber)
+    }
+
+    /// Sends what has come since the last call.
+    pub(crate) fn step(
+        &mut self,
+        graph: &Graph,
+        tick: bool,
+        report: &mut Report,
+    ) -> Result<(), BridgeError> {
+        if tick && T::ON_DEMAND {
+            self.follow(graph)?;
+        }
+        while let Some(outcome) = self.exit.outcome() {
+            self.tell(outcome, report)?;
+        }
+        let Some(subscriber) = self.subscriber.clone() else {
+            return Ok(());
+        };
+        while let Some(sample) = subscriber.receive()? {
+            report.received();
+            self.send(&sample, report)?;
+        }
+        Ok(())
+    }
+
+    /// Subscribes while somebody beyond the bridge does.
+    fn follow(&mut self, graph: &Graph) -> Result<(), TransportError> {
+        match (self.exit.is_heard(), &self.subscriber) {
+            (true, None) => self.subscriber = Some(Rc::new(graph.subscriber()?)),
+            (false, Some(_)) => self.subscriber = None,
+            _ => {}
+        }
+        Ok(())
+    }
+
+    fn send(&mut self, sample: &Sample<T>, report: &mut Report) -> Result<(), BridgeError> {
+        let now_ns = monotonic_ns();
+        if !T::KEPT && (!self.exit.is_heard() || !self.limit.admits(now_ns)) {
+            return Ok(());
+        }
+        self.next.clock_ns = now_ns;
+        let payload = match wire::encode::<T>(&self.next, sample.header(), sample.items()) {
+            Ok(payload) => payload,
+            Err(error) => return Ok(report.refused(&error.into())?),
+        };
+        self.next.sequence += 1;
+        match self.exit.put(payload) {
+            Some(outcome) => self.tell(outcome, report),
+            None => Ok(()),
+        }
+    }
+
+    fn tell(&self, outcome: zenoh::Result<()>, report: &mut Report) -> Result<(), BridgeError> {
+        match outcome {
+            Ok(()) => report.sent(),
+            Err(source) => {
+                report.dropped(1);
+                report.refused(&BridgeError::Key {
+                    action: "send on",
+                    key: self.key.clone(),
+                    source,
+                })?;
+            }
+        }
+        Ok(())
+    }
+}
+
+fn declare<T: Wire>(
+    session: &Session,
+    key: &str,
+) -> Result<AdvancedPublisher<'static>, BridgeError> {
+    let failed = |source| BridgeError::Key {
+        action: "publish",
+        key: key.to_owned(),
+        source,
+    };
+    let publisher = session
+        .declare_publisher(key.to_owned())
+        .encoding(Encoding::from(wire::encoding::<T>()));
+    if !T::KEPT {
+        return publisher
+            .congestion_control(CongestionControl::Drop)
+            .express(true)
+            .advanced()
+            .wait()
+            .map_err(failed);
+    }
+    publisher
+        .congestion_control(CongestionControl::Block)
+        // Behind what is live.
+        .priority(Priority::DataLow)
+        .cache(CacheConfig::default().max_samples(1))
+        .sample_miss_detection(MissDetectionConfig::default().heartbeat(HEARTBEAT))
+        .publisher_detection()
+        .wait()
+        .map_err(failed)
+}

@@ -1,0 +1,108 @@
+//! Which topics leave the graph and which enter it, by the descriptor.
+
+use std::path::Path;
+
+use dataflow::{Dataflow, Topics};
+use messages::{Topic, topic};
+
+use crate::BridgeError;
+
+/// The ports of a bridge.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub struct Ports {
+    /// Topics that go out: the inputs of the node, and the health of all nodes
+    /// unless it comes in.
+    pub out: Vec<String>,
+    /// Topics that come in: the outputs of the node.
+    pub into: Vec<String>,
+}
+
+impl Ports {
+    /// The ports of node `id` in the descriptor at `file`.
+    ///
+    /// # Errors
+    /// If the descriptor cannot be read or is wrong, has no such node, or lets a
+    /// topic go out and come in.
+    pub fn read(file: &Path, id: &str) -> Result<Self, BridgeError> {
+        let topics = Topics {
+            names: topic::NAMES,
+            shared: &[topic::Health::NAME, topic::Log::NAME],
+        };
+        Self::of(&dataflow::load(file, &topics)?, file, id)
+    }
+
+    fn of(graph: &Dataflow, file: &Path, id: &str) -> Result<Self, BridgeError> {
+        let Some(node) = graph.nodes.iter().find(|node| node.id == id) else {
+            let ids: Vec<_> = graph.nodes.iter().map(|node| node.id.as_str()).collect();
+            return Err(BridgeError::NoSuchNode {
+                file: file.to_owned(),
+                id: id.to_owned(),
+                allowed: ids.join(", "),
+            });
+        };
+        let into = node.outputs.clone();
+        let mut out: Vec<_> = node.inputs.iter().map(|i| i.topic.clone()).collect();
+        if let Some(both) = out.iter().find(|topic| into.contains(topic)) {
+            let topic = both.clone();
+            return Err(BridgeError::Circle { topic });
+        }
+        let health = topic::Health::NAME.to_owned();
+        if !into.contains(&health) && !out.contains(&health) {
+            out.push(health);
+        }
+        Ok(Ports { out, into })
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn read(bridge: &str, id: &str) -> Result<Ports, BridgeError> {
+        let folder = tempfile::tempdir().unwrap();
+        let file = folder.path().join("dataflow.yaml");
+        let text = format!(
+            "nodes:\n  - {{id: laser, path: x, outputs: [scan]}}\n  - {{id: bridge, path: y, {bridge}}}\n"
+        );
+        std::fs::write(&file, text).unwrap();
+        Ports::read(&file, id)
+    }
+
+    #[test]
+    fn inputs_go_out_and_outputs_come_in() {
+        let ports = read("inputs: {scan: laser/scan}, outputs: [map]", "bridge").unwrap();
+        assert_eq!(ports.out, ["scan", "health"]);
+        assert_eq!(ports.into, ["map"]);
+    }
+
+    #[test]
+    fn health_goes_out_unless_it_comes_in() {
+        let ports = read("outputs: [health, hypotheses]", "bridge").unwrap();
+        assert!(ports.out.is_empty());
+        assert_eq!(ports.into, ["health", "hypotheses"]);
+    }
+
+    #[test]
+    fn what_would_go_in_circles_is_refused() {
+        let error = read(
+            "inputs: {scan: laser/scan}, outputs: [health, log]",
+            "bridge",
+        );
+        assert!(error.is_ok());
+        let folder = tempfile::tempdir().unwrap();
+        let file = folder.path().join("dataflow.yaml");
+        let text = "nodes:
+  - {id: a, path: x, outputs: [log]}
+  - {id: bridge, path: y, inputs: {log: a/log}, outputs: [log]}
+";
+        std::fs::write(&file, text).unwrap();
+        let error = Ports::read(&file, "bridge").unwrap_err();
+        assert!(matches!(error, BridgeError::Circle { topic } if topic == "log"));
+    }
+
+    #[test]
+    fn another_id_says_which_there_are() {
+        let error = read("outputs: [map]", "brigde").unwrap_err().to_string();
+        assert!(error.ends_with("allowed are laser, bridge"), "{error}");
+    }
+}

@@ -1,0 +1,131 @@
+//! How often a topic goes out.
+//!
+//! What comes faster is left out, not kept for later: a reader at a slow link
+//! wants the present. What is kept for late joiners has no rate: it holds until it is
+//! said anew, so none of it may be left out.
+
+use std::str::FromStr;
+
+use messages::{Topic, topic};
+use wire::{Visit, Wire};
+
+/// Most messages a second of one topic.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Rate {
+    /// The topic.
+    pub topic: String,
+    /// Messages a second, 0.001 to 10,000.
+    pub hz: f64,
+}
+
+impl FromStr for Rate {
+    type Err = String;
+
+    fn from_str(text: &str) -> Result<Self, String> {
+        let (name, hz) = text.split_once('=').ok_or("allowed is TOPIC=HZ")?;
+        if wire::by_name(name, IsKept) != Some(false) {
+            let live = topic::NAMES.iter().copied();
+            let live = live.filter(|name| wire::by_name(name, IsKept) == Some(false));
+            let allowed = live.collect::<Vec<_>>().join(", ");
+            return Err(format!("{name:?} is no live topic: allowed are {allowed}"));
+        }
+        let hz: f64 = hz
+            .parse()
+            .ok()
+            .filter(|hz| (0.001..=10_000.0).contains(hz))
+            .ok_or_else(|| format!("{hz:?} messages a second: allowed are 0.001 to 10000"))?;
+        let topic = name.to_owned();
+        Ok(Rate { topic, hz })
+    }
+}
+
+/// Whether a topic is kept for late joiners.
+struct IsKept;
+
+impl Visit for IsKept {
+    type Output = bool;
+
+    fn visit<T: Wire>(self) -> bool {
+        T::KEPT
+    }
+}
+
+/// Says which messages of one topic may go. Pure: it is told the time.
+#[derive(Debug)]
+pub(crate) struct Limit {
+    period_ns: i64,
+    due_ns: i64,
+}
+
+impl Limit {
+    /// The limit of topic `T` among those that were given: the last one of it.
+    pub(crate) fn of<T: Topic>(rates: &[Rate]) -> Self {
+        let default = (T::NAME == topic::Field::NAME).then_some(2.0);
+        let given = rates.iter().rfind(|rate| rate.topic == T::NAME);
+        let hz = given.map(|rate| rate.hz).or(default);
+        Limit {
+            period_ns: hz.map_or(0, |hz| (1e9 / hz) as i64),
+            due_ns: i64::MIN,
+        }
+    }
+
+    /// Whether a message may go at `now_ns`; the one that may is counted.
+    ///
+    /// One that comes less than a period late does not push the next ones back, so
+    /// that over time as many go as are allowed; after a pause none is made up for.
+    pub(crate) fn admits(&mut self, now_ns: i64) -> bool {
+        if now_ns < self.due_ns {
+            return false;
+        }
+        let late_ns = now_ns.saturating_sub(self.due_ns);
+        let start_ns = if late_ns < self.period_ns {
+            self.due_ns
+        } else {
+            now_ns
+        };
+        self.due_ns = start_ns.saturating_add(self.period_ns);
+        true
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    const MS: i64 = 1_000_000;
+
+    fn admitted(rates: &[&str], every_ms: i64, during_ms: i64) -> usize {
+        let rates: Vec<Rate> = rates.iter().map(|rate| rate.parse().unwrap()).collect();
+        let mut limit = Limit::of::<topic::Scan>(&rates);
+        let times = (0..during_ms / every_ms).map(|i| 5_000 * MS + i * every_ms * MS);
+        times.filter(|&now| limit.admits(now)).count()
+    }
+
+    #[test]
+    fn as_many_go_as_are_allowed() {
+        assert_eq!(admitted(&[], 10, 1_000), 100);
+        assert_eq!(
+            admitted(&["scan=50", "scan=5", "odometry=1"], 10, 10_000),
+            50
+        );
+        // Of 40 a second, 30 are not every other one.
+        assert_eq!(admitted(&["scan=30"], 25, 10_000), 300);
+        assert_eq!(admitted(&["scan=100"], 25, 1_000), 40);
+    }
+
+    #[test]
+    fn the_image_is_slow_unless_told_otherwise() {
+        assert_eq!(Limit::of::<topic::Field>(&[]).period_ns, 500 * MS);
+        let fast = ["field=10".parse().unwrap()];
+        assert_eq!(Limit::of::<topic::Field>(&fast).period_ns, 100 * MS);
+    }
+
+    #[test]
+    fn what_is_no_rate_is_refused() {
+        for text in [
+            "scan", "scan=0", "scan=NaN", "scan=1e9", "scan=-1", "=1", "map=1",
+        ] {
+            assert!(text.parse::<Rate>().is_err(), "{text}");
+        }
+    }
+}

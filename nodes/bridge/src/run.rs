@@ -1,0 +1,147 @@
+//! Joins both sides, and carries messages between them.
+
+use std::rc::Rc;
+use std::time::Duration;
+
+use messages::{Topic, topic};
+use transport::{Flow, Graph, Input};
+use wire::{Visit, Wire};
+use zenoh::Session;
+
+use crate::alive::Alive;
+use crate::incoming::Incoming;
+use crate::outgoing::Outgoing;
+use crate::ports::Ports;
+use crate::report::Report;
+use crate::{BridgeError, Config};
+
+/// How long a late joiner of the graph, an image that somebody beyond the bridge
+/// wants, and a silent node may wait.
+const TICK: Duration = Duration::from_millis(50);
+
+/// Carries messages until the stop flag is set.
+///
+/// # Errors
+/// If the descriptor or Zenoh's configuration cannot be used, the session cannot
+/// be opened, or the graph fails. A network that is not there is no error: it is
+/// waited for.
+pub fn run(graph: &Graph, config: &Config) -> Result<(), BridgeError> {
+    let ports = Ports::read(&config.dataflow, &config.id)?;
+    let robot = config.robot();
+    tracing::info!(%robot, out = ports.out.join(","), into = ports.into.join(","), "ports");
+    let mut report = Report::new(graph.health()?);
+    let Some(session) = network::open(graph, &config.network, || report.tick())? else {
+        return Ok(());
+    };
+    let mut ways = ways(graph, &session, &robot, &ports, config)?;
+    let health_comes_in = ports.into.iter().any(|name| name == topic::Health::NAME);
+    let mut alive = Alive::open(graph, &session, &robot, health_comes_in)?;
+    let inputs: Vec<_> = ways.iter().filter_map(|way| way.input()).collect();
+    let inputs: Vec<&dyn Input> = inputs.iter().map(|input| &**input).collect();
+    report.ready()?;
+    graph.run(&inputs, TICK, |wake| {
+        for way in &mut ways {
+            way.step(graph, wake.tick, &mut report)?;
+        }
+        alive.step()?;
+        report.tick()?;
+        Ok(Flow::Continue)
+    })
+}
+
+/// One topic, out or in.
+trait Way {
+    fn input(&self) -> Option<Rc<dyn Input>>;
+    fn step(&mut self, graph: &Graph, tick: bool, report: &mut Report) -> Result<(), BridgeError>;
+}
+
+impl<T: Wire> Way for Outgoing<T> {
+    fn input(&self) -> Option<Rc<dyn Input>> {
+        self.input()
+    }
+
+    fn step(&mut self, graph: &Graph, tick: bool, report: &mut Report) -> Result<(), BridgeError> {
+        self.step(graph, tick, report)
+    }
+}
+
+impl<T: Wire> Way for Incoming<T> {
+    fn input(&self) -> Option<Rc<dyn Input>> {
+        None
+    }
+
+    fn step(&mut self, _: &Graph, _: bool, report: &mut Report) -> Result<(), BridgeError> {
+        self.step(report)
+    }
+}
+
+/// Everything that the ports name; the descriptor knows no other topics than
+/// `wire` does.
+fn ways(
+    graph: &Graph,
+    session: &Session,
+    robot: &str,
+    ports: &Ports,
+    config: &Config,
+) -> Result<Vec<Box<dyn Way>>, BridgeError> {
+    let sender = getrandom::u64().map_err(BridgeError::Random)?;
+    let out = ports.out.iter().filter_map(|name| {
+        let rates = &config.rate;
+        let open = Outward {
+            graph,
+            session,
+            robot,
+            sender,
+            rates,
+        };
+        wire::by_name(name, open)
+    });
+    let into = ports.into.iter().filter_map(|name| {
+        let open = Inward {
+            graph,
+            session,
+            robot,
+        };
+        wire::by_name(name, open)
+    });
+    out.chain(into).collect()
+}
+
+struct Outward<'a> {
+    graph: &'a Graph,
+    session: &'a Session,
+    robot: &'a str,
+    sender: u64,
+    rates: &'a [crate::Rate],
+}
+
+impl Visit for Outward<'_> {
+    type Output = Result<Box<dyn Way>, BridgeError>;
+
+    fn visit<T: Wire>(self) -> Self::Output {
+        let Outward {
+            graph,
+            session,
+            robot,
+            sender,
+            rates,
+        } = self;
+        let way = Outgoing::<T>::open(graph, session, robot, sender, rates)?;
+        Ok(Box::new(way))
+    }
+}
+
+struct Inward<'a> {
+    graph: &'a Graph,
+    session: &'a Session,
+    robot: &'a str,
+}
+
+impl Visit for Inward<'_> {
+    type Output = Result<Box<dyn Way>, BridgeError>;
+
+    fn visit<T: Wire>(self) -> Self::Output {
+        let way = Incoming::<T>::open(self.graph, self.session, self.robot)?;
+        Ok(Box::new(way))
+    }
+}

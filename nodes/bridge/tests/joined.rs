@@ -1,0 +1,385 @@
+//! Two graphs joined by two bridges over a loopback connection, and strangers who
+//! send what they should not.
+#![allow(
+    clippy::unwrap_used,
+    reason = "the lint spares test functions but not what they share"
+)]
+
+use std::path::{Path, PathBuf};
+use std::sync::Arc;
+use std::sync::atomic::{AtomicBool, Ordering};
+use std::time::Duration;
+
+use messages::{MapHeader, Name, Pose2, ScanHeader, Stamp, topic};
+use tempfile::TempDir;
+use transport::testing::{Isolated, NodeProcess, wait_for_health, wait_until};
+use transport::{Flow, Graph, Publisher, TransportError, monotonic_ns};
+use wire::{Preamble, Wire};
+use zenoh::bytes::Encoding;
+use zenoh::sample::SampleKind;
+use zenoh::{Session, Wait};
+use zenoh_ext::{AdvancedSubscriberBuilderExt, HistoryConfig};
+
+/// The machine with the laser and the map.
+const LASER: &str = "nodes:
+  - {id: laser, path: x, outputs: [scan, map]}
+  - {id: bridge, path: y, inputs: {scan: laser/scan, map: laser/map}, outputs: [hypotheses]}
+";
+/// The machine with the engine.
+const ENGINE: &str = "nodes:
+  - {id: engine, path: x, inputs: {scan: bridge/scan}, outputs: [hypotheses]}
+  - {id: bridge, path: y, inputs: {hypotheses: engine/hypotheses}, outputs: [scan, map]}
+";
+
+/// One machine: a graph of its own, and its bridge's descriptor.
+struct Machine {
+    folder: TempDir,
+    graph: Graph,
+    // Behind the graph, so that it is dropped after it.
+    isolated: Isolated,
+}
+
+impl Machine {
+    fn new(tag: &str, descriptor: &str) -> Self {
+        let isolated = Isolated::new(tag);
+        let folder = tempfile::tempdir().unwrap();
+        std::fs::write(folder.path().join("dataflow.yaml"), descriptor).unwrap();
+        Machine {
+            folder,
+            graph: isolated.join("test"),
+            isolated,
+        }
+    }
+
+    /// An endpoint that no other test has.
+    fn endpoint(&self) -> String {
+        format!("tcp/{}:7447", self.isolated.name().loopback())
+    }
+
+    fn descriptor(&self) -> PathBuf {
+        self.folder.path().join("dataflow.yaml")
+    }
+
+    fn bridge(&self, robot: &str, network: [&str; 2]) -> NodeProcess {
+        let dataflow = self.descriptor();
+        let arguments = [
+            "--robot",
+            robot,
+            "--dataflow",
+            dataflow.to_str().unwrap(),
+            network[0],
+            network[1],
+        ];
+        let bridge = NodeProcess::start(env!("CARGO_BIN_EXE_bridge"), &self.graph, arguments);
+        let health = self.graph.subscriber::<topic::Health>().unwrap();
+        let is_ready = messages::NodeState::Ready as u32;
+        wait_for_health(&self.graph, &health, |report| report.state == is_ready);
+        bridge
+    }
+}
+
+fn scan(counter: u64) -> ScanHeader {
+    ScanHeader {
+        stamp: Stamp {
+            measured_ns: 1_000 * counter as i64,
+            entered_ns: monotonic_ns(),
+            counter,
+        },
+        angle_min: -1.5,
+        angle_increment: 0.01,
+        time_increment_s: 0.0,
+        scan_time_s: 0.1,
+        range_min_m: 0.1,
+        range_max_m: 30.0,
+        base_from_laser: Pose2 {
+            x: 0.1,
+            y: 0.0,
+            yaw: 0.0,
+        },
+        mount_known: 1,
+        frame: Name::new("laser"),
+    }
+}
+
+/// Different for each scan, with what lasers say where nothing came back.
+fn ranges(counter: u64) -> Vec<f32> {
+    let mut ranges: Vec<_> = (0..181)
+        .map(|i| (counter * 181 + i) as f32 / 100.0)
+        .collect();
+    ranges[7] = f32::INFINITY;
+    ranges
+}
+
+fn map(counter: u64, width: u32, height: u32) -> (MapHeader, Vec<u8>) {
+    let header = MapHeader {
+        stamp: Stamp {
+            measured_ns: 5,
+            entered_ns: monotonic_ns(),
+            counter,
+        },
+        map_id: 40 + counter,
+        width,
+        height,
+        resolution_m: 0.05,
+        map_from_grid: Pose2 {
+            x: -3.0,
+            y: 2.0,
+            yaw: 0.5,
+        },
+    };
+    let cells = (0..width * height).map(|i| (i * i % 101) as u8).collect();
+    (header, cells)
+}
+
+fn send(maps: &Publisher<topic::Map>, (header, cells): &(MapHeader, Vec<u8>)) {
+    let mut loan = maps.loan(cells.len()).unwrap();
+    *loan.header_mut() = *header;
+    loan.items_mut().copy_from_slice(cells);
+    loan.send().unwrap();
+}
+
+/// Sends scans until it is told to stop, from a thread of its own: a member of a
+/// graph stays on its thread.
+fn send_scans(isolated: &Isolated, stop: &Arc<AtomicBool>) -> std::thread::JoinHandle<()> {
+    let name = isolated.name().clone();
+    let stop = Arc::clone(stop);
+    std::thread::spawn(move || {
+        let graph = Graph::join_named("laser", &name).unwrap();
+        let scans = graph.publisher::<topic::Scan>().unwrap();
+        let mut counter = 0;
+        let period = Duration::from_millis(20);
+        let outcome = graph.run(&[], period, |_| {
+            let ranges = ranges(counter);
+            let mut loan = scans.loan(ranges.len())?;
+            *loan.header_mut() = scan(counter);
+            loan.items_mut().copy_from_slice(&ranges);
+            loan.send()?;
+            counter += 1;
+            let stop = stop.load(Ordering::Relaxed);
+            Ok::<_, TransportError>(if stop { Flow::Stop } else { Flow::Continue })
+        });
+        outcome.unwrap();
+    })
+}
+
+#[test]
+fn scans_cross_as_they_are_and_nobody_else_hears_them() {
+    let laser = Machine::new("live-a", LASER);
+    let engine = Machine::new("live-b", ENGINE);
+    let other = Machine::new("live-c", ENGINE);
+    let alone = Isolated::new("live-d");
+    let alone = (alone.join("test"), alone);
+    let endpoint = laser.endpoint();
+    let scans = engine.graph.subscriber::<topic::Scan>().unwrap();
+    let foreign = other.graph.subscriber::<topic::Scan>().unwrap();
+    let unjoined = alone.0.subscriber::<topic::Scan>().unwrap();
+    let bridges = [
+        laser.bridge("r1", ["--listen", &endpoint]),
+        engine.bridge("r1", ["--connect", &endpoint]),
+        // Another robot, on the same network.
+        other.bridge("r2", ["--connect", &endpoint]),
+    ];
+    let stop = Arc::new(AtomicBool::new(false));
+    let source = send_scans(&laser.isolated, &stop);
+    let mut counters = Vec::new();
+    wait_until(&engine.graph, &scans, |header, items| {
+        let counter = header.stamp.counter;
+        let entered_ns = header.stamp.entered_ns;
+        assert!(entered_ns <= monotonic_ns(), "a scan of the future");
+        let mut expected = scan(counter);
+        expected.stamp.entered_ns = entered_ns;
+        assert_eq!(*header, expected);
+        assert_eq!(items, ranges(counter));
+        counters.push(counter);
+        counters.len() == 100
+    });
+    stop.store(true, Ordering::Relaxed);
+    source.join().unwrap();
+    // Each once and in order; on a loaded machine the queues may run over, and
+    // what is live is dropped then.
+    assert!(counters.is_sorted_by(|a, b| a < b), "{counters:?}");
+    assert!(foreign.receive().unwrap().is_none(), "another robot's");
+    assert!(unjoined.receive().unwrap().is_none(), "no bridge, no scan");
+    bridges.into_iter().for_each(NodeProcess::stop);
+}
+
+#[test]
+fn a_late_joiner_gets_the_map_once() {
+    let laser = Machine::new("late-a", LASER);
+    let engine = Machine::new("late-b", ENGINE);
+    let endpoint = laser.endpoint();
+    let maps = laser.graph.publisher::<topic::Map>().unwrap();
+    let sent = map(0, 300, 200);
+    send(&maps, &sent);
+    let first = laser.bridge("r1", ["--listen", &endpoint]);
+    let received = engine.graph.subscriber::<topic::Map>().unwrap();
+    let second = engine.bridge("r1", ["--connect", &endpoint]);
+    let expect = |sent: &(MapHeader, Vec<u8>)| {
+        wait_until(&engine.graph, &received, |header, cells| {
+            assert_eq!(header.map_id, sent.0.map_id, "a map came twice");
+            assert_eq!((header.width, header.height), (sent.0.width, sent.0.height));
+            assert_eq!(header.map_from_grid, sent.0.map_from_grid);
+            assert_eq!(cells, sent.1);
+            true
+        });
+    };
+    expect(&sent);
+    // One that joins the graph later hears it from the bridge.
+    let later = engine.graph.subscriber::<topic::Map>().unwrap();
+    wait_until(&engine.graph, &later, |header, _| {
+        header.map_id == sent.0.map_id
+    });
+    // A bridge that is started anew brings nothing twice, and what is new arrives.
+    first.kill();
+    laser.graph.cleanup_dead_nodes();
+    let first = laser.bridge("r1", ["--listen", &endpoint]);
+    let next = map(1, 20, 10);
+    send(&maps, &next);
+    expect(&next);
+    first.stop();
+    second.stop();
+}
+
+#[test]
+fn what_strangers_send_is_refused_and_counted() {
+    let engine = Machine::new("hostile", ENGINE);
+    let scans = engine.graph.subscriber::<topic::Scan>().unwrap();
+    let health = engine.graph.subscriber::<topic::Health>().unwrap();
+    let endpoint = engine.endpoint();
+    let bridge = engine.bridge("r1", ["--listen", &endpoint]);
+    let stranger = connect(&endpoint);
+    let good = |sequence| {
+        let preamble = Preamble {
+            sender: 1,
+            sequence,
+            clock_ns: monotonic_ns(),
+        };
+        wire::encode::<topic::Scan>(&preamble, &scan(sequence), &[1.0, 2.0]).unwrap()
+    };
+    let key = wire::key::<topic::Scan>("r1");
+    let put = |encoding: &str, payload: Vec<u8>| {
+        let put = stranger
+            .put(&key, payload)
+            .encoding(Encoding::from(encoding));
+        put.congestion_control(zenoh::qos::CongestionControl::Block)
+            .wait()
+            .unwrap();
+    };
+    let sound = wire::encoding::<topic::Scan>();
+    let mut nan = good(1);
+    let angle = (-1.5f64).to_le_bytes();
+    let at = nan.windows(8).position(|bytes| bytes == angle).unwrap();
+    nan[at..at + 8].copy_from_slice(&f64::NAN.to_le_bytes());
+    let mut cut = good(2);
+    cut.truncate(cut.len() - 1);
+    let refused = [
+        ("backcast.Scan/v9", good(3)),
+        (sound.as_str(), nan),
+        (sound.as_str(), cut),
+        (sound.as_str(), Vec::new()),
+        (sound.as_str(), vec![0xff; topic::Scan::MAX_BYTES + 1]),
+        (sound.as_str(), vec![0xff; 1000]),
+    ];
+    let mut count = 0;
+    for (encoding, payload) in refused {
+        put(encoding, payload);
+        count += 1;
+        // One after the other, so that the queue does not run over.
+        let (report, error) = wait_for_health(&engine.graph, &health, |report| {
+            report.node.as_str() == "bridge" && report.refused >= count
+        });
+        assert_eq!(report.refused, count, "{error}");
+        assert!(!error.is_empty());
+    }
+    // The bridge goes on, and lets in what is sound, once.
+    for sequence in [5, 5, 6] {
+        put(&sound, good(sequence));
+    }
+    let mut heard = Vec::new();
+    wait_until(&engine.graph, &scans, |header, _| {
+        heard.push(header.stamp.counter);
+        header.stamp.counter == 6
+    });
+    assert_eq!(heard, [5, 6]);
+    bridge.stop();
+}
+
+#[test]
+fn who_watches_sees_bridges_and_nodes_come_and_go() {
+    let engine = Machine::new("alive", ENGINE);
+    let endpoint = engine.endpoint();
+    let bridge = engine.bridge("r1", ["--listen", &endpoint]);
+    let watcher = connect(&endpoint);
+    let (sender, changes) = std::sync::mpsc::channel();
+    let _tokens = watcher
+        .liveliness()
+        .declare_subscriber("backcast/r1/alive/**")
+        .history(true)
+        .callback(move |sample| {
+            let key = sample.key_expr().as_str();
+            let node = key.split('/').nth(4).unwrap_or("").to_owned();
+            let _ = sender.send((node, sample.kind()));
+        })
+        .wait()
+        .unwrap();
+    let until = |node: &str, kind: SampleKind| {
+        let wanted = (node.to_owned(), kind);
+        while changes.recv().unwrap() != wanted {}
+    };
+    until("", SampleKind::Put);
+    // A node is there from its first report to its last.
+    let joined = engine.isolated.join("engine");
+    let health = joined.health().unwrap();
+    until("engine", SampleKind::Put);
+    health.stop().unwrap();
+    until("engine", SampleKind::Delete);
+    bridge.kill();
+    until("", SampleKind::Delete);
+}
+
+/// A session of somebody else, connected to `endpoint`.
+fn connect(endpoint: &str) -> Session {
+    let folder = tempfile::tempdir().unwrap();
+    let session = zenoh::open(client(folder.path(), endpoint)).wait();
+    session.unwrap()
+}
+
+fn client(folder: &Path, endpoint: &str) -> zenoh::Config {
+    let file = folder.join("zenoh.json5");
+    let text = format!(
+        "{{ mode: 'client', connect: {{ endpoints: ['{endpoint}'] }}, \
+         scouting: {{ multicast: {{ enabled: false }} }} }}"
+    );
+    std::fs::write(&file, text).unwrap();
+    zenoh::Config::from_file(&file).unwrap()
+}
+
+/// That the map comes is one thing; a reader that speaks Zenoh alone gets it too.
+#[test]
+fn a_reader_of_zenoh_gets_the_map_and_knows_what_it_is() {
+    let laser = Machine::new("reader", LASER);
+    let endpoint = laser.endpoint();
+    let maps = laser.graph.publisher::<topic::Map>().unwrap();
+    let sent = map(0, 30, 20);
+    send(&maps, &sent);
+    let bridge = laser.bridge("r1", ["--listen", &endpoint]);
+    // The bridge's own report that it sent something: the map, for nobody hears
+    // its health.
+    let health = laser.graph.subscriber::<topic::Health>().unwrap();
+    let (report, _) = wait_for_health(&laser.graph, &health, |report| report.sent > 0);
+    assert_eq!(report.sent, 1);
+    let reader = connect(&endpoint);
+    let (sender, samples) = std::sync::mpsc::channel();
+    let _subscriber = reader
+        .declare_subscriber("backcast/*/map")
+        .callback(move |sample| drop(sender.send(sample)))
+        .history(HistoryConfig::default().detect_late_publishers())
+        .wait()
+        .unwrap();
+    let sample = samples.recv().unwrap();
+    assert_eq!(sample.key_expr().as_str(), "backcast/r1/map");
+    let encoding = sample.encoding().to_string();
+    let map = wire::decode::<topic::Map>(&encoding, &sample.payload().to_bytes()).unwrap();
+    assert_eq!((map.header.map_id, map.items), (sent.0.map_id, sent.1));
+    bridge.stop();
+}

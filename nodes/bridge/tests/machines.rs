@@ -1,0 +1,293 @@
+//! One graph over several machines: the laser and the map on one, the engine on
+//! another, somebody who watches on a third, joined by bridges.
+//!
+//! The machines are graphs of their own on this one, over loopback connections or
+//! in network namespaces with cables between them, which can be pulled.
+#![allow(
+    clippy::unwrap_used,
+    reason = "the lint spares test functions but not what they share"
+)]
+
+use std::path::Path;
+use std::time::Duration;
+
+use messages::{HypothesesHeader, Hypothesis, topic};
+use tests::answers;
+use tests::machine::{ENGINE, LASER, MONITOR, Machine};
+use tests::network::{self, Namespace};
+use tests::world::World;
+use transport::testing::{NodeProcess, wait_for, wait_for_health, wait_until};
+use transport::{Flow, Graph, Subscriber, TransportError};
+
+/// What the recording in the repository holds.
+const SCANS: usize = 37;
+
+/// The player waits for the answer to each scan, so that nothing is dropped.
+const LOSSLESS: [&str; 4] = ["--rate", "max", "--wait-for", "accumulator,peak_extractor"];
+
+/// In namespaces: where the laser's machine is called by the engine's, and by the
+/// one that watches.
+const FROM_ENGINE: [&str; 2] = ["--connect", "tcp/10.77.1.1:7447"];
+const FROM_MONITOR: [&str; 2] = ["--connect", "tcp/10.77.2.1:7447"];
+const LISTEN: [&str; 2] = ["--listen", "tcp/0.0.0.0:7447"];
+
+fn machine<'a>(tag: &str, descriptor: &str, place: Option<&'a Namespace>) -> Machine<'a> {
+    Machine::new(tag, env!("CARGO_BIN_EXE_bridge"), descriptor, place)
+}
+
+type Answer = (HypothesesHeader, Vec<Hypothesis>);
+
+fn world() -> World {
+    World::of("malaga_corridor")
+}
+
+fn collect(graph: &Graph, hypotheses: &Subscriber<topic::Hypotheses>) -> Vec<Answer> {
+    let mut found = Vec::new();
+    let outcome = graph.run(&[hypotheses], Duration::from_millis(100), |_| {
+        while let Some(sample) = hypotheses.receive()? {
+            found.push((*sample.header(), sample.items().to_vec()));
+        }
+        let is_complete = found.len() == SCANS;
+        Ok::<_, TransportError>(if is_complete {
+            Flow::Stop
+        } else {
+            Flow::Continue
+        })
+    });
+    outcome.unwrap();
+    found
+}
+
+/// Plays the recording on the machine of the laser, and collects the answers on
+/// that of `watcher`.
+fn answers_at(watcher: &Machine<'_>, laser: &Machine<'_>, engine: &Machine<'_>) -> Vec<Answer> {
+    let hypotheses = watcher.graph.subscriber().unwrap();
+    let health = watcher.graph.subscriber().unwrap();
+    let mut nodes = engine.engine();
+    nodes.push(laser.map_server(&world().map()));
+    // The player does not wait for those who watch from elsewhere.
+    wait_for_health(&watcher.graph, &health, |report| {
+        report.node.as_str() == "peak_extractor"
+    });
+    let source = laser.replayer(&world().recording(), &LOSSLESS);
+    let found = collect(&watcher.graph, &hypotheses);
+    assert_eq!(source.exit_code(), Some(0), "the player lost something");
+    nodes.into_iter().for_each(NodeProcess::stop);
+    found
+}
+
+/// Compares with the answers of one machine. Times are others, and the rest is the
+/// same to the last bit.
+fn assert_same(found: &[Answer]) {
+    let world = world();
+    let one = answers::of_graph("one", &world.recording(), &world.map(), SCANS, &[]);
+    assert_eq!((found.len(), one.hypotheses.len()), (SCANS, SCANS));
+    for ((header, poses), (expected_header, expected_poses)) in found.iter().zip(&one.hypotheses) {
+        let counter = header.stamp.counter;
+        assert_eq!(counter, expected_header.stamp.counter);
+        assert_eq!(header.stamp.measured_ns, expected_header.stamp.measured_ns);
+        assert_eq!(header.map_id, expected_header.map_id);
+        assert_eq!(header.verdict, expected_header.verdict, "scan {counter}");
+        assert_eq!(poses, expected_poses, "scan {counter}");
+    }
+}
+
+#[test]
+fn poses_are_those_of_one_machine() {
+    let laser = machine("laser", LASER, None);
+    let engine = machine("engine", ENGINE, None);
+    let endpoint = laser.loopback();
+    let bridges = [
+        engine.bridge(&["--connect", &endpoint]),
+        laser.bridge(&["--listen", &endpoint]),
+    ];
+    let found = answers_at(&laser, &laser, &engine);
+    bridges.into_iter().for_each(NodeProcess::stop);
+    assert_same(&found);
+}
+
+#[test]
+fn without_bridges_nothing_is_heard() {
+    let laser = machine("laser0", LASER, None);
+    let engine = machine("engine0", ENGINE, None);
+    let scans = engine.graph.subscriber::<topic::Scan>().unwrap();
+    let maps = engine.graph.subscriber::<topic::Map>().unwrap();
+    let hypotheses = laser.graph.subscriber::<topic::Hypotheses>().unwrap();
+    let played = laser.graph.subscriber::<topic::Scan>().unwrap();
+    let served = laser.graph.subscriber::<topic::Map>().unwrap();
+    let mut nodes = engine.engine();
+    nodes.push(laser.map_server(&world().map()));
+    let source = laser.replayer(&world().recording(), &["--rate", "1000"]);
+    wait_until(&laser.graph, &served, |_, _| true);
+    wait_until(&laser.graph, &played, |header, _| {
+        header.stamp.counter == SCANS as u64 - 1
+    });
+    // Nobody holds it back, so it may have lost some on a slow machine.
+    assert!(matches!(source.exit_code(), Some(0 | 3)));
+    nodes.into_iter().for_each(NodeProcess::stop);
+    assert!(scans.receive().unwrap().is_none(), "a scan");
+    assert!(maps.receive().unwrap().is_none(), "a map");
+    assert!(hypotheses.receive().unwrap().is_none(), "an answer");
+}
+
+/// Namespaces with a cable from the first to each of the others.
+fn star<const N: usize>() -> [Namespace; N] {
+    let all: [Namespace; N] = std::array::from_fn(|_| Namespace::new());
+    let (hub, others) = all.split_first().unwrap();
+    for (i, other) in others.iter().enumerate() {
+        let i = i + 1;
+        let ends = [format!("10.77.{i}.1/24"), format!("10.77.{i}.2/24")];
+        hub.connect(other, &format!("cable{i}"), [&ends[0], &ends[1]]);
+    }
+    all
+}
+
+#[test]
+fn two_machines_with_a_cable_answer_as_one() {
+    if !network::is_allowed("two_machines_with_a_cable_answer_as_one") {
+        return;
+    }
+    let [here, there] = star();
+    let laser = machine("laser2", LASER, Some(&here));
+    let engine = machine("engine2", ENGINE, Some(&there));
+    let bridges = [engine.bridge(&FROM_ENGINE), laser.bridge(&LISTEN)];
+    let found = answers_at(&laser, &laser, &engine);
+    bridges.into_iter().for_each(NodeProcess::stop);
+    assert_same(&found);
+}
+
+#[test]
+fn three_machines_answer_as_one() {
+    if !network::is_allowed("three_machines_answer_as_one") {
+        return;
+    }
+    let places: [Namespace; 3] = star();
+    let laser = machine("laser3", LASER, Some(&places[0]));
+    let engine = machine("engine3", ENGINE, Some(&places[1]));
+    let monitor = machine("monitor3", MONITOR, Some(&places[2]));
+    let bridges = [
+        monitor.bridge(&FROM_MONITOR),
+        engine.bridge(&FROM_ENGINE),
+        laser.bridge(&LISTEN),
+    ];
+    let found = answers_at(&monitor, &laser, &engine);
+    bridges.into_iter().for_each(NodeProcess::stop);
+    assert_same(&found);
+}
+
+/// What the machines that are not the laser's have heard.
+struct Heard<'a> {
+    machine: &'a Machine<'a>,
+    maps: Subscriber<topic::Map>,
+    hypotheses: Subscriber<topic::Hypotheses>,
+    /// Of the maps and the answers, in the order of their coming.
+    map_ids: Vec<u64>,
+    counters: Vec<u64>,
+}
+
+impl<'a> Heard<'a> {
+    fn new(machine: &'a Machine<'a>) -> Self {
+        Heard {
+            machine,
+            maps: machine.graph.subscriber().unwrap(),
+            hypotheses: machine.graph.subscriber().unwrap(),
+            map_ids: Vec::new(),
+            counters: Vec::new(),
+        }
+    }
+
+    /// Listens until an answer is about a map of this id, and more than `counter`.
+    fn until(&mut self, map_id: u64, counter: u64) {
+        let graph = &self.machine.graph;
+        let tick = Duration::from_millis(100);
+        let outcome = graph.run(&[&self.maps, &self.hypotheses], tick, |_| {
+            let mut flow = Flow::Continue;
+            while let Some(map) = self.maps.receive()? {
+                self.map_ids.push(map.header().map_id);
+            }
+            while let Some(answer) = self.hypotheses.receive()? {
+                let header = answer.header();
+                self.counters.push(header.stamp.counter);
+                if header.map_id == map_id && header.stamp.counter > counter {
+                    flow = Flow::Stop;
+                }
+            }
+            Ok::<_, TransportError>(flow)
+        });
+        outcome.unwrap();
+    }
+}
+
+/// The id of the newest map that is served on the laser's machine, after the one
+/// that is given.
+fn served(machine: &Machine<'_>, maps: &Subscriber<topic::Map>, not: u64) -> u64 {
+    wait_for(&machine.graph, maps, |header, _| {
+        (header.map_id != not).then_some(header.map_id)
+    })
+}
+
+/// The number of the scan that comes after so many more.
+fn scan_after(machine: &Machine<'_>, scans: u64) -> u64 {
+    let played = machine.graph.subscriber::<topic::Scan>().unwrap();
+    let mut seen = 0;
+    wait_for(&machine.graph, &played, |header, _| {
+        seen += 1;
+        (seen > scans).then_some(header.stamp.counter)
+    })
+}
+
+/// Makes a map another one: a cell in its corner.
+fn change(map: &Path) {
+    let mut grid = map::load(map).unwrap();
+    grid.cells[0] = if grid.cells[0] == 100 { 0 } else { 100 };
+    map::save(&grid, map).unwrap();
+}
+
+/// Ten seconds of scans, which come five times a second.
+const OUTAGE: u64 = 50;
+
+#[test]
+fn a_cable_that_was_pulled_is_plugged_in_and_all_goes_on() {
+    if !network::is_allowed("a_cable_that_was_pulled_is_plugged_in_and_all_goes_on") {
+        return;
+    }
+    let places: [Namespace; 3] = star();
+    let laser = machine("laser4", LASER, Some(&places[0]));
+    let engine = machine("engine4", ENGINE, Some(&places[1]));
+    let monitor = machine("monitor4", MONITOR, Some(&places[2]));
+    let maps = laser.graph.subscriber::<topic::Map>().unwrap();
+    let map = laser.copy_of_map(&world().map());
+    let mut heard = Heard::new(&monitor);
+    let mut nodes = engine.engine();
+    nodes.extend([
+        monitor.bridge(&FROM_MONITOR),
+        engine.bridge(&FROM_ENGINE),
+        laser.bridge(&LISTEN),
+        laser.map_server(&map),
+        laser.replayer(&world().recording(), &["--loop"]),
+    ]);
+    let first = served(&laser, &maps, 0);
+    heard.until(first, 0);
+    for cable in ["cable1", "cable2"] {
+        places[0].pull(cable);
+    }
+    // Meanwhile a wall is built.
+    change(&map);
+    let second = served(&laser, &maps, first);
+    let back = scan_after(&laser, OUTAGE);
+    for cable in ["cable1", "cable2"] {
+        places[0].plug(cable);
+    }
+    heard.until(second, back);
+    // Each map and each answer once, whatever was sent again.
+    assert_eq!(heard.map_ids, [first, second]);
+    let counters = &heard.counters;
+    assert!(counters.is_sorted_by(|a, b| a < b), "{counters:?}");
+    // Who joins now gets the map and the boundary that were sent long ago.
+    let late = engine.graph.subscriber::<topic::Boundary>().unwrap();
+    wait_until(&engine.graph, &late, |header, _| header.map_id == second);
+    let late = monitor.graph.subscriber::<topic::Map>().unwrap();
+    wait_until(&monitor.graph, &late, |header, _| header.map_id == second);
+    // No process was lost: each is still there to be stopped.
+    nodes.into_iter().for_each(NodeProcess::stop);
+}

@@ -1,0 +1,156 @@
+//! Network namespaces with cables between them: each is a machine as far as the
+//! network goes.
+//!
+//! They are anonymous and go with the test, even if it is killed. Shared memory and
+//! files are those of the machine that runs the test.
+
+use std::io::{BufRead, BufReader};
+use std::process::{Child, Command, Stdio};
+
+use transport::Graph;
+use transport::testing::NodeProcess;
+
+/// Set for a test that runs in a user namespace of its own.
+const INSIDE: &str = "BACKCAST_TEST_INSIDE";
+
+/// A network namespace, which lives as long as this.
+pub struct Namespace {
+    /// Stands in the namespace, and ends when the test does, for then nobody holds
+    /// the other end of its standard input.
+    holder: Child,
+}
+
+/// Whether the calling test, which is called `test`, is to go on: it may make
+/// namespaces. Otherwise it has been run already where it may, in a user
+/// namespace, or the kernel forbids those, which is said.
+///
+/// # Panics
+/// If the test fails there.
+#[must_use]
+pub fn is_allowed(test: &str) -> bool {
+    if succeeds("unshare", &["--net", "true"]) {
+        return true;
+    }
+    let alone = [
+        "--user",
+        "--map-current-user",
+        "--keep-caps",
+        "--net",
+        "true",
+    ];
+    if std::env::var_os(INSIDE).is_some() || !succeeds("unshare", &alone) {
+        eprintln!("SKIPPED: {test}: this kernel lets this user make no network namespaces");
+        return false;
+    }
+    let status = Command::new("unshare")
+        .args(&alone[..3])
+        .arg(std::env::current_exe().unwrap())
+        .args([test, "--exact", "--nocapture"])
+        .env(INSIDE, "1")
+        .status();
+    assert!(
+        status.unwrap().success(),
+        "{test} fails in a user namespace"
+    );
+    false
+}
+
+fn succeeds(program: &str, arguments: &[&str]) -> bool {
+    let mut command = Command::new(program);
+    let outcome = command.args(arguments).stderr(Stdio::null()).status();
+    outcome.is_ok_and(|status| status.success())
+}
+
+impl Default for Namespace {
+    fn default() -> Self {
+        Self::new()
+    }
+}
+
+impl Namespace {
+    /// A namespace with nothing but its own loopback.
+    ///
+    /// # Panics
+    /// If it cannot be made; see [`is_allowed`].
+    #[must_use]
+    pub fn new() -> Self {
+        let mut holder = Command::new("unshare")
+            .args(["--net", "sh", "-c", "ip link set lo up && echo up && cat"])
+            .stdin(Stdio::piped())
+            .stdout(Stdio::piped())
+            .spawn()
+            .unwrap();
+        let mut line = String::new();
+        let output = holder.stdout.take().unwrap();
+        BufReader::new(output).read_line(&mut line).unwrap();
+        assert_eq!(line, "up\n", "no namespace; is iproute2 installed?");
+        Namespace { holder }
+    }
+
+    /// Lays a cable called `name` to another namespace; the ends have these
+    /// addresses, as `10.0.1.1/24`.
+    ///
+    /// # Panics
+    /// If the system refuses.
+    pub fn connect(&self, other: &Namespace, name: &str, ends: [&str; 2]) {
+        let there = other.holder.id();
+        self.ip(&format!(
+            "link add name {name} type veth peer name {name} netns {there}"
+        ));
+        for (namespace, end) in [(self, ends[0]), (other, ends[1])] {
+            namespace.ip(&format!("address add {end} dev {name}"));
+            namespace.plug(name);
+        }
+    }
+
+    /// Pulls the cable of that name.
+    ///
+    /// # Panics
+    /// As [`Namespace::connect`].
+    pub fn pull(&self, name: &str) {
+        self.ip(&format!("link set {name} down"));
+    }
+
+    /// Plugs it in again.
+    ///
+    /// # Panics
+    /// As [`Namespace::connect`].
+    pub fn plug(&self, name: &str) {
+        self.ip(&format!("link set {name} up"));
+    }
+
+    /// Starts a node of `graph` in this namespace.
+    #[must_use]
+    pub fn start(&self, graph: &Graph, executable: &str, arguments: &[&str]) -> NodeProcess {
+        let place = self.place();
+        let inside = [place.as_str(), executable].into_iter();
+        NodeProcess::start("nsenter", graph, inside.chain(arguments.iter().copied()))
+    }
+
+    /// A program that is to run in this namespace.
+    #[must_use]
+    pub fn command(&self, program: &str) -> Command {
+        let mut command = Command::new("nsenter");
+        command.args([&self.place(), program]);
+        command
+    }
+
+    /// The option by which `nsenter` enters.
+    fn place(&self) -> String {
+        format!("--net=/proc/{}/ns/net", self.holder.id())
+    }
+
+    /// Lets `ip` do something.
+    fn ip(&self, arguments: &str) {
+        let mut ip = self.command("ip");
+        let status = ip.args(arguments.split_whitespace()).status();
+        assert!(status.unwrap().success(), "ip {arguments}");
+    }
+}
+
+impl Drop for Namespace {
+    fn drop(&mut self) {
+        let _ = self.holder.kill();
+        let _ = self.holder.wait();
+    }
+}
