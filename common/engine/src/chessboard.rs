@@ -1,11 +1,13 @@
 //! Distances on a chessboard: the larger of those along x and along y.
 
-/// Lowers each cell to its distance from the nearest lower ones: to the least of
-/// any cell's value and its chessboard distance from there, saturated at 255. The
-/// outermost rows and columns count, and stay as they are.
+/// Lowers each inner cell to its distance from the nearest lower ones: to the least
+/// of any cell's value and its chessboard distance from there, saturated at 255. The
+/// outermost rows and columns count, and stay as they are; all of them must have the
+/// same value.
 ///
 /// Two passes, each from the four neighbours that it has been to: with steps of one
-/// in all eight directions that is exact.
+/// in all eight directions that is exact. Where the outermost cells differed, the
+/// shortest way might lead along them, which nothing follows.
 pub fn spread(cells: &mut [u8], columns: usize) {
     if columns == 0 {
         return;
@@ -39,18 +41,22 @@ mod tests {
         fn each_cell_has_its_distance_from_the_nearest_lower_one(
             columns in 0usize..9, rows in 0usize..9, values in prop::collection::vec(
                 prop_oneof![4 => Just(255u8), 1 => 0u8..4, 1 => 250u8..=255], 81,
-            ),
+            ), margin in prop_oneof![Just(255u8), 0u8..9],
         ) {
-            let before = &values[..columns * rows];
-            let mut after = before.to_vec();
+            let is_outermost = |i: usize| {
+                let (x, y) = (i % columns, i / columns);
+                x == 0 || y == 0 || x == columns - 1 || y == rows - 1
+            };
+            let value = |i: usize| if is_outermost(i) { margin } else { values[i] };
+            let before: Vec<u8> = (0..columns * rows).map(value).collect();
+            let mut after = before.clone();
             spread(&mut after, columns);
             for (i, &found) in after.iter().enumerate() {
                 let (x, y) = (i % columns, i / columns);
-                let is_outermost = x == 0 || y == 0 || x == columns - 1 || y == rows - 1;
                 let away = |j: usize| (j % columns).abs_diff(x).max((j / columns).abs_diff(y));
                 let through = |j: usize| usize::from(before[j]) + away(j);
                 let nearest = (0..before.len()).map(through).min();
-                let expected = if is_outermost { before[i] } else { nearest.unwrap().min(255) as u8 };
+                let expected = if is_outermost(i) { before[i] } else { nearest.unwrap().min(255) as u8 };
                 prop_assert_eq!(found, expected);
             }
         }
