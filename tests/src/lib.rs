@@ -6,9 +6,12 @@ pub mod answers;
 pub mod browser;
 pub mod building;
 pub mod executables;
+pub mod http;
 pub mod machine;
 pub mod network;
+pub mod python;
 pub mod recorded;
+pub mod robot;
 pub mod world;
 
 use std::path::PathBuf;

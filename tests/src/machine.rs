@@ -8,7 +8,7 @@ use std::path::{Path, PathBuf};
 
 use tempfile::TempDir;
 use transport::Graph;
-use transport::testing::{Isolated, NodeProcess};
+use transport::testing::{Isolated, NodeProcess, wait_until_ready};
 
 use crate::executables;
 use crate::network::Namespace;
@@ -40,6 +40,8 @@ pub const MONITOR: &str = "nodes:
 pub struct Machine<'a> {
     /// The executable of its bridge.
     bridge: &'a str,
+    /// What its robot is called.
+    robot: &'a str,
     /// The test's own membership of the machine's graph.
     pub graph: Graph,
     place: Option<&'a Namespace>,
@@ -62,6 +64,7 @@ impl<'a> Machine<'a> {
         std::fs::write(folder.path().join("dataflow.yaml"), descriptor).unwrap();
         Machine {
             bridge,
+            robot: "r1",
             graph: isolated.join("test"),
             place,
             folder,
@@ -69,16 +72,23 @@ impl<'a> Machine<'a> {
         }
     }
 
+    /// The same of another robot than `r1`.
+    #[must_use]
+    pub fn of_robot(mut self, robot: &'a str) -> Self {
+        self.robot = robot;
+        self
+    }
+
+    /// The machine's graph, for others who join it.
+    #[must_use]
+    pub fn isolated(&self) -> &Isolated {
+        &self.isolated
+    }
+
     /// An endpoint on the test's loopback that no other machine has.
     #[must_use]
     pub fn loopback(&self) -> String {
         format!("tcp/{}:7447", self.isolated.name().loopback())
-    }
-
-    /// A folder of the machine's own.
-    #[must_use]
-    pub fn folder(&self) -> &Path {
-        self.folder.path()
     }
 
     /// Starts a node.
@@ -99,8 +109,17 @@ impl<'a> Machine<'a> {
     #[must_use]
     pub fn bridge(&self, network: &[&str]) -> NodeProcess {
         let descriptor = self.folder.path().join("dataflow.yaml");
-        let common = ["--robot", "r1", "--dataflow", descriptor.to_str().unwrap()];
+        let descriptor = descriptor.to_str().unwrap();
+        let common = ["--robot", self.robot, "--dataflow", descriptor];
         self.run(self.bridge, &[&common[..], network].concat())
+    }
+
+    /// The same, and waits until it has joined the network.
+    #[must_use]
+    pub fn joined_bridge(&self, network: &[&str]) -> NodeProcess {
+        let bridge = self.bridge(network);
+        wait_until_ready(&self.graph, "bridge");
+        bridge
     }
 
     /// Starts the three nodes that find places.

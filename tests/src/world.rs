@@ -1,11 +1,13 @@
 //! A recording and its map, and what the engine says about them when it is
 //! asked directly.
 
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 
+use conversion::measurements::scan_header;
 use engine::grid::{CellRules, Grid, GridFrame};
 use engine::localizer::{Localizer, LocalizerConfig, Prior};
 use engine::scan::Scan;
+use messages::{Name, ScanHeader};
 use recording::ros::LaserScan;
 use recording::{Kind, Message, Recording};
 
@@ -61,16 +63,29 @@ impl World {
     /// All scans, by time.
     #[must_use]
     pub fn scans(&self) -> Vec<LaserScan> {
-        let recording = Recording::open(self.recording()).unwrap();
-        let scans =
-            recording
-                .records_of(&[Kind::Scan])
-                .map(|record| match record.unwrap().message {
-                    Message::Scan(scan) => scan,
-                    other => panic!("asked for scans, got {:?}", other.kind()),
-                });
-        scans.collect()
+        scans_of(&self.recording())
     }
+}
+
+/// All scans of a recording, by time.
+#[must_use]
+pub fn scans_of(recording: &Path) -> Vec<LaserScan> {
+    let recording = Recording::open(recording).unwrap();
+    let messages = recording.records_of(&[Kind::Scan]);
+    let scans = messages.map(|record| match record.unwrap().message {
+        Message::Scan(scan) => scan,
+        other => panic!("asked for scans, got {:?}", other.kind()),
+    });
+    scans.collect()
+}
+
+/// The header of a recorded scan as the graph has it, sent now.
+#[must_use]
+pub fn as_the_graph_has_it(scan: &LaserScan, counter: u64) -> ScanHeader {
+    let mut header = scan_header(scan, Name::new("laser"), None);
+    header.stamp.entered_ns = transport::monotonic_ns();
+    header.stamp.counter = counter;
+    header
 }
 
 /// A recorded scan as the engine takes it.

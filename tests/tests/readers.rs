@@ -11,9 +11,9 @@ use std::process::Command;
 use recording::{Message, Recording};
 use serde_json::{Value, json};
 use tempfile::TempDir;
-use tests::executables;
 use tests::recorded::{messages, record};
 use tests::world::World;
+use tests::{executables, python};
 
 /// The versions of the Python readers that are compared with.
 const READERS: [&str; 3] = ["mcap==1.6.0", "mcap-ros2-support==0.6.0", "rosbags==0.11.9"];
@@ -112,28 +112,12 @@ out["counts"] = counts
 print(json.dumps({"read": out, "own": own}))
 "#;
 
-/// A Python with the readers, in the target folder; `None` where it cannot be
-/// made, as without a network.
 fn python() -> Option<PathBuf> {
-    let test = std::env::current_exe().unwrap();
-    let folder = test.ancestors().nth(3).unwrap().join("python_readers");
-    let python = folder.join("bin/python");
-    let run = |program: &Path, arguments: &[&str]| {
-        let outcome = Command::new(program).args(arguments).output();
-        outcome.is_ok_and(|outcome| outcome.status.success())
-    };
-    let has_readers = || run(&python, &["-c", "import mcap_ros2, rosbags"]);
-    if has_readers() {
-        return Some(python);
+    let python = python::with("readers", &READERS, "mcap_ros2, rosbags");
+    if python.is_none() {
+        eprintln!("SKIPPED: no Python with {READERS:?}: there is no python3, or no network");
     }
-    let made = run(
-        Path::new("python3"),
-        &["-m", "venv", folder.to_str().unwrap()],
-    ) && run(
-        &python,
-        &[&["-m", "pip", "install", "-q"], &READERS[..]].concat(),
-    ) && has_readers();
-    made.then_some(python)
+    python
 }
 
 fn as_read_by(python: &Path, reader: &str, path: &Path) -> Value {
@@ -149,7 +133,6 @@ fn as_read_by(python: &Path, reader: &str, path: &Path) -> Value {
 #[test]
 fn the_readers_of_others_agree() {
     let Some(python) = python() else {
-        eprintln!("SKIPPED: no Python with {READERS:?}: there is no python3, or no network");
         return;
     };
     let world = World::of("malaga_corridor");
@@ -215,7 +198,6 @@ with AnyReader([recording]) as reader:
 #[test]
 fn bags_of_others_in_sqlite_read_as_the_recording() {
     let Some(python) = python() else {
-        eprintln!("SKIPPED: no Python with {READERS:?}: there is no python3, or no network");
         return;
     };
     let original = World::of("malaga_corridor").recording();

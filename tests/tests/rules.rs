@@ -12,7 +12,7 @@ use serde_json::Value;
 
 /// The only nodes that may link zenoh, by themselves or with `network`: the others
 /// must build in a minute.
-const ZENOH_NODES: [&str; 4] = ["bridge", "monitor", "locate_server", "ros2_gateway"];
+const ZENOH_NODES: [&str; 4] = ["bridge", "fleet_monitor", "locate_server", "ros2_gateway"];
 
 /// What cargo knows of the workspace.
 fn metadata() -> Value {
@@ -51,6 +51,11 @@ fn folders(parent: &str) -> BTreeSet<String> {
     entries
         .map(|entry| entry.unwrap().file_name().into_string().unwrap())
         .collect()
+}
+
+fn links_zenoh(dependencies: &BTreeSet<String>) -> bool {
+    let is_zenoh = |name: &String| name.starts_with("zenoh") || name == "network";
+    dependencies.iter().any(is_zenoh)
 }
 
 /// All files below a folder.
@@ -95,6 +100,13 @@ fn the_simulation_knows_no_engine_process_clock_or_file() {
     let allowed = BTreeSet::from(["geometry", "map"].map(str::to_owned));
     assert_eq!(known("simulation"), allowed);
     is_pure("common/simulation/src");
+}
+
+#[test]
+fn conversions_know_no_process_socket_clock_or_file() {
+    let allowed = BTreeSet::from(["geometry", "messages", "recording"].map(str::to_owned));
+    assert_eq!(known("conversion"), allowed);
+    is_pure("common/conversion/src");
 }
 
 #[test]
@@ -155,11 +167,9 @@ fn each_crate_has_the_name_of_its_folder() {
 
 #[test]
 fn zenoh_is_linked_only_where_machines_are_joined() {
-    let links_zenoh = |name: &str| name.starts_with("zenoh") || name == "network";
     for (name, dependencies) in dependencies() {
         let may = ZENOH_NODES.contains(&name.as_str()) || name == "network";
-        let does = dependencies.iter().any(|name| links_zenoh(name));
-        assert!(may || !does, "{name}");
+        assert!(may || !links_zenoh(&dependencies), "{name}");
     }
 }
 
@@ -174,13 +184,10 @@ fn the_first_command_builds_every_node_but_those_that_link_zenoh() {
             path.rsplit('/').next().unwrap().to_owned()
         })
         .collect();
-    let links_zenoh = |node: &String| {
-        let linked = &dependencies()[node];
-        linked.iter().any(|name| name.starts_with("zenoh"))
-    };
+    let dependencies = dependencies();
     let expected: BTreeSet<_> = folders("nodes")
         .into_iter()
-        .filter(|node| !links_zenoh(node))
+        .filter(|node| !links_zenoh(&dependencies[node]))
         .collect();
     assert_eq!(built, expected);
 }

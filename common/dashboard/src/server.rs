@@ -26,6 +26,7 @@ use axum::Router;
 use axum::extract::DefaultBodyLimit;
 use axum::routing::{get, post, put};
 use tokio::sync::{Semaphore, oneshot};
+use transport::CONSOLE_ONLY;
 
 use crate::token::Token;
 use crate::{DashboardError, Options, Robot, Robots};
@@ -150,16 +151,21 @@ impl Server {
         })
     }
 
-    /// Where it listens.
-    #[must_use]
-    pub fn address(&self) -> SocketAddr {
-        self.address
-    }
-
-    /// The token that write actions need, unless the user has it in a file.
-    #[must_use]
-    pub fn token(&self) -> Option<&str> {
-        self.token.as_deref()
+    /// Says in the log where to `watch` and what to know of it, if it was `asked` to
+    /// listen there.
+    pub fn announce(&self, watch: &str, asked: SocketAddr) {
+        let address = self.address;
+        tracing::info!("{watch} on http://{address}");
+        if let Some(token) = &self.token {
+            let place = format!("http://{address}/#token={token}");
+            tracing::info!(target: CONSOLE_ONLY, "to change something there: {place}");
+        }
+        if !address.ip().is_loopback() {
+            tracing::warn!("whoever reaches {address} can read, and nothing is encrypted");
+        }
+        if asked.port() != 0 && address.port() != asked.port() {
+            tracing::info!("port {} is taken", asked.port());
+        }
     }
 
     /// Whether it still does.

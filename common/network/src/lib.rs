@@ -1,12 +1,17 @@
 //! The Zenoh session of a node, as a user sets it: a file in Zenoh's own words,
-//! options on top, and below both what keeps a machine to itself.
+//! options on top, and below both what keeps a machine to itself. What comes from
+//! strangers is taken, counted and refused in the same way everywhere.
 //!
 //! For the nodes that join machines; nothing else links Zenoh.
 
 mod error;
 mod options;
+mod queue;
+mod report;
 mod session;
 
 pub use error::{Cause, NetworkError};
 pub use options::Options;
+pub use queue::{Past, Queue, Room};
+pub use report::Report;
 pub use session::{LOG, open, settings};

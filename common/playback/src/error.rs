@@ -1,7 +1,7 @@
 //! What can go wrong with the messages of a recording.
 
+use conversion::Unsayable;
 use recording::RecordingError;
-use recording::ros::ConversionError;
 
 /// What was tried, what was found and what is allowed.
 #[derive(Debug, thiserror::Error)]
@@ -9,28 +9,15 @@ pub enum PlaybackError {
     /// The recording, or a message of it, cannot be read.
     #[error(transparent)]
     Recording(#[from] Box<RecordingError>),
-    /// A frame's name does not fit into a message.
-    #[error(
-        "the message of {topic} at log time {log_time_ns} ns: the frame {frame:?} has {} bytes, \
-         at most {} are allowed", frame.len(), messages::Name::CAPACITY
-    )]
-    Frame {
-        /// The channel.
-        topic: String,
-        /// Nanoseconds since 1970.
-        log_time_ns: i64,
-        /// The name.
-        frame: String,
-    },
-    /// A pose is none.
+    /// A message says what the graph cannot.
     #[error("the message of {topic} at log time {log_time_ns} ns cannot be used: {reason}")]
-    Pose {
+    Message {
         /// The channel.
         topic: String,
         /// Nanoseconds since 1970.
         log_time_ns: i64,
         /// What is wrong.
-        reason: Box<ConversionError>,
+        reason: Unsayable,
     },
 }
 
@@ -39,7 +26,7 @@ impl PlaybackError {
     #[must_use]
     pub fn is_about_one_message(&self) -> bool {
         match self {
-            PlaybackError::Frame { .. } | PlaybackError::Pose { .. } => true,
+            PlaybackError::Message { .. } => true,
             PlaybackError::Recording(error) => matches!(**error, RecordingError::Message { .. }),
         }
     }
@@ -49,7 +36,7 @@ impl PlaybackError {
     pub fn is_damage(&self) -> bool {
         match self {
             PlaybackError::Recording(error) => matches!(**error, RecordingError::Damaged { .. }),
-            PlaybackError::Frame { .. } | PlaybackError::Pose { .. } => false,
+            PlaybackError::Message { .. } => false,
         }
     }
 }

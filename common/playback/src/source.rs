@@ -6,11 +6,12 @@
 use std::collections::BTreeMap;
 use std::sync::Arc;
 
+use conversion::measurements::scan_header;
 use messages::{GroundTruth, Odometry, Pose2, ScanHeader};
 use recording::{Channel, Kind, Message, Record, Recording, RecordingError, Records};
 
 use crate::PlaybackError;
-use crate::convert::{Place, scan_header};
+use crate::convert::Place;
 use crate::selection::Selection;
 
 /// A message that is ready but for its moment.
@@ -323,7 +324,7 @@ mod tests {
         assert!(played[2].is_ok());
         for (refused, expected) in played
             .iter()
-            .zip(["/scan at log time 0 ns: the frame", "/odom"])
+            .zip(["/scan at log time 0 ns cannot be used: the frame", "/odom"])
         {
             let error = refused.as_ref().unwrap_err();
             assert!(error.is_about_one_message());

@@ -16,8 +16,11 @@ const MAX_PADDING: usize = 3;
 const BIG_ENDIAN: [u8; 2] = [0, 0];
 const LITTLE_ENDIAN: [u8; 2] = [0, 1];
 
-/// Decodes a message; the reason says why it is none.
-pub(crate) fn decode<T: DeserializeOwned>(bytes: &[u8]) -> Result<T, String> {
+/// Decodes a message.
+///
+/// # Errors
+/// The reason why it is none.
+pub fn decode<T: DeserializeOwned>(bytes: &[u8]) -> Result<T, String> {
     let Some((&[kind, format, _, _], body)) = bytes.split_first_chunk() else {
         return Err(format!(
             "it has {} bytes, less than a CDR header",

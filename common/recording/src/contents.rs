@@ -38,7 +38,7 @@ impl Recording {
     /// # Errors
     /// If a transform is no rotation, or the laser is not level.
     pub fn base_from_laser(&self, laser: &str) -> Result<Option<Mount>, RecordingError> {
-        let mut tree = mount::Tree::default();
+        let mut tree = mount::TransformTree::default();
         for record in self.readable(&[Kind::StaticTransforms]) {
             let record = record?;
             let Message::StaticTransforms(transforms) = &record.message else {

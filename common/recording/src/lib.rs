@@ -40,14 +40,14 @@ pub mod write;
 #[cfg(feature = "rosbag2")]
 pub use bag::{is_bag, write_bag};
 pub use block::Part;
-pub use cdr::encode as encode_cdr;
+pub use cdr::{decode as decode_cdr, encode as encode_cdr};
 pub use chunk::MAX_CHUNK_BYTES;
 pub use damage::Damage;
 pub use error::RecordingError;
 pub use extras::{AttachedFile, MetadataRecord};
 pub use kind::Kind;
 pub use message::{Message, Record};
-pub use mount::Mount;
+pub use mount::{MAX_TILT_DEGREES, Mount, TransformTree};
 pub use raw::{RawRecord, RawRecords};
 pub use reading::Records;
 pub use recording::Recording;

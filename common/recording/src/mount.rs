@@ -12,7 +12,7 @@ const BASES: [&str; 3] = ["base_link", "base_footprint", "base"];
 
 /// How far a laser may be from level: at 10 degrees a wall seems 1.5 percent
 /// farther than it is.
-pub(crate) const MAX_TILT_DEGREES: f64 = 10.0;
+pub const MAX_TILT_DEGREES: f64 = 10.0;
 
 /// A laser's place on the robot.
 #[derive(Debug, Clone, PartialEq)]
@@ -29,14 +29,17 @@ pub struct Mount {
 
 /// Frames and what is known between them.
 #[derive(Debug, Default)]
-pub(crate) struct Tree {
+pub struct TransformTree {
     /// By child: its parent, and `parent_from_child`.
     parents: BTreeMap<String, (String, Isometry3<f64>)>,
 }
 
-impl Tree {
+impl TransformTree {
     /// Adds a transform, or replaces the one that its child had.
-    pub(crate) fn add(&mut self, stamped: &TransformStamped) -> Result<(), ConversionError> {
+    ///
+    /// # Errors
+    /// If it is no transform.
+    pub fn add(&mut self, stamped: &TransformStamped) -> Result<(), ConversionError> {
         let parent_from_child = isometry(&stamped.transform)?;
         let parent = plain(&stamped.header.frame_id).to_owned();
         let child = plain(&stamped.child_frame_id).to_owned();
@@ -44,9 +47,16 @@ impl Tree {
         Ok(())
     }
 
+    /// How many frames have a parent.
+    #[must_use]
+    pub fn children(&self) -> usize {
+        self.parents.len()
+    }
+
     /// The laser's place in the base frame that is preferred among those that
     /// it is connected to.
-    pub(crate) fn base_from(&self, laser: &str) -> Option<Mount> {
+    #[must_use]
+    pub fn base_from(&self, laser: &str) -> Option<Mount> {
         let connected = self.connected_to(plain(laser));
         let base = BASES.iter().find_map(|base| {
             let is_base = |frame: &&String| frame.rsplit('/').next() == Some(base);
@@ -62,6 +72,17 @@ impl Tree {
             height_m: place.z,
             tilt_degrees: up.z.clamp(-1.0, 1.0).acos().to_degrees(),
         })
+    }
+
+    /// Where another frame lies in the laser's, seen from above, if they are
+    /// connected.
+    #[must_use]
+    pub fn laser_from(&self, laser: &str, frame: &str) -> Option<Pose> {
+        let connected = self.connected_to(plain(laser));
+        let laser_from_frame = connected.get(plain(frame))?;
+        let forward = laser_from_frame.rotation * Vector3::x();
+        let place = laser_from_frame.translation;
+        Some(Pose::new(place.x, place.y, forward.y.atan2(forward.x)))
     }
 
     /// Every frame that is connected to the laser, as `laser_from_frame`.
@@ -135,8 +156,8 @@ mod tests {
         }
     }
 
-    fn tree(transforms: &[TransformStamped]) -> Tree {
-        let mut tree = Tree::default();
+    fn tree(transforms: &[TransformStamped]) -> TransformTree {
+        let mut tree = TransformTree::default();
         for transform in transforms {
             tree.add(transform).unwrap();
         }
@@ -159,6 +180,9 @@ mod tests {
         assert_near(mount.base_from_laser, Pose::new(0.78, 0.0, 0.0));
         assert_eq!((mount.height_m, mount.tilt_degrees), (0.3, 0.0));
         assert_eq!(tree.base_from("camera"), None);
+        let behind = tree.laser_from("laser", "/base_link").unwrap();
+        assert_near(behind, Pose::new(-0.78, 0.0, 0.0));
+        assert_eq!(tree.laser_from("laser", "camera"), None);
     }
 
     #[test]
@@ -221,6 +245,6 @@ mod tests {
             "acos is flat there"
         );
         upside_down.transform.rotation.x = 0.0;
-        assert!(Tree::default().add(&upside_down).is_err());
+        assert!(TransformTree::default().add(&upside_down).is_err());
     }
 }

@@ -63,9 +63,15 @@ pub enum WireError {
         /// What it may hold.
         allowed: String,
     },
-    /// No name for a robot.
-    #[error("{found:?} is no name for a robot: allowed are 1 to {most} of a-z A-Z 0-9 - _ .", most = crate::MAX_ROBOT_BYTES)]
-    Robot {
+    /// No name for a robot or a map.
+    #[error("{found:?} is no name: allowed are 1 to {most} of a-z A-Z 0-9 - _ .", most = crate::MAX_NAME_BYTES)]
+    Name {
+        /// What was given.
+        found: String,
+    },
+    /// A name that no robot may have.
+    #[error("{found:?} is taken: a robot needs another name")]
+    Taken {
         /// What was given.
         found: String,
     },

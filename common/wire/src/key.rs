@@ -4,22 +4,51 @@
 
 use crate::{Wire, WireError};
 
-/// The longest name of a robot, bytes.
-pub const MAX_ROBOT_BYTES: usize = 64;
+/// The longest name of a robot or a map, bytes.
+pub const MAX_NAME_BYTES: usize = 64;
 
-/// Checks the name of a robot: it stands in keys, where `/`, `*`, `$`, `?`, `#`
-/// and `@` mean something.
+/// The part of a key under which [`locate`] stands, so that no robot has this name.
+const LOCATE: &str = "locate";
+
+/// Checks a name that is to stand in keys, where `/`, `*`, `$`, `?`, `#` and `@` mean
+/// something.
 ///
 /// # Errors
-/// [`WireError::Robot`] if it is empty, too long, or holds another character than
+/// [`WireError::Name`] if it is empty, too long, or holds another character than
 /// those allowed.
-pub fn robot(text: &str) -> Result<String, WireError> {
+pub fn name(text: &str) -> Result<String, WireError> {
     let is_plain = |c: char| c.is_ascii_alphanumeric() || "-_.".contains(c);
-    if (1..=MAX_ROBOT_BYTES).contains(&text.len()) && text.chars().all(is_plain) {
+    if (1..=MAX_NAME_BYTES).contains(&text.len()) && text.chars().all(is_plain) {
         return Ok(text.to_owned());
     }
-    let found = text.chars().take(2 * MAX_ROBOT_BYTES).collect();
-    Err(WireError::Robot { found })
+    let found = text.chars().take(2 * MAX_NAME_BYTES).collect();
+    Err(WireError::Name { found })
+}
+
+/// Checks the name of a robot.
+///
+/// # Errors
+/// As [`name`], and [`WireError::Taken`] where something else has it.
+pub fn robot(text: &str) -> Result<String, WireError> {
+    if text == LOCATE {
+        let found = text.to_owned();
+        return Err(WireError::Taken { found });
+    }
+    name(text)
+}
+
+/// The name of the robot that a process belongs to: the one given, else that of its
+/// machine `host`, where it can stand in keys, else `robot`.
+#[must_use]
+pub fn robot_or_host(given: Option<&str>, host: &str) -> String {
+    let host = || robot(host).unwrap_or_else(|_| "robot".to_owned());
+    given.map_or_else(host, str::to_owned)
+}
+
+/// Where a map's places are asked for: `backcast/locate/<map>`.
+#[must_use]
+pub fn locate(map: &str) -> String {
+    format!("backcast/{LOCATE}/{map}")
 }
 
 /// Where a robot's topic stands: `backcast/<robot>/<topic>`.
@@ -52,12 +81,22 @@ mod tests {
     }
 
     #[test]
+    fn who_is_not_named_is_called_as_the_machine() {
+        assert_eq!(robot_or_host(Some("r2"), "desk"), "r2");
+        assert_eq!(robot_or_host(None, "desk"), "desk");
+        assert_eq!(robot_or_host(None, "a/b"), "robot");
+    }
+
+    #[test]
     fn names_that_mean_something_in_a_key_are_refused() {
         assert_eq!(robot("R2-d.2_x").unwrap(), "R2-d.2_x");
-        let long = "x".repeat(MAX_ROBOT_BYTES + 1);
+        let long = "x".repeat(MAX_NAME_BYTES + 1);
         for name in ["", "a/b", "*", "a*", "$x", "a?", "a#", "@a", "ä", &long] {
             let error = robot(name).unwrap_err().to_string();
             assert!(error.contains("1 to 64 of a-z A-Z 0-9 - _ ."), "{error}");
         }
+        let error = robot("locate").unwrap_err().to_string();
+        assert!(error.contains("is taken"), "{error}");
+        assert_eq!(locate(&name("locate").unwrap()), "backcast/locate/locate");
     }
 }

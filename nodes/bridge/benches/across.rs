@@ -10,13 +10,12 @@
 use std::time::Instant;
 
 use bytemuck::Zeroable;
-use messages::{MapHeader, Name, NodeState, ScanHeader, Stamp, topic};
-use recording::ros::LaserScan;
+use messages::{MapHeader, ScanHeader, Stamp, topic};
 use tests::machine::{ENGINE, LASER, Machine};
 use tests::network::Namespace;
-use tests::world::World;
+use tests::world::{World, as_the_graph_has_it};
 use transport::monotonic_ns;
-use transport::testing::{NodeProcess, wait_for, wait_for_health, wait_until};
+use transport::testing::{NodeProcess, wait_for, wait_until, wait_until_ready};
 
 /// Times that the recording is gone through.
 const ROUNDS: usize = 4;
@@ -121,11 +120,8 @@ fn repeated(world: &World) -> Vec<u8> {
 /// without those of computing.
 fn scans(laser: &Machine<'_>, world: &World) -> Times {
     // Wherever they are, their health is heard here.
-    let health = laser.graph.subscriber().unwrap();
     for node in ["accumulator", "peak_extractor"] {
-        wait_for_health(&laser.graph, &health, |report| {
-            report.node.as_str() == node && report.state == NodeState::Ready as u32
-        });
+        wait_until_ready(&laser.graph, node);
     }
     let publisher = laser.graph.publisher::<topic::Scan>().unwrap();
     let answers = laser.graph.subscriber::<topic::Hypotheses>().unwrap();
@@ -135,7 +131,11 @@ fn scans(laser: &Machine<'_>, world: &World) -> Times {
         let counter = counter as u64;
         let start = Instant::now();
         let mut loan = publisher.loan(scan.ranges.len()).unwrap();
-        *loan.header_mut() = header(scan, counter);
+        *loan.header_mut() = ScanHeader {
+            // The recording is gone through several times, and time does not.
+            stamp: stamp(counter),
+            ..as_the_graph_has_it(scan, counter)
+        };
         loan.items_mut().copy_from_slice(&scan.ranges);
         loan.send().unwrap();
         let computing_ns = wait_for(&laser.graph, &answers, |header, _| {
@@ -145,18 +145,6 @@ fn scans(laser: &Machine<'_>, world: &World) -> Times {
         times.push(start.elapsed().as_secs_f64() * 1e3 - computing_ns as f64 / 1e6);
     }
     Times(times)
-}
-
-fn header(scan: &LaserScan, counter: u64) -> ScanHeader {
-    ScanHeader {
-        stamp: stamp(counter),
-        angle_min: scan.angle_min.into(),
-        angle_increment: scan.angle_increment.into(),
-        range_min_m: scan.range_min,
-        range_max_m: scan.range_max,
-        frame: Name::new("laser"),
-        ..Zeroable::zeroed()
-    }
 }
 
 fn stamp(counter: u64) -> Stamp {

@@ -60,7 +60,7 @@ impl Alive {
             let name = report.node.as_str();
             if report.state == NodeState::Stopped as u32 {
                 self.nodes.remove(name);
-            } else if wire::robot(name).is_ok() {
+            } else if wire::name(name).is_ok() {
                 self.hear(name, report.sent_ns)?;
             }
         }

@@ -41,11 +41,8 @@ impl Config {
     /// The robot's name.
     #[must_use]
     pub fn robot(&self) -> String {
-        let given = self.robot.clone();
-        given.unwrap_or_else(|| {
-            let host = gethostname::gethostname().to_string_lossy().into_owned();
-            wire::robot(&host).unwrap_or_else(|_| "robot".to_owned())
-        })
+        let host = gethostname::gethostname();
+        wire::robot_or_host(self.robot.as_deref(), &host.to_string_lossy())
     }
 }
 

@@ -18,7 +18,6 @@ mod incoming;
 mod outgoing;
 mod ports;
 mod rates;
-mod report;
 mod run;
 
 pub use config::Config;

@@ -7,6 +7,7 @@
 use std::rc::Rc;
 use std::time::Duration;
 
+use network::Report;
 use transport::{Graph, Input, Sample, Subscriber, TransportError, monotonic_ns};
 use wire::{Preamble, Wire};
 use zenoh::bytes::Encoding;
@@ -16,7 +17,6 @@ use zenoh_ext::{AdvancedPublisher, AdvancedPublisherBuilderExt, CacheConfig, Mis
 
 use crate::exit::{Aside, Exit};
 use crate::rates::Limit;
-use crate::report::Report;
 use crate::{BridgeError, Rate};
 
 /// How soon a reader learns that it missed the newest of what is kept.
@@ -112,7 +112,7 @@ impl<T: Wire> Outgoing<T> {
         self.next.clock_ns = now_ns;
         let payload = match wire::encode::<T>(&self.next, sample.header(), sample.items()) {
             Ok(payload) => payload,
-            Err(error) => return Ok(report.refused(&error.into())?),
+            Err(error) => return Ok(report.refused(&BridgeError::from(error))?),
         };
         self.next.sequence += 1;
         match self.exit.put(payload) {

@@ -4,6 +4,7 @@ use std::rc::Rc;
 use std::time::Duration;
 
 use messages::{Topic, topic};
+use network::Report;
 use transport::{Flow, Graph, Input};
 use wire::{Visit, Wire};
 use zenoh::Session;
@@ -12,7 +13,7 @@ use crate::alive::Alive;
 use crate::incoming::Incoming;
 use crate::outgoing::Outgoing;
 use crate::ports::Ports;
-use crate::report::Report;
+
 use crate::{BridgeError, Config};
 
 /// How long a late joiner of the graph, an image that somebody beyond the bridge

@@ -5,13 +5,13 @@
     reason = "the lint spares test functions but not what they share"
 )]
 
-use std::path::{Path, PathBuf};
+use std::path::Path;
 use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, Ordering};
 use std::time::Duration;
 
 use messages::{MapHeader, Name, Pose2, ScanHeader, Stamp, topic};
-use tempfile::TempDir;
+use tests::machine::Machine;
 use transport::testing::{Isolated, NodeProcess, wait_for_health, wait_until};
 use transport::{Flow, Graph, Publisher, TransportError, monotonic_ns};
 use wire::{Preamble, Wire};
@@ -31,51 +31,8 @@ const ENGINE: &str = "nodes:
   - {id: bridge, path: y, inputs: {hypotheses: engine/hypotheses}, outputs: [scan, map]}
 ";
 
-/// One machine: a graph of its own, and its bridge's descriptor.
-struct Machine {
-    folder: TempDir,
-    graph: Graph,
-    // Behind the graph, so that it is dropped after it.
-    isolated: Isolated,
-}
-
-impl Machine {
-    fn new(tag: &str, descriptor: &str) -> Self {
-        let isolated = Isolated::new(tag);
-        let folder = tempfile::tempdir().unwrap();
-        std::fs::write(folder.path().join("dataflow.yaml"), descriptor).unwrap();
-        Machine {
-            folder,
-            graph: isolated.join("test"),
-            isolated,
-        }
-    }
-
-    /// An endpoint that no other test has.
-    fn endpoint(&self) -> String {
-        format!("tcp/{}:7447", self.isolated.name().loopback())
-    }
-
-    fn descriptor(&self) -> PathBuf {
-        self.folder.path().join("dataflow.yaml")
-    }
-
-    fn bridge(&self, robot: &str, network: [&str; 2]) -> NodeProcess {
-        let dataflow = self.descriptor();
-        let arguments = [
-            "--robot",
-            robot,
-            "--dataflow",
-            dataflow.to_str().unwrap(),
-            network[0],
-            network[1],
-        ];
-        let bridge = NodeProcess::start(env!("CARGO_BIN_EXE_bridge"), &self.graph, arguments);
-        let health = self.graph.subscriber::<topic::Health>().unwrap();
-        let is_ready = messages::NodeState::Ready as u32;
-        wait_for_health(&self.graph, &health, |report| report.state == is_ready);
-        bridge
-    }
+fn machine(tag: &str, descriptor: &str) -> Machine<'static> {
+    Machine::new(tag, env!("CARGO_BIN_EXE_bridge"), descriptor, None)
 }
 
 fn scan(counter: u64) -> ScanHeader {
@@ -164,23 +121,23 @@ fn send_scans(isolated: &Isolated, stop: &Arc<AtomicBool>) -> std::thread::JoinH
 
 #[test]
 fn scans_cross_as_they_are_and_nobody_else_hears_them() {
-    let laser = Machine::new("live-a", LASER);
-    let engine = Machine::new("live-b", ENGINE);
-    let other = Machine::new("live-c", ENGINE);
+    let laser = machine("live-a", LASER);
+    let engine = machine("live-b", ENGINE);
+    let other = machine("live-c", ENGINE).of_robot("r2");
     let alone = Isolated::new("live-d");
     let alone = (alone.join("test"), alone);
-    let endpoint = laser.endpoint();
+    let endpoint = laser.loopback();
     let scans = engine.graph.subscriber::<topic::Scan>().unwrap();
     let foreign = other.graph.subscriber::<topic::Scan>().unwrap();
     let unjoined = alone.0.subscriber::<topic::Scan>().unwrap();
     let bridges = [
-        laser.bridge("r1", ["--listen", &endpoint]),
-        engine.bridge("r1", ["--connect", &endpoint]),
+        laser.joined_bridge(&["--listen", &endpoint]),
+        engine.joined_bridge(&["--connect", &endpoint]),
         // Another robot, on the same network.
-        other.bridge("r2", ["--connect", &endpoint]),
+        other.joined_bridge(&["--connect", &endpoint]),
     ];
     let stop = Arc::new(AtomicBool::new(false));
-    let source = send_scans(&laser.isolated, &stop);
+    let source = send_scans(laser.isolated(), &stop);
     let mut counters = Vec::new();
     wait_until(&engine.graph, &scans, |header, items| {
         let counter = header.stamp.counter;
@@ -205,15 +162,15 @@ fn scans_cross_as_they_are_and_nobody_else_hears_them() {
 
 #[test]
 fn a_late_joiner_gets_the_map_once() {
-    let laser = Machine::new("late-a", LASER);
-    let engine = Machine::new("late-b", ENGINE);
-    let endpoint = laser.endpoint();
+    let laser = machine("late-a", LASER);
+    let engine = machine("late-b", ENGINE);
+    let endpoint = laser.loopback();
     let maps = laser.graph.publisher::<topic::Map>().unwrap();
     let sent = map(0, 300, 200);
     send(&maps, &sent);
-    let first = laser.bridge("r1", ["--listen", &endpoint]);
+    let first = laser.joined_bridge(&["--listen", &endpoint]);
     let received = engine.graph.subscriber::<topic::Map>().unwrap();
-    let second = engine.bridge("r1", ["--connect", &endpoint]);
+    let second = engine.joined_bridge(&["--connect", &endpoint]);
     let expect = |sent: &(MapHeader, Vec<u8>)| {
         wait_until(&engine.graph, &received, |header, cells| {
             assert_eq!(header.map_id, sent.0.map_id, "a map came twice");
@@ -232,7 +189,7 @@ fn a_late_joiner_gets_the_map_once() {
     // A bridge that is started anew brings nothing twice, and what is new arrives.
     first.kill();
     laser.graph.cleanup_dead_nodes();
-    let first = laser.bridge("r1", ["--listen", &endpoint]);
+    let first = laser.joined_bridge(&["--listen", &endpoint]);
     let next = map(1, 20, 10);
     send(&maps, &next);
     expect(&next);
@@ -242,11 +199,11 @@ fn a_late_joiner_gets_the_map_once() {
 
 #[test]
 fn what_strangers_send_is_refused_and_counted() {
-    let engine = Machine::new("hostile", ENGINE);
+    let engine = machine("hostile", ENGINE);
     let scans = engine.graph.subscriber::<topic::Scan>().unwrap();
     let health = engine.graph.subscriber::<topic::Health>().unwrap();
-    let endpoint = engine.endpoint();
-    let bridge = engine.bridge("r1", ["--listen", &endpoint]);
+    let endpoint = engine.loopback();
+    let bridge = engine.joined_bridge(&["--listen", &endpoint]);
     let stranger = connect(&endpoint);
     let good = |sequence| {
         let preamble = Preamble {
@@ -306,9 +263,9 @@ fn what_strangers_send_is_refused_and_counted() {
 
 #[test]
 fn who_watches_sees_bridges_and_nodes_come_and_go() {
-    let engine = Machine::new("alive", ENGINE);
-    let endpoint = engine.endpoint();
-    let bridge = engine.bridge("r1", ["--listen", &endpoint]);
+    let engine = machine("alive", ENGINE);
+    let endpoint = engine.loopback();
+    let bridge = engine.joined_bridge(&["--listen", &endpoint]);
     let watcher = connect(&endpoint);
     let (sender, changes) = std::sync::mpsc::channel();
     let _tokens = watcher
@@ -328,7 +285,7 @@ fn who_watches_sees_bridges_and_nodes_come_and_go() {
     };
     until("", SampleKind::Put);
     // A node is there from its first report to its last.
-    let joined = engine.isolated.join("engine");
+    let joined = engine.isolated().join("engine");
     let health = joined.health().unwrap();
     until("engine", SampleKind::Put);
     health.stop().unwrap();
@@ -357,12 +314,12 @@ fn client(folder: &Path, endpoint: &str) -> zenoh::Config {
 /// That the map comes is one thing; a reader that speaks Zenoh alone gets it too.
 #[test]
 fn a_reader_of_zenoh_gets_the_map_and_knows_what_it_is() {
-    let laser = Machine::new("reader", LASER);
-    let endpoint = laser.endpoint();
+    let laser = machine("reader", LASER);
+    let endpoint = laser.loopback();
     let maps = laser.graph.publisher::<topic::Map>().unwrap();
     let sent = map(0, 30, 20);
     send(&maps, &sent);
-    let bridge = laser.bridge("r1", ["--listen", &endpoint]);
+    let bridge = laser.joined_bridge(&["--listen", &endpoint]);
     // The bridge's own report that it sent something: the map, for nobody hears
     // its health.
     let health = laser.graph.subscriber::<topic::Health>().unwrap();

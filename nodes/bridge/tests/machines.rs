@@ -43,18 +43,10 @@ fn world() -> World {
 
 fn collect(graph: &Graph, hypotheses: &Subscriber<topic::Hypotheses>) -> Vec<Answer> {
     let mut found = Vec::new();
-    let outcome = graph.run(&[hypotheses], Duration::from_millis(100), |_| {
-        while let Some(sample) = hypotheses.receive()? {
-            found.push((*sample.header(), sample.items().to_vec()));
-        }
-        let is_complete = found.len() == SCANS;
-        Ok::<_, TransportError>(if is_complete {
-            Flow::Stop
-        } else {
-            Flow::Continue
-        })
+    wait_until(graph, hypotheses, |header, items| {
+        found.push((*header, items.to_vec()));
+        found.len() == SCANS
     });
-    outcome.unwrap();
     found
 }
 

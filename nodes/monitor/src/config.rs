@@ -17,7 +17,7 @@ pub struct Config {
     pub listen: SocketAddr,
 
     /// What the robot of this graph is called [default: the name of the machine]
-    #[arg(long, value_name = "NAME", value_parser = robot)]
+    #[arg(long, value_name = "NAME", value_parser = wire::robot)]
     pub robot: Option<String>,
 
     /// Who may reach the page.
@@ -29,21 +29,9 @@ impl Config {
     /// The robot's name.
     #[must_use]
     pub fn robot(&self) -> String {
-        let given = self.robot.clone();
-        given.unwrap_or_else(|| {
-            let host = gethostname::gethostname().to_string_lossy().into_owned();
-            robot(&host).unwrap_or_else(|_| "robot".to_owned())
-        })
+        let host = gethostname::gethostname();
+        wire::robot_or_host(self.robot.as_deref(), &host.to_string_lossy())
     }
-}
-
-/// It stands in addresses.
-fn robot(text: &str) -> Result<String, String> {
-    let is_plain = |c: char| c.is_ascii_alphanumeric() || "-_.".contains(c);
-    if (1..=64).contains(&text.len()) && text.chars().all(is_plain) {
-        return Ok(text.to_owned());
-    }
-    Err("allowed are 1 to 64 of a-z A-Z 0-9 - _ .".to_owned())
 }
 
 #[cfg(test)]

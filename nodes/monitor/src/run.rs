@@ -9,7 +9,7 @@ use std::time::Duration;
 
 use dashboard::{Robot, Robots, Server, Wish};
 use messages::{NodeState, topic};
-use transport::{CONSOLE_ONLY, Flow, Graph, Health, Subscriber, TransportError, monotonic_ns};
+use transport::{Flow, Graph, Health, Subscriber, TransportError, monotonic_ns};
 
 use crate::{Config, MonitorError};
 use inputs::Inputs;
@@ -33,7 +33,7 @@ pub fn run(graph: &Graph, config: &Config) -> Result<(), MonitorError> {
         health: graph.health()?,
     };
     let server = Server::start(config.listen, &config.page, Robots::from_iter([robot]))?;
-    announce(&server, config);
+    server.announce("watch it", config.listen);
     // What a monitor before this one wished for is not known here, so it ends.
     node.outputs.region(&[])?;
     node.health.state(NodeState::Ready)?;
@@ -42,21 +42,6 @@ pub fn run(graph: &Graph, config: &Config) -> Result<(), MonitorError> {
         node.step(graph, &inputs, wake.tick)?;
         Ok(Flow::Continue)
     })
-}
-
-fn announce(server: &Server, config: &Config) {
-    let address = server.address();
-    tracing::info!("watch it on http://{address}");
-    if let Some(token) = server.token() {
-        let place = format!("http://{address}/#token={token}");
-        tracing::info!(target: CONSOLE_ONLY, "to change something there: {place}");
-    }
-    if !address.ip().is_loopback() {
-        tracing::warn!("whoever reaches {address} can read, and nothing is encrypted");
-    }
-    if config.listen.port() != 0 && address.port() != config.listen.port() {
-        tracing::info!("port {} is taken", config.listen.port());
-    }
 }
 
 struct Node {

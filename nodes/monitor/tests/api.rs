@@ -4,8 +4,8 @@
     reason = "the lint spares test functions but not what they share"
 )]
 
-use std::io::{BufRead, BufReader, Read, Write};
-use std::net::{SocketAddr, TcpListener, TcpStream};
+use std::io::Read;
+use std::net::{SocketAddr, TcpStream};
 use std::path::Path;
 
 use bytemuck::Zeroable;
@@ -15,7 +15,8 @@ use messages::{
 };
 use serde_json::{Value, json};
 use tempfile::TempDir;
-use transport::testing::{Isolated, NodeProcess, wait_for, wait_for_health};
+use tests::http::Site;
+use transport::testing::{Isolated, NodeProcess, wait_for, wait_until_ready};
 use transport::{Flow, Graph, Publisher, TransportError};
 use tungstenite::{Message, WebSocket, client};
 
@@ -24,20 +25,13 @@ const TOKEN: &str = "0123456789abcdef";
 /// The node in a graph of its own, and what it may be asked.
 struct World {
     node: Option<NodeProcess>,
-    address: SocketAddr,
+    site: Site,
     hypotheses: Publisher<topic::Hypotheses>,
     beams: Publisher<topic::Beams>,
     maps: Publisher<topic::Map>,
     graph: Graph,
     _isolated: Isolated,
     _folder: TempDir,
-}
-
-/// A port that was free a moment ago; should somebody take it meanwhile, the node
-/// takes another one and the test fails to find it there.
-fn free_port() -> SocketAddr {
-    let listener = TcpListener::bind("127.0.0.1:0").unwrap();
-    listener.local_addr().unwrap()
 }
 
 impl World {
@@ -47,11 +41,10 @@ impl World {
         let folder = tempfile::tempdir().unwrap();
         let token = folder.path().join("token");
         std::fs::write(&token, TOKEN).unwrap();
-        let health = graph.subscriber::<topic::Health>().unwrap();
-        let address = free_port();
+        let site = Site::free();
         let mut world = World {
             node: None,
-            address,
+            site,
             hypotheses: graph.publisher().unwrap(),
             beams: graph.publisher().unwrap(),
             maps: graph.publisher().unwrap(),
@@ -60,10 +53,8 @@ impl World {
             _folder: folder,
         };
         world.serve_map();
-        world.node = Some(start(&world.graph, address, &token));
-        wait_for_health(&world.graph, &health, |report| {
-            report.node.as_str() == "monitor" && report.state == 1
-        });
+        world.node = Some(start(&world.graph, world.site.0, &token));
+        wait_until_ready(&world.graph, "monitor");
         world
     }
 
@@ -100,54 +91,13 @@ impl World {
         loan.send().unwrap();
     }
 
-    /// Sends a request as it stands; returns status, head and body.
-    fn raw(&self, request: &[u8]) -> (u16, String, Vec<u8>) {
-        let mut stream = TcpStream::connect(self.address).unwrap();
-        // The server may have answered, and gone, before it has read all.
-        let _ = stream.write_all(request);
-        let mut reader = BufReader::new(stream);
-        let mut head = String::new();
-        while !head.ends_with("\r\n\r\n") {
-            assert!(reader.read_line(&mut head).unwrap() > 0, "{head}");
-        }
-        let status = head.split(' ').nth(1).unwrap().parse().unwrap();
-        let mut body = Vec::new();
-        let _ = reader.read_to_end(&mut body);
-        (status, head, body)
-    }
-
-    fn ask(&self, method: &str, path: &str, headers: &[&str], body: &str) -> (u16, String) {
-        let host = format!("Host: {}", self.address);
-        let length = format!("Content-Length: {}", body.len());
-        let given = headers.iter().any(|header| header.starts_with("Host:"));
-        let own = [host.as_str()];
-        let lines: Vec<&str> = headers
-            .iter()
-            .chain(if given { &[][..] } else { &own[..] })
-            .chain(&[length.as_str(), "Connection: close"])
-            .copied()
-            .collect();
-        let request = format!(
-            "{method} {path} HTTP/1.1\r\n{}\r\n\r\n{body}",
-            lines.join("\r\n")
-        );
-        let (status, _, body) = self.raw(request.as_bytes());
-        (status, String::from_utf8(body).unwrap())
-    }
-
-    fn get(&self, path: &str) -> Value {
-        let (status, body) = self.ask("GET", path, &[], "");
-        assert_eq!(status, 200, "{path}: {body}");
-        serde_json::from_str(&body).unwrap()
-    }
-
     /// Asks until the answer is as it should be; the graph goes on meanwhile.
     fn wait_for_state(&self, is_awaited: impl Fn(&Value) -> bool) -> Value {
         let mut found = None;
         let tick = std::time::Duration::from_millis(20);
         self.graph
             .run(&[], tick, |_| {
-                found = Some(self.get("/api/v1/robots/r")).filter(&is_awaited);
+                found = Some(self.site.get("/api/v1/robots/r")).filter(&is_awaited);
                 let flow = if found.is_some() {
                     Flow::Stop
                 } else {
@@ -160,8 +110,8 @@ impl World {
     }
 
     fn stream(&self) -> WebSocket<TcpStream> {
-        let url = format!("ws://{}/api/v1/robots/r/stream", self.address);
-        let stream = TcpStream::connect(self.address).unwrap();
+        let url = format!("ws://{}/api/v1/robots/r/stream", self.site.0);
+        let stream = TcpStream::connect(self.site.0).unwrap();
         client(url, stream).unwrap().0
     }
 }
@@ -205,7 +155,7 @@ fn next_of(socket: &mut WebSocket<TcpStream>, kind: &str) -> Value {
 #[test]
 fn what_flows_in_the_graph_is_told() {
     let world = World::new("told");
-    let robots = world.get("/api/v1/robots");
+    let robots = world.site.get("/api/v1/robots");
     assert_eq!(robots["robots"], json!(["r"]));
     let known = world.wait_for_state(|known| !known["map"].is_null());
     assert_eq!(known["map"]["id"], "0000000000000abc");
@@ -220,7 +170,7 @@ fn what_flows_in_the_graph_is_told() {
     loan.send().unwrap();
     assert_eq!(next_of(&mut socket, "beams")["fate"], "h");
     // Who comes later is told the same at once.
-    let known = world.get("/api/v1/robots/r");
+    let known = world.site.get("/api/v1/robots/r");
     assert_eq!(known["answer"]["counter"], 7);
     let names: Vec<&Value> = known["nodes"]
         .as_array()
@@ -239,15 +189,18 @@ fn the_map_is_a_byte_a_cell() {
     let request = |more: &str| {
         format!(
             "GET {path} HTTP/1.1\r\nHost: {}\r\n{more}Connection: close\r\n\r\n",
-            world.address
+            world.site.0
         )
     };
-    let (status, _, cells) = world.raw(request("").as_bytes());
+    let (status, _, cells) = world.site.raw(request("").as_bytes());
     assert_eq!((status, cells), (200, vec![0, 100, 255, 0, 0, 100]));
-    let (status, _, cells) =
-        world.raw(request("If-None-Match: \"0000000000000abc\"\r\n").as_bytes());
+    let (status, _, cells) = world
+        .site
+        .raw(request("If-None-Match: \"0000000000000abc\"\r\n").as_bytes());
     assert_eq!((status, cells.len()), (304, 0), "the reader has it");
-    let (_, head, packed) = world.raw(request("Accept-Encoding: gzip\r\n").as_bytes());
+    let (_, head, packed) = world
+        .site
+        .raw(request("Accept-Encoding: gzip\r\n").as_bytes());
     assert!(head.contains("content-encoding: gzip"), "{head}");
     let mut cells = Vec::new();
     flate2::read::GzDecoder::new(&packed[..])
@@ -304,7 +257,7 @@ fn writing_needs_the_token_and_somebody_who_listens() {
     let body = r#"{"corners":[[0,0],[2,3]]}"#;
     let json = "Content-Type: application/json";
     let token = format!("Authorization: Bearer {TOKEN}");
-    let put = |headers: &[&str], body: &str| world.ask("PUT", path, headers, body).0;
+    let put = |headers: &[&str], body: &str| world.site.ask("PUT", path, headers, body).0;
     assert_eq!(put(&[json], body), 401);
     assert_eq!(
         put(&[json, "Authorization: Bearer 0123456789abcdeX"], body),
@@ -316,7 +269,10 @@ fn writing_needs_the_token_and_somebody_who_listens() {
     );
     assert_eq!(put(&[json, &token], body), 409, "nobody takes a region");
     assert_eq!(
-        world.ask("POST", "/api/v1/robots/r/save", &[&token], "").0,
+        world
+            .site
+            .ask("POST", "/api/v1/robots/r/save", &[&token], "")
+            .0,
         409
     );
 
@@ -333,12 +289,15 @@ fn writing_needs_the_token_and_somebody_who_listens() {
     );
     let known = world.wait_for_state(|known| known["region"] != json!([]));
     assert_eq!(known["region"], json!([[0.0, 0.0], [2.0, 3.0]]));
-    assert_eq!(world.ask("DELETE", path, &[&token], "").0, 202);
+    assert_eq!(world.site.ask("DELETE", path, &[&token], "").0, 202);
     wait_for(&world.graph, &regions, |_, corners| {
         corners.is_empty().then_some(())
     });
     assert_eq!(
-        world.ask("POST", "/api/v1/robots/r/save", &[&token], "").0,
+        world
+            .site
+            .ask("POST", "/api/v1/robots/r/save", &[&token], "")
+            .0,
         202
     );
     wait_for(&world.graph, &saves, |_, _| Some(()));
@@ -353,6 +312,7 @@ fn nonsense_is_refused_with_a_reason() {
     let headers = [token.as_str(), "Content-Type: application/json"];
     let put = |body: &str| {
         world
+            .site
             .ask("PUT", "/api/v1/robots/r/region", &headers, body)
             .0
     };
@@ -372,20 +332,20 @@ fn nonsense_is_refused_with_a_reason() {
     );
     let sent = regions.newest().unwrap();
     assert!(sent.is_none_or(|sent| sent.items().is_empty()), "no region");
-    let (status, body) = world.ask("GET", "/api/v1/robots/other", &[], "");
+    let (status, body) = world.site.ask("GET", "/api/v1/robots/other", &[], "");
     assert_eq!(status, 404);
     assert!(body.contains("there is no robot"), "{body}");
-    assert_eq!(world.ask("GET", "/../etc/passwd", &[], "").0, 404);
-    assert_eq!(world.ask("POST", "/", &[], "").0, 405);
+    assert_eq!(world.site.ask("GET", "/../etc/passwd", &[], "").0, 404);
+    assert_eq!(world.site.ask("POST", "/", &[], "").0, 405);
 }
 
 #[test]
 fn other_sites_are_refused() {
     let world = World::new("sites");
-    let ask = |headers: &[&str]| world.ask("GET", "/api/v1/robots", headers, "").0;
+    let ask = |headers: &[&str]| world.site.ask("GET", "/api/v1/robots", headers, "").0;
     assert_eq!(ask(&["Origin: http://evil.example"]), 403);
     assert_eq!(ask(&["Origin: null"]), 403);
-    assert_eq!(ask(&[&format!("Origin: http://{}", world.address)]), 200);
+    assert_eq!(ask(&[&format!("Origin: http://{}", world.site.0)]), 200);
     assert_eq!(ask(&["Host: evil.example"]), 421);
     assert_eq!(ask(&["Sec-Fetch-Site: cross-site"]), 403);
     // A WebSocket is not kept from other sites by browsers.
@@ -396,12 +356,14 @@ fn other_sites_are_refused() {
         "Sec-WebSocket-Key: dGhlIHNhbXBsZSBub25jZQ==",
         "Origin: http://evil.example",
     ];
-    let (status, _) = world.ask("GET", "/api/v1/robots/r/stream", &upgrade, "");
+    let (status, _) = world
+        .site
+        .ask("GET", "/api/v1/robots/r/stream", &upgrade, "");
     assert_eq!(status, 403);
-    let (_, head, _) = world.raw(
+    let (_, head, _) = world.site.raw(
         format!(
             "GET / HTTP/1.1\r\nHost: {}\r\nConnection: close\r\n\r\n",
-            world.address
+            world.site.0
         )
         .as_bytes(),
     );
@@ -435,17 +397,17 @@ fn hostile_sizes_end_the_connection_and_nothing_else() {
         "GET / HTTP/1.1\r\nHost: x\r\nX: {}\r\n\r\n",
         "x".repeat(1 << 20)
     );
-    assert!((400..500).contains(&world.raw(head.as_bytes()).0));
-    assert_eq!(world.raw(b"\x16\x03\x01 hello\r\n\r\n").0, 400);
-    assert_eq!(world.get("/api/v1/robots")["robots"], json!(["r"]));
+    assert!((400..500).contains(&world.site.raw(head.as_bytes()).0));
+    assert_eq!(world.site.raw(b"\x16\x03\x01 hello\r\n\r\n").0, 400);
+    assert_eq!(world.site.get("/api/v1/robots")["robots"], json!(["r"]));
 }
 
 #[test]
 fn as_many_watch_as_may() {
     let world = World::new("many");
     let sockets: Vec<_> = (0..64).map(|_| world.stream()).collect();
-    let url = format!("ws://{}/api/v1/robots/r/stream", world.address);
-    let refused = client(url, TcpStream::connect(world.address).unwrap());
+    let url = format!("ws://{}/api/v1/robots/r/stream", world.site.0);
+    let refused = client(url, TcpStream::connect(world.site.0).unwrap());
     assert!(refused.is_err(), "the 65th is refused");
     drop(sockets);
 }

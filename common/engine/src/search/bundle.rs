@@ -95,20 +95,6 @@ impl Bundle {
         hits
     }
 
-    /// Where a ray ends in a cell that it is lost in, it has no range.
-    pub(super) fn lose(&self, rays: &Rays<'_>, grid: &Grid, hits: &mut [u16; RAYS]) {
-        for (i, hit) in hits
-            .iter_mut()
-            .enumerate()
-            .filter(|(_, hit)| **hit != NO_RANGE)
-        {
-            let (x, y) = rays.cell(i, i64::from(*hit));
-            if grid.get(x, y) == Some(Cell::Blocked) {
-                *hit = NO_RANGE;
-            }
-        }
-    }
-
     /// The ranges of the block's cells: to where their rays end, or to a cell of
     /// the block that is in the way.
     pub(super) fn spread(
@@ -138,6 +124,19 @@ impl Bundle {
                     *hit - column as u16
                 };
             }
+        }
+    }
+}
+
+/// Where a ray ends in a cell that it is lost in, it has no range.
+pub(super) fn lose(rays: &Rays<'_>, grid: &Grid, hits: &mut [u16; RAYS]) {
+    for (i, hit) in hits.iter_mut().enumerate() {
+        if *hit == NO_RANGE {
+            continue;
+        }
+        let (x, y) = rays.cell(i, i64::from(*hit));
+        if grid.get(x, y) == Some(Cell::Blocked) {
+            *hit = NO_RANGE;
         }
     }
 }

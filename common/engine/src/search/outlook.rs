@@ -5,7 +5,7 @@
 //! rays are followed only from there, all that leave the block in a direction at
 //! once. Cells behind one another on a line share a ray.
 
-use super::bundle::Bundle;
+use super::bundle::{self, Bundle};
 use super::intervals::{BlockIntervals, RangeIntervals, SIDE};
 use super::obstacles::Obstacles;
 use super::steps::BinSteps;
@@ -150,7 +150,7 @@ impl Outlook {
         let rays = view.obstacles.rays(direction, bundle.start);
         let mut hits = bundle.follow(&rays, spans);
         if self.can_lose {
-            bundle.lose(&rays, view.grid, &mut hits);
+            bundle::lose(&rays, view.grid, &mut hits);
         }
         bundle.spread(hits, &self.cells, &mut self.by_direction[d]);
     }

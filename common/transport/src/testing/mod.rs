@@ -16,4 +16,4 @@ mod waiting;
 
 pub use isolated::Isolated;
 pub use node_process::NodeProcess;
-pub use waiting::{wait_for, wait_for_health, wait_until};
+pub use waiting::{wait_for, wait_for_health, wait_until, wait_until_ready};

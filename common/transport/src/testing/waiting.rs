@@ -2,7 +2,7 @@
 
 use std::time::Duration;
 
-use messages::{HealthHeader, Topic, topic};
+use messages::{HealthHeader, NodeState, Topic, topic};
 
 use crate::{Flow, Graph, Subscriber, TransportError};
 
@@ -60,4 +60,16 @@ pub fn wait_for_health(
     wait_for(graph, health, |report, error| {
         is_awaited(report).then(|| (*report, String::from_utf8(error.to_vec()).unwrap()))
     })
+}
+
+/// Waits until a node has all that it needs.
+///
+/// # Panics
+/// If the graph fails.
+pub fn wait_until_ready(graph: &Graph, node: &str) {
+    let health = graph.subscriber::<topic::Health>().unwrap();
+    let is_ready = NodeState::Ready as u32;
+    wait_until(graph, &health, |report, _| {
+        report.node.as_str() == node && report.state == is_ready
+    });
 }

@@ -14,11 +14,12 @@
 
 use std::collections::VecDeque;
 
+use conversion::{planar, poses};
 use geometry::Pose;
 use messages::{HypothesesHeader, Hypothesis, Odometry, ScanHeader, Verdict};
 use recording::ros::{Header, TfMessage, Time, TransformStamped};
 
-use super::{answers, planar, transforms};
+use super::transforms;
 
 /// Odometry that is kept until the hypotheses of its scan come.
 const KEPT: usize = 256;
@@ -86,7 +87,7 @@ impl Frames {
             return None;
         }
         let (laser, mount) = self.laser.as_ref()?;
-        let map_from_robot = answers::robot(header, best);
+        let map_from_robot = poses::robot(header, best);
         let odometry = self.odometry_at(header.stamp.measured_ns);
         let transform = match odometry {
             // Its frame is the laser's, or the mount tells how the two lie.

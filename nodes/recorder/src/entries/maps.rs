@@ -2,10 +2,10 @@
 
 use std::collections::BTreeMap;
 
+use conversion::planar;
 use messages::{FieldHeader, MapHeader, Topic, topic};
 use recording::ros::{Header, MapMetaData, OccupancyGridMsg};
 
-use super::planar;
 use crate::RecorderError;
 
 /// The map; its header and load time are filled in by the caller.

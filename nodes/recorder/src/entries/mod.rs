@@ -6,15 +6,14 @@
 //! mount, health) waits for the first one, and then stands at its time.
 
 mod answers;
-mod diagnostics;
 mod frames;
 mod log;
 mod maps;
 mod measurements;
-mod planar;
 
 use std::collections::{BTreeMap, VecDeque};
 
+use conversion::{diagnostics, poses};
 use messages::{
     Beam, BeamsHeader, FieldHeader, GroundTruth, HealthHeader, HypothesesHeader, Hypothesis,
     LogHeader, MapHeader, Odometry, ScanHeader, Stamp, Topic, Vote, VotesHeader, topic,
@@ -117,12 +116,12 @@ impl Entries {
         let in_map = self.in_map(at.stamp);
         let own = answers::hypotheses(in_map.clone(), header, items);
         self.message(topics::OWN_HYPOTHESES, at.ns, &own)?;
-        let array = answers::poses(in_map.clone(), header, items);
+        let array = poses::array(in_map.clone(), header, items);
         self.message(topics::HYPOTHESES, at.ns, &array)?;
         let Some(best) = items.first() else {
             return Ok(());
         };
-        let pose = answers::best(in_map, header, best);
+        let pose = poses::best(in_map, header, best);
         self.message(topics::POSE, at.ns, &pose)?;
         if let Some(transform) = self.frames.localized(header, best, at.stamp) {
             self.message(topics::TF, at.ns, &transform)?;

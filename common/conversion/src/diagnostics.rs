@@ -3,7 +3,9 @@
 use messages::{HealthHeader, NodeState};
 use recording::ros::{DiagnosticArray, DiagnosticStatus, Header, KeyValue, Time};
 
-pub(super) fn of(stamp: Time, report: &HealthHeader, error: &str) -> DiagnosticArray {
+/// A node's report, and its last error, with the time `stamp`.
+#[must_use]
+pub fn of(stamp: Time, report: &HealthHeader, error: &str) -> DiagnosticArray {
     let state = NodeState::from_code(report.state);
     let name = state.map_or_else(|| format!("state {}", report.state), |s| format!("{s:?}"));
     let message = match error {

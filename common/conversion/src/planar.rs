@@ -19,18 +19,21 @@ fn rounded(yaw: f64) -> f64 {
 }
 
 /// A pose, at height 0.
-pub(super) fn pose(pose: Pose) -> ros::Pose {
+#[must_use]
+pub fn pose(pose: Pose) -> ros::Pose {
     ros::Pose::from_planar(Pose::new(pose.x, pose.y, rounded(pose.yaw)))
 }
 
 /// A pose as whoever reads the recording gets it: the same as given, or its yaw
 /// off by less than a step.
-pub(super) fn as_recorded(of: Pose) -> Pose {
+#[must_use]
+pub fn as_recorded(of: Pose) -> Pose {
     pose(of).planar().unwrap_or(of)
 }
 
 /// An estimate with its covariance over x, y and yaw.
-pub(super) fn estimate(of: Pose, covariance: [f64; 9]) -> ros::PoseWithCovariance {
+#[must_use]
+pub fn estimate(of: Pose, covariance: [f64; 9]) -> ros::PoseWithCovariance {
     ros::PoseWithCovariance {
         pose: pose(of),
         ..ros::PoseWithCovariance::from_planar(of, covariance)
@@ -38,7 +41,8 @@ pub(super) fn estimate(of: Pose, covariance: [f64; 9]) -> ros::PoseWithCovarianc
 }
 
 /// A transform, at height 0.
-pub(super) fn transform(pose: Pose) -> ros::Transform {
+#[must_use]
+pub fn transform(pose: Pose) -> ros::Transform {
     ros::Transform {
         translation: Vector3 {
             x: pose.x,

@@ -1,0 +1,123 @@
+//! Scans, odometry and true poses of ROS as the graph has them.
+//!
+//! Stamps lack what only the moment of sending gives: when they enter the graph
+//! and their counter. Readings are not looked at.
+
+use messages::{GroundTruth, Name, Odometry, Pose2, ScanHeader, Stamp};
+use recording::ros::{self, LaserScan, PoseStamped, Time};
+
+use crate::Unsayable;
+
+/// A frame's name.
+///
+/// # Errors
+/// If it is longer than a message of the graph can hold.
+pub fn frame(frame: &str) -> Result<Name, Unsayable> {
+    if frame.len() <= Name::CAPACITY {
+        return Ok(Name::new(frame));
+    }
+    Err(Unsayable::Frame {
+        frame: frame.into(),
+    })
+}
+
+/// The header of a scan; `mount` is where the laser sits on the base, if that is
+/// known.
+#[must_use]
+pub fn scan_header(scan: &LaserScan, frame: Name, mount: Option<Pose2>) -> ScanHeader {
+    ScanHeader {
+        stamp: measured(scan.header.stamp),
+        angle_min: scan.angle_min.into(),
+        angle_increment: scan.angle_increment.into(),
+        time_increment_s: scan.time_increment.into(),
+        scan_time_s: scan.scan_time.into(),
+        range_min_m: scan.range_min,
+        range_max_m: scan.range_max,
+        base_from_laser: mount.unwrap_or(Pose2 {
+            x: 0.0,
+            y: 0.0,
+            yaw: 0.0,
+        }),
+        mount_known: u64::from(mount.is_some()),
+        frame,
+    }
+}
+
+/// Odometry.
+///
+/// # Errors
+/// If the pose is none, or a frame's name too long.
+pub fn odometry(message: &ros::Odometry) -> Result<Odometry, Unsayable> {
+    Ok(Odometry {
+        stamp: measured(message.header.stamp),
+        odom_from_child: message.pose.pose.planar()?.into(),
+        twist: message.twist.twist.planar().into(),
+        covariance: message.pose.planar_covariance(),
+        frame: frame(&message.header.frame_id)?,
+        child_frame: frame(&message.child_frame_id)?,
+    })
+}
+
+/// The true pose of a laser.
+///
+/// # Errors
+/// As [`odometry`].
+pub fn ground_truth(message: &PoseStamped) -> Result<GroundTruth, Unsayable> {
+    Ok(GroundTruth {
+        stamp: measured(message.header.stamp),
+        map_from_laser: message.pose.planar()?.into(),
+        frame: frame(&message.header.frame_id)?,
+    })
+}
+
+fn measured(time: Time) -> Stamp {
+    Stamp {
+        measured_ns: time.as_ns(),
+        ..Stamp::default()
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_scan_without_a_mount_says_so() {
+        let scan = LaserScan {
+            header: ros::Header {
+                stamp: Time { sec: 7, nanosec: 5 },
+                frame_id: "laser".to_owned(),
+            },
+            angle_min: -1.5,
+            angle_increment: 0.25,
+            ..LaserScan::default()
+        };
+        let header = scan_header(&scan, frame("laser").unwrap(), None);
+        assert_eq!(header.stamp.measured_ns, 7_000_000_005);
+        assert_eq!((header.angle_min, header.angle_increment), (-1.5, 0.25));
+        assert_eq!(header.mount_known, 0);
+        let ahead = Pose2 {
+            x: 0.5,
+            y: 0.0,
+            yaw: 0.0,
+        };
+        let header = scan_header(&scan, header.frame, Some(ahead));
+        assert_eq!((header.base_from_laser, header.mount_known), (ahead, 1));
+    }
+
+    #[test]
+    fn what_the_graph_cannot_say_is_refused() {
+        let mut message = ros::Odometry::default();
+        assert!(odometry(&message).is_ok());
+        message.child_frame_id = "f".repeat(33);
+        let error = odometry(&message).unwrap_err().to_string();
+        assert!(
+            error.ends_with("has 33 bytes, at most 32 are allowed"),
+            "{error}"
+        );
+        let mut turned = PoseStamped::default();
+        turned.pose.orientation.w = f64::NAN;
+        let error = ground_truth(&turned).unwrap_err().to_string();
+        assert!(error.contains("no rotation"), "{error}");
+    }
+}

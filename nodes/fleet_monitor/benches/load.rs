@@ -1,0 +1,245 @@
+//! Prints what many robots cost the fleet's monitor: processor time and memory, while
+//! all of them send poses, beams and health as bridges do and somebody looks at one:
+//!
+//!     cargo bench -p fleet_monitor --bench load -- --robots 100 --hz 20 --seconds 600
+#![allow(clippy::unwrap_used, reason = "it fails where a test would")]
+
+use std::net::TcpStream;
+use std::sync::atomic::{AtomicBool, AtomicU64, Ordering};
+use std::time::{Duration, Instant};
+
+use bytemuck::Zeroable;
+use clap::Parser;
+use messages::{
+    Beam, BeamsHeader, HealthHeader, HypothesesHeader, Hypothesis, Name, NodeState, Pose2, Verdict,
+    topic,
+};
+use tests::http::Site;
+use transport::testing::{Isolated, NodeProcess, wait_until_ready};
+use transport::{Flow, Graph, TransportError, monotonic_ns};
+use wire::{Preamble, Wire};
+use zenoh::bytes::Encoding;
+use zenoh::pubsub::Publisher;
+use zenoh::{Session, Wait};
+
+/// How often processor time and memory are printed.
+const PERIOD: Duration = Duration::from_secs(10);
+/// Beams of each scan.
+const BEAMS: usize = 180;
+
+/// Many robots, and one who looks on.
+#[derive(Parser)]
+struct Config {
+    /// Robots
+    #[arg(long, default_value_t = 100)]
+    robots: usize,
+
+    /// Scans a second of each
+    #[arg(long, default_value_t = 20.0)]
+    hz: f64,
+
+    /// For how long
+    #[arg(long, default_value_t = 60)]
+    seconds: u64,
+
+    /// What cargo says to every benchmark
+    #[arg(long, hide = true)]
+    bench: bool,
+}
+
+fn main() {
+    let config = Config::parse();
+    let isolated = Isolated::new("load");
+    let graph = isolated.join("bench");
+    let site = Site::free();
+    let endpoint = format!("tcp/{}:7447", isolated.name().loopback());
+    let page = site.0.to_string();
+    let arguments = ["--page", &page, "--listen", &endpoint];
+    let node = NodeProcess::start(env!("CARGO_BIN_EXE_fleet_monitor"), &graph, arguments);
+    wait_until_ready(&graph, "fleet_monitor");
+    let (stop, heard) = (AtomicBool::new(false), AtomicU64::new(0));
+    std::thread::scope(|scope| {
+        scope.spawn(|| send(&endpoint, &config, &stop));
+        scope.spawn(|| look(site, &stop, &heard));
+        watch(&graph, &config, &heard);
+        stop.store(true, Ordering::Relaxed);
+    });
+    node.stop();
+}
+
+/// Prints what the node takes, by its own reports of how many messages came.
+fn watch(graph: &Graph, config: &Config, heard: &AtomicU64) {
+    let health = graph.subscriber::<topic::Health>().unwrap();
+    let start = Instant::now();
+    let mut due = PERIOD;
+    let mut last: Option<(f64, HealthHeader, Instant)> = None;
+    println!(
+        "{:>7} {:>10} {:>9} {:>9} {:>8} {:>12}",
+        "seconds", "messages/s", "dropped", "cores", "MB", "to the page"
+    );
+    let outcome = graph.run(&[&health], Duration::from_millis(100), |_| {
+        while let Some(sample) = health.receive()? {
+            let report = *sample.header();
+            if report.node.as_str() != "fleet_monitor" || start.elapsed() < due {
+                continue;
+            }
+            let (cpu_s, now) = (processor_s(report.pid), Instant::now());
+            if let Some((last_s, before, then)) = last {
+                let passed_s = now.duration_since(then).as_secs_f64();
+                println!(
+                    "{:>7.0} {:>10.0} {:>9} {:>9.3} {:>8.1} {:>12}",
+                    start.elapsed().as_secs_f64(),
+                    (report.received - before.received) as f64 / passed_s,
+                    report.dropped,
+                    (cpu_s - last_s) / passed_s,
+                    memory_mb(report.pid),
+                    heard.swap(0, Ordering::Relaxed),
+                );
+            }
+            last = Some((cpu_s, report, now));
+            due += PERIOD;
+        }
+        let is_over = start.elapsed().as_secs() >= config.seconds;
+        Ok::<_, TransportError>(if is_over { Flow::Stop } else { Flow::Continue })
+    });
+    outcome.unwrap();
+}
+
+/// Processor time of a process until now, seconds.
+fn processor_s(pid: u32) -> f64 {
+    // Each thread has its own; those that ended meanwhile are left out.
+    let tasks = std::fs::read_dir(format!("/proc/{pid}/task")).unwrap();
+    let nanoseconds = tasks.filter_map(|task| {
+        let text = std::fs::read_to_string(task.ok()?.path().join("schedstat")).ok()?;
+        text.split(' ').next()?.parse::<u64>().ok()
+    });
+    nanoseconds.sum::<u64>() as f64 / 1e9
+}
+
+/// Memory that a process has now, megabytes.
+fn memory_mb(pid: u32) -> f64 {
+    let text = std::fs::read_to_string(format!("/proc/{pid}/status")).unwrap();
+    let line = text
+        .lines()
+        .find(|line| line.starts_with("VmRSS:"))
+        .unwrap();
+    let kilobytes: f64 = line.split_whitespace().nth(1).unwrap().parse().unwrap();
+    kilobytes / 1024.0
+}
+
+/// Somebody who looks at one robot.
+fn look(Site(address): Site, stop: &AtomicBool, heard: &AtomicU64) {
+    let url = format!("ws://{address}/api/v1/robots/r0/stream");
+    while !stop.load(Ordering::Relaxed) {
+        let stream = TcpStream::connect(address).unwrap();
+        // Until the robot is known, there is nothing to look at.
+        let Ok((mut socket, _)) = tungstenite::client(&url, stream) else {
+            std::thread::sleep(Duration::from_millis(100));
+            continue;
+        };
+        while !stop.load(Ordering::Relaxed) && socket.read().is_ok() {
+            heard.fetch_add(1, Ordering::Relaxed);
+        }
+    }
+}
+
+/// One robot's bridge, as far as it is heard.
+struct FarRobot {
+    name: String,
+    hypotheses: Publisher<'static>,
+    beams: Publisher<'static>,
+    health: Publisher<'static>,
+}
+
+impl FarRobot {
+    fn new(session: &Session, number: usize) -> Self {
+        let name = format!("r{number}");
+        FarRobot {
+            hypotheses: publisher::<topic::Hypotheses>(session, &name),
+            beams: publisher::<topic::Beams>(session, &name),
+            health: publisher::<topic::Health>(session, &name),
+            name,
+        }
+    }
+
+    /// Sends what comes of a scan, and the report of that number if there is one.
+    fn send(&self, counter: u64, report: Option<u64>) {
+        let mut header = HypothesesHeader {
+            verdict: Verdict::Unique as u32,
+            ..HypothesesHeader::zeroed()
+        };
+        header.stamp.counter = counter;
+        header.stamp.entered_ns = monotonic_ns();
+        header.sent_ns = monotonic_ns();
+        let angle = counter as f64 * 0.01;
+        let place = Hypothesis {
+            map_from_laser: Pose2 {
+                x: angle.cos(),
+                y: angle.sin(),
+                yaw: angle,
+            },
+            ..Hypothesis::zeroed()
+        };
+        put::<topic::Hypotheses>(&self.hypotheses, counter, &header, &[place]);
+        let beams = BeamsHeader {
+            stamp: header.stamp,
+            ..BeamsHeader::zeroed()
+        };
+        put::<topic::Beams>(&self.beams, counter, &beams, &[Beam::zeroed(); BEAMS]);
+        if let Some(number) = report {
+            let mut report = HealthHeader {
+                node: Name::new(&self.name),
+                state: NodeState::Ready as u32,
+                ..HealthHeader::zeroed()
+            };
+            report.sent_ns = monotonic_ns();
+            put::<topic::Health>(&self.health, number, &report, &[]);
+        }
+    }
+}
+
+fn publisher<T: Wire>(session: &Session, robot: &str) -> Publisher<'static> {
+    let publisher = session.declare_publisher(wire::key::<T>(robot));
+    let publisher = publisher.encoding(Encoding::from(wire::encoding::<T>()));
+    publisher.wait().unwrap()
+}
+
+fn put<T: Wire>(to: &Publisher<'_>, sequence: u64, header: &T::Header, items: &[T::Item]) {
+    let preamble = Preamble {
+        sender: 7,
+        sequence,
+        clock_ns: monotonic_ns(),
+    };
+    let payload = wire::encode::<T>(&preamble, header, items).unwrap();
+    to.put(payload).wait().unwrap();
+}
+
+/// Sends for all robots, one after the other and evenly spread over time.
+fn send(endpoint: &str, config: &Config, stop: &AtomicBool) {
+    let mut settings = zenoh::Config::default();
+    for (key, value) in [
+        ("mode", "'client'".to_owned()),
+        ("connect/endpoints", format!("{:?}", [endpoint])),
+        ("scouting/multicast/enabled", "false".to_owned()),
+    ] {
+        settings.insert_json5(key, &value).unwrap();
+    }
+    let session = zenoh::open(settings).wait().unwrap();
+    let robots: Vec<_> = (0..config.robots)
+        .map(|number| FarRobot::new(&session, number))
+        .collect();
+    let period = Duration::from_secs_f64(1.0 / config.hz / config.robots as f64);
+    let start = Instant::now();
+    let turns = (0u64..).flat_map(|counter| robots.iter().map(move |robot| (counter, robot)));
+    for (turn, (counter, robot)) in turns.enumerate() {
+        if stop.load(Ordering::Relaxed) {
+            return;
+        }
+        let due = period.mul_f64(turn as f64);
+        std::thread::sleep(due.saturating_sub(start.elapsed()));
+        // A report a second.
+        let each = config.hz.ceil().max(1.0) as u64;
+        let report = counter.is_multiple_of(each).then(|| counter / each);
+        robot.send(counter, report);
+    }
+}

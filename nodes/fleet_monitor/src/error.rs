@@ -1,0 +1,53 @@
+//! What keeps the fleet's monitor from running, and what it refuses.
+
+use dashboard::{DashboardError, Robots};
+use network::{Cause, NetworkError};
+use transport::TransportError;
+use wire::WireError;
+
+/// What was tried, what was found and what is allowed.
+#[derive(Debug, thiserror::Error)]
+pub enum FleetError {
+    /// The page cannot be served.
+    #[error(transparent)]
+    Dashboard(#[from] DashboardError),
+    /// The session cannot be opened.
+    #[error(transparent)]
+    Network(#[from] NetworkError),
+    /// A key cannot be used.
+    #[error("cannot {action} {key}")]
+    Key {
+        /// What was tried.
+        action: &'static str,
+        /// The key.
+        key: String,
+        /// What Zenoh says.
+        source: Cause,
+    },
+    /// The system gives no random number.
+    #[error("cannot draw a random number to be known by")]
+    Random(#[source] getrandom::Error),
+    /// A message is none, or a robot's name is none.
+    #[error(transparent)]
+    Wire(#[from] WireError),
+    /// There are as many robots already as may be.
+    #[error(
+        "there are {} robots, which is the most; {robot} is left out",
+        Robots::MOST
+    )]
+    TooMany {
+        /// The one that is.
+        robot: String,
+    },
+    /// A message contradicts itself in a way that shows only here.
+    #[error("{problem} of {robot}")]
+    Unusable {
+        /// What it is.
+        problem: &'static str,
+        /// Whose.
+        robot: String,
+    },
+    /// The graph of this machine fails.
+    #[error(transparent)]
+    Transport(#[from] TransportError),
+}

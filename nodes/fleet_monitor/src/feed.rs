@@ -1,0 +1,87 @@
+//! A topic of one robot, or of all.
+
+use std::marker::PhantomData;
+
+use messages::Topic;
+use network::{Past, Queue, Room};
+use transport::{Waker, monotonic_ns};
+use wire::{Received, Wire, WireError};
+use zenoh::Session;
+use zenoh::sample::Sample;
+
+use crate::FleetError;
+
+/// All robots, in place of a robot's name in a key.
+pub(crate) const ALL: &str = "*";
+
+/// Messages that wait of each topic: of a hundred robots for half a second.
+const WAITING: usize = 1024;
+
+/// Bytes that wait of each topic. Maps that are not made up take a thousandth of it.
+const WAITING_BYTES: usize = 128 << 20;
+
+/// Receives a topic as long as it lives.
+pub(crate) struct Feed<T: Wire> {
+    queue: Queue,
+    topic: PhantomData<T>,
+}
+
+/// What came, and from which robot.
+pub(crate) struct Heard<T: Wire> {
+    pub(crate) robot: String,
+    pub(crate) message: Received<T>,
+}
+
+impl<T: Wire> Feed<T> {
+    /// What it is called.
+    pub(crate) const NAME: &'static str = <T as Topic>::NAME;
+
+    /// Subscribes to the topic of a robot, or of [`ALL`].
+    pub(crate) fn open(session: &Session, robot: &str, waker: Waker) -> Result<Self, FleetError> {
+        let key = wire::key::<T>(robot);
+        let past = if T::KEPT { Past::Last(1) } else { Past::Gone };
+        let room = Room {
+            messages: WAITING,
+            message_bytes: T::MAX_BYTES,
+            bytes: WAITING_BYTES,
+        };
+        let queue = Queue::open(session, &key, past, room, waker);
+        let queue = queue.map_err(|source| FleetError::Key {
+            action: "subscribe to",
+            key,
+            source,
+        })?;
+        Ok(Feed {
+            queue,
+            topic: PhantomData,
+        })
+    }
+
+    /// How many were lost for want of room since the last call.
+    pub(crate) fn dropped(&self) -> u64 {
+        self.queue.dropped()
+    }
+
+    /// What waits now, checked, and what is too long to be looked at: who takes it all
+    /// keeps nobody else waiting, however fast more comes. Times are those of this
+    /// machine's clock.
+    pub(crate) fn waiting(&self) -> impl Iterator<Item = Result<Heard<T>, WireError>> {
+        let (topic, most) = (Self::NAME, T::MAX_BYTES);
+        let too_long = std::iter::from_fn(move || {
+            let found = self.queue.next_too_long()?;
+            Some(Err(WireError::TooLong { topic, found, most }))
+        });
+        let samples = std::iter::from_fn(|| self.queue.next());
+        let heard = samples.take(WAITING).map(|sample| hear(&sample));
+        too_long.take(WAITING).chain(heard)
+    }
+}
+
+fn hear<T: Wire>(sample: &Sample) -> Result<Heard<T>, WireError> {
+    let robot = sample.key_expr().as_str().split('/').nth(1);
+    let robot = wire::robot(robot.unwrap_or_default())?;
+    let encoding = sample.encoding().to_string();
+    let mut message = wire::decode::<T>(&encoding, &sample.payload().to_bytes())?;
+    message.rebase(monotonic_ns());
+    Ok(Heard { robot, message })
+}

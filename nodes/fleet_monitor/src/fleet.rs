@@ -1,0 +1,235 @@
+//! The robots that were heard.
+
+use std::collections::BTreeMap;
+use std::sync::Arc;
+use std::sync::mpsc::Receiver;
+
+use dashboard::{Abilities, Robot, Robots, Wish};
+use messages::topic;
+use transport::{Graph, monotonic_ns};
+use wire::{Arrival, Arrivals, Preamble, Wire};
+use zenoh::Session;
+
+use crate::FleetError;
+use crate::feed::{Feed, Heard};
+use crate::wishes::Wishes;
+
+/// All robots, as their bridges tell of them.
+pub(crate) struct Fleet {
+    robots: Robots,
+    members: BTreeMap<String, Member>,
+}
+
+/// One robot.
+struct Member {
+    robot: Arc<Robot>,
+    wished: Receiver<Wish>,
+    wishes: Wishes,
+    /// What came of each topic, by its name.
+    arrivals: BTreeMap<&'static str, Arrivals>,
+    /// There while somebody looks at it, for it is computed only then.
+    field: Option<Feed<topic::Field>>,
+}
+
+/// What a message came to.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(crate) enum Taken {
+    /// It is shown; so many before it were lost on the way.
+    Shown {
+        /// Messages of its sender.
+        lost: u64,
+    },
+    /// It is shown already.
+    Repeated,
+}
+
+/// A message that can be shown.
+pub(crate) trait Shown: Wire + Sized {
+    /// Tells it to the robot that it came from; else says what is wrong with it.
+    fn show(heard: &Heard<Self>, robot: &Robot) -> Result<(), &'static str>;
+}
+
+impl Shown for topic::Map {
+    fn show(heard: &Heard<Self>, robot: &Robot) -> Result<(), &'static str> {
+        let message = &heard.message;
+        let is_sound = robot.hear_map(&message.header, &message.items);
+        is_sound.then_some(()).ok_or("a map contradicts its header")
+    }
+}
+
+impl Shown for topic::Hypotheses {
+    fn show(heard: &Heard<Self>, robot: &Robot) -> Result<(), &'static str> {
+        let message = &heard.message;
+        robot.hear_answer(&message.header, &message.items, monotonic_ns());
+        Ok(())
+    }
+}
+
+impl Shown for topic::Beams {
+    fn show(heard: &Heard<Self>, robot: &Robot) -> Result<(), &'static str> {
+        robot.hear_beams(&heard.message.header, &heard.message.items);
+        Ok(())
+    }
+}
+
+impl Shown for topic::Health {
+    fn show(heard: &Heard<Self>, robot: &Robot) -> Result<(), &'static str> {
+        let is_shown = robot.hear_health(&heard.message.header, &heard.message.items);
+        let problem = "a report of more nodes than are shown";
+        is_shown.then_some(()).ok_or(problem)
+    }
+}
+
+impl Shown for topic::Log {
+    fn show(heard: &Heard<Self>, robot: &Robot) -> Result<(), &'static str> {
+        robot.hear_log(&heard.message.header, &heard.message.items);
+        Ok(())
+    }
+}
+
+impl Shown for topic::Field {
+    fn show(heard: &Heard<Self>, robot: &Robot) -> Result<(), &'static str> {
+        let message = &heard.message;
+        let is_sound = robot.hear_field(&message.header, &message.items);
+        is_sound
+            .then_some(())
+            .ok_or("an image contradicts its header")
+    }
+}
+
+impl Fleet {
+    /// No robot yet; those that come are added to `robots`.
+    pub(crate) fn new(robots: Robots) -> Self {
+        Fleet {
+            robots,
+            members: BTreeMap::new(),
+        }
+    }
+
+    /// Shows a message; its robot is known from then on.
+    pub(crate) fn take<T: Shown>(
+        &mut self,
+        heard: &Heard<T>,
+        join: impl FnOnce(&str) -> Result<Wishes, FleetError>,
+    ) -> Result<Taken, FleetError> {
+        if !self.members.contains_key(&heard.robot) {
+            self.welcome(&heard.robot, join)?;
+        }
+        let member = self.members.get_mut(&heard.robot);
+        let member = member.ok_or_else(|| FleetError::TooMany {
+            robot: heard.robot.clone(),
+        })?;
+        member.take(heard)
+    }
+
+    fn welcome(
+        &mut self,
+        name: &str,
+        join: impl FnOnce(&str) -> Result<Wishes, FleetError>,
+    ) -> Result<(), FleetError> {
+        let (robot, wished) = Robot::new(name.to_owned());
+        if !self.robots.add(Arc::clone(&robot)) {
+            let robot = name.to_owned();
+            return Err(FleetError::TooMany { robot });
+        }
+        tracing::info!(robot = name, "a robot was heard");
+        let member = Member {
+            robot,
+            wished,
+            wishes: join(name)?,
+            arrivals: BTreeMap::new(),
+            field: None,
+        };
+        self.members.insert(name.to_owned(), member);
+        Ok(())
+    }
+
+    /// Looks for silent nodes, opens and closes images, and passes wishes on: what
+    /// each wish came to.
+    pub(crate) fn tick(
+        &mut self,
+        graph: &Graph,
+        session: &Session,
+    ) -> Result<Vec<Result<(), FleetError>>, FleetError> {
+        let mut granted = Vec::new();
+        for (name, member) in &mut self.members {
+            member.robot.look_for_silence(monotonic_ns());
+            member.robot.hear_abilities(member.wishes.abilities());
+            match (member.robot.is_field_viewed(), &member.field) {
+                (true, None) => member.field = Some(Feed::open(session, name, graph.waker()?)?),
+                (false, Some(_)) => member.field = None,
+                _ => {}
+            }
+            while let Ok(wish) = member.wished.try_recv() {
+                granted.push(member.grant(wish));
+            }
+        }
+        Ok(granted)
+    }
+
+    /// Shows the images that are looked at, of any robot: what each came to.
+    pub(crate) fn take_fields(&mut self) -> Vec<Result<Taken, FleetError>> {
+        let mut outcomes = Vec::new();
+        for member in self.members.values_mut() {
+            let Some(field) = member.field.take() else {
+                continue;
+            };
+            // A slow reader wants the newest, so what was pushed out is no loss.
+            for heard in field.waiting() {
+                let heard = heard.map_err(FleetError::from);
+                outcomes.push(heard.and_then(|heard| member.take(&heard)));
+            }
+            member.field = Some(field);
+        }
+        outcomes
+    }
+}
+
+impl Member {
+    fn take<T: Shown>(&mut self, heard: &Heard<T>) -> Result<Taken, FleetError> {
+        let Preamble {
+            sender, sequence, ..
+        } = heard.message.preamble;
+        let arrivals = self.arrivals.entry(Feed::<T>::NAME).or_default();
+        let lost = match arrivals.note(sender, sequence) {
+            Arrival::Repeated => return Ok(Taken::Repeated),
+            // What is kept says all by itself; the ones before it are no loss.
+            Arrival::New { .. } if T::KEPT => 0,
+            Arrival::New { lost } => lost,
+        };
+        let shown = T::show(heard, &self.robot);
+        shown.map_err(|problem| FleetError::Unusable {
+            problem,
+            robot: heard.robot.clone(),
+        })?;
+        Ok(Taken::Shown { lost })
+    }
+
+    fn grant(&mut self, wish: Wish) -> Result<(), FleetError> {
+        let robot = self.robot.name();
+        match wish {
+            Wish::Region(corners) => {
+                tracing::info!(
+                    robot,
+                    corners = corners.len(),
+                    "a region to search in was set"
+                );
+                self.wishes.region(&corners)?;
+                self.robot.hear_region(corners);
+                Ok(())
+            }
+            Wish::Save => {
+                tracing::info!(robot, "the recorder is asked to save the last minutes");
+                self.wishes.save()
+            }
+        }
+    }
+}
+
+impl Wishes {
+    /// Who would hear them.
+    fn abilities(&self) -> Abilities {
+        let (region, save) = self.heard();
+        Abilities { region, save }
+    }
+}

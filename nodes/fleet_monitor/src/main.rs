@@ -1,0 +1,13 @@
+//! Starts the node; see the library.
+
+use std::process::ExitCode;
+
+use clap::Parser;
+use fleet_monitor::Config;
+
+fn main() -> ExitCode {
+    let config = Config::parse();
+    transport::node::main_hearing("fleet_monitor", network::LOG, |graph| {
+        fleet_monitor::run(graph, &config)
+    })
+}

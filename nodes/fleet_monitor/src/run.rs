@@ -1,0 +1,146 @@
+//! Listens to the network, and lets the server tell.
+
+use std::time::Duration;
+
+use dashboard::{Robots, Server};
+use messages::topic;
+use network::Report;
+use transport::{Flow, Graph};
+use zenoh::Session;
+
+use crate::feed::{ALL, Feed};
+use crate::fleet::{Fleet, Shown, Taken};
+use crate::wishes::Wishes;
+use crate::{Config, FleetError};
+
+/// How long a wish, an image and a silent node may wait.
+const TICK: Duration = Duration::from_millis(50);
+
+/// Serves the page until the stop flag is set.
+///
+/// # Errors
+/// If it cannot serve, the token or Zenoh's configuration cannot be used, or the graph
+/// of this machine fails. A network that is not there is no error: it is waited for.
+pub fn run(graph: &Graph, config: &Config) -> Result<(), FleetError> {
+    let robots = Robots::default();
+    let server = Server::start(config.page, &config.dashboard, robots.clone())?;
+    server.announce("watch all robots", config.page);
+    let mut report = Report::new(graph.health()?);
+    let Some(session) = network::open(graph, &config.network, || report.tick())? else {
+        return Ok(());
+    };
+    let mut node = Node {
+        inputs: Inputs::open(graph, &session)?,
+        fleet: Fleet::new(robots),
+        sender: getrandom::u64().map_err(FleetError::Random)?,
+        session,
+        report,
+    };
+    node.report.ready()?;
+    graph.run(&[], TICK, |wake| {
+        server.check()?;
+        node.step(graph, wake.tick)?;
+        Ok(Flow::Continue)
+    })
+}
+
+/// The topics that are always heard.
+struct Inputs {
+    maps: Feed<topic::Map>,
+    hypotheses: Feed<topic::Hypotheses>,
+    beams: Feed<topic::Beams>,
+    health: Feed<topic::Health>,
+    log: Feed<topic::Log>,
+}
+
+struct Node {
+    session: Session,
+    inputs: Inputs,
+    fleet: Fleet,
+    /// By which robots know this process.
+    sender: u64,
+    report: Report,
+}
+
+impl Inputs {
+    fn open(graph: &Graph, session: &Session) -> Result<Self, FleetError> {
+        Ok(Inputs {
+            maps: Feed::open(session, ALL, graph.waker()?)?,
+            hypotheses: Feed::open(session, ALL, graph.waker()?)?,
+            beams: Feed::open(session, ALL, graph.waker()?)?,
+            health: Feed::open(session, ALL, graph.waker()?)?,
+            log: Feed::open(session, ALL, graph.waker()?)?,
+        })
+    }
+}
+
+impl Node {
+    /// Takes all that has come, maps before what was found in them.
+    fn step(&mut self, graph: &Graph, tick: bool) -> Result<(), FleetError> {
+        let Node {
+            session,
+            inputs,
+            fleet,
+            sender,
+            report,
+        } = self;
+        let mut desk = Desk {
+            session,
+            fleet,
+            sender: *sender,
+            report,
+        };
+        desk.take(&inputs.maps)?;
+        desk.take(&inputs.hypotheses)?;
+        desk.take(&inputs.beams)?;
+        desk.take(&inputs.health)?;
+        desk.take(&inputs.log)?;
+        desk.take_fields()?;
+        if tick {
+            for granted in fleet.tick(graph, session)? {
+                match granted {
+                    Ok(()) => report.sent(),
+                    Err(error) => report.refused(&error)?,
+                }
+            }
+        }
+        report.tick().map_err(FleetError::from)
+    }
+}
+
+/// What taking a message needs.
+struct Desk<'a> {
+    session: &'a Session,
+    fleet: &'a mut Fleet,
+    sender: u64,
+    report: &'a mut Report,
+}
+
+impl Desk<'_> {
+    fn take<T: Shown>(&mut self, feed: &Feed<T>) -> Result<(), FleetError> {
+        self.report.dropped(feed.dropped());
+        let (session, sender) = (self.session, self.sender);
+        let join = |robot: &str| Wishes::open(session, robot, sender);
+        for heard in feed.waiting() {
+            let heard = heard.map_err(FleetError::from);
+            let outcome = heard.and_then(|heard| self.fleet.take(&heard, join));
+            self.note(outcome)?;
+        }
+        Ok(())
+    }
+
+    fn take_fields(&mut self) -> Result<(), FleetError> {
+        let mut outcomes = self.fleet.take_fields().into_iter();
+        outcomes.try_for_each(|outcome| self.note(outcome))
+    }
+
+    fn note(&mut self, outcome: Result<Taken, FleetError>) -> Result<(), FleetError> {
+        self.report.received();
+        match outcome {
+            Ok(Taken::Shown { lost }) => self.report.dropped(lost),
+            Ok(Taken::Repeated) => {}
+            Err(error) => self.report.refused(&error)?,
+        }
+        Ok(())
+    }
+}

@@ -1,0 +1,277 @@
+//! Several robots on one page, as they are heard over a network, and strangers who
+//! send what they should not.
+#![allow(
+    clippy::unwrap_used,
+    reason = "the lint spares test functions but not what they share"
+)]
+
+use std::path::Path;
+use std::time::Duration;
+
+use bytemuck::Zeroable;
+use messages::{
+    Corner, HypothesesHeader, Hypothesis, MapHeader, Pose2, RegionHeader, Verdict, topic,
+};
+use serde_json::{Value, json};
+use tempfile::TempDir;
+use tests::http::Site;
+use transport::testing::{Isolated, NodeProcess, wait_for_health, wait_until_ready};
+use transport::{Flow, Graph, TransportError, monotonic_ns};
+use wire::{Preamble, Wire};
+use zenoh::bytes::Encoding;
+use zenoh::qos::CongestionControl;
+use zenoh::{Session, Wait};
+use zenoh_ext::{AdvancedPublisher, AdvancedPublisherBuilderExt, AdvancedSubscriberBuilderExt};
+use zenoh_ext::{CacheConfig, HistoryConfig, MissDetectionConfig};
+
+const TOKEN: &str = "0123456789abcdef";
+
+/// The node, its page, and where robots find it.
+struct World {
+    node: Option<NodeProcess>,
+    site: Site,
+    endpoint: String,
+    graph: Graph,
+    _isolated: Isolated,
+    _folder: TempDir,
+}
+
+impl World {
+    fn new(test: &str) -> Self {
+        let isolated = Isolated::new(test);
+        let graph = isolated.join("test");
+        let folder = tempfile::tempdir().unwrap();
+        let token = folder.path().join("token");
+        std::fs::write(&token, TOKEN).unwrap();
+        let (site, endpoint) = (
+            Site::free(),
+            format!("tcp/{}:7447", isolated.name().loopback()),
+        );
+        let node = start(&graph, site, &endpoint, &token);
+        wait_until_ready(&graph, "fleet_monitor");
+        World {
+            node: Some(node),
+            site,
+            endpoint,
+            graph,
+            _isolated: isolated,
+            _folder: folder,
+        }
+    }
+
+    /// Asks until the answer is as it should be.
+    fn wait_for(&self, path: &str, is_awaited: impl Fn(&Value) -> bool) -> Value {
+        let mut found = None;
+        let tick = Duration::from_millis(20);
+        let outcome = self.graph.run(&[], tick, |_| {
+            let (status, body) = self.site.ask("GET", path, &[], "");
+            let answer = (status == 200).then(|| serde_json::from_str(&body).unwrap());
+            found = answer.filter(&is_awaited);
+            let flow = match found {
+                Some(_) => Flow::Stop,
+                None => Flow::Continue,
+            };
+            Ok::<_, TransportError>(flow)
+        });
+        outcome.unwrap();
+        found.unwrap()
+    }
+
+    fn robot(&self, name: &str) -> FarRobot {
+        let mut config = zenoh::Config::default();
+        for (key, value) in [
+            ("mode", "'client'".to_owned()),
+            ("connect/endpoints", format!("{:?}", [&self.endpoint])),
+            ("scouting/multicast/enabled", "false".to_owned()),
+        ] {
+            config.insert_json5(key, &value).unwrap();
+        }
+        FarRobot {
+            name: name.to_owned(),
+            session: zenoh::open(config).wait().unwrap(),
+        }
+    }
+}
+
+impl Drop for World {
+    fn drop(&mut self) {
+        if let Some(node) = self.node.take()
+            && !std::thread::panicking()
+        {
+            node.stop();
+        }
+    }
+}
+
+fn start(graph: &Graph, Site(page): Site, endpoint: &str, token: &Path) -> NodeProcess {
+    let (page, token) = (page.to_string(), token.to_str().unwrap());
+    let arguments = ["--page", &page, "--token-file", token, "--listen", endpoint];
+    NodeProcess::start(env!("CARGO_BIN_EXE_fleet_monitor"), graph, arguments)
+}
+
+/// What a bridge sends, without one.
+struct FarRobot {
+    name: String,
+    session: Session,
+}
+
+impl FarRobot {
+    fn payload<T: Wire>(sequence: u64, header: &T::Header, items: &[T::Item]) -> Vec<u8> {
+        let preamble = Preamble {
+            sender: 7,
+            sequence,
+            clock_ns: monotonic_ns(),
+        };
+        wire::encode::<T>(&preamble, header, items).unwrap()
+    }
+
+    fn put(&self, key: &str, encoding: &str, payload: Vec<u8>) {
+        let put = self.session.put(key, payload);
+        let put = put.encoding(Encoding::from(encoding));
+        put.congestion_control(CongestionControl::Block)
+            .wait()
+            .unwrap();
+    }
+
+    fn answer(&self, sequence: u64, x: f64) {
+        let mut header = HypothesesHeader {
+            verdict: Verdict::Unique as u32,
+            ..HypothesesHeader::zeroed()
+        };
+        header.stamp.counter = sequence;
+        header.stamp.entered_ns = monotonic_ns();
+        header.sent_ns = monotonic_ns();
+        let place = Hypothesis {
+            map_from_laser: Pose2 {
+                x,
+                y: 2.0,
+                yaw: 0.5,
+            },
+            ..Hypothesis::zeroed()
+        };
+        let payload = Self::payload::<topic::Hypotheses>(sequence, &header, &[place]);
+        let key = wire::key::<topic::Hypotheses>(&self.name);
+        self.put(&key, &wire::encoding::<topic::Hypotheses>(), payload);
+    }
+
+    /// A map that stays for those who come later.
+    fn serve_map(&self) -> AdvancedPublisher<'static> {
+        let publisher = self
+            .session
+            .declare_publisher(wire::key::<topic::Map>(&self.name))
+            .encoding(Encoding::from(wire::encoding::<topic::Map>()))
+            .cache(CacheConfig::default().max_samples(1))
+            // As bridges do: else each message would need a time by Zenoh's clock.
+            .sample_miss_detection(MissDetectionConfig::default())
+            .publisher_detection()
+            .wait()
+            .unwrap();
+        let header = MapHeader {
+            map_id: 0xabc,
+            width: 3,
+            height: 2,
+            resolution_m: 0.05,
+            ..MapHeader::zeroed()
+        };
+        let payload = Self::payload::<topic::Map>(0, &header, &[0, 100, 255, 0, 0, 100]);
+        publisher.put(payload).wait().unwrap();
+        publisher
+    }
+}
+
+#[test]
+fn robots_come_with_what_they_say_and_stay_apart() {
+    let world = World::new("fleet-apart");
+    assert_eq!(world.site.get("/api/v1/robots")["robots"], json!([]));
+    let (a, b) = (world.robot("a"), world.robot("b"));
+    let _map = a.serve_map();
+    a.answer(0, 1.5);
+    b.answer(0, 9.0);
+    world.wait_for("/api/v1/robots", |known| {
+        known["robots"] == json!(["a", "b"])
+    });
+    let x = |robot: &str, x: f64| {
+        let path = format!("/api/v1/robots/{robot}");
+        world.wait_for(&path, |known| {
+            known["answer"]["hypotheses"][0]["laser"]["x"] == x
+        })
+    };
+    x("a", 1.5);
+    x("b", 9.0);
+    b.answer(1, 9.5);
+    x("b", 9.5);
+    let known = world.wait_for("/api/v1/robots/a", |known| known["map"]["width"] == 3);
+    assert_eq!(known["answer"]["hypotheses"][0]["laser"]["x"], 1.5);
+    assert_eq!(world.site.get("/api/v1/robots/b")["map"], Value::Null);
+}
+
+#[test]
+fn a_region_reaches_the_robot_that_it_was_set_for() {
+    let world = World::new("fleet-region");
+    let (a, b) = (world.robot("a"), world.robot("b"));
+    a.answer(0, 1.0);
+    b.answer(0, 1.0);
+    let listen = |robot: &FarRobot| {
+        let history = HistoryConfig::default().detect_late_publishers();
+        let subscriber = robot
+            .session
+            .declare_subscriber(wire::key::<topic::Region>(&robot.name));
+        subscriber.history(history).wait().unwrap()
+    };
+    let (heard, others) = (listen(&a), listen(&b));
+    world.wait_for("/api/v1/robots/a", |known| {
+        known["abilities"]["region"] == true
+    });
+    let path = "/api/v1/robots/a/region";
+    let headers = [
+        "Content-Type: application/json",
+        &format!("Authorization: Bearer {TOKEN}"),
+    ];
+    let body = r#"{"corners":[[0,0],[2,1]]}"#;
+    assert_eq!(world.site.ask("PUT", path, &headers[..1], body).0, 401);
+    assert_eq!(world.site.ask("PUT", path, &headers, body).0, 202);
+    let sample = heard.recv().unwrap();
+    let encoding = sample.encoding().to_string();
+    let region = wire::decode::<topic::Region>(&encoding, &sample.payload().to_bytes()).unwrap();
+    let RegionHeader { stamp } = region.header;
+    assert!(stamp.entered_ns > 0);
+    assert_eq!(
+        region.items,
+        [Corner { x: 0.0, y: 0.0 }, Corner { x: 2.0, y: 1.0 }]
+    );
+    assert!(others.try_recv().unwrap().is_none(), "it is not b's");
+    // Nobody keeps the last minutes there.
+    let save = "/api/v1/robots/a/save";
+    assert_eq!(world.site.ask("POST", save, &headers[1..], "").0, 409);
+}
+
+#[test]
+fn what_strangers_send_is_refused_and_counted() {
+    let world = World::new("fleet-hostile");
+    let health = world.graph.subscriber::<topic::Health>().unwrap();
+    let stranger = world.robot("a");
+    stranger.answer(0, 1.0);
+    let sound = wire::encoding::<topic::Hypotheses>();
+    let key = wire::key::<topic::Hypotheses>("a");
+    stranger.put(&key, &sound, vec![0xff; 100]);
+    stranger.put(&key, "text/plain", b"hello".to_vec());
+    stranger.put(&key, &sound, vec![0; 2 << 20]);
+    stranger.put("backcast/a b/hypotheses", &sound, vec![0]);
+    // More robots than are shown, each sound by itself.
+    for i in 0..300 {
+        let robot = FarRobot {
+            name: format!("r{i}"),
+            session: stranger.session.clone(),
+        };
+        robot.answer(0, 1.0);
+    }
+    wait_for_health(&world.graph, &health, |report| {
+        report.node.as_str() == "fleet_monitor" && report.refused == 4 + 45
+    });
+    let known = world.site.get("/api/v1/robots");
+    assert_eq!(known["robots"].as_array().unwrap().len(), 256);
+    stranger.answer(1, 3.0);
+    world.wait_for("/api/v1/robots/a", |known| {
+        known["answer"]["hypotheses"][0]["laser"]["x"] == 3.0
+    });
+}

@@ -1,0 +1,127 @@
+//! What a user can set.
+
+use std::num::NonZeroUsize;
+use std::path::PathBuf;
+use std::time::Duration;
+
+use clap::{CommandFactory, Parser, error::ErrorKind};
+use engine::directions::Directions;
+use engine::grid::CellRules;
+use engine::localizer::LocalizerConfig;
+use engine::peaks::PeakConfig;
+
+/// Answers scans with places on a map, for whoever asks over Zenoh.
+///
+/// Listens on this machine alone unless told otherwise. Any number of servers may
+/// answer for one map: each hands on what it has no time for.
+#[derive(Debug, Clone, Parser)]
+#[command(name = "locate_server", version)]
+pub struct Config {
+    /// The map, a YAML file as map_server reads it
+    #[arg(long, value_name = "FILE")]
+    pub map: PathBuf,
+
+    /// What the map is called, the last part of backcast/locate/NAME: 1 to 64 of
+    /// a-z A-Z 0-9 - _ . [default: that of the folder in which the map lies]
+    #[arg(long, value_name = "NAME", value_parser = wire::name)]
+    pub name: Option<String>,
+
+    /// Scans that are searched at the same time, 1 to 256 [default: one a core]
+    #[arg(long, value_name = "COUNT", value_parser = clap::value_parser!(u16).range(1..=256))]
+    pub workers: Option<u16>,
+
+    /// Scans that may wait for each of them, 0 to 1000; further ones are answered
+    /// with "busy"
+    #[arg(long, value_name = "COUNT", default_value_t = 4, value_parser = clap::value_parser!(u16).range(0..=1000))]
+    pub waiting: u16,
+
+    /// How long an answer may take where the question does not say, 0.01 to 60
+    /// seconds; what cannot be answered in time is not searched
+    #[arg(long, value_name = "SECONDS", default_value = "2", value_parser = deadline)]
+    pub deadline: Duration,
+
+    #[command(flatten)]
+    pub(crate) network: network::Options,
+
+    /// How the map's cells are read
+    #[command(flatten)]
+    pub(crate) cells: CellRules,
+
+    #[command(flatten)]
+    pub(crate) localizer: LocalizerConfig,
+
+    #[command(flatten)]
+    pub(crate) peaks: PeakConfig,
+}
+
+impl Config {
+    /// Reads the command line; ends the process with code 2 where it is wrong.
+    #[must_use]
+    pub fn from_command_line() -> Self {
+        let config = Config::parse();
+        match Directions::new(config.localizer.headings) {
+            Ok(_) => config,
+            Err(problem) => Config::command()
+                .error(ErrorKind::ValueValidation, problem)
+                .exit(),
+        }
+    }
+
+    /// What the map is called.
+    #[must_use]
+    pub fn name(&self) -> String {
+        let folder = || {
+            let path = self.map.canonicalize().ok()?;
+            let folder = path.parent()?.file_name()?.to_str()?.to_owned();
+            wire::name(&folder).ok()
+        };
+        let given = self.name.clone().or_else(folder);
+        given.unwrap_or_else(|| "map".to_owned())
+    }
+
+    /// How many scans are searched at the same time.
+    #[must_use]
+    pub fn workers(&self) -> usize {
+        let cores = || std::thread::available_parallelism().map_or(1, NonZeroUsize::get);
+        self.workers.map_or_else(cores, usize::from)
+    }
+}
+
+fn deadline(text: &str) -> Result<Duration, String> {
+    match text.parse() {
+        Ok(seconds) if (0.01..=60.0).contains(&seconds) => Ok(Duration::from_secs_f64(seconds)),
+        _ => Err("allowed are 0.01 to 60 seconds".into()),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn parse(arguments: &str) -> Result<Config, String> {
+        let words = ["locate_server", "--map", "maps/office/map.yaml"].into_iter();
+        Config::try_parse_from(words.chain(arguments.split_whitespace()))
+            .map_err(|error| error.to_string())
+    }
+
+    #[test]
+    fn the_command_line_is_well_formed() {
+        Config::command().debug_assert();
+        let config = parse("--name office --workers 3 --deadline 0.5").unwrap();
+        assert_eq!((config.name().as_str(), config.workers()), ("office", 3));
+        assert_eq!(config.deadline, Duration::from_millis(500));
+        assert_eq!(config.localizer, LocalizerConfig::default());
+    }
+
+    #[test]
+    fn what_is_refused_says_what_is_allowed() {
+        let refuse = |arguments: &str, expected: &str| {
+            let text = parse(arguments).unwrap_err();
+            assert!(text.contains(expected), "{arguments}: {text}");
+        };
+        refuse("--name a/b", "1 to 64 of a-z A-Z 0-9 - _ .");
+        refuse("--deadline 0", "0.01 to 60 seconds");
+        refuse("--deadline NaN", "0.01 to 60 seconds");
+        refuse("--workers 0", "1..=256");
+    }
+}

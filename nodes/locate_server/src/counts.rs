@@ -1,0 +1,70 @@
+//! What is counted on many threads and reported by one.
+
+use std::sync::atomic::{AtomicU64, Ordering};
+use std::sync::{Mutex, PoisonError};
+
+use transport::{Health, TransportError, with_causes};
+use zenoh::query::Query;
+use zenoh::{Result as ZenohResult, Wait};
+
+use crate::LocateError;
+
+/// Counters since the last report.
+#[derive(Debug, Default)]
+pub(crate) struct Counts {
+    received: AtomicU64,
+    sent: AtomicU64,
+    busy: AtomicU64,
+    refused: AtomicU64,
+    /// Why the last one was refused.
+    problem: Mutex<Option<String>>,
+}
+
+impl Counts {
+    pub(crate) fn received(&self) {
+        self.received.fetch_add(1, Ordering::Relaxed);
+    }
+
+    /// An answer went; or could not, because nobody waits any more.
+    pub(crate) fn sent(&self, outcome: &ZenohResult<()>) {
+        let counter = if outcome.is_ok() {
+            &self.sent
+        } else {
+            &self.busy
+        };
+        counter.fetch_add(1, Ordering::Relaxed);
+    }
+
+    /// Says why there is no answer.
+    pub(crate) fn refuse(&self, query: &Query, error: &LocateError) {
+        let says = with_causes(error);
+        // Who does not wait any more needs no reply.
+        let _ = query
+            .reply_err(says.as_str())
+            .encoding(error.encoding())
+            .wait();
+        if matches!(error, LocateError::Busy { .. } | LocateError::Late { .. }) {
+            self.busy.fetch_add(1, Ordering::Relaxed);
+        } else {
+            self.refused.fetch_add(1, Ordering::Relaxed);
+        }
+        let problem = self.problem.lock();
+        *problem.unwrap_or_else(PoisonError::into_inner) = Some(says);
+    }
+
+    /// Puts all into a report: what found no worker in time counts as dropped.
+    pub(crate) fn report(&self, health: &mut Health) -> Result<(), TransportError> {
+        let take = |counter: &AtomicU64| counter.swap(0, Ordering::Relaxed);
+        health.count_received(take(&self.received));
+        health.count_sent(take(&self.sent));
+        health.count_dropped(take(&self.busy));
+        health.count_refused(take(&self.refused));
+        let problem = self.problem.lock();
+        let problem = problem.unwrap_or_else(PoisonError::into_inner).take();
+        if let Some(problem) = problem {
+            tracing::warn!("{problem}");
+            health.error(&problem)?;
+        }
+        health.tick()
+    }
+}

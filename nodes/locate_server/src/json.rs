@@ -1,0 +1,190 @@
+//! A scan and its places as JSON, for programs that have no other way.
+
+use bytemuck::Zeroable;
+use geometry::Pose;
+use messages::{HypothesesHeader, Hypothesis, Name, Pose2, ScanHeader, Stamp, Verdict};
+use serde::{Deserialize, Serialize};
+
+/// A scan; what is not given is as little as a scan needs.
+#[derive(Debug, Deserialize)]
+#[serde(deny_unknown_fields)]
+struct Scan {
+    /// When it was measured, nanoseconds since 1970; the answer repeats it.
+    #[serde(default)]
+    stamp_ns: i64,
+    /// Bearing of the first beam, radians counter-clockwise from ahead.
+    angle_min: f64,
+    /// From one beam to the next, radians, above zero.
+    angle_increment: f64,
+    /// Readings below are no returns, metres.
+    #[serde(default)]
+    range_min: f32,
+    /// Readings above are no returns, metres.
+    range_max: f32,
+    /// Metres; null where nothing came back.
+    ranges: Vec<Option<f32>>,
+    /// Where the laser sits on the robot, metres and radians.
+    #[serde(default)]
+    base_from_laser: Option<Placed>,
+}
+
+#[derive(Debug, Clone, Copy, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+struct Placed {
+    x: f64,
+    y: f64,
+    yaw: f64,
+}
+
+/// What is known of the place.
+#[derive(Debug, Serialize)]
+struct Answer {
+    stamp_ns: i64,
+    /// In hexadecimal: a number of 64 bits is not safe in JSON.
+    map_id: String,
+    verdict: String,
+    /// Other places that fit about as well.
+    alternatives: u32,
+    /// The best place's probability, 0..=1.
+    confidence: f32,
+    /// Share of the beams that agree with it.
+    inlier_share: f32,
+    /// Milliseconds of computing.
+    search_ms: f64,
+    /// Best first.
+    hypotheses: Vec<Place>,
+}
+
+#[derive(Debug, Serialize)]
+struct Place {
+    /// `map_from_laser`, metres and radians.
+    #[serde(flatten)]
+    laser: Placed,
+    /// Row by row over x, y and yaw.
+    covariance: [f64; 9],
+    score: f32,
+    probability: f32,
+    /// Where the laser's mount was given.
+    map_from_base: Option<Placed>,
+}
+
+/// The scan in `payload`.
+///
+/// # Errors
+/// If it is no JSON, lacks a key or has one too many.
+pub(crate) fn read(
+    payload: &[u8],
+    now_ns: i64,
+) -> Result<(ScanHeader, Vec<f32>), serde_json::Error> {
+    let scan: Scan = serde_json::from_slice(payload)?;
+    let mount = scan.base_from_laser;
+    let header = ScanHeader {
+        stamp: Stamp {
+            measured_ns: scan.stamp_ns,
+            entered_ns: now_ns,
+            counter: 0,
+        },
+        angle_min: scan.angle_min,
+        angle_increment: scan.angle_increment,
+        range_min_m: scan.range_min,
+        range_max_m: scan.range_max,
+        base_from_laser: mount.map_or(Pose::IDENTITY.into(), Pose2::from),
+        mount_known: mount.is_some().into(),
+        frame: Name::new("laser"),
+        ..ScanHeader::zeroed()
+    };
+    let ranges = scan.ranges.into_iter();
+    Ok((header, ranges.map(|r| r.unwrap_or(f32::INFINITY)).collect()))
+}
+
+/// The answer as one object.
+///
+/// # Errors
+/// None that plain numbers could cause.
+pub(crate) fn write(
+    header: &HypothesesHeader,
+    hypotheses: &[Hypothesis],
+) -> Result<Vec<u8>, serde_json::Error> {
+    let verdict = Verdict::from_code(header.verdict).unwrap_or(Verdict::NoScan);
+    let place = |place: &Hypothesis| Place {
+        laser: place.map_from_laser.into(),
+        covariance: place.covariance,
+        score: place.score,
+        probability: place.probability,
+        map_from_base: (header.mount_known == 1).then(|| place.map_from_base.into()),
+    };
+    serde_json::to_vec(&Answer {
+        stamp_ns: header.stamp.measured_ns,
+        map_id: format!("{:016x}", header.map_id),
+        verdict: verdict.to_string(),
+        alternatives: header.alternatives,
+        confidence: header.confidence,
+        inlier_share: header.inlier_share,
+        search_ms: header.search_ns as f64 / 1e6,
+        hypotheses: hypotheses.iter().map(place).collect(),
+    })
+}
+
+impl From<Placed> for Pose2 {
+    fn from(Placed { x, y, yaw }: Placed) -> Self {
+        Pose2 { x, y, yaw }
+    }
+}
+
+impl From<Pose2> for Placed {
+    fn from(Pose2 { x, y, yaw }: Pose2) -> Self {
+        Placed { x, y, yaw }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_scan_needs_little() {
+        let text = br#"{"angle_min": -1.5, "angle_increment": 0.01, "range_max": 30,
+                        "ranges": [1.5, null, 2]}"#;
+        let (header, ranges) = read(text, 77).unwrap();
+        assert_eq!(ranges, [1.5, f32::INFINITY, 2.0]);
+        assert_eq!((header.angle_min, header.range_max_m), (-1.5, 30.0));
+        assert_eq!((header.mount_known, header.stamp.entered_ns), (0, 77));
+    }
+
+    #[test]
+    fn a_key_too_many_or_a_number_that_is_none_is_refused() {
+        for text in [
+            r#"{"angle_min": 0, "angle_increment": 1, "range_max": 3}"#,
+            r#"{"angle_min": 0, "angle_increment": 1, "range_max": 3, "ranges": [], "x": 1}"#,
+            r#"{"angle_min": NaN, "angle_increment": 1, "range_max": 3, "ranges": []}"#,
+            r#"{"angle_min": 0, "angle_increment": 1, "range_max": 3, "ranges": ["1"]}"#,
+            "[]",
+        ] {
+            assert!(read(text.as_bytes(), 0).is_err(), "{text}");
+        }
+    }
+
+    #[test]
+    fn an_answer_is_one_object() {
+        let header = HypothesesHeader {
+            map_id: 0xab,
+            verdict: Verdict::Unique as u32,
+            mount_known: 1,
+            ..Zeroable::zeroed()
+        };
+        let place = Hypothesis {
+            map_from_laser: Pose2 {
+                x: 1.0,
+                y: 2.0,
+                yaw: 0.5,
+            },
+            ..Zeroable::zeroed()
+        };
+        let text = write(&header, &[place]).unwrap();
+        let value: serde_json::Value = serde_json::from_slice(&text).unwrap();
+        assert_eq!(value["map_id"], "00000000000000ab");
+        assert_eq!(value["verdict"], "Unique");
+        assert_eq!(value["hypotheses"][0]["yaw"], 0.5);
+        assert_eq!(value["hypotheses"][0]["map_from_base"]["x"], 0.0);
+    }
+}

@@ -1,0 +1,27 @@
+//! Locating as a service: whoever speaks Zenoh asks `backcast/locate/<map>` with a
+//! scan, and gets its places on that map.
+//!
+//! Any number of servers may answer for one map, on any machines. Zenoh brings a
+//! question to one of them, which hands on what it has no free worker for; the
+//! caller gets one answer. Each takes on as much as its queue holds and says "busy"
+//! beyond that; what cannot be answered before its deadline is not searched. Nothing
+//! is kept from one question to the next: who wants to be tracked runs the graph.
+
+mod client;
+mod config;
+mod counts;
+mod desk;
+mod error;
+mod json;
+mod locator;
+mod question;
+mod run;
+mod team;
+mod worker;
+
+pub use client::ask;
+pub use config::Config;
+pub use error::{BUSY, LATE, LocateError, REFUSED};
+pub use locator::{Answer, Locator, Workspace};
+pub use question::{Form, JSON, JSON_ANSWER, Question, read, write};
+pub use run::run;

@@ -1,0 +1,12 @@
+//! Starts the node; see the library.
+
+use std::process::ExitCode;
+
+use locate_server::Config;
+
+fn main() -> ExitCode {
+    let config = Config::from_command_line();
+    transport::node::main_hearing("locate_server", network::LOG, |graph| {
+        locate_server::run(graph, &config)
+    })
+}

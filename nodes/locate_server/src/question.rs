@@ -1,0 +1,166 @@
+//! Questions and answers as bytes.
+//!
+//! A question is a scan as the bridge sends it, in postcard, or the same in JSON;
+//! the answer comes in the form of the question. Postcard is for programs that have
+//! these types; JSON is for everybody else: any language writes a scan with what it
+//! brings along, and new fields of a message do not break it.
+
+use messages::{HypothesesHeader, Hypothesis, ScanHeader, topic};
+use wire::{Preamble, Wire};
+
+use crate::LocateError;
+use crate::json;
+
+/// The encoding of a question in JSON.
+pub const JSON: &str = "application/json;backcast.Scan/v1";
+/// That of its answer.
+pub const JSON_ANSWER: &str = "application/json;backcast.Hypotheses/v2";
+/// What a question may say of itself.
+pub(crate) const ENCODINGS: [&str; 2] = ["application/postcard;backcast.Scan/v1", JSON];
+/// Characters of a foreign encoding that an error shows.
+const SHOWN: usize = 80;
+
+/// In which form the question came, and the answer goes.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Form {
+    /// As the bridge sends it; the preamble of the question is that of the answer.
+    Postcard(Preamble),
+    /// JSON.
+    Json,
+}
+
+/// A scan that somebody wants to be located.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Question {
+    /// How it came.
+    pub form: Form,
+    /// As in topic `scan`.
+    pub header: ScanHeader,
+    /// Metres.
+    pub ranges: Vec<f32>,
+}
+
+/// Reads a question that says of itself what it is, at `now_ns` of the monotonic
+/// clock.
+///
+/// # Errors
+/// If it is in no form that is known, too long, or not sound.
+pub fn read(encoding: &str, payload: &[u8], now_ns: i64) -> Result<Question, LocateError> {
+    let most = topic::Scan::MAX_BYTES;
+    if payload.len() > most {
+        let found = payload.len();
+        return Err(LocateError::TooLong { found, most });
+    }
+    if encoding == JSON {
+        let (header, ranges) = json::read(payload, now_ns)?;
+        let form = Form::Json;
+        return Ok(Question {
+            form,
+            header,
+            ranges,
+        });
+    }
+    if encoding != wire::encoding::<topic::Scan>() {
+        let found = encoding.chars().take(SHOWN).collect();
+        return Err(LocateError::Encoding { found });
+    }
+    let mut scan = wire::decode::<topic::Scan>(encoding, payload)?;
+    scan.rebase(now_ns);
+    Ok(Question {
+        form: Form::Postcard(scan.preamble),
+        header: scan.header,
+        ranges: scan.items,
+    })
+}
+
+/// An answer in this form, which is sent at `now_ns` of the monotonic clock: its
+/// encoding and its bytes.
+///
+/// # Errors
+/// If the engine gave what cannot be sent.
+pub fn write(
+    form: Form,
+    header: &HypothesesHeader,
+    hypotheses: &[Hypothesis],
+    now_ns: i64,
+) -> Result<(String, Vec<u8>), LocateError> {
+    match form {
+        Form::Json => Ok((JSON_ANSWER.into(), json::write(header, hypotheses)?)),
+        Form::Postcard(asked) => {
+            let preamble = Preamble {
+                clock_ns: now_ns,
+                ..asked
+            };
+            let payload = wire::encode::<topic::Hypotheses>(&preamble, header, hypotheses)?;
+            Ok((wire::encoding::<topic::Hypotheses>(), payload))
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use bytemuck::Zeroable;
+    use messages::{Name, Stamp};
+
+    use super::*;
+
+    const PREAMBLE: Preamble = Preamble {
+        sender: 7,
+        sequence: 3,
+        clock_ns: 1_000,
+    };
+
+    fn scan() -> ScanHeader {
+        ScanHeader {
+            stamp: Stamp {
+                measured_ns: 5,
+                entered_ns: 400,
+                counter: 9,
+            },
+            angle_min: -1.5,
+            angle_increment: 0.5,
+            range_max_m: 30.0,
+            frame: Name::new("laser"),
+            ..Zeroable::zeroed()
+        }
+    }
+
+    #[test]
+    fn the_forms_are_those_of_the_wire() {
+        assert_eq!(ENCODINGS[0], wire::encoding::<topic::Scan>());
+        let answer = wire::encoding::<topic::Hypotheses>();
+        assert!(answer.ends_with("backcast.Hypotheses/v2"), "{answer}");
+        assert!(JSON_ANSWER.ends_with("backcast.Hypotheses/v2"));
+    }
+
+    #[test]
+    fn a_question_in_postcard_is_answered_in_postcard() {
+        let payload = wire::encode::<topic::Scan>(&PREAMBLE, &scan(), &[1.0, 2.0]).unwrap();
+        let asked = read(ENCODINGS[0], &payload, 50_000).unwrap();
+        assert_eq!(asked.form, Form::Postcard(PREAMBLE));
+        assert_eq!(asked.ranges, [1.0, 2.0]);
+        assert_eq!(
+            asked.header.stamp.entered_ns,
+            50_000 - 600,
+            "as old as there"
+        );
+        let header = HypothesesHeader::zeroed();
+        let (encoding, payload) = write(asked.form, &header, &[], 60_000).unwrap();
+        let answer = wire::decode::<topic::Hypotheses>(&encoding, &payload).unwrap();
+        assert_eq!((answer.preamble.sender, answer.preamble.sequence), (7, 3));
+        assert_eq!(answer.preamble.clock_ns, 60_000);
+    }
+
+    #[test]
+    fn what_is_no_question_is_refused_with_what_would_be_one() {
+        let check = |encoding: &str, payload: &[u8], expected: &str| {
+            let error = read(encoding, payload, 0).unwrap_err().to_string();
+            assert!(error.contains(expected), "{error}");
+        };
+        check("zenoh/bytes", b"", "allowed are application/postcard");
+        check("application/postcard;backcast.Scan/v9", b"", JSON);
+        check(ENCODINGS[0], b"\xff", "no postcard of its schema");
+        check(JSON, b"{", "no scan in JSON");
+        check(JSON, &vec![b' '; (1 << 20) + 1], "at most 1048576");
+    }
+}

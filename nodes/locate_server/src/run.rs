@@ -1,0 +1,265 @@
+//! Prepares the map, opens the desk, and reports what goes on there.
+
+use std::sync::Arc;
+use std::time::{Duration, Instant};
+
+use messages::NodeState;
+use transport::{Flow, Graph, Waker, wall_ns};
+use zenoh::liveliness::LivelinessToken;
+use zenoh::pubsub::Subscriber;
+use zenoh::query::{Query, Queryable};
+use zenoh::sample::SampleKind;
+use zenoh::{Result as ZenohResult, Session, Wait};
+
+use crate::counts::Counts;
+use crate::desk::Desk;
+use crate::locator::Locator;
+use crate::{Config, LocateError, worker};
+
+/// Between two looks at the counters, and at who else is there.
+const TICK: Duration = Duration::from_millis(200);
+
+/// How long a server looks who else is there before it takes questions.
+const ACQUAINTANCE: Duration = Duration::from_millis(500);
+
+/// Answers until the stop flag is set.
+///
+/// # Errors
+/// If the map cannot be used, the session cannot be opened, or the graph fails.
+pub fn run(graph: &Graph, config: &Config) -> Result<(), LocateError> {
+    let mut health = graph.health()?;
+    let locator = Arc::new(prepare(config)?);
+    let Some(session) = network::open(graph, &config.network, || health.tick())? else {
+        return Ok(());
+    };
+    let counts = Arc::new(Counts::default());
+    let mut service = Service::open(&session, config, &locator, &counts, graph.waker()?)?;
+    let opened = Instant::now();
+    let mut is_ready = false;
+    graph.run(&[], TICK, |_| {
+        if opened.elapsed() >= ACQUAINTANCE {
+            service.follow_team()?;
+            if !std::mem::replace(&mut is_ready, true) {
+                health.state(NodeState::Ready)?;
+            }
+        }
+        counts.report(&mut health)?;
+        Ok(Flow::Continue)
+    })
+}
+
+fn prepare(config: &Config) -> Result<Locator, LocateError> {
+    let path = &config.map;
+    let grid = map::load(path).map_err(|source| LocateError::Map {
+        path: path.clone(),
+        source: Box::new(source),
+    })?;
+    let locator = Locator::new(&grid, config.cells, &config.localizer, config.peaks);
+    locator.map_err(|source| LocateError::UnusableMap {
+        path: path.clone(),
+        source,
+    })
+}
+
+/// What stands on the network, as long as this lives.
+struct Service {
+    session: Session,
+    /// `backcast/locate/<map>`.
+    key: String,
+    since: u64,
+    desk: Arc<Desk>,
+    /// Questions to all servers, while they are this one's to take.
+    to_all: Option<Queryable<()>>,
+    _handed_on: Queryable<()>,
+    _team: Subscriber<()>,
+    _token: LivelinessToken,
+}
+
+impl Service {
+    fn open(
+        session: &Session,
+        config: &Config,
+        locator: &Arc<Locator>,
+        counts: &Arc<Counts>,
+        waker: Waker,
+    ) -> Result<Self, LocateError> {
+        let key = wire::locate(&config.name());
+        let workers = config.workers();
+        let me = session.zid().to_string();
+        let load = (workers, config.waiting.into());
+        let (desk, bench) = Desk::new(session, &key, load, config.deadline, counts);
+        let bench = Arc::new(bench);
+        for _ in 0..workers {
+            let (bench, locator, counts) = (bench.clone(), locator.clone(), counts.clone());
+            // They end when the desk is closed, or with the process.
+            std::thread::spawn(move || worker::work(&bench, &locator, &counts));
+        }
+        let map_id = locator.map_id();
+        let since = wall_ns().unsigned_abs();
+        let token = format!("{key}/{me}/{map_id:016x}/{since:x}/{workers}");
+        let mine = format!("{key}/{me}");
+        let service = Service {
+            session: session.clone(),
+            to_all: None,
+            _handed_on: answer(session, &mine, {
+                let (desk, key) = (desk.clone(), mine.as_str().into());
+                move |query| desk.ask_me(query, &key)
+            })?,
+            _team: meet(session, &key, map_id, &desk, waker)?,
+            _token: tried("be alive at", &token, |key| {
+                session.liveliness().declare_token(key).wait()
+            })?,
+            desk,
+            since,
+            key,
+        };
+        let map_id = format!("{map_id:016x}");
+        tracing::info!(key = service.key, workers, map_id, "answering");
+        Ok(service)
+    }
+
+    /// Takes the questions to all servers where that is its turn. Were several to take
+    /// them, Zenoh would bring each question to the server that routes it and to another
+    /// one as well. Where one gives them up, a question on its way is lost until its
+    /// deadline, so that happens only where two did not know each other.
+    fn follow_team(&mut self) -> Result<(), LocateError> {
+        let me = self.session.zid().to_string();
+        let is_first = self.desk.team().is_led_by(self.since, &me);
+        if is_first && self.to_all.is_none() {
+            let desk = self.desk.clone();
+            let ask = move |query| desk.ask(query);
+            self.to_all = Some(answer(&self.session, &self.key, ask)?);
+            tracing::info!(key = self.key, "takes the questions to all servers");
+        } else if !is_first && self.to_all.take().is_some() {
+            tracing::info!(key = self.key, "another server takes the questions");
+        }
+        Ok(())
+    }
+}
+
+fn answer(
+    session: &Session,
+    key: &str,
+    ask: impl Fn(Query) + Send + Sync + 'static,
+) -> Result<Queryable<()>, LocateError> {
+    tried("answer at", key, |key| {
+        session
+            .declare_queryable(key)
+            .complete(true)
+            .callback(ask)
+            .wait()
+    })
+}
+
+/// Keeps the desk's list of servers that have the same map.
+fn meet(
+    session: &Session,
+    key: &str,
+    map_id: u64,
+    desk: &Arc<Desk>,
+    waker: Waker,
+) -> Result<Subscriber<()>, LocateError> {
+    let (me, desk) = (session.zid().to_string(), Arc::clone(desk));
+    tried("watch", &format!("{key}/*/*/*/*"), |key| {
+        session
+            .liveliness()
+            .declare_subscriber(key)
+            .history(true)
+            .callback(move |sample| {
+                let Some(other) = Other::of(sample.key_expr().as_str()) else {
+                    return;
+                };
+                if other.session == me {
+                    return;
+                }
+                let comes = sample.kind() == SampleKind::Put;
+                let Other {
+                    session,
+                    since,
+                    workers,
+                    ..
+                } = other;
+                let fits = other.map_id == map_id;
+                tracing::info!(
+                    session,
+                    workers,
+                    comes,
+                    fits,
+                    "another server of this map's name"
+                );
+                match (comes, fits) {
+                    (true, true) => desk.team().join(session, since, workers),
+                    (false, _) => desk.team().leave(session),
+                    // It answers those who ask it, of the map that it has.
+                    (true, false) => {}
+                }
+                waker.wake();
+            })
+            .wait()
+    })
+}
+
+fn tried<T>(
+    action: &'static str,
+    key: &str,
+    attempt: impl FnOnce(String) -> ZenohResult<T>,
+) -> Result<T, LocateError> {
+    attempt(key.to_owned()).map_err(|source| LocateError::Key {
+        action,
+        key: key.to_owned(),
+        source,
+    })
+}
+
+/// What the token of a server says.
+#[derive(Debug, PartialEq, Eq)]
+struct Other<'a> {
+    session: &'a str,
+    map_id: u64,
+    since: u64,
+    workers: usize,
+}
+
+impl<'a> Other<'a> {
+    /// None if anybody else wrote it.
+    fn of(key: &'a str) -> Option<Self> {
+        let mut parts = key.rsplit('/');
+        let workers = parts.next()?.parse().ok()?;
+        let since = u64::from_str_radix(parts.next()?, 16).ok()?;
+        let map_id = u64::from_str_radix(parts.next()?, 16).ok()?;
+        Some(Other {
+            session: parts.next()?,
+            map_id,
+            since,
+            workers,
+        })
+        .filter(|other| (1..=256).contains(&other.workers))
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn tokens_tell_of_map_and_workers() {
+        let expected = Other {
+            session: "a1",
+            map_id: 0xff,
+            since: 0x1f,
+            workers: 4,
+        };
+        let key = "backcast/locate/office/a1/00000000000000ff/1f/4";
+        assert_eq!(Other::of(key), Some(expected));
+        for key in [
+            "",
+            "a1",
+            "x/a1/ff/1/0",
+            "x/a1/ff/1/257",
+            "x/a1/xx/1/1",
+            "x/a1/ff/1/-1",
+        ] {
+            assert_eq!(Other::of(key), None, "{key}");
+        }
+    }
+}

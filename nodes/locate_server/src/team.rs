@@ -1,0 +1,129 @@
+//! The servers of one map, and whose turn it is. Pure.
+//!
+//! Each server knows how much it has handed on to each other one, and nothing of
+//! what they have to do besides: one that has too much says so, and the question
+//! comes back.
+
+use std::collections::BTreeMap;
+
+/// The others that answer for the same map, by their session.
+#[derive(Debug, Default)]
+pub(crate) struct Team {
+    others: BTreeMap<String, Other>,
+}
+
+#[derive(Debug)]
+struct Other {
+    /// By its own clock, nanoseconds since 1970.
+    since: u64,
+    workers: usize,
+    /// Handed on to it, and not answered yet.
+    pending: usize,
+}
+
+impl Team {
+    /// Another server that is there.
+    pub(crate) fn join(&mut self, session: &str, since: u64, workers: usize) {
+        let other = Other {
+            since,
+            workers: workers.max(1),
+            pending: 0,
+        };
+        self.others.entry(session.to_owned()).or_insert(other);
+    }
+
+    /// A server that is gone.
+    pub(crate) fn leave(&mut self, session: &str) {
+        self.others.remove(session);
+    }
+
+    /// Whether a server that is there `since` that time is the one that takes the
+    /// questions to all of them: the one that is there longest, so that who comes takes
+    /// them from nobody.
+    pub(crate) fn is_led_by(&self, since: u64, session: &str) -> bool {
+        let mut others = self.others.iter();
+        others.all(|(name, other)| (since, session) < (other.since, name.as_str()))
+    }
+
+    /// Who should take the next question instead of a server with `workers` of
+    /// which `busy` or more have something to do: the one with the least to do for
+    /// each worker, if that is less than here. It has one more then.
+    pub(crate) fn hand_on(&mut self, busy: usize, workers: usize) -> Option<String> {
+        // With a free worker here, nobody is faster.
+        if busy < workers {
+            return None;
+        }
+        // Cross-multiplied, for two of three is not one of two.
+        let less = |a: &Other, b: &Other| (a.pending * b.workers).cmp(&(b.pending * a.workers));
+        let (session, other) = self.others.iter_mut().min_by(|a, b| less(a.1, b.1))?;
+        if other.pending * workers >= busy * other.workers {
+            return None;
+        }
+        other.pending += 1;
+        Some(session.clone())
+    }
+
+    /// It answered, or will not.
+    pub(crate) fn done(&mut self, session: &str) {
+        if let Some(other) = self.others.get_mut(session) {
+            other.pending = other.pending.saturating_sub(1);
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn who_has_a_free_worker_answers() {
+        let mut team = Team::default();
+        assert_eq!(team.hand_on(9, 2), None, "nobody else is there");
+        team.join("b", 0, 4);
+        assert_eq!(team.hand_on(1, 2), None);
+        assert_eq!(team.hand_on(2, 2).as_deref(), Some("b"));
+    }
+
+    #[test]
+    fn who_has_the_least_to_do_for_each_worker_is_next() {
+        let mut team = Team::default();
+        team.join("b", 0, 1);
+        team.join("c", 0, 2);
+        let mut next = || team.hand_on(2, 2).unwrap();
+        let turns: Vec<String> = (0..3).map(|_| next()).collect();
+        assert_eq!(turns, ["b", "c", "c"]);
+        // All have as much as this one.
+        assert_eq!(team.hand_on(2, 2), None);
+        team.done("c");
+        assert_eq!(team.hand_on(2, 2).as_deref(), Some("c"));
+    }
+
+    #[test]
+    fn who_is_there_longest_takes_the_questions_to_all() {
+        let mut team = Team::default();
+        assert!(team.is_led_by(5, "b"), "nobody else is there");
+        team.join("a", 6, 1);
+        assert!(team.is_led_by(5, "b"));
+        // Of two that came at the same time, one.
+        team.join("c", 5, 1);
+        assert!(team.is_led_by(5, "b"));
+        assert!(!team.is_led_by(5, "d"));
+        team.join("e", 4, 1);
+        assert!(!team.is_led_by(5, "b"));
+        team.leave("e");
+        assert!(team.is_led_by(5, "b"));
+    }
+
+    #[test]
+    fn who_is_gone_is_not_asked() {
+        let mut team = Team::default();
+        team.join("b", 0, 1);
+        assert!(team.hand_on(1, 1).is_some());
+        // Said twice, it is still one.
+        team.join("b", 0, 1);
+        assert!(team.hand_on(1, 1).is_none());
+        team.leave("b");
+        team.done("b");
+        assert!(team.hand_on(1, 1).is_none());
+    }
+}

@@ -1,0 +1,55 @@
+//! Searches what is taken on, one question after the other.
+
+use std::sync::Arc;
+use std::sync::atomic::Ordering;
+use std::time::Instant;
+
+use transport::monotonic_ns;
+use zenoh::Wait;
+
+use crate::counts::Counts;
+use crate::desk::{Bench, Job};
+use crate::locator::{Locator, Workspace};
+use crate::{LocateError, question};
+
+/// Answers until nobody takes questions any more.
+pub(crate) fn work(bench: &Bench, locator: &Locator, counts: &Arc<Counts>) {
+    let mut workspace = Workspace::default();
+    while let Some(job) = bench.next() {
+        match answer(&job, locator, &mut workspace) {
+            Ok((encoding, payload)) => {
+                let reply = job.query.reply(&*job.key, payload).encoding(encoding);
+                counts.sent(&reply.wait());
+            }
+            Err(error) => counts.refuse(&job.query, &error),
+        }
+        bench.busy.fetch_sub(1, Ordering::Relaxed);
+    }
+}
+
+fn answer(
+    job: &Job,
+    locator: &Locator,
+    workspace: &mut Workspace,
+) -> Result<(String, Vec<u8>), LocateError> {
+    let deadline = job.deadline;
+    if deadline.has_passed() {
+        return Err(deadline.late());
+    }
+    let start = Instant::now();
+    let encoding = job.query.encoding().map(ToString::to_string);
+    let payload = job.query.payload().map(|payload| payload.to_bytes());
+    let asked = question::read(
+        &encoding.unwrap_or_default(),
+        &payload.unwrap_or_default(),
+        monotonic_ns(),
+    )?;
+    let stop = || deadline.has_passed();
+    let scan = (&asked.header, asked.ranges.as_slice());
+    let Some((mut header, hypotheses)) = locator.locate(workspace, scan, &stop)? else {
+        return Err(deadline.late());
+    };
+    header.search_ns = start.elapsed().as_nanos() as u64;
+    header.sent_ns = monotonic_ns();
+    question::write(asked.form, &header, &hypotheses, header.sent_ns)
+}

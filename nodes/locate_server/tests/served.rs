@@ -1,0 +1,316 @@
+//! The server as a process, asked over loopback connections.
+#![allow(
+    clippy::unwrap_used,
+    reason = "the lint spares test functions but not what they share"
+)]
+
+use std::sync::atomic::{AtomicBool, AtomicUsize, Ordering};
+use std::thread::ScopedJoinHandle;
+use std::time::Duration;
+
+use locate_server::{BUSY, JSON, JSON_ANSWER, LATE, LocateError, Locator, REFUSED, Workspace, ask};
+use messages::{ScanHeader, topic};
+use tests::world::{World, as_the_graph_has_it};
+use transport::Graph;
+use transport::testing::{Isolated, NodeProcess, wait_for_health, wait_until_ready};
+use wire::Preamble;
+use zenoh::bytes::Encoding;
+use zenoh::query::{ConsolidationMode, QueryTarget, Reply};
+use zenoh::{Session, Wait};
+
+/// Longer than any answer takes on any machine.
+const PATIENCE: Duration = Duration::from_secs(60);
+
+/// A server with a graph of its own.
+struct Server {
+    process: NodeProcess,
+    graph: Graph,
+    // Behind the graph, so that it is dropped after it.
+    isolated: Isolated,
+}
+
+fn world() -> World {
+    World::of("malaga_corridor")
+}
+
+impl Server {
+    fn start(tag: &str, arguments: &[&str]) -> Self {
+        let isolated = Isolated::new(tag);
+        let graph = isolated.join("test");
+        let listen = format!("tcp/{}:7447", isolated.name().loopback());
+        let map = world().map();
+        let common = [
+            "--map",
+            map.to_str().unwrap(),
+            "--name",
+            "corridor",
+            "--listen",
+            &listen,
+        ];
+        let executable = env!("CARGO_BIN_EXE_locate_server");
+        let process = NodeProcess::start(executable, &graph, common.iter().chain(arguments));
+        wait_until_ready(&graph, "locate_server");
+        Server {
+            process,
+            graph,
+            isolated,
+        }
+    }
+
+    fn endpoint(&self) -> String {
+        format!("tcp/{}:7447", self.isolated.name().loopback())
+    }
+
+    /// Waits until the server has sent so many answers, to those who ask.
+    fn wait_until_sent(&self, answers: u64, asking: &ScopedJoinHandle<'_, ()>) {
+        let health = self.graph.subscriber::<topic::Health>().unwrap();
+        wait_for_health(&self.graph, &health, |report| {
+            assert!(!asking.is_finished(), "a question has no answer");
+            report.sent >= answers
+        });
+    }
+}
+
+/// A caller who is connected to all of these.
+fn caller(servers: &[&Server]) -> Session {
+    let mut config = zenoh::Config::default();
+    let endpoints: Vec<_> = servers.iter().map(|server| server.endpoint()).collect();
+    let mut set = |key, value: &str| config.insert_json5(key, value).unwrap();
+    set("connect/endpoints", &format!("{endpoints:?}"));
+    set("listen/endpoints", "[]");
+    set("scouting/multicast/enabled", "false");
+    zenoh::open(config).wait().unwrap()
+}
+
+type Scan = (ScanHeader, Vec<f32>);
+
+fn scans() -> Vec<Scan> {
+    let recorded = world().scans().into_iter().zip(0..);
+    recorded
+        .map(|(scan, counter)| (as_the_graph_has_it(&scan, counter), scan.ranges))
+        .collect()
+}
+
+/// Asks with any bytes; the first reply.
+fn ask_raw(session: &Session, parameters: &str, encoding: &str, payload: Vec<u8>) -> Reply {
+    let replies = session
+        .get(format!("backcast/locate/corridor{parameters}"))
+        .payload(payload)
+        .encoding(Encoding::from(encoding))
+        .timeout(PATIENCE)
+        .wait()
+        .unwrap();
+    let mut replies: Vec<_> = replies.into_iter().collect();
+    assert_eq!(replies.len(), 1, "one answer");
+    replies.remove(0)
+}
+
+fn json_of((header, ranges): &Scan) -> Vec<u8> {
+    let ranges: Vec<_> = ranges.iter().map(|r| r.is_finite().then_some(r)).collect();
+    let value = serde_json::json!({
+        "angle_min": header.angle_min,
+        "angle_increment": header.angle_increment,
+        "range_min": header.range_min_m,
+        "range_max": header.range_max_m,
+        "ranges": ranges,
+    });
+    value.to_string().into_bytes()
+}
+
+#[test]
+fn answers_are_those_of_the_engine() {
+    let server = Server::start("answers", &[]);
+    let session = caller(&[&server]);
+    let map = map::load(world().map()).unwrap();
+    let config = Default::default();
+    let locator = Locator::new(&map, Default::default(), &config, Default::default()).unwrap();
+    let mut workspace = Workspace::default();
+    for scan in scans() {
+        let asked = (&scan.0, scan.1.as_slice());
+        let found = ask(&session, "corridor", asked, PATIENCE).unwrap();
+        let expected = locator.locate(&mut workspace, asked, &|| false).unwrap();
+        let (header, hypotheses) = expected.unwrap();
+        assert_eq!(found.items, hypotheses);
+        assert_eq!(found.header.verdict, header.verdict);
+        assert_eq!(found.header.stamp.counter, header.stamp.counter);
+        assert_eq!(found.header.map_id, map.id());
+        let reply = ask_raw(&session, "", JSON, json_of(&scan));
+        let sample = reply.into_result().unwrap();
+        assert_eq!(sample.encoding().to_string(), JSON_ANSWER);
+        let value: serde_json::Value =
+            serde_json::from_slice(&sample.payload().to_bytes()).unwrap();
+        let best = &value["hypotheses"][0];
+        assert_eq!(best["x"], hypotheses[0].map_from_laser.x);
+    }
+    server.process.stop();
+}
+
+#[test]
+fn what_is_no_question_is_refused_and_counted() {
+    let server = Server::start("refused", &[]);
+    let session = caller(&[&server]);
+    let scan = &scans()[0];
+    let preamble = Preamble {
+        sender: 1,
+        sequence: 1,
+        clock_ns: 0,
+    };
+    let sound = wire::encode::<topic::Scan>(&preamble, &scan.0, &scan.1).unwrap();
+    let postcard = wire::encoding::<topic::Scan>();
+    let mut cut = sound.clone();
+    cut.pop();
+    let wrong = [
+        ("", "zenoh/bytes", sound.clone()),
+        ("", postcard.as_str(), cut),
+        ("", postcard.as_str(), vec![0xff; 2 << 20]),
+        ("", JSON, b"{}".to_vec()),
+        (
+            "",
+            JSON,
+            br#"{"angle_min":0,"angle_increment":-1,"range_max":9,"ranges":[1]}"#.to_vec(),
+        ),
+        ("?deadline_ms=soon", postcard.as_str(), sound.clone()),
+    ];
+    let count = wrong.len() as u64;
+    for (parameters, encoding, payload) in wrong {
+        let reply = ask_raw(&session, parameters, encoding, payload);
+        let error = reply.into_result().unwrap_err();
+        assert_eq!(error.encoding().to_string(), REFUSED);
+        assert!(!error.payload().is_empty());
+    }
+    let health = server.graph.subscriber::<topic::Health>().unwrap();
+    wait_for_health(&server.graph, &health, |report| report.refused == count);
+    // Through the client, too: asking again would not help, so it does not.
+    let empty = ask(&session, "corridor", (&scan.0, &[]), PATIENCE);
+    assert!(
+        matches!(empty, Err(LocateError::Refused { .. })),
+        "{empty:?}"
+    );
+    // And it goes on.
+    assert!(ask_raw(&session, "", &postcard, sound).result().is_ok());
+    server.process.stop();
+}
+
+#[test]
+fn what_cannot_be_answered_in_time_is_not_searched() {
+    let server = Server::start("late", &[]);
+    let session = caller(&[&server]);
+    // A search takes many times that.
+    let payload = json_of(&scans()[0]);
+    let reply = ask_raw(&session, "?deadline_ms=1", JSON, payload);
+    let error = reply.into_result().unwrap_err();
+    assert_eq!(error.encoding().to_string(), LATE);
+    server.process.stop();
+}
+
+#[test]
+fn beyond_its_queue_a_server_is_busy() {
+    let server = Server::start("busy", &["--workers", "1", "--waiting", "0"]);
+    let session = caller(&[&server]);
+    let payload = json_of(&scans()[0]);
+    let (mut answers, mut busy) = (0, 0);
+    // Sooner or later more than two come at the same time.
+    while answers == 0 || busy == 0 {
+        let asking = (0..20).map(|_| {
+            let get = session
+                .get("backcast/locate/corridor")
+                .payload(payload.clone());
+            get.encoding(Encoding::from(JSON))
+                .timeout(PATIENCE)
+                .wait()
+                .unwrap()
+        });
+        let asking: Vec<_> = asking.collect();
+        for replies in asking {
+            match replies.recv().unwrap().into_result() {
+                Ok(_) => answers += 1,
+                Err(error) => {
+                    assert_eq!(error.encoding().to_string(), BUSY);
+                    busy += 1;
+                }
+            }
+        }
+    }
+    server.process.stop();
+}
+
+/// Asks on several threads until told to stop, each question until it is answered;
+/// returns how many there were.
+fn keep_asking(session: &Session, stop: &AtomicBool, answered: &AtomicUsize) {
+    let scans = scans();
+    std::thread::scope(|scope| {
+        for _ in 0..4 {
+            scope.spawn(|| {
+                for (header, ranges) in scans.iter().cycle() {
+                    if stop.load(Ordering::Relaxed) {
+                        return;
+                    }
+                    let answer = ask(session, "corridor", (header, ranges), PATIENCE).unwrap();
+                    assert_eq!(answer.header.stamp.counter, header.stamp.counter);
+                    answered.fetch_add(1, Ordering::Relaxed);
+                }
+            });
+        }
+    });
+}
+
+#[test]
+fn a_question_is_brought_to_one_server() {
+    let first = Server::start("once-a", &[]);
+    let endpoint = first.endpoint();
+    let second = Server::start("once-b", &["--connect", &endpoint]);
+    // Whichever is asked.
+    for asked in [&first, &second] {
+        assert_one_hears_it(asked);
+    }
+    first.process.stop();
+    second.process.stop();
+}
+
+fn assert_one_hears_it(server: &Server) {
+    let session = caller(&[server]);
+    // An empty question is refused by each server that hears it.
+    let hearing = || {
+        let get = session.get("backcast/locate/corridor");
+        let get = get.target(QueryTarget::All);
+        let get = get.consolidation(ConsolidationMode::None);
+        get.timeout(PATIENCE).wait().unwrap().into_iter().count()
+    };
+    // Had they not met in time, both would hear it at first.
+    while hearing() != 1 {
+        std::thread::yield_now();
+    }
+    for scan in scans() {
+        let asked = (&scan.0, scan.1.as_slice());
+        ask(&session, "corridor", asked, PATIENCE).unwrap();
+    }
+    assert_eq!(hearing(), 1);
+}
+
+#[test]
+fn several_servers_share_the_work_and_a_dead_one_costs_no_answer() {
+    let one = ["--workers", "1"];
+    let first = Server::start("first", &one);
+    let endpoint = first.endpoint();
+    let connect = ["--connect", endpoint.as_str()];
+    let second = Server::start("second", &[one, connect].concat());
+    let third = Server::start("third", &[one, connect].concat());
+    let session = caller(&[&first, &second]);
+    let (stop, answered) = (AtomicBool::new(false), AtomicUsize::new(0));
+    std::thread::scope(|scope| {
+        let asking = scope.spawn(|| keep_asking(&session, &stop, &answered));
+        // Whoever is asked, the others get their share.
+        for server in [&first, &second, &third] {
+            server.wait_until_sent(5, &asking);
+        }
+        // One that questions are handed on to, and one that is asked.
+        let before = answered.load(Ordering::Relaxed);
+        third.process.kill();
+        second.wait_until_sent(20, &asking);
+        first.process.kill();
+        second.wait_until_sent(60, &asking);
+        assert!(answered.load(Ordering::Relaxed) > before);
+        stop.store(true, Ordering::Relaxed);
+    });
+    second.process.stop();
+}

@@ -1,0 +1,157 @@
+//! What keeps the gateway from running, and why a message is refused.
+
+use conversion::Unsayable;
+use network::{Cause, NetworkError};
+use recording::ros::ConversionError;
+use transport::TransportError;
+
+/// What was tried, what was found and what is allowed.
+#[derive(Debug, thiserror::Error)]
+pub enum GatewayError {
+    /// An option cannot be used.
+    #[error("--{option}: {reason}")]
+    Option {
+        /// The option's name.
+        option: &'static str,
+        /// What is wrong, and what is allowed.
+        reason: String,
+    },
+    /// A definition has a line that is no field.
+    #[error("the definition of {name}: {line:?} is no field")]
+    Definition {
+        /// The type.
+        name: String,
+        /// The line.
+        line: String,
+    },
+    /// The session cannot be opened.
+    #[error(transparent)]
+    Network(#[from] NetworkError),
+    /// A key cannot be used.
+    #[error("cannot {action} {key}")]
+    Key {
+        /// What was tried.
+        action: &'static str,
+        /// The key.
+        key: String,
+        /// What Zenoh says.
+        source: Cause,
+    },
+    /// A message is longer than any sound one.
+    #[error("the message of {topic} has {found} bytes: allowed are at most {most}")]
+    TooLong {
+        /// The robot's topic.
+        topic: String,
+        /// Its bytes.
+        found: usize,
+        /// Most bytes.
+        most: usize,
+    },
+    /// What goes along with a message is not what `rmw_zenoh` sends.
+    #[error(
+        "the attachment of {topic} has {found} bytes: allowed are the 33 of rmw_zenoh (sequence \
+         number, time, sender)"
+    )]
+    Attachment {
+        /// The robot's topic or service.
+        topic: String,
+        /// Its bytes.
+        found: usize,
+    },
+    /// A message is not in CDR, or not of its type.
+    #[error("the message of {topic} cannot be read: {reason}")]
+    Message {
+        /// The robot's topic.
+        topic: String,
+        /// Why not.
+        reason: String,
+    },
+    /// A message cannot be written in CDR.
+    #[error("the message for {topic} cannot be written: {reason}")]
+    Encode {
+        /// The robot's topic.
+        topic: String,
+        /// Why not.
+        reason: String,
+    },
+    /// A number is none.
+    #[error("{field} of {topic} is {found}: allowed is a finite number")]
+    Number {
+        /// The robot's topic.
+        topic: String,
+        /// The field.
+        field: &'static str,
+        /// What it holds.
+        found: f64,
+    },
+    /// A time before 1970, or with a second in its nanoseconds.
+    #[error(
+        "the stamp of {topic} is {sec} s and {nanosec} ns: allowed are times from 1970 on, with \
+         less than 1000000000 ns"
+    )]
+    Stamp {
+        /// The robot's topic.
+        topic: String,
+        /// Seconds since 1970.
+        sec: i32,
+        /// Nanoseconds on top of them.
+        nanosec: u32,
+    },
+    /// A time that no message of ROS can say.
+    #[error("a stamp of {stamp_ns} ns: allowed are 0 to 2147483647999999999, the times of ROS")]
+    Unstampable {
+        /// Nanoseconds since 1970.
+        stamp_ns: i64,
+    },
+    /// The graph cannot say it.
+    #[error(transparent)]
+    Unsayable(#[from] Unsayable),
+    /// A pose, a transform or a map is none.
+    #[error(transparent)]
+    Conversion(#[from] ConversionError),
+    /// A topic that is taken is published as something else.
+    #[error("{node} publishes {topic} as {found}, which cannot be taken: expected is {expected}")]
+    Stranger {
+        /// The robot's node.
+        node: String,
+        /// The robot's topic.
+        topic: String,
+        /// Its type and hash.
+        found: String,
+        /// Those of the messages that are taken.
+        expected: String,
+    },
+    /// A laser that does not look level.
+    #[error(
+        "the laser {laser} is tilted by {tilt_degrees:.1} degrees against {base}: allowed are at \
+         most {}",
+        recording::MAX_TILT_DEGREES
+    )]
+    Tilted {
+        /// The laser's frame.
+        laser: String,
+        /// The base's.
+        base: String,
+        /// Angle between their z axes.
+        tilt_degrees: f64,
+    },
+    /// A frame's name that is none.
+    #[error("a frame's name has {found} bytes: allowed are at most {most}")]
+    FrameName {
+        /// Its bytes.
+        found: usize,
+        /// Most bytes.
+        most: usize,
+    },
+    /// More frames than a robot has.
+    #[error("there is no room for frame {frame:?}: allowed are {most} frames")]
+    Frames {
+        /// The frame that was to come.
+        frame: String,
+        /// Most frames.
+        most: usize,
+    },
+    /// The graph fails.
+    #[error(transparent)]
+    Transport(#[from] TransportError),
+}

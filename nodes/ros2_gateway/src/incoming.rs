@@ -1,0 +1,218 @@
+//! From the robot into the graph.
+
+use network::Report;
+use recording::ros::{
+    LaserScan, OccupancyGridMsg, Odometry, PoseWithCovarianceStamped, RosMessage, TfMessage,
+};
+use serde::de::DeserializeOwned;
+use transport::{Graph, TransportError, monotonic_ns};
+
+use crate::checks::{measured_ns, odometry_of, sound_odometry};
+use crate::config::{Brought, Config};
+use crate::frames::Frames;
+use crate::outlet::Outlet;
+use crate::ros::{Keeping, Member, Subscription, Watch};
+use crate::seeding::{Belief, Seeding};
+use crate::topics::Topics;
+use crate::{GatewayError, Seed};
+
+/// Most bytes of a scan, odometry, a pose or transforms.
+const MAX_BYTES: usize = 1 << 20;
+
+/// Most bytes of a map: 64 million cells, and what stands before them.
+const MAX_MAP_BYTES: usize = (64 << 20) + 4096;
+
+/// For so long after odometry came by its own topic, /tf is not looked at for it,
+/// nanoseconds.
+const ODOMETRY_NS: i64 = 1_000_000_000;
+
+/// What comes from the robot.
+pub(crate) struct Incoming {
+    fixed: Subscription<TfMessage>,
+    moving: Option<Subscription<TfMessage>>,
+    odometry: Option<Subscription<Odometry>>,
+    scans: Option<Subscription<LaserScan>>,
+    maps: Option<Subscription<OccupancyGridMsg>>,
+    beliefs: Option<Subscription<PoseWithCovarianceStamped>>,
+    outlet: Outlet,
+    odom_frame: String,
+    /// When odometry came by its own topic.
+    odometry_ns: Option<i64>,
+    /// The frame of the robot's map.
+    map_frame: Option<String>,
+}
+
+impl Incoming {
+    pub(crate) fn open(
+        graph: &Graph,
+        member: &Member,
+        config: &Config,
+        topics: &Topics,
+        watch: &mut Watch,
+    ) -> Result<Self, GatewayError> {
+        let mut open = Opening {
+            graph,
+            member,
+            watch,
+        };
+        let (scan, odometry) = (Brought::Scan, Brought::Odometry);
+        let brings = |topic| config.brings(topic);
+        let reliable = Keeping::Reliable;
+        let sizes = (MAX_BYTES, MAX_MAP_BYTES);
+        Ok(Incoming {
+            fixed: open.subscribe(&topics.tf_static, Keeping::Kept, 100, sizes.0)?,
+            moving: open.wanted(brings(odometry), &topics.tf, reliable, 100, sizes.0)?,
+            odometry: open.wanted(brings(odometry), &topics.odom, reliable, 16, sizes.0)?,
+            scans: open.wanted(brings(scan), &topics.scan, Keeping::Fresh, 5, sizes.0)?,
+            maps: open.wanted(brings(Brought::Map), &topics.map, Keeping::Kept, 1, sizes.1)?,
+            beliefs: open.wanted(
+                config.seed == Seed::Lost,
+                &topics.amcl_pose,
+                reliable,
+                10,
+                sizes.0,
+            )?,
+            outlet: Outlet::open(graph, config)?,
+            odom_frame: config.odom_frame.clone(),
+            odometry_ns: None,
+            map_frame: None,
+        })
+    }
+
+    /// The frame of the robot's map, if one came.
+    pub(crate) fn map_frame(&self) -> Option<&str> {
+        self.map_frame.as_deref()
+    }
+
+    /// Takes what has come since the last call: first what tells how to take the rest.
+    pub(crate) fn step(
+        &mut self,
+        frames: &mut Frames,
+        seeding: &mut Seeding,
+        report: &mut Report,
+    ) -> Result<(), TransportError> {
+        let Incoming {
+            fixed,
+            moving,
+            odometry,
+            scans,
+            maps,
+            beliefs,
+            outlet,
+            odom_frame,
+            odometry_ns,
+            map_frame,
+        } = self;
+        take(fixed, report, |message, _| frames.hear_fixed(&message))?;
+        take_if(odometry, report, |message, report| {
+            let odometry = sound_odometry(&message)?;
+            *odometry_ns = Some(monotonic_ns());
+            frames.hear_odometry(&odometry);
+            outlet.send_odometry(odometry, report)
+        })?;
+        let alone = odometry_ns.is_some_and(|ns| monotonic_ns() - ns < ODOMETRY_NS);
+        take_if(moving, report, |message, report| {
+            for transform in message.transforms {
+                if !alone && transform.header.frame_id.trim_start_matches('/') == odom_frame {
+                    let odometry = odometry_of(transform)?;
+                    frames.hear_odometry(&odometry);
+                    outlet.send_odometry(odometry, report)?;
+                }
+            }
+            Ok(())
+        })?;
+        take_if(maps, report, |message, report| {
+            let frame = message.header.frame_id.clone();
+            outlet.send_map(&message, report)?;
+            *map_frame = Some(frame).filter(|frame| !frame.is_empty());
+            Ok(())
+        })?;
+        take_if(scans, report, |message, report| {
+            outlet.send_scan(&message, frames, report)
+        })?;
+        take_if(beliefs, report, |message, _| {
+            seeding.hear_belief(Belief {
+                measured_ns: measured_ns("the particle filter's pose", message.header.stamp)?,
+                map_from_base: message.pose.pose.planar()?,
+            });
+            Ok(())
+        })
+    }
+}
+
+/// What subscriptions are opened with.
+struct Opening<'a> {
+    graph: &'a Graph,
+    member: &'a Member,
+    watch: &'a mut Watch,
+}
+
+impl Opening<'_> {
+    fn subscribe<M: RosMessage + DeserializeOwned>(
+        &mut self,
+        topic: &str,
+        keeping: Keeping,
+        depth: usize,
+        max_bytes: usize,
+    ) -> Result<Subscription<M>, GatewayError> {
+        self.watch.expect::<M>(topic)?;
+        Subscription::open(self.graph, self.member, topic, keeping, depth, max_bytes)
+    }
+
+    fn wanted<M: RosMessage + DeserializeOwned>(
+        &mut self,
+        is_wanted: bool,
+        topic: &str,
+        keeping: Keeping,
+        depth: usize,
+        max_bytes: usize,
+    ) -> Result<Option<Subscription<M>>, GatewayError> {
+        if !is_wanted {
+            return Ok(None);
+        }
+        let subscription = self.subscribe(topic, keeping, depth, max_bytes)?;
+        Ok(Some(subscription))
+    }
+}
+
+fn take_if<M: RosMessage + DeserializeOwned>(
+    subscription: &mut Option<Subscription<M>>,
+    report: &mut Report,
+    each: impl FnMut(M, &mut Report) -> Result<(), GatewayError>,
+) -> Result<(), TransportError> {
+    match subscription {
+        Some(subscription) => take(subscription, report, each),
+        None => Ok(()),
+    }
+}
+
+/// Hands on what waits, and counts what is refused; only a graph that fails ends it.
+fn take<M: RosMessage + DeserializeOwned>(
+    subscription: &mut Subscription<M>,
+    report: &mut Report,
+    mut each: impl FnMut(M, &mut Report) -> Result<(), GatewayError>,
+) -> Result<(), TransportError> {
+    report.dropped(subscription.dropped());
+    while let Some(error) = subscription.next_too_long() {
+        report.received();
+        report.refused(&error)?;
+    }
+    for _ in 0..subscription.depth() {
+        let Some(received) = subscription.next() else {
+            break;
+        };
+        report.received();
+        report.dropped(received.lost);
+        match received.message.and_then(|message| each(message, report)) {
+            Ok(()) => {}
+            // A map may be larger than shared memory has room for.
+            Err(GatewayError::Transport(error))
+                if !matches!(error, TransportError::SharedMemoryFull { .. }) =>
+            {
+                return Err(error);
+            }
+            Err(error) => report.refused(&error)?,
+        }
+    }
+    Ok(())
+}

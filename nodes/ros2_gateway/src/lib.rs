@@ -1,0 +1,26 @@
+//! Joins a graph to a ROS 2 robot, with no ROS installed.
+//!
+//! It speaks what `rmw_zenoh` speaks: the robot's scan, odometry and map enter the
+//! graph, and the graph's answers go to the robot, with an initial pose for its
+//! particle filter as soon as the verdict is Unique. Module `ros` knows the format and
+//! nothing of localization; `frames` and `seeding` are pure. What comes from the
+//! network is checked before it enters the graph, refused if it is wrong, and counted
+//! in `health`.
+//!
+//! It moves no robot and sets no parameter; it offers one service.
+
+mod checks;
+mod config;
+mod error;
+mod frames;
+mod incoming;
+mod outgoing;
+mod outlet;
+mod ros;
+mod run;
+mod seeding;
+mod topics;
+
+pub use config::{Brought, Config, Seed};
+pub use error::GatewayError;
+pub use run::run;

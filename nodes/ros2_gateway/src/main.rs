@@ -1,0 +1,13 @@
+//! Starts the node; see the library.
+
+use std::process::ExitCode;
+
+use clap::Parser;
+use ros2_gateway::Config;
+
+fn main() -> ExitCode {
+    let config = Config::parse();
+    transport::node::main_hearing("ros2_gateway", network::LOG, |graph| {
+        ros2_gateway::run(graph, &config)
+    })
+}

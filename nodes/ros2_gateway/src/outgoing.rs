@@ -1,0 +1,257 @@
+//! From the graph to the robot.
+
+use geometry::Pose;
+use messages::{HealthHeader, HypothesesHeader, Hypothesis, Stamp, Verdict};
+use network::Report;
+use recording::ros::{
+    DiagnosticArray, Header, PoseArray, PoseWithCovarianceStamped, TfMessage, Time,
+    TransformStamped,
+};
+use transport::{TransportError, monotonic_ns, wall_ns};
+
+use crate::GatewayError;
+use crate::config::{Config, Reach};
+use crate::frames::Frames;
+use crate::ros::{Member, Publisher};
+use crate::seeding::{Answer, Reason, Seeding};
+use crate::topics::Topics;
+
+/// Hypotheses that are less likely are no place to be: there are up to 64, and one of
+/// them is near anywhere.
+const LIKELY: f32 = 0.01;
+
+/// What goes to the robot.
+pub(crate) struct Outgoing {
+    initial_pose: Publisher<PoseWithCovarianceStamped>,
+    hypotheses: Publisher<PoseArray>,
+    diagnostics: Publisher<DiagnosticArray>,
+    /// None where the user does not want it.
+    transforms: Option<Publisher<TfMessage>>,
+    ahead_ns: i64,
+    spread: Reach,
+    /// Where the odometry's frame lies, by the last verdict that was Unique.
+    map_from_odom: Option<(Pose, String)>,
+    /// The newest scan: where the robot's clock meets the host's.
+    newest: Option<Stamp>,
+}
+
+impl Outgoing {
+    pub(crate) fn open(
+        member: &Member,
+        config: &Config,
+        topics: &Topics,
+    ) -> Result<Self, GatewayError> {
+        let transforms = config
+            .broadcast_tf
+            .then(|| Publisher::open(member, &topics.tf, 100));
+        Ok(Outgoing {
+            initial_pose: Publisher::open(member, &topics.initial_pose, 1)?,
+            hypotheses: Publisher::open(member, &topics.hypotheses, 10)?,
+            diagnostics: Publisher::open(member, &topics.diagnostics, 10)?,
+            transforms: transforms.transpose()?,
+            ahead_ns: (config.tf_ahead * 1e9) as i64,
+            spread: config.spread,
+            map_from_odom: None,
+            newest: None,
+        })
+    }
+
+    /// Tells the robot what a scan says.
+    pub(crate) fn answer(
+        &mut self,
+        header: &HypothesesHeader,
+        items: &[Hypothesis],
+        map_frame: &str,
+        frames: &Frames,
+        seeding: &mut Seeding,
+        report: &mut Report,
+    ) -> Result<(), TransportError> {
+        self.newest = Some(header.stamp);
+        let reason = seeding.hear_answer(answer(header, items));
+        let outcome = self.tell(header, items, map_frame, frames, reason, report);
+        outcome.or_else(|error| report.refused(&error))
+    }
+
+    fn tell(
+        &mut self,
+        header: &HypothesesHeader,
+        items: &[Hypothesis],
+        map_frame: &str,
+        frames: &Frames,
+        reason: Option<Reason>,
+        report: &mut Report,
+    ) -> Result<(), GatewayError> {
+        let in_map = Header {
+            stamp: stamp(header.stamp.measured_ns)?,
+            frame_id: map_frame.to_owned(),
+        };
+        if let (Some(reason), Some(best)) = (reason, items.first()) {
+            let pose = conversion::poses::best(in_map.clone(), header, best);
+            self.initial_pose.send(&spread(pose, self.spread))?;
+            report.sent();
+            let Pose { x, y, yaw } = conversion::poses::robot(header, best);
+            let yaw_deg = yaw.to_degrees();
+            tracing::info!(?reason, x, y, yaw_deg, "told the robot where it is");
+        }
+        let poses = conversion::poses::array(in_map.clone(), header, items);
+        self.hypotheses.send(&poses)?;
+        report.sent();
+        if is_unique(header)
+            && let Some(best) = items.first()
+        {
+            self.map_from_odom = frames.map_from_odom(header, best);
+        }
+        self.broadcast(header, in_map, report)
+    }
+
+    /// The odometry goes on from where the map was last known to lie, so the
+    /// transform is dated anew with each scan.
+    fn broadcast(
+        &mut self,
+        header: &HypothesesHeader,
+        in_map: Header,
+        report: &mut Report,
+    ) -> Result<(), GatewayError> {
+        let (Some(transforms), Some((pose, odom))) = (&mut self.transforms, &self.map_from_odom)
+        else {
+            return Ok(());
+        };
+        let transform = TransformStamped {
+            header: Header {
+                stamp: stamp(header.stamp.measured_ns.saturating_add(self.ahead_ns))?,
+                ..in_map
+            },
+            child_frame_id: odom.clone(),
+            transform: conversion::planar::transform(*pose),
+        };
+        transforms.send(&TfMessage {
+            transforms: vec![transform],
+        })?;
+        report.sent();
+        Ok(())
+    }
+
+    /// Tells the robot how a node fares.
+    pub(crate) fn health(
+        &mut self,
+        health: &HealthHeader,
+        error: &[u8],
+        report: &mut Report,
+    ) -> Result<(), TransportError> {
+        let error = String::from_utf8_lossy(error);
+        let outcome = stamp(self.clock_ns()).and_then(|now| {
+            let message = conversion::diagnostics::of(now, health, &error);
+            self.diagnostics.send(&message)
+        });
+        match outcome {
+            Ok(()) => report.sent(),
+            Err(error) => report.refused(&error)?,
+        }
+        Ok(())
+    }
+
+    /// The robot's clock: as its scans are dated, else the host's.
+    fn clock_ns(&self) -> i64 {
+        self.newest.map_or_else(wall_ns, |newest| {
+            let since_ns = monotonic_ns().saturating_sub(newest.entered_ns).max(0);
+            newest.measured_ns.saturating_add(since_ns)
+        })
+    }
+}
+
+fn is_unique(header: &HypothesesHeader) -> bool {
+    Verdict::from_code(header.verdict) == Some(Verdict::Unique)
+}
+
+fn answer(header: &HypothesesHeader, items: &[Hypothesis]) -> Answer {
+    let likely = items.iter().enumerate();
+    let likely = likely.filter(|(rank, item)| *rank == 0 || item.probability >= LIKELY);
+    let poses = likely.map(|(_, item)| conversion::poses::robot(header, item));
+    Answer {
+        measured_ns: header.stamp.measured_ns,
+        // Where no mount is known, the pose is the laser's: the robot's could be a
+        // metre away.
+        is_unique: is_unique(header) && header.mount_known != 0 && !items.is_empty(),
+        map_from_base: poses.collect(),
+    }
+}
+
+/// As sure as `least` at most: particles that are drawn too close together follow no
+/// surprise.
+fn spread(mut pose: PoseWithCovarianceStamped, least: Reach) -> PoseWithCovarianceStamped {
+    let metres = least.metres * least.metres;
+    let mut covariance = pose.pose.planar_covariance();
+    for (index, variance) in [(0, metres), (4, metres), (8, least.radians * least.radians)] {
+        covariance[index] = f64::max(covariance[index], variance);
+    }
+    let mut with = recording::ros::PoseWithCovariance::from_planar(Pose::IDENTITY, covariance);
+    with.pose = pose.pose.pose;
+    pose.pose = with;
+    pose
+}
+
+fn stamp(stamp_ns: i64) -> Result<Time, GatewayError> {
+    let stamp = Time::from_ns(stamp_ns).filter(|_| stamp_ns >= 0);
+    stamp.ok_or(GatewayError::Unstampable { stamp_ns })
+}
+
+#[cfg(test)]
+mod tests {
+    use bytemuck::Zeroable;
+
+    use super::*;
+
+    #[test]
+    fn an_initial_pose_is_as_unsure_as_is_asked() {
+        let least = Reach {
+            metres: 0.5,
+            radians: 0.25,
+        };
+        let mut pose = PoseWithCovarianceStamped::default();
+        pose.pose.pose.position.x = 3.0;
+        pose.pose.covariance[0][0] = 1.0;
+        pose.pose.covariance[0][1] = 0.125;
+        let pose = spread(pose, least);
+        let expected = [1.0, 0.125, 0.0, 0.0, 0.25, 0.0, 0.0, 0.0, 0.0625];
+        assert_eq!(pose.pose.planar_covariance(), expected);
+        assert_eq!(pose.pose.pose.position.x, 3.0);
+    }
+
+    #[test]
+    fn a_pose_of_the_laser_is_not_the_robots() {
+        let mut header = HypothesesHeader {
+            verdict: Verdict::Unique as u32,
+            mount_known: 1,
+            ..HypothesesHeader::zeroed()
+        };
+        let items = [Hypothesis::zeroed()];
+        assert!(answer(&header, &items).is_unique);
+        assert!(!answer(&header, &[]).is_unique);
+        header.mount_known = 0;
+        assert!(!answer(&header, &items).is_unique);
+        header.mount_known = 1;
+        header.verdict = Verdict::Ambiguous as u32;
+        assert!(!answer(&header, &items).is_unique);
+    }
+
+    #[test]
+    fn unlikely_hypotheses_are_no_place_to_be() {
+        let item = |x: f64, probability| {
+            let mut item = Hypothesis {
+                probability,
+                ..Hypothesis::zeroed()
+            };
+            item.map_from_laser.x = x;
+            item
+        };
+        let items = [item(1.0, 0.0), item(2.0, 0.5), item(3.0, 0.001)];
+        let places = answer(&HypothesesHeader::zeroed(), &items).map_from_base;
+        assert_eq!(places, [1.0, 2.0].map(|x| Pose::new(x, 0.0, 0.0)));
+    }
+
+    #[test]
+    fn times_that_ros_cannot_say_are_refused() {
+        assert_eq!(stamp(5).unwrap().nanosec, 5);
+        assert!(stamp(-1).is_err() && stamp(i64::MAX).is_err());
+    }
+}

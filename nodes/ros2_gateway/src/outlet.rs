@@ -1,0 +1,132 @@
+//! The graph's side of what comes from the robot.
+
+use conversion::measurements;
+use geometry::Pose;
+use messages::{MapHeader, Odometry, Stamp, topic};
+use network::Report;
+use recording::ros::{LaserScan, OccupancyGridMsg};
+use transport::{Graph, Publisher, TransportError, monotonic_ns};
+
+use crate::GatewayError;
+use crate::checks::{check_scan, measured_ns};
+use crate::config::{Brought, Config};
+use crate::frames::Frames;
+
+/// Where messages enter the graph; what nobody sends has no publisher.
+pub(crate) struct Outlet {
+    scans: Option<Publisher<topic::Scan>>,
+    odometry: Option<Publisher<topic::OdometryTopic>>,
+    maps: Option<Publisher<topic::Map>>,
+    scans_sent: u64,
+    odometry_sent: u64,
+    maps_sent: u64,
+    map_id: Option<u64>,
+}
+
+impl Outlet {
+    pub(crate) fn open(graph: &Graph, config: &Config) -> Result<Self, TransportError> {
+        let brings = |topic| config.brings(topic).then_some(());
+        Ok(Outlet {
+            scans: brings(Brought::Scan)
+                .map(|()| graph.publisher())
+                .transpose()?,
+            odometry: brings(Brought::Odometry)
+                .map(|()| graph.publisher())
+                .transpose()?,
+            maps: brings(Brought::Map)
+                .map(|()| graph.publisher())
+                .transpose()?,
+            scans_sent: 0,
+            odometry_sent: 0,
+            maps_sent: 0,
+            map_id: None,
+        })
+    }
+
+    pub(crate) fn send_scan(
+        &mut self,
+        message: &LaserScan,
+        frames: &mut Frames,
+        report: &mut Report,
+    ) -> Result<(), GatewayError> {
+        let Some(publisher) = &self.scans else {
+            return Ok(());
+        };
+        check_scan(message)?;
+        let frame = measurements::frame(&message.header.frame_id)?;
+        let mount = frames.base_from_laser(&message.header.frame_id)?;
+        let mut header = measurements::scan_header(message, frame, mount.map(Pose::into));
+        header.stamp = entering(header.stamp, self.scans_sent);
+        let mut loan = publisher.loan(message.ranges.len())?;
+        *loan.header_mut() = header;
+        loan.items_mut().copy_from_slice(&message.ranges);
+        loan.send()?;
+        self.scans_sent += 1;
+        report.sent();
+        Ok(())
+    }
+
+    pub(crate) fn send_odometry(
+        &mut self,
+        mut odometry: Odometry,
+        report: &mut Report,
+    ) -> Result<(), GatewayError> {
+        let Some(publisher) = &self.odometry else {
+            return Ok(());
+        };
+        odometry.stamp = entering(odometry.stamp, self.odometry_sent);
+        let mut loan = publisher.loan(0)?;
+        *loan.header_mut() = odometry;
+        loan.send()?;
+        self.odometry_sent += 1;
+        report.sent();
+        Ok(())
+    }
+
+    /// A map that is in the graph already is not sent again.
+    pub(crate) fn send_map(
+        &mut self,
+        message: &OccupancyGridMsg,
+        report: &mut Report,
+    ) -> Result<(), GatewayError> {
+        let Some(publisher) = &self.maps else {
+            return Ok(());
+        };
+        let measured_ns = measured_ns("the map", message.header.stamp)?;
+        let grid = message.to_grid()?;
+        let map_id = grid.id();
+        if self.map_id == Some(map_id) {
+            return Ok(());
+        }
+        let stamp = Stamp {
+            measured_ns,
+            ..Stamp::default()
+        };
+        let mut loan = publisher.loan(grid.cells.len())?;
+        *loan.header_mut() = MapHeader {
+            stamp: entering(stamp, self.maps_sent),
+            map_id,
+            width: grid.width,
+            height: grid.height,
+            resolution_m: grid.resolution_m,
+            map_from_grid: grid.map_from_grid.into(),
+        };
+        loan.items_mut().copy_from_slice(&grid.cells);
+        loan.send()?;
+        self.map_id = Some(map_id);
+        self.maps_sent += 1;
+        report.sent();
+        let (width, height, resolution_m) = (grid.width, grid.height, grid.resolution_m);
+        let map_id = format!("{map_id:016x}");
+        tracing::info!(width, height, resolution_m, map_id, "the robot's map");
+        Ok(())
+    }
+}
+
+fn entering(stamp: Stamp, counter: u64) -> Stamp {
+    Stamp {
+        entered_ns: monotonic_ns(),
+        counter,
+        ..stamp
+    }
+}

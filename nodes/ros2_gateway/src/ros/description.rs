@@ -1,0 +1,288 @@
+//! The type hash of a message or service, from the text of its definition, by the rule
+//! of REP-2011 (`RIHS01`): SHA-256 over the fields' names and types, and those of the
+//! types that it is made of.
+//!
+//! Constants and defaults do not count. Refuses bounds of texts and sequences in
+//! definitions, which no message in use has.
+
+use std::collections::BTreeMap;
+
+use hiroz_schema::{
+    FieldDescription, FieldTypeDescription, TypeDescription, TypeDescriptionMsg, TypeId,
+    calculate_hash, dds_from_canonical,
+};
+use recording::ros::RosMessage;
+
+use super::entity::TypeInfo;
+use crate::GatewayError;
+
+/// What ROS puts into a message without fields.
+const DUMMY: &str = "uint8 structure_needs_at_least_one_member";
+
+/// What each service keeps of its calls, for who watches.
+const EVENT_INFO: &str = "\
+================================================================================
+MSG: service_msgs/ServiceEventInfo
+uint8 event_type
+builtin_interfaces/Time stamp
+char[16] client_gid
+int64 sequence_number
+================================================================================
+MSG: builtin_interfaces/Time
+int32 sec
+uint32 nanosec
+";
+
+/// Name and hash of a message type, as keys hold them.
+pub(super) fn of_message<M: RosMessage>() -> Result<TypeInfo, GatewayError> {
+    let mut parts = parts(M::SCHEMA, M::DEFINITION)?;
+    let main = parts.remove(M::SCHEMA).unwrap_or_default();
+    info(M::SCHEMA, described(M::SCHEMA, main), parts)
+}
+
+/// Likewise of a service whose request and response have these fields.
+pub(super) fn of_service(
+    name: &str,
+    request: &str,
+    response: &str,
+) -> Result<TypeInfo, GatewayError> {
+    let [requests, responses, events] =
+        ["Request", "Response", "Event"].map(|part| format!("{name}_{part}"));
+    let mut all = parts(&requests, request)?;
+    all.append(&mut parts(&responses, response)?);
+    // What stands before the first part has no name, and is nothing.
+    all.append(&mut parts("", EVENT_INFO)?);
+    all.remove("");
+    let sequence = TypeId::NESTED_TYPE_BOUNDED_SEQUENCE;
+    let event = vec![
+        nested(
+            "info",
+            TypeId::NESTED_TYPE,
+            0,
+            "service_msgs/msg/ServiceEventInfo",
+        ),
+        nested("request", sequence, 1, &requests),
+        nested("response", sequence, 1, &responses),
+    ];
+    all.insert(events.clone(), event);
+    let main = vec![
+        nested("request_message", TypeId::NESTED_TYPE, 0, &requests),
+        nested("response_message", TypeId::NESTED_TYPE, 0, &responses),
+        nested("event_message", TypeId::NESTED_TYPE, 0, &events),
+    ];
+    info(name, described(name, main), all)
+}
+
+fn info(
+    name: &str,
+    main: TypeDescription,
+    parts: BTreeMap<String, Vec<FieldDescription>>,
+) -> Result<TypeInfo, GatewayError> {
+    let unknown = || GatewayError::Definition {
+        name: name.to_owned(),
+        line: name.to_owned(),
+    };
+    let dds = dds_from_canonical(name).ok_or_else(unknown)?;
+    let parts = parts.into_iter();
+    let hash = calculate_hash(&TypeDescriptionMsg {
+        type_description: main,
+        // By name, as the rule wants them.
+        referenced_type_descriptions: parts.map(|(name, f)| described(&name, f)).collect(),
+    });
+    Ok(TypeInfo {
+        name: dds,
+        hash: hash.to_rihs_string(),
+    })
+}
+
+fn described(name: &str, fields: Vec<FieldDescription>) -> TypeDescription {
+    TypeDescription {
+        type_name: name.to_owned(),
+        fields,
+    }
+}
+
+fn nested(name: &str, id: u8, capacity: u64, of: &str) -> FieldDescription {
+    FieldDescription {
+        name: name.to_owned(),
+        field_type: FieldTypeDescription::nested_array(id, capacity, of),
+        default_value: String::new(),
+    }
+}
+
+/// The fields of a type and of all that it is made of, by name.
+fn parts(
+    name: &str,
+    definition: &str,
+) -> Result<BTreeMap<String, Vec<FieldDescription>>, GatewayError> {
+    let separator = "=".repeat(80);
+    let mut parts = BTreeMap::new();
+    for (number, part) in definition.split(separator.as_str()).enumerate() {
+        let (name, lines) = match part.trim_start().strip_prefix("MSG: ") {
+            Some(part) if number > 0 => part.split_once('\n').unwrap_or((part, "")),
+            _ => (name, part),
+        };
+        let name = canonical(name.trim());
+        let fields = fields(&name, lines)?;
+        parts.insert(name, fields);
+    }
+    Ok(parts)
+}
+
+/// `std_msgs/Header` and `std_msgs/msg/Header` are one.
+fn canonical(name: &str) -> String {
+    match name.split_once('/') {
+        Some((package, kind)) if !kind.contains('/') => format!("{package}/msg/{kind}"),
+        _ => name.to_owned(),
+    }
+}
+
+fn fields(name: &str, lines: &str) -> Result<Vec<FieldDescription>, GatewayError> {
+    let code = |line: &'_ str| line.split('#').next().unwrap_or("").trim().to_owned();
+    let is_constant = |line: &str| line.split_whitespace().skip(1).any(|w| w.contains('='));
+    let mut fields = Vec::new();
+    for line in lines.lines().map(code) {
+        if !line.is_empty() && !is_constant(&line) {
+            let wrong = || GatewayError::Definition {
+                name: name.to_owned(),
+                line: line.clone(),
+            };
+            fields.push(field(&line).ok_or_else(wrong)?);
+        }
+    }
+    if fields.is_empty() {
+        fields.extend(field(DUMMY));
+    }
+    Ok(fields)
+}
+
+fn field(line: &str) -> Option<FieldDescription> {
+    let mut words = line.split_whitespace();
+    let (kind, name) = (words.next()?, words.next()?);
+    let (kind, offset, capacity) = match kind.split_once('[') {
+        None => (kind, 0, 0),
+        Some((kind, "]")) => (kind, TypeId::UNBOUNDED_SEQUENCE_OFFSET, 0),
+        Some((kind, length)) => {
+            let length = length.strip_suffix(']')?.parse().ok()?;
+            (kind, TypeId::ARRAY_OFFSET, length)
+        }
+    };
+    let primitive = primitive(kind);
+    let field_type = FieldTypeDescription {
+        type_id: primitive.unwrap_or(TypeId::NESTED_TYPE) + offset,
+        capacity,
+        string_capacity: 0,
+        nested_type_name: match primitive {
+            Some(_) => String::new(),
+            // Ours name the package of each type.
+            None => kind.contains('/').then(|| canonical(kind))?,
+        },
+    };
+    Some(FieldDescription {
+        name: name.to_owned(),
+        field_type,
+        default_value: String::new(),
+    })
+}
+
+fn primitive(kind: &str) -> Option<u8> {
+    Some(match kind {
+        "bool" => TypeId::BOOL,
+        "byte" => TypeId::BYTE,
+        // In definitions it is a number of eight bits.
+        "char" | "uint8" => TypeId::UINT8,
+        "int8" => TypeId::INT8,
+        "int16" => TypeId::INT16,
+        "uint16" => TypeId::UINT16,
+        "int32" => TypeId::INT32,
+        "uint32" => TypeId::UINT32,
+        "int64" => TypeId::INT64,
+        "uint64" => TypeId::UINT64,
+        "float32" => TypeId::FLOAT32,
+        "float64" => TypeId::FLOAT64,
+        "string" => TypeId::STRING,
+        _ => return None,
+    })
+}
+
+#[cfg(test)]
+mod tests {
+    use recording::ros::{
+        DiagnosticArray, LaserScan, OccupancyGridMsg, Odometry, PoseArray,
+        PoseWithCovarianceStamped, TfMessage,
+    };
+
+    use super::*;
+
+    fn check(info: Result<TypeInfo, GatewayError>, name: &str, hash: &str) {
+        let info = info.unwrap();
+        assert_eq!(info.name, name);
+        assert_eq!(info.hash, format!("RIHS01_{hash}"), "{name}");
+    }
+
+    /// The hashes are those that ROS 2 jazzy publishes with these types.
+    #[test]
+    fn messages_have_the_hashes_that_ros_gives_them() {
+        check(
+            of_message::<LaserScan>(),
+            "sensor_msgs::msg::dds_::LaserScan_",
+            "64c191398013af96509d518dac71d5164f9382553fce5c1f8cca5be7924bd828",
+        );
+        check(
+            of_message::<Odometry>(),
+            "nav_msgs::msg::dds_::Odometry_",
+            "3cc97dc7fb7502f8714462c526d369e35b603cfc34d946e3f2eda2766dfec6e0",
+        );
+        check(
+            of_message::<OccupancyGridMsg>(),
+            "nav_msgs::msg::dds_::OccupancyGrid_",
+            "8d348150c12913a31ee0ec170fbf25089e4745d17035792a1ba94d6f0bc0cfc7",
+        );
+        check(
+            of_message::<TfMessage>(),
+            "tf2_msgs::msg::dds_::TFMessage_",
+            "e369d0f05a23ae52508854b66f6aa0437f3449d652e8cbf22d5abe85d020f087",
+        );
+        check(
+            of_message::<PoseWithCovarianceStamped>(),
+            "geometry_msgs::msg::dds_::PoseWithCovarianceStamped_",
+            "26432f9803e43727d3c8f668d1fdb3c630f548af631e2f4e31382371bfea3b6e",
+        );
+        check(
+            of_message::<PoseArray>(),
+            "geometry_msgs::msg::dds_::PoseArray_",
+            "af0cc36d190e104d546d168d6b39df04fa4b4ccecf59cb4c9ed328d3d5004aa0",
+        );
+        check(
+            of_message::<DiagnosticArray>(),
+            "diagnostic_msgs::msg::dds_::DiagnosticArray_",
+            "5a8a36efb05fb25070fa0fb3810290c0e6cd4862b54a8fb975a1ee8dc55a333e",
+        );
+    }
+
+    #[test]
+    fn services_have_the_hashes_that_ros_gives_them() {
+        check(
+            of_service(
+                "example_interfaces/srv/AddTwoInts",
+                "int64 a\nint64 b\n",
+                "int64 sum\n",
+            ),
+            "example_interfaces::srv::dds_::AddTwoInts_",
+            "e118de6bf5eeb66a2491b5bda11202e7b68f198d6f67922cf30364858239c81a",
+        );
+    }
+
+    #[test]
+    fn what_is_no_field_is_refused_by_name() {
+        for line in [
+            "float32",
+            "string<=5 name",
+            "Header header",
+            "int8[x] cells",
+        ] {
+            let error = of_service("a/srv/B", line, "").unwrap_err().to_string();
+            assert!(error.contains(line), "{error}");
+        }
+    }
+}

@@ -1,0 +1,245 @@
+//! The gateway as a node of ROS: its token, and those of its topics and services.
+//!
+//! | part of a token | holds |
+//! |---|---|
+//! | `@ros2_lv` | what all tokens begin with |
+//! | domain, session, node, entity | numbers; the session's is Zenoh's own |
+//! | kind | `NN` node, `MP` publisher, `MS` subscription, `SS` service, `SC` client |
+//! | enclave, namespace, node | names, each `/` as `%`; `%` alone is none |
+//! | topic, type, hash, quality | of all but nodes |
+
+use std::fmt;
+use std::sync::atomic::{AtomicUsize, Ordering};
+
+use twox_hash::XxHash3_128;
+use zenoh::liveliness::LivelinessToken;
+use zenoh::{Session, Wait};
+
+use super::Keeping;
+use crate::GatewayError;
+
+/// What all tokens begin with.
+const TOKENS: &str = "@ros2_lv";
+
+/// A type as keys name it.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub(super) struct TypeInfo {
+    /// As `std_msgs::msg::dds_::String_`.
+    pub(super) name: String,
+    /// As `RIHS01_` and 64 digits.
+    pub(super) hash: String,
+}
+
+impl fmt::Display for TypeInfo {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        write!(f, "{}/{}", self.name, self.hash)
+    }
+}
+
+/// What an endpoint is.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(super) enum Kind {
+    Publisher,
+    Subscription,
+    Service,
+}
+
+impl Kind {
+    pub(super) fn code(self) -> &'static str {
+        match self {
+            Kind::Publisher => "MP",
+            Kind::Subscription => "MS",
+            Kind::Service => "SS",
+        }
+    }
+}
+
+/// A node of ROS, as others see it, for as long as this lives.
+pub(crate) struct Member {
+    session: Session,
+    domain: u32,
+    /// Mangled: namespace and name.
+    who: String,
+    _token: LivelinessToken,
+    /// The node itself has the first number.
+    next: AtomicUsize,
+}
+
+/// A topic or service that the node sends, takes or offers.
+pub(super) struct Endpoint {
+    pub(super) key: String,
+    pub(super) topic: String,
+    /// By which others know who sends.
+    pub(super) sender: [u8; 16],
+    token: String,
+}
+
+impl Member {
+    /// Joins as `name` in `namespace`, which is `/` or begins with it.
+    pub(crate) fn join(
+        session: &Session,
+        domain: u32,
+        namespace: &str,
+        name: &str,
+    ) -> Result<Self, GatewayError> {
+        let namespace = match namespace.trim_end_matches('/') {
+            "" => "/",
+            namespace => namespace,
+        };
+        let who = format!("{}/{name}", mangled(namespace));
+        let key = format!("{TOKENS}/{domain}/{}/0/0/NN/%/{who}", session.zid());
+        Ok(Member {
+            _token: declare(session, &key)?,
+            session: session.clone(),
+            domain,
+            who,
+            next: AtomicUsize::new(1),
+        })
+    }
+
+    pub(super) fn session(&self) -> &Session {
+        &self.session
+    }
+
+    /// Tokens of all that is on the domain.
+    pub(super) fn tokens(&self) -> String {
+        format!("{TOKENS}/{}/**", self.domain)
+    }
+
+    pub(super) fn endpoint(
+        &self,
+        kind: Kind,
+        topic: &str,
+        info: &TypeInfo,
+        quality: (Keeping, usize),
+    ) -> Endpoint {
+        let (domain, who, kind) = (self.domain, &self.who, kind.code());
+        let (session, entity) = (
+            self.session.zid(),
+            self.next.fetch_add(1, Ordering::Relaxed),
+        );
+        let (name, quality) = (mangled(topic), encoded(quality));
+        let token = format!(
+            "{TOKENS}/{domain}/{session}/0/{entity}/{kind}/%/{who}/{name}/{info}/{quality}"
+        );
+        Endpoint {
+            key: format!("{domain}/{}/{info}", topic.trim_matches('/')),
+            topic: topic.to_owned(),
+            // As rmw_zenoh makes it: both halves, the lower one first.
+            sender: XxHash3_128::oneshot(token.as_bytes()).to_le_bytes(),
+            token,
+        }
+    }
+
+    /// Shows it to others, once it is there.
+    pub(super) fn show(&self, endpoint: &Endpoint) -> Result<LivelinessToken, GatewayError> {
+        declare(&self.session, &endpoint.token)
+    }
+}
+
+fn declare(session: &Session, key: &str) -> Result<LivelinessToken, GatewayError> {
+    let token = session.liveliness().declare_token(key.to_owned()).wait();
+    token.map_err(|source| GatewayError::Key {
+        action: "be alive at",
+        key: key.to_owned(),
+        source,
+    })
+}
+
+fn mangled(name: &str) -> String {
+    name.replace('/', "%")
+}
+
+/// Reliability, durability, history, deadline, lifespan and liveliness; what is as ROS
+/// has it anyway is left out.
+fn encoded((keeping, depth): (Keeping, usize)) -> String {
+    let start = match keeping {
+        Keeping::Fresh => "2:",
+        Keeping::Reliable => ":",
+        Keeping::Kept => ":1",
+    };
+    format!("{start}:,{depth}:,:,:,,")
+}
+
+/// What another's token says.
+#[derive(Debug, PartialEq, Eq)]
+pub(super) struct Token {
+    pub(super) session: String,
+    pub(super) kind: String,
+    /// Namespace and name.
+    pub(super) node: String,
+    pub(super) topic: String,
+    pub(super) info: TypeInfo,
+}
+
+impl Token {
+    /// Reads the token of a topic or service; nodes have no topic.
+    pub(super) fn read(key: &str) -> Option<Self> {
+        let parts: Vec<&str> = key.split('/').collect();
+        let [
+            TOKENS,
+            _,
+            session,
+            _,
+            _,
+            kind,
+            _,
+            namespace,
+            node,
+            topic,
+            name,
+            hash,
+            _,
+        ] = parts[..]
+        else {
+            return None;
+        };
+        let namespace = namespace.replace('%', "/");
+        let namespace = namespace.trim_end_matches('/');
+        Some(Token {
+            session: session.to_owned(),
+            kind: kind.to_owned(),
+            node: format!("{namespace}/{node}"),
+            topic: topic.replace('%', "/"),
+            info: TypeInfo {
+                name: name.to_owned(),
+                hash: hash.to_owned(),
+            },
+        })
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// The example of rmw_zenoh's own documentation.
+    const TALKER: &str = "@ros2_lv/2/aac3178e146ba6f1fc6e6a4085e77f21/0/10/MP/%/%/talker/%chatter/\
+        std_msgs::msg::dds_::String_/\
+        RIHS01_df668c740482bbd48fb39d76a70dfd4bd59db1288021743503259e948f6b1a18/::,7:,:,:,,";
+
+    #[test]
+    fn tokens_of_others_are_read() {
+        let token = Token::read(TALKER).unwrap();
+        assert_eq!(token.session, "aac3178e146ba6f1fc6e6a4085e77f21");
+        assert_eq!((&*token.kind, &*token.node), ("MP", "/talker"));
+        assert_eq!(
+            (&*token.topic, &*token.info.name),
+            ("/chatter", "std_msgs::msg::dds_::String_")
+        );
+        let spaced = TALKER.replace("/%/%/talker", "/%/%r2%front/talker");
+        assert_eq!(Token::read(&spaced).unwrap().node, "/r2/front/talker");
+        for end in 0..TALKER.len() {
+            let _ = Token::read(&TALKER[..end]);
+        }
+        assert_eq!(Token::read(&format!("{TALKER}/more")), None);
+        assert_eq!(Token::read("@ros2_lv/2/aac3/0/0/NN/%/%/talker"), None);
+    }
+
+    #[test]
+    fn qualities_stand_as_rmw_zenoh_writes_them() {
+        assert_eq!(encoded((Keeping::Reliable, 7)), "::,7:,:,:,,");
+        assert_eq!(encoded((Keeping::Fresh, 5)), "2::,5:,:,:,,");
+        assert_eq!(encoded((Keeping::Kept, 1)), ":1:,1:,:,:,,");
+    }
+}

@@ -1,0 +1,28 @@
+//! ROS 2 as `rmw_zenoh` (jazzy and later) puts it on Zenoh.
+//!
+//! | what | where |
+//! |---|---|
+//! | messages of a topic | `<domain>/<topic>/<type>/<type hash>`, CDR, with an [`Attachment`] |
+//! | calls of a service | queries of `<domain>/<service>/<type>/<type hash>` |
+//! | who is there | liveliness tokens `@ros2_lv/<domain>/<session>/<node>/<entity>/<kind>/…` |
+//!
+//! What a message is made of stands in `recording::ros`, hashes are made by
+//! `hiroz-schema`. Its sister `hiroz-protocol`, which writes the same keys and tokens,
+//! builds with all transports of Zenoh alone, of which most are not wanted here.
+
+mod attachment;
+mod description;
+mod entity;
+mod name;
+mod publisher;
+mod service;
+mod subscription;
+mod watch;
+
+pub(crate) use attachment::Attachment;
+pub(crate) use entity::Member;
+pub(crate) use name::resolve;
+pub(crate) use publisher::Publisher;
+pub(crate) use service::Service;
+pub(crate) use subscription::{Keeping, Subscription};
+pub(crate) use watch::{Seen, Watch};

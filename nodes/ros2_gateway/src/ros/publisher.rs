@@ -1,0 +1,72 @@
+//! A topic to the robot.
+
+use std::marker::PhantomData;
+
+use recording::ros::RosMessage;
+use transport::wall_ns;
+use zenoh::Wait;
+use zenoh::liveliness::LivelinessToken;
+use zenoh::pubsub::Publisher as ZenohPublisher;
+use zenoh::qos::CongestionControl;
+
+use super::entity::{Endpoint, Kind};
+use super::{Attachment, Keeping, Member, description};
+use crate::GatewayError;
+
+/// Sends messages that nobody gets who joins later.
+pub(crate) struct Publisher<M> {
+    endpoint: Endpoint,
+    publisher: ZenohPublisher<'static>,
+    _token: LivelinessToken,
+    sequence: i64,
+    message: PhantomData<M>,
+}
+
+impl<M: RosMessage> Publisher<M> {
+    /// Reliable, with the last `depth` messages kept by those that are slow.
+    pub(crate) fn open(member: &Member, topic: &str, depth: usize) -> Result<Self, GatewayError> {
+        let info = description::of_message::<M>()?;
+        let quality = (Keeping::Reliable, depth);
+        let endpoint = member.endpoint(Kind::Publisher, topic, &info, quality);
+        let publisher = member
+            .session()
+            .declare_publisher(endpoint.key.clone())
+            // The robot's network may be slower than the graph; what is sent is
+            // fresh or of no use.
+            .congestion_control(CongestionControl::Drop)
+            .express(true)
+            .wait();
+        let publisher = publisher.map_err(|source| GatewayError::Key {
+            action: "publish",
+            key: endpoint.key.clone(),
+            source,
+        })?;
+        Ok(Publisher {
+            _token: member.show(&endpoint)?,
+            endpoint,
+            publisher,
+            // As rmw_zenoh counts.
+            sequence: 1,
+            message: PhantomData,
+        })
+    }
+
+    pub(crate) fn send(&mut self, message: &M) -> Result<(), GatewayError> {
+        let bytes = recording::encode_cdr(message).map_err(|error| GatewayError::Encode {
+            topic: self.endpoint.topic.clone(),
+            reason: error.to_string(),
+        })?;
+        let attachment = Attachment {
+            sequence: self.sequence,
+            sent_ns: wall_ns(),
+            sender: self.endpoint.sender,
+        };
+        self.sequence += 1;
+        let sent = self.publisher.put(bytes).attachment(attachment.encode());
+        sent.wait().map_err(|source| GatewayError::Key {
+            action: "send on",
+            key: self.endpoint.key.clone(),
+            source,
+        })
+    }
+}

@@ -1,0 +1,140 @@
+//! A topic from the robot.
+//!
+//! What is lost is counted: here for want of room, and before by the sender's own
+//! numbers.
+
+use std::collections::BTreeMap;
+use std::marker::PhantomData;
+
+use network::{Past, Queue, Room};
+use recording::ros::RosMessage;
+use serde::de::DeserializeOwned;
+use transport::Graph;
+use zenoh::liveliness::LivelinessToken;
+use zenoh::sample::Sample;
+
+use super::entity::Kind;
+use super::{Attachment, Member, description};
+use crate::GatewayError;
+
+/// Senders of a topic whose sequence is followed; who has more is not told what it
+/// lost.
+const MAX_SENDERS: usize = 64;
+
+/// Which messages a topic has for those who come late, in the words of ROS.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(crate) enum Keeping {
+    /// Best effort, volatile: sensors.
+    Fresh,
+    /// Reliable, volatile.
+    Reliable,
+    /// Reliable, transient local: the last of each sender is there.
+    Kept,
+}
+
+/// Receives messages.
+pub(crate) struct Subscription<M> {
+    topic: String,
+    queue: Queue,
+    /// The last sequence number of each sender.
+    senders: BTreeMap<[u8; 16], i64>,
+    heard: bool,
+    _token: LivelinessToken,
+    message: PhantomData<M>,
+}
+
+/// One message, or why there is none, and how many were lost before it.
+pub(crate) struct Received<M> {
+    pub(crate) message: Result<M, GatewayError>,
+    pub(crate) lost: u64,
+}
+
+impl<M: RosMessage + DeserializeOwned> Subscription<M> {
+    /// Takes messages of at most `max_bytes`; `depth` of them wait.
+    pub(crate) fn open(
+        graph: &Graph,
+        member: &Member,
+        topic: &str,
+        keeping: Keeping,
+        depth: usize,
+        max_bytes: usize,
+    ) -> Result<Self, GatewayError> {
+        let info = description::of_message::<M>()?;
+        let endpoint = member.endpoint(Kind::Subscription, topic, &info, (keeping, depth));
+        let failed = |source| GatewayError::Key {
+            action: "subscribe to",
+            key: endpoint.key.clone(),
+            source,
+        };
+        let past = match keeping {
+            Keeping::Fresh | Keeping::Reliable => Past::Gone,
+            Keeping::Kept => Past::Last(depth),
+        };
+        let room = Room::for_any(depth, max_bytes);
+        let queue = Queue::open(member.session(), &endpoint.key, past, room, graph.waker()?);
+        Ok(Subscription {
+            topic: topic.to_owned(),
+            queue: queue.map_err(failed)?,
+            senders: BTreeMap::new(),
+            heard: false,
+            _token: member.show(&endpoint)?,
+            message: PhantomData,
+        })
+    }
+
+    /// Messages that were lost for want of room since the last call.
+    pub(crate) fn dropped(&self) -> u64 {
+        self.queue.dropped()
+    }
+
+    /// Most messages that can wait: who takes no more at once keeps no other topic
+    /// waiting, however fast they come.
+    pub(crate) fn depth(&self) -> usize {
+        self.queue.room().messages
+    }
+
+    /// Why a message was not let in at all, for each such.
+    pub(crate) fn next_too_long(&self) -> Option<GatewayError> {
+        let found = self.queue.next_too_long()?;
+        Some(GatewayError::TooLong {
+            topic: self.topic.clone(),
+            found,
+            most: self.queue.room().message_bytes,
+        })
+    }
+
+    pub(crate) fn next(&mut self) -> Option<Received<M>> {
+        let sample = self.queue.next()?;
+        let mut lost = 0;
+        let message = self.decode(&sample, &mut lost);
+        if message.is_ok() && !self.heard {
+            self.heard = true;
+            tracing::info!(topic = self.topic, "the first message came");
+        }
+        Some(Received { message, lost })
+    }
+
+    fn decode(&mut self, sample: &Sample, lost: &mut u64) -> Result<M, GatewayError> {
+        // Scripts that speak Zenoh alone may leave it out.
+        if let Some(bytes) = sample.attachment() {
+            let attachment = Attachment::decode(&self.topic, bytes)?;
+            *lost = self.lost_before(attachment);
+        }
+        let bytes = sample.payload().to_bytes();
+        recording::decode_cdr(&bytes).map_err(|reason| GatewayError::Message {
+            topic: self.topic.clone(),
+            reason,
+        })
+    }
+
+    fn lost_before(&mut self, attachment: Attachment) -> u64 {
+        if self.senders.len() >= MAX_SENDERS && !self.senders.contains_key(&attachment.sender) {
+            self.senders.clear();
+        }
+        let last = self.senders.insert(attachment.sender, attachment.sequence);
+        let between = last.and_then(|last| attachment.sequence.checked_sub(last));
+        // What came again, or late, is no loss.
+        let between = between.and_then(|between| u64::try_from(between).ok());
+        between.unwrap_or(0).saturating_sub(1)
+    }
+}

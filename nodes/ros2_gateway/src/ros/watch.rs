@@ -1,0 +1,166 @@
+//! Who comes to the robot's domain, by the tokens of its nodes.
+
+use std::sync::Arc;
+use std::sync::atomic::{AtomicU64, Ordering};
+
+use crossbeam::queue::ArrayQueue;
+use recording::ros::RosMessage;
+use transport::Graph;
+use zenoh::Wait;
+use zenoh::pubsub::Subscriber;
+use zenoh::sample::{Sample, SampleKind};
+
+use super::entity::{Kind, Token, TypeInfo};
+use super::{Member, description};
+use crate::GatewayError;
+
+/// Tokens that wait: a large robot has some hundred.
+const MAX_WAITING: usize = 4096;
+
+/// What was seen.
+#[derive(Debug)]
+pub(crate) enum Seen {
+    /// Somebody subscribes to the topic that is watched; the node's name.
+    Subscriber(String),
+    /// Somebody publishes a topic that is taken, as something else than it is taken
+    /// for: it will never come.
+    Stranger(GatewayError),
+}
+
+/// Watches the tokens.
+pub(crate) struct Watch {
+    tokens: Arc<ArrayQueue<String>>,
+    dropped: Arc<AtomicU64>,
+    subscribed: String,
+    published: Vec<(String, TypeInfo)>,
+    _subscriber: Subscriber<()>,
+}
+
+impl Watch {
+    /// Tells of subscribers of `subscribed`.
+    pub(crate) fn open(
+        graph: &Graph,
+        member: &Member,
+        subscribed: &str,
+    ) -> Result<Self, GatewayError> {
+        let tokens = Arc::new(ArrayQueue::new(MAX_WAITING));
+        let dropped = Arc::new(AtomicU64::new(0));
+        let waker = graph.waker()?;
+        let key = member.tokens();
+        let put = {
+            let (tokens, dropped) = (Arc::clone(&tokens), Arc::clone(&dropped));
+            move |sample: Sample| {
+                if sample.kind() != SampleKind::Put {
+                    return;
+                }
+                if tokens.push(sample.key_expr().to_string()).is_err() {
+                    dropped.fetch_add(1, Ordering::Relaxed);
+                }
+                waker.wake();
+            }
+        };
+        let liveliness = member.session().liveliness();
+        let subscriber = liveliness.declare_subscriber(key.clone()).history(true);
+        let subscriber = subscriber.callback(put).wait();
+        let subscriber = subscriber.map_err(|source| GatewayError::Key {
+            action: "watch",
+            key,
+            source,
+        })?;
+        Ok(Watch {
+            tokens,
+            dropped,
+            subscribed: subscribed.to_owned(),
+            published: Vec::new(),
+            _subscriber: subscriber,
+        })
+    }
+
+    /// Tells of publishers of `topic` too that publish anything but `M`.
+    pub(crate) fn expect<M: RosMessage>(&mut self, topic: &str) -> Result<(), GatewayError> {
+        let info = description::of_message::<M>()?;
+        self.published.push((topic.to_owned(), info));
+        Ok(())
+    }
+
+    /// Tokens that were not looked at since the last call: there were too many.
+    pub(crate) fn dropped(&self) -> u64 {
+        self.dropped.swap(0, Ordering::Relaxed)
+    }
+
+    /// The next that is of interest. A token that cannot be read is of no interest.
+    pub(crate) fn next(&self, member: &Member) -> Option<Seen> {
+        while let Some(key) = self.tokens.pop() {
+            let token = Token::read(&key);
+            let mine = member.session().zid().to_string();
+            let others = token.filter(|token| token.session != mine);
+            let seen = others.and_then(|token| judge(&token, &self.subscribed, &self.published));
+            if seen.is_some() {
+                return seen;
+            }
+        }
+        None
+    }
+}
+
+fn judge(token: &Token, subscribed: &str, published: &[(String, TypeInfo)]) -> Option<Seen> {
+    let Token {
+        kind, node, topic, ..
+    } = token;
+    if kind == Kind::Subscription.code() && topic == subscribed {
+        return Some(Seen::Subscriber(node.clone()));
+    }
+    let (_, expected) = published.iter().find(|(known, _)| known == topic)?;
+    let is_strange = kind == Kind::Publisher.code() && token.info != *expected;
+    is_strange.then(|| {
+        Seen::Stranger(GatewayError::Stranger {
+            node: node.clone(),
+            topic: topic.clone(),
+            found: token.info.to_string(),
+            expected: expected.to_string(),
+        })
+    })
+}
+
+#[cfg(test)]
+mod tests {
+    use recording::ros::{LaserScan, PoseArray};
+
+    use super::*;
+
+    fn seen(token: &str) -> Option<Seen> {
+        let scan = description::of_message::<LaserScan>().unwrap();
+        let published = [("/scan".to_owned(), scan)];
+        judge(&Token::read(token)?, "/initialpose", &published)
+    }
+
+    const START: &str = "@ros2_lv/0/aac3178e146ba6f1fc6e6a4085e77f21/0/10";
+    const QOS: &str = "::,10:,:,:,,";
+
+    #[test]
+    fn a_subscriber_of_the_initial_pose_is_seen() {
+        let kind = "geometry_msgs::msg::dds_::PoseWithCovarianceStamped_/RIHS01_26432f9803e43727d3c8f668d1fdb3c630f548af631e2f4e31382371bfea3b6e";
+        let token = format!("{START}/MS/%/%/amcl/%initialpose/{kind}/{QOS}");
+        assert!(matches!(seen(&token), Some(Seen::Subscriber(node)) if node == "/amcl"));
+        let other = format!("{START}/MS/%/%/amcl/%other/{kind}/{QOS}");
+        assert!(seen(&other).is_none());
+        assert!(seen(&format!("{START}/NN/%/%/amcl")).is_none());
+    }
+
+    #[test]
+    fn a_publisher_with_another_type_is_seen_and_the_right_one_is_not() {
+        let publisher =
+            |info: &TypeInfo| seen(&format!("{START}/MP/%/%r2/lidar/%scan/{info}/{QOS}"));
+        let right = description::of_message::<LaserScan>().unwrap();
+        assert!(publisher(&right).is_none());
+        let wrong = description::of_message::<PoseArray>().unwrap();
+        let Some(Seen::Stranger(error)) = publisher(&wrong) else {
+            panic!("not seen");
+        };
+        let text = error.to_string();
+        assert!(
+            text.starts_with("/r2/lidar publishes /scan as geometry_msgs"),
+            "{text}"
+        );
+    }
+}

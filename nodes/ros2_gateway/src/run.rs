@@ -1,0 +1,139 @@
+//! Joins both sides, and carries messages between them.
+
+use std::time::Duration;
+
+use messages::topic;
+use network::Report;
+use transport::{Flow, Graph, Subscriber, TransportError};
+
+use crate::frames::Frames;
+use crate::incoming::Incoming;
+use crate::outgoing::Outgoing;
+use crate::ros::{Member, Seen, Service, Watch};
+use crate::seeding::Seeding;
+use crate::topics::Topics;
+use crate::{Config, GatewayError};
+
+/// How long a late joiner of the graph may wait for the map.
+const TICK: Duration = Duration::from_millis(50);
+
+/// The map's frame where neither the user nor the robot names it.
+const MAP_FRAME: &str = "map";
+
+/// Carries messages until the stop flag is set.
+///
+/// # Errors
+/// If a name or Zenoh's configuration cannot be used, the session cannot be opened,
+/// or the graph fails. A robot that is not there is no error: it is waited for.
+pub fn run(graph: &Graph, config: &Config) -> Result<(), GatewayError> {
+    let topics = Topics::of(config)?;
+    let domain = config.domain()?;
+    let mut report = Report::new(graph.health()?);
+    let Some(session) = network::open(graph, &config.network, || report.tick())? else {
+        return Ok(());
+    };
+    let member = Member::join(&session, domain, &config.namespace, &config.node)?;
+    let mut gateway = Gateway::open(graph, member, config, &topics)?;
+    tracing::info!(domain, node = config.node, "joined the robot's domain");
+    report.ready()?;
+    let (hypotheses, health) = (graph.subscriber()?, graph.subscriber()?);
+    graph.run(&[&hypotheses, &health], TICK, |_| {
+        gateway.step(&hypotheses, &health, &mut report)?;
+        report.tick()?;
+        Ok(Flow::Continue)
+    })
+}
+
+struct Gateway {
+    member: Member,
+    watch: Watch,
+    service: Service,
+    incoming: Incoming,
+    outgoing: Outgoing,
+    frames: Frames,
+    seeding: Seeding,
+    map_frame: Option<String>,
+}
+
+impl Gateway {
+    fn open(
+        graph: &Graph,
+        member: Member,
+        config: &Config,
+        topics: &Topics,
+    ) -> Result<Self, GatewayError> {
+        // What is sent is there before anybody who waits for it is seen.
+        let outgoing = Outgoing::open(&member, config, topics)?;
+        let mut watch = Watch::open(graph, &member, &topics.initial_pose)?;
+        Ok(Gateway {
+            service: Service::open(graph, &member, &topics.reinitialize)?,
+            incoming: Incoming::open(graph, &member, config, topics, &mut watch)?,
+            outgoing,
+            watch,
+            member,
+            frames: Frames::new(config.mount),
+            seeding: Seeding::new(config.seed, config.lost_beyond),
+            map_frame: config.map_frame.clone(),
+        })
+    }
+
+    fn step(
+        &mut self,
+        hypotheses: &Subscriber<topic::Hypotheses>,
+        health: &Subscriber<topic::Health>,
+        report: &mut Report,
+    ) -> Result<(), TransportError> {
+        self.look(report)?;
+        self.serve(report)?;
+        self.incoming
+            .step(&mut self.frames, &mut self.seeding, report)?;
+        let robots = self.incoming.map_frame();
+        let map_frame = self.map_frame.as_deref().or(robots).unwrap_or(MAP_FRAME);
+        while let Some(sample) = hypotheses.receive()? {
+            report.received();
+            self.outgoing.answer(
+                sample.header(),
+                sample.items(),
+                map_frame,
+                &self.frames,
+                &mut self.seeding,
+                report,
+            )?;
+        }
+        while let Some(sample) = health.receive()? {
+            self.outgoing
+                .health(sample.header(), sample.items(), report)?;
+        }
+        Ok(())
+    }
+
+    /// Who came.
+    fn look(&mut self, report: &mut Report) -> Result<(), TransportError> {
+        report.dropped(self.watch.dropped());
+        while let Some(seen) = self.watch.next(&self.member) {
+            match seen {
+                Seen::Subscriber(node) => {
+                    tracing::info!(node, "wants to be told where the robot is");
+                    self.seeding.greet();
+                }
+                Seen::Stranger(error) => report.refused(&error)?,
+            }
+        }
+        Ok(())
+    }
+
+    /// Who asked.
+    fn serve(&mut self, report: &mut Report) -> Result<(), TransportError> {
+        while let Some(outcome) = self.service.next() {
+            report.received();
+            match outcome {
+                Ok(()) => {
+                    tracing::info!("asked to tell the robot where it is");
+                    self.seeding.ask();
+                }
+                Err(error) => report.refused(&error)?,
+            }
+        }
+        Ok(())
+    }
+}

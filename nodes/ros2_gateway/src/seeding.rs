@@ -1,0 +1,284 @@
+//! When the robot's particle filter is told where the robot is. Pure.
+//!
+//! It is told once it is there, when somebody asks for it, and when its pose lies
+//! apart from every hypothesis of a scan that is Unique, twice in a row: always by a
+//! scan whose verdict is Unique, and never otherwise.
+
+use std::collections::VecDeque;
+
+use geometry::Pose;
+
+use crate::config::{Reach, Seed};
+
+/// Answers that are kept to be compared with: some seconds.
+const KEPT: usize = 128;
+
+/// How far apart in time a pose and the hypotheses may be that are compared,
+/// nanoseconds: a robot at 2 m/s gets as far as half the distance that makes it lost.
+const SAME_TIME_NS: i64 = 250_000_000;
+
+/// So many poses in a row have to lie apart.
+const ENOUGH: u32 = 2;
+
+/// Where the robot may be, by one scan.
+#[derive(Debug, Clone, PartialEq)]
+pub(crate) struct Answer {
+    pub(crate) measured_ns: i64,
+    /// Whether the verdict is Unique, and the pose that of the robot.
+    pub(crate) is_unique: bool,
+    /// Best first.
+    pub(crate) map_from_base: Vec<Pose>,
+}
+
+/// Where the particle filter takes the robot to be.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(crate) struct Belief {
+    pub(crate) measured_ns: i64,
+    pub(crate) map_from_base: Pose,
+}
+
+/// Why it is to be told.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(crate) enum Reason {
+    /// It has just come.
+    New,
+    /// Somebody asked.
+    Asked,
+    /// It is elsewhere.
+    Lost,
+}
+
+/// Decides.
+#[derive(Debug)]
+pub(crate) struct Seeding {
+    when: Seed,
+    beyond: Reach,
+    wanted: Option<Reason>,
+    answers: VecDeque<Answer>,
+    /// A pose that no answer was there for yet.
+    waiting: Option<Belief>,
+    apart: u32,
+    /// The scan by which it was told last.
+    told_ns: i64,
+}
+
+impl Seeding {
+    pub(crate) fn new(when: Seed, beyond: Reach) -> Self {
+        Seeding {
+            when,
+            beyond,
+            wanted: None,
+            answers: VecDeque::with_capacity(KEPT),
+            waiting: None,
+            apart: 0,
+            told_ns: i64::MIN,
+        }
+    }
+
+    /// A particle filter came.
+    pub(crate) fn greet(&mut self) {
+        if self.when != Seed::Never {
+            self.wanted = self.wanted.or(Some(Reason::New));
+        }
+    }
+
+    /// Somebody asks that it be told.
+    pub(crate) fn ask(&mut self) {
+        self.wanted = Some(Reason::Asked);
+    }
+
+    /// Whether it is to be told something.
+    #[cfg(test)]
+    fn is_wanted(&self) -> bool {
+        self.wanted.is_some()
+    }
+
+    /// Takes the pose of the particle filter.
+    pub(crate) fn hear_belief(&mut self, belief: Belief) {
+        // What it thought before it was told does not count.
+        if self.when != Seed::Lost || belief.measured_ns <= self.told_ns {
+            return;
+        }
+        let newest = self.answers.back().map(|answer| answer.measured_ns);
+        if newest.is_some_and(|newest| newest >= belief.measured_ns) {
+            self.judge(belief);
+        } else {
+            self.waiting = Some(belief);
+        }
+    }
+
+    /// Takes what a scan says; gives the reason if the particle filter is to be told
+    /// the first pose of it.
+    pub(crate) fn hear_answer(&mut self, answer: Answer) -> Option<Reason> {
+        let (now_ns, is_unique) = (answer.measured_ns, answer.is_unique);
+        if self.answers.back().is_some_and(|a| a.measured_ns > now_ns) {
+            // The clock was set back: a recording that begins anew.
+            self.answers.clear();
+            self.waiting = None;
+            self.told_ns = i64::MIN;
+        }
+        if self.answers.len() == KEPT {
+            self.answers.pop_front();
+        }
+        self.answers.push_back(answer);
+        if let Some(belief) = self.waiting.take_if(|belief| belief.measured_ns <= now_ns) {
+            self.judge(belief);
+        }
+        if !is_unique {
+            return None;
+        }
+        let reason = self.wanted.take()?;
+        self.apart = 0;
+        self.told_ns = now_ns;
+        Some(reason)
+    }
+
+    fn judge(&mut self, belief: Belief) {
+        let apart_ns = |a: &&Answer| a.measured_ns.abs_diff(belief.measured_ns);
+        let nearest = self.answers.iter().min_by_key(apart_ns);
+        let Some(answer) = nearest.filter(|a| apart_ns(a) <= SAME_TIME_NS.unsigned_abs()) else {
+            return;
+        };
+        let Reach { metres, radians } = self.beyond;
+        let is_near = |pose: &Pose| pose.is_within(belief.map_from_base, metres, radians);
+        if answer.map_from_base.iter().any(is_near) {
+            self.apart = 0;
+            self.wanted = self.wanted.filter(|reason| *reason != Reason::Lost);
+        } else if answer.is_unique {
+            self.apart += 1;
+            if self.apart >= ENOUGH {
+                self.wanted = self.wanted.or(Some(Reason::Lost));
+            }
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    const MS: i64 = 1_000_000;
+
+    fn seeding(when: Seed) -> Seeding {
+        let beyond = Reach {
+            metres: 1.0,
+            radians: 0.5,
+        };
+        Seeding::new(when, beyond)
+    }
+
+    fn answer(ms: i64, is_unique: bool, places: &[f64]) -> Answer {
+        Answer {
+            measured_ns: ms * MS,
+            is_unique,
+            map_from_base: places.iter().map(|x| Pose::new(*x, 0.0, 0.0)).collect(),
+        }
+    }
+
+    fn belief(ms: i64, x: f64) -> Belief {
+        Belief {
+            measured_ns: ms * MS,
+            map_from_base: Pose::new(x, 0.0, 0.0),
+        }
+    }
+
+    #[test]
+    fn who_comes_is_told_once_and_by_a_unique_verdict() {
+        for when in [Seed::Once, Seed::Lost] {
+            let mut seeding = seeding(when);
+            assert_eq!(
+                seeding.hear_answer(answer(0, true, &[1.0])),
+                None,
+                "nobody there"
+            );
+            seeding.greet();
+            assert_eq!(seeding.hear_answer(answer(100, false, &[1.0, 9.0])), None);
+            assert_eq!(
+                seeding.hear_answer(answer(200, true, &[1.0])),
+                Some(Reason::New)
+            );
+            assert_eq!(seeding.hear_answer(answer(300, true, &[1.0])), None);
+        }
+        let mut seeding = seeding(Seed::Never);
+        seeding.greet();
+        assert_eq!(seeding.hear_answer(answer(200, true, &[1.0])), None);
+        seeding.ask();
+        assert_eq!(
+            seeding.hear_answer(answer(300, true, &[1.0])),
+            Some(Reason::Asked)
+        );
+    }
+
+    #[test]
+    fn who_is_lost_is_told_again_after_the_second_sign() {
+        let mut seeding = seeding(Seed::Lost);
+        seeding.hear_answer(answer(0, true, &[1.0]));
+        seeding.hear_belief(belief(0, 1.5));
+        seeding.hear_belief(belief(0, 9.0));
+        assert_eq!(seeding.hear_answer(answer(100, true, &[1.0])), None);
+        // This one comes before its answer does.
+        seeding.hear_belief(belief(200, 9.0));
+        assert!(!seeding.is_wanted());
+        assert_eq!(
+            seeding.hear_answer(answer(200, true, &[1.0])),
+            Some(Reason::Lost)
+        );
+        // What it thought before says nothing of what it was told.
+        seeding.hear_belief(belief(200, 9.0));
+        seeding.hear_belief(belief(150, 9.0));
+        assert_eq!(seeding.hear_answer(answer(300, true, &[1.0])), None);
+    }
+
+    #[test]
+    fn a_pose_at_any_hypothesis_or_with_no_unique_verdict_is_not_lost() {
+        let mut seeding = seeding(Seed::Lost);
+        for ms in (0..1000).step_by(100) {
+            assert_eq!(
+                seeding.hear_answer(answer(ms, ms % 200 == 0, &[1.0, 20.0])),
+                None
+            );
+            seeding.hear_belief(belief(ms, if ms % 200 == 0 { 20.0 } else { 9.0 }));
+        }
+        assert!(!seeding.is_wanted());
+        // Turned around at the right place.
+        seeding.hear_answer(answer(2000, true, &[1.0]));
+        for _ in 0..2 {
+            let mut turned = belief(2000, 1.0);
+            turned.map_from_base.yaw = 3.0;
+            seeding.hear_belief(turned);
+        }
+        assert!(seeding.is_wanted());
+        // It came back by itself, or somebody put it there.
+        seeding.hear_belief(belief(2000, 1.0));
+        assert!(!seeding.is_wanted());
+    }
+
+    #[test]
+    fn only_what_is_of_one_time_is_compared() {
+        let mut seeding = seeding(Seed::Lost);
+        seeding.hear_answer(answer(1000, true, &[1.0]));
+        seeding.hear_belief(belief(700, 9.0));
+        seeding.hear_belief(belief(600, 9.0));
+        assert!(!seeding.is_wanted());
+    }
+
+    #[test]
+    fn once_means_once() {
+        let mut seeding = seeding(Seed::Once);
+        seeding.hear_answer(answer(0, true, &[1.0]));
+        seeding.hear_belief(belief(0, 9.0));
+        seeding.hear_belief(belief(0, 9.0));
+        assert!(!seeding.is_wanted());
+    }
+
+    #[test]
+    fn a_clock_that_is_set_back_begins_anew() {
+        let mut seeding = seeding(Seed::Lost);
+        seeding.ask();
+        assert!(seeding.hear_answer(answer(5000, true, &[1.0])).is_some());
+        assert_eq!(seeding.hear_answer(answer(0, true, &[1.0])), None);
+        seeding.hear_belief(belief(0, 9.0));
+        seeding.hear_belief(belief(0, 9.0));
+        assert!(seeding.is_wanted());
+    }
+}

@@ -1,0 +1,419 @@
+//! A ROS 2 robot of other people's libraries, and the gateway between it and a graph:
+//! every message both ways, and a particle filter that is told where it is.
+#![allow(
+    clippy::unwrap_used,
+    reason = "the lint spares test functions but not what they share"
+)]
+
+use bytemuck::Zeroable;
+use geometry::Pose;
+use messages::{
+    HypothesesHeader, Hypothesis, MapHeader, Name, Odometry, Pose2, ScanHeader, Stamp, Verdict,
+    topic,
+};
+use recording::ros::LaserScan;
+use recording::{Kind, Message, Recording};
+use serde_json::{Value, json};
+use tests::executables;
+use tests::robot::Robot;
+use tests::world::World;
+use transport::testing::{Isolated, NodeProcess, wait_for, wait_for_health, wait_until_ready};
+use transport::{Graph, Publisher};
+
+/// A graph with a gateway, and a robot that has joined it.
+struct Joined {
+    robot: Robot,
+    gateway: Option<NodeProcess>,
+    graph: Graph,
+    // Behind the graph, so that it is dropped after it.
+    _isolated: Isolated,
+}
+
+impl Joined {
+    /// None where there can be no such robot.
+    fn new(tag: &str, namespace: &str, options: &[&str]) -> Option<Self> {
+        let isolated = Isolated::new(tag);
+        let graph = isolated.join("test");
+        let endpoint = format!("tcp/{}:7447", isolated.name().loopback());
+        let common = [
+            "--domain",
+            "0",
+            "--namespace",
+            namespace,
+            "--listen",
+            &endpoint,
+        ];
+        let arguments = common.iter().chain(options);
+        let executable = env!("CARGO_BIN_EXE_ros2_gateway");
+        let gateway = NodeProcess::start(executable, &graph, arguments);
+        wait_until_ready(&graph, "ros2_gateway");
+        let recording = World::of("malaga_corridor").recording();
+        let robot = Robot::start(&endpoint, &recording, namespace)?;
+        Some(Joined {
+            robot,
+            gateway: Some(gateway),
+            graph,
+            _isolated: isolated,
+        })
+    }
+
+    fn stop(&mut self) {
+        self.gateway.take().unwrap().stop();
+    }
+}
+
+/// The recorded messages of a kind.
+fn recorded(kind: Kind) -> Vec<Message> {
+    let recording = Recording::open(World::of("malaga_corridor").recording()).unwrap();
+    let records = recording.records_of(&[kind]);
+    records.map(|record| record.unwrap().message).collect()
+}
+
+fn scans() -> Vec<LaserScan> {
+    World::of("malaga_corridor").scans()
+}
+
+fn pose2(x: f64, y: f64, yaw: f64) -> Pose2 {
+    Pose2 { x, y, yaw }
+}
+
+/// What others make of a pose: quaternions give back a yaw to a few units in the last
+/// place.
+fn assert_near(found: &Value, expected: Pose) {
+    let of = |index: usize| found[index].as_f64().unwrap();
+    let found = Pose::new(of(0), of(1), of(2));
+    assert!(
+        found.is_within(expected, 1e-9, 1e-9),
+        "{found:?} {expected:?}"
+    );
+}
+
+#[test]
+fn what_the_robot_sends_enters_the_graph_as_it_is() {
+    let Some(mut joined) = Joined::new("ros-in", "/r2", &[]) else {
+        return;
+    };
+    let graph = &joined.graph;
+    let maps = graph.subscriber::<topic::Map>().unwrap();
+    let scans_in = graph.subscriber::<topic::Scan>().unwrap();
+    let odometry_in = graph.subscriber::<topic::OdometryTopic>().unwrap();
+    joined.robot.order("arrive", json!({}));
+    // Kept for who comes late, as the gateway may have.
+    let map: (MapHeader, Vec<u8>) = wait_for(graph, &maps, |header, cells| {
+        Some((*header, cells.to_vec()))
+    });
+    let Message::Map(expected) = recorded(Kind::Map).remove(0) else {
+        panic!("no map");
+    };
+    let expected = expected.to_grid().unwrap();
+    assert_eq!(map.0.map_id, expected.id());
+    assert_eq!(
+        (map.0.width, map.0.height),
+        (expected.width, expected.height)
+    );
+    assert_eq!(map.1, expected.cells);
+    for (index, expected) in scans().iter().take(5).enumerate() {
+        joined.robot.order("scan", json!({ "index": index }));
+        let (header, ranges): (ScanHeader, Vec<f32>) =
+            wait_for(graph, &scans_in, |header, items| {
+                Some((*header, items.to_vec()))
+            });
+        assert_eq!(ranges, expected.ranges);
+        assert_eq!(header.stamp.measured_ns, expected.header.stamp.as_ns());
+        assert_eq!(header.stamp.counter, index as u64);
+        assert_eq!(header.angle_min, f64::from(expected.angle_min));
+        assert_eq!(header.range_max_m, expected.range_max);
+        // By /tf_static, which came before.
+        assert_eq!(header.mount_known, 1);
+        assert_eq!(header.base_from_laser, pose2(0.78, 0.0, 0.0));
+    }
+    let Message::Odometry(expected) = recorded(Kind::Odometry).remove(0) else {
+        panic!("no odometry");
+    };
+    let odometry: Odometry = wait_for(graph, &odometry_in, |odometry, _| Some(*odometry));
+    assert_eq!(
+        odometry.odom_from_child,
+        expected.pose.pose.planar().unwrap().into()
+    );
+    assert_eq!(odometry.covariance, expected.pose.planar_covariance());
+    assert_eq!(odometry.child_frame, Name::new(&expected.child_frame_id));
+    joined.stop();
+}
+
+fn hypotheses(counter: u64, verdict: Verdict) -> (HypothesesHeader, Vec<Hypothesis>) {
+    let header = HypothesesHeader {
+        stamp: Stamp {
+            measured_ns: 1_700_000_000_000_000_000 + counter as i64,
+            entered_ns: transport::monotonic_ns(),
+            counter,
+        },
+        verdict: verdict as u32,
+        mount_known: 1,
+        ..HypothesesHeader::zeroed()
+    };
+    let item = |x: f64| Hypothesis {
+        map_from_laser: pose2(x + 0.5, 2.0, 0.0),
+        map_from_base: pose2(x, 2.0, 0.0),
+        covariance: [4e-4, 0.0, 0.0, 0.0, 1e-2, 0.0, 0.0, 0.0, 1e-6],
+        ..Hypothesis::zeroed()
+    };
+    (header, vec![item(1.0), item(-7.0)])
+}
+
+fn send(
+    publisher: &Publisher<topic::Hypotheses>,
+    (header, items): &(HypothesesHeader, Vec<Hypothesis>),
+) {
+    let mut loan = publisher.loan(items.len()).unwrap();
+    *loan.header_mut() = *header;
+    loan.items_mut().copy_from_slice(items);
+    loan.send().unwrap();
+}
+
+#[test]
+fn what_the_graph_says_reaches_the_robot_byte_for_byte() {
+    let Some(mut joined) = Joined::new("ros-out", "/", &["--broadcast-tf", "--odom-frame", "odom"])
+    else {
+        return;
+    };
+    let publisher = joined.graph.publisher::<topic::Hypotheses>().unwrap();
+    let robot = &mut joined.robot;
+    for order in ["arrive", "transforms", "filter", "tokens"] {
+        robot.order(order, json!({}));
+    }
+    let tokens = robot.wait_for("tokens");
+    assert_eq!(tokens["same"], true, "{tokens}");
+    let expected = [
+        "MP /diagnostics ::,10:,:,:,,",
+        "MP /hypotheses ::,10:,:,:,,",
+        "MP /initialpose ::,1:,:,:,,",
+        "MP /tf ::,100:,:,:,,",
+        "MS /amcl_pose ::,10:,:,:,,",
+        "MS /map :1:,1:,:,:,,",
+        "MS /odom ::,16:,:,:,,",
+        "MS /scan 2::,5:,:,:,,",
+        "MS /tf ::,100:,:,:,,",
+        "MS /tf_static :1:,100:,:,:,,",
+        "NN",
+        "SS /reinitialize_global_localization ::,10:,:,:,,",
+    ];
+    assert_eq!(tokens["found"], json!(expected));
+    let scans_in = joined.graph.subscriber::<topic::Scan>().unwrap();
+    robot.order("scan", json!({ "index": 0 }));
+    wait_for(&joined.graph, &scans_in, |_, _| Some(()));
+    // Which verdict it is decides whether the filter is told.
+    for (counter, verdict) in [Verdict::Ambiguous, Verdict::Unique]
+        .into_iter()
+        .enumerate()
+    {
+        let sent = hypotheses(counter as u64, verdict);
+        send(&publisher, &sent);
+        let mut heard = std::collections::BTreeMap::new();
+        let wanted = if verdict == Verdict::Unique { 3 } else { 1 };
+        while heard.len() < wanted {
+            let said = joined.robot.hear();
+            let event = said["event"].as_str().unwrap().to_owned();
+            assert_eq!(said["same"], true, "the bytes of {event} differ");
+            assert_eq!(said["attachment"], 33);
+            if event != "/diagnostics" {
+                heard.insert(event, said);
+            }
+        }
+        let stamp = sent.0.stamp.measured_ns;
+        let poses = &heard["hypotheses"];
+        assert_eq!(
+            (&poses["stamp"], &poses["frame"]),
+            (&json!(stamp), &json!("map"))
+        );
+        assert_near(&poses["poses"][0], Pose::new(1.0, 2.0, 0.0));
+        assert_near(&poses["poses"][1], Pose::new(-7.0, 2.0, 0.0));
+        assert_eq!(poses["sequence"], counter + 1);
+        let Some(told) = heard.get("initialpose") else {
+            assert_eq!(verdict, Verdict::Ambiguous);
+            continue;
+        };
+        assert_eq!(told["stamp"], stamp);
+        assert_near(&told["pose"], Pose::new(1.0, 2.0, 0.0));
+        // At least the spread of 0.1 m and 3 degrees.
+        let variances: Vec<f64> = serde_json::from_value(told["variances"].clone()).unwrap();
+        assert_eq!(variances[0], 0.1 * 0.1);
+        // The laser's, and what its yaw does half a metre away, but for rounding.
+        assert!((variances[1] - (0.01 + 0.25e-6)).abs() < 1e-12);
+        assert!((variances[2].sqrt().to_degrees() - 3.0).abs() < 1e-9);
+        let tf = &heard["tf"];
+        assert_eq!(
+            (&tf["stamp"], &tf["child"]),
+            (&json!(stamp + 1_000_000_000), &json!("odom"))
+        );
+    }
+    // A node of the graph, as it fares; one report a second.
+    let report = loop {
+        let said = joined.robot.wait_for("/diagnostics");
+        assert_eq!(said["same"], true);
+        if said["status"][0][0] == "backcast: ros2_gateway" {
+            break said;
+        }
+    };
+    assert_eq!(
+        (&report["status"][0][1], &report["status"][0][2]),
+        (&json!(0), &json!("Ready"))
+    );
+    joined.stop();
+}
+
+#[test]
+fn bytes_of_no_meaning_are_refused_and_counted() {
+    let Some(mut joined) = Joined::new("ros-bad", "/", &[]) else {
+        return;
+    };
+    let health = joined.graph.subscriber::<topic::Health>().unwrap();
+    let sound = "0100000000000000010000000000000010000102030405060708090a0b0c0d0e0f";
+    let mut refused = 0;
+    let mut refuse = |topic: &str, payload: &str, attachment: Option<&str>, expected: &str| {
+        let how = json!({ "topic": topic, "payload": payload, "attachment": attachment });
+        joined.robot.order("strange", how);
+        refused += 1;
+        let (report, error) = wait_for_health(&joined.graph, &health, |report| {
+            report.node.as_str() == "ros2_gateway" && report.refused >= refused
+        });
+        assert_eq!(report.refused, refused, "{error}");
+        // Of several in a second, the first is put into words.
+        if refused == 1 {
+            assert!(error.contains(expected), "{error}");
+        }
+    };
+    refuse("scan", "00010000", Some("00"), "/scan has 1 bytes");
+    refuse("scan", "", Some(sound), "less than a CDR header");
+    refuse("scan", "00070000ff", None, "representation");
+    refuse("odom", &format!("00010000{}", "ff".repeat(700)), None, "");
+    refuse(
+        "map",
+        &format!("00010000{}", "00".repeat(100)),
+        Some(sound),
+        "",
+    );
+    refuse(
+        "scan",
+        &format!("00010000{}", "00".repeat(1 << 20)),
+        None,
+        "at most",
+    );
+    // It goes on, and takes what is sound.
+    let scans_in = joined.graph.subscriber::<topic::Scan>().unwrap();
+    joined.robot.order("scan", json!({ "index": 0 }));
+    wait_for(&joined.graph, &scans_in, |_, _| Some(()));
+    joined.stop();
+}
+
+/// Starts the engine's nodes; they are ready once they have a map.
+fn engine(graph: &Graph) -> Vec<NodeProcess> {
+    let nodes = ["boundary_extractor", "accumulator", "peak_extractor"];
+    let start = |name: &&str| {
+        let executable = executables::path(name);
+        NodeProcess::start(executable.to_str().unwrap(), graph, [""; 0])
+    };
+    nodes.iter().map(start).collect()
+}
+
+#[test]
+fn a_particle_filter_is_told_where_it_is() {
+    let Some(mut joined) = Joined::new("ros-amcl", "/", &["--lost-beyond", "1,30"]) else {
+        return;
+    };
+    let nodes = engine(&joined.graph);
+    let robot = &mut joined.robot;
+    robot.order("arrive", json!({}));
+    for node in ["boundary_extractor", "accumulator", "peak_extractor"] {
+        wait_until_ready(&joined.graph, node);
+    }
+    let truths = Recording::open(World::of("malaga_corridor").recording()).unwrap();
+    let truths = truths.ground_truths().unwrap();
+    let stamps: Vec<i64> = scans()
+        .iter()
+        .map(|scan| scan.header.stamp.as_ns())
+        .collect();
+    // What was said up to the answer to scan `index`, which has an answer itself.
+    let until_answered = |robot: &mut Robot, index: usize| {
+        let mut told = Vec::new();
+        loop {
+            let said = robot.hear();
+            match said["event"].as_str().unwrap() {
+                "initialpose" => told.push(said),
+                "hypotheses" if said["stamp"] == stamps[index] => return told,
+                _ => {}
+            }
+        }
+    };
+    let scan = |robot: &mut Robot, index: usize| {
+        robot.order("scan", json!({ "index": index }));
+        until_answered(robot, index)
+    };
+    // Nobody is there who could be told.
+    assert_eq!(scan(robot, 0).len(), 0);
+    robot.order("filter", json!({}));
+    // It is told by a scan after it came, once.
+    let mut told = Vec::new();
+    let mut index = 0;
+    while told.is_empty() {
+        index += 1;
+        told = scan(robot, index);
+    }
+    assert_eq!(told.len(), 1);
+    assert_eq!(
+        (&told[0]["stamp"], &told[0]["frame"]),
+        (&json!(stamps[index]), &json!("map"))
+    );
+    let of = |value: &Value, i: usize| value[i].as_f64().unwrap();
+    let pose = &told[0]["pose"];
+    let base = Pose::new(of(pose, 0), of(pose, 1), of(pose, 2));
+    let laser = base.then(Pose::new(0.78, 0.0, 0.0));
+    // As near as all answers on this recording are.
+    let truth = truths[&stamps[index]].pose;
+    assert!(laser.is_within(truth, 0.2, 0.05), "{laser:?} {truth:?}");
+    let believe = |robot: &mut Robot, index: usize, x: f64| {
+        let (y, yaw) = (base.y, base.yaw);
+        robot.order(
+            "believe",
+            json!({ "index": index, "x": x, "y": y, "yaw": yaw }),
+        );
+    };
+    // It follows, and is left alone.
+    let before = refused_by_gateway(&joined.graph);
+    for _ in 0..3 {
+        index += 1;
+        believe(robot, index, base.x);
+        assert_eq!(scan(robot, index).len(), 0);
+    }
+    // Somebody asks.
+    robot.order("call", json!({}));
+    let called = robot.wait_for("called");
+    assert_eq!(called["reply"], "0001000000", "{called}");
+    assert_eq!(
+        (&called["sequence"], &called["sender"]),
+        (&json!(7), &json!("0123456789abcdef"))
+    );
+    index += 1;
+    assert_eq!(scan(robot, index).len(), 1);
+    // It is carried away.
+    let mut told = Vec::new();
+    while told.is_empty() {
+        index += 1;
+        believe(robot, index, base.x + 5.0);
+        told = scan(robot, index);
+    }
+    assert_eq!(told.len(), 1);
+    assert_eq!(
+        refused_by_gateway(&joined.graph),
+        before,
+        "something was refused"
+    );
+    nodes.into_iter().for_each(NodeProcess::stop);
+    joined.stop();
+}
+
+/// How much the gateway has refused.
+fn refused_by_gateway(graph: &Graph) -> u64 {
+    let health = graph.subscriber::<topic::Health>().unwrap();
+    let is_gateway = |report: &messages::HealthHeader| report.node.as_str() == "ros2_gateway";
+    wait_for_health(graph, &health, is_gateway).0.refused
+}

@@ -1,0 +1,78 @@
+//! Questions to a page's server, byte for byte as a test wants them.
+
+use std::io::{BufRead, BufReader, Read, Write};
+use std::net::{SocketAddr, TcpListener, TcpStream};
+
+use serde_json::Value;
+
+/// A server on this machine.
+#[derive(Debug, Clone, Copy)]
+pub struct Site(pub SocketAddr);
+
+impl Site {
+    /// A place that was free a moment ago; should somebody take it meanwhile, a node
+    /// takes another one and the test fails to find it there.
+    ///
+    /// # Panics
+    /// If there is none.
+    #[must_use]
+    pub fn free() -> Self {
+        let listener = TcpListener::bind("127.0.0.1:0").unwrap();
+        Site(listener.local_addr().unwrap())
+    }
+
+    /// Sends a request as it stands; returns status, head and body.
+    ///
+    /// # Panics
+    /// If the server does not answer.
+    #[must_use]
+    pub fn raw(&self, request: &[u8]) -> (u16, String, Vec<u8>) {
+        let mut stream = TcpStream::connect(self.0).unwrap();
+        // The server may have answered, and gone, before it has read all.
+        let _ = stream.write_all(request);
+        let mut reader = BufReader::new(stream);
+        let mut head = String::new();
+        while !head.ends_with("\r\n\r\n") {
+            assert!(reader.read_line(&mut head).unwrap() > 0, "{head}");
+        }
+        let status = head.split(' ').nth(1).unwrap().parse().unwrap();
+        let mut body = Vec::new();
+        let _ = reader.read_to_end(&mut body);
+        (status, head, body)
+    }
+
+    /// Asks with these headers; returns status and body.
+    ///
+    /// # Panics
+    /// As [`Site::raw`], or if the body is no text.
+    #[must_use]
+    pub fn ask(&self, method: &str, path: &str, headers: &[&str], body: &str) -> (u16, String) {
+        let host = format!("Host: {}", self.0);
+        let length = format!("Content-Length: {}", body.len());
+        let given = headers.iter().any(|header| header.starts_with("Host:"));
+        let own = [host.as_str()];
+        let lines: Vec<&str> = headers
+            .iter()
+            .chain(if given { &[][..] } else { &own[..] })
+            .chain(&[length.as_str(), "Connection: close"])
+            .copied()
+            .collect();
+        let request = format!(
+            "{method} {path} HTTP/1.1\r\n{}\r\n\r\n{body}",
+            lines.join("\r\n")
+        );
+        let (status, _, body) = self.raw(request.as_bytes());
+        (status, String::from_utf8(body).unwrap())
+    }
+
+    /// What is there, as JSON.
+    ///
+    /// # Panics
+    /// If it is not there.
+    #[must_use]
+    pub fn get(&self, path: &str) -> Value {
+        let (status, body) = self.ask("GET", path, &[], "");
+        assert_eq!(status, 200, "{path}: {body}");
+        serde_json::from_str(&body).unwrap()
+    }
+}
