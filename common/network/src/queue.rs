@@ -9,6 +9,7 @@ use std::sync::atomic::{AtomicU64, AtomicUsize, Ordering};
 
 use crossbeam::queue::ArrayQueue;
 use transport::Waker;
+use zenoh::pubsub::Subscriber;
 use zenoh::sample::{Sample, SampleKind};
 use zenoh::{Session, Wait};
 use zenoh_ext::{AdvancedSubscriber, AdvancedSubscriberBuilderExt, HistoryConfig, RecoveryConfig};
@@ -50,7 +51,17 @@ pub enum Past {
 /// What came and was not looked at yet. Receives as long as it lives.
 pub struct Queue {
     waiting: Arc<Waiting>,
-    _subscriber: AdvancedSubscriber<()>,
+    _subscriber: Ear,
+}
+
+/// Listens until it is dropped.
+enum Ear {
+    /// To what comes. The advanced one would take a message for a repetition that has
+    /// an earlier time than one before it by the same clock, and a router that gives
+    /// the times has one for all who send through it.
+    Live { _subscriber: Subscriber<()> },
+    /// Also to what was. Those who send it number their messages.
+    Kept { _subscriber: AdvancedSubscriber<()> },
 }
 
 struct Waiting {
@@ -96,18 +107,23 @@ impl Queue {
                 waker.wake();
             }
         });
-        let subscriber = match past {
-            Past::Gone => subscriber.advanced(),
+        let _subscriber = match past {
+            Past::Gone => Ear::Live {
+                _subscriber: subscriber.wait()?,
+            },
             Past::Last(messages) => {
                 let history = HistoryConfig::default().max_samples(messages);
-                subscriber
+                let subscriber = subscriber
                     .history(history.detect_late_publishers())
-                    .recovery(RecoveryConfig::default().heartbeat())
+                    .recovery(RecoveryConfig::default().heartbeat());
+                Ear::Kept {
+                    _subscriber: subscriber.wait()?,
+                }
             }
         };
         Ok(Queue {
-            _subscriber: subscriber.wait()?,
             waiting,
+            _subscriber,
         })
     }
 

@@ -49,7 +49,7 @@ struct Config {
 
 fn main() {
     let config = Config::parse();
-    let isolated = Isolated::new("load");
+    let isolated = Isolated::for_long("load");
     let graph = isolated.join("bench");
     let site = Site::free();
     let endpoint = format!("tcp/{}:7447", isolated.name().loopback());

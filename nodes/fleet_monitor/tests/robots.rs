@@ -20,6 +20,7 @@ use transport::{Flow, Graph, TransportError, monotonic_ns};
 use wire::{Preamble, Wire};
 use zenoh::bytes::Encoding;
 use zenoh::qos::CongestionControl;
+use zenoh::time::Timestamp;
 use zenoh::{Session, Wait};
 use zenoh_ext::{AdvancedPublisher, AdvancedPublisherBuilderExt, AdvancedSubscriberBuilderExt};
 use zenoh_ext::{CacheConfig, HistoryConfig, MissDetectionConfig};
@@ -126,7 +127,11 @@ impl FarRobot {
     }
 
     fn put(&self, key: &str, encoding: &str, payload: Vec<u8>) {
-        let put = self.session.put(key, payload);
+        self.put_at(None, key, encoding, payload);
+    }
+
+    fn put_at(&self, time: Option<Timestamp>, key: &str, encoding: &str, payload: Vec<u8>) {
+        let put = self.session.put(key, payload).timestamp(time);
         let put = put.encoding(Encoding::from(encoding));
         put.congestion_control(CongestionControl::Block)
             .wait()
@@ -134,6 +139,11 @@ impl FarRobot {
     }
 
     fn answer(&self, sequence: u64, x: f64) {
+        self.answer_at(None, sequence, x);
+    }
+
+    /// A place, in a message that has got this time on its way.
+    fn answer_at(&self, time: Option<Timestamp>, sequence: u64, x: f64) {
         let mut header = HypothesesHeader {
             verdict: Verdict::Unique as u32,
             ..HypothesesHeader::zeroed()
@@ -151,7 +161,7 @@ impl FarRobot {
         };
         let payload = Self::payload::<topic::Hypotheses>(sequence, &header, &[place]);
         let key = wire::key::<topic::Hypotheses>(&self.name);
-        self.put(&key, &wire::encoding::<topic::Hypotheses>(), payload);
+        self.put_at(time, &key, &wire::encoding::<topic::Hypotheses>(), payload);
     }
 
     /// A map that stays for those who come later.
@@ -203,6 +213,22 @@ fn robots_come_with_what_they_say_and_stay_apart() {
     let known = world.wait_for("/api/v1/robots/a", |known| known["map"]["width"] == 3);
     assert_eq!(known["answer"]["hypotheses"][0]["laser"]["x"], 1.5);
     assert_eq!(world.site.get("/api/v1/robots/b")["map"], Value::Null);
+}
+
+/// Times are given by the router through which robots send, one after the other, but
+/// their messages may overtake each other there.
+#[test]
+fn a_robot_is_heard_whose_message_was_overtaken_by_anothers() {
+    let world = World::new("fleet-times");
+    let (a, b) = (world.robot("a"), world.robot("b"));
+    let (earlier, later) = (a.session.new_timestamp(), a.session.new_timestamp());
+    assert!(earlier < later);
+    b.answer_at(Some(later), 0, 9.0);
+    world.wait_for("/api/v1/robots", |known| known["robots"] == json!(["b"]));
+    a.answer_at(Some(earlier), 0, 1.5);
+    world.wait_for("/api/v1/robots", |known| {
+        known["robots"] == json!(["a", "b"])
+    });
 }
 
 #[test]
