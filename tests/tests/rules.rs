@@ -58,6 +58,11 @@ fn links_zenoh(dependencies: &BTreeSet<String>) -> bool {
     dependencies.iter().any(is_zenoh)
 }
 
+/// Whether it builds longer than the nodes of a graph on one machine.
+fn takes_long(dependencies: &BTreeSet<String>) -> bool {
+    links_zenoh(dependencies) || dependencies.contains("foxglove")
+}
+
 /// All files below a folder.
 fn files(folder: &Path) -> Vec<PathBuf> {
     let entries = std::fs::read_dir(folder).unwrap();
@@ -107,6 +112,14 @@ fn conversions_know_no_process_socket_clock_or_file() {
     let allowed = BTreeSet::from(["geometry", "messages", "recording"].map(str::to_owned));
     assert_eq!(known("conversion"), allowed);
     is_pure("common/conversion/src");
+}
+
+#[test]
+fn foxglove_is_linked_by_its_server_alone() {
+    for (name, dependencies) in dependencies() {
+        let may = name == "foxglove_server";
+        assert!(may || !dependencies.contains("foxglove"), "{name}");
+    }
 }
 
 #[test]
@@ -174,7 +187,7 @@ fn zenoh_is_linked_only_where_machines_are_joined() {
 }
 
 #[test]
-fn the_first_command_builds_every_node_but_those_that_link_zenoh() {
+fn the_first_command_builds_every_node_but_those_that_take_long() {
     let metadata = metadata();
     let members = metadata["workspace_default_members"].as_array().unwrap();
     let built: BTreeSet<_> = members
@@ -187,7 +200,7 @@ fn the_first_command_builds_every_node_but_those_that_link_zenoh() {
     let dependencies = dependencies();
     let expected: BTreeSet<_> = folders("nodes")
         .into_iter()
-        .filter(|node| !links_zenoh(&dependencies[node]))
+        .filter(|node| !takes_long(&dependencies[node]))
         .collect();
     assert_eq!(built, expected);
 }

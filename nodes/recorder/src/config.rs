@@ -4,7 +4,6 @@ use std::path::PathBuf;
 use std::time::Duration;
 
 use clap::Parser;
-use messages::Name;
 
 use crate::{Event, duration};
 
@@ -57,29 +56,15 @@ pub struct Config {
     #[arg(long)]
     pub field: bool,
 
-    /// The frame of the map in the recording
-    #[arg(long, value_name = "FRAME", default_value = "map", value_parser = frame)]
-    pub map_frame: String,
-
-    /// The robot's frame in the recording, where the laser's mount is known
-    #[arg(long, value_name = "FRAME", default_value = "base_link", value_parser = frame)]
-    pub base_frame: String,
+    /// How frames are called.
+    #[command(flatten)]
+    pub transcript: transcript::Options,
 
     /// Most megabytes (10^6 bytes) that may wait for a slow or full disk; what
     /// comes then is dropped and counted
     #[arg(long, value_name = "MB", default_value_t = 128,
           value_parser = clap::value_parser!(u64).range(1..))]
     pub queue_size: u64,
-}
-
-fn frame(text: &str) -> Result<String, String> {
-    match text.len() {
-        1..=Name::CAPACITY => Ok(text.into()),
-        bytes => Err(format!(
-            "it has {bytes} bytes, allowed are 1 to {}",
-            Name::CAPACITY
-        )),
-    }
 }
 
 #[cfg(test)]
@@ -98,7 +83,7 @@ mod tests {
         Config::command().debug_assert();
         let config = parse("--output r.mcap").unwrap();
         assert_eq!((config.keep, config.split_size), (None, None));
-        assert_eq!(config.base_frame, "base_link");
+        assert_eq!(config.transcript.base_frame, "base_link");
         let config = parse("--output r --keep 10m --save-on lost-pose,degraded").unwrap();
         assert_eq!(config.keep, Some(Duration::from_secs(600)));
         assert_eq!(config.save_on, [Event::LostPose, Event::Degraded]);

@@ -48,29 +48,9 @@ pub enum RecorderError {
         /// What the system says.
         source: io::Error,
     },
-    /// A time that no message of ROS can say.
-    #[error(
-        "topic {topic}: a stamp of {stamp_ns} ns; allowed are 0 to 2147483647999999999, the times \
-         of ROS from 1970 on"
-    )]
-    Stamp {
-        /// The topic in the graph.
-        topic: &'static str,
-        /// Nanoseconds since 1970.
-        stamp_ns: i64,
-    },
-    /// A sample whose header and items contradict each other.
-    #[error("topic {topic}: {width} x {height} cells are claimed, {found} are there")]
-    Size {
-        /// The topic in the graph.
-        topic: &'static str,
-        /// Cells along x.
-        width: u32,
-        /// Cells along y.
-        height: u32,
-        /// Items of the sample.
-        found: usize,
-    },
+    /// A sample that has no place in a recording.
+    #[error(transparent)]
+    Sample(#[from] transcript::TranscriptError),
     /// The recording cannot be written.
     #[error(transparent)]
     Recording(#[from] Box<RecordingError>),

@@ -1,9 +1,10 @@
 //! Node `recorder`: writes what flows in the graph to an MCAP recording that the
 //! tools of ROS 2 open.
 //!
+//! What it writes is a `transcript`.
+//!
 //! | file | what it is about |
 //! |---|---|
-//! | `entries` | from samples of the graph to messages of ROS, each with its time; pure |
 //! | `events` | when a black box is to be saved; pure |
 //! | `writing` | files: flushed, split, resumed when the disk was full; the black box |
 //! | `run` | the graph, the signals, the thread that writes |
@@ -13,11 +14,9 @@
 
 mod config;
 mod duration;
-mod entries;
 mod error;
 mod events;
 mod run;
-mod topics;
 mod writing;
 
 pub use config::Config;

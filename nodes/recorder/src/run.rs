@@ -1,21 +1,20 @@
 //! Receives what flows in the graph and hands it to the thread that writes.
 
-mod inputs;
 mod writer;
 
+use std::rc::Rc;
 use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, Ordering};
 use std::time::Duration;
 
-use messages::NodeState;
+use messages::{HealthHeader, NodeState, topic};
 use nix::time::{ClockId, clock_gettime};
 use signal_hook::consts::SIGUSR1;
-use transport::{Flow, Graph, Health, monotonic_ns, wall_ns, with_causes};
+use transcript::{Inputs, Listener, Transcript};
+use transport::{Flow, Graph, Input, Subscriber, wall_ns};
 
-use crate::entries::Entries;
 use crate::events::Lookout;
 use crate::{Config, Event, RecorderError};
-use inputs::Inputs;
 use writer::{Status, Writer};
 
 /// How long a signal to save and a report of health may be overdue.
@@ -50,10 +49,13 @@ impl Summary {
 /// If the file cannot be created, or the graph fails. A disk that is full later
 /// is reported in `health`.
 pub fn run(graph: &Graph, config: &Config) -> Result<Summary, RecorderError> {
-    let inputs = Inputs::open(graph, config.field, config.keep.is_some())?;
+    let inputs = Inputs::open(graph, config.field)?;
     let mut recorder = Recorder::new(graph, config)?;
-    recorder.health.state(NodeState::Ready)?;
-    graph.run(&inputs.all(), TICK, |_| {
+    recorder.transcript.health.state(NodeState::Ready)?;
+    let saves = recorder.saves.clone();
+    let saves = saves.as_deref().map(|saves| -> &dyn Input { saves });
+    let awaited: Vec<_> = inputs.all().into_iter().chain(saves).collect();
+    graph.run(&awaited, TICK, |_| {
         recorder.step(&inputs)?;
         Ok::<_, RecorderError>(Flow::Continue)
     })?;
@@ -63,16 +65,16 @@ pub fn run(graph: &Graph, config: &Config) -> Result<Summary, RecorderError> {
 }
 
 struct Recorder {
-    entries: Entries,
+    transcript: Transcript,
     lookout: Lookout,
     save_on: Vec<Event>,
+    /// Asked by a signal.
     save: Arc<AtomicBool>,
+    /// Asked by the graph, where the last minutes are kept.
+    saves: Option<Rc<Subscriber<topic::Save>>>,
     writer: Writer,
-    health: Health,
-    summary: Summary,
     /// What the writer said last.
     status: Status,
-    last_refusal: String,
 }
 
 impl Recorder {
@@ -80,24 +82,31 @@ impl Recorder {
         let save = Arc::new(AtomicBool::new(false));
         signal_hook::flag::register(SIGUSR1, Arc::clone(&save)).map_err(RecorderError::Signal)?;
         Ok(Recorder {
-            entries: Entries::new(&config.map_frame, &config.base_frame),
+            transcript: Transcript::new(graph, &config.transcript)?,
             lookout: Lookout::default(),
             save_on: match config.keep {
                 Some(_) => config.save_on.clone(),
                 None => Vec::new(),
             },
             save,
+            saves: match config.keep {
+                Some(_) => Some(Rc::new(graph.subscriber()?)),
+                None => None,
+            },
             writer: Writer::start(graph.name().as_str(), config)?,
-            health: graph.health()?,
-            summary: Summary::default(),
             status: Status::default(),
-            last_refusal: String::new(),
         })
     }
 
     fn step(&mut self, inputs: &Inputs) -> Result<(), RecorderError> {
         inputs.take(self)?;
-        for entry in self.entries.take() {
+        // What it is about has come before.
+        if let Some(saves) = &self.saves
+            && saves.newest()?.is_some()
+        {
+            self.save("asked by the graph")?;
+        }
+        for entry in self.transcript.entries.take() {
             self.writer.put(entry)?;
         }
         if self.save.swap(false, Ordering::Relaxed) {
@@ -111,57 +120,27 @@ impl Recorder {
         let status = self.writer.status();
         let written = status.tally.recorded - self.status.tally.recorded;
         let dropped = status.tally.dropped - self.status.tally.dropped;
-        self.health.count_sent(written);
-        self.count_dropped(dropped);
+        let Transcript { health, .. } = &mut self.transcript;
+        health.count_sent(written);
         if status.problem != self.status.problem {
             match &status.problem {
                 Some(problem) => {
                     tracing::error!("{problem}");
-                    self.health.error(problem)?;
-                    self.health.state(NodeState::Degraded)?;
+                    health.error(problem)?;
+                    health.state(NodeState::Degraded)?;
                 }
                 None => {
                     tracing::info!(
                         "recording goes on; {} messages were lost",
                         status.tally.dropped
                     );
-                    self.health.state(NodeState::Ready)?;
+                    health.state(NodeState::Ready)?;
                 }
             }
         }
         self.status = status;
-        self.health.tick()?;
-        Ok(())
-    }
-
-    fn count_dropped(&mut self, samples: u64) {
-        self.summary.dropped += samples;
-        self.health.count_dropped(samples);
-    }
-
-    /// A sample came, after others that were lost; it could be used, or not.
-    fn taken(
-        &mut self,
-        lost: u64,
-        outcome: Result<(), RecorderError>,
-    ) -> Result<(), RecorderError> {
-        self.health.count_received(1);
-        if lost > 0 {
-            tracing::warn!("{lost} samples were lost: the recorder was too slow");
-            self.count_dropped(lost);
-        }
-        let Err(error) = outcome else {
-            return Ok(());
-        };
-        self.summary.refused += 1;
-        self.health.count_refused(1);
-        let problem = with_causes(&error);
-        if problem != self.last_refusal {
-            tracing::warn!("{problem}");
-            self.health.error(&problem)?;
-            self.last_refusal = problem;
-        }
-        Ok(())
+        self.transcript.count_dropped(dropped);
+        Ok(self.transcript.health.tick()?)
     }
 
     fn happened(&mut self, event: Option<Event>) -> Result<(), RecorderError> {
@@ -173,31 +152,32 @@ impl Recorder {
 
     /// Saves what is kept, and all that came before.
     fn save(&mut self, why: &str) -> Result<(), RecorderError> {
-        for entry in self.entries.take() {
+        for entry in self.transcript.entries.take() {
             self.writer.put(entry)?;
         }
         self.writer.save(why)
     }
 
     fn conclude(mut self) -> Result<Summary, RecorderError> {
-        self.entries.finish(wall_ns())?;
-        for entry in self.entries.take() {
+        self.transcript.entries.finish(wall_ns())?;
+        for entry in self.transcript.entries.take() {
             self.writer.put(entry)?;
         }
         let status = self.writer.finish()?;
-        let dropped = status.tally.dropped - self.status.tally.dropped;
-        self.health.count_dropped(dropped);
-        let summary = Summary {
-            recorded: status.tally.recorded,
-            files: status.tally.files,
-            dropped: self.summary.dropped + dropped,
-            failed: status.problem.is_some(),
-            ..self.summary
-        };
+        let Transcript { health, .. } = &mut self.transcript;
         if let Some(problem) = &status.problem {
             tracing::error!("{problem}");
-            self.health.error(problem)?;
+            health.error(problem)?;
         }
+        self.transcript
+            .count_dropped(status.tally.dropped - self.status.tally.dropped);
+        let summary = Summary {
+            recorded: status.tally.recorded,
+            dropped: self.transcript.dropped(),
+            refused: self.transcript.refused(),
+            files: status.tally.files,
+            failed: status.problem.is_some(),
+        };
         let Summary {
             recorded,
             dropped,
@@ -209,9 +189,23 @@ impl Recorder {
         tracing::info!(recorded, dropped, refused, files, cpu, "recorded");
         Ok(summary)
     }
+}
 
-    fn now_ns() -> i64 {
-        monotonic_ns()
+impl Listener for Recorder {
+    type Error = RecorderError;
+
+    fn transcript(&mut self) -> &mut Transcript {
+        &mut self.transcript
+    }
+
+    fn reported(&mut self, report: &HealthHeader) -> Result<(), RecorderError> {
+        let event = self.lookout.health(report);
+        self.happened(event)
+    }
+
+    fn judged(&mut self, verdict: u32) -> Result<(), RecorderError> {
+        let event = self.lookout.verdict(verdict);
+        self.happened(event)
     }
 }
 

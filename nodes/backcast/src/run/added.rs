@@ -37,6 +37,27 @@ pub(crate) fn build(dataflow: &mut Dataflow, executable: &str) -> Vec<Command> {
     build
 }
 
+/// As the first node that cargo builds, but alone: for what takes long to build and is
+/// not among the packages that are built together.
+pub(crate) fn build_alone(dataflow: &Dataflow, executable: &str) -> Vec<Command> {
+    let is_build = |command: &&Command| {
+        command.program == "cargo" && command.args.first().is_some_and(|first| first == "build")
+    };
+    let like = dataflow.nodes.iter().flat_map(|node| &node.build);
+    let Some(mut build) = like.clone().find(is_build).cloned() else {
+        return Vec::new();
+    };
+    let mut names_package = false;
+    build.args.retain(|arg| {
+        let is_name = std::mem::take(&mut names_package);
+        names_package = arg == "--package" || arg == "-p";
+        !is_name && !names_package
+    });
+    let package = ["--package", executable].map(str::to_owned);
+    build.args.extend(package);
+    vec![build]
+}
+
 fn is_cargo(command: &Command) -> bool {
     let names_packages = |arg: &String| arg == "--package" || arg == "-p";
     command.program == "cargo"

@@ -21,7 +21,7 @@ use super::{
     build,
     console::{LAUNCHER, note, say, warn},
     crew::Crew,
-    forward,
+    forward, foxglove,
     journal::Journal,
     options::Config,
     output::{Output, Reader},
@@ -81,6 +81,9 @@ pub(crate) fn run(config: &Config) -> Result<ExitCode, BackcastError> {
         &descriptor.file,
         &descriptor.folder,
     )?;
+    if config.options.foxglove {
+        foxglove::add(&mut descriptor.dataflow)?;
+    }
     build::build_all(&descriptor.dataflow, &descriptor.folder)?;
     remove_leftovers(&graph)?;
 

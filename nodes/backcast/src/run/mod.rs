@@ -11,6 +11,7 @@ pub(crate) mod build;
 pub(crate) mod console;
 pub(crate) mod crew;
 mod forward;
+mod foxglove;
 mod journal;
 mod launch;
 mod line;

@@ -52,6 +52,10 @@ pub(crate) struct Options {
     #[arg(long)]
     pub(crate) no_monitor: bool,
 
+    /// Also show the graph live to Foxglove and Lichtblick, on ws://127.0.0.1:8765
+    #[arg(long)]
+    pub(crate) foxglove: bool,
+
     /// The graph's name, by which other tools join it: 1 to 20 of a-z 0-9 - _
     /// [default: $BACKCAST_GRAPH, or a name of its own]
     #[arg(long, value_name = "NAME", value_parser = GraphName::new)]

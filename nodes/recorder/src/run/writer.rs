@@ -6,9 +6,9 @@ use std::sync::{Arc, Mutex, PoisonError};
 use std::thread::JoinHandle;
 use std::time::{Duration, Instant};
 
+use transcript::Entry;
 use transport::with_causes;
 
-use crate::entries::Entry;
 use crate::writing::{BlackBox, Limits, Parts, Preamble, Store, Tally};
 use crate::{Config, RecorderError};
 

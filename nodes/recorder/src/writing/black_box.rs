@@ -10,10 +10,10 @@ use std::path::PathBuf;
 use std::time::Duration;
 
 use recording::write::{Packing, RecordingWriter};
+use transcript::Entry;
 
 use super::{Preamble, Tally, name};
 use crate::RecorderError;
-use crate::entries::Entry;
 
 /// What a message takes beside its bytes.
 const OVERHEAD_BYTES: usize = 128;

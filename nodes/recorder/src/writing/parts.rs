@@ -5,11 +5,11 @@ use std::path::PathBuf;
 use std::time::Duration;
 
 use recording::write::{Encoded, Packing, RecordingWriter};
+use transcript::Entry;
 
 use super::staged::{Progress, Staged};
 use super::{Preamble, Tally, name};
 use crate::RecorderError;
-use crate::entries::Entry;
 
 /// When a part ends, and how much may wait for the disk.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]

@@ -7,9 +7,9 @@ use std::path::Path;
 
 use recording::RecordingError;
 use recording::write::{Encoded, RecordingWriter};
+use transcript::Entry;
 use transport::wall_ns;
 
-use crate::entries::Entry;
 use crate::{Config, RecorderError};
 
 /// The head of a file, and what of its content must be known from its head on.

@@ -1,8 +1,9 @@
 //! Where entries go: to files at once, or to a black box.
 
+use transcript::Entry;
+
 use super::{BlackBox, Parts};
 use crate::RecorderError;
-use crate::entries::Entry;
 
 /// What was done so far.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]

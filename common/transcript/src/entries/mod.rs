@@ -1,4 +1,4 @@
-//! From samples of the graph to what a recording holds, each with its time.
+//! From samples of the graph to messages of ROS, each with its time.
 //!
 //! Pure. Times are those of the measurements, not of their arrival: of a scan,
 //! its votes and its hypotheses alike, so that a recording that is played and
@@ -21,16 +21,16 @@ use messages::{
 use recording::ros::{Header, OccupancyGridMsg, RosMessage, TfMessage, Time};
 use recording::write::Encoded;
 
-use crate::{RecorderError, topics};
+use crate::{Options, TranscriptError, topics};
 use frames::Frames;
 
 /// Reports, and lines, that wait for the first measurement at most; the newest are
 /// kept.
 const MAX_WAITING: usize = 256;
 
-/// What goes into a recording.
+/// What goes into a transcript.
 #[derive(Debug, Clone, PartialEq, Eq)]
-pub(crate) enum Entry {
+pub enum Entry {
     /// A message.
     Message(Encoded),
     /// What holds from now on, under a name.
@@ -39,7 +39,7 @@ pub(crate) enum Entry {
 
 /// Makes entries of samples.
 #[derive(Debug)]
-pub(crate) struct Entries {
+pub struct Entries {
     frames: Frames,
     map_frame: String,
     /// The newest measurement: where the clock of measurements meets the host's.
@@ -53,10 +53,12 @@ pub(crate) struct Entries {
 }
 
 impl Entries {
-    pub(crate) fn new(map_frame: &str, base_frame: &str) -> Self {
+    /// Nothing yet.
+    #[must_use]
+    pub fn new(options: &Options) -> Self {
         Entries {
-            frames: Frames::new(map_frame, base_frame),
-            map_frame: map_frame.to_owned(),
+            frames: Frames::new(&options.map_frame, &options.base_frame),
+            map_frame: options.map_frame.clone(),
             newest: None,
             map: None,
             waiting_map: None,
@@ -67,11 +69,15 @@ impl Entries {
     }
 
     /// What was made since the last call.
-    pub(crate) fn take(&mut self) -> Vec<Entry> {
+    pub fn take(&mut self) -> Vec<Entry> {
         std::mem::take(&mut self.made)
     }
 
-    pub(crate) fn scan(&mut self, scan: &ScanHeader, ranges: &[f32]) -> Result<(), RecorderError> {
+    /// Takes a scan.
+    ///
+    /// # Errors
+    /// If its stamp is no time of ROS, or CDR cannot say it.
+    pub fn scan(&mut self, scan: &ScanHeader, ranges: &[f32]) -> Result<(), TranscriptError> {
         let at = self.measured(scan.stamp, topic::Scan::NAME)?;
         if let Some(mounts) = self.frames.hear_scan(scan, at.stamp) {
             self.latched(topics::TF_STATIC, at.ns, &mounts)?;
@@ -83,7 +89,11 @@ impl Entries {
         )
     }
 
-    pub(crate) fn odometry(&mut self, odometry: &Odometry) -> Result<(), RecorderError> {
+    /// Takes odometry.
+    ///
+    /// # Errors
+    /// If its stamp is no time of ROS, or CDR cannot say it.
+    pub fn odometry(&mut self, odometry: &Odometry) -> Result<(), TranscriptError> {
         let at = self.measured(odometry.stamp, topic::OdometryTopic::NAME)?;
         let transform = self.frames.hear_odometry(odometry, at.stamp);
         self.message(topics::TF, at.ns, &transform)?;
@@ -91,27 +101,35 @@ impl Entries {
         self.message(topics::ODOM, at.ns, &message)
     }
 
-    pub(crate) fn ground_truth(&mut self, truth: &GroundTruth) -> Result<(), RecorderError> {
+    /// Takes where the robot truly was.
+    ///
+    /// # Errors
+    /// If its stamp is no time of ROS, or CDR cannot say it.
+    pub fn ground_truth(&mut self, truth: &GroundTruth) -> Result<(), TranscriptError> {
         let at = self.measured(truth.stamp, topic::GroundTruthTopic::NAME)?;
         let message = measurements::ground_truth(at.stamp, truth);
         self.message(topics::GROUND_TRUTH, at.ns, &message)
     }
 
-    pub(crate) fn votes(
-        &mut self,
-        votes: &VotesHeader,
-        items: &[Vote],
-    ) -> Result<(), RecorderError> {
+    /// Takes the votes of a scan.
+    ///
+    /// # Errors
+    /// If its stamp is no time of ROS, or CDR cannot say it.
+    pub fn votes(&mut self, votes: &VotesHeader, items: &[Vote]) -> Result<(), TranscriptError> {
         let at = self.measured(votes.stamp, topic::Votes::NAME)?;
         let message = answers::votes(self.in_map(at.stamp), votes, items);
         self.message(topics::OWN_VOTES, at.ns, &message)
     }
 
-    pub(crate) fn hypotheses(
+    /// Takes the places of a scan.
+    ///
+    /// # Errors
+    /// If its stamp is no time of ROS, or CDR cannot say it.
+    pub fn hypotheses(
         &mut self,
         header: &HypothesesHeader,
         items: &[Hypothesis],
-    ) -> Result<(), RecorderError> {
+    ) -> Result<(), TranscriptError> {
         let at = self.measured(header.stamp, topic::Hypotheses::NAME)?;
         let in_map = self.in_map(at.stamp);
         let own = answers::hypotheses(in_map.clone(), header, items);
@@ -129,11 +147,11 @@ impl Entries {
         Ok(())
     }
 
-    pub(crate) fn beams(
-        &mut self,
-        beams: &BeamsHeader,
-        items: &[Beam],
-    ) -> Result<(), RecorderError> {
+    /// Takes how the beams of a scan fare at its best place.
+    ///
+    /// # Errors
+    /// If its stamp is no time of ROS, or CDR cannot say it.
+    pub fn beams(&mut self, beams: &BeamsHeader, items: &[Beam]) -> Result<(), TranscriptError> {
         let at = self.measured(beams.stamp, topic::Beams::NAME)?;
         let message = answers::beams(self.in_map(at.stamp), beams, items);
         self.message(topics::OWN_BEAMS, at.ns, &message)
@@ -141,12 +159,16 @@ impl Entries {
 
     /// Takes a map, unless it is the one that was taken last: a server that was
     /// started again sends it again.
-    pub(crate) fn map(
+    ///
+    /// # Errors
+    /// If its header and items contradict each other, its stamp is no time of ROS, or
+    /// CDR cannot say it.
+    pub fn map(
         &mut self,
         map: &MapHeader,
         cells: &[u8],
         now_ns: i64,
-    ) -> Result<(), RecorderError> {
+    ) -> Result<(), TranscriptError> {
         let message = maps::occupancy_grid(map, cells)?;
         let known = self.map.replace(*map);
         if known.is_some_and(|known| known.map_id == map.map_id) {
@@ -160,11 +182,11 @@ impl Entries {
     }
 
     /// Takes an intensity image; one of a map that is not known is left out.
-    pub(crate) fn field(
-        &mut self,
-        field: &FieldHeader,
-        items: &[u16],
-    ) -> Result<(), RecorderError> {
+    ///
+    /// # Errors
+    /// If its header and items contradict each other, its stamp is no time of ROS, or
+    /// CDR cannot say it.
+    pub fn field(&mut self, field: &FieldHeader, items: &[u16]) -> Result<(), TranscriptError> {
         let at = self.measured(field.stamp, topic::Field::NAME)?;
         let Some(map) = self.map.filter(|map| map.map_id == field.map_id) else {
             return Ok(());
@@ -174,12 +196,15 @@ impl Entries {
     }
 
     /// Takes a node's report, at the host's time `now_ns`.
-    pub(crate) fn health(
+    ///
+    /// # Errors
+    /// If the time of the measurements is none of ROS, or CDR cannot say it.
+    pub fn health(
         &mut self,
         report: &HealthHeader,
         error: &[u8],
         now_ns: i64,
-    ) -> Result<(), RecorderError> {
+    ) -> Result<(), TranscriptError> {
         wait(&mut self.waiting_health, *report, error);
         match self.clock_ns(now_ns) {
             Some(ns) => self.release(ns),
@@ -188,7 +213,10 @@ impl Entries {
     }
 
     /// Takes a line of a node's log, which stands at the time when it was written.
-    pub(crate) fn log(&mut self, line: &LogHeader, text: &[u8]) -> Result<(), RecorderError> {
+    ///
+    /// # Errors
+    /// If the time of the measurements is none of ROS, or CDR cannot say it.
+    pub fn log(&mut self, line: &LogHeader, text: &[u8]) -> Result<(), TranscriptError> {
         wait(&mut self.waiting_log, *line, text);
         match self.clock_ns(line.written_ns) {
             Some(ns) => self.release(ns),
@@ -198,7 +226,10 @@ impl Entries {
 
     /// Makes entries of what still waits, where nothing was ever measured: at
     /// `wall_ns`, nanoseconds since 1970.
-    pub(crate) fn finish(&mut self, wall_ns: i64) -> Result<(), RecorderError> {
+    ///
+    /// # Errors
+    /// If the time of the measurements is none of ROS, or CDR cannot say it.
+    pub fn finish(&mut self, wall_ns: i64) -> Result<(), TranscriptError> {
         self.release(wall_ns)
     }
 
@@ -210,7 +241,7 @@ impl Entries {
     }
 
     /// Checks a measurement's stamp, and lets go of what waited for it.
-    fn measured(&mut self, stamp: Stamp, topic: &'static str) -> Result<Moment, RecorderError> {
+    fn measured(&mut self, stamp: Stamp, topic: &'static str) -> Result<Moment, TranscriptError> {
         let at = Moment::of(stamp.measured_ns, topic)?;
         let first = self.newest.is_none();
         if self
@@ -225,7 +256,7 @@ impl Entries {
         Ok(at)
     }
 
-    fn release(&mut self, ns: i64) -> Result<(), RecorderError> {
+    fn release(&mut self, ns: i64) -> Result<(), TranscriptError> {
         let at = Moment::of(ns, topic::Map::NAME)?;
         if let (Some(mut map), Some(header)) = (self.waiting_map.take(), self.map) {
             map.header = self.in_map(at.stamp);
@@ -257,7 +288,7 @@ impl Entries {
         topic: &'static str,
         ns: i64,
         message: &M,
-    ) -> Result<(), RecorderError> {
+    ) -> Result<(), TranscriptError> {
         let encoded = Encoded::new(topic, ns, message)?;
         self.made.push(Entry::Message(encoded));
         Ok(())
@@ -268,7 +299,7 @@ impl Entries {
         topic: &'static str,
         ns: i64,
         message: &M,
-    ) -> Result<(), RecorderError> {
+    ) -> Result<(), TranscriptError> {
         let encoded = Encoded::latched(topic, ns, message)?;
         self.made.push(Entry::Message(encoded));
         Ok(())
@@ -291,10 +322,10 @@ struct Moment {
 }
 
 impl Moment {
-    fn of(ns: i64, topic: &'static str) -> Result<Self, RecorderError> {
+    fn of(ns: i64, topic: &'static str) -> Result<Self, TranscriptError> {
         match Time::from_ns(ns) {
             Some(stamp) if ns >= 0 => Ok(Moment { ns, stamp }),
-            _ => Err(RecorderError::Stamp {
+            _ => Err(TranscriptError::Stamp {
                 topic,
                 stamp_ns: ns,
             }),
@@ -312,6 +343,13 @@ mod tests {
     use messages::{Name, Verdict};
 
     use super::*;
+
+    fn entries() -> Entries {
+        Entries::new(&Options {
+            map_frame: "map".into(),
+            base_frame: "base_link".into(),
+        })
+    }
 
     fn stamp(measured_ns: i64, entered_ns: i64) -> Stamp {
         Stamp {
@@ -350,7 +388,7 @@ mod tests {
 
     #[test]
     fn what_has_no_measurement_waits_for_the_first_one() {
-        let mut entries = Entries::new("map", "base_link");
+        let mut entries = entries();
         entries.map(&map(1), &[0, 100], 5).unwrap();
         entries.health(&HealthHeader::zeroed(), b"", 6).unwrap();
         entries.log(&LogHeader::zeroed(), b"hello").unwrap();
@@ -380,7 +418,7 @@ mod tests {
 
     #[test]
     fn without_any_measurement_the_wall_clock_counts() {
-        let mut entries = Entries::new("map", "base_link");
+        let mut entries = entries();
         entries.map(&map(1), &[0, 100], 5).unwrap();
         entries.finish(77).unwrap();
         assert_eq!(made(&mut entries), [("backcast/map", 0), ("/map", 77)]);
@@ -388,7 +426,7 @@ mod tests {
 
     #[test]
     fn times_that_ros_cannot_say_are_refused() {
-        let mut entries = Entries::new("map", "base_link");
+        let mut entries = entries();
         for ns in [-1, i64::MAX] {
             let error = entries.scan(&scan(stamp(ns, 0)), &[]).unwrap_err();
             assert!(
@@ -403,7 +441,7 @@ mod tests {
 
     #[test]
     fn hypotheses_stand_in_several_forms_and_no_hypothesis_has_no_pose() {
-        let mut entries = Entries::new("map", "base_link");
+        let mut entries = entries();
         let header = HypothesesHeader {
             stamp: stamp(1000, 10),
             verdict: Verdict::Unique as u32,

@@ -6,13 +6,13 @@ use conversion::planar;
 use messages::{FieldHeader, MapHeader, Topic, topic};
 use recording::ros::{Header, MapMetaData, OccupancyGridMsg};
 
-use crate::RecorderError;
+use crate::TranscriptError;
 
 /// The map; its header and load time are filled in by the caller.
 pub(super) fn occupancy_grid(
     map: &MapHeader,
     cells: &[u8],
-) -> Result<OccupancyGridMsg, RecorderError> {
+) -> Result<OccupancyGridMsg, TranscriptError> {
     check_size(topic::Map::NAME, map.width, map.height, cells.len())?;
     Ok(OccupancyGridMsg {
         header: Header::default(),
@@ -34,7 +34,7 @@ pub(super) fn field(
     field: &FieldHeader,
     items: &[u16],
     map: &MapHeader,
-) -> Result<OccupancyGridMsg, RecorderError> {
+) -> Result<OccupancyGridMsg, TranscriptError> {
     check_size(topic::Field::NAME, field.width, field.height, items.len())?;
     let full = field.highest_possible.max(1);
     let percent = |&item: &u16| (u32::from(item) * 100 / full).min(100) as i8;
@@ -67,11 +67,11 @@ fn check_size(
     width: u32,
     height: u32,
     found: usize,
-) -> Result<(), RecorderError> {
+) -> Result<(), TranscriptError> {
     if u64::from(width) * u64::from(height) == found as u64 {
         return Ok(());
     }
-    Err(RecorderError::Size {
+    Err(TranscriptError::Size {
         topic,
         width,
         height,
@@ -119,6 +119,6 @@ mod tests {
         assert_eq!(message.data, [0, 50, 100]);
         assert_eq!(message.info.resolution, 0.8);
         let error = field(Header::default(), &header, &[0], &map()).unwrap_err();
-        assert!(matches!(error, RecorderError::Size { found: 1, .. }));
+        assert!(matches!(error, TranscriptError::Size { found: 1, .. }));
     }
 }

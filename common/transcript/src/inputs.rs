@@ -1,15 +1,40 @@
-//! The topics that are recorded.
+//! The topics of a transcript.
 
 use std::cell::RefCell;
 use std::collections::BTreeMap;
 
-use messages::{LogHeader, Topic, topic};
-use transport::{GapCounter, Graph, Input, Subscriber, TransportError};
+use messages::{HealthHeader, LogHeader, Topic, topic};
+use transport::{GapCounter, Graph, Input, Subscriber, TransportError, monotonic_ns};
 
-use super::Recorder;
-use crate::RecorderError;
+use crate::Transcript;
 
-pub(super) struct Inputs {
+/// Who makes a transcript.
+pub trait Listener {
+    /// What keeps it from going on.
+    type Error: From<TransportError>;
+
+    /// Where it is made.
+    fn transcript(&mut self) -> &mut Transcript;
+
+    /// A node's report came.
+    ///
+    /// # Errors
+    /// What keeps it from going on.
+    fn reported(&mut self, _report: &HealthHeader) -> Result<(), Self::Error> {
+        Ok(())
+    }
+
+    /// The verdict on a scan came, by its number.
+    ///
+    /// # Errors
+    /// What keeps it from going on.
+    fn judged(&mut self, _verdict: u32) -> Result<(), Self::Error> {
+        Ok(())
+    }
+}
+
+/// The ends of all topics that have a place in it.
+pub struct Inputs {
     map: Counted<topic::Map>,
     odometry: Counted<topic::OdometryTopic>,
     truths: Counted<topic::GroundTruthTopic>,
@@ -22,8 +47,6 @@ pub(super) struct Inputs {
     log: Subscriber<topic::Log>,
     /// By process, for each counts its own lines.
     log_gaps: RefCell<BTreeMap<u32, GapCounter>>,
-    /// Only where there is something to save.
-    saves: Option<Subscriber<topic::Save>>,
 }
 
 /// A subscriber that knows what it has missed.
@@ -46,11 +69,12 @@ impl<T: Topic> Counted<T> {
 }
 
 impl Inputs {
-    /// The field is subscribed to only where it is wanted, for it is computed
+    /// Subscribes. To the intensity image only where it is wanted, for it is computed
     /// only then.
     ///
-    /// Wishes to save are heard where the last minutes are kept.
-    pub(super) fn open(graph: &Graph, field: bool, keeps: bool) -> Result<Self, TransportError> {
+    /// # Errors
+    /// If the graph fails.
+    pub fn open(graph: &Graph, field: bool) -> Result<Self, TransportError> {
         Ok(Inputs {
             map: Counted::open(graph)?,
             odometry: Counted::open(graph)?,
@@ -63,11 +87,12 @@ impl Inputs {
             health: Counted::open(graph)?,
             log: graph.subscriber()?,
             log_gaps: RefCell::default(),
-            saves: keeps.then(|| graph.subscriber()).transpose()?,
         })
     }
 
-    pub(super) fn all(&self) -> Vec<&dyn Input> {
+    /// What the event loop waits for.
+    #[must_use]
+    pub fn all(&self) -> Vec<&dyn Input> {
         let field = self
             .field
             .as_ref()
@@ -83,38 +108,37 @@ impl Inputs {
             &self.health.subscriber,
             &self.log,
         ];
-        let saves = self.saves.as_ref().map(|saves| -> &dyn Input { saves });
-        others.into_iter().chain(field).chain(saves).collect()
+        others.into_iter().chain(field).collect()
     }
 
     /// Takes everything that has come, measurements before their answers.
-    pub(super) fn take(&self, to: &mut Recorder) -> Result<(), RecorderError> {
+    ///
+    /// # Errors
+    /// If the graph fails, or the listener does.
+    pub fn take<L: Listener>(&self, to: &mut L) -> Result<(), L::Error> {
         while let Some(map) = self.map.subscriber.receive()? {
             let outcome = to
+                .transcript()
                 .entries
-                .map(map.header(), map.items(), Recorder::now_ns());
-            to.taken(0, outcome)?;
+                .map(map.header(), map.items(), monotonic_ns());
+            to.transcript().taken(0, outcome)?;
         }
         self.take_measurements(to)?;
         self.take_answers(to)?;
         while let Some(report) = self.health.subscriber.receive()? {
             let (header, error) = (report.header(), report.items());
-            let outcome = to.entries.health(header, error, Recorder::now_ns());
-            to.taken(0, outcome)?;
-            let event = to.lookout.health(header);
-            to.happened(event)?;
+            let outcome = to
+                .transcript()
+                .entries
+                .health(header, error, monotonic_ns());
+            to.transcript().taken(0, outcome)?;
+            to.reported(header)?;
         }
         while let Some(line) = self.log.receive()? {
             let header = line.header();
             let lost = self.lines_lost_before(header);
-            let outcome = to.entries.log(header, line.items());
-            to.taken(lost, outcome)?;
-        }
-        // What it is about has come before.
-        if let Some(saves) = &self.saves
-            && saves.newest()?.is_some()
-        {
-            to.save("asked by the graph")?;
+            let outcome = to.transcript().entries.log(header, line.items());
+            to.transcript().taken(lost, outcome)?;
         }
         Ok(())
     }
@@ -124,32 +148,38 @@ impl Inputs {
         gaps.entry(line.pid).or_default().lost_before(line.counter)
     }
 
-    fn take_measurements(&self, to: &mut Recorder) -> Result<(), RecorderError> {
+    fn take_measurements<L: Listener>(&self, to: &mut L) -> Result<(), L::Error> {
         while let Some(sample) = self.odometry.subscriber.receive()? {
             let lost = self.odometry.lost_before(sample.header().stamp.counter);
-            let outcome = to.entries.odometry(sample.header());
-            to.taken(lost, outcome)?;
+            let outcome = to.transcript().entries.odometry(sample.header());
+            to.transcript().taken(lost, outcome)?;
         }
         while let Some(sample) = self.truths.subscriber.receive()? {
             let lost = self.truths.lost_before(sample.header().stamp.counter);
-            let outcome = to.entries.ground_truth(sample.header());
-            to.taken(lost, outcome)?;
+            let outcome = to.transcript().entries.ground_truth(sample.header());
+            to.transcript().taken(lost, outcome)?;
         }
         while let Some(sample) = self.scans.subscriber.receive()? {
             let lost = self.scans.lost_before(sample.header().stamp.counter);
-            let outcome = to.entries.scan(sample.header(), sample.items());
-            to.taken(lost, outcome)?;
+            let outcome = to
+                .transcript()
+                .entries
+                .scan(sample.header(), sample.items());
+            to.transcript().taken(lost, outcome)?;
         }
         Ok(())
     }
 
     /// Answers carry the stamps of their scans, so a gap among them may be a scan
-    /// that was never answered, and is no loss of the recorder's. A recorder that
+    /// that was never answered, and is no loss here. A listener that
     /// is too slow for them is too slow for the scans as well, which are counted.
-    fn take_answers(&self, to: &mut Recorder) -> Result<(), RecorderError> {
+    fn take_answers<L: Listener>(&self, to: &mut L) -> Result<(), L::Error> {
         while let Some(sample) = self.votes.subscriber.receive()? {
-            let outcome = to.entries.votes(sample.header(), sample.items());
-            to.taken(0, outcome)?;
+            let outcome = to
+                .transcript()
+                .entries
+                .votes(sample.header(), sample.items());
+            to.transcript().taken(0, outcome)?;
         }
         // Images are left out by choice where they come too fast.
         while let Some(sample) = self
@@ -157,19 +187,24 @@ impl Inputs {
             .as_ref()
             .map_or(Ok(None), |f| f.subscriber.receive())?
         {
-            let outcome = to.entries.field(sample.header(), sample.items());
-            to.taken(0, outcome)?;
+            let outcome = to
+                .transcript()
+                .entries
+                .field(sample.header(), sample.items());
+            to.transcript().taken(0, outcome)?;
         }
         while let Some(sample) = self.hypotheses.subscriber.receive()? {
             let header = sample.header();
-            let outcome = to.entries.hypotheses(header, sample.items());
-            to.taken(0, outcome)?;
-            let event = to.lookout.verdict(header.verdict);
-            to.happened(event)?;
+            let outcome = to.transcript().entries.hypotheses(header, sample.items());
+            to.transcript().taken(0, outcome)?;
+            to.judged(header.verdict)?;
         }
         while let Some(sample) = self.beams.subscriber.receive()? {
-            let outcome = to.entries.beams(sample.header(), sample.items());
-            to.taken(0, outcome)?;
+            let outcome = to
+                .transcript()
+                .entries
+                .beams(sample.header(), sample.items());
+            to.transcript().taken(0, outcome)?;
         }
         Ok(())
     }

@@ -1,0 +1,39 @@
+//! What a user can set of a transcript.
+
+use messages::Name;
+
+/// How frames are called that have no name in the graph.
+#[derive(Debug, Clone, clap::Args)]
+pub struct Options {
+    /// The frame of the map in messages of ROS
+    #[arg(long, value_name = "FRAME", default_value = "map", value_parser = frame)]
+    pub map_frame: String,
+
+    /// The robot's frame in messages of ROS, where the laser's mount is known
+    #[arg(long, value_name = "FRAME", default_value = "base_link", value_parser = frame)]
+    pub base_frame: String,
+}
+
+fn frame(text: &str) -> Result<String, String> {
+    match text.len() {
+        1..=Name::CAPACITY => Ok(text.into()),
+        bytes => Err(format!(
+            "it has {bytes} bytes, allowed are 1 to {}",
+            Name::CAPACITY
+        )),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn frames_are_as_long_as_names_in_the_graph() {
+        assert_eq!(frame("base_link").unwrap(), "base_link");
+        for refused in [String::new(), "x".repeat(Name::CAPACITY + 1)] {
+            let problem = frame(&refused).unwrap_err();
+            assert!(problem.contains("allowed are 1 to 32"), "{problem}");
+        }
+    }
+}

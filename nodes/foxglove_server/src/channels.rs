@@ -1,0 +1,104 @@
+//! Topics of ROS as viewers see them.
+
+use std::collections::BTreeMap;
+use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
+
+use foxglove::websocket::{ChannelView, Client, ServerListener};
+use foxglove::{Context, PartialMetadata, RawChannel, Schema};
+use recording::ros::{OccupancyGridMsg, RosMessage};
+use recording::write::Encoded;
+use transcript::topics;
+
+use crate::ServerError;
+
+/// How messages and their definitions are written.
+const ENCODING: &str = "cdr";
+const DEFINITIONS: &str = "ros2msg";
+
+/// All channels. A topic is offered from its first message on; the intensity image
+/// always, for it is computed only where somebody looks.
+#[derive(Debug)]
+pub(crate) struct Channels {
+    context: Arc<Context>,
+    field: Arc<RawChannel>,
+    open: Mutex<BTreeMap<&'static str, Open>>,
+}
+
+#[derive(Debug)]
+struct Open {
+    channel: Arc<RawChannel>,
+    /// What late joiners get, of a latched topic.
+    newest: Option<Encoded>,
+}
+
+impl Channels {
+    /// None but that of the image.
+    pub(crate) fn new(context: &Arc<Context>) -> Result<Self, ServerError> {
+        let image = (OccupancyGridMsg::SCHEMA, OccupancyGridMsg::DEFINITION);
+        let field = offer(context, topics::FIELD, image)?;
+        let open = Open {
+            channel: Arc::clone(&field),
+            newest: None,
+        };
+        Ok(Channels {
+            context: Arc::clone(context),
+            field,
+            open: Mutex::new(BTreeMap::from([(topics::FIELD, open)])),
+        })
+    }
+
+    /// Whether somebody looks at the intensity image.
+    pub(crate) fn is_field_viewed(&self) -> bool {
+        self.field.has_sinks()
+    }
+
+    /// Shows a message to all who look at its topic.
+    pub(crate) fn show(&self, message: Encoded) -> Result<(), ServerError> {
+        let mut open = self.open();
+        if !open.contains_key(message.topic) {
+            let schema = (message.schema, message.definition);
+            let channel = offer(&self.context, message.topic, schema)?;
+            let newest = None;
+            open.insert(message.topic, Open { channel, newest });
+        }
+        if let Some(Open { channel, newest }) = open.get_mut(message.topic) {
+            channel.log_with_meta(&message.body, at(&message));
+            if message.latched {
+                *newest = Some(message);
+            }
+        }
+        Ok(())
+    }
+
+    fn open(&self) -> MutexGuard<'_, BTreeMap<&'static str, Open>> {
+        self.open.lock().unwrap_or_else(PoisonError::into_inner)
+    }
+}
+
+impl ServerListener for Channels {
+    fn on_subscribe(&self, client: Client, channel: ChannelView) {
+        let open = self.open();
+        let Some(Open { channel, newest }) = open.get(channel.topic()) else {
+            return;
+        };
+        if let Some(newest) = newest {
+            channel.log_with_meta_to_sink(&newest.body, at(newest), client.sink_id());
+        }
+    }
+}
+
+fn offer(
+    context: &Arc<Context>,
+    topic: &'static str,
+    (name, definition): (&'static str, &'static str),
+) -> Result<Arc<RawChannel>, ServerError> {
+    let channel = context.channel_builder(topic).message_encoding(ENCODING);
+    let schema = Schema::new(name, DEFINITIONS, definition.as_bytes());
+    let channel = channel.schema(schema).build_raw();
+    channel.map_err(|source| ServerError::Channel { topic, source })
+}
+
+fn at(message: &Encoded) -> PartialMetadata {
+    // No message of ROS is from before 1970.
+    PartialMetadata::with_log_time(message.log_time_ns.cast_unsigned())
+}

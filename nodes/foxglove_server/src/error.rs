@@ -1,0 +1,29 @@
+//! What keeps the server from running.
+
+use std::net::SocketAddr;
+
+use foxglove::FoxgloveError;
+
+/// What was tried, what was found and what is allowed.
+#[derive(Debug, thiserror::Error)]
+pub enum ServerError {
+    /// It cannot listen.
+    #[error("cannot listen on {address}; another address is given by --listen")]
+    Listen {
+        /// The address.
+        address: SocketAddr,
+        /// What the library says.
+        source: FoxgloveError,
+    },
+    /// A channel cannot be opened.
+    #[error("cannot show {topic}")]
+    Channel {
+        /// The topic of ROS.
+        topic: &'static str,
+        /// What the library says.
+        source: FoxgloveError,
+    },
+    /// The graph failed.
+    #[error(transparent)]
+    Transport(#[from] transport::TransportError),
+}

@@ -1,0 +1,111 @@
+//! Listens to the graph, and shows what it says.
+
+use std::sync::Arc;
+use std::time::Duration;
+
+use foxglove::{Context, WebSocketServerHandle};
+use messages::{NodeState, topic};
+use transcript::{Entry, Inputs, Listener, Transcript};
+use transport::{Flow, Graph, Subscriber};
+
+use crate::channels::Channels;
+use crate::{Config, ServerError};
+
+/// How long an image and a report of health may wait.
+const TICK: Duration = Duration::from_millis(50);
+
+/// Messages that wait for a viewer, each for itself; then the oldest are dropped.
+const BACKLOG: usize = 256;
+
+/// Serves viewers until the stop flag is set.
+///
+/// # Errors
+/// If it cannot listen, or the graph fails.
+pub fn run(graph: &Graph, config: &Config) -> Result<(), ServerError> {
+    let context = Context::new();
+    let channels = Arc::new(Channels::new(&context)?);
+    let server = start(&context, &channels, config)?;
+    let inputs = Inputs::open(graph, false)?;
+    let mut node = Node {
+        transcript: Transcript::new(graph, &config.transcript)?,
+        channels,
+        field: None,
+    };
+    node.transcript.health.state(NodeState::Ready)?;
+    let outcome = graph.run(&inputs.all(), TICK, |wake| {
+        node.step(graph, &inputs, wake.tick)?;
+        Ok(Flow::Continue)
+    });
+    server.stop().wait_blocking();
+    outcome
+}
+
+fn start(
+    context: &Arc<Context>,
+    channels: &Arc<Channels>,
+    config: &Config,
+) -> Result<WebSocketServerHandle, ServerError> {
+    let listen = config.listen;
+    let server = context
+        .websocket_server()
+        .name(config.robot())
+        .bind(listen.ip().to_string(), listen.port())
+        .listener(Arc::clone(channels) as _)
+        .message_backlog_size(BACKLOG)
+        .start_blocking();
+    let server = server.map_err(|source| ServerError::Listen {
+        address: listen,
+        source,
+    })?;
+    let mut address = listen;
+    address.set_port(server.port());
+    tracing::info!("watch it in Foxglove or Lichtblick: open a connection to ws://{address}");
+    Ok(server)
+}
+
+struct Node {
+    transcript: Transcript,
+    channels: Arc<Channels>,
+    /// There while somebody looks at it, for it is computed only then.
+    field: Option<Subscriber<topic::Field>>,
+}
+
+impl Node {
+    fn step(&mut self, graph: &Graph, inputs: &Inputs, tick: bool) -> Result<(), ServerError> {
+        inputs.take(self)?;
+        if tick {
+            self.follow_field(graph)?;
+        }
+        let mut shown = 0;
+        for entry in self.transcript.entries.take() {
+            if let Entry::Message(message) = entry {
+                self.channels.show(message)?;
+                shown += 1;
+            }
+        }
+        self.transcript.health.count_sent(shown);
+        Ok(self.transcript.health.tick()?)
+    }
+
+    fn follow_field(&mut self, graph: &Graph) -> Result<(), ServerError> {
+        match (self.channels.is_field_viewed(), &self.field) {
+            (true, None) => self.field = Some(graph.subscriber()?),
+            (false, Some(_)) => self.field = None,
+            _ => {}
+        }
+        let newest = self.field.as_ref().map_or(Ok(None), Subscriber::newest)?;
+        if let Some(image) = newest {
+            let outcome = self.transcript.entries.field(image.header(), image.items());
+            self.transcript.taken(0, outcome)?;
+        }
+        Ok(())
+    }
+}
+
+impl Listener for Node {
+    type Error = ServerError;
+
+    fn transcript(&mut self) -> &mut Transcript {
+        &mut self.transcript
+    }
+}

@@ -1,0 +1,360 @@
+//! A viewer of Foxglove's protocol, over TCP, with a graph behind the server.
+#![allow(
+    clippy::unwrap_used,
+    reason = "the lint spares test functions but not what they share"
+)]
+
+use std::collections::BTreeMap;
+use std::net::TcpStream;
+
+use bytemuck::Zeroable;
+use messages::{
+    FieldHeader, HypothesesHeader, Hypothesis, MapHeader, Name, Pose2, ScanHeader, Stamp, Verdict,
+    topic,
+};
+use recording::ros::{LaserScan, OccupancyGridMsg, PoseWithCovarianceStamped};
+use serde::de::DeserializeOwned;
+use serde_json::{Value, json};
+use tests::http::Site;
+use transport::testing::{Isolated, NodeProcess, wait_for_health, wait_until_ready};
+use transport::{Flow, Graph, Publisher, TransportError, monotonic_ns};
+use tungstenite::client::IntoClientRequest;
+use tungstenite::http::HeaderValue;
+use tungstenite::{Message, WebSocket, client};
+
+const SECOND: i64 = 1_000_000_000;
+/// When the first scan was measured.
+const START: i64 = 1_137_772_793 * SECOND;
+
+/// The node in a graph of its own, which the test feeds.
+struct World {
+    node: Option<NodeProcess>,
+    site: Site,
+    maps: Publisher<topic::Map>,
+    scans: Publisher<topic::Scan>,
+    hypotheses: Publisher<topic::Hypotheses>,
+    fields: Publisher<topic::Field>,
+    graph: Graph,
+    _isolated: Isolated,
+}
+
+impl World {
+    fn new(test: &str) -> Self {
+        let isolated = Isolated::new(test);
+        let graph = isolated.join("test");
+        let site = Site::free();
+        let listen = site.0.to_string();
+        let maps = graph.publisher().unwrap();
+        let (scans, hypotheses) = (graph.publisher().unwrap(), graph.publisher().unwrap());
+        let fields = graph.publisher().unwrap();
+        let arguments = ["--listen", &listen, "--robot", "r7"];
+        let node = NodeProcess::start(env!("CARGO_BIN_EXE_foxglove_server"), &graph, arguments);
+        wait_until_ready(&graph, "foxglove_server");
+        World {
+            node: Some(node),
+            site,
+            maps,
+            scans,
+            hypotheses,
+            fields,
+            graph,
+            _isolated: isolated,
+        }
+    }
+
+    fn send_map(&self) {
+        let mut loan = self.maps.loan(6).unwrap();
+        *loan.header_mut() = MapHeader {
+            map_id: 0xabc,
+            width: 3,
+            height: 2,
+            resolution_m: 0.05,
+            ..MapHeader::zeroed()
+        };
+        loan.items_mut().copy_from_slice(&[0, 100, 255, 0, 0, 100]);
+        loan.send().unwrap();
+    }
+
+    fn stamp(counter: u64) -> Stamp {
+        Stamp {
+            measured_ns: START + counter.cast_signed() * SECOND,
+            entered_ns: monotonic_ns(),
+            counter,
+        }
+    }
+
+    fn send_scan(&self, counter: u64) {
+        let mut loan = self.scans.loan(2).unwrap();
+        *loan.header_mut() = ScanHeader {
+            stamp: Self::stamp(counter),
+            angle_increment: 0.5,
+            range_max_m: 30.0,
+            mount_known: 1,
+            frame: Name::new("laser"),
+            ..ScanHeader::zeroed()
+        };
+        loan.items_mut().copy_from_slice(&[1.5, counter as f32]);
+        loan.send().unwrap();
+    }
+
+    fn answer(&self, counter: u64, x: f64) {
+        let mut loan = self.hypotheses.loan(1).unwrap();
+        *loan.header_mut() = HypothesesHeader {
+            stamp: Self::stamp(counter),
+            map_id: 0xabc,
+            verdict: Verdict::Unique as u32,
+            mount_known: 1,
+            ..HypothesesHeader::zeroed()
+        };
+        loan.items_mut()[0] = Hypothesis {
+            map_from_base: Pose2 {
+                x,
+                y: 2.0,
+                yaw: 0.5,
+            },
+            ..Hypothesis::zeroed()
+        };
+        loan.send().unwrap();
+    }
+
+    fn send_field(&self) {
+        let mut loan = self.fields.loan(2).unwrap();
+        *loan.header_mut() = FieldHeader {
+            stamp: Self::stamp(0),
+            map_id: 0xabc,
+            width: 2,
+            height: 1,
+            block: 2,
+            highest_possible: 200,
+            ..FieldHeader::zeroed()
+        };
+        loan.items_mut().copy_from_slice(&[0, 100]);
+        loan.send().unwrap();
+    }
+
+    /// Lets the graph go on, so that latched messages are served, until this holds.
+    fn wait_until(&self, is_awaited: impl Fn() -> bool) {
+        let tick = std::time::Duration::from_millis(20);
+        let outcome = self.graph.run(&[], tick, |_| {
+            let flow = if is_awaited() {
+                Flow::Stop
+            } else {
+                Flow::Continue
+            };
+            Ok::<_, TransportError>(flow)
+        });
+        outcome.unwrap();
+        assert!(is_awaited());
+    }
+}
+
+impl Drop for World {
+    fn drop(&mut self) {
+        if let Some(node) = self.node.take()
+            && !std::thread::panicking()
+        {
+            node.stop();
+        }
+    }
+}
+
+/// What speaks `foxglove.sdk.v1`.
+struct Viewer {
+    socket: WebSocket<TcpStream>,
+    server: Value,
+    /// Channels as they were offered, by topic.
+    channels: BTreeMap<String, Value>,
+    /// Topics by the number of their subscription.
+    subscribed: BTreeMap<u32, String>,
+}
+
+/// A message as a viewer gets it.
+struct Shown {
+    topic: String,
+    log_time_ns: u64,
+    body: Vec<u8>,
+}
+
+impl Viewer {
+    fn connect(site: Site) -> Self {
+        let mut viewer = Viewer {
+            socket: Self::speak(site, "foxglove.sdk.v1").unwrap(),
+            server: Value::Null,
+            channels: BTreeMap::new(),
+            subscribed: BTreeMap::new(),
+        };
+        while viewer.server.is_null() {
+            assert!(viewer.hear().is_none());
+        }
+        viewer
+    }
+
+    /// Opens a WebSocket for a protocol, or gets the reason why there is none.
+    fn speak(site: Site, protocol: &'static str) -> Result<WebSocket<TcpStream>, String> {
+        let mut request = format!("ws://{}/", site.0).into_client_request().unwrap();
+        let protocol = HeaderValue::from_static(protocol);
+        request
+            .headers_mut()
+            .insert("sec-websocket-protocol", protocol);
+        let stream = TcpStream::connect(site.0).unwrap();
+        let opened = client(request, stream);
+        let (socket, _) = opened.map_err(|error| error.to_string())?;
+        Ok(socket)
+    }
+
+    /// Takes one message of the server: one of a channel, or a note that is kept.
+    fn hear(&mut self) -> Option<Shown> {
+        match self.socket.read().unwrap() {
+            Message::Text(text) => {
+                let said: Value = serde_json::from_str(&text).unwrap();
+                match said["op"].as_str().unwrap() {
+                    "serverInfo" => self.server = said,
+                    "advertise" => {
+                        for channel in said["channels"].as_array().unwrap() {
+                            let topic = channel["topic"].as_str().unwrap().to_owned();
+                            self.channels.insert(topic, channel.clone());
+                        }
+                    }
+                    other => panic!("{other}: {said}"),
+                }
+                None
+            }
+            // Message data: 1, the subscription, the time, the message.
+            Message::Binary(bytes) if bytes[0] == 1 => {
+                let subscription = u32::from_le_bytes(bytes[1..5].try_into().unwrap());
+                Some(Shown {
+                    topic: self.subscribed[&subscription].clone(),
+                    log_time_ns: u64::from_le_bytes(bytes[5..13].try_into().unwrap()),
+                    body: bytes[13..].to_vec(),
+                })
+            }
+            other => panic!("{other:?}"),
+        }
+    }
+
+    /// Subscribes to a topic, once it is offered.
+    fn subscribe(&mut self, topic: &str) {
+        while !self.channels.contains_key(topic) {
+            assert!(self.hear().is_none_or(|shown| shown.topic != topic));
+        }
+        let number = self.subscribed.len() as u32 + 1;
+        self.subscribed.insert(number, topic.to_owned());
+        let wish = json!({
+            "op": "subscribe",
+            "subscriptions": [{"id": number, "channelId": self.channels[topic]["id"]}],
+        });
+        self.socket.send(Message::text(wish.to_string())).unwrap();
+    }
+
+    /// The next message of a topic.
+    fn next(&mut self, topic: &str) -> Shown {
+        loop {
+            if let Some(shown) = self.hear().filter(|shown| shown.topic == topic) {
+                return shown;
+            }
+        }
+    }
+}
+
+fn decoded<M: DeserializeOwned>(shown: &Shown) -> M {
+    recording::decode_cdr(&shown.body).unwrap()
+}
+
+#[test]
+fn a_viewer_sees_scans_and_poses_at_their_times() {
+    let world = World::new("fox-live");
+    world.send_scan(0);
+    let mut viewer = Viewer::connect(world.site);
+    assert_eq!(viewer.server["name"], "r7");
+    assert_eq!(
+        viewer.server["capabilities"],
+        json!([]),
+        "it is told nothing"
+    );
+    viewer.subscribe("/scan");
+    let channel = &viewer.channels["/scan"];
+    assert_eq!(channel["schemaName"], "sensor_msgs/msg/LaserScan");
+    assert_eq!(
+        (&channel["encoding"], &channel["schemaEncoding"]),
+        (&json!("cdr"), &json!("ros2msg"))
+    );
+    let definition = channel["schema"].as_str().unwrap();
+    assert!(definition.contains("float32[] ranges"), "{definition}");
+    world.answer(0, 1.5);
+    viewer.subscribe("/pose");
+    // Wishes are granted one after the other, and what is latched comes at once.
+    viewer.subscribe("/tf_static");
+    viewer.next("/tf_static");
+    for counter in 1..=3 {
+        let at_ns = (START + counter * SECOND).cast_unsigned();
+        world.send_scan(counter.cast_unsigned());
+        let shown = viewer.next("/scan");
+        let scan: LaserScan = decoded(&shown);
+        assert_eq!(scan.ranges, [1.5, counter as f32]);
+        assert_eq!(shown.log_time_ns, at_ns);
+        world.answer(counter.cast_unsigned(), 1.5 + counter as f64);
+        let shown = viewer.next("/pose");
+        let pose: PoseWithCovarianceStamped = decoded(&shown);
+        let position = pose.pose.pose.position;
+        assert_eq!((position.x, position.y), (1.5 + counter as f64, 2.0));
+        assert_eq!(shown.log_time_ns, at_ns);
+    }
+}
+
+#[test]
+fn who_comes_late_gets_the_map_and_the_mount() {
+    let world = World::new("fox-late");
+    world.send_map();
+    world.send_scan(0);
+    for _ in 0..2 {
+        let mut viewer = Viewer::connect(world.site);
+        viewer.subscribe("/map");
+        let map: OccupancyGridMsg = decoded(&viewer.next("/map"));
+        assert_eq!((map.info.width, map.info.height), (3, 2));
+        assert_eq!(map.data, [0, 100, -1, 0, 0, 100]);
+        viewer.subscribe("/tf_static");
+        assert_eq!(viewer.next("/tf_static").log_time_ns, START.cast_unsigned());
+    }
+}
+
+#[test]
+fn the_image_is_computed_while_somebody_looks_and_strangers_do_no_harm() {
+    let world = World::new("fox-field");
+    let health = world.graph.subscriber::<topic::Health>().unwrap();
+    world.send_map();
+    world.send_scan(0);
+    assert!(!world.fields.has_subscribers());
+    let mut viewer = Viewer::connect(world.site);
+    viewer.subscribe("/field");
+    world.wait_until(|| world.fields.has_subscribers());
+    world.send_field();
+    let image: OccupancyGridMsg = decoded(&viewer.next("/field"));
+    assert_eq!(image.data, [0, 50]);
+    drop(viewer);
+    world.wait_until(|| !world.fields.has_subscribers());
+    // Who does not speak the protocol gets no further; nor does who says what it has
+    // no word for.
+    let refused = Viewer::speak(world.site, "mqtt").unwrap_err();
+    assert!(refused.contains("400"), "{refused}");
+    let mut stranger = Viewer::connect(world.site);
+    for nonsense in ["", "{", r#"{"op": "subscribe", "subscriptions": 7}"#, "[]"] {
+        stranger.socket.send(Message::text(nonsense)).unwrap();
+    }
+    stranger
+        .socket
+        .send(Message::binary(vec![255; 70]))
+        .unwrap();
+    drop(stranger);
+    // A scan whose time ROS cannot say is refused, and counted.
+    let mut loan = world.scans.loan(0).unwrap();
+    *loan.header_mut() = ScanHeader::zeroed();
+    loan.header_mut().stamp.measured_ns = -1;
+    loan.send().unwrap();
+    let (_, error) = wait_for_health(&world.graph, &health, |report| {
+        report.node.as_str() == "foxglove_server" && report.refused == 1
+    });
+    assert!(error.starts_with("topic scan: a stamp of -1 ns"), "{error}");
+    let mut viewer = Viewer::connect(world.site);
+    viewer.subscribe("/map");
+    viewer.next("/map");
+}
