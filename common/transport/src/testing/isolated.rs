@@ -1,21 +1,12 @@
 //! A graph that belongs to one test.
 
 use std::path::{Path, PathBuf};
-use std::sync::mpsc::{RecvTimeoutError, Sender, channel};
-use std::time::Duration;
+use std::sync::mpsc::Sender;
 
-use nix::sys::signal::{Signal, raise};
-
+use super::watch::watch;
 use crate::membership::SHARED_MEMORY;
 use crate::root::{current_user, path_for};
 use crate::{Graph, GraphName, remove_leftovers};
-
-/// How long a test may take: it waits for what it expects, and what never comes
-/// would hold up all tests behind it. Many times the slowest test on a slow machine.
-const PATIENCE: Duration = Duration::from_secs(300);
-
-/// From being asked to end until it has to, for what does not wait in a graph.
-const GRACE: Duration = Duration::from_secs(10);
 
 /// A graph whose name no other test and no other run uses; what it leaves is
 /// removed in the end. A test that hangs is ended. To be declared before everything that is in the graph,
@@ -79,23 +70,6 @@ impl Isolated {
 
 fn name(tag: &str) -> GraphName {
     GraphName::new(&format!("t{}-{tag}", std::process::id())).unwrap()
-}
-
-/// Ends the process, and so its test, where that hangs: waiting in a graph ends, and
-/// the test fails with what its nodes logged.
-fn watch(name: GraphName) -> Sender<()> {
-    let (watched, end) = channel();
-    std::thread::spawn(move || {
-        let hangs = |patience| matches!(end.recv_timeout(patience), Err(RecvTimeoutError::Timeout));
-        if hangs(PATIENCE) {
-            eprintln!("the test in graph {name} takes more than {PATIENCE:?}: it is ended");
-            let _ = raise(Signal::SIGTERM);
-            if hangs(GRACE) {
-                std::process::abort();
-            }
-        }
-    });
-    watched
 }
 
 impl Drop for Isolated {

@@ -2,8 +2,8 @@
 //! for what it says.
 //!
 //! Everything here fails the test by panicking and waits without a limit, for
-//! how long a machine takes is nothing that a test could know. Nodes themselves
-//! use none of it.
+//! how long a machine takes is nothing that a test could know; only a test that
+//! hangs for minutes is ended. Nodes themselves use none of it.
 
 #![allow(
     clippy::unwrap_used,
@@ -13,7 +13,9 @@
 mod isolated;
 mod node_process;
 mod waiting;
+mod watch;
 
 pub use isolated::Isolated;
 pub use node_process::NodeProcess;
 pub use waiting::{wait_for, wait_for_health, wait_until, wait_until_ready};
+pub use watch::patiently;
