@@ -7,6 +7,29 @@ use transport::TransportError;
 /// What Zenoh says.
 pub type Cause = Box<dyn std::error::Error + Send + Sync>;
 
+/// A key cannot be used.
+#[derive(Debug, thiserror::Error)]
+#[error("cannot {action} {key}")]
+pub struct KeyError {
+    /// What was tried.
+    pub action: &'static str,
+    /// The key.
+    pub key: String,
+    /// What Zenoh says.
+    pub source: Cause,
+}
+
+impl KeyError {
+    /// Makes one of what Zenoh says.
+    pub fn when(action: &'static str, key: &str) -> impl FnOnce(Cause) -> Self {
+        move |source| KeyError {
+            action,
+            key: key.to_owned(),
+            source,
+        }
+    }
+}
+
 /// What was tried, what was found and what is allowed.
 #[derive(Debug, thiserror::Error)]
 pub enum NetworkError {

@@ -10,7 +10,7 @@ mod queue;
 mod report;
 mod session;
 
-pub use error::{Cause, NetworkError};
+pub use error::{Cause, KeyError, NetworkError};
 pub use options::Options;
 pub use queue::{Past, Queue, Room};
 pub use report::Report;

@@ -14,7 +14,10 @@ use zenoh::sample::{Sample, SampleKind};
 use zenoh::{Session, Wait};
 use zenoh_ext::{AdvancedSubscriber, AdvancedSubscriberBuilderExt, HistoryConfig, RecoveryConfig};
 
-use crate::Cause;
+use crate::KeyError;
+
+/// What opening a queue tries.
+const ACTION: &str = "subscribe to";
 
 /// How much may wait.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -80,7 +83,7 @@ impl Queue {
     /// Subscribes to a key.
     ///
     /// # Errors
-    /// What Zenoh says.
+    /// If Zenoh refuses.
     ///
     /// # Panics
     /// If there is room for no message.
@@ -90,7 +93,7 @@ impl Queue {
         past: Past,
         room: Room,
         waker: Waker,
-    ) -> Result<Self, Cause> {
+    ) -> Result<Self, KeyError> {
         let waiting = Arc::new(Waiting {
             samples: ArrayQueue::new(room.messages),
             room,
@@ -109,7 +112,7 @@ impl Queue {
         });
         let _subscriber = match past {
             Past::Gone => Ear::Live {
-                _subscriber: subscriber.wait()?,
+                _subscriber: subscriber.wait().map_err(KeyError::when(ACTION, key))?,
             },
             Past::Last(messages) => {
                 let history = HistoryConfig::default().max_samples(messages);
@@ -117,7 +120,7 @@ impl Queue {
                     .history(history.detect_late_publishers())
                     .recovery(RecoveryConfig::default().heartbeat());
                 Ear::Kept {
-                    _subscriber: subscriber.wait()?,
+                    _subscriber: subscriber.wait().map_err(KeyError::when(ACTION, key))?,
                 }
             }
         };

@@ -7,6 +7,7 @@
 use std::collections::BTreeMap;
 
 use messages::{HealthHeader, NodeState, topic};
+use network::KeyError;
 use transport::{Graph, Subscriber, TransportError, monotonic_ns};
 use zenoh::liveliness::LivelinessToken;
 use zenoh::{Session, Wait};
@@ -98,9 +99,5 @@ fn declare(
 ) -> Result<LivelinessToken, BridgeError> {
     let key = wire::alive(robot, &session.zid().to_string(), node);
     let token = session.liveliness().declare_token(key.clone());
-    token.wait().map_err(|source| BridgeError::Key {
-        action: "be alive at",
-        key,
-        source,
-    })
+    Ok(token.wait().map_err(KeyError::when("be alive at", &key))?)
 }

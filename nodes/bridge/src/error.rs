@@ -3,7 +3,7 @@
 use std::path::PathBuf;
 
 use dataflow::DataflowError;
-use network::{Cause, NetworkError};
+use network::{KeyError, NetworkError};
 use transport::TransportError;
 use wire::WireError;
 
@@ -36,15 +36,8 @@ pub enum BridgeError {
     #[error(transparent)]
     Network(#[from] NetworkError),
     /// A key cannot be used.
-    #[error("cannot {action} {key}")]
-    Key {
-        /// What was tried.
-        action: &'static str,
-        /// The key.
-        key: String,
-        /// What Zenoh says.
-        source: Cause,
-    },
+    #[error(transparent)]
+    Key(#[from] KeyError),
     /// The system gives no random number.
     #[error("cannot draw a random number to be known by")]
     Random(#[source] getrandom::Error),

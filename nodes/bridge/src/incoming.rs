@@ -25,12 +25,7 @@ impl<T: Wire> Incoming<T> {
         let past = if T::KEPT { Past::Last(1) } else { Past::Gone };
         let room = Room::for_any(T::DEPTH.max(4), T::MAX_BYTES);
         let publisher = graph.publisher()?;
-        let queue = Queue::open(session, &key, past, room, graph.waker()?);
-        let queue = queue.map_err(|source| BridgeError::Key {
-            action: "subscribe to",
-            key,
-            source,
-        })?;
+        let queue = Queue::open(session, &key, past, room, graph.waker()?)?;
         Ok(Incoming {
             queue,
             publisher,

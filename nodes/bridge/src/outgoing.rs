@@ -7,7 +7,7 @@
 use std::rc::Rc;
 use std::time::Duration;
 
-use network::Report;
+use network::{KeyError, Report};
 use transport::{Graph, Input, Sample, Subscriber, TransportError, monotonic_ns};
 use wire::{Preamble, Wire};
 use zenoh::bytes::Encoding;
@@ -126,11 +126,7 @@ impl<T: Wire> Outgoing<T> {
             Ok(()) => report.sent(),
             Err(source) => {
                 report.dropped(1);
-                report.refused(&BridgeError::Key {
-                    action: "send on",
-                    key: self.key.clone(),
-                    source,
-                })?;
+                report.refused(&KeyError::when("send on", &self.key)(source))?;
             }
         }
         Ok(())
@@ -141,29 +137,23 @@ fn declare<T: Wire>(
     session: &Session,
     key: &str,
 ) -> Result<AdvancedPublisher<'static>, BridgeError> {
-    let failed = |source| BridgeError::Key {
-        action: "publish",
-        key: key.to_owned(),
-        source,
-    };
+    let failed = KeyError::when("publish", key);
     let publisher = session
         .declare_publisher(key.to_owned())
         .encoding(Encoding::from(wire::encoding::<T>()));
-    if !T::KEPT {
-        return publisher
+    let publisher = if T::KEPT {
+        publisher
+            .congestion_control(CongestionControl::Block)
+            // Behind what is live.
+            .priority(Priority::DataLow)
+            .cache(CacheConfig::default().max_samples(1))
+            .sample_miss_detection(MissDetectionConfig::default().heartbeat(HEARTBEAT))
+            .publisher_detection()
+    } else {
+        publisher
             .congestion_control(CongestionControl::Drop)
             .express(true)
             .advanced()
-            .wait()
-            .map_err(failed);
-    }
-    publisher
-        .congestion_control(CongestionControl::Block)
-        // Behind what is live.
-        .priority(Priority::DataLow)
-        .cache(CacheConfig::default().max_samples(1))
-        .sample_miss_detection(MissDetectionConfig::default().heartbeat(HEARTBEAT))
-        .publisher_detection()
-        .wait()
-        .map_err(failed)
+    };
+    Ok(publisher.wait().map_err(failed)?)
 }

@@ -1,7 +1,7 @@
 //! What keeps the fleet's monitor from running, and what it refuses.
 
 use dashboard::{DashboardError, Robots};
-use network::{Cause, NetworkError};
+use network::{KeyError, NetworkError};
 use transport::TransportError;
 use wire::WireError;
 
@@ -15,15 +15,8 @@ pub enum FleetError {
     #[error(transparent)]
     Network(#[from] NetworkError),
     /// A key cannot be used.
-    #[error("cannot {action} {key}")]
-    Key {
-        /// What was tried.
-        action: &'static str,
-        /// The key.
-        key: String,
-        /// What Zenoh says.
-        source: Cause,
-    },
+    #[error(transparent)]
+    Key(#[from] KeyError),
     /// The system gives no random number.
     #[error("cannot draw a random number to be known by")]
     Random(#[source] getrandom::Error),

@@ -45,14 +45,8 @@ impl<T: Wire> Feed<T> {
             message_bytes: T::MAX_BYTES,
             bytes: WAITING_BYTES,
         };
-        let queue = Queue::open(session, &key, past, room, waker);
-        let queue = queue.map_err(|source| FleetError::Key {
-            action: "subscribe to",
-            key,
-            source,
-        })?;
         Ok(Feed {
-            queue,
+            queue: Queue::open(session, &key, past, room, waker)?,
             topic: PhantomData,
         })
     }

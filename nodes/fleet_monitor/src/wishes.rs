@@ -2,6 +2,7 @@
 //! `region` and `save` are among its outputs.
 
 use messages::{Corner, RegionHeader, SaveHeader, Stamp, topic};
+use network::KeyError;
 use transport::monotonic_ns;
 use wire::{Preamble, Wire};
 use zenoh::bytes::Encoding;
@@ -91,20 +92,12 @@ fn declare<T: Wire>(
     } else {
         publisher
     };
-    publisher.wait().map_err(|source| FleetError::Key {
-        action: "publish",
-        key,
-        source,
-    })
+    let publisher = publisher.wait().map_err(KeyError::when("publish", &key))?;
+    Ok(publisher)
 }
 
 fn put(publisher: &AdvancedPublisher<'_>, payload: Vec<u8>) -> Result<(), FleetError> {
-    publisher
-        .put(payload)
-        .wait()
-        .map_err(|source| FleetError::Key {
-            action: "send on",
-            key: publisher.key_expr().to_string(),
-            source,
-        })
+    let sent = publisher.put(payload).wait();
+    sent.map_err(KeyError::when("send on", publisher.key_expr()))?;
+    Ok(())
 }

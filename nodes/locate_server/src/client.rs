@@ -3,6 +3,7 @@
 use std::time::{Duration, Instant};
 
 use messages::{ScanHeader, topic};
+use network::KeyError;
 use transport::monotonic_ns;
 use wire::{Preamble, Received};
 use zenoh::bytes::Encoding;
@@ -63,11 +64,7 @@ fn attempt(
         .encoding(Encoding::from(wire::encoding::<topic::Scan>()))
         .timeout(remaining)
         .wait()
-        .map_err(|source| LocateError::Key {
-            action: "ask",
-            key,
-            source,
-        })?;
+        .map_err(KeyError::when("ask", &key))?;
     let mut replies = replies.into_iter();
     match replies.next().map(Reply::into_result) {
         None => Ok(None),

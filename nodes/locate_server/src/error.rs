@@ -4,7 +4,7 @@ use std::path::PathBuf;
 
 use engine::EngineError;
 use map::MapError;
-use network::{Cause, NetworkError};
+use network::{KeyError, NetworkError};
 use transport::TransportError;
 use wire::WireError;
 
@@ -33,15 +33,8 @@ pub enum LocateError {
     #[error(transparent)]
     Network(#[from] NetworkError),
     /// A key cannot be used.
-    #[error("cannot {action} {key}")]
-    Key {
-        /// What was tried.
-        action: &'static str,
-        /// The key.
-        key: String,
-        /// What Zenoh says.
-        source: Cause,
-    },
+    #[error(transparent)]
+    Key(#[from] KeyError),
     /// The graph fails.
     #[error(transparent)]
     Transport(#[from] TransportError),

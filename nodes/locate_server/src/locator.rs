@@ -10,7 +10,7 @@ use engine::beams::BeamConfig;
 use engine::fit::{Ends, Terrain};
 use engine::grid::{CellRules, GridFrame};
 use engine::localizer::{self, Localizer, LocalizerConfig, Prior};
-use engine::peaks::{self, PeakConfig, PeakInput, Place, Places, Score};
+use engine::peaks::{self, PeakConfig, PeakInput, Places, Score};
 use engine::scan::Scan;
 use engine::space::Space;
 use geometry::Pose;
@@ -134,18 +134,6 @@ fn described(
         ..HypothesesHeader::zeroed()
     };
     let places = places.places.iter();
-    let hypotheses = places.map(|place| hypothesis(place, laser_from_base));
+    let hypotheses = places.map(|place| place.hypothesis(laser_from_base));
     (header, hypotheses.collect())
-}
-
-fn hypothesis(place: &Place, laser_from_base: Pose) -> Hypothesis {
-    Hypothesis {
-        map_from_laser: place.map_from_laser.into(),
-        map_from_base: place.map_from_laser.then(laser_from_base).into(),
-        covariance: place.covariance.to_rows(),
-        score: place.score as f32,
-        probability: place.probability as f32,
-        intensity: place.intensity.into(),
-        support: place.support,
-    }
 }

@@ -4,6 +4,7 @@ use std::sync::Arc;
 use std::time::{Duration, Instant};
 
 use messages::NodeState;
+use network::KeyError;
 use transport::{Flow, Graph, Waker, wall_ns};
 use zenoh::liveliness::LivelinessToken;
 use zenoh::pubsub::Subscriber;
@@ -204,11 +205,7 @@ fn tried<T>(
     key: &str,
     attempt: impl FnOnce(String) -> ZenohResult<T>,
 ) -> Result<T, LocateError> {
-    attempt(key.to_owned()).map_err(|source| LocateError::Key {
-        action,
-        key: key.to_owned(),
-        source,
-    })
+    Ok(attempt(key.to_owned()).map_err(KeyError::when(action, key))?)
 }
 
 /// What the token of a server says.

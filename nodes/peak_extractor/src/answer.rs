@@ -136,7 +136,7 @@ impl Answer<'_> {
         let laser_from_base = self.base_from_laser.map_or(Pose::IDENTITY, Pose::inverse);
         self.places
             .iter()
-            .map(move |place| hypothesis(place, laser_from_base))
+            .map(move |place| place.hypothesis(laser_from_base))
     }
 }
 
@@ -176,18 +176,6 @@ fn fate(class: BeamClass) -> BeamFate {
         BeamClass::Short => BeamFate::Short,
         BeamClass::Through => BeamFate::Through,
         BeamClass::Unknown => BeamFate::Unknown,
-    }
-}
-
-fn hypothesis(place: &Place, laser_from_base: Pose) -> Hypothesis {
-    Hypothesis {
-        map_from_laser: place.map_from_laser.into(),
-        map_from_base: place.map_from_laser.then(laser_from_base).into(),
-        covariance: place.covariance.to_rows(),
-        score: place.score as f32,
-        probability: place.probability as f32,
-        intensity: place.intensity.into(),
-        support: place.support,
     }
 }
 

@@ -1,7 +1,7 @@
 //! What keeps the gateway from running, and why a message is refused.
 
 use conversion::Unsayable;
-use network::{Cause, NetworkError};
+use network::{KeyError, NetworkError};
 use recording::ros::ConversionError;
 use transport::TransportError;
 
@@ -28,15 +28,8 @@ pub enum GatewayError {
     #[error(transparent)]
     Network(#[from] NetworkError),
     /// A key cannot be used.
-    #[error("cannot {action} {key}")]
-    Key {
-        /// What was tried.
-        action: &'static str,
-        /// The key.
-        key: String,
-        /// What Zenoh says.
-        source: Cause,
-    },
+    #[error(transparent)]
+    Key(#[from] KeyError),
     /// A message is longer than any sound one.
     #[error("the message of {topic} has {found} bytes: allowed are at most {most}")]
     TooLong {

@@ -16,7 +16,7 @@ pub mod sentence;
 mod summits;
 
 use geometry::{Covariance, Pose, wrap_angle};
-use messages::{Verdict, Vote};
+use messages::{Hypothesis, Verdict, Vote};
 use nalgebra::{Matrix3, Rotation2, Vector3};
 
 use crate::fit::BeamClass;
@@ -112,6 +112,22 @@ pub struct Places {
     /// What became of each beam at the best place, in the order of their
     /// bearings; empty by votes alone.
     pub classes: Vec<BeamClass>,
+}
+
+impl Place {
+    /// As a message says it, where the laser sits on the robot like this.
+    #[must_use]
+    pub fn hypothesis(&self, laser_from_base: Pose) -> Hypothesis {
+        Hypothesis {
+            map_from_laser: self.map_from_laser.into(),
+            map_from_base: self.map_from_laser.then(laser_from_base).into(),
+            covariance: self.covariance.to_rows(),
+            score: self.score as f32,
+            probability: self.probability as f32,
+            intensity: self.intensity.into(),
+            support: self.support,
+        }
+    }
 }
 
 impl Places {

@@ -11,6 +11,7 @@
 use std::fmt;
 use std::sync::atomic::{AtomicUsize, Ordering};
 
+use network::KeyError;
 use twox_hash::XxHash3_128;
 use zenoh::liveliness::LivelinessToken;
 use zenoh::{Session, Wait};
@@ -139,11 +140,7 @@ impl Member {
 
 fn declare(session: &Session, key: &str) -> Result<LivelinessToken, GatewayError> {
     let token = session.liveliness().declare_token(key.to_owned()).wait();
-    token.map_err(|source| GatewayError::Key {
-        action: "be alive at",
-        key: key.to_owned(),
-        source,
-    })
+    Ok(token.map_err(KeyError::when("be alive at", key))?)
 }
 
 fn mangled(name: &str) -> String {

@@ -2,6 +2,7 @@
 
 use std::marker::PhantomData;
 
+use network::KeyError;
 use recording::ros::RosMessage;
 use transport::wall_ns;
 use zenoh::Wait;
@@ -36,11 +37,7 @@ impl<M: RosMessage> Publisher<M> {
             .congestion_control(CongestionControl::Drop)
             .express(true)
             .wait();
-        let publisher = publisher.map_err(|source| GatewayError::Key {
-            action: "publish",
-            key: endpoint.key.clone(),
-            source,
-        })?;
+        let publisher = publisher.map_err(KeyError::when("publish", &endpoint.key))?;
         Ok(Publisher {
             _token: member.show(&endpoint)?,
             endpoint,
@@ -63,10 +60,7 @@ impl<M: RosMessage> Publisher<M> {
         };
         self.sequence += 1;
         let sent = self.publisher.put(bytes).attachment(attachment.encode());
-        sent.wait().map_err(|source| GatewayError::Key {
-            action: "send on",
-            key: self.endpoint.key.clone(),
-            source,
-        })
+        let failed = KeyError::when("send on", &self.endpoint.key);
+        Ok(sent.wait().map_err(failed)?)
     }
 }

@@ -3,6 +3,7 @@
 use std::sync::Arc;
 
 use crossbeam::queue::ArrayQueue;
+use network::KeyError;
 use transport::{Graph, wall_ns};
 use zenoh::Wait;
 use zenoh::liveliness::LivelinessToken;
@@ -51,11 +52,7 @@ impl Service {
         };
         let queryable = member.session().declare_queryable(endpoint.key.clone());
         let queryable = queryable.complete(true).callback(put).wait();
-        let queryable = queryable.map_err(|source| GatewayError::Key {
-            action: "offer",
-            key: endpoint.key.clone(),
-            source,
-        })?;
+        let queryable = queryable.map_err(KeyError::when("offer", &endpoint.key))?;
         Ok(Service {
             topic: topic.to_owned(),
             calls,
@@ -93,10 +90,6 @@ impl Service {
         };
         let reply = call.reply(self.key.as_str(), EMPTY.as_slice());
         let reply = reply.attachment(attachment.encode()).wait();
-        reply.map_err(|source| GatewayError::Key {
-            action: "answer",
-            key: self.key.clone(),
-            source,
-        })
+        Ok(reply.map_err(KeyError::when("answer", &self.key))?)
     }
 }

@@ -61,11 +61,6 @@ impl<M: RosMessage + DeserializeOwned> Subscription<M> {
     ) -> Result<Self, GatewayError> {
         let info = description::of_message::<M>()?;
         let endpoint = member.endpoint(Kind::Subscription, topic, &info, (keeping, depth));
-        let failed = |source| GatewayError::Key {
-            action: "subscribe to",
-            key: endpoint.key.clone(),
-            source,
-        };
         let past = match keeping {
             Keeping::Fresh | Keeping::Reliable => Past::Gone,
             Keeping::Kept => Past::Last(depth),
@@ -74,7 +69,7 @@ impl<M: RosMessage + DeserializeOwned> Subscription<M> {
         let queue = Queue::open(member.session(), &endpoint.key, past, room, graph.waker()?);
         Ok(Subscription {
             topic: topic.to_owned(),
-            queue: queue.map_err(failed)?,
+            queue: queue?,
             senders: BTreeMap::new(),
             heard: false,
             _token: member.show(&endpoint)?,

@@ -4,6 +4,7 @@ use std::sync::Arc;
 use std::sync::atomic::{AtomicU64, Ordering};
 
 use crossbeam::queue::ArrayQueue;
+use network::KeyError;
 use recording::ros::RosMessage;
 use transport::Graph;
 use zenoh::Wait;
@@ -62,11 +63,7 @@ impl Watch {
         let liveliness = member.session().liveliness();
         let subscriber = liveliness.declare_subscriber(key.clone()).history(true);
         let subscriber = subscriber.callback(put).wait();
-        let subscriber = subscriber.map_err(|source| GatewayError::Key {
-            action: "watch",
-            key,
-            source,
-        })?;
+        let subscriber = subscriber.map_err(KeyError::when("watch", &key))?;
         Ok(Watch {
             tokens,
             dropped,
