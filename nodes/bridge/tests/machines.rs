@@ -188,22 +188,23 @@ impl<'a> Heard<'a> {
         }
     }
 
-    /// Listens until an answer is about a map of this id, and more than `counter`.
+    /// Listens until the map of this id is there, and an answer about it to a scan
+    /// after `counter`: they come by ways of their own, in either order.
     fn until(&mut self, map_id: u64, counter: u64) {
         let graph = &self.machine.graph;
         let tick = Duration::from_millis(100);
+        let mut is_answered = false;
         let outcome = graph.run(&[&self.maps, &self.hypotheses], tick, |_| {
-            let mut flow = Flow::Continue;
             while let Some(map) = self.maps.receive()? {
                 self.map_ids.push(map.header().map_id);
             }
             while let Some(answer) = self.hypotheses.receive()? {
                 let header = answer.header();
                 self.counters.push(header.stamp.counter);
-                if header.map_id == map_id && header.stamp.counter > counter {
-                    flow = Flow::Stop;
-                }
+                is_answered |= header.map_id == map_id && header.stamp.counter > counter;
             }
+            let is_all = is_answered && self.map_ids.contains(&map_id);
+            let flow = if is_all { Flow::Stop } else { Flow::Continue };
             Ok::<_, TransportError>(flow)
         });
         outcome.unwrap();
