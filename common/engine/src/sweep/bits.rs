@@ -71,11 +71,11 @@ impl BitGrid {
         (&self.occupied[words], &self.blocked[blocked])
     }
 
-    /// The open cells among the eight of a row from a multiple of eight on.
+    /// The open cells of a row from a multiple of 64 on, the first in the lowest bit.
     #[inline(always)]
-    pub(crate) fn open_octet(&self, row: usize, column: usize) -> u8 {
-        let (word, shift) = (row * self.words + column / WORD, column % WORD);
+    pub(crate) fn open_word(&self, row: usize, column: usize) -> u64 {
+        let word = row * self.words + column / WORD;
         let blocked = self.blocked.get(word).map_or(0, |&blocked| blocked);
-        !((self.occupied[word] | blocked) >> shift) as u8
+        !(self.occupied[word] | blocked)
     }
 }

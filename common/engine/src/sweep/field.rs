@@ -196,8 +196,9 @@ impl Job<'_> {
             (&mut *rows, &self.sweeps.along_y),
             (columns, &self.sweeps.along_x),
         ] {
-            // Squares of eight rows are merged.
-            sums.resize(bits.rows.next_multiple_of(8) * stride(bits), S::default());
+            // Whole squares are merged.
+            let rows = bits.rows.next_multiple_of(merge::SQUARE);
+            sums.resize(rows * stride(bits), S::default());
         }
         unsafe {
             self.sweep_axis::<L, S, N>(plan, room, columns, 2)?;
@@ -211,7 +212,7 @@ impl Job<'_> {
             sums: columns,
             stride: stride(&self.sweeps.along_x),
         };
-        merge::merge(&self.sweeps.along_y, &rows, &columns, field);
+        S::merge(&self.sweeps.along_y, &rows, &columns, field);
         Some(())
     }
 

@@ -10,16 +10,17 @@ use std::ops::{AddAssign, Range};
 
 use super::bits::BitGrid;
 use super::lanes::Lanes;
-use super::octet::Octet;
+use super::line::{Bytes, Words};
+use super::merge::{self, Plane};
 use super::plan::{MOST_BEAMS, SweptBeam};
 
 /// Where votes are added up: rows of bytes or of 16 bits.
 pub(super) trait Sum: Copy + Default + From<u8> + AddAssign {
-    /// Eight sums.
+    /// Fills in a field as [`merge::merge`].
     ///
-    /// # Safety
-    /// There must be eight to read.
-    unsafe fn octet(from: *const Self) -> Octet;
+    /// # Panics
+    /// As that.
+    fn merge(bits: &BitGrid, rows: &Plane<'_, Self>, columns: &Plane<'_, Self>, field: &mut [u16]);
 
     /// Adds votes to the sums of as many cells, or sets those.
     ///
@@ -29,9 +30,8 @@ pub(super) trait Sum: Copy + Default + From<u8> + AddAssign {
 }
 
 impl Sum for u16 {
-    #[inline(always)]
-    unsafe fn octet(from: *const u16) -> Octet {
-        unsafe { Octet::of_words(from) }
+    fn merge(bits: &BitGrid, rows: &Plane<'_, u16>, columns: &Plane<'_, u16>, field: &mut [u16]) {
+        merge::merge::<Words, 8>(bits, rows, columns, field);
     }
 
     #[inline(always)]
@@ -41,9 +41,8 @@ impl Sum for u16 {
 }
 
 impl Sum for u8 {
-    #[inline(always)]
-    unsafe fn octet(from: *const u8) -> Octet {
-        unsafe { Octet::of_bytes(from) }
+    fn merge(bits: &BitGrid, rows: &Plane<'_, u8>, columns: &Plane<'_, u8>, field: &mut [u16]) {
+        merge::merge::<Bytes, 16>(bits, rows, columns, field);
     }
 
     #[inline(always)]

@@ -24,8 +24,8 @@ mod kernel;
               processor has, and rows with margins that hold what is read and written"
 )]
 mod lanes;
+mod line;
 mod merge;
-mod octet;
 mod plan;
 mod wide;
 
