@@ -1,6 +1,6 @@
 //! The uncertainty of a pose.
 
-use nalgebra::{Matrix2, Matrix3};
+use nalgebra::{Matrix2, Matrix3, Vector2};
 
 /// Covariance of a pose: rows and columns are x, y (metres) and yaw (radians),
 /// in the frame in which the pose is given.
@@ -42,8 +42,7 @@ impl Covariance {
     /// The one-sigma ellipse of the position, heading marginalised.
     #[must_use]
     pub fn ellipse(self) -> Ellipse {
-        let position: Matrix2<f64> = self.0.fixed_view::<2, 2>(0, 0).into_owned();
-        let eigen = position.symmetric_eigen();
+        let eigen = self.of_position().symmetric_eigen();
         let major = if eigen.eigenvalues[0] >= eigen.eigenvalues[1] {
             0
         } else {
@@ -55,6 +54,21 @@ impl Covariance {
             minor_m: eigen.eigenvalues[1 - major].max(0.0).sqrt(),
             angle: axis[1].atan2(axis[0]),
         }
+    }
+
+    /// How many standard deviations an offset (x and y, metres) of the position
+    /// is long, squared: the Mahalanobis distance, heading marginalised. Infinite
+    /// where the position has no spread.
+    #[must_use]
+    pub fn squared_deviations(self, (x, y): (f64, f64)) -> f64 {
+        let off = Vector2::new(x, y);
+        self.of_position()
+            .try_inverse()
+            .map_or(f64::INFINITY, |information| off.dot(&(information * off)))
+    }
+
+    fn of_position(self) -> Matrix2<f64> {
+        self.0.fixed_view::<2, 2>(0, 0).into_owned()
     }
 }
 
@@ -74,5 +88,19 @@ mod tests {
         assert!((ellipse.major_m - 2.0).abs() < 1e-12);
         assert!((ellipse.minor_m - 0.1).abs() < 1e-12);
         assert!((ellipse.angle.sin().abs() - 1.0).abs() < 1e-12, "along y");
+    }
+
+    #[test]
+    fn offsets_are_measured_in_deviations() {
+        let along_y = Covariance::from_deviations(0.1, 2.0, 0.01);
+        assert!((along_y.squared_deviations((0.3, 0.0)) - 9.0).abs() < 1e-9);
+        assert!((along_y.squared_deviations((0.1, 2.0)) - 2.0).abs() < 1e-9);
+        // Both together err along the diagonal: along it more is usual than across.
+        let rows = [1.0, 0.8, 0.0, 0.8, 1.0, 0.0, 0.0, 0.0, 1.0];
+        let diagonal = Covariance::from_rows(rows);
+        assert!((diagonal.squared_deviations((0.9, 0.9)) - 0.9).abs() < 1e-12);
+        assert!((diagonal.squared_deviations((0.1, -0.1)) - 0.1).abs() < 1e-12);
+        let none = Covariance::from_deviations(0.0, 1.0, 1.0);
+        assert_eq!(none.squared_deviations((0.0, 0.1)), f64::INFINITY);
     }
 }

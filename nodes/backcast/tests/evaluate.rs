@@ -59,12 +59,14 @@ fn the_object_has_the_keys_of_the_contract() {
             "map_cells",
             "peak_rss_mb",
             "prepare_cpu_ms",
+            "probabilities",
             "scans",
             "success_20cm_3deg",
             "success_50cm_10deg",
             "top16_recall",
             "truths",
             "unique",
+            "unique_in_ellipse",
             "unique_wrong"
         ]
     );
@@ -81,6 +83,13 @@ fn the_object_has_the_keys_of_the_contract() {
     assert_eq!(object["top16_recall"], 0.5);
     assert_eq!(object["unique"], 3);
     assert_eq!(object["unique_wrong"], 1);
+    let said = object["probabilities"].as_array().unwrap();
+    let sum = |key: &str| -> u64 { said.iter().map(|said| said[key].as_u64().unwrap()).sum() };
+    assert_eq!(
+        (sum("answers"), sum("right")),
+        (3, 2),
+        "of the scan that was refused nothing was said"
+    );
     // Errors are of what was found: within the half metre of a success.
     assert!(object["error_m"]["p90"].as_f64().unwrap() <= 0.5);
     for key in ["prepare_cpu_ms", "peak_rss_mb"] {
@@ -124,7 +133,7 @@ fn people_get_a_row_for_each_file() {
     let (code, stdout, _) = run(folder.path(), "evaluate r.mcap again.mcap");
     assert_eq!(code, 0);
     let lines: Vec<&str> = stdout.lines().collect();
-    assert_eq!(lines.len(), 3, "{stdout}");
+    let (lines, below) = lines.split_at(3);
     assert!(
         lines[0].starts_with("recording       cells   scans  truths  50cm10deg %"),
         "{stdout}"
@@ -134,6 +143,14 @@ fn people_get_a_row_for_each_file() {
         assert_eq!(words[..5], [name, "240", "5", "4", "50.0"], "{line}");
         assert_eq!(line.len(), lines[0].len());
     }
+    // Of both files together.
+    assert_eq!(
+        below[..2],
+        ["", "probability  answers  mean %  right %"],
+        "{stdout}"
+    );
+    let answers = |line: &&str| line.split_whitespace().nth(1)?.parse::<u64>().ok();
+    assert_eq!(below[2..].iter().filter_map(answers).sum::<u64>(), 6);
 }
 
 #[test]

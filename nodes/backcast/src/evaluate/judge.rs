@@ -2,8 +2,10 @@
 
 use engine::peaks::Places;
 use geometry::Pose;
+use messages::Verdict;
 use serde::Serialize;
 
+use super::trust::{self, Said, Trust};
 use crate::statistics::{self, Accuracy, Distribution, SUCCESS, Spread};
 
 /// Collects what is known about one file.
@@ -12,6 +14,9 @@ pub(super) struct Judge {
     cpu_ms: Distribution,
     error_m: Distribution,
     error_deg: Distribution,
+    trust: Trust,
+    /// Truths in the ellipse of an answer with the verdict Unique.
+    in_ellipse: u64,
     refused: u64,
     first_refusal: Option<String>,
 }
@@ -58,6 +63,11 @@ pub(super) struct Evaluation {
     pub(super) error_m: Spread,
     /// Angle to the best pose, degrees, of the same answers.
     pub(super) error_deg: Spread,
+    /// Of the answers with the verdict Unique, those in whose ellipse of 95 % the
+    /// true position lies.
+    pub(super) unique_in_ellipse: u64,
+    /// The probabilities of the best places, and how many of them were right.
+    pub(super) probabilities: Vec<Said>,
 }
 
 /// Percentiles of a time.
@@ -78,6 +88,8 @@ impl Judge {
             cpu_ms: all(),
             error_m: all(),
             error_deg: all(),
+            trust: Trust::default(),
+            in_ellipse: 0,
             refused: 0,
             first_refusal: None,
         }
@@ -92,12 +104,19 @@ impl Judge {
         };
         self.accuracy.add(truth, &judged);
         self.cpu_ms.add(cpu_ms);
+        let Some(place) = found.places.first() else {
+            return;
+        };
         let (metres, degrees) = SUCCESS;
-        if let Some(&best) = judged.poses.first()
-            && best.is_within(truth, metres, degrees.to_radians())
-        {
+        let best = place.map_from_laser;
+        let is_right = best.is_within(truth, metres, degrees.to_radians());
+        if is_right {
             self.error_m.add(best.distance_to(truth));
             self.error_deg.add(best.angle_to(truth).to_degrees());
+        }
+        self.trust.add(place.probability, is_right);
+        if found.verdict == Verdict::Unique {
+            self.in_ellipse += u64::from(trust::is_in_ellipse(place, truth));
         }
     }
 
@@ -110,6 +129,11 @@ impl Judge {
             verdict: None,
         };
         self.accuracy.add(truth, &nothing);
+    }
+
+    /// What the answers said of themselves.
+    pub(super) fn trust(&self) -> &Trust {
+        &self.trust
     }
 
     /// What to say about refused scans, if there were any.
@@ -138,6 +162,8 @@ impl Judge {
             peak_rss_mb: effort.peak_rss_mb,
             error_m: self.error_m.spread(),
             error_deg: self.error_deg.spread(),
+            unique_in_ellipse: self.in_ellipse,
+            probabilities: self.trust.said().to_vec(),
         }
     }
 }
@@ -206,6 +232,8 @@ pub(super) mod tests {
         assert_eq!(evaluation.success_20cm_3deg, Some(0.2));
         assert_eq!(evaluation.top16_recall, Some(0.6));
         assert_eq!((evaluation.unique, evaluation.unique_wrong), (3, 1));
+        // 0.1 m off is one deviation, 0.3 m three: 2.4 are 95 %.
+        assert_eq!(evaluation.unique_in_ellipse, 1);
         let Times { median, p90, max } = evaluation.cpu_ms;
         assert_eq!(
             (median, p90, max),
@@ -216,6 +244,16 @@ pub(super) mod tests {
         assert!((evaluation.error_m.median.unwrap() - 0.1).abs() < 1e-12);
         assert!((evaluation.error_m.p90.unwrap() - 0.3).abs() < 1e-12);
         assert!((evaluation.error_deg.p90.unwrap() - 0.3).abs() < 1e-12);
+    }
+
+    #[test]
+    fn what_was_said_is_kept_beside_what_was_right() {
+        let said = evaluation().probabilities;
+        assert_eq!((said[2].from, said[2].to), (0.4, 0.6));
+        let half = (said[2].answers, said[2].right, said[2].mean);
+        assert_eq!(half, (4, 2, Some(0.5)));
+        let others = said.iter().map(|said| said.answers).sum::<u64>() - 4;
+        assert_eq!(others, 0);
     }
 
     #[test]
@@ -235,9 +273,10 @@ pub(super) mod tests {
         for spread in [&mut evaluation.error_m, &mut evaluation.error_deg] {
             (spread.median, spread.p90) = (Some(0.125), None);
         }
+        evaluation.probabilities.truncate(1);
         assert_eq!(
             evaluation.json(),
-            r#"{"bag":"r.mcap","map_cells":720,"scans":9,"truths":5,"success_50cm_10deg":0.4,"success_20cm_3deg":0.2,"top16_recall":0.6,"unique":3,"unique_wrong":1,"cpu_ms":{"median":2.0,"p90":4.0,"max":4.0},"prepare_cpu_ms":12.5,"peak_rss_mb":34.5,"error_m":{"median":0.125,"p90":null},"error_deg":{"median":0.125,"p90":null}}"#
+            r#"{"bag":"r.mcap","map_cells":720,"scans":9,"truths":5,"success_50cm_10deg":0.4,"success_20cm_3deg":0.2,"top16_recall":0.6,"unique":3,"unique_wrong":1,"cpu_ms":{"median":2.0,"p90":4.0,"max":4.0},"prepare_cpu_ms":12.5,"peak_rss_mb":34.5,"error_m":{"median":0.125,"p90":null},"error_deg":{"median":0.125,"p90":null},"unique_in_ellipse":1,"probabilities":[{"from":0.0,"to":0.2,"answers":0,"right":0,"mean":null}]}"#
         );
     }
 }
