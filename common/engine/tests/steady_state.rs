@@ -14,6 +14,7 @@ use std::f64::consts::{FRAC_PI_2, TAU};
 use allocation_counter::measure;
 use engine::fit::{Ends, Terrain};
 use engine::grid::{CellRules, GridFrame};
+use engine::instruction_set::InstructionSet;
 use engine::localizer::{Localizer, LocalizerConfig, Outcome, Prior, Workspace};
 use engine::peaks::{self, PeakConfig, PeakInput};
 use engine::reference;
@@ -196,7 +197,10 @@ fn a_search_that_counts_every_pose_allocates_nothing() {
         let outcome = localizer.search_in(&mut workspace, scan, &|| false);
         counted = outcome.unwrap().unwrap().found.poses_evaluated;
     });
-    assert_eq!(counted, all, "bounds do not help here");
+    // Without wide vectors counting is so slow that bounds help even here.
+    if InstructionSet::best() > InstructionSet::Portable {
+        assert_eq!(counted, all, "bounds do not help here");
+    }
     assert_eq!(count, 0);
 }
 

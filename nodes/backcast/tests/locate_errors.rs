@@ -127,6 +127,11 @@ fn what_is_missing_or_broken_is_named() {
     );
     fails(
         &no_map,
+        "--bag r.mcap --map r.mcap",
+        "r.mcap has no map on /map: name one with --map map.yaml",
+    );
+    fails(
+        &no_map,
         "--bag r.mcap --map nowhere.yaml",
         "cannot read the map description nowhere.yaml",
     );

@@ -46,32 +46,34 @@ impl Workspace {
         keep_distinct(&self.refined, &mut self.places.places, config);
         if let Some(best) = self.places.places.first().copied() {
             let found = &mut self.places;
-            found.judge_by_fit((best, ends.effective_beams()), &mut self.leads, config);
             let pose = grid_pose(terrain.frame, best.map_from_laser);
             terrain.classify(ends, pose, &config.fit, &mut found.classes);
             found.inlier_share = ends.share(&found.classes, BeamClass::Hit);
+            let through = ends.share(&found.classes, BeamClass::Through);
+            let needed = config.needed_lead(best.score, through, ends.effective_beams());
+            found.judge_by_fit((best.score, needed), &mut self.leads, config);
         }
         &self.places
     }
 }
 
 impl Places {
-    /// What the scores of the places allow to say; keeps as many as are wanted.
+    /// What the scores of the places allow to say, where the best one needs such a
+    /// lead to stand alone; keeps as many as are wanted.
     fn judge_by_fit(
         &mut self,
-        (best, beams): (Place, f64),
+        (best, needed): (f64, f64),
         leads: &mut Vec<f64>,
         config: &PeakConfig,
     ) {
         let places = &mut self.places;
         leads.clear();
-        leads.extend(places.iter().map(|place| lead(best.score, place.score)));
+        leads.extend(places.iter().map(|place| lead(best, place.score)));
         likelihood::assign(places, leads, config);
-        let needed = config.needed_lead(best.score, beams);
         let rivals = leads[1..].iter().filter(|&&lead| lead < needed);
         self.alternatives = rivals.count() as u32;
         self.verdict = match () {
-            () if best.score < config.least_score => Verdict::PoorFit,
+            () if best < config.least_score => Verdict::PoorFit,
             () if self.alternatives > 0 => Verdict::Ambiguous,
             () => Verdict::Unique,
         };

@@ -53,6 +53,12 @@ pub struct PeakConfig {
     /// 0..=1: where the scan fits badly, the true place may not be on the map.
     #[arg(long, value_name = "SCORE", default_value_t = 0.80, value_parser = parse_share)]
     pub sure_score: f64,
+    /// Where beams pass through obstacles at the best place, its score counts for
+    /// less against that by this times their share, 0..=1. Which place is best does
+    /// not depend on it, see `--through-penalty`: walls that are seen at a flat
+    /// angle are passed through at the true place, too.
+    #[arg(long, value_name = "SCORE", default_value_t = 0.4, value_parser = parse_share)]
+    pub through_doubt: f64,
     /// A scan of fewer beams needs a lead that is larger by the root of what it
     /// lacks, for chance makes its scores differ so much more, 1..=1000. A beam of
     /// little weight counts for less than one.
@@ -89,10 +95,11 @@ fn parse_scale(text: &str) -> Result<f64, String> {
 }
 
 impl PeakConfig {
-    /// The lead at which a best place with such a score, of so many beams, stands
-    /// alone.
-    pub(super) fn needed_lead(&self, score: f64, beams: f64) -> f64 {
-        let lead = self.least_lead + (self.sure_score - score).max(0.0);
+    /// The lead at which a best place with such a score, where such a share of so
+    /// many beams passes through obstacles, stands alone.
+    pub(super) fn needed_lead(&self, score: f64, through: f64, beams: f64) -> f64 {
+        let trusted = score - self.through_doubt * through;
+        let lead = self.least_lead + (self.sure_score - trusted).max(0.0);
         // Scores are means over the beams.
         lead * (f64::from(self.sure_beams) / beams.max(1.0))
             .max(1.0)
@@ -113,6 +120,7 @@ impl Default for PeakConfig {
             fit: FitConfig::default(),
             least_lead: 0.10,
             sure_score: 0.80,
+            through_doubt: 0.4,
             sure_beams: 100,
             least_score: 0.60,
             lead_scale: 0.025,
@@ -131,13 +139,16 @@ mod tests {
     #[test]
     fn what_a_scan_lacks_is_made_up_for_by_the_lead() {
         let config = PeakConfig::default();
-        let check = |score, beams, expected: f64| {
-            let needed = config.needed_lead(score, beams);
+        let check = |(score, through), beams, expected: f64| {
+            let needed = config.needed_lead(score, through, beams);
             assert!((needed - expected).abs() < 1e-12, "{score}: {needed}");
         };
-        check(0.95, 180.0, 0.10);
-        check(0.80, 100.0, 0.10);
-        check(0.70, 100.0, 0.20);
-        check(0.80, 25.0, 0.20);
+        check((0.95, 0.0), 180.0, 0.10);
+        check((0.80, 0.0), 100.0, 0.10);
+        check((0.70, 0.0), 100.0, 0.20);
+        check((0.80, 0.0), 25.0, 0.20);
+        // A tenth of what passes through obstacles is spared by a good score.
+        check((0.84, 0.1), 100.0, 0.10);
+        check((0.80, 0.5), 100.0, 0.30);
     }
 }

@@ -1,6 +1,7 @@
 //! What all of them take on the command line.
 
-use std::path::PathBuf;
+use std::ffi::OsStr;
+use std::path::{Path, PathBuf};
 
 use engine::directions::Directions;
 use engine::grid::CellRules;
@@ -8,14 +9,16 @@ use engine::heading::HeadingConfig;
 use engine::localizer::LocalizerConfig;
 use engine::peaks::PeakConfig;
 use map::OccupancyGrid;
+use recording::Recording;
 
+use super::session::map_in;
 use crate::BackcastError;
 
 /// The map, the scans that are taken, and how they are searched.
 #[derive(Debug, Clone, clap::Args)]
 pub(crate) struct Options {
-    /// The map, a YAML file as map_server reads it [default: the map in the
-    /// recording]
+    /// The map, a YAML file as map_server reads it, or another recording (.mcap or
+    /// .db3) that holds one [default: the map in the recording]
     #[arg(long, value_name = "FILE")]
     pub(crate) map: Option<PathBuf>,
 
@@ -57,6 +60,16 @@ impl Options {
     /// # Errors
     /// It cannot be read.
     pub(crate) fn load_map(&self) -> Result<Option<OccupancyGrid>, BackcastError> {
-        Ok(self.map.as_ref().map(map::load).transpose()?)
+        self.map.as_deref().map(map_of).transpose()
+    }
+}
+
+/// The map of a YAML file, or that in a recording.
+fn map_of(file: &Path) -> Result<OccupancyGrid, BackcastError> {
+    let is_recording = |name: &OsStr| name == "mcap" || name == "db3";
+    if file.extension().is_some_and(is_recording) {
+        map_in(&Recording::open(file)?)
+    } else {
+        Ok(map::load(file)?)
     }
 }
