@@ -1,6 +1,7 @@
 //! Prints what the network adds: from a new map to its arrival, and from scan to pose
 //! without the time that the engine computes, on one machine and over a cable between
-//! two network namespaces.
+//! two network namespaces; and how long who joins late waits for the map and its
+//! boundary.
 //!
 //!     cargo bench -p bridge --bench across
 //!
@@ -15,12 +16,14 @@ use tests::machine::{ENGINE, LASER, Machine};
 use tests::network::Namespace;
 use tests::world::{World, as_the_graph_has_it};
 use transport::monotonic_ns;
-use transport::testing::{NodeProcess, wait_for, wait_until, wait_until_ready};
+use transport::testing::{NodeProcess, wait_for, wait_for_health, wait_until, wait_until_ready};
 
 /// Times that the recording is gone through.
 const ROUNDS: usize = 4;
 /// Maps that are sent.
 const MAPS: u64 = 40;
+/// Times that somebody joins.
+const JOINS: usize = 10;
 /// Cells along x and y: 3 MB.
 const SIDES: (u32, u32) = (2000, 1500);
 /// The hub of the network, and who calls there.
@@ -40,6 +43,7 @@ fn main() {
     map_to_other(&places, &world);
     scan_on_one(&places, &world);
     scan_over_both(&places, &world);
+    late_joiners(&places, &world);
 }
 
 fn map_to_one(places: &[Namespace; 2], world: &World) {
@@ -74,6 +78,40 @@ fn scan_over_both(places: &[Namespace; 2], world: &World) {
     ]);
     scans(&laser, world).print("scan to pose and back, two machines");
     nodes.into_iter().for_each(NodeProcess::stop);
+}
+
+fn late_joiners(places: &[Namespace; 2], world: &World) {
+    let laser = machine("late", LASER, &places[0]);
+    let here = [laser.bridge(&LISTEN), laser.map_server(&world.map())];
+    let served = laser.graph.subscriber::<topic::Map>().unwrap();
+    wait_until(&laser.graph, &served, |_, _| true);
+    let (mut machines, mut nodes) = (Vec::new(), Vec::new());
+    for i in 0..JOINS {
+        let engine = machine(&format!("late{i}"), ENGINE, &places[1]);
+        let health = engine.graph.subscriber().unwrap();
+        let mut there = engine.engine();
+        // All but the bridge has started.
+        wait_for_health(&engine.graph, &health, |report| {
+            report.node.as_str() == "boundary_extractor"
+        });
+        let start = Instant::now();
+        there.push(engine.bridge(&CONNECT));
+        machines.push(map_and_boundary(&engine, start));
+        nodes.push(map_and_boundary(&engine, Instant::now()));
+        there.into_iter().for_each(NodeProcess::stop);
+    }
+    here.into_iter().for_each(NodeProcess::stop);
+    Times(machines).print("late machine: map and boundary");
+    Times(nodes).print("late node: map and boundary");
+}
+
+/// Milliseconds until somebody who joins the graph of a machine now has both.
+fn map_and_boundary(machine: &Machine<'_>, start: Instant) -> f64 {
+    let maps = machine.graph.subscriber::<topic::Map>().unwrap();
+    let boundaries = machine.graph.subscriber::<topic::Boundary>().unwrap();
+    wait_until(&machine.graph, &maps, |_, _| true);
+    wait_until(&machine.graph, &boundaries, |_, _| true);
+    start.elapsed().as_secs_f64() * 1e3
 }
 
 /// Sends maps on one machine until each has come to the other.
