@@ -7,6 +7,7 @@
 //! those one pose of the 4 × 4 and the heading with the highest bound.
 
 use std::cmp::Reverse;
+use std::collections::BinaryHeap;
 use std::sync::atomic::Ordering;
 
 use messages::Vote;
@@ -51,7 +52,10 @@ pub(super) struct Room {
     interval_bounds: IntervalBounds,
     outlook: Outlook,
     coarse: Vec<Promise>,
-    fine: Vec<Promise>,
+    /// The least first.
+    fine: BinaryHeap<Reverse<Promise>>,
+    /// Blocks of 8 × 8 cells that are looked into.
+    chosen: Vec<usize>,
     spots: Vec<Spot>,
     /// Poses or spots that are distinct.
     pub distinct: Vec<Vote>,
@@ -82,12 +86,10 @@ impl<'a> Alternatives<'a> {
     pub(super) fn find(&mut self, wanted: usize) {
         let part = self.task.promises.len() / COARSE_PART;
         self.take_most_promising(part.max(COARSE_SHARE * wanted));
-        self.bound_all();
-        keep_greatest(&mut self.room.fine, FINE_SHARE * wanted);
+        self.choose(FINE_SHARE * wanted);
         self.room.spots.clear();
-        for i in 0..self.room.fine.len() {
-            let (_, Reverse(block)) = self.room.fine[i];
-            let spot = self.best_spot(block as usize);
+        for i in 0..self.room.chosen.len() {
+            let spot = self.best_spot(self.room.chosen[i]);
             self.room.spots.extend(spot);
         }
         let Room {
@@ -116,25 +118,39 @@ impl<'a> Alternatives<'a> {
         keep_greatest(&mut self.room.coarse, count);
     }
 
-    /// Bounds the 8 × 8 blocks in the coarse ones that were taken.
-    fn bound_all(&mut self) {
+    /// Chooses so many 8 × 8 blocks with the highest bounds in the coarse ones that
+    /// were taken.
+    fn choose(&mut self, count: usize) {
         let (index, program) = (self.task.index, &self.task.programs.fine);
         let sides = (index.fine.columns, index.fine.rows);
         let Room {
             bounds,
             coarse,
             fine,
+            chosen,
             ..
         } = &mut *self.room;
         let within = |block: &Promise| quarters(block.1.0 as usize, index.coarse.columns, sides);
-        let bound = |block: usize| {
-            program.bound(&index.fine, block, 0, bounds);
-            (bounds.greatest(), Reverse(block as u32))
-        };
         let blocks = coarse.iter().flat_map(within);
-        let blocks = blocks.filter(|&block| index.within.holds(Size::Fine, block));
         fine.clear();
-        fine.extend(blocks.map(bound));
+        for block in blocks.filter(|&block| index.within.holds(Size::Fine, block)) {
+            // Where enough are known, others need not be bounded to the end.
+            let floor = match fine.peek() {
+                Some(&Reverse((least, _))) if fine.len() == count => least,
+                _ => 0,
+            };
+            if program.bound(&index.fine, block, floor, bounds) {
+                fine.push(Reverse((bounds.greatest(), Reverse(block as u32))));
+            }
+            if fine.len() > count {
+                fine.pop();
+            }
+        }
+        chosen.clear();
+        chosen.extend(
+            fine.iter()
+                .map(|&Reverse((_, Reverse(block)))| block as usize),
+        );
     }
 
     /// Where in an 8 × 8 block the bound of a small block is highest.
