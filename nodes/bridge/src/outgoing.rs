@@ -150,9 +150,10 @@ fn declare<T: Wire>(
             .sample_miss_detection(MissDetectionConfig::default().heartbeat(HEARTBEAT))
             .publisher_detection()
     } else {
+        // Not express: each message would take one of the two batches of its
+        // priority, so that a third at once is dropped, and Zenoh may go on to drop.
         publisher
             .congestion_control(CongestionControl::Drop)
-            .express(true)
             .advanced()
     };
     Ok(publisher.wait().map_err(failed)?)

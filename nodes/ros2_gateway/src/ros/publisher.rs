@@ -34,8 +34,9 @@ impl<M: RosMessage> Publisher<M> {
             .declare_publisher(endpoint.key.clone())
             // The robot's network may be slower than the graph; what is sent is
             // fresh or of no use.
+            // Not express: each message would take one of the two batches of its
+            // priority, so that a third at once is dropped, and Zenoh may go on to drop.
             .congestion_control(CongestionControl::Drop)
-            .express(true)
             .wait();
         let publisher = publisher.map_err(KeyError::when("publish", &endpoint.key))?;
         Ok(Publisher {
