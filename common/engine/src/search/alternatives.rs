@@ -52,10 +52,8 @@ pub(super) struct Room {
     interval_bounds: IntervalBounds,
     outlook: Outlook,
     coarse: Vec<Promise>,
-    /// The least first.
+    /// Blocks of 8 × 8 cells that are looked into, the least first.
     fine: BinaryHeap<Reverse<Promise>>,
-    /// Blocks of 8 × 8 cells that are looked into.
-    chosen: Vec<usize>,
     spots: Vec<Spot>,
     /// Poses or spots that are distinct.
     pub distinct: Vec<Vote>,
@@ -88,8 +86,9 @@ impl<'a> Alternatives<'a> {
         self.take_most_promising(part.max(COARSE_SHARE * wanted));
         self.choose(FINE_SHARE * wanted);
         self.room.spots.clear();
-        for i in 0..self.room.chosen.len() {
-            let spot = self.best_spot(self.room.chosen[i]);
+        for i in 0..self.room.fine.len() {
+            let Reverse((_, Reverse(block))) = self.room.fine.as_slice()[i];
+            let spot = self.best_spot(block as usize);
             self.room.spots.extend(spot);
         }
         let Room {
@@ -127,7 +126,6 @@ impl<'a> Alternatives<'a> {
             bounds,
             coarse,
             fine,
-            chosen,
             ..
         } = &mut *self.room;
         let within = |block: &Promise| quarters(block.1.0 as usize, index.coarse.columns, sides);
@@ -146,11 +144,6 @@ impl<'a> Alternatives<'a> {
                 fine.pop();
             }
         }
-        chosen.clear();
-        chosen.extend(
-            fine.iter()
-                .map(|&Reverse((_, Reverse(block)))| block as usize),
-        );
     }
 
     /// Where in an 8 × 8 block the bound of a small block is highest.

@@ -13,7 +13,7 @@ const ENDS: [f64; 8] = [0.2, 0.4, 0.6, 0.8, 0.9, 0.95, 0.99, 1.0];
 const HELD: f64 = 0.95;
 
 /// Answers whose best place had a probability in one range.
-#[derive(Debug, Clone, Copy, PartialEq, Default, Serialize)]
+#[derive(Debug, Clone, Copy, PartialEq, Serialize)]
 pub(super) struct Said {
     /// The range; its upper end belongs to it.
     pub(super) from: f64,
