@@ -2,9 +2,10 @@
 //! promise most.
 //!
 //! The search proves which poses stand above its floor. Below, where proofs
-//! would cost more than they are worth, single blocks are looked into: coarse
-//! ones by their promise, the 8 × 8 in them by their bounds, and in each of
-//! those one pose of the 4 × 4 and the heading with the highest bound.
+//! would cost more than they are worth, single blocks are looked into: the 8 × 8
+//! with the highest bounds, and in each of those one pose of the 4 × 4 and the
+//! heading with the highest bound. The search bounded all blocks that the floor
+//! leaves. Where those are too few, coarse blocks are split by their promise.
 
 use std::cmp::Reverse;
 use std::collections::BinaryHeap;
@@ -13,10 +14,11 @@ use std::sync::atomic::Ordering;
 use messages::Vote;
 
 use super::bits::{self, Row};
-use super::descent::quarters;
+use super::descent::{self, quarters};
 use super::interval_bounds::IntervalBounds;
 use super::intervals::{BlockIntervals, SIDE};
 use super::outlook::{CELLS, Outlook};
+use super::queue::Promise;
 use super::sectors;
 use super::set_bounds::{CHUNK, SetBounds};
 use super::task::Task;
@@ -46,23 +48,21 @@ pub(super) struct Alternatives<'a> {
 #[derive(Debug, Default)]
 pub(super) struct Room {
     bounds: SetBounds,
+    coarse_bounds: SetBounds,
     /// Headings at which a block of 8 × 8 cells may matter, a row a chunk.
     masks: Vec<Row>,
     intervals: BlockIntervals,
     interval_bounds: IntervalBounds,
     outlook: Outlook,
     coarse: Vec<Promise>,
-    /// Blocks of 8 × 8 cells that are looked into, the least first.
-    fine: BinaryHeap<Reverse<Promise>>,
+    /// Blocks of 8 × 8 cells that are looked into.
+    fine: Greatest,
     spots: Vec<Spot>,
     /// Poses or spots that are distinct.
     pub distinct: Vec<Vote>,
     /// What was found.
     pub votes: Vec<Vote>,
 }
-
-/// What a block promises; of equal ones the first comes first.
-type Promise = (u16, Reverse<u32>);
 
 /// A block of 4 × 4 cells at a heading.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
@@ -80,14 +80,27 @@ impl<'a> Alternatives<'a> {
     }
 
     /// Leaves in its room poses of the blocks that promise most, in no order, at
-    /// most so many.
-    pub(super) fn find(&mut self, wanted: usize) {
-        let part = self.task.promises.len() / COARSE_PART;
-        self.take_most_promising(part.max(COARSE_SHARE * wanted));
-        self.choose(FINE_SHARE * wanted);
+    /// most so many. The search ended with a floor, in rooms that are given if it
+    /// bounded all blocks that the floor leaves.
+    pub(super) fn find(&mut self, wanted: usize, floor: u16, rooms: Option<&[descent::Room]>) {
+        let fine = &mut self.room.fine;
+        fine.start(FINE_SHARE * wanted);
+        match rooms {
+            Some(rooms) => {
+                let bounded = rooms.iter().flat_map(|room| &room.fine);
+                let left = bounded.filter(|&&(bound, _)| bound >= floor);
+                left.for_each(|&promise| fine.offer(promise));
+            }
+            None => self.bound_all(floor),
+        }
+        if !self.room.fine.is_full() {
+            let part = self.task.promises.len() / COARSE_PART;
+            self.take_most_promising(part.max(COARSE_SHARE * wanted));
+            self.choose();
+        }
         self.room.spots.clear();
-        for i in 0..self.room.fine.len() {
-            let Reverse((_, Reverse(block))) = self.room.fine.as_slice()[i];
+        for i in 0..self.room.fine.blocks().len() {
+            let Reverse((_, Reverse(block))) = self.room.fine.blocks()[i];
             let spot = self.best_spot(block as usize);
             self.room.spots.extend(spot);
         }
@@ -117,9 +130,9 @@ impl<'a> Alternatives<'a> {
         keep_greatest(&mut self.room.coarse, count);
     }
 
-    /// Chooses so many 8 × 8 blocks with the highest bounds in the coarse ones that
-    /// were taken.
-    fn choose(&mut self, count: usize) {
+    /// Chooses the 8 × 8 blocks with the highest bounds in the coarse ones that were
+    /// taken.
+    fn choose(&mut self) {
         let (index, program) = (self.task.index, &self.task.programs.fine);
         let sides = (index.fine.columns, index.fine.rows);
         let Room {
@@ -130,18 +143,42 @@ impl<'a> Alternatives<'a> {
         } = &mut *self.room;
         let within = |block: &Promise| quarters(block.1.0 as usize, index.coarse.columns, sides);
         let blocks = coarse.iter().flat_map(within);
-        fine.clear();
+        fine.start(fine.count);
         for block in blocks.filter(|&block| index.within.holds(Size::Fine, block)) {
             // Where enough are known, others need not be bounded to the end.
-            let floor = match fine.peek() {
-                Some(&Reverse((least, _))) if fine.len() == count => least,
-                _ => 0,
-            };
-            if program.bound(&index.fine, block, floor, bounds) {
-                fine.push(Reverse((bounds.greatest(), Reverse(block as u32))));
+            if program.bound((&index.fine, block), fine.least(), None, bounds) {
+                fine.offer((bounds.greatest(), Reverse(block as u32)));
             }
-            if fine.len() > count {
-                fine.pop();
+        }
+    }
+
+    /// Chooses the 8 × 8 blocks with the highest bounds among all that a floor
+    /// leaves, as the search would have bounded them.
+    fn bound_all(&mut self, floor: u16) {
+        let (index, programs) = (self.task.index, self.task.programs);
+        let sides = (index.fine.columns, index.fine.rows);
+        let Room {
+            bounds,
+            coarse_bounds,
+            fine,
+            ..
+        } = &mut *self.room;
+        coarse_bounds.fit(&programs.coarse, self.task.headings());
+        let coarse = 0..index.coarse.blocks();
+        let coarse = coarse.filter(|&block| index.within.holds(Size::Coarse, block));
+        for block in coarse {
+            let coarse_floor = floor.max(fine.least());
+            let program = &programs.coarse;
+            if !program.bound((&index.coarse, block), coarse_floor, None, coarse_bounds) {
+                continue;
+            }
+            let quarters = quarters(block, index.coarse.columns, sides);
+            for block in quarters.filter(|&block| index.within.holds(Size::Fine, block)) {
+                let fine_floor = floor.max(fine.least());
+                let (around, block_of) = (Some(&*coarse_bounds), (&index.fine, block));
+                if programs.fine.bound(block_of, fine_floor, around, bounds) {
+                    fine.offer((bounds.greatest(), Reverse(block as u32)));
+                }
             }
         }
     }
@@ -150,7 +187,7 @@ impl<'a> Alternatives<'a> {
     fn best_spot(&mut self, block: usize) -> Option<Spot> {
         let (index, program) = (self.task.index, &self.task.programs.fine);
         let Room { bounds, masks, .. } = &mut *self.room;
-        program.bound(&index.fine, block, 0, bounds);
+        program.bound((&index.fine, block), 0, None, bounds);
         let greatest = u32::from(bounds.greatest());
         let least = (greatest * LEAST_THIRTY_SECONDTHS / 32) as u16;
         masks.clear();
@@ -220,6 +257,49 @@ impl<'a> Alternatives<'a> {
             heading: heading as u16,
             intensity,
         })
+    }
+}
+
+/// The greatest so many of what was offered.
+#[derive(Debug, Default)]
+struct Greatest {
+    count: usize,
+    /// The least first.
+    kept: BinaryHeap<Reverse<Promise>>,
+}
+
+impl Greatest {
+    /// Starts with nothing; so many will be kept, of which there is at least one.
+    fn start(&mut self, count: usize) {
+        self.count = count;
+        self.kept.clear();
+    }
+
+    fn is_full(&self) -> bool {
+        self.kept.len() == self.count
+    }
+
+    /// Nothing below this will be kept.
+    fn least(&self) -> u16 {
+        match self.kept.peek() {
+            Some(&Reverse((least, _))) if self.is_full() => least,
+            _ => 0,
+        }
+    }
+
+    fn offer(&mut self, promise: Promise) {
+        if promise.0 < self.least() {
+            return;
+        }
+        self.kept.push(Reverse(promise));
+        if self.kept.len() > self.count {
+            self.kept.pop();
+        }
+    }
+
+    /// What was kept, in no order.
+    fn blocks(&self) -> &[Reverse<Promise>] {
+        self.kept.as_slice()
     }
 }
 

@@ -1,24 +1,26 @@
 //! Bins of distances: one byte for how far a ray is.
 //!
-//! Bins are two cells wide at first and twice as wide in each further piece of
-//! the scale, as tapers of far readings are wider, too. A piece is a line in
+//! Bins are one and a half cells wide at first and wider in each further piece
+//! of the scale, as tapers of far readings are wider, too. A piece is a line in
 //! integers, and the bin is the least of all lines, so a whole row of ranges
 //! is binned at once.
 
 use crate::directions::Directions;
 
 /// Where each piece's line meets distance 0, in bins, and how many cells wide
-/// its bins are. The last line is nearly flat: no ray within a map's sides
+/// its bins are. A step along a diagonal is 1.4 cells long, and no step may take
+/// more than a bin, or directions of different classes would not agree where a
+/// bin is. The last line is nearly flat: no ray within a map's sides
 /// reaches its end, and yet [`NO_RANGE`](crate::program::NO_RANGE) comes out as
 /// [`Bins::NOTHING`] like any other range.
-const PIECES: [(u16, u32); 7] = [
-    (1, 2),
-    (15, 4),
-    (36, 8),
-    (60, 16),
-    (86, 32),
-    (113, 64),
-    (240, 4096),
+const PIECES: [(u16, f64); 7] = [
+    (1, 1.5),
+    (11, 2.0),
+    (51, 4.0),
+    (101, 8.0),
+    (176, 32.0),
+    (224, 256.0),
+    (240, 4096.0),
 ];
 
 /// From which distance on, in steps, a ray falls into which bin.
@@ -40,13 +42,13 @@ impl Bins {
     pub(crate) const NOTHING: u8 = u8::MAX;
 
     /// Up to here, the lines of the last two pieces lie above the others: they
-    /// come in at 1728 cells, which are the fewest steps along a diagonal.
+    /// come in at 1755 cells, which are the fewest steps along a diagonal.
     pub(crate) const NEAR_STEPS: u16 = 1_200;
 
     pub(crate) fn new(directions: &Directions) -> Self {
         let lines = (0..directions.classes()).map(|class| {
             PIECES.map(|(start, cells_per_bin)| {
-                let steps_per_bin = directions.steps_per_cell(class) * f64::from(cells_per_bin);
+                let steps_per_bin = directions.steps_per_cell(class) * cells_per_bin;
                 let slope = (65_536.0 / steps_per_bin).round() as u16;
                 Line { start, slope }
             })
@@ -108,11 +110,11 @@ mod tests {
     }
 
     #[test]
-    fn near_bins_are_two_cells_wide_and_far_ones_wider() {
+    fn near_bins_are_narrow_and_far_ones_wider() {
         let directions = Directions::new(8).unwrap();
         let bins = Bins::new(&directions);
         let along_axis = [0, 1, 2, 3, 4, 40, 60, 1200, 5000].map(|steps| bins.bin(0, steps));
-        assert_eq!(along_axis, [1, 1, 2, 2, 3, 21, 30, 123, 191]);
+        assert_eq!(along_axis, [1, 1, 2, 3, 3, 27, 41, 213, 241]);
         // A diagonal step is 1.4 cells long.
         assert_eq!([1, 2, 3].map(|steps| bins.bin(1, steps)), [1, 2, 3]);
     }

@@ -63,7 +63,7 @@ impl SearchIndex {
             if !self.within.holds(Size::Coarse, block) {
                 return 0;
             }
-            set_program.bound(coarse, block, 0, bounds);
+            set_program.bound((coarse, block), 0, None, bounds);
             bounds.greatest()
         };
         blocks.side = coarse.side;

@@ -1,5 +1,6 @@
 //! One search: from large blocks down to poses, the most promising first.
 
+use std::cmp::Reverse;
 use std::collections::BinaryHeap;
 use std::ops::Range;
 use std::sync::atomic::Ordering;
@@ -8,10 +9,11 @@ use messages::Vote;
 
 use super::bits::{self, Row};
 use super::budget::{Budget, LEVELS, Tally};
+use super::index::SearchIndex;
 use super::interval_bounds::{HEADINGS, IntervalBounds};
 use super::intervals::BlockIntervals;
 use super::outlook::{CELLS, Outlook};
-use super::queue::{Block, Level};
+use super::queue::{Block, Level, Promise};
 use super::set_bounds::{CHUNK, SetBounds};
 use super::task::Task;
 use super::within::Size;
@@ -34,6 +36,9 @@ pub(super) struct Room {
     queue: BinaryHeap<Block>,
     /// Headings at which blocks of 8 × 8 cells may matter, a row a chunk.
     masks: Vec<Row>,
+    /// The bounds of these blocks: of all, once the search is done, whose bound
+    /// is not below the floor.
+    pub fine: Vec<Promise>,
     /// Headings at which blocks of 4 × 4 cells may matter.
     candidates: Vec<Candidate>,
     /// The poses that matter.
@@ -80,6 +85,7 @@ impl Room {
         self.outlook.prepare(task.grid, &task.space.directions);
         self.queue.clear();
         self.masks.clear();
+        self.fine.clear();
         self.candidates.clear();
         self.collector.start(task.config);
         self.poses_evaluated = 0;
@@ -115,6 +121,9 @@ impl<'a> Descent<'a> {
             if stop() {
                 return End::Stopped;
             }
+            if let Some(next) = self.room.queue.peek() {
+                self.prefetch(next);
+            }
             let (level, index) = (block.level, block.index as usize);
             match level {
                 Level::Coarse => self.split_coarse(index),
@@ -130,6 +139,25 @@ impl<'a> Descent<'a> {
             }
         }
         End::Done
+    }
+
+    /// Asks for what is known of a block that is likely the next one.
+    fn prefetch(&self, block: &Block) {
+        let SearchIndex {
+            coarse,
+            fine,
+            intervals,
+            ..
+        } = self.task.index;
+        let index = block.index as usize;
+        match block.level {
+            Level::Coarse => coarse.prefetch(index),
+            Level::Fine { .. } => {
+                let sides = (intervals.columns, intervals.rows);
+                quarters(index, fine.columns, sides).for_each(|block| intervals.prefetch(block));
+            }
+            Level::Leaf { .. } => intervals.prefetch(index),
+        }
     }
 
     /// How many blocks of each level are left that may matter.
@@ -159,9 +187,11 @@ impl<'a> Descent<'a> {
         let floor = self.room.collector.floor();
         let program = &self.task.programs.coarse;
         self.room.tally.bounds += 1;
-        if program.bound(coarse, index, floor, &mut self.room.coarse_bounds) {
+        let bounds = &mut self.room.coarse_bounds;
+        if program.bound((coarse, index), floor, None, bounds) {
             let within = &self.task.index.within;
             let quarters = quarters(index, coarse.columns, (fine.columns, fine.rows));
+            quarters.clone().for_each(|block| fine.prefetch(block));
             for block in quarters.filter(|&block| within.holds(Size::Fine, block)) {
                 self.queue_fine(block);
             }
@@ -174,7 +204,8 @@ impl<'a> Descent<'a> {
         let floor = self.room.collector.floor();
         let (fine, program) = (&self.task.index.fine, &self.task.programs.fine);
         self.room.tally.bounds += 1;
-        if !program.bound(fine, index, floor, &mut self.room.fine_bounds) {
+        let around = Some(&self.room.coarse_bounds);
+        if !program.bound((fine, index), floor, around, &mut self.room.fine_bounds) {
             return;
         }
         let start = self.room.masks.len();
@@ -188,6 +219,7 @@ impl<'a> Descent<'a> {
             return;
         }
         let bound = self.room.fine_bounds.greatest();
+        self.room.fine.push((bound, Reverse(index as u32)));
         let masks = start as u32;
         self.push(bound, bound, index, Level::Fine { masks });
     }
@@ -330,7 +362,7 @@ pub(super) fn quarters(
     index: usize,
     columns: usize,
     (finer_columns, finer_rows): (usize, usize),
-) -> impl Iterator<Item = usize> {
+) -> impl Iterator<Item = usize> + Clone {
     let (x, y) = (2 * (index % columns), 2 * (index / columns));
     let all = [(x, y), (x + 1, y), (x, y + 1), (x + 1, y + 1)];
     let on_map = move |&(x, y): &(usize, usize)| x < finer_columns && y < finer_rows;

@@ -23,7 +23,7 @@ use crate::votes::{CollectConfig, Distinct, VoteSet};
 
 /// Rows of the sets of 8 × 8 blocks stand for `1 << FINE_SHIFT` bins: a block
 /// smears distances by more.
-const FINE_SHIFT: u32 = 1;
+const FINE_SHIFT: u32 = 2;
 
 /// A map prepared for searches: made once for each map.
 #[derive(Debug, Clone)]
@@ -152,18 +152,23 @@ impl SearchIndex {
         } = workspace;
         let task = Task::new(shared, instruction_set.checked(), self, grid, scan, config);
         rooms.resize_with(threads, descent::Room::default);
-        match parts::run(&task, rooms, stop) {
-            End::Done => parts::finish(rooms, found),
+        let bounded = match parts::run(&task, rooms, stop) {
+            End::Done => {
+                parts::finish(rooms, found);
+                Some(&rooms[..])
+            }
             End::Stopped => return None,
             End::Hopeless => {
                 shares.resize_with(threads, Share::default);
                 let collect = (config, &mut *found);
                 self.count_all(instruction_set, shares, scan, collect, stop)?;
+                None
             }
-        }
+        };
         let wanted = config.candidates as usize;
         if wanted > 0 && found.best > 0 {
-            Alternatives::new(&task, alternatives).find(wanted);
+            let floor = found.certified_floor;
+            Alternatives::new(&task, alternatives).find(wanted, floor, bounded);
             let distinct = Distinct::new(scan.1, wanted, &mut alternatives.distinct);
             found.add_candidates(&mut alternatives.votes, distinct);
         }
@@ -336,6 +341,31 @@ mod tests {
                 index.block_bounds_in(&mut workspace, scan, &mut blocks);
                 prop_assert_eq!(&blocks, &index.block_bounds(&program, &space));
             }
+        }
+
+        #[test]
+        fn candidates_are_the_same_where_the_search_was_given_up(
+            (grid, limits, headings) in any_limited_grid(), scan in any_scan(),
+            threads in 1usize..4, wanted in 1usize..40,
+        ) {
+            let space = space_of(&grid, headings);
+            let program = scan.program(&space);
+            let (best, config) = (InstructionSet::best(), CollectConfig::default());
+            let index = SearchIndex::new(&grid, &space).within(limits);
+            let (mut shared, mut rooms) = (Shared::default(), Vec::new());
+            let task = Task::new(&mut shared, best, &index, &grid, (&program, &space), config);
+            let task = task.with_brute_force(Cost(f64::INFINITY));
+            rooms.resize_with(threads, descent::Room::default);
+            prop_assert_eq!(parts::run(&task, &mut rooms, &|| false), End::Done);
+            let mut found = VoteSet::default();
+            parts::finish(&mut rooms, &mut found);
+            let candidates = |rooms| {
+                let mut room = alternatives::Room::default();
+                Alternatives::new(&task, &mut room).find(wanted, found.certified_floor, rooms);
+                room.votes.sort_by_key(|vote| (vote.heading, vote.y, vote.x));
+                room.votes
+            };
+            prop_assert_eq!(candidates(Some(&rooms[..])), candidates(None));
         }
 
         #[test]

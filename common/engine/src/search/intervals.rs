@@ -13,6 +13,7 @@ use crate::directions::Directions;
 use crate::grid::Grid;
 use crate::instruction_set::InstructionSet;
 use crate::search::bins::Bins;
+use crate::search::prefetch::prefetch;
 use build::Source;
 
 /// Cells along the side of a block.
@@ -24,8 +25,11 @@ pub(crate) const READ: usize = 64;
 /// Rows of bytes of a packed block.
 const PACKED: usize = 3;
 
-/// The width in a nibble that stands for all that the block sees.
+/// A nibble that stands for the width of all that the block sees.
 const ALL: u8 = 15;
+
+/// Up to here a nibble is a width itself; each further one is four bins wider.
+const EXACT: u8 = 8;
 
 /// The two intervals of all blocks in all directions.
 #[derive(Debug, Clone)]
@@ -93,6 +97,12 @@ impl RangeIntervals {
         [nearest, farthest, widths]
     }
 
+    /// Asks for the intervals of a block that is soon to be read.
+    pub(crate) fn prefetch(&self, block: usize) {
+        let bytes = PACKED * self.directions;
+        prefetch(&self.packed[bytes * block..][..bytes]);
+    }
+
     /// Unpacks the intervals of a block.
     pub(crate) fn read(&self, block: usize, into: &mut BlockIntervals) {
         let [nearest, farthest, widths] = self.packed(block);
@@ -141,9 +151,12 @@ pub(crate) fn far_start(nearest: u8, farthest: u8, widths: u8) -> u8 {
     farthest.saturating_sub(width(widths >> 4)).max(nearest)
 }
 
+/// The width that a nibble stands for.
 #[inline(always)]
 fn width(nibble: u8) -> u8 {
-    if nibble == ALL { u8::MAX } else { nibble }
+    const START: u8 = 3 * EXACT;
+    let width = nibble.max((4 * nibble).max(START) - START);
+    if nibble == ALL { u8::MAX } else { width }
 }
 
 #[cfg(test)]
@@ -182,10 +195,14 @@ mod tests {
                         let near = (near_first..=near_last).contains(bin);
                         prop_assert!(near || (far_first..=far_last).contains(bin), "{} {:?}", bin, seen);
                     }
-                    // An inner end is seen, too, unless its interval is too wide to say.
+                    // An inner end is seen, too, unless its interval is too wide to
+                    // say: then less than four bins before it.
                     if !seen.is_empty() {
-                        prop_assert!(near_last == far_last || seen.contains(&near_last));
-                        prop_assert!(far_first == near_first || seen.contains(&far_first));
+                        let slack = |width: u8| if width > EXACT { 3 } else { 0 };
+                        let near = near_last - slack(near_last - near_first)..=near_last;
+                        let far = far_first..=far_first + slack(far_last - far_first);
+                        prop_assert!(near_last == far_last || seen.iter().any(|bin| near.contains(bin)));
+                        prop_assert!(far_first == near_first || seen.iter().any(|bin| far.contains(bin)));
                     }
                 }
                 for row in &read.rows {

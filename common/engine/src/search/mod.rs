@@ -32,6 +32,7 @@ mod leaf;
 mod obstacles;
 mod outlook;
 mod parts;
+mod prefetch;
 mod queue;
 mod rows;
 mod sectors;

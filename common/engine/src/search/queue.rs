@@ -1,6 +1,6 @@
 //! Blocks that wait to be searched, the most promising first.
 
-use std::cmp::Ordering;
+use std::cmp::{Ordering, Reverse};
 
 /// A block in the queue.
 #[derive(Debug, Clone, Copy)]
@@ -12,6 +12,9 @@ pub(super) struct Block {
     pub index: u32,
     pub level: Level,
 }
+
+/// What a block promises, and which it is; of equal ones the first comes first.
+pub(super) type Promise = (u16, Reverse<u32>);
 
 /// How large a block is, and what is known of it.
 #[derive(Debug, Clone, Copy)]

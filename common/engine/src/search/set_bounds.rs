@@ -18,6 +18,9 @@ use crate::directions::Directions;
 use crate::instruction_set::InstructionSet;
 use crate::program::ScanProgram;
 
+/// Rests that bearings leave by eight, each with a group of beams.
+const GROUPS: usize = 8;
+
 /// Headings of a chunk: a row less what shifting takes up.
 pub(crate) const CHUNK: usize = 504;
 
@@ -30,7 +33,7 @@ pub(crate) struct SetProgram {
     /// Planes that hold all sums.
     planes: usize,
     /// One for each rest; those that have any beams come first.
-    groups: [Group; 8],
+    groups: [Group; GROUPS],
     /// How many of them have.
     used: usize,
     layout: SpanLayout,
@@ -40,11 +43,21 @@ pub(crate) struct SetProgram {
 #[derive(Debug, Clone, Default)]
 pub(crate) struct SetBounds {
     unit: u16,
-    /// Sums in units, and which headings matter.
-    chunks: Vec<(Planes, Row)>,
+    chunks: Vec<Chunk>,
     spans: Spans,
     /// Rows carried over to the next plane, and to the one after.
     carries: [Vec<Aligned>; 2],
+}
+
+/// Bounds at the headings of a chunk.
+#[derive(Debug, Clone)]
+struct Chunk {
+    /// Sums in units.
+    sums: Planes,
+    /// What the sums were after each group but the last.
+    after: [Planes; GROUPS - 1],
+    /// Which headings matter.
+    valid: Row,
 }
 
 impl SetBounds {
@@ -53,7 +66,11 @@ impl SetBounds {
     pub(crate) fn fit(&mut self, program: &SetProgram, headings: impl Iterator<Item = Row>) {
         self.unit = program.unit;
         self.chunks.clear();
-        let chunks = headings.map(|headings| ([EMPTY; bits::PLANES], headings));
+        let chunks = headings.map(|valid| Chunk {
+            sums: [EMPTY; bits::PLANES],
+            after: [[EMPTY; bits::PLANES]; GROUPS - 1],
+            valid,
+        });
         self.chunks.extend(chunks);
         self.spans.fit(&program.layout);
         let carries = program.groups().iter().map(Group::windows).max();
@@ -64,7 +81,7 @@ impl SetBounds {
 
     /// The greatest bound.
     pub(crate) fn greatest(&self) -> u16 {
-        let greatest = |(sums, valid): &(Planes, Row)| bits::greatest(sums, *valid);
+        let greatest = |chunk: &Chunk| bits::greatest(&chunk.sums, chunk.valid);
         let units = self.chunks.iter().map(greatest).max();
         self.unit * units.unwrap_or(0)
     }
@@ -75,8 +92,8 @@ impl SetBounds {
         let (here_least, around_least) = (least.div_ceil(self.unit), least.div_ceil(around.unit));
         let chunks = self.chunks.iter().zip(&around.chunks);
         chunks.map(move |(here, around)| {
-            let around = bits::at_least(&around.0, around_least, around.1);
-            bits::at_least(&here.0, here_least, around)
+            let around = bits::at_least(&around.sums, around_least, around.valid);
+            bits::at_least(&here.sums, here_least, around)
         })
     }
 }
@@ -143,7 +160,7 @@ impl SetProgram {
         let Some((first, others)) = self.groups().split_first() else {
             return (0, 0);
         };
-        self.run(&self.groups[..1], sets, block, 0, bounds);
+        self.run(&self.groups[..1], (sets, block), 0, None, bounds);
         let here = bounds.greatest() / self.unit;
         let rest: u16 = others.iter().map(|group| group.possible).sum();
         let promise =
@@ -153,35 +170,39 @@ impl SetProgram {
 
     /// Bounds the votes of a block at all headings. Whether any heading may
     /// have `least` votes; if not, the bounds are not finished.
+    ///
+    /// Where the bounds of a block around it by the same beams are given, only
+    /// headings matter at which those reach `least`, and what they say of beams
+    /// that are still to be added tells sooner whether any does.
     pub(crate) fn bound(
         &self,
-        sets: &RangeSets,
-        block: usize,
+        block: (&RangeSets, usize),
         least: u16,
+        around: Option<&SetBounds>,
         bounds: &mut SetBounds,
     ) -> bool {
         let least = least.div_ceil(self.unit);
-        self.run(self.groups(), sets, block, least, bounds)
+        self.run(self.groups(), block, least, around, bounds)
     }
 
     fn run(
         &self,
         groups: &[Group],
-        sets: &RangeSets,
-        block: usize,
+        block: (&RangeSets, usize),
         least: u16,
+        around: Option<&SetBounds>,
         bounds: &mut SetBounds,
     ) -> bool {
         match self.instruction_set {
             // SAFETY: the processor has the instruction set, or it would not be chosen.
             #[cfg(target_arch = "x86_64")]
             InstructionSet::Avx512 => unsafe {
-                self.run_avx512(groups, sets, block, least, bounds)
+                self.run_avx512(groups, block, least, around, bounds)
             },
             // SAFETY: as above.
             #[cfg(target_arch = "x86_64")]
-            InstructionSet::Avx2 => unsafe { self.run_avx2(groups, sets, block, least, bounds) },
-            _ => self.run_with::<Row>(groups, sets, block, least, bounds),
+            InstructionSet::Avx2 => unsafe { self.run_avx2(groups, block, least, around, bounds) },
+            _ => self.run_with::<Row>(groups, block, least, around, bounds),
         }
     }
 
@@ -190,12 +211,12 @@ impl SetProgram {
     fn run_avx512(
         &self,
         groups: &[Group],
-        sets: &RangeSets,
-        block: usize,
+        block: (&RangeSets, usize),
         least: u16,
+        around: Option<&SetBounds>,
         bounds: &mut SetBounds,
     ) -> bool {
-        self.run_with::<super::rows::Avx512>(groups, sets, block, least, bounds)
+        self.run_with::<super::rows::Avx512>(groups, block, least, around, bounds)
     }
 
     #[cfg(target_arch = "x86_64")]
@@ -203,41 +224,65 @@ impl SetProgram {
     fn run_avx2(
         &self,
         groups: &[Group],
-        sets: &RangeSets,
-        block: usize,
+        block: (&RangeSets, usize),
         least: u16,
+        around: Option<&SetBounds>,
         bounds: &mut SetBounds,
     ) -> bool {
-        self.run_with::<super::rows::Avx2>(groups, sets, block, least, bounds)
+        self.run_with::<super::rows::Avx2>(groups, block, least, around, bounds)
     }
 
     #[inline(always)]
     fn run_with<R: BitRow>(
         &self,
         groups: &[Group],
-        sets: &RangeSets,
-        block: usize,
+        (sets, block): (&RangeSets, usize),
         least: u16,
+        around: Option<&SetBounds>,
         bounds: &mut SetBounds,
     ) -> bool {
         bounds.spans.set::<R>(&self.layout, sets.block(block));
         let mut any = false;
-        for (chunk, (sums, valid)) in bounds.chunks.iter_mut().enumerate() {
-            let spans = bounds.spans.from(chunk * CHUNK / 8);
-            let valid = R::from_row(valid);
+        for (place, chunk) in bounds.chunks.iter_mut().enumerate() {
+            let around = around.map(|around| &around.chunks[place]);
+            let spans = bounds.spans.from(place * CHUNK / 8);
+            let mut valid = R::from_row(&chunk.valid);
+            if let Some(around) = around {
+                let sums = |plane: usize| R::from_row(&around.sums[plane]);
+                valid = reaching(self.planes, sums, least, valid);
+            }
             let mut rest: u16 = groups.iter().map(|group| group.possible).sum();
             let mut total = [R::empty(); bits::PLANES];
             let total = &mut total[..self.planes];
-            let mut alive = any_reaches(total, least.saturating_sub(rest), valid);
-            for group in groups {
-                group.add(spans, &mut bounds.carries, total);
-                rest -= group.possible;
-                alive = any_reaches(total, least.saturating_sub(rest), valid);
+            let mut alive = least <= rest && !valid.is_empty();
+            for added in 1..=groups.len() {
                 if !alive {
                     break;
                 }
+                let left = groups.len() - added;
+                // What is around had the groups in this order, and tells what the
+                // first ones give: those come last here.
+                let group = &groups[if around.is_some() { left } else { added - 1 }];
+                group.add(spans, &mut bounds.carries, total);
+                rest -= group.possible;
+                let still = match around {
+                    Some(around) if left > 0 => {
+                        let sums = sum(total, &around.after[left - 1]);
+                        reaching(self.planes, |plane| sums[plane], least, valid)
+                    }
+                    _ => {
+                        let least = least.saturating_sub(rest);
+                        reaching(self.planes, |plane| total[plane], least, valid)
+                    }
+                };
+                alive = !still.is_empty();
+                if let Some(after) = chunk.after.get_mut(added - 1) {
+                    for (after, total) in after.iter_mut().zip(&*total) {
+                        *after = total.to_row();
+                    }
+                }
             }
-            for (sums, total) in sums.iter_mut().zip(total) {
+            for (sums, total) in chunk.sums.iter_mut().zip(total) {
                 *sums = total.to_row();
             }
             any |= alive;
@@ -246,23 +291,35 @@ impl SetProgram {
     }
 }
 
-/// Whether any of the sums that `among` selects is at least `least`.
+/// Sums of numbers, as many planes as they have; no sum needs more.
 #[inline(always)]
-fn any_reaches<R: BitRow>(sums: &[R], least: u16, among: R) -> bool {
-    if usize::from(least) >> sums.len() != 0 {
-        return false;
+fn sum<R: BitRow>(numbers: &[R], others: &Planes) -> [R; bits::PLANES] {
+    let mut sums = [R::empty(); bits::PLANES];
+    let mut carry = R::empty();
+    for ((sum, number), other) in sums.iter_mut().zip(numbers).zip(others) {
+        (*sum, carry) = number.full_adder(R::from_row(other), carry);
+    }
+    sums
+}
+
+/// Where the numbers that `among` selects are at least `least`, by so many planes.
+#[inline(always)]
+fn reaching<R: BitRow>(planes: usize, number: impl Fn(usize) -> R, least: u16, among: R) -> R {
+    if usize::from(least) >> planes != 0 {
+        return R::empty();
     }
     // Equal so far from the highest plane down, or greater already.
     let (mut equal, mut greater) = (among, R::empty());
-    for (plane, sum) in sums.iter().enumerate().rev() {
+    for plane in (0..planes).rev() {
+        let bits = number(plane);
         if least >> plane & 1 == 1 {
-            equal = equal.and(*sum);
+            equal = equal.and(bits);
         } else {
-            greater = greater.or(equal.and(*sum));
-            equal = equal.without(*sum);
+            greater = greater.or(equal.and(bits));
+            equal = equal.without(bits);
         }
     }
-    !greater.or(equal).is_empty()
+    greater.or(equal)
 }
 
 fn greatest_common_divisor(a: u16, b: u16) -> u16 {
@@ -344,7 +401,7 @@ mod tests {
                     let mut found = Vec::new();
                     for block in 0..sets.blocks() {
                         let (rough, _) = set_program.rough(sets, block, &mut bounds);
-                        prop_assert!(set_program.bound(sets, block, 0, &mut bounds));
+                        prop_assert!(set_program.bound((sets, block), 0, None, &mut bounds));
                         prop_assert!(bounds.greatest() <= rough);
                         prop_assert!(u32::from(bounds.greatest()) <= program.highest_possible());
                         let greatest = bounds.greatest();
@@ -355,13 +412,56 @@ mod tests {
                             prop_assert!(at[chunk][bit / 64] >> (bit % 64) & 1 == 1, "{} votes", most);
                         }
                         // Stopping early never loses a heading that reaches the floor.
-                        prop_assert!(set_program.bound(sets, block, greatest, &mut bounds));
-                        prop_assert!(!set_program.bound(sets, block, greatest + 1, &mut bounds));
+                        prop_assert!(set_program.bound((sets, block), greatest, None, &mut bounds));
+                        prop_assert!(!set_program.bound((sets, block), greatest + 1, None, &mut bounds));
                         found.push((rough, greatest));
                     }
                     of_all_sets.push(found);
                 }
                 prop_assert!(of_all_sets.windows(2).all(|pair| pair[0] == pair[1]));
+            }
+        }
+    }
+
+    proptest! {
+        #[test]
+        fn what_is_known_of_the_block_around_changes_no_answer(
+            grid in any_grid(), scan in any_scan(), headings in prop_oneof![1usize..8, Just(80)],
+            share in 0.0..=1.0f64,
+        ) {
+            let space = space_of(&grid, 8 * headings as u32);
+            let directions = &space.directions;
+            let program = scan.program(&space);
+            let bins = Bins::new(directions);
+            let steps = BinSteps::new(&bins, directions, grid.width().max(grid.height()) as u16);
+            let fine = RangeSets::new(&RangeIntervals::new(&grid, directions, &bins), 1);
+            let coarse = fine.joined();
+            let all = Within::new(Limits::none(grid.width()));
+            for instruction_set in InstructionSet::available() {
+                let [outer, inner] = [&coarse, &fine].map(|sets| {
+                    let (mut set_program, mut bounds) = (SetProgram::default(), SetBounds::default());
+                    set_program.make(&program, directions, &steps, sets.shift, instruction_set);
+                    bounds.fit(&set_program, all.headings(directions.count()));
+                    (set_program, bounds)
+                });
+                let ((outer, mut around), (inner, mut alone)) = (outer, inner);
+                let mut within = alone.clone();
+                for block in 0..fine.blocks() {
+                    let (x, y) = (block % fine.columns / 2, block / fine.columns / 2);
+                    prop_assert!(inner.bound((&fine, block), 0, None, &mut alone));
+                    let greatest = alone.greatest();
+                    // About as many as it has, where it matters most.
+                    let least = (f64::from(greatest) * share) as u16;
+                    for least in [0, least, greatest, greatest + 1] {
+                        outer.bound((&coarse, y * coarse.columns + x), least, None, &mut around);
+                        let found = inner.bound((&fine, block), least, Some(&around), &mut within);
+                        prop_assert_eq!(found, greatest >= least);
+                        if found {
+                            prop_assert_eq!(within.greatest(), greatest);
+                            prop_assert!(within.at_least(least, &around).eq(alone.at_least(least, &alone)));
+                        }
+                    }
+                }
             }
         }
     }

@@ -11,6 +11,7 @@ mod marks;
 
 use crate::instruction_set::InstructionSet;
 use crate::search::intervals::{self, RangeIntervals};
+use crate::search::prefetch::prefetch;
 use crate::search::spans::READ;
 use build::{BitRows, build};
 
@@ -156,6 +157,11 @@ impl RangeSets {
             count: end - start,
             bytes: &self.bits[start * self.stride..],
         }
+    }
+
+    /// Asks for the rows of a block that is soon to be read.
+    pub(crate) fn prefetch(&self, block: usize) {
+        prefetch(self.bits_of(block));
     }
 
     fn bits_of(&self, block: usize) -> &[u8] {

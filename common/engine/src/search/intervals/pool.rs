@@ -1,7 +1,7 @@
 //! The packed intervals of a whole strip of blocks in one direction.
 
 use super::strip::Row;
-use super::{ALL, PACKED, SIDE};
+use super::{ALL, EXACT, PACKED, SIDE};
 use crate::search::bins::{Bins, Line};
 use crate::search::lanes::Lanes;
 
@@ -46,13 +46,21 @@ pub(super) fn pool<L: Lanes, const LINES: usize>(
             lanes.and(lanes.add(last, one), lanes.splat(u16::from(u8::MAX))),
             one,
         );
-        let all = lanes.splat(u16::from(ALL));
-        let near = lanes.min(lanes.sub(near_last, first), all);
-        let far = lanes.min(lanes.sub_saturating(last, far_first), all);
+        let near = nibble(lanes, lanes.sub(near_last, first));
+        let far = nibble(lanes, lanes.sub_saturating(last, far_first));
         lanes.store_bytes(first, nearest);
         lanes.store_bytes(last, farthest);
         lanes.store_bytes(lanes.or(near, lanes.shift_nibble(far)), widths);
     }
+}
+
+/// The nibbles that stand for widths, of which some are rounded up.
+#[inline(always)]
+fn nibble<L: Lanes>(lanes: L, widths: L::Vector) -> L::Vector {
+    const QUARTER: u16 = 1 << 14;
+    let up = lanes.splat(3 * u16::from(EXACT) + 3);
+    let quarters = lanes.mul_high(lanes.add_saturating(widths, up), lanes.splat(QUARTER));
+    lanes.min(lanes.min(widths, quarters), lanes.splat(u16::from(ALL)))
 }
 
 /// First and last number of the near part and of the far part of each lane.
