@@ -10,7 +10,7 @@ use messages::Vote;
 use super::bits::{self, Row};
 use super::budget::{Budget, LEVELS, Tally};
 use super::index::SearchIndex;
-use super::interval_bounds::{HEADINGS, IntervalBounds};
+use super::interval_bounds::{HEADINGS, IntervalBounds, Window};
 use super::intervals::BlockIntervals;
 use super::outlook::{CELLS, Outlook};
 use super::queue::{Block, Level, Promise};
@@ -34,8 +34,10 @@ pub(super) struct Room {
     interval_bounds: IntervalBounds,
     outlook: Outlook,
     queue: BinaryHeap<Block>,
-    /// Headings at which blocks of 8 × 8 cells may matter, a row a chunk.
+    /// Headings at which a block of 8 × 8 cells may matter, a row a chunk.
     masks: Vec<Row>,
+    /// Headings at which blocks of 8 × 8 cells may matter.
+    windows: Vec<Window>,
     /// The bounds of these blocks: of all, once the search is done, whose bound
     /// is not below the floor.
     pub fine: Vec<Promise>,
@@ -84,7 +86,7 @@ impl Room {
         self.fine_bounds.fit(&programs.fine, task.headings());
         self.outlook.prepare(task.grid, &task.space.directions);
         self.queue.clear();
-        self.masks.clear();
+        self.windows.clear();
         self.fine.clear();
         self.candidates.clear();
         self.collector.start(task.config);
@@ -127,7 +129,9 @@ impl<'a> Descent<'a> {
             let (level, index) = (block.level, block.index as usize);
             match level {
                 Level::Coarse => self.split_coarse(index),
-                Level::Fine { masks } => self.split_fine(index, masks as usize),
+                Level::Fine { start, end } => {
+                    self.split_fine(index, &(start as usize..end as usize))
+                }
                 Level::Leaf { start, end } => self.count(index, start as usize..end as usize),
             }
             budget.spend(
@@ -208,65 +212,76 @@ impl<'a> Descent<'a> {
         if !program.bound((fine, index), floor, around, &mut self.room.fine_bounds) {
             return;
         }
-        let start = self.room.masks.len();
-        self.room.masks.extend(
-            self.room
-                .fine_bounds
-                .at_least(floor, &self.room.coarse_bounds),
-        );
-        if self.room.masks[start..].iter().all(bits::is_empty) {
-            self.room.masks.truncate(start);
-            return;
+        let Room {
+            masks,
+            windows,
+            coarse_bounds,
+            fine_bounds,
+            ..
+        } = &mut *self.room;
+        masks.clear();
+        masks.extend(fine_bounds.at_least(floor, coarse_bounds));
+        let start = windows.len();
+        for (chunk, mask) in masks.iter_mut().enumerate() {
+            let mut before = *mask;
+            while let Some((first, among)) = bits::take_window(mask) {
+                let taken = std::array::from_fn(|i| before[i] & !mask[i]);
+                before = *mask;
+                windows.push(Window {
+                    first: (chunk * CHUNK + first) as u16,
+                    among,
+                    rests: program.rests(fine_bounds, chunk, taken),
+                });
+            }
         }
-        let bound = self.room.fine_bounds.greatest();
-        self.room.fine.push((bound, Reverse(index as u32)));
-        let masks = start as u32;
-        self.push(bound, bound, index, Level::Fine { masks });
+        let (start, end) = (start as u32, windows.len() as u32);
+        if start < end {
+            let bound = fine_bounds.greatest();
+            self.room.fine.push((bound, Reverse(index as u32)));
+            self.push(bound, bound, index, Level::Fine { start, end });
+        }
     }
 
     /// Queues the blocks of 4 × 4 cells in one of 8 × 8.
-    fn split_fine(&mut self, index: usize, masks: usize) {
+    fn split_fine(&mut self, index: usize, windows: &Range<usize>) {
         let (fine, intervals) = (&self.task.index.fine, &self.task.index.intervals);
         let within = &self.task.index.within;
         let quarters = quarters(index, fine.columns, (intervals.columns, intervals.rows));
         for block in quarters.filter(|&block| within.holds(Size::Small, block)) {
-            self.queue_leaf(block, masks);
+            self.queue_leaf(block, windows.clone());
         }
     }
 
     /// Queues a block of 4 × 4 cells at the headings at which it may matter.
-    fn queue_leaf(&mut self, index: usize, masks: usize) {
+    fn queue_leaf(&mut self, index: usize, windows: Range<usize>) {
         let floor = self.room.collector.floor();
-        let index_intervals = &self.task.index.intervals;
-        index_intervals.read(index, &mut self.room.intervals);
         let start = self.room.candidates.len();
-        for chunk in 0..self.task.space.directions.count().div_ceil(CHUNK) {
-            let mut mask = self.room.masks[masks + chunk];
-            while let Some((heading, among)) = bits::take_window(&mut mask) {
-                self.bound_leaf(chunk * CHUNK + heading, among, floor);
+        let Room {
+            intervals,
+            interval_bounds: bounds,
+            windows: known,
+            candidates,
+            tally,
+            ..
+        } = &mut *self.room;
+        self.task.index.intervals.read(index, intervals);
+        let program = &self.task.programs.interval;
+        for window in &known[windows] {
+            tally.windows += 1;
+            if !program.bound_within(intervals, window, floor, bounds) {
+                continue;
             }
+            let bounded = bits::ones(window.among).map(|lane| (lane, bounds.all[lane]));
+            let left = bounded.filter(|&(_, bound)| bound >= floor);
+            candidates.extend(left.map(|(lane, bound)| Candidate {
+                heading: window.first + lane as u16,
+                bound,
+            }));
         }
-        let candidates = self.room.candidates[start..].iter();
-        if let Some(bound) = candidates.map(|candidate| candidate.bound).max() {
-            let (start, end) = (start as u32, self.room.candidates.len() as u32);
+        let left = candidates[start..].iter();
+        if let Some(bound) = left.map(|candidate| candidate.bound).max() {
+            let (start, end) = (start as u32, candidates.len() as u32);
             self.push(bound, bound, index, Level::Leaf { start, end });
-        }
-    }
-
-    /// Notes the headings from `first` on at which the block whose intervals
-    /// were read may matter.
-    fn bound_leaf(&mut self, first: usize, among: u64, floor: u16) {
-        let (program, bounds) = (&self.task.programs.interval, &mut self.room.interval_bounds);
-        self.room.tally.windows += 1;
-        if !program.bound(&self.room.intervals, first, among, floor, bounds) {
-            return;
-        }
-        for lane in bits::ones(among) {
-            let bound = bounds.all[lane];
-            if bound >= floor {
-                let heading = (first + lane) as u16;
-                self.room.candidates.push(Candidate { heading, bound });
-            }
         }
     }
 

@@ -7,6 +7,7 @@
 use super::bits;
 use super::intervals::{self, BlockIntervals};
 use super::sectors;
+use super::set_bounds::Rests;
 use super::steps::BinSteps;
 use crate::directions::Directions;
 use crate::instruction_set::InstructionSet;
@@ -41,9 +42,31 @@ impl Default for IntervalBounds {
 pub(crate) struct IntervalProgram {
     directions: usize,
     instruction_set: InstructionSet,
-    beams: Vec<IntervalBeam>,
+    by_sector: Order,
+    /// By groups of beams as bounds from sets have them.
+    by_group: Order,
     /// What all beams from each sector on can give.
     possible_from: Vec<u16>,
+}
+
+/// Some of the headings at which a block may matter, less than [`HEADINGS`] behind
+/// the first.
+#[derive(Debug, Clone, Copy)]
+pub(crate) struct Window {
+    pub first: u16,
+    /// Those that may, from the first on.
+    pub among: u64,
+    /// What the beams from each group on give at most at any of them.
+    pub rests: Rests,
+}
+
+/// An order in which beams are added.
+#[derive(Debug, Clone, Default)]
+struct Order {
+    beams: Vec<IntervalBeam>,
+    /// Pieces whose votes fit into a byte: where each ends, and how many sectors or
+    /// groups are complete then.
+    pieces: Vec<(usize, usize)>,
 }
 
 #[derive(Debug, Clone)]
@@ -58,26 +81,44 @@ struct IntervalBeam {
 }
 
 impl IntervalProgram {
+    /// Lays out a program; `shifts` tell the groups of beams in their order, see
+    /// [`SetProgram::shifts`](super::set_bounds::SetProgram::shifts).
     pub(crate) fn make(
         &mut self,
         program: &ScanProgram,
         directions: &Directions,
         steps: &BinSteps,
+        shifts: impl Iterator<Item = u32>,
         instruction_set: InstructionSet,
     ) {
         self.directions = directions.count();
         self.instruction_set = instruction_set;
-        self.beams.clear();
-        self.possible_from.clear();
         let sectors = sectors::count(program.beams());
+        self.possible_from.clear();
         self.possible_from.resize(sectors + 1, 0);
+        self.by_sector.clear();
         for (place, beam) in sectors::order(program.beams()).enumerate() {
             self.possible_from[place / sectors::BEAMS] += program.peak(beam);
             let beam = IntervalBeam::new(program, beam, directions, steps);
-            self.beams.push(beam);
+            self.by_sector.beams.push(beam);
         }
         for sector in (0..sectors).rev() {
             self.possible_from[sector] += self.possible_from[sector + 1];
+            self.by_sector
+                .end_at(sectors::beams(sector, program.beams()).end, sector + 1);
+        }
+        self.by_sector.pieces.reverse();
+        self.by_group.clear();
+        for (group, shift) in shifts.enumerate() {
+            let beams = self.by_sector.beams.iter();
+            let beams = beams.filter(|beam| u32::from(beam.bearing % 8) == shift);
+            let start = self.by_group.beams.len();
+            self.by_group.beams.extend(beams.cloned());
+            let end = self.by_group.beams.len();
+            for full in (start..end).step_by(sectors::BEAMS).skip(1) {
+                self.by_group.end_at(full, group);
+            }
+            self.by_group.end_at(end, group + 1);
         }
     }
 
@@ -92,13 +133,39 @@ impl IntervalProgram {
         least: u16,
         bounds: &mut IntervalBounds,
     ) -> bool {
+        let at = (block, heading, among);
+        self.run(&self.by_sector, at, least, &self.possible_from, bounds)
+    }
+
+    /// The same at the headings of a window that is known of a block around it, but
+    /// for the bounds of sectors. What is known of the beams that are missing tells
+    /// sooner whether any heading may have so many votes.
+    pub(crate) fn bound_within(
+        &self,
+        block: &BlockIntervals,
+        window: &Window,
+        least: u16,
+        bounds: &mut IntervalBounds,
+    ) -> bool {
+        let at = (block, usize::from(window.first), window.among);
+        self.run(&self.by_group, at, least, &window.rests, bounds)
+    }
+
+    /// `rests` has what the beams give at most that are missing when so many
+    /// sectors or groups are complete.
+    fn run(
+        &self,
+        order: &Order,
+        at: (&BlockIntervals, usize, u64),
+        least: u16,
+        rests: &[u16],
+        bounds: &mut IntervalBounds,
+    ) -> bool {
         match self.instruction_set {
             // SAFETY: the processor has the instruction set, see its choice.
             #[cfg(target_arch = "x86_64")]
-            InstructionSet::Avx512 => unsafe {
-                self.bound_avx512(block, heading, among, least, bounds)
-            },
-            _ => self.bound_portable(block, heading, among, least, bounds),
+            InstructionSet::Avx512 => unsafe { self.run_avx512(order, at, least, rests, bounds) },
+            _ => self.run_portable(order, at, least, rests, bounds),
         }
     }
 
@@ -113,12 +180,12 @@ impl IntervalProgram {
         }
     }
 
-    fn bound_portable(
+    fn run_portable(
         &self,
-        block: &BlockIntervals,
-        heading: usize,
-        among: u64,
+        order: &Order,
+        (block, heading, among): (&BlockIntervals, usize, u64),
         least: u16,
+        rests: &[u16],
         bounds: &mut IntervalBounds,
     ) -> bool {
         bounds.all = [0; HEADINGS];
@@ -130,7 +197,7 @@ impl IntervalProgram {
             count += 1;
         }
         let lanes = &lanes[..count];
-        for (sector, beams) in self.beams.chunks(sectors::BEAMS).enumerate() {
+        for (beams, complete) in order.pieces() {
             let mut bytes = [0u8; HEADINGS];
             for beam in beams {
                 let start = self.direction(beam, heading);
@@ -150,7 +217,7 @@ impl IntervalProgram {
                 *all += u16::from(votes);
             }
             bounds.sectors.push(bytes);
-            let missing = least.saturating_sub(self.possible_from[sector + 1]);
+            let missing = least.saturating_sub(rests[complete]);
             if lanes.iter().all(|&lane| bounds.all[lane] < missing) {
                 return false;
             }
@@ -160,12 +227,12 @@ impl IntervalProgram {
 
     #[cfg(target_arch = "x86_64")]
     #[target_feature(enable = "avx512f,avx512bw,avx512vl,avx512vbmi")]
-    fn bound_avx512(
+    fn run_avx512(
         &self,
-        block: &BlockIntervals,
-        heading: usize,
-        among: u64,
+        order: &Order,
+        (block, heading, among): (&BlockIntervals, usize, u64),
         least: u16,
+        rests: &[u16],
         bounds: &mut IntervalBounds,
     ) -> bool {
         use std::arch::x86_64::*;
@@ -176,7 +243,7 @@ impl IntervalProgram {
         // Widening puts lanes 0..8, 16..24, … into the low sums.
         let mut alive = false;
         bounds.sectors.clear();
-        for (sector, beams) in self.beams.chunks(sectors::BEAMS).enumerate() {
+        for (beams, complete) in order.pieces() {
             let mut bytes = zero;
             for beam in beams {
                 let d = self.direction(beam, heading);
@@ -203,8 +270,7 @@ impl IntervalProgram {
             bounds.sectors.push(stored);
             low = _mm512_add_epi16(low, _mm512_unpacklo_epi8(bytes, zero));
             high = _mm512_add_epi16(high, _mm512_unpackhi_epi8(bytes, zero));
-            let missing =
-                _mm512_set1_epi16(least.saturating_sub(self.possible_from[sector + 1]) as i16);
+            let missing = _mm512_set1_epi16(least.saturating_sub(rests[complete]) as i16);
             let reaching = unpacked_mask(
                 _mm512_cmpge_epu16_mask(low, missing),
                 _mm512_cmpge_epu16_mask(high, missing),
@@ -236,6 +302,26 @@ fn unpacked_mask(low: u32, high: u32) -> u64 {
             .sum()
     };
     spread(low) | spread(high) << 8
+}
+
+impl Order {
+    fn clear(&mut self) {
+        self.beams.clear();
+        self.pieces.clear();
+    }
+
+    fn end_at(&mut self, end: usize, complete: usize) {
+        self.pieces.push((end, complete));
+    }
+
+    #[inline(always)]
+    fn pieces(&self) -> impl Iterator<Item = (&[IntervalBeam], usize)> {
+        let mut start = 0;
+        self.pieces.iter().map(move |&(end, complete)| {
+            let beams = &self.beams[std::mem::replace(&mut start, end)..end];
+            (beams, complete)
+        })
+    }
 }
 
 impl IntervalBeam {
@@ -288,6 +374,81 @@ impl IntervalBeam {
             bearing: program.bearing(beam) as u16,
             centre: centre as u8,
             base: base as u8,
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use proptest::prelude::*;
+
+    use super::super::bins::Bins;
+    use super::super::bits::Row;
+    use super::super::descent::quarters;
+    use super::super::intervals::RangeIntervals;
+    use super::super::set_bounds::{CHUNK, SetBounds, SetProgram};
+    use super::super::sets::RangeSets;
+    use super::super::within::Within;
+    use super::*;
+    use crate::limits::Limits;
+    use crate::testing::{any_grid, any_scan, space_of};
+
+    proptest! {
+        #[test]
+        fn what_is_known_of_the_block_around_changes_no_bound(
+            grid in any_grid(), scan in any_scan(), headings in prop_oneof![1usize..8, Just(80)],
+            share in 0.5..=1.0f64,
+        ) {
+            let space = space_of(&grid, 8 * headings as u32);
+            let directions = &space.directions;
+            let program = scan.program(&space);
+            let bins = Bins::new(directions);
+            let steps = BinSteps::new(&bins, directions, grid.width().max(grid.height()) as u16);
+            let intervals = RangeIntervals::new(&grid, directions, &bins);
+            let fine = RangeSets::new(&intervals, 1);
+            let coarse = fine.joined();
+            let all = Within::new(Limits::none(grid.width()));
+            let mut read = BlockIntervals::default();
+            for instruction_set in InstructionSet::available() {
+                let [(outer, mut around), (inner, mut within)] = [&coarse, &fine].map(|sets| {
+                    let (mut set_program, mut bounds) = (SetProgram::default(), SetBounds::default());
+                    set_program.make(&program, directions, &steps, sets.shift, instruction_set);
+                    bounds.fit(&set_program, all.headings(directions.count()));
+                    (set_program, bounds)
+                });
+                let mut interval = IntervalProgram::default();
+                interval.make(&program, directions, &steps, inner.shifts(), instruction_set);
+                let (mut alone, mut known) = (IntervalBounds::default(), IntervalBounds::default());
+                for block in 0..fine.blocks() {
+                    let (x, y) = (block % fine.columns / 2, block / fine.columns / 2);
+                    outer.bound((&coarse, y * coarse.columns + x), 1, None, &mut around);
+                    if !inner.bound((&fine, block), 1, Some(&around), &mut within) {
+                        continue;
+                    }
+                    let least = (f64::from(within.greatest()) * share) as u16;
+                    let masks: Vec<Row> = within.at_least(least.max(1), &around).collect();
+                    for (chunk, mut mask) in masks.into_iter().enumerate() {
+                        let mut before = mask;
+                        while let Some((first, among)) = bits::take_window(&mut mask) {
+                            let taken = std::array::from_fn(|i| before[i] & !mask[i]);
+                            before = mask;
+                            let rests = inner.rests(&within, chunk, taken);
+                            let first = chunk * CHUNK + first;
+                            let window = Window { first: first as u16, among, rests };
+                            let sides = (intervals.columns, intervals.rows);
+                            for small in quarters(block, fine.columns, sides) {
+                                intervals.read(small, &mut read);
+                                let plain = interval.bound(&read, first, among, least, &mut alone);
+                                let found = interval.bound_within(&read, &window, least, &mut known);
+                                prop_assert_eq!(found, plain);
+                                for lane in bits::ones(among).filter(|_| plain) {
+                                    prop_assert_eq!(known.all[lane], alone.all[lane]);
+                                }
+                            }
+                        }
+                    }
+                }
+            }
         }
     }
 }

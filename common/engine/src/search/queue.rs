@@ -21,8 +21,8 @@ pub(super) type Promise = (u16, Reverse<u32>);
 pub(super) enum Level {
     /// 16 × 16 cells, roughly bounded.
     Coarse,
-    /// 8 × 8 cells, at the headings of these masks.
-    Fine { masks: u32 },
+    /// 8 × 8 cells, at the headings of these windows.
+    Fine { start: u32, end: u32 },
     /// 4 × 4 cells, at these candidate headings.
     Leaf { start: u32, end: u32 },
 }

@@ -24,6 +24,14 @@ const GROUPS: usize = 8;
 /// Headings of a chunk: a row less what shifting takes up.
 pub(crate) const CHUNK: usize = 504;
 
+/// What the beams from each group on give at most, in votes: more for the first
+/// group than they can, and 0 behind the last.
+pub(crate) type Rests = [u16; GROUPS + 1];
+
+/// Up to this group it is told exactly: few bounds that are given up are given up
+/// later.
+const TOLD: usize = 4;
+
 /// A scan program laid out for bounds from sets; made anew for each scan.
 #[derive(Debug, Clone)]
 pub(crate) struct SetProgram {
@@ -142,6 +150,45 @@ impl SetProgram {
         self.planes = possible
             .checked_ilog2()
             .map_or(0, |plane| plane as usize + 1);
+    }
+
+    /// What the bearings of each group of beams leave by eight.
+    pub(crate) fn shifts(&self) -> impl Iterator<Item = u32> {
+        self.groups().iter().map(Group::shift)
+    }
+
+    /// What the beams from each group on give at most at some headings of a chunk,
+    /// by bounds that were found within those of a block around.
+    pub(crate) fn rests(&self, bounds: &SetBounds, chunk: usize, among: Row) -> Rests {
+        match self.instruction_set {
+            // SAFETY: the processor has the instruction set, or it would not be chosen.
+            #[cfg(target_arch = "x86_64")]
+            InstructionSet::Avx512 => unsafe { self.rests_avx512(bounds, chunk, among) },
+            _ => self.rests_with::<Row>(bounds, chunk, among),
+        }
+    }
+
+    #[cfg(target_arch = "x86_64")]
+    #[target_feature(enable = "avx512f,avx512bw,avx512dq,avx512vl")]
+    fn rests_avx512(&self, bounds: &SetBounds, chunk: usize, among: Row) -> Rests {
+        self.rests_with::<super::rows::Avx512>(bounds, chunk, among)
+    }
+
+    #[inline(always)]
+    fn rests_with<R: BitRow>(&self, bounds: &SetBounds, chunk: usize, among: Row) -> Rests {
+        let (chunk, among) = (&bounds.chunks[chunk], R::from_row(&among));
+        let others = self.used.saturating_sub(1);
+        let mut rests = Rests::default();
+        rests[0] = u16::MAX;
+        for missing in 1..=others {
+            // The last groups were added first.
+            let sums = &chunk.after[others - missing][..self.planes];
+            rests[missing] = match missing {
+                ..=TOLD => self.unit * greatest(sums, among),
+                _ => rests[missing - 1],
+            };
+        }
+        rests
     }
 
     /// Those that have beams.
@@ -300,6 +347,20 @@ fn sum<R: BitRow>(numbers: &[R], others: &Planes) -> [R; bits::PLANES] {
         (*sum, carry) = number.full_adder(R::from_row(other), carry);
     }
     sums
+}
+
+/// The greatest of the numbers that `among` selects.
+#[inline(always)]
+fn greatest<R: BitRow>(numbers: &[Row], among: R) -> u16 {
+    let (mut candidates, mut value) = (among, 0);
+    for (plane, bits) in numbers.iter().enumerate().rev() {
+        let higher = candidates.and(R::from_row(bits));
+        if !higher.is_empty() {
+            candidates = higher;
+            value |= 1 << plane;
+        }
+    }
+    value
 }
 
 /// Where the numbers that `among` selects are at least `least`, by so many planes.

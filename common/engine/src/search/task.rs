@@ -64,8 +64,9 @@ impl Programs {
         ] {
             set_program.make(program, directions, steps, sets.shift, instruction_set);
         }
+        let shifts = self.fine.shifts();
         self.interval
-            .make(program, directions, steps, instruction_set);
+            .make(program, directions, steps, shifts, instruction_set);
         self.leaf.make(program, directions, instruction_set);
         self.beams = program.beams();
     }
