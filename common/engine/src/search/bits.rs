@@ -84,6 +84,18 @@ pub(crate) fn take_window(row: &mut Row) -> Option<(usize, u64)> {
     Some((64 * word + shift as usize, window))
 }
 
+/// The row whose bits from a place on are those of a window, see [`take_window`].
+pub(crate) fn row_of((first, window): (usize, u64)) -> Row {
+    let (word, shift) = (first / 64, first % 64);
+    let mut row = EMPTY;
+    row[word] = window << shift;
+    if let Some(next) = row.get_mut(word + 1) {
+        // Twice, as nothing may be shifted by 64.
+        *next = window >> 1 >> (63 - shift);
+    }
+    row
+}
+
 #[cfg(test)]
 mod tests {
     use proptest::collection::vec;
@@ -115,8 +127,12 @@ mod tests {
         fn windows_hold_each_bit_once(row in any::<[u64; 8]>(), sparse in any::<[u64; 8]>()) {
             let row: Row = std::array::from_fn(|i| row[i] & sparse[i]);
             let (mut rest, mut found) = (row, EMPTY);
+            let mut before = rest;
             while let Some((first, window)) = take_window(&mut rest) {
                 prop_assert_eq!(window & 1, 1);
+                let taken: Row = std::array::from_fn(|i| before[i] & !rest[i]);
+                prop_assert_eq!(row_of((first, window)), taken);
+                before = rest;
                 for i in ones(window).map(|i| first + i) {
                     prop_assert_eq!(found[i / 64] >> (i % 64) & 1, 0);
                     found[i / 64] |= 1 << (i % 64);

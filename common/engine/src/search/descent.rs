@@ -130,7 +130,7 @@ impl<'a> Descent<'a> {
             match level {
                 Level::Coarse => self.split_coarse(index),
                 Level::Fine { start, end } => {
-                    self.split_fine(index, &(start as usize..end as usize))
+                    self.split_fine(index, &(start as usize..end as usize));
                 }
                 Level::Leaf { start, end } => self.count(index, start as usize..end as usize),
             }
@@ -223,14 +223,12 @@ impl<'a> Descent<'a> {
         masks.extend(fine_bounds.at_least(floor, coarse_bounds));
         let start = windows.len();
         for (chunk, mask) in masks.iter_mut().enumerate() {
-            let mut before = *mask;
             while let Some((first, among)) = bits::take_window(mask) {
-                let taken = std::array::from_fn(|i| before[i] & !mask[i]);
-                before = *mask;
+                let row = bits::row_of((first, among));
                 windows.push(Window {
                     first: (chunk * CHUNK + first) as u16,
                     among,
-                    rests: program.rests(fine_bounds, chunk, taken),
+                    rests: program.rests(fine_bounds, chunk, row),
                 });
             }
         }

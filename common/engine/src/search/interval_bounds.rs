@@ -428,11 +428,8 @@ mod tests {
                     let least = (f64::from(within.greatest()) * share) as u16;
                     let masks: Vec<Row> = within.at_least(least.max(1), &around).collect();
                     for (chunk, mut mask) in masks.into_iter().enumerate() {
-                        let mut before = mask;
                         while let Some((first, among)) = bits::take_window(&mut mask) {
-                            let taken = std::array::from_fn(|i| before[i] & !mask[i]);
-                            before = mask;
-                            let rests = inner.rests(&within, chunk, taken);
+                            let rests = inner.rests(&within, chunk, bits::row_of((first, among)));
                             let first = chunk * CHUNK + first;
                             let window = Window { first: first as u16, among, rests };
                             let sides = (intervals.columns, intervals.rows);
