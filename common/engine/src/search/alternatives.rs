@@ -83,20 +83,24 @@ impl<'a> Alternatives<'a> {
     /// most so many. The search ended with a floor, in rooms that are given if it
     /// bounded all blocks that the floor leaves.
     pub(super) fn find(&mut self, wanted: usize, floor: u16, rooms: Option<&[descent::Room]>) {
-        let fine = &mut self.room.fine;
-        fine.start(FINE_SHARE * wanted);
+        let count = FINE_SHARE * wanted;
+        self.room.fine.start(count);
         match rooms {
             Some(rooms) => {
                 let bounded = rooms.iter().flat_map(|room| &room.fine);
                 let left = bounded.filter(|&&(bound, _)| bound >= floor);
-                left.for_each(|&promise| fine.offer(promise));
+                left.for_each(|&promise| self.room.fine.offer(promise));
             }
-            None => self.bound_all(floor),
+            None => {
+                self.take_most_promising(usize::MAX);
+                self.choose(floor);
+            }
         }
         if !self.room.fine.is_full() {
             let part = self.task.promises.len() / COARSE_PART;
             self.take_most_promising(part.max(COARSE_SHARE * wanted));
-            self.choose();
+            self.room.fine.start(count);
+            self.choose(1);
         }
         self.room.spots.clear();
         for i in 0..self.room.fine.blocks().len() {
@@ -130,53 +134,35 @@ impl<'a> Alternatives<'a> {
         keep_greatest(&mut self.room.coarse, count);
     }
 
-    /// Chooses the 8 × 8 blocks with the highest bounds in the coarse ones that were
-    /// taken.
-    fn choose(&mut self) {
-        let (index, program) = (self.task.index, &self.task.programs.fine);
-        let sides = (index.fine.columns, index.fine.rows);
-        let Room {
-            bounds,
-            coarse,
-            fine,
-            ..
-        } = &mut *self.room;
-        let within = |block: &Promise| quarters(block.1.0 as usize, index.coarse.columns, sides);
-        let blocks = coarse.iter().flat_map(within);
-        fine.start(fine.count);
-        for block in blocks.filter(|&block| index.within.holds(Size::Fine, block)) {
-            // Where enough are known, others need not be bounded to the end.
-            if program.bound((&index.fine, block), fine.least(), None, bounds) {
-                fine.offer((bounds.greatest(), Reverse(block as u32)));
-            }
-        }
-    }
-
-    /// Chooses the 8 × 8 blocks with the highest bounds among all that a floor
-    /// leaves, as the search would have bounded them.
-    fn bound_all(&mut self, floor: u16) {
+    /// Chooses the 8 × 8 blocks with the highest bounds, none of them below a floor,
+    /// in the coarse ones that were taken.
+    fn choose(&mut self, floor: u16) {
         let (index, programs) = (self.task.index, self.task.programs);
         let sides = (index.fine.columns, index.fine.rows);
         let Room {
             bounds,
             coarse_bounds,
+            coarse,
             fine,
             ..
         } = &mut *self.room;
         coarse_bounds.fit(&programs.coarse, self.task.headings());
-        let coarse = 0..index.coarse.blocks();
-        let coarse = coarse.filter(|&block| index.within.holds(Size::Coarse, block));
-        for block in coarse {
-            let coarse_floor = floor.max(fine.least());
-            let program = &programs.coarse;
-            if !program.bound((&index.coarse, block), coarse_floor, None, coarse_bounds) {
+        for &(_, Reverse(around)) in &*coarse {
+            let around = around as usize;
+            // Where enough are known, others need not be bounded to the end.
+            let least = floor.max(fine.least());
+            let block = (&index.coarse, around);
+            if !programs.coarse.bound(block, least, None, coarse_bounds) {
                 continue;
             }
-            let quarters = quarters(block, index.coarse.columns, sides);
+            let quarters = quarters(around, index.coarse.columns, sides);
             for block in quarters.filter(|&block| index.within.holds(Size::Fine, block)) {
-                let fine_floor = floor.max(fine.least());
-                let (around, block_of) = (Some(&*coarse_bounds), (&index.fine, block));
-                if programs.fine.bound(block_of, fine_floor, around, bounds) {
+                let least = floor.max(fine.least());
+                let around = Some(&*coarse_bounds);
+                if programs
+                    .fine
+                    .bound((&index.fine, block), least, around, bounds)
+                {
                     fine.offer((bounds.greatest(), Reverse(block as u32)));
                 }
             }

@@ -2,6 +2,8 @@
 //!
 //! Plane `j` of numbers holds bit `j` of all of them.
 
+use super::rows::BitRow;
+
 /// 512 bits, one for each heading of a chunk.
 pub(crate) type Row = [u64; 8];
 
@@ -14,19 +16,13 @@ pub(crate) const PLANES: usize = 16;
 /// 512 numbers, by plane.
 pub(crate) type Planes = [Row; PLANES];
 
-/// Applies an operation word by word.
-#[inline(always)]
-fn zip(a: Row, b: Row, op: impl Fn(u64, u64) -> u64) -> Row {
-    std::array::from_fn(|i| op(a[i], b[i]))
-}
-
 /// The greatest of the numbers that `among` selects.
-pub(crate) fn greatest(numbers: &Planes, among: Row) -> u16 {
-    let mut candidates = among;
-    let mut value = 0;
+#[inline(always)]
+pub(crate) fn greatest<R: BitRow>(numbers: &[Row], among: R) -> u16 {
+    let (mut candidates, mut value) = (among, 0);
     for (plane, bits) in numbers.iter().enumerate().rev() {
-        let higher = zip(candidates, *bits, |a, b| a & b);
-        if !is_empty(&higher) {
+        let higher = candidates.and(R::from_row(bits));
+        if !higher.is_empty() {
             candidates = higher;
             value |= 1 << plane;
         }
@@ -34,26 +30,29 @@ pub(crate) fn greatest(numbers: &Planes, among: Row) -> u16 {
     value
 }
 
-/// Where the numbers that `among` selects are at least `least`.
-pub(crate) fn at_least(numbers: &Planes, least: u16, among: Row) -> Row {
+/// Where the numbers that `among` selects, of so many planes, are at least `least`.
+#[inline(always)]
+pub(crate) fn at_least<R: BitRow>(
+    planes: usize,
+    number: impl Fn(usize) -> R,
+    least: u16,
+    among: R,
+) -> R {
+    if usize::from(least) >> planes != 0 {
+        return R::empty();
+    }
     // Equal so far from the highest plane down, or greater already.
-    let (mut equal, mut greater) = (among, EMPTY);
-    for (plane, &bits) in numbers.iter().enumerate().rev() {
+    let (mut equal, mut greater) = (among, R::empty());
+    for plane in (0..planes).rev() {
+        let bits = number(plane);
         if least >> plane & 1 == 1 {
-            equal = zip(equal, bits, |equal, bits| equal & bits);
+            equal = equal.and(bits);
         } else {
-            let higher = zip(equal, bits, |equal, bits| equal & bits);
-            greater = zip(greater, higher, |greater, higher| greater | higher);
-            equal = zip(equal, bits, |equal, bits| equal & !bits);
+            greater = greater.or(equal.and(bits));
+            equal = equal.without(bits);
         }
     }
-    zip(greater, equal, |greater, equal| greater | equal)
-}
-
-/// Whether no bit is set.
-#[inline(always)]
-pub(crate) fn is_empty(row: &Row) -> bool {
-    row.iter().fold(0, |all, word| all | word) == 0
+    greater.or(equal)
 }
 
 /// The places of the set bits of a word, ascending.
@@ -117,7 +116,7 @@ mod tests {
             let selected = |i: &usize| among[i / 64] >> (i % 64) & 1 == 1;
             let most = (0..512).filter(selected).map(|i| plain[i]).max();
             prop_assert_eq!(greatest(&planes, among), most.unwrap_or(0));
-            let found = at_least(&planes, least, among);
+            let found = at_least(PLANES, |plane| planes[plane], least, among);
             for i in 0..512 {
                 prop_assert_eq!(found[i / 64] >> (i % 64) & 1 == 1, selected(&i) && plain[i] >= least);
             }
@@ -139,7 +138,7 @@ mod tests {
                 }
             }
             prop_assert_eq!(found, row);
-            prop_assert_eq!(is_empty(&row), row == EMPTY);
+            prop_assert_eq!(row.is_empty(), row == EMPTY);
         }
     }
 }

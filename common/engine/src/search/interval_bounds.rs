@@ -104,10 +104,9 @@ impl IntervalProgram {
         }
         for sector in (0..sectors).rev() {
             self.possible_from[sector] += self.possible_from[sector + 1];
-            self.by_sector
-                .end_at(sectors::beams(sector, program.beams()).end, sector + 1);
         }
-        self.by_sector.pieces.reverse();
+        let ends = (0..sectors).map(|sector| sectors::beams(sector, program.beams()).end);
+        self.by_sector.pieces.extend(ends.zip(1..));
         self.by_group.clear();
         for (group, shift) in shifts.enumerate() {
             let beams = self.by_sector.beams.iter();
@@ -115,10 +114,9 @@ impl IntervalProgram {
             let start = self.by_group.beams.len();
             self.by_group.beams.extend(beams.cloned());
             let end = self.by_group.beams.len();
-            for full in (start..end).step_by(sectors::BEAMS).skip(1) {
-                self.by_group.end_at(full, group);
-            }
-            self.by_group.end_at(end, group + 1);
+            let full = (start..end).step_by(sectors::BEAMS).skip(1);
+            let pieces = full.map(|end| (end, group)).chain([(end, group + 1)]);
+            self.by_group.pieces.extend(pieces);
         }
     }
 
@@ -310,10 +308,6 @@ impl Order {
         self.pieces.clear();
     }
 
-    fn end_at(&mut self, end: usize, complete: usize) {
-        self.pieces.push((end, complete));
-    }
-
     #[inline(always)]
     fn pieces(&self) -> impl Iterator<Item = (&[IntervalBeam], usize)> {
         let mut start = 0;
@@ -382,16 +376,14 @@ impl IntervalBeam {
 mod tests {
     use proptest::prelude::*;
 
-    use super::super::bins::Bins;
     use super::super::bits::Row;
     use super::super::descent::quarters;
-    use super::super::intervals::RangeIntervals;
-    use super::super::set_bounds::{CHUNK, SetBounds, SetProgram};
-    use super::super::sets::RangeSets;
-    use super::super::within::Within;
+    use super::super::index::SearchIndex;
+    use super::super::set_bounds::{CHUNK, SetBounds};
+    use super::super::task::{Programs, Shared, Task};
     use super::*;
-    use crate::limits::Limits;
     use crate::testing::{any_grid, any_scan, space_of};
+    use crate::votes::CollectConfig;
 
     proptest! {
         #[test]
@@ -400,29 +392,23 @@ mod tests {
             share in 0.5..=1.0f64,
         ) {
             let space = space_of(&grid, 8 * headings as u32);
-            let directions = &space.directions;
             let program = scan.program(&space);
-            let bins = Bins::new(directions);
-            let steps = BinSteps::new(&bins, directions, grid.width().max(grid.height()) as u16);
-            let intervals = RangeIntervals::new(&grid, directions, &bins);
-            let fine = RangeSets::new(&intervals, 1);
-            let coarse = fine.joined();
-            let all = Within::new(Limits::none(grid.width()));
+            let index = SearchIndex::new(&grid, &space);
+            let SearchIndex { coarse, fine, intervals, .. } = &index;
             let mut read = BlockIntervals::default();
             for instruction_set in InstructionSet::available() {
-                let [(outer, mut around), (inner, mut within)] = [&coarse, &fine].map(|sets| {
-                    let (mut set_program, mut bounds) = (SetProgram::default(), SetBounds::default());
-                    set_program.make(&program, directions, &steps, sets.shift, instruction_set);
-                    bounds.fit(&set_program, all.headings(directions.count()));
-                    (set_program, bounds)
-                });
-                let mut interval = IntervalProgram::default();
-                interval.make(&program, directions, &steps, inner.shifts(), instruction_set);
+                let mut shared = Shared::default();
+                let scan = (&program, &space);
+                let task = Task::new(&mut shared, instruction_set, &index, &grid, scan, CollectConfig::default());
+                let Programs { coarse: outer, fine: inner, interval, .. } = task.programs;
+                let (mut around, mut within) = (SetBounds::default(), SetBounds::default());
+                around.fit(outer, task.headings());
+                within.fit(inner, task.headings());
                 let (mut alone, mut known) = (IntervalBounds::default(), IntervalBounds::default());
                 for block in 0..fine.blocks() {
                     let (x, y) = (block % fine.columns / 2, block / fine.columns / 2);
-                    outer.bound((&coarse, y * coarse.columns + x), 1, None, &mut around);
-                    if !inner.bound((&fine, block), 1, Some(&around), &mut within) {
+                    outer.bound((coarse, y * coarse.columns + x), 1, None, &mut around);
+                    if !inner.bound((fine, block), 1, Some(&around), &mut within) {
                         continue;
                     }
                     let least = (f64::from(within.greatest()) * share) as u16;

@@ -100,8 +100,14 @@ impl SetBounds {
         let (here_least, around_least) = (least.div_ceil(self.unit), least.div_ceil(around.unit));
         let chunks = self.chunks.iter().zip(&around.chunks);
         chunks.map(move |(here, around)| {
-            let around = bits::at_least(&around.sums, around_least, around.valid);
-            bits::at_least(&here.sums, here_least, around)
+            let at_least = |chunk: &Chunk, least, among| {
+                bits::at_least(bits::PLANES, |plane| chunk.sums[plane], least, among)
+            };
+            at_least(
+                here,
+                here_least,
+                at_least(around, around_least, around.valid),
+            )
         })
     }
 }
@@ -180,12 +186,12 @@ impl SetProgram {
         let others = self.used.saturating_sub(1);
         let mut rests = Rests::default();
         rests[0] = u16::MAX;
-        for missing in 1..=others {
+        for group in 1..=others {
             // The last groups were added first.
-            let sums = &chunk.after[others - missing][..self.planes];
-            rests[missing] = match missing {
-                ..=TOLD => self.unit * greatest(sums, among),
-                _ => rests[missing - 1],
+            let sums = &chunk.after[others - group][..self.planes];
+            rests[group] = match group {
+                ..=TOLD => self.unit * bits::greatest(sums, among),
+                _ => rests[group - 1],
             };
         }
         rests
@@ -218,9 +224,10 @@ impl SetProgram {
     /// Bounds the votes of a block at all headings. Whether any heading may
     /// have `least` votes; if not, the bounds are not finished.
     ///
-    /// Where the bounds of a block around it by the same beams are given, only
-    /// headings matter at which those reach `least`, and what they say of beams
-    /// that are still to be added tells sooner whether any does.
+    /// Where the bounds of a block around it by the same beams are given, found
+    /// alone and with no more than `least`, only headings matter at which those
+    /// reach `least`, and what they say of beams that are still to be added tells
+    /// sooner whether any does.
     pub(crate) fn bound(
         &self,
         block: (&RangeSets, usize),
@@ -296,7 +303,7 @@ impl SetProgram {
             let mut valid = R::from_row(&chunk.valid);
             if let Some(around) = around {
                 let sums = |plane: usize| R::from_row(&around.sums[plane]);
-                valid = reaching(self.planes, sums, least, valid);
+                valid = bits::at_least(self.planes, sums, least, valid);
             }
             let mut rest: u16 = groups.iter().map(|group| group.possible).sum();
             let mut total = [R::empty(); bits::PLANES];
@@ -315,11 +322,11 @@ impl SetProgram {
                 let still = match around {
                     Some(around) if left > 0 => {
                         let sums = sum(total, &around.after[left - 1]);
-                        reaching(self.planes, |plane| sums[plane], least, valid)
+                        bits::at_least(self.planes, |plane| sums[plane], least, valid)
                     }
                     _ => {
                         let least = least.saturating_sub(rest);
-                        reaching(self.planes, |plane| total[plane], least, valid)
+                        bits::at_least(self.planes, |plane| total[plane], least, valid)
                     }
                 };
                 alive = !still.is_empty();
@@ -347,40 +354,6 @@ fn sum<R: BitRow>(numbers: &[R], others: &Planes) -> [R; bits::PLANES] {
         (*sum, carry) = number.full_adder(R::from_row(other), carry);
     }
     sums
-}
-
-/// The greatest of the numbers that `among` selects.
-#[inline(always)]
-fn greatest<R: BitRow>(numbers: &[Row], among: R) -> u16 {
-    let (mut candidates, mut value) = (among, 0);
-    for (plane, bits) in numbers.iter().enumerate().rev() {
-        let higher = candidates.and(R::from_row(bits));
-        if !higher.is_empty() {
-            candidates = higher;
-            value |= 1 << plane;
-        }
-    }
-    value
-}
-
-/// Where the numbers that `among` selects are at least `least`, by so many planes.
-#[inline(always)]
-fn reaching<R: BitRow>(planes: usize, number: impl Fn(usize) -> R, least: u16, among: R) -> R {
-    if usize::from(least) >> planes != 0 {
-        return R::empty();
-    }
-    // Equal so far from the highest plane down, or greater already.
-    let (mut equal, mut greater) = (among, R::empty());
-    for plane in (0..planes).rev() {
-        let bits = number(plane);
-        if least >> plane & 1 == 1 {
-            equal = equal.and(bits);
-        } else {
-            greater = greater.or(equal.and(bits));
-            equal = equal.without(bits);
-        }
-    }
-    greater.or(equal)
 }
 
 fn greatest_common_divisor(a: u16, b: u16) -> u16 {
@@ -429,12 +402,15 @@ mod tests {
     use proptest::prelude::*;
 
     use super::super::bins::Bins;
+    use super::super::index::SearchIndex;
     use super::super::intervals::RangeIntervals;
+    use super::super::task::{Shared, Task};
     use super::super::within::Within;
     use super::*;
     use crate::limits::Limits;
     use crate::reference;
     use crate::testing::{any_grid, any_scan, space_of};
+    use crate::votes::CollectConfig;
 
     proptest! {
         #[test]
@@ -491,31 +467,29 @@ mod tests {
             share in 0.0..=1.0f64,
         ) {
             let space = space_of(&grid, 8 * headings as u32);
-            let directions = &space.directions;
             let program = scan.program(&space);
-            let bins = Bins::new(directions);
-            let steps = BinSteps::new(&bins, directions, grid.width().max(grid.height()) as u16);
-            let fine = RangeSets::new(&RangeIntervals::new(&grid, directions, &bins), 1);
-            let coarse = fine.joined();
-            let all = Within::new(Limits::none(grid.width()));
+            let index = SearchIndex::new(&grid, &space);
+            let SearchIndex { coarse, fine, .. } = &index;
             for instruction_set in InstructionSet::available() {
-                let [outer, inner] = [&coarse, &fine].map(|sets| {
-                    let (mut set_program, mut bounds) = (SetProgram::default(), SetBounds::default());
-                    set_program.make(&program, directions, &steps, sets.shift, instruction_set);
-                    bounds.fit(&set_program, all.headings(directions.count()));
-                    (set_program, bounds)
+                let mut shared = Shared::default();
+                let scan = (&program, &space);
+                let task = Task::new(&mut shared, instruction_set, &index, &grid, scan, CollectConfig::default());
+                let (outer, inner) = (&task.programs.coarse, &task.programs.fine);
+                let [mut around, mut alone] = [outer, inner].map(|set_program| {
+                    let mut bounds = SetBounds::default();
+                    bounds.fit(set_program, task.headings());
+                    bounds
                 });
-                let ((outer, mut around), (inner, mut alone)) = (outer, inner);
                 let mut within = alone.clone();
                 for block in 0..fine.blocks() {
                     let (x, y) = (block % fine.columns / 2, block / fine.columns / 2);
-                    prop_assert!(inner.bound((&fine, block), 0, None, &mut alone));
+                    prop_assert!(inner.bound((fine, block), 0, None, &mut alone));
                     let greatest = alone.greatest();
                     // About as many as it has, where it matters most.
                     let least = (f64::from(greatest) * share) as u16;
                     for least in [0, least, greatest, greatest + 1] {
-                        outer.bound((&coarse, y * coarse.columns + x), least, None, &mut around);
-                        let found = inner.bound((&fine, block), least, Some(&around), &mut within);
+                        outer.bound((coarse, y * coarse.columns + x), least, None, &mut around);
+                        let found = inner.bound((fine, block), least, Some(&around), &mut within);
                         prop_assert_eq!(found, greatest >= least);
                         if found {
                             prop_assert_eq!(within.greatest(), greatest);
