@@ -2,12 +2,14 @@
 
 use std::time::{Duration, Instant};
 
+use crossbeam::channel::{Sender, unbounded};
 use messages::{ScanHeader, topic};
 use network::KeyError;
 use transport::monotonic_ns;
 use wire::{Preamble, Received};
 use zenoh::bytes::Encoding;
-use zenoh::query::{Reply, ReplyError};
+use zenoh::query::ReplyError;
+use zenoh::sample::Sample;
 use zenoh::{Session, Wait};
 
 use crate::LocateError;
@@ -15,6 +17,13 @@ use crate::error::REFUSED;
 
 /// Between two attempts, where nobody answers or all are busy.
 const PAUSE: Duration = Duration::from_millis(20);
+
+/// How long an attempt may say nothing before another one is made beside it; that one
+/// has twice as long, so that slow servers are not asked again and again.
+///
+/// Zenoh ends what a server has been asked when that server goes, all but what is sent
+/// while it is being forgotten: nobody ends that. So it must not take the whole deadline.
+const SILENCE: Duration = Duration::from_secs(1);
 
 /// Asks whoever answers for the map of this name where a scan was taken, again and
 /// again until the deadline: a server that dies meanwhile costs no answer.
@@ -36,47 +45,89 @@ pub fn ask(
     };
     let question = wire::encode::<topic::Scan>(&preamble, header, ranges)?;
     let due = Instant::now() + deadline;
+    let (events, heard) = unbounded();
+    // How many attempts are under way, and when to make the next one.
+    let (mut open, mut next, mut silence) = (0, Instant::now(), SILENCE);
     loop {
-        let remaining = due.saturating_duration_since(Instant::now());
-        if remaining.is_zero() {
+        let now = Instant::now();
+        if now >= due {
             let deadline_ms = deadline.as_millis();
             return Err(LocateError::Late { deadline_ms });
         }
-        match attempt(session, map, &question, remaining)? {
-            Some(answer) => return Ok(answer),
-            None => std::thread::sleep(PAUSE.min(remaining)),
+        if now >= next {
+            if open > 0 {
+                silence *= 2;
+            }
+            attempt(session, map, &question, due - now, events.clone())?;
+            (open, next) = (open + 1, now + silence);
+        }
+        let Ok(event) = heard.recv_deadline(next.min(due)) else {
+            continue;
+        };
+        match event {
+            Event::Says(Ok(sample)) => return answer(&sample),
+            Event::Says(Err(error)) => refusal(&error).map_or(Ok(()), Err)?,
+            Event::IsOver => {
+                open -= 1;
+                if open == 0 {
+                    next = Instant::now() + PAUSE;
+                }
+            }
         }
     }
 }
 
-/// None if nobody answers, or nobody has the time.
+fn answer(sample: &Sample) -> Result<Received<topic::Hypotheses>, LocateError> {
+    let encoding = sample.encoding().to_string();
+    let payload = sample.payload().to_bytes();
+    let mut answer = wire::decode::<topic::Hypotheses>(&encoding, &payload)?;
+    answer.rebase(monotonic_ns());
+    Ok(answer)
+}
+
+/// What comes of an attempt.
+enum Event {
+    Says(Result<Sample, ReplyError>),
+    /// Last of it: nobody will say any more.
+    IsOver,
+}
+
+/// Says that an attempt is over, when Zenoh drops it.
+struct Attempt(Sender<Event>);
+
+impl Attempt {
+    fn hears(&self, event: Event) {
+        // Where nobody hears it, the question has its answer.
+        let _ = self.0.send(event);
+    }
+}
+
+impl Drop for Attempt {
+    fn drop(&mut self) {
+        self.hears(Event::IsOver);
+    }
+}
+
+/// Asks once; what comes of it goes to `events`.
 fn attempt(
     session: &Session,
     map: &str,
     question: &[u8],
     remaining: Duration,
-) -> Result<Option<Received<topic::Hypotheses>>, LocateError> {
+    events: Sender<Event>,
+) -> Result<(), LocateError> {
     let key = wire::locate(map);
     let milliseconds = remaining.as_millis().clamp(1, 60_000);
-    let replies = session
+    let attempt = Attempt(events);
+    session
         .get(format!("{key}?deadline_ms={milliseconds}"))
         .payload(question)
         .encoding(Encoding::from(wire::encoding::<topic::Scan>()))
         .timeout(remaining)
+        .callback(move |reply| attempt.hears(Event::Says(reply.into_result())))
         .wait()
         .map_err(KeyError::when("ask", &key))?;
-    let mut replies = replies.into_iter();
-    match replies.next().map(Reply::into_result) {
-        None => Ok(None),
-        Some(Ok(sample)) => {
-            let encoding = sample.encoding().to_string();
-            let payload = sample.payload().to_bytes();
-            let mut answer = wire::decode::<topic::Hypotheses>(&encoding, &payload)?;
-            answer.rebase(monotonic_ns());
-            Ok(Some(answer))
-        }
-        Some(Err(error)) => refusal(&error).map_or(Ok(None), Err),
-    }
+    Ok(())
 }
 
 /// Why asking again does not help, if it does not.

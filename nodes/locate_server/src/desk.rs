@@ -5,7 +5,7 @@
 //! costs is bounded before it is looked at.
 
 use std::sync::atomic::{AtomicUsize, Ordering};
-use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
+use std::sync::{Arc, Mutex, MutexGuard, PoisonError, Weak};
 use std::time::{Duration, Instant};
 
 use crossbeam::channel::{Receiver, Sender, TrySendError, bounded, unbounded};
@@ -69,6 +69,8 @@ pub(crate) struct Desk {
     /// Questions that wait or are being searched.
     busy: Arc<AtomicUsize>,
     team: Mutex<Team>,
+    /// What others have.
+    handed_on: Mutex<Vec<Weak<Handed>>>,
     default_deadline: Duration,
     counts: Arc<Counts>,
 }
@@ -114,6 +116,7 @@ impl Desk {
             workers,
             busy: Arc::clone(&busy),
             team: Mutex::default(),
+            handed_on: Mutex::default(),
             default_deadline,
             counts: Arc::clone(counts),
         };
@@ -129,6 +132,24 @@ impl Desk {
     pub(crate) fn team(&self) -> MutexGuard<'_, Team> {
         // Whoever held it changes one number at a time, so it is sound.
         self.team.lock().unwrap_or_else(PoisonError::into_inner)
+    }
+
+    fn handed_on(&self) -> MutexGuard<'_, Vec<Weak<Handed>>> {
+        // It is changed by one call at a time, so it is sound.
+        let handed_on = self.handed_on.lock();
+        handed_on.unwrap_or_else(PoisonError::into_inner)
+    }
+
+    /// Another server is gone, and what it has comes back: a question that is sent while
+    /// Zenoh forgets that server would be answered, or ended, by nobody.
+    pub(crate) fn leave(&self, other: &str) {
+        self.team().leave(other);
+        let handed_on: Vec<_> = self.handed_on().iter().filter_map(Weak::upgrade).collect();
+        for handed in handed_on.iter().filter(|handed| handed.other == other) {
+            if let Some(job) = handed.take() {
+                self.take_back(job);
+            }
+        }
     }
 
     /// A question to all servers: it may be handed on.
@@ -202,11 +223,16 @@ impl Desk {
             .encoding(job.query.encoding().cloned().unwrap_or_default())
             .payload(job.query.payload().cloned().unwrap_or_default())
             .timeout(remaining);
-        let handed = Handed {
+        let handed = Arc::new(Handed {
             desk: Arc::clone(self),
             other,
             job: Mutex::new(Some(job)),
-        };
+        });
+        self.handed_on().push(Arc::downgrade(&handed));
+        // It may have left before that, and who leaves does so once.
+        if !self.team().has(&handed.other) {
+            return;
+        }
         // Where asking fails, what was handed on is dropped here, and so comes back.
         let _ = asking.callback(move |reply| handed.hear(&reply)).wait();
     }
@@ -249,6 +275,10 @@ impl Handed {
 impl Drop for Handed {
     fn drop(&mut self) {
         self.desk.team().done(&self.other);
+        // Among them this one: nobody can reach it any more.
+        let mut handed_on = self.desk.handed_on();
+        handed_on.retain(|handed| handed.strong_count() > 0);
+        drop(handed_on);
         if let Some(job) = self.take() {
             self.desk.take_back(job);
         }

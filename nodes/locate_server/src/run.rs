@@ -190,7 +190,7 @@ fn meet(
                 );
                 match (comes, fits) {
                     (true, true) => desk.team().join(session, since, workers),
-                    (false, _) => desk.team().leave(session),
+                    (false, _) => desk.leave(session),
                     // It answers those who ask it, of the map that it has.
                     (true, false) => {}
                 }

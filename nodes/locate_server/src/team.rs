@@ -37,6 +37,11 @@ impl Team {
         self.others.remove(session);
     }
 
+    /// Whether that server is there.
+    pub(crate) fn has(&self, session: &str) -> bool {
+        self.others.contains_key(session)
+    }
+
     /// Whether a server that is there `since` that time is the one that takes the
     /// questions to all of them: the one that is there longest, so that who comes takes
     /// them from nobody.
@@ -122,7 +127,9 @@ mod tests {
         // Said twice, it is still one.
         team.join("b", 0, 1);
         assert!(team.hand_on(1, 1).is_none());
+        assert!(team.has("b"));
         team.leave("b");
+        assert!(!team.has("b"));
         team.done("b");
         assert!(team.hand_on(1, 1).is_none());
     }

@@ -8,6 +8,7 @@ use std::sync::atomic::{AtomicBool, AtomicUsize, Ordering};
 use std::thread::ScopedJoinHandle;
 use std::time::Duration;
 
+use crossbeam::channel::{Receiver, unbounded};
 use locate_server::{BUSY, JSON, JSON_ANSWER, LATE, LocateError, Locator, REFUSED, Workspace, ask};
 use messages::{ScanHeader, topic};
 use tests::world::{World, as_the_graph_has_it};
@@ -15,7 +16,7 @@ use transport::Graph;
 use transport::testing::{Isolated, NodeProcess, wait_for_health, wait_until_ready};
 use wire::Preamble;
 use zenoh::bytes::Encoding;
-use zenoh::query::{ConsolidationMode, QueryTarget, Reply};
+use zenoh::query::{ConsolidationMode, Query, QueryTarget, Queryable, Reply};
 use zenoh::{Session, Wait};
 
 /// Longer than any answer takes on any machine.
@@ -73,11 +74,16 @@ impl Server {
 
 /// A caller who is connected to all of these.
 fn caller(servers: &[&Server]) -> Session {
-    let mut config = zenoh::Config::default();
     let endpoints: Vec<_> = servers.iter().map(|server| server.endpoint()).collect();
+    session(&[], &endpoints)
+}
+
+/// A session that listens at some endpoints and connects to others.
+fn session(listen: &[String], connect: &[String]) -> Session {
+    let mut config = zenoh::Config::default();
     let mut set = |key, value: &str| config.insert_json5(key, value).unwrap();
-    set("connect/endpoints", &format!("{endpoints:?}"));
-    set("listen/endpoints", "[]");
+    set("connect/endpoints", &format!("{connect:?}"));
+    set("listen/endpoints", &format!("{listen:?}"));
     set("scouting/multicast/enabled", "false");
     zenoh::open(config).wait().unwrap()
 }
@@ -313,4 +319,65 @@ fn several_servers_share_the_work_and_a_dead_one_costs_no_answer() {
         stop.store(true, Ordering::Relaxed);
     });
     second.process.stop();
+}
+
+/// Keeps what it is asked, and says nothing.
+fn stand_silent(session: &Session, key: &str) -> (Queryable<()>, Receiver<Query>) {
+    let (sender, kept) = unbounded();
+    let queryable = session
+        .declare_queryable(key.to_owned())
+        .complete(true)
+        .callback(move |query| sender.send(query).unwrap())
+        .wait();
+    (queryable.unwrap(), kept)
+}
+
+#[test]
+fn a_question_that_nobody_ends_is_asked_again() {
+    let isolated = Isolated::new("silent");
+    let endpoint = format!("tcp/{}:7447", isolated.name().loopback());
+    let there = session(&[endpoint.clone()], &[]);
+    let (_silent, kept) = stand_silent(&there, "backcast/locate/attic");
+    let caller = session(&[], &[endpoint]);
+    let (header, ranges) = &scans()[0];
+    std::thread::scope(|scope| {
+        let asking = scope.spawn(|| ask(&caller, "attic", (header, ranges), PATIENCE));
+        let _unanswered = kept.recv().unwrap();
+        let again = kept.recv().unwrap();
+        let refusal = again.reply_err("no such room").encoding(REFUSED);
+        refusal.wait().unwrap();
+        let answer = asking.join().unwrap();
+        assert!(
+            matches!(&answer, Err(LocateError::Refused { says }) if says == "no such room"),
+            "{answer:?}"
+        );
+    });
+}
+
+#[test]
+fn what_was_handed_on_comes_back_when_the_other_leaves() {
+    let server = Server::start("leaves", &["--workers", "1", "--waiting", "1000"]);
+    let caller = caller(&[&server]);
+    // One that says that it has the same map and much time, and has none.
+    let other = session(&[], &[server.endpoint()]);
+    let me = other.zid();
+    let (_silent, kept) = stand_silent(&other, &format!("backcast/locate/corridor/{me}"));
+    let map_id = map::load(world().map()).unwrap().id();
+    let token = format!("backcast/locate/corridor/{me}/{map_id:016x}/ffffffffffffffff/64");
+    let token = other.liveliness().declare_token(token).wait().unwrap();
+    let payload = json_of(&scans()[0]);
+    std::thread::scope(|scope| {
+        let ask = || ask_raw(&caller, "?deadline_ms=60000", JSON, payload.clone());
+        let mut asking = Vec::new();
+        // Until one is handed on.
+        while kept.is_empty() {
+            asking.push(scope.spawn(ask));
+            std::thread::sleep(Duration::from_millis(1));
+        }
+        token.undeclare().wait().unwrap();
+        for answer in asking {
+            answer.join().unwrap().into_result().unwrap();
+        }
+    });
+    server.process.stop();
 }
