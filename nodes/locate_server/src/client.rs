@@ -18,8 +18,8 @@ use crate::error::REFUSED;
 /// Between two attempts, where nobody answers or all are busy.
 const PAUSE: Duration = Duration::from_millis(20);
 
-/// How long an attempt may say nothing before another one is made beside it; that one
-/// has twice as long, so that slow servers are not asked again and again.
+/// How long an attempt may say nothing before another one is made beside it; each that
+/// is under way doubles it, so that slow servers are not asked again and again.
 ///
 /// Zenoh ends what a server has been asked when that server goes, all but what is sent
 /// while it is being forgotten: nobody ends that. So it must not take the whole deadline.
@@ -47,7 +47,7 @@ pub fn ask(
     let due = Instant::now() + deadline;
     let (events, heard) = unbounded();
     // How many attempts are under way, and when to make the next one.
-    let (mut open, mut next, mut silence) = (0, Instant::now(), SILENCE);
+    let (mut open, mut next) = (0, Instant::now());
     loop {
         let now = Instant::now();
         if now >= due {
@@ -55,23 +55,19 @@ pub fn ask(
             return Err(LocateError::Late { deadline_ms });
         }
         if now >= next {
-            if open > 0 {
-                silence *= 2;
-            }
             attempt(session, map, &question, due - now, events.clone())?;
-            (open, next) = (open + 1, now + silence);
+            // No deadline is so far that this overflows.
+            (open, next) = (open + 1, now + SILENCE * 2_u32.pow(open));
         }
         let Ok(event) = heard.recv_deadline(next.min(due)) else {
             continue;
         };
         match event {
-            Event::Says(Ok(sample)) => return answer(&sample),
-            Event::Says(Err(error)) => refusal(&error).map_or(Ok(()), Err)?,
-            Event::IsOver => {
+            Some(Ok(sample)) => return answer(&sample),
+            Some(Err(error)) => refusal(&error).map_or(Ok(()), Err)?,
+            None => {
                 open -= 1;
-                if open == 0 {
-                    next = Instant::now() + PAUSE;
-                }
+                next = next.min(Instant::now() + PAUSE);
             }
         }
     }
@@ -85,26 +81,22 @@ fn answer(sample: &Sample) -> Result<Received<topic::Hypotheses>, LocateError> {
     Ok(answer)
 }
 
-/// What comes of an attempt.
-enum Event {
-    Says(Result<Sample, ReplyError>),
-    /// Last of it: nobody will say any more.
-    IsOver,
-}
+/// What an attempt hears; None, at last, when nobody will say any more.
+type Event = Option<Result<Sample, ReplyError>>;
 
-/// Says that an attempt is over, when Zenoh drops it.
+/// An attempt under way, until Zenoh drops it.
 struct Attempt(Sender<Event>);
 
 impl Attempt {
     fn hears(&self, event: Event) {
-        // Where nobody hears it, the question has its answer.
+        // Where nobody listens, the question has its answer.
         let _ = self.0.send(event);
     }
 }
 
 impl Drop for Attempt {
     fn drop(&mut self) {
-        self.hears(Event::IsOver);
+        self.hears(None);
     }
 }
 
@@ -124,7 +116,7 @@ fn attempt(
         .payload(question)
         .encoding(Encoding::from(wire::encoding::<topic::Scan>()))
         .timeout(remaining)
-        .callback(move |reply| attempt.hears(Event::Says(reply.into_result())))
+        .callback(move |reply| attempt.hears(Some(reply.into_result())))
         .wait()
         .map_err(KeyError::when("ask", &key))?;
     Ok(())

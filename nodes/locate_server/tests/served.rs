@@ -336,7 +336,7 @@ fn stand_silent(session: &Session, key: &str) -> (Queryable<()>, Receiver<Query>
 fn a_question_that_nobody_ends_is_asked_again() {
     let isolated = Isolated::new("silent");
     let endpoint = format!("tcp/{}:7447", isolated.name().loopback());
-    let there = session(&[endpoint.clone()], &[]);
+    let there = session(std::slice::from_ref(&endpoint), &[]);
     let (_silent, kept) = stand_silent(&there, "backcast/locate/attic");
     let caller = session(&[], &[endpoint]);
     let (header, ranges) = &scans()[0];
