@@ -120,6 +120,40 @@ impl<'a> Distinct<'a> {
     }
 }
 
+/// The best distinct poses of those that came so far, in whatever order.
+#[derive(Debug, Default)]
+pub(crate) struct Leading {
+    /// Most votes first.
+    kept: Vec<Vote>,
+}
+
+impl Leading {
+    /// Starts anew, with none.
+    pub(crate) fn start(&mut self) {
+        self.kept.clear();
+    }
+
+    /// Takes a pose. The votes of the last of the best `wanted`, where there are so
+    /// many; a better pose that comes later may push two of them aside, so that is no
+    /// bound of what the last one will have in the end.
+    pub(crate) fn take(&mut self, vote: &Vote, wanted: usize, space: &Space) -> Option<u16> {
+        let is_near = |kept: &Vote| are_near(vote, kept, space);
+        let is_hidden = |kept: &Vote| kept.intensity >= vote.intensity && is_near(kept);
+        if !self.kept.iter().any(is_hidden) {
+            self.kept.retain(|kept| !is_near(kept));
+            let place = |kept: &Vote| kept.intensity >= vote.intensity;
+            let place = self.kept.partition_point(place);
+            self.kept.insert(place, *vote);
+            self.kept.truncate(wanted);
+        }
+        let is_full = self.kept.len() == wanted;
+        self.kept
+            .last()
+            .filter(|_| is_full)
+            .map(|vote| vote.intensity)
+    }
+}
+
 /// Whether two poses are one candidate.
 pub(crate) fn are_near(a: &Vote, b: &Vote, space: &Space) -> bool {
     let headings = space.directions.count() as u16;
@@ -138,7 +172,7 @@ pub(crate) struct Collector {
     config: CollectConfig,
     votes: Vec<Vote>,
     best: u16,
-    /// Below this intensity too many poses were seen for all to fit.
+    /// Below this intensity too many poses were seen for all to fit, or none is wanted.
     crowded_below: u16,
     /// The intensity of which not even all best poses fit.
     cut: Option<u16>,
@@ -203,6 +237,11 @@ impl Collector {
     /// Raises the floor to what follows from a pose seen elsewhere.
     pub(crate) fn hear_of(&mut self, best: u16) {
         self.best = self.best.max(best);
+    }
+
+    /// Wants no poses below an intensity that some pose has.
+    pub(crate) fn raise(&mut self, floor: u16) {
+        self.crowded_below = self.crowded_below.max(floor);
     }
 
     /// The most votes of any pose so far.
@@ -361,6 +400,28 @@ mod tests {
         set.add_candidates(&mut others.to_vec(), distinct);
         assert_eq!(levels(&set), [10, 9, 7, 5]);
         assert_eq!((set.floor, set.certified_floor), (5, 9));
+    }
+
+    #[test]
+    fn the_leading_poses_are_distinct_and_better_ones_push_others_aside() {
+        let space = Space::new(360, 0.1, 100, 100).unwrap();
+        let mut leading = Leading::default();
+        let mut last = |x, intensity| {
+            let vote = Vote {
+                x,
+                y: 0,
+                heading: 0,
+                intensity,
+            };
+            leading.take(&vote, 2, &space)
+        };
+        assert_eq!(last(0, 5), None, "one of two");
+        assert_eq!(last(2, 4), None, "beside a better one");
+        assert_eq!(last(4, 6), Some(5));
+        assert_eq!(last(50, 3), Some(5), "not among the best");
+        assert_eq!(last(2, 7), None, "in place of both");
+        assert_eq!(last(9, 1), Some(1));
+        assert_eq!(last(51, 8), Some(7));
     }
 
     #[test]

@@ -17,7 +17,7 @@ use super::queue::{Block, Level, Promise};
 use super::set_bounds::{CHUNK, SetBounds};
 use super::task::Task;
 use super::within::Size;
-use crate::votes::Collector;
+use crate::votes::{Collector, Leading};
 
 /// One thread's part of a search.
 pub(super) struct Descent<'a> {
@@ -45,6 +45,7 @@ pub(super) struct Room {
     candidates: Vec<Candidate>,
     /// The poses that matter.
     pub collector: Collector,
+    leading: Leading,
     /// How many were counted.
     pub poses_evaluated: u64,
     tally: Tally,
@@ -90,6 +91,7 @@ impl Room {
         self.fine.clear();
         self.candidates.clear();
         self.collector.start(task.config);
+        self.leading.start();
         self.poses_evaluated = 0;
         self.tally = Tally::default();
     }
@@ -358,13 +360,25 @@ impl<'a> Descent<'a> {
         for (i, &intensity) in counts.iter().enumerate() {
             if open[i] != 0 {
                 let (x, y) = self.room.outlook.cell(i);
-                self.room.collector.take(Vote {
+                let vote = Vote {
                     x: x as u16,
                     y: y as u16,
                     heading,
                     intensity,
-                });
+                };
+                self.room.collector.take(vote);
+                if self.task.leading > 0 && intensity >= self.room.collector.floor() {
+                    self.lead(&vote);
+                }
             }
+        }
+    }
+
+    /// Raises the floor to the last of the poses that are wanted.
+    fn lead(&mut self, vote: &Vote) {
+        let (wanted, space) = (self.task.leading, self.task.space);
+        if let Some(floor) = self.room.leading.take(vote, wanted, space) {
+            self.room.collector.raise(floor);
         }
     }
 }

@@ -137,10 +137,24 @@ impl SearchIndex {
     pub fn search_in(
         &self,
         workspace: &mut Workspace,
+        how: (InstructionSet, usize),
+        grid: &Grid,
+        scan: (&ScanProgram, &Space),
+        collect: (CollectConfig, &mut VoteSet),
+        stop: &dyn Fn() -> bool,
+    ) -> Option<()> {
+        self.search_leading(workspace, how, grid, scan, (collect, 0), stop)
+    }
+
+    /// The same, with a floor that rises to the last of so many distinct poses, see
+    /// [`Task::leading`].
+    pub(super) fn search_leading(
+        &self,
+        workspace: &mut Workspace,
         (instruction_set, threads): (InstructionSet, usize),
         grid: &Grid,
         scan: (&ScanProgram, &Space),
-        (config, found): (CollectConfig, &mut VoteSet),
+        ((config, found), leading): ((CollectConfig, &mut VoteSet), usize),
         stop: &dyn Fn() -> bool,
     ) -> Option<()> {
         let Workspace {
@@ -151,6 +165,7 @@ impl SearchIndex {
             ..
         } = workspace;
         let task = Task::new(shared, instruction_set.checked(), self, grid, scan, config);
+        let task = task.leading(leading);
         rooms.resize_with(threads, descent::Room::default);
         let bounded = match parts::run(&task, rooms, stop) {
             End::Done => {

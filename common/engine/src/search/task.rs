@@ -21,6 +21,9 @@ pub(super) struct Task<'a> {
     pub grid: &'a Grid,
     pub space: &'a Space,
     pub config: CollectConfig,
+    /// Once a thread knows so many distinct poses, it leaves out what lies below all
+    /// of them; with 0 it leaves out nothing for that.
+    pub leading: usize,
     pub programs: &'a Programs,
     /// What the best pose of each coarse block may have, as far as it was asked.
     pub promises: &'a [AtomicU16],
@@ -92,12 +95,18 @@ impl<'a> Task<'a> {
             grid,
             space,
             config,
+            leading: 0,
             programs: &shared.programs,
             promises: &shared.promises,
             best: AtomicU16::new(0),
             stopped: AtomicBool::new(false),
             brute_force: Cost::of_brute_force(instruction_set, grid, program, space),
         }
+    }
+
+    /// Leaves out what lies below so many distinct poses.
+    pub(super) fn leading(self, leading: usize) -> Self {
+        Task { leading, ..self }
     }
 
     /// Takes brute force to cost so much.

@@ -4,12 +4,12 @@
 //! from all before it; ties go to the lowest (heading, y, x). How low the last
 //! of them lies is not known beforehand, and no sum of what was seen so far
 //! bounds it: a better pose may push two others aside. So candidates give a
-//! floor, all poses above it are collected, and where too few of them are
-//! distinct the floor falls.
+//! floor that rises with what is found, all poses above it are collected, and
+//! where too few of them are distinct it stays low, and falls.
 
 use messages::Vote;
 
-use super::SearchIndex;
+use super::{SearchIndex, Workspace};
 use crate::grid::Grid;
 use crate::instruction_set::InstructionSet;
 use crate::program::ScanProgram;
@@ -18,6 +18,9 @@ use crate::votes::{CollectConfig, Distinct, VoteSet};
 
 /// Most poses that are collected at a time.
 const MAX_VOTES: u32 = 1_000_000;
+
+/// Candidates that the first floor comes of: some promise more than they have.
+const GUESSES: u32 = 64;
 
 /// How far the floor falls where too few poses are distinct.
 const NEXT_FLOOR: f64 = 0.85;
@@ -49,28 +52,35 @@ impl SearchIndex {
         count: usize,
         stop: &dyn Fn() -> bool,
     ) -> Option<Top> {
-        let search = |floor_share, candidates| {
+        let (mut workspace, mut found) = (Workspace::default(), VoteSet::default());
+        let mut search = |floor_share, candidates, leading, found: &mut VoteSet| {
             let config = CollectConfig {
                 floor_share,
                 max_votes: MAX_VOTES,
                 candidates,
             };
-            self.search_with(how, grid, scan, config, stop)
+            let collect = ((config, found), leading);
+            self.search_leading(&mut workspace, how, grid, scan, collect, stop)
         };
-        let first = search(1.0, count as u32)?;
-        let guess = Distinct::of(&first.votes, scan.1, count);
+        search(1.0, GUESSES.max(count as u32), 0, &mut found)?;
+        let best = f64::from(found.best.max(1));
+        let guess = Distinct::of(&found.votes, scan.1, count);
         let mut floor = match guess.last() {
             Some(last) if guess.len() == count => f64::from(last.intensity),
-            _ => NEXT_FLOOR * f64::from(first.best),
+            _ => NEXT_FLOOR * best,
         };
-        loop {
-            let found = search(floor / f64::from(first.best.max(1)), 0)?;
-            let top = top_of(&found, scan.1, count, floor < 1.0);
-            if top.is_complete || found.truncated {
-                return Some(top);
+        // A floor that rose too far left out poses that are wanted.
+        search(floor / best, 0, count, &mut found)?;
+        let mut top = top_of(&found, scan.1, count, floor < 1.0);
+        while !top.is_complete {
+            search(floor / best, 0, 0, &mut found)?;
+            top = top_of(&found, scan.1, count, floor < 1.0);
+            if found.truncated {
+                break;
             }
             floor *= NEXT_FLOOR;
         }
+        Some(top)
     }
 }
 
