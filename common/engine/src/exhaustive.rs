@@ -4,7 +4,7 @@
 //! accumulators share the headings, each on a thread of its own.
 
 use std::panic::resume_unwind;
-use std::sync::atomic::{AtomicBool, Ordering};
+use std::sync::atomic::{AtomicBool, AtomicU16, Ordering};
 
 use crate::accumulator::{Accumulator, Query};
 use crate::limits::Limits;
@@ -36,13 +36,14 @@ pub fn search<A: Accumulator + Send>(
                 field: &mut Vec<u16>,
                 stop: &dyn Fn() -> bool| accumulator.fill(query, field, stop);
     let mut found = VoteSet::default();
-    let collect = (config, &mut found);
+    let collect = (config, 0, &mut found);
     count(&mut shares, fill, limits, (program, space), collect, stop)?;
     Some(found)
 }
 
 /// The same by any way to fill in the intensities of all cells at a heading,
-/// one thread a share; the shares may have served other scans and maps.
+/// one thread a share; the shares may have served other scans and maps. Some pose is
+/// known to have `best` votes.
 ///
 /// # Panics
 /// If there is no share.
@@ -51,12 +52,13 @@ pub(crate) fn count<T: Send>(
     fill: impl Fn(&mut T, Query<'_>, &mut Vec<u16>, &dyn Fn() -> bool) -> Option<()> + Sync,
     limits: &Limits,
     scan: (&ScanProgram, &Space),
-    (config, found): (CollectConfig, &mut VoteSet),
+    (config, best, found): (CollectConfig, u16, &mut VoteSet),
     stop: &dyn Fn() -> bool,
 ) -> Option<()> {
-    let threads = shares.len();
+    let (threads, best) = (shares.len(), AtomicU16::new(best));
     let run = |thread: usize, share: &mut Share<T>, stop: &dyn Fn() -> bool| {
-        share.run((thread, threads), &fill, limits, scan, (config, stop))
+        share.collector.start(config);
+        share.run((thread, threads), &fill, limits, scan, (&best, stop))
     };
     let (own, others) = shares.split_first_mut().expect("a share");
     let outcome = if others.is_empty() {
@@ -102,16 +104,16 @@ impl<T> Share<T> {
         }
     }
 
-    /// Counts the poses at every `threads`-th heading.
+    /// Counts the poses at every `threads`-th heading; threads tell each other the most
+    /// votes of any pose.
     fn run(
         &mut self,
         (thread, threads): (usize, usize),
         fill: &impl Fn(&mut T, Query<'_>, &mut Vec<u16>, &dyn Fn() -> bool) -> Option<()>,
         limits: &Limits,
         (program, space): (&ScanProgram, &Space),
-        (config, stop): (CollectConfig, &dyn Fn() -> bool),
+        (best, stop): (&AtomicU16, &dyn Fn() -> bool),
     ) -> Option<()> {
-        self.collector.start(config);
         self.poses = 0;
         for heading in (thread..space.directions.count()).step_by(threads) {
             let query = Query {
@@ -121,7 +123,9 @@ impl<T> Share<T> {
             };
             if limits.hold_heading(heading) {
                 fill(&mut self.tool, query, &mut self.field, stop)?;
+                self.collector.hear_of(best.load(Ordering::Relaxed));
                 self.collect(limits, heading);
+                best.fetch_max(self.collector.best(), Ordering::Relaxed);
             }
         }
         Some(())

@@ -220,10 +220,11 @@ impl Collector {
     pub(crate) fn take_field(&mut self, field: &[u16], width: usize, heading: u16) {
         for (y, row) in (0..).zip(field.chunks_exact(width)) {
             // Few rows hold any pose that matters, and a maximum is quick.
-            if row.iter().max().is_none_or(|&most| most < self.floor()) {
+            let floor = self.floor();
+            if row.iter().copied().fold(0, u16::max) < floor {
                 continue;
             }
-            for (x, &intensity) in (0..).zip(row) {
+            for (x, &intensity) in (0..).zip(row).filter(|&(_, &votes)| votes >= floor) {
                 self.take(Vote {
                     x,
                     y,

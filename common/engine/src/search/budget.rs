@@ -2,8 +2,8 @@
 //!
 //! In uniform clutter no bound tells blocks apart. The search tallies what it
 //! did, estimates what is left from what blocks of each level have cost so far,
-//! and gives up where brute force would be done sooner. So it costs at most
-//! about half more than brute force.
+//! and gives up where brute force would be done sooner. Where that is seen at the
+//! first look, a tenth is lost.
 
 use crate::grid::Grid;
 use crate::instruction_set::InstructionSet;
@@ -42,19 +42,59 @@ pub(super) struct Budget {
     taken: [(f64, f64); LEVELS],
 }
 
-/// What was measured for the parts of a search, with AVX-512.
-const BOUND_PER_BEAM: f64 = 7.0;
-const WINDOW_PER_BEAM: f64 = 2.5;
-const SECTOR: f64 = 60.0;
-const LOOK: f64 = 90.0;
+/// What was measured for the parts of a search, in nanoseconds.
+#[derive(Debug, Clone, Copy)]
+struct Rates {
+    bound_per_beam: f64,
+    window_per_beam: f64,
+    sector: f64,
+    look: f64,
+    /// For counting every pose: at each heading, cell and beam.
+    vote: f64,
+}
 
-/// The first look, as a share of what brute force costs. Until the best pose is
-/// found the floor is low and much seems to be left, so looking earlier gives up
-/// searches that are about to end; looking later loses more on the others.
-const FIRST_LOOK: f64 = 0.5;
+impl Rates {
+    fn of(instruction_set: InstructionSet) -> Self {
+        match instruction_set {
+            InstructionSet::Avx512 => Rates {
+                bound_per_beam: 2.7,
+                window_per_beam: 1.6,
+                sector: 60.0,
+                look: 90.0,
+                vote: 0.015,
+            },
+            InstructionSet::Avx2 => Rates {
+                bound_per_beam: 2.7,
+                window_per_beam: 35.0,
+                sector: 400.0,
+                look: 1000.0,
+                vote: 0.08,
+            },
+            InstructionSet::Portable => Rates {
+                bound_per_beam: 5.5,
+                window_per_beam: 35.0,
+                sector: 260.0,
+                look: 1150.0,
+                vote: 0.9,
+            },
+        }
+    }
+}
+
+/// Share of the work that goes into the smallest blocks before their turn.
+const DIVES: f64 = 0.2;
+
+/// The first look, as a share of what brute force costs: so much is lost where a
+/// search is given up then.
+const FIRST_LOOK: f64 = 0.1;
 
 /// How much more is spent until the next look.
 const NEXT_LOOK: f64 = 1.5;
+
+/// What is expected to be left, as a multiple of brute force, where a search is given
+/// up. The blocks that are left promise less and cost less, to half of those before;
+/// and at first the best pose may not be known, so that the floor is still low.
+const HOPELESS: f64 = 2.0;
 
 impl Cost {
     /// What it costs to count every pose.
@@ -64,24 +104,19 @@ impl Cost {
         program: &ScanProgram,
         space: &Space,
     ) -> Self {
-        let per_cell_and_beam = match instruction_set {
-            InstructionSet::Avx512 => 0.027,
-            InstructionSet::Avx2 => 0.07,
-            InstructionSet::Portable => 0.9,
-        };
         let fields = (grid.cells().len() * space.directions.count()) as f64;
-        Cost(fields * program.beams() as f64 * per_cell_and_beam)
+        Cost(fields * program.beams() as f64 * Rates::of(instruction_set).vote)
     }
 }
 
 impl Tally {
-    /// What was done since the last time.
-    pub(super) fn take(&mut self, beams: usize) -> Cost {
-        let beams = beams as f64;
-        let cost = self.bounds as f64 * BOUND_PER_BEAM * beams
-            + self.windows as f64 * WINDOW_PER_BEAM * beams
-            + self.sectors as f64 * SECTOR
-            + (self.looks - self.looks_before) as f64 * LOOK;
+    /// What was done since the last time, with so many beams.
+    pub(super) fn take(&mut self, instruction_set: InstructionSet, beams: usize) -> Cost {
+        let (rates, beams) = (Rates::of(instruction_set), beams as f64);
+        let cost = self.bounds as f64 * rates.bound_per_beam * beams
+            + self.windows as f64 * rates.window_per_beam * beams
+            + self.sectors as f64 * rates.sector
+            + (self.looks - self.looks_before) as f64 * rates.look;
         *self = Tally {
             looks: self.looks,
             looks_before: self.looks,
@@ -110,6 +145,12 @@ impl Budget {
         self.taken[level].1 += cost.0;
     }
 
+    /// Whether the most promising of the smallest blocks is looked at next, be others
+    /// more promising: as long as that has cost a small part.
+    pub(super) fn dives(&self) -> bool {
+        self.taken[LEVELS - 1].1 < self.spent * DIVES
+    }
+
     /// Whether it is time to see how much is left.
     pub(super) fn is_up(&self) -> bool {
         self.spent >= self.next
@@ -133,7 +174,7 @@ impl Budget {
             below = each + children * below;
             expected += left[level] as f64 * below;
         }
-        expected > self.brute_force.0
+        expected > self.brute_force.0 * HOPELESS
     }
 }
 
@@ -143,7 +184,7 @@ mod tests {
 
     #[test]
     fn a_search_is_given_up_where_what_is_left_costs_more() {
-        let mut budget = Budget::new(Cost(7_000.0), 2);
+        let mut budget = Budget::new(Cost(3_500.0), 2);
         assert!(!budget.is_up());
         // Four coarse blocks came to eight fine ones, of which three were taken.
         for _ in 0..4 {
@@ -153,10 +194,23 @@ mod tests {
             budget.spend(1, Cost(500.0));
         }
         assert!(budget.is_up());
-        // Five fine ones cost 500 each; a coarse one 100, and twice 500.
+        // Five fine ones cost 500 each; a coarse one 100, and twice 500: all in all
+        // a little more than twice what this part's share of brute force does.
         assert!(!budget.is_hopeless([0, 5, 0]));
         assert!(!budget.is_up(), "not at once again");
         assert!(budget.is_hopeless([1, 5, 0]));
+    }
+
+    #[test]
+    fn the_smallest_blocks_come_before_their_turn_while_they_cost_little() {
+        let mut budget = Budget::new(Cost(1.0), 1);
+        assert!(!budget.dives(), "nothing was done");
+        budget.spend(0, Cost(100.0));
+        assert!(budget.dives());
+        budget.spend(LEVELS - 1, Cost(10.0));
+        assert!(budget.dives());
+        budget.spend(LEVELS - 1, Cost(20.0));
+        assert!(!budget.dives(), "30 of 130");
     }
 
     #[test]
@@ -168,8 +222,12 @@ mod tests {
             looks: 4,
             ..Tally::default()
         };
-        let cost = BOUND_PER_BEAM * 10.0 + 2.0 * WINDOW_PER_BEAM * 10.0 + 3.0 * SECTOR + 4.0 * LOOK;
-        assert_eq!(tally.take(10), Cost(cost));
-        assert_eq!(tally.take(10), Cost(0.0));
+        let (best, rates) = (InstructionSet::best(), Rates::of(InstructionSet::best()));
+        let cost = rates.bound_per_beam * 10.0
+            + 2.0 * rates.window_per_beam * 10.0
+            + 3.0 * rates.sector
+            + 4.0 * rates.look;
+        assert_eq!(tally.take(best, 10), Cost(cost));
+        assert_eq!(tally.take(best, 10), Cost(0.0));
     }
 }

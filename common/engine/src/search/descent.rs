@@ -1,7 +1,6 @@
 //! One search: from large blocks down to poses, the most promising first.
 
 use std::cmp::Reverse;
-use std::collections::BinaryHeap;
 use std::ops::Range;
 use std::sync::atomic::Ordering;
 
@@ -13,9 +12,9 @@ use super::index::SearchIndex;
 use super::interval_bounds::{HEADINGS, IntervalBounds, Window};
 use super::intervals::BlockIntervals;
 use super::outlook::{CELLS, Outlook};
-use super::queue::{Block, Level, Promise};
+use super::queue::{Block, Level, Promise, Queue};
 use super::set_bounds::{CHUNK, SetBounds};
-use super::task::Task;
+use super::task::{Programs, Task};
 use super::within::Size;
 use crate::votes::{Collector, Leading};
 
@@ -33,7 +32,7 @@ pub(super) struct Room {
     intervals: BlockIntervals,
     interval_bounds: IntervalBounds,
     outlook: Outlook,
-    queue: BinaryHeap<Block>,
+    queue: Queue,
     /// Headings at which a block of 8 × 8 cells may matter, a row a chunk.
     masks: Vec<Row>,
     /// Headings at which blocks of 8 × 8 cells may matter.
@@ -116,7 +115,7 @@ impl<'a> Descent<'a> {
             self.push(bound, promise, index, Level::Coarse);
         }
         let mut budget = Budget::new(self.task.brute_force, parts);
-        while let Some(block) = self.room.queue.pop() {
+        while let Some(block) = self.room.queue.pop(budget.dives()) {
             let best = self.task.best.load(Ordering::Relaxed);
             self.room.collector.hear_of(best);
             if block.bound < self.room.collector.floor() {
@@ -125,8 +124,8 @@ impl<'a> Descent<'a> {
             if stop() {
                 return End::Stopped;
             }
-            if let Some(next) = self.room.queue.peek() {
-                self.prefetch(next);
+            if let Some(next) = self.room.queue.peek(budget.dives()) {
+                self.prefetch(&next);
             }
             let (level, index) = (block.level, block.index as usize);
             match level {
@@ -136,10 +135,13 @@ impl<'a> Descent<'a> {
                 }
                 Level::Leaf { start, end } => self.count(index, start as usize..end as usize),
             }
-            budget.spend(
-                level.number(),
-                self.room.tally.take(self.task.programs.beams),
-            );
+            let Programs {
+                instruction_set,
+                beams,
+                ..
+            } = self.task.programs;
+            let cost = self.room.tally.take(*instruction_set, *beams);
+            budget.spend(level.number(), cost);
             if budget.is_up() && budget.is_hopeless(self.left()) {
                 return End::Hopeless;
             }

@@ -1,5 +1,7 @@
 //! A map prepared for searches.
 
+use std::sync::atomic::Ordering;
+
 use super::alternatives::{self, Alternatives};
 use super::bins::Bins;
 use super::block_bounds::Bounding;
@@ -175,7 +177,8 @@ impl SearchIndex {
             End::Stopped => return None,
             End::Hopeless => {
                 shares.resize_with(threads, Share::default);
-                let collect = (config, &mut *found);
+                let best = task.best.load(Ordering::Relaxed);
+                let collect = (config, best, &mut *found);
                 self.count_all(instruction_set, shares, scan, collect, stop)?;
                 None
             }
@@ -190,13 +193,13 @@ impl SearchIndex {
         Some(())
     }
 
-    /// Counts every pose.
+    /// Counts every pose; some is known to have so many votes.
     fn count_all(
         &self,
         instruction_set: InstructionSet,
         shares: &mut [Share<sweep::Workspace>],
         scan: (&ScanProgram, &Space),
-        collect: (CollectConfig, &mut VoteSet),
+        collect: (CollectConfig, u16, &mut VoteSet),
         stop: &dyn Fn() -> bool,
     ) -> Option<()> {
         let fill = |workspace: &mut sweep::Workspace,
@@ -284,7 +287,7 @@ mod tests {
             prop_assert!(below.iter().all(is_held));
             let (mut shares, mut counted) = (Vec::new(), VoteSet::default());
             shares.resize_with(threads, Share::default);
-            let collect = (CollectConfig { candidates: 0, ..config }, &mut counted);
+            let collect = (CollectConfig { candidates: 0, ..config }, 0, &mut counted);
             prop_assert!(index.count_all(how.0, &mut shares, scan, collect, &|| false).is_some());
             prop_assert_eq!(counted.votes, plain.votes);
         }
@@ -349,7 +352,8 @@ mod tests {
                     prop_assert_eq!(&found, &fresh, "{:?}", how);
                     let plain = plain_votes_within(&limits, &grid, &program, &space, CollectConfig { candidates: 0, ..config });
                     workspace.shares.resize_with(threads, Share::default);
-                    let collect = (CollectConfig { candidates: 0, ..config }, &mut found);
+                    let best = u16::from(fresh.best > 0) * (fresh.best / 2 + 1);
+                    let collect = (CollectConfig { candidates: 0, ..config }, best, &mut found);
                     prop_assert!(index.count_all(instruction_set, &mut workspace.shares, scan, collect, &|| false).is_some());
                     prop_assert_eq!(&found.votes, &plain.votes, "{:?}", how);
                 }

@@ -1,6 +1,58 @@
 //! Blocks that wait to be searched, the most promising first.
 
 use std::cmp::{Ordering, Reverse};
+use std::collections::BinaryHeap;
+
+/// The blocks that wait.
+///
+/// Blocks of 4 × 4 cells have tighter bounds than those that they came of, and so
+/// would all wait until nothing larger is left. Yet in one of the first lies the best
+/// pose, and the sooner it is known, the less else needs to be looked at.
+#[derive(Debug, Default)]
+pub(super) struct Queue {
+    larger: BinaryHeap<Block>,
+    leaves: BinaryHeap<Block>,
+}
+
+impl Queue {
+    pub(super) fn clear(&mut self) {
+        self.larger.clear();
+        self.leaves.clear();
+    }
+
+    pub(super) fn push(&mut self, block: Block) {
+        match block.level {
+            Level::Leaf { .. } => self.leaves.push(block),
+            _ => self.larger.push(block),
+        }
+    }
+
+    /// The next block: the most promising one, or if `dives` that of the smallest.
+    pub(super) fn pop(&mut self, dives: bool) -> Option<Block> {
+        self.next_of(dives).pop()
+    }
+
+    /// What would be popped now.
+    pub(super) fn peek(&mut self, dives: bool) -> Option<Block> {
+        self.next_of(dives).peek().copied()
+    }
+
+    fn next_of(&mut self, dives: bool) -> &mut BinaryHeap<Block> {
+        let is_leaf = match (self.leaves.peek(), self.larger.peek()) {
+            (Some(leaf), Some(larger)) => dives || leaf > larger,
+            (leaf, _) => leaf.is_some(),
+        };
+        if is_leaf {
+            &mut self.leaves
+        } else {
+            &mut self.larger
+        }
+    }
+
+    pub(super) fn iter(&self) -> impl Iterator<Item = &Block> {
+        self.larger.iter().chain(&self.leaves)
+    }
+}
 
 /// A block in the queue.
 #[derive(Debug, Clone, Copy)]

@@ -50,6 +50,7 @@ pub(super) struct Programs {
     pub interval: IntervalProgram,
     pub leaf: LeafProgram,
     pub beams: usize,
+    pub instruction_set: InstructionSet,
 }
 
 impl Programs {
@@ -72,6 +73,7 @@ impl Programs {
             .make(program, directions, steps, shifts, instruction_set);
         self.leaf.make(program, directions, instruction_set);
         self.beams = program.beams();
+        self.instruction_set = instruction_set;
     }
 }
 
