@@ -94,7 +94,7 @@ const NEXT_LOOK: f64 = 1.5;
 /// What is expected to be left, as a multiple of brute force, where a search is given
 /// up. The blocks that are left promise less and cost less, to half of those before;
 /// and at first the best pose may not be known, so that the floor is still low.
-const HOPELESS: f64 = 2.0;
+const HOPELESS: f64 = 2.5;
 
 impl Cost {
     /// What it costs to count every pose.
