@@ -142,10 +142,10 @@ impl SearchIndex {
         how: (InstructionSet, usize),
         grid: &Grid,
         scan: (&ScanProgram, &Space),
-        collect: (CollectConfig, &mut VoteSet),
+        (config, found): (CollectConfig, &mut VoteSet),
         stop: &dyn Fn() -> bool,
     ) -> Option<()> {
-        self.search_leading(workspace, how, grid, scan, (collect, 0), stop)
+        self.search_leading(workspace, how, grid, scan, (config, 0, found), stop)
     }
 
     /// The same, with a floor that rises to the last of so many distinct poses, see
@@ -156,7 +156,7 @@ impl SearchIndex {
         (instruction_set, threads): (InstructionSet, usize),
         grid: &Grid,
         scan: (&ScanProgram, &Space),
-        ((config, found), leading): ((CollectConfig, &mut VoteSet), usize),
+        (config, leading, found): (CollectConfig, usize, &mut VoteSet),
         stop: &dyn Fn() -> bool,
     ) -> Option<()> {
         let Workspace {

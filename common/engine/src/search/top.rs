@@ -59,7 +59,7 @@ impl SearchIndex {
                 max_votes: MAX_VOTES,
                 candidates,
             };
-            let collect = ((config, found), leading);
+            let collect = (config, leading, found);
             self.search_leading(&mut workspace, how, grid, scan, collect, stop)
         };
         search(1.0, GUESSES.max(count as u32), 0, &mut found)?;
@@ -69,18 +69,20 @@ impl SearchIndex {
             Some(last) if guess.len() == count => f64::from(last.intensity),
             _ => NEXT_FLOOR * best,
         };
-        // A floor that rose too far left out poses that are wanted.
-        search(floor / best, 0, count, &mut found)?;
-        let mut top = top_of(&found, scan.1, count, floor < 1.0);
-        while !top.is_complete {
-            search(floor / best, 0, 0, &mut found)?;
-            top = top_of(&found, scan.1, count, floor < 1.0);
-            if found.truncated {
-                break;
+        let mut leading = count;
+        loop {
+            search(floor / best, 0, leading, &mut found)?;
+            let top = top_of(&found, scan.1, count, floor < 1.0);
+            if top.is_complete || (found.truncated && leading == 0) {
+                return Some(top);
             }
-            floor *= NEXT_FLOOR;
+            if found.truncated {
+                // The floor rose too far, and poses that are wanted were left out.
+                leading = 0;
+            } else {
+                floor *= NEXT_FLOOR;
+            }
         }
-        Some(top)
     }
 }
 
