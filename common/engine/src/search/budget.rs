@@ -184,7 +184,8 @@ mod tests {
 
     #[test]
     fn a_search_is_given_up_where_what_is_left_costs_more() {
-        let mut budget = Budget::new(Cost(3_500.0), 2);
+        let brute_force = Cost(3_550.0 / HOPELESS);
+        let mut budget = Budget::new(Cost(2.0 * brute_force.0), 2);
         assert!(!budget.is_up());
         // Four coarse blocks came to eight fine ones, of which three were taken.
         for _ in 0..4 {
@@ -194,8 +195,7 @@ mod tests {
             budget.spend(1, Cost(500.0));
         }
         assert!(budget.is_up());
-        // Five fine ones cost 500 each; a coarse one 100, and twice 500: all in all
-        // a little more than twice what this part's share of brute force does.
+        // Five fine ones cost 500 each; a coarse one 100, and twice 500.
         assert!(!budget.is_hopeless([0, 5, 0]));
         assert!(!budget.is_up(), "not at once again");
         assert!(budget.is_hopeless([1, 5, 0]));
