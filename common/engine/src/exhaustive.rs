@@ -57,8 +57,8 @@ pub(crate) fn count<T: Send>(
 ) -> Option<()> {
     let (threads, best) = (shares.len(), AtomicU16::new(best));
     let run = |thread: usize, share: &mut Share<T>, stop: &dyn Fn() -> bool| {
-        share.collector.start(config);
-        share.run((thread, threads), &fill, limits, scan, (&best, stop))
+        let how = (config, &best, stop);
+        share.run((thread, threads), &fill, limits, scan, how)
     };
     let (own, others) = shares.split_first_mut().expect("a share");
     let outcome = if others.is_empty() {
@@ -112,8 +112,9 @@ impl<T> Share<T> {
         fill: &impl Fn(&mut T, Query<'_>, &mut Vec<u16>, &dyn Fn() -> bool) -> Option<()>,
         limits: &Limits,
         (program, space): (&ScanProgram, &Space),
-        (best, stop): (&AtomicU16, &dyn Fn() -> bool),
+        (config, best, stop): (CollectConfig, &AtomicU16, &dyn Fn() -> bool),
     ) -> Option<()> {
+        self.collector.start(config);
         self.poses = 0;
         for heading in (thread..space.directions.count()).step_by(threads) {
             let query = Query {

@@ -1,12 +1,16 @@
 //! The outcome of a search: the poses that have the most votes.
 
+mod distinct;
 mod of_field;
 
 use std::cmp::Reverse;
 
 use messages::Vote;
 
-use crate::space::Space;
+#[cfg(test)]
+pub(crate) use distinct::are_near;
+pub use distinct::{DISTINCT_DEG, DISTINCT_M};
+pub(crate) use distinct::{Distinct, Leading};
 pub(crate) use of_field::FieldVotes;
 pub use of_field::of_field;
 
@@ -26,14 +30,6 @@ pub struct CollectConfig {
     #[arg(long, value_name = "COUNT", default_value_t = 64, value_parser = clap::value_parser!(u32).range(0..=1000))]
     pub candidates: u32,
 }
-
-/// Poses farther apart than this, or than [`DISTINCT_DEG`], are distinct
-/// candidates, metres.
-pub const DISTINCT_M: f64 = 0.3;
-
-/// Poses farther apart than this, or than [`DISTINCT_M`], are distinct
-/// candidates, degrees.
-pub const DISTINCT_DEG: f64 = 6.5;
 
 impl Default for CollectConfig {
     fn default() -> Self {
@@ -77,90 +73,6 @@ impl VoteSet {
         self.votes.append(others);
         self.floor = self.votes.last().map_or(0, |vote| vote.intensity);
     }
-}
-
-/// Takes poses in order and keeps those that are distinct from all kept before,
-/// at most so many.
-#[derive(Debug)]
-pub(crate) struct Distinct<'a> {
-    space: &'a Space,
-    wanted: usize,
-    kept: &'a mut Vec<Vote>,
-}
-
-impl<'a> Distinct<'a> {
-    /// Keeps none so far, of at most `wanted`, in the room of others before.
-    pub(crate) fn new(space: &'a Space, wanted: usize, kept: &'a mut Vec<Vote>) -> Self {
-        kept.clear();
-        Distinct {
-            space,
-            wanted,
-            kept,
-        }
-    }
-
-    /// Whether the pose is kept.
-    pub(crate) fn take(&mut self, vote: &Vote) -> bool {
-        let near = |kept: &Vote| are_near(vote, kept, self.space);
-        let is_new = self.kept.len() < self.wanted && !self.kept.iter().any(near);
-        if is_new {
-            self.kept.push(*vote);
-        }
-        is_new
-    }
-
-    /// Those of all poses.
-    pub(crate) fn of(votes: &[Vote], space: &'a Space, wanted: usize) -> Vec<Vote> {
-        let mut kept = Vec::new();
-        let mut distinct = Distinct::new(space, wanted, &mut kept);
-        votes.iter().for_each(|vote| {
-            distinct.take(vote);
-        });
-        kept
-    }
-}
-
-/// The best distinct poses of those that came so far, in whatever order.
-#[derive(Debug, Default)]
-pub(crate) struct Leading {
-    /// Most votes first.
-    kept: Vec<Vote>,
-}
-
-impl Leading {
-    /// Starts anew, with none.
-    pub(crate) fn start(&mut self) {
-        self.kept.clear();
-    }
-
-    /// Takes a pose. The votes of the last of the best `wanted`, where there are so
-    /// many; a better pose that comes later may push two of them aside, so that is no
-    /// bound of what the last one will have in the end.
-    pub(crate) fn take(&mut self, vote: &Vote, wanted: usize, space: &Space) -> Option<u16> {
-        let is_near = |kept: &Vote| are_near(vote, kept, space);
-        let is_hidden = |kept: &Vote| kept.intensity >= vote.intensity && is_near(kept);
-        if !self.kept.iter().any(is_hidden) {
-            self.kept.retain(|kept| !is_near(kept));
-            let place = |kept: &Vote| kept.intensity >= vote.intensity;
-            let place = self.kept.partition_point(place);
-            self.kept.insert(place, *vote);
-            self.kept.truncate(wanted);
-        }
-        let is_full = self.kept.len() == wanted;
-        self.kept
-            .last()
-            .filter(|_| is_full)
-            .map(|vote| vote.intensity)
-    }
-}
-
-/// Whether two poses are one candidate.
-pub(crate) fn are_near(a: &Vote, b: &Vote, space: &Space) -> bool {
-    let headings = space.directions.count() as u16;
-    let turn = a.heading.abs_diff(b.heading);
-    let degrees = f64::from(turn.min(headings - turn)) * 360.0 / f64::from(headings);
-    let (dx, dy) = (f64::from(a.x.abs_diff(b.x)), f64::from(a.y.abs_diff(b.y)));
-    dx.hypot(dy) * space.resolution_m <= DISTINCT_M && degrees <= DISTINCT_DEG
 }
 
 /// Takes poses in any order and keeps those that matter.
@@ -316,6 +228,7 @@ mod tests {
     use proptest::prelude::*;
 
     use super::*;
+    use crate::space::Space;
 
     fn collect(config: CollectConfig, intensities: &[u16]) -> VoteSet {
         let mut collector = Collector::new(config);
@@ -401,28 +314,6 @@ mod tests {
         set.add_candidates(&mut others.to_vec(), distinct);
         assert_eq!(levels(&set), [10, 9, 7, 5]);
         assert_eq!((set.floor, set.certified_floor), (5, 9));
-    }
-
-    #[test]
-    fn the_leading_poses_are_distinct_and_better_ones_push_others_aside() {
-        let space = Space::new(360, 0.1, 100, 100).unwrap();
-        let mut leading = Leading::default();
-        let mut last = |x, intensity| {
-            let vote = Vote {
-                x,
-                y: 0,
-                heading: 0,
-                intensity,
-            };
-            leading.take(&vote, 2, &space)
-        };
-        assert_eq!(last(0, 5), None, "one of two");
-        assert_eq!(last(2, 4), None, "beside a better one");
-        assert_eq!(last(4, 6), Some(5));
-        assert_eq!(last(50, 3), Some(5), "not among the best");
-        assert_eq!(last(2, 7), None, "in place of both");
-        assert_eq!(last(9, 1), Some(1));
-        assert_eq!(last(51, 8), Some(7));
     }
 
     #[test]

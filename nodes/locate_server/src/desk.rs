@@ -276,9 +276,8 @@ impl Drop for Handed {
     fn drop(&mut self) {
         self.desk.team().done(&self.other);
         // Among them this one: nobody can reach it any more.
-        let mut handed_on = self.desk.handed_on();
-        handed_on.retain(|handed| handed.strong_count() > 0);
-        drop(handed_on);
+        let is_open = |handed: &Weak<Handed>| handed.strong_count() > 0;
+        self.desk.handed_on().retain(is_open);
         if let Some(job) = self.take() {
             self.desk.take_back(job);
         }

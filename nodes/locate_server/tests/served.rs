@@ -38,7 +38,7 @@ impl Server {
     fn start(tag: &str, arguments: &[&str]) -> Self {
         let isolated = Isolated::new(tag);
         let graph = isolated.join("test");
-        let listen = format!("tcp/{}:7447", isolated.name().loopback());
+        let listen = endpoint(&isolated);
         let map = world().map();
         let common = [
             "--map",
@@ -59,7 +59,7 @@ impl Server {
     }
 
     fn endpoint(&self) -> String {
-        format!("tcp/{}:7447", self.isolated.name().loopback())
+        endpoint(&self.isolated)
     }
 
     /// Waits until the server has sent so many answers, to those who ask.
@@ -70,6 +70,11 @@ impl Server {
             report.sent >= answers
         });
     }
+}
+
+/// Where whoever is isolated listens.
+fn endpoint(isolated: &Isolated) -> String {
+    format!("tcp/{}:7447", isolated.name().loopback())
 }
 
 /// A caller who is connected to all of these.
@@ -335,7 +340,7 @@ fn stand_silent(session: &Session, key: &str) -> (Queryable<()>, Receiver<Query>
 #[test]
 fn a_question_that_nobody_ends_is_asked_again() {
     let isolated = Isolated::new("silent");
-    let endpoint = format!("tcp/{}:7447", isolated.name().loopback());
+    let endpoint = endpoint(&isolated);
     let there = session(std::slice::from_ref(&endpoint), &[]);
     let (_silent, kept) = stand_silent(&there, "backcast/locate/attic");
     let caller = session(&[], &[endpoint]);
@@ -369,11 +374,13 @@ fn what_was_handed_on_comes_back_when_the_other_leaves() {
     std::thread::scope(|scope| {
         let ask = || ask_raw(&caller, "?deadline_ms=60000", JSON, payload.clone());
         let mut asking = Vec::new();
-        // Until one is handed on.
-        while kept.is_empty() {
+        // Until one is handed on, which is held without a word.
+        let _held = loop {
             asking.push(scope.spawn(ask));
-            std::thread::sleep(Duration::from_millis(1));
-        }
+            if let Ok(query) = kept.recv_timeout(Duration::from_millis(1)) {
+                break query;
+            }
+        };
         token.undeclare().wait().unwrap();
         for answer in asking {
             answer.join().unwrap().into_result().unwrap();

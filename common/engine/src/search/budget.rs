@@ -184,8 +184,7 @@ mod tests {
 
     #[test]
     fn a_search_is_given_up_where_what_is_left_costs_more() {
-        let brute_force = Cost(3_550.0 / HOPELESS);
-        let mut budget = Budget::new(Cost(2.0 * brute_force.0), 2);
+        let mut budget = Budget::new(Cost(2.0 * 3_550.0 / HOPELESS), 2);
         assert!(!budget.is_up());
         // Four coarse blocks came to eight fine ones, of which three were taken.
         for _ in 0..4 {
