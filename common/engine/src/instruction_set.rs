@@ -14,7 +14,7 @@ pub enum InstructionSet {
     Portable,
     /// AVX2 and POPCNT: x86-64 since Haswell and Zen.
     Avx2,
-    /// AVX-512 F, BW, DQ, VL and VBMI: x86-64 since Ice Lake and Zen 4.
+    /// AVX-512 F, BW, CD, DQ, VL and VBMI: x86-64 since Ice Lake and Zen 4.
     Avx512,
 }
 
@@ -48,6 +48,7 @@ impl InstructionSet {
             Self::Avx512 => {
                 is_x86_feature_detected!("avx512f")
                     && is_x86_feature_detected!("avx512bw")
+                    && is_x86_feature_detected!("avx512cd")
                     && is_x86_feature_detected!("avx512dq")
                     && is_x86_feature_detected!("avx512vl")
                     && is_x86_feature_detected!("avx512vbmi")

@@ -7,7 +7,8 @@
 use super::intervals::SIDE;
 use super::obstacles::{ROWS, Rays};
 use super::outlook::CELLS;
-use crate::directions::{Direction, swap_unless};
+use super::ray_lanes::{Across, RAYS, RayLanes};
+use crate::directions::Direction;
 use crate::grid::{Cell, Grid};
 use crate::program::NO_RANGE;
 
@@ -21,36 +22,33 @@ pub(super) struct Bundle {
     /// Where the first ray stands at position 0, along major and minor axis.
     pub start: (i64, i64),
     /// The ray of the first cell of each column.
-    first: [usize; SIDE],
+    first: [u16; SIDE],
     rays: u32,
 }
 
-/// The most rays that a block has, filled up to what one word holds.
-const RAYS: usize = ROWS as usize;
-
 impl Bundle {
+    #[inline(always)]
     pub(super) fn new(direction: &Direction, (left, bottom): (usize, usize)) -> Self {
         let x_major = direction.x_major;
         let (major, minor) = direction.swap((left, bottom));
         let backward = direction.step < 0;
         let major = major as i64 + if backward { SIDE as i64 - 1 } else { 0 };
-        let shift = |column: usize| {
-            let at = major + direction.step * column as i64;
-            direction.minor(at) - direction.minor(major)
-        };
+        let (rise, slope) = (direction.rise(major), direction.slope() * direction.step);
+        let shift = |column: usize| ((rise + slope * column as i64) >> 32) - (rise >> 32);
         // Where rays rise, those of the first column are not the first.
         let lead = shift(SIDE - 1).max(0);
         Bundle {
             x_major,
             backward,
             start: (major, minor as i64 - lead),
-            first: std::array::from_fn(|column| (lead - shift(column)) as usize),
+            first: std::array::from_fn(|column| (lead - shift(column)) as u16),
             rays: SIDE as u32 + shift(SIDE - 1).unsigned_abs() as u32,
         }
     }
 
     /// Those bits of a first word that lie behind the last cell of their ray: of
     /// the rows of `0..SIDE - 1`, the rays of no later column.
+    #[inline(always)]
     fn behind(&self) -> u64 {
         let mut mask = u64::MAX;
         let mut later = 0u64;
@@ -63,68 +61,73 @@ impl Bundle {
 
     /// The positions at which the rays of the block end, which are some steps
     /// behind the last open cell of each: in one of two spans.
-    pub(super) fn follow(&self, rays: &Rays<'_>, spans: [(u16, u16); 2]) -> [u16; RAYS] {
-        let mut hits = [NO_RANGE; RAYS];
-        let mut pending = (1u64 << self.rays) - 1;
+    #[inline(always)]
+    pub(super) fn follow<L: RayLanes>(
+        &self,
+        rays: &Rays<'_>,
+        spans: [(u16, u16); 2],
+    ) -> [u16; RAYS] {
+        let mut hits = L::none();
+        let mut pending = u8::MAX >> (RAYS as u32 - self.rays);
         let mut mask = self.behind();
         let mut done = 0;
         for (first, end) in spans {
             let end = (i64::from(end) + SIDE as i64 - 1).min(rays.positions());
             let mut position = i64::from(first).max(done);
+            // A span starts where a ray ends, as a rule: that is looked at first.
             while position < end && pending != 0 {
-                let free = rays.free(position);
-                if free > 0 {
-                    let passed = !mask >> (8 * free.min(ROWS - 1));
-                    mask = !passed;
-                    position += free;
-                    continue;
-                }
-                let Some(word) = rays.ends(position) else {
-                    return hits;
+                let Some(word) = rays.ends::<L>(position) else {
+                    return hits.hits();
                 };
-                let word = word & mask;
-                mask = u64::MAX;
-                note(&mut hits, word, position);
-                let folded = word | word >> 32;
-                let folded = folded | folded >> 16;
-                pending &= !(folded | folded >> 8);
+                pending &= !hits.note(word & std::mem::replace(&mut mask, u64::MAX), position);
                 position += ROWS;
+                while position < end && pending != 0 {
+                    let free = rays.free(position);
+                    if free == 0 {
+                        break;
+                    }
+                    position += free;
+                }
             }
             done = position;
         }
-        hits
+        hits.hits()
     }
 
-    /// The ranges of the block's cells: to where their rays end, or to a cell of
-    /// the block that is in the way.
-    pub(super) fn spread(
+    /// Where the block's cells lie.
+    #[inline(always)]
+    fn across(&self) -> &'static Across {
+        &Across::ALL[usize::from(self.x_major)][usize::from(self.backward)]
+    }
+
+    /// The ranges of the block's cells, all of them open: to where their rays end.
+    #[inline(always)]
+    pub(super) fn ranges<L: RayLanes>(&self, hits: &[u16; RAYS]) -> [u16; CELLS] {
+        L::ranges(hits, &self.first, self.across())
+    }
+
+    /// The same where some cells are not: to those that are in the way.
+    pub(super) fn ranges_among(
         &self,
         mut hits: [u16; RAYS],
         cells: &[Cell; CELLS],
-        ranges: &mut [u16; CELLS],
-    ) {
-        for column in (0..SIDE).rev() {
-            let major = if self.backward {
-                SIDE - 1 - column
-            } else {
-                column
-            };
-            for minor in 0..SIDE {
-                let (x, y) = swap_unless(self.x_major, (major, minor));
-                let i = y * SIDE + x;
-                let hit = &mut hits[self.first[column] + minor];
+    ) -> [u16; CELLS] {
+        let Across { column, minor } = self.across();
+        let mut ranges = [NO_RANGE; CELLS];
+        for behind in (0..SIDE as u16).rev() {
+            for i in (0..CELLS).filter(|&i| column[i] == behind) {
+                let hit = &mut hits[usize::from(self.first[usize::from(behind)] + minor[i])];
                 *hit = match cells[i] {
                     Cell::Open => *hit,
-                    Cell::Occupied => column as u16,
+                    Cell::Occupied => behind,
                     Cell::Blocked => NO_RANGE,
                 };
-                ranges[i] = if *hit == NO_RANGE {
-                    NO_RANGE
-                } else {
-                    *hit - column as u16
-                };
+                if *hit != NO_RANGE {
+                    ranges[i] = *hit - behind;
+                }
             }
         }
+        ranges
     }
 }
 
@@ -138,18 +141,5 @@ pub(super) fn lose(rays: &Rays<'_>, grid: &Grid, hits: &mut [u16; RAYS]) {
         if grid.get(x, y) == Some(Cell::Blocked) {
             *hit = NO_RANGE;
         }
-    }
-}
-
-/// Notes where rays end at one of eight positions, unless they did before.
-#[inline(always)]
-fn note(hits: &mut [u16; RAYS], word: u64, position: i64) {
-    /// The bits of the first ray.
-    const FIRST: u64 = 0x0101_0101_0101_0101;
-    for (i, hit) in hits.iter_mut().enumerate() {
-        let ends = (word >> i) & FIRST;
-        let at = position + i64::from(ends.trailing_zeros() / 8);
-        let at = if ends == 0 { NO_RANGE } else { at as u16 };
-        *hit = at.min(*hit);
     }
 }

@@ -55,9 +55,8 @@ impl LeafProgram {
         counts: &mut [u16; CELLS],
     ) {
         let beams = sectors::beams(sector, self.bearings.len());
-        for beam in beams.clone() {
-            outlook.look(view, self.direction(beam, heading));
-        }
+        let directions = beams.clone().map(|beam| self.direction(beam, heading));
+        outlook.look(view, self.instruction_set, directions);
         match self.instruction_set {
             // SAFETY: the processor has the instruction set, or it would not be chosen.
             #[cfg(target_arch = "x86_64")]

@@ -34,6 +34,7 @@ mod outlook;
 mod parts;
 mod prefetch;
 mod queue;
+mod ray_lanes;
 mod rows;
 mod sectors;
 mod set_bounds;

@@ -4,6 +4,7 @@
 //! time. In a row of bits over the minor axis, rays side by side are bits side by
 //! side, and eight rows make one word. Where nothing is near they leap.
 
+use super::ray_lanes::{BitRows, RayLanes};
 use crate::chessboard;
 use crate::directions::{Direction, swap_unless};
 use crate::grid::{Cell, Grid};
@@ -51,7 +52,7 @@ struct Rows {
 
 /// Rays side by side on their way along a direction.
 #[derive(Debug)]
-pub(crate) struct Rays<'a> {
+pub(super) struct Rays<'a> {
     rows: &'a Rows,
     clearance: &'a Clearance,
     direction: &'a Direction,
@@ -77,7 +78,7 @@ impl Obstacles {
 
     /// Rays in a direction, of which the first one stands at `(major, minor)` at
     /// position 0.
-    pub(crate) fn rays<'a>(
+    pub(super) fn rays<'a>(
         &'a self,
         direction: &'a Direction,
         (major, minor): (i64, i64),
@@ -99,7 +100,8 @@ impl Rows {
     fn new(grid: &Grid, x_major: bool) -> Self {
         let (majors, minors) = swap_unless(x_major, (grid.width(), grid.height()));
         let stride = (minors + 2 * MARGIN as usize).div_ceil(8);
-        let mut bits = vec![0; stride * (majors + 2 * ROWS as usize)];
+        // Eight bytes can be read from the last row on, too.
+        let mut bits = vec![0; stride * (majors + 2 * ROWS as usize) + size_of::<u64>()];
         for cell in grid.places(|cell| cell != Cell::Open) {
             let (major, minor) = swap_unless(x_major, cell);
             let bit = minor + MARGIN as usize;
@@ -180,30 +182,24 @@ impl Rays<'_> {
     /// ray `i` ends at `position + j`. `None` where all of them have left the map;
     /// there must be a row at `position`.
     #[inline(always)]
-    pub(crate) fn ends(&self, position: i64) -> Option<u64> {
+    pub(super) fn ends<L: RayLanes>(&self, position: i64) -> Option<u64> {
         let Rays {
             rows, direction, ..
         } = self;
         let major = self.major + direction.step * position;
-        let mut rise = direction.rise(major);
+        let rise = direction.rise(major);
         // Rays leave for good: a bundle never turns.
         let first = self.offset + (rise >> 32);
         if first <= -ROWS || first >= rows.minors {
             return None;
         }
-        let stride = rows.stride as i64 * direction.step;
-        let mut start = (major + ROWS) * rows.stride as i64;
-        let slope = direction.slope() * direction.step;
-        let mut word = 0;
-        for j in 0..ROWS {
-            let bit = self.offset + (rise >> 32) + MARGIN;
-            let byte = (start + (bit >> 3)) as usize;
-            let pair = u16::from_le_bytes([rows.bits[byte], rows.bits[byte + 1]]);
-            word |= u64::from((pair >> (bit & 7)) as u8) << (8 * j);
-            rise += slope;
-            start += stride;
-        }
-        Some(word)
+        Some(L::word(&BitRows {
+            bytes: &rows.bits,
+            start: (major + ROWS) * rows.stride as i64,
+            stride: rows.stride as i64 * direction.step,
+            bit: ((self.offset + MARGIN) << 32) + rise,
+            slope: direction.slope() * direction.step,
+        }))
     }
 }
 
@@ -211,6 +207,7 @@ impl Rays<'_> {
 mod tests {
     use proptest::prelude::*;
 
+    use super::super::ray_lanes::Portable;
     use super::*;
     use crate::testing::{any_grid, any_long_grid, space_of};
 
@@ -227,7 +224,7 @@ mod tests {
                 if skip >= rays.positions() {
                     continue;
                 }
-                let ends = rays.ends(skip);
+                let ends = rays.ends::<Portable>(skip);
                 for (i, j) in (0..8).flat_map(|i| (0..8).map(move |j| (i, j))) {
                     let (x, y) = rays.cell(i, skip + j);
                     let expected = grid.get(x, y).is_some_and(|cell| cell != Cell::Open);

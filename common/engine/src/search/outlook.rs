@@ -8,9 +8,11 @@
 use super::bundle::{self, Bundle};
 use super::intervals::{BlockIntervals, RangeIntervals, SIDE};
 use super::obstacles::Obstacles;
+use super::ray_lanes::{Portable, RayLanes};
 use super::steps::BinSteps;
 use crate::directions::Directions;
 use crate::grid::{Cell, Grid};
+use crate::instruction_set::InstructionSet;
 use crate::limits::Limits;
 use crate::program::NO_RANGE;
 
@@ -37,6 +39,8 @@ pub(crate) struct Outlook {
     left: usize,
     bottom: usize,
     cells: [Cell; CELLS],
+    /// Whether all of them are open.
+    all_open: bool,
     /// For each cell, all ones where poses are sought.
     open: [u16; CELLS],
     intervals: BlockIntervals,
@@ -56,6 +60,7 @@ impl Default for Outlook {
             left: 0,
             bottom: 0,
             cells: [Cell::Blocked; CELLS],
+            all_open: false,
             open: [0; CELLS],
             intervals: BlockIntervals::default(),
             can_lose: false,
@@ -97,6 +102,7 @@ impl Outlook {
             let sought = *cell == Cell::Open && limits.hold_cell(x, y);
             *open = if sought { u16::MAX } else { 0 };
         }
+        self.all_open = self.cells.iter().all(|&cell| cell == Cell::Open);
     }
 
     /// Column and row of the block's cell `i`.
@@ -114,13 +120,35 @@ impl Outlook {
         self.open
     }
 
-    /// Looks in direction `d`, unless that was done for this block.
+    /// Looks in some directions, each unless that was done for this block.
+    pub(crate) fn look(
+        &mut self,
+        view: &View<'_>,
+        instruction_set: InstructionSet,
+        directions: impl Iterator<Item = usize>,
+    ) {
+        match instruction_set {
+            // SAFETY: the processor has the instruction set, or it would not be chosen.
+            #[cfg(target_arch = "x86_64")]
+            InstructionSet::Avx512 => unsafe { self.look_avx512(view, directions) },
+            _ => self.look_with::<Portable>(view, directions),
+        }
+    }
+
+    #[cfg(target_arch = "x86_64")]
+    #[target_feature(enable = "avx512f,avx512bw,avx512cd,avx512dq,avx512vl")]
+    fn look_avx512(&mut self, view: &View<'_>, directions: impl Iterator<Item = usize>) {
+        self.look_with::<super::ray_lanes::Avx512>(view, directions);
+    }
+
     #[inline(always)]
-    pub(crate) fn look(&mut self, view: &View<'_>, d: usize) {
-        if self.looked_for[d] != self.number {
-            self.looked_for[d] = self.number;
-            self.looks += 1;
-            self.look_anew(view, d);
+    fn look_with<L: RayLanes>(&mut self, view: &View<'_>, directions: impl Iterator<Item = usize>) {
+        for d in directions {
+            if self.looked_for[d] != self.number {
+                self.looked_for[d] = self.number;
+                self.looks += 1;
+                self.look_anew::<L>(view, d);
+            }
         }
     }
 
@@ -135,7 +163,8 @@ impl Outlook {
         &self.by_direction[d]
     }
 
-    fn look_anew(&mut self, view: &View<'_>, d: usize) {
+    #[inline(always)]
+    fn look_anew<L: RayLanes>(&mut self, view: &View<'_>, d: usize) {
         let direction = view.directions.get(d);
         let [near_first, near_last, far_first, far_last] = &self.intervals.rows;
         let span = |first: u8, last: u8| view.steps.span(direction.class, first, last);
@@ -148,11 +177,15 @@ impl Outlook {
         };
         let bundle = Bundle::new(direction, (self.left, self.bottom));
         let rays = view.obstacles.rays(direction, bundle.start);
-        let mut hits = bundle.follow(&rays, spans);
+        let mut hits = bundle.follow::<L>(&rays, spans);
         if self.can_lose {
             bundle::lose(&rays, view.grid, &mut hits);
         }
-        bundle.spread(hits, &self.cells, &mut self.by_direction[d]);
+        self.by_direction[d] = if self.all_open {
+            bundle.ranges::<L>(&hits)
+        } else {
+            bundle.ranges_among(hits, &self.cells)
+        };
     }
 }
 
@@ -178,11 +211,12 @@ mod tests {
             let view = View { grid: &grid, obstacles: &obstacles, steps: &steps, directions };
             let mut outlook = Outlook::default();
             outlook.prepare(&grid, directions);
-            for block in 0..intervals.columns * intervals.rows {
+            let blocks = 0..intervals.columns * intervals.rows;
+            for (block, set) in InstructionSet::available().flat_map(|set| blocks.clone().map(move |block| (block, set))) {
                 outlook.enter((&grid, &Limits::none(grid.width())), &intervals, block);
+                outlook.look(&view, set, 0..directions.count());
                 let open = outlook.open();
                 for (d, direction) in directions.all().iter().enumerate() {
-                    outlook.look(&view, d);
                     for (i, &open) in open.iter().enumerate() {
                         let (x, y) = outlook.cell(i);
                         let (x, y) = (x as i64, y as i64);

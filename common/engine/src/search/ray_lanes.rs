@@ -1,0 +1,229 @@
+//! Eight rays side by side in the registers of an instruction set.
+
+use super::intervals::SIDE;
+use super::obstacles::ROWS;
+use super::outlook::CELLS;
+use crate::program::NO_RANGE;
+
+/// The most rays of a bundle.
+pub(super) const RAYS: usize = ROWS as usize;
+
+/// Where rays side by side end.
+///
+/// The methods must be inlined into functions that are compiled for the
+/// instruction set, and be called only where the processor has it.
+pub(super) trait RayLanes: Sized {
+    /// No ray has ended.
+    fn none() -> Self;
+
+    /// Eight bits of each of eight rows, a row a byte, as far as they are there.
+    fn word(rows: &BitRows<'_>) -> u64;
+
+    /// Notes where rays end at one of eight positions, unless they did before. Bit
+    /// `i` of byte `j` of the word says whether ray `i` ends at `position + j`; a
+    /// bit for each ray that ends in it.
+    fn note(&mut self, word: u64, position: i64) -> u8;
+
+    /// The position at which each ray ends first, or [`NO_RANGE`].
+    fn hits(self) -> [u16; RAYS];
+
+    /// The ranges of the cells of a block, given the ray of each column's first cell.
+    fn ranges(hits: &[u16; RAYS], first: &[u16; SIDE], across: &Across) -> [u16; CELLS];
+}
+
+/// Where the cells of a block lie as rays cross them.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct Across {
+    /// How many columns a ray has met before.
+    pub column: [u16; CELLS],
+    /// The place in the column.
+    pub minor: [u16; CELLS],
+}
+
+impl Across {
+    /// For rays along y and along x, each forward and backward.
+    pub(super) const ALL: [[Across; 2]; 2] = [
+        [Across::new(false, false), Across::new(false, true)],
+        [Across::new(true, false), Across::new(true, true)],
+    ];
+
+    const fn new(x_major: bool, backward: bool) -> Self {
+        let (mut column, mut minor) = ([0; CELLS], [0; CELLS]);
+        let mut cell = 0;
+        while cell < CELLS {
+            let (x, y) = ((cell % SIDE) as u16, (cell / SIDE) as u16);
+            let (major, along) = if x_major { (x, y) } else { (y, x) };
+            column[cell] = if backward {
+                SIDE as u16 - 1 - major
+            } else {
+                major
+            };
+            minor[cell] = along;
+            cell += 1;
+        }
+        Across { column, minor }
+    }
+}
+
+/// Rows of bits on a slope.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct BitRows<'a> {
+    pub bytes: &'a [u8],
+    /// Where the first row starts, and each further one behind it, in bytes.
+    pub start: i64,
+    pub stride: i64,
+    /// The first bit of the first row that is read, times 2³², and how much
+    /// further that is in each further row.
+    pub bit: i64,
+    pub slope: i64,
+}
+
+/// What every processor has.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct Portable([u16; RAYS]);
+
+impl RayLanes for Portable {
+    #[inline(always)]
+    fn none() -> Self {
+        Portable([NO_RANGE; RAYS])
+    }
+
+    #[inline(always)]
+    fn word(rows: &BitRows<'_>) -> u64 {
+        let (mut start, mut bit) = (rows.start, rows.bit);
+        let mut word = 0;
+        for row in 0..ROWS {
+            let byte = (start + (bit >> 35)) as usize;
+            let pair = u16::from_le_bytes([rows.bytes[byte], rows.bytes[byte + 1]]);
+            word |= u64::from((pair >> (bit >> 32 & 7)) as u8) << (8 * row);
+            start += rows.stride;
+            bit += rows.slope;
+        }
+        word
+    }
+
+    #[inline(always)]
+    fn note(&mut self, word: u64, position: i64) -> u8 {
+        /// The bits of the first ray.
+        const FIRST: u64 = 0x0101_0101_0101_0101;
+        for (i, hit) in self.0.iter_mut().enumerate() {
+            let ends = (word >> i) & FIRST;
+            let at = position + i64::from(ends.trailing_zeros() / 8);
+            let at = if ends == 0 { NO_RANGE } else { at as u16 };
+            *hit = at.min(*hit);
+        }
+        let folded = word | word >> 32;
+        let folded = folded | folded >> 16;
+        (folded | folded >> 8) as u8
+    }
+
+    #[inline(always)]
+    fn hits(self) -> [u16; RAYS] {
+        self.0
+    }
+
+    #[inline(always)]
+    fn ranges(hits: &[u16; RAYS], first: &[u16; SIDE], across: &Across) -> [u16; CELLS] {
+        std::array::from_fn(|i| {
+            let column = across.column[i];
+            let hit = hits[usize::from(first[usize::from(column)] + across.minor[i])];
+            if hit == NO_RANGE { hit } else { hit - column }
+        })
+    }
+}
+
+#[cfg(target_arch = "x86_64")]
+mod x86 {
+    use std::arch::x86_64::*;
+
+    use super::{Across, BitRows, CELLS, NO_RANGE, RAYS, RayLanes, SIDE};
+
+    /// A ray a lane of 64 bits.
+    #[derive(Clone, Copy)]
+    pub(crate) struct Avx512(__m512i);
+
+    #[expect(
+        clippy::undocumented_unsafe_blocks,
+        reason = "one argument holds for all but the gathering of rows: lanes of an instruction \
+                  set are made only where the processor has it"
+    )]
+    impl RayLanes for Avx512 {
+        #[inline(always)]
+        fn none() -> Self {
+            unsafe { Avx512(_mm512_set1_epi64(i64::from(NO_RANGE))) }
+        }
+
+        #[inline(always)]
+        fn word(rows: &BitRows<'_>) -> u64 {
+            let on = |start: i64, step: i64| unsafe {
+                let row = _mm512_set_epi64(7, 6, 5, 4, 3, 2, 1, 0);
+                let steps = _mm512_mullo_epi64(row, _mm512_set1_epi64(step));
+                _mm512_add_epi64(_mm512_set1_epi64(start), steps)
+            };
+            unsafe {
+                let bit = on(rows.bit, rows.slope);
+                let byte = _mm512_srai_epi64::<35>(bit);
+                let byte = _mm512_add_epi64(byte, on(rows.start, rows.stride));
+                let ends = rows.bytes.len().saturating_sub(size_of::<u64>() - 1);
+                let inside = _mm512_cmplt_epu64_mask(byte, _mm512_set1_epi64(ends as i64));
+                // SAFETY: lanes are read only where eight bytes from there on are
+                // among those of the rows.
+                let read = _mm512_mask_i64gather_epi64::<1>(
+                    _mm512_setzero_si512(),
+                    inside,
+                    byte,
+                    rows.bytes.as_ptr().cast(),
+                );
+                let by = _mm512_and_si512(_mm512_srli_epi64::<32>(bit), _mm512_set1_epi64(7));
+                let word = _mm512_cvtepi64_epi8(_mm512_srlv_epi64(read, by));
+                _mm_cvtsi128_si64(word).cast_unsigned()
+            }
+        }
+
+        #[inline(always)]
+        fn note(&mut self, word: u64, position: i64) -> u8 {
+            unsafe {
+                let ray = _mm512_set_epi64(7, 6, 5, 4, 3, 2, 1, 0);
+                let word = _mm512_set1_epi64(word.cast_signed());
+                let first = _mm512_set1_epi64(0x0101_0101_0101_0101);
+                let ends = _mm512_and_si512(_mm512_srlv_epi64(word, ray), first);
+                let negated = _mm512_sub_epi64(_mm512_setzero_si512(), ends);
+                let lowest = _mm512_and_si512(ends, negated);
+                // The lowest bit is that of place 63 less the zeros before it.
+                let row = _mm512_sub_epi64(_mm512_set1_epi64(63), _mm512_lzcnt_epi64(lowest));
+                let row = _mm512_srli_epi64::<3>(row);
+                let at = _mm512_add_epi64(_mm512_set1_epi64(position), row);
+                let ended = _mm512_test_epi64_mask(ends, ends);
+                self.0 = _mm512_mask_min_epu64(self.0, ended, self.0, at);
+                ended
+            }
+        }
+
+        #[inline(always)]
+        fn hits(self) -> [u16; RAYS] {
+            let mut hits = [0; RAYS];
+            unsafe { _mm_storeu_si128(hits.as_mut_ptr().cast(), _mm512_cvtepi64_epi16(self.0)) };
+            hits
+        }
+
+        #[inline(always)]
+        fn ranges(hits: &[u16; RAYS], first: &[u16; SIDE], across: &Across) -> [u16; CELLS] {
+            let mut ranges = [0; CELLS];
+            unsafe {
+                let column = _mm256_loadu_si256(across.column.as_ptr().cast());
+                let minor = _mm256_loadu_si256(across.minor.as_ptr().cast());
+                let hits = _mm256_castsi128_si256(_mm_loadu_si128(hits.as_ptr().cast()));
+                let first = _mm256_castsi128_si256(_mm_loadl_epi64(first.as_ptr().cast()));
+                let ray = _mm256_add_epi16(_mm256_permutexvar_epi16(column, first), minor);
+                let hit = _mm256_permutexvar_epi16(ray, hits);
+                let ends = _mm256_cmpneq_epi16_mask(hit, _mm256_set1_epi16(NO_RANGE as i16));
+                let range = _mm256_mask_sub_epi16(hit, ends, hit, column);
+                _mm256_storeu_si256(ranges.as_mut_ptr().cast(), range);
+            }
+            ranges
+        }
+    }
+}
+
+#[cfg(target_arch = "x86_64")]
+pub(super) use x86::Avx512;
