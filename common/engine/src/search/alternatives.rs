@@ -5,7 +5,7 @@
 //! would cost more than they are worth, single blocks are looked into: the 8 × 8
 //! with the highest bounds, and in each of those one pose of the 4 × 4 and the
 //! heading with the highest bound. The search bounded all blocks that the floor
-//! leaves. Where those are too few, coarse blocks are split by their promise.
+//! leaves. Where those are too few, the coarse blocks with the highest bounds are split.
 
 use std::cmp::Reverse;
 use std::collections::BinaryHeap;
@@ -55,6 +55,8 @@ pub(super) struct Room {
     interval_bounds: IntervalBounds,
     outlook: Outlook,
     coarse: Vec<Promise>,
+    /// The 8 × 8 blocks of one.
+    blocks: Vec<usize>,
     /// Blocks of 8 × 8 cells that are looked into.
     fine: Greatest,
     spots: Vec<Spot>,
@@ -97,7 +99,7 @@ impl<'a> Alternatives<'a> {
             }
         }
         if !self.room.fine.is_full() {
-            let part = self.task.promises.len() / COARSE_PART;
+            let part = self.task.coarse_bounds.len() / COARSE_PART;
             self.take_most_promising(part.max(COARSE_SHARE * wanted));
             self.room.fine.start(count);
             self.choose(1);
@@ -124,10 +126,10 @@ impl<'a> Alternatives<'a> {
 
     /// Takes the coarse blocks that promise most.
     fn take_most_promising(&mut self, count: usize) {
-        let promises = self.task.promises.iter().zip(0..);
+        let bounds = self.task.coarse_bounds.iter().zip(0..);
         let within = &self.task.index.within;
-        let blocks = promises
-            .map(|(promise, block)| (promise.load(Ordering::Relaxed), Reverse(block)))
+        let blocks = bounds
+            .map(|(bound, block)| (bound.load(Ordering::Relaxed), Reverse(block)))
             .filter(|&(_, Reverse(block))| within.holds(Size::Coarse, block as usize));
         self.room.coarse.clear();
         self.room.coarse.extend(blocks);
@@ -144,27 +146,27 @@ impl<'a> Alternatives<'a> {
             coarse_bounds,
             coarse,
             fine,
+            blocks,
             ..
         } = &mut *self.room;
         coarse_bounds.fit(&programs.coarse, self.task.headings());
-        for &(_, Reverse(around)) in &*coarse {
+        for &(bound, Reverse(around)) in &*coarse {
             let around = around as usize;
             // Where enough are known, others need not be bounded to the end.
             let least = floor.max(fine.least());
-            let block = (&index.coarse, around);
-            if !programs.coarse.bound(block, least, None, coarse_bounds) {
+            if bound < least {
                 continue;
             }
             let quarters = quarters(around, index.coarse.columns, sides);
-            for block in quarters.filter(|&block| index.within.holds(Size::Fine, block)) {
-                let least = floor.max(fine.least());
-                let around = Some(&*coarse_bounds);
-                if programs
-                    .fine
-                    .bound((&index.fine, block), least, around, bounds)
-                {
-                    fine.offer((bounds.greatest(), Reverse(block as u32)));
-                }
+            blocks.clear();
+            blocks.extend(quarters.filter(|&block| index.within.holds(Size::Fine, block)));
+            let around = programs
+                .coarse
+                .bound((&index.coarse, around), coarse_bounds);
+            let within = (&index.fine, &**blocks);
+            let reach = programs.fine.bound_within(within, least, around, bounds);
+            for (place, &block) in blocks.iter().enumerate().filter(|&(place, _)| reach[place]) {
+                fine.offer((bounds.blocks[place].greatest(), Reverse(block as u32)));
             }
         }
     }
@@ -173,7 +175,7 @@ impl<'a> Alternatives<'a> {
     fn best_spot(&mut self, block: usize) -> Option<Spot> {
         let (index, program) = (self.task.index, &self.task.programs.fine);
         let Room { bounds, masks, .. } = &mut *self.room;
-        program.bound((&index.fine, block), 0, None, bounds);
+        let bounds = program.bound((&index.fine, block), bounds);
         let greatest = u32::from(bounds.greatest());
         let least = (greatest * LEAST_THIRTY_SECONDTHS / 32) as u16;
         masks.clear();

@@ -59,17 +59,14 @@ impl SearchIndex {
         } = &mut workspace.bounding;
         set_program.make(program, directions, &self.steps, coarse.shift, best);
         bounds.fit(set_program, self.within.headings(directions.count()));
-        let bound = |block| {
-            if !self.within.holds(Size::Coarse, block) {
-                return 0;
-            }
-            set_program.bound((coarse, block), 0, None, bounds);
-            bounds.greatest()
-        };
         blocks.side = coarse.side;
         blocks.columns = coarse.columns;
         blocks.bounds.clear();
-        blocks.bounds.extend((0..coarse.blocks()).map(bound));
+        blocks.bounds.resize(coarse.blocks(), 0);
+        let sought = (0..coarse.blocks()).filter(|&block| self.within.holds(Size::Coarse, block));
+        set_program.bound_all(coarse, sought, bounds, |block, bound| {
+            blocks.bounds[block] = bound;
+        });
     }
 }
 

@@ -57,10 +57,10 @@ impl Rates {
     fn of(instruction_set: InstructionSet) -> Self {
         match instruction_set {
             InstructionSet::Avx512 => Rates {
-                bound_per_beam: 2.7,
+                bound_per_beam: 1.9,
                 window_per_beam: 1.6,
                 sector: 60.0,
-                look: 90.0,
+                look: 55.0,
                 vote: 0.015,
             },
             InstructionSet::Avx2 => Rates {

@@ -105,22 +105,26 @@ impl<'a> Descent<'a> {
     /// Searches one of `parts` of the coarse blocks.
     pub(super) fn run(mut self, (part, parts): (usize, usize), stop: &dyn Fn() -> bool) -> End {
         let (coarse, program) = (&self.task.index.coarse, &self.task.programs.coarse);
-        // Neighbouring blocks are alike, so parts take them in turn. All promises
+        // Neighbouring blocks are alike, so parts take them in turn. All bounds
         // are needed, also where another part gives up: candidates come of them.
         let within = &self.task.index.within;
         let own = (part..coarse.blocks()).step_by(parts);
-        for index in own.filter(|&block| within.holds(Size::Coarse, block)) {
-            let (bound, promise) = program.rough(coarse, index, &mut self.room.coarse_bounds);
-            self.task.promises[index].store(promise, Ordering::Relaxed);
-            self.push(bound, promise, index, Level::Coarse);
-        }
+        let own = own.filter(|&block| within.holds(Size::Coarse, block));
+        let Room {
+            coarse_bounds,
+            queue,
+            ..
+        } = &mut *self.room;
+        program.bound_all(coarse, own, coarse_bounds, |index, bound| {
+            self.task.coarse_bounds[index].store(bound, Ordering::Relaxed);
+            queue.push(Block {
+                bound,
+                index: index as u32,
+                level: Level::Coarse,
+            });
+        });
         let mut budget = Budget::new(self.task.brute_force, parts);
-        while let Some(block) = self.room.queue.pop(budget.dives()) {
-            let best = self.task.best.load(Ordering::Relaxed);
-            self.room.collector.hear_of(best);
-            if block.bound < self.room.collector.floor() {
-                continue;
-            }
+        while let Some(block) = self.next(budget.dives()) {
             if stop() {
                 return End::Stopped;
             }
@@ -147,6 +151,13 @@ impl<'a> Descent<'a> {
             }
         }
         End::Done
+    }
+
+    /// The next block that may matter.
+    fn next(&mut self, dives: bool) -> Option<Block> {
+        let best = self.task.best.load(Ordering::Relaxed);
+        self.room.collector.hear_of(best);
+        self.room.queue.pop(dives, self.room.collector.floor())
     }
 
     /// Asks for what is known of a block that is likely the next one.
@@ -178,10 +189,9 @@ impl<'a> Descent<'a> {
         left
     }
 
-    fn push(&mut self, bound: u16, promise: u16, index: usize, level: Level) {
+    fn push(&mut self, bound: u16, index: usize, level: Level) {
         if bound >= self.room.collector.floor() {
             self.room.queue.push(Block {
-                promise,
                 bound,
                 index: index as u32,
                 level,
@@ -191,31 +201,45 @@ impl<'a> Descent<'a> {
 
     /// Bounds a block of 16 × 16 cells by all beams, and queues the 8 × 8 in it.
     fn split_coarse(&mut self, index: usize) {
-        let (coarse, fine) = (&self.task.index.coarse, &self.task.index.fine);
+        let SearchIndex {
+            coarse,
+            fine,
+            within,
+            ..
+        } = self.task.index;
+        let Programs {
+            coarse: program,
+            fine: finer,
+            ..
+        } = self.task.programs;
         let floor = self.room.collector.floor();
-        let program = &self.task.programs.coarse;
-        self.room.tally.bounds += 1;
-        let bounds = &mut self.room.coarse_bounds;
-        if program.bound((coarse, index), floor, None, bounds) {
-            let within = &self.task.index.within;
-            let quarters = quarters(index, coarse.columns, (fine.columns, fine.rows));
-            quarters.clone().for_each(|block| fine.prefetch(block));
-            for block in quarters.filter(|&block| within.holds(Size::Fine, block)) {
-                self.queue_fine(block);
-            }
+        let Room {
+            coarse_bounds,
+            fine_bounds,
+            tally,
+            ..
+        } = &mut *self.room;
+        let around = program.bound((coarse, index), coarse_bounds);
+        let quarters = quarters(index, coarse.columns, (fine.columns, fine.rows));
+        let (mut blocks, mut count) = ([0; 4], 0);
+        for block in quarters.filter(|&block| within.holds(Size::Fine, block)) {
+            fine.prefetch(block);
+            blocks[count] = block;
+            count += 1;
+        }
+        let blocks = &blocks[..count];
+        tally.bounds += 1 + blocks.len() as u64;
+        let reach = finer.bound_within((fine, blocks), floor, around, fine_bounds);
+        for (place, &block) in blocks.iter().enumerate().filter(|&(place, _)| reach[place]) {
+            self.queue_fine(block, place);
         }
     }
 
     /// Queues a block of 8 × 8 cells at the headings that the block around it
     /// leaves.
-    fn queue_fine(&mut self, index: usize) {
+    fn queue_fine(&mut self, index: usize, place: usize) {
         let floor = self.room.collector.floor();
-        let (fine, program) = (&self.task.index.fine, &self.task.programs.fine);
-        self.room.tally.bounds += 1;
-        let around = Some(&self.room.coarse_bounds);
-        if !program.bound((fine, index), floor, around, &mut self.room.fine_bounds) {
-            return;
-        }
+        let program = &self.task.programs.fine;
         let Room {
             masks,
             windows,
@@ -223,8 +247,9 @@ impl<'a> Descent<'a> {
             fine_bounds,
             ..
         } = &mut *self.room;
+        let (around, bounds) = (&coarse_bounds.blocks[0], &fine_bounds.blocks[place]);
         masks.clear();
-        masks.extend(fine_bounds.at_least(floor, coarse_bounds));
+        masks.extend(bounds.at_least(floor, around));
         let start = windows.len();
         for (chunk, mask) in masks.iter_mut().enumerate() {
             while let Some((first, among)) = bits::take_window(mask) {
@@ -232,15 +257,15 @@ impl<'a> Descent<'a> {
                 windows.push(Window {
                     first: (chunk * CHUNK + first) as u16,
                     among,
-                    rests: program.rests(fine_bounds, chunk, row),
+                    rests: program.rests(bounds, chunk, row),
                 });
             }
         }
         let (start, end) = (start as u32, windows.len() as u32);
         if start < end {
-            let bound = fine_bounds.greatest();
+            let bound = bounds.greatest();
             self.room.fine.push((bound, Reverse(index as u32)));
-            self.push(bound, bound, index, Level::Fine { start, end });
+            self.push(bound, index, Level::Fine { start, end });
         }
     }
 
@@ -283,7 +308,7 @@ impl<'a> Descent<'a> {
         let left = candidates[start..].iter();
         if let Some(bound) = left.map(|candidate| candidate.bound).max() {
             let (start, end) = (start as u32, candidates.len() as u32);
-            self.push(bound, bound, index, Level::Leaf { start, end });
+            self.push(bound, index, Level::Leaf { start, end });
         }
     }
 

@@ -5,18 +5,26 @@
 //! its carries.
 
 use super::bits::Row;
-use super::rows::BitRow;
-use super::spans::Window;
+use super::rows::{BitRow, Several};
+use super::spans::{Reader, SpansFrom, Window, Windows};
 
 /// Beams whose bearings leave the same rest by eight.
 #[derive(Debug, Clone)]
 pub(super) struct Group {
     /// That rest.
     shift: u32,
-    /// The windows with a share of `1 << i` units, narrow ones and wide ones.
-    planes: Vec<[Vec<Window>; 2]>,
+    /// The windows with a share of `1 << i` units.
+    planes: Vec<Plane>,
     /// The most units that the beams can give.
     pub possible: u16,
+}
+
+/// Windows by how many reads they take: nearly all take one to three.
+#[derive(Debug, Clone)]
+struct Plane {
+    two: Windows<2>,
+    three: Windows<3>,
+    most: Windows<{ Window::MOST }>,
 }
 
 /// A row in one line of the processor's cache.
@@ -39,46 +47,46 @@ impl Group {
 
     /// Lets go of all windows; their room stays.
     pub(super) fn clear(&mut self) {
-        self.planes.iter_mut().flatten().for_each(Vec::clear);
+        self.planes.iter_mut().for_each(Plane::clear);
         self.possible = 0;
     }
 
     pub(super) fn push(&mut self, plane: usize, window: Window) {
         self.possible += 1 << plane;
         if self.planes.len() <= plane {
-            self.planes
-                .resize_with(plane + 1, || [Vec::new(), Vec::new()]);
+            self.planes.resize_with(plane + 1, Plane::new);
         }
-        self.planes[plane][usize::from(!window.is_narrow())].push(window);
+        self.planes[plane].push(window);
     }
 
     /// How many windows there are; each leaves at most one carry.
     pub(super) fn windows(&self) -> usize {
-        self.planes.iter().flatten().map(Vec::len).sum()
+        self.planes.iter().map(Plane::len).sum()
     }
 
     /// Adds up what the windows see, plane by plane with carry-save adders, and
     /// adds that to the sums of all groups.
     #[inline(always)]
-    pub(super) fn add<R: BitRow>(
+    pub(super) fn add<R: BitRow, const N: usize>(
         &self,
-        spans: &[u8],
+        spans: SpansFrom<'_>,
         [carries, next]: &mut [Vec<Aligned>; 2],
-        total: &mut [R],
+        total: &mut [Several<R, N>],
     ) {
         let (mut carries, mut next) = (&mut carries[..], &mut next[..]);
         let mut carried = 0;
         let mut windows = self.planes.iter();
         // What adding to the total carries over.
-        let mut overflow = R::empty();
+        let mut overflow = Several::empty();
         for total in total {
-            let (mut sum, mut made) = (R::empty(), 0);
-            if let Some([narrow, wide]) = windows.next() {
-                made = add_windows::<R, { Window::NARROW }>(narrow, spans, &mut sum, next);
-                let next = &mut next[made..];
-                made += add_windows::<R, { Window::WIDE }>(wide, spans, &mut sum, next);
+            let mut column = Column::new(next);
+            if let Some(plane) = windows.next() {
+                column.add_windows(plane.two.reader(spans));
+                column.add_windows(plane.three.reader(spans));
+                column.add_windows(plane.most.reader(spans));
             }
-            made += add_carries(&carries[..carried], &mut sum, &mut next[made..]);
+            column.add_rows(&carries[..carried * N]);
+            let (sum, made) = (column.sum, column.made);
             (*total, overflow) = total.full_adder(sum.shift_down(self.shift), overflow);
             std::mem::swap(&mut carries, &mut next);
             carried = made;
@@ -86,45 +94,97 @@ impl Group {
     }
 }
 
-/// Adds windows that take `READS` reads to a plane, two by two; how many carries
-/// that made.
-#[inline(always)]
-fn add_windows<R: BitRow, const READS: usize>(
-    windows: &[Window],
-    spans: &[u8],
-    sum: &mut R,
-    carries: &mut [Aligned],
-) -> usize {
-    let read = |window: &Window| window.read::<R, READS>(spans);
-    let mut pairs = windows.chunks_exact(2);
-    for (pair, carry) in (&mut pairs).zip(&mut *carries) {
-        carry.add(sum, read(&pair[0]), read(&pair[1]));
+impl Plane {
+    const fn new() -> Self {
+        Plane {
+            two: Windows::new(),
+            three: Windows::new(),
+            most: Windows::new(),
+        }
     }
-    if let [last] = pairs.remainder() {
-        carries[windows.len() / 2].add(sum, read(last), R::empty());
+
+    fn clear(&mut self) {
+        self.two.clear();
+        self.three.clear();
+        self.most.clear();
     }
-    windows.len().div_ceil(2)
+
+    fn push(&mut self, window: Window) {
+        match window.reads() {
+            ..=2 => self.two.push(window),
+            3 => self.three.push(window),
+            _ => self.most.push(window),
+        }
+    }
+
+    fn len(&self) -> usize {
+        self.two.len() + self.three.len() + self.most.len()
+    }
 }
 
-/// Adds the rows carried over from the plane below; how many carries that made.
-#[inline(always)]
-fn add_carries<R: BitRow>(rows: &[Aligned], sum: &mut R, carries: &mut [Aligned]) -> usize {
-    let mut pairs = rows.chunks_exact(2);
-    for (pair, carry) in (&mut pairs).zip(&mut *carries) {
-        carry.add(sum, R::from_row(&pair[0].0), R::from_row(&pair[1].0));
+/// The sum of rows of bits, two by two, each pair with a carry.
+struct Column<'a, R, const N: usize> {
+    sum: Several<R, N>,
+    carries: &'a mut [Aligned],
+    made: usize,
+}
+
+impl<'a, R: BitRow, const N: usize> Column<'a, R, N> {
+    #[inline(always)]
+    fn new(carries: &'a mut [Aligned]) -> Self {
+        Column {
+            sum: Several::empty(),
+            carries,
+            made: 0,
+        }
     }
-    if let [last] = pairs.remainder() {
-        carries[rows.len() / 2].add(sum, R::from_row(&last.0), R::empty());
+
+    #[inline(always)]
+    fn add_windows<const READS: usize>(&mut self, windows: Reader<'_, READS, N>) {
+        let count = windows.len();
+        for pair in 0..count / 2 {
+            self.add_pair(windows.read(2 * pair), windows.read(2 * pair + 1));
+        }
+        if count % 2 == 1 {
+            self.add_pair(windows.read(count - 1), Several::empty());
+        }
     }
-    rows.len().div_ceil(2)
+
+    #[inline(always)]
+    fn add_rows(&mut self, rows: &[Aligned]) {
+        let count = rows.len() / N;
+        for pair in 0..count / 2 {
+            self.add_pair(
+                Aligned::read(rows, 2 * pair),
+                Aligned::read(rows, 2 * pair + 1),
+            );
+        }
+        if count % 2 == 1 {
+            self.add_pair(Aligned::read(rows, count - 1), Several::empty());
+        }
+    }
+
+    #[inline(always)]
+    fn add_pair(&mut self, a: Several<R, N>, b: Several<R, N>) {
+        let carry;
+        (self.sum, carry) = self.sum.full_adder(a, b);
+        let to = &mut self.carries[self.made * N..][..N];
+        for (to, row) in to.iter_mut().zip(carry.0) {
+            to.0 = row.to_row();
+        }
+        self.made += 1;
+    }
 }
 
 impl Aligned {
-    /// Adds two rows to a sum and becomes their carry.
+    /// The rows of number `i` of several blocks.
     #[inline(always)]
-    fn add<R: BitRow>(&mut self, sum: &mut R, a: R, b: R) {
-        let carry;
-        (*sum, carry) = sum.full_adder(a, b);
-        self.0 = carry.to_row();
+    fn read<R: BitRow, const N: usize>(rows: &[Aligned], i: usize) -> Several<R, N> {
+        let rows = &rows[i * N..][..N];
+        let mut several = Several::empty();
+        for (to, row) in several.0.iter_mut().zip(rows) {
+            *to = R::from_row(&row.0);
+        }
+        several
     }
 }

@@ -401,21 +401,23 @@ mod tests {
                 let scan = (&program, &space);
                 let task = Task::new(&mut shared, instruction_set, &index, &grid, scan, CollectConfig::default());
                 let Programs { coarse: outer, fine: inner, interval, .. } = task.programs;
-                let (mut around, mut within) = (SetBounds::default(), SetBounds::default());
-                around.fit(outer, task.headings());
-                within.fit(inner, task.headings());
+                let (mut outer_bounds, mut inner_bounds) = (SetBounds::default(), SetBounds::default());
+                outer_bounds.fit(outer, task.headings());
+                inner_bounds.fit(inner, task.headings());
                 let (mut alone, mut known) = (IntervalBounds::default(), IntervalBounds::default());
                 for block in 0..fine.blocks() {
                     let (x, y) = (block % fine.columns / 2, block / fine.columns / 2);
-                    outer.bound((coarse, y * coarse.columns + x), 1, None, &mut around);
-                    if !inner.bound((fine, block), 1, Some(&around), &mut within) {
+                    let around = outer.bound((coarse, y * coarse.columns + x), &mut outer_bounds);
+                    let [found, ..] = inner.bound_within((fine, &[block]), 1, around, &mut inner_bounds);
+                    if !found {
                         continue;
                     }
+                    let within = &inner_bounds.blocks[0];
                     let least = (f64::from(within.greatest()) * share) as u16;
-                    let masks: Vec<Row> = within.at_least(least.max(1), &around).collect();
+                    let masks: Vec<Row> = within.at_least(least.max(1), around).collect();
                     for (chunk, mut mask) in masks.into_iter().enumerate() {
                         while let Some((first, among)) = bits::take_window(&mut mask) {
-                            let rests = inner.rests(&within, chunk, bits::row_of((first, among)));
+                            let rests = inner.rests(within, chunk, bits::row_of((first, among)));
                             let first = chunk * CHUNK + first;
                             let window = Window { first: first as u16, among, rests };
                             let sides = (intervals.columns, intervals.rows);

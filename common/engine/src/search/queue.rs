@@ -27,9 +27,18 @@ impl Queue {
         }
     }
 
-    /// The next block: the most promising one, or if `dives` that of the smallest.
-    pub(super) fn pop(&mut self, dives: bool) -> Option<Block> {
-        self.next_of(dives).pop()
+    /// The next block with a bound that is not below the floor: the most promising
+    /// one, or if `dives` that of the smallest.
+    pub(super) fn pop(&mut self, dives: bool, floor: u16) -> Option<Block> {
+        loop {
+            let blocks = self.next_of(dives);
+            let block = blocks.pop()?;
+            if block.bound >= floor {
+                return Some(block);
+            }
+            // Those behind it have no higher bounds.
+            blocks.clear();
+        }
     }
 
     /// What would be popped now.
@@ -57,21 +66,19 @@ impl Queue {
 /// A block in the queue.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Block {
-    /// What its best pose may have: the order of the queue.
-    pub promise: u16,
-    /// What none of its poses has more than.
+    /// What none of its poses has more than: the order of the queue.
     pub bound: u16,
     pub index: u32,
     pub level: Level,
 }
 
-/// What a block promises, and which it is; of equal ones the first comes first.
+/// The bound of a block, and which it is; of equal ones the first comes first.
 pub(super) type Promise = (u16, Reverse<u32>);
 
 /// How large a block is, and what is known of it.
 #[derive(Debug, Clone, Copy)]
 pub(super) enum Level {
-    /// 16 × 16 cells, roughly bounded.
+    /// 16 × 16 cells.
     Coarse,
     /// 8 × 8 cells, at the headings of these windows.
     Fine { start: u32, end: u32 },
@@ -92,7 +99,7 @@ impl Level {
 
 impl Block {
     fn key(&self) -> (u16, u32) {
-        (self.promise, self.index)
+        (self.bound, self.index)
     }
 }
 

@@ -31,6 +31,42 @@ pub(crate) trait BitRow: Copy {
     fn is_empty(self) -> bool;
 }
 
+/// Rows of several blocks, side by side: what is done with one is done with all.
+#[derive(Debug, Clone, Copy)]
+pub(crate) struct Several<R, const N: usize>(pub [R; N]);
+
+impl<R: BitRow, const N: usize> Several<R, N> {
+    #[inline(always)]
+    pub(crate) fn empty() -> Self {
+        Several([R::empty(); N])
+    }
+
+    #[inline(always)]
+    pub(crate) fn or(mut self, other: Self) -> Self {
+        for i in 0..N {
+            self.0[i] = self.0[i].or(other.0[i]);
+        }
+        self
+    }
+
+    #[inline(always)]
+    pub(crate) fn full_adder(self, b: Self, c: Self) -> (Self, Self) {
+        let (mut sum, mut carry) = (self, self);
+        for i in 0..N {
+            (sum.0[i], carry.0[i]) = self.0[i].full_adder(b.0[i], c.0[i]);
+        }
+        (sum, carry)
+    }
+
+    #[inline(always)]
+    pub(crate) fn shift_down(mut self, by: u32) -> Self {
+        for row in &mut self.0 {
+            *row = row.shift_down(by);
+        }
+        self
+    }
+}
+
 impl BitRow for Row {
     #[inline(always)]
     fn empty() -> Self {

@@ -10,7 +10,7 @@ use std::ops::Range;
 
 use super::bits::{self, EMPTY, Planes, Row};
 use super::group::{Aligned, Group};
-use super::rows::BitRow;
+use super::rows::{BitRow, Several};
 use super::sets::RangeSets;
 use super::spans::{SpanLayout, Spans};
 use super::steps::BinSteps;
@@ -20,6 +20,9 @@ use crate::program::ScanProgram;
 
 /// Rests that bearings leave by eight, each with a group of beams.
 const GROUPS: usize = 8;
+
+/// Blocks that are bounded side by side where there are registers for it.
+pub(crate) const SIDE_BY_SIDE: usize = 4;
 
 /// Headings of a chunk: a row less what shifting takes up.
 pub(crate) const CHUNK: usize = 504;
@@ -47,14 +50,45 @@ pub(crate) struct SetProgram {
     layout: SpanLayout,
 }
 
-/// Bounds of a block for all headings, and room to find them.
+/// How blocks are bounded.
+#[derive(Debug, Clone, Copy)]
+enum How<'a> {
+    /// At all headings.
+    Plain,
+    /// The same, and the sums after each group are noted for blocks within.
+    Noting,
+    /// As blocks within another one, as long as any heading may have so many units.
+    Within(&'a HeadingBounds, u16),
+}
+
+impl How<'_> {
+    /// The block around at the headings of a chunk, and the units that matter.
+    #[inline(always)]
+    fn within(&self, chunk: usize) -> Option<(&Chunk, u16)> {
+        match *self {
+            How::Within(around, least) => Some((&around.chunks[chunk], least)),
+            How::Plain | How::Noting => None,
+        }
+    }
+}
+
+/// Bounds of blocks that are bounded side by side, and room to find them.
 #[derive(Debug, Clone, Default)]
 pub(crate) struct SetBounds {
-    unit: u16,
-    chunks: Vec<Chunk>,
+    /// Those of each block.
+    pub blocks: [HeadingBounds; SIDE_BY_SIDE],
     spans: Spans,
     /// Rows carried over to the next plane, and to the one after.
     carries: [Vec<Aligned>; 2],
+}
+
+/// Bounds of a block for all headings.
+#[derive(Debug, Clone, Default)]
+pub(crate) struct HeadingBounds {
+    unit: u16,
+    /// The greatest, in units.
+    greatest: u16,
+    chunks: Vec<Chunk>,
 }
 
 /// Bounds at the headings of a chunk.
@@ -69,10 +103,26 @@ struct Chunk {
 }
 
 impl SetBounds {
-    /// Makes room for the bounds by a program of a block at some headings, a row
-    /// a chunk; nothing is left of what another program had.
+    /// Makes room for the bounds by a program of blocks at some headings, a row a
+    /// chunk; nothing is left of what another program had.
     pub(crate) fn fit(&mut self, program: &SetProgram, headings: impl Iterator<Item = Row>) {
-        self.unit = program.unit;
+        let [first, others @ ..] = &mut self.blocks;
+        first.fit(program.unit, headings);
+        for block in others {
+            block.fit(program.unit, first.chunks.iter().map(|chunk| chunk.valid));
+        }
+        self.spans.fit(&program.layout, SIDE_BY_SIDE);
+        let carries = program.groups().iter().map(Group::windows).max();
+        for rows in &mut self.carries {
+            rows.resize(SIDE_BY_SIDE * (carries.unwrap_or(0) + 4), Aligned(EMPTY));
+        }
+    }
+}
+
+impl HeadingBounds {
+    fn fit(&mut self, unit: u16, headings: impl Iterator<Item = Row>) {
+        self.unit = unit;
+        self.greatest = 0;
         self.chunks.clear();
         let chunks = headings.map(|valid| Chunk {
             sums: [EMPTY; bits::PLANES],
@@ -80,23 +130,16 @@ impl SetBounds {
             valid,
         });
         self.chunks.extend(chunks);
-        self.spans.fit(&program.layout);
-        let carries = program.groups().iter().map(Group::windows).max();
-        for rows in &mut self.carries {
-            rows.resize(carries.unwrap_or(0) + 4, Aligned(EMPTY));
-        }
     }
 
     /// The greatest bound.
     pub(crate) fn greatest(&self) -> u16 {
-        let greatest = |chunk: &Chunk| bits::greatest(&chunk.sums, chunk.valid);
-        let units = self.chunks.iter().map(greatest).max();
-        self.unit * units.unwrap_or(0)
+        self.unit * self.greatest
     }
 
     /// For each chunk, the headings at which this block and the one around it
     /// have a bound of at least `least`.
-    pub(crate) fn at_least(&self, least: u16, around: &SetBounds) -> impl Iterator<Item = Row> {
+    pub(crate) fn at_least(&self, least: u16, around: &Self) -> impl Iterator<Item = Row> {
         let (here_least, around_least) = (least.div_ceil(self.unit), least.div_ceil(around.unit));
         let chunks = self.chunks.iter().zip(&around.chunks);
         chunks.map(move |(here, around)| {
@@ -165,7 +208,7 @@ impl SetProgram {
 
     /// What the beams from each group on give at most at some headings of a chunk,
     /// by bounds that were found within those of a block around.
-    pub(crate) fn rests(&self, bounds: &SetBounds, chunk: usize, among: Row) -> Rests {
+    pub(crate) fn rests(&self, bounds: &HeadingBounds, chunk: usize, among: Row) -> Rests {
         match self.instruction_set {
             // SAFETY: the processor has the instruction set, or it would not be chosen.
             #[cfg(target_arch = "x86_64")]
@@ -176,12 +219,12 @@ impl SetProgram {
 
     #[cfg(target_arch = "x86_64")]
     #[target_feature(enable = "avx512f,avx512bw,avx512dq,avx512vl")]
-    fn rests_avx512(&self, bounds: &SetBounds, chunk: usize, among: Row) -> Rests {
+    fn rests_avx512(&self, bounds: &HeadingBounds, chunk: usize, among: Row) -> Rests {
         self.rests_with::<super::rows::Avx512>(bounds, chunk, among)
     }
 
     #[inline(always)]
-    fn rests_with<R: BitRow>(&self, bounds: &SetBounds, chunk: usize, among: Row) -> Rests {
+    fn rests_with<R: BitRow>(&self, bounds: &HeadingBounds, chunk: usize, among: Row) -> Rests {
         let (chunk, among) = (&bounds.chunks[chunk], R::from_row(&among));
         let others = self.used.saturating_sub(1);
         let mut rests = Rests::default();
@@ -202,144 +245,186 @@ impl SetProgram {
         &self.groups[..self.used]
     }
 
-    /// A quick bound of all votes in a block, from one group of beams, and what
-    /// the block promises if the others agree as much.
-    pub(crate) fn rough(
+    /// Bounds the votes of a block at all headings.
+    pub(crate) fn bound<'a>(
         &self,
-        sets: &RangeSets,
-        block: usize,
-        bounds: &mut SetBounds,
-    ) -> (u16, u16) {
-        let Some((first, others)) = self.groups().split_first() else {
-            return (0, 0);
-        };
-        self.run(&self.groups[..1], (sets, block), 0, None, bounds);
-        let here = bounds.greatest() / self.unit;
-        let rest: u16 = others.iter().map(|group| group.possible).sum();
-        let promise =
-            u32::from(here) * u32::from(first.possible + rest) / u32::from(first.possible);
-        (self.unit * (here + rest), self.unit * promise as u16)
+        (sets, block): (&RangeSets, usize),
+        bounds: &'a mut SetBounds,
+    ) -> &'a HeadingBounds {
+        self.run((sets, &[block]), How::Noting, bounds);
+        &bounds.blocks[0]
     }
 
-    /// Bounds the votes of a block at all headings. Whether any heading may
-    /// have `least` votes; if not, the bounds are not finished.
+    /// Bounds those of blocks within one that was bounded by the same beams, up to
+    /// [`SIDE_BY_SIDE`] of them. Whether any heading of each may have `least` votes; if
+    /// not, its bounds are not finished.
     ///
-    /// Where the bounds of a block around it by the same beams are given, found
-    /// alone and with no more than `least`, only headings matter at which those
-    /// reach `least`, and what they say of beams that are still to be added tells
-    /// sooner whether any does.
-    pub(crate) fn bound(
+    /// Only headings matter at which the block around reaches `least`, and what it says
+    /// of beams that are still to be added tells sooner whether any does.
+    pub(crate) fn bound_within(
         &self,
-        block: (&RangeSets, usize),
+        blocks: (&RangeSets, &[usize]),
         least: u16,
-        around: Option<&SetBounds>,
+        around: &HeadingBounds,
         bounds: &mut SetBounds,
-    ) -> bool {
+    ) -> [bool; SIDE_BY_SIDE] {
         let least = least.div_ceil(self.unit);
-        self.run(self.groups(), block, least, around, bounds)
+        self.run(blocks, How::Within(around, least), bounds)
+    }
+
+    /// The greatest bounds of blocks.
+    pub(crate) fn bound_all(
+        &self,
+        sets: &RangeSets,
+        blocks: impl Iterator<Item = usize>,
+        bounds: &mut SetBounds,
+        mut take: impl FnMut(usize, u16),
+    ) {
+        let mut blocks = blocks.peekable();
+        while blocks.peek().is_some() {
+            let mut some = [0; SIDE_BY_SIDE];
+            let mut count = 0;
+            for (place, block) in some.iter_mut().zip(&mut blocks) {
+                *place = block;
+                count += 1;
+            }
+            let some = &some[..count];
+            self.run((sets, some), How::Plain, bounds);
+            for (&block, bounds) in some.iter().zip(&bounds.blocks) {
+                take(block, bounds.greatest());
+            }
+        }
     }
 
     fn run(
         &self,
-        groups: &[Group],
-        block: (&RangeSets, usize),
-        least: u16,
-        around: Option<&SetBounds>,
+        (sets, blocks): (&RangeSets, &[usize]),
+        how: How<'_>,
         bounds: &mut SetBounds,
-    ) -> bool {
+    ) -> [bool; SIDE_BY_SIDE] {
+        let mut reach = [false; SIDE_BY_SIDE];
         match self.instruction_set {
             // SAFETY: the processor has the instruction set, or it would not be chosen.
             #[cfg(target_arch = "x86_64")]
             InstructionSet::Avx512 => unsafe {
-                self.run_avx512(groups, block, least, around, bounds)
+                match *blocks {
+                    [] => {}
+                    [block] => [reach[0]] = self.run_avx512((sets, [block]), 0, how, bounds),
+                    [first, ..] => {
+                        let four = std::array::from_fn(|i| *blocks.get(i).unwrap_or(&first));
+                        reach = self.run_avx512::<SIDE_BY_SIDE>((sets, four), 0, how, bounds);
+                    }
+                }
             },
             // SAFETY: as above.
             #[cfg(target_arch = "x86_64")]
-            InstructionSet::Avx2 => unsafe { self.run_avx2(groups, block, least, around, bounds) },
-            _ => self.run_with::<Row>(groups, block, least, around, bounds),
+            InstructionSet::Avx2 => unsafe {
+                for (i, &block) in blocks.iter().enumerate() {
+                    reach[i] = self.run_avx2((sets, block), i, how, bounds);
+                }
+            },
+            _ => {
+                for (i, &block) in blocks.iter().enumerate() {
+                    [reach[i]] = self.run_with::<Row, 1>((sets, [block]), i, how, bounds);
+                }
+            }
         }
+        reach
     }
 
     #[cfg(target_arch = "x86_64")]
     #[target_feature(enable = "avx512f,avx512bw,avx512dq,avx512vl")]
-    fn run_avx512(
+    fn run_avx512<const N: usize>(
         &self,
-        groups: &[Group],
-        block: (&RangeSets, usize),
-        least: u16,
-        around: Option<&SetBounds>,
+        blocks: (&RangeSets, [usize; N]),
+        place: usize,
+        how: How<'_>,
         bounds: &mut SetBounds,
-    ) -> bool {
-        self.run_with::<super::rows::Avx512>(groups, block, least, around, bounds)
+    ) -> [bool; N] {
+        self.run_with::<super::rows::Avx512, N>(blocks, place, how, bounds)
     }
 
     #[cfg(target_arch = "x86_64")]
     #[target_feature(enable = "avx2")]
     fn run_avx2(
         &self,
-        groups: &[Group],
-        block: (&RangeSets, usize),
-        least: u16,
-        around: Option<&SetBounds>,
+        (sets, block): (&RangeSets, usize),
+        place: usize,
+        how: How<'_>,
         bounds: &mut SetBounds,
     ) -> bool {
-        self.run_with::<super::rows::Avx2>(groups, block, least, around, bounds)
+        let [reaches] = self.run_with::<super::rows::Avx2, 1>((sets, [block]), place, how, bounds);
+        reaches
     }
 
     #[inline(always)]
-    fn run_with<R: BitRow>(
+    fn run_with<R: BitRow, const N: usize>(
         &self,
-        groups: &[Group],
-        (sets, block): (&RangeSets, usize),
-        least: u16,
-        around: Option<&SetBounds>,
+        (sets, blocks): (&RangeSets, [usize; N]),
+        place: usize,
+        how: How<'_>,
         bounds: &mut SetBounds,
-    ) -> bool {
-        bounds.spans.set::<R>(&self.layout, sets.block(block));
-        let mut any = false;
-        for (place, chunk) in bounds.chunks.iter_mut().enumerate() {
-            let around = around.map(|around| &around.chunks[place]);
-            let spans = bounds.spans.from(place * CHUNK / 8);
-            let mut valid = R::from_row(&chunk.valid);
-            if let Some(around) = around {
+    ) -> [bool; N] {
+        let groups = self.groups();
+        let (spans, carries) = (&mut bounds.spans, &mut bounds.carries);
+        let bounds = &mut bounds.blocks[place..place + N];
+        for (i, &block) in blocks.iter().enumerate() {
+            spans.set::<R>(&self.layout, i, sets.block(block));
+            bounds[i].greatest = 0;
+        }
+        let mut any = [false; N];
+        for place in 0..bounds[0].chunks.len() {
+            let spans = spans.from(place * CHUNK / 8);
+            let mut total = [Several::<R, N>::empty(); bits::PLANES];
+            let total = &mut total[..self.planes];
+            let mut alive = [true; N];
+            let within = how.within(place);
+            let mut valid = R::from_row(&bounds[0].chunks[place].valid);
+            if let Some((around, least)) = within {
                 let sums = |plane: usize| R::from_row(&around.sums[plane]);
                 valid = bits::at_least(self.planes, sums, least, valid);
+                alive = [!valid.is_empty(); N];
             }
-            let mut rest: u16 = groups.iter().map(|group| group.possible).sum();
-            let mut total = [R::empty(); bits::PLANES];
-            let total = &mut total[..self.planes];
-            let mut alive = least <= rest && !valid.is_empty();
             for added in 1..=groups.len() {
-                if !alive {
+                if alive == [false; N] {
                     break;
                 }
                 let left = groups.len() - added;
                 // What is around had the groups in this order, and tells what the
                 // first ones give: those come last here.
-                let group = &groups[if around.is_some() { left } else { added - 1 }];
-                group.add(spans, &mut bounds.carries, total);
-                rest -= group.possible;
-                let still = match around {
-                    Some(around) if left > 0 => {
-                        let sums = sum(total, &around.after[left - 1]);
-                        bits::at_least(self.planes, |plane| sums[plane], least, valid)
+                let group = &groups[if within.is_some() { left } else { added - 1 }];
+                group.add(spans, carries, total);
+                if let Some((around, least)) = within {
+                    for (i, alive) in alive.iter_mut().enumerate() {
+                        let sums = total.iter().map(|rows| rows.0[i]);
+                        let sums = match left {
+                            0 => sum(sums, &[EMPTY; bits::PLANES]),
+                            _ => sum(sums, &around.after[left - 1]),
+                        };
+                        let still = bits::at_least(self.planes, |plane| sums[plane], least, valid);
+                        *alive = !still.is_empty();
                     }
-                    _ => {
-                        let least = least.saturating_sub(rest);
-                        bits::at_least(self.planes, |plane| total[plane], least, valid)
-                    }
-                };
-                alive = !still.is_empty();
-                if let Some(after) = chunk.after.get_mut(added - 1) {
-                    for (after, total) in after.iter_mut().zip(&*total) {
-                        *after = total.to_row();
+                }
+                if left > 0 && !matches!(how, How::Plain) {
+                    for (i, bounds) in bounds.iter_mut().enumerate() {
+                        let after = &mut bounds.chunks[place].after[added - 1];
+                        for (after, total) in after.iter_mut().zip(&*total) {
+                            *after = total.0[i].to_row();
+                        }
                     }
                 }
             }
-            for (sums, total) in chunk.sums.iter_mut().zip(total) {
-                *sums = total.to_row();
+            for (i, bounds) in bounds.iter_mut().enumerate() {
+                let Chunk { sums, valid, .. } = &mut bounds.chunks[place];
+                for (sums, total) in sums.iter_mut().zip(&*total) {
+                    *sums = total.0[i].to_row();
+                }
+                if alive[i] {
+                    let greatest = bits::greatest(&*sums, R::from_row(valid));
+                    bounds.greatest = bounds.greatest.max(greatest);
+                    any[i] = true;
+                }
             }
-            any |= alive;
         }
         any
     }
@@ -347,7 +432,7 @@ impl SetProgram {
 
 /// Sums of numbers, as many planes as they have; no sum needs more.
 #[inline(always)]
-fn sum<R: BitRow>(numbers: &[R], others: &Planes) -> [R; bits::PLANES] {
+fn sum<R: BitRow>(numbers: impl Iterator<Item = R>, others: &Planes) -> [R; bits::PLANES] {
     let mut sums = [R::empty(); bits::PLANES];
     let mut carry = R::empty();
     for ((sum, number), other) in sums.iter_mut().zip(numbers).zip(others) {
@@ -402,6 +487,7 @@ mod tests {
     use proptest::prelude::*;
 
     use super::super::bins::Bins;
+    use super::super::descent::quarters;
     use super::super::index::SearchIndex;
     use super::super::intervals::RangeIntervals;
     use super::super::task::{Shared, Task};
@@ -436,22 +522,20 @@ mod tests {
                     let mut bounds = SetBounds::default();
                     bounds.fit(&set_program, all.headings(directions.count()));
                     let mut found = Vec::new();
-                    for block in 0..sets.blocks() {
-                        let (rough, _) = set_program.rough(sets, block, &mut bounds);
-                        prop_assert!(set_program.bound((sets, block), 0, None, &mut bounds));
-                        prop_assert!(bounds.greatest() <= rough);
-                        prop_assert!(u32::from(bounds.greatest()) <= program.highest_possible());
-                        let greatest = bounds.greatest();
+                    set_program.bound_all(sets, 0..sets.blocks(), &mut bounds, |block, greatest| {
+                        found.push((block, greatest));
+                    });
+                    prop_assert!(found.iter().map(|&(block, _)| block).eq(0..sets.blocks()));
+                    for &(block, greatest) in &found {
+                        let alone = set_program.bound((sets, block), &mut bounds);
+                        prop_assert_eq!(alone.greatest(), greatest);
+                        prop_assert!(u32::from(greatest) <= program.highest_possible());
                         for (heading, field) in &fields {
                             let most = cells(sets, block, &grid).map(|i| field[i]).max().unwrap_or(0);
-                            let at: Vec<Row> = bounds.at_least(most, &bounds).collect();
+                            let at: Vec<Row> = alone.at_least(most, alone).collect();
                             let (chunk, bit) = (heading / CHUNK, heading % CHUNK);
                             prop_assert!(at[chunk][bit / 64] >> (bit % 64) & 1 == 1, "{} votes", most);
                         }
-                        // Stopping early never loses a heading that reaches the floor.
-                        prop_assert!(set_program.bound((sets, block), greatest, None, &mut bounds));
-                        prop_assert!(!set_program.bound((sets, block), greatest + 1, None, &mut bounds));
-                        found.push((rough, greatest));
                     }
                     of_all_sets.push(found);
                 }
@@ -481,19 +565,24 @@ mod tests {
                     bounds
                 });
                 let mut within = alone.clone();
-                for block in 0..fine.blocks() {
-                    let (x, y) = (block % fine.columns / 2, block / fine.columns / 2);
-                    prop_assert!(inner.bound((fine, block), 0, None, &mut alone));
-                    let greatest = alone.greatest();
-                    // About as many as it has, where it matters most.
+                for outside in 0..coarse.blocks() {
+                    let blocks: Vec<_> = quarters(outside, coarse.columns, (fine.columns, fine.rows)).collect();
+                    // About as many votes as they have, where it matters most.
+                    let greatest = inner.bound((fine, blocks[0]), &mut alone).greatest();
                     let least = (f64::from(greatest) * share) as u16;
                     for least in [0, least, greatest, greatest + 1] {
-                        outer.bound((coarse, y * coarse.columns + x), least, None, &mut around);
-                        let found = inner.bound((fine, block), least, Some(&around), &mut within);
-                        prop_assert_eq!(found, greatest >= least);
-                        if found {
-                            prop_assert_eq!(within.greatest(), greatest);
-                            prop_assert!(within.at_least(least, &around).eq(alone.at_least(least, &alone)));
+                        let around = outer.bound((coarse, outside), &mut around);
+                        for count in 1..=blocks.len() {
+                            let blocks = &blocks[..count];
+                            let found = inner.bound_within((fine, blocks), least, around, &mut within);
+                            for (place, &block) in blocks.iter().enumerate() {
+                                let (alone, within) = (inner.bound((fine, block), &mut alone), &within.blocks[place]);
+                                prop_assert_eq!(found[place], alone.greatest() >= least);
+                                if found[place] {
+                                    prop_assert_eq!(within.greatest(), alone.greatest());
+                                    prop_assert!(within.at_least(least, around).eq(alone.at_least(least, alone)));
+                                }
+                            }
                         }
                     }
                 }

@@ -7,7 +7,7 @@
 use std::ops::Range;
 
 use super::bins::Bins;
-use super::rows::BitRow;
+use super::rows::{BitRow, Several};
 use super::sets::BlockRows;
 
 /// Bytes that are read from a row at a time.
@@ -35,19 +35,37 @@ pub(crate) struct SpanLayout {
     spans: Vec<Range<usize>>,
 }
 
-/// The rows of one block.
+/// The rows of some blocks.
 #[derive(Debug, Clone, Default)]
 pub(crate) struct Spans {
+    /// Block by block.
     bits: Vec<u8>,
-    /// Rows of the last block.
-    used: usize,
+    /// Bytes of a block.
+    size: usize,
+    /// How many rows each has.
+    used: Vec<usize>,
 }
 
-/// Where the bits of a window are read, some perhaps twice.
+/// The rows of some blocks from a direction on.
+#[derive(Debug, Clone, Copy)]
+pub(crate) struct SpansFrom<'a> {
+    bits: &'a [u8],
+    size: usize,
+}
+
+/// Where the bits of a window are read, in bytes.
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct Window {
-    starts: [u32; Window::WIDE],
+    starts: [u32; Window::MOST],
     reads: usize,
+}
+
+/// Windows of so many reads each, those with fewer reading twice.
+#[derive(Debug, Clone)]
+pub(crate) struct Windows<const READS: usize> {
+    starts: Vec<[u32; READS]>,
+    /// No window reads beyond this byte.
+    end: usize,
 }
 
 impl SpanLayout {
@@ -63,7 +81,7 @@ impl SpanLayout {
     /// Where to read a window of rows of sets, from direction `8 · byte` on.
     pub(crate) fn window(&mut self, rows: Range<usize>, byte: usize) -> Window {
         self.needed = self.needed.max(rows.end);
-        if rows.len() <= Window::WIDE {
+        if rows.len() <= Window::MOST {
             return self.reading(rows.len(), byte, |read| rows.start + read);
         }
         let width = (rows.len() / LEAST_SPAN).ilog2() as usize;
@@ -97,87 +115,160 @@ impl SpanLayout {
 }
 
 impl Spans {
-    /// Makes room for a layout; nothing is left of what another one had.
-    pub(crate) fn fit(&mut self, layout: &SpanLayout) {
+    /// Makes room for a layout and so many blocks; nothing is left of what another
+    /// one had.
+    pub(crate) fn fit(&mut self, layout: &SpanLayout, blocks: usize) {
         // Spans of rows near the end reach beyond them.
         let rows = (1 + layout.spans.len()) * layout.rows + (LEAST_SPAN << layout.spans.len());
+        self.size = rows * layout.row;
         self.bits.clear();
-        self.bits.resize(rows * layout.row, 0);
-        self.used = 0;
+        self.bits.resize(blocks * self.size, 0);
+        self.used.clear();
+        self.used.resize(blocks, 0);
     }
 
-    /// Takes the rows of a block.
+    /// Takes the rows of a block as those of number `place`.
     #[inline(always)]
-    pub(crate) fn set<R: BitRow>(&mut self, layout: &SpanLayout, block: BlockRows<'_>) {
+    pub(crate) fn set<R: BitRow>(
+        &mut self,
+        layout: &SpanLayout,
+        place: usize,
+        block: BlockRows<'_>,
+    ) {
         let (row, stride) = (layout.row, layout.stride);
+        let bits = &mut self.bits[place * self.size..][..self.size];
         let count = block.count.min(layout.needed);
-        for (i, to) in self.bits.chunks_exact_mut(row).take(count).enumerate() {
-            let from = &block.bytes[i * stride..];
+        let pieces = stride.div_ceil(READ);
+        for (i, to) in bits.chunks_exact_mut(row).take(count).enumerate() {
+            let from = &block.bytes[i * stride..][..pieces * READ];
+            // What is copied too much, the second turn overwrites.
             for turn in [0, stride] {
-                // The second turn overwrites what the first one copied too much.
-                for piece in (0..stride).step_by(READ) {
-                    to[turn + piece..][..READ].copy_from_slice(&from[piece..][..READ]);
+                let to = &mut to[turn..][..pieces * READ];
+                let (from, _) = from.as_chunks::<READ>();
+                for (to, from) in to.chunks_exact_mut(READ).zip(from) {
+                    R::read(from).write(to);
                 }
             }
         }
-        if self.used > count {
-            self.bits[count * row..self.used * row].fill(0);
+        let used = std::mem::replace(&mut self.used[place], count);
+        if used > count {
+            bits[count * row..used * row].fill(0);
         }
-        self.used = count;
         for (width, rows) in layout.spans.iter().enumerate() {
-            self.join::<R>(layout, width, rows.clone());
-        }
-    }
-
-    /// Makes spans of a width, of rows or of spans half as wide.
-    #[inline(always)]
-    fn join<R: BitRow>(&mut self, layout: &SpanLayout, width: usize, rows: Range<usize>) {
-        let row = layout.row;
-        let (narrower, wide) = self.bits.split_at_mut((1 + width) * layout.rows * row);
-        let narrower = &narrower[width * layout.rows * row..];
-        let (parts, step) = match width {
-            0 => (LEAST_SPAN, 1),
-            _ => (2, LEAST_SPAN << width >> 1),
-        };
-        for at in (rows.start * row..rows.end * row).step_by(READ) {
-            let mut all = R::empty();
-            for part in 0..parts {
-                let bytes = narrower.get(at + part * step * row..);
-                if let Some(bytes) = bytes.and_then(|bytes| bytes.first_chunk()) {
-                    all = all.or(R::read(bytes));
-                }
-            }
-            all.write(&mut wide[at..]);
+            join::<R>(bits, layout, width, rows.clone());
         }
     }
 
     /// The bits from those of direction `8 · byte` on.
     #[inline(always)]
-    pub(crate) fn from(&self, byte: usize) -> &[u8] {
-        &self.bits[byte..]
+    pub(crate) fn from(&self, byte: usize) -> SpansFrom<'_> {
+        SpansFrom {
+            bits: &self.bits[byte..],
+            size: self.size,
+        }
+    }
+}
+
+/// Makes spans of a width, of rows or of spans half as wide.
+#[inline(always)]
+fn join<R: BitRow>(bits: &mut [u8], layout: &SpanLayout, width: usize, rows: Range<usize>) {
+    let row = layout.row;
+    let (narrower, wide) = bits.split_at_mut((1 + width) * layout.rows * row);
+    let narrower = &narrower[width * layout.rows * row..];
+    let (parts, step) = match width {
+        0 => (LEAST_SPAN, 1),
+        _ => (2, LEAST_SPAN << width >> 1),
+    };
+    for at in (rows.start * row..rows.end * row).step_by(READ) {
+        let mut all = R::empty();
+        for part in 0..parts {
+            let bytes = narrower.get(at + part * step * row..);
+            if let Some(bytes) = bytes.and_then(|bytes| bytes.first_chunk()) {
+                all = all.or(R::read(bytes));
+            }
+        }
+        all.write(&mut wide[at..]);
     }
 }
 
 impl Window {
-    /// Most reads of a narrow window.
-    pub(crate) const NARROW: usize = 3;
-
     /// Most reads of any window.
-    pub(crate) const WIDE: usize = 6;
+    pub(crate) const MOST: usize = 6;
 
-    /// Whether [`Window::NARROW`] reads are enough.
-    pub(crate) fn is_narrow(&self) -> bool {
-        self.reads <= Self::NARROW
+    /// How many there are.
+    pub(crate) fn reads(&self) -> usize {
+        self.reads
+    }
+}
+
+impl<const READS: usize> Windows<READS> {
+    pub(crate) const fn new() -> Self {
+        Windows {
+            starts: Vec::new(),
+            end: 0,
+        }
     }
 
-    /// Bits of the window by its first `READS` reads.
+    pub(crate) fn len(&self) -> usize {
+        self.starts.len()
+    }
+
+    /// Lets go of all; their room stays.
+    pub(crate) fn clear(&mut self) {
+        self.starts.clear();
+        self.end = 0;
+    }
+
+    pub(crate) fn push(&mut self, window: Window) {
+        let starts = std::array::from_fn(|read| window.starts[read]);
+        let last = starts.iter().max().map_or(0, |&start| start as usize);
+        self.starts.push(starts);
+        self.end = self.end.max(last + READ);
+    }
+
+    /// To read the bits of each window in the first blocks.
     #[inline(always)]
-    pub(crate) fn read<R: BitRow, const READS: usize>(&self, spans: &[u8]) -> R {
-        let mut all = R::empty();
-        for &start in &self.starts[..READS] {
-            if let Some(bytes) = spans[start as usize..].first_chunk() {
-                all = all.or(R::read(bytes));
+    pub(crate) fn reader<'a, const N: usize>(
+        &'a self,
+        spans: SpansFrom<'a>,
+    ) -> Reader<'a, READS, N> {
+        let end = (N - 1) * spans.size + self.end;
+        assert!(end <= spans.bits.len(), "windows end within the spans");
+        Reader {
+            starts: &self.starts,
+            spans,
+        }
+    }
+}
+
+/// Windows, and what is read of them: no window of the last of `N` blocks ends behind
+/// the spans.
+#[derive(Clone, Copy)]
+pub(crate) struct Reader<'a, const READS: usize, const N: usize> {
+    starts: &'a [[u32; READS]],
+    spans: SpansFrom<'a>,
+}
+
+impl<const READS: usize, const N: usize> Reader<'_, READS, N> {
+    /// How many windows there are.
+    #[inline(always)]
+    pub(crate) fn len(&self) -> usize {
+        self.starts.len()
+    }
+
+    /// The bits of window `i`.
+    #[inline(always)]
+    pub(crate) fn read<R: BitRow>(&self, i: usize) -> Several<R, N> {
+        let mut all = Several::empty();
+        for (read, &start) in self.starts[i].iter().enumerate() {
+            let mut rows = Several::empty();
+            for (block, row) in rows.0.iter_mut().enumerate() {
+                let start = block * self.spans.size + start as usize;
+                // SAFETY: no window reads beyond the spans, as was checked for the
+                // reader.
+                *row = R::read(unsafe { &*self.spans.bits.as_ptr().add(start).cast() });
             }
+            all = if read == 0 { rows } else { all.or(rows) };
         }
         all
     }

@@ -25,8 +25,8 @@ pub(super) struct Task<'a> {
     /// of them; with 0 it leaves out nothing for that.
     pub leading: usize,
     pub programs: &'a Programs,
-    /// What the best pose of each coarse block may have, as far as it was asked.
-    pub promises: &'a [AtomicU16],
+    /// The bound of each coarse block in which poses are sought.
+    pub coarse_bounds: &'a [AtomicU16],
     /// The most votes of any pose so far, whoever found it.
     pub best: AtomicU16,
     /// Whether all threads are to stop.
@@ -39,7 +39,7 @@ pub(super) struct Task<'a> {
 #[derive(Debug, Default)]
 pub(super) struct Shared {
     pub programs: Programs,
-    promises: Vec<AtomicU16>,
+    coarse_bounds: Vec<AtomicU16>,
 }
 
 /// A scan program laid out for each size of blocks.
@@ -88,9 +88,9 @@ impl<'a> Task<'a> {
         config: CollectConfig,
     ) -> Self {
         shared.programs.make(instruction_set, index, program, space);
-        shared.promises.clear();
+        shared.coarse_bounds.clear();
         shared
-            .promises
+            .coarse_bounds
             .resize_with(index.coarse.blocks(), AtomicU16::default);
         Task {
             index,
@@ -99,7 +99,7 @@ impl<'a> Task<'a> {
             config,
             leading: 0,
             programs: &shared.programs,
-            promises: &shared.promises,
+            coarse_bounds: &shared.coarse_bounds,
             best: AtomicU16::new(0),
             stopped: AtomicBool::new(false),
             brute_force: Cost::of_brute_force(instruction_set, grid, program, space),
