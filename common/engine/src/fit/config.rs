@@ -40,7 +40,7 @@ impl Default for FitConfig {
 
 impl FitConfig {
     /// The standard deviation in cells of a map.
-    pub(super) fn sigma_cells(&self, resolution_m: f64) -> f64 {
+    pub(crate) fn sigma_cells(&self, resolution_m: f64) -> f64 {
         (self.fit_sigma_m / resolution_m).max(self.fit_sigma_cells)
     }
 }

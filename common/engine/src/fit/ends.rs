@@ -111,6 +111,19 @@ impl Ends {
         self.weight * self.weight / squares.max(f64::MIN_POSITIVE)
     }
 
+    /// How many pieces of equal weight the scan sees, where neighbouring readings
+    /// that differ by more than so many metres lie on different pieces: Kish's
+    /// effective sample size, as for [`Ends::effective_beams`]. The beams of one
+    /// piece fit, or do not fit, together.
+    #[must_use]
+    pub fn effective_pieces(&self, apart_m: f64) -> f64 {
+        let together = |a: &End, b: &End| (a.reading_m - b.reading_m).abs() <= apart_m;
+        let pieces = self.ends.chunk_by(together);
+        let weights = pieces.map(|piece| piece.iter().map(|end| end.weight).sum());
+        let squares: f64 = weights.map(|weight: f64| weight * weight).sum();
+        self.weight * self.weight / squares.max(f64::MIN_POSITIVE)
+    }
+
     /// Bearings of the beams that say nothing, in the laser's frame, radians.
     #[must_use]
     pub fn silent(&self) -> &[f64] {
@@ -146,5 +159,28 @@ impl End {
     pub(super) fn direction(&self, (sin, cos): (f64, f64)) -> (f64, f64) {
         let (x, y) = self.towards;
         (x * cos - y * sin, x * sin + y * cos)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_scan_sees_another_piece_where_readings_leap() {
+        let ends = |readings: &[(f64, f64)]| {
+            let end = |&(reading_m, weight): &(f64, f64)| End::new(0.0, (reading_m, 0.0), weight);
+            Ends::of(readings.iter().map(end).collect())
+        };
+        let check = |readings: &[(f64, f64)], expected: f64| {
+            let pieces = ends(readings).effective_pieces(0.4);
+            assert!((pieces - expected).abs() < 1e-12, "{readings:?}: {pieces}");
+        };
+        check(&[], 0.0);
+        check(&[(2.0, 1.0), (2.3, 1.0), (2.6, 1.0), (2.9, 1.0)], 1.0);
+        check(&[(2.0, 1.0), (2.3, 1.0), (4.0, 1.0), (4.0, 1.0)], 2.0);
+        // Back at the same distance it is another piece, too; a small one counts
+        // for less: (1 + 1 + 0.5)² / (1 + 1 + 0.25).
+        check(&[(2.0, 1.0), (4.0, 0.5), (2.0, 1.0)], 6.25 / 2.25);
     }
 }

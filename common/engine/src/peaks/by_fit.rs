@@ -19,6 +19,10 @@ pub fn by_fit(input: &PeakInput<'_>, scan: (&Terrain, &Ends), config: &PeakConfi
     workspace.places
 }
 
+/// Neighbouring beams whose readings differ by more standard deviations of the fit
+/// end on different pieces of what is seen.
+const PIECE_SIGMAS: f64 = 4.0;
+
 impl Workspace {
     /// Reads the places from the votes of a scan and from the scan itself, which
     /// must be of the same map. Its grid may be finer than that of the votes,
@@ -50,7 +54,10 @@ impl Workspace {
             terrain.classify(ends, pose, &config.fit, &mut found.classes);
             found.inlier_share = ends.share(&found.classes, BeamClass::Hit);
             let through = ends.share(&found.classes, BeamClass::Through);
-            let needed = config.needed_lead(best.score, through, ends.effective_beams());
+            let resolution = terrain.frame.resolution_m;
+            let apart = PIECE_SIGMAS * config.fit.sigma_cells(resolution) * resolution;
+            let scan = (ends.effective_beams(), ends.effective_pieces(apart));
+            let needed = config.needed_lead((best.score, through), scan);
             found.judge_by_fit((best.score, needed), &mut self.leads, config);
         }
         &self.places

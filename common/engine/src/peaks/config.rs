@@ -47,12 +47,18 @@ pub struct PeakConfig {
     /// Another place whose score lies behind the best by less makes the answer
     /// ambiguous, 0..=1. The lead is measured against what is missing of a
     /// perfect score: (best - other) / √(1.1 - best).
-    #[arg(long, value_name = "LEAD", default_value_t = 0.10, value_parser = parse_share)]
+    #[arg(long, value_name = "LEAD", default_value_t = 0.09, value_parser = parse_share)]
     pub least_lead: f64,
     /// What a best place's score lacks of this must be made up for by its lead,
     /// 0..=1: where the scan fits badly, the true place may not be on the map.
-    #[arg(long, value_name = "SCORE", default_value_t = 0.80, value_parser = parse_share)]
+    /// This is for a scan that sees six pieces, see `--piece-doubt`.
+    #[arg(long, value_name = "SCORE", default_value_t = 0.74, value_parser = parse_share)]
     pub sure_score: f64,
+    /// By so much the sure score falls with the natural logarithm of the pieces of
+    /// the world that a scan sees, 0..=1, since many rarely fit together by chance.
+    /// Where neighbouring readings leap, another piece begins.
+    #[arg(long, value_name = "SCORE", default_value_t = 0.14, value_parser = parse_share)]
+    pub piece_doubt: f64,
     /// Where beams pass through obstacles at the best place, its score counts for
     /// less against that by this times their share, 0..=1. Which place is best does
     /// not depend on it, see `--through-penalty`: walls that are seen at a flat
@@ -94,12 +100,21 @@ fn parse_scale(text: &str) -> Result<f64, String> {
     crate::config::parse(text, 0.001..=1.0, "as a share")
 }
 
+/// Pieces that the scans see for which the sure score is.
+const SURE_PIECES: f64 = 6.0;
+
 impl PeakConfig {
-    /// The lead at which a best place with such a score, where such a share of so
-    /// many beams passes through obstacles, stands alone.
-    pub(super) fn needed_lead(&self, score: f64, through: f64, beams: f64) -> f64 {
+    /// The lead at which a best place stands alone that has such a score, and where
+    /// such a share of the beams passes through obstacles; by so many beams that see
+    /// so many pieces.
+    pub(super) fn needed_lead(
+        &self,
+        (score, through): (f64, f64),
+        (beams, pieces): (f64, f64),
+    ) -> f64 {
         let trusted = score - self.through_doubt * through;
-        let lead = self.least_lead + (self.sure_score - trusted).max(0.0);
+        let sure = self.sure_score - self.piece_doubt * (pieces.max(1.0) / SURE_PIECES).ln();
+        let lead = self.least_lead + (sure - trusted).max(0.0);
         // Scores are means over the beams.
         lead * (f64::from(self.sure_beams) / beams.max(1.0))
             .max(1.0)
@@ -118,8 +133,9 @@ impl Default for PeakConfig {
             candidate_m: DISTINCT_M,
             candidate_deg: DISTINCT_DEG,
             fit: FitConfig::default(),
-            least_lead: 0.10,
-            sure_score: 0.80,
+            least_lead: 0.09,
+            sure_score: 0.74,
+            piece_doubt: 0.14,
             through_doubt: 0.4,
             sure_beams: 100,
             least_score: 0.60,
@@ -139,16 +155,24 @@ mod tests {
     #[test]
     fn what_a_scan_lacks_is_made_up_for_by_the_lead() {
         let config = PeakConfig::default();
-        let check = |(score, through), beams, expected: f64| {
-            let needed = config.needed_lead(score, through, beams);
-            assert!((needed - expected).abs() < 1e-12, "{score}: {needed}");
+        let check = |best, scan, expected: f64| {
+            let needed = config.needed_lead(best, scan);
+            assert!(
+                (needed - expected).abs() < 1e-12,
+                "{best:?} {scan:?}: {needed}"
+            );
         };
-        check((0.95, 0.0), 180.0, 0.10);
-        check((0.80, 0.0), 100.0, 0.10);
-        check((0.70, 0.0), 100.0, 0.20);
-        check((0.80, 0.0), 25.0, 0.20);
+        check((0.95, 0.0), (180.0, 6.0), 0.09);
+        check((0.74, 0.0), (100.0, 6.0), 0.09);
+        check((0.64, 0.0), (100.0, 6.0), 0.19);
+        check((0.74, 0.0), (25.0, 6.0), 0.18);
         // A tenth of what passes through obstacles is spared by a good score.
-        check((0.84, 0.1), 100.0, 0.10);
-        check((0.80, 0.5), 100.0, 0.30);
+        check((0.78, 0.1), (100.0, 6.0), 0.09);
+        check((0.74, 0.5), (100.0, 6.0), 0.29);
+        // A scan of one piece says less, one of many more.
+        let pieces = |pieces: f64| 0.14 * (pieces / 6.0).ln();
+        check((0.74, 0.0), (100.0, 1.0), 0.09 - pieces(1.0));
+        check((0.64, 0.0), (100.0, 9.0), 0.19 - pieces(9.0));
+        check((0.64, 0.0), (100.0, 60.0), 0.09);
     }
 }
