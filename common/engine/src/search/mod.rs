@@ -24,6 +24,7 @@ mod budget;
 mod bundle;
 mod descent;
 mod group;
+mod heading_bounds;
 mod index;
 mod interval_bounds;
 mod intervals;

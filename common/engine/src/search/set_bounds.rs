@@ -10,6 +10,7 @@ use std::ops::Range;
 
 use super::bits::{self, EMPTY, Planes, Row};
 use super::group::{Aligned, Group};
+use super::heading_bounds::{Chunk, GROUPS, HeadingBounds};
 use super::rows::{BitRow, Several};
 use super::sets::RangeSets;
 use super::spans::{SpanLayout, Spans};
@@ -17,9 +18,6 @@ use super::steps::BinSteps;
 use crate::directions::Directions;
 use crate::instruction_set::InstructionSet;
 use crate::program::ScanProgram;
-
-/// Rests that bearings leave by eight, each with a group of beams.
-const GROUPS: usize = 8;
 
 /// Blocks that are bounded side by side where there are registers for it.
 pub(crate) const SIDE_BY_SIDE: usize = 4;
@@ -82,26 +80,6 @@ pub(crate) struct SetBounds {
     carries: [Vec<Aligned>; 2],
 }
 
-/// Bounds of a block for all headings.
-#[derive(Debug, Clone, Default)]
-pub(crate) struct HeadingBounds {
-    unit: u16,
-    /// The greatest, in units.
-    greatest: u16,
-    chunks: Vec<Chunk>,
-}
-
-/// Bounds at the headings of a chunk.
-#[derive(Debug, Clone)]
-struct Chunk {
-    /// Sums in units.
-    sums: Planes,
-    /// What the sums were after each group but the last.
-    after: [Planes; GROUPS - 1],
-    /// Which headings matter.
-    valid: Row,
-}
-
 impl SetBounds {
     /// Makes room for the bounds by a program of blocks at some headings, a row a
     /// chunk; nothing is left of what another program had.
@@ -116,42 +94,6 @@ impl SetBounds {
         for rows in &mut self.carries {
             rows.resize(SIDE_BY_SIDE * (carries.unwrap_or(0) + 4), Aligned(EMPTY));
         }
-    }
-}
-
-impl HeadingBounds {
-    fn fit(&mut self, unit: u16, headings: impl Iterator<Item = Row>) {
-        self.unit = unit;
-        self.greatest = 0;
-        self.chunks.clear();
-        let chunks = headings.map(|valid| Chunk {
-            sums: [EMPTY; bits::PLANES],
-            after: [[EMPTY; bits::PLANES]; GROUPS - 1],
-            valid,
-        });
-        self.chunks.extend(chunks);
-    }
-
-    /// The greatest bound.
-    pub(crate) fn greatest(&self) -> u16 {
-        self.unit * self.greatest
-    }
-
-    /// For each chunk, the headings at which this block and the one around it
-    /// have a bound of at least `least`.
-    pub(crate) fn at_least(&self, least: u16, around: &Self) -> impl Iterator<Item = Row> {
-        let (here_least, around_least) = (least.div_ceil(self.unit), least.div_ceil(around.unit));
-        let chunks = self.chunks.iter().zip(&around.chunks);
-        chunks.map(move |(here, around)| {
-            let at_least = |chunk: &Chunk, least, among| {
-                bits::at_least(bits::PLANES, |plane| chunk.sums[plane], least, among)
-            };
-            at_least(
-                here,
-                here_least,
-                at_least(around, around_least, around.valid),
-            )
-        })
     }
 }
 

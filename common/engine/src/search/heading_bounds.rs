@@ -1,0 +1,65 @@
+//! What a block of cells is bounded by at each heading: numbers as planes.
+
+use super::bits::{self, EMPTY, Planes, Row};
+
+/// Rests that bearings leave by eight, each with a group of beams.
+pub(super) const GROUPS: usize = 8;
+
+/// Bounds of a block for all headings.
+#[derive(Debug, Clone, Default)]
+pub(crate) struct HeadingBounds {
+    /// All numbers count in this unit of votes.
+    unit: u16,
+    /// The greatest, in units.
+    pub(super) greatest: u16,
+    pub(super) chunks: Vec<Chunk>,
+}
+
+/// Bounds at the headings of a chunk.
+#[derive(Debug, Clone)]
+pub(super) struct Chunk {
+    /// Sums in units.
+    pub sums: Planes,
+    /// What the sums were after each group but the last.
+    pub after: [Planes; GROUPS - 1],
+    /// Which headings matter.
+    pub valid: Row,
+}
+
+impl HeadingBounds {
+    /// Makes room for bounds at some headings, a row a chunk; nothing is left of what
+    /// was there.
+    pub(super) fn fit(&mut self, unit: u16, headings: impl Iterator<Item = Row>) {
+        self.unit = unit;
+        self.greatest = 0;
+        self.chunks.clear();
+        let chunks = headings.map(|valid| Chunk {
+            sums: [EMPTY; bits::PLANES],
+            after: [[EMPTY; bits::PLANES]; GROUPS - 1],
+            valid,
+        });
+        self.chunks.extend(chunks);
+    }
+
+    /// The greatest bound.
+    pub(crate) fn greatest(&self) -> u16 {
+        self.unit * self.greatest
+    }
+
+    /// For each chunk, the headings at which this block and the one around it
+    /// have a bound of at least `least`.
+    pub(crate) fn at_least(&self, least: u16, around: &Self) -> impl Iterator<Item = Row> {
+        let (here_least, around_least) = (least.div_ceil(self.unit), least.div_ceil(around.unit));
+        let chunks = self.chunks.iter().zip(&around.chunks);
+        chunks.map(move |(here, around)| {
+            let at_least = |chunk: &Chunk, least, among| {
+                bits::at_least(bits::PLANES, |plane| chunk.sums[plane], least, among)
+            };
+            at_least(
+                here,
+                here_least,
+                at_least(around, around_least, around.valid),
+            )
+        })
+    }
+}
