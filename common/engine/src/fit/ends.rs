@@ -107,8 +107,7 @@ impl Ends {
     /// Kish's effective sample size, (Σ w)² / Σ w².
     #[must_use]
     pub fn effective_beams(&self) -> f64 {
-        let squares: f64 = self.ends.iter().map(|end| end.weight * end.weight).sum();
-        self.weight * self.weight / squares.max(f64::MIN_POSITIVE)
+        self.effective(self.ends.iter().map(|end| end.weight))
     }
 
     /// How many pieces of equal weight the scan sees, where neighbouring readings
@@ -119,8 +118,13 @@ impl Ends {
     pub fn effective_pieces(&self, apart_m: f64) -> f64 {
         let together = |a: &End, b: &End| (a.reading_m - b.reading_m).abs() <= apart_m;
         let pieces = self.ends.chunk_by(together);
-        let weights = pieces.map(|piece| piece.iter().map(|end| end.weight).sum());
-        let squares: f64 = weights.map(|weight: f64| weight * weight).sum();
+        self.effective(pieces.map(|piece| piece.iter().map(|end| end.weight).sum()))
+    }
+
+    /// Of how many parts of equal weight a mean would be as uncertain; the weights of
+    /// the parts are those of all beams together.
+    fn effective(&self, weights: impl Iterator<Item = f64>) -> f64 {
+        let squares: f64 = weights.map(|weight| weight * weight).sum();
         self.weight * self.weight / squares.max(f64::MIN_POSITIVE)
     }
 

@@ -100,7 +100,7 @@ fn parse_scale(text: &str) -> Result<f64, String> {
     crate::config::parse(text, 0.001..=1.0, "as a share")
 }
 
-/// Pieces that the scans see for which the sure score is.
+/// The sure score is that of scans that see so many pieces.
 const SURE_PIECES: f64 = 6.0;
 
 impl PeakConfig {

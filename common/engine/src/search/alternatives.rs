@@ -20,7 +20,7 @@ use super::intervals::{BlockIntervals, SIDE};
 use super::outlook::{CELLS, Outlook};
 use super::queue::Promise;
 use super::sectors;
-use super::set_bounds::{CHUNK, SetBounds};
+use super::set_bounds::{Blocks, CHUNK, SetBounds};
 use super::task::Task;
 use super::within::Size;
 use crate::votes::Distinct;
@@ -55,8 +55,6 @@ pub(super) struct Room {
     interval_bounds: IntervalBounds,
     outlook: Outlook,
     coarse: Vec<Promise>,
-    /// The 8 × 8 blocks of one.
-    blocks: Vec<usize>,
     /// Blocks of 8 × 8 cells that are looked into.
     fine: Greatest,
     spots: Vec<Spot>,
@@ -146,7 +144,6 @@ impl<'a> Alternatives<'a> {
             coarse_bounds,
             coarse,
             fine,
-            blocks,
             ..
         } = &mut *self.room;
         coarse_bounds.fit(&programs.coarse, self.task.headings());
@@ -158,12 +155,13 @@ impl<'a> Alternatives<'a> {
                 continue;
             }
             let quarters = quarters(around, index.coarse.columns, sides);
-            blocks.clear();
-            blocks.extend(quarters.filter(|&block| index.within.holds(Size::Fine, block)));
+            let mut sought = quarters.filter(|&block| index.within.holds(Size::Fine, block));
+            let blocks = Blocks::take(&mut sought);
+            let blocks = blocks.as_slice();
             let around = programs
                 .coarse
                 .bound((&index.coarse, around), coarse_bounds);
-            let within = (&index.fine, &**blocks);
+            let within = (&index.fine, blocks);
             let reach = programs.fine.bound_within(within, least, around, bounds);
             for (place, &block) in blocks.iter().enumerate().filter(|&(place, _)| reach[place]) {
                 fine.offer((bounds.blocks[place].greatest(), Reverse(block as u32)));

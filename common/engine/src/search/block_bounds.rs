@@ -1,6 +1,7 @@
 //! Where the robot may be, roughly: upper bounds, block by block.
 
-use super::set_bounds::{SetBounds, SetProgram};
+use super::set_bounds::SetBounds;
+use super::set_program::SetProgram;
 use super::within::Size;
 use super::{SearchIndex, Workspace};
 use crate::instruction_set::InstructionSet;

@@ -13,7 +13,7 @@ use super::interval_bounds::{HEADINGS, IntervalBounds, Window};
 use super::intervals::BlockIntervals;
 use super::outlook::{CELLS, Outlook};
 use super::queue::{Block, Level, Promise, Queue};
-use super::set_bounds::{CHUNK, SetBounds};
+use super::set_bounds::{Blocks, CHUNK, SetBounds};
 use super::task::{Programs, Task};
 use super::within::Size;
 use crate::votes::{Collector, Leading};
@@ -199,7 +199,8 @@ impl<'a> Descent<'a> {
         }
     }
 
-    /// Bounds a block of 16 × 16 cells by all beams, and queues the 8 × 8 in it.
+    /// Bounds a block of 16 × 16 cells once more, now with notes for what lies in it,
+    /// and queues the 8 × 8 there.
     fn split_coarse(&mut self, index: usize) {
         let SearchIndex {
             coarse,
@@ -221,13 +222,10 @@ impl<'a> Descent<'a> {
         } = &mut *self.room;
         let around = program.bound((coarse, index), coarse_bounds);
         let quarters = quarters(index, coarse.columns, (fine.columns, fine.rows));
-        let (mut blocks, mut count) = ([0; 4], 0);
-        for block in quarters.filter(|&block| within.holds(Size::Fine, block)) {
-            fine.prefetch(block);
-            blocks[count] = block;
-            count += 1;
-        }
-        let blocks = &blocks[..count];
+        let mut sought = quarters.filter(|&block| within.holds(Size::Fine, block));
+        let blocks = Blocks::take(&mut sought);
+        let blocks = blocks.as_slice();
+        blocks.iter().for_each(|&block| fine.prefetch(block));
         tally.bounds += 1 + blocks.len() as u64;
         let reach = finer.bound_within((fine, blocks), floor, around, fine_bounds);
         for (place, &block) in blocks.iter().enumerate().filter(|&(place, _)| reach[place]) {

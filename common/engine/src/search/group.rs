@@ -20,7 +20,7 @@ pub(super) struct Group {
 }
 
 /// Windows by how many reads they take: nearly all take one to three.
-#[derive(Debug, Clone)]
+#[derive(Debug, Clone, Default)]
 struct Plane {
     two: Windows<2>,
     three: Windows<3>,
@@ -54,7 +54,7 @@ impl Group {
     pub(super) fn push(&mut self, plane: usize, window: Window) {
         self.possible += 1 << plane;
         if self.planes.len() <= plane {
-            self.planes.resize_with(plane + 1, Plane::new);
+            self.planes.resize_with(plane + 1, Plane::default);
         }
         self.planes[plane].push(window);
     }
@@ -95,14 +95,6 @@ impl Group {
 }
 
 impl Plane {
-    const fn new() -> Self {
-        Plane {
-            two: Windows::new(),
-            three: Windows::new(),
-            most: Windows::new(),
-        }
-    }
-
     fn clear(&mut self) {
         self.two.clear();
         self.three.clear();

@@ -1,9 +1,7 @@
 //! What a block of cells is bounded by at each heading: numbers as planes.
 
 use super::bits::{self, EMPTY, Planes, Row};
-
-/// Rests that bearings leave by eight, each with a group of beams.
-pub(super) const GROUPS: usize = 8;
+use super::set_program::GROUPS;
 
 /// Bounds of a block for all headings.
 #[derive(Debug, Clone, Default)]

@@ -82,7 +82,7 @@ struct IntervalBeam {
 
 impl IntervalProgram {
     /// Lays out a program; `shifts` tell the groups of beams in their order, see
-    /// [`SetProgram::shifts`](super::set_bounds::SetProgram::shifts).
+    /// [`SetProgram::shifts`](super::set_program::SetProgram::shifts).
     pub(crate) fn make(
         &mut self,
         program: &ScanProgram,

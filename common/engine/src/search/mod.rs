@@ -39,6 +39,7 @@ mod ray_lanes;
 mod rows;
 mod sectors;
 mod set_bounds;
+mod set_program;
 mod sets;
 mod spans;
 mod steps;

@@ -6,18 +6,14 @@
 //! the whole bytes of it by where reading starts, the rest by grouping beams
 //! and shifting the sums of each group once.
 
-use std::ops::Range;
-
 use super::bits::{self, EMPTY, Planes, Row};
 use super::group::{Aligned, Group};
-use super::heading_bounds::{Chunk, GROUPS, HeadingBounds};
+use super::heading_bounds::{Chunk, HeadingBounds};
 use super::rows::{BitRow, Several};
+use super::set_program::{GROUPS, SetProgram};
 use super::sets::RangeSets;
-use super::spans::{SpanLayout, Spans};
-use super::steps::BinSteps;
-use crate::directions::Directions;
+use super::spans::Spans;
 use crate::instruction_set::InstructionSet;
-use crate::program::ScanProgram;
 
 /// Blocks that are bounded side by side where there are registers for it.
 pub(crate) const SIDE_BY_SIDE: usize = 4;
@@ -32,21 +28,6 @@ pub(crate) type Rests = [u16; GROUPS + 1];
 /// Up to this group it is told exactly: few bounds that are given up are given up
 /// later.
 const TOLD: usize = 4;
-
-/// A scan program laid out for bounds from sets; made anew for each scan.
-#[derive(Debug, Clone)]
-pub(crate) struct SetProgram {
-    instruction_set: InstructionSet,
-    /// Votes are counted in this unit, of which all peaks are multiples.
-    unit: u16,
-    /// Planes that hold all sums.
-    planes: usize,
-    /// One for each rest; those that have any beams come first.
-    groups: [Group; GROUPS],
-    /// How many of them have.
-    used: usize,
-    layout: SpanLayout,
-}
 
 /// How blocks are bounded.
 #[derive(Debug, Clone, Copy)]
@@ -67,6 +48,29 @@ impl How<'_> {
             How::Within(around, least) => Some((&around.chunks[chunk], least)),
             How::Plain | How::Noting => None,
         }
+    }
+}
+
+/// Blocks that are bounded side by side.
+#[derive(Debug, Clone, Copy, Default)]
+pub(crate) struct Blocks {
+    all: [usize; SIDE_BY_SIDE],
+    count: usize,
+}
+
+impl Blocks {
+    /// The next blocks, as many as there are or as are bounded at a time.
+    pub(crate) fn take(from: &mut impl Iterator<Item = usize>) -> Self {
+        let mut blocks = Blocks::default();
+        for (place, block) in blocks.all.iter_mut().zip(from) {
+            *place = block;
+            blocks.count += 1;
+        }
+        blocks
+    }
+
+    pub(crate) fn as_slice(&self) -> &[usize] {
+        &self.all[..self.count]
     }
 }
 
@@ -97,57 +101,7 @@ impl SetBounds {
     }
 }
 
-impl Default for SetProgram {
-    fn default() -> Self {
-        SetProgram {
-            instruction_set: InstructionSet::Portable,
-            unit: 1,
-            planes: 0,
-            groups: [0, 1, 2, 3, 4, 5, 6, 7].map(Group::new),
-            used: 0,
-            layout: SpanLayout::default(),
-        }
-    }
-}
-
 impl SetProgram {
-    /// Lays out a program for sets of which each row stands for `1 << shift`
-    /// bins.
-    pub(crate) fn make(
-        &mut self,
-        program: &ScanProgram,
-        directions: &Directions,
-        steps: &BinSteps,
-        shift: u32,
-        instruction_set: InstructionSet,
-    ) {
-        let peaks = (0..program.beams()).map(|beam| program.peak(beam));
-        let unit = peaks.reduce(greatest_common_divisor).unwrap_or(1).max(1);
-        (self.instruction_set, self.unit) = (instruction_set, unit);
-        self.layout.start(directions.count(), shift);
-        self.groups.sort_unstable_by_key(Group::shift);
-        self.groups.iter_mut().for_each(Group::clear);
-        for beam in 0..program.beams() {
-            let bearing = program.bearing(beam);
-            for (plane, rows) in windows(program, beam, directions, steps, shift, unit) {
-                let window = self.layout.window(rows, bearing / 8);
-                self.groups[bearing % 8].push(plane, window);
-            }
-        }
-        self.groups
-            .sort_unstable_by_key(|group| (group.possible == 0, group.shift()));
-        self.used = self.groups.partition_point(|group| group.possible > 0);
-        let possible: u16 = self.groups.iter().map(|group| group.possible).sum();
-        self.planes = possible
-            .checked_ilog2()
-            .map_or(0, |plane| plane as usize + 1);
-    }
-
-    /// What the bearings of each group of beams leave by eight.
-    pub(crate) fn shifts(&self) -> impl Iterator<Item = u32> {
-        self.groups().iter().map(Group::shift)
-    }
-
     /// What the beams from each group on give at most at some headings of a chunk,
     /// by bounds that were found within those of a block around.
     pub(crate) fn rests(&self, bounds: &HeadingBounds, chunk: usize, among: Row) -> Rests {
@@ -168,7 +122,7 @@ impl SetProgram {
     #[inline(always)]
     fn rests_with<R: BitRow>(&self, bounds: &HeadingBounds, chunk: usize, among: Row) -> Rests {
         let (chunk, among) = (&bounds.chunks[chunk], R::from_row(&among));
-        let others = self.used.saturating_sub(1);
+        let others = self.groups().len().saturating_sub(1);
         let mut rests = Rests::default();
         rests[0] = u16::MAX;
         for group in 1..=others {
@@ -180,11 +134,6 @@ impl SetProgram {
             };
         }
         rests
-    }
-
-    /// Those that have beams.
-    fn groups(&self) -> &[Group] {
-        &self.groups[..self.used]
     }
 
     /// Bounds the votes of a block at all headings.
@@ -218,19 +167,16 @@ impl SetProgram {
     pub(crate) fn bound_all(
         &self,
         sets: &RangeSets,
-        blocks: impl Iterator<Item = usize>,
+        mut blocks: impl Iterator<Item = usize>,
         bounds: &mut SetBounds,
         mut take: impl FnMut(usize, u16),
     ) {
-        let mut blocks = blocks.peekable();
-        while blocks.peek().is_some() {
-            let mut some = [0; SIDE_BY_SIDE];
-            let mut count = 0;
-            for (place, block) in some.iter_mut().zip(&mut blocks) {
-                *place = block;
-                count += 1;
+        loop {
+            let some = Blocks::take(&mut blocks);
+            let some = some.as_slice();
+            if some.is_empty() {
+                break;
             }
-            let some = &some[..count];
             self.run((sets, some), How::Plain, bounds);
             for (&block, bounds) in some.iter().zip(&bounds.blocks) {
                 take(block, bounds.greatest());
@@ -383,47 +329,6 @@ fn sum<R: BitRow>(numbers: impl Iterator<Item = R>, others: &Planes) -> [R; bits
     sums
 }
 
-fn greatest_common_divisor(a: u16, b: u16) -> u16 {
-    if b == 0 {
-        a
-    } else {
-        greatest_common_divisor(b, a % b)
-    }
-}
-
-/// Windows of rows of sets that cover the taper of a beam in all classes of
-/// directions, each with the plane of its share: one for each binary digit of
-/// the peak, that of the highest for the whole taper.
-fn windows(
-    program: &ScanProgram,
-    beam: usize,
-    directions: &Directions,
-    steps: &BinSteps,
-    shift: u32,
-    unit: u16,
-) -> impl Iterator<Item = (usize, Range<usize>)> {
-    let peak = program.peak(beam) / unit;
-    let planes = (0..bits::PLANES).rev();
-    planes
-        .filter(move |plane| peak >> plane & 1 == 1)
-        .filter_map(move |plane| {
-            // Windows of higher planes cover votes up to here.
-            let below = unit * (peak >> plane >> 1 << plane << 1);
-            let rows = (0..directions.classes()).filter_map(|class| {
-                let taper = program.taper(beam, class);
-                let votes = |&votes: &u8| u16::from(votes) > below;
-                let last = taper.profile.partition_point(votes).checked_sub(1)? as u16;
-                let row = |at| usize::from(steps.bin(class, at) >> shift);
-                Some((
-                    row(taper.centre.saturating_sub(last)),
-                    row(taper.centre + last) + 1,
-                ))
-            });
-            let (first, end) = rows.reduce(|a, b| (a.0.min(b.0), a.1.max(b.1)))?;
-            Some((plane, first..end))
-        })
-}
-
 #[cfg(test)]
 mod tests {
     use proptest::prelude::*;
@@ -432,6 +337,7 @@ mod tests {
     use super::super::descent::quarters;
     use super::super::index::SearchIndex;
     use super::super::intervals::RangeIntervals;
+    use super::super::steps::BinSteps;
     use super::super::task::{Shared, Task};
     use super::super::within::Within;
     use super::*;

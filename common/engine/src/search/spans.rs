@@ -61,7 +61,7 @@ pub(crate) struct Window {
 }
 
 /// Windows of so many reads each, those with fewer reading twice.
-#[derive(Debug, Clone)]
+#[derive(Debug, Clone, Default)]
 pub(crate) struct Windows<const READS: usize> {
     starts: Vec<[u32; READS]>,
     /// No window reads beyond this byte.
@@ -202,13 +202,6 @@ impl Window {
 }
 
 impl<const READS: usize> Windows<READS> {
-    pub(crate) const fn new() -> Self {
-        Windows {
-            starts: Vec::new(),
-            end: 0,
-        }
-    }
-
     pub(crate) fn len(&self) -> usize {
         self.starts.len()
     }

@@ -8,7 +8,7 @@ use super::index::SearchIndex;
 use super::interval_bounds::IntervalProgram;
 use super::leaf::LeafProgram;
 use super::outlook::View;
-use super::set_bounds::SetProgram;
+use super::set_program::SetProgram;
 use crate::grid::Grid;
 use crate::instruction_set::InstructionSet;
 use crate::program::ScanProgram;
