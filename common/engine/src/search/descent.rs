@@ -8,8 +8,9 @@ use messages::Vote;
 
 use super::bits::{self, Row};
 use super::budget::{Budget, LEVELS, Tally};
+use super::heading_lanes::HEADINGS;
 use super::index::SearchIndex;
-use super::interval_bounds::{HEADINGS, IntervalBounds, Window};
+use super::interval_bounds::{IntervalBounds, Window};
 use super::intervals::BlockIntervals;
 use super::outlook::{CELLS, Outlook};
 use super::queue::{Block, Level, Promise, Queue};

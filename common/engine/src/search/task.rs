@@ -5,7 +5,7 @@ use std::sync::atomic::{AtomicBool, AtomicU16, Ordering};
 use super::bits::Row;
 use super::budget::Cost;
 use super::index::SearchIndex;
-use super::interval_bounds::IntervalProgram;
+use super::interval_program::IntervalProgram;
 use super::leaf::LeafProgram;
 use super::outlook::View;
 use super::set_program::SetProgram;

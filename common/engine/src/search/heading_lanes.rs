@@ -1,0 +1,259 @@
+//! Votes at 64 adjacent headings, side by side in the registers of an instruction set.
+
+#[cfg(target_arch = "x86_64")]
+mod x86;
+
+use super::intervals;
+#[cfg(target_arch = "x86_64")]
+pub(super) use x86::{Avx2, Avx512};
+
+/// Headings that are bounded at a time.
+pub(crate) const HEADINGS: usize = intervals::READ;
+
+/// Entries of a table; the first and the last stand for all bins beyond.
+pub(super) const TABLE: usize = 64;
+
+/// Entries that any instruction set looks up at once.
+#[cfg(any(target_arch = "x86_64", target_arch = "aarch64"))]
+const PIECE: usize = 16;
+
+/// The most votes of a beam for a range in a bin; they never rise away from one.
+#[derive(Debug, Clone)]
+#[repr(align(64))]
+pub(super) struct BinVotes {
+    /// Those in bins `base`, `base + 1`, …
+    pub table: [u8; TABLE],
+    /// Behind this entry there are no others than 0.
+    pub used: usize,
+    /// The bin of most votes.
+    pub centre: u8,
+    pub base: u8,
+}
+
+/// First and last bin of a near and of a far interval at each heading.
+pub(super) type IntervalRows<'a> = [&'a [u8; HEADINGS]; 4];
+
+/// A number of votes for each heading that fits a byte.
+///
+/// The methods must be inlined into functions that are compiled for the
+/// instruction set, and be called only where the processor has it.
+pub(super) trait HeadingLanes: Copy {
+    /// Sums of such numbers.
+    type Sums: Copy;
+
+    fn none() -> Self;
+
+    /// Adds the most votes that a beam has for a range of either interval.
+    fn add(self, votes: &BinVotes, rows: IntervalRows<'_>) -> Self;
+
+    fn to_bytes(self) -> [u8; HEADINGS];
+
+    fn no_sums() -> Self::Sums;
+
+    fn add_to(self, sums: Self::Sums) -> Self::Sums;
+
+    /// The headings with a sum of at least so much.
+    fn at_least(sums: Self::Sums, least: u16) -> u64;
+
+    fn store(sums: Self::Sums, to: &mut [u16; HEADINGS]);
+}
+
+/// What every processor has; on ARM, which always has NEON, tables are looked up by
+/// its instructions.
+#[derive(Clone, Copy)]
+pub(super) struct Portable([u8; HEADINGS]);
+
+impl HeadingLanes for Portable {
+    type Sums = [u16; HEADINGS];
+
+    #[inline(always)]
+    fn none() -> Self {
+        Portable([0; HEADINGS])
+    }
+
+    #[inline(always)]
+    fn add(self, votes: &BinVotes, rows: IntervalRows<'_>) -> Self {
+        let [near_first, near_last, far_first, far_last] = rows;
+        let near = look_up(votes, near_first, near_last);
+        let far = look_up(votes, far_first, far_last);
+        Portable(std::array::from_fn(|i| self.0[i] + near[i].max(far[i])))
+    }
+
+    #[inline(always)]
+    fn to_bytes(self) -> [u8; HEADINGS] {
+        self.0
+    }
+
+    #[inline(always)]
+    fn no_sums() -> Self::Sums {
+        [0; HEADINGS]
+    }
+
+    #[inline(always)]
+    fn add_to(self, mut sums: Self::Sums) -> Self::Sums {
+        for (sum, votes) in sums.iter_mut().zip(self.0) {
+            *sum += u16::from(votes);
+        }
+        sums
+    }
+
+    #[inline(always)]
+    fn at_least(sums: Self::Sums, least: u16) -> u64 {
+        let lanes = sums.iter().enumerate();
+        lanes.fold(0, |all, (i, &sum)| all | u64::from(sum >= least) << i)
+    }
+
+    #[inline(always)]
+    fn store(sums: Self::Sums, to: &mut [u16; HEADINGS]) {
+        *to = sums;
+    }
+}
+
+/// The votes in the bin of each interval that is nearest to the centre.
+#[cfg(not(target_arch = "aarch64"))]
+#[inline(always)]
+fn look_up(votes: &BinVotes, first: &[u8; HEADINGS], last: &[u8; HEADINGS]) -> [u8; HEADINGS] {
+    let index: [u8; HEADINGS] = std::array::from_fn(|i| {
+        let bin = votes.centre.min(last[i]).max(first[i]);
+        bin.saturating_sub(votes.base).min(TABLE as u8 - 1)
+    });
+    let mut found = [0; HEADINGS];
+    // Comparing all with each entry takes no look-up, one by one.
+    for (entry, &votes) in (0..).zip(&votes.table[..votes.used]) {
+        for (found, &index) in found.iter_mut().zip(&index) {
+            *found |= if index == entry { votes } else { 0 };
+        }
+    }
+    found
+}
+
+#[cfg(target_arch = "aarch64")]
+#[inline(always)]
+fn look_up(votes: &BinVotes, first: &[u8; HEADINGS], last: &[u8; HEADINGS]) -> [u8; HEADINGS] {
+    use std::arch::aarch64::*;
+    let mut found = [0; HEADINGS];
+    let lanes = first
+        .as_chunks::<PIECE>()
+        .0
+        .iter()
+        .zip(last.as_chunks::<PIECE>().0);
+    for ((first, last), found) in lanes.zip(found.as_chunks_mut::<PIECE>().0) {
+        // SAFETY: every ARM processor of 64 bits has NEON; arrays are as long as what is
+        // read of them or stored to them.
+        unsafe {
+            let nearest = vminq_u8(vdupq_n_u8(votes.centre), vld1q_u8(last.as_ptr()));
+            let nearest = vmaxq_u8(nearest, vld1q_u8(first.as_ptr()));
+            let index = vqsubq_u8(nearest, vdupq_n_u8(votes.base));
+            // What lies beyond the table is 0.
+            let looked_up = if votes.used <= PIECE {
+                vqtbl1q_u8(vld1q_u8(votes.table.as_ptr()), index)
+            } else {
+                let index = vminq_u8(index, vdupq_n_u8(TABLE as u8 - 1));
+                vqtbl4q_u8(vld1q_u8_x4(votes.table.as_ptr()), index)
+            };
+            vst1q_u8(found.as_mut_ptr(), looked_up);
+        }
+    }
+    found
+}
+
+#[cfg(test)]
+mod tests {
+    use proptest::collection::vec;
+    use proptest::prelude::*;
+
+    use super::*;
+    use crate::instruction_set::InstructionSet;
+
+    /// Votes of some beams in some rows, their sums with others, and where those reach
+    /// a least one.
+    #[inline(always)]
+    fn count<L: HeadingLanes>(
+        beams: &[(BinVotes, [[u8; HEADINGS]; 4])],
+        times: usize,
+        least: u16,
+    ) -> ([u8; HEADINGS], [u16; HEADINGS], u64) {
+        let mut votes = L::none();
+        for (beam, [near_first, near_last, far_first, far_last]) in beams {
+            votes = votes.add(beam, [near_first, near_last, far_first, far_last]);
+        }
+        let mut sums = L::no_sums();
+        for _ in 0..times {
+            sums = votes.add_to(sums);
+        }
+        let mut all = [0; HEADINGS];
+        L::store(sums, &mut all);
+        (votes.to_bytes(), all, L::at_least(sums, least))
+    }
+
+    #[cfg(target_arch = "x86_64")]
+    #[target_feature(enable = "avx2")]
+    fn count_avx2(
+        beams: &[(BinVotes, [[u8; HEADINGS]; 4])],
+        times: usize,
+        least: u16,
+    ) -> ([u8; HEADINGS], [u16; HEADINGS], u64) {
+        count::<Avx2>(beams, times, least)
+    }
+
+    #[cfg(target_arch = "x86_64")]
+    #[target_feature(enable = "avx512f,avx512bw,avx512vl,avx512vbmi")]
+    fn count_avx512(
+        beams: &[(BinVotes, [[u8; HEADINGS]; 4])],
+        times: usize,
+        least: u16,
+    ) -> ([u8; HEADINGS], [u16; HEADINGS], u64) {
+        count::<Avx512>(beams, times, least)
+    }
+
+    fn any_row() -> impl Strategy<Value = [u8; HEADINGS]> {
+        vec(any::<u8>(), HEADINGS).prop_map(|row| row.try_into().expect("as long"))
+    }
+
+    prop_compose! {
+        fn any_votes()(
+            votes in prop_oneof![vec(0u8..=15, 0..=16), vec(0u8..=15, 0..=TABLE)],
+            centre: u8, base: u8,
+        ) -> BinVotes {
+            let mut table = [0; TABLE];
+            table[..votes.len()].copy_from_slice(&votes);
+            BinVotes { table, used: votes.len(), centre, base }
+        }
+    }
+
+    proptest! {
+        #[test]
+        fn votes_are_those_of_the_tables_on_every_instruction_set(
+            beams in vec((any_votes(), [any_row(), any_row(), any_row(), any_row()]), 0..16),
+            times in 1usize..270, share in 0.0..1.2f64,
+        ) {
+            let mut bytes = [0; HEADINGS];
+            for (beam, [near_first, near_last, far_first, far_last]) in &beams {
+                for (lane, votes) in bytes.iter_mut().enumerate() {
+                    let in_bin = |first: u8, last: u8| {
+                        let bin = beam.centre.min(last).max(first);
+                        beam.table[usize::from(bin.saturating_sub(beam.base)).min(TABLE - 1)]
+                    };
+                    *votes += in_bin(near_first[lane], near_last[lane])
+                        .max(in_bin(far_first[lane], far_last[lane]));
+                }
+            }
+            let sums = bytes.map(|votes| times as u16 * u16::from(votes));
+            let most = sums.iter().max().copied().unwrap_or(0);
+            let least = (f64::from(most) * share) as u16;
+            let reaching = (0..HEADINGS).map(|lane| u64::from(sums[lane] >= least) << lane).sum();
+            for set in InstructionSet::available() {
+                let counted = match set {
+                    // SAFETY: the processor has the instruction set.
+                    #[cfg(target_arch = "x86_64")]
+                    InstructionSet::Avx512 => unsafe { count_avx512(&beams, times, least) },
+                    // SAFETY: as above.
+                    #[cfg(target_arch = "x86_64")]
+                    InstructionSet::Avx2 => unsafe { count_avx2(&beams, times, least) },
+                    _ => count::<Portable>(&beams, times, least),
+                };
+                prop_assert_eq!(counted, (bytes, sums, reaching), "{}", set);
+            }
+        }
+    }
+}
