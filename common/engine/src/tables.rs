@@ -6,6 +6,9 @@ use crate::program::ScanProgram;
 /// A table's size is a multiple of this: what one instruction can look up.
 pub(crate) const TABLE: usize = 64;
 
+/// The same for processors that look up less.
+pub(crate) const PIECE: usize = 16;
+
 /// The tables of all beams, for each class of directions; made anew for each
 /// program.
 #[derive(Debug, Clone, Default)]
@@ -22,6 +25,7 @@ struct Entry {
     centre: u16,
     start: u32,
     size: u32,
+    used: u32,
 }
 
 /// Votes by distance from the reading. Its size is a multiple of [`TABLE`], and
@@ -32,6 +36,8 @@ pub(crate) struct VoteTable<'a> {
     pub centre: u16,
     /// Votes at 0, 1, 2, … steps from there.
     pub votes: &'a [u8],
+    /// From here on they are 0.
+    pub used: usize,
 }
 
 impl VoteTables {
@@ -51,6 +57,7 @@ impl VoteTables {
                 centre: taper.centre,
                 start: start as u32,
                 size: size as u32,
+                used: taper.profile.len() as u32,
             });
             self.is_short &= size == TABLE;
         }
@@ -63,10 +70,12 @@ impl VoteTables {
             centre,
             start,
             size,
+            used,
         } = self.entries[beam * self.classes + class];
         VoteTable {
             centre,
             votes: &self.votes[start as usize..][..size as usize],
+            used: used as usize,
         }
     }
 
@@ -77,9 +86,16 @@ impl VoteTables {
 }
 
 impl VoteTable<'_> {
+    /// Whether it has [`TABLE`] entries.
+    #[cfg(target_arch = "aarch64")]
+    #[inline(always)]
+    pub(crate) fn is_short(&self) -> bool {
+        self.votes.len() == TABLE
+    }
+
     /// Adds the votes for poses from which the ray is so long, side by side.
     #[inline(always)]
-    pub(crate) fn add_portable(&self, ranges: &[u16], votes: &mut [u16]) {
+    pub(crate) fn add(&self, ranges: &[u16], votes: &mut [u16]) {
         let last = self.votes.len() - 1;
         for (votes, &range) in votes.iter_mut().zip(ranges) {
             let distance = usize::from(range.abs_diff(self.centre)).min(last);
@@ -110,7 +126,7 @@ mod tests {
                 let taper = program.taper(beam, class);
                 let plain: Vec<u16> = ranges.iter().map(|&range| 1 + u16::from(taper.votes(range))).collect();
                 let mut votes = vec![1; ranges.len()];
-                tables.get(beam, class).add_portable(&ranges, &mut votes);
+                tables.get(beam, class).add(&ranges, &mut votes);
                 prop_assert_eq!(&votes, &plain);
             }
         }

@@ -6,12 +6,13 @@
 
 use std::ops::Range;
 
+use super::cell_lanes::{CellLanes, Portable};
 use super::outlook::{CELLS, Outlook, View};
 use super::sectors;
 use crate::directions::Directions;
 use crate::instruction_set::InstructionSet;
 use crate::program::ScanProgram;
-use crate::tables::{TABLE, VoteTable, VoteTables};
+use crate::tables::{VoteTable, VoteTables};
 
 /// A scan program laid out for counting in blocks; made anew for each scan.
 #[derive(Debug, Clone, Default)]
@@ -63,21 +64,53 @@ impl LeafProgram {
             InstructionSet::Avx512 if self.tables.are_short() => unsafe {
                 self.add_avx512(outlook, beams, heading, counts);
             },
-            _ => self.add_portable(outlook, beams, heading, counts),
+            // SAFETY: as above.
+            #[cfg(target_arch = "x86_64")]
+            InstructionSet::Avx2 if self.tables.are_short() => unsafe {
+                self.add_avx2(outlook, beams, heading, counts);
+            },
+            _ => self.add_with::<Portable>(outlook, beams, heading, counts),
         }
     }
 
-    fn add_portable(
+    #[cfg(target_arch = "x86_64")]
+    #[target_feature(enable = "avx512f,avx512bw,avx512vl,avx512vbmi")]
+    fn add_avx512(
         &self,
         outlook: &Outlook,
         beams: Range<usize>,
         heading: usize,
         counts: &mut [u16; CELLS],
     ) {
+        self.add_with::<super::cell_lanes::Avx512>(outlook, beams, heading, counts);
+    }
+
+    #[cfg(target_arch = "x86_64")]
+    #[target_feature(enable = "avx2")]
+    fn add_avx2(
+        &self,
+        outlook: &Outlook,
+        beams: Range<usize>,
+        heading: usize,
+        counts: &mut [u16; CELLS],
+    ) {
+        self.add_with::<super::cell_lanes::Avx2>(outlook, beams, heading, counts);
+    }
+
+    #[inline(always)]
+    fn add_with<L: CellLanes>(
+        &self,
+        outlook: &Outlook,
+        beams: Range<usize>,
+        heading: usize,
+        counts: &mut [u16; CELLS],
+    ) {
+        let mut sums = L::load(counts);
         for beam in beams {
             let (table, ranges) = self.look(outlook, heading, beam);
-            table.add_portable(ranges, counts);
+            sums = sums.add(table, ranges);
         }
+        sums.store(counts);
     }
 
     #[inline(always)]
@@ -102,44 +135,6 @@ impl LeafProgram {
         let direction = self.direction(beam, heading);
         let table = self.tables.get(self.order[beam], self.classes[direction]);
         (table, outlook.ranges(direction))
-    }
-
-    #[cfg(target_arch = "x86_64")]
-    #[target_feature(enable = "avx512f,avx512bw,avx512vl,avx512vbmi")]
-    fn add_avx512(
-        &self,
-        outlook: &Outlook,
-        beams: Range<usize>,
-        heading: usize,
-        counts: &mut [u16; CELLS],
-    ) {
-        use std::arch::x86_64::*;
-        let last = _mm256_set1_epi16(TABLE as i16 - 1);
-        // SAFETY: the array holds the 16 numbers that are read of it.
-        let mut sums = unsafe { _mm256_loadu_si256(counts.as_ptr().cast()) };
-        for beam in beams {
-            let (table, ranges) = self.look(outlook, heading, beam);
-            let centre = _mm256_set1_epi16(table.centre as i16);
-            let table = &table.votes[..TABLE];
-            // SAFETY: both are as long as what is read of them.
-            let (table, range) = unsafe {
-                (
-                    _mm512_loadu_si512(table.as_ptr().cast()),
-                    _mm256_loadu_si256(ranges.as_ptr().cast()),
-                )
-            };
-            let off = _mm256_or_si256(
-                _mm256_subs_epu16(range, centre),
-                _mm256_subs_epu16(centre, range),
-            );
-            // The index is the low byte of a lane; the high one looks up
-            // entry 0, which the mask leaves out.
-            let index = _mm512_castsi256_si512(_mm256_min_epu16(off, last));
-            let found = _mm512_maskz_permutexvar_epi8(0x5555_5555, index, table);
-            sums = _mm256_add_epi16(sums, _mm512_castsi512_si256(found));
-        }
-        // SAFETY: the array holds the 16 numbers that are stored to it.
-        unsafe { _mm256_storeu_si256(counts.as_mut_ptr().cast(), sums) };
     }
 }
 

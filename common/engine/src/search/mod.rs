@@ -22,6 +22,7 @@ mod bits;
 mod block_bounds;
 mod budget;
 mod bundle;
+mod cell_lanes;
 mod descent;
 mod group;
 mod heading_bounds;

@@ -131,8 +131,17 @@ impl Outlook {
             // SAFETY: the processor has the instruction set, or it would not be chosen.
             #[cfg(target_arch = "x86_64")]
             InstructionSet::Avx512 => unsafe { self.look_avx512(view, directions) },
+            // SAFETY: as above.
+            #[cfg(target_arch = "x86_64")]
+            InstructionSet::Avx2 => unsafe { self.look_avx2(view, directions) },
             _ => self.look_with::<Portable>(view, directions),
         }
+    }
+
+    #[cfg(target_arch = "x86_64")]
+    #[target_feature(enable = "avx2")]
+    fn look_avx2(&mut self, view: &View<'_>, directions: impl Iterator<Item = usize>) {
+        self.look_with::<super::ray_lanes::Avx2>(view, directions);
     }
 
     #[cfg(target_arch = "x86_64")]

@@ -90,31 +90,19 @@ impl RayLanes for Portable {
 
     #[inline(always)]
     fn word(rows: &BitRows<'_>) -> u64 {
-        let (mut start, mut bit) = (rows.start, rows.bit);
-        let mut word = 0;
-        for row in 0..ROWS {
-            let byte = (start + (bit >> 35)) as usize;
-            let pair = u16::from_le_bytes([rows.bytes[byte], rows.bytes[byte + 1]]);
-            word |= u64::from((pair >> (bit >> 32 & 7)) as u8) << (8 * row);
-            start += rows.stride;
-            bit += rows.slope;
-        }
-        word
+        word_of(rows)
     }
 
     #[inline(always)]
     fn note(&mut self, word: u64, position: i64) -> u8 {
-        /// The bits of the first ray.
-        const FIRST: u64 = 0x0101_0101_0101_0101;
-        for (i, hit) in self.0.iter_mut().enumerate() {
-            let ends = (word >> i) & FIRST;
-            let at = position + i64::from(ends.trailing_zeros() / 8);
-            let at = if ends == 0 { NO_RANGE } else { at as u16 };
-            *hit = at.min(*hit);
+        let rays = turned(word).to_le_bytes();
+        let mut ended = 0;
+        for (i, (hit, ends)) in self.0.iter_mut().zip(rays).enumerate() {
+            let at = position as u16 + ends.trailing_zeros() as u16;
+            *hit = if ends == 0 { *hit } else { at.min(*hit) };
+            ended |= u8::from(ends != 0) << i;
         }
-        let folded = word | word >> 32;
-        let folded = folded | folded >> 16;
-        (folded | folded >> 8) as u8
+        ended
     }
 
     #[inline(always)]
@@ -132,11 +120,135 @@ impl RayLanes for Portable {
     }
 }
 
+/// A word of rows, one by one.
+#[inline(always)]
+fn word_of(rows: &BitRows<'_>) -> u64 {
+    let (mut start, mut bit) = (rows.start, rows.bit);
+    let mut word = 0;
+    for row in 0..ROWS {
+        let byte = (start + (bit >> 35)) as usize;
+        let pair = u16::from_le_bytes([rows.bytes[byte], rows.bytes[byte + 1]]);
+        word |= u64::from((pair >> (bit >> 32 & 7)) as u8) << (8 * row);
+        start += rows.stride;
+        bit += rows.slope;
+    }
+    word
+}
+
+/// A word turned over: bit `i` of byte `j` becomes bit `j` of byte `i`.
+#[inline(always)]
+fn turned(word: u64) -> u64 {
+    /// Swaps the bits of a mask with those so far above them.
+    #[inline(always)]
+    fn swapped(word: u64, by: u32, mask: u64) -> u64 {
+        let differing = (word ^ word >> by) & mask;
+        word ^ differing ^ differing << by
+    }
+    let word = swapped(word, 7, 0x00aa_00aa_00aa_00aa);
+    let word = swapped(word, 14, 0x0000_cccc_0000_cccc);
+    swapped(word, 28, 0x0000_0000_f0f0_f0f0)
+}
+
 #[cfg(target_arch = "x86_64")]
 mod x86 {
     use std::arch::x86_64::*;
 
-    use super::{Across, BitRows, CELLS, NO_RANGE, RAYS, RayLanes, SIDE};
+    use super::{Across, BitRows, CELLS, NO_RANGE, RAYS, RayLanes, SIDE, word_of};
+
+    /// A ray a lane of 64 bits, in two registers.
+    #[derive(Clone, Copy)]
+    pub(crate) struct Avx2([__m256i; 2]);
+
+    #[expect(
+        clippy::undocumented_unsafe_blocks,
+        reason = "one argument holds for all: lanes of an instruction set are made only where the \
+                  processor has it, and arrays are as long as what is read of them or stored to them"
+    )]
+    impl RayLanes for Avx2 {
+        #[inline(always)]
+        fn none() -> Self {
+            unsafe { Avx2([_mm256_set1_epi64x(i64::from(NO_RANGE)); 2]) }
+        }
+
+        #[inline(always)]
+        fn word(rows: &BitRows<'_>) -> u64 {
+            word_of(rows)
+        }
+
+        #[inline(always)]
+        fn note(&mut self, word: u64, position: i64) -> u8 {
+            let mut ended = 0;
+            for half in 0..2 {
+                let first_ray = 4 * half as i64;
+                unsafe {
+                    let zero = _mm256_setzero_si256();
+                    let ray =
+                        _mm256_set_epi64x(first_ray + 3, first_ray + 2, first_ray + 1, first_ray);
+                    let word = _mm256_set1_epi64x(word.cast_signed());
+                    let first = _mm256_set1_epi64x(0x0101_0101_0101_0101);
+                    let ends = _mm256_and_si256(_mm256_srlv_epi64(word, ray), first);
+                    // Below the lowest bit lie as many bytes as positions before it.
+                    let below = _mm256_add_epi64(ends, _mm256_set1_epi64x(-1));
+                    let below = _mm256_and_si256(_mm256_andnot_si256(ends, below), first);
+                    let row = _mm256_sad_epu8(below, zero);
+                    let at = _mm256_add_epi64(_mm256_set1_epi64x(position), row);
+                    let goes_on = _mm256_cmpeq_epi64(ends, zero);
+                    // Numbers fit the low half of a lane.
+                    let at = _mm256_or_si256(at, goes_on);
+                    self.0[half] = _mm256_min_epu32(self.0[half], at);
+                    let on = _mm256_movemask_pd(_mm256_castsi256_pd(goes_on));
+                    ended |= (!on & 0b1111) << first_ray;
+                }
+            }
+            ended as u8
+        }
+
+        #[inline(always)]
+        fn hits(self) -> [u16; RAYS] {
+            let mut hits = [0; RAYS];
+            unsafe {
+                let packed = _mm256_packus_epi32(self.0[0], self.0[1]);
+                let packed = _mm256_packus_epi32(packed, packed);
+                let (low, high) = (
+                    _mm256_castsi256_si128(packed),
+                    _mm256_extracti128_si256::<1>(packed),
+                );
+                _mm_storeu_si128(hits.as_mut_ptr().cast(), _mm_unpacklo_epi32(low, high));
+            }
+            hits
+        }
+
+        #[inline(always)]
+        fn ranges(hits: &[u16; RAYS], first: &[u16; SIDE], across: &Across) -> [u16; CELLS] {
+            let mut ranges = [0; CELLS];
+            unsafe {
+                let column = _mm256_loadu_si256(across.column.as_ptr().cast());
+                let minor = _mm256_loadu_si256(across.minor.as_ptr().cast());
+                let hits = _mm256_broadcastsi128_si256(_mm_loadu_si128(hits.as_ptr().cast()));
+                let first = _mm256_broadcastsi128_si256(_mm_loadl_epi64(first.as_ptr().cast()));
+                let ray = _mm256_add_epi16(number_at(first, column), minor);
+                let hit = number_at(hits, ray);
+                let no_range = _mm256_cmpeq_epi16(hit, _mm256_set1_epi16(NO_RANGE as i16));
+                let range = _mm256_sub_epi16(hit, _mm256_andnot_si256(no_range, column));
+                _mm256_storeu_si256(ranges.as_mut_ptr().cast(), range);
+            }
+            ranges
+        }
+    }
+
+    /// Those of eight numbers, which are there twice, at places below eight.
+    ///
+    /// # Safety
+    /// The processor must have AVX2.
+    #[inline(always)]
+    unsafe fn number_at(numbers: __m256i, places: __m256i) -> __m256i {
+        // SAFETY: as the caller says.
+        unsafe {
+            let bytes = _mm256_mullo_epi16(places, _mm256_set1_epi16(0x0202));
+            let bytes = _mm256_add_epi16(bytes, _mm256_set1_epi16(0x0100));
+            _mm256_shuffle_epi8(numbers, bytes)
+        }
+    }
 
     /// A ray a lane of 64 bits.
     #[derive(Clone, Copy)]
@@ -226,4 +338,4 @@ mod x86 {
 }
 
 #[cfg(target_arch = "x86_64")]
-pub(super) use x86::Avx512;
+pub(super) use x86::{Avx2, Avx512};

@@ -1,0 +1,195 @@
+//! Votes of the 16 cells of a small block, side by side in the registers of an
+//! instruction set.
+
+use super::outlook::CELLS;
+use crate::tables::VoteTable;
+
+/// Votes of the cells of a block.
+///
+/// The methods must be inlined into functions that are compiled for the
+/// instruction set, and be called only where the processor has it.
+pub(super) trait CellLanes: Copy {
+    fn load(votes: &[u16; CELLS]) -> Self;
+
+    /// Adds those of a beam, given the ranges that the cells see along it. All but
+    /// plain code needs a table that is short.
+    fn add(self, table: VoteTable<'_>, ranges: &[u16; CELLS]) -> Self;
+
+    fn store(self, votes: &mut [u16; CELLS]);
+}
+
+/// What every processor has; on ARM, which always has NEON, short tables are looked
+/// up by its instructions.
+#[derive(Clone, Copy)]
+pub(super) struct Portable([u16; CELLS]);
+
+impl CellLanes for Portable {
+    #[inline(always)]
+    fn load(votes: &[u16; CELLS]) -> Self {
+        Portable(*votes)
+    }
+
+    #[inline(always)]
+    fn add(mut self, table: VoteTable<'_>, ranges: &[u16; CELLS]) -> Self {
+        #[cfg(target_arch = "aarch64")]
+        if table.is_short() {
+            neon::add(table, ranges, &mut self.0);
+            return self;
+        }
+        table.add(ranges, &mut self.0);
+        self
+    }
+
+    #[inline(always)]
+    fn store(self, votes: &mut [u16; CELLS]) {
+        *votes = self.0;
+    }
+}
+
+#[cfg(target_arch = "aarch64")]
+mod neon {
+    use std::arch::aarch64::*;
+
+    use super::{CELLS, VoteTable};
+    use crate::tables::{PIECE, TABLE};
+
+    /// Adds the votes for ranges; the table is short.
+    #[inline(always)]
+    pub(super) fn add(table: VoteTable<'_>, ranges: &[u16; CELLS], votes: &mut [u16; CELLS]) {
+        let entries = &table.votes[..TABLE];
+        // SAFETY: every ARM processor of 64 bits has NEON; arrays and table are as long as
+        // what is read of them or stored to them.
+        unsafe {
+            let centre = vdupq_n_u16(table.centre);
+            let low = vabdq_u16(vld1q_u16(ranges.as_ptr()), centre);
+            let high = vabdq_u16(vld1q_u16(ranges.as_ptr().add(CELLS / 2)), centre);
+            let distance = vcombine_u8(vqmovn_u16(low), vqmovn_u16(high));
+            // What lies beyond the table is 0.
+            let found = if table.used <= PIECE {
+                vqtbl1q_u8(vld1q_u8(entries.as_ptr()), distance)
+            } else {
+                vqtbl4q_u8(vld1q_u8_x4(entries.as_ptr()), distance)
+            };
+            let (first, second) = votes.split_at_mut(CELLS / 2);
+            for (to, found) in [(first, vget_low_u8(found)), (second, vget_high_u8(found))] {
+                vst1q_u16(to.as_mut_ptr(), vaddw_u8(vld1q_u16(to.as_ptr()), found));
+            }
+        }
+    }
+}
+
+#[cfg(target_arch = "x86_64")]
+mod x86 {
+    use std::arch::x86_64::*;
+
+    use super::{CELLS, CellLanes, VoteTable};
+    use crate::tables::{PIECE, TABLE};
+
+    #[derive(Clone, Copy)]
+    pub(crate) struct Avx2(__m256i);
+
+    #[derive(Clone, Copy)]
+    pub(crate) struct Avx512(__m256i);
+
+    /// Loads votes to a register.
+    ///
+    /// # Safety
+    /// The processor must have AVX.
+    #[inline(always)]
+    unsafe fn load(numbers: &[u16; CELLS]) -> __m256i {
+        // SAFETY: as the caller says, and the array is as long as a register.
+        unsafe { _mm256_loadu_si256(numbers.as_ptr().cast()) }
+    }
+
+    /// Distances of ranges from a reading.
+    ///
+    /// # Safety
+    /// The processor must have AVX2.
+    #[inline(always)]
+    unsafe fn distances(ranges: &[u16; CELLS], centre: u16) -> __m256i {
+        // SAFETY: as the caller says.
+        unsafe {
+            let (ranges, centre) = (load(ranges), _mm256_set1_epi16(centre.cast_signed()));
+            let (beyond, before) = (
+                _mm256_subs_epu16(ranges, centre),
+                _mm256_subs_epu16(centre, ranges),
+            );
+            _mm256_or_si256(beyond, before)
+        }
+    }
+
+    #[expect(
+        clippy::undocumented_unsafe_blocks,
+        reason = "one argument holds for all: lanes of an instruction set are made only where the \
+                  processor has it, and arrays are as long as what is read of them or stored to them"
+    )]
+    impl CellLanes for Avx2 {
+        #[inline(always)]
+        fn load(votes: &[u16; CELLS]) -> Self {
+            unsafe { Avx2(load(votes)) }
+        }
+
+        #[inline(always)]
+        fn add(mut self, table: VoteTable<'_>, ranges: &[u16; CELLS]) -> Self {
+            let (pieces, _) = table.votes[..TABLE].as_chunks::<PIECE>();
+            unsafe {
+                let distance = distances(ranges, table.centre);
+                let distance = _mm256_min_epu16(distance, _mm256_set1_epi16(0xff));
+                // Where the highest bit is set, nothing is looked up: with this added, that
+                // is in the high byte of each number, and where an entry lies beyond 16.
+                let beyond = _mm256_set1_epi16((0x8080 - PIECE as u16).cast_signed());
+                for (number, piece) in pieces.iter().take(table.used.div_ceil(PIECE)).enumerate() {
+                    // A byte that goes below 0 lies beyond 16, too.
+                    let before = _mm256_set1_epi16((PIECE * number) as i16);
+                    let index = _mm256_adds_epu8(_mm256_sub_epi8(distance, before), beyond);
+                    let piece = _mm_loadu_si128(piece.as_ptr().cast());
+                    let piece = _mm256_broadcastsi128_si256(piece);
+                    self.0 = _mm256_add_epi16(self.0, _mm256_shuffle_epi8(piece, index));
+                }
+            }
+            self
+        }
+
+        #[inline(always)]
+        fn store(self, votes: &mut [u16; CELLS]) {
+            unsafe { _mm256_storeu_si256(votes.as_mut_ptr().cast(), self.0) };
+        }
+    }
+
+    #[expect(
+        clippy::undocumented_unsafe_blocks,
+        reason = "one argument holds for all: lanes of an instruction set are made only where the \
+                  processor has it, and arrays are as long as what is read of them or stored to them"
+    )]
+    impl CellLanes for Avx512 {
+        #[inline(always)]
+        fn load(votes: &[u16; CELLS]) -> Self {
+            unsafe { Avx512(load(votes)) }
+        }
+
+        #[inline(always)]
+        fn add(self, table: VoteTable<'_>, ranges: &[u16; CELLS]) -> Self {
+            let entries = &table.votes[..TABLE];
+            unsafe {
+                let distance = distances(ranges, table.centre);
+                let index = _mm256_min_epu16(distance, _mm256_set1_epi16(TABLE as i16 - 1));
+                // The index is the low byte of a number; the high one looks up
+                // entry 0, which the mask leaves out.
+                let (index, entries) = (
+                    _mm512_castsi256_si512(index),
+                    _mm512_loadu_si512(entries.as_ptr().cast()),
+                );
+                let found = _mm512_maskz_permutexvar_epi8(0x5555_5555, index, entries);
+                Avx512(_mm256_add_epi16(self.0, _mm512_castsi512_si256(found)))
+            }
+        }
+
+        #[inline(always)]
+        fn store(self, votes: &mut [u16; CELLS]) {
+            unsafe { _mm256_storeu_si256(votes.as_mut_ptr().cast(), self.0) };
+        }
+    }
+}
+
+#[cfg(target_arch = "x86_64")]
+pub(super) use x86::{Avx2, Avx512};
