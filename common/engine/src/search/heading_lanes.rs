@@ -118,7 +118,7 @@ fn look_up(votes: &BinVotes, first: &[u8; HEADINGS], last: &[u8; HEADINGS]) -> [
         bin.saturating_sub(votes.base).min(TABLE as u8 - 1)
     });
     let mut found = [0; HEADINGS];
-    // Comparing all with each entry takes no look-up, one by one.
+    // Comparing all with each entry is quicker than looking them up one by one.
     for (entry, &votes) in (0..).zip(&votes.table[..votes.used]) {
         for (found, &index) in found.iter_mut().zip(&index) {
             *found |= if index == entry { votes } else { 0 };

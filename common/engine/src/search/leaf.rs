@@ -1,8 +1,8 @@
 //! Counting votes, pose by pose, for the 16 cells of a small block at once.
 //!
 //! The ranges of all cells in a direction lie side by side, so that a beam's
-//! votes for the whole block are one table look-up for each cell. With AVX-512
-//! all look-ups are one instruction.
+//! votes for the whole block are one table look-up for each cell, all of them at once
+//! (`cell_lanes.rs`).
 
 use std::ops::Range;
 

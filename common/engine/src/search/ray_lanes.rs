@@ -90,19 +90,31 @@ impl RayLanes for Portable {
 
     #[inline(always)]
     fn word(rows: &BitRows<'_>) -> u64 {
-        word_of(rows)
+        let (mut start, mut bit) = (rows.start, rows.bit);
+        let mut word = 0;
+        for row in 0..ROWS {
+            let byte = (start + (bit >> 35)) as usize;
+            let pair = u16::from_le_bytes([rows.bytes[byte], rows.bytes[byte + 1]]);
+            word |= u64::from((pair >> (bit >> 32 & 7)) as u8) << (8 * row);
+            start += rows.stride;
+            bit += rows.slope;
+        }
+        word
     }
 
     #[inline(always)]
     fn note(&mut self, word: u64, position: i64) -> u8 {
-        let rays = turned(word).to_le_bytes();
-        let mut ended = 0;
-        for (i, (hit, ends)) in self.0.iter_mut().zip(rays).enumerate() {
-            let at = position as u16 + ends.trailing_zeros() as u16;
-            *hit = if ends == 0 { *hit } else { at.min(*hit) };
-            ended |= u8::from(ends != 0) << i;
+        /// The bits of the first ray.
+        const FIRST: u64 = 0x0101_0101_0101_0101;
+        for (i, hit) in self.0.iter_mut().enumerate() {
+            let ends = (word >> i) & FIRST;
+            let at = position + i64::from(ends.trailing_zeros() / 8);
+            let at = if ends == 0 { NO_RANGE } else { at as u16 };
+            *hit = at.min(*hit);
         }
-        ended
+        let folded = word | word >> 32;
+        let folded = folded | folded >> 16;
+        (folded | folded >> 8) as u8
     }
 
     #[inline(always)]
@@ -120,40 +132,11 @@ impl RayLanes for Portable {
     }
 }
 
-/// A word of rows, one by one.
-#[inline(always)]
-fn word_of(rows: &BitRows<'_>) -> u64 {
-    let (mut start, mut bit) = (rows.start, rows.bit);
-    let mut word = 0;
-    for row in 0..ROWS {
-        let byte = (start + (bit >> 35)) as usize;
-        let pair = u16::from_le_bytes([rows.bytes[byte], rows.bytes[byte + 1]]);
-        word |= u64::from((pair >> (bit >> 32 & 7)) as u8) << (8 * row);
-        start += rows.stride;
-        bit += rows.slope;
-    }
-    word
-}
-
-/// A word turned over: bit `i` of byte `j` becomes bit `j` of byte `i`.
-#[inline(always)]
-fn turned(word: u64) -> u64 {
-    /// Swaps the bits of a mask with those so far above them.
-    #[inline(always)]
-    fn swapped(word: u64, by: u32, mask: u64) -> u64 {
-        let differing = (word ^ word >> by) & mask;
-        word ^ differing ^ differing << by
-    }
-    let word = swapped(word, 7, 0x00aa_00aa_00aa_00aa);
-    let word = swapped(word, 14, 0x0000_cccc_0000_cccc);
-    swapped(word, 28, 0x0000_0000_f0f0_f0f0)
-}
-
 #[cfg(target_arch = "x86_64")]
 mod x86 {
     use std::arch::x86_64::*;
 
-    use super::{Across, BitRows, CELLS, NO_RANGE, RAYS, RayLanes, SIDE, word_of};
+    use super::{Across, BitRows, CELLS, NO_RANGE, Portable, RAYS, RayLanes, SIDE};
 
     /// A ray a lane of 64 bits, in two registers.
     #[derive(Clone, Copy)]
@@ -172,7 +155,7 @@ mod x86 {
 
         #[inline(always)]
         fn word(rows: &BitRows<'_>) -> u64 {
-            word_of(rows)
+            Portable::word(rows)
         }
 
         #[inline(always)]
