@@ -32,8 +32,8 @@ impl CellLanes for Portable {
     #[inline(always)]
     fn add(mut self, table: VoteTable<'_>, ranges: &[u16; CELLS]) -> Self {
         #[cfg(target_arch = "aarch64")]
-        if table.is_short() {
-            neon::add(table, ranges, &mut self.0);
+        if let Some(entries) = table.short() {
+            neon::add((table, entries), ranges, &mut self.0);
             return self;
         }
         table.add(ranges, &mut self.0);
@@ -51,25 +51,23 @@ mod neon {
     use std::arch::aarch64::*;
 
     use super::{CELLS, VoteTable};
-    use crate::tables::{PIECE, TABLE};
+    use crate::tables::{TABLE, look_up_neon};
 
-    /// Adds the votes for ranges; the table is short.
+    /// Adds the votes for ranges by a table and its entries.
     #[inline(always)]
-    pub(super) fn add(table: VoteTable<'_>, ranges: &[u16; CELLS], votes: &mut [u16; CELLS]) {
-        let entries = &table.votes[..TABLE];
-        // SAFETY: every ARM processor of 64 bits has NEON; arrays and table are as long as
-        // what is read of them or stored to them.
+    pub(super) fn add(
+        (table, entries): (VoteTable<'_>, &[u8; TABLE]),
+        ranges: &[u16; CELLS],
+        votes: &mut [u16; CELLS],
+    ) {
+        // SAFETY: every ARM processor of 64 bits has NEON; arrays are as long as what is
+        // read of them or stored to them.
         unsafe {
             let centre = vdupq_n_u16(table.centre);
             let low = vabdq_u16(vld1q_u16(ranges.as_ptr()), centre);
             let high = vabdq_u16(vld1q_u16(ranges.as_ptr().add(CELLS / 2)), centre);
             let distance = vcombine_u8(vqmovn_u16(low), vqmovn_u16(high));
-            // What lies beyond the table is 0.
-            let found = if table.used <= PIECE {
-                vqtbl1q_u8(vld1q_u8(entries.as_ptr()), distance)
-            } else {
-                vqtbl4q_u8(vld1q_u8_x4(entries.as_ptr()), distance)
-            };
+            let found = look_up_neon(entries, table.used, distance);
             let (first, second) = votes.split_at_mut(CELLS / 2);
             for (to, found) in [(first, vget_low_u8(found)), (second, vget_high_u8(found))] {
                 vst1q_u16(to.as_mut_ptr(), vaddw_u8(vld1q_u16(to.as_ptr()), found));
@@ -83,7 +81,10 @@ mod x86 {
     use std::arch::x86_64::*;
 
     use super::{CELLS, CellLanes, VoteTable};
-    use crate::tables::{PIECE, TABLE};
+    use crate::tables::{TABLE, look_up_avx2};
+
+    /// Why tables are short: with these instruction sets no others are looked up here.
+    const SHORT: &str = "a table that is short";
 
     #[derive(Clone, Copy)]
     pub(crate) struct Avx2(__m256i);
@@ -130,24 +131,16 @@ mod x86 {
         }
 
         #[inline(always)]
-        fn add(mut self, table: VoteTable<'_>, ranges: &[u16; CELLS]) -> Self {
-            let (pieces, _) = table.votes[..TABLE].as_chunks::<PIECE>();
+        fn add(self, table: VoteTable<'_>, ranges: &[u16; CELLS]) -> Self {
+            let entries = table.short().expect(SHORT);
             unsafe {
                 let distance = distances(ranges, table.centre);
                 let distance = _mm256_min_epu16(distance, _mm256_set1_epi16(0xff));
-                // Where the highest bit is set, nothing is looked up: with this added, that
-                // is in the high byte of each number, and where an entry lies beyond 16.
-                let beyond = _mm256_set1_epi16((0x8080 - PIECE as u16).cast_signed());
-                for (number, piece) in pieces.iter().take(table.used.div_ceil(PIECE)).enumerate() {
-                    // A byte that goes below 0 lies beyond 16, too.
-                    let before = _mm256_set1_epi16((PIECE * number) as i16);
-                    let index = _mm256_adds_epu8(_mm256_sub_epi8(distance, before), beyond);
-                    let piece = _mm_loadu_si128(piece.as_ptr().cast());
-                    let piece = _mm256_broadcastsi128_si256(piece);
-                    self.0 = _mm256_add_epi16(self.0, _mm256_shuffle_epi8(piece, index));
-                }
+                // The high byte of each number lies beyond all entries.
+                let high = _mm256_set1_epi16(0xff00_u16.cast_signed());
+                let found = look_up_avx2(entries, table.used, _mm256_or_si256(distance, high));
+                Avx2(_mm256_add_epi16(self.0, found))
             }
-            self
         }
 
         #[inline(always)]
@@ -169,7 +162,7 @@ mod x86 {
 
         #[inline(always)]
         fn add(self, table: VoteTable<'_>, ranges: &[u16; CELLS]) -> Self {
-            let entries = &table.votes[..TABLE];
+            let entries = table.short().expect(SHORT);
             unsafe {
                 let distance = distances(ranges, table.centre);
                 let index = _mm256_min_epu16(distance, _mm256_set1_epi16(TABLE as i16 - 1));

@@ -3,25 +3,20 @@
 #[cfg(target_arch = "x86_64")]
 mod x86;
 
-use super::intervals;
+use super::intervals::{self, IntervalRows};
+use crate::tables::TABLE;
 #[cfg(target_arch = "x86_64")]
 pub(super) use x86::{Avx2, Avx512};
 
 /// Headings that are bounded at a time.
 pub(crate) const HEADINGS: usize = intervals::READ;
 
-/// Entries of a table; the first and the last stand for all bins beyond.
-pub(super) const TABLE: usize = 64;
-
-/// Entries that any instruction set looks up at once.
-#[cfg(any(target_arch = "x86_64", target_arch = "aarch64"))]
-const PIECE: usize = 16;
-
 /// The most votes of a beam for a range in a bin; they never rise away from one.
 #[derive(Debug, Clone)]
 #[repr(align(64))]
 pub(super) struct BinVotes {
-    /// Those in bins `base`, `base + 1`, …
+    /// Those in bins `base`, `base + 1`, …; the first and the last stand for all bins
+    /// beyond.
     pub table: [u8; TABLE],
     /// Behind this entry there are no others than 0.
     pub used: usize,
@@ -29,9 +24,6 @@ pub(super) struct BinVotes {
     pub centre: u8,
     pub base: u8,
 }
-
-/// First and last bin of a near and of a far interval at each heading.
-pub(super) type IntervalRows<'a> = [&'a [u8; HEADINGS]; 4];
 
 /// A number of votes for each heading that fits a byte.
 ///
@@ -110,17 +102,22 @@ impl HeadingLanes for Portable {
 }
 
 /// The votes in the bin of each interval that is nearest to the centre.
-#[cfg(not(target_arch = "aarch64"))]
 #[inline(always)]
 fn look_up(votes: &BinVotes, first: &[u8; HEADINGS], last: &[u8; HEADINGS]) -> [u8; HEADINGS] {
-    let index: [u8; HEADINGS] = std::array::from_fn(|i| {
+    let index = std::array::from_fn(|i| {
         let bin = votes.centre.min(last[i]).max(first[i]);
         bin.saturating_sub(votes.base).min(TABLE as u8 - 1)
     });
+    entries(votes, &index)
+}
+
+#[cfg(not(target_arch = "aarch64"))]
+#[inline(always)]
+fn entries(votes: &BinVotes, index: &[u8; HEADINGS]) -> [u8; HEADINGS] {
     let mut found = [0; HEADINGS];
     // Comparing all with each entry is quicker than looking them up one by one.
     for (entry, &votes) in (0..).zip(&votes.table[..votes.used]) {
-        for (found, &index) in found.iter_mut().zip(&index) {
+        for (found, &index) in found.iter_mut().zip(index) {
             *found |= if index == entry { votes } else { 0 };
         }
     }
@@ -129,28 +126,15 @@ fn look_up(votes: &BinVotes, first: &[u8; HEADINGS], last: &[u8; HEADINGS]) -> [
 
 #[cfg(target_arch = "aarch64")]
 #[inline(always)]
-fn look_up(votes: &BinVotes, first: &[u8; HEADINGS], last: &[u8; HEADINGS]) -> [u8; HEADINGS] {
-    use std::arch::aarch64::*;
+fn entries(votes: &BinVotes, index: &[u8; HEADINGS]) -> [u8; HEADINGS] {
+    use std::arch::aarch64::{vld1q_u8, vst1q_u8};
     let mut found = [0; HEADINGS];
-    let lanes = first
-        .as_chunks::<PIECE>()
-        .0
-        .iter()
-        .zip(last.as_chunks::<PIECE>().0);
-    for ((first, last), found) in lanes.zip(found.as_chunks_mut::<PIECE>().0) {
-        // SAFETY: every ARM processor of 64 bits has NEON; arrays are as long as what is
-        // read of them or stored to them.
+    for (found, index) in found.chunks_exact_mut(16).zip(index.chunks_exact(16)) {
+        // SAFETY: every ARM processor of 64 bits has NEON, and a chunk is as long as
+        // what is read of it or stored to it.
         unsafe {
-            let nearest = vminq_u8(vdupq_n_u8(votes.centre), vld1q_u8(last.as_ptr()));
-            let nearest = vmaxq_u8(nearest, vld1q_u8(first.as_ptr()));
-            let index = vqsubq_u8(nearest, vdupq_n_u8(votes.base));
-            // What lies beyond the table is 0.
-            let looked_up = if votes.used <= PIECE {
-                vqtbl1q_u8(vld1q_u8(votes.table.as_ptr()), index)
-            } else {
-                let index = vminq_u8(index, vdupq_n_u8(TABLE as u8 - 1));
-                vqtbl4q_u8(vld1q_u8_x4(votes.table.as_ptr()), index)
-            };
+            let index = vld1q_u8(index.as_ptr());
+            let looked_up = crate::tables::look_up_neon(&votes.table, votes.used, index);
             vst1q_u8(found.as_mut_ptr(), looked_up);
         }
     }

@@ -39,6 +39,20 @@ pub(crate) struct Window {
     pub rests: Rests,
 }
 
+/// What is to be bounded, and when it may be given up.
+struct Sought<'a> {
+    order: &'a Order,
+    block: &'a BlockIntervals,
+    /// The first of the headings, and those that matter from there on.
+    heading: usize,
+    among: u64,
+    /// Votes that any of them must reach.
+    least: u16,
+    /// What the beams give at most that are missing when so many sectors or groups are
+    /// complete.
+    rests: &'a [u16],
+}
+
 impl IntervalProgram {
     /// Bounds the votes of a block at 64 headings from `heading` on, of which
     /// `among` matter. Whether any of those may have `least` votes; if not, the
@@ -51,8 +65,15 @@ impl IntervalProgram {
         least: u16,
         bounds: &mut IntervalBounds,
     ) -> bool {
-        let at = (block, heading, among);
-        self.run(&self.by_sector, at, least, &self.possible_from, bounds)
+        let sought = Sought {
+            order: &self.by_sector,
+            block,
+            heading,
+            among,
+            least,
+            rests: &self.possible_from,
+        };
+        self.run(&sought, bounds)
     }
 
     /// The same at the headings of a window that is known of a block around it, but
@@ -65,86 +86,56 @@ impl IntervalProgram {
         least: u16,
         bounds: &mut IntervalBounds,
     ) -> bool {
-        let at = (block, usize::from(window.first), window.among);
-        self.run(&self.by_group, at, least, &window.rests, bounds)
+        let sought = Sought {
+            order: &self.by_group,
+            block,
+            heading: usize::from(window.first),
+            among: window.among,
+            least,
+            rests: &window.rests,
+        };
+        self.run(&sought, bounds)
     }
 
-    /// `rests` has what the beams give at most that are missing when so many
-    /// sectors or groups are complete.
-    fn run(
-        &self,
-        order: &Order,
-        at: (&BlockIntervals, usize, u64),
-        least: u16,
-        rests: &[u16],
-        bounds: &mut IntervalBounds,
-    ) -> bool {
+    fn run(&self, sought: &Sought<'_>, bounds: &mut IntervalBounds) -> bool {
         match self.instruction_set {
             // SAFETY: the processor has the instruction set, or it would not be chosen.
             #[cfg(target_arch = "x86_64")]
-            InstructionSet::Avx512 => unsafe { self.run_avx512(order, at, least, rests, bounds) },
+            InstructionSet::Avx512 => unsafe { self.run_avx512(sought, bounds) },
             // SAFETY: as above.
             #[cfg(target_arch = "x86_64")]
-            InstructionSet::Avx2 => unsafe { self.run_avx2(order, at, least, rests, bounds) },
-            _ => self.run_with::<Portable>(order, at, least, rests, bounds),
+            InstructionSet::Avx2 => unsafe { self.run_avx2(sought, bounds) },
+            _ => self.run_with::<Portable>(sought, bounds),
         }
     }
 
     #[cfg(target_arch = "x86_64")]
     #[target_feature(enable = "avx512f,avx512bw,avx512vl,avx512vbmi")]
-    fn run_avx512(
-        &self,
-        order: &Order,
-        at: (&BlockIntervals, usize, u64),
-        least: u16,
-        rests: &[u16],
-        bounds: &mut IntervalBounds,
-    ) -> bool {
-        self.run_with::<super::heading_lanes::Avx512>(order, at, least, rests, bounds)
+    fn run_avx512(&self, sought: &Sought<'_>, bounds: &mut IntervalBounds) -> bool {
+        self.run_with::<super::heading_lanes::Avx512>(sought, bounds)
     }
 
     #[cfg(target_arch = "x86_64")]
     #[target_feature(enable = "avx2")]
-    fn run_avx2(
-        &self,
-        order: &Order,
-        at: (&BlockIntervals, usize, u64),
-        least: u16,
-        rests: &[u16],
-        bounds: &mut IntervalBounds,
-    ) -> bool {
-        self.run_with::<super::heading_lanes::Avx2>(order, at, least, rests, bounds)
+    fn run_avx2(&self, sought: &Sought<'_>, bounds: &mut IntervalBounds) -> bool {
+        self.run_with::<super::heading_lanes::Avx2>(sought, bounds)
     }
 
     #[inline(always)]
-    fn run_with<L: HeadingLanes>(
-        &self,
-        order: &Order,
-        (block, heading, among): (&BlockIntervals, usize, u64),
-        least: u16,
-        rests: &[u16],
-        bounds: &mut IntervalBounds,
-    ) -> bool {
-        let [near_first, near_last, far_first, far_last] = &block.rows;
+    fn run_with<L: HeadingLanes>(&self, sought: &Sought<'_>, bounds: &mut IntervalBounds) -> bool {
         let mut sums = L::no_sums();
         let mut alive = false;
         bounds.sectors.clear();
-        for (beams, complete) in order.pieces() {
+        for (beams, complete) in sought.order.pieces() {
             let mut votes = L::none();
             for beam in beams {
-                let d = self.direction(beam, heading);
-                let rows = [
-                    read(near_first, d),
-                    read(near_last, d),
-                    read(far_first, d),
-                    read(far_last, d),
-                ];
-                votes = votes.add(&beam.votes, rows);
+                let direction = self.direction(beam, sought.heading);
+                votes = votes.add(&beam.votes, sought.block.from(direction));
             }
             bounds.sectors.push(votes.to_bytes());
             sums = votes.add_to(sums);
-            let missing = least.saturating_sub(rests[complete]);
-            alive = L::at_least(sums, missing) & among != 0;
+            let missing = sought.least.saturating_sub(sought.rests[complete]);
+            alive = L::at_least(sums, missing) & sought.among != 0;
             if !alive {
                 break;
             }
@@ -163,14 +154,6 @@ impl IntervalProgram {
             direction - self.directions
         }
     }
-}
-
-/// What a row has from a direction on.
-#[inline(always)]
-fn read(row: &[u8], direction: usize) -> &[u8; HEADINGS] {
-    row[direction..]
-        .first_chunk()
-        .expect("a row goes on for as many directions as are read")
 }
 
 #[cfg(test)]

@@ -1,11 +1,12 @@
 //! A scan program laid out for bounds from intervals of ranges.
 
-use super::heading_lanes::{BinVotes, TABLE};
+use super::heading_lanes::BinVotes;
 use super::sectors;
 use super::steps::BinSteps;
 use crate::directions::Directions;
 use crate::instruction_set::InstructionSet;
 use crate::program::ScanProgram;
+use crate::tables::TABLE;
 
 /// A scan program laid out for bounds from intervals; made anew for each scan.
 #[derive(Debug, Clone, Default)]

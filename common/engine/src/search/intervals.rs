@@ -54,6 +54,19 @@ pub(crate) struct BlockIntervals {
     pub rows: [Vec<u8>; 4],
 }
 
+/// [`READ`] directions of each of the four rows.
+pub(crate) type IntervalRows<'a> = [&'a [u8; READ]; 4];
+
+impl BlockIntervals {
+    /// The rows from a direction on.
+    #[inline(always)]
+    pub(crate) fn from(&self, direction: usize) -> IntervalRows<'_> {
+        const ENOUGH: &str = "a row goes on for as many directions as are read";
+        let rows = self.rows.each_ref();
+        rows.map(|row| row[direction..].first_chunk().expect(ENOUGH))
+    }
+}
+
 impl RangeIntervals {
     /// Those of all blocks of a grid.
     pub(crate) fn new(grid: &Grid, directions: &Directions, bins: &Bins) -> Self {

@@ -303,19 +303,7 @@ mod x86 {
 
         #[inline(always)]
         fn ranges(hits: &[u16; RAYS], first: &[u16; SIDE], across: &Across) -> [u16; CELLS] {
-            let mut ranges = [0; CELLS];
-            unsafe {
-                let column = _mm256_loadu_si256(across.column.as_ptr().cast());
-                let minor = _mm256_loadu_si256(across.minor.as_ptr().cast());
-                let hits = _mm256_castsi128_si256(_mm_loadu_si128(hits.as_ptr().cast()));
-                let first = _mm256_castsi128_si256(_mm_loadl_epi64(first.as_ptr().cast()));
-                let ray = _mm256_add_epi16(_mm256_permutexvar_epi16(column, first), minor);
-                let hit = _mm256_permutexvar_epi16(ray, hits);
-                let ends = _mm256_cmpneq_epi16_mask(hit, _mm256_set1_epi16(NO_RANGE as i16));
-                let range = _mm256_mask_sub_epi16(hit, ends, hit, column);
-                _mm256_storeu_si256(ranges.as_mut_ptr().cast(), range);
-            }
-            ranges
+            Avx2::ranges(hits, first, across)
         }
     }
 }

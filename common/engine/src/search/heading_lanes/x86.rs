@@ -2,7 +2,8 @@
 
 use std::arch::x86_64::*;
 
-use super::{BinVotes, HEADINGS, HeadingLanes, IntervalRows, PIECE, TABLE};
+use super::{BinVotes, HEADINGS, HeadingLanes, IntervalRows, TABLE};
+use crate::tables::look_up_avx2;
 
 /// Two registers of 32 headings.
 #[derive(Clone, Copy)]
@@ -21,42 +22,20 @@ unsafe fn look_up(votes: &BinVotes, first: &[u8; HALF], last: &[u8; HALF]) -> __
     unsafe {
         let first = _mm256_loadu_si256(first.as_ptr().cast());
         let last = _mm256_loadu_si256(last.as_ptr().cast());
-        // Where the highest bit is set, nothing is looked up: with this added, that
-        // is where an entry lies beyond 16.
-        let beyond = _mm256_set1_epi8((0x80 - PIECE) as i8);
         let bin = _mm256_min_epu8(_mm256_set1_epi8(votes.centre.cast_signed()), last);
         let bin = _mm256_max_epu8(bin, first);
-        let index = _mm256_subs_epu8(bin, _mm256_set1_epi8(votes.base.cast_signed()));
-        let (pieces, _) = votes.table.as_chunks::<PIECE>();
-        let mut found = shuffle(&pieces[0], _mm256_adds_epu8(index, beyond));
-        if votes.used > PIECE {
-            let index = _mm256_min_epu8(index, _mm256_set1_epi8(TABLE as i8 - 1));
-            for (number, piece) in pieces.iter().enumerate().skip(1) {
-                let before = _mm256_set1_epi8((PIECE * number) as i8);
-                let index = _mm256_adds_epu8(_mm256_sub_epi8(index, before), beyond);
-                found = _mm256_or_si256(found, shuffle(piece, index));
-            }
+        let mut index = _mm256_subs_epu8(bin, _mm256_set1_epi8(votes.base.cast_signed()));
+        // Only then is the last entry, which stands for those beyond, anything but 0.
+        if votes.used == TABLE {
+            index = _mm256_min_epu8(index, _mm256_set1_epi8(TABLE as i8 - 1));
         }
-        found
+        look_up_avx2(&votes.table, votes.used, index)
     }
 }
 
 #[inline(always)]
 fn half_of(row: &[u8; HEADINGS], half: usize) -> &[u8; HALF] {
     &row.as_chunks().0[half]
-}
-
-/// Looks up numbers of up to 16 in a piece of a table.
-///
-/// # Safety
-/// The processor must have AVX2.
-#[inline(always)]
-unsafe fn shuffle(piece: &[u8; PIECE], index: __m256i) -> __m256i {
-    // SAFETY: as the caller says, and the piece is as long as what is read.
-    unsafe {
-        let piece = _mm_loadu_si128(piece.as_ptr().cast());
-        _mm256_shuffle_epi8(_mm256_broadcastsi128_si256(piece), index)
-    }
 }
 
 #[expect(

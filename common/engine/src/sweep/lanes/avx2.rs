@@ -5,6 +5,7 @@ use std::arch::x86_64::*;
 
 use super::{Lanes, Lookup};
 use crate::program::Taper;
+use crate::tables::BEYOND;
 
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct Avx2(__m256i);
@@ -22,10 +23,6 @@ const SHORT: u8 = 0;
 const CLAMPED: u8 = 1;
 /// By the distance from the reading, in parts of 16.
 const BY_DISTANCE: u8 = 2;
-
-/// Added to an index, it sets the highest bit unless the index is below 16:
-/// then nothing is looked up.
-const BEYOND: i8 = 0x70;
 
 impl Lanes for Avx2 {
     const WIDTH: usize = 32;
