@@ -37,11 +37,12 @@ pub(super) struct IntervalBeam {
 }
 
 impl IntervalProgram {
-    /// Lays out a program; `shifts` tell the groups of beams in their order, see
+    /// Lays out a program whose sectors are in this order, see [`sectors::order`];
+    /// `shifts` tell the groups of beams in theirs, see
     /// [`SetProgram::shifts`](super::set_program::SetProgram::shifts).
     pub(crate) fn make(
         &mut self,
-        program: &ScanProgram,
+        (program, order): (&ScanProgram, &[usize]),
         directions: &Directions,
         steps: &BinSteps,
         shifts: impl Iterator<Item = u32>,
@@ -53,7 +54,7 @@ impl IntervalProgram {
         self.possible_from.clear();
         self.possible_from.resize(sectors + 1, 0);
         self.by_sector.clear();
-        for (place, beam) in sectors::order(program.beams()).enumerate() {
+        for (place, &beam) in order.iter().enumerate() {
             self.possible_from[place / sectors::BEAMS] += program.peak(beam);
             let beam = IntervalBeam::new(program, beam, directions, steps);
             self.by_sector.beams.push(beam);

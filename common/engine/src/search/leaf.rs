@@ -27,15 +27,16 @@ pub(crate) struct LeafProgram {
 }
 
 impl LeafProgram {
+    /// Lays out a program whose sectors are in this order, see [`sectors::order`].
     pub(crate) fn make(
         &mut self,
-        program: &ScanProgram,
+        (program, order): (&ScanProgram, &[usize]),
         directions: &Directions,
         instruction_set: InstructionSet,
     ) {
         self.instruction_set = instruction_set;
         self.order.clear();
-        self.order.extend(sectors::order(program.beams()));
+        self.order.extend(order);
         let bearings = self.order.iter().map(|&beam| program.bearing(beam));
         self.bearings.clear();
         self.bearings.extend(bearings);
@@ -166,9 +167,11 @@ mod tests {
             let view = View { grid: &grid, obstacles: &obstacles, steps: &steps, directions };
             let block = seed[0] % (intervals.columns * intervals.rows);
             let heading = seed[1] % directions.count();
+            let mut order = Vec::new();
+            sectors::order(&program, &mut order);
             for instruction_set in InstructionSet::available() {
                 let mut leaf = LeafProgram::default();
-                leaf.make(&program, directions, instruction_set);
+                leaf.make((&program, &order), directions, instruction_set);
                 let mut outlook = Outlook::default();
                 outlook.prepare(&grid, directions);
                 outlook.enter((&grid, &Limits::none(grid.width())), &intervals, block);

@@ -1,10 +1,13 @@
 //! The order in which a block's beams are counted.
 //!
 //! Neighbouring beams need neighbouring directions, so beams are counted in
-//! sectors of neighbours. Sectors far from each other come first: they tell
+//! sectors of neighbours. Those that can give most votes come first: they tell
 //! most about a pose, and counting can stop early.
 
+use std::cmp::Reverse;
 use std::ops::Range;
+
+use crate::program::ScanProgram;
 
 /// Beams of a sector: as many votes of at most 16 as fit into a byte.
 pub(crate) const BEAMS: usize = 15;
@@ -19,40 +22,68 @@ pub(crate) fn beams(sector: usize, beams: usize) -> Range<usize> {
     sector * BEAMS..((sector + 1) * BEAMS).min(beams)
 }
 
-/// The beams in order. Only the last sector may have less than [`BEAMS`].
-pub(crate) fn order(beams: usize) -> impl Iterator<Item = usize> {
-    let full = beams / BEAMS;
-    // Numbers in the order of their bits from the last to the first.
-    let digits = full.next_power_of_two().ilog2();
-    let reversed = move |place: usize| (0..digits).fold(0, |all, i| 2 * all + (place >> i & 1));
-    let sectors = (0..1 << digits).map(reversed);
-    let sectors = sectors.filter(move |&sector| sector < full);
-    let members = move |sector: usize| self::beams(sector, beams);
-    sectors.chain([full]).flat_map(members)
+/// Puts the beams of a program in order. Only the last sector may have less than
+/// [`BEAMS`].
+pub(crate) fn order(program: &ScanProgram, order: &mut Vec<usize>) {
+    order.clear();
+    order.extend(0..program.beams());
+    let (full, _) = order.as_chunks_mut::<BEAMS>();
+    full.sort_unstable_by_key(|sector| {
+        let votes: u16 = sector.iter().map(|&beam| program.peak(beam)).sum();
+        (Reverse(votes), sector[0])
+    });
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::beams::BeamConfig;
+    use crate::program::VoteConfig;
+    use crate::scan::Scan;
+    use crate::space::Space;
 
     #[test]
-    fn each_beam_comes_once_in_sectors_of_neighbours() {
-        for count in [0, 1, 14, 15, 16, 180, 181, 400] {
-            let order: Vec<usize> = order(count).collect();
+    fn each_beam_comes_once_in_sectors_of_neighbours_the_weightiest_first() {
+        for count in [1, 14, 15, 16, 180, 181, 400] {
+            // Near readings on the left, far ones, which weigh more, on the right.
+            let ranges: Vec<f32> = (0..count).map(|i| 1.0 + 0.03 * i as f32).collect();
+            let scan = Scan {
+                angle_min: -3.0,
+                angle_increment: 0.015,
+                range_min_m: 0.0,
+                range_max_m: 30.0,
+                ranges: &ranges,
+            };
+            let config = VoteConfig {
+                beams: BeamConfig {
+                    max_beams: 1000,
+                    ..BeamConfig::default()
+                },
+                ..VoteConfig::default()
+            };
+            let space = Space::new(360, 0.05, 1000, 1000).expect("a small map");
+            let program = ScanProgram::new(&scan, 0.0, &space, &config).expect("a sound scan");
+            let mut order = vec![7];
+            super::order(&program, &mut order);
             let mut sorted = order.clone();
             sorted.sort_unstable();
-            assert_eq!(sorted, (0..count).collect::<Vec<_>>());
-            for sector in 0..self::count(count) {
-                let members = &order[beams(sector, count)];
+            assert_eq!(sorted, (0..program.beams()).collect::<Vec<_>>());
+            let sectors = (0..self::count(program.beams()))
+                .map(|sector| &order[beams(sector, program.beams())]);
+            let (full, last): (Vec<_>, Vec<_>) = sectors.partition(|sector| sector.len() == BEAMS);
+            for sector in full.iter().chain(&last) {
                 assert!(
-                    members.windows(2).all(|pair| pair[1] == pair[0] + 1),
-                    "{members:?}"
+                    sector.windows(2).all(|pair| pair[1] == pair[0] + 1),
+                    "{sector:?}"
                 );
             }
+            let votes =
+                |sector: &[usize]| sector.iter().map(|&beam| program.peak(beam)).sum::<u16>();
+            assert!(full.is_sorted_by(|a, b| votes(a) >= votes(b)));
+            assert!(
+                count < 180 || full[0][0] > full[full.len() - 1][0],
+                "{full:?}"
+            );
         }
-        assert_eq!(
-            order(60).take(31).collect::<Vec<_>>(),
-            (0..15).chain(30..45).chain([15]).collect::<Vec<_>>()
-        );
     }
 }

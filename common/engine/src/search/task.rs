@@ -8,6 +8,7 @@ use super::index::SearchIndex;
 use super::interval_program::IntervalProgram;
 use super::leaf::LeafProgram;
 use super::outlook::View;
+use super::sectors;
 use super::set_program::SetProgram;
 use crate::grid::Grid;
 use crate::instruction_set::InstructionSet;
@@ -49,6 +50,8 @@ pub(super) struct Programs {
     pub fine: SetProgram,
     pub interval: IntervalProgram,
     pub leaf: LeafProgram,
+    /// The beams, sector by sector.
+    order: Vec<usize>,
     pub beams: usize,
     pub instruction_set: InstructionSet,
 }
@@ -68,10 +71,11 @@ impl Programs {
         ] {
             set_program.make(program, directions, steps, sets.shift, instruction_set);
         }
-        let shifts = self.fine.shifts();
+        sectors::order(program, &mut self.order);
+        let (shifts, ordered) = (self.fine.shifts(), (program, &self.order[..]));
         self.interval
-            .make(program, directions, steps, shifts, instruction_set);
-        self.leaf.make(program, directions, instruction_set);
+            .make(ordered, directions, steps, shifts, instruction_set);
+        self.leaf.make(ordered, directions, instruction_set);
         self.beams = program.beams();
         self.instruction_set = instruction_set;
     }
