@@ -177,7 +177,7 @@ impl<'a> Alternatives<'a> {
         let greatest = u32::from(bounds.greatest());
         let least = (greatest * LEAST_THIRTY_SECONDTHS / 32) as u16;
         masks.clear();
-        masks.extend(bounds.at_least(least.max(1), bounds));
+        masks.extend(bounds.at_least(least.max(1)));
         let sides = (index.intervals.columns, index.intervals.rows);
         let mut best = None;
         let smalls = quarters(block, index.fine.columns, sides);

@@ -83,16 +83,27 @@ pub(crate) fn take_window(row: &mut Row) -> Option<(usize, u64)> {
     Some((64 * word + shift as usize, window))
 }
 
-/// The row whose bits from a place on are those of a window, see [`take_window`].
-pub(crate) fn row_of((first, window): (usize, u64)) -> Row {
+/// The bits of a row from a place on, as many as a window has; none behind its end.
+#[inline(always)]
+pub(crate) fn window_of(row: &Row, first: usize) -> u64 {
     let (word, shift) = (first / 64, first % 64);
-    let mut row = EMPTY;
-    row[word] = window << shift;
-    if let Some(next) = row.get_mut(word + 1) {
-        // Twice, as nothing may be shifted by 64.
-        *next = window >> 1 >> (63 - shift);
+    let next = row.get(word + 1).copied().unwrap_or(0);
+    // Twice, as nothing may be shifted by 64.
+    row[word] >> shift | next << 1 << (63 - shift)
+}
+
+/// The greatest of the numbers that a window selects, see [`take_window`].
+#[inline(always)]
+pub(crate) fn greatest_in(numbers: &[Row], (first, window): (usize, u64)) -> u16 {
+    let (mut candidates, mut value) = (window, 0);
+    for (plane, bits) in numbers.iter().enumerate().rev() {
+        let higher = candidates & window_of(bits, first);
+        if higher != 0 {
+            candidates = higher;
+            value |= 1 << plane;
+        }
     }
-    row
+    value
 }
 
 #[cfg(test)]
@@ -123,14 +134,17 @@ mod tests {
         }
 
         #[test]
-        fn windows_hold_each_bit_once(row in any::<[u64; 8]>(), sparse in any::<[u64; 8]>()) {
+        fn windows_hold_each_bit_once(
+            row in any::<[u64; 8]>(), sparse in any::<[u64; 8]>(), numbers in any::<[Row; 5]>(),
+        ) {
             let row: Row = std::array::from_fn(|i| row[i] & sparse[i]);
             let (mut rest, mut found) = (row, EMPTY);
             let mut before = rest;
             while let Some((first, window)) = take_window(&mut rest) {
                 prop_assert_eq!(window & 1, 1);
                 let taken: Row = std::array::from_fn(|i| before[i] & !rest[i]);
-                prop_assert_eq!(row_of((first, window)), taken);
+                prop_assert_eq!(window_of(&taken, first), window);
+                prop_assert_eq!(greatest_in(&numbers, (first, window)), greatest(&numbers, taken));
                 before = rest;
                 for i in ones(window).map(|i| first + i) {
                     prop_assert_eq!(found[i / 64] >> (i % 64) & 1, 0);

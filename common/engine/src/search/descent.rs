@@ -6,7 +6,7 @@ use std::sync::atomic::Ordering;
 
 use messages::Vote;
 
-use super::bits::{self, Row};
+use super::bits;
 use super::budget::{Budget, LEVELS, Tally};
 use super::heading_lanes::HEADINGS;
 use super::index::SearchIndex;
@@ -34,8 +34,6 @@ pub(super) struct Room {
     interval_bounds: IntervalBounds,
     outlook: Outlook,
     queue: Queue,
-    /// Headings at which a block of 8 × 8 cells may matter, a row a chunk.
-    masks: Vec<Row>,
     /// Headings at which blocks of 8 × 8 cells may matter.
     windows: Vec<Window>,
     /// The bounds of these blocks: of all, once the search is done, whose bound
@@ -234,29 +232,23 @@ impl<'a> Descent<'a> {
         }
     }
 
-    /// Queues a block of 8 × 8 cells at the headings that the block around it
-    /// leaves.
+    /// Queues a block of 8 × 8 cells that was just bounded, at the headings at which it
+    /// may matter.
     fn queue_fine(&mut self, index: usize, place: usize) {
-        let floor = self.room.collector.floor();
         let program = &self.task.programs.fine;
         let Room {
-            masks,
             windows,
-            coarse_bounds,
             fine_bounds,
             ..
         } = &mut *self.room;
-        let (around, bounds) = (&coarse_bounds.blocks[0], &fine_bounds.blocks[place]);
-        masks.clear();
-        masks.extend(bounds.at_least(floor, around));
+        let bounds = &fine_bounds.blocks[place];
         let start = windows.len();
-        for (chunk, mask) in masks.iter_mut().enumerate() {
-            while let Some((first, among)) = bits::take_window(mask) {
-                let row = bits::row_of((first, among));
+        for (chunk, mut left) in bounds.reach().enumerate() {
+            while let Some((first, among)) = bits::take_window(&mut left) {
                 windows.push(Window {
                     first: (chunk * CHUNK + first) as u16,
                     among,
-                    rests: program.rests(bounds, chunk, row),
+                    rests: program.rests(bounds, chunk, (first, among)),
                 });
             }
         }

@@ -22,6 +22,8 @@ pub(super) struct Chunk {
     pub after: [Planes; GROUPS - 1],
     /// Which headings matter.
     pub valid: Row,
+    /// Those of them that may have as many votes as was asked for.
+    pub reach: Row,
 }
 
 impl HeadingBounds {
@@ -35,6 +37,7 @@ impl HeadingBounds {
             sums: [EMPTY; bits::PLANES],
             after: [[EMPTY; bits::PLANES]; GROUPS - 1],
             valid,
+            reach: EMPTY,
         });
         self.chunks.extend(chunks);
     }
@@ -44,20 +47,18 @@ impl HeadingBounds {
         self.unit * self.greatest
     }
 
-    /// For each chunk, the headings at which this block and the one around it
-    /// have a bound of at least `least`.
-    pub(crate) fn at_least(&self, least: u16, around: &Self) -> impl Iterator<Item = Row> {
-        let (here_least, around_least) = (least.div_ceil(self.unit), least.div_ceil(around.unit));
-        let chunks = self.chunks.iter().zip(&around.chunks);
-        chunks.map(move |(here, around)| {
-            let at_least = |chunk: &Chunk, least, among| {
-                bits::at_least(bits::PLANES, |plane| chunk.sums[plane], least, among)
-            };
-            at_least(
-                here,
-                here_least,
-                at_least(around, around_least, around.valid),
-            )
-        })
+    /// For each chunk, the headings at which a block that was bounded within another
+    /// one reaches what was asked for.
+    pub(crate) fn reach(&self) -> impl Iterator<Item = Row> {
+        self.chunks.iter().map(|chunk| chunk.reach)
+    }
+
+    /// For each chunk, the headings at which the bound is at least `least`.
+    pub(crate) fn at_least(&self, least: u16) -> impl Iterator<Item = Row> {
+        let least = least.div_ceil(self.unit);
+        let at_least = move |chunk: &Chunk| {
+            bits::at_least(bits::PLANES, |plane| chunk.sums[plane], least, chunk.valid)
+        };
+        self.chunks.iter().map(at_least)
     }
 }

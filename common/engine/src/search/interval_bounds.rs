@@ -198,10 +198,10 @@ mod tests {
                     }
                     let within = &inner_bounds.blocks[0];
                     let least = (f64::from(within.greatest()) * share) as u16;
-                    let masks: Vec<Row> = within.at_least(least.max(1), around).collect();
+                    let masks: Vec<Row> = within.at_least(least.max(1)).collect();
                     for (chunk, mut mask) in masks.into_iter().enumerate() {
                         while let Some((first, among)) = bits::take_window(&mut mask) {
-                            let rests = inner.rests(within, chunk, bits::row_of((first, among)));
+                            let rests = inner.rests(within, chunk, (first, among));
                             let first = chunk * CHUNK + first;
                             let window = Window { first: first as u16, among, rests };
                             let sides = (intervals.columns, intervals.rows);

@@ -25,10 +25,6 @@ pub(crate) const CHUNK: usize = 504;
 /// group than they can, and 0 behind the last.
 pub(crate) type Rests = [u16; GROUPS + 1];
 
-/// Up to this group it is told exactly: few bounds that are given up are given up
-/// later.
-const TOLD: usize = 4;
-
 /// How blocks are bounded.
 #[derive(Debug, Clone, Copy)]
 enum How<'a> {
@@ -102,36 +98,22 @@ impl SetBounds {
 }
 
 impl SetProgram {
-    /// What the beams from each group on give at most at some headings of a chunk,
-    /// by bounds that were found within those of a block around.
-    pub(crate) fn rests(&self, bounds: &HeadingBounds, chunk: usize, among: Row) -> Rests {
-        match self.instruction_set {
-            // SAFETY: the processor has the instruction set, or it would not be chosen.
-            #[cfg(target_arch = "x86_64")]
-            InstructionSet::Avx512 => unsafe { self.rests_avx512(bounds, chunk, among) },
-            _ => self.rests_with::<Row>(bounds, chunk, among),
-        }
-    }
-
-    #[cfg(target_arch = "x86_64")]
-    #[target_feature(enable = "avx512f,avx512bw,avx512dq,avx512vl")]
-    fn rests_avx512(&self, bounds: &HeadingBounds, chunk: usize, among: Row) -> Rests {
-        self.rests_with::<super::rows::Avx512>(bounds, chunk, among)
-    }
-
-    #[inline(always)]
-    fn rests_with<R: BitRow>(&self, bounds: &HeadingBounds, chunk: usize, among: Row) -> Rests {
-        let (chunk, among) = (&bounds.chunks[chunk], R::from_row(&among));
+    /// What the beams from each group on give at most at the headings of a window in a
+    /// chunk, by bounds that were found within those of a block around.
+    pub(crate) fn rests(
+        &self,
+        bounds: &HeadingBounds,
+        chunk: usize,
+        window: (usize, u64),
+    ) -> Rests {
+        let after = &bounds.chunks[chunk].after;
         let others = self.groups().len().saturating_sub(1);
         let mut rests = Rests::default();
         rests[0] = u16::MAX;
         for group in 1..=others {
             // The last groups were added first.
-            let sums = &chunk.after[others - group][..self.planes];
-            rests[group] = match group {
-                ..=TOLD => self.unit * bits::greatest(sums, among),
-                _ => rests[group - 1],
-            };
+            let sums = &after[others - group][..self.planes];
+            rests[group] = self.unit * bits::greatest_in(sums, window);
         }
         rests
     }
@@ -265,14 +247,14 @@ impl SetProgram {
             let spans = spans.from(place * CHUNK / 8);
             let mut total = [Several::<R, N>::empty(); bits::PLANES];
             let total = &mut total[..self.planes];
-            let mut alive = [true; N];
             let within = how.within(place);
             let mut valid = R::from_row(&bounds[0].chunks[place].valid);
             if let Some((around, least)) = within {
                 let sums = |plane: usize| R::from_row(&around.sums[plane]);
                 valid = bits::at_least(self.planes, sums, least, valid);
-                alive = [!valid.is_empty(); N];
             }
+            let mut reach = [valid; N];
+            let mut alive = [!valid.is_empty(); N];
             for added in 1..=groups.len() {
                 if alive == [false; N] {
                     break;
@@ -283,14 +265,14 @@ impl SetProgram {
                 let group = &groups[if within.is_some() { left } else { added - 1 }];
                 group.add(spans, carries, total);
                 if let Some((around, least)) = within {
-                    for (i, alive) in alive.iter_mut().enumerate() {
+                    for i in 0..N {
                         let sums = total.iter().map(|rows| rows.0[i]);
                         let sums = match left {
                             0 => sum(sums, &[EMPTY; bits::PLANES]),
                             _ => sum(sums, &around.after[left - 1]),
                         };
-                        let still = bits::at_least(self.planes, |plane| sums[plane], least, valid);
-                        *alive = !still.is_empty();
+                        reach[i] = bits::at_least(self.planes, |plane| sums[plane], least, valid);
+                        alive[i] = !reach[i].is_empty();
                     }
                 }
                 if left > 0 && !matches!(how, How::Plain) {
@@ -303,12 +285,13 @@ impl SetProgram {
                 }
             }
             for (i, bounds) in bounds.iter_mut().enumerate() {
-                let Chunk { sums, valid, .. } = &mut bounds.chunks[place];
-                for (sums, total) in sums.iter_mut().zip(&*total) {
+                let chunk = &mut bounds.chunks[place];
+                for (sums, total) in chunk.sums.iter_mut().zip(&*total) {
                     *sums = total.0[i].to_row();
                 }
+                chunk.reach = reach[i].to_row();
                 if alive[i] {
-                    let greatest = bits::greatest(&*sums, R::from_row(valid));
+                    let greatest = bits::greatest(&chunk.sums, valid);
                     bounds.greatest = bounds.greatest.max(greatest);
                     any[i] = true;
                 }
@@ -380,7 +363,7 @@ mod tests {
                         prop_assert!(u32::from(greatest) <= program.highest_possible());
                         for (heading, field) in &fields {
                             let most = cells(sets, block, &grid).map(|i| field[i]).max().unwrap_or(0);
-                            let at: Vec<Row> = alone.at_least(most, alone).collect();
+                            let at: Vec<Row> = alone.at_least(most).collect();
                             let (chunk, bit) = (heading / CHUNK, heading % CHUNK);
                             prop_assert!(at[chunk][bit / 64] >> (bit % 64) & 1 == 1, "{} votes", most);
                         }
@@ -428,7 +411,7 @@ mod tests {
                                 prop_assert_eq!(found[place], alone.greatest() >= least);
                                 if found[place] {
                                     prop_assert_eq!(within.greatest(), alone.greatest());
-                                    prop_assert!(within.at_least(least, around).eq(alone.at_least(least, alone)));
+                                    prop_assert!(within.reach().eq(alone.at_least(least)));
                                 }
                             }
                         }
