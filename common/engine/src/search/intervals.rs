@@ -28,8 +28,9 @@ const PACKED: usize = 3;
 /// A nibble that stands for the width of all that the block sees.
 const ALL: u8 = 15;
 
-/// Up to here a nibble is a width itself; each further one is four bins wider.
-const EXACT: u8 = 8;
+/// Nibbles beyond each of these stand for widths that are so many bins farther apart
+/// than before; up to the first a nibble is a width itself.
+const STRETCHES: [(u8, u8); 3] = [(4, 1), (8, 6), (12, 8)];
 
 /// The two intervals of all blocks in all directions.
 #[derive(Debug, Clone)]
@@ -167,8 +168,10 @@ pub(crate) fn far_start(nearest: u8, farthest: u8, widths: u8) -> u8 {
 /// The width that a nibble stands for.
 #[inline(always)]
 fn width(nibble: u8) -> u8 {
-    const START: u8 = 3 * EXACT;
-    let width = nibble.max((4 * nibble).max(START) - START);
+    let stretch = |(from, by): (u8, u8)| by * nibble.saturating_sub(from);
+    let width = STRETCHES
+        .into_iter()
+        .fold(nibble, |width, each| width + stretch(each));
     if nibble == ALL { u8::MAX } else { width }
 }
 
@@ -208,12 +211,13 @@ mod tests {
                         let near = (near_first..=near_last).contains(bin);
                         prop_assert!(near || (far_first..=far_last).contains(bin), "{} {:?}", bin, seen);
                     }
-                    // An inner end is seen, too, unless its interval is too wide to
-                    // say: then less than four bins before it.
+                    // An inner end is seen, too, or lies less far behind one that is
+                    // than the next smaller width would.
                     if !seen.is_empty() {
-                        let slack = |width: u8| if width > EXACT { 3 } else { 0 };
-                        let near = near_last - slack(near_last - near_first)..=near_last;
-                        let far = far_first..=far_first + slack(far_last - far_first);
+                        let least = |width| (0..ALL).map(super::width).rev().find(|&less| less < width);
+                        let least = |width| least(width).map_or(0, |less| less + 1);
+                        let near = near_first + least(near_last - near_first)..=near_last;
+                        let far = far_first..=far_last - least(far_last - far_first);
                         prop_assert!(near_last == far_last || seen.iter().any(|bin| near.contains(bin)));
                         prop_assert!(far_first == near_first || seen.iter().any(|bin| far.contains(bin)));
                     }

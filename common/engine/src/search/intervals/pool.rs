@@ -1,7 +1,7 @@
 //! The packed intervals of a whole strip of blocks in one direction.
 
 use super::strip::Row;
-use super::{ALL, EXACT, PACKED, SIDE};
+use super::{ALL, PACKED, SIDE, STRETCHES};
 use crate::search::bins::{Bins, Line};
 use crate::search::lanes::Lanes;
 
@@ -57,10 +57,24 @@ pub(super) fn pool<L: Lanes, const LINES: usize>(
 /// The nibbles that stand for widths, of which some are rounded up.
 #[inline(always)]
 fn nibble<L: Lanes>(lanes: L, widths: L::Vector) -> L::Vector {
-    const QUARTER: u16 = 1 << 14;
-    let up = lanes.splat(3 * u16::from(EXACT) + 3);
-    let quarters = lanes.mul_high(lanes.add_saturating(widths, up), lanes.splat(QUARTER));
-    lanes.min(lanes.min(widths, quarters), lanes.splat(u16::from(ALL)))
+    let mut least = lanes.min(widths, lanes.splat(u16::from(ALL)));
+    // The widths from one nibble on, as a line: as many bins for each nibble, and how
+    // far behind the start of that line the widths lie.
+    let (mut step, mut lag) = (1, 0);
+    for (from, by) in STRETCHES {
+        step += u16::from(by);
+        lag += u16::from(by) * u16::from(from);
+        // Steps are powers of two.
+        let (up, share) = (
+            lanes.splat(lag + step - 1),
+            lanes.splat(1 << (16 - step.ilog2())),
+        );
+        least = lanes.min(
+            least,
+            lanes.mul_high(lanes.add_saturating(widths, up), share),
+        );
+    }
+    least
 }
 
 /// First and last number of the near part and of the far part of each lane.
