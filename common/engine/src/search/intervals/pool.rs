@@ -9,7 +9,8 @@ use crate::search::lanes::Lanes;
 /// the intervals of their bins, by `lines`, row by row of the packed format.
 ///
 /// What lies up to the middle between the shortest and the longest range of a
-/// block is near, the rest is far. Cells that see nothing and cells that nobody
+/// block is near, the rest is far; or what lies in the first quarter, if both parts
+/// are narrower then. Cells that see nothing and cells that nobody
 /// can stand in must not count: one step less than [`NO_RANGE`] and than the 0 of
 /// occupied cells are the two greatest numbers, and -2 and -1 if signed.
 ///
@@ -36,22 +37,41 @@ pub(super) fn pool<L: Lanes, const LINES: usize>(
         for (steps, cells) in steps.iter_mut().zip(&cells) {
             *steps = lanes.sub(lanes.load(&cells[start..]), one);
         }
-        let mut ends = ends(lanes, steps);
+        let mut ends = ends(lanes, &steps);
         for end in &mut ends {
             *end = lanes.add_saturating(*end, one);
         }
-        let [first, near_last, far_first, last] = bin(lanes, lines, ends);
+        let [
+            first,
+            last,
+            middle_last,
+            middle_first,
+            quarter_last,
+            quarter_first,
+        ] = bin(lanes, lines, ends);
         // Turns NOTHING into 0.
         let last = lanes.sub_saturating(
             lanes.and(lanes.add(last, one), lanes.splat(u16::from(u8::MAX))),
             one,
         );
-        let near = nibble(lanes, lanes.sub(near_last, first));
-        let far = nibble(lanes, lanes.sub_saturating(last, far_first));
+        let by_middle = split(lanes, [first, middle_last], [middle_first, last]);
+        let by_quarter = split(lanes, [first, quarter_last], [quarter_first, last]);
+        let narrower = lanes.min(by_middle, by_quarter);
         lanes.store_bytes(first, nearest);
         lanes.store_bytes(last, farthest);
-        lanes.store_bytes(lanes.or(near, lanes.shift_nibble(far)), widths);
+        lanes.store_bytes(lanes.and(narrower, lanes.splat(u16::from(u8::MAX))), widths);
     }
+}
+
+/// The nibbles of the widths of a near and a far interval, and above them, for what is
+/// wide to be more, both widths together.
+#[inline(always)]
+fn split<L: Lanes>(lanes: L, near: [L::Vector; 2], far: [L::Vector; 2]) -> L::Vector {
+    let near = lanes.sub_saturating(near[1], near[0]);
+    let far = lanes.sub_saturating(far[1], far[0]);
+    let both = lanes.min(lanes.add(near, far), lanes.splat(u16::from(u8::MAX)));
+    let nibbles = lanes.or(nibble(lanes, near), lanes.shift_nibble(nibble(lanes, far)));
+    lanes.or(lanes.shift_nibble(lanes.shift_nibble(both)), nibbles)
 }
 
 /// The nibbles that stand for widths, of which some are rounded up.
@@ -77,17 +97,33 @@ fn nibble<L: Lanes>(lanes: L, widths: L::Vector) -> L::Vector {
     least
 }
 
-/// First and last number of the near part and of the far part of each lane.
+/// First and last number of each lane, and for each way to part them the last one of
+/// the near part and the first one of the far part.
 #[inline(always)]
-fn ends<L: Lanes>(lanes: L, steps: [L::Vector; SIDE * SIDE]) -> [L::Vector; 4] {
+fn ends<L: Lanes>(lanes: L, steps: &[L::Vector; SIDE * SIDE]) -> [L::Vector; 6] {
     let (mut first, mut last) = (steps[0], steps[0]);
     for &steps in &steps[1..] {
         first = lanes.min(first, steps);
         last = lanes.max_signed(last, steps);
     }
-    // Counted from behind the middle, what lies up to it wraps around to the
-    // greatest numbers.
-    let far = lanes.average(first, lanes.add(last, lanes.splat(1)));
+    let middle = lanes.average(first, lanes.add(last, lanes.splat(1)));
+    let [middle_last, middle_first] = part(lanes, steps, middle);
+    let quarter = lanes.average(first, middle);
+    let [quarter_last, quarter_first] = part(lanes, steps, quarter);
+    [
+        first,
+        last,
+        middle_last,
+        middle_first,
+        quarter_last,
+        quarter_first,
+    ]
+}
+
+/// The last of the numbers below `far`, and the first of the others.
+#[inline(always)]
+fn part<L: Lanes>(lanes: L, steps: &[L::Vector; SIDE * SIDE], far: L::Vector) -> [L::Vector; 2] {
+    // Counted from there, those below wrap around to the greatest numbers.
     let mut far_first = lanes.sub(steps[0], far);
     let mut near_last = far_first;
     for &steps in &steps[1..] {
@@ -95,12 +131,7 @@ fn ends<L: Lanes>(lanes: L, steps: [L::Vector; SIDE * SIDE]) -> [L::Vector; 4] {
         far_first = lanes.min(far_first, beyond);
         near_last = lanes.max(near_last, beyond);
     }
-    [
-        first,
-        lanes.add(far, near_last),
-        lanes.add(far, far_first),
-        last,
-    ]
+    [lanes.add(far, near_last), lanes.add(far, far_first)]
 }
 
 /// The bins of ranges.
