@@ -41,6 +41,8 @@ pub(crate) struct RangeIntervals {
     pub rows: usize,
     /// Directions of a turn.
     pub directions: usize,
+    /// By which blocks are unpacked.
+    set: InstructionSet,
     /// For each block three rows with a byte for each direction: the nearest
     /// bin, the farthest bin, and the widths of the two intervals.
     packed: Vec<u8>,
@@ -94,6 +96,7 @@ impl RangeIntervals {
             columns,
             rows,
             directions: directions.count(),
+            set,
             packed,
         }
     }
@@ -126,8 +129,15 @@ impl RangeIntervals {
         let [near_first, near_last, far_first, far_last] = &mut into.rows;
         near_first[..self.directions].copy_from_slice(nearest);
         far_last[..self.directions].copy_from_slice(farthest);
-        unpack(near_end, nearest, farthest, widths, near_last);
-        unpack(far_start, nearest, farthest, widths, far_first);
+        let packed = [nearest, farthest, widths];
+        match self.set {
+            // SAFETY: the intervals were built by this instruction set.
+            #[cfg(target_arch = "x86_64")]
+            InstructionSet::Avx512 | InstructionSet::Avx2 => unsafe {
+                unpack_avx2(packed, near_last, far_first);
+            },
+            _ => unpack(packed, near_last, far_first),
+        }
         for row in &mut into.rows {
             for start in (self.directions..row.len()).step_by(self.directions) {
                 let rest = self.directions.min(row.len() - start);
@@ -137,20 +147,25 @@ impl RangeIntervals {
     }
 }
 
-/// Unpacks one of the inner ends; a function of its own, where the compiler
-/// knows that what it writes is not what it reads.
-#[inline(never)]
+/// Unpacks the inner ends of intervals.
+#[inline(always)]
 fn unpack(
-    end: impl Fn(u8, u8, u8) -> u8,
-    nearest: &[u8],
-    farthest: &[u8],
-    widths: &[u8],
-    ends: &mut [u8],
+    [nearest, farthest, widths]: [&[u8]; PACKED],
+    near_last: &mut [u8],
+    far_first: &mut [u8],
 ) {
     let packed = nearest.iter().zip(farthest).zip(widths);
-    for (((&nearest, &farthest), &widths), unpacked) in packed.zip(ends) {
-        *unpacked = end(nearest, farthest, widths);
+    let unpacked = near_last.iter_mut().zip(far_first);
+    for (((&nearest, &farthest), &widths), (near_last, far_first)) in packed.zip(unpacked) {
+        *near_last = near_end(nearest, farthest, widths);
+        *far_first = far_start(nearest, farthest, widths);
     }
+}
+
+#[cfg(target_arch = "x86_64")]
+#[target_feature(enable = "avx2")]
+fn unpack_avx2(packed: [&[u8]; PACKED], near_last: &mut [u8], far_first: &mut [u8]) {
+    unpack(packed, near_last, far_first);
 }
 
 /// Last bin of the near interval.
