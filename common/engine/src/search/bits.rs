@@ -4,6 +4,24 @@
 
 use super::rows::BitRow;
 
+/// Bits that are taken together: a row of them, or a window of one.
+pub(crate) trait Bits: Copy {
+    fn and(self, other: Self) -> Self;
+    fn is_empty(self) -> bool;
+}
+
+impl Bits for u64 {
+    #[inline(always)]
+    fn and(self, other: Self) -> Self {
+        self & other
+    }
+
+    #[inline(always)]
+    fn is_empty(self) -> bool {
+        self == 0
+    }
+}
+
 /// 512 bits, one for each heading of a chunk.
 pub(crate) type Row = [u64; 8];
 
@@ -16,12 +34,12 @@ pub(crate) const PLANES: usize = 16;
 /// 512 numbers, by plane.
 pub(crate) type Planes = [Row; PLANES];
 
-/// The greatest of the numbers that `among` selects.
+/// The greatest of the numbers that `among` selects, of so many planes.
 #[inline(always)]
-pub(crate) fn greatest<R: BitRow>(numbers: &[Row], among: R) -> u16 {
+pub(crate) fn greatest<B: Bits>(planes: usize, number: impl Fn(usize) -> B, among: B) -> u16 {
     let (mut candidates, mut value) = (among, 0);
-    for (plane, bits) in numbers.iter().enumerate().rev() {
-        let higher = candidates.and(R::from_row(bits));
+    for plane in (0..planes).rev() {
+        let higher = candidates.and(number(plane));
         if !higher.is_empty() {
             candidates = higher;
             value |= 1 << plane;
@@ -83,27 +101,14 @@ pub(crate) fn take_window(row: &mut Row) -> Option<(usize, u64)> {
     Some((64 * word + shift as usize, window))
 }
 
-/// The bits of a row from a place on, as many as a window has; none behind its end.
+/// The bits of a row from a place on, as many as a window has, see [`take_window`]; none
+/// behind the row's end.
 #[inline(always)]
 pub(crate) fn window_of(row: &Row, first: usize) -> u64 {
     let (word, shift) = (first / 64, first % 64);
     let next = row.get(word + 1).copied().unwrap_or(0);
     // Twice, as nothing may be shifted by 64.
     row[word] >> shift | next << 1 << (63 - shift)
-}
-
-/// The greatest of the numbers that a window selects, see [`take_window`].
-#[inline(always)]
-pub(crate) fn greatest_in(numbers: &[Row], (first, window): (usize, u64)) -> u16 {
-    let (mut candidates, mut value) = (window, 0);
-    for (plane, bits) in numbers.iter().enumerate().rev() {
-        let higher = candidates & window_of(bits, first);
-        if higher != 0 {
-            candidates = higher;
-            value |= 1 << plane;
-        }
-    }
-    value
 }
 
 #[cfg(test)]
@@ -126,7 +131,7 @@ mod tests {
             }
             let selected = |i: &usize| among[i / 64] >> (i % 64) & 1 == 1;
             let most = (0..512).filter(selected).map(|i| plain[i]).max();
-            prop_assert_eq!(greatest(&planes, among), most.unwrap_or(0));
+            prop_assert_eq!(greatest(PLANES, |plane| planes[plane], among), most.unwrap_or(0));
             let found = at_least(PLANES, |plane| planes[plane], least, among);
             for i in 0..512 {
                 prop_assert_eq!(found[i / 64] >> (i % 64) & 1 == 1, selected(&i) && plain[i] >= least);
@@ -144,7 +149,8 @@ mod tests {
                 prop_assert_eq!(window & 1, 1);
                 let taken: Row = std::array::from_fn(|i| before[i] & !rest[i]);
                 prop_assert_eq!(window_of(&taken, first), window);
-                prop_assert_eq!(greatest_in(&numbers, (first, window)), greatest(&numbers, taken));
+                let greatest_in = greatest(numbers.len(), |plane| window_of(&numbers[plane], first), window);
+                prop_assert_eq!(greatest_in, greatest(numbers.len(), |plane| numbers[plane], taken));
                 before = rest;
                 for i in ones(window).map(|i| first + i) {
                     prop_assert_eq!(found[i / 64] >> (i % 64) & 1, 0);

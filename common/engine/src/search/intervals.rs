@@ -131,7 +131,8 @@ impl RangeIntervals {
         far_last[..self.directions].copy_from_slice(farthest);
         let packed = [nearest, farthest, widths];
         match self.set {
-            // SAFETY: the intervals were built by this instruction set.
+            // SAFETY: the intervals were built by this instruction set, and what has
+            // AVX-512 has AVX2.
             #[cfg(target_arch = "x86_64")]
             InstructionSet::Avx512 | InstructionSet::Avx2 => unsafe {
                 unpack_avx2(packed, near_last, far_first);

@@ -27,16 +27,14 @@ pub(crate) struct LeafProgram {
 }
 
 impl LeafProgram {
-    /// Lays out a program whose sectors are in this order, see [`sectors::order`].
     pub(crate) fn make(
         &mut self,
-        (program, order): (&ScanProgram, &[usize]),
+        program: &ScanProgram,
         directions: &Directions,
         instruction_set: InstructionSet,
     ) {
         self.instruction_set = instruction_set;
-        self.order.clear();
-        self.order.extend(order);
+        sectors::order(program, &mut self.order);
         let bearings = self.order.iter().map(|&beam| program.bearing(beam));
         self.bearings.clear();
         self.bearings.extend(bearings);
@@ -44,6 +42,11 @@ impl LeafProgram {
         let classes = directions.all().iter().map(|direction| direction.class);
         self.classes.clear();
         self.classes.extend(classes);
+    }
+
+    /// The beams, sector by sector.
+    pub(crate) fn order(&self) -> &[usize] {
+        &self.order
     }
 
     /// Adds the votes of a sector of beams at a heading to those of the block's
@@ -167,11 +170,9 @@ mod tests {
             let view = View { grid: &grid, obstacles: &obstacles, steps: &steps, directions };
             let block = seed[0] % (intervals.columns * intervals.rows);
             let heading = seed[1] % directions.count();
-            let mut order = Vec::new();
-            sectors::order(&program, &mut order);
             for instruction_set in InstructionSet::available() {
                 let mut leaf = LeafProgram::default();
-                leaf.make((&program, &order), directions, instruction_set);
+                leaf.make(&program, directions, instruction_set);
                 let mut outlook = Outlook::default();
                 outlook.prepare(&grid, directions);
                 outlook.enter((&grid, &Limits::none(grid.width())), &intervals, block);

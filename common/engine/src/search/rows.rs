@@ -1,12 +1,12 @@
 //! Rows of 512 bits in the registers of an instruction set.
 
-use super::bits::Row;
+use super::bits::{Bits, Row};
 
 /// A row of bits under way.
 ///
 /// The methods must be inlined into functions that are compiled for the
 /// instruction set, and be called only where the processor has it.
-pub(crate) trait BitRow: Copy {
+pub(crate) trait BitRow: Bits {
     /// A row without bits.
     fn empty() -> Self;
     /// The row that starts at a byte.
@@ -21,14 +21,12 @@ pub(crate) trait BitRow: Copy {
         }
     }
     fn or(self, other: Self) -> Self;
-    fn and(self, other: Self) -> Self;
     /// The bits of `self` that `other` lacks.
     fn without(self, other: Self) -> Self;
     /// Sum and carry of three bits.
     fn full_adder(self, b: Self, c: Self) -> (Self, Self);
     /// Every bit `by` places down, 0 to 63.
     fn shift_down(self, by: u32) -> Self;
-    fn is_empty(self) -> bool;
 }
 
 /// Rows of several blocks, side by side: what is done with one is done with all.
@@ -67,6 +65,18 @@ impl<R: BitRow, const N: usize> Several<R, N> {
     }
 }
 
+impl Bits for Row {
+    #[inline(always)]
+    fn and(self, other: Self) -> Self {
+        std::array::from_fn(|i| self[i] & other[i])
+    }
+
+    #[inline(always)]
+    fn is_empty(self) -> bool {
+        self.iter().fold(0, |all, word| all | word) == 0
+    }
+}
+
 impl BitRow for Row {
     #[inline(always)]
     fn empty() -> Self {
@@ -97,11 +107,6 @@ impl BitRow for Row {
     }
 
     #[inline(always)]
-    fn and(self, other: Self) -> Self {
-        std::array::from_fn(|i| self[i] & other[i])
-    }
-
-    #[inline(always)]
     fn without(self, other: Self) -> Self {
         std::array::from_fn(|i| self[i] & !other[i])
     }
@@ -124,11 +129,6 @@ impl BitRow for Row {
             self[i] >> by | next
         })
     }
-
-    #[inline(always)]
-    fn is_empty(self) -> bool {
-        self.iter().fold(0, |all, word| all | word) == 0
-    }
 }
 
 #[cfg(target_arch = "x86_64")]
@@ -141,11 +141,23 @@ mod x86 {
     use std::arch::x86_64::*;
 
     use super::super::bits::Row;
-    use super::BitRow;
+    use super::{BitRow, Bits};
 
     /// What AVX-512 holds in one register.
     #[derive(Clone, Copy)]
     pub(crate) struct Avx512(__m512i);
+
+    impl Bits for Avx512 {
+        #[inline(always)]
+        fn and(self, other: Self) -> Self {
+            unsafe { Avx512(_mm512_and_si512(self.0, other.0)) }
+        }
+
+        #[inline(always)]
+        fn is_empty(self) -> bool {
+            unsafe { _mm512_test_epi64_mask(self.0, self.0) == 0 }
+        }
+    }
 
     impl BitRow for Avx512 {
         #[inline(always)]
@@ -176,11 +188,6 @@ mod x86 {
         }
 
         #[inline(always)]
-        fn and(self, other: Self) -> Self {
-            unsafe { Avx512(_mm512_and_si512(self.0, other.0)) }
-        }
-
-        #[inline(always)]
         fn without(self, other: Self) -> Self {
             unsafe { Avx512(_mm512_andnot_si512(other.0, self.0)) }
         }
@@ -205,11 +212,6 @@ mod x86 {
                 Avx512(_mm512_or_si512(low, high))
             }
         }
-
-        #[inline(always)]
-        fn is_empty(self) -> bool {
-            unsafe { _mm512_test_epi64_mask(self.0, self.0) == 0 }
-        }
     }
 
     /// Two registers of AVX2.
@@ -220,6 +222,21 @@ mod x86 {
         #[inline(always)]
         fn zip(self, other: Self, op: impl Fn(__m256i, __m256i) -> __m256i) -> Self {
             Avx2([op(self.0[0], other.0[0]), op(self.0[1], other.0[1])])
+        }
+    }
+
+    impl Bits for Avx2 {
+        #[inline(always)]
+        fn and(self, other: Self) -> Self {
+            self.zip(other, |a, b| unsafe { _mm256_and_si256(a, b) })
+        }
+
+        #[inline(always)]
+        fn is_empty(self) -> bool {
+            unsafe {
+                let all = _mm256_or_si256(self.0[0], self.0[1]);
+                _mm256_testz_si256(all, all) == 1
+            }
         }
     }
 
@@ -265,11 +282,6 @@ mod x86 {
         }
 
         #[inline(always)]
-        fn and(self, other: Self) -> Self {
-            self.zip(other, |a, b| unsafe { _mm256_and_si256(a, b) })
-        }
-
-        #[inline(always)]
         fn without(self, other: Self) -> Self {
             self.zip(other, |a, b| unsafe { _mm256_andnot_si256(b, a) })
         }
@@ -300,14 +312,6 @@ mod x86 {
                     _mm256_or_si256(_mm256_srl_epi64(a, down), _mm256_sll_epi64(next, up))
                 };
                 Avx2([shift(low, low_next), shift(high, high_next)])
-            }
-        }
-
-        #[inline(always)]
-        fn is_empty(self) -> bool {
-            unsafe {
-                let all = _mm256_or_si256(self.0[0], self.0[1]);
-                _mm256_testz_si256(all, all) == 1
             }
         }
     }

@@ -104,7 +104,7 @@ impl SetProgram {
         &self,
         bounds: &HeadingBounds,
         chunk: usize,
-        window: (usize, u64),
+        (first, among): (usize, u64),
     ) -> Rests {
         let after = &bounds.chunks[chunk].after;
         let others = self.groups().len().saturating_sub(1);
@@ -112,8 +112,9 @@ impl SetProgram {
         rests[0] = u16::MAX;
         for group in 1..=others {
             // The last groups were added first.
-            let sums = &after[others - group][..self.planes];
-            rests[group] = self.unit * bits::greatest_in(sums, window);
+            let sums = &after[others - group];
+            let sums = |plane: usize| bits::window_of(&sums[plane], first);
+            rests[group] = self.unit * bits::greatest(self.planes, sums, among);
         }
         rests
     }
@@ -291,7 +292,8 @@ impl SetProgram {
                 }
                 chunk.reach = reach[i].to_row();
                 if alive[i] {
-                    let greatest = bits::greatest(&chunk.sums, valid);
+                    let sums = |plane: usize| R::from_row(&chunk.sums[plane]);
+                    let greatest = bits::greatest(self.planes, sums, valid);
                     bounds.greatest = bounds.greatest.max(greatest);
                     any[i] = true;
                 }

@@ -8,7 +8,6 @@ use super::index::SearchIndex;
 use super::interval_program::IntervalProgram;
 use super::leaf::LeafProgram;
 use super::outlook::View;
-use super::sectors;
 use super::set_program::SetProgram;
 use crate::grid::Grid;
 use crate::instruction_set::InstructionSet;
@@ -50,8 +49,6 @@ pub(super) struct Programs {
     pub fine: SetProgram,
     pub interval: IntervalProgram,
     pub leaf: LeafProgram,
-    /// The beams, sector by sector.
-    order: Vec<usize>,
     pub beams: usize,
     pub instruction_set: InstructionSet,
 }
@@ -71,11 +68,10 @@ impl Programs {
         ] {
             set_program.make(program, directions, steps, sets.shift, instruction_set);
         }
-        sectors::order(program, &mut self.order);
-        let (shifts, ordered) = (self.fine.shifts(), (program, &self.order[..]));
+        self.leaf.make(program, directions, instruction_set);
+        let (shifts, ordered) = (self.fine.shifts(), (program, self.leaf.order()));
         self.interval
             .make(ordered, directions, steps, shifts, instruction_set);
-        self.leaf.make(ordered, directions, instruction_set);
         self.beams = program.beams();
         self.instruction_set = instruction_set;
     }

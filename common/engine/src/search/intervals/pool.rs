@@ -37,38 +37,41 @@ pub(super) fn pool<L: Lanes, const LINES: usize>(
         for (steps, cells) in steps.iter_mut().zip(&cells) {
             *steps = lanes.sub(lanes.load(&cells[start..]), one);
         }
-        let mut ends = ends(lanes, &steps);
-        for end in &mut ends {
-            *end = lanes.add_saturating(*end, one);
-        }
-        let [
-            first,
-            last,
-            middle_last,
-            middle_first,
-            quarter_last,
-            quarter_first,
-        ] = bin(lanes, lines, ends);
+        let (first, last) = outermost(lanes, &steps);
+        let [nearest_bin, farthest_bin] = bin(lanes, lines, [first, last]);
         // Turns NOTHING into 0.
-        let last = lanes.sub_saturating(
-            lanes.and(lanes.add(last, one), lanes.splat(u16::from(u8::MAX))),
+        let farthest_bin = lanes.sub_saturating(
+            lanes.and(
+                lanes.add(farthest_bin, one),
+                lanes.splat(u16::from(u8::MAX)),
+            ),
             one,
         );
-        let by_middle = split(lanes, [first, middle_last], [middle_first, last]);
-        let by_quarter = split(lanes, [first, quarter_last], [quarter_first, last]);
+        let middle = lanes.average(first, lanes.add(last, one));
+        let quarter = lanes.average(first, middle);
+        let ends = [nearest_bin, farthest_bin];
+        let by_middle = split(lanes, lines, ends, part(lanes, &steps, middle));
+        let by_quarter = split(lanes, lines, ends, part(lanes, &steps, quarter));
         let narrower = lanes.min(by_middle, by_quarter);
-        lanes.store_bytes(first, nearest);
-        lanes.store_bytes(last, farthest);
+        lanes.store_bytes(nearest_bin, nearest);
+        lanes.store_bytes(farthest_bin, farthest);
         lanes.store_bytes(lanes.and(narrower, lanes.splat(u16::from(u8::MAX))), widths);
     }
 }
 
 /// The nibbles of the widths of a near and a far interval, and above them, for what is
-/// wide to be more, both widths together.
+/// wide to be more, both widths together: from the first bin to that of the last near
+/// number, and from that of the first far one to the last bin.
 #[inline(always)]
-fn split<L: Lanes>(lanes: L, near: [L::Vector; 2], far: [L::Vector; 2]) -> L::Vector {
-    let near = lanes.sub_saturating(near[1], near[0]);
-    let far = lanes.sub_saturating(far[1], far[0]);
+fn split<L: Lanes, const LINES: usize>(
+    lanes: L,
+    lines: &[Line; LINES],
+    [first, last]: [L::Vector; 2],
+    parts: [L::Vector; 2],
+) -> L::Vector {
+    let [near_last, far_first] = bin(lanes, lines, parts);
+    let near = lanes.sub_saturating(near_last, first);
+    let far = lanes.sub_saturating(last, far_first);
     let both = lanes.min(lanes.add(near, far), lanes.splat(u16::from(u8::MAX)));
     let nibbles = lanes.or(nibble(lanes, near), lanes.shift_nibble(nibble(lanes, far)));
     lanes.or(lanes.shift_nibble(lanes.shift_nibble(both)), nibbles)
@@ -97,27 +100,15 @@ fn nibble<L: Lanes>(lanes: L, widths: L::Vector) -> L::Vector {
     least
 }
 
-/// First and last number of each lane, and for each way to part them the last one of
-/// the near part and the first one of the far part.
+/// First and last number of each lane.
 #[inline(always)]
-fn ends<L: Lanes>(lanes: L, steps: &[L::Vector; SIDE * SIDE]) -> [L::Vector; 6] {
+fn outermost<L: Lanes>(lanes: L, steps: &[L::Vector; SIDE * SIDE]) -> (L::Vector, L::Vector) {
     let (mut first, mut last) = (steps[0], steps[0]);
     for &steps in &steps[1..] {
         first = lanes.min(first, steps);
         last = lanes.max_signed(last, steps);
     }
-    let middle = lanes.average(first, lanes.add(last, lanes.splat(1)));
-    let [middle_last, middle_first] = part(lanes, steps, middle);
-    let quarter = lanes.average(first, middle);
-    let [quarter_last, quarter_first] = part(lanes, steps, quarter);
-    [
-        first,
-        last,
-        middle_last,
-        middle_first,
-        quarter_last,
-        quarter_first,
-    ]
+    (first, last)
 }
 
 /// The last of the numbers below `far`, and the first of the others.
@@ -134,13 +125,16 @@ fn part<L: Lanes>(lanes: L, steps: &[L::Vector; SIDE * SIDE], far: L::Vector) ->
     [lanes.add(far, near_last), lanes.add(far, far_first)]
 }
 
-/// The bins of ranges.
+/// The bins of ranges that are a step longer than these numbers.
 #[inline(always)]
 fn bin<L: Lanes, const N: usize, const LINES: usize>(
     lanes: L,
     lines: &[Line; LINES],
-    steps: [L::Vector; N],
+    mut steps: [L::Vector; N],
 ) -> [L::Vector; N] {
+    for steps in &mut steps {
+        *steps = lanes.add_saturating(*steps, lanes.splat(1));
+    }
     let mut bins = [lanes.splat(u16::from(Bins::NOTHING)); N];
     for line in lines {
         let (start, slope) = (lanes.splat(line.start), lanes.splat(line.slope));
