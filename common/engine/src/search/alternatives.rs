@@ -13,14 +13,14 @@ use std::sync::atomic::Ordering;
 
 use messages::Vote;
 
-use super::bits::{self, Row};
+use super::bits;
 use super::descent::{self, quarters};
 use super::interval_bounds::IntervalBounds;
 use super::intervals::{BlockIntervals, SIDE};
 use super::outlook::{CELLS, Outlook};
 use super::queue::Promise;
 use super::sectors;
-use super::set_bounds::{Blocks, CHUNK, SetBounds};
+use super::set_bounds::SetBounds;
 use super::task::Task;
 use super::within::Size;
 use crate::votes::Distinct;
@@ -49,8 +49,8 @@ pub(super) struct Alternatives<'a> {
 pub(super) struct Room {
     bounds: SetBounds,
     coarse_bounds: SetBounds,
-    /// Headings at which a block of 8 × 8 cells may matter, a row a chunk.
-    masks: Vec<Row>,
+    /// Headings at which a block of 8 × 8 cells may matter, a word a chunk.
+    masks: Vec<u128>,
     intervals: BlockIntervals,
     interval_bounds: IntervalBounds,
     outlook: Outlook,
@@ -138,7 +138,6 @@ impl<'a> Alternatives<'a> {
     /// in the coarse ones that were taken.
     fn choose(&mut self, floor: u16) {
         let (index, programs) = (self.task.index, self.task.programs);
-        let sides = (index.fine.columns, index.fine.rows);
         let Room {
             bounds,
             coarse_bounds,
@@ -154,17 +153,18 @@ impl<'a> Alternatives<'a> {
             if bound < least {
                 continue;
             }
-            let quarters = quarters(around, index.coarse.columns, sides);
-            let mut sought = quarters.filter(|&block| index.within.holds(Size::Fine, block));
-            let blocks = Blocks::take(&mut sought);
-            let blocks = blocks.as_slice();
-            let around = programs
+            let (outer, place) = index.coarse.place_of(around);
+            let outer = index.coarse.sought(outer, |block| block == around);
+            let outer = programs
                 .coarse
-                .bound((&index.coarse, around), coarse_bounds);
-            let within = (&index.fine, blocks);
-            let reach = programs.fine.bound_within(within, least, around, bounds);
-            for (place, &block) in blocks.iter().enumerate().filter(|&(place, _)| reach[place]) {
-                fine.offer((bounds.blocks[place].greatest(), Reverse(block as u32)));
+                .bound((&index.coarse, &outer), coarse_bounds);
+            let quad = index.within.quad(Size::Fine, &index.fine, around);
+            let within = (&index.fine, &quad);
+            let reach = programs
+                .fine
+                .bound_within(within, least, (outer, place), bounds);
+            for (place, block) in quad.blocks().filter(|&(place, _)| reach[place]) {
+                fine.offer((bounds.found.greatest(place), Reverse(block as u32)));
             }
         }
     }
@@ -173,23 +173,23 @@ impl<'a> Alternatives<'a> {
     fn best_spot(&mut self, block: usize) -> Option<Spot> {
         let (index, program) = (self.task.index, &self.task.programs.fine);
         let Room { bounds, masks, .. } = &mut *self.room;
-        let bounds = program.bound((&index.fine, block), bounds);
-        let greatest = u32::from(bounds.greatest());
+        let (quad, place) = index.fine.place_of(block);
+        let quad = index.fine.sought(quad, |other| other == block);
+        let bounds = program.bound((&index.fine, &quad), bounds);
+        let greatest = u32::from(bounds.greatest(place));
         let least = (greatest * LEAST_THIRTY_SECONDTHS / 32) as u16;
         masks.clear();
-        masks.extend(bounds.at_least(least.max(1)));
+        masks.extend(bounds.at_least(place, least.max(1)));
         let sides = (index.intervals.columns, index.intervals.rows);
         let mut best = None;
         let smalls = quarters(block, index.fine.columns, sides);
         for small in smalls.filter(|&block| index.within.holds(Size::Small, block)) {
             index.intervals.read(small, &mut self.room.intervals);
-            for chunk in 0..self.room.masks.len() {
-                let mut mask = self.room.masks[chunk];
-                while let Some((first, among)) = bits::take_window(&mut mask) {
-                    let first = chunk * CHUNK + first;
-                    best = best.max(self.best_in_window(small, first, among, best));
-                }
+            let masks = std::mem::take(&mut self.room.masks);
+            for (first, among) in bits::windows(masks.len(), |chunk| masks[chunk]) {
+                best = best.max(self.best_in_window(small, first, among, best));
             }
+            self.room.masks = masks;
         }
         best
     }

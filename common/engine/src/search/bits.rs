@@ -1,46 +1,54 @@
-//! Rows of bits and numbers kept as planes, side by side for 512 headings.
+//! Bits of adjacent headings, and numbers kept as planes of them.
 //!
-//! Plane `j` of numbers holds bit `j` of all of them.
+//! Headings come in chunks, a word of bits for each. Plane `j` of numbers holds bit
+//! `j` of all of them.
 
-use super::rows::BitRow;
+use super::words::BitWords;
 
-/// Bits that are taken together: a row of them, or a window of one.
-pub(crate) trait Bits: Copy {
-    fn and(self, other: Self) -> Self;
-    fn is_empty(self) -> bool;
-}
+/// Headings of a chunk: a word less what shifting takes up.
+pub(crate) const CHUNK: usize = 120;
 
-impl Bits for u64 {
-    #[inline(always)]
-    fn and(self, other: Self) -> Self {
-        self & other
-    }
+/// The bits of a chunk.
+const WHOLE: u128 = u128::MAX >> (128 - CHUNK);
 
-    #[inline(always)]
-    fn is_empty(self) -> bool {
-        self == 0
-    }
-}
+/// Blocks whose bits lie side by side.
+pub(crate) const QUAD: usize = 4;
 
-/// 512 bits, one for each heading of a chunk.
-pub(crate) type Row = [u64; 8];
+/// A word of 128 bits for each block of a quad: the lower halves, then the upper ones.
+pub(crate) type Words = [[u64; QUAD]; 2];
 
-/// A row without bits.
-pub(crate) const EMPTY: Row = [0; 8];
+/// Words without bits.
+pub(crate) const EMPTY: Words = [[0; QUAD]; 2];
 
 /// Planes of numbers: they fit 16 bits.
 pub(crate) const PLANES: usize = 16;
 
-/// 512 numbers, by plane.
-pub(crate) type Planes = [Row; PLANES];
+/// The numbers of a quad in a chunk, by plane.
+pub(crate) type Planes = [Words; PLANES];
+
+/// The word of a block.
+#[inline(always)]
+pub(crate) fn of_block(words: &Words, block: usize) -> u128 {
+    u128::from(words[0][block]) | u128::from(words[1][block]) << 64
+}
+
+/// Words of a quad.
+#[inline(always)]
+pub(crate) fn words(of_block: impl Fn(usize) -> u128) -> Words {
+    let words: [u128; QUAD] = std::array::from_fn(of_block);
+    [
+        words.map(|word| word as u64),
+        words.map(|word| (word >> 64) as u64),
+    ]
+}
 
 /// The greatest of the numbers that `among` selects, of so many planes.
 #[inline(always)]
-pub(crate) fn greatest<B: Bits>(planes: usize, number: impl Fn(usize) -> B, among: B) -> u16 {
+pub(crate) fn greatest(planes: usize, number: impl Fn(usize) -> u64, among: u64) -> u16 {
     let (mut candidates, mut value) = (among, 0);
     for plane in (0..planes).rev() {
-        let higher = candidates.and(number(plane));
-        if !higher.is_empty() {
+        let higher = candidates & number(plane);
+        if higher != 0 {
             candidates = higher;
             value |= 1 << plane;
         }
@@ -48,19 +56,36 @@ pub(crate) fn greatest<B: Bits>(planes: usize, number: impl Fn(usize) -> B, amon
     value
 }
 
+/// The greatest of the numbers of each block that `among` selects, of so many planes.
+#[inline(always)]
+pub(crate) fn greatest_of_each<W: BitWords>(
+    planes: usize,
+    number: impl Fn(usize) -> W,
+    among: W,
+) -> [u16; QUAD] {
+    let (mut candidates, mut value) = (among, W::empty());
+    for plane in (0..planes).rev() {
+        let higher = candidates.and(number(plane));
+        let any = higher.filled();
+        candidates = higher.or(candidates.without(any));
+        value = value.or(any.and(W::splat(1 << plane)));
+    }
+    value.to_words()[0].map(|value| value as u16)
+}
+
 /// Where the numbers that `among` selects, of so many planes, are at least `least`.
 #[inline(always)]
-pub(crate) fn at_least<R: BitRow>(
+pub(crate) fn at_least<W: BitWords>(
     planes: usize,
-    number: impl Fn(usize) -> R,
+    number: impl Fn(usize) -> W,
     least: u16,
-    among: R,
-) -> R {
+    among: W,
+) -> W {
     if usize::from(least) >> planes != 0 {
-        return R::empty();
+        return W::empty();
     }
     // Equal so far from the highest plane down, or greater already.
-    let (mut equal, mut greater) = (among, R::empty());
+    let (mut equal, mut greater) = (among, W::empty());
     for plane in (0..planes).rev() {
         let bits = number(plane);
         if least >> plane & 1 == 1 {
@@ -85,30 +110,42 @@ pub(crate) fn ones(word: u64) -> impl Iterator<Item = usize> {
     })
 }
 
-/// Takes the first set bit of a row and those less than 64 places behind it:
-/// the place of the first, and all of them from there.
-pub(crate) fn take_window(row: &mut Row) -> Option<(usize, u64)> {
-    let word = row.iter().position(|&word| word != 0)?;
-    let shift = row[word].trailing_zeros();
-    let mut window = row[word] >> shift;
-    row[word] = 0;
-    if shift > 0
-        && let Some(next) = row.get_mut(word + 1)
-    {
-        window |= *next << (64 - shift);
-        *next = *next >> shift << shift;
-    }
-    Some((64 * word + shift as usize, window))
+/// The set bits of so many chunks in windows: the place of the first bit, and all of
+/// them less than 64 places behind it.
+pub(crate) fn windows(
+    chunks: usize,
+    bits: impl Fn(usize) -> u128,
+) -> impl Iterator<Item = (usize, u64)> {
+    let mut next = 0;
+    std::iter::from_fn(move || {
+        while next < chunks * CHUNK {
+            let window = window_of(chunks, &bits, next);
+            if window != 0 {
+                let first = next + window.trailing_zeros() as usize;
+                next = first + u64::BITS as usize;
+                return Some((first, window_of(chunks, &bits, first)));
+            }
+            next += u64::BITS as usize;
+        }
+        None
+    })
 }
 
-/// The bits of a row from a place on, as many as a window has, see [`take_window`]; none
-/// behind the row's end.
+/// The bits of so many chunks from a place on, as many as a window has; none behind the
+/// last chunk.
 #[inline(always)]
-pub(crate) fn window_of(row: &Row, first: usize) -> u64 {
-    let (word, shift) = (first / 64, first % 64);
-    let next = row.get(word + 1).copied().unwrap_or(0);
-    // Twice, as nothing may be shifted by 64.
-    row[word] >> shift | next << 1 << (63 - shift)
+pub(crate) fn window_of(chunks: usize, bits: impl Fn(usize) -> u128, first: usize) -> u64 {
+    let (chunk, place) = (first / CHUNK, first % CHUNK);
+    let mut window = 0;
+    if chunk < chunks {
+        window = ((bits(chunk) & WHOLE) >> place) as u64;
+    }
+    if let behind @ ..64 = CHUNK - place
+        && chunk + 1 < chunks
+    {
+        window |= (bits(chunk + 1) << behind) as u64;
+    }
+    window
 }
 
 #[cfg(test)]
@@ -121,44 +158,44 @@ mod tests {
     proptest! {
         #[test]
         fn planes_are_compared_like_plain_numbers(
-            plain in vec(any::<u16>(), 512), among in any::<[u64; 8]>(), least in any::<u16>(),
+            plain in vec(any::<u16>(), QUAD * 128), among in any::<Words>(), least in any::<u16>(),
         ) {
             let mut planes = [EMPTY; PLANES];
             for (i, &number) in plain.iter().enumerate() {
                 for (plane, bits) in planes.iter_mut().enumerate() {
-                    bits[i / 64] |= u64::from(number >> plane & 1) << (i % 64);
+                    bits[i / 64 % 2][i / 128] |= u64::from(number >> plane & 1) << (i % 64);
                 }
             }
-            let selected = |i: &usize| among[i / 64] >> (i % 64) & 1 == 1;
-            let most = (0..512).filter(selected).map(|i| plain[i]).max();
-            prop_assert_eq!(greatest(PLANES, |plane| planes[plane], among), most.unwrap_or(0));
             let found = at_least(PLANES, |plane| planes[plane], least, among);
-            for i in 0..512 {
-                prop_assert_eq!(found[i / 64] >> (i % 64) & 1 == 1, selected(&i) && plain[i] >= least);
+            let greatest_of_each = greatest_of_each(PLANES, |plane| planes[plane], among);
+            for block in 0..QUAD {
+                let (among, found) = (of_block(&among, block), of_block(&found, block));
+                let numbers = &plain[128 * block..][..128];
+                let is_selected = |i: usize| among >> i & 1 == 1;
+                let selected = |i: &usize| is_selected(*i);
+                let most = |places: std::ops::Range<usize>| places.filter(selected).map(|i| numbers[i]).max();
+                prop_assert_eq!(greatest_of_each[block], most(0..128).unwrap_or(0));
+                let low = |plane: usize| planes[plane][0][block];
+                prop_assert_eq!(greatest(PLANES, low, among as u64), most(0..64).unwrap_or(0));
+                for (i, &number) in numbers.iter().enumerate() {
+                    prop_assert_eq!(found >> i & 1 == 1, is_selected(i) && number >= least);
+                }
             }
+            prop_assert_eq!(words(|block| of_block(&among, block)), among);
         }
 
         #[test]
-        fn windows_hold_each_bit_once(
-            row in any::<[u64; 8]>(), sparse in any::<[u64; 8]>(), numbers in any::<[Row; 5]>(),
-        ) {
-            let row: Row = std::array::from_fn(|i| row[i] & sparse[i]);
-            let (mut rest, mut found) = (row, EMPTY);
-            let mut before = rest;
-            while let Some((first, window)) = take_window(&mut rest) {
+        fn windows_hold_each_bit_once(all in vec(any::<u128>(), 0..6), sparse in vec(any::<u128>(), 6)) {
+            let words: Vec<_> = all.iter().zip(&sparse).map(|(all, sparse)| all & sparse).collect();
+            let set = |i: usize| words[i / CHUNK] >> (i % CHUNK) & 1 == 1;
+            let plain: Vec<_> = (0..CHUNK * words.len()).filter(|&i| set(i)).collect();
+            let mut found = Vec::new();
+            for (first, window) in windows(words.len(), |chunk| words[chunk]) {
                 prop_assert_eq!(window & 1, 1);
-                let taken: Row = std::array::from_fn(|i| before[i] & !rest[i]);
-                prop_assert_eq!(window_of(&taken, first), window);
-                let greatest_in = greatest(numbers.len(), |plane| window_of(&numbers[plane], first), window);
-                prop_assert_eq!(greatest_in, greatest(numbers.len(), |plane| numbers[plane], taken));
-                before = rest;
-                for i in ones(window).map(|i| first + i) {
-                    prop_assert_eq!(found[i / 64] >> (i % 64) & 1, 0);
-                    found[i / 64] |= 1 << (i % 64);
-                }
+                prop_assert_eq!(window_of(words.len(), |chunk| words[chunk], first), window);
+                found.extend(ones(window).map(|i| first + i));
             }
-            prop_assert_eq!(found, row);
-            prop_assert_eq!(row.is_empty(), row == EMPTY);
+            prop_assert_eq!(found, plain);
         }
     }
 }

@@ -64,9 +64,11 @@ impl SearchIndex {
         blocks.columns = coarse.columns;
         blocks.bounds.clear();
         blocks.bounds.resize(coarse.blocks(), 0);
-        let sought = (0..coarse.blocks()).filter(|&block| self.within.holds(Size::Coarse, block));
-        set_program.bound_all(coarse, sought, bounds, |block, bound| {
-            blocks.bounds[block] = bound;
+        let quads = (0..coarse.quads()).map(|quad| self.within.quad(Size::Coarse, coarse, quad));
+        set_program.bound_all(coarse, quads, bounds, |quad, found| {
+            for (place, block) in quad.blocks() {
+                blocks.bounds[block] = found.greatest(place);
+            }
         });
     }
 }

@@ -20,8 +20,9 @@ pub(super) struct Cost(pub f64);
 /// What was done since it was last looked at.
 #[derive(Debug, Clone, Copy, Default)]
 pub(super) struct Tally {
-    /// Bounds of blocks from sets.
-    pub bounds: u64,
+    /// Words that bounds from sets took, ever.
+    pub reads: u64,
+    reads_before: u64,
     /// Bounds of blocks from intervals, 64 headings each.
     pub windows: u64,
     /// Sectors of beams that were counted at a heading.
@@ -45,7 +46,7 @@ pub(super) struct Budget {
 /// What was measured for the parts of a search, in nanoseconds.
 #[derive(Debug, Clone, Copy)]
 struct Rates {
-    bound_per_beam: f64,
+    read: f64,
     window_per_beam: f64,
     sector: f64,
     look: f64,
@@ -57,21 +58,21 @@ impl Rates {
     fn of(instruction_set: InstructionSet) -> Self {
         match instruction_set {
             InstructionSet::Avx512 => Rates {
-                bound_per_beam: 1.9,
+                read: 0.4,
                 window_per_beam: 1.6,
                 sector: 60.0,
                 look: 55.0,
                 vote: 0.015,
             },
             InstructionSet::Avx2 => Rates {
-                bound_per_beam: 2.2,
+                read: 0.4,
                 window_per_beam: 1.8,
                 sector: 60.0,
                 look: 60.0,
                 vote: 0.03,
             },
             InstructionSet::Portable => Rates {
-                bound_per_beam: 5.0,
+                read: 0.8,
                 window_per_beam: 15.0,
                 sector: 110.0,
                 look: 200.0,
@@ -113,13 +114,15 @@ impl Tally {
     /// What was done since the last time, with so many beams.
     pub(super) fn take(&mut self, instruction_set: InstructionSet, beams: usize) -> Cost {
         let (rates, beams) = (Rates::of(instruction_set), beams as f64);
-        let cost = self.bounds as f64 * rates.bound_per_beam * beams
+        let cost = (self.reads - self.reads_before) as f64 * rates.read
             + self.windows as f64 * rates.window_per_beam * beams
             + self.sectors as f64 * rates.sector
             + (self.looks - self.looks_before) as f64 * rates.look;
         *self = Tally {
             looks: self.looks,
             looks_before: self.looks,
+            reads: self.reads,
+            reads_before: self.reads,
             ..Tally::default()
         };
         Cost(cost)
@@ -215,17 +218,15 @@ mod tests {
     #[test]
     fn a_tally_counts_each_thing_once() {
         let mut tally = Tally {
-            bounds: 1,
+            reads: 1,
             windows: 2,
             sectors: 3,
             looks: 4,
             ..Tally::default()
         };
         let (best, rates) = (InstructionSet::best(), Rates::of(InstructionSet::best()));
-        let cost = rates.bound_per_beam * 10.0
-            + 2.0 * rates.window_per_beam * 10.0
-            + 3.0 * rates.sector
-            + 4.0 * rates.look;
+        let cost =
+            rates.read + 2.0 * rates.window_per_beam * 10.0 + 3.0 * rates.sector + 4.0 * rates.look;
         assert_eq!(tally.take(best, 10), Cost(cost));
         assert_eq!(tally.take(best, 10), Cost(0.0));
     }

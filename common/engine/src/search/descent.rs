@@ -14,7 +14,7 @@ use super::interval_bounds::{IntervalBounds, Window};
 use super::intervals::BlockIntervals;
 use super::outlook::{CELLS, Outlook};
 use super::queue::{Block, Level, Promise, Queue};
-use super::set_bounds::{Blocks, CHUNK, SetBounds};
+use super::set_bounds::SetBounds;
 use super::task::{Programs, Task};
 use super::within::Size;
 use crate::votes::{Collector, Leading};
@@ -29,6 +29,8 @@ pub(super) struct Descent<'a> {
 #[derive(Debug, Default)]
 pub(super) struct Room {
     coarse_bounds: SetBounds,
+    /// The greatest bounds of coarse quads, chunk by chunk.
+    by_chunk: Vec<u16>,
     fine_bounds: SetBounds,
     intervals: BlockIntervals,
     interval_bounds: IntervalBounds,
@@ -107,21 +109,35 @@ impl<'a> Descent<'a> {
         // Neighbouring blocks are alike, so parts take them in turn. All bounds
         // are needed, also where another part gives up: candidates come of them.
         let within = &self.task.index.within;
-        let own = (part..coarse.blocks()).step_by(parts);
-        let own = own.filter(|&block| within.holds(Size::Coarse, block));
+        let own = (part..coarse.quads()).step_by(parts);
+        let own = own.map(|quad| within.quad(Size::Coarse, coarse, quad));
         let Room {
             coarse_bounds,
+            by_chunk,
             queue,
             ..
         } = &mut *self.room;
-        program.bound_all(coarse, own, coarse_bounds, |index, bound| {
-            self.task.coarse_bounds[index].store(bound, Ordering::Relaxed);
+        let chunks = coarse_bounds.found.chunks.len();
+        by_chunk.resize(coarse.quads() * chunks, 0);
+        program.bound_all(coarse, own, coarse_bounds, |quad, found| {
+            let mut most = 0;
+            for (place, block) in quad.blocks() {
+                let bound = found.greatest(place);
+                self.task.coarse_bounds[block].store(bound, Ordering::Relaxed);
+                most = most.max(bound);
+            }
+            let known = &mut by_chunk[quad.index * chunks..][..chunks];
+            known
+                .iter_mut()
+                .zip(found.by_chunk())
+                .for_each(|(known, bound)| *known = bound);
             queue.push(Block {
-                bound,
-                index: index as u32,
+                bound: most,
+                index: quad.index as u32,
                 level: Level::Coarse,
             });
         });
+        coarse_bounds.reads = 0;
         let mut budget = Budget::new(self.task.brute_force, parts);
         while let Some(block) = self.next(budget.dives()) {
             if stop() {
@@ -198,9 +214,9 @@ impl<'a> Descent<'a> {
         }
     }
 
-    /// Bounds a block of 16 × 16 cells once more, now with notes for what lies in it,
-    /// and queues the 8 × 8 there.
-    fn split_coarse(&mut self, index: usize) {
+    /// Bounds a quad of blocks of 16 × 16 cells once more, now with notes for what lies
+    /// in them, and queues the 8 × 8 there.
+    fn split_coarse(&mut self, quad: usize) {
         let SearchIndex {
             coarse,
             fine,
@@ -212,24 +228,46 @@ impl<'a> Descent<'a> {
             fine: finer,
             ..
         } = self.task.programs;
+        let quad = within.quad(Size::Coarse, coarse, quad);
         let floor = self.room.collector.floor();
+        for (_, block) in quad.blocks() {
+            if self.task.coarse_bounds[block].load(Ordering::Relaxed) >= floor {
+                // A block is a quad of those within.
+                fine.prefetch(block);
+            }
+        }
+        let Room {
+            coarse_bounds,
+            by_chunk,
+            ..
+        } = &mut *self.room;
+        let chunks = coarse_bounds.found.chunks.len();
+        let known = (&by_chunk[quad.index * chunks..][..chunks], floor);
+        program.bound_again((coarse, &quad), known, coarse_bounds);
+        for (place, block) in quad.blocks() {
+            let floor = self.room.collector.floor();
+            let Room {
+                coarse_bounds,
+                fine_bounds,
+                ..
+            } = &mut *self.room;
+            let around = (&coarse_bounds.found, place);
+            if coarse_bounds.found.greatest(place) < floor {
+                continue;
+            }
+            let inner = within.quad(Size::Fine, fine, block);
+            let reach = finer.bound_within((fine, &inner), floor, around, fine_bounds);
+            for (place, block) in inner.blocks().filter(|&(place, _)| reach[place]) {
+                self.queue_fine(block, place);
+            }
+        }
         let Room {
             coarse_bounds,
             fine_bounds,
             tally,
             ..
         } = &mut *self.room;
-        let around = program.bound((coarse, index), coarse_bounds);
-        let quarters = quarters(index, coarse.columns, (fine.columns, fine.rows));
-        let mut sought = quarters.filter(|&block| within.holds(Size::Fine, block));
-        let blocks = Blocks::take(&mut sought);
-        let blocks = blocks.as_slice();
-        blocks.iter().for_each(|&block| fine.prefetch(block));
-        tally.bounds += 1 + blocks.len() as u64;
-        let reach = finer.bound_within((fine, blocks), floor, around, fine_bounds);
-        for (place, &block) in blocks.iter().enumerate().filter(|&(place, _)| reach[place]) {
-            self.queue_fine(block, place);
-        }
+        tally.reads = coarse_bounds.reads + fine_bounds.reads;
     }
 
     /// Queues a block of 8 × 8 cells that was just bounded, at the headings at which it
@@ -241,20 +279,16 @@ impl<'a> Descent<'a> {
             fine_bounds,
             ..
         } = &mut *self.room;
-        let bounds = &fine_bounds.blocks[place];
+        let bounds = (&fine_bounds.found, place);
         let start = windows.len();
-        for (chunk, mut left) in bounds.reach().enumerate() {
-            while let Some((first, among)) = bits::take_window(&mut left) {
-                windows.push(Window {
-                    first: (chunk * CHUNK + first) as u16,
-                    among,
-                    rests: program.rests(bounds, chunk, (first, among)),
-                });
-            }
-        }
+        windows.extend(bounds.0.reach(place).map(|(first, among)| Window {
+            first: first as u16,
+            among,
+            rests: program.rests(bounds, (first, among)),
+        }));
         let (start, end) = (start as u32, windows.len() as u32);
         if start < end {
-            let bound = bounds.greatest();
+            let bound = bounds.0.greatest(place);
             self.room.fine.push((bound, Reverse(index as u32)));
             self.push(bound, index, Level::Fine { start, end });
         }

@@ -1,12 +1,21 @@
 //! Sums of the windows of a group of beams, bit by bit side by side.
 //!
 //! Three rows of bits become a sum and a carry for the next plane, so that
-//! adding a window to 512 numbers takes two operations and as much again for
+//! adding a window to as many numbers takes two operations and as much again for
 //! its carries.
 
-use super::bits::Row;
-use super::rows::{BitRow, Several};
-use super::spans::{Reader, SpansFrom, Window, Windows};
+use super::bits::Words;
+use super::quad_rows::{Reader, Window};
+use super::words::{BitWords, Several};
+
+/// Words in one line of the processor's cache.
+#[derive(Debug, Clone, Copy)]
+#[repr(align(64))]
+pub(super) struct Aligned(pub Words);
+
+/// Rows that are carried over to the plane that is added up, the next one, and that
+/// after it.
+pub(super) type Carries = [Vec<Aligned>; 3];
 
 /// Beams whose bearings leave the same rest by eight.
 #[derive(Debug, Clone)]
@@ -17,20 +26,44 @@ pub(super) struct Group {
     planes: Vec<Plane>,
     /// The most units that the beams can give.
     pub possible: u16,
+    /// What is read of a quad in a chunk.
+    pub reads: u32,
 }
 
-/// Windows by how many reads they take: nearly all take one to three.
+/// Windows with the same share.
 #[derive(Debug, Clone, Default)]
 struct Plane {
-    two: Windows<2>,
-    three: Windows<3>,
-    most: Windows<{ Window::MOST }>,
+    windows: Vec<Window>,
+    /// The same four by four, those that are read as often side by side.
+    fours: Vec<[Window; 4]>,
+    /// How many fours are read so often.
+    runs: Vec<(u32, usize)>,
+    /// The windows that are left.
+    pairs: Vec<[Window; 2]>,
 }
 
-/// A row in one line of the processor's cache.
-#[derive(Debug, Clone)]
-#[repr(align(64))]
-pub(super) struct Aligned(pub Row);
+impl Plane {
+    fn clear(&mut self) {
+        self.windows.clear();
+        self.fours.clear();
+        self.runs.clear();
+        self.pairs.clear();
+    }
+
+    fn lay_out(&mut self, nothing: Window) {
+        self.windows.sort_unstable_by_key(|window| window.reads);
+        let (fours, rest) = self.windows.as_chunks();
+        self.fours.extend(fours);
+        let reads = |four: &[Window; 4]| four[3].reads;
+        let runs = fours.chunk_by(|a, b| reads(a) == reads(b));
+        self.runs
+            .extend(runs.map(|run| (reads(&run[0]), run.len())));
+        let (pairs, rest) = rest.as_chunks();
+        self.pairs.extend(pairs);
+        self.pairs
+            .extend(rest.iter().map(|&window| [nothing, window]));
+    }
+}
 
 impl Group {
     pub(super) fn new(shift: u32) -> Self {
@@ -38,6 +71,7 @@ impl Group {
             shift,
             planes: Vec::new(),
             possible: 0,
+            reads: 0,
         }
     }
 
@@ -49,134 +83,164 @@ impl Group {
     pub(super) fn clear(&mut self) {
         self.planes.iter_mut().for_each(Plane::clear);
         self.possible = 0;
+        self.reads = 0;
     }
 
     pub(super) fn push(&mut self, plane: usize, window: Window) {
         self.possible += 1 << plane;
+        self.reads += window.reads;
         if self.planes.len() <= plane {
             self.planes.resize_with(plane + 1, Plane::default);
         }
-        self.planes[plane].push(window);
+        self.planes[plane].windows.push(window);
     }
 
-    /// How many windows there are; each leaves at most one carry.
-    pub(super) fn windows(&self) -> usize {
-        self.planes.iter().map(Plane::len).sum()
+    /// Lays out the windows that were pushed; one that sees nothing fills up.
+    pub(super) fn lay_out(&mut self, nothing: Window) {
+        self.planes
+            .iter_mut()
+            .for_each(|plane| plane.lay_out(nothing));
+    }
+
+    /// How many words at most are carried over from a plane to another.
+    pub(super) fn carries(&self) -> usize {
+        let windows: usize = self.planes.iter().map(|plane| plane.windows.len()).sum();
+        windows.div_ceil(2) + 1
     }
 
     /// Adds up what the windows see, plane by plane with carry-save adders, and
     /// adds that to the sums of all groups.
     #[inline(always)]
-    pub(super) fn add<R: BitRow, const N: usize>(
+    pub(super) fn add<W: BitWords, const N: usize>(
         &self,
-        spans: SpansFrom<'_>,
-        [carries, next]: &mut [Vec<Aligned>; 2],
-        total: &mut [Several<R, N>],
+        reader: Reader<'_, N>,
+        carries: &mut Carries,
+        total: &mut [Several<W, N>],
     ) {
-        let (mut carries, mut next) = (&mut carries[..], &mut next[..]);
-        let mut carried = 0;
-        let mut windows = self.planes.iter();
+        let [mut carries, mut next, mut after] = carries.each_mut().map(|rows| &mut rows[..]);
+        let (mut carried, mut carried_next) = (0, 0);
+        let mut planes = self.planes.iter();
+        let mut twos = Several::empty();
         // What adding to the total carries over.
         let mut overflow = Several::empty();
         for total in total {
-            let mut column = Column::new(next);
-            if let Some(plane) = windows.next() {
-                column.add_windows(plane.two.reader(spans));
-                column.add_windows(plane.three.reader(spans));
-                column.add_windows(plane.most.reader(spans));
+            let mut column = Column::new(twos, after);
+            if let Some(plane) = planes.next() {
+                column.add_windows(reader, plane);
             }
             column.add_rows(&carries[..carried * N]);
-            let (sum, made) = (column.sum, column.made);
-            (*total, overflow) = total.full_adder(sum.shift_down(self.shift), overflow);
-            std::mem::swap(&mut carries, &mut next);
-            carried = made;
+            let (ones, made) = (column.ones, column.made);
+            twos = column.twos;
+            let sum = ones.sorted_and_down(self.shift);
+            (*total, overflow) = total.full_adder(sum, overflow);
+            (carries, next, after) = (next, after, carries);
+            (carried, carried_next) = (carried_next, made);
         }
     }
 }
 
-impl Plane {
-    fn clear(&mut self) {
-        self.two.clear();
-        self.three.clear();
-        self.most.clear();
-    }
-
-    fn push(&mut self, window: Window) {
-        match window.reads() {
-            ..=2 => self.two.push(window),
-            3 => self.three.push(window),
-            _ => self.most.push(window),
+impl Aligned {
+    /// The rows of several chunks.
+    #[inline(always)]
+    fn read<W: BitWords, const N: usize>(rows: &[Aligned; N]) -> Several<W, N> {
+        let mut several = Several::empty();
+        for (words, row) in several.0.iter_mut().zip(rows) {
+            *words = W::from_words(&row.0);
         }
-    }
-
-    fn len(&self) -> usize {
-        self.two.len() + self.three.len() + self.most.len()
+        several
     }
 }
 
-/// The sum of rows of bits, two by two, each pair with a carry.
-struct Column<'a, R, const N: usize> {
-    sum: Several<R, N>,
+/// Sums of a plane and the next one, of rows of bits four by four, with a carry for the
+/// plane after these for each.
+struct Column<'a, W, const N: usize> {
+    ones: Several<W, N>,
+    twos: Several<W, N>,
     carries: &'a mut [Aligned],
     made: usize,
 }
 
-impl<'a, R: BitRow, const N: usize> Column<'a, R, N> {
+impl<'a, W: BitWords, const N: usize> Column<'a, W, N> {
     #[inline(always)]
-    fn new(carries: &'a mut [Aligned]) -> Self {
+    fn new(ones: Several<W, N>, carries: &'a mut [Aligned]) -> Self {
         Column {
-            sum: Several::empty(),
+            ones,
+            twos: Several::empty(),
             carries,
             made: 0,
         }
     }
 
     #[inline(always)]
-    fn add_windows<const READS: usize>(&mut self, windows: Reader<'_, READS, N>) {
-        let count = windows.len();
-        for pair in 0..count / 2 {
-            self.add_pair(windows.read(2 * pair), windows.read(2 * pair + 1));
+    fn add_windows(&mut self, reader: Reader<'_, N>, plane: &Plane) {
+        let mut fours = &plane.fours[..];
+        for &(reads, count) in &plane.runs {
+            let (alike, rest) = fours.split_at(count);
+            // Known numbers are read without a loop.
+            match reads {
+                1 => self.add_alike(reader, alike, 1),
+                2 => self.add_alike(reader, alike, 2),
+                3 => self.add_alike(reader, alike, 3),
+                reads => self.add_alike(reader, alike, reads),
+            }
+            fours = rest;
         }
-        if count % 2 == 1 {
-            self.add_pair(windows.read(count - 1), Several::empty());
+        for pair in &plane.pairs {
+            let [a, b] = pair;
+            self.add_pair(reader.read(a, b.reads), reader.read(b, b.reads));
+        }
+    }
+
+    #[inline(always)]
+    fn add_alike(&mut self, reader: Reader<'_, N>, fours: &[[Window; 4]], reads: u32) {
+        for four in fours {
+            let [first, second, third, fourth] = four;
+            let (ones, a) = self
+                .ones
+                .full_adder(reader.read(first, reads), reader.read(second, reads));
+            let (ones, b) = ones.full_adder(reader.read(third, reads), reader.read(fourth, reads));
+            self.ones = ones;
+            self.carry(a, b);
         }
     }
 
     #[inline(always)]
     fn add_rows(&mut self, rows: &[Aligned]) {
-        let count = rows.len() / N;
-        for pair in 0..count / 2 {
-            self.add_pair(
-                Aligned::read(rows, 2 * pair),
-                Aligned::read(rows, 2 * pair + 1),
-            );
+        let (rows, _) = rows.as_chunks::<N>();
+        let (fours, rest) = rows.as_chunks::<4>();
+        for four in fours {
+            let (ones, a) = self
+                .ones
+                .full_adder(Aligned::read(&four[0]), Aligned::read(&four[1]));
+            let (ones, b) = ones.full_adder(Aligned::read(&four[2]), Aligned::read(&four[3]));
+            self.ones = ones;
+            self.carry(a, b);
         }
-        if count % 2 == 1 {
-            self.add_pair(Aligned::read(rows, count - 1), Several::empty());
+        let (pairs, rest) = rest.as_chunks();
+        for [a, b] in pairs {
+            self.add_pair(Aligned::read(a), Aligned::read(b));
+        }
+        for row in rest {
+            self.add_pair(Aligned::read(row), Several::empty());
         }
     }
 
     #[inline(always)]
-    fn add_pair(&mut self, a: Several<R, N>, b: Several<R, N>) {
+    fn add_pair(&mut self, a: Several<W, N>, b: Several<W, N>) {
         let carry;
-        (self.sum, carry) = self.sum.full_adder(a, b);
+        (self.ones, carry) = self.ones.full_adder(a, b);
+        self.carry(carry, Several::empty());
+    }
+
+    /// Adds two rows to the next plane.
+    #[inline(always)]
+    fn carry(&mut self, a: Several<W, N>, b: Several<W, N>) {
+        let carry;
+        (self.twos, carry) = self.twos.full_adder(a, b);
         let to = &mut self.carries[self.made * N..][..N];
-        for (to, row) in to.iter_mut().zip(carry.0) {
-            to.0 = row.to_row();
+        for (to, words) in to.iter_mut().zip(carry.0) {
+            to.0 = words.to_words();
         }
         self.made += 1;
-    }
-}
-
-impl Aligned {
-    /// The rows of number `i` of several blocks.
-    #[inline(always)]
-    fn read<R: BitRow, const N: usize>(rows: &[Aligned], i: usize) -> Several<R, N> {
-        let rows = &rows[i * N..][..N];
-        let mut several = Several::empty();
-        for (to, row) in several.0.iter_mut().zip(rows) {
-            *to = R::from_row(&row.0);
-        }
-        several
     }
 }

@@ -1,15 +1,15 @@
-//! What a block of cells is bounded by at each heading: numbers as planes.
+//! What the blocks of a quad are bounded by at each heading: numbers as planes.
 
-use super::bits::{self, EMPTY, Planes, Row};
+use super::bits::{self, EMPTY, Planes, QUAD, Words};
 use super::set_program::GROUPS;
 
-/// Bounds of a block for all headings.
+/// Bounds of the blocks of a quad for all headings.
 #[derive(Debug, Clone, Default)]
 pub(crate) struct HeadingBounds {
     /// All numbers count in this unit of votes.
     unit: u16,
-    /// The greatest, in units.
-    pub(super) greatest: u16,
+    /// The greatest of each block, in units.
+    pub(super) greatest: [u16; QUAD],
     pub(super) chunks: Vec<Chunk>,
 }
 
@@ -20,44 +20,56 @@ pub(super) struct Chunk {
     pub sums: Planes,
     /// What the sums were after each group but the last.
     pub after: [Planes; GROUPS - 1],
+    /// The greatest of any block, in units.
+    pub greatest: u16,
     /// Which headings matter.
-    pub valid: Row,
-    /// Those of them that may have as many votes as was asked for.
-    pub reach: Row,
+    pub valid: u128,
+    /// Those of them at which a block may have as many votes as was asked for.
+    pub reach: Words,
 }
 
 impl HeadingBounds {
-    /// Makes room for bounds at some headings, a row a chunk; nothing is left of what
+    /// Makes room for bounds at some headings, a word a chunk; nothing is left of what
     /// was there.
-    pub(super) fn fit(&mut self, unit: u16, headings: impl Iterator<Item = Row>) {
+    pub(super) fn fit(&mut self, unit: u16, headings: impl Iterator<Item = u128>) {
         self.unit = unit;
-        self.greatest = 0;
+        self.greatest = [0; QUAD];
         self.chunks.clear();
         let chunks = headings.map(|valid| Chunk {
             sums: [EMPTY; bits::PLANES],
             after: [[EMPTY; bits::PLANES]; GROUPS - 1],
+            greatest: 0,
             valid,
             reach: EMPTY,
         });
         self.chunks.extend(chunks);
     }
 
-    /// The greatest bound.
-    pub(crate) fn greatest(&self) -> u16 {
-        self.unit * self.greatest
+    /// The greatest bound of a block.
+    pub(crate) fn greatest(&self, place: usize) -> u16 {
+        self.unit * self.greatest[place]
     }
 
-    /// For each chunk, the headings at which a block that was bounded within another
-    /// one reaches what was asked for.
-    pub(crate) fn reach(&self) -> impl Iterator<Item = Row> {
-        self.chunks.iter().map(|chunk| chunk.reach)
+    /// The greatest bound of any block, chunk by chunk.
+    pub(crate) fn by_chunk(&self) -> impl Iterator<Item = u16> {
+        self.chunks.iter().map(|chunk| self.unit * chunk.greatest)
     }
 
-    /// For each chunk, the headings at which the bound is at least `least`.
-    pub(crate) fn at_least(&self, least: u16) -> impl Iterator<Item = Row> {
+    /// Windows of the headings at which a block that was bounded within another one
+    /// reaches what was asked for.
+    pub(crate) fn reach(&self, place: usize) -> impl Iterator<Item = (usize, u64)> {
+        bits::windows(self.chunks.len(), move |chunk| {
+            bits::of_block(&self.chunks[chunk].reach, place)
+        })
+    }
+
+    /// For each chunk, the headings at which the bound of a block is at least `least`.
+    pub(crate) fn at_least(&self, place: usize, least: u16) -> impl Iterator<Item = u128> {
         let least = least.div_ceil(self.unit);
         let at_least = move |chunk: &Chunk| {
-            bits::at_least(bits::PLANES, |plane| chunk.sums[plane], least, chunk.valid)
+            let among = bits::words(|_| chunk.valid);
+            let at_least = bits::at_least(bits::PLANES, |plane| chunk.sums[plane], least, among);
+            bits::of_block(&at_least, place)
         };
         self.chunks.iter().map(at_least)
     }

@@ -160,10 +160,10 @@ impl IntervalProgram {
 mod tests {
     use proptest::prelude::*;
 
-    use super::super::bits::{self, Row};
+    use super::super::bits;
     use super::super::descent::quarters;
     use super::super::index::SearchIndex;
-    use super::super::set_bounds::{CHUNK, SetBounds};
+    use super::super::set_bounds::SetBounds;
     use super::super::task::{Programs, Shared, Task};
     use super::*;
     use crate::testing::{any_grid, any_scan, space_of};
@@ -190,29 +190,29 @@ mod tests {
                 inner_bounds.fit(inner, task.headings());
                 let (mut alone, mut known) = (IntervalBounds::default(), IntervalBounds::default());
                 for block in 0..fine.blocks() {
-                    let (x, y) = (block % fine.columns / 2, block / fine.columns / 2);
-                    let around = outer.bound((coarse, y * coarse.columns + x), &mut outer_bounds);
-                    let [found, ..] = inner.bound_within((fine, &[block]), 1, around, &mut inner_bounds);
-                    if !found {
+                    let (outside, place) = fine.place_of(block);
+                    let (outer_quad, outer_place) = coarse.place_of(outside);
+                    let outer_quad = coarse.sought(outer_quad, |_| true);
+                    let around = outer.bound((coarse, &outer_quad), &mut outer_bounds);
+                    let quad = fine.sought(outside, |other| other == block);
+                    let around = (around, outer_place);
+                    if !inner.bound_within((fine, &quad), 1, around, &mut inner_bounds)[place] {
                         continue;
                     }
-                    let within = &inner_bounds.blocks[0];
-                    let least = (f64::from(within.greatest()) * share) as u16;
-                    let masks: Vec<Row> = within.at_least(least.max(1)).collect();
-                    for (chunk, mut mask) in masks.into_iter().enumerate() {
-                        while let Some((first, among)) = bits::take_window(&mut mask) {
-                            let rests = inner.rests(within, chunk, (first, among));
-                            let first = chunk * CHUNK + first;
-                            let window = Window { first: first as u16, among, rests };
-                            let sides = (intervals.columns, intervals.rows);
-                            for small in quarters(block, fine.columns, sides) {
-                                intervals.read(small, &mut read);
-                                let plain = interval.bound(&read, first, among, least, &mut alone);
-                                let found = interval.bound_within(&read, &window, least, &mut known);
-                                prop_assert_eq!(found, plain);
-                                for lane in bits::ones(among).filter(|_| plain) {
-                                    prop_assert_eq!(known.all[lane], alone.all[lane]);
-                                }
+                    let within = &inner_bounds.found;
+                    let least = (f64::from(within.greatest(place)) * share) as u16;
+                    let masks: Vec<_> = within.at_least(place, least.max(1)).collect();
+                    for (first, among) in bits::windows(masks.len(), |chunk| masks[chunk]) {
+                        let rests = inner.rests((within, place), (first, among));
+                        let window = Window { first: first as u16, among, rests };
+                        let sides = (intervals.columns, intervals.rows);
+                        for small in quarters(block, fine.columns, sides) {
+                            intervals.read(small, &mut read);
+                            let plain = interval.bound(&read, first, among, least, &mut alone);
+                            let found = interval.bound_within(&read, &window, least, &mut known);
+                            prop_assert_eq!(found, plain);
+                            for lane in bits::ones(among).filter(|_| plain) {
+                                prop_assert_eq!(known.all[lane], alone.all[lane]);
                             }
                         }
                     }

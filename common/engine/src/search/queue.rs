@@ -78,7 +78,7 @@ pub(super) type Promise = (u16, Reverse<u32>);
 /// How large a block is, and what is known of it.
 #[derive(Debug, Clone, Copy)]
 pub(super) enum Level {
-    /// 16 × 16 cells.
+    /// A quad of 16 × 16 cells each.
     Coarse,
     /// 8 × 8 cells, at the headings of these windows.
     Fine { start: u32, end: u32 },

@@ -1,25 +1,23 @@
-//! Upper bounds of the votes in a block from its sets of visible ranges.
+//! Upper bounds of the votes in blocks from their sets of visible ranges.
 //!
 //! A beam's taper is covered by nested windows of distances, each with a share
 //! of its votes. Where a block sees no range within a window, at a heading, its
 //! share is missing there. The bits of a window are read at the beam's bearing:
 //! the whole bytes of it by where reading starts, the rest by grouping beams
-//! and shifting the sums of each group once.
+//! and shifting the sums of each group once. What is done is done for the four
+//! blocks of a quad, side by side.
 
-use super::bits::{self, EMPTY, Planes, Row};
-use super::group::{Aligned, Group};
-use super::heading_bounds::{Chunk, HeadingBounds};
-use super::rows::{BitRow, Several};
+use super::bits::{self, EMPTY, QUAD, Words};
+use super::group::{Aligned, Carries, Group};
+use super::heading_bounds::HeadingBounds;
+use super::quad_rows::{QuadRows, Reader};
 use super::set_program::{GROUPS, SetProgram};
-use super::sets::RangeSets;
-use super::spans::Spans;
+use super::sets::{Quad, RangeSets};
+use super::words::{BitWords, Several};
 use crate::instruction_set::InstructionSet;
 
-/// Blocks that are bounded side by side where there are registers for it.
-pub(crate) const SIDE_BY_SIDE: usize = 4;
-
-/// Headings of a chunk: a row less what shifting takes up.
-pub(crate) const CHUNK: usize = 504;
+/// Most chunks that are bounded at a time by any instruction set.
+const MOST_AT_A_TIME: usize = 3;
 
 /// What the beams from each group on give at most, in votes: more for the first
 /// group than they can, and 0 behind the last.
@@ -30,286 +28,316 @@ pub(crate) type Rests = [u16; GROUPS + 1];
 enum How<'a> {
     /// At all headings.
     Plain,
-    /// The same, and the sums after each group are noted for blocks within.
-    Noting,
+    /// The same, and the sums after each group are noted for blocks within. Only in
+    /// chunks that matter, if it is known which do.
+    Noting(Option<Known<'a>>),
     /// As blocks within another one, as long as any heading may have so many units.
-    Within(&'a HeadingBounds, u16),
+    Within(Around<'a>, u16),
 }
 
-impl How<'_> {
-    /// The block around at the headings of a chunk, and the units that matter.
-    #[inline(always)]
-    fn within(&self, chunk: usize) -> Option<(&Chunk, u16)> {
-        match *self {
-            How::Within(around, least) => Some((&around.chunks[chunk], least)),
-            How::Plain | How::Noting => None,
-        }
-    }
-}
+/// Bounds of a quad that are known, chunk by chunk, and those that matter, in votes.
+pub(crate) type Known<'a> = (&'a [u16], u16);
 
-/// Blocks that are bounded side by side.
-#[derive(Debug, Clone, Copy, Default)]
-pub(crate) struct Blocks {
-    all: [usize; SIDE_BY_SIDE],
-    count: usize,
-}
+/// The bounds of a block around others: of a quad, and its place there.
+pub(crate) type Around<'a> = (&'a HeadingBounds, usize);
 
-impl Blocks {
-    /// The next blocks, as many as there are or as are bounded at a time.
-    pub(crate) fn take(from: &mut impl Iterator<Item = usize>) -> Self {
-        let mut blocks = Blocks::default();
-        for (place, block) in blocks.all.iter_mut().zip(from) {
-            *place = block;
-            blocks.count += 1;
-        }
-        blocks
-    }
-
-    pub(crate) fn as_slice(&self) -> &[usize] {
-        &self.all[..self.count]
-    }
-}
-
-/// Bounds of blocks that are bounded side by side, and room to find them.
+/// Bounds of the blocks of a quad, and room to find them.
 #[derive(Debug, Clone, Default)]
 pub(crate) struct SetBounds {
-    /// Those of each block.
-    pub blocks: [HeadingBounds; SIDE_BY_SIDE],
-    spans: Spans,
-    /// Rows carried over to the next plane, and to the one after.
-    carries: [Vec<Aligned>; 2],
+    pub found: HeadingBounds,
+    /// What was read in all, in words.
+    pub reads: u64,
+    /// The chunks in which any heading matters.
+    chunks: Vec<usize>,
+    rows: QuadRows,
+    carries: Carries,
 }
 
 impl SetBounds {
-    /// Makes room for the bounds by a program of blocks at some headings, a row a
+    /// Makes room for the bounds by a program of blocks at some headings, a word a
     /// chunk; nothing is left of what another program had.
-    pub(crate) fn fit(&mut self, program: &SetProgram, headings: impl Iterator<Item = Row>) {
-        let [first, others @ ..] = &mut self.blocks;
-        first.fit(program.unit, headings);
-        for block in others {
-            block.fit(program.unit, first.chunks.iter().map(|chunk| chunk.valid));
-        }
-        self.spans.fit(&program.layout, SIDE_BY_SIDE);
-        let carries = program.groups().iter().map(Group::windows).max();
+    pub(crate) fn fit(&mut self, program: &SetProgram, headings: impl Iterator<Item = u128>) {
+        self.found.fit(program.unit, headings);
+        self.reads = 0;
+        self.rows.fit(&program.layout);
+        let carries = program.groups().iter().map(Group::carries).max();
         for rows in &mut self.carries {
-            rows.resize(SIDE_BY_SIDE * (carries.unwrap_or(0) + 4), Aligned(EMPTY));
+            rows.resize(MOST_AT_A_TIME * (carries.unwrap_or(0)), Aligned(EMPTY));
         }
     }
 }
 
 impl SetProgram {
-    /// What the beams from each group on give at most at the headings of a window in a
-    /// chunk, by bounds that were found within those of a block around.
-    pub(crate) fn rests(
-        &self,
-        bounds: &HeadingBounds,
-        chunk: usize,
-        (first, among): (usize, u64),
-    ) -> Rests {
-        let after = &bounds.chunks[chunk].after;
+    /// What the beams from each group on give at most at the headings of a window, by
+    /// bounds of a block that were found within those of a block around.
+    pub(crate) fn rests(&self, (bounds, place): Around<'_>, (first, among): (usize, u64)) -> Rests {
+        let chunks = &bounds.chunks;
         let others = self.groups().len().saturating_sub(1);
         let mut rests = Rests::default();
         rests[0] = u16::MAX;
-        for group in 1..=others {
+        for (group, rest) in rests.iter_mut().enumerate().take(others + 1).skip(1) {
             // The last groups were added first.
-            let sums = &after[others - group];
-            let sums = |plane: usize| bits::window_of(&sums[plane], first);
-            rests[group] = self.unit * bits::greatest(self.planes, sums, among);
+            let sums = |chunk: usize, plane: usize| chunks[chunk].after[others - group][plane];
+            let sums = |plane| {
+                let of_chunk = |chunk| bits::of_block(&sums(chunk, plane), place);
+                bits::window_of(chunks.len(), of_chunk, first)
+            };
+            *rest = self.unit * bits::greatest(self.planes, sums, among);
         }
         rests
     }
 
-    /// Bounds the votes of a block at all headings.
-    pub(crate) fn bound<'a>(
+    /// Bounds the votes of blocks in chunks in which any may have as many votes as
+    /// matter.
+    pub(crate) fn bound_again<'a>(
         &self,
-        (sets, block): (&RangeSets, usize),
+        (sets, quad): (&RangeSets, &Quad),
+        known: Known<'_>,
         bounds: &'a mut SetBounds,
     ) -> &'a HeadingBounds {
-        self.run((sets, &[block]), How::Noting, bounds);
-        &bounds.blocks[0]
+        self.run((sets, quad), How::Noting(Some(known)), bounds);
+        &bounds.found
     }
 
-    /// Bounds those of blocks within one that was bounded by the same beams, up to
-    /// [`SIDE_BY_SIDE`] of them. Whether any heading of each may have `least` votes; if
-    /// not, its bounds are not finished.
+    /// Bounds the votes of blocks at all headings.
+    pub(crate) fn bound<'a>(
+        &self,
+        (sets, quad): (&RangeSets, &Quad),
+        bounds: &'a mut SetBounds,
+    ) -> &'a HeadingBounds {
+        self.run((sets, quad), How::Noting(None), bounds);
+        &bounds.found
+    }
+
+    /// Bounds those of blocks within one that was bounded by the same beams. Whether any
+    /// heading of each may have `least` votes; if not, its bounds are not finished.
     ///
     /// Only headings matter at which the block around reaches `least`, and what it says
     /// of beams that are still to be added tells sooner whether any does.
     pub(crate) fn bound_within(
         &self,
-        blocks: (&RangeSets, &[usize]),
+        blocks: (&RangeSets, &Quad),
         least: u16,
-        around: &HeadingBounds,
+        around: Around<'_>,
         bounds: &mut SetBounds,
-    ) -> [bool; SIDE_BY_SIDE] {
+    ) -> [bool; QUAD] {
         let least = least.div_ceil(self.unit);
         self.run(blocks, How::Within(around, least), bounds)
     }
 
-    /// The greatest bounds of blocks.
+    /// The greatest bound of each block.
     pub(crate) fn bound_all(
         &self,
         sets: &RangeSets,
-        mut blocks: impl Iterator<Item = usize>,
+        quads: impl Iterator<Item = Quad>,
         bounds: &mut SetBounds,
-        mut take: impl FnMut(usize, u16),
+        mut take: impl FnMut(&Quad, &HeadingBounds),
     ) {
-        loop {
-            let some = Blocks::take(&mut blocks);
-            let some = some.as_slice();
-            if some.is_empty() {
-                break;
+        let mut quads = quads.peekable();
+        while let Some(quad) = quads.next() {
+            if let Some(next) = quads.peek() {
+                sets.prefetch(next.index);
             }
-            self.run((sets, some), How::Plain, bounds);
-            for (&block, bounds) in some.iter().zip(&bounds.blocks) {
-                take(block, bounds.greatest());
-            }
+            self.run((sets, &quad), How::Plain, bounds);
+            take(&quad, &bounds.found);
         }
     }
 
     fn run(
         &self,
-        (sets, blocks): (&RangeSets, &[usize]),
+        blocks: (&RangeSets, &Quad),
         how: How<'_>,
         bounds: &mut SetBounds,
-    ) -> [bool; SIDE_BY_SIDE] {
-        let mut reach = [false; SIDE_BY_SIDE];
+    ) -> [bool; QUAD] {
         match self.instruction_set {
             // SAFETY: the processor has the instruction set, or it would not be chosen.
             #[cfg(target_arch = "x86_64")]
-            InstructionSet::Avx512 => unsafe {
-                match *blocks {
-                    [] => {}
-                    [block] => [reach[0]] = self.run_avx512((sets, [block]), 0, how, bounds),
-                    [first, ..] => {
-                        let four = std::array::from_fn(|i| *blocks.get(i).unwrap_or(&first));
-                        reach = self.run_avx512::<SIDE_BY_SIDE>((sets, four), 0, how, bounds);
-                    }
-                }
-            },
+            InstructionSet::Avx512 => unsafe { self.run_avx512(blocks, how, bounds) },
             // SAFETY: as above.
             #[cfg(target_arch = "x86_64")]
-            InstructionSet::Avx2 => unsafe {
-                for (i, &block) in blocks.iter().enumerate() {
-                    reach[i] = self.run_avx2((sets, block), i, how, bounds);
-                }
-            },
-            _ => {
-                for (i, &block) in blocks.iter().enumerate() {
-                    [reach[i]] = self.run_with::<Row, 1>((sets, [block]), i, how, bounds);
-                }
-            }
+            InstructionSet::Avx2 => unsafe { self.run_avx2(blocks, how, bounds) },
+            _ => self.run_with::<Words>(blocks, how, bounds),
         }
-        reach
     }
 
     #[cfg(target_arch = "x86_64")]
     #[target_feature(enable = "avx512f,avx512bw,avx512dq,avx512vl")]
-    fn run_avx512<const N: usize>(
+    fn run_avx512(
         &self,
-        blocks: (&RangeSets, [usize; N]),
-        place: usize,
+        blocks: (&RangeSets, &Quad),
         how: How<'_>,
         bounds: &mut SetBounds,
-    ) -> [bool; N] {
-        self.run_with::<super::rows::Avx512, N>(blocks, place, how, bounds)
+    ) -> [bool; QUAD] {
+        self.run_with::<super::words::Avx512>(blocks, how, bounds)
     }
 
     #[cfg(target_arch = "x86_64")]
     #[target_feature(enable = "avx2")]
     fn run_avx2(
         &self,
-        (sets, block): (&RangeSets, usize),
-        place: usize,
+        blocks: (&RangeSets, &Quad),
         how: How<'_>,
         bounds: &mut SetBounds,
-    ) -> bool {
-        let [reaches] = self.run_with::<super::rows::Avx2, 1>((sets, [block]), place, how, bounds);
-        reaches
+    ) -> [bool; QUAD] {
+        self.run_with::<super::words::Avx2>(blocks, how, bounds)
     }
 
     #[inline(always)]
-    fn run_with<R: BitRow, const N: usize>(
+    fn run_with<W: BitWords>(
         &self,
-        (sets, blocks): (&RangeSets, [usize; N]),
-        place: usize,
+        (sets, quad): (&RangeSets, &Quad),
         how: How<'_>,
         bounds: &mut SetBounds,
-    ) -> [bool; N] {
-        let groups = self.groups();
-        let (spans, carries) = (&mut bounds.spans, &mut bounds.carries);
-        let bounds = &mut bounds.blocks[place..place + N];
-        for (i, &block) in blocks.iter().enumerate() {
-            spans.set::<R>(&self.layout, i, sets.block(block));
-            bounds[i].greatest = 0;
+    ) -> [bool; QUAD] {
+        let mut chunks = std::mem::take(&mut bounds.chunks);
+        bounds.found.greatest = [0; QUAD];
+        self.choose(quad, how, &mut bounds.found, &mut chunks);
+        let mut any = EMPTY;
+        if !chunks.is_empty() {
+            bounds.rows.set::<W>(&self.layout, &sets.quad(quad.index));
         }
-        let mut any = [false; N];
-        for place in 0..bounds[0].chunks.len() {
-            let spans = spans.from(place * CHUNK / 8);
-            let mut total = [Several::<R, N>::empty(); bits::PLANES];
-            let total = &mut total[..self.planes];
-            let within = how.within(place);
-            let mut valid = R::from_row(&bounds[0].chunks[place].valid);
-            if let Some((around, least)) = within {
-                let sums = |plane: usize| R::from_row(&around.sums[plane]);
-                valid = bits::at_least(self.planes, sums, least, valid);
+        for chunks in chunks.chunks(W::AT_A_TIME) {
+            match *chunks {
+                [a, b, c, ..] => self.run_chunks::<W, 3>(how, [a, b, c], bounds, &mut any),
+                [a, b] => self.run_chunks::<W, 2>(how, [a, b], bounds, &mut any),
+                [a] => self.run_chunks::<W, 1>(how, [a], bounds, &mut any),
+                [] => {}
             }
-            let mut reach = [valid; N];
-            let mut alive = [!valid.is_empty(); N];
-            for added in 1..=groups.len() {
-                if alive == [false; N] {
+        }
+        bounds.chunks = chunks;
+        std::array::from_fn(|place| bits::of_block(&any, place) != 0)
+    }
+
+    /// Notes at which headings the blocks matter, and the chunks in which any does.
+    #[inline(always)]
+    fn choose(
+        &self,
+        quad: &Quad,
+        how: How<'_>,
+        bounds: &mut HeadingBounds,
+        chunks: &mut Vec<usize>,
+    ) {
+        chunks.clear();
+        for (i, chunk) in bounds.chunks.iter_mut().enumerate() {
+            chunk.greatest = 0;
+            let valid = match how {
+                How::Noting(Some((known, least))) if known[i] < least => 0,
+                How::Plain | How::Noting(_) => chunk.valid,
+                How::Within((around, place), least) => {
+                    let around = &around.chunks[i];
+                    let (sums, reach) = (|plane: usize| around.sums[plane], around.reach);
+                    let at_least = bits::at_least(self.planes, sums, least, reach);
+                    bits::of_block(&at_least, place)
+                }
+            };
+            let valid = |place: usize| {
+                if quad.blocks[place].is_some() {
+                    valid
+                } else {
+                    0
+                }
+            };
+            chunk.reach = bits::words(valid);
+            if chunk.reach != EMPTY {
+                chunks.push(i);
+            }
+        }
+    }
+
+    /// Bounds blocks at the headings of some chunks, and adds to `any` where they reach
+    /// what is asked for.
+    #[inline(always)]
+    fn run_chunks<W: BitWords, const N: usize>(
+        &self,
+        how: How<'_>,
+        places: [usize; N],
+        bounds: &mut SetBounds,
+        any: &mut Words,
+    ) {
+        let groups = self.groups();
+        let SetBounds {
+            found,
+            reads,
+            carries,
+            rows,
+            ..
+        } = bounds;
+        let reader = Reader::new(&self.layout, rows, places);
+        let HeadingBounds {
+            chunks, greatest, ..
+        } = found;
+        let mut total = [Several::<W, N>::empty(); bits::PLANES];
+        let total = &mut total[..self.planes];
+        let mut valid = [W::empty(); N];
+        for (valid, place) in valid.iter_mut().zip(places) {
+            *valid = W::from_words(&chunks[place].reach);
+        }
+        let mut reach = valid;
+        for added in 1..=groups.len() {
+            let left = groups.len() - added;
+            // What is around had the groups in this order, and tells what the
+            // first ones give: those come last here.
+            let within = matches!(how, How::Within(..));
+            let group = &groups[if within { left } else { added - 1 }];
+            group.add(reader, carries, total);
+            *reads += N as u64 * u64::from(group.reads);
+            if let How::Within((around, around_place), least) = how {
+                let mut alive = false;
+                for i in 0..N {
+                    let sums = total.iter().map(|words| words.0[i]);
+                    let sums = match left {
+                        0 => sum(sums, |_| W::empty()),
+                        _ => {
+                            let after = &around.chunks[places[i]].after[left - 1];
+                            sum(sums, |plane| {
+                                W::splat(bits::of_block(&after[plane], around_place))
+                            })
+                        }
+                    };
+                    reach[i] = bits::at_least(self.planes, |plane| sums[plane], least, valid[i]);
+                    alive |= !reach[i].is_empty();
+                }
+                if !alive {
                     break;
                 }
-                let left = groups.len() - added;
-                // What is around had the groups in this order, and tells what the
-                // first ones give: those come last here.
-                let group = &groups[if within.is_some() { left } else { added - 1 }];
-                group.add(spans, carries, total);
-                if let Some((around, least)) = within {
-                    for i in 0..N {
-                        let sums = total.iter().map(|rows| rows.0[i]);
-                        let sums = match left {
-                            0 => sum(sums, &[EMPTY; bits::PLANES]),
-                            _ => sum(sums, &around.after[left - 1]),
-                        };
-                        reach[i] = bits::at_least(self.planes, |plane| sums[plane], least, valid);
-                        alive[i] = !reach[i].is_empty();
-                    }
-                }
-                if left > 0 && !matches!(how, How::Plain) {
-                    for (i, bounds) in bounds.iter_mut().enumerate() {
-                        let after = &mut bounds.chunks[place].after[added - 1];
-                        for (after, total) in after.iter_mut().zip(&*total) {
-                            *after = total.0[i].to_row();
-                        }
-                    }
-                }
             }
-            for (i, bounds) in bounds.iter_mut().enumerate() {
-                let chunk = &mut bounds.chunks[place];
-                for (sums, total) in chunk.sums.iter_mut().zip(&*total) {
-                    *sums = total.0[i].to_row();
-                }
-                chunk.reach = reach[i].to_row();
-                if alive[i] {
-                    let sums = |plane: usize| R::from_row(&chunk.sums[plane]);
-                    let greatest = bits::greatest(self.planes, sums, valid);
-                    bounds.greatest = bounds.greatest.max(greatest);
-                    any[i] = true;
+            if left > 0 && !matches!(how, How::Plain) {
+                for (i, place) in places.into_iter().enumerate() {
+                    let after = &mut chunks[place].after[added - 1];
+                    for (after, total) in after.iter_mut().zip(&*total) {
+                        *after = total.0[i].to_words();
+                    }
                 }
             }
         }
-        any
+        for (i, place) in places.into_iter().enumerate() {
+            let chunk = &mut chunks[place];
+            for (sums, total) in chunk.sums.iter_mut().zip(&*total) {
+                *sums = total.0[i].to_words();
+            }
+            chunk.reach = reach[i].to_words();
+            if chunk.reach != EMPTY {
+                let most = bits::greatest_of_each(self.planes, |plane| total[plane].0[i], reach[i]);
+                *any = any.or(chunk.reach);
+                chunk.greatest = most.into_iter().fold(0, u16::max);
+                for (greatest, most) in greatest.iter_mut().zip(most) {
+                    *greatest = most.max(*greatest);
+                }
+            }
+        }
     }
 }
 
 /// Sums of numbers, as many planes as they have; no sum needs more.
 #[inline(always)]
-fn sum<R: BitRow>(numbers: impl Iterator<Item = R>, others: &Planes) -> [R; bits::PLANES] {
-    let mut sums = [R::empty(); bits::PLANES];
-    let mut carry = R::empty();
-    for ((sum, number), other) in sums.iter_mut().zip(numbers).zip(others) {
-        (*sum, carry) = number.full_adder(R::from_row(other), carry);
+fn sum<W: BitWords>(
+    numbers: impl Iterator<Item = W>,
+    others: impl Fn(usize) -> W,
+) -> [W; bits::PLANES] {
+    let mut sums = [W::empty(); bits::PLANES];
+    let mut carry = W::empty();
+    for (plane, (sum, number)) in sums.iter_mut().zip(numbers).enumerate() {
+        (*sum, carry) = number.full_adder(others(plane), carry);
     }
     sums
 }
@@ -319,7 +347,7 @@ mod tests {
     use proptest::prelude::*;
 
     use super::super::bins::Bins;
-    use super::super::descent::quarters;
+    use super::super::bits::CHUNK;
     use super::super::index::SearchIndex;
     use super::super::intervals::RangeIntervals;
     use super::super::steps::BinSteps;
@@ -354,20 +382,25 @@ mod tests {
                     let all = Within::new(Limits::none(grid.width()));
                     let mut bounds = SetBounds::default();
                     bounds.fit(&set_program, all.headings(directions.count()));
-                    let mut found = Vec::new();
-                    set_program.bound_all(sets, 0..sets.blocks(), &mut bounds, |block, greatest| {
-                        found.push((block, greatest));
+                    let mut found = vec![0; sets.blocks()];
+                    let all = |quad| sets.sought(quad, |_| true);
+                    set_program.bound_all(sets, (0..sets.quads()).map(all), &mut bounds, |quad, bounds| {
+                        for (place, block) in quad.blocks() {
+                            found[block] = bounds.greatest(place);
+                        }
                     });
-                    prop_assert!(found.iter().map(|&(block, _)| block).eq(0..sets.blocks()));
-                    for &(block, greatest) in &found {
-                        let alone = set_program.bound((sets, block), &mut bounds);
-                        prop_assert_eq!(alone.greatest(), greatest);
+                    for (block, &greatest) in found.iter().enumerate() {
+                        let (quad, place) = sets.place_of(block);
+                        let quad = sets.sought(quad, |other| other == block);
+                        let alone = set_program.bound((sets, &quad), &mut bounds);
+                        prop_assert_eq!(alone.greatest(place), greatest);
+                        let others = (0..QUAD).filter(|&other| other != place);
+                        prop_assert!(others.map(|place| alone.greatest(place)).all(|greatest| greatest == 0));
                         prop_assert!(u32::from(greatest) <= program.highest_possible());
                         for (heading, field) in &fields {
                             let most = cells(sets, block, &grid).map(|i| field[i]).max().unwrap_or(0);
-                            let at: Vec<Row> = alone.at_least(most).collect();
-                            let (chunk, bit) = (heading / CHUNK, heading % CHUNK);
-                            prop_assert!(at[chunk][bit / 64] >> (bit % 64) & 1 == 1, "{} votes", most);
+                            let at: Vec<_> = alone.at_least(place, most).collect();
+                            prop_assert!(at[heading / CHUNK] >> (heading % CHUNK) & 1 == 1, "{} votes", most);
                         }
                     }
                     of_all_sets.push(found);
@@ -399,21 +432,28 @@ mod tests {
                 });
                 let mut within = alone.clone();
                 for outside in 0..coarse.blocks() {
-                    let blocks: Vec<_> = quarters(outside, coarse.columns, (fine.columns, fine.rows)).collect();
+                    let (outer_quad, outer_place) = coarse.place_of(outside);
+                    let outer_quad = coarse.sought(outer_quad, |_| true);
+                    let quad = fine.sought(outside, |_| true);
                     // About as many votes as they have, where it matters most.
-                    let greatest = inner.bound((fine, blocks[0]), &mut alone).greatest();
+                    let greatest = inner.bound((fine, &quad), &mut alone).greatest(0);
                     let least = (f64::from(greatest) * share) as u16;
                     for least in [0, least, greatest, greatest + 1] {
-                        let around = outer.bound((coarse, outside), &mut around);
-                        for count in 1..=blocks.len() {
-                            let blocks = &blocks[..count];
-                            let found = inner.bound_within((fine, blocks), least, around, &mut within);
-                            for (place, &block) in blocks.iter().enumerate() {
-                                let (alone, within) = (inner.bound((fine, block), &mut alone), &within.blocks[place]);
-                                prop_assert_eq!(found[place], alone.greatest() >= least);
-                                if found[place] {
-                                    prop_assert_eq!(within.greatest(), alone.greatest());
-                                    prop_assert!(within.reach().eq(alone.at_least(least)));
+                        let around = outer.bound((coarse, &outer_quad), &mut around);
+                        let around = (around, outer_place);
+                        for wanted in 1..1 << QUAD {
+                            let places = |block: &usize| quad.blocks.iter().position(|other| other.as_ref() == Some(block));
+                            let quad = fine.sought(outside, |block| places(&block).is_some_and(|place| wanted >> place & 1 == 1));
+                            let found = inner.bound_within((fine, &quad), least, around, &mut within);
+                            let alone = inner.bound((fine, &quad), &mut alone);
+                            for (place, found) in found.into_iter().enumerate() {
+                                let is_sought = quad.blocks[place].is_some();
+                                prop_assert_eq!(found, is_sought && alone.greatest(place) >= least);
+                                if found {
+                                    prop_assert_eq!(within.found.greatest(place), alone.greatest(place));
+                                    let at_least: Vec<_> = alone.at_least(place, least).collect();
+                                    let at_least = bits::windows(at_least.len(), |chunk| at_least[chunk]);
+                                    prop_assert!(within.found.reach(place).eq(at_least));
                                 }
                             }
                         }

@@ -7,7 +7,7 @@ use std::ops::Range;
 
 use super::bits;
 use super::group::Group;
-use super::spans::SpanLayout;
+use super::quad_rows::RowLayout;
 use super::steps::BinSteps;
 use crate::directions::Directions;
 use crate::instruction_set::InstructionSet;
@@ -28,7 +28,7 @@ pub(crate) struct SetProgram {
     groups: [Group; GROUPS],
     /// How many of them have.
     used: usize,
-    pub(super) layout: SpanLayout,
+    pub(super) layout: RowLayout,
 }
 
 impl Default for SetProgram {
@@ -39,7 +39,7 @@ impl Default for SetProgram {
             planes: 0,
             groups: [0, 1, 2, 3, 4, 5, 6, 7].map(Group::new),
             used: 0,
-            layout: SpanLayout::default(),
+            layout: RowLayout::default(),
         }
     }
 }
@@ -70,6 +70,10 @@ impl SetProgram {
         }
         self.groups
             .sort_unstable_by_key(|group| (group.possible == 0, group.shift()));
+        let nothing = self.layout.nothing();
+        self.groups
+            .iter_mut()
+            .for_each(|group| group.lay_out(nothing));
         self.used = self.groups.partition_point(|group| group.possible > 0);
         let possible: u16 = self.groups.iter().map(|group| group.possible).sum();
         self.planes = possible

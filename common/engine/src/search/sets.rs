@@ -5,15 +5,26 @@
 //! that direction. A beam can only vote in a block at headings whose bit is set
 //! for a bin that its taper covers, and one row of bits answers that for all
 //! headings at once.
+//!
+//! Two by two blocks are a quad. Their bits lie side by side, byte by byte, so that
+//! what is read of one is read of all.
 
 mod build;
 mod marks;
 
+use std::ops::Range;
+
 use crate::instruction_set::InstructionSet;
+use crate::search::bits::QUAD;
 use crate::search::intervals::{self, RangeIntervals};
 use crate::search::prefetch::prefetch;
-use crate::search::spans::READ;
-use build::{BitRows, build};
+use build::{Rows, build};
+
+/// Bytes that can be read from a row at a time.
+pub(crate) const READ: usize = 16;
+
+/// The bits of eight directions in each block of a quad.
+pub(crate) type Byte = [u8; QUAD];
 
 /// The visible ranges of all blocks of one size.
 #[derive(Debug, Clone)]
@@ -27,20 +38,37 @@ pub(crate) struct RangeSets {
     /// A bit stands for `1 << shift` bins of [`crate::search::bins::Bins`].
     pub shift: u32,
     /// Bytes of a row of bits: one bit for each direction.
-    stride: usize,
-    /// The rows of block `b` are `starts[b]..starts[b + 1]`.
-    starts: Vec<u32>,
-    bits: Vec<u8>,
+    pub stride: usize,
+    /// Where the rows of each quad start, and behind them where the last ones end.
+    starts: Vec<Start>,
+    bits: Vec<Byte>,
 }
 
-/// The rows of one block.
+/// Two by two blocks.
 #[derive(Debug, Clone, Copy)]
-pub(crate) struct BlockRows<'a> {
-    /// How many there are.
-    pub count: usize,
-    /// Row by row; behind the last one, [`READ`] bytes more than a row can be
-    /// read.
-    pub bytes: &'a [u8],
+pub(crate) struct Quad {
+    pub index: usize,
+    /// Those that are on the map and wanted.
+    pub blocks: [Option<usize>; QUAD],
+}
+
+/// Where the rows of a quad start.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+struct Start {
+    /// Counted through all quads.
+    at: u32,
+    /// The first row that has any bits.
+    first: u32,
+}
+
+/// The rows of a quad.
+#[derive(Debug, Clone)]
+pub(crate) struct SetRows<'a> {
+    /// Those that have any bits, from the nearest bin on.
+    pub rows: Range<usize>,
+    stride: usize,
+    /// Behind the last row, [`READ`] bytes more than it has can be read.
+    bytes: &'a [Byte],
 }
 
 impl RangeSets {
@@ -58,11 +86,12 @@ impl RangeSets {
     ) -> Self {
         let (columns, rows) = (intervals.columns.div_ceil(2), intervals.rows.div_ceil(2));
         let of = |rows| build(set, intervals, shift, rows);
-        let piece = rows.div_ceil(threads.max(1));
-        let bits = std::thread::scope(|scope| {
-            let others: Vec<_> = (piece..rows)
+        let quad_rows = rows.div_ceil(2);
+        let piece = quad_rows.div_ceil(threads.max(1));
+        let rows_of = std::thread::scope(|scope| {
+            let others: Vec<_> = (piece..quad_rows)
                 .step_by(piece)
-                .map(|start| scope.spawn(move || of(start..rows.min(start + piece))))
+                .map(|start| scope.spawn(move || of(start..quad_rows.min(start + piece))))
                 .collect();
             let mut all = of(0..piece);
             for other in others {
@@ -75,7 +104,8 @@ impl RangeSets {
             all
         });
         let side = 2 * intervals::SIDE;
-        Self::of_rows(side, (columns, rows), shift, intervals.directions / 8, bits)
+        let stride = intervals.directions / 8;
+        Self::of_rows(side, (columns, rows), shift, stride, rows_of)
     }
 
     fn of_rows(
@@ -83,15 +113,19 @@ impl RangeSets {
         (columns, rows): (usize, usize),
         shift: u32,
         stride: usize,
-        mut rows_of: BitRows,
+        mut rows_of: Rows,
     ) -> Self {
-        let mut starts = vec![0];
-        let mut end = 0;
+        let mut starts = Vec::with_capacity(rows_of.rows.len() + 1);
+        let mut at = 0;
         for rows in rows_of.rows {
-            end += rows;
-            starts.push(end);
+            starts.push(Start {
+                at,
+                first: rows.start as u32,
+            });
+            at += rows.len() as u32;
         }
-        rows_of.bits.resize(rows_of.bits.len() + stride + READ, 0);
+        starts.push(Start { at, first: 0 });
+        rows_of.bits.resize(rows_of.bits.len() + READ, [0; QUAD]);
         rows_of.bits.shrink_to_fit();
         RangeSets {
             side,
@@ -108,28 +142,29 @@ impl RangeSets {
     /// twice as many bins.
     pub(crate) fn joined(&self) -> Self {
         let (columns, rows) = (self.columns.div_ceil(2), self.rows.div_ceil(2));
-        let mut joined = BitRows::default();
-        let mut bits = Vec::new();
-        for y in 0..rows {
-            for x in 0..columns {
-                bits.clear();
-                for i in 0..4 {
-                    let (x, y) = (2 * x + i % 2, 2 * y + i / 2);
-                    if x < self.columns && y < self.rows {
-                        unite(&mut bits, self.bits_of(y * self.columns + x));
-                    }
-                }
-                let pairs = bits.chunks(2 * self.stride);
-                joined.rows.push(pairs.len() as u32);
-                for pair in pairs {
-                    let (near, far) = pair.split_at(self.stride);
-                    let start = joined.bits.len();
-                    joined.bits.extend_from_slice(near);
-                    for (bits, far) in joined.bits[start..].iter_mut().zip(far) {
-                        *bits |= far;
-                    }
-                }
+        let quads = (columns.div_ceil(2), rows.div_ceil(2));
+        let mut joined = Rows::default();
+        for quad in 0..quads.0 * quads.1 {
+            // A block is a quad of these.
+            let within = quad_of(quad, (columns, rows)).map(|block| Some(self.quad(block?)));
+            let all = within.iter().flatten().map(|quad| quad.rows.clone());
+            let all = all.filter(|rows| !rows.is_empty());
+            let all = all.reduce(|a, b| a.start.min(b.start)..a.end.max(b.end));
+            let all = all.map_or(0..0, |rows| rows.start / 2..rows.end.div_ceil(2));
+            for row in all.clone() {
+                let pairs = within
+                    .each_ref()
+                    .map(|quad| [2 * row, 2 * row + 1].map(|row| quad.as_ref()?.from(row)));
+                let any = |pair: [Option<&[Byte]>; 2], byte: usize| {
+                    let words = pair.map(|row| row.map_or(0, |row| u32::from_ne_bytes(row[byte])));
+                    let both = words[0] | words[1];
+                    let both = both | both >> 16;
+                    (both | both >> 8) as u8
+                };
+                let turn = (0..self.stride).map(|byte| pairs.map(|pair| any(pair, byte)));
+                joined.bits.extend(turn);
             }
+            joined.rows.push(all);
         }
         Self::of_rows(
             2 * self.side,
@@ -145,38 +180,74 @@ impl RangeSets {
         self.columns * self.rows
     }
 
-    /// Bytes that the sets take.
-    pub(crate) fn bytes(&self) -> usize {
-        self.bits.len() + 4 * self.starts.len()
+    /// How many quads there are.
+    pub(crate) fn quads(&self) -> usize {
+        self.starts.len() - 1
     }
 
-    /// The rows of bits of a block, from the nearest bin on.
-    pub(crate) fn block(&self, block: usize) -> BlockRows<'_> {
-        let (start, end) = (self.starts[block] as usize, self.starts[block + 1] as usize);
-        BlockRows {
-            count: end - start,
-            bytes: &self.bits[start * self.stride..],
+    /// A quad, for those of its blocks that are wanted.
+    pub(crate) fn sought(&self, quad: usize, wanted: impl Fn(usize) -> bool) -> Quad {
+        let blocks = quad_of(quad, (self.columns, self.rows));
+        Quad {
+            index: quad,
+            blocks: blocks.map(|block| block.filter(|&block| wanted(block))),
         }
     }
 
-    /// Asks for the rows of a block that is soon to be read.
-    pub(crate) fn prefetch(&self, block: usize) {
-        prefetch(self.bits_of(block));
+    /// Where a block lies: its quad, and its place there.
+    pub(crate) fn place_of(&self, block: usize) -> (usize, usize) {
+        let (x, y) = (block % self.columns, block / self.columns);
+        let quad = y / 2 * self.columns.div_ceil(2) + x / 2;
+        (quad, y % 2 * 2 + x % 2)
     }
 
-    fn bits_of(&self, block: usize) -> &[u8] {
-        let BlockRows { count, bytes } = self.block(block);
-        &bytes[..count * self.stride]
+    /// Bytes that the sets take.
+    pub(crate) fn bytes(&self) -> usize {
+        size_of_val(&self.bits[..]) + size_of_val(&self.starts[..])
+    }
+
+    /// The rows of a quad.
+    pub(crate) fn quad(&self, quad: usize) -> SetRows<'_> {
+        let (start, end) = (self.starts[quad], self.starts[quad + 1]);
+        let (at, end, first) = (start.at as usize, end.at as usize, start.first as usize);
+        SetRows {
+            rows: first..first + end - at,
+            stride: self.stride,
+            bytes: &self.bits[at * self.stride..end * self.stride + READ],
+        }
+    }
+
+    /// Asks for the rows of a quad that is soon to be read.
+    pub(crate) fn prefetch(&self, quad: usize) {
+        prefetch(self.quad(quad).bytes.as_flattened());
     }
 }
 
-/// Adds rows of bits to others, which may be fewer.
-fn unite(all: &mut Vec<u8>, bits: &[u8]) {
-    let both = all.len().min(bits.len());
-    for (all, bits) in all.iter_mut().zip(bits) {
-        *all |= bits;
+impl Quad {
+    /// The blocks that are wanted, and their places.
+    pub(crate) fn blocks(&self) -> impl Iterator<Item = (usize, usize)> + use<> {
+        let blocks = self.blocks.into_iter().enumerate();
+        blocks.filter_map(|(place, block)| Some((place, block?)))
     }
-    all.extend_from_slice(&bits[both..]);
+}
+
+impl<'a> SetRows<'a> {
+    /// The bytes from a row on, if it has bits.
+    #[inline(always)]
+    pub(crate) fn from(&self, row: usize) -> Option<&'a [Byte]> {
+        let is_any = self.rows.contains(&row);
+        is_any.then(|| &self.bytes[(row - self.rows.start) * self.stride..])
+    }
+}
+
+/// The blocks of a quad on a map of so many columns and rows of blocks.
+fn quad_of(quad: usize, (columns, rows): (usize, usize)) -> [Option<usize>; QUAD] {
+    let quads = columns.div_ceil(2);
+    let (left, bottom) = (2 * (quad % quads), 2 * (quad / quads));
+    std::array::from_fn(|place| {
+        let (x, y) = (left + place % 2, bottom + place / 2);
+        (x < columns && y < rows).then(|| y * columns + x)
+    })
 }
 
 #[cfg(test)]
@@ -205,12 +276,14 @@ mod tests {
             }
             for sets in [&fine, &fine.joined()] {
                 for (y, x) in (0..grid.height()).flat_map(|y| (0..grid.width()).map(move |x| (y, x))) {
-                    let rows = sets.bits_of(y / sets.side * sets.columns + x / sets.side);
+                    let (quad, place) = sets.place_of(y / sets.side * sets.columns + x / sets.side);
+                    let rows = sets.quad(quad);
                     for (d, direction) in directions.all().iter().enumerate() {
                         let range = reference::range(&grid, x as i64, y as i64, direction);
                         let Some(range) = range.filter(|&range| range > 0) else { continue };
                         let row = usize::from(bins.bin(direction.class, range) >> sets.shift);
-                        prop_assert!(rows[row * sets.stride + d / 8] >> (d % 8) & 1 == 1);
+                        let bits = rows.from(row).map_or(0, |row| row[d / 8][place]);
+                        prop_assert!(bits >> (d % 8) & 1 == 1);
                     }
                 }
             }
@@ -236,8 +309,23 @@ mod tests {
                     }
                 }
             }
-            for (block, plain) in plain.iter().enumerate() {
-                prop_assert_eq!(sets.bits_of(block), &plain[..]);
+            for quad in 0..sets.quads() {
+                let rows = sets.quad(quad);
+                let mut any = 0..0;
+                for row in 0..=usize::from(u8::MAX) {
+                    let of_block = |block: Option<usize>| {
+                        let rows = plain.get(block?)?.get(row * sets.stride..)?;
+                        rows.get(..sets.stride)
+                    };
+                    let blocks = sets.sought(quad, |_| true).blocks.map(of_block);
+                    let turn = (0..sets.stride).map(|byte| blocks.map(|row| row.map_or(0, |row| row[byte])));
+                    let turn: Vec<Byte> = turn.collect();
+                    if turn.as_flattened().iter().any(|&byte| byte != 0) {
+                        any = if any.is_empty() { row..row + 1 } else { any.start..row + 1 };
+                        prop_assert_eq!(rows.from(row).map(|row| &row[..sets.stride]), Some(&turn[..]));
+                    }
+                }
+                prop_assert_eq!(rows.rows, any);
             }
         }
     }

@@ -2,7 +2,6 @@
 
 use std::sync::atomic::{AtomicBool, AtomicU16, Ordering};
 
-use super::bits::Row;
 use super::budget::Cost;
 use super::index::SearchIndex;
 use super::interval_program::IntervalProgram;
@@ -130,8 +129,8 @@ impl<'a> Task<'a> {
         }
     }
 
-    /// The headings that are sought, a row a chunk.
-    pub(super) fn headings(&self) -> impl Iterator<Item = Row> {
+    /// The headings that are sought, a word a chunk.
+    pub(super) fn headings(&self) -> impl Iterator<Item = u128> {
         self.index.within.headings(self.space.directions.count())
     }
 

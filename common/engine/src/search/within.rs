@@ -1,8 +1,8 @@
 //! The limits of a search, laid out for blocks of each size.
 
-use super::bits::{self, Row};
+use super::bits::CHUNK;
 use super::intervals::SIDE;
-use super::set_bounds::CHUNK;
+use super::sets::{Quad, RangeSets};
 use crate::limits::Limits;
 
 /// Where poses are sought, block by block.
@@ -38,16 +38,17 @@ impl Within {
         blocks.is_none_or(|blocks| blocks[size as usize][block])
     }
 
-    /// The headings that are sought among `count`, a row a chunk.
-    pub(super) fn headings(&self, count: usize) -> impl Iterator<Item = Row> {
+    /// A quad of blocks of a size, for those in which poses are sought.
+    pub(super) fn quad(&self, size: Size, sets: &RangeSets, quad: usize) -> Quad {
+        sets.sought(quad, |block| self.holds(size, block))
+    }
+
+    /// The headings that are sought among `count`, a word a chunk.
+    pub(super) fn headings(&self, count: usize) -> impl Iterator<Item = u128> {
         (0..count).step_by(CHUNK).map(move |first| {
-            let mut row = bits::EMPTY;
             let headings = first..count.min(first + CHUNK);
-            for heading in headings.filter(|&heading| self.limits.hold_heading(heading)) {
-                let place = heading - first;
-                row[place / 64] |= 1 << (place % 64);
-            }
-            row
+            let sought = headings.filter(|&heading| self.limits.hold_heading(heading));
+            sought.fold(0u128, |word, heading| word | 1u128 << (heading - first))
         })
     }
 }

@@ -1,36 +1,42 @@
-//! Builds the sets of 2 × 2 blocks from the intervals of the blocks.
+//! Builds the sets of 2 × 2 blocks of intervals.
 
 use std::ops::Range;
 
+use super::Byte;
 use super::marks::{CHUNK, Chunk, Mark};
 use crate::instruction_set::InstructionSet;
 use crate::search::bins::Bins;
+use crate::search::bits::QUAD;
 use crate::search::intervals::RangeIntervals;
 use crate::search::lanes::Portable;
 
-/// Rows of bits, block by block.
+/// No rows: any others start before and end behind.
+#[expect(clippy::reversed_empty_ranges, reason = "it is where growing starts")]
+const NONE: Range<usize> = usize::MAX..0;
+
+/// Rows of bits, quad by quad.
 #[derive(Debug, Clone, Default)]
-pub(super) struct BitRows {
-    /// How many rows each block has.
-    pub rows: Vec<u32>,
-    pub bits: Vec<u8>,
+pub(super) struct Rows {
+    /// Which rows of each quad have any bits.
+    pub rows: Vec<Range<usize>>,
+    pub bits: Vec<Byte>,
 }
 
-/// The rows of the blocks in some rows of `columns` blocks.
+/// The rows of the quads in some rows of them.
 pub(super) fn build(
     set: InstructionSet,
     intervals: &RangeIntervals,
     shift: u32,
-    block_rows: Range<usize>,
-) -> BitRows {
+    quad_rows: Range<usize>,
+) -> Rows {
     match set.checked() {
-        InstructionSet::Portable => join(Portable, intervals, shift, block_rows),
+        InstructionSet::Portable => join(Portable, intervals, shift, quad_rows),
         #[cfg(target_arch = "x86_64")]
         // SAFETY: the processor has the features that the function is compiled for.
-        InstructionSet::Avx2 => unsafe { join_avx2(intervals, shift, block_rows) },
+        InstructionSet::Avx2 => unsafe { join_avx2(intervals, shift, quad_rows) },
         #[cfg(target_arch = "x86_64")]
         // SAFETY: as above.
-        InstructionSet::Avx512 => unsafe { join_avx512(intervals, shift, block_rows) },
+        InstructionSet::Avx512 => unsafe { join_avx512(intervals, shift, quad_rows) },
         #[cfg(not(target_arch = "x86_64"))]
         _ => unreachable!("checked above"),
     }
@@ -38,23 +44,23 @@ pub(super) fn build(
 
 #[cfg(target_arch = "x86_64")]
 #[target_feature(enable = "avx2")]
-fn join_avx2(intervals: &RangeIntervals, shift: u32, block_rows: Range<usize>) -> BitRows {
+fn join_avx2(intervals: &RangeIntervals, shift: u32, quad_rows: Range<usize>) -> Rows {
     join(
         crate::search::lanes::Avx2::new(),
         intervals,
         shift,
-        block_rows,
+        quad_rows,
     )
 }
 
 #[cfg(target_arch = "x86_64")]
 #[target_feature(enable = "avx512f,avx512bw,avx512dq,avx512vl")]
-fn join_avx512(intervals: &RangeIntervals, shift: u32, block_rows: Range<usize>) -> BitRows {
+fn join_avx512(intervals: &RangeIntervals, shift: u32, quad_rows: Range<usize>) -> Rows {
     join(
         crate::search::lanes::Avx512::new(),
         intervals,
         shift,
-        block_rows,
+        quad_rows,
     )
 }
 
@@ -63,41 +69,69 @@ fn join<M: Mark>(
     marker: M,
     intervals: &RangeIntervals,
     shift: u32,
-    block_rows: Range<usize>,
-) -> BitRows {
+    quad_rows: Range<usize>,
+) -> Rows {
     let chunks = intervals.directions.div_ceil(CHUNK);
     let stride = intervals.directions / 8;
-    let mut joined = BitRows::default();
-    // A row of words for each row of bits.
-    let mut words = vec![0u64; chunks << (u8::BITS - shift)];
-    for y in block_rows {
-        for x in 0..intervals.columns.div_ceil(2) {
-            let mut rows = 0;
-            for chunk_index in 0..chunks {
-                let start = CHUNK * chunk_index;
-                let mut chunk = Chunk::new(shift);
-                for i in 0..4 {
-                    let (x, y) = (2 * x + i % 2, 2 * y + i / 2);
-                    if x < intervals.columns && y < intervals.rows {
-                        set(&mut chunk, i, intervals, y * intervals.columns + x, start);
-                    }
-                }
-                for row in chunk.rows() {
-                    words[usize::from(row) * chunks + chunk_index] =
-                        marker.mark(row, &chunk).to_le();
-                    rows = rows.max(usize::from(row) + 1);
-                }
+    let mut joined = Rows::default();
+    // For each block of a quad, a row of words for each row of bits.
+    let mut words = [(); QUAD].map(|()| vec![0u64; chunks << (u8::BITS - shift)]);
+    for y in quad_rows {
+        for x in 0..intervals.columns.div_ceil(4) {
+            let mut rows = NONE;
+            for (place, words) in words.iter_mut().enumerate() {
+                let (x, y) = (2 * x + place % 2, 2 * y + place / 2);
+                let marked = mark(marker, intervals, shift, (x, y), words);
+                rows = rows.start.min(marked.start)..rows.end.max(marked.end);
             }
-            for words in words[..rows * chunks].chunks_exact_mut(chunks) {
+            if rows.is_empty() {
+                rows = 0..0;
+            }
+            for row in rows.clone() {
+                let [a, b, c, d] = words
+                    .each_ref()
+                    .map(|words| &bytemuck::cast_slice(&words[row * chunks..])[..stride]);
+                let turn = a.iter().zip(b).zip(c).zip(d);
                 joined
                     .bits
-                    .extend_from_slice(&bytemuck::cast_slice(words)[..stride]);
-                words.fill(0);
+                    .extend(turn.map(|(((&a, &b), &c), &d)| [a, b, c, d]));
             }
-            joined.rows.push(rows as u32);
+            for words in &mut words {
+                words[rows.start * chunks..rows.end * chunks].fill(0);
+            }
+            joined.rows.push(rows);
         }
     }
     joined
+}
+
+/// Marks what the block in column `x` and row `y` sees in words, of which all are 0:
+/// in which rows.
+#[inline(always)]
+fn mark<M: Mark>(
+    marker: M,
+    intervals: &RangeIntervals,
+    shift: u32,
+    (x, y): (usize, usize),
+    words: &mut [u64],
+) -> Range<usize> {
+    let chunks = intervals.directions.div_ceil(CHUNK);
+    let mut rows = NONE;
+    for chunk_index in 0..chunks {
+        let start = CHUNK * chunk_index;
+        let mut chunk = Chunk::new(shift);
+        for i in 0..4 {
+            let (x, y) = (2 * x + i % 2, 2 * y + i / 2);
+            if x < intervals.columns && y < intervals.rows {
+                set(&mut chunk, i, intervals, y * intervals.columns + x, start);
+            }
+        }
+        for row in chunk.rows() {
+            words[usize::from(row) * chunks + chunk_index] = marker.mark(row, &chunk).to_le();
+            rows = rows.start.min(row.into())..rows.end.max(usize::from(row) + 1);
+        }
+    }
+    rows
 }
 
 /// Takes the intervals of a block in the directions from `start` on.

@@ -1,0 +1,460 @@
+//! Words of a quad of blocks in the registers of an instruction set.
+
+use super::bits::{EMPTY, QUAD, Words};
+
+/// Bytes of the words of a quad.
+pub(crate) const BYTES: usize = 16 * QUAD;
+
+/// Words under way, one for each block.
+///
+/// The methods must be inlined into functions that are compiled for the
+/// instruction set, and be called only where the processor has it.
+pub(crate) trait BitWords: Copy {
+    /// How many chunks are bounded at a time: sums and what is added to them fit into
+    /// the registers.
+    const AT_A_TIME: usize;
+
+    /// Words without bits.
+    fn empty() -> Self;
+    /// The same word for each block.
+    fn splat(word: u128) -> Self;
+    /// Bytes as they lie in sets, see [`BitWords::sorted`].
+    fn read(bytes: &[u8; BYTES]) -> Self;
+    fn from_words(words: &Words) -> Self;
+    fn to_words(self) -> Words;
+    fn and(self, other: Self) -> Self;
+    fn or(self, other: Self) -> Self;
+    /// The bits of `self` that `other` lacks.
+    fn without(self, other: Self) -> Self;
+    /// Sum and carry of three bits.
+    fn full_adder(self, b: Self, c: Self) -> (Self, Self);
+    /// Every bit of each word `by` places down, 0 to 63.
+    fn shift_down(self, by: u32) -> Self;
+    /// All bits of the words that have any.
+    fn filled(self) -> Self;
+    /// Words made of bytes that lie in the order of sets: the first of each block, the
+    /// second of each, and so on.
+    fn sorted(self) -> Self;
+    fn is_empty(self) -> bool;
+
+    /// Writes bytes as they were read.
+    #[inline(always)]
+    fn write(self, bytes: &mut [u8; BYTES]) {
+        *bytes = bytemuck::cast(self.to_words());
+    }
+}
+
+/// Words of several chunks: what is done with one is done with all.
+#[derive(Debug, Clone, Copy)]
+pub(crate) struct Several<W, const N: usize>(pub [W; N]);
+
+impl<W: BitWords, const N: usize> Several<W, N> {
+    #[inline(always)]
+    pub(crate) fn empty() -> Self {
+        Several([W::empty(); N])
+    }
+
+    #[inline(always)]
+    pub(crate) fn full_adder(self, b: Self, c: Self) -> (Self, Self) {
+        let (mut sum, mut carry) = (self, self);
+        for i in 0..N {
+            (sum.0[i], carry.0[i]) = self.0[i].full_adder(b.0[i], c.0[i]);
+        }
+        (sum, carry)
+    }
+
+    /// Words of bytes in the order of sets, each `by` places down.
+    #[inline(always)]
+    pub(crate) fn sorted_and_down(mut self, by: u32) -> Self {
+        for words in &mut self.0 {
+            *words = words.sorted().shift_down(by);
+        }
+        self
+    }
+}
+
+impl BitWords for Words {
+    const AT_A_TIME: usize = 1;
+
+    #[inline(always)]
+    fn empty() -> Self {
+        EMPTY
+    }
+
+    #[inline(always)]
+    fn splat(word: u128) -> Self {
+        [word as u64, (word >> 64) as u64].map(|half| [half; QUAD])
+    }
+
+    #[inline(always)]
+    fn read(bytes: &[u8; BYTES]) -> Self {
+        bytemuck::pod_read_unaligned(bytes)
+    }
+
+    #[inline(always)]
+    fn from_words(words: &Words) -> Self {
+        *words
+    }
+
+    #[inline(always)]
+    fn to_words(self) -> Words {
+        self
+    }
+
+    #[inline(always)]
+    fn and(self, other: Self) -> Self {
+        zip(self, other, |a, b| a & b)
+    }
+
+    #[inline(always)]
+    fn or(self, other: Self) -> Self {
+        zip(self, other, |a, b| a | b)
+    }
+
+    #[inline(always)]
+    fn without(self, other: Self) -> Self {
+        zip(self, other, |a, b| a & !b)
+    }
+
+    #[inline(always)]
+    fn full_adder(self, b: Self, c: Self) -> (Self, Self) {
+        let odd = zip(self, b, |a, b| a ^ b);
+        let sum = zip(odd, c, |odd, c| odd ^ c);
+        (sum, self.and(b).or(odd.and(c)))
+    }
+
+    #[inline(always)]
+    fn shift_down(self, by: u32) -> Self {
+        let [low, high] = self;
+        // Twice, as nothing may be shifted by 64.
+        let low = std::array::from_fn(|i| low[i] >> by | high[i] << 1 << (63 - by));
+        [low, high.map(|word| word >> by)]
+    }
+
+    #[inline(always)]
+    fn filled(self) -> Self {
+        let [low, high] = self;
+        let filled = std::array::from_fn(|i| if low[i] | high[i] == 0 { 0 } else { u64::MAX });
+        [filled; 2]
+    }
+
+    #[inline(always)]
+    fn sorted(self) -> Self {
+        self.map(|half| {
+            let bytes: [u8; BYTES / 2] = bytemuck::cast(half);
+            std::array::from_fn(|block| {
+                u64::from_le_bytes(std::array::from_fn(|i| bytes[QUAD * i + block]))
+            })
+        })
+    }
+
+    #[inline(always)]
+    fn is_empty(self) -> bool {
+        self.as_flattened().iter().fold(0, |all, word| all | word) == 0
+    }
+}
+
+#[inline(always)]
+fn zip(a: Words, b: Words, op: impl Fn(u64, u64) -> u64) -> Words {
+    std::array::from_fn(|half| std::array::from_fn(|i| op(a[half][i], b[half][i])))
+}
+
+#[cfg(target_arch = "x86_64")]
+#[expect(
+    clippy::undocumented_unsafe_blocks,
+    reason = "one argument holds for all: words of an instruction set are made only where the \
+              processor has it, and all that is read or written are the 64 bytes of a quad"
+)]
+mod x86 {
+    use std::arch::x86_64::*;
+
+    use super::{BYTES, BitWords, EMPTY, Words};
+
+    /// In each half of a register, four bytes of each block one after the other.
+    const BY_BLOCKS: [i8; 16] = [0, 4, 8, 12, 1, 5, 9, 13, 2, 6, 10, 14, 3, 7, 11, 15];
+
+    /// What AVX-512 holds in one register.
+    #[derive(Clone, Copy)]
+    pub(crate) struct Avx512(__m512i);
+
+    impl BitWords for Avx512 {
+        const AT_A_TIME: usize = 3;
+
+        #[inline(always)]
+        fn empty() -> Self {
+            unsafe { Avx512(_mm512_setzero_si512()) }
+        }
+
+        #[inline(always)]
+        fn splat(word: u128) -> Self {
+            unsafe {
+                let low = _mm512_set1_epi64((word as u64).cast_signed());
+                let high = ((word >> 64) as u64).cast_signed();
+                Avx512(_mm512_mask_set1_epi64(low, 0xf0, high))
+            }
+        }
+
+        #[inline(always)]
+        fn read(bytes: &[u8; BYTES]) -> Self {
+            unsafe { Avx512(_mm512_loadu_si512(bytes.as_ptr().cast())) }
+        }
+
+        #[inline(always)]
+        fn from_words(words: &Words) -> Self {
+            unsafe { Avx512(_mm512_loadu_si512(words.as_ptr().cast())) }
+        }
+
+        #[inline(always)]
+        fn to_words(self) -> Words {
+            let mut words = EMPTY;
+            unsafe { _mm512_storeu_si512(words.as_mut_ptr().cast(), self.0) };
+            words
+        }
+
+        #[inline(always)]
+        fn and(self, other: Self) -> Self {
+            unsafe { Avx512(_mm512_and_si512(self.0, other.0)) }
+        }
+
+        #[inline(always)]
+        fn or(self, other: Self) -> Self {
+            unsafe { Avx512(_mm512_or_si512(self.0, other.0)) }
+        }
+
+        #[inline(always)]
+        fn without(self, other: Self) -> Self {
+            unsafe { Avx512(_mm512_andnot_si512(other.0, self.0)) }
+        }
+
+        #[inline(always)]
+        fn full_adder(self, b: Self, c: Self) -> (Self, Self) {
+            // The truth tables of the odd number of bits and of the majority.
+            unsafe {
+                (
+                    Avx512(_mm512_ternarylogic_epi64::<0x96>(self.0, b.0, c.0)),
+                    Avx512(_mm512_ternarylogic_epi64::<0xe8>(self.0, b.0, c.0)),
+                )
+            }
+        }
+
+        #[inline(always)]
+        fn shift_down(self, by: u32) -> Self {
+            unsafe {
+                let next = _mm512_alignr_epi64::<4>(_mm512_setzero_si512(), self.0);
+                let low = _mm512_srl_epi64(self.0, _mm_cvtsi32_si128(by as i32));
+                let high = _mm512_sll_epi64(next, _mm_cvtsi32_si128(64 - by as i32));
+                Avx512(_mm512_or_si512(low, high))
+            }
+        }
+
+        #[inline(always)]
+        fn filled(self) -> Self {
+            unsafe {
+                let halves = _mm512_or_si512(self.0, _mm512_alignr_epi64::<4>(self.0, self.0));
+                let any = _mm512_test_epi64_mask(halves, halves);
+                Avx512(_mm512_maskz_set1_epi64(any, -1))
+            }
+        }
+
+        #[inline(always)]
+        fn sorted(self) -> Self {
+            unsafe {
+                // Then the parts of each block side by side, half by half.
+                let bytes = _mm_loadu_si128(BY_BLOCKS.as_ptr().cast());
+                let parts = _mm512_shuffle_epi8(self.0, _mm512_broadcast_i32x4(bytes));
+                let order = _mm512_setr_epi32(0, 4, 1, 5, 2, 6, 3, 7, 8, 12, 9, 13, 10, 14, 11, 15);
+                Avx512(_mm512_permutexvar_epi32(order, parts))
+            }
+        }
+
+        #[inline(always)]
+        fn is_empty(self) -> bool {
+            unsafe { _mm512_test_epi64_mask(self.0, self.0) == 0 }
+        }
+    }
+
+    /// Two registers of AVX2.
+    #[derive(Clone, Copy)]
+    pub(crate) struct Avx2([__m256i; 2]);
+
+    impl Avx2 {
+        #[inline(always)]
+        fn zip(self, other: Self, op: impl Fn(__m256i, __m256i) -> __m256i) -> Self {
+            Avx2([op(self.0[0], other.0[0]), op(self.0[1], other.0[1])])
+        }
+    }
+
+    impl BitWords for Avx2 {
+        const AT_A_TIME: usize = 1;
+
+        #[inline(always)]
+        fn empty() -> Self {
+            unsafe { Avx2([_mm256_setzero_si256(); 2]) }
+        }
+
+        #[inline(always)]
+        fn splat(word: u128) -> Self {
+            unsafe {
+                let (low, high) = (word as u64, (word >> 64) as u64);
+                Avx2([
+                    _mm256_set1_epi64x(low.cast_signed()),
+                    _mm256_set1_epi64x(high.cast_signed()),
+                ])
+            }
+        }
+
+        #[inline(always)]
+        fn read(bytes: &[u8; BYTES]) -> Self {
+            unsafe {
+                Avx2([
+                    _mm256_loadu_si256(bytes.as_ptr().cast()),
+                    _mm256_loadu_si256(bytes.as_ptr().add(BYTES / 2).cast()),
+                ])
+            }
+        }
+
+        #[inline(always)]
+        fn from_words(words: &Words) -> Self {
+            unsafe {
+                Avx2([
+                    _mm256_loadu_si256(words[0].as_ptr().cast()),
+                    _mm256_loadu_si256(words[1].as_ptr().cast()),
+                ])
+            }
+        }
+
+        #[inline(always)]
+        fn to_words(self) -> Words {
+            let mut words = EMPTY;
+            unsafe {
+                _mm256_storeu_si256(words[0].as_mut_ptr().cast(), self.0[0]);
+                _mm256_storeu_si256(words[1].as_mut_ptr().cast(), self.0[1]);
+            }
+            words
+        }
+
+        #[inline(always)]
+        fn and(self, other: Self) -> Self {
+            self.zip(other, |a, b| unsafe { _mm256_and_si256(a, b) })
+        }
+
+        #[inline(always)]
+        fn or(self, other: Self) -> Self {
+            self.zip(other, |a, b| unsafe { _mm256_or_si256(a, b) })
+        }
+
+        #[inline(always)]
+        fn without(self, other: Self) -> Self {
+            self.zip(other, |a, b| unsafe { _mm256_andnot_si256(b, a) })
+        }
+
+        #[inline(always)]
+        fn full_adder(self, b: Self, c: Self) -> (Self, Self) {
+            let xor = |a: Self, b: Self| a.zip(b, |a, b| unsafe { _mm256_xor_si256(a, b) });
+            let odd = xor(self, b);
+            (xor(odd, c), self.and(b).or(odd.and(c)))
+        }
+
+        #[inline(always)]
+        fn shift_down(self, by: u32) -> Self {
+            unsafe {
+                let [low, high] = self.0;
+                let (down, up) = (
+                    _mm_cvtsi32_si128(by as i32),
+                    _mm_cvtsi32_si128(64 - by as i32),
+                );
+                let (low, next) = (_mm256_srl_epi64(low, down), _mm256_sll_epi64(high, up));
+                Avx2([_mm256_or_si256(low, next), _mm256_srl_epi64(high, down)])
+            }
+        }
+
+        #[inline(always)]
+        fn filled(self) -> Self {
+            unsafe {
+                let halves = _mm256_or_si256(self.0[0], self.0[1]);
+                let without = _mm256_cmpeq_epi64(halves, _mm256_setzero_si256());
+                Avx2([_mm256_xor_si256(without, _mm256_set1_epi64x(-1)); 2])
+            }
+        }
+
+        #[inline(always)]
+        fn sorted(self) -> Self {
+            unsafe {
+                // Then the parts of each block side by side.
+                let bytes = _mm_loadu_si128(BY_BLOCKS.as_ptr().cast());
+                let bytes = _mm256_broadcastsi128_si256(bytes);
+                let order = _mm256_setr_epi32(0, 4, 1, 5, 2, 6, 3, 7);
+                let [low, high] = self.0;
+                Avx2([
+                    _mm256_permutevar8x32_epi32(_mm256_shuffle_epi8(low, bytes), order),
+                    _mm256_permutevar8x32_epi32(_mm256_shuffle_epi8(high, bytes), order),
+                ])
+            }
+        }
+
+        #[inline(always)]
+        fn is_empty(self) -> bool {
+            unsafe {
+                let all = _mm256_or_si256(self.0[0], self.0[1]);
+                _mm256_testz_si256(all, all) == 1
+            }
+        }
+    }
+}
+
+#[cfg(target_arch = "x86_64")]
+pub(crate) use x86::{Avx2, Avx512};
+
+#[cfg(test)]
+mod tests {
+    use proptest::prelude::*;
+
+    use super::*;
+    use crate::instruction_set::InstructionSet;
+
+    /// The words of a type, after sorting, shifting and filling.
+    fn done<W: BitWords>(bytes: &[u8; BYTES], by: u32, word: u128) -> [Words; 4] {
+        let read = W::read(bytes);
+        let sorted = read.sorted();
+        [
+            sorted.to_words(),
+            sorted.shift_down(by).to_words(),
+            sorted.and(W::splat(word)).filled().to_words(),
+            W::splat(word).to_words(),
+        ]
+    }
+
+    proptest! {
+        #[test]
+        fn words_are_sorted_and_shifted_like_plain_numbers(
+            bytes in any::<[[u8; 32]; 2]>(), by in 0u32..64, word in any::<u128>(), place in 0u32..140,
+        ) {
+            let bytes: [u8; BYTES] = bytemuck::cast(bytes);
+            // Mostly a word of a few bits, so that some have none in common.
+            let word = if place < 128 { word & 1 << place } else { word };
+            let plain = |block: usize| {
+                let bytes: [u8; 16] = std::array::from_fn(|i| bytes[QUAD * i + block]);
+                u128::from_le_bytes(bytes)
+            };
+            let words = |of: &dyn Fn(usize) -> u128| {
+                [0, 64].map(|from| std::array::from_fn(|block| (of(block) >> from) as u64))
+            };
+            let expected: [Words; 4] = [
+                words(&plain),
+                words(&|block| plain(block) >> by),
+                words(&|block| if plain(block) & word == 0 { 0 } else { u128::MAX }),
+                words(&|_| word),
+            ];
+            prop_assert_eq!(done::<Words>(&bytes, by, word), expected);
+            for set in InstructionSet::available() {
+                match set {
+                    #[cfg(target_arch = "x86_64")]
+                    InstructionSet::Avx512 => prop_assert_eq!(done::<Avx512>(&bytes, by, word), expected),
+                    #[cfg(target_arch = "x86_64")]
+                    InstructionSet::Avx2 => prop_assert_eq!(done::<Avx2>(&bytes, by, word), expected),
+                    _ => {}
+                }
+            }
+        }
+    }
+}
