@@ -58,21 +58,21 @@ impl Rates {
     fn of(instruction_set: InstructionSet) -> Self {
         match instruction_set {
             InstructionSet::Avx512 => Rates {
-                read: 0.4,
+                read: 0.9,
                 window_per_beam: 1.6,
                 sector: 60.0,
                 look: 55.0,
                 vote: 0.015,
             },
             InstructionSet::Avx2 => Rates {
-                read: 0.4,
+                read: 1.0,
                 window_per_beam: 1.8,
                 sector: 60.0,
                 look: 60.0,
                 vote: 0.03,
             },
             InstructionSet::Portable => Rates {
-                read: 0.8,
+                read: 3.5,
                 window_per_beam: 15.0,
                 sector: 110.0,
                 look: 200.0,

@@ -8,11 +8,8 @@ use std::ops::Range;
 
 use super::bins::Bins;
 use super::bits::{CHUNK, QUAD};
-use super::sets::{Byte, SetRows};
+use super::sets::{Byte, READ, SetRows};
 use super::words::{BYTES, BitWords, Several};
-
-/// Bytes of directions in a word.
-const WORD: usize = BYTES / QUAD;
 
 /// Where rows lie.
 #[derive(Debug, Clone, Default)]
@@ -63,8 +60,8 @@ impl RowLayout {
     /// Starts anew, with nothing that is read.
     pub(crate) fn start(&mut self, directions: usize, shift: u32) {
         self.stride = directions / 8;
-        let turns = (WORD - 1).div_ceil(self.stride);
-        self.row = (turns * self.stride + WORD).next_multiple_of(WORD);
+        let turns = (READ - 1).div_ceil(self.stride);
+        self.row = (turns * self.stride + READ).next_multiple_of(READ);
         self.most = (usize::from(Bins::NOTHING) >> shift) + 1;
         self.needed = self.most..0;
         let turn = 0..self.stride as u32;
@@ -129,10 +126,10 @@ impl QuadRows {
             let to = &mut self.bytes[2 * i * row..][..2 * row];
             let (each, joined) = to.split_at_mut(row);
             // What is copied too much, the next turn overwrites.
-            for start in (0..stride).step_by(WORD) {
+            for start in (0..stride).step_by(READ) {
                 copy::<W>(from, next, start, (each, joined), start);
             }
-            for start in (stride..stride + WORD - 1).step_by(stride) {
+            for start in (stride..stride + READ - 1).step_by(stride) {
                 copy::<W>(from, next, 0, (each, joined), start);
             }
         }
@@ -168,12 +165,12 @@ fn copy<W: BitWords>(
 
 #[inline(always)]
 fn bytes(of: &[Byte]) -> &[u8; BYTES] {
-    bytemuck::cast_ref(of.first_chunk::<WORD>().expect("a word"))
+    bytemuck::cast_ref(of.first_chunk::<READ>().expect("a word"))
 }
 
 #[inline(always)]
 fn bytes_mut(of: &mut [Byte]) -> &mut [u8; BYTES] {
-    bytemuck::cast_mut(of.first_chunk_mut::<WORD>().expect("a word"))
+    bytemuck::cast_mut(of.first_chunk_mut::<READ>().expect("a word"))
 }
 
 impl<'a, const N: usize> Reader<'a, N> {
@@ -203,7 +200,7 @@ impl<'a, const N: usize> Reader<'a, N> {
         let mut all = Several::<W, N>::empty();
         for i in 0..reads {
             for (all, place) in all.0.iter_mut().zip(places) {
-                debug_assert!(start + place + WORD <= self.bytes.len());
+                debug_assert!(start + place + READ <= self.bytes.len());
                 let at = self.bytes.as_ptr().wrapping_add(start + place);
                 // SAFETY: windows start with one of the layout's rows, of which each goes on
                 // for a word from any byte of a turn.

@@ -281,23 +281,9 @@ impl SetProgram {
             let group = &groups[if within { left } else { added - 1 }];
             group.add(reader, carries, total);
             *reads += N as u64 * u64::from(group.reads);
-            if let How::Within((around, around_place), least) = how {
-                let mut alive = false;
-                for i in 0..N {
-                    let sums = total.iter().map(|words| words.0[i]);
-                    let sums = match left {
-                        0 => sum(sums, |_| W::empty()),
-                        _ => {
-                            let after = &around.chunks[places[i]].after[left - 1];
-                            sum(sums, |plane| {
-                                W::splat(bits::of_block(&after[plane], around_place))
-                            })
-                        }
-                    };
-                    reach[i] = bits::at_least(self.planes, |plane| sums[plane], least, valid[i]);
-                    alive |= !reach[i].is_empty();
-                }
-                if !alive {
+            if let How::Within(around, least) = how {
+                reach = self.reaching(total, left, (around, places), (least, valid));
+                if reach.iter().all(|reach| reach.is_empty()) {
                     break;
                 }
             }
@@ -325,6 +311,32 @@ impl SetProgram {
                 }
             }
         }
+    }
+
+    /// Where blocks may have so many units, by what was added so far and what the block
+    /// around says of the groups that are left.
+    #[inline(always)]
+    fn reaching<W: BitWords, const N: usize>(
+        &self,
+        total: &[Several<W, N>],
+        left: usize,
+        ((around, around_place), places): (Around<'_>, [usize; N]),
+        (least, valid): (u16, [W; N]),
+    ) -> [W; N] {
+        let mut reach = valid;
+        for (i, reach) in reach.iter_mut().enumerate() {
+            let sums = total.iter().map(|words| words.0[i]);
+            let sums = match left {
+                0 => sum(sums, |_| W::empty()),
+                _ => {
+                    let after = &around.chunks[places[i]].after[left - 1];
+                    let after = |plane: usize| bits::of_block(&after[plane], around_place);
+                    sum(sums, |plane| W::splat(after(plane)))
+                }
+            };
+            *reach = bits::at_least(self.planes, |plane| sums[plane], least, valid[i]);
+        }
+        reach
     }
 }
 

@@ -18,10 +18,11 @@ use crate::instruction_set::InstructionSet;
 use crate::search::bits::QUAD;
 use crate::search::intervals::{self, RangeIntervals};
 use crate::search::prefetch::prefetch;
+use crate::search::words::BYTES;
 use build::{Rows, build};
 
-/// Bytes that can be read from a row at a time.
-pub(crate) const READ: usize = 16;
+/// Bytes of directions that are read at a time: a word.
+pub(crate) const READ: usize = BYTES / QUAD;
 
 /// The bits of eight directions in each block of a quad.
 pub(crate) type Byte = [u8; QUAD];
