@@ -7,6 +7,7 @@
 
 use std::path::{Path, PathBuf};
 use std::process::Command;
+use std::time::Duration;
 
 use bytemuck::Zeroable;
 use messages::{MapHeader, topic};
@@ -207,10 +208,12 @@ fn a_robot_writes_its_own_keys_alone() {
         for (session, key) in puts {
             session.put(*key, "x").wait().unwrap();
         }
-        if let Some(sample) = heard.try_recv().unwrap() {
+        // Writing without a pause would leave more behind than a session that closes
+        // has time for.
+        let pause = Duration::from_millis(5);
+        if let Some(sample) = heard.recv_timeout(pause).unwrap() {
             return sample.key_expr().to_string();
         }
-        std::thread::yield_now();
     };
     let forged = (&robot, "backcast/r2/odometry");
     let heard = until(&seen, &[forged, (&robot, "backcast/r1/odometry")]);
