@@ -183,14 +183,14 @@ impl<'a> Alternatives<'a> {
         let sides = (index.intervals.columns, index.intervals.rows);
         let mut best = None;
         let smalls = quarters(block, index.fine.columns, sides);
+        let masks = std::mem::take(masks);
         for small in smalls.filter(|&block| index.within.holds(Size::Small, block)) {
             index.intervals.read(small, &mut self.room.intervals);
-            let masks = std::mem::take(&mut self.room.masks);
             for (first, among) in bits::windows(masks.len(), |chunk| masks[chunk]) {
                 best = best.max(self.best_in_window(small, first, among, best));
             }
-            self.room.masks = masks;
         }
+        self.room.masks = masks;
         best
     }
 

@@ -105,6 +105,39 @@ impl<'a> Descent<'a> {
 
     /// Searches one of `parts` of the coarse blocks.
     pub(super) fn run(mut self, (part, parts): (usize, usize), stop: &dyn Fn() -> bool) -> End {
+        self.bound_coarse(part, parts);
+        let mut budget = Budget::new(self.task.brute_force, parts);
+        while let Some(block) = self.next(budget.dives()) {
+            if stop() {
+                return End::Stopped;
+            }
+            if let Some(next) = self.room.queue.peek(budget.dives()) {
+                self.prefetch(&next);
+            }
+            let (level, index) = (block.level, block.index as usize);
+            match level {
+                Level::Coarse => self.split_coarse(index),
+                Level::Fine { start, end } => {
+                    self.split_fine(index, &(start as usize..end as usize));
+                }
+                Level::Leaf { start, end } => self.count(index, start as usize..end as usize),
+            }
+            let Programs {
+                instruction_set,
+                beams,
+                ..
+            } = self.task.programs;
+            let cost = self.room.tally.take(*instruction_set, *beams);
+            budget.spend(level.number(), cost);
+            if budget.is_up() && budget.is_hopeless(self.left()) {
+                return End::Hopeless;
+            }
+        }
+        End::Done
+    }
+
+    /// Bounds one of `parts` of the coarse quads, and queues them.
+    fn bound_coarse(&mut self, part: usize, parts: usize) {
         let (coarse, program) = (&self.task.index.coarse, &self.task.programs.coarse);
         // Neighbouring blocks are alike, so parts take them in turn. All bounds
         // are needed, also where another part gives up: candidates come of them.
@@ -137,35 +170,8 @@ impl<'a> Descent<'a> {
                 level: Level::Coarse,
             });
         });
+        // What is tallied is what blocks cost that are taken from the queue.
         coarse_bounds.reads = 0;
-        let mut budget = Budget::new(self.task.brute_force, parts);
-        while let Some(block) = self.next(budget.dives()) {
-            if stop() {
-                return End::Stopped;
-            }
-            if let Some(next) = self.room.queue.peek(budget.dives()) {
-                self.prefetch(&next);
-            }
-            let (level, index) = (block.level, block.index as usize);
-            match level {
-                Level::Coarse => self.split_coarse(index),
-                Level::Fine { start, end } => {
-                    self.split_fine(index, &(start as usize..end as usize));
-                }
-                Level::Leaf { start, end } => self.count(index, start as usize..end as usize),
-            }
-            let Programs {
-                instruction_set,
-                beams,
-                ..
-            } = self.task.programs;
-            let cost = self.room.tally.take(*instruction_set, *beams);
-            budget.spend(level.number(), cost);
-            if budget.is_up() && budget.is_hopeless(self.left()) {
-                return End::Hopeless;
-            }
-        }
-        End::Done
     }
 
     /// The next block that may matter.

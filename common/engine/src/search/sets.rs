@@ -39,7 +39,7 @@ pub(crate) struct RangeSets {
     /// A bit stands for `1 << shift` bins of [`crate::search::bins::Bins`].
     pub shift: u32,
     /// Bytes of a row of bits: one bit for each direction.
-    pub stride: usize,
+    stride: usize,
     /// Where the rows of each quad start, and behind them where the last ones end.
     starts: Vec<Start>,
     bits: Vec<Byte>,
