@@ -3,13 +3,13 @@
 //! What the search must beat, and what it is compared with. Several
 //! accumulators share the headings, each on a thread of its own.
 
-use std::panic::resume_unwind;
-use std::sync::atomic::{AtomicBool, AtomicU16, Ordering};
+use std::sync::atomic::{AtomicU16, Ordering};
 
 use crate::accumulator::{Accumulator, Query};
 use crate::limits::Limits;
 use crate::program::ScanProgram;
 use crate::space::Space;
+use crate::threads;
 use crate::votes::{CollectConfig, Collector, VoteSet};
 
 /// The poses with the most votes over all headings; `None` if `stop` said so
@@ -29,75 +29,38 @@ pub fn search<A: Accumulator + Send>(
     config: CollectConfig,
     stop: &dyn Fn() -> bool,
 ) -> Option<VoteSet> {
+    let (threads, best) = (accumulators.len(), AtomicU16::new(0));
     let shares = accumulators.iter_mut().map(Share::of);
     let mut shares: Vec<_> = shares.collect();
-    let fill = |accumulator: &mut &mut A,
-                query: Query<'_>,
-                field: &mut Vec<u16>,
-                stop: &dyn Fn() -> bool| accumulator.fill(query, field, stop);
-    let mut found = VoteSet::default();
-    let collect = (config, 0, &mut found);
-    count(&mut shares, fill, limits, (program, space), collect, stop)?;
-    Some(found)
-}
-
-/// The same by any way to fill in the intensities of all cells at a heading,
-/// one thread a share; the shares may have served other scans and maps. Some pose is
-/// known to have `best` votes.
-///
-/// # Panics
-/// If there is no share.
-pub(crate) fn count<T: Send>(
-    shares: &mut [Share<T>],
-    fill: impl Fn(&mut T, Query<'_>, &mut Vec<u16>, &dyn Fn() -> bool) -> Option<()> + Sync,
-    limits: &Limits,
-    scan: (&ScanProgram, &Space),
-    (config, best, found): (CollectConfig, u16, &mut VoteSet),
-    stop: &dyn Fn() -> bool,
-) -> Option<()> {
-    let (threads, best) = (shares.len(), AtomicU16::new(best));
-    let run = |thread: usize, share: &mut Share<T>, stop: &dyn Fn() -> bool| {
+    threads::run(&mut shares, stop, |thread, share, stop| {
         let how = (config, &best, stop);
-        share.run((thread, threads), &fill, limits, scan, how)
-    };
+        let part = share.run((thread, threads), limits, (program, space), how);
+        part.ok_or(())
+    })
+    .ok()?;
     let (own, others) = shares.split_first_mut().expect("a share");
-    let outcome = if others.is_empty() {
-        run(0, own, stop)
-    } else {
-        let stopped = AtomicBool::new(false);
-        let is_stopped = || stopped.load(Ordering::Relaxed);
-        std::thread::scope(|scope| {
-            let spawn = |(thread, share)| scope.spawn(move || run(thread, share, &is_stopped));
-            let threads: Vec<_> = (1..).zip(&mut *others).map(spawn).collect();
-            let own = run(0, own, stop);
-            stopped.store(own.is_none(), Ordering::Relaxed);
-            let joined = threads.into_iter().map(std::thread::ScopedJoinHandle::join);
-            let joined = joined.map(|share| share.unwrap_or_else(|panic| resume_unwind(panic)));
-            joined.fold(own, Option::and)
-        })
-    };
-    outcome?;
     for other in others {
         own.collector.merge(&other.collector);
         own.poses += other.poses;
     }
-    own.collector.finish(own.poses, found);
-    Some(())
+    let mut found = VoteSet::default();
+    own.collector.finish(own.poses, &mut found);
+    Some(found)
 }
 
 /// What one thread finds, and what it finds it with.
-#[derive(Debug, Default)]
-pub(crate) struct Share<T> {
-    tool: T,
+#[derive(Debug)]
+struct Share<'a, A> {
+    accumulator: &'a mut A,
     field: Vec<u16>,
     collector: Collector,
     poses: u64,
 }
 
-impl<T> Share<T> {
-    fn of(tool: T) -> Self {
+impl<'a, A: Accumulator> Share<'a, A> {
+    fn of(accumulator: &'a mut A) -> Self {
         Share {
-            tool,
+            accumulator,
             field: Vec::new(),
             collector: Collector::default(),
             poses: 0,
@@ -109,7 +72,6 @@ impl<T> Share<T> {
     fn run(
         &mut self,
         (thread, threads): (usize, usize),
-        fill: &impl Fn(&mut T, Query<'_>, &mut Vec<u16>, &dyn Fn() -> bool) -> Option<()>,
         limits: &Limits,
         (program, space): (&ScanProgram, &Space),
         (config, best, stop): (CollectConfig, &AtomicU16, &dyn Fn() -> bool),
@@ -123,7 +85,7 @@ impl<T> Share<T> {
                 heading,
             };
             if limits.hold_heading(heading) {
-                fill(&mut self.tool, query, &mut self.field, stop)?;
+                self.accumulator.fill(query, &mut self.field, stop)?;
                 self.collector.hear_of(best.load(Ordering::Relaxed));
                 self.collect(limits, heading);
                 best.fetch_max(self.collector.best(), Ordering::Relaxed);

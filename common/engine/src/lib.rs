@@ -48,6 +48,7 @@ mod tables;
 pub mod taper;
 #[cfg(test)]
 mod testing;
+mod threads;
 pub mod votes;
 
 pub use error::EngineError;

@@ -164,6 +164,23 @@ impl ScanProgram {
         self.bearing_rounding = self.bearing_rounding.max(beam.rounding.abs());
     }
 
+    /// Becomes a program of some of another's beams.
+    pub(crate) fn take_some(&mut self, of: &ScanProgram, is_taken: impl Fn(usize) -> bool) {
+        self.bearings.clear();
+        self.tapers.clear();
+        self.profiles.clear();
+        self.profiles.extend_from_slice(&of.profiles);
+        self.classes = of.classes;
+        self.highest_possible = 0;
+        for i in (0..of.beams()).filter(|&i| is_taken(i)) {
+            let tapers = &of.tapers[i * of.classes..][..of.classes];
+            self.tapers.extend_from_slice(tapers);
+            self.bearings.push(of.bearings[i]);
+            self.highest_possible += u32::from(of.peak(i));
+        }
+        self.bearing_rounding = of.bearing_rounding;
+    }
+
     /// How many beams vote; the paper's m.
     #[must_use]
     pub fn beams(&self) -> usize {

@@ -1,5 +1,7 @@
 //! Random worlds for the tests of this crate.
 
+use std::ops::Range;
+
 use geometry::Pose;
 use messages::{UNKNOWN, Vote};
 use proptest::collection::vec;
@@ -163,8 +165,25 @@ impl AnyScan {
     }
 }
 
+/// Test grids with limits and a number of headings, up to so many eights.
+pub(crate) fn any_limited_grid(eights: u32) -> impl Strategy<Value = (Grid, Limits, u32)> {
+    (any_grid(), 1..eights).prop_flat_map(|(grid, eights)| {
+        let limits = any_limits(&grid, 8 * eights);
+        (Just(grid), limits, Just(8 * eights))
+    })
+}
+
 /// Scans of 1 to 24 beams with any taper, narrow or wide.
 pub(crate) fn any_scan() -> impl Strategy<Value = AnyScan> {
+    any_scan_of(1..24)
+}
+
+/// The same with 80 to 120 beams.
+pub(crate) fn any_dense_scan() -> impl Strategy<Value = AnyScan> {
+    any_scan_of(80..120)
+}
+
+fn any_scan_of(beams: Range<usize>) -> impl Strategy<Value = AnyScan> {
     let reading = prop_oneof![8 => 0.05f32..4.5, 1 => Just(f32::INFINITY), 1 => Just(f32::NAN)];
     let taper = prop_oneof![
         Just(TaperShape::Gaussian),
@@ -175,7 +194,7 @@ pub(crate) fn any_scan() -> impl Strategy<Value = AnyScan> {
     let sigma_m = prop_oneof![4 => 0.0..0.4f64, 1 => 0.0..2.0f64];
     let sigma_per_m = prop_oneof![4 => Just(0.01), 1 => 0.0..0.25f64];
     (
-        vec(reading, 1..24),
+        vec(reading, beams),
         -4.0..4.0f64,
         taper,
         sigma_m,

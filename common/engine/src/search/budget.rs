@@ -2,8 +2,8 @@
 //!
 //! In uniform clutter no bound tells blocks apart. The search tallies what it
 //! did, estimates what is left from what blocks of each level have cost so far,
-//! and gives up where brute force would be done sooner. Where that is seen at the
-//! first look, a tenth is lost.
+//! and gives up where counting every pose would be done sooner. Where that is seen at
+//! the first look, a tenth of what brute force costs is lost.
 
 use crate::grid::Grid;
 use crate::instruction_set::InstructionSet;
@@ -35,7 +35,8 @@ pub(super) struct Tally {
 /// What a search has cost so far.
 #[derive(Debug)]
 pub(super) struct Budget {
-    brute_force: Cost,
+    /// What is left must cost less.
+    most: f64,
     spent: f64,
     /// When to look again.
     next: f64,
@@ -92,8 +93,8 @@ const FIRST_LOOK: f64 = 0.1;
 /// How much more is spent until the next look.
 const NEXT_LOOK: f64 = 1.5;
 
-/// What is expected to be left, as a multiple of brute force, where a search is given
-/// up. The blocks that are left promise less and cost less, to half of those before;
+/// What is expected to be left, as a multiple of counting every pose, where a search is
+/// given up. The blocks that are left promise less and cost less, to half of those before;
 /// and at first the best pose may not be known, so that the floor is still low.
 const HOPELESS: f64 = 2.5;
 
@@ -130,13 +131,14 @@ impl Tally {
 }
 
 impl Budget {
-    /// For one of so many parts of a search.
-    pub(super) fn new(brute_force: Cost, parts: usize) -> Self {
-        let brute_force = Cost(brute_force.0 / parts as f64);
+    /// For one of so many parts of a search. Counting every pose costs such a share of
+    /// brute force.
+    pub(super) fn new(brute_force: Cost, counting: f64, parts: usize) -> Self {
+        let brute_force = brute_force.0 / parts as f64;
         Budget {
-            brute_force,
+            most: brute_force * counting * HOPELESS,
             spent: 0.0,
-            next: brute_force.0 * FIRST_LOOK,
+            next: brute_force * FIRST_LOOK,
             taken: [(0.0, 0.0); LEVELS],
         }
     }
@@ -159,7 +161,7 @@ impl Budget {
         self.spent >= self.next
     }
 
-    /// Whether brute force would be done sooner than what is left: blocks of
+    /// Whether counting every pose would be done sooner than what is left: blocks of
     /// each level.
     pub(super) fn is_hopeless(&mut self, left: [usize; LEVELS]) -> bool {
         self.next = self.spent * NEXT_LOOK;
@@ -177,7 +179,7 @@ impl Budget {
             below = each + children * below;
             expected += left[level] as f64 * below;
         }
-        expected > self.brute_force.0 * HOPELESS
+        expected > self.most
     }
 }
 
@@ -187,7 +189,7 @@ mod tests {
 
     #[test]
     fn a_search_is_given_up_where_what_is_left_costs_more() {
-        let mut budget = Budget::new(Cost(2.0 * 3_550.0 / HOPELESS), 2);
+        let mut budget = Budget::new(Cost(4.0 * 3_550.0 / HOPELESS), 0.5, 2);
         assert!(!budget.is_up());
         // Four coarse blocks came to eight fine ones, of which three were taken.
         for _ in 0..4 {
@@ -205,7 +207,7 @@ mod tests {
 
     #[test]
     fn the_smallest_blocks_come_before_their_turn_while_they_cost_little() {
-        let mut budget = Budget::new(Cost(1.0), 1);
+        let mut budget = Budget::new(Cost(1.0), 1.0, 1);
         assert!(!budget.dives(), "nothing was done");
         budget.spend(0, Cost(100.0));
         assert!(budget.dives());

@@ -62,16 +62,6 @@ pub(super) enum End {
     Hopeless,
 }
 
-impl End {
-    /// How two parts ended together.
-    pub(super) fn joined(self, other: End) -> End {
-        match (self, other) {
-            (End::Done, end) => end,
-            (end, _) => end,
-        }
-    }
-}
-
 /// A heading at which a block may still matter, and its bound there.
 #[derive(Debug, Clone, Copy)]
 struct Candidate {
@@ -106,7 +96,7 @@ impl<'a> Descent<'a> {
     /// Searches one of `parts` of the coarse blocks.
     pub(super) fn run(mut self, (part, parts): (usize, usize), stop: &dyn Fn() -> bool) -> End {
         self.bound_coarse(part, parts);
-        let mut budget = Budget::new(self.task.brute_force, parts);
+        let mut budget = Budget::new(self.task.brute_force, self.task.counting, parts);
         while let Some(block) = self.next(budget.dives()) {
             if stop() {
                 return End::Stopped;

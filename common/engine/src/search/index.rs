@@ -1,7 +1,5 @@
 //! A map prepared for searches.
 
-use std::sync::atomic::Ordering;
-
 use super::alternatives::{self, Alternatives};
 use super::bins::Bins;
 use super::block_bounds::Bounding;
@@ -10,17 +8,16 @@ use super::intervals::RangeIntervals;
 use super::obstacles::Obstacles;
 use super::parts;
 use super::sets::RangeSets;
+use super::sift::{self, Sift};
 use super::steps::BinSteps;
 use super::task::{Shared, Task};
 use super::within::Within;
-use crate::accumulator::Query;
-use crate::exhaustive::{self, Share};
 use crate::grid::Grid;
 use crate::instruction_set::InstructionSet;
 use crate::limits::Limits;
 use crate::program::ScanProgram;
 use crate::space::Space;
-use crate::sweep::{self, FieldSweep};
+use crate::sweep::FieldSweep;
 use crate::votes::{CollectConfig, Distinct, VoteSet};
 
 /// Rows of the sets of 8 × 8 blocks stand for `1 << FINE_SHIFT` bins: a block
@@ -37,7 +34,7 @@ pub struct SearchIndex {
     pub(super) obstacles: Obstacles,
     pub(super) within: Within,
     /// Where bounds do not help.
-    sweeps: FieldSweep,
+    pub(super) sweeps: FieldSweep,
 }
 
 /// What searches need beside the map, kept from scan to scan: once there is room
@@ -48,8 +45,9 @@ pub struct Workspace {
     /// One for each thread.
     rooms: Vec<descent::Room>,
     alternatives: alternatives::Room,
-    /// For counting every pose, one for each thread.
-    shares: Vec<Share<sweep::Workspace>>,
+    /// For counting every pose, the shares one for each thread.
+    sift: Sift,
+    shares: Vec<sift::Share>,
     pub(super) bounding: Bounding,
 }
 
@@ -163,6 +161,7 @@ impl SearchIndex {
             shared,
             rooms,
             alternatives,
+            sift,
             shares,
             ..
         } = workspace;
@@ -176,10 +175,8 @@ impl SearchIndex {
             }
             End::Stopped => return None,
             End::Hopeless => {
-                shares.resize_with(threads, Share::default);
-                let best = task.best.load(Ordering::Relaxed);
-                let collect = (config, best, &mut *found);
-                self.count_all(instruction_set, shares, scan, collect, stop)?;
+                shares.resize_with(threads, sift::Share::default);
+                sift.count((&task, scan.0), shares, found, stop)?;
                 None
             }
         };
@@ -191,25 +188,6 @@ impl SearchIndex {
             found.add_candidates(&mut alternatives.votes, distinct);
         }
         Some(())
-    }
-
-    /// Counts every pose; some is known to have so many votes.
-    fn count_all(
-        &self,
-        instruction_set: InstructionSet,
-        shares: &mut [Share<sweep::Workspace>],
-        scan: (&ScanProgram, &Space),
-        collect: (CollectConfig, u16, &mut VoteSet),
-        stop: &dyn Fn() -> bool,
-    ) -> Option<()> {
-        let fill = |workspace: &mut sweep::Workspace,
-                    query: Query<'_>,
-                    field: &mut Vec<u16>,
-                    stop: &dyn Fn() -> bool| {
-            let sweeps = &self.sweeps;
-            sweeps.fill(instruction_set, query, workspace, field, stop)
-        };
-        exhaustive::count(shares, fill, &self.within.limits, scan, collect, stop)
     }
 }
 
@@ -223,16 +201,10 @@ mod tests {
     use super::*;
     use crate::reference;
     use crate::testing::{
-        any_grid, any_limits, any_long_grid, any_scan, plain_votes, plain_votes_within, space_of,
+        any_grid, any_limited_grid, any_long_grid, any_scan, plain_votes, plain_votes_within,
+        space_of,
     };
     use messages::Vote;
-
-    fn any_limited_grid() -> impl Strategy<Value = (Grid, Limits, u32)> {
-        (any_grid(), 1u32..8).prop_flat_map(|(grid, eighths)| {
-            let limits = any_limits(&grid, 8 * eighths);
-            (Just(grid), limits, Just(8 * eighths))
-        })
-    }
 
     fn check(
         grid: &Grid,
@@ -268,7 +240,7 @@ mod tests {
 
         #[test]
         fn poses_beyond_the_limits_are_not_found(
-            (grid, limits, headings) in any_limited_grid(), scan in any_scan(),
+            (grid, limits, headings) in any_limited_grid(8), scan in any_scan(),
             floor_share in 0.3..=1.0f64, threads in 1usize..3, candidates in 0u32..9,
         ) {
             let space = space_of(&grid, headings);
@@ -285,11 +257,6 @@ mod tests {
             let is_held = |vote: &Vote| limits.hold_cell(vote.x.into(), vote.y.into())
                 && limits.hold_heading(vote.heading.into());
             prop_assert!(below.iter().all(is_held));
-            let (mut shares, mut counted) = (Vec::new(), VoteSet::default());
-            shares.resize_with(threads, Share::default);
-            let collect = (CollectConfig { candidates: 0, ..config }, 0, &mut counted);
-            prop_assert!(index.count_all(how.0, &mut shares, scan, collect, &|| false).is_some());
-            prop_assert_eq!(counted.votes, plain.votes);
         }
 
         #[test]
@@ -333,7 +300,7 @@ mod tests {
 
         #[test]
         fn a_workspace_that_served_other_scans_and_maps_changes_nothing(
-            worlds in vec((any_limited_grid(), any_scan(), 1usize..4), 2..5), candidates in 0u32..9,
+            worlds in vec((any_limited_grid(8), any_scan(), 1usize..4), 2..5), candidates in 0u32..9,
         ) {
             let config = CollectConfig { candidates, ..CollectConfig::default() };
             let (mut workspace, mut found) = (Workspace::default(), VoteSet::default());
@@ -350,12 +317,6 @@ mod tests {
                     // How many poses threads count depends on who is first.
                     found.poses_evaluated = fresh.poses_evaluated;
                     prop_assert_eq!(&found, &fresh, "{:?}", how);
-                    let plain = plain_votes_within(&limits, &grid, &program, &space, CollectConfig { candidates: 0, ..config });
-                    workspace.shares.resize_with(threads, Share::default);
-                    let best = u16::from(fresh.best > 0) * (fresh.best / 2 + 1);
-                    let collect = (CollectConfig { candidates: 0, ..config }, best, &mut found);
-                    prop_assert!(index.count_all(instruction_set, &mut workspace.shares, scan, collect, &|| false).is_some());
-                    prop_assert_eq!(&found.votes, &plain.votes, "{:?}", how);
                 }
                 index.block_bounds_in(&mut workspace, scan, &mut blocks);
                 prop_assert_eq!(&blocks, &index.block_bounds(&program, &space));
@@ -364,7 +325,7 @@ mod tests {
 
         #[test]
         fn candidates_are_the_same_where_the_search_was_given_up(
-            (grid, limits, headings) in any_limited_grid(), scan in any_scan(),
+            (grid, limits, headings) in any_limited_grid(8), scan in any_scan(),
             threads in 1usize..4, wanted in 1usize..40,
         ) {
             let space = space_of(&grid, headings);

@@ -14,7 +14,8 @@
 //!                  └─ outlook ─ leaf ─────── poses ──────────┘
 //! ```
 //!
-//! Alternatives below the floor come from the most promising blocks.
+//! Alternatives below the floor come from the most promising blocks. Where bounds do
+//! not tell blocks apart, every pose is counted instead (`sift.rs`).
 
 mod alternatives;
 mod bins;
@@ -44,6 +45,7 @@ mod sectors;
 mod set_bounds;
 mod set_program;
 mod sets;
+mod sift;
 mod steps;
 mod task;
 mod top;

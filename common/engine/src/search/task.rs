@@ -1,6 +1,6 @@
 //! What the threads of a search share.
 
-use std::sync::atomic::{AtomicBool, AtomicU16, Ordering};
+use std::sync::atomic::AtomicU16;
 
 use super::budget::Cost;
 use super::index::SearchIndex;
@@ -8,6 +8,7 @@ use super::interval_program::IntervalProgram;
 use super::leaf::LeafProgram;
 use super::outlook::View;
 use super::set_program::SetProgram;
+use super::sift;
 use crate::grid::Grid;
 use crate::instruction_set::InstructionSet;
 use crate::program::ScanProgram;
@@ -28,10 +29,10 @@ pub(super) struct Task<'a> {
     pub coarse_bounds: &'a [AtomicU16],
     /// The most votes of any pose so far, whoever found it.
     pub best: AtomicU16,
-    /// Whether all threads are to stop.
-    stopped: AtomicBool,
-    /// What counting every pose would cost one thread.
+    /// What counting every pose with all beams would cost one thread.
     pub brute_force: Cost,
+    /// The share of that which counting every pose takes.
+    pub counting: f64,
 }
 
 /// What the threads of a search share, kept from scan to scan.
@@ -100,8 +101,8 @@ impl<'a> Task<'a> {
             programs: &shared.programs,
             coarse_bounds: &shared.coarse_bounds,
             best: AtomicU16::new(0),
-            stopped: AtomicBool::new(false),
             brute_force: Cost::of_brute_force(instruction_set, grid, program, space),
+            counting: sift::share(program, &config),
         }
     }
 
@@ -132,14 +133,5 @@ impl<'a> Task<'a> {
     /// The headings that are sought, a word a chunk.
     pub(super) fn headings(&self) -> impl Iterator<Item = u128> {
         self.index.within.headings(self.space.directions.count())
-    }
-
-    /// Tells all threads to stop.
-    pub(super) fn stop(&self) {
-        self.stopped.store(true, Ordering::Relaxed);
-    }
-
-    pub(super) fn is_stopped(&self) -> bool {
-        self.stopped.load(Ordering::Relaxed)
     }
 }
