@@ -131,7 +131,9 @@ impl Sift {
         let sampled = threads::run(shares, stop, |thread, share, stop| {
             share.start(task, sift);
             let mut sifting = Sifting {
-                scan: (task, program, sift),
+                task,
+                program,
+                sift,
                 share,
                 stop,
             };
@@ -145,7 +147,9 @@ impl Sift {
         sampled.ok()?;
         let counted = threads::run(shares, stop, |_, share, stop| {
             let mut sifting = Sifting {
-                scan: (task, program, sift),
+                task,
+                program,
+                sift,
                 share,
                 stop,
             };
@@ -183,7 +187,9 @@ impl Sift {
 
 /// One thread at it.
 struct Sifting<'a> {
-    scan: (&'a Task<'a>, &'a ScanProgram, &'a Sift),
+    task: &'a Task<'a>,
+    program: &'a ScanProgram,
+    sift: &'a Sift,
     share: &'a mut Share,
     stop: &'a dyn Fn() -> bool,
 }
@@ -192,7 +198,7 @@ impl Sifting<'_> {
     /// Keeps the poses that have most votes of the first sample at a heading, and
     /// counts the first of them.
     fn look(&mut self, heading: usize) -> Option<()> {
-        let (task, _, Sift { first, .. }) = self.scan;
+        let (task, first) = (self.task, &self.sift.first);
         let most = (task.grid.cells().len() / CELLS_A_KEPT).max(LEAST_KEPT);
         let step = (first.highest_possible() / STEP).max(1) as u16;
         let start = self.share.kept.len();
@@ -221,7 +227,7 @@ impl Sifting<'_> {
 
     /// Takes the poses that reach the floor, now that the best one is likely known.
     fn count_seen(&mut self) -> Option<()> {
-        let (_, _, Sift { first, .. }) = self.scan;
+        let first = &self.sift.first;
         let (rest, most) = (self.rest(first), self.most_counts(first));
         let mut start = 0;
         for i in 0..self.share.seen.len() {
@@ -244,7 +250,7 @@ impl Sifting<'_> {
 
     /// Takes the poses of a heading that reach the floor, by more beams.
     fn take_anew(&mut self, heading: usize) -> Option<()> {
-        let (task, program, Sift { samples, .. }) = self.scan;
+        let samples = &self.sift.samples;
         let start = self.share.kept.len();
         for (i, sample) in samples.iter().enumerate().skip(self.share.sample) {
             self.share.least = self.floor().saturating_sub(self.rest(sample));
@@ -260,13 +266,14 @@ impl Sifting<'_> {
             // Headings are alike.
             self.share.sample = i + 1;
         }
-        self.sweep(program, heading)?;
+        self.sweep(self.program, heading)?;
         self.floor();
         let Share {
             field, collector, ..
         } = &mut *self.share;
-        collector.take_field(field, task.grid.width(), heading as u16);
-        task.best.fetch_max(collector.best(), Ordering::Relaxed);
+        collector.take_field(field, self.task.grid.width(), heading as u16);
+        let best = collector.best();
+        self.task.best.fetch_max(best, Ordering::Relaxed);
         self.share.poses_evaluated += self.share.field.len() as u64;
         Some(())
     }
@@ -289,32 +296,34 @@ impl Sifting<'_> {
                     heading: heading as u16,
                     intensity,
                 });
-                let (task, ..) = self.scan;
-                task.best.fetch_max(intensity, Ordering::Relaxed);
+                self.task.best.fetch_max(intensity, Ordering::Relaxed);
             }
         }
     }
 
     /// Fills in the votes of some beams for all poses that are sought at a heading.
     fn sweep(&mut self, program: &ScanProgram, heading: usize) -> Option<()> {
-        let (Task { index, space, .. }, ..) = self.scan;
+        let Task {
+            index,
+            space,
+            programs,
+            ..
+        } = self.task;
         let query = Query {
             program,
             space,
             heading,
         };
         let Share { sweep, field, .. } = &mut *self.share;
-        let instruction_set = self.scan.0.programs.instruction_set;
-        index
-            .sweeps
-            .fill(instruction_set, query, sweep, field, self.stop)?;
+        let set = programs.instruction_set;
+        index.sweeps.fill(set, query, sweep, field, self.stop)?;
         index.within.limits.clear(field, heading);
         Some(())
     }
 
     /// The votes of a pose, or 0 if they do not reach a floor.
     fn count(&mut self, cell: u32, heading: usize, floor: u16) -> u16 {
-        let (task, _, Sift { rests, .. }) = self.scan;
+        let (task, rests) = (self.task, &self.sift.rests);
         let (x, y) = self.place(cell);
         let Share {
             outlook,
@@ -343,29 +352,27 @@ impl Sifting<'_> {
 
     /// Column and row of a cell.
     fn place(&self, cell: u32) -> (usize, usize) {
-        let (cell, width) = (cell as usize, self.scan.0.grid.width());
+        let (cell, width) = (cell as usize, self.task.grid.width());
         (cell % width, cell / width)
     }
 
     /// The least votes that matter.
     fn floor(&mut self) -> u16 {
-        let best = self.scan.0.best.load(Ordering::Relaxed);
+        let best = self.task.best.load(Ordering::Relaxed);
         self.share.collector.hear_of(best);
         self.share.collector.floor()
     }
 
     /// The most votes of the beams that are not in a sample.
     fn rest(&self, sample: &ScanProgram) -> u16 {
-        let (_, program, _) = self.scan;
-        (program.highest_possible() - sample.highest_possible()) as u16
+        (self.program.highest_possible() - sample.highest_possible()) as u16
     }
 
     /// Counting more poses of a heading one by one would take longer than sweeping
     /// the beams that are not in a sample.
     fn most_counts(&self, sample: &ScanProgram) -> usize {
-        let (task, program, _) = self.scan;
-        let others = program.beams() - sample.beams();
-        let cells = task.grid.cells().len() * others / program.beams().max(1);
+        let (beams, cells) = (self.program.beams(), self.task.grid.cells().len());
+        let cells = cells * (beams - sample.beams()) / beams.max(1);
         (cells / CELLS_A_COUNT).max(FEW_COUNTS)
     }
 }
