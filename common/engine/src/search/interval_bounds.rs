@@ -8,6 +8,7 @@ use super::heading_lanes::{HEADINGS, HeadingLanes, Portable};
 use super::interval_program::{IntervalBeam, IntervalProgram, Order};
 use super::intervals::BlockIntervals;
 use super::set_bounds::Rests;
+#[cfg(any(target_arch = "x86_64", test))]
 use crate::instruction_set::InstructionSet;
 
 /// Bounds of a block at adjacent headings.

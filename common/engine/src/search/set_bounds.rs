@@ -14,6 +14,7 @@ use super::quad_rows::{QuadRows, Reader};
 use super::set_program::{GROUPS, SetProgram};
 use super::sets::{Quad, RangeSets};
 use super::words::{BitWords, Several};
+#[cfg(any(target_arch = "x86_64", test))]
 use crate::instruction_set::InstructionSet;
 
 /// Most chunks that are bounded at a time by any instruction set.

@@ -49,6 +49,7 @@ impl Lookup {
     }
 
     /// The table by what is left, for the first `size` numbers.
+    #[cfg(target_arch = "x86_64")]
     fn by_left(kind: u8, taper: &Taper<'_>, size: usize) -> Self {
         let mut lookup = Lookup::new(kind, taper);
         let reach = taper.profile.len();
