@@ -1,12 +1,12 @@
 //! Counting every pose, where bounds do not tell blocks apart: few beams tell most
 //! poses from the best one.
 //!
-//! In clutter every pose has most of the votes that are possible, but hardly one has
-//! nearly all of them, and that shows after few beams. So a sample of the beams is
-//! swept at every heading, the poses with most of its votes are kept, and the first
-//! of them is counted with all beams: at one heading that is the best pose. What was
-//! not kept cannot reach the floor then, as a rule, whatever the other beams say, and
-//! of what was kept little is left to count.
+//! In clutter most poses have half of the votes that are possible and some nine tenths,
+//! but hardly one has nearly all of them, and that shows after few beams. So a sample of
+//! the beams is swept at every heading, the poses with most of its votes are kept, and
+//! the first of them is counted with all beams: at one heading that is the best pose.
+//! What was not kept cannot reach the floor then, as a rule, whatever the other beams
+//! say, and of what was kept little is left to count.
 //!
 //! Headings at which that is not certain are swept again with more beams, at last with
 //! all of them.
@@ -128,15 +128,10 @@ impl Sift {
     ) -> Option<()> {
         self.make(task, program);
         let (sift, threads) = (&*self, shares.len());
+        let what = (task, program, sift);
         let sampled = threads::run(shares, stop, |thread, share, stop| {
             share.start(task, sift);
-            let mut sifting = Sifting {
-                task,
-                program,
-                sift,
-                share,
-                stop,
-            };
+            let mut sifting = Sifting::new(what, share, stop);
             let headings = (thread..task.space.directions.count()).step_by(threads);
             let limits = &task.index.within.limits;
             let mut sought = headings.filter(|&heading| limits.hold_heading(heading));
@@ -146,14 +141,7 @@ impl Sift {
         });
         sampled.ok()?;
         let counted = threads::run(shares, stop, |_, share, stop| {
-            let mut sifting = Sifting {
-                task,
-                program,
-                sift,
-                share,
-                stop,
-            };
-            sifting.count_seen().ok_or(())
+            Sifting::new(what, share, stop).count_seen().ok_or(())
         });
         counted.ok()?;
         let (own, others) = shares.split_first_mut().expect("a thread");
@@ -194,7 +182,21 @@ struct Sifting<'a> {
     stop: &'a dyn Fn() -> bool,
 }
 
-impl Sifting<'_> {
+impl<'a> Sifting<'a> {
+    fn new(
+        (task, program, sift): (&'a Task<'a>, &'a ScanProgram, &'a Sift),
+        share: &'a mut Share,
+        stop: &'a dyn Fn() -> bool,
+    ) -> Self {
+        Sifting {
+            task,
+            program,
+            sift,
+            share,
+            stop,
+        }
+    }
+
     /// Keeps the poses that have most votes of the first sample at a heading, and
     /// counts the first of them.
     fn look(&mut self, heading: usize) -> Option<()> {
