@@ -20,10 +20,6 @@ use crate::space::Space;
 use crate::sweep::FieldSweep;
 use crate::votes::{CollectConfig, Distinct, VoteSet};
 
-/// Rows of the sets of 8 × 8 blocks stand for `1 << FINE_SHIFT` bins: a block
-/// smears distances by more.
-const FINE_SHIFT: u32 = 2;
-
 /// A map prepared for searches: made once for each map.
 #[derive(Debug, Clone)]
 pub struct SearchIndex {
@@ -59,11 +55,12 @@ impl SearchIndex {
         let bins = Bins::new(directions);
         // No ray has more steps than it crosses columns or rows.
         let longest = grid.width().max(grid.height()) as u16;
-        let intervals = RangeIntervals::new(grid, directions, &bins);
-        let fine = RangeSets::new(&intervals, FINE_SHIFT);
+        let steps = BinSteps::new(&bins, directions, longest);
+        let (intervals, wide) = RangeIntervals::new(grid, directions, (&bins, &steps));
+        let fine = RangeSets::new(&intervals, &wide);
         let coarse = fine.joined();
         SearchIndex {
-            steps: BinSteps::new(&bins, directions, longest),
+            steps,
             intervals,
             fine,
             coarse,

@@ -8,13 +8,16 @@ mod build;
 mod pool;
 mod strip;
 mod transpose;
+mod wide;
 
 use crate::directions::Directions;
 use crate::grid::Grid;
 use crate::instruction_set::InstructionSet;
 use crate::search::bins::Bins;
 use crate::search::prefetch::prefetch;
+use crate::search::steps::BinSteps;
 use build::Source;
+pub(crate) use wide::{ROW_SHIFT, WideViews};
 
 /// Cells along the side of a block.
 pub(crate) const SIDE: usize = 4;
@@ -71,8 +74,12 @@ impl BlockIntervals {
 }
 
 impl RangeIntervals {
-    /// Those of all blocks of a grid.
-    pub(crate) fn new(grid: &Grid, directions: &Directions, bins: &Bins) -> Self {
+    /// Those of all blocks of a grid, and what they see where these are wide.
+    pub(crate) fn new(
+        grid: &Grid,
+        directions: &Directions,
+        bins: (&Bins, &BinSteps),
+    ) -> (Self, WideViews) {
         Self::with(grid, directions, bins, InstructionSet::best(), 1)
     }
 
@@ -80,25 +87,27 @@ impl RangeIntervals {
     pub(crate) fn with(
         grid: &Grid,
         directions: &Directions,
-        bins: &Bins,
+        (bins, steps): (&Bins, &BinSteps),
         set: InstructionSet,
         threads: usize,
-    ) -> Self {
+    ) -> (Self, WideViews) {
         let (columns, rows) = (grid.width().div_ceil(SIDE), grid.height().div_ceil(SIDE));
         let mut packed = vec![0; PACKED * directions.count() * columns * rows];
         let source = Source {
             grid,
             directions,
             bins,
+            steps,
         };
-        build::build(source, set, threads, &mut packed);
-        RangeIntervals {
+        let views = build::build(source, set, threads, &mut packed);
+        let intervals = RangeIntervals {
             columns,
             rows,
             directions: directions.count(),
             set,
             packed,
-        }
+        };
+        (intervals, WideViews::new(columns * rows, &views))
     }
 
     /// Bytes that the intervals take.
@@ -193,29 +202,39 @@ fn width(nibble: u8) -> u8 {
 
 #[cfg(test)]
 mod tests {
+    use std::collections::BTreeMap;
+
     use proptest::prelude::*;
 
     use super::*;
     use crate::reference;
-    use crate::testing::{any_grid, space_of};
+    use crate::testing::{any_grid, any_long_grid, space_of};
 
     proptest! {
         #[test]
         fn intervals_end_with_what_the_cells_see_and_hold_it_all(
-            grid in any_grid(), headings in prop_oneof![1u32..12, Just(45)],
+            grid in prop_oneof![3 => any_grid(), 1 => any_long_grid()],
+            headings in prop_oneof![1u32..12, Just(45)],
         ) {
             let directions = &space_of(&grid, headings * 8).directions;
             let bins = Bins::new(directions);
-            let intervals = RangeIntervals::with(&grid, directions, &bins, InstructionSet::Portable, 1);
+            let steps = BinSteps::new(&bins, directions, grid.width().max(grid.height()) as u16);
+            let with = |set, threads| RangeIntervals::with(&grid, directions, (&bins, &steps), set, threads);
+            let (intervals, noted) = with(InstructionSet::Portable, 1);
+            let views = |wide: &WideViews, block| wide.of(block).collect::<BTreeMap<_, _>>();
             for set in InstructionSet::available() {
                 for threads in 1..4 {
-                    let other = RangeIntervals::with(&grid, directions, &bins, set, threads);
+                    let (other, others) = with(set, threads);
                     prop_assert!(other.packed == intervals.packed, "{} {}", set, threads);
+                    for block in 0..intervals.columns * intervals.rows {
+                        prop_assert_eq!(views(&others, block), views(&noted, block), "{} {}", set, threads);
+                    }
                 }
             }
             let mut read = BlockIntervals::default();
             for block in 0..intervals.columns * intervals.rows {
                 intervals.read(block, &mut read);
+                let views = views(&noted, block);
                 for (d, direction) in directions.all().iter().enumerate() {
                     let seen = seen(&grid, &intervals, block, |x, y| {
                         reference::range(&grid, x, y, direction).map(|range| bins.bin(direction.class, range))
@@ -236,6 +255,16 @@ mod tests {
                         let far = far_first..=far_last - least(far_last - far_first);
                         prop_assert!(near_last == far_last || seen.iter().any(|bin| near.contains(bin)));
                         prop_assert!(far_first == near_first || seen.iter().any(|bin| far.contains(bin)));
+                        // What is wide for certain is noted, and nothing that cannot be.
+                        let widths = [near_last - near_first, far_last - far_first];
+                        let sum = |widths: [u8; 2]| widths.map(u16::from).iter().sum::<u16>();
+                        let is_noted = views.contains_key(&d);
+                        prop_assert!(is_noted || sum(widths.map(least)) < wide::WIDE.into());
+                        prop_assert!(!is_noted || sum(widths) >= wide::WIDE.into());
+                    }
+                    if let Some(rows) = views.get(&d) {
+                        let all = seen.iter().fold(0u64, |rows, bin| rows | 1 << (bin >> ROW_SHIFT));
+                        prop_assert_eq!(*rows, all);
                     }
                 }
                 for row in &read.rows {

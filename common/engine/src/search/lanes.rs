@@ -44,6 +44,9 @@ pub(crate) trait Lanes: Copy {
 
     /// `a << 4`.
     fn shift_nibble(self, a: Self::Vector) -> Self::Vector;
+
+    /// Where numbers are at least as great as others, a bit each.
+    fn at_least(self, a: Self::Vector, b: Self::Vector) -> u64;
 }
 
 /// What every processor has, left to the compiler.
@@ -96,6 +99,12 @@ impl Lanes for Portable {
     #[inline(always)]
     fn shift_nibble(self, a: Self::Vector) -> Self::Vector {
         a.map(|number| number << 4)
+    }
+
+    #[inline(always)]
+    fn at_least(self, a: Self::Vector, b: Self::Vector) -> u64 {
+        let pairs = a.iter().zip(&b).enumerate();
+        pairs.fold(0, |bits, (i, (a, b))| bits | u64::from(a >= b) << i)
     }
 
     by_lane! {
@@ -185,6 +194,18 @@ impl Lanes for Avx2 {
         unsafe { _mm256_slli_epi16::<4>(a) }
     }
 
+    #[inline(always)]
+    fn at_least(self, a: Self::Vector, b: Self::Vector) -> u64 {
+        // SAFETY: as above.
+        unsafe {
+            let is = _mm256_cmpeq_epi16(_mm256_max_epu16(a, b), a);
+            // Packing joins the halves of each half; the first and third hold bytes.
+            let bytes = _mm256_packs_epi16(is, is);
+            let bytes = _mm256_castsi256_si128(_mm256_permute4x64_epi64::<0b1000>(bytes));
+            u64::from(_mm_movemask_epi8(bytes).cast_unsigned())
+        }
+    }
+
     by_instruction! {
         add: _mm256_add_epi16,
         add_saturating: _mm256_adds_epu16,
@@ -251,6 +272,12 @@ impl Lanes for Avx512 {
     fn shift_nibble(self, a: Self::Vector) -> Self::Vector {
         // SAFETY: as above.
         unsafe { _mm512_slli_epi16::<4>(a) }
+    }
+
+    #[inline(always)]
+    fn at_least(self, a: Self::Vector, b: Self::Vector) -> u64 {
+        // SAFETY: as above.
+        unsafe { _mm512_cmpge_epu16_mask(a, b).into() }
     }
 
     by_instruction! {

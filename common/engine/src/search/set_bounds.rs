@@ -382,8 +382,8 @@ mod tests {
             let program = scan.program(&space);
             let bins = Bins::new(directions);
             let steps = BinSteps::new(&bins, directions, grid.width().max(grid.height()) as u16);
-            let intervals = RangeIntervals::new(&grid, directions, &bins);
-            let fine = RangeSets::new(&intervals, 1);
+            let (intervals, wide) = RangeIntervals::new(&grid, directions, (&bins, &steps));
+            let fine = RangeSets::new(&intervals, &wide);
             // Some headings, spread over the turn, are enough to meet any error.
             let fields: Vec<_> = (0..directions.count()).step_by(1 + headings / 8)
                 .map(|heading| (heading, reference::field(&grid, &program, &space, heading))).collect();

@@ -16,7 +16,7 @@ use std::ops::Range;
 
 use crate::instruction_set::InstructionSet;
 use crate::search::bits::QUAD;
-use crate::search::intervals::{self, RangeIntervals};
+use crate::search::intervals::{self, RangeIntervals, WideViews};
 use crate::search::prefetch::prefetch;
 use crate::search::words::BYTES;
 use build::{Rows, build};
@@ -74,19 +74,19 @@ pub(crate) struct SetRows<'a> {
 
 impl RangeSets {
     /// Those of blocks of 2 × 2 blocks of intervals.
-    pub(crate) fn new(intervals: &RangeIntervals, shift: u32) -> Self {
-        Self::with(intervals, shift, InstructionSet::best(), 1)
+    pub(crate) fn new(intervals: &RangeIntervals, wide: &WideViews) -> Self {
+        Self::with(intervals, wide, InstructionSet::best(), 1)
     }
 
     /// The same by a given instruction set and number of threads.
     pub(crate) fn with(
         intervals: &RangeIntervals,
-        shift: u32,
+        wide: &WideViews,
         set: InstructionSet,
         threads: usize,
     ) -> Self {
         let (columns, rows) = (intervals.columns.div_ceil(2), intervals.rows.div_ceil(2));
-        let of = |rows| build(set, intervals, shift, rows);
+        let of = |rows| build(set, (intervals, wide), rows);
         let quad_rows = rows.div_ceil(2);
         let piece = quad_rows.div_ceil(threads.max(1));
         let rows_of = std::thread::scope(|scope| {
@@ -106,7 +106,7 @@ impl RangeSets {
         });
         let side = 2 * intervals::SIDE;
         let stride = intervals.directions / 8;
-        Self::of_rows(side, (columns, rows), shift, stride, rows_of)
+        Self::of_rows(side, (columns, rows), intervals::ROW_SHIFT, stride, rows_of)
     }
 
     fn of_rows(
@@ -258,20 +258,23 @@ mod tests {
     use super::*;
     use crate::reference;
     use crate::search::bins::Bins;
+    use crate::search::bits;
+    use crate::search::steps::BinSteps;
     use crate::testing::{any_grid, space_of};
 
     proptest! {
         #[test]
         fn sets_hold_the_bins_of_all_cells_on_every_instruction_set(
-            grid in any_grid(), headings in prop_oneof![1u32..12, Just(45)], shift in 0u32..3,
+            grid in any_grid(), headings in prop_oneof![1u32..12, Just(45)],
         ) {
             let directions = &space_of(&grid, headings * 8).directions;
             let bins = Bins::new(directions);
-            let intervals = RangeIntervals::new(&grid, directions, &bins);
-            let fine = RangeSets::with(&intervals, shift, InstructionSet::Portable, 1);
+            let steps = BinSteps::new(&bins, directions, grid.width().max(grid.height()) as u16);
+            let (intervals, wide) = RangeIntervals::new(&grid, directions, (&bins, &steps));
+            let fine = RangeSets::with(&intervals, &wide, InstructionSet::Portable, 1);
             for set in InstructionSet::available() {
                 for threads in 1..4 {
-                    let other = RangeSets::with(&intervals, shift, set, threads);
+                    let other = RangeSets::with(&intervals, &wide, set, threads);
                     prop_assert!(other.bits == fine.bits && other.starts == fine.starts, "{} {}", set, threads);
                 }
             }
@@ -291,10 +294,12 @@ mod tests {
         }
 
         #[test]
-        fn sets_hold_nothing_but_the_intervals(grid in any_grid(), headings in 1u32..10, shift in 0u32..3) {
+        fn sets_hold_nothing_but_the_intervals_and_wide_views(grid in any_grid(), headings in 1u32..10) {
             let directions = &space_of(&grid, headings * 8).directions;
-            let intervals = RangeIntervals::new(&grid, directions, &Bins::new(directions));
-            let sets = RangeSets::new(&intervals, shift);
+            let bins = Bins::new(directions);
+            let steps = BinSteps::new(&bins, directions, grid.width().max(grid.height()) as u16);
+            let (intervals, wide) = RangeIntervals::new(&grid, directions, (&bins, &steps));
+            let sets = RangeSets::new(&intervals, &wide);
             let mut plain = vec![Vec::new(); sets.blocks()];
             let mut read = intervals::BlockIntervals::default();
             for block in 0..intervals.columns * intervals.rows {
@@ -303,8 +308,13 @@ mod tests {
                 let rows: &mut Vec<u8> = &mut plain[y / 2 * sets.columns + x / 2];
                 for d in 0..directions.count() {
                     let [near_first, near_last, far_first, far_last] = [0, 1, 2, 3].map(|i| read.rows[i][d]);
-                    for bin in (near_first..=near_last).chain(far_first..=far_last) {
-                        let at = usize::from(bin >> shift) * sets.stride;
+                    let within = (near_first..=near_last).chain(far_first..=far_last);
+                    let seen: Vec<usize> = match wide.of(block).find(|&(direction, _)| direction == d) {
+                        Some((_, rows)) => bits::ones(rows).collect(),
+                        None => within.map(|bin| usize::from(bin >> sets.shift)).collect(),
+                    };
+                    for row in seen {
+                        let at = row * sets.stride;
                         rows.resize(rows.len().max(at + sets.stride), 0);
                         rows[at + d / 8] |= 1 << (d % 8);
                     }

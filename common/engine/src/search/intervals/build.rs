@@ -11,12 +11,14 @@ use std::sync::{Mutex, PoisonError};
 use super::pool::pool;
 use super::strip::{Row, RowLayout, StripMasks};
 use super::transpose::{TILE, WORD, transpose};
+use super::wide::{Noting, WideView};
 use super::{PACKED, SIDE};
 use crate::directions::{Directions, swap_unless};
 use crate::grid::Grid;
 use crate::instruction_set::InstructionSet;
 use crate::search::bins::Bins;
 use crate::search::lanes::{Lanes, Portable};
+use crate::search::steps::BinSteps;
 
 /// What the intervals are made of.
 #[derive(Debug, Clone, Copy)]
@@ -24,29 +26,51 @@ pub(super) struct Source<'a> {
     pub grid: &'a Grid,
     pub directions: &'a Directions,
     pub bins: &'a Bins,
+    pub steps: &'a BinSteps,
 }
 
 /// [`TILE`] rows of blocks of the packed intervals. Threads fill it in different
 /// directions and take turns at that.
 type Band<'a> = Mutex<&'a mut [u8]>;
 
-/// Fills the packed intervals of all blocks, row by row.
-pub(super) fn build(source: Source<'_>, set: InstructionSet, threads: usize, packed: &mut [u8]) {
+/// Fills the packed intervals of all blocks, row by row. What is seen where they are
+/// wide, as each thread found it.
+pub(super) fn build(
+    source: Source<'_>,
+    set: InstructionSet,
+    threads: usize,
+    packed: &mut [u8],
+) -> Vec<Vec<WideView>> {
     let row = source.grid.width().div_ceil(SIDE) * PACKED * source.directions.count();
     let bands: Vec<Band<'_>> = packed.chunks_mut(TILE * row).map(Mutex::new).collect();
     let parts = parts(source.directions, threads);
     let next = AtomicUsize::new(0);
     let work = || {
+        let mut built = Built {
+            bands: &bands,
+            views: Vec::new(),
+        };
         while let Some(part) = parts.get(next.fetch_add(1, Ordering::Relaxed)) {
-            sweep_on(set, source, part, &bands);
+            sweep_on(set, source, part, &mut built);
         }
+        built.views
     };
     std::thread::scope(|scope| {
-        for _ in 1..threads {
-            scope.spawn(work);
-        }
-        work();
-    });
+        let others: Vec<_> = (1..threads).map(|_| scope.spawn(work)).collect();
+        let mut all = vec![work()];
+        all.extend(others.into_iter().map(|other| {
+            other
+                .join()
+                .unwrap_or_else(|panic| std::panic::resume_unwind(panic))
+        }));
+        all
+    })
+}
+
+/// Where what is built goes: the packed intervals, and what is seen where they are wide.
+struct Built<'a, 'b> {
+    bands: &'a [Band<'b>],
+    views: Vec<WideView>,
 }
 
 /// Directions that sweep together.
@@ -80,15 +104,15 @@ fn parts(directions: &Directions, threads: usize) -> Vec<Part> {
     parts
 }
 
-fn sweep_on(set: InstructionSet, source: Source<'_>, part: &Part, bands: &[Band<'_>]) {
+fn sweep_on(set: InstructionSet, source: Source<'_>, part: &Part, built: &mut Built<'_, '_>) {
     match set.checked() {
-        InstructionSet::Portable => sweep(Portable, source, part, bands),
+        InstructionSet::Portable => sweep(Portable, source, part, built),
         #[cfg(target_arch = "x86_64")]
         // SAFETY: the processor has the features that the function is compiled for.
-        InstructionSet::Avx2 => unsafe { sweep_avx2(source, part, bands) },
+        InstructionSet::Avx2 => unsafe { sweep_avx2(source, part, built) },
         #[cfg(target_arch = "x86_64")]
         // SAFETY: as above.
-        InstructionSet::Avx512 => unsafe { sweep_avx512(source, part, bands) },
+        InstructionSet::Avx512 => unsafe { sweep_avx512(source, part, built) },
         #[cfg(not(target_arch = "x86_64"))]
         _ => unreachable!("checked above"),
     }
@@ -96,19 +120,19 @@ fn sweep_on(set: InstructionSet, source: Source<'_>, part: &Part, bands: &[Band<
 
 #[cfg(target_arch = "x86_64")]
 #[target_feature(enable = "avx2")]
-fn sweep_avx2(source: Source<'_>, part: &Part, bands: &[Band<'_>]) {
-    sweep(crate::search::lanes::Avx2::new(), source, part, bands);
+fn sweep_avx2(source: Source<'_>, part: &Part, built: &mut Built<'_, '_>) {
+    sweep(crate::search::lanes::Avx2::new(), source, part, built);
 }
 
 #[cfg(target_arch = "x86_64")]
 #[target_feature(enable = "avx512f,avx512bw,avx512dq,avx512vl")]
-fn sweep_avx512(source: Source<'_>, part: &Part, bands: &[Band<'_>]) {
-    sweep(crate::search::lanes::Avx512::new(), source, part, bands);
+fn sweep_avx512(source: Source<'_>, part: &Part, built: &mut Built<'_, '_>) {
+    sweep(crate::search::lanes::Avx512::new(), source, part, built);
 }
 
 /// Sweeps over the map in the directions of a part.
 #[inline(always)]
-fn sweep<L: Lanes>(lanes: L, source: Source<'_>, part: &Part, bands: &[Band<'_>]) {
+fn sweep<L: Lanes>(lanes: L, source: Source<'_>, part: &Part, built: &mut Built<'_, '_>) {
     let (width, height) = (source.grid.width(), source.grid.height());
     let longest = (width.max(height) - 1) as u16;
     let (majors, minors) = swap_unless(part.x_major, (width, height));
@@ -138,12 +162,24 @@ fn sweep<L: Lanes>(lanes: L, source: Source<'_>, part: &Part, bands: &[Band<'_>]
                 masks.sweep(lanes, row, shift, next, ranges);
             }
             let rows = [&*a, b, c, swept];
+            let mut noting = Noting {
+                views: &mut built.views,
+                steps: source.steps,
+                direction: d,
+                class: direction.class,
+                blocks: if part.x_major {
+                    (strip, row_blocks)
+                } else {
+                    (strip * row_blocks, 1)
+                },
+            };
             if longest <= Bins::NEAR_STEPS {
                 pool(
                     lanes,
                     rows,
                     source.bins.near_lines(direction.class),
                     planes.of(slot),
+                    &mut noting,
                 );
             } else {
                 pool(
@@ -151,10 +187,11 @@ fn sweep<L: Lanes>(lanes: L, source: Source<'_>, part: &Part, bands: &[Band<'_>]
                     rows,
                     source.bins.lines(direction.class),
                     planes.of(slot),
+                    &mut noting,
                 );
             }
         }
-        planes.write(part, strip, blocks, row_blocks, bands);
+        planes.write(part, strip, blocks, row_blocks, built.bands);
     }
 }
 

@@ -1,12 +1,14 @@
 //! The packed intervals of a whole strip of blocks in one direction.
 
 use super::strip::Row;
+use super::wide::{Noting, WIDE};
 use super::{ALL, PACKED, SIDE, STRETCHES};
 use crate::search::bins::{Bins, Line};
 use crate::search::lanes::Lanes;
 
 /// Pools the ranges of a strip's four rows of cells block by block, and packs
-/// the intervals of their bins, by `lines`, row by row of the packed format.
+/// the intervals of their bins, by `lines`, row by row of the packed format. Notes what
+/// is seen where they are wide.
 ///
 /// What lies up to the middle between the shortest and the longest range of a
 /// block is near, the rest is far; or what lies in the first quarter, if both parts
@@ -21,6 +23,7 @@ pub(super) fn pool<L: Lanes, const LINES: usize>(
     rows: [&Row; SIDE],
     lines: &[Line; LINES],
     packed: [&mut [u8]; PACKED],
+    noting: &mut Noting<'_>,
 ) {
     let cells: [&[u16]; SIDE * SIDE] = std::array::from_fn(|i| rows[i / SIDE].plane(i % SIDE));
     let [nearest, farthest, widths] = packed;
@@ -56,6 +59,10 @@ pub(super) fn pool<L: Lanes, const LINES: usize>(
         lanes.store_bytes(nearest_bin, nearest);
         lanes.store_bytes(farthest_bin, farthest);
         lanes.store_bytes(lanes.and(narrower, lanes.splat(u16::from(u8::MAX))), widths);
+        let wide = lanes.at_least(narrower, lanes.splat(u16::from(WIDE) << u8::BITS));
+        if wide != 0 {
+            noting.note(start, wide, &cells);
+        }
     }
 }
 

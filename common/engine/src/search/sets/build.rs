@@ -1,4 +1,5 @@
-//! Builds the sets of 2 × 2 blocks of intervals.
+//! Builds the sets of 2 × 2 blocks of intervals: of what these hold, or what was noted
+//! where they are wide.
 
 use std::ops::Range;
 
@@ -6,8 +7,8 @@ use super::Byte;
 use super::marks::{CHUNK, Chunk, Mark};
 use crate::instruction_set::InstructionSet;
 use crate::search::bins::Bins;
-use crate::search::bits::QUAD;
-use crate::search::intervals::RangeIntervals;
+use crate::search::bits::{self, QUAD};
+use crate::search::intervals::{ROW_SHIFT, RangeIntervals, WideViews};
 use crate::search::lanes::Portable;
 
 /// No rows: any others start before and end behind.
@@ -22,21 +23,19 @@ pub(super) struct Rows {
     pub bits: Vec<Byte>,
 }
 
+/// What the sets are made of.
+pub(super) type Source<'a> = (&'a RangeIntervals, &'a WideViews);
+
 /// The rows of the quads in some rows of them.
-pub(super) fn build(
-    set: InstructionSet,
-    intervals: &RangeIntervals,
-    shift: u32,
-    quad_rows: Range<usize>,
-) -> Rows {
+pub(super) fn build(set: InstructionSet, source: Source<'_>, quad_rows: Range<usize>) -> Rows {
     match set.checked() {
-        InstructionSet::Portable => join(Portable, intervals, shift, quad_rows),
+        InstructionSet::Portable => join(Portable, source, quad_rows),
         #[cfg(target_arch = "x86_64")]
         // SAFETY: the processor has the features that the function is compiled for.
-        InstructionSet::Avx2 => unsafe { join_avx2(intervals, shift, quad_rows) },
+        InstructionSet::Avx2 => unsafe { join_avx2(source, quad_rows) },
         #[cfg(target_arch = "x86_64")]
         // SAFETY: as above.
-        InstructionSet::Avx512 => unsafe { join_avx512(intervals, shift, quad_rows) },
+        InstructionSet::Avx512 => unsafe { join_avx512(source, quad_rows) },
         #[cfg(not(target_arch = "x86_64"))]
         _ => unreachable!("checked above"),
     }
@@ -44,60 +43,47 @@ pub(super) fn build(
 
 #[cfg(target_arch = "x86_64")]
 #[target_feature(enable = "avx2")]
-fn join_avx2(intervals: &RangeIntervals, shift: u32, quad_rows: Range<usize>) -> Rows {
-    join(
-        crate::search::lanes::Avx2::new(),
-        intervals,
-        shift,
-        quad_rows,
-    )
+fn join_avx2(source: Source<'_>, quad_rows: Range<usize>) -> Rows {
+    join(crate::search::lanes::Avx2::new(), source, quad_rows)
 }
 
 #[cfg(target_arch = "x86_64")]
 #[target_feature(enable = "avx512f,avx512bw,avx512dq,avx512vl")]
-fn join_avx512(intervals: &RangeIntervals, shift: u32, quad_rows: Range<usize>) -> Rows {
-    join(
-        crate::search::lanes::Avx512::new(),
-        intervals,
-        shift,
-        quad_rows,
-    )
+fn join_avx512(source: Source<'_>, quad_rows: Range<usize>) -> Rows {
+    join(crate::search::lanes::Avx512::new(), source, quad_rows)
 }
 
 #[inline(always)]
-fn join<M: Mark>(
-    marker: M,
-    intervals: &RangeIntervals,
-    shift: u32,
-    quad_rows: Range<usize>,
-) -> Rows {
-    let chunks = intervals.directions.div_ceil(CHUNK);
+fn join<M: Mark>(marker: M, source: Source<'_>, quad_rows: Range<usize>) -> Rows {
+    let (intervals, _) = source;
     let stride = intervals.directions / 8;
+    let mut chunks = vec![Chunk::default(); intervals.directions.div_ceil(CHUNK)];
     let mut joined = Rows::default();
     // For each block of a quad, a row of words for each row of bits.
-    let mut words = [(); QUAD].map(|()| vec![0u64; chunks << (u8::BITS - shift)]);
+    let mut words = [(); QUAD].map(|()| vec![0u64; chunks.len() << (u8::BITS - ROW_SHIFT)]);
     for y in quad_rows {
         for x in 0..intervals.columns.div_ceil(4) {
             let mut rows = NONE;
             for (place, words) in words.iter_mut().enumerate() {
-                let (x, y) = (2 * x + place % 2, 2 * y + place / 2);
-                let marked = mark(marker, intervals, shift, (x, y), words);
+                let block = (2 * x + place % 2, 2 * y + place / 2);
+                let marked = mark(marker, source, block, &mut chunks, words);
                 rows = rows.start.min(marked.start)..rows.end.max(marked.end);
             }
             if rows.is_empty() {
                 rows = 0..0;
             }
             for row in rows.clone() {
+                let row = row * chunks.len();
                 let [a, b, c, d] = words
                     .each_ref()
-                    .map(|words| &bytemuck::cast_slice(&words[row * chunks..])[..stride]);
+                    .map(|words| &bytemuck::cast_slice(&words[row..])[..stride]);
                 let turn = a.iter().zip(b).zip(c).zip(d);
                 joined
                     .bits
                     .extend(turn.map(|(((&a, &b), &c), &d)| [a, b, c, d]));
             }
             for words in &mut words {
-                words[rows.start * chunks..rows.end * chunks].fill(0);
+                words[rows.start * chunks.len()..rows.end * chunks.len()].fill(0);
             }
             joined.rows.push(rows);
         }
@@ -106,28 +92,38 @@ fn join<M: Mark>(
 }
 
 /// Marks what the block in column `x` and row `y` sees in words, of which all are 0:
-/// in which rows.
+/// in which rows. The chunks are room for the directions of a turn.
 #[inline(always)]
 fn mark<M: Mark>(
     marker: M,
-    intervals: &RangeIntervals,
-    shift: u32,
+    (intervals, wide): Source<'_>,
     (x, y): (usize, usize),
+    chunks: &mut [Chunk],
     words: &mut [u64],
 ) -> Range<usize> {
-    let chunks = intervals.directions.div_ceil(CHUNK);
-    let mut rows = NONE;
-    for chunk_index in 0..chunks {
-        let start = CHUNK * chunk_index;
-        let mut chunk = Chunk::new(shift);
-        for i in 0..4 {
-            let (x, y) = (2 * x + i % 2, 2 * y + i / 2);
-            if x < intervals.columns && y < intervals.rows {
-                set(&mut chunk, i, intervals, y * intervals.columns + x, start);
+    let count = chunks.len();
+    chunks.fill(Chunk::default());
+    for i in 0..4 {
+        let (x, y) = (2 * x + i % 2, 2 * y + i / 2);
+        if x >= intervals.columns || y >= intervals.rows {
+            continue;
+        }
+        let block = y * intervals.columns + x;
+        for (chunk_index, chunk) in chunks.iter_mut().enumerate() {
+            set(chunk, i, intervals, block, CHUNK * chunk_index);
+        }
+        for (direction, rows) in wide.of(block) {
+            let (chunk_index, lane) = (direction / CHUNK, direction % CHUNK);
+            chunks[chunk_index].leave_out(i, lane);
+            for row in bits::ones(rows) {
+                words[row * count + chunk_index] |= (1u64 << lane).to_le();
             }
         }
+    }
+    let mut rows = NONE;
+    for (chunk_index, chunk) in chunks.iter().enumerate() {
         for row in chunk.rows() {
-            words[usize::from(row) * chunks + chunk_index] = marker.mark(row, &chunk).to_le();
+            words[usize::from(row) * count + chunk_index] |= marker.mark(row, chunk).to_le();
             rows = rows.start.min(row.into())..rows.end.max(usize::from(row) + 1);
         }
     }

@@ -5,7 +5,7 @@ use std::arch::x86_64::*;
 use std::ops::RangeInclusive;
 
 use crate::search::bins::Bins;
-use crate::search::intervals::{far_start, near_end};
+use crate::search::intervals::{ROW_SHIFT, far_start, near_end};
 use crate::search::lanes::Portable;
 #[cfg(target_arch = "x86_64")]
 use crate::search::lanes::{Avx2, Avx512};
@@ -22,8 +22,6 @@ const INTERVALS: usize = 2 * BLOCKS;
 /// The intervals of joined blocks in 64 directions, for rows of some bins each.
 #[derive(Debug, Clone)]
 pub(super) struct Chunk {
-    /// How many bins a row stands for, as a power of two.
-    shift: u32,
     /// First bin of each interval. Where there is none it is 0, which is no bin.
     firsts: [[u8; CHUNK]; INTERVALS],
     /// How far behind the first bin a row can end that meets the interval.
@@ -32,23 +30,26 @@ pub(super) struct Chunk {
     farthest: [u8; CHUNK],
 }
 
-impl Chunk {
+/// The last bin of the first row.
+const LAST: u8 = (1 << ROW_SHIFT) - 1;
+
+impl Default for Chunk {
     /// The intervals of no block.
     #[inline(always)]
-    pub(super) fn new(shift: u32) -> Self {
+    fn default() -> Self {
         Chunk {
-            shift,
             firsts: [[0; CHUNK]; INTERVALS],
             reaches: [[0; CHUNK]; INTERVALS],
             nearest: [Bins::NOTHING; CHUNK],
             farthest: [0; CHUNK],
         }
     }
+}
 
+impl Chunk {
     /// Takes the packed intervals of block `i` of those that are joined.
     #[inline(always)]
     pub(super) fn set(&mut self, i: usize, [nearest, farthest, widths]: [&[u8; CHUNK]; 3]) {
-        let row = self.last();
         for d in 0..CHUNK {
             let (nearest, farthest, widths) = (nearest[d], farthest[d], widths[d]);
             let near_end = near_end(nearest, farthest, widths);
@@ -57,9 +58,9 @@ impl Chunk {
             let seen = if farthest == 0 { 0 } else { u8::MAX };
             self.firsts[2 * i][d] = nearest & seen;
             self.firsts[2 * i + 1][d] = far_start & seen;
-            self.reaches[2 * i][d] = near_end.wrapping_sub(nearest).saturating_add(row) & seen;
+            self.reaches[2 * i][d] = near_end.wrapping_sub(nearest).saturating_add(LAST) & seen;
             self.reaches[2 * i + 1][d] =
-                farthest.wrapping_sub(far_start).saturating_add(row) & seen;
+                farthest.wrapping_sub(far_start).saturating_add(LAST) & seen;
             self.nearest[d] = self.nearest[d].min(nearest);
             self.farthest[d] = self.farthest[d].max(farthest);
         }
@@ -73,20 +74,23 @@ impl Chunk {
             nearest = nearest.min(self.nearest[d]);
             farthest = farthest.max(self.farthest[d]);
         }
-        nearest >> self.shift..=farthest >> self.shift
+        nearest >> ROW_SHIFT..=farthest >> ROW_SHIFT
     }
 
-    /// The last bin of the first row.
+    /// Leaves out the intervals of block `i` in a direction, but for how far they reach.
     #[inline(always)]
-    fn last(&self) -> u8 {
-        (1 << self.shift) - 1
+    pub(super) fn leave_out(&mut self, i: usize, direction: usize) {
+        for interval in [2 * i, 2 * i + 1] {
+            self.firsts[interval][direction] = 0;
+            self.reaches[interval][direction] = 0;
+        }
     }
+}
 
-    /// The last bin of a row.
-    #[inline(always)]
-    fn end(&self, row: u8) -> u8 {
-        (row << self.shift) | self.last()
-    }
+/// The last bin of a row.
+#[inline(always)]
+fn end(row: u8) -> u8 {
+    (row << ROW_SHIFT) | LAST
 }
 
 /// Marks the directions in which a row of bins meets any interval.
@@ -98,7 +102,7 @@ pub(super) trait Mark: Copy {
 impl Mark for Portable {
     #[inline(always)]
     fn mark(self, row: u8, chunk: &Chunk) -> u64 {
-        let end = chunk.end(row);
+        let end = end(row);
         // By how much the row misses the nearest interval.
         let mut off = [u8::MAX; CHUNK];
         for (firsts, reaches) in chunk.firsts.iter().zip(&chunk.reaches) {
@@ -126,7 +130,7 @@ impl Mark for Avx2 {
             // SAFETY: `self` proves that the processor has the instructions, and
             // half a chunk is as long as a vector.
             unsafe {
-                let end = _mm256_set1_epi8(chunk.end(row).cast_signed());
+                let end = _mm256_set1_epi8(end(row).cast_signed());
                 let mut off = _mm256_set1_epi8(-1);
                 for (firsts, reaches) in chunk.firsts.iter().zip(&chunk.reaches) {
                     let first = _mm256_loadu_si256(firsts[half * HALF..].as_ptr().cast());
@@ -150,7 +154,7 @@ impl Mark for Avx512 {
         // SAFETY: `self` proves that the processor has the instructions, and a
         // chunk is as long as a vector.
         unsafe {
-            let end = _mm512_set1_epi8(chunk.end(row).cast_signed());
+            let end = _mm512_set1_epi8(end(row).cast_signed());
             let mut outside = u64::MAX;
             for (firsts, reaches) in chunk.firsts.iter().zip(&chunk.reaches) {
                 let first = _mm512_loadu_si512(firsts.as_ptr().cast());
