@@ -12,6 +12,7 @@
 mod build;
 mod marks;
 
+use std::convert::Infallible;
 use std::ops::Range;
 
 use crate::instruction_set::InstructionSet;
@@ -19,6 +20,7 @@ use crate::search::bits::QUAD;
 use crate::search::intervals::{self, RangeIntervals, WideViews};
 use crate::search::prefetch::prefetch;
 use crate::search::words::BYTES;
+use crate::threads;
 use build::{Rows, build};
 
 /// Bytes of directions that are read at a time: a word.
@@ -86,24 +88,21 @@ impl RangeSets {
         threads: usize,
     ) -> Self {
         let (columns, rows) = (intervals.columns.div_ceil(2), intervals.rows.div_ceil(2));
-        let of = |rows| build(set, (intervals, wide), rows);
         let quad_rows = rows.div_ceil(2);
-        let piece = quad_rows.div_ceil(threads.max(1));
-        let rows_of = std::thread::scope(|scope| {
-            let others: Vec<_> = (piece..quad_rows)
-                .step_by(piece)
-                .map(|start| scope.spawn(move || of(start..quad_rows.min(start + piece))))
-                .collect();
-            let mut all = of(0..piece);
-            for other in others {
-                let mut other = other
-                    .join()
-                    .unwrap_or_else(|panic| std::panic::resume_unwind(panic));
-                all.rows.append(&mut other.rows);
-                all.bits.append(&mut other.bits);
-            }
-            all
+        let piece = quad_rows.div_ceil(threads);
+        let pieces = (0..quad_rows).step_by(piece);
+        let pieces = pieces.map(|start| (start..quad_rows.min(start + piece), Rows::default()));
+        let mut pieces: Vec<_> = pieces.collect();
+        let Ok(()) = threads::run(&mut pieces, &|| false, |_, (rows, built), _| {
+            *built = build(set, (intervals, wide), rows.clone());
+            Ok::<(), Infallible>(())
         });
+        let mut pieces = pieces.into_iter().map(|(_, built)| built);
+        let mut rows_of = pieces.next().unwrap_or_default();
+        for mut piece in pieces {
+            rows_of.rows.append(&mut piece.rows);
+            rows_of.bits.append(&mut piece.bits);
+        }
         let side = 2 * intervals::SIDE;
         let stride = intervals.directions / 8;
         Self::of_rows(side, (columns, rows), intervals::ROW_SHIFT, stride, rows_of)

@@ -4,6 +4,7 @@
 //! blocks is done in all of them before the next one, so that what is built
 //! leaves the cache once, with the bytes of a block side by side.
 
+use std::convert::Infallible;
 use std::ops::Range;
 use std::sync::atomic::{AtomicUsize, Ordering};
 use std::sync::{Mutex, PoisonError};
@@ -19,6 +20,7 @@ use crate::instruction_set::InstructionSet;
 use crate::search::bins::Bins;
 use crate::search::lanes::{Lanes, Portable};
 use crate::search::steps::BinSteps;
+use crate::threads;
 
 /// What the intervals are made of.
 #[derive(Debug, Clone, Copy)]
@@ -45,32 +47,22 @@ pub(super) fn build(
     let bands: Vec<Band<'_>> = packed.chunks_mut(TILE * row).map(Mutex::new).collect();
     let parts = parts(source.directions, threads);
     let next = AtomicUsize::new(0);
-    let work = || {
-        let mut built = Built {
-            bands: &bands,
-            views: Vec::new(),
-        };
+    let mut views = vec![Vec::new(); threads];
+    let Ok(()) = threads::run(&mut views, &|| false, |_, views, _| {
+        let bands = &bands;
+        let mut built = Built { bands, views };
         while let Some(part) = parts.get(next.fetch_add(1, Ordering::Relaxed)) {
             sweep_on(set, source, part, &mut built);
         }
-        built.views
-    };
-    std::thread::scope(|scope| {
-        let others: Vec<_> = (1..threads).map(|_| scope.spawn(work)).collect();
-        let mut all = vec![work()];
-        all.extend(others.into_iter().map(|other| {
-            other
-                .join()
-                .unwrap_or_else(|panic| std::panic::resume_unwind(panic))
-        }));
-        all
-    })
+        Ok::<(), Infallible>(())
+    });
+    views
 }
 
 /// Where what is built goes: the packed intervals, and what is seen where they are wide.
 struct Built<'a, 'b> {
     bands: &'a [Band<'b>],
-    views: Vec<WideView>,
+    views: &'a mut Vec<WideView>,
 }
 
 /// Directions that sweep together.
@@ -163,7 +155,7 @@ fn sweep<L: Lanes>(lanes: L, source: Source<'_>, part: &Part, built: &mut Built<
             }
             let rows = [&*a, b, c, swept];
             let mut noting = Noting {
-                views: &mut built.views,
+                views: &mut *built.views,
                 steps: source.steps,
                 direction: d,
                 class: direction.class,
