@@ -15,6 +15,7 @@ use messages::Vote;
 
 use super::bits;
 use super::descent::{self, quarters};
+use super::index::SearchIndex;
 use super::interval_bounds::IntervalBounds;
 use super::intervals::{BlockIntervals, SIDE};
 use super::outlook::{CELLS, Outlook};
@@ -124,11 +125,10 @@ impl<'a> Alternatives<'a> {
 
     /// Takes the coarse blocks that promise most.
     fn take_most_promising(&mut self, count: usize) {
-        let bounds = self.task.coarse_bounds.iter().zip(0..);
-        let within = &self.task.index.within;
-        let blocks = bounds
-            .map(|(bound, block)| (bound.load(Ordering::Relaxed), Reverse(block)))
-            .filter(|&(_, Reverse(block))| within.holds(Size::Coarse, block as usize));
+        let task = self.task;
+        let blocks = (0..task.coarse_bounds.len())
+            .filter(|&block| task.index.within.holds(Size::Coarse, block))
+            .map(|block| promise_of(task, block));
         self.room.coarse.clear();
         self.room.coarse.extend(blocks);
         keep_greatest(&mut self.room.coarse, count);
@@ -137,34 +137,54 @@ impl<'a> Alternatives<'a> {
     /// Chooses the 8 × 8 blocks with the highest bounds, none of them below a floor,
     /// in the coarse ones that were taken.
     fn choose(&mut self, floor: u16) {
-        let (index, programs) = (self.task.index, self.task.programs);
-        let Room {
-            bounds,
-            coarse_bounds,
+        let SearchIndex {
             coarse,
             fine,
+            within,
             ..
-        } = &mut *self.room;
-        coarse_bounds.fit(&programs.coarse, self.task.headings());
-        for &(bound, Reverse(around)) in &*coarse {
-            let around = around as usize;
+        } = self.task.index;
+        let programs = self.task.programs;
+        let Some(&last) = self.room.coarse.last() else {
+            return;
+        };
+        let fit = &mut self.room.coarse_bounds;
+        fit.fit(&programs.coarse, self.task.headings());
+        for i in 0..self.room.coarse.len() {
+            let promise @ (bound, Reverse(block)) = self.room.coarse[i];
             // Where enough are known, others need not be bounded to the end.
-            let least = floor.max(fine.least());
+            let least = floor.max(self.room.fine.least());
             if bound < least {
+                break;
+            }
+            // All of a quad that were taken are bounded with the first of them.
+            let (quad, _) = coarse.place_of(block as usize);
+            let quad = within.quad(Size::Coarse, coarse, quad);
+            let mut others = quad.blocks().map(|(_, block)| promise_of(self.task, block));
+            if others.any(|other| other > promise) {
                 continue;
             }
-            let (outer, place) = index.coarse.place_of(around);
-            let outer = index.coarse.sought(outer, |block| block == around);
-            let outer = programs
-                .coarse
-                .bound((&index.coarse, &outer), coarse_bounds);
-            let quad = index.within.quad(Size::Fine, &index.fine, around);
-            let within = (&index.fine, &quad);
-            let reach = programs
-                .fine
-                .bound_within(within, least, (outer, place), bounds);
-            for (place, block) in quad.blocks().filter(|&(place, _)| reach[place]) {
-                fine.offer((bounds.found.greatest(place), Reverse(block as u32)));
+            let known = (self.task.by_chunk(quad.index), least);
+            let outer = &mut self.room.coarse_bounds;
+            programs.coarse.bound_again((coarse, &quad), known, outer);
+            for (place, block) in quad.blocks() {
+                let least = floor.max(self.room.fine.least());
+                let promise @ (bound, _) = promise_of(self.task, block);
+                if promise < last || bound < least {
+                    continue;
+                }
+                let inner = within.quad(Size::Fine, fine, block);
+                let Room {
+                    bounds,
+                    coarse_bounds,
+                    fine: chosen,
+                    ..
+                } = &mut *self.room;
+                let around = (&coarse_bounds.found, place);
+                let program = &programs.fine;
+                let reach = program.bound_within((fine, &inner), least, around, bounds);
+                for (place, block) in inner.blocks().filter(|&(place, _)| reach[place]) {
+                    chosen.offer((bounds.found.greatest(place), Reverse(block as u32)));
+                }
             }
         }
     }
@@ -246,6 +266,12 @@ impl<'a> Alternatives<'a> {
     }
 }
 
+/// What a coarse block promises.
+fn promise_of(task: &Task<'_>, block: usize) -> Promise {
+    let bound = task.coarse_bounds[block].load(Ordering::Relaxed);
+    (bound, Reverse(block as u32))
+}
+
 /// The greatest so many of what was offered.
 #[derive(Debug, Default)]
 struct Greatest {
@@ -305,6 +331,9 @@ impl Spot {
 
 /// Keeps the greatest so many, in falling order.
 fn keep_greatest<T: Ord>(all: &mut Vec<T>, count: usize) {
+    if count < all.len() {
+        all.select_nth_unstable_by(count, |a, b| b.cmp(a));
+        all.truncate(count);
+    }
     all.sort_unstable_by(|a, b| b.cmp(a));
-    all.truncate(count);
 }

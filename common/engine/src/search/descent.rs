@@ -29,8 +29,6 @@ pub(super) struct Descent<'a> {
 #[derive(Debug, Default)]
 pub(super) struct Room {
     coarse_bounds: SetBounds,
-    /// The greatest bounds of coarse quads, chunk by chunk.
-    by_chunk: Vec<u16>,
     fine_bounds: SetBounds,
     intervals: BlockIntervals,
     interval_bounds: IntervalBounds,
@@ -136,12 +134,9 @@ impl<'a> Descent<'a> {
         let own = own.map(|quad| within.quad(Size::Coarse, coarse, quad));
         let Room {
             coarse_bounds,
-            by_chunk,
             queue,
             ..
         } = &mut *self.room;
-        let chunks = coarse_bounds.found.chunks.len();
-        by_chunk.resize(coarse.quads() * chunks, 0);
         program.bound_all(coarse, own, coarse_bounds, |quad, found| {
             let mut most = 0;
             for (place, block) in quad.blocks() {
@@ -149,11 +144,10 @@ impl<'a> Descent<'a> {
                 self.task.coarse_bounds[block].store(bound, Ordering::Relaxed);
                 most = most.max(bound);
             }
-            let known = &mut by_chunk[quad.index * chunks..][..chunks];
-            known
-                .iter_mut()
-                .zip(found.by_chunk())
-                .for_each(|(known, bound)| *known = bound);
+            let by_chunk = self.task.by_chunk(quad.index);
+            for (known, bound) in by_chunk.iter().zip(found.by_chunk()) {
+                known.store(bound, Ordering::Relaxed);
+            }
             queue.push(Block {
                 bound: most,
                 index: quad.index as u32,
@@ -232,14 +226,8 @@ impl<'a> Descent<'a> {
                 fine.prefetch(block);
             }
         }
-        let Room {
-            coarse_bounds,
-            by_chunk,
-            ..
-        } = &mut *self.room;
-        let chunks = coarse_bounds.found.chunks.len();
-        let known = (&by_chunk[quad.index * chunks..][..chunks], floor);
-        program.bound_again((coarse, &quad), known, coarse_bounds);
+        let known = (self.task.by_chunk(quad.index), floor);
+        program.bound_again((coarse, &quad), known, &mut self.room.coarse_bounds);
         for (place, block) in quad.blocks() {
             let floor = self.room.collector.floor();
             let Room {

@@ -7,6 +7,8 @@
 //! and shifting the sums of each group once. What is done is done for the four
 //! blocks of a quad, side by side.
 
+use std::sync::atomic::{AtomicU16, Ordering};
+
 use super::bits::{self, EMPTY, QUAD, Words};
 use super::group::{Aligned, Carries, Group};
 use super::heading_bounds::HeadingBounds;
@@ -37,7 +39,7 @@ enum How<'a> {
 }
 
 /// Bounds of a quad that are known, chunk by chunk, and those that matter, in votes.
-pub(crate) type Known<'a> = (&'a [u16], u16);
+pub(crate) type Known<'a> = (&'a [AtomicU16], u16);
 
 /// The bounds of a block around others: of a quad, and its place there.
 pub(crate) type Around<'a> = (&'a HeadingBounds, usize);
@@ -222,7 +224,7 @@ impl SetProgram {
         for (i, chunk) in bounds.chunks.iter_mut().enumerate() {
             chunk.greatest = 0;
             let valid = match how {
-                How::Noting(Some((known, least))) if known[i] < least => 0,
+                How::Noting(Some((known, least))) if known[i].load(Ordering::Relaxed) < least => 0,
                 How::Plain | How::Noting(_) => chunk.valid,
                 How::Within((around, place), least) => {
                     let around = &around.chunks[i];

@@ -27,6 +27,8 @@ pub(super) struct Task<'a> {
     pub programs: &'a Programs,
     /// The bound of each coarse block in which poses are sought.
     pub coarse_bounds: &'a [AtomicU16],
+    /// The greatest bounds in coarse quads, chunk by chunk.
+    pub by_chunk: &'a [AtomicU16],
     /// The most votes of any pose so far, whoever found it.
     pub best: AtomicU16,
     /// What counting every pose with all beams would cost one thread.
@@ -40,6 +42,7 @@ pub(super) struct Task<'a> {
 pub(super) struct Shared {
     pub programs: Programs,
     coarse_bounds: Vec<AtomicU16>,
+    by_chunk: Vec<AtomicU16>,
 }
 
 /// A scan program laid out for each size of blocks.
@@ -88,10 +91,14 @@ impl<'a> Task<'a> {
         config: CollectConfig,
     ) -> Self {
         shared.programs.make(instruction_set, index, program, space);
-        shared.coarse_bounds.clear();
-        shared
-            .coarse_bounds
-            .resize_with(index.coarse.blocks(), AtomicU16::default);
+        let chunks = index.within.headings(space.directions.count()).count();
+        for (bounds, count) in [
+            (&mut shared.coarse_bounds, index.coarse.blocks()),
+            (&mut shared.by_chunk, index.coarse.quads() * chunks),
+        ] {
+            bounds.clear();
+            bounds.resize_with(count, AtomicU16::default);
+        }
         Task {
             index,
             grid,
@@ -100,6 +107,7 @@ impl<'a> Task<'a> {
             leading: 0,
             programs: &shared.programs,
             coarse_bounds: &shared.coarse_bounds,
+            by_chunk: &shared.by_chunk,
             best: AtomicU16::new(0),
             brute_force: Cost::of_brute_force(instruction_set, grid, program, space),
             counting: sift::share(program, &config),
@@ -128,6 +136,12 @@ impl<'a> Task<'a> {
             steps: &self.index.steps,
             directions: &self.space.directions,
         }
+    }
+
+    /// What is known of a coarse quad: its greatest bound in each chunk.
+    pub(super) fn by_chunk(&self, quad: usize) -> &'a [AtomicU16] {
+        let chunks = self.by_chunk.len() / self.index.coarse.quads();
+        &self.by_chunk[quad * chunks..][..chunks]
     }
 
     /// The headings that are sought, a word a chunk.
