@@ -121,17 +121,32 @@ impl QuadRows {
         // The row before the first one is joined with it.
         let first = rows.rows.start.saturating_sub(1).max(layout.needed.start);
         let taken = first..rows.rows.end.min(layout.needed.end);
+        let mut kept = rows.kept_before(taken.start);
         for i in taken.clone() {
-            let (from, next) = (rows.from(i), rows.from(i + 1));
-            let to = &mut self.bytes[2 * i * row..][..2 * row];
-            let (each, joined) = to.split_at_mut(row);
-            // What is copied too much, the next turn overwrites.
-            for start in (0..stride).step_by(READ) {
-                copy::<W>(from, next, start, (each, joined), start);
+            let each = &mut self.bytes[2 * i * row..][..row];
+            if rows.rows.contains(&i) {
+                let starts = (0..stride).step_by(READ);
+                for (start, &mask) in starts.zip(rows.masks_of(i)) {
+                    let words = W::expand(mask, bytes(&rows.bytes[kept..]));
+                    words.write(bytes_mut(&mut each[start..]));
+                    kept += mask.count_ones() as usize;
+                }
+                let turn = W::read(bytes(each));
+                // What is copied too much, the next turn overwrites.
+                for start in (stride..stride + READ - 1).step_by(stride) {
+                    turn.write(bytes_mut(&mut each[start..]));
+                }
+            } else {
+                each.fill([0; QUAD]);
             }
-            for start in (stride..stride + READ - 1).step_by(stride) {
-                copy::<W>(from, next, 0, (each, joined), start);
+            if i > taken.start {
+                self.join::<W>(2 * (i - 1) * row, row);
             }
+        }
+        if !taken.is_empty() {
+            // Nothing is seen behind the last one, or nobody reads it.
+            let last = 2 * (taken.end - 1) * row;
+            self.bytes.copy_within(last..last + row, last + row);
         }
         for used in self.used.clone() {
             if !taken.contains(&used) {
@@ -140,27 +155,18 @@ impl QuadRows {
         }
         self.used = taken;
     }
-}
 
-/// Copies a word of a row, and the same joined with that of the next one.
-#[inline(always)]
-fn copy<W: BitWords>(
-    from: Option<&[Byte]>,
-    next: Option<&[Byte]>,
-    at: usize,
-    (each, joined): (&mut [Byte], &mut [Byte]),
-    to: usize,
-) {
-    let (mut words, mut both) = (W::empty(), W::empty());
-    if let Some(from) = from {
-        words = W::read(bytes(&from[at..]));
-        both = words;
+    /// Joins a row that starts at such a place with the next one.
+    #[inline(always)]
+    fn join<W: BitWords>(&mut self, at: usize, row: usize) {
+        let rows = &mut self.bytes[at..][..3 * row];
+        let (each, rows) = rows.split_at_mut(row);
+        let (joined, next) = rows.split_at_mut(row);
+        for start in (0..row).step_by(READ) {
+            let words = W::read(bytes(&each[start..])).or(W::read(bytes(&next[start..])));
+            words.write(bytes_mut(&mut joined[start..]));
+        }
     }
-    if let Some(next) = next {
-        both = both.or(W::read(bytes(&next[at..])));
-    }
-    words.write(bytes_mut(&mut each[to..]));
-    both.write(bytes_mut(&mut joined[to..]));
 }
 
 #[inline(always)]

@@ -11,9 +11,9 @@
 
 mod build;
 mod marks;
+mod packed;
 
 use std::convert::Infallible;
-use std::ops::Range;
 
 use crate::instruction_set::InstructionSet;
 use crate::search::bits::QUAD;
@@ -22,6 +22,8 @@ use crate::search::prefetch::prefetch;
 use crate::search::words::BYTES;
 use crate::threads;
 use build::{Rows, build};
+pub(crate) use packed::SetRows;
+use packed::{PackedRows, words};
 
 /// Bytes of directions that are read at a time: a word.
 pub(crate) const READ: usize = BYTES / QUAD;
@@ -44,7 +46,7 @@ pub(crate) struct RangeSets {
     stride: usize,
     /// Where the rows of each quad start, and behind them where the last ones end.
     starts: Vec<Start>,
-    bits: Vec<Byte>,
+    packed: PackedRows,
 }
 
 /// Two by two blocks.
@@ -56,22 +58,13 @@ pub(crate) struct Quad {
 }
 
 /// Where the rows of a quad start.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+#[derive(Debug, Clone, Copy, Default, PartialEq, Eq)]
 struct Start {
-    /// Counted through all quads.
-    at: u32,
+    /// Counted through all quads, and so are the bytes that are kept.
+    row: u32,
+    byte: u32,
     /// The first row that has any bits.
     first: u32,
-}
-
-/// The rows of a quad.
-#[derive(Debug, Clone)]
-pub(crate) struct SetRows<'a> {
-    /// Those that have any bits, from the nearest bin on.
-    pub rows: Range<usize>,
-    stride: usize,
-    /// Behind the last row, [`READ`] bytes more than it has can be read.
-    bytes: &'a [Byte],
 }
 
 impl RangeSets {
@@ -99,10 +92,7 @@ impl RangeSets {
         });
         let mut pieces = pieces.into_iter().map(|(_, built)| built);
         let mut rows_of = pieces.next().unwrap_or_default();
-        for mut piece in pieces {
-            rows_of.rows.append(&mut piece.rows);
-            rows_of.bits.append(&mut piece.bits);
-        }
+        pieces.for_each(|piece| rows_of.append(piece));
         let side = 2 * intervals::SIDE;
         let stride = intervals.directions / 8;
         Self::of_rows(side, (columns, rows), intervals::ROW_SHIFT, stride, rows_of)
@@ -115,18 +105,16 @@ impl RangeSets {
         stride: usize,
         mut rows_of: Rows,
     ) -> Self {
-        let mut starts = Vec::with_capacity(rows_of.rows.len() + 1);
-        let mut at = 0;
-        for rows in rows_of.rows {
-            starts.push(Start {
-                at,
-                first: rows.start as u32,
-            });
-            at += rows.len() as u32;
+        let mut starts = Vec::with_capacity(rows_of.quads.len() + 1);
+        let mut start = Start::default();
+        for (rows, bytes) in rows_of.quads {
+            let first = rows.start as u32;
+            starts.push(Start { first, ..start });
+            start.row += rows.len() as u32;
+            start.byte += bytes as u32;
         }
-        starts.push(Start { at, first: 0 });
-        rows_of.bits.resize(rows_of.bits.len() + READ, [0; QUAD]);
-        rows_of.bits.shrink_to_fit();
+        starts.push(start);
+        rows_of.packed.finish();
         RangeSets {
             side,
             columns,
@@ -134,7 +122,7 @@ impl RangeSets {
             shift,
             stride,
             starts,
-            bits: rows_of.bits,
+            packed: rows_of.packed,
         }
     }
 
@@ -144,6 +132,8 @@ impl RangeSets {
         let (columns, rows) = (self.columns.div_ceil(2), self.rows.div_ceil(2));
         let quads = (columns.div_ceil(2), rows.div_ceil(2));
         let mut joined = Rows::default();
+        let mut turn = vec![[0; QUAD]; self.stride];
+        let mut unpacked = [(); QUAD].map(|()| Vec::new());
         for quad in 0..quads.0 * quads.1 {
             // A block is a quad of these.
             let within = quad_of(quad, (columns, rows)).map(|block| Some(self.quad(block?)));
@@ -151,20 +141,24 @@ impl RangeSets {
             let all = all.filter(|rows| !rows.is_empty());
             let all = all.reduce(|a, b| a.start.min(b.start)..a.end.max(b.end));
             let all = all.map_or(0..0, |rows| rows.start / 2..rows.end.div_ceil(2));
-            for row in all.clone() {
-                let pairs = within
-                    .each_ref()
-                    .map(|quad| [2 * row, 2 * row + 1].map(|row| quad.as_ref()?.from(row)));
-                let any = |pair: [Option<&[Byte]>; 2], byte: usize| {
-                    let words = pair.map(|row| row.map_or(0, |row| u32::from_ne_bytes(row[byte])));
-                    let both = words[0] | words[1];
-                    let both = both | both >> 16;
-                    (both | both >> 8) as u8
-                };
-                let turn = (0..self.stride).map(|byte| pairs.map(|pair| any(pair, byte)));
-                joined.bits.extend(turn);
+            for (quad, unpacked) in within.iter().zip(&mut unpacked) {
+                quad.iter().for_each(|quad| quad.unpack(unpacked));
             }
-            joined.rows.push(all);
+            joined.push(all, &mut turn, |row, turn| {
+                turn.fill([0; QUAD]);
+                for (place, (quad, unpacked)) in within.iter().zip(&unpacked).enumerate() {
+                    let Some(quad) = quad else { continue };
+                    let held = [2 * row, 2 * row + 1];
+                    for row in held.into_iter().filter(|row| quad.rows.contains(row)) {
+                        let row = &unpacked[(row - quad.rows.start) * self.stride..];
+                        for (to, &byte) in turn.iter_mut().zip(row) {
+                            let any = u32::from_ne_bytes(byte);
+                            let any = any | any >> 16;
+                            to[place] |= (any | any >> 8) as u8;
+                        }
+                    }
+                }
+            });
         }
         Self::of_rows(
             2 * self.side,
@@ -203,23 +197,24 @@ impl RangeSets {
 
     /// Bytes that the sets take.
     pub(crate) fn bytes(&self) -> usize {
-        size_of_val(&self.bits[..]) + size_of_val(&self.starts[..])
+        self.packed.size() + size_of_val(&self.starts[..])
     }
 
     /// The rows of a quad.
     pub(crate) fn quad(&self, quad: usize) -> SetRows<'_> {
         let (start, end) = (self.starts[quad], self.starts[quad + 1]);
-        let (at, end, first) = (start.at as usize, end.at as usize, start.first as usize);
-        SetRows {
-            rows: first..first + end - at,
-            stride: self.stride,
-            bytes: &self.bits[at * self.stride..end * self.stride + READ],
-        }
+        let (row, rows) = (start.row as usize, (end.row - start.row) as usize);
+        let (first, words) = (start.first as usize, words(self.stride));
+        let masks = &self.packed.masks[row * words..(row + rows) * words];
+        let bytes = &self.packed.bytes[start.byte as usize..end.byte as usize + READ];
+        SetRows::new(first..first + rows, self.stride, (masks, bytes))
     }
 
     /// Asks for the rows of a quad that is soon to be read.
     pub(crate) fn prefetch(&self, quad: usize) {
-        prefetch(self.quad(quad).bytes.as_flattened());
+        let rows = self.quad(quad);
+        prefetch(bytemuck::cast_slice(rows.masks()));
+        prefetch(rows.bytes.as_flattened());
     }
 }
 
@@ -228,15 +223,6 @@ impl Quad {
     pub(crate) fn blocks(&self) -> impl Iterator<Item = (usize, usize)> + use<> {
         let blocks = self.blocks.into_iter().enumerate();
         blocks.filter_map(|(place, block)| Some((place, block?)))
-    }
-}
-
-impl<'a> SetRows<'a> {
-    /// The bytes from a row on, if it has bits.
-    #[inline(always)]
-    pub(crate) fn from(&self, row: usize) -> Option<&'a [Byte]> {
-        let is_any = self.rows.contains(&row);
-        is_any.then(|| &self.bytes[(row - self.rows.start) * self.stride..])
     }
 }
 
@@ -261,6 +247,15 @@ mod tests {
     use crate::search::steps::BinSteps;
     use crate::testing::{any_grid, space_of};
 
+    /// A row as it was before it was packed, if it has bits.
+    fn row_of(rows: &SetRows<'_>, row: usize) -> Option<Vec<Byte>> {
+        let mut unpacked = Vec::new();
+        rows.unpack(&mut unpacked);
+        let stride = unpacked.len().checked_div(rows.rows.len())?;
+        let is_held = rows.rows.contains(&row);
+        is_held.then(|| unpacked[(row - rows.rows.start) * stride..][..stride].to_vec())
+    }
+
     proptest! {
         #[test]
         fn sets_hold_the_bins_of_all_cells_on_every_instruction_set(
@@ -274,7 +269,7 @@ mod tests {
             for set in InstructionSet::available() {
                 for threads in 1..4 {
                     let other = RangeSets::with(&intervals, &wide, set, threads);
-                    prop_assert!(other.bits == fine.bits && other.starts == fine.starts, "{} {}", set, threads);
+                    prop_assert!(other.packed == fine.packed && other.starts == fine.starts, "{} {}", set, threads);
                 }
             }
             for sets in [&fine, &fine.joined()] {
@@ -285,7 +280,7 @@ mod tests {
                         let range = reference::range(&grid, x as i64, y as i64, direction);
                         let Some(range) = range.filter(|&range| range > 0) else { continue };
                         let row = usize::from(bins.bin(direction.class, range) >> sets.shift);
-                        let bits = rows.from(row).map_or(0, |row| row[d / 8][place]);
+                        let bits = row_of(&rows, row).map_or(0, |row| row[d / 8][place]);
                         prop_assert!(bits >> (d % 8) & 1 == 1);
                     }
                 }
@@ -332,7 +327,7 @@ mod tests {
                     let turn: Vec<Byte> = turn.collect();
                     if turn.as_flattened().iter().any(|&byte| byte != 0) {
                         any = if any.is_empty() { row..row + 1 } else { any.start..row + 1 };
-                        prop_assert_eq!(rows.from(row).map(|row| &row[..sets.stride]), Some(&turn[..]));
+                        prop_assert_eq!(row_of(&rows, row), Some(turn));
                     }
                 }
                 prop_assert_eq!(rows.rows, any);

@@ -20,6 +20,9 @@ pub(crate) trait BitWords: Copy {
     fn splat(word: u128) -> Self;
     /// Bytes as they lie in sets, see [`BitWords::sorted`].
     fn read(bytes: &[u8; BYTES]) -> Self;
+    /// Fours of bytes: those that the mask tells, one after the other, and others
+    /// without bits.
+    fn expand(mask: u16, bytes: &[u8; BYTES]) -> Self;
     fn from_words(words: &Words) -> Self;
     fn to_words(self) -> Words;
     fn and(self, other: Self) -> Self;
@@ -89,6 +92,20 @@ impl BitWords for Words {
     #[inline(always)]
     fn read(bytes: &[u8; BYTES]) -> Self {
         bytemuck::pod_read_unaligned(bytes)
+    }
+
+    #[inline(always)]
+    fn expand(mask: u16, bytes: &[u8; BYTES]) -> Self {
+        let from: &[[u8; QUAD]; BYTES / QUAD] = bytemuck::cast_ref(bytes);
+        let mut fours = [[0; QUAD]; BYTES / QUAD];
+        let mut next = 0;
+        for (i, to) in fours.iter_mut().enumerate() {
+            if mask >> i & 1 == 1 {
+                *to = from[next];
+                next += 1;
+            }
+        }
+        bytemuck::cast(fours)
     }
 
     #[inline(always)]
@@ -200,6 +217,14 @@ mod x86 {
         }
 
         #[inline(always)]
+        fn expand(mask: u16, bytes: &[u8; BYTES]) -> Self {
+            unsafe {
+                let packed = _mm512_loadu_si512(bytes.as_ptr().cast());
+                Avx512(_mm512_maskz_expand_epi32(mask, packed))
+            }
+        }
+
+        #[inline(always)]
         fn from_words(words: &Words) -> Self {
             unsafe { Avx512(_mm512_loadu_si512(words.as_ptr().cast())) }
         }
@@ -284,6 +309,41 @@ mod x86 {
         }
     }
 
+    /// For each mask of eight, which of those that it tells comes where.
+    static PLACES: [[u8; 8]; 256] = places();
+
+    const fn places() -> [[u8; 8]; 256] {
+        let mut places = [[0; 8]; 256];
+        let mut mask = 0;
+        while mask < 256 {
+            let (mut i, mut next) = (0, 0);
+            while i < 8 {
+                places[mask][i] = next;
+                next += (mask >> i & 1) as u8;
+                i += 1;
+            }
+            mask += 1;
+        }
+        places
+    }
+
+    /// Eight times four bytes: those that the mask tells, one after the other, and
+    /// others without bits.
+    ///
+    /// # Safety
+    /// The processor must have AVX2, and 32 bytes be there.
+    #[inline(always)]
+    unsafe fn expand(mask: u8, bytes: *const u8) -> __m256i {
+        unsafe {
+            let places = _mm_loadl_epi64(PLACES[usize::from(mask)].as_ptr().cast());
+            let packed = _mm256_loadu_si256(bytes.cast());
+            let spread = _mm256_permutevar8x32_epi32(packed, _mm256_cvtepu8_epi32(places));
+            let bits = _mm256_setr_epi32(1, 2, 4, 8, 16, 32, 64, 128);
+            let told = _mm256_and_si256(_mm256_set1_epi32(i32::from(mask)), bits);
+            _mm256_and_si256(spread, _mm256_cmpeq_epi32(told, bits))
+        }
+    }
+
     impl BitWords for Avx2 {
         const AT_A_TIME: usize = 1;
 
@@ -310,6 +370,15 @@ mod x86 {
                     _mm256_loadu_si256(bytes.as_ptr().cast()),
                     _mm256_loadu_si256(bytes.as_ptr().add(BYTES / 2).cast()),
                 ])
+            }
+        }
+
+        #[inline(always)]
+        fn expand(mask: u16, bytes: &[u8; BYTES]) -> Self {
+            let [low, high] = mask.to_le_bytes();
+            unsafe {
+                let rest = bytes.as_ptr().add(4 * low.count_ones() as usize);
+                Avx2([expand(low, bytes.as_ptr()), expand(high, rest)])
             }
         }
 
@@ -412,8 +481,8 @@ mod tests {
     use super::*;
     use crate::instruction_set::InstructionSet;
 
-    /// The words of a type, after sorting, shifting and filling.
-    fn done<W: BitWords>(bytes: &[u8; BYTES], by: u32, word: u128) -> [Words; 4] {
+    /// The words of a type, after sorting, shifting, filling and expanding.
+    fn done<W: BitWords>(bytes: &[u8; BYTES], (by, word, mask): (u32, u128, u16)) -> [Words; 5] {
         let read = W::read(bytes);
         let sorted = read.sorted();
         [
@@ -421,13 +490,14 @@ mod tests {
             sorted.shift_down(by).to_words(),
             sorted.and(W::splat(word)).filled().to_words(),
             W::splat(word).to_words(),
+            W::expand(mask, bytes).to_words(),
         ]
     }
 
     proptest! {
         #[test]
         fn words_are_sorted_and_shifted_like_plain_numbers(
-            bytes in any::<[[u8; 32]; 2]>(), by in 0u32..64, word in any::<u128>(), place in 0u32..140,
+            bytes in any::<[[u8; 32]; 2]>(), by in 0u32..64, word in any::<u128>(), place in 0u32..140, mask: u16,
         ) {
             let bytes: [u8; BYTES] = bytemuck::cast(bytes);
             // Mostly a word of a few bits, so that some have none in common.
@@ -439,19 +509,25 @@ mod tests {
             let words = |of: &dyn Fn(usize) -> u128| {
                 [0, 64].map(|from| std::array::from_fn(|block| (of(block) >> from) as u64))
             };
-            let expected: [Words; 4] = [
+            let fours = bytes.as_chunks::<QUAD>().0;
+            let mut kept = fours.iter();
+            let expanded: [[u8; QUAD]; BYTES / QUAD] = std::array::from_fn(|i| {
+                if mask >> i & 1 == 1 { *kept.next().unwrap() } else { [0; QUAD] }
+            });
+            let expected: [Words; 5] = [
                 words(&plain),
                 words(&|block| plain(block) >> by),
                 words(&|block| if plain(block) & word == 0 { 0 } else { u128::MAX }),
                 words(&|_| word),
+                bytemuck::cast(expanded),
             ];
-            prop_assert_eq!(done::<Words>(&bytes, by, word), expected);
+            prop_assert_eq!(done::<Words>(&bytes, (by, word, mask)), expected);
             for set in InstructionSet::available() {
                 match set {
                     #[cfg(target_arch = "x86_64")]
-                    InstructionSet::Avx512 => prop_assert_eq!(done::<Avx512>(&bytes, by, word), expected),
+                    InstructionSet::Avx512 => prop_assert_eq!(done::<Avx512>(&bytes, (by, word, mask)), expected),
                     #[cfg(target_arch = "x86_64")]
-                    InstructionSet::Avx2 => prop_assert_eq!(done::<Avx2>(&bytes, by, word), expected),
+                    InstructionSet::Avx2 => prop_assert_eq!(done::<Avx2>(&bytes, (by, word, mask)), expected),
                     _ => {}
                 }
             }

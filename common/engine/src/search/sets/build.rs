@@ -5,6 +5,7 @@ use std::ops::Range;
 
 use super::Byte;
 use super::marks::{CHUNK, Chunk, Mark};
+use super::packed::PackedRows;
 use crate::instruction_set::InstructionSet;
 use crate::search::bins::Bins;
 use crate::search::bits::{self, QUAD};
@@ -18,9 +19,32 @@ const NONE: Range<usize> = usize::MAX..0;
 /// Rows of bits, quad by quad.
 #[derive(Debug, Clone, Default)]
 pub(super) struct Rows {
-    /// Which rows of each quad have any bits.
-    pub rows: Vec<Range<usize>>,
-    pub bits: Vec<Byte>,
+    /// Which rows of each quad have any bits, and how many bytes are kept of them.
+    pub quads: Vec<(Range<usize>, usize)>,
+    pub packed: PackedRows,
+}
+
+impl Rows {
+    /// Adds a quad with such rows, which `row` fills in one by one.
+    pub(super) fn push(
+        &mut self,
+        rows: Range<usize>,
+        turn: &mut [Byte],
+        mut row: impl FnMut(usize, &mut [Byte]),
+    ) {
+        let before = self.packed.bytes.len();
+        for i in rows.clone() {
+            row(i, turn);
+            self.packed.push(turn);
+        }
+        self.quads.push((rows, self.packed.bytes.len() - before));
+    }
+
+    /// Adds those of other quads.
+    pub(super) fn append(&mut self, mut other: Self) {
+        self.quads.append(&mut other.quads);
+        self.packed.append(other.packed);
+    }
 }
 
 /// What the sets are made of.
@@ -58,7 +82,7 @@ fn join<M: Mark>(marker: M, source: Source<'_>, quad_rows: Range<usize>) -> Rows
     let (intervals, _) = source;
     let stride = intervals.directions / 8;
     let mut chunks = vec![Chunk::default(); intervals.directions.div_ceil(CHUNK)];
-    let mut joined = Rows::default();
+    let (mut joined, mut turn) = (Rows::default(), vec![[0; QUAD]; stride]);
     // For each block of a quad, a row of words for each row of bits.
     let mut words = [(); QUAD].map(|()| vec![0u64; chunks.len() << (u8::BITS - ROW_SHIFT)]);
     for y in quad_rows {
@@ -72,20 +96,18 @@ fn join<M: Mark>(marker: M, source: Source<'_>, quad_rows: Range<usize>) -> Rows
             if rows.is_empty() {
                 rows = 0..0;
             }
-            for row in rows.clone() {
+            joined.push(rows.clone(), &mut turn, |row, turn| {
                 let row = row * chunks.len();
                 let [a, b, c, d] = words
                     .each_ref()
                     .map(|words| &bytemuck::cast_slice(&words[row..])[..stride]);
-                let turn = a.iter().zip(b).zip(c).zip(d);
-                joined
-                    .bits
-                    .extend(turn.map(|(((&a, &b), &c), &d)| [a, b, c, d]));
-            }
+                let bytes = a.iter().zip(b).zip(c).zip(d);
+                let bytes = bytes.map(|(((&a, &b), &c), &d)| [a, b, c, d]);
+                turn.iter_mut().zip(bytes).for_each(|(to, byte)| *to = byte);
+            });
             for words in &mut words {
                 words[rows.start * chunks.len()..rows.end * chunks.len()].fill(0);
             }
-            joined.rows.push(rows);
         }
     }
     joined
