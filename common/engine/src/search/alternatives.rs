@@ -22,6 +22,7 @@ use super::outlook::{CELLS, Outlook};
 use super::queue::Promise;
 use super::sectors;
 use super::set_bounds::SetBounds;
+use super::sets::Quad;
 use super::task::Task;
 use super::within::Size;
 use crate::votes::Distinct;
@@ -75,7 +76,7 @@ struct Spot {
 
 impl<'a> Alternatives<'a> {
     pub(super) fn new(task: &'a Task<'a>, room: &'a mut Room) -> Self {
-        room.bounds.fit(&task.programs.fine, task.headings());
+        room.bounds.fit(&task.programs.sets, task.headings());
         room.outlook.prepare(task.grid, &task.space.directions);
         Alternatives { task, room }
     }
@@ -128,7 +129,7 @@ impl<'a> Alternatives<'a> {
         let task = self.task;
         let blocks = (0..task.coarse_bounds.len())
             .filter(|&block| task.index.within.holds(Size::Coarse, block))
-            .map(|block| promise_of(task, block));
+            .map(|block| promise(task, block));
         self.room.coarse.clear();
         self.room.coarse.extend(blocks);
         keep_greatest(&mut self.room.coarse, count);
@@ -137,61 +138,66 @@ impl<'a> Alternatives<'a> {
     /// Chooses the 8 × 8 blocks with the highest bounds, none of them below a floor,
     /// in the coarse ones that were taken.
     fn choose(&mut self, floor: u16) {
+        let (coarse, within) = (&self.task.index.coarse, &self.task.index.within);
+        let (program, headings) = (&self.task.programs.sets, self.task.headings());
+        self.room.coarse_bounds.fit(program, headings);
+        for i in 0..self.room.coarse.len() {
+            let taken @ (bound, Reverse(block)) = self.room.coarse[i];
+            if bound < self.least(floor) {
+                break;
+            }
+            // All of a quad that were taken are bounded with the first of them.
+            let (quad, _) = coarse.place_of(block as usize);
+            let quad = within.quad(Size::Coarse, coarse, quad);
+            let mut others = quad.blocks().map(|(_, block)| promise(self.task, block));
+            if others.all(|other| other <= taken) {
+                self.choose_in(&quad, floor);
+            }
+        }
+    }
+
+    /// Chooses such blocks in those of a coarse quad that were taken.
+    fn choose_in(&mut self, quad: &Quad, floor: u16) {
         let SearchIndex {
             coarse,
             fine,
             within,
             ..
         } = self.task.index;
-        let programs = self.task.programs;
-        let Some(&last) = self.room.coarse.last() else {
-            return;
-        };
-        let fit = &mut self.room.coarse_bounds;
-        fit.fit(&programs.coarse, self.task.headings());
-        for i in 0..self.room.coarse.len() {
-            let promise @ (bound, Reverse(block)) = self.room.coarse[i];
-            // Where enough are known, others need not be bounded to the end.
-            let least = floor.max(self.room.fine.least());
-            if bound < least {
-                break;
-            }
-            // All of a quad that were taken are bounded with the first of them.
-            let (quad, _) = coarse.place_of(block as usize);
-            let quad = within.quad(Size::Coarse, coarse, quad);
-            let mut others = quad.blocks().map(|(_, block)| promise_of(self.task, block));
-            if others.any(|other| other > promise) {
+        let program = &self.task.programs.sets;
+        let known = (self.task.by_chunk(quad.index), self.least(floor));
+        program.bound_again((coarse, quad), known, &mut self.room.coarse_bounds);
+        for (place, block) in quad.blocks() {
+            let least = self.least(floor);
+            let promise = promise(self.task, block);
+            let is_taken = self.room.coarse.last().is_some_and(|&last| promise >= last);
+            if !is_taken || promise.0 < least {
                 continue;
             }
-            let known = (self.task.by_chunk(quad.index), least);
-            let outer = &mut self.room.coarse_bounds;
-            programs.coarse.bound_again((coarse, &quad), known, outer);
-            for (place, block) in quad.blocks() {
-                let least = floor.max(self.room.fine.least());
-                let promise @ (bound, _) = promise_of(self.task, block);
-                if promise < last || bound < least {
-                    continue;
-                }
-                let inner = within.quad(Size::Fine, fine, block);
-                let Room {
-                    bounds,
-                    coarse_bounds,
-                    fine: chosen,
-                    ..
-                } = &mut *self.room;
-                let around = (&coarse_bounds.found, place);
-                let program = &programs.fine;
-                let reach = program.bound_within((fine, &inner), least, around, bounds);
-                for (place, block) in inner.blocks().filter(|&(place, _)| reach[place]) {
-                    chosen.offer((bounds.found.greatest(place), Reverse(block as u32)));
-                }
+            let quad = within.quad(Size::Fine, fine, block);
+            let Room {
+                bounds,
+                coarse_bounds,
+                fine: chosen,
+                ..
+            } = &mut *self.room;
+            let around = (&coarse_bounds.found, place);
+            let reach = program.bound_within((fine, &quad), least, around, bounds);
+            for (place, block) in quad.blocks().filter(|&(place, _)| reach[place]) {
+                chosen.offer((bounds.found.greatest(place), Reverse(block as u32)));
             }
         }
     }
 
+    /// What a block must reach to be chosen: where enough are known, others need not be
+    /// bounded to the end.
+    fn least(&self, floor: u16) -> u16 {
+        floor.max(self.room.fine.least())
+    }
+
     /// Where in an 8 × 8 block the bound of a small block is highest.
     fn best_spot(&mut self, block: usize) -> Option<Spot> {
-        let (index, program) = (self.task.index, &self.task.programs.fine);
+        let (index, program) = (self.task.index, &self.task.programs.sets);
         let Room { bounds, masks, .. } = &mut *self.room;
         let (quad, place) = index.fine.place_of(block);
         let quad = index.fine.sought(quad, |other| other == block);
@@ -267,7 +273,7 @@ impl<'a> Alternatives<'a> {
 }
 
 /// What a coarse block promises.
-fn promise_of(task: &Task<'_>, block: usize) -> Promise {
+fn promise(task: &Task<'_>, block: usize) -> Promise {
     let bound = task.coarse_bounds[block].load(Ordering::Relaxed);
     (bound, Reverse(block as u32))
 }

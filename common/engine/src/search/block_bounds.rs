@@ -58,7 +58,7 @@ impl SearchIndex {
             program: set_program,
             bounds,
         } = &mut workspace.bounding;
-        set_program.make(program, directions, &self.steps, coarse.shift, best);
+        set_program.make(program, directions, &self.steps, best);
         bounds.fit(set_program, self.within.headings(directions.count()));
         blocks.side = coarse.side;
         blocks.columns = coarse.columns;

@@ -71,8 +71,8 @@ impl Room {
     /// Makes room for a task; nothing is left of the one before.
     fn start(&mut self, task: &Task<'_>) {
         let programs = task.programs;
-        self.coarse_bounds.fit(&programs.coarse, task.headings());
-        self.fine_bounds.fit(&programs.fine, task.headings());
+        self.coarse_bounds.fit(&programs.sets, task.headings());
+        self.fine_bounds.fit(&programs.sets, task.headings());
         self.outlook.prepare(task.grid, &task.space.directions);
         self.queue.clear();
         self.windows.clear();
@@ -126,7 +126,7 @@ impl<'a> Descent<'a> {
 
     /// Bounds one of `parts` of the coarse quads, and queues them.
     fn bound_coarse(&mut self, part: usize, parts: usize) {
-        let (coarse, program) = (&self.task.index.coarse, &self.task.programs.coarse);
+        let (coarse, program) = (&self.task.index.coarse, &self.task.programs.sets);
         // Neighbouring blocks are alike, so parts take them in turn. All bounds
         // are needed, also where another part gives up: candidates come of them.
         let within = &self.task.index.within;
@@ -213,11 +213,7 @@ impl<'a> Descent<'a> {
             within,
             ..
         } = self.task.index;
-        let Programs {
-            coarse: program,
-            fine: finer,
-            ..
-        } = self.task.programs;
+        let program = &self.task.programs.sets;
         let quad = within.quad(Size::Coarse, coarse, quad);
         let floor = self.room.collector.floor();
         for (_, block) in quad.blocks() {
@@ -240,7 +236,7 @@ impl<'a> Descent<'a> {
                 continue;
             }
             let inner = within.quad(Size::Fine, fine, block);
-            let reach = finer.bound_within((fine, &inner), floor, around, fine_bounds);
+            let reach = program.bound_within((fine, &inner), floor, around, fine_bounds);
             for (place, block) in inner.blocks().filter(|&(place, _)| reach[place]) {
                 self.queue_fine(block, place);
             }
@@ -257,7 +253,7 @@ impl<'a> Descent<'a> {
     /// Queues a block of 8 × 8 cells that was just bounded, at the headings at which it
     /// may matter.
     fn queue_fine(&mut self, index: usize, place: usize) {
-        let program = &self.task.programs.fine;
+        let program = &self.task.programs.sets;
         let Room {
             windows,
             fine_bounds,

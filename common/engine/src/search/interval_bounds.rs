@@ -185,26 +185,26 @@ mod tests {
                 let mut shared = Shared::default();
                 let scan = (&program, &space);
                 let task = Task::new(&mut shared, instruction_set, &index, &grid, scan, CollectConfig::default());
-                let Programs { coarse: outer, fine: inner, interval, .. } = task.programs;
+                let Programs { sets, interval, .. } = task.programs;
                 let (mut outer_bounds, mut inner_bounds) = (SetBounds::default(), SetBounds::default());
-                outer_bounds.fit(outer, task.headings());
-                inner_bounds.fit(inner, task.headings());
+                outer_bounds.fit(sets, task.headings());
+                inner_bounds.fit(sets, task.headings());
                 let (mut alone, mut known) = (IntervalBounds::default(), IntervalBounds::default());
                 for block in 0..fine.blocks() {
                     let (outside, place) = fine.place_of(block);
                     let (outer_quad, outer_place) = coarse.place_of(outside);
                     let outer_quad = coarse.sought(outer_quad, |_| true);
-                    let around = outer.bound((coarse, &outer_quad), &mut outer_bounds);
+                    let around = sets.bound((coarse, &outer_quad), &mut outer_bounds);
                     let quad = fine.sought(outside, |other| other == block);
                     let around = (around, outer_place);
-                    if !inner.bound_within((fine, &quad), 1, around, &mut inner_bounds)[place] {
+                    if !sets.bound_within((fine, &quad), 1, around, &mut inner_bounds)[place] {
                         continue;
                     }
                     let within = &inner_bounds.found;
                     let least = (f64::from(within.greatest(place)) * share) as u16;
                     let masks: Vec<_> = within.at_least(place, least.max(1)).collect();
                     for (first, among) in bits::windows(masks.len(), |chunk| masks[chunk]) {
-                        let rests = inner.rests((within, place), (first, among));
+                        let rests = sets.rests((within, place), (first, among));
                         let window = Window { first: first as u16, among, rests };
                         let sides = (intervals.columns, intervals.rows);
                         for small in quarters(block, fine.columns, sides) {

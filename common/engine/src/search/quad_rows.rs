@@ -8,6 +8,7 @@ use std::ops::Range;
 
 use super::bins::Bins;
 use super::bits::{CHUNK, QUAD};
+use super::intervals::ROW_SHIFT;
 use super::sets::{Byte, READ, SetRows};
 use super::words::{BYTES, BitWords, Several};
 
@@ -58,11 +59,11 @@ pub(crate) struct Reader<'a, const N: usize> {
 
 impl RowLayout {
     /// Starts anew, with nothing that is read.
-    pub(crate) fn start(&mut self, directions: usize, shift: u32) {
+    pub(crate) fn start(&mut self, directions: usize) {
         self.stride = directions / 8;
         let turns = (READ - 1).div_ceil(self.stride);
         self.row = (turns * self.stride + READ).next_multiple_of(READ);
-        self.most = (usize::from(Bins::NOTHING) >> shift) + 1;
+        self.most = (usize::from(Bins::NOTHING) >> ROW_SHIFT) + 1;
         self.needed = self.most..0;
         let turn = 0..self.stride as u32;
         self.turns.clear();

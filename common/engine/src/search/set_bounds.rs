@@ -393,7 +393,7 @@ mod tests {
                 let mut of_all_sets = Vec::new();
                 for instruction_set in InstructionSet::available() {
                     let mut set_program = SetProgram::default();
-                    set_program.make(&program, directions, &steps, sets.shift, instruction_set);
+                    set_program.make(&program, directions, &steps, instruction_set);
                     let all = Within::new(Limits::none(grid.width()));
                     let mut bounds = SetBounds::default();
                     bounds.fit(&set_program, all.headings(directions.count()));
@@ -439,8 +439,8 @@ mod tests {
                 let mut shared = Shared::default();
                 let scan = (&program, &space);
                 let task = Task::new(&mut shared, instruction_set, &index, &grid, scan, CollectConfig::default());
-                let (outer, inner) = (&task.programs.coarse, &task.programs.fine);
-                let [mut around, mut alone] = [outer, inner].map(|set_program| {
+                let set_program = &task.programs.sets;
+                let [mut around, mut alone] = [(); 2].map(|()| {
                     let mut bounds = SetBounds::default();
                     bounds.fit(set_program, task.headings());
                     bounds
@@ -451,16 +451,16 @@ mod tests {
                     let outer_quad = coarse.sought(outer_quad, |_| true);
                     let quad = fine.sought(outside, |_| true);
                     // About as many votes as they have, where it matters most.
-                    let greatest = inner.bound((fine, &quad), &mut alone).greatest(0);
+                    let greatest = set_program.bound((fine, &quad), &mut alone).greatest(0);
                     let least = (f64::from(greatest) * share) as u16;
                     for least in [0, least, greatest, greatest + 1] {
-                        let around = outer.bound((coarse, &outer_quad), &mut around);
+                        let around = set_program.bound((coarse, &outer_quad), &mut around);
                         let around = (around, outer_place);
                         for wanted in 1..1 << QUAD {
                             let places = |block: &usize| quad.blocks.iter().position(|other| other.as_ref() == Some(block));
                             let quad = fine.sought(outside, |block| places(&block).is_some_and(|place| wanted >> place & 1 == 1));
-                            let found = inner.bound_within((fine, &quad), least, around, &mut within);
-                            let alone = inner.bound((fine, &quad), &mut alone);
+                            let found = set_program.bound_within((fine, &quad), least, around, &mut within);
+                            let alone = set_program.bound((fine, &quad), &mut alone);
                             for (place, found) in found.into_iter().enumerate() {
                                 let is_sought = quad.blocks[place].is_some();
                                 prop_assert_eq!(found, is_sought && alone.greatest(place) >= least);

@@ -7,6 +7,7 @@ use std::ops::Range;
 
 use super::bits;
 use super::group::Group;
+use super::intervals::ROW_SHIFT;
 use super::quad_rows::RowLayout;
 use super::steps::BinSteps;
 use crate::directions::Directions;
@@ -45,25 +46,23 @@ impl Default for SetProgram {
 }
 
 impl SetProgram {
-    /// Lays out a program for sets of which each row stands for `1 << shift`
-    /// bins.
+    /// Lays out a program.
     pub(crate) fn make(
         &mut self,
         program: &ScanProgram,
         directions: &Directions,
         steps: &BinSteps,
-        shift: u32,
         instruction_set: InstructionSet,
     ) {
         let peaks = (0..program.beams()).map(|beam| program.peak(beam));
         let unit = peaks.reduce(greatest_common_divisor).unwrap_or(1).max(1);
         (self.instruction_set, self.unit) = (instruction_set, unit);
-        self.layout.start(directions.count(), shift);
+        self.layout.start(directions.count());
         self.groups.sort_unstable_by_key(Group::shift);
         self.groups.iter_mut().for_each(Group::clear);
         for beam in 0..program.beams() {
             let bearing = program.bearing(beam);
-            for (plane, rows) in windows(program, beam, directions, steps, shift, unit) {
+            for (plane, rows) in windows(program, beam, directions, steps, unit) {
                 let window = self.layout.window(rows, bearing / 8);
                 self.groups[bearing % 8].push(plane, window);
             }
@@ -108,7 +107,6 @@ fn windows(
     beam: usize,
     directions: &Directions,
     steps: &BinSteps,
-    shift: u32,
     unit: u16,
 ) -> impl Iterator<Item = (usize, Range<usize>)> {
     let peak = program.peak(beam) / unit;
@@ -122,7 +120,7 @@ fn windows(
                 let taper = program.taper(beam, class);
                 let votes = |&votes: &u8| u16::from(votes) > below;
                 let last = taper.profile.partition_point(votes).checked_sub(1)? as u16;
-                let row = |at| usize::from(steps.bin(class, at) >> shift);
+                let row = |at| usize::from(steps.bin(class, at) >> ROW_SHIFT);
                 Some((
                     row(taper.centre.saturating_sub(last)),
                     row(taper.centre + last) + 1,

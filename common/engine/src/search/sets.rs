@@ -40,9 +40,8 @@ pub(crate) struct RangeSets {
     pub columns: usize,
     /// Blocks along y.
     pub rows: usize,
-    /// A bit stands for `1 << shift` bins of [`crate::search::bins::Bins`].
-    pub shift: u32,
-    /// Bytes of a row of bits: one bit for each direction.
+    /// Bytes of a row of bits: one bit for each direction. A row stands for
+    /// `1 << ROW_SHIFT` bins.
     stride: usize,
     /// Where the rows of each quad start, and behind them where the last ones end.
     starts: Vec<Start>,
@@ -95,13 +94,12 @@ impl RangeSets {
         pieces.for_each(|piece| rows_of.append(piece));
         let side = 2 * intervals::SIDE;
         let stride = intervals.directions / 8;
-        Self::of_rows(side, (columns, rows), intervals::ROW_SHIFT, stride, rows_of)
+        Self::of_rows(side, (columns, rows), stride, rows_of)
     }
 
     fn of_rows(
         side: usize,
         (columns, rows): (usize, usize),
-        shift: u32,
         stride: usize,
         mut rows_of: Rows,
     ) -> Self {
@@ -119,15 +117,13 @@ impl RangeSets {
             side,
             columns,
             rows,
-            shift,
             stride,
             starts,
             packed: rows_of.packed,
         }
     }
 
-    /// Those of blocks that join two by two of these, with bits that stand for
-    /// twice as many bins.
+    /// Those of blocks that join two by two of these.
     pub(crate) fn joined(&self) -> Self {
         let (columns, rows) = (self.columns.div_ceil(2), self.rows.div_ceil(2));
         let quads = (columns.div_ceil(2), rows.div_ceil(2));
@@ -140,33 +136,24 @@ impl RangeSets {
             let all = within.iter().flatten().map(|quad| quad.rows.clone());
             let all = all.filter(|rows| !rows.is_empty());
             let all = all.reduce(|a, b| a.start.min(b.start)..a.end.max(b.end));
-            let all = all.map_or(0..0, |rows| rows.start / 2..rows.end.div_ceil(2));
             for (quad, unpacked) in within.iter().zip(&mut unpacked) {
                 quad.iter().for_each(|quad| quad.unpack(unpacked));
             }
-            joined.push(all, &mut turn, |row, turn| {
+            joined.push(all.unwrap_or(0..0), &mut turn, |row, turn| {
                 turn.fill([0; QUAD]);
                 for (place, (quad, unpacked)) in within.iter().zip(&unpacked).enumerate() {
+                    let quad = quad.as_ref().filter(|quad| quad.rows.contains(&row));
                     let Some(quad) = quad else { continue };
-                    let held = [2 * row, 2 * row + 1];
-                    for row in held.into_iter().filter(|row| quad.rows.contains(row)) {
-                        let row = &unpacked[(row - quad.rows.start) * self.stride..];
-                        for (to, &byte) in turn.iter_mut().zip(row) {
-                            let any = u32::from_ne_bytes(byte);
-                            let any = any | any >> 16;
-                            to[place] |= (any | any >> 8) as u8;
-                        }
+                    let row = &unpacked[(row - quad.rows.start) * self.stride..];
+                    for (to, &byte) in turn.iter_mut().zip(row) {
+                        let any = u32::from_ne_bytes(byte);
+                        let any = any | any >> 16;
+                        to[place] = (any | any >> 8) as u8;
                     }
                 }
             });
         }
-        Self::of_rows(
-            2 * self.side,
-            (columns, rows),
-            self.shift + 1,
-            self.stride,
-            joined,
-        )
+        Self::of_rows(2 * self.side, (columns, rows), self.stride, joined)
     }
 
     /// How many blocks there are.
@@ -279,7 +266,7 @@ mod tests {
                     for (d, direction) in directions.all().iter().enumerate() {
                         let range = reference::range(&grid, x as i64, y as i64, direction);
                         let Some(range) = range.filter(|&range| range > 0) else { continue };
-                        let row = usize::from(bins.bin(direction.class, range) >> sets.shift);
+                        let row = usize::from(bins.bin(direction.class, range) >> intervals::ROW_SHIFT);
                         let bits = row_of(&rows, row).map_or(0, |row| row[d / 8][place]);
                         prop_assert!(bits >> (d % 8) & 1 == 1);
                     }
@@ -305,7 +292,7 @@ mod tests {
                     let within = (near_first..=near_last).chain(far_first..=far_last);
                     let seen: Vec<usize> = match wide.of(block).find(|&(direction, _)| direction == d) {
                         Some((_, rows)) => bits::ones(rows).collect(),
-                        None => within.map(|bin| usize::from(bin >> sets.shift)).collect(),
+                        None => within.map(|bin| usize::from(bin >> intervals::ROW_SHIFT)).collect(),
                     };
                     for row in seen {
                         let at = row * sets.stride;

@@ -45,11 +45,10 @@ pub(super) struct Shared {
     by_chunk: Vec<AtomicU16>,
 }
 
-/// A scan program laid out for each size of blocks.
+/// A scan program laid out for each way in which blocks are bounded and counted.
 #[derive(Debug, Default)]
 pub(super) struct Programs {
-    pub coarse: SetProgram,
-    pub fine: SetProgram,
+    pub sets: SetProgram,
     pub interval: IntervalProgram,
     pub leaf: LeafProgram,
     pub beams: usize,
@@ -65,14 +64,9 @@ impl Programs {
         space: &Space,
     ) {
         let (directions, steps) = (&space.directions, &index.steps);
-        for (sets, set_program) in [
-            (&index.coarse, &mut self.coarse),
-            (&index.fine, &mut self.fine),
-        ] {
-            set_program.make(program, directions, steps, sets.shift, instruction_set);
-        }
+        self.sets.make(program, directions, steps, instruction_set);
         self.leaf.make(program, directions, instruction_set);
-        let (shifts, ordered) = (self.fine.shifts(), (program, self.leaf.order()));
+        let (shifts, ordered) = (self.sets.shifts(), (program, self.leaf.order()));
         self.interval
             .make(ordered, directions, steps, shifts, instruction_set);
         self.beams = program.beams();

@@ -1,7 +1,7 @@
 //! Rows of bits of which only the bytes are kept that have any.
 //!
-//! A block sees few distances in a direction, so that about one byte in five has bits. A
-//! mask for each sixteen says which, and what is not kept need not come from memory.
+//! A block sees few distances in a direction, so that three of four bytes have none. A
+//! mask for each sixteen says which are kept; the others need not come from memory.
 
 use std::ops::Range;
 
@@ -136,7 +136,7 @@ mod tests {
             stride in 1usize..100, count in 0usize..9, first in 0usize..9, seed in vec(any::<u32>(), 900),
         ) {
             // Most bytes have no bits.
-            let byte = |seed: u32| if seed % 4 == 0 { seed.to_ne_bytes() } else { NOTHING };
+            let byte = |seed: u32| if seed.is_multiple_of(4) { seed.to_ne_bytes() } else { NOTHING };
             let plain: Vec<Byte> = seed[..stride * count].iter().map(|&seed| byte(seed)).collect();
             let mut packed = PackedRows::default();
             plain.chunks(stride).for_each(|row| packed.push(row));
