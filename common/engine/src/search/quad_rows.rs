@@ -140,9 +140,11 @@ impl QuadRows {
             } else {
                 each.fill([0; QUAD]);
             }
-            if i > taken.start {
-                self.join::<W>(2 * (i - 1) * row, row);
-            }
+        }
+        // All rows are written before any is read: what was written a moment ago and
+        // lies athwart what is read would be waited for.
+        for i in taken.start + 1..taken.end {
+            self.join::<W>(2 * (i - 1) * row, row);
         }
         if !taken.is_empty() {
             // Nothing is seen behind the last one, or nobody reads it.
