@@ -27,7 +27,7 @@ pub(crate) struct SetRows<'a> {
     pub rows: Range<usize>,
     /// Bytes of a row.
     stride: usize,
-    masks: &'a [u16],
+    pub(super) masks: &'a [u16],
     /// Behind the last of them, [`READ`] more can be read.
     pub bytes: &'a [Byte],
 }
@@ -86,11 +86,6 @@ impl<'a> SetRows<'a> {
             masks,
             bytes,
         }
-    }
-
-    /// The masks of all words.
-    pub(super) fn masks(&self) -> &'a [u16] {
-        self.masks
     }
 
     /// The masks of the words of a row, which must have bits.
