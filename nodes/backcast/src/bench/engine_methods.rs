@@ -7,7 +7,7 @@ use engine::accumulator::{Accumulator, Query};
 use engine::instruction_set::InstructionSet;
 use engine::program::ScanProgram;
 use engine::scatter::Scatter;
-use engine::search::SearchIndex;
+use engine::search::{SearchIndex, Workspace};
 use engine::sweep::FieldSweep;
 use engine::votes::{CollectConfig, VoteSet, of_field};
 use messages::Vote;
@@ -70,15 +70,25 @@ pub(super) fn sweep<'a>(world: &'a World, sweeps: &'a FieldSweep) -> Locate<'a> 
     fields(world, sweeps.accumulator())
 }
 
-/// By bounds, down to a share of the best.
-pub(super) fn search<'a>(world: &'a World, index: &'a SearchIndex, floor_share: f64) -> Locate<'a> {
-    let collect = CollectConfig {
-        floor_share,
-        ..CollectConfig::default()
-    };
+/// By bounds, only the best pose.
+pub(super) fn search<'a>(world: &'a World, index: &'a SearchIndex) -> Locate<'a> {
+    collecting(world, index, ARGMAX)
+}
+
+/// By bounds, with candidates as the graph has them by default.
+pub(super) fn candidates<'a>(world: &'a World, index: &'a SearchIndex) -> Locate<'a> {
+    collecting(world, index, CollectConfig::default())
+}
+
+/// In a workspace that is kept from scan to scan, as the graph does it.
+fn collecting<'a>(world: &'a World, index: &'a SearchIndex, collect: CollectConfig) -> Locate<'a> {
+    let (mut workspace, mut found) = (Workspace::default(), VoteSet::default());
     Box::new(move |task, _| {
-        let found = index.search(&world.grid, &program(task)?, task.space, collect, &|| false);
-        Ok(Answer::Best(found.and_then(|found| best(&found))))
+        let (how, program) = ((InstructionSet::best(), 1), program(task)?);
+        let (scan, collect) = ((&program, task.space), (collect, &mut found));
+        let grid = &world.grid;
+        let searched = index.search_in(&mut workspace, how, grid, scan, collect, &|| false);
+        Ok(Answer::Best(searched.and_then(|()| best(&found))))
     })
 }
 

@@ -130,16 +130,13 @@ impl LineUp {
                     map_bytes: index.value.bytes(),
                 });
             };
-            add(Method::Search, reverse::search(world, &index.value, 1.0));
+            add(Method::Search, reverse::search(world, &index.value));
             if table == Table::Search {
                 add(
                     Method::TopSixteen,
                     reverse::top_sixteen(world, &index.value, patience_s),
                 );
-                add(
-                    Method::Candidates,
-                    reverse::search(world, &index.value, 0.85),
-                );
+                add(Method::Candidates, reverse::candidates(world, &index.value));
             }
         }
         all
