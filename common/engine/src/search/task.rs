@@ -28,7 +28,7 @@ pub(super) struct Task<'a> {
     /// The bound of each coarse block in which poses are sought.
     pub coarse_bounds: &'a [AtomicU16],
     /// The greatest bounds in coarse quads, chunk by chunk.
-    pub by_chunk: &'a [AtomicU16],
+    by_chunk: &'a [AtomicU16],
     /// The most votes of any pose so far, whoever found it.
     pub best: AtomicU16,
     /// What counting every pose with all beams would cost one thread.
