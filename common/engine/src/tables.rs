@@ -102,6 +102,13 @@ impl<'a> VoteTable<'a> {
         self.votes.try_into().ok()
     }
 
+    /// Whether any of these numbers of steps, without the end, may have votes.
+    #[inline(always)]
+    pub(crate) fn has_votes_in(&self, (first, end): (u16, u16)) -> bool {
+        let centre = usize::from(self.centre);
+        usize::from(first) < centre + self.used && centre + 1 < usize::from(end) + self.used
+    }
+
     /// Adds the votes for poses from which the ray is so long, side by side.
     #[inline(always)]
     pub(crate) fn add(&self, ranges: &[u16], votes: &mut [u16]) {

@@ -18,9 +18,8 @@ use super::descent::{self, quarters};
 use super::index::SearchIndex;
 use super::interval_bounds::IntervalBounds;
 use super::intervals::{BlockIntervals, SIDE};
-use super::outlook::{CELLS, Outlook};
+use super::outlook::Outlook;
 use super::queue::Promise;
-use super::sectors;
 use super::set_bounds::SetBounds;
 use super::sets::Quad;
 use super::task::Task;
@@ -254,11 +253,7 @@ impl<'a> Alternatives<'a> {
         let outlook = &mut self.room.outlook;
         outlook.enter(map, &index.intervals, block);
         let view = self.task.view();
-        let mut counts = [0; CELLS];
-        for sector in 0..sectors::count(self.task.programs.beams) {
-            let program = &self.task.programs.leaf;
-            program.add(outlook, &view, sector, heading, &mut counts);
-        }
+        let counts = self.task.programs.leaf.count(outlook, &view, heading);
         let open = outlook.open();
         let votes = counts.iter().zip(&open).map(|(count, open)| count & open);
         let (intensity, Reverse(i)) = votes.zip((0..).map(Reverse)).max()?;

@@ -99,7 +99,7 @@ pub(crate) fn at_least<W: BitWords>(
 }
 
 /// The places of the set bits of a word, ascending.
-pub(crate) fn ones(word: u64) -> impl Iterator<Item = usize> {
+pub(crate) fn ones(word: u64) -> impl Iterator<Item = usize> + Clone {
     let mut word = word;
     std::iter::from_fn(move || {
         let bit = word.trailing_zeros() as usize;

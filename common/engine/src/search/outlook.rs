@@ -172,13 +172,22 @@ impl Outlook {
         &self.by_direction[d]
     }
 
+    /// The steps at which rays in direction `d` may end, without the ends: two spans.
+    #[inline(always)]
+    pub(crate) fn spans(&self, view: &View<'_>, d: usize) -> [(u16, u16); 2] {
+        let class = view.directions.get(d).class;
+        let [near_first, near_last, far_first, far_last] = &self.intervals.rows;
+        let span = |first: u8, last: u8| view.steps.span(class, first, last);
+        [
+            span(near_first[d], near_last[d]),
+            span(far_first[d], far_last[d]),
+        ]
+    }
+
     #[inline(always)]
     fn look_anew<L: RayLanes>(&mut self, view: &View<'_>, d: usize) {
         let direction = view.directions.get(d);
-        let [near_first, near_last, far_first, far_last] = &self.intervals.rows;
-        let span = |first: u8, last: u8| view.steps.span(direction.class, first, last);
-        let near = span(near_first[d], near_last[d]);
-        let far = span(far_first[d], far_last[d]);
+        let [near, far] = self.spans(view, d);
         let spans = if self.can_lose {
             [(1, near.1.max(far.1)), (0, 0)]
         } else {
