@@ -15,6 +15,7 @@ use messages::Vote;
 
 use super::bits;
 use super::descent::{self, quarters};
+use super::heading_bounds::HeadingBounds;
 use super::index::SearchIndex;
 use super::interval_bounds::IntervalBounds;
 use super::intervals::{BlockIntervals, SIDE};
@@ -35,6 +36,10 @@ const COARSE_PART: usize = 16;
 /// Blocks of 8 × 8 cells that are looked into for each candidate.
 const FINE_SHARE: usize = 1;
 
+/// All 8 × 8 blocks that are looked into likely promise this share of what the last of
+/// the coarse ones does that are split, in parts of 16.
+const LIKELY_SIXTEENTHS: u32 = 13;
+
 /// Headings with less than this share of a block's highest bound, in parts of
 /// 32, are not looked at.
 const LEAST_THIRTY_SECONDTHS: u32 = 31;
@@ -49,9 +54,6 @@ pub(super) struct Alternatives<'a> {
 #[derive(Debug, Default)]
 pub(super) struct Room {
     bounds: SetBounds,
-    coarse_bounds: SetBounds,
-    /// Headings at which a block of 8 × 8 cells may matter, a word a chunk.
-    masks: Vec<u128>,
     intervals: BlockIntervals,
     interval_bounds: IntervalBounds,
     outlook: Outlook,
@@ -98,15 +100,12 @@ impl<'a> Alternatives<'a> {
             }
         }
         if !self.room.fine.is_full() {
-            let part = self.task.coarse_bounds.len() / COARSE_PART;
-            self.take_most_promising(part.max(COARSE_SHARE * wanted));
-            self.room.fine.start(count);
-            self.choose(1);
+            self.split_most_promising(wanted, count);
         }
         self.room.spots.clear();
         for i in 0..self.room.fine.blocks().len() {
-            let Reverse((_, Reverse(block))) = self.room.fine.blocks()[i];
-            let spot = self.best_spot(block as usize);
+            let Reverse(promise) = self.room.fine.blocks()[i];
+            let spot = self.best_spot(promise);
             self.room.spots.extend(spot);
         }
         let Room {
@@ -120,6 +119,22 @@ impl<'a> Alternatives<'a> {
         for i in 0..self.room.spots.len() {
             let vote = self.count(self.room.spots[i]);
             self.room.votes.extend(vote);
+        }
+    }
+
+    /// Chooses so many 8 × 8 blocks in the coarse ones that promise most.
+    fn split_most_promising(&mut self, wanted: usize, count: usize) {
+        let part = self.task.coarse_bounds.len() / COARSE_PART;
+        self.take_most_promising(part.max(COARSE_SHARE * wanted));
+        // With a guess of what the last one reaches, most others are dropped early.
+        let last = self.room.coarse.last().map_or(0, |&(bound, _)| bound);
+        let likely = (u32::from(last) * LIKELY_SIXTEENTHS / 16) as u16;
+        for floor in [likely.max(1), 1] {
+            self.room.fine.start(count);
+            self.choose(floor);
+            if self.room.fine.is_full() {
+                break;
+            }
         }
     }
 
@@ -137,112 +152,61 @@ impl<'a> Alternatives<'a> {
     /// Chooses the 8 × 8 blocks with the highest bounds, none of them below a floor,
     /// in the coarse ones that were taken.
     fn choose(&mut self, floor: u16) {
-        let (coarse, within) = (&self.task.index.coarse, &self.task.index.within);
-        let (program, headings) = (&self.task.programs.sets, self.task.headings());
-        self.room.coarse_bounds.fit(program, headings);
-        for i in 0..self.room.coarse.len() {
-            let taken @ (bound, Reverse(block)) = self.room.coarse[i];
-            if bound < self.least(floor) {
+        let SearchIndex { fine, within, .. } = self.task.index;
+        let Room {
+            bounds,
+            coarse,
+            fine: chosen,
+            ..
+        } = &mut *self.room;
+        for &(bound, Reverse(block)) in &*coarse {
+            // Where enough are known, others matter only if they are as good.
+            let least = floor.max(chosen.least());
+            if bound < least {
                 break;
             }
-            // All of a quad that were taken are bounded with the first of them.
-            let (quad, _) = coarse.place_of(block as usize);
-            let quad = within.quad(Size::Coarse, coarse, quad);
-            let mut others = quad.blocks().map(|(_, block)| promise(self.task, block));
-            if others.all(|other| other <= taken) {
-                self.choose_in(&quad, floor);
-            }
+            let quad = within.quad(Size::Fine, fine, block as usize);
+            let bounds = bound_fine(self.task, &quad, least, bounds);
+            let bounded = quad
+                .blocks()
+                .map(|(place, block)| (bounds.greatest(place), Reverse(block as u32)));
+            let left = bounded.filter(|&(bound, _)| bound >= least);
+            left.for_each(|promise| chosen.offer(promise));
         }
-    }
-
-    /// Chooses such blocks in those of a coarse quad that were taken.
-    fn choose_in(&mut self, quad: &Quad, floor: u16) {
-        let SearchIndex {
-            coarse,
-            fine,
-            within,
-            ..
-        } = self.task.index;
-        let program = &self.task.programs.sets;
-        let known = (self.task.by_chunk(quad.index), self.least(floor));
-        program.bound_again((coarse, quad), known, &mut self.room.coarse_bounds);
-        for (place, block) in quad.blocks() {
-            let least = self.least(floor);
-            let promise = promise(self.task, block);
-            let is_taken = self.room.coarse.last().is_some_and(|&last| promise >= last);
-            if !is_taken || promise.0 < least {
-                continue;
-            }
-            let quad = within.quad(Size::Fine, fine, block);
-            let Room {
-                bounds,
-                coarse_bounds,
-                fine: chosen,
-                ..
-            } = &mut *self.room;
-            let around = (&coarse_bounds.found, place);
-            let reach = program.bound_within((fine, &quad), least, around, bounds);
-            for (place, block) in quad.blocks().filter(|&(place, _)| reach[place]) {
-                chosen.offer((bounds.found.greatest(place), Reverse(block as u32)));
-            }
-        }
-    }
-
-    /// What a block must reach to be chosen: where enough are known, others need not be
-    /// bounded to the end.
-    fn least(&self, floor: u16) -> u16 {
-        floor.max(self.room.fine.least())
     }
 
     /// Where in an 8 × 8 block the bound of a small block is highest.
-    fn best_spot(&mut self, block: usize) -> Option<Spot> {
-        let (index, program) = (self.task.index, &self.task.programs.sets);
-        let Room { bounds, masks, .. } = &mut *self.room;
-        let (quad, place) = index.fine.place_of(block);
-        let quad = index.fine.sought(quad, |other| other == block);
-        let bounds = program.bound((&index.fine, &quad), bounds);
-        let greatest = u32::from(bounds.greatest(place));
-        let least = (greatest * LEAST_THIRTY_SECONDTHS / 32) as u16;
-        masks.clear();
-        masks.extend(bounds.at_least(place, least.max(1)));
-        let sides = (index.intervals.columns, index.intervals.rows);
-        let mut best = None;
-        let smalls = quarters(block, index.fine.columns, sides);
-        let masks = std::mem::take(masks);
-        for small in smalls.filter(|&block| index.within.holds(Size::Small, block)) {
-            index.intervals.read(small, &mut self.room.intervals);
-            for (first, among) in bits::windows(masks.len(), |chunk| masks[chunk]) {
-                best = best.max(self.best_in_window(small, first, among, best));
-            }
-        }
-        self.room.masks = masks;
-        best
-    }
-
-    /// The best spot at some headings, if it may be better than that so far.
-    fn best_in_window(
-        &mut self,
-        block: usize,
-        first: usize,
-        among: u64,
-        so_far: Option<Spot>,
-    ) -> Option<Spot> {
-        let program = &self.task.programs.interval;
+    fn best_spot(&mut self, (bound, Reverse(block)): Promise) -> Option<Spot> {
+        let (index, block) = (self.task.index, block as usize);
         let Room {
+            bounds,
             intervals,
-            interval_bounds: bounds,
+            interval_bounds,
             ..
         } = &mut *self.room;
-        let least = so_far.map_or(1, |spot| spot.bound);
-        if !program.bound(intervals, first, among, least, bounds) {
-            return None;
+        let (quad, place) = index.fine.place_of(block);
+        let quad = index.fine.sought(quad, |other| other == block);
+        let least = (u32::from(bound) * LEAST_THIRTY_SECONDTHS / 32) as u16;
+        let bounds = bound_fine(self.task, &quad, least.max(1), bounds);
+        let program = &self.task.programs.interval;
+        let sides = (index.intervals.columns, index.intervals.rows);
+        let smalls = quarters(block, index.fine.columns, sides);
+        let mut best: Option<Spot> = None;
+        for small in smalls.filter(|&block| index.within.holds(Size::Small, block)) {
+            index.intervals.read(small, intervals);
+            for (first, among) in bounds.reach(place) {
+                let least = best.map_or(1, |spot| spot.bound);
+                if program.bound(intervals, first, among, least, interval_bounds) {
+                    let spot = |lane| Spot {
+                        bound: interval_bounds.all[lane],
+                        block: Reverse(small),
+                        heading: Reverse(first + lane),
+                    };
+                    best = best.max(bits::ones(among).map(spot).max());
+                }
+            }
         }
-        let spot = |lane| Spot {
-            bound: bounds.all[lane],
-            block: Reverse(block),
-            heading: Reverse(first + lane),
-        };
-        bits::ones(among).map(spot).max()
+        best
     }
 
     /// The best pose of a spot; `None` where nobody can stand or nothing votes.
@@ -265,6 +229,20 @@ impl<'a> Alternatives<'a> {
             intensity,
         })
     }
+}
+
+/// Bounds 8 × 8 blocks in chunks of headings in which they may have as many votes as
+/// matter.
+fn bound_fine<'a>(
+    task: &Task<'_>,
+    quad: &Quad,
+    least: u16,
+    bounds: &'a mut SetBounds,
+) -> &'a HeadingBounds {
+    // A coarse block is a quad of those within.
+    let known = (task.by_chunk(quad.index), least);
+    let blocks = (&task.index.fine, quad);
+    task.programs.sets.bound(blocks, Some(known), bounds)
 }
 
 /// What a coarse block promises.

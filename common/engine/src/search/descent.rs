@@ -28,8 +28,7 @@ pub(super) struct Descent<'a> {
 /// What a thread searches with, kept from scan to scan.
 #[derive(Debug, Default)]
 pub(super) struct Room {
-    coarse_bounds: SetBounds,
-    fine_bounds: SetBounds,
+    set_bounds: SetBounds,
     intervals: BlockIntervals,
     interval_bounds: IntervalBounds,
     outlook: Outlook,
@@ -71,8 +70,7 @@ impl Room {
     /// Makes room for a task; nothing is left of the one before.
     fn start(&mut self, task: &Task<'_>) {
         let programs = task.programs;
-        self.coarse_bounds.fit(&programs.sets, task.headings());
-        self.fine_bounds.fit(&programs.sets, task.headings());
+        self.set_bounds.fit(&programs.sets, task.headings());
         self.outlook.prepare(task.grid, &task.space.directions);
         self.queue.clear();
         self.windows.clear();
@@ -133,29 +131,24 @@ impl<'a> Descent<'a> {
         let own = (part..coarse.quads()).step_by(parts);
         let own = own.map(|quad| within.quad(Size::Coarse, coarse, quad));
         let Room {
-            coarse_bounds,
-            queue,
-            ..
+            set_bounds, queue, ..
         } = &mut *self.room;
-        program.bound_all(coarse, own, coarse_bounds, |quad, found| {
-            let mut most = 0;
+        program.bound_all(coarse, own, set_bounds, |quad, found| {
             for (place, block) in quad.blocks() {
                 let bound = found.greatest(place);
                 self.task.coarse_bounds[block].store(bound, Ordering::Relaxed);
-                most = most.max(bound);
+                for (known, bound) in self.task.by_chunk(block).iter().zip(found.by_chunk(place)) {
+                    known.store(bound, Ordering::Relaxed);
+                }
+                queue.push(Block {
+                    bound,
+                    index: block as u32,
+                    level: Level::Coarse,
+                });
             }
-            let by_chunk = self.task.by_chunk(quad.index);
-            for (known, bound) in by_chunk.iter().zip(found.by_chunk()) {
-                known.store(bound, Ordering::Relaxed);
-            }
-            queue.push(Block {
-                bound: most,
-                index: quad.index as u32,
-                level: Level::Coarse,
-            });
         });
         // What is tallied is what blocks cost that are taken from the queue.
-        coarse_bounds.reads = 0;
+        set_bounds.reads = 0;
     }
 
     /// The next block that may matter.
@@ -168,14 +161,12 @@ impl<'a> Descent<'a> {
     /// Asks for what is known of a block that is likely the next one.
     fn prefetch(&self, block: &Block) {
         let SearchIndex {
-            coarse,
-            fine,
-            intervals,
-            ..
+            fine, intervals, ..
         } = self.task.index;
         let index = block.index as usize;
         match block.level {
-            Level::Coarse => coarse.prefetch(index),
+            // A coarse block is a quad of those within.
+            Level::Coarse => fine.prefetch(index),
             Level::Fine { .. } => {
                 let sides = (intervals.columns, intervals.rows);
                 quarters(index, fine.columns, sides).for_each(|block| intervals.prefetch(block));
@@ -204,50 +195,20 @@ impl<'a> Descent<'a> {
         }
     }
 
-    /// Bounds a quad of blocks of 16 × 16 cells once more, now with notes for what lies
-    /// in them, and queues the 8 × 8 there.
-    fn split_coarse(&mut self, quad: usize) {
-        let SearchIndex {
-            coarse,
-            fine,
-            within,
-            ..
-        } = self.task.index;
+    /// Bounds and queues the blocks of 8 × 8 cells in one of 16 × 16.
+    fn split_coarse(&mut self, index: usize) {
+        let SearchIndex { fine, within, .. } = self.task.index;
         let program = &self.task.programs.sets;
-        let quad = within.quad(Size::Coarse, coarse, quad);
-        let floor = self.room.collector.floor();
-        for (_, block) in quad.blocks() {
-            if self.task.coarse_bounds[block].load(Ordering::Relaxed) >= floor {
-                // A block is a quad of those within.
-                fine.prefetch(block);
-            }
-        }
-        let known = (self.task.by_chunk(quad.index), floor);
-        program.bound_again((coarse, &quad), known, &mut self.room.coarse_bounds);
+        let quad = within.quad(Size::Fine, fine, index);
+        let known = (self.task.by_chunk(index), self.room.collector.floor());
+        program.bound((fine, &quad), Some(known), &mut self.room.set_bounds);
         for (place, block) in quad.blocks() {
-            let floor = self.room.collector.floor();
-            let Room {
-                coarse_bounds,
-                fine_bounds,
-                ..
-            } = &mut *self.room;
-            let around = (&coarse_bounds.found, place);
-            if coarse_bounds.found.greatest(place) < floor {
-                continue;
-            }
-            let inner = within.quad(Size::Fine, fine, block);
-            let reach = program.bound_within((fine, &inner), floor, around, fine_bounds);
-            for (place, block) in inner.blocks().filter(|&(place, _)| reach[place]) {
-                self.queue_fine(block, place);
-            }
+            self.queue_fine(block, place);
         }
         let Room {
-            coarse_bounds,
-            fine_bounds,
-            tally,
-            ..
+            set_bounds, tally, ..
         } = &mut *self.room;
-        tally.reads = coarse_bounds.reads + fine_bounds.reads;
+        tally.reads = set_bounds.reads;
     }
 
     /// Queues a block of 8 × 8 cells that was just bounded, at the headings at which it
@@ -256,10 +217,10 @@ impl<'a> Descent<'a> {
         let program = &self.task.programs.sets;
         let Room {
             windows,
-            fine_bounds,
+            set_bounds,
             ..
         } = &mut *self.room;
-        let bounds = (&fine_bounds.found, place);
+        let bounds = (&set_bounds.found, place);
         let start = windows.len();
         windows.extend(bounds.0.reach(place).map(|(first, among)| Window {
             first: first as u16,

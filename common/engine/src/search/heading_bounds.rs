@@ -16,15 +16,13 @@ pub(crate) struct HeadingBounds {
 /// Bounds at the headings of a chunk.
 #[derive(Debug, Clone)]
 pub(super) struct Chunk {
-    /// Sums in units.
-    pub sums: Planes,
-    /// What the sums were after each group but the last.
+    /// What was noted after each group but the last: sums in units.
     pub after: [Planes; GROUPS - 1],
-    /// The greatest of any block, in units.
-    pub greatest: u16,
+    /// The greatest of each block, in units.
+    pub greatest: [u16; QUAD],
     /// Which headings matter.
     pub valid: u128,
-    /// Those of them at which a block may have as many votes as was asked for.
+    /// Those at which a block was bounded and may have as many votes as was asked for.
     pub reach: Words,
 }
 
@@ -36,9 +34,8 @@ impl HeadingBounds {
         self.greatest = [0; QUAD];
         self.chunks.clear();
         let chunks = headings.map(|valid| Chunk {
-            sums: [EMPTY; bits::PLANES],
             after: [[EMPTY; bits::PLANES]; GROUPS - 1],
-            greatest: 0,
+            greatest: [0; QUAD],
             valid,
             reach: EMPTY,
         });
@@ -50,27 +47,17 @@ impl HeadingBounds {
         self.unit * self.greatest[place]
     }
 
-    /// The greatest bound of any block, chunk by chunk.
-    pub(crate) fn by_chunk(&self) -> impl Iterator<Item = u16> {
-        self.chunks.iter().map(|chunk| self.unit * chunk.greatest)
+    /// The same, chunk by chunk.
+    pub(crate) fn by_chunk(&self, place: usize) -> impl Iterator<Item = u16> {
+        self.chunks
+            .iter()
+            .map(move |chunk| self.unit * chunk.greatest[place])
     }
 
-    /// Windows of the headings at which a block that was bounded within another one
-    /// reaches what was asked for.
+    /// Windows of the headings at which a block reaches what was asked for.
     pub(crate) fn reach(&self, place: usize) -> impl Iterator<Item = (usize, u64)> {
         bits::windows(self.chunks.len(), move |chunk| {
             bits::of_block(&self.chunks[chunk].reach, place)
         })
-    }
-
-    /// For each chunk, the headings at which the bound of a block is at least `least`.
-    pub(crate) fn at_least(&self, place: usize, least: u16) -> impl Iterator<Item = u128> {
-        let least = least.div_ceil(self.unit);
-        let at_least = move |chunk: &Chunk| {
-            let among = bits::words(|_| chunk.valid);
-            let at_least = bits::at_least(bits::PLANES, |plane| chunk.sums[plane], least, among);
-            bits::of_block(&at_least, place)
-        };
-        self.chunks.iter().map(at_least)
     }
 }

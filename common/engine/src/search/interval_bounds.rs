@@ -159,6 +159,8 @@ impl IntervalProgram {
 
 #[cfg(test)]
 mod tests {
+    use std::sync::atomic::AtomicU16;
+
     use proptest::prelude::*;
 
     use super::super::bits;
@@ -189,31 +191,29 @@ mod tests {
                 let (mut outer_bounds, mut inner_bounds) = (SetBounds::default(), SetBounds::default());
                 outer_bounds.fit(sets, task.headings());
                 inner_bounds.fit(sets, task.headings());
-                let (mut alone, mut known) = (IntervalBounds::default(), IntervalBounds::default());
+                let (mut alone, mut noted) = (IntervalBounds::default(), IntervalBounds::default());
                 for block in 0..fine.blocks() {
                     let (outside, place) = fine.place_of(block);
                     let (outer_quad, outer_place) = coarse.place_of(outside);
                     let outer_quad = coarse.sought(outer_quad, |_| true);
-                    let around = sets.bound((coarse, &outer_quad), &mut outer_bounds);
+                    let around = sets.bound((coarse, &outer_quad), None, &mut outer_bounds);
+                    let known: Vec<_> = around.by_chunk(outer_place).map(AtomicU16::new).collect();
                     let quad = fine.sought(outside, |other| other == block);
-                    let around = (around, outer_place);
-                    if !sets.bound_within((fine, &quad), 1, around, &mut inner_bounds)[place] {
-                        continue;
-                    }
-                    let within = &inner_bounds.found;
-                    let least = (f64::from(within.greatest(place)) * share) as u16;
-                    let masks: Vec<_> = within.at_least(place, least.max(1)).collect();
-                    for (first, among) in bits::windows(masks.len(), |chunk| masks[chunk]) {
+                    let greatest = sets.bound((fine, &quad), None, &mut inner_bounds).greatest(place);
+                    let least = (f64::from(greatest) * share) as u16;
+                    let known = Some((&known[..], least.max(1)));
+                    let within = sets.bound((fine, &quad), known, &mut inner_bounds);
+                    for (first, among) in within.reach(place) {
                         let rests = sets.rests((within, place), (first, among));
                         let window = Window { first: first as u16, among, rests };
                         let sides = (intervals.columns, intervals.rows);
                         for small in quarters(block, fine.columns, sides) {
                             intervals.read(small, &mut read);
                             let plain = interval.bound(&read, first, among, least, &mut alone);
-                            let found = interval.bound_within(&read, &window, least, &mut known);
+                            let found = interval.bound_within(&read, &window, least, &mut noted);
                             prop_assert_eq!(found, plain);
                             for lane in bits::ones(among).filter(|_| plain) {
-                                prop_assert_eq!(known.all[lane], alone.all[lane]);
+                                prop_assert_eq!(noted.all[lane], alone.all[lane]);
                             }
                         }
                     }

@@ -26,23 +26,12 @@ const MOST_AT_A_TIME: usize = 3;
 /// group than they can, and 0 behind the last.
 pub(crate) type Rests = [u16; GROUPS + 1];
 
-/// How blocks are bounded.
-#[derive(Debug, Clone, Copy)]
-enum How<'a> {
-    /// At all headings.
-    Plain,
-    /// The same, and the sums after each group are noted for blocks within. Only in
-    /// chunks that matter, if it is known which do.
-    Noting(Option<Known<'a>>),
-    /// As blocks within another one, as long as any heading may have so many units.
-    Within(Around<'a>, u16),
-}
-
-/// Bounds of a quad that are known, chunk by chunk, and those that matter, in votes.
+/// What is known of the blocks of a quad: that none has more votes in each chunk, and how
+/// many matter.
 pub(crate) type Known<'a> = (&'a [AtomicU16], u16);
 
-/// The bounds of a block around others: of a quad, and its place there.
-pub(crate) type Around<'a> = (&'a HeadingBounds, usize);
+/// The bounds of a quad, and a place there.
+pub(crate) type Placed<'a> = (&'a HeadingBounds, usize);
 
 /// Bounds of the blocks of a quad, and room to find them.
 #[derive(Debug, Clone, Default)]
@@ -72,8 +61,8 @@ impl SetBounds {
 
 impl SetProgram {
     /// What the beams from each group on give at most at the headings of a window, by
-    /// bounds of a block that were found within those of a block around.
-    pub(crate) fn rests(&self, (bounds, place): Around<'_>, (first, among): (usize, u64)) -> Rests {
+    /// sums that were noted.
+    pub(crate) fn rests(&self, (bounds, place): Placed<'_>, (first, among): (usize, u64)) -> Rests {
         let chunks = &bounds.chunks;
         let others = self.groups().len().saturating_sub(1);
         let mut rests = Rests::default();
@@ -90,42 +79,25 @@ impl SetProgram {
         rests
     }
 
-    /// Bounds the votes of blocks in chunks in which any may have as many votes as
-    /// matter.
-    pub(crate) fn bound_again<'a>(
-        &self,
-        (sets, quad): (&RangeSets, &Quad),
-        known: Known<'_>,
-        bounds: &'a mut SetBounds,
-    ) -> &'a HeadingBounds {
-        self.run((sets, quad), How::Noting(Some(known)), bounds);
-        &bounds.found
-    }
-
-    /// Bounds the votes of blocks at all headings.
+    /// Bounds the votes of blocks at all headings or, if something is known, where any may
+    /// have as many as matter. Then the bounds of others are not finished, and sums after
+    /// each group are noted for what lies in the blocks.
     pub(crate) fn bound<'a>(
         &self,
-        (sets, quad): (&RangeSets, &Quad),
+        blocks: (&RangeSets, &Quad),
+        known: Option<Known<'_>>,
         bounds: &'a mut SetBounds,
     ) -> &'a HeadingBounds {
-        self.run((sets, quad), How::Noting(None), bounds);
+        match self.instruction_set {
+            // SAFETY: the processor has the instruction set, or it would not be chosen.
+            #[cfg(target_arch = "x86_64")]
+            InstructionSet::Avx512 => unsafe { self.run_avx512(blocks, known, bounds) },
+            // SAFETY: as above.
+            #[cfg(target_arch = "x86_64")]
+            InstructionSet::Avx2 => unsafe { self.run_avx2(blocks, known, bounds) },
+            _ => self.run_with::<Words>(blocks, known, bounds),
+        }
         &bounds.found
-    }
-
-    /// Bounds those of blocks within one that was bounded by the same beams. Whether any
-    /// heading of each may have `least` votes; if not, its bounds are not finished.
-    ///
-    /// Only headings matter at which the block around reaches `least`, and what it says
-    /// of beams that are still to be added tells sooner whether any does.
-    pub(crate) fn bound_within(
-        &self,
-        blocks: (&RangeSets, &Quad),
-        least: u16,
-        around: Around<'_>,
-        bounds: &mut SetBounds,
-    ) -> [bool; QUAD] {
-        let least = least.div_ceil(self.unit);
-        self.run(blocks, How::Within(around, least), bounds)
     }
 
     /// The greatest bound of each block.
@@ -141,25 +113,7 @@ impl SetProgram {
             if let Some(next) = quads.peek() {
                 sets.prefetch(next.index);
             }
-            self.run((sets, &quad), How::Plain, bounds);
-            take(&quad, &bounds.found);
-        }
-    }
-
-    fn run(
-        &self,
-        blocks: (&RangeSets, &Quad),
-        how: How<'_>,
-        bounds: &mut SetBounds,
-    ) -> [bool; QUAD] {
-        match self.instruction_set {
-            // SAFETY: the processor has the instruction set, or it would not be chosen.
-            #[cfg(target_arch = "x86_64")]
-            InstructionSet::Avx512 => unsafe { self.run_avx512(blocks, how, bounds) },
-            // SAFETY: as above.
-            #[cfg(target_arch = "x86_64")]
-            InstructionSet::Avx2 => unsafe { self.run_avx2(blocks, how, bounds) },
-            _ => self.run_with::<Words>(blocks, how, bounds),
+            take(&quad, self.bound((sets, &quad), None, bounds));
         }
     }
 
@@ -168,10 +122,10 @@ impl SetProgram {
     fn run_avx512(
         &self,
         blocks: (&RangeSets, &Quad),
-        how: How<'_>,
+        known: Option<Known<'_>>,
         bounds: &mut SetBounds,
-    ) -> [bool; QUAD] {
-        self.run_with::<super::words::Avx512>(blocks, how, bounds)
+    ) {
+        self.run_with::<super::words::Avx512>(blocks, known, bounds);
     }
 
     #[cfg(target_arch = "x86_64")]
@@ -179,83 +133,68 @@ impl SetProgram {
     fn run_avx2(
         &self,
         blocks: (&RangeSets, &Quad),
-        how: How<'_>,
+        known: Option<Known<'_>>,
         bounds: &mut SetBounds,
-    ) -> [bool; QUAD] {
-        self.run_with::<super::words::Avx2>(blocks, how, bounds)
+    ) {
+        self.run_with::<super::words::Avx2>(blocks, known, bounds);
     }
 
     #[inline(always)]
     fn run_with<W: BitWords>(
         &self,
         (sets, quad): (&RangeSets, &Quad),
-        how: How<'_>,
+        known: Option<Known<'_>>,
         bounds: &mut SetBounds,
-    ) -> [bool; QUAD] {
+    ) {
         let mut chunks = std::mem::take(&mut bounds.chunks);
         bounds.found.greatest = [0; QUAD];
-        self.choose(quad, how, &mut bounds.found, &mut chunks);
-        let mut any = EMPTY;
+        self.choose(quad, known, &mut bounds.found, &mut chunks);
         if !chunks.is_empty() {
             bounds.rows.set::<W>(&self.layout, &sets.quad(quad.index));
         }
+        let least = known.map(|(_, least)| least.div_ceil(self.unit));
         for chunks in chunks.chunks(W::AT_A_TIME) {
             match *chunks {
-                [a, b, c, ..] => self.run_chunks::<W, 3>(how, [a, b, c], bounds, &mut any),
-                [a, b] => self.run_chunks::<W, 2>(how, [a, b], bounds, &mut any),
-                [a] => self.run_chunks::<W, 1>(how, [a], bounds, &mut any),
+                [a, b, c, ..] => self.run_chunks::<W, 3>(least, [a, b, c], bounds),
+                [a, b] => self.run_chunks::<W, 2>(least, [a, b], bounds),
+                [a] => self.run_chunks::<W, 1>(least, [a], bounds),
                 [] => {}
             }
         }
         bounds.chunks = chunks;
-        std::array::from_fn(|place| bits::of_block(&any, place) != 0)
     }
 
-    /// Notes at which headings the blocks matter, and the chunks in which any does.
+    /// Notes at which headings the blocks are bounded, and in which chunks.
     #[inline(always)]
     fn choose(
         &self,
         quad: &Quad,
-        how: How<'_>,
+        known: Option<Known<'_>>,
         bounds: &mut HeadingBounds,
         chunks: &mut Vec<usize>,
     ) {
+        let matters = |chunk: usize| {
+            known.is_none_or(|(known, least)| known[chunk].load(Ordering::Relaxed) >= least)
+        };
         chunks.clear();
         for (i, chunk) in bounds.chunks.iter_mut().enumerate() {
-            chunk.greatest = 0;
-            let valid = match how {
-                How::Noting(Some((known, least))) if known[i].load(Ordering::Relaxed) < least => 0,
-                How::Plain | How::Noting(_) => chunk.valid,
-                How::Within((around, place), least) => {
-                    let around = &around.chunks[i];
-                    let (sums, reach) = (|plane: usize| around.sums[plane], around.reach);
-                    let at_least = bits::at_least(self.planes, sums, least, reach);
-                    bits::of_block(&at_least, place)
-                }
-            };
-            let valid = |place: usize| {
-                if quad.blocks[place].is_some() {
-                    valid
-                } else {
-                    0
-                }
-            };
-            chunk.reach = bits::words(valid);
+            chunk.greatest = [0; QUAD];
+            let valid = if matters(i) { chunk.valid } else { 0 };
+            chunk.reach = bits::words(|place| quad.blocks[place].map_or(0, |_| valid));
             if chunk.reach != EMPTY {
                 chunks.push(i);
             }
         }
     }
 
-    /// Bounds blocks at the headings of some chunks, and adds to `any` where they reach
-    /// what is asked for.
+    /// Bounds blocks at the headings of some chunks, if so many units matter as long as
+    /// any may have them.
     #[inline(always)]
     fn run_chunks<W: BitWords, const N: usize>(
         &self,
-        how: How<'_>,
+        least: Option<u16>,
         places: [usize; N],
         bounds: &mut SetBounds,
-        any: &mut Words,
     ) {
         let groups = self.groups();
         let SetBounds {
@@ -276,23 +215,23 @@ impl SetProgram {
             *valid = W::from_words(&chunks[place].reach);
         }
         let mut reach = valid;
-        for added in 1..=groups.len() {
-            let left = groups.len() - added;
-            // What is around had the groups in this order, and tells what the
-            // first ones give: those come last here.
-            let within = matches!(how, How::Within(..));
-            let group = &groups[if within { left } else { added - 1 }];
-            group.add(reader, carries, total);
-            *reads += N as u64 * u64::from(group.reads);
-            if let How::Within(around, least) = how {
-                reach = self.reaching(total, left, (around, places), (least, valid));
-                if reach.iter().all(|reach| reach.is_empty()) {
-                    break;
-                }
+        for left in (0..groups.len()).rev() {
+            groups[left].add(reader, carries, total);
+            *reads += N as u64 * u64::from(groups[left].reads);
+            let Some(least) = least else {
+                continue;
+            };
+            let rest: u16 = groups[..left].iter().map(|group| group.possible).sum();
+            let least = least.saturating_sub(rest);
+            for (i, reach) in reach.iter_mut().enumerate() {
+                *reach = bits::at_least(self.planes, |plane| total[plane].0[i], least, valid[i]);
             }
-            if left > 0 && !matches!(how, How::Plain) {
+            if reach.iter().all(|reach| reach.is_empty()) {
+                break;
+            }
+            if left > 0 {
                 for (i, place) in places.into_iter().enumerate() {
-                    let after = &mut chunks[place].after[added - 1];
+                    let after = &mut chunks[place].after[groups.len() - left - 1];
                     for (after, total) in after.iter_mut().zip(&*total) {
                         *after = total.0[i].to_words();
                     }
@@ -301,60 +240,16 @@ impl SetProgram {
         }
         for (i, place) in places.into_iter().enumerate() {
             let chunk = &mut chunks[place];
-            for (sums, total) in chunk.sums.iter_mut().zip(&*total) {
-                *sums = total.0[i].to_words();
-            }
             chunk.reach = reach[i].to_words();
-            if chunk.reach != EMPTY {
-                let most = bits::greatest_of_each(self.planes, |plane| total[plane].0[i], reach[i]);
-                *any = any.or(chunk.reach);
-                chunk.greatest = most.into_iter().fold(0, u16::max);
-                for (greatest, most) in greatest.iter_mut().zip(most) {
+            if !reach[i].is_empty() {
+                let sums = |plane: usize| total[plane].0[i];
+                chunk.greatest = bits::greatest_of_each(self.planes, sums, reach[i]);
+                for (greatest, most) in greatest.iter_mut().zip(chunk.greatest) {
                     *greatest = most.max(*greatest);
                 }
             }
         }
     }
-
-    /// Where blocks may have so many units, by what was added so far and what the block
-    /// around says of the groups that are left.
-    #[inline(always)]
-    fn reaching<W: BitWords, const N: usize>(
-        &self,
-        total: &[Several<W, N>],
-        left: usize,
-        ((around, around_place), places): (Around<'_>, [usize; N]),
-        (least, valid): (u16, [W; N]),
-    ) -> [W; N] {
-        let mut reach = valid;
-        for (i, reach) in reach.iter_mut().enumerate() {
-            let sums = total.iter().map(|words| words.0[i]);
-            let sums = match left {
-                0 => sum(sums, |_| W::empty()),
-                _ => {
-                    let after = &around.chunks[places[i]].after[left - 1];
-                    let after = |plane: usize| bits::of_block(&after[plane], around_place);
-                    sum(sums, |plane| W::splat(after(plane)))
-                }
-            };
-            *reach = bits::at_least(self.planes, |plane| sums[plane], least, valid[i]);
-        }
-        reach
-    }
-}
-
-/// Sums of numbers, as many planes as they have; no sum needs more.
-#[inline(always)]
-fn sum<W: BitWords>(
-    numbers: impl Iterator<Item = W>,
-    others: impl Fn(usize) -> W,
-) -> [W; bits::PLANES] {
-    let mut sums = [W::empty(); bits::PLANES];
-    let mut carry = W::empty();
-    for (plane, (sum, number)) in sums.iter_mut().zip(numbers).enumerate() {
-        (*sum, carry) = number.full_adder(others(plane), carry);
-    }
-    sums
 }
 
 #[cfg(test)]
@@ -362,7 +257,6 @@ mod tests {
     use proptest::prelude::*;
 
     use super::super::bins::Bins;
-    use super::super::bits::CHUNK;
     use super::super::index::SearchIndex;
     use super::super::intervals::RangeIntervals;
     use super::super::steps::BinSteps;
@@ -389,6 +283,8 @@ mod tests {
             // Some headings, spread over the turn, are enough to meet any error.
             let fields: Vec<_> = (0..directions.count()).step_by(1 + headings / 8)
                 .map(|heading| (heading, reference::field(&grid, &program, &space, heading))).collect();
+            // As many votes as any chunk can have.
+            let possible: Vec<_> = (0..headings).map(|_| AtomicU16::new(program.highest_possible() as u16)).collect();
             for sets in [&fine, &fine.joined()] {
                 let mut of_all_sets = Vec::new();
                 for instruction_set in InstructionSet::available() {
@@ -407,15 +303,19 @@ mod tests {
                     for (block, &greatest) in found.iter().enumerate() {
                         let (quad, place) = sets.place_of(block);
                         let quad = sets.sought(quad, |other| other == block);
-                        let alone = set_program.bound((sets, &quad), &mut bounds);
+                        let alone = set_program.bound((sets, &quad), None, &mut bounds);
                         prop_assert_eq!(alone.greatest(place), greatest);
                         let others = (0..QUAD).filter(|&other| other != place);
                         prop_assert!(others.map(|place| alone.greatest(place)).all(|greatest| greatest == 0));
                         prop_assert!(u32::from(greatest) <= program.highest_possible());
-                        for (heading, field) in &fields {
+                        for &(heading, ref field) in &fields {
                             let most = cells(sets, block, &grid).map(|i| field[i]).max().unwrap_or(0);
-                            let at: Vec<_> = alone.at_least(place, most).collect();
-                            prop_assert!(at[heading / CHUNK] >> (heading % CHUNK) & 1 == 1, "{} votes", most);
+                            let known = Some((&possible[..], most));
+                            let mut reach = set_program.bound((sets, &quad), known, &mut bounds).reach(place);
+                            let is_held = |(first, among): (usize, u64)| {
+                                (first..first + 64).contains(&heading) && among >> (heading - first) & 1 == 1
+                            };
+                            prop_assert!(reach.any(is_held), "{} votes", most);
                         }
                     }
                     of_all_sets.push(found);
@@ -445,31 +345,32 @@ mod tests {
                     bounds.fit(set_program, task.headings());
                     bounds
                 });
-                let mut within = alone.clone();
+                let (mut found, mut plain) = (alone.clone(), alone.clone());
+                // As many votes as any chunk can have.
+                let possible: Vec<_> = (0..headings).map(|_| AtomicU16::new(program.highest_possible() as u16)).collect();
                 for outside in 0..coarse.blocks() {
                     let (outer_quad, outer_place) = coarse.place_of(outside);
                     let outer_quad = coarse.sought(outer_quad, |_| true);
+                    let around = set_program.bound((coarse, &outer_quad), None, &mut around);
+                    let known: Vec<_> = around.by_chunk(outer_place).map(AtomicU16::new).collect();
                     let quad = fine.sought(outside, |_| true);
                     // About as many votes as they have, where it matters most.
-                    let greatest = set_program.bound((fine, &quad), &mut alone).greatest(0);
+                    let greatest = set_program.bound((fine, &quad), None, &mut alone).greatest(0);
                     let least = (f64::from(greatest) * share) as u16;
                     for least in [0, least, greatest, greatest + 1] {
-                        let around = set_program.bound((coarse, &outer_quad), &mut around);
-                        let around = (around, outer_place);
                         for wanted in 1..1 << QUAD {
                             let places = |block: &usize| quad.blocks.iter().position(|other| other.as_ref() == Some(block));
                             let quad = fine.sought(outside, |block| places(&block).is_some_and(|place| wanted >> place & 1 == 1));
-                            let found = set_program.bound_within((fine, &quad), least, around, &mut within);
-                            let alone = set_program.bound((fine, &quad), &mut alone);
-                            for (place, found) in found.into_iter().enumerate() {
+                            let found = set_program.bound((fine, &quad), Some((&known, least)), &mut found);
+                            let plain = set_program.bound((fine, &quad), Some((&possible, least)), &mut plain);
+                            let alone = set_program.bound((fine, &quad), None, &mut alone);
+                            for place in 0..QUAD {
                                 let is_sought = quad.blocks[place].is_some();
-                                prop_assert_eq!(found, is_sought && alone.greatest(place) >= least);
-                                if found {
-                                    prop_assert_eq!(within.found.greatest(place), alone.greatest(place));
-                                    let at_least: Vec<_> = alone.at_least(place, least).collect();
-                                    let at_least = bits::windows(at_least.len(), |chunk| at_least[chunk]);
-                                    prop_assert!(within.found.reach(place).eq(at_least));
-                                }
+                                let reaches = is_sought && alone.greatest(place) >= least;
+                                prop_assert_eq!(found.reach(place).next().is_some(), reaches);
+                                prop_assert!(found.reach(place).eq(plain.reach(place)));
+                                let greatest = if reaches { alone.greatest(place) } else { 0 };
+                                prop_assert_eq!([found, plain].map(|bounds| bounds.greatest(place)), [greatest; 2]);
                             }
                         }
                     }

@@ -27,7 +27,7 @@ pub(super) struct Task<'a> {
     pub programs: &'a Programs,
     /// The bound of each coarse block in which poses are sought.
     pub coarse_bounds: &'a [AtomicU16],
-    /// The greatest bounds in coarse quads, chunk by chunk.
+    /// The same, chunk by chunk of headings.
     by_chunk: &'a [AtomicU16],
     /// The most votes of any pose so far, whoever found it.
     pub best: AtomicU16,
@@ -88,7 +88,7 @@ impl<'a> Task<'a> {
         let chunks = index.within.headings(space.directions.count()).count();
         for (bounds, count) in [
             (&mut shared.coarse_bounds, index.coarse.blocks()),
-            (&mut shared.by_chunk, index.coarse.quads() * chunks),
+            (&mut shared.by_chunk, index.coarse.blocks() * chunks),
         ] {
             bounds.clear();
             bounds.resize_with(count, AtomicU16::default);
@@ -132,10 +132,10 @@ impl<'a> Task<'a> {
         }
     }
 
-    /// What is known of a coarse quad: its greatest bound in each chunk.
-    pub(super) fn by_chunk(&self, quad: usize) -> &'a [AtomicU16] {
-        let chunks = self.by_chunk.len() / self.index.coarse.quads();
-        &self.by_chunk[quad * chunks..][..chunks]
+    /// The bounds of a coarse block in each chunk of headings.
+    pub(super) fn by_chunk(&self, block: usize) -> &'a [AtomicU16] {
+        let chunks = self.by_chunk.len() / self.coarse_bounds.len();
+        &self.by_chunk[block * chunks..][..chunks]
     }
 
     /// The headings that are sought, a word a chunk.
