@@ -29,8 +29,10 @@ pub(super) struct Order {
     pieces: Vec<(usize, usize)>,
 }
 
-/// A beam, and what it gives for ranges in bins.
+/// A beam, and what it gives for ranges in bins: the table in one line of the cache, the
+/// rest in the next.
 #[derive(Debug, Clone)]
+#[repr(C, align(64))]
 pub(super) struct IntervalBeam {
     pub votes: BinVotes,
     pub bearing: u16,
@@ -143,7 +145,7 @@ impl IntervalBeam {
         IntervalBeam {
             votes: BinVotes {
                 table,
-                used: used.map_or(0, |last| last + 1),
+                used: used.map_or(0, |last| last + 1) as u8,
                 centre: centre as u8,
                 base: base as u8,
             },

@@ -63,13 +63,27 @@ pub(crate) struct BlockIntervals {
 /// [`READ`] directions of each of the four rows.
 pub(crate) type IntervalRows<'a> = [&'a [u8; READ]; 4];
 
+/// The rows of a block, all as long.
+#[derive(Debug, Clone, Copy)]
+pub(crate) struct RowsOfBlock<'a>([&'a [u8]; 4]);
+
 impl BlockIntervals {
+    /// The rows, to be read from.
+    #[inline(always)]
+    pub(crate) fn rows(&self) -> RowsOfBlock<'_> {
+        // With one length for all, each place needs to be checked only once.
+        let length = self.rows[0].len();
+        RowsOfBlock(self.rows.each_ref().map(|row| &row[..length]))
+    }
+}
+
+impl<'a> RowsOfBlock<'a> {
     /// The rows from a direction on.
     #[inline(always)]
-    pub(crate) fn from(&self, direction: usize) -> IntervalRows<'_> {
+    pub(crate) fn from(&self, direction: usize) -> IntervalRows<'a> {
         const ENOUGH: &str = "a row goes on for as many directions as are read";
-        let rows = self.rows.each_ref();
-        rows.map(|row| row[direction..].first_chunk().expect(ENOUGH))
+        self.0
+            .map(|row| row[direction..].first_chunk().expect(ENOUGH))
     }
 }
 

@@ -5,9 +5,9 @@ use std::arch::x86_64::*;
 use super::{BinVotes, HEADINGS, HeadingLanes, IntervalRows, TABLE};
 use crate::tables::look_up_avx2;
 
-/// Two registers of 32 headings.
+/// Registers of 32 headings: two for all, one for the first half of them.
 #[derive(Clone, Copy)]
-pub(in super::super) struct Avx2([__m256i; 2]);
+pub(in super::super) struct Avx2<const REGISTERS: usize>([__m256i; REGISTERS]);
 
 /// Headings of a register.
 const HALF: usize = HEADINGS / 2;
@@ -26,10 +26,10 @@ unsafe fn look_up(votes: &BinVotes, first: &[u8; HALF], last: &[u8; HALF]) -> __
         let bin = _mm256_max_epu8(bin, first);
         let mut index = _mm256_subs_epu8(bin, _mm256_set1_epi8(votes.base.cast_signed()));
         // Only then is the last entry, which stands for those beyond, anything but 0.
-        if votes.used == TABLE {
+        if usize::from(votes.used) == TABLE {
             index = _mm256_min_epu8(index, _mm256_set1_epi8(TABLE as i8 - 1));
         }
-        look_up_avx2(&votes.table, votes.used, index)
+        look_up_avx2(&votes.table, votes.used.into(), index)
     }
 }
 
@@ -43,23 +43,23 @@ fn half_of(row: &[u8; HEADINGS], half: usize) -> &[u8; HALF] {
     reason = "one argument holds for all: lanes of an instruction set are made only where the \
               processor has it, and arrays are as long as what is stored to them"
 )]
-impl HeadingLanes for Avx2 {
-    /// Of the first and the second eight headings of each 16, twice.
-    type Sums = [__m256i; 4];
+impl<const REGISTERS: usize> HeadingLanes for Avx2<REGISTERS> {
+    /// For each register, of the first and of the second eight headings of each 16.
+    type Sums = [[__m256i; 2]; REGISTERS];
 
     #[inline(always)]
     fn none() -> Self {
-        unsafe { Avx2([_mm256_setzero_si256(); 2]) }
+        unsafe { Avx2([_mm256_setzero_si256(); REGISTERS]) }
     }
 
     #[inline(always)]
     fn add(mut self, votes: &BinVotes, rows: IntervalRows<'_>) -> Self {
         let [near_first, near_last, far_first, far_last] = rows;
-        for half in 0..2 {
+        for (half, sum) in self.0.iter_mut().enumerate() {
             unsafe {
                 let near = look_up(votes, half_of(near_first, half), half_of(near_last, half));
                 let far = look_up(votes, half_of(far_first, half), half_of(far_last, half));
-                self.0[half] = _mm256_add_epi8(self.0[half], _mm256_max_epu8(near, far));
+                *sum = _mm256_add_epi8(*sum, _mm256_max_epu8(near, far));
             }
         }
         self
@@ -76,17 +76,16 @@ impl HeadingLanes for Avx2 {
 
     #[inline(always)]
     fn no_sums() -> Self::Sums {
-        unsafe { [_mm256_setzero_si256(); 4] }
+        unsafe { [[_mm256_setzero_si256(); 2]; REGISTERS] }
     }
 
     #[inline(always)]
     fn add_to(self, mut sums: Self::Sums) -> Self::Sums {
-        for half in 0..2 {
-            let (low, high) = (2 * half, 2 * half + 1);
+        for (votes, [low, high]) in self.0.into_iter().zip(&mut sums) {
             unsafe {
-                let (votes, zero) = (self.0[half], _mm256_setzero_si256());
-                sums[low] = _mm256_add_epi16(sums[low], _mm256_unpacklo_epi8(votes, zero));
-                sums[high] = _mm256_add_epi16(sums[high], _mm256_unpackhi_epi8(votes, zero));
+                let zero = _mm256_setzero_si256();
+                *low = _mm256_add_epi16(*low, _mm256_unpacklo_epi8(votes, zero));
+                *high = _mm256_add_epi16(*high, _mm256_unpackhi_epi8(votes, zero));
             }
         }
         sums
@@ -95,16 +94,14 @@ impl HeadingLanes for Avx2 {
     #[inline(always)]
     fn at_least(sums: Self::Sums, least: u16) -> u64 {
         let mut reaching = 0;
-        for half in 0..2 {
+        for (half, [low, high]) in sums.into_iter().enumerate() {
             unsafe {
                 let (least, zero) = (
                     _mm256_set1_epi16(least.cast_signed()),
                     _mm256_setzero_si256(),
                 );
-                let low = _mm256_subs_epu16(least, sums[2 * half]);
-                let high = _mm256_subs_epu16(least, sums[2 * half + 1]);
-                let low = _mm256_cmpeq_epi16(low, zero);
-                let high = _mm256_cmpeq_epi16(high, zero);
+                let low = _mm256_cmpeq_epi16(_mm256_subs_epu16(least, low), zero);
+                let high = _mm256_cmpeq_epi16(_mm256_subs_epu16(least, high), zero);
                 // Packing puts the headings back in order.
                 let half_reaching = _mm256_movemask_epi8(_mm256_packs_epi16(low, high));
                 reaching |= u64::from(half_reaching.cast_unsigned()) << (HALF * half);
@@ -115,9 +112,8 @@ impl HeadingLanes for Avx2 {
 
     #[inline(always)]
     fn store(sums: Self::Sums, to: &mut [u16; HEADINGS]) {
-        for (sums, to) in sums.chunks_exact(2).zip(to.chunks_exact_mut(HALF)) {
+        for ([low, high], to) in sums.into_iter().zip(to.chunks_exact_mut(HALF)) {
             unsafe {
-                let (low, high) = (sums[0], sums[1]);
                 let to = to.as_mut_ptr();
                 _mm256_storeu_si256(to.cast(), _mm256_permute2x128_si256::<0x20>(low, high));
                 let rest = _mm256_permute2x128_si256::<0x31>(low, high);
@@ -145,7 +141,7 @@ unsafe fn look_up_at_once(
         let bin = _mm512_max_epu8(bin, first);
         let index = _mm512_subs_epu8(bin, _mm512_set1_epi8(votes.base.cast_signed()));
         let index = _mm512_min_epu8(index, _mm512_set1_epi8(TABLE as i8 - 1));
-        _mm512_permutexvar_epi8(index, _mm512_load_si512(votes.table.as_ptr().cast()))
+        _mm512_permutexvar_epi8(index, _mm512_loadu_si512(votes.table.as_ptr().cast()))
     }
 }
 
