@@ -12,6 +12,10 @@ use crate::grid::{Cell, Grid};
 /// Bits before the first and after the last column, for rays that leave the map.
 const MARGIN: i64 = 32;
 
+/// Bits from the start of a strip to that of the next one, `1 << STRIP`: half of what a
+/// strip holds. So all that rays side by side meet in eight rows lies in one strip.
+const STRIP: u32 = 4;
+
 /// Rows of a word, and rays side by side in each.
 pub(crate) const ROWS: i64 = 8;
 
@@ -38,16 +42,17 @@ struct Clearance {
     tiles: Vec<u8>,
 }
 
-/// The cells as rows over the major axis, with empty ones before and after.
+/// The cells as rows over the major axis, with empty ones before and after. They are cut
+/// into strips that overlap, each row by row.
 #[derive(Debug, Clone)]
 struct Rows {
     /// Cells along the major axis.
     majors: i64,
     /// Cells along the minor axis.
     minors: i64,
-    /// Bytes of a row.
+    /// Rows of a strip.
     stride: usize,
-    bits: Vec<u8>,
+    bits: Vec<u32>,
 }
 
 /// Rays side by side on their way along a direction.
@@ -73,7 +78,8 @@ impl Obstacles {
 
     /// Bytes that they take.
     pub(crate) fn bytes(&self) -> usize {
-        self.along_x.bits.len() + self.along_y.bits.len() + self.clearance.tiles.len()
+        let rows = self.along_x.bits.len() + self.along_y.bits.len();
+        rows * size_of::<u32>() + self.clearance.tiles.len()
     }
 
     /// Rays in a direction, of which the first one stands at `(major, minor)` at
@@ -99,13 +105,16 @@ impl Obstacles {
 impl Rows {
     fn new(grid: &Grid, x_major: bool) -> Self {
         let (majors, minors) = swap_unless(x_major, (grid.width(), grid.height()));
-        let stride = (minors + 2 * MARGIN as usize).div_ceil(8);
-        // Eight bytes can be read from the last row on, too.
-        let mut bits = vec![0; stride * (majors + 2 * ROWS as usize) + size_of::<u64>()];
+        let stride = majors + 2 * ROWS as usize;
+        let strips = (minors + 2 * MARGIN as usize).div_ceil(1 << STRIP);
+        let mut bits = vec![0; strips * stride];
         for cell in grid.places(|cell| cell != Cell::Open) {
             let (major, minor) = swap_unless(x_major, cell);
-            let bit = minor + MARGIN as usize;
-            bits[(major + ROWS as usize) * stride + bit / 8] |= 1 << (bit % 8);
+            let row = major + ROWS as usize;
+            // The margin is wider than a strip, so that there is one before each.
+            let (strip, bit) = strip_of(minor as i64 + MARGIN);
+            bits[strip * stride + row] |= 1 << bit;
+            bits[(strip - 1) * stride + row] |= 1 << (bit + (1 << STRIP));
         }
         Rows {
             majors: majors as i64,
@@ -114,6 +123,12 @@ impl Rows {
             bits,
         }
     }
+}
+
+/// The last strip that starts with a bit or before it, and the bit's place there.
+#[inline(always)]
+fn strip_of(bit: i64) -> (usize, i64) {
+    ((bit >> STRIP) as usize, bit & ((1 << STRIP) - 1))
 }
 
 impl Clearance {
@@ -183,6 +198,7 @@ impl Rays<'_> {
     /// there must be a row at `position`.
     #[inline(always)]
     pub(super) fn ends<L: RayLanes>(&self, position: i64) -> Option<u64> {
+        const ENOUGH: &str = "rows go on before the first and behind the last";
         let Rays {
             rows, direction, ..
         } = self;
@@ -193,13 +209,23 @@ impl Rays<'_> {
         if first <= -ROWS || first >= rows.minors {
             return None;
         }
-        Some(L::word(&BitRows {
-            bytes: &rows.bits,
-            start: (major + ROWS) * rows.stride as i64,
-            stride: rows.stride as i64 * direction.step,
-            bit: ((self.offset + MARGIN) << 32) + rise,
-            slope: direction.slope() * direction.step,
-        }))
+        // Rows lie in memory as they do along the major axis.
+        let slope = direction.slope() * direction.step;
+        let (bit, last) = (rise, rise + (ROWS - 1) * slope);
+        let (lowest, _) = strip_of(self.offset + MARGIN + (bit.min(last) >> 32));
+        let before = (self.offset + MARGIN - ((lowest as i64) << STRIP)) << 32;
+        let backward = direction.step < 0;
+        let (top, bit, slope) = match backward {
+            true => (major - (ROWS - 1), last, -slope),
+            false => (major, bit, slope),
+        };
+        let start = lowest * rows.stride + (top + ROWS) as usize;
+        let word = L::word(&BitRows {
+            rows: rows.bits[start..].first_chunk().expect(ENOUGH),
+            bit: before + bit,
+            slope,
+        });
+        Some(if backward { word.swap_bytes() } else { word })
     }
 }
 

@@ -175,7 +175,7 @@ impl Outlook {
     /// The steps at which rays in direction `d` may end, without the ends: two spans.
     #[inline(always)]
     pub(crate) fn spans(&self, view: &View<'_>, d: usize) -> [(u16, u16); 2] {
-        let class = view.directions.get(d).class;
+        let class = view.directions.all()[d].class;
         let [near_first, near_last, far_first, far_last] = &self.intervals.rows;
         let span = |first: u8, last: u8| view.steps.span(class, first, last);
         [
@@ -186,7 +186,7 @@ impl Outlook {
 
     #[inline(always)]
     fn look_anew<L: RayLanes>(&mut self, view: &View<'_>, d: usize) {
-        let direction = view.directions.get(d);
+        let direction = &view.directions.all()[d];
         let [near, far] = self.spans(view, d);
         let spans = if self.can_lose {
             [(1, near.1.max(far.1)), (0, 0)]

@@ -16,7 +16,7 @@ pub(super) trait RayLanes: Sized {
     /// No ray has ended.
     fn none() -> Self;
 
-    /// Eight bits of each of eight rows, a row a byte, as far as they are there.
+    /// Eight bits of each of eight rows, a row a byte.
     fn word(rows: &BitRows<'_>) -> u64;
 
     /// Notes where rays end at one of eight positions, unless they did before. Bit
@@ -68,12 +68,9 @@ impl Across {
 /// Rows of bits on a slope.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct BitRows<'a> {
-    pub bytes: &'a [u8],
-    /// Where the first row starts, and each further one behind it, in bytes.
-    pub start: i64,
-    pub stride: i64,
+    pub rows: &'a [u32; RAYS],
     /// The first bit of the first row that is read, times 2³², and how much
-    /// further that is in each further row.
+    /// further that is in each further row. It is never beyond bit 24.
     pub bit: i64,
     pub slope: i64,
 }
@@ -90,16 +87,11 @@ impl RayLanes for Portable {
 
     #[inline(always)]
     fn word(rows: &BitRows<'_>) -> u64 {
-        let (mut start, mut bit) = (rows.start, rows.bit);
-        let mut word = 0;
-        for row in 0..ROWS {
-            let byte = (start + (bit >> 35)) as usize;
-            let pair = u16::from_le_bytes([rows.bytes[byte], rows.bytes[byte + 1]]);
-            word |= u64::from((pair >> (bit >> 32 & 7)) as u8) << (8 * row);
-            start += rows.stride;
-            bit += rows.slope;
-        }
-        word
+        let bytes = std::array::from_fn(|row| {
+            let bit = (rows.bit + row as i64 * rows.slope) >> 32;
+            (rows.rows[row] >> (bit & 31)) as u8
+        });
+        u64::from_le_bytes(bytes)
     }
 
     #[inline(always)]
@@ -239,7 +231,7 @@ mod x86 {
 
     #[expect(
         clippy::undocumented_unsafe_blocks,
-        reason = "one argument holds for all but the gathering of rows: lanes of an instruction \
+        reason = "one argument holds for all but the reading of rows: lanes of an instruction \
                   set are made only where the processor has it"
     )]
     impl RayLanes for Avx512 {
@@ -250,27 +242,14 @@ mod x86 {
 
         #[inline(always)]
         fn word(rows: &BitRows<'_>) -> u64 {
-            let on = |start: i64, step: i64| unsafe {
-                let row = _mm512_set_epi64(7, 6, 5, 4, 3, 2, 1, 0);
-                let steps = _mm512_mullo_epi64(row, _mm512_set1_epi64(step));
-                _mm512_add_epi64(_mm512_set1_epi64(start), steps)
-            };
             unsafe {
-                let bit = on(rows.bit, rows.slope);
-                let byte = _mm512_srai_epi64::<35>(bit);
-                let byte = _mm512_add_epi64(byte, on(rows.start, rows.stride));
-                let ends = rows.bytes.len().saturating_sub(size_of::<u64>() - 1);
-                let inside = _mm512_cmplt_epu64_mask(byte, _mm512_set1_epi64(ends as i64));
-                // SAFETY: lanes are read only where eight bytes from there on are
-                // among those of the rows.
-                let read = _mm512_mask_i64gather_epi64::<1>(
-                    _mm512_setzero_si512(),
-                    inside,
-                    byte,
-                    rows.bytes.as_ptr().cast(),
-                );
-                let by = _mm512_and_si512(_mm512_srli_epi64::<32>(bit), _mm512_set1_epi64(7));
-                let word = _mm512_cvtepi64_epi8(_mm512_srlv_epi64(read, by));
+                let row = _mm512_set_epi64(7, 6, 5, 4, 3, 2, 1, 0);
+                let further = _mm512_mullo_epi64(row, _mm512_set1_epi64(rows.slope));
+                let bit = _mm512_add_epi64(_mm512_set1_epi64(rows.bit), further);
+                let by = _mm512_cvtepi64_epi32(_mm512_srli_epi64::<32>(bit));
+                // SAFETY: there are as many rows as a register holds.
+                let read = _mm256_loadu_si256(rows.rows.as_ptr().cast());
+                let word = _mm256_cvtepi32_epi8(_mm256_srlv_epi32(read, by));
                 _mm_cvtsi128_si64(word).cast_unsigned()
             }
         }
