@@ -69,8 +69,8 @@ impl Across {
 #[derive(Debug, Clone, Copy)]
 pub(super) struct BitRows<'a> {
     pub rows: &'a [u32; RAYS],
-    /// The first bit of the first row that is read, times 2³², and how much
-    /// further that is in each further row. It is never beyond bit 24.
+    /// The first bit of the first row that is read, times 2³², and how much further
+    /// that is in each further row. Eight bits from there on are in each row.
     pub bit: i64,
     pub slope: i64,
 }
