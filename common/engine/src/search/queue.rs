@@ -1,7 +1,7 @@
 //! Blocks that wait to be searched, the most promising first.
 
-use std::cmp::{Ordering, Reverse};
-use std::collections::BinaryHeap;
+use std::cmp::Reverse;
+use std::num::NonZeroU32;
 
 /// The blocks that wait.
 ///
@@ -10,8 +10,8 @@ use std::collections::BinaryHeap;
 /// pose, and the sooner it is known, the less else needs to be looked at.
 #[derive(Debug, Default)]
 pub(super) struct Queue {
-    larger: BinaryHeap<Block>,
-    leaves: BinaryHeap<Block>,
+    larger: ByBound,
+    leaves: ByBound,
 }
 
 impl Queue {
@@ -43,11 +43,11 @@ impl Queue {
 
     /// What would be popped now.
     pub(super) fn peek(&mut self, dives: bool) -> Option<Block> {
-        self.next_of(dives).peek().copied()
+        self.next_of(dives).peek()
     }
 
-    fn next_of(&mut self, dives: bool) -> &mut BinaryHeap<Block> {
-        let is_leaf = match (self.leaves.peek(), self.larger.peek()) {
+    fn next_of(&mut self, dives: bool) -> &mut ByBound {
+        let is_leaf = match (self.leaves.greatest(), self.larger.greatest()) {
             (Some(leaf), Some(larger)) => dives || leaf > larger,
             (leaf, _) => leaf.is_some(),
         };
@@ -59,7 +59,80 @@ impl Queue {
     }
 
     pub(super) fn iter(&self) -> impl Iterator<Item = &Block> {
-        self.larger.iter().chain(&self.leaves)
+        self.larger.iter().chain(self.leaves.iter())
+    }
+}
+
+/// Blocks by their bounds, of which there are few different ones; of equal ones the last
+/// comes first.
+#[derive(Debug, Default)]
+struct ByBound {
+    /// For each bound the last block that was pushed with it.
+    last: Vec<Option<Place>>,
+    /// A bit for each bound that a block has.
+    bounds: Vec<u64>,
+    /// All that were pushed, each with the one before of the same bound.
+    blocks: Vec<(Block, Option<Place>)>,
+}
+
+/// A place in [`ByBound::blocks`], counted from 1 on.
+type Place = NonZeroU32;
+
+impl ByBound {
+    fn clear(&mut self) {
+        self.last.clear();
+        self.bounds.clear();
+        self.blocks.clear();
+    }
+
+    fn push(&mut self, block: Block) {
+        let bound = usize::from(block.bound);
+        if bound >= self.last.len() {
+            self.last.resize(bound + 1, None);
+            self.bounds.resize(bound / 64 + 1, 0);
+        }
+        self.blocks.push((block, self.last[bound]));
+        self.last[bound] = Place::new(self.blocks.len() as u32);
+        self.bounds[bound / 64] |= 1 << (bound % 64);
+    }
+
+    /// The greatest bound that a block has.
+    fn greatest(&mut self) -> Option<usize> {
+        while let Some(&bounds) = self.bounds.last() {
+            if let Some(highest) = bounds.checked_ilog2() {
+                return Some(64 * (self.bounds.len() - 1) + highest as usize);
+            }
+            self.bounds.pop();
+            self.last.truncate(64 * self.bounds.len());
+        }
+        None
+    }
+
+    fn peek(&mut self) -> Option<Block> {
+        let bound = self.greatest()?;
+        Some(self.at(self.last[bound]?).0)
+    }
+
+    fn pop(&mut self) -> Option<Block> {
+        let bound = self.greatest()?;
+        let (block, before) = *self.at(self.last[bound]?);
+        self.last[bound] = before;
+        if before.is_none() {
+            self.bounds[bound / 64] &= !(1 << (bound % 64));
+        }
+        Some(block)
+    }
+
+    fn iter(&self) -> impl Iterator<Item = &Block> {
+        self.last.iter().flat_map(|&last| {
+            let last = last.map(|last| self.at(last));
+            let all = std::iter::successors(last, |(_, before)| before.map(|place| self.at(place)));
+            all.map(|(block, _)| block)
+        })
+    }
+
+    fn at(&self, place: Place) -> &(Block, Option<Place>) {
+        &self.blocks[place.get() as usize - 1]
     }
 }
 
@@ -97,28 +170,37 @@ impl Level {
     }
 }
 
-impl Block {
-    fn key(&self) -> (u16, u32) {
-        (self.bound, self.index)
-    }
-}
+#[cfg(test)]
+mod tests {
+    use proptest::collection::vec;
+    use proptest::prelude::*;
 
-impl PartialEq for Block {
-    fn eq(&self, other: &Self) -> bool {
-        self.key() == other.key()
-    }
-}
+    use super::*;
 
-impl Eq for Block {}
-
-impl PartialOrd for Block {
-    fn partial_cmp(&self, other: &Self) -> Option<Ordering> {
-        Some(self.cmp(other))
-    }
-}
-
-impl Ord for Block {
-    fn cmp(&self, other: &Self) -> Ordering {
-        self.key().cmp(&other.key())
+    proptest! {
+        #[test]
+        fn blocks_come_with_the_greatest_bounds_first_and_each_once(
+            steps in vec(prop_oneof![2 => (0u16..300).prop_map(Some), 1 => Just(None)], 0..200),
+        ) {
+            let mut blocks = ByBound::default();
+            let mut waiting = Vec::new();
+            for (index, step) in (0..).zip(steps) {
+                if let Some(bound) = step {
+                    blocks.push(Block { bound, index, level: Level::Coarse });
+                    waiting.push((bound, index));
+                    continue;
+                }
+                // Of equal ones the last comes first.
+                let greatest = waiting.iter().copied().max();
+                waiting.retain(|&other| Some(other) != greatest);
+                prop_assert_eq!(blocks.greatest(), greatest.map(|(bound, _)| bound.into()));
+                let [next, popped] = [blocks.peek(), blocks.pop()]
+                    .map(|block| block.map(|block| (block.bound, block.index)));
+                prop_assert_eq!([next, popped], [greatest; 2]);
+                let mut left: Vec<_> = blocks.iter().map(|block| (block.bound, block.index)).collect();
+                left.sort_unstable_by_key(|&(_, index)| index);
+                prop_assert_eq!(&left, &waiting);
+            }
+        }
     }
 }
