@@ -8,6 +8,7 @@ mod build;
 mod pool;
 mod strip;
 mod transpose;
+mod unpack;
 mod wide;
 
 use crate::directions::Directions;
@@ -17,6 +18,7 @@ use crate::search::bins::Bins;
 use crate::search::prefetch::prefetch;
 use crate::search::steps::BinSteps;
 use build::Source;
+pub(crate) use unpack::{far_start, near_end};
 pub(crate) use wide::{ROW_SHIFT, WideViews};
 
 /// Cells along the side of a block.
@@ -145,73 +147,33 @@ impl RangeIntervals {
 
     /// Unpacks the intervals of a block.
     pub(crate) fn read(&self, block: usize, into: &mut BlockIntervals) {
-        let [nearest, farthest, widths] = self.packed(block);
-        for row in &mut into.rows {
+        let packed = self.packed(block);
+        let ends = into.rows.each_mut().map(|row| {
             row.resize(self.directions + READ, 0);
-        }
-        let [near_first, near_last, far_first, far_last] = &mut into.rows;
-        near_first[..self.directions].copy_from_slice(nearest);
-        far_last[..self.directions].copy_from_slice(farthest);
-        let packed = [nearest, farthest, widths];
+            &mut row[..self.directions]
+        });
         match self.set {
             // SAFETY: the intervals were built by this instruction set, and what has
             // AVX-512 has AVX2.
             #[cfg(target_arch = "x86_64")]
             InstructionSet::Avx512 | InstructionSet::Avx2 => unsafe {
-                unpack_avx2(packed, near_last, far_first);
+                unpack::unpack_avx2(packed, ends);
             },
-            _ => unpack(packed, near_last, far_first),
+            _ => unpack::unpack(packed, ends),
         }
         for row in &mut into.rows {
-            for start in (self.directions..row.len()).step_by(self.directions) {
-                let rest = self.directions.min(row.len() - start);
-                row.copy_within(..rest, start);
+            let (turn, further) = row.split_at_mut(self.directions);
+            if let (Some(turn), Some(further)) =
+                (turn.first_chunk::<READ>(), further.first_chunk_mut())
+            {
+                *further = *turn;
+                continue;
+            }
+            for further in further.chunks_mut(self.directions) {
+                further.copy_from_slice(&turn[..further.len()]);
             }
         }
     }
-}
-
-/// Unpacks the inner ends of intervals.
-#[inline(always)]
-fn unpack(
-    [nearest, farthest, widths]: [&[u8]; PACKED],
-    near_last: &mut [u8],
-    far_first: &mut [u8],
-) {
-    let packed = nearest.iter().zip(farthest).zip(widths);
-    let unpacked = near_last.iter_mut().zip(far_first);
-    for (((&nearest, &farthest), &widths), (near_last, far_first)) in packed.zip(unpacked) {
-        *near_last = near_end(nearest, farthest, widths);
-        *far_first = far_start(nearest, farthest, widths);
-    }
-}
-
-#[cfg(target_arch = "x86_64")]
-#[target_feature(enable = "avx2")]
-fn unpack_avx2(packed: [&[u8]; PACKED], near_last: &mut [u8], far_first: &mut [u8]) {
-    unpack(packed, near_last, far_first);
-}
-
-/// Last bin of the near interval.
-#[inline(always)]
-pub(crate) fn near_end(nearest: u8, farthest: u8, widths: u8) -> u8 {
-    nearest.saturating_add(width(widths & 15)).min(farthest)
-}
-
-/// First bin of the far interval.
-#[inline(always)]
-pub(crate) fn far_start(nearest: u8, farthest: u8, widths: u8) -> u8 {
-    farthest.saturating_sub(width(widths >> 4)).max(nearest)
-}
-
-/// The width that a nibble stands for.
-#[inline(always)]
-fn width(nibble: u8) -> u8 {
-    let stretch = |(from, by): (u8, u8)| by * nibble.saturating_sub(from);
-    let width = STRETCHES
-        .into_iter()
-        .fold(nibble, |width, each| width + stretch(each));
-    if nibble == ALL { u8::MAX } else { width }
 }
 
 #[cfg(test)]
@@ -263,7 +225,7 @@ mod tests {
                     // An inner end is seen, too, or lies less far behind one that is
                     // than the next smaller width would.
                     if !seen.is_empty() {
-                        let least = |width| (0..ALL).map(super::width).rev().find(|&less| less < width);
+                        let least = |width| (0..ALL).map(unpack::width).rev().find(|&less| less < width);
                         let least = |width| least(width).map_or(0, |less| less + 1);
                         let near = near_first + least(near_last - near_first)..=near_last;
                         let far = far_first..=far_last - least(far_last - far_first);

@@ -1,0 +1,93 @@
+//! The ends of the two intervals, direction by direction, from what is kept of them.
+
+use super::{ALL, PACKED, STRETCHES};
+
+/// First and last bin of the near interval, then of the far one.
+pub(super) type Ends<'a> = [&'a mut [u8]; 4];
+
+/// Last bin of the near interval.
+#[inline(always)]
+pub(crate) fn near_end(nearest: u8, farthest: u8, widths: u8) -> u8 {
+    nearest.saturating_add(width(widths & 15)).min(farthest)
+}
+
+/// First bin of the far interval.
+#[inline(always)]
+pub(crate) fn far_start(nearest: u8, farthest: u8, widths: u8) -> u8 {
+    farthest.saturating_sub(width(widths >> 4)).max(nearest)
+}
+
+/// The width that a nibble stands for.
+#[inline(always)]
+pub(super) const fn width(nibble: u8) -> u8 {
+    if nibble == ALL {
+        return u8::MAX;
+    }
+    let (mut width, mut stretch) = (nibble, 0);
+    while stretch < STRETCHES.len() {
+        let (from, by) = STRETCHES[stretch];
+        width += by * nibble.saturating_sub(from);
+        stretch += 1;
+    }
+    width
+}
+
+/// Unpacks the intervals of a block: all rows have a byte for each direction.
+pub(super) fn unpack([nearest, farthest, widths]: [&[u8]; PACKED], ends: Ends<'_>) {
+    let [near_first, near_last, far_first, far_last] = ends;
+    near_first.copy_from_slice(nearest);
+    far_last.copy_from_slice(farthest);
+    let packed = nearest.iter().zip(farthest).zip(widths);
+    let inner = near_last.iter_mut().zip(far_first);
+    for (((&nearest, &farthest), &widths), (near_last, far_first)) in packed.zip(inner) {
+        *near_last = near_end(nearest, farthest, widths);
+        *far_first = far_start(nearest, farthest, widths);
+    }
+}
+
+/// The same, 32 directions at a time.
+#[cfg(target_arch = "x86_64")]
+#[target_feature(enable = "avx2")]
+pub(super) fn unpack_avx2(packed: [&[u8]; PACKED], ends: Ends<'_>) {
+    use std::arch::x86_64::*;
+
+    const LANES: usize = 32;
+    /// The widths that nibbles stand for, twice.
+    const WIDTHS: [u8; LANES] = {
+        let mut widths = [0; LANES];
+        let mut i = 0;
+        while i < LANES {
+            widths[i] = width(i as u8 % 16);
+            i += 1;
+        }
+        widths
+    };
+
+    let directions = packed[0].len();
+    let Some(last) = directions.checked_sub(LANES) else {
+        return unpack(packed, ends);
+    };
+    let [nearest, farthest, widths] = packed.map(|row| &row[..directions]);
+    let mut ends = ends.map(|row| &mut row[..directions]);
+    for start in (0..directions).step_by(LANES) {
+        // Where directions do not come out even, some are unpacked twice.
+        let start = start.min(last);
+        // SAFETY: all rows have as many bytes from there on as are read or written.
+        unsafe {
+            let nearest = _mm256_loadu_si256(nearest.as_ptr().add(start).cast());
+            let farthest = _mm256_loadu_si256(farthest.as_ptr().add(start).cast());
+            let widths = _mm256_loadu_si256(widths.as_ptr().add(start).cast());
+            let nibble = _mm256_set1_epi8(15);
+            let by_nibble = _mm256_loadu_si256(WIDTHS.as_ptr().cast());
+            let near = _mm256_shuffle_epi8(by_nibble, _mm256_and_si256(widths, nibble));
+            let far = _mm256_and_si256(_mm256_srli_epi16::<4>(widths), nibble);
+            let far = _mm256_shuffle_epi8(by_nibble, far);
+            let near_last = _mm256_min_epu8(_mm256_adds_epu8(nearest, near), farthest);
+            let far_first = _mm256_max_epu8(_mm256_subs_epu8(farthest, far), nearest);
+            let unpacked = [nearest, near_last, far_first, farthest];
+            for (row, lanes) in ends.iter_mut().zip(unpacked) {
+                _mm256_storeu_si256(row.as_mut_ptr().add(start).cast(), lanes);
+            }
+        }
+    }
+}
