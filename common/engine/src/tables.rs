@@ -3,7 +3,7 @@
 use crate::directions::Directions;
 use crate::program::ScanProgram;
 
-/// A table's size is a multiple of this: what one instruction can look up.
+/// The most entries of a short table: what one instruction can look up.
 pub(crate) const TABLE: usize = 64;
 
 /// The same for instruction sets that look up less.
@@ -16,7 +16,8 @@ const PIECE: usize = 16;
 pub(crate) const BEYOND: i8 = (0x80 - PIECE) as i8;
 
 /// The tables of all beams, for each class of directions; made anew for each
-/// program.
+/// program. They lie one behind the other, as a search reads them all over again and
+/// little else then fits the processor's nearer caches.
 #[derive(Debug, Clone, Default)]
 pub(crate) struct VoteTables {
     classes: usize,
@@ -28,22 +29,21 @@ pub(crate) struct VoteTables {
 
 #[derive(Debug, Clone, Copy)]
 struct Entry {
-    centre: u16,
     start: u32,
-    size: u32,
-    used: u32,
+    centre: u16,
+    used: u16,
 }
 
-/// Votes by distance from the reading. Its size is a multiple of [`TABLE`], and
-/// its last entry is zero: farther distances look that up.
+/// Votes by distance from the reading.
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct VoteTable<'a> {
     /// Steps to the reading.
     pub centre: u16,
-    /// Votes at 0, 1, 2, … steps from there.
-    pub votes: &'a [u8],
-    /// From here on they are 0.
-    pub used: usize,
+    /// How many entries there are with votes.
+    pub used: u16,
+    /// Votes at 0, 1, 2, … steps from there, and a 0, which farther distances look up.
+    /// What lies behind it belongs to other tables; there are [`TABLE`] bytes at least.
+    votes: &'a [u8],
 }
 
 impl VoteTables {
@@ -55,37 +55,34 @@ impl VoteTables {
         self.is_short = true;
         for (beam, class) in (0..program.beams()).flat_map(|i| (0..classes).map(move |c| (i, c))) {
             let taper = program.taper(beam, class);
-            let start = self.votes.len();
-            let size = (taper.profile.len() + 1).next_multiple_of(TABLE);
-            self.votes.extend_from_slice(taper.profile);
-            self.votes.resize(start + size, 0);
             self.entries.push(Entry {
+                start: self.votes.len() as u32,
                 centre: taper.centre,
-                start: start as u32,
-                size: size as u32,
-                used: taper.profile.len() as u32,
+                used: taper.profile.len() as u16,
             });
-            self.is_short &= size == TABLE;
+            self.votes.extend_from_slice(taper.profile);
+            self.votes.push(0);
+            self.is_short &= taper.profile.len() < TABLE;
         }
+        self.votes.resize(self.votes.len() + TABLE, 0);
     }
 
     /// The table of a beam for a class of directions.
     #[inline(always)]
     pub(crate) fn get(&self, beam: usize, class: usize) -> VoteTable<'_> {
         let Entry {
-            centre,
             start,
-            size,
+            centre,
             used,
         } = self.entries[beam * self.classes + class];
         VoteTable {
             centre,
-            votes: &self.votes[start as usize..][..size as usize],
-            used: used as usize,
+            used,
+            votes: &self.votes[start as usize..],
         }
     }
 
-    /// Whether all tables have [`TABLE`] entries.
+    /// Whether no table has more than [`TABLE`] entries.
     #[cfg_attr(
         not(target_arch = "x86_64"),
         expect(dead_code, reason = "only vectors of x86-64 need to know")
@@ -96,26 +93,27 @@ impl VoteTables {
 }
 
 impl<'a> VoteTable<'a> {
-    /// Its entries, if there are [`TABLE`].
+    /// Its entries, if there are no more than [`TABLE`]: up to [`VoteTable::used`], where
+    /// the last one is.
     #[inline(always)]
     pub(crate) fn short(&self) -> Option<&'a [u8; TABLE]> {
-        self.votes.try_into().ok()
+        let is_short = usize::from(self.used) < TABLE;
+        self.votes.first_chunk().filter(|_| is_short)
     }
 
     /// Whether any of these numbers of steps, without the end, may have votes.
     #[inline(always)]
     pub(crate) fn has_votes_in(&self, (first, end): (u16, u16)) -> bool {
-        let centre = usize::from(self.centre);
-        usize::from(first) < centre + self.used && centre + 1 < usize::from(end) + self.used
+        let (centre, used) = (usize::from(self.centre), usize::from(self.used));
+        usize::from(first) < centre + used && centre + 1 < usize::from(end) + used
     }
 
     /// Adds the votes for poses from which the ray is so long, side by side.
     #[inline(always)]
     pub(crate) fn add(&self, ranges: &[u16], votes: &mut [u16]) {
-        let last = self.votes.len() - 1;
         for (votes, &range) in votes.iter_mut().zip(ranges) {
-            let distance = usize::from(range.abs_diff(self.centre)).min(last);
-            *votes += u16::from(self.votes[distance]);
+            let distance = range.abs_diff(self.centre).min(self.used);
+            *votes += u16::from(self.votes[usize::from(distance)]);
         }
     }
 }

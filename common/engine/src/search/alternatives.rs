@@ -219,7 +219,7 @@ impl<'a> Alternatives<'a> {
         let view = self.task.view();
         let counts = self.task.programs.leaf.count(outlook, &view, heading);
         let open = outlook.open();
-        let votes = counts.iter().zip(&open).map(|(count, open)| count & open);
+        let votes = counts.iter().zip(open).map(|(count, open)| count & open);
         let (intensity, Reverse(i)) = votes.zip((0..).map(Reverse)).max()?;
         let (x, y) = outlook.cell(i);
         (intensity > 0).then_some(Vote {

@@ -16,6 +16,9 @@ pub(super) trait CellLanes: Copy {
     fn add(self, table: VoteTable<'_>, ranges: &[u16; CELLS]) -> Self;
 
     fn store(self, votes: &mut [u16; CELLS]);
+
+    /// The most votes of those cells that have all ones in a mask.
+    fn most(self, among: &[u16; CELLS]) -> u16;
 }
 
 /// What every processor has; on ARM, which always has NEON, short tables are looked
@@ -44,6 +47,12 @@ impl CellLanes for Portable {
     fn store(self, votes: &mut [u16; CELLS]) {
         *votes = self.0;
     }
+
+    #[inline(always)]
+    fn most(self, among: &[u16; CELLS]) -> u16 {
+        let votes = self.0.iter().zip(among).map(|(votes, mask)| votes & mask);
+        votes.fold(0, u16::max)
+    }
 }
 
 #[cfg(target_arch = "aarch64")]
@@ -66,8 +75,10 @@ mod neon {
             let centre = vdupq_n_u16(table.centre);
             let low = vabdq_u16(vld1q_u16(ranges.as_ptr()), centre);
             let high = vabdq_u16(vld1q_u16(ranges.as_ptr().add(CELLS / 2)), centre);
-            let distance = vcombine_u8(vqmovn_u16(low), vqmovn_u16(high));
-            let found = look_up_neon(entries, table.used, distance);
+            let last = vdupq_n_u16(table.used);
+            let (low, high) = (vminq_u16(low, last), vminq_u16(high, last));
+            let distance = vcombine_u8(vmovn_u16(low), vmovn_u16(high));
+            let found = look_up_neon(entries, table.used.into(), distance);
             let (first, second) = votes.split_at_mut(CELLS / 2);
             for (to, found) in [(first, vget_low_u8(found)), (second, vget_high_u8(found))] {
                 vst1q_u16(to.as_mut_ptr(), vaddw_u8(vld1q_u16(to.as_ptr()), found));
@@ -81,7 +92,7 @@ mod x86 {
     use std::arch::x86_64::*;
 
     use super::{CELLS, CellLanes, VoteTable};
-    use crate::tables::{TABLE, look_up_avx2};
+    use crate::tables::look_up_avx2;
 
     /// Why tables are short: with these instruction sets no others are looked up here.
     const SHORT: &str = "a table that is short";
@@ -102,20 +113,41 @@ mod x86 {
         unsafe { _mm256_loadu_si256(numbers.as_ptr().cast()) }
     }
 
-    /// Distances of ranges from a reading.
+    /// The greatest of the numbers that have all ones in a mask.
     ///
     /// # Safety
     /// The processor must have AVX2.
     #[inline(always)]
-    unsafe fn distances(ranges: &[u16; CELLS], centre: u16) -> __m256i {
+    unsafe fn most(numbers: __m256i, among: &[u16; CELLS]) -> u16 {
         // SAFETY: as the caller says.
         unsafe {
-            let (ranges, centre) = (load(ranges), _mm256_set1_epi16(centre.cast_signed()));
+            let numbers = _mm256_and_si256(numbers, load(among));
+            let (low, high) = (
+                _mm256_castsi256_si128(numbers),
+                _mm256_extracti128_si256::<1>(numbers),
+            );
+            // There is an instruction for the least of eight numbers.
+            let inverted = _mm_xor_si128(_mm_max_epu16(low, high), _mm_set1_epi16(-1));
+            !(_mm_cvtsi128_si32(_mm_minpos_epu16(inverted)) as u16)
+        }
+    }
+
+    /// Where a table has the votes for ranges.
+    ///
+    /// # Safety
+    /// The processor must have AVX2.
+    #[inline(always)]
+    unsafe fn places(table: VoteTable<'_>, ranges: &[u16; CELLS]) -> __m256i {
+        // SAFETY: as the caller says.
+        unsafe {
+            let ranges = load(ranges);
+            let centre = _mm256_set1_epi16(table.centre.cast_signed());
             let (beyond, before) = (
                 _mm256_subs_epu16(ranges, centre),
                 _mm256_subs_epu16(centre, ranges),
             );
-            _mm256_or_si256(beyond, before)
+            let last = _mm256_set1_epi16(table.used.cast_signed());
+            _mm256_min_epu16(_mm256_or_si256(beyond, before), last)
         }
     }
 
@@ -134,11 +166,10 @@ mod x86 {
         fn add(self, table: VoteTable<'_>, ranges: &[u16; CELLS]) -> Self {
             let entries = table.short().expect(SHORT);
             unsafe {
-                let distance = distances(ranges, table.centre);
-                let distance = _mm256_min_epu16(distance, _mm256_set1_epi16(0xff));
                 // The high byte of each number lies beyond all entries.
                 let high = _mm256_set1_epi16(0xff00_u16.cast_signed());
-                let found = look_up_avx2(entries, table.used, _mm256_or_si256(distance, high));
+                let index = _mm256_or_si256(places(table, ranges), high);
+                let found = look_up_avx2(entries, table.used.into(), index);
                 Avx2(_mm256_add_epi16(self.0, found))
             }
         }
@@ -146,6 +177,11 @@ mod x86 {
         #[inline(always)]
         fn store(self, votes: &mut [u16; CELLS]) {
             unsafe { _mm256_storeu_si256(votes.as_mut_ptr().cast(), self.0) };
+        }
+
+        #[inline(always)]
+        fn most(self, among: &[u16; CELLS]) -> u16 {
+            unsafe { most(self.0, among) }
         }
     }
 
@@ -164,8 +200,7 @@ mod x86 {
         fn add(self, table: VoteTable<'_>, ranges: &[u16; CELLS]) -> Self {
             let entries = table.short().expect(SHORT);
             unsafe {
-                let distance = distances(ranges, table.centre);
-                let index = _mm256_min_epu16(distance, _mm256_set1_epi16(TABLE as i16 - 1));
+                let index = places(table, ranges);
                 // The index is the low byte of a number; the high one looks up
                 // entry 0, which the mask leaves out.
                 let (index, entries) = (
@@ -180,6 +215,11 @@ mod x86 {
         #[inline(always)]
         fn store(self, votes: &mut [u16; CELLS]) {
             unsafe { _mm256_storeu_si256(votes.as_mut_ptr().cast(), self.0) };
+        }
+
+        #[inline(always)]
+        fn most(self, among: &[u16; CELLS]) -> u16 {
+            unsafe { most(self.0, among) }
         }
     }
 }

@@ -12,7 +12,9 @@ use super::heading_lanes::HEADINGS;
 use super::index::SearchIndex;
 use super::interval_bounds::{IntervalBounds, Window};
 use super::intervals::BlockIntervals;
+use super::leaf::Count;
 use super::outlook::{CELLS, Outlook};
+use super::prefetch::prefetch;
 use super::queue::{Block, Level, Promise, Queue};
 use super::set_bounds::SetBounds;
 use super::task::{Programs, Task};
@@ -167,11 +169,19 @@ impl<'a> Descent<'a> {
         match block.level {
             // A coarse block is a quad of those within.
             Level::Coarse => fine.prefetch(index),
-            Level::Fine { .. } => {
+            // The others are asked for one by one, as more at a time would be waited for.
+            Level::Fine { start, end } => {
+                prefetch(&self.room.windows[start as usize..end as usize]);
                 let sides = (intervals.columns, intervals.rows);
-                quarters(index, fine.columns, sides).for_each(|block| intervals.prefetch(block));
+                let first = quarters(index, fine.columns, sides).next();
+                first
+                    .into_iter()
+                    .for_each(|block| intervals.prefetch(block));
             }
-            Level::Leaf { .. } => intervals.prefetch(index),
+            Level::Leaf { start, end } => {
+                prefetch(&self.room.candidates[start as usize..end as usize]);
+                intervals.prefetch(index);
+            }
         }
     }
 
@@ -240,7 +250,13 @@ impl<'a> Descent<'a> {
         let (fine, intervals) = (&self.task.index.fine, &self.task.index.intervals);
         let within = &self.task.index.within;
         let quarters = quarters(index, fine.columns, (intervals.columns, intervals.rows));
-        for block in quarters.filter(|&block| within.holds(Size::Small, block)) {
+        let mut sought = quarters
+            .filter(|&block| within.holds(Size::Small, block))
+            .peekable();
+        while let Some(block) = sought.next() {
+            if let Some(&next) = sought.peek() {
+                intervals.prefetch(next);
+            }
             self.queue_leaf(block, windows.clone());
         }
     }
@@ -320,35 +336,36 @@ impl<'a> Descent<'a> {
     /// Counts sector by sector at headings from `first` on, until no pose can
     /// reach the floor with what the sectors left are bounded by.
     fn count_at(&mut self, first: usize, among: u64) {
-        let open = self.room.outlook.open();
         let view = self.task.view();
-        let mut counts = [[0u16; CELLS]; HEADINGS];
+        let mut counts = [Count::default(); HEADINGS];
         let mut rest = self.room.interval_bounds.all;
         let mut alive = among;
         let floor = self.room.collector.floor();
         for (sector, bounds) in self.room.interval_bounds.sectors.iter().enumerate() {
+            self.room.tally.sectors += u64::from(alive.count_ones());
+            let looking = (&mut self.room.outlook, &view);
+            let program = &self.task.programs.leaf;
+            program.add(looking, sector, (first, alive), &mut counts);
             let mut still = 0;
             for lane in bits::ones(alive) {
-                self.room.tally.sectors += 1;
-                let counts = &mut counts[lane];
-                let (program, heading) = (&self.task.programs.leaf, first + lane);
-                program.add(&mut self.room.outlook, &view, sector, heading, counts);
                 rest[lane] -= u16::from(bounds[lane]);
-                let counts = counts.iter().zip(&open);
-                let most = counts.map(|(&count, &open)| count & open).max();
-                still |= u64::from(most.unwrap_or(0) + rest[lane] >= floor) << lane;
+                still |= u64::from(counts[lane].most + rest[lane] >= floor) << lane;
             }
             alive = still;
+            if alive == 0 {
+                break;
+            }
         }
         for lane in bits::ones(alive) {
-            self.take((first + lane) as u16, &counts[lane], &open);
+            self.take((first + lane) as u16, &counts[lane].votes);
         }
         self.room.tally.looks = self.room.outlook.looks();
         let best = self.room.collector.best();
         self.task.best.fetch_max(best, Ordering::Relaxed);
     }
 
-    fn take(&mut self, heading: u16, counts: &[u16; CELLS], open: &[u16; CELLS]) {
+    fn take(&mut self, heading: u16, counts: &[u16; CELLS]) {
+        let open = *self.room.outlook.open();
         self.room.poses_evaluated += CELLS as u64;
         for (i, &intensity) in counts.iter().enumerate() {
             if open[i] != 0 {

@@ -5,8 +5,9 @@
 //! (`cell_lanes.rs`).
 
 use super::bits;
-use super::cell_lanes::{CellLanes, Portable};
+use super::cell_lanes::{self, CellLanes};
 use super::outlook::{CELLS, Outlook, View};
+use super::ray_lanes::{self, RayLanes};
 use super::sectors;
 use crate::directions::Directions;
 use crate::instruction_set::InstructionSet;
@@ -23,6 +24,15 @@ pub(crate) struct LeafProgram {
     tables: VoteTables,
     /// Class of each direction.
     classes: Vec<usize>,
+}
+
+/// Votes of a block's cells at a heading.
+#[derive(Debug, Clone, Copy, Default)]
+#[repr(align(64))]
+pub(crate) struct Count {
+    pub votes: [u16; CELLS],
+    /// The most where poses are sought.
+    pub most: u16,
 }
 
 impl LeafProgram {
@@ -48,18 +58,19 @@ impl LeafProgram {
         &self.order
     }
 
-    /// Adds the votes of a sector of beams at a heading to those of the block's
-    /// cells; what is added where a cell is not open means nothing.
+    /// Adds the votes of a sector of beams at some headings to those of the block's
+    /// cells, and tells the most of those where poses are sought; what is added where a
+    /// cell is not open means nothing.
     pub(crate) fn add(
         &self,
-        outlook: &mut Outlook,
-        view: &View<'_>,
+        looking: (&mut Outlook, &View<'_>),
         sector: usize,
-        heading: usize,
-        counts: &mut [u16; CELLS],
+        headings: (usize, u64),
+        counts: &mut [Count],
     ) {
         let beams = sectors::beams(sector, self.bearings.len());
-        self.add_beams(outlook, view, beams, heading, counts);
+        let all = u64::MAX >> (u64::BITS as usize - beams.len());
+        self.add_beams(looking, (beams.start, all), headings, counts);
     }
 
     /// The votes of the block's cells at a heading, with looks only where its intervals
@@ -71,7 +82,7 @@ impl LeafProgram {
         view: &View<'_>,
         heading: usize,
     ) -> [u16; CELLS] {
-        let mut counts = [0; CELLS];
+        let mut count = Count::default();
         for sector in 0..sectors::count(self.bearings.len()) {
             let beams = sectors::beams(sector, self.bearings.len());
             let may_vote = |&beam: &usize| {
@@ -81,76 +92,91 @@ impl LeafProgram {
             };
             let voting = beams.clone().filter(may_vote);
             let voting = voting.fold(0, |voting, beam| voting | 1 << (beam - beams.start));
-            let beams = bits::ones(voting).map(|i| beams.start + i);
-            self.add_beams(outlook, view, beams, heading, &mut counts);
+            let counts = std::slice::from_mut(&mut count);
+            self.add_beams((outlook, view), (beams.start, voting), (heading, 1), counts);
         }
-        counts
+        count.votes
     }
 
-    /// Adds the votes of some beams.
+    /// Adds the votes of some beams at some headings.
     fn add_beams(
         &self,
-        outlook: &mut Outlook,
-        view: &View<'_>,
-        beams: impl Iterator<Item = usize> + Clone,
-        heading: usize,
-        counts: &mut [u16; CELLS],
+        looking: (&mut Outlook, &View<'_>),
+        beams: (usize, u64),
+        headings: (usize, u64),
+        counts: &mut [Count],
     ) {
-        let directions = beams.clone().map(|beam| self.direction(beam, heading));
-        outlook.look(view, self.instruction_set, directions);
         match self.instruction_set {
             // SAFETY: the processor has the instruction set, or it would not be chosen.
             #[cfg(target_arch = "x86_64")]
-            InstructionSet::Avx512 if self.tables.are_short() => unsafe {
-                self.add_avx512(outlook, beams, heading, counts);
-            },
+            InstructionSet::Avx512 => unsafe { self.add_avx512(looking, beams, headings, counts) },
             // SAFETY: as above.
             #[cfg(target_arch = "x86_64")]
-            InstructionSet::Avx2 if self.tables.are_short() => unsafe {
-                self.add_avx2(outlook, beams, heading, counts);
-            },
-            _ => self.add_with::<Portable>(outlook, beams, heading, counts),
+            InstructionSet::Avx2 => unsafe { self.add_avx2(looking, beams, headings, counts) },
+            _ => self.add_with::<ray_lanes::Portable, cell_lanes::Portable>(
+                looking, beams, headings, counts,
+            ),
         }
     }
 
     #[cfg(target_arch = "x86_64")]
-    #[target_feature(enable = "avx512f,avx512bw,avx512vl,avx512vbmi")]
+    #[target_feature(enable = "avx512f,avx512bw,avx512cd,avx512dq,avx512vl,avx512vbmi")]
     fn add_avx512(
         &self,
-        outlook: &Outlook,
-        beams: impl Iterator<Item = usize>,
-        heading: usize,
-        counts: &mut [u16; CELLS],
+        looking: (&mut Outlook, &View<'_>),
+        beams: (usize, u64),
+        headings: (usize, u64),
+        counts: &mut [Count],
     ) {
-        self.add_with::<super::cell_lanes::Avx512>(outlook, beams, heading, counts);
+        use ray_lanes::Avx512;
+        if self.tables.are_short() {
+            self.add_with::<Avx512, cell_lanes::Avx512>(looking, beams, headings, counts);
+        } else {
+            self.add_with::<Avx512, cell_lanes::Portable>(looking, beams, headings, counts);
+        }
     }
 
     #[cfg(target_arch = "x86_64")]
     #[target_feature(enable = "avx2")]
     fn add_avx2(
         &self,
-        outlook: &Outlook,
-        beams: impl Iterator<Item = usize>,
-        heading: usize,
-        counts: &mut [u16; CELLS],
+        looking: (&mut Outlook, &View<'_>),
+        beams: (usize, u64),
+        headings: (usize, u64),
+        counts: &mut [Count],
     ) {
-        self.add_with::<super::cell_lanes::Avx2>(outlook, beams, heading, counts);
+        use ray_lanes::Avx2;
+        if self.tables.are_short() {
+            self.add_with::<Avx2, cell_lanes::Avx2>(looking, beams, headings, counts);
+        } else {
+            self.add_with::<Avx2, cell_lanes::Portable>(looking, beams, headings, counts);
+        }
     }
 
     #[inline(always)]
-    fn add_with<L: CellLanes>(
+    fn add_with<R: RayLanes, C: CellLanes>(
         &self,
-        outlook: &Outlook,
-        beams: impl Iterator<Item = usize>,
-        heading: usize,
-        counts: &mut [u16; CELLS],
+        (outlook, view): (&mut Outlook, &View<'_>),
+        (first_beam, beams): (usize, u64),
+        (first, headings): (usize, u64),
+        counts: &mut [Count],
     ) {
-        let mut sums = L::load(counts);
-        for beam in beams {
-            let (direction, table) = self.place(beam, heading);
-            sums = sums.add(table, outlook.ranges(direction));
+        let beams = bits::ones(beams).map(|i| first_beam + i);
+        for lane in bits::ones(headings) {
+            for beam in beams.clone() {
+                outlook.look::<R>(view, self.direction(beam, first + lane));
+            }
         }
-        sums.store(counts);
+        for lane in bits::ones(headings) {
+            let count = &mut counts[lane];
+            let mut sums = C::load(&count.votes);
+            for beam in beams.clone() {
+                let (direction, table) = self.place(beam, first + lane);
+                sums = sums.add(table, outlook.ranges(direction));
+            }
+            sums.store(&mut count.votes);
+            count.most = sums.most(outlook.open());
+        }
     }
 
     #[inline(always)]
@@ -207,14 +233,14 @@ mod tests {
                 let mut outlook = Outlook::default();
                 outlook.prepare(&grid, directions);
                 outlook.enter((&grid, &Limits::none(grid.width())), &intervals, block);
-                let mut counts = [0; CELLS];
+                let mut counts = [Count::default()];
                 for sector in 0..sectors::count(program.beams()) {
-                    leaf.add(&mut outlook, &view, sector, heading, &mut counts);
+                    leaf.add((&mut outlook, &view), sector, (heading, 1), &mut counts);
                 }
                 // The same with no more looks than needed.
                 outlook.enter((&grid, &Limits::none(grid.width())), &intervals, block);
                 let sparing = leaf.count(&mut outlook, &view, heading);
-                for (i, counts) in counts.into_iter().zip(sparing).enumerate() {
+                for (i, counts) in counts[0].votes.into_iter().zip(sparing).enumerate() {
                     let (x, y) = outlook.cell(i);
                     if grid.is_open(x as i64, y as i64) {
                         let plain = reference::intensity(&grid, &program, &space, x as i64, y as i64, heading);

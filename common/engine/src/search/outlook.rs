@@ -8,11 +8,10 @@
 use super::bundle::{self, Bundle};
 use super::intervals::{BlockIntervals, RangeIntervals, SIDE};
 use super::obstacles::Obstacles;
-use super::ray_lanes::{Portable, RayLanes};
+use super::ray_lanes::RayLanes;
 use super::steps::BinSteps;
 use crate::directions::Directions;
 use crate::grid::{Cell, Grid};
-use crate::instruction_set::InstructionSet;
 use crate::limits::Limits;
 use crate::program::NO_RANGE;
 
@@ -116,60 +115,30 @@ impl Outlook {
     }
 
     /// For each cell, all ones where the robot may stand and is sought.
-    pub(crate) fn open(&self) -> [u16; CELLS] {
-        self.open
+    pub(crate) fn open(&self) -> &[u16; CELLS] {
+        &self.open
     }
 
-    /// Looks in some directions, each unless that was done for this block.
-    pub(crate) fn look(
-        &mut self,
-        view: &View<'_>,
-        instruction_set: InstructionSet,
-        directions: impl Iterator<Item = usize>,
-    ) {
-        match instruction_set {
-            // SAFETY: the processor has the instruction set, or it would not be chosen.
-            #[cfg(target_arch = "x86_64")]
-            InstructionSet::Avx512 => unsafe { self.look_avx512(view, directions) },
-            // SAFETY: as above.
-            #[cfg(target_arch = "x86_64")]
-            InstructionSet::Avx2 => unsafe { self.look_avx2(view, directions) },
-            _ => self.look_with::<Portable>(view, directions),
-        }
-    }
-
-    #[cfg(target_arch = "x86_64")]
-    #[target_feature(enable = "avx2")]
-    fn look_avx2(&mut self, view: &View<'_>, directions: impl Iterator<Item = usize>) {
-        self.look_with::<super::ray_lanes::Avx2>(view, directions);
-    }
-
-    #[cfg(target_arch = "x86_64")]
-    #[target_feature(enable = "avx512f,avx512bw,avx512cd,avx512dq,avx512vl")]
-    fn look_avx512(&mut self, view: &View<'_>, directions: impl Iterator<Item = usize>) {
-        self.look_with::<super::ray_lanes::Avx512>(view, directions);
-    }
-
+    /// Looks in direction `d`, unless that was done for this block. To be inlined into
+    /// what is compiled for the instruction set.
     #[inline(always)]
-    fn look_with<L: RayLanes>(&mut self, view: &View<'_>, directions: impl Iterator<Item = usize>) {
-        for d in directions {
-            if self.looked_for[d] != self.number {
-                self.looked_for[d] = self.number;
-                self.looks += 1;
-                self.look_anew::<L>(view, d);
-            }
+    pub(super) fn look<L: RayLanes>(&mut self, view: &View<'_>, d: usize) {
+        if self.looked_for[d] != self.number {
+            self.looked_for[d] = self.number;
+            self.looks += 1;
+            self.look_anew::<L>(view, d);
         }
-    }
-
-    /// How often a direction of any block was looked in.
-    pub(crate) fn looks(&self) -> u64 {
-        self.looks
     }
 
     /// The ranges in direction `d`, in steps; it must have been looked in.
     #[inline(always)]
     pub(crate) fn ranges(&self, d: usize) -> &[u16; CELLS] {
         &self.by_direction[d]
+    }
+
+    /// How often a direction of any block was looked in.
+    pub(crate) fn looks(&self) -> u64 {
+        self.looks
     }
 
     /// The steps at which rays in direction `d` may end, without the ends: two spans.
@@ -212,7 +181,9 @@ mod tests {
     use proptest::prelude::*;
 
     use super::super::bins::Bins;
+    use super::super::ray_lanes;
     use super::*;
+    use crate::instruction_set::InstructionSet;
     use crate::reference;
     use crate::testing::{any_grid, any_long_grid, space_of};
 
@@ -232,9 +203,15 @@ mod tests {
             let blocks = 0..intervals.columns * intervals.rows;
             for (block, set) in InstructionSet::available().flat_map(|set| blocks.clone().map(move |block| (block, set))) {
                 outlook.enter((&grid, &Limits::none(grid.width())), &intervals, block);
-                outlook.look(&view, set, 0..directions.count());
-                let open = outlook.open();
+                let open = *outlook.open();
                 for (d, direction) in directions.all().iter().enumerate() {
+                    match set {
+                        #[cfg(target_arch = "x86_64")]
+                        InstructionSet::Avx512 => outlook.look::<ray_lanes::Avx512>(&view, d),
+                        #[cfg(target_arch = "x86_64")]
+                        InstructionSet::Avx2 => outlook.look::<ray_lanes::Avx2>(&view, d),
+                        _ => outlook.look::<ray_lanes::Portable>(&view, d),
+                    }
                     for (i, &open) in open.iter().enumerate() {
                         let (x, y) = outlook.cell(i);
                         let (x, y) = (x as i64, y as i64);

@@ -69,9 +69,9 @@ impl SetProgram {
         rests[0] = u16::MAX;
         for (group, rest) in rests.iter_mut().enumerate().take(others + 1).skip(1) {
             // The last groups were added first.
-            let sums = |chunk: usize, plane: usize| chunks[chunk].after[others - group][plane];
-            let sums = |plane| {
-                let of_chunk = |chunk| bits::of_block(&sums(chunk, plane), place);
+            let after = |chunk: usize| &chunks[chunk].after[others - group];
+            let sums = |plane: usize| {
+                let of_chunk = |chunk| bits::of_block(&after(chunk)[plane], place);
                 bits::window_of(chunks.len(), of_chunk, first)
             };
             *rest = self.unit * bits::greatest(self.planes, sums, among);

@@ -200,8 +200,8 @@ impl RangeSets {
     /// Asks for the rows of a quad that is soon to be read.
     pub(crate) fn prefetch(&self, quad: usize) {
         let rows = self.quad(quad);
-        prefetch(bytemuck::cast_slice(rows.masks));
-        prefetch(rows.bytes.as_flattened());
+        prefetch(rows.masks);
+        prefetch(rows.bytes);
     }
 }
 

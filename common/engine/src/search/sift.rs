@@ -17,7 +17,8 @@ use std::sync::atomic::Ordering;
 use messages::Vote;
 
 use super::intervals::SIDE;
-use super::outlook::{CELLS, Outlook};
+use super::leaf::Count;
+use super::outlook::Outlook;
 use super::sectors;
 use super::task::Task;
 use crate::accumulator::Query;
@@ -341,15 +342,15 @@ impl<'a> Sifting<'a> {
         }
         *poses_evaluated += 1;
         let (view, place) = (task.view(), y % SIDE * SIDE + x % SIDE);
-        let mut counts = [0; CELLS];
+        let mut counts = [Count::default()];
         for (sector, rest) in rests[1..].iter().enumerate() {
             let program = &task.programs.leaf;
-            program.add(outlook, &view, sector, heading, &mut counts);
-            if counts[place] + rest < floor {
+            program.add((outlook, &view), sector, (heading, 1), &mut counts);
+            if counts[0].votes[place] + rest < floor {
                 return 0;
             }
         }
-        counts[place]
+        counts[0].votes[place]
     }
 
     /// Column and row of a cell.
