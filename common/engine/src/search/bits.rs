@@ -81,6 +81,9 @@ pub(crate) fn at_least<W: BitWords>(
     least: u16,
     among: W,
 ) -> W {
+    if least == 0 {
+        return among;
+    }
     if usize::from(least) >> planes != 0 {
         return W::empty();
     }

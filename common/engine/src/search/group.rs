@@ -123,7 +123,8 @@ impl Group {
         let mut twos = Several::empty();
         // What adding to the total carries over.
         let mut overflow = Several::empty();
-        for total in total {
+        let (own, others) = total.split_at_mut(self.sum_planes().min(total.len()));
+        for total in own {
             let mut column = Column::new(twos, after);
             if let Some(plane) = planes.next() {
                 column.add_windows(reader, plane);
@@ -136,6 +137,14 @@ impl Group {
             (carries, next, after) = (next, after, carries);
             (carried, carried_next) = (carried_next, made);
         }
+        for total in others {
+            (*total, overflow) = total.full_adder(overflow, Several::empty());
+        }
+    }
+
+    /// Planes that hold all sums of the beams.
+    fn sum_planes(&self) -> usize {
+        (u16::BITS - self.possible.leading_zeros()) as usize
     }
 }
 
