@@ -24,6 +24,9 @@ pub(crate) struct RowLayout {
     most: usize,
     /// Rows that are read at all.
     needed: Range<usize>,
+    /// A bit for each row that is read alone, and for each that is read with the next one.
+    alone: u64,
+    joined: u64,
     /// Where a byte of two turns lies.
     turns: Vec<u32>,
 }
@@ -65,6 +68,7 @@ impl RowLayout {
         self.row = (turns * self.stride + READ).next_multiple_of(READ);
         self.most = (usize::from(Bins::NOTHING) >> ROW_SHIFT) + 1;
         self.needed = self.most..0;
+        (self.alone, self.joined) = (0, 0);
         let turn = 0..self.stride as u32;
         self.turns.clear();
         self.turns.extend(turn.clone().chain(turn));
@@ -78,10 +82,18 @@ impl RowLayout {
         );
         let needed = &self.needed;
         self.needed = needed.start.min(rows.start)..needed.end.max(rows.end);
-        let (first, last) = match rows.len() {
-            1 => (2 * rows.start, 2 * rows.start),
-            _ => (2 * rows.start + 1, 2 * (rows.end - 2) + 1),
+        // Two rows at a time, the last two with the one before if need be.
+        let last = rows.end.saturating_sub(2).max(rows.start);
+        let starts = rows.clone().step_by(2).map(|row| row.min(last));
+        let is_joined = rows.len() > 1;
+        let read = if is_joined {
+            &mut self.joined
+        } else {
+            &mut self.alone
         };
+        *read |= starts.fold(0, |read, row| read | 1 << row);
+        let place = |row: usize| 2 * row + usize::from(is_joined);
+        let (first, last) = (place(rows.start), place(last));
         Window {
             first: (first * self.row) as u32,
             last: (last * self.row) as u32,
@@ -124,32 +136,41 @@ impl QuadRows {
         let taken = first..rows.rows.end.min(layout.needed.end);
         let mut kept = rows.kept_before(taken.start);
         for i in taken.clone() {
-            let each = &mut self.bytes[2 * i * row..][..row];
-            if rows.rows.contains(&i) {
-                let starts = (0..stride).step_by(READ);
-                for (start, &mask) in starts.zip(rows.masks_of(i)) {
-                    let words = W::expand(mask, bytes(&rows.bytes[kept..]));
-                    words.write(bytes_mut(&mut each[start..]));
-                    kept += mask.count_ones() as usize;
-                }
-                let turn = W::read(bytes(each));
-                // What is copied too much, the next turn overwrites.
-                for start in (stride..stride + READ - 1).step_by(stride) {
-                    turn.write(bytes_mut(&mut each[start..]));
-                }
+            let (earlier, own) = self.bytes.split_at_mut(2 * i * row);
+            let own = &mut own[..row];
+            if !rows.rows.contains(&i) {
+                own.fill([0; QUAD]);
+                continue;
+            }
+            let is_joined = i > taken.start && layout.joined >> (i - 1) & 1 == 1;
+            let before = if is_joined {
+                earlier.len() - 2 * row
             } else {
-                each.fill([0; QUAD]);
+                earlier.len()
+            };
+            let (before, joined) = earlier[before..].split_at_mut(if is_joined { row } else { 0 });
+            for (start, &mask) in (0..stride).step_by(READ).zip(rows.masks_of(i)) {
+                let words = W::expand(mask, bytes(&rows.bytes[kept..]));
+                words.write(bytes_mut(&mut own[start..]));
+                if is_joined {
+                    let both = W::read(bytes(&before[start..])).or(words);
+                    both.write(bytes_mut(&mut joined[start..]));
+                }
+                kept += mask.count_ones() as usize;
+            }
+            if is_joined {
+                go_round::<W>(joined, stride);
             }
         }
-        // All rows are written before any is read: what was written a moment ago and
-        // lies athwart what is read would be waited for.
-        for i in taken.start + 1..taken.end {
-            self.join::<W>(2 * (i - 1) * row, row);
-        }
-        if !taken.is_empty() {
+        if let Some(last) = taken.clone().next_back() {
             // Nothing is seen behind the last one, or nobody reads it.
-            let last = 2 * (taken.end - 1) * row;
-            self.bytes.copy_within(last..last + row, last + row);
+            let rows = &mut self.bytes[2 * last * row..][..2 * row];
+            let (last, joined) = rows.split_at_mut(row);
+            joined.copy_from_slice(last);
+            go_round::<W>(joined, stride);
+        }
+        for i in taken.clone().filter(|&i| layout.alone >> i & 1 == 1) {
+            go_round::<W>(&mut self.bytes[2 * i * row..][..row], stride);
         }
         for used in self.used.clone() {
             if !taken.contains(&used) {
@@ -158,17 +179,15 @@ impl QuadRows {
         }
         self.used = taken;
     }
+}
 
-    /// Joins a row that starts at such a place with the next one.
-    #[inline(always)]
-    fn join<W: BitWords>(&mut self, at: usize, row: usize) {
-        let rows = &mut self.bytes[at..][..3 * row];
-        let (each, rows) = rows.split_at_mut(row);
-        let (joined, next) = rows.split_at_mut(row);
-        for start in (0..row).step_by(READ) {
-            let words = W::read(bytes(&each[start..])).or(W::read(bytes(&next[start..])));
-            words.write(bytes_mut(&mut joined[start..]));
-        }
+/// Lets words be read from any byte of a row's first turn on.
+#[inline(always)]
+fn go_round<W: BitWords>(row: &mut [Byte], stride: usize) {
+    let turn = W::read(bytes(row));
+    // What is copied too much, the next turn overwrites.
+    for start in (stride..stride + READ - 1).step_by(stride) {
+        turn.write(bytes_mut(&mut row[start..]));
     }
 }
 
