@@ -3,6 +3,8 @@
 use std::cmp::Reverse;
 use std::num::NonZeroU32;
 
+use super::prefetch::prefetch;
+
 /// The blocks that wait.
 ///
 /// Blocks of 4 × 4 cells have tighter bounds than those that they came of, and so
@@ -110,7 +112,10 @@ impl ByBound {
 
     fn peek(&mut self) -> Option<Block> {
         let bound = self.greatest()?;
-        Some(self.at(self.last[bound]?).0)
+        let &(block, before) = self.at(self.last[bound]?);
+        // It lies anywhere, and likely comes after this one.
+        before.map(|before| prefetch(std::slice::from_ref(self.at(before))));
+        Some(block)
     }
 
     fn pop(&mut self) -> Option<Block> {
