@@ -8,6 +8,9 @@ use crate::instruction_set::InstructionSet;
 use crate::program::ScanProgram;
 use crate::tables::TABLE;
 
+/// As many votes of at most 16 as fit into a byte.
+const BEAMS_OF_A_BYTE: usize = 15;
+
 /// A scan program laid out for bounds from intervals; made anew for each scan.
 #[derive(Debug, Clone, Default)]
 pub(crate) struct IntervalProgram {
@@ -73,7 +76,7 @@ impl IntervalProgram {
             let start = self.by_group.beams.len();
             self.by_group.beams.extend(beams.cloned());
             let end = self.by_group.beams.len();
-            let full = (start..end).step_by(sectors::BEAMS).skip(1);
+            let full = (start..end).step_by(BEAMS_OF_A_BYTE).skip(1);
             let pieces = full.map(|end| (end, group)).chain([(end, group + 1)]);
             self.by_group.pieces.extend(pieces);
         }
