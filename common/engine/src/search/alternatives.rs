@@ -213,10 +213,9 @@ impl<'a> Alternatives<'a> {
     fn count(&mut self, spot: Spot) -> Option<Vote> {
         let index = self.task.index;
         let (Reverse(block), Reverse(heading)) = (spot.block, spot.heading);
-        let map = (self.task.grid, &index.within.limits);
-        let outlook = &mut self.room.outlook;
-        outlook.enter(map, &index.intervals, block);
         let view = self.task.view();
+        let outlook = &mut self.room.outlook;
+        outlook.enter((&view, &index.within.limits), &index.intervals, block);
         let counts = self.task.programs.leaf.count(outlook, &view, heading);
         let open = outlook.open();
         let votes = counts.iter().zip(open).map(|(count, open)| count & open);

@@ -61,21 +61,21 @@ impl Rates {
             InstructionSet::Avx512 => Rates {
                 read: 0.9,
                 window_per_beam: 1.6,
-                sector: 60.0,
+                sector: 40.0,
                 look: 55.0,
                 vote: 0.015,
             },
             InstructionSet::Avx2 => Rates {
                 read: 1.0,
                 window_per_beam: 1.8,
-                sector: 60.0,
+                sector: 40.0,
                 look: 60.0,
                 vote: 0.03,
             },
             InstructionSet::Portable => Rates {
                 read: 3.5,
                 window_per_beam: 15.0,
-                sector: 110.0,
+                sector: 75.0,
                 look: 200.0,
                 vote: 0.9,
             },
@@ -84,7 +84,7 @@ impl Rates {
 }
 
 /// Share of the work that goes into the smallest blocks before their turn.
-const DIVES: f64 = 0.2;
+const DIVES: f64 = 0.4;
 
 /// The first look, as a share of what brute force costs: so much is lost where a
 /// search is given up then.
@@ -213,8 +213,8 @@ mod tests {
         assert!(budget.dives());
         budget.spend(LEVELS - 1, Cost(10.0));
         assert!(budget.dives());
-        budget.spend(LEVELS - 1, Cost(20.0));
-        assert!(!budget.dives(), "30 of 130");
+        budget.spend(LEVELS - 1, Cost(60.0));
+        assert!(!budget.dives(), "70 of 170");
     }
 
     #[test]

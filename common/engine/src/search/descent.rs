@@ -296,12 +296,11 @@ impl<'a> Descent<'a> {
 
     /// Counts the votes of a block's poses at the candidate headings.
     fn count(&mut self, index: usize, mut candidates: Range<usize>) {
-        let Task {
-            index: map, grid, ..
-        } = self.task;
-        self.room
-            .outlook
-            .enter((*grid, &map.within.limits), &map.intervals, index);
+        let SearchIndex {
+            intervals, within, ..
+        } = self.task.index;
+        let outlook = &mut self.room.outlook;
+        outlook.enter((&self.task.view(), &within.limits), intervals, index);
         while let Some((first, among)) = self.next_headings(&mut candidates) {
             let floor = self.room.collector.floor();
             let (intervals, bounds) = (

@@ -232,13 +232,13 @@ mod tests {
                 leaf.make(&program, directions, instruction_set);
                 let mut outlook = Outlook::default();
                 outlook.prepare(&grid, directions);
-                outlook.enter((&grid, &Limits::none(grid.width())), &intervals, block);
+                outlook.enter((&view, &Limits::none(grid.width())), &intervals, block);
                 let mut counts = [Count::default()];
                 for sector in 0..sectors::count(program.beams()) {
                     leaf.add((&mut outlook, &view), sector, (heading, 1), &mut counts);
                 }
                 // The same with no more looks than needed.
-                outlook.enter((&grid, &Limits::none(grid.width())), &intervals, block);
+                outlook.enter((&view, &Limits::none(grid.width())), &intervals, block);
                 let sparing = leaf.count(&mut outlook, &view, heading);
                 for (i, counts) in counts[0].votes.into_iter().zip(sparing).enumerate() {
                     let (x, y) = outlook.cell(i);

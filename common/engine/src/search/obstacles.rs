@@ -4,6 +4,7 @@
 //! time. In a row of bits over the minor axis, rays side by side are bits side by
 //! side, and eight rows make one word. Where nothing is near they leap.
 
+use super::intervals::SIDE;
 use super::ray_lanes::{BitRows, RayLanes};
 use crate::chessboard;
 use crate::directions::{Direction, swap_unless};
@@ -80,6 +81,24 @@ impl Obstacles {
     pub(crate) fn bytes(&self) -> usize {
         let rows = self.along_x.bits.len() + self.along_y.bits.len();
         rows * size_of::<u32>() + self.clearance.tiles.len()
+    }
+
+    /// Whether all cells of a small block are on the map and open.
+    #[inline(always)]
+    pub(super) fn are_none_in(&self, (left, bottom): (usize, usize)) -> bool {
+        let Rows {
+            stride,
+            bits,
+            majors,
+            minors,
+        } = &self.along_x;
+        let (strip, bit) = strip_of(bottom as i64 + MARGIN);
+        let rows = &bits[strip * stride + ROWS as usize + left..];
+        (left + SIDE) as i64 <= *majors
+            && (bottom + SIDE) as i64 <= *minors
+            && rows[..SIDE]
+                .iter()
+                .all(|row| row >> bit & ((1 << SIDE) - 1) == 0)
     }
 
     /// Rays in a direction, of which the first one stands at `(major, minor)` at

@@ -82,7 +82,7 @@ impl Outlook {
     /// Turns to a block.
     pub(crate) fn enter(
         &mut self,
-        (grid, limits): (&Grid, &Limits),
+        (view, limits): (&View<'_>, &Limits),
         intervals: &RangeIntervals,
         block: usize,
     ) {
@@ -94,14 +94,20 @@ impl Outlook {
         intervals.read(block, &mut self.intervals);
         self.left = block % intervals.columns * SIDE;
         self.bottom = block / intervals.columns * SIDE;
-        let cells = self.cells.iter_mut().zip(&mut self.open);
-        for (i, (cell, open)) in cells.enumerate() {
-            let (x, y) = (self.left + i % SIDE, self.bottom + i / SIDE);
-            *cell = grid.get(x as i64, y as i64).unwrap_or(Cell::Blocked);
-            let sought = *cell == Cell::Open && limits.hold_cell(x, y);
-            *open = if sought { u16::MAX } else { 0 };
+        self.all_open = view.obstacles.are_none_in((self.left, self.bottom));
+        if self.all_open {
+            self.cells = [Cell::Open; CELLS];
+        } else {
+            self.cells = std::array::from_fn(|i| {
+                let (x, y) = self.cell(i);
+                view.grid.get(x as i64, y as i64).unwrap_or(Cell::Blocked)
+            });
         }
-        self.all_open = self.cells.iter().all(|&cell| cell == Cell::Open);
+        self.open = std::array::from_fn(|i| {
+            let (x, y) = self.cell(i);
+            let is_sought = self.cells[i] == Cell::Open && limits.hold_cell(x, y);
+            if is_sought { u16::MAX } else { 0 }
+        });
     }
 
     /// Column and row of the block's cell `i`.
@@ -202,7 +208,7 @@ mod tests {
             outlook.prepare(&grid, directions);
             let blocks = 0..intervals.columns * intervals.rows;
             for (block, set) in InstructionSet::available().flat_map(|set| blocks.clone().map(move |block| (block, set))) {
-                outlook.enter((&grid, &Limits::none(grid.width())), &intervals, block);
+                outlook.enter((&view, &Limits::none(grid.width())), &intervals, block);
                 let open = *outlook.open();
                 for (d, direction) in directions.all().iter().enumerate() {
                     match set {

@@ -113,8 +113,10 @@ impl ByBound {
     fn peek(&mut self) -> Option<Block> {
         let bound = self.greatest()?;
         let &(block, before) = self.at(self.last[bound]?);
-        // It lies anywhere, and likely comes after this one.
-        before.map(|before| prefetch(std::slice::from_ref(self.at(before))));
+        if let Some(before) = before {
+            // It likely comes after this one, and lies anywhere.
+            prefetch(std::slice::from_ref(self.at(before)));
+        }
         Some(block)
     }
 

@@ -334,14 +334,14 @@ impl<'a> Sifting<'a> {
             poses_evaluated,
             ..
         } = &mut *self.share;
-        let intervals = &task.index.intervals;
+        let (view, intervals) = (task.view(), &task.index.intervals);
         let block = y / SIDE * intervals.columns + x / SIDE;
         if *entered != Some(block) {
-            outlook.enter((task.grid, &task.index.within.limits), intervals, block);
+            outlook.enter((&view, &task.index.within.limits), intervals, block);
             *entered = Some(block);
         }
         *poses_evaluated += 1;
-        let (view, place) = (task.view(), y % SIDE * SIDE + x % SIDE);
+        let place = y % SIDE * SIDE + x % SIDE;
         let mut counts = [Count::default()];
         for (sector, rest) in rests[1..].iter().enumerate() {
             let program = &task.programs.leaf;
