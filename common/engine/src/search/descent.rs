@@ -34,6 +34,8 @@ pub(super) struct Room {
     intervals: BlockIntervals,
     interval_bounds: IntervalBounds,
     outlook: Outlook,
+    /// The votes of a block of 4 × 4 cells at each of [`HEADINGS`].
+    counts: Vec<Count>,
     queue: Queue,
     /// Headings at which blocks of 8 × 8 cells may matter.
     windows: Vec<Window>,
@@ -74,6 +76,7 @@ impl Room {
         let programs = task.programs;
         self.set_bounds.fit(&programs.sets, task.headings());
         self.outlook.prepare(task.grid, &task.space.directions);
+        self.counts.resize(HEADINGS, Count::default());
         self.queue.clear();
         self.windows.clear();
         self.fine.clear();
@@ -336,7 +339,9 @@ impl<'a> Descent<'a> {
     /// reach the floor with what the sectors left are bounded by.
     fn count_at(&mut self, first: usize, among: u64) {
         let view = self.task.view();
-        let mut counts = [Count::default(); HEADINGS];
+        for lane in bits::ones(among) {
+            self.room.counts[lane] = Count::default();
+        }
         let mut rest = self.room.interval_bounds.all;
         let mut alive = among;
         let floor = self.room.collector.floor();
@@ -344,11 +349,12 @@ impl<'a> Descent<'a> {
             self.room.tally.sectors += u64::from(alive.count_ones());
             let looking = (&mut self.room.outlook, &view);
             let program = &self.task.programs.leaf;
-            program.add(looking, sector, (first, alive), &mut counts);
+            program.add(looking, sector, (first, alive), &mut self.room.counts);
             let mut still = 0;
             for lane in bits::ones(alive) {
                 rest[lane] -= u16::from(bounds[lane]);
-                still |= u64::from(counts[lane].most + rest[lane] >= floor) << lane;
+                let most = self.room.counts[lane].most;
+                still |= u64::from(most + rest[lane] >= floor) << lane;
             }
             alive = still;
             if alive == 0 {
@@ -356,7 +362,8 @@ impl<'a> Descent<'a> {
             }
         }
         for lane in bits::ones(alive) {
-            self.take((first + lane) as u16, &counts[lane].votes);
+            let votes = self.room.counts[lane].votes;
+            self.take((first + lane) as u16, &votes);
         }
         self.room.tally.looks = self.room.outlook.looks();
         let best = self.room.collector.best();
