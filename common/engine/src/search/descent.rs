@@ -172,14 +172,13 @@ impl<'a> Descent<'a> {
         match block.level {
             // A coarse block is a quad of those within.
             Level::Coarse => fine.prefetch(index),
-            // The others are asked for one by one, as more at a time would be waited for.
             Level::Fine { start, end } => {
                 prefetch(&self.room.windows[start as usize..end as usize]);
                 let sides = (intervals.columns, intervals.rows);
-                let first = quarters(index, fine.columns, sides).next();
-                first
-                    .into_iter()
-                    .for_each(|block| intervals.prefetch(block));
+                // The others are asked for one by one: more at a time would be waited for.
+                if let Some(first) = quarters(index, fine.columns, sides).next() {
+                    intervals.prefetch(first);
+                }
             }
             Level::Leaf { start, end } => {
                 prefetch(&self.room.candidates[start as usize..end as usize]);

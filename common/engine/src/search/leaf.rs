@@ -58,9 +58,9 @@ impl LeafProgram {
         &self.order
     }
 
-    /// Adds the votes of a sector of beams at some headings to those of the block's
-    /// cells, and tells the most of those where poses are sought; what is added where a
-    /// cell is not open means nothing.
+    /// Adds the votes of a sector of beams to those of the block's cells, at headings from
+    /// a first one on that bits tell, each with a count. What is added where a cell is not
+    /// open means nothing.
     pub(crate) fn add(
         &self,
         looking: (&mut Outlook, &View<'_>),
@@ -98,7 +98,7 @@ impl LeafProgram {
         count.votes
     }
 
-    /// Adds the votes of some beams at some headings.
+    /// Adds the votes of beams from a first one on that bits tell.
     fn add_beams(
         &self,
         looking: (&mut Outlook, &View<'_>),
