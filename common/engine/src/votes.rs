@@ -7,10 +7,11 @@ use std::cmp::Reverse;
 
 use messages::Vote;
 
+use distinct::Leading;
 #[cfg(test)]
 pub(crate) use distinct::are_near;
 pub use distinct::{DISTINCT_DEG, DISTINCT_M};
-pub(crate) use distinct::{Distinct, Leading};
+pub(crate) use distinct::{Distinct, Leaders};
 pub(crate) use of_field::FieldVotes;
 pub use of_field::of_field;
 
@@ -88,6 +89,7 @@ pub(crate) struct Collector {
     crowded_below: u16,
     /// The intensity of which not even all best poses fit.
     cut: Option<u16>,
+    leading: Leading,
 }
 
 impl Collector {
@@ -105,6 +107,7 @@ impl Collector {
         self.best = 0;
         self.crowded_below = 1;
         self.cut = None;
+        self.leading.start();
     }
 
     /// The least intensity that can still matter; at least 1.
@@ -128,8 +131,33 @@ impl Collector {
         }
     }
 
-    /// Takes the poses of an intensity image, row by row, at one heading.
-    pub(crate) fn take_field(&mut self, field: &[u16], width: usize, heading: u16) {
+    /// Takes a pose, unless it lies below the floor, and raises that to the last of the
+    /// leading ones, where these are all that is wanted.
+    pub(crate) fn take_leading(&mut self, vote: Vote, leaders: Option<Leaders<'_>>) {
+        if vote.intensity < self.floor() {
+            return;
+        }
+        self.take(vote);
+        self.hear_of_leading(&vote, leaders);
+    }
+
+    /// Raises the floor to the last of the leading poses, of which this may be one,
+    /// whether it is taken or not.
+    pub(crate) fn hear_of_leading(&mut self, vote: &Vote, leaders: Option<Leaders<'_>>) {
+        if let Some(floor) = leaders.and_then(|leaders| self.leading.take(vote, leaders)) {
+            self.crowded_below = self.crowded_below.max(floor);
+        }
+    }
+
+    /// Takes the poses of an intensity image, row by row, at one heading, each as
+    /// [`Collector::take_leading`] does.
+    pub(crate) fn take_field(
+        &mut self,
+        field: &[u16],
+        width: usize,
+        heading: u16,
+        leaders: Option<Leaders<'_>>,
+    ) {
         for (y, row) in (0..).zip(field.chunks_exact(width)) {
             // Few rows hold any pose that matters, and a maximum is quick.
             let floor = self.floor();
@@ -137,12 +165,13 @@ impl Collector {
                 continue;
             }
             for (x, &intensity) in (0..).zip(row).filter(|&(_, &votes)| votes >= floor) {
-                self.take(Vote {
+                let vote = Vote {
                     x,
                     y,
                     heading,
                     intensity,
-                });
+                };
+                self.take_leading(vote, leaders);
             }
         }
     }
@@ -150,11 +179,6 @@ impl Collector {
     /// Raises the floor to what follows from a pose seen elsewhere.
     pub(crate) fn hear_of(&mut self, best: u16) {
         self.best = self.best.max(best);
-    }
-
-    /// Wants no poses below an intensity that some pose has.
-    pub(crate) fn raise(&mut self, floor: u16) {
-        self.crowded_below = self.crowded_below.max(floor);
     }
 
     /// The most votes of any pose so far.

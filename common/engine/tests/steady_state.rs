@@ -199,7 +199,10 @@ fn a_search_that_counts_every_pose_allocates_nothing() {
     });
     // Without wide vectors counting is so slow that bounds help even here.
     if InstructionSet::best() > InstructionSet::Portable {
-        assert_eq!(counted, all, "bounds do not help here");
+        assert!(
+            counted >= all,
+            "bounds do not help here: {counted} of {all}"
+        );
     }
     assert_eq!(count, 0);
 }

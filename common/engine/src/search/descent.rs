@@ -17,9 +17,10 @@ use super::outlook::{CELLS, Outlook};
 use super::prefetch::prefetch;
 use super::queue::{Block, Level, Promise, Queue};
 use super::set_bounds::SetBounds;
+use super::sift;
 use super::task::{Programs, Task};
 use super::within::Size;
-use crate::votes::{Collector, Leading};
+use crate::votes::Collector;
 
 /// One thread's part of a search.
 pub(super) struct Descent<'a> {
@@ -46,7 +47,6 @@ pub(super) struct Room {
     candidates: Vec<Candidate>,
     /// The poses that matter.
     pub collector: Collector,
-    leading: Leading,
     /// How many were counted.
     pub poses_evaluated: u64,
     tally: Tally,
@@ -82,7 +82,6 @@ impl Room {
         self.fine.clear();
         self.candidates.clear();
         self.collector.start(task.config);
-        self.leading.start();
         self.poses_evaluated = 0;
         self.tally = Tally::default();
     }
@@ -97,7 +96,9 @@ impl<'a> Descent<'a> {
     /// Searches one of `parts` of the coarse blocks.
     pub(super) fn run(mut self, (part, parts): (usize, usize), stop: &dyn Fn() -> bool) -> End {
         self.bound_coarse(part, parts);
-        let mut budget = Budget::new(self.task.brute_force, self.task.counting, parts);
+        let task = self.task;
+        let (counting, is_known) = (sift::likely_cost(task), task.leaders().is_some());
+        let mut budget = Budget::new(task.brute_force, counting, parts, is_known);
         while let Some(block) = self.next(budget.dives()) {
             if stop() {
                 return End::Stopped;
@@ -381,19 +382,8 @@ impl<'a> Descent<'a> {
                     heading,
                     intensity,
                 };
-                self.room.collector.take(vote);
-                if self.task.leading > 0 && intensity >= self.room.collector.floor() {
-                    self.lead(&vote);
-                }
+                self.room.collector.take_leading(vote, self.task.leaders());
             }
-        }
-    }
-
-    /// Raises the floor to the last of the poses that are wanted.
-    fn lead(&mut self, vote: &Vote) {
-        let (wanted, space) = (self.task.leading, self.task.space);
-        if let Some(floor) = self.room.leading.take(vote, wanted, space) {
-            self.room.collector.raise(floor);
         }
     }
 }

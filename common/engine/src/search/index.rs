@@ -1,12 +1,12 @@
 //! A map prepared for searches.
 
-use super::alternatives::{self, Alternatives};
+use super::alternatives;
+use super::attempt::Attempt;
 use super::bins::Bins;
 use super::block_bounds::Bounding;
-use super::descent::{self, End};
+use super::descent;
 use super::intervals::RangeIntervals;
 use super::obstacles::Obstacles;
-use super::parts;
 use super::sets::RangeSets;
 use super::sift::{self, Sift};
 use super::steps::BinSteps;
@@ -18,7 +18,7 @@ use crate::limits::Limits;
 use crate::program::ScanProgram;
 use crate::space::Space;
 use crate::sweep::FieldSweep;
-use crate::votes::{CollectConfig, Distinct, VoteSet};
+use crate::votes::{CollectConfig, VoteSet};
 
 /// A map prepared for searches: made once for each map.
 #[derive(Debug, Clone)]
@@ -140,20 +140,21 @@ impl SearchIndex {
         (config, found): (CollectConfig, &mut VoteSet),
         stop: &dyn Fn() -> bool,
     ) -> Option<()> {
-        self.search_leading(workspace, how, grid, scan, (config, 0, found), stop)
+        let mut attempt = self.attempt(workspace, how, grid, scan, (config, 0), stop);
+        attempt.find(found)
     }
 
-    /// The same, with a floor that rises to the last of so many distinct poses, see
-    /// [`Task::leading`].
-    pub(super) fn search_leading(
-        &self,
-        workspace: &mut Workspace,
+    /// A search to be made, with a floor that rises to the last of so many distinct
+    /// poses, see [`Task::leading`].
+    pub(super) fn attempt<'a>(
+        &'a self,
+        workspace: &'a mut Workspace,
         (instruction_set, threads): (InstructionSet, usize),
-        grid: &Grid,
-        scan: (&ScanProgram, &Space),
-        (config, leading, found): (CollectConfig, usize, &mut VoteSet),
-        stop: &dyn Fn() -> bool,
-    ) -> Option<()> {
+        grid: &'a Grid,
+        scan: (&'a ScanProgram, &'a Space),
+        (config, leading): (CollectConfig, usize),
+        stop: &'a dyn Fn() -> bool,
+    ) -> Attempt<'a> {
         let Workspace {
             shared,
             rooms,
@@ -163,28 +164,17 @@ impl SearchIndex {
             ..
         } = workspace;
         let task = Task::new(shared, instruction_set.checked(), self, grid, scan, config);
-        let task = task.leading(leading);
         rooms.resize_with(threads, descent::Room::default);
-        let bounded = match parts::run(&task, rooms, stop) {
-            End::Done => {
-                parts::finish(rooms, found);
-                Some(&rooms[..])
-            }
-            End::Stopped => return None,
-            End::Hopeless => {
-                shares.resize_with(threads, sift::Share::default);
-                sift.count((&task, scan.0), shares, found, stop)?;
-                None
-            }
-        };
-        let wanted = config.candidates as usize;
-        if wanted > 0 && found.best > 0 {
-            let floor = found.certified_floor;
-            Alternatives::new(&task, alternatives).find(wanted, floor, bounded);
-            let distinct = Distinct::new(scan.1, wanted, &mut alternatives.distinct);
-            found.add_candidates(&mut alternatives.votes, distinct);
+        shares.resize_with(threads, sift::Share::default);
+        Attempt {
+            task: task.leading(leading),
+            program: scan.0,
+            rooms,
+            alternatives,
+            sift,
+            shares,
+            stop,
         }
-        Some(())
     }
 }
 
@@ -194,7 +184,6 @@ mod tests {
     use proptest::prelude::*;
 
     use super::super::BlockBounds;
-    use super::super::budget::Cost;
     use super::*;
     use crate::reference;
     use crate::testing::{
@@ -317,56 +306,6 @@ mod tests {
                 }
                 index.block_bounds_in(&mut workspace, scan, &mut blocks);
                 prop_assert_eq!(&blocks, &index.block_bounds(&program, &space));
-            }
-        }
-
-        #[test]
-        fn candidates_are_the_same_where_the_search_was_given_up(
-            (grid, limits, headings) in any_limited_grid(8), scan in any_scan(),
-            threads in 1usize..4, wanted in 1usize..40,
-        ) {
-            let space = space_of(&grid, headings);
-            let program = scan.program(&space);
-            let (best, config) = (InstructionSet::best(), CollectConfig::default());
-            let index = SearchIndex::new(&grid, &space).within(limits);
-            let (mut shared, mut rooms) = (Shared::default(), Vec::new());
-            let task = Task::new(&mut shared, best, &index, &grid, (&program, &space), config);
-            let task = task.with_brute_force(Cost(f64::INFINITY));
-            rooms.resize_with(threads, descent::Room::default);
-            prop_assert_eq!(parts::run(&task, &mut rooms, &|| false), End::Done);
-            let mut found = VoteSet::default();
-            parts::finish(&mut rooms, &mut found);
-            let candidates = |rooms| {
-                let mut room = alternatives::Room::default();
-                Alternatives::new(&task, &mut room).find(wanted, found.certified_floor, rooms);
-                room.votes.sort_by_key(|vote| (vote.heading, vote.y, vote.x));
-                room.votes
-            };
-            prop_assert_eq!(candidates(Some(&rooms[..])), candidates(None));
-        }
-
-        #[test]
-        fn a_search_that_would_cost_too_much_gives_up_at_once(
-            grid in any_grid(), scan in any_scan(), threads in 1usize..4,
-        ) {
-            let space = space_of(&grid, 64);
-            let program = scan.program(&space);
-            let (best, config) = (InstructionSet::best(), CollectConfig { candidates: 0, ..CollectConfig::default() });
-            let index = SearchIndex::new(&grid, &space);
-            let (mut shared, mut rooms) = (Shared::default(), Vec::new());
-            let task = Task::new(&mut shared, best, &index, &grid, (&program, &space), config);
-            let task = task.with_brute_force(Cost(0.0));
-            rooms.resize_with(threads, descent::Room::default);
-            // A search that is done after the first block has nothing to give up.
-            match parts::run(&task, &mut rooms, &|| false) {
-                End::Done => {
-                    let plain = plain_votes(&grid, &program, &space, config);
-                    let mut found = VoteSet::default();
-                    parts::finish(&mut rooms, &mut found);
-                    prop_assert_eq!(VoteSet { poses_evaluated: 0, ..found }, plain);
-                }
-                End::Hopeless => (),
-                End::Stopped => prop_assert!(false, "nobody said stop"),
             }
         }
     }

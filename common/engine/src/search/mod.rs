@@ -18,6 +18,7 @@
 //! not tell blocks apart, every pose is counted instead (`sift.rs`).
 
 mod alternatives;
+mod attempt;
 mod bins;
 mod bits;
 mod block_bounds;

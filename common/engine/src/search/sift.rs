@@ -11,6 +11,9 @@
 //! Headings at which that is not certain are swept again with more beams, at last with
 //! all of them.
 
+mod samples;
+mod share;
+
 use std::ops::Range;
 use std::sync::atomic::Ordering;
 
@@ -18,24 +21,19 @@ use messages::Vote;
 
 use super::intervals::SIDE;
 use super::leaf::Count;
-use super::outlook::Outlook;
 use super::sectors;
 use super::task::Task;
 use crate::accumulator::Query;
 use crate::program::ScanProgram;
-use crate::sweep;
 use crate::threads;
-use crate::votes::{CollectConfig, Collector, VoteSet};
-
-/// Beams of the first sample. After 20, more poses are as good as the best one, and
-/// sweeping 40 takes longer.
-const FIRST_BEAMS: usize = 30;
-
-/// The samples after that, in quarters of all beams.
-const QUARTERS: [usize; 3] = [1, 2, 3];
+use crate::votes::VoteSet;
+use samples::Samples;
+pub(super) use samples::likely_cost;
+pub(super) use share::Share;
+use share::{Pose, Seen};
 
 /// Of so many cells one pose is kept at a heading, and not less than so many poses.
-const CELLS_A_KEPT: usize = 2048;
+const CELLS_A_KEPT: usize = 1024;
 const LEAST_KEPT: usize = 64;
 
 /// The least votes of what is kept rise by this part of the highest possible where it
@@ -44,77 +42,26 @@ const STEP: u32 = 64;
 
 /// Sweeping all beams over so many cells takes no longer than counting one pose by
 /// itself. A few poses are counted on any map.
-const CELLS_A_COUNT: usize = 8192;
+const CELLS_A_COUNT: usize = 2048;
 const FEW_COUNTS: usize = 4;
 
-/// Cells whose greatest votes are looked at together.
-const STRETCH: usize = 1024;
+/// At so many headings the best poses are not better, as a rule, than the last of the
+/// leading ones.
+const TRIED: usize = 6;
 
-/// What sifting takes as a share of brute force, where few beams are decisive.
-const SHARE: f64 = 0.3;
-
-/// Whether a sample of the beams tells the poses that are wanted from most others: it
-/// must be a small part, and have twice the votes that those may lack of all.
-fn is_decisive(program: &ScanProgram, config: &CollectConfig) -> bool {
-    let (beams, sample) = (program.beams() as f64, FIRST_BEAMS as f64);
-    sample <= 0.5 * beams && sample >= 2.0 * beams * (1.0 - config.floor_share)
-}
-
-/// What counting every pose takes at least, as a share of brute force.
-pub(super) fn share(program: &ScanProgram, config: &CollectConfig) -> f64 {
-    if is_decisive(program, config) {
-        SHARE
-    } else {
-        1.0
-    }
-}
+/// At the heading at which samples are tried, a decisive one leaves this part of the poses
+/// that may be counted one by one: other headings have more, and the best pose may have
+/// fewer votes than expected.
+const LEFT_BY_DECISIVE: usize = 6;
 
 /// A scan program laid out for sifting, kept from scan to scan.
 #[derive(Debug, Default)]
 pub(super) struct Sift {
-    /// Nothing votes in it where it would say little.
-    first: ScanProgram,
-    samples: [ScanProgram; QUARTERS.len()],
+    samples: Samples,
+    /// The sample that is swept at all headings, if one is decisive.
+    first: Option<usize>,
     /// The most votes of each sector and those after it; 0 at the end.
     rests: Vec<u16>,
-}
-
-/// What one thread sifts with and finds, kept from scan to scan.
-#[derive(Debug, Default)]
-pub(super) struct Share {
-    sweep: sweep::Workspace,
-    /// The votes of a sample at a heading.
-    field: Vec<u16>,
-    outlook: Outlook,
-    /// The block in which the outlook is.
-    entered: Option<usize>,
-    /// The headings of this thread.
-    seen: Vec<Seen>,
-    /// Poses that have most votes of the first sample, heading by heading.
-    kept: Vec<Pose>,
-    /// They have so many or more.
-    least: u16,
-    /// Samples before this one leave too many poses.
-    sample: usize,
-    collector: Collector,
-    poses_evaluated: u64,
-}
-
-/// What the first sample said of a heading.
-#[derive(Debug, Clone, Copy)]
-struct Seen {
-    heading: usize,
-    /// The end of its poses among those kept.
-    end: usize,
-    /// The others have fewer votes of the sample.
-    below: u16,
-}
-
-/// A cell, and the votes that it has of a sample.
-#[derive(Debug, Clone, Copy)]
-struct Pose {
-    votes: u16,
-    cell: u32,
 }
 
 impl Sift {
@@ -128,6 +75,9 @@ impl Sift {
         stop: &dyn Fn() -> bool,
     ) -> Option<()> {
         self.make(task, program);
+        let own = shares.first_mut().expect("a thread");
+        own.start(task, self);
+        self.first = Sifting::new((task, program, self), own, stop).decisive();
         let (sift, threads) = (&*self, shares.len());
         let what = (task, program, sift);
         let sampled = threads::run(shares, stop, |thread, share, stop| {
@@ -156,13 +106,8 @@ impl Sift {
 
     fn make(&mut self, task: &Task<'_>, program: &ScanProgram) {
         let beams = program.beams();
-        // As evenly as they go.
-        let is_decisive = is_decisive(program, &task.config);
-        let is_first = |beam| is_decisive && beam * FIRST_BEAMS % beams < FIRST_BEAMS;
-        self.first.take_some(program, is_first);
-        for (sample, quarters) in self.samples.iter_mut().zip(QUARTERS) {
-            sample.take_some(program, |beam| beam * quarters % 4 < quarters);
-        }
+        self.samples.make(program);
+        self.first = None;
         let (order, sectors) = (task.programs.leaf.order(), sectors::count(beams));
         self.rests.clear();
         self.rests.resize(sectors + 1, 0);
@@ -171,6 +116,11 @@ impl Sift {
             let votes: u16 = sector_beams.map(|&beam| program.peak(beam)).sum();
             self.rests[sector] = self.rests[sector + 1] + votes;
         }
+    }
+
+    /// The sample that is swept at all headings.
+    fn first(&self) -> Option<&ScanProgram> {
+        self.first.map(|first| &self.samples.all()[first])
     }
 }
 
@@ -198,40 +148,86 @@ impl<'a> Sifting<'a> {
         }
     }
 
+    /// The smallest sample that leaves few poses at some heading, where the best one has
+    /// as many votes as expected.
+    fn decisive(&mut self) -> Option<usize> {
+        let task = self.task;
+        let count = task.space.directions.count();
+        let limits = &task.index.within.limits;
+        let mut headings = (0..count).filter(|&heading| limits.hold_heading(heading));
+        let expected = match task.leaders() {
+            Some(_) => self.most_votes(headings.clone().step_by(count.div_ceil(TRIED)))?,
+            None if samples::is_least_enough(task) => return Some(0),
+            None => samples::expected_floor(task, self.program),
+        };
+        let heading = headings.next()?;
+        for (i, sample) in self.sift.samples.all().iter().enumerate() {
+            let least = expected.saturating_sub(self.rest(sample));
+            // In clutter most poses have about half of the votes.
+            if u32::from(least) > sample.highest_possible() / 2 {
+                self.sweep(sample, heading)?;
+                self.share.least = least;
+                if self.share.keep(self.most_counts() / LEFT_BY_DECISIVE) {
+                    return Some(i);
+                }
+            }
+        }
+        None
+    }
+
+    /// The most votes of any pose at some headings but one, near which the best pose of all
+    /// may be.
+    fn most_votes(&mut self, headings: impl Iterator<Item = usize>) -> Option<u16> {
+        let (mut most, mut second) = (0, 0);
+        for heading in headings {
+            self.sweep(self.program, heading)?;
+            let votes = self.share.field.iter().copied().fold(0, u16::max);
+            second = second.max(votes.min(most));
+            most = most.max(votes);
+        }
+        Some(second)
+    }
+
     /// Keeps the poses that have most votes of the first sample at a heading, and
     /// counts the first of them.
     fn look(&mut self, heading: usize) -> Option<()> {
-        let (task, first) = (self.task, &self.sift.first);
+        let task = self.task;
         let most = (task.grid.cells().len() / CELLS_A_KEPT).max(LEAST_KEPT);
-        let step = (first.highest_possible() / STEP).max(1) as u16;
         let start = self.share.kept.len();
-        if first.beams() > 0 {
-            self.sweep(first, heading)?;
-            while !self.share.keep(most) {
-                self.share.least += step;
-            }
+        let Some(first) = self.sift.first() else {
+            self.share.see(heading);
+            return Some(());
+        };
+        let step = (first.highest_possible() / STEP).max(1) as u16;
+        self.sweep(first, heading)?;
+        while !self.share.keep(most) {
+            self.share.least += step;
         }
-        self.share.seen.push(Seen {
-            heading,
-            end: self.share.kept.len(),
-            below: self.share.least,
-        });
+        self.share.see(heading);
         let kept = &self.share.kept[start..];
         if kept.len() < most / 8 {
             self.share.least = self.share.least.saturating_sub(step).max(1);
         }
         if let Some(&Pose { cell, .. }) = kept.iter().max_by_key(|pose| pose.votes) {
-            let best = task.best.load(Ordering::Relaxed);
-            let votes = self.count(cell, heading, best);
-            task.best.fetch_max(votes, Ordering::Relaxed);
+            let leaders = task.leaders();
+            let floor = match leaders {
+                Some(_) => self.floor(),
+                None => task.best.load(Ordering::Relaxed),
+            };
+            let vote = self.vote(cell, heading, floor);
+            if vote.intensity >= floor {
+                task.best.fetch_max(vote.intensity, Ordering::Relaxed);
+                self.share.collector.hear_of_leading(&vote, leaders);
+            }
         }
         Some(())
     }
 
     /// Takes the poses that reach the floor, now that the best one is likely known.
     fn count_seen(&mut self) -> Option<()> {
-        let first = &self.sift.first;
-        let (rest, most) = (self.rest(first), self.most_counts(first));
+        let first = self.sift.first();
+        let rest = first.map_or(u16::MAX, |first| self.rest(first));
+        let most = self.most_counts();
         let mut start = 0;
         for i in 0..self.share.seen.len() {
             let Seen {
@@ -253,15 +249,15 @@ impl<'a> Sifting<'a> {
 
     /// Takes the poses of a heading that reach the floor, by more beams.
     fn take_anew(&mut self, heading: usize) -> Option<()> {
-        let samples = &self.sift.samples;
+        let samples = self.sift.samples.all().iter().enumerate();
         let start = self.share.kept.len();
-        for (i, sample) in samples.iter().enumerate().skip(self.share.sample) {
+        for (i, sample) in samples.skip(self.share.sample) {
             self.share.least = self.floor().saturating_sub(self.rest(sample));
             if self.share.least == 0 {
                 continue;
             }
             self.sweep(sample, heading)?;
-            if self.share.keep(self.most_counts(sample)) {
+            if self.share.keep(self.most_counts()) {
                 self.take_kept(start..self.share.kept.len(), 0, heading);
                 self.share.kept.truncate(start);
                 return Some(());
@@ -274,7 +270,8 @@ impl<'a> Sifting<'a> {
         let Share {
             field, collector, ..
         } = &mut *self.share;
-        collector.take_field(field, self.task.grid.width(), heading as u16);
+        let leaders = self.task.leaders();
+        collector.take_field(field, self.task.grid.width(), heading as u16, leaders);
         let best = collector.best();
         self.task.best.fetch_max(best, Ordering::Relaxed);
         self.share.poses_evaluated += self.share.field.len() as u64;
@@ -290,17 +287,10 @@ impl<'a> Sifting<'a> {
                 continue;
             }
             let floor = self.floor();
-            let intensity = self.count(cell, heading, floor);
-            if intensity >= floor {
-                let (x, y) = self.place(cell);
-                self.share.collector.take(Vote {
-                    x: x as u16,
-                    y: y as u16,
-                    heading: heading as u16,
-                    intensity,
-                });
-                self.task.best.fetch_max(intensity, Ordering::Relaxed);
-            }
+            let vote = self.vote(cell, heading, floor);
+            let leaders = self.task.leaders();
+            self.share.collector.take_leading(vote, leaders);
+            self.task.best.fetch_max(vote.intensity, Ordering::Relaxed);
         }
     }
 
@@ -322,6 +312,17 @@ impl<'a> Sifting<'a> {
         index.sweeps.fill(set, query, sweep, field, self.stop)?;
         index.within.limits.clear(field, heading);
         Some(())
+    }
+
+    /// A pose and its votes, or 0 if they do not reach a floor.
+    fn vote(&mut self, cell: u32, heading: usize, floor: u16) -> Vote {
+        let (x, y) = self.place(cell);
+        Vote {
+            x: x as u16,
+            y: y as u16,
+            heading: heading as u16,
+            intensity: self.count(cell, heading, floor),
+        }
     }
 
     /// The votes of a pose, or 0 if they do not reach a floor.
@@ -372,46 +373,9 @@ impl<'a> Sifting<'a> {
     }
 
     /// Counting more poses of a heading one by one would take longer than sweeping
-    /// the beams that are not in a sample.
-    fn most_counts(&self, sample: &ScanProgram) -> usize {
-        let (beams, cells) = (self.program.beams(), self.task.grid.cells().len());
-        let cells = cells * (beams - sample.beams()) / beams.max(1);
-        (cells / CELLS_A_COUNT).max(FEW_COUNTS)
-    }
-}
-
-impl Share {
-    /// Starts with nothing.
-    fn start(&mut self, task: &Task<'_>, sift: &Sift) {
-        self.outlook.prepare(task.grid, &task.space.directions);
-        self.entered = None;
-        self.seen.clear();
-        self.kept.clear();
-        self.least = (sift.first.highest_possible() * 3 / 4).max(1) as u16;
-        self.sample = 0;
-        self.collector.start(task.config);
-        self.poses_evaluated = 0;
-    }
-
-    /// Keeps the poses of the field that have the least votes or more; none if that
-    /// would be more than so many.
-    fn keep(&mut self, most: usize) -> bool {
-        let start = self.kept.len();
-        for (first, cells) in (0..).step_by(STRETCH).zip(self.field.chunks(STRETCH)) {
-            // Few stretches hold any, and a maximum is quick.
-            if cells.iter().copied().fold(0, u16::max) < self.least {
-                continue;
-            }
-            let poses = (first..).zip(cells);
-            let poses = poses.map(|(cell, &votes)| Pose { votes, cell });
-            let least = self.least;
-            self.kept.extend(poses.filter(|pose| pose.votes >= least));
-            if self.kept.len() - start > most {
-                self.kept.truncate(start);
-                return false;
-            }
-        }
-        true
+    /// all beams.
+    fn most_counts(&self) -> usize {
+        (self.task.grid.cells().len() / CELLS_A_COUNT).max(FEW_COUNTS)
     }
 }
 
@@ -429,8 +393,10 @@ mod tests {
     use crate::scan::Scan;
     use crate::space::Space;
     use crate::testing::{
-        any_dense_scan, any_limited_grid, any_scan, plain_votes_within, space_of,
+        any_dense_scan, any_grid, any_limited_grid, any_scan, plain_votes, plain_votes_within,
+        space_of,
     };
+    use crate::votes::CollectConfig;
 
     /// Where everything is sifted, be there need or not.
     #[derive(Default)]
@@ -442,16 +408,18 @@ mod tests {
     }
 
     impl Sifter {
-        /// The outcome where some pose is known to have `best` votes.
+        /// The outcome where some pose is known to have `best` votes, or where so many
+        /// leading ones are wanted.
         fn count(
             &mut self,
             (instruction_set, threads): (InstructionSet, usize),
             (index, grid): (&SearchIndex, &Grid),
             scan: (&ScanProgram, &Space),
-            (config, best): (CollectConfig, u16),
+            (config, best, leading): (CollectConfig, u16, usize),
         ) -> &VoteSet {
             let shared = &mut self.shared;
             let task = Task::new(shared, instruction_set, index, grid, scan, config);
+            let task = task.leading(leading);
             task.best.store(best, Ordering::Relaxed);
             self.shares.resize_with(threads, Share::default);
             let scan = (&task, scan.0);
@@ -479,10 +447,32 @@ mod tests {
                 let best = if is_known { plain.best } else { 0 };
                 for instruction_set in InstructionSet::available() {
                     let how = (instruction_set, threads);
-                    let found = sifter.count(how, (&index, &grid), (&program, &space), (config, best));
+                    let found = sifter.count(how, (&index, &grid), (&program, &space), (config, best, 0));
                     let found = VoteSet { poses_evaluated: 0, ..found.clone() };
                     prop_assert_eq!(&found, &plain, "{:?}", how);
                 }
+            }
+        }
+    }
+
+    proptest! {
+        #[test]
+        fn the_leading_poses_are_sifted_down_to_the_last_of_them(
+            grid in any_grid(), scan in prop_oneof![2 => any_dense_scan(), 1 => any_scan()],
+            headings in 1u32..5, leading in 1usize..20, threads in 1usize..4,
+        ) {
+            let config = CollectConfig { floor_share: 0.0, max_votes: 1_000_000, candidates: 0 };
+            let space = space_of(&grid, headings * 8);
+            let program = scan.program(&space);
+            let plain = plain_votes(&grid, &program, &space, config);
+            let index = SearchIndex::new(&grid, &space);
+            let mut sifter = Sifter::default();
+            for instruction_set in InstructionSet::available() {
+                let how = (instruction_set, threads);
+                let found = sifter.count(how, (&index, &grid), (&program, &space), (config, 0, leading));
+                let floor = found.certified_floor;
+                let above = plain.votes.partition_point(|vote| vote.intensity >= floor);
+                prop_assert_eq!(&found.votes, &plain.votes[..above], "{:?}", how);
             }
         }
     }
@@ -528,18 +518,22 @@ mod tests {
         };
         let program = ScanProgram::new(&scan, 0.0, &space, &votes).expect("a sound scan");
         let index = SearchIndex::new(&grid, &space);
-        let config = CollectConfig {
-            floor_share: 1.0,
-            ..CollectConfig::default()
-        };
         let how = (InstructionSet::best(), 1);
         let mut sifter = Sifter::default();
-        let found = sifter.count(how, (&index, &grid), (&program, &space), (config, 0));
-        let best = found.votes[0];
-        assert_eq!((usize::from(best.x), usize::from(best.y)), (x, y));
-        assert_eq!(best.heading, 0);
-        // Hardly more than one at each heading.
-        let counted = found.poses_evaluated;
-        assert!(counted < 1000, "{counted} poses of 96 · 96 · 120");
+        // Hardly more than one at each heading; where poses lack more of the best one's
+        // votes, the cells of some headings, too.
+        for (floor_share, most) in [(1.0, 1000), (0.85, 4 * 96 * 96)] {
+            let config = CollectConfig {
+                floor_share,
+                ..CollectConfig::default()
+            };
+            let wanted = (config, 0, 0);
+            let found = sifter.count(how, (&index, &grid), (&program, &space), wanted);
+            let best = found.votes[0];
+            assert_eq!((usize::from(best.x), usize::from(best.y)), (x, y));
+            assert_eq!(best.heading, 0);
+            let counted = found.poses_evaluated;
+            assert!(counted < most, "{counted} poses of 96 · 96 · 120");
+        }
     }
 }

@@ -8,12 +8,11 @@ use super::interval_program::IntervalProgram;
 use super::leaf::LeafProgram;
 use super::outlook::View;
 use super::set_program::SetProgram;
-use super::sift;
 use crate::grid::Grid;
 use crate::instruction_set::InstructionSet;
 use crate::program::ScanProgram;
 use crate::space::Space;
-use crate::votes::CollectConfig;
+use crate::votes::{CollectConfig, Leaders};
 
 /// What is searched: a scan on a map.
 pub(super) struct Task<'a> {
@@ -21,9 +20,7 @@ pub(super) struct Task<'a> {
     pub grid: &'a Grid,
     pub space: &'a Space,
     pub config: CollectConfig,
-    /// Once a thread knows so many distinct poses, it leaves out what lies below all
-    /// of them; with 0 it leaves out nothing for that.
-    pub leading: usize,
+    leading: usize,
     pub programs: &'a Programs,
     /// The bound of each coarse block in which poses are sought.
     pub coarse_bounds: &'a [AtomicU16],
@@ -33,8 +30,6 @@ pub(super) struct Task<'a> {
     pub best: AtomicU16,
     /// What counting every pose with all beams would cost one thread.
     pub brute_force: Cost,
-    /// The share of that which counting every pose takes.
-    pub counting: f64,
 }
 
 /// What the threads of a search share, kept from scan to scan.
@@ -104,22 +99,22 @@ impl<'a> Task<'a> {
             by_chunk: &shared.by_chunk,
             best: AtomicU16::new(0),
             brute_force: Cost::of_brute_force(instruction_set, grid, program, space),
-            counting: sift::share(program, &config),
         }
     }
 
-    /// Leaves out what lies below so many distinct poses.
+    /// Once a thread knows so many distinct poses, it leaves out what lies below all
+    /// of them; with 0 it leaves out nothing for that.
     pub(super) fn leading(self, leading: usize) -> Self {
         Task { leading, ..self }
     }
 
-    /// Takes brute force to cost so much.
-    #[cfg(test)]
-    pub(super) fn with_brute_force(self, brute_force: Cost) -> Self {
-        Task {
-            brute_force,
-            ..self
-        }
+    /// The poses of which the last is the least that is wanted.
+    pub(super) fn leaders(&self) -> Option<Leaders<'a>> {
+        let leaders = Leaders {
+            wanted: self.leading,
+            space: self.space,
+        };
+        (self.leading > 0).then_some(leaders)
     }
 
     /// What poses of the map see.

@@ -5,10 +5,12 @@
 //! of them lies is not known beforehand, and no sum of what was seen so far
 //! bounds it: a better pose may push two others aside. So candidates give a
 //! floor that rises with what is found, all poses above it are collected, and
-//! where too few of them are distinct it stays low, and falls.
+//! where too few of them are distinct it stays low, and falls. Where bounds do not
+//! help, it rises from nothing while every pose is counted.
 
 use messages::Vote;
 
+use super::descent::End;
 use super::{SearchIndex, Workspace};
 use crate::grid::Grid;
 use crate::instruction_set::InstructionSet;
@@ -53,25 +55,36 @@ impl SearchIndex {
         stop: &dyn Fn() -> bool,
     ) -> Option<Top> {
         let (mut workspace, mut found) = (Workspace::default(), VoteSet::default());
-        let mut search = |floor_share, candidates, leading, found: &mut VoteSet| {
-            let config = CollectConfig {
-                floor_share,
-                max_votes: MAX_VOTES,
-                candidates,
-            };
-            let collect = (config, leading, found);
-            self.search_leading(&mut workspace, how, grid, scan, collect, stop)
+        let config = |floor_share, candidates| CollectConfig {
+            floor_share,
+            max_votes: MAX_VOTES,
+            candidates,
         };
-        search(1.0, GUESSES.max(count as u32), 0, &mut found)?;
-        let best = f64::from(found.best.max(1));
-        let guess = Distinct::of(&found.votes, scan.1, count);
-        let mut floor = match guess.last() {
-            Some(last) if guess.len() == count => f64::from(last.intensity),
-            _ => NEXT_FLOOR * best,
+        let guessed = (config(1.0, GUESSES.max(count as u32)), 0);
+        let mut guess = self.attempt(&mut workspace, how, grid, scan, guessed, stop);
+        let end = guess.by_bounds(&mut found);
+        let mut floor = match end {
+            End::Done => {
+                guess.add_candidates(end, &mut found);
+                let best = Distinct::of(&found.votes, scan.1, count);
+                match best.last() {
+                    Some(last) if best.len() == count => f64::from(last.intensity),
+                    _ => NEXT_FLOOR * f64::from(found.best),
+                }
+            }
+            End::Stopped => return None,
+            // The floor rises while poses are counted.
+            End::Hopeless => 0.0,
         };
         let mut leading = count;
         loop {
-            search(floor / best, 0, leading, &mut found)?;
+            let share = floor / f64::from(found.best.max(1));
+            let wanted = (config(share, 0), leading);
+            let mut attempt = self.attempt(&mut workspace, how, grid, scan, wanted, stop);
+            match end {
+                End::Hopeless => attempt.by_counting(&mut found)?,
+                _ => attempt.find(&mut found)?,
+            }
             let top = top_of(&found, scan.1, count, floor < 1.0);
             if top.is_complete || (found.truncated && leading == 0) {
                 return Some(top);
@@ -79,6 +92,7 @@ impl SearchIndex {
             if found.truncated {
                 // The floor rose too far, and poses that are wanted were left out.
                 leading = 0;
+                floor = floor.max(NEXT_FLOOR * f64::from(found.certified_floor));
             } else {
                 floor *= NEXT_FLOOR;
             }

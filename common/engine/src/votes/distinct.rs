@@ -53,6 +53,13 @@ impl<'a> Distinct<'a> {
     }
 }
 
+/// How many distinct poses are wanted, and where they are.
+#[derive(Debug, Clone, Copy)]
+pub(crate) struct Leaders<'a> {
+    pub wanted: usize,
+    pub space: &'a Space,
+}
+
 /// The best distinct poses of those that came so far, in whatever order.
 #[derive(Debug, Default)]
 pub(crate) struct Leading {
@@ -66,20 +73,20 @@ impl Leading {
         self.kept.clear();
     }
 
-    /// Takes a pose. The votes of the last of the best `wanted`, where there are so
+    /// Takes a pose. The votes of the last of the best ones wanted, where there are so
     /// many; a better pose that comes later may push two of them aside, so that is no
     /// bound of what the last one will have in the end.
-    pub(crate) fn take(&mut self, vote: &Vote, wanted: usize, space: &Space) -> Option<u16> {
-        let is_near = |kept: &Vote| are_near(vote, kept, space);
+    pub(crate) fn take(&mut self, vote: &Vote, leaders: Leaders<'_>) -> Option<u16> {
+        let is_near = |kept: &Vote| are_near(vote, kept, leaders.space);
         let is_hidden = |kept: &Vote| kept.intensity >= vote.intensity && is_near(kept);
         if !self.kept.iter().any(is_hidden) {
             self.kept.retain(|kept| !is_near(kept));
             let place = |kept: &Vote| kept.intensity >= vote.intensity;
             let place = self.kept.partition_point(place);
             self.kept.insert(place, *vote);
-            self.kept.truncate(wanted);
+            self.kept.truncate(leaders.wanted);
         }
-        let is_full = self.kept.len() == wanted;
+        let is_full = self.kept.len() == leaders.wanted;
         self.kept
             .last()
             .filter(|_| is_full)
@@ -104,6 +111,10 @@ mod tests {
     fn the_leading_poses_are_distinct_and_better_ones_push_others_aside() {
         let space = Space::new(360, 0.1, 100, 100).unwrap();
         let mut leading = Leading::default();
+        let leaders = Leaders {
+            wanted: 2,
+            space: &space,
+        };
         let mut last = |x, intensity| {
             let vote = Vote {
                 x,
@@ -111,7 +122,7 @@ mod tests {
                 heading: 0,
                 intensity,
             };
-            leading.take(&vote, 2, &space)
+            leading.take(&vote, leaders)
         };
         assert_eq!(last(0, 5), None, "one of two");
         assert_eq!(last(2, 4), None, "beside a better one");

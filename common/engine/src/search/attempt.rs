@@ -1,0 +1,125 @@
+//! One search: by bounds, or where these do not help by counting every pose.
+
+use super::alternatives::{self, Alternatives};
+use super::descent::{self, End};
+use super::parts;
+use super::sift::{self, Sift};
+use super::task::Task;
+use crate::program::ScanProgram;
+use crate::votes::{Distinct, VoteSet};
+
+/// A search to be made, and the room for it, of as many threads as there are rooms and
+/// shares.
+pub(super) struct Attempt<'a> {
+    pub task: Task<'a>,
+    pub program: &'a ScanProgram,
+    pub rooms: &'a mut [descent::Room],
+    pub alternatives: &'a mut alternatives::Room,
+    pub sift: &'a mut Sift,
+    pub shares: &'a mut [sift::Share],
+    pub stop: &'a dyn Fn() -> bool,
+}
+
+impl Attempt<'_> {
+    /// Finds the poses above the floor and candidates below, one way or the other;
+    /// `None` if it was told to stop.
+    pub(super) fn find(&mut self, found: &mut VoteSet) -> Option<()> {
+        let end = self.by_bounds(found);
+        match end {
+            End::Done => {}
+            End::Stopped => return None,
+            End::Hopeless => self.by_counting(found)?,
+        }
+        self.add_candidates(end, found);
+        Some(())
+    }
+
+    /// Finds the poses above the floor by bounds, unless that is hopeless.
+    pub(super) fn by_bounds(&mut self, found: &mut VoteSet) -> End {
+        let end = parts::run(&self.task, self.rooms, self.stop);
+        if end == End::Done {
+            parts::finish(self.rooms, found);
+        }
+        end
+    }
+
+    /// Finds them by counting every pose; `None` if it was told to stop.
+    pub(super) fn by_counting(&mut self, found: &mut VoteSet) -> Option<()> {
+        let what = (&self.task, self.program);
+        self.sift.count(what, self.shares, found, self.stop)
+    }
+
+    /// Adds the candidates that are wanted below what was found, however bounding the
+    /// blocks ended.
+    pub(super) fn add_candidates(&mut self, end: End, found: &mut VoteSet) {
+        let wanted = self.task.config.candidates as usize;
+        if wanted > 0 && found.best > 0 {
+            let bounded = (end == End::Done).then_some(&*self.rooms);
+            let floor = found.certified_floor;
+            Alternatives::new(&self.task, self.alternatives).find(wanted, floor, bounded);
+            let Self {
+                task, alternatives, ..
+            } = self;
+            let distinct = Distinct::new(task.space, wanted, &mut alternatives.distinct);
+            found.add_candidates(&mut alternatives.votes, distinct);
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use proptest::prelude::*;
+
+    use super::super::budget::Cost;
+    use super::super::{SearchIndex, index::Workspace};
+    use super::*;
+    use crate::instruction_set::InstructionSet;
+    use crate::testing::{any_grid, any_limited_grid, any_scan, plain_votes, space_of};
+    use crate::votes::CollectConfig;
+
+    proptest! {
+        #[test]
+        fn candidates_are_the_same_where_the_search_was_given_up(
+            (grid, limits, headings) in any_limited_grid(8), scan in any_scan(),
+            threads in 1usize..4, candidates in 1u32..40,
+        ) {
+            let space = space_of(&grid, headings);
+            let program = scan.program(&space);
+            let config = CollectConfig { candidates, ..CollectConfig::default() };
+            let index = SearchIndex::new(&grid, &space).within(limits);
+            let mut workspace = Workspace::default();
+            let (how, scan) = ((InstructionSet::best(), threads), (&program, &space));
+            let mut attempt = index.attempt(&mut workspace, how, &grid, scan, (config, 0), &|| false);
+            attempt.task.brute_force = Cost(f64::INFINITY);
+            let mut found = VoteSet::default();
+            prop_assert_eq!(attempt.by_bounds(&mut found), End::Done);
+            let mut given_up = found.clone();
+            attempt.add_candidates(End::Done, &mut found);
+            attempt.add_candidates(End::Hopeless, &mut given_up);
+            prop_assert_eq!(found, given_up);
+        }
+
+        #[test]
+        fn a_search_that_would_cost_too_much_gives_up_at_once(
+            grid in any_grid(), scan in any_scan(), threads in 1usize..4,
+        ) {
+            let space = space_of(&grid, 64);
+            let program = scan.program(&space);
+            let config = CollectConfig { candidates: 0, ..CollectConfig::default() };
+            let index = SearchIndex::new(&grid, &space);
+            let mut workspace = Workspace::default();
+            let (how, scan) = ((InstructionSet::best(), threads), (&program, &space));
+            let mut attempt = index.attempt(&mut workspace, how, &grid, scan, (config, 0), &|| false);
+            attempt.task.brute_force = Cost(0.0);
+            let (mut found, plain) = (VoteSet::default(), plain_votes(&grid, &program, &space, config));
+            // A search that is done after the first block has nothing to give up.
+            match attempt.by_bounds(&mut found) {
+                End::Done => prop_assert_eq!(VoteSet { poses_evaluated: 0, ..found.clone() }, plain.clone()),
+                End::Hopeless => (),
+                End::Stopped => prop_assert!(false, "nobody said stop"),
+            }
+            prop_assert!(attempt.find(&mut found).is_some());
+            prop_assert_eq!(VoteSet { poses_evaluated: 0, ..found }, plain);
+        }
+    }
+}
