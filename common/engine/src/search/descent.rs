@@ -345,11 +345,15 @@ impl<'a> Descent<'a> {
         let mut rest = self.room.interval_bounds.all;
         let mut alive = among;
         let floor = self.room.collector.floor();
-        for (sector, bounds) in self.room.interval_bounds.sectors.iter().enumerate() {
+        let IntervalBounds {
+            sectors, voting, ..
+        } = &self.room.interval_bounds;
+        for (sector, bounds) in sectors.iter().enumerate() {
             self.room.tally.sectors += u64::from(alive.count_ones());
             let looking = (&mut self.room.outlook, &view);
             let program = &self.task.programs.leaf;
-            program.add(looking, sector, (first, alive), &mut self.room.counts);
+            let beams = (sector, &voting[..]);
+            program.add(looking, beams, (first, alive), &mut self.room.counts);
             let mut still = 0;
             for lane in bits::ones(alive) {
                 rest[lane] -= u16::from(bounds[lane]);

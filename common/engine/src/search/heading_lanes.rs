@@ -37,8 +37,13 @@ pub(super) trait HeadingLanes: Copy {
 
     fn none() -> Self;
 
-    /// Adds the most votes that a beam has for a range of either interval.
-    fn add(self, votes: &BinVotes, rows: IntervalRows<'_>) -> Self;
+    /// The most votes that a beam has for a range of either interval.
+    fn of_beam(votes: &BinVotes, rows: IntervalRows<'_>) -> Self;
+
+    fn add(self, other: Self) -> Self;
+
+    /// The headings with other votes than 0.
+    fn present(self) -> u64;
 
     fn to_bytes(self) -> [u8; HEADINGS];
 
@@ -66,11 +71,22 @@ impl HeadingLanes for Portable {
     }
 
     #[inline(always)]
-    fn add(self, votes: &BinVotes, rows: IntervalRows<'_>) -> Self {
+    fn of_beam(votes: &BinVotes, rows: IntervalRows<'_>) -> Self {
         let [near_first, near_last, far_first, far_last] = rows;
         let near = look_up(votes, near_first, near_last);
         let far = look_up(votes, far_first, far_last);
-        Portable(std::array::from_fn(|i| self.0[i] + near[i].max(far[i])))
+        Portable(std::array::from_fn(|i| near[i].max(far[i])))
+    }
+
+    #[inline(always)]
+    fn add(self, other: Self) -> Self {
+        Portable(std::array::from_fn(|i| self.0[i] + other.0[i]))
+    }
+
+    #[inline(always)]
+    fn present(self) -> u64 {
+        let lanes = self.0.iter().enumerate();
+        lanes.fold(0, |all, (i, &votes)| all | u64::from(votes > 0) << i)
     }
 
     #[inline(always)]
@@ -151,17 +167,18 @@ mod tests {
     use super::*;
     use crate::instruction_set::InstructionSet;
 
-    /// Votes of some beams in some rows, their sums with others, and where those reach
-    /// a least one.
+    /// Votes of some beams in some rows, their sums with others, where those reach a least
+    /// one, and where there are any votes.
     #[inline(always)]
     fn count<L: HeadingLanes>(
         beams: &[(BinVotes, [[u8; HEADINGS]; 4])],
         times: usize,
         least: u16,
-    ) -> ([u8; HEADINGS], [u16; HEADINGS], u64) {
+    ) -> ([u8; HEADINGS], [u16; HEADINGS], [u64; 2]) {
         let mut votes = L::none();
         for (beam, [near_first, near_last, far_first, far_last]) in beams {
-            votes = votes.add(beam, [near_first, near_last, far_first, far_last]);
+            let rows = [near_first, near_last, far_first, far_last];
+            votes = votes.add(L::of_beam(beam, rows));
         }
         let mut sums = L::no_sums();
         for _ in 0..times {
@@ -169,7 +186,8 @@ mod tests {
         }
         let mut all = [0; HEADINGS];
         L::store(sums, &mut all);
-        (votes.to_bytes(), all, L::at_least(sums, least))
+        let masks = [L::at_least(sums, least), votes.present()];
+        (votes.to_bytes(), all, masks)
     }
 
     #[cfg(target_arch = "x86_64")]
@@ -178,7 +196,7 @@ mod tests {
         beams: &[(BinVotes, [[u8; HEADINGS]; 4])],
         times: usize,
         least: u16,
-    ) -> ([u8; HEADINGS], [u16; HEADINGS], u64) {
+    ) -> ([u8; HEADINGS], [u16; HEADINGS], [u64; 2]) {
         count::<Avx2<2>>(beams, times, least)
     }
 
@@ -188,7 +206,7 @@ mod tests {
         beams: &[(BinVotes, [[u8; HEADINGS]; 4])],
         times: usize,
         least: u16,
-    ) -> ([u8; HEADINGS], [u16; HEADINGS], u64) {
+    ) -> ([u8; HEADINGS], [u16; HEADINGS], [u64; 2]) {
         count::<Avx2<1>>(beams, times, least)
     }
 
@@ -198,7 +216,7 @@ mod tests {
         beams: &[(BinVotes, [[u8; HEADINGS]; 4])],
         times: usize,
         least: u16,
-    ) -> ([u8; HEADINGS], [u16; HEADINGS], u64) {
+    ) -> ([u8; HEADINGS], [u16; HEADINGS], [u64; 2]) {
         count::<Avx512>(beams, times, least)
     }
 
@@ -237,7 +255,10 @@ mod tests {
             let sums = bytes.map(|votes| times as u16 * u16::from(votes));
             let most = sums.iter().max().copied().unwrap_or(0);
             let least = (f64::from(most) * share) as u16;
-            let reaching = (0..HEADINGS).map(|lane| u64::from(sums[lane] >= least) << lane).sum();
+            let where_is = |is: &dyn Fn(usize) -> bool| -> u64 {
+                (0..HEADINGS).map(|lane| u64::from(is(lane)) << lane).sum()
+            };
+            let masks = [where_is(&|lane| sums[lane] >= least), where_is(&|lane| bytes[lane] > 0)];
             for set in InstructionSet::available() {
                 let counted = match set {
                     // SAFETY: the processor has the instruction set.
@@ -248,15 +269,15 @@ mod tests {
                     InstructionSet::Avx2 => unsafe { count_avx2(&beams, times, least) },
                     _ => count::<Portable>(&beams, times, least),
                 };
-                prop_assert_eq!(counted, (bytes, sums, reaching), "{}", set);
+                prop_assert_eq!(counted, (bytes, sums, masks), "{}", set);
                 #[cfg(target_arch = "x86_64")]
                 if set != InstructionSet::Portable {
                     const HALF: usize = HEADINGS / 2;
                     // SAFETY: whatever has AVX-512 has AVX2.
-                    let (some_bytes, some_sums, some_reaching) = unsafe { count_half_avx2(&beams, times, least) };
+                    let (some_bytes, some_sums, some_masks) = unsafe { count_half_avx2(&beams, times, least) };
                     prop_assert_eq!(&some_bytes[..HALF], &bytes[..HALF]);
                     prop_assert_eq!(&some_sums[..HALF], &sums[..HALF]);
-                    prop_assert_eq!(some_reaching << HALF, reaching << HALF);
+                    prop_assert_eq!(some_masks.map(|mask| mask << HALF), masks.map(|mask| mask << HALF));
                 }
             }
         }

@@ -18,6 +18,8 @@ pub(crate) struct IntervalBounds {
     pub all: [u16; HEADINGS],
     /// By each sector of beams, in the order in which they are counted.
     pub sectors: Vec<[u8; HEADINGS]>,
+    /// At which headings each beam may vote, in that order.
+    pub voting: Vec<u64>,
 }
 
 impl Default for IntervalBounds {
@@ -25,6 +27,7 @@ impl Default for IntervalBounds {
         IntervalBounds {
             all: [0; HEADINGS],
             sectors: Vec::new(),
+            voting: Vec::new(),
         }
     }
 }
@@ -74,12 +77,12 @@ impl IntervalProgram {
             least,
             rests: &self.possible_from,
         };
-        self.run(&sought, bounds)
+        self.run::<true>(&sought, bounds)
     }
 
     /// The same at the headings of a window that is known of a block around it, but
-    /// for the bounds of sectors. What is known of the beams that are missing tells
-    /// sooner whether any heading may have so many votes.
+    /// for what is told of sectors and beams. What is known of the beams that are missing
+    /// tells sooner whether any heading may have so many votes.
     pub(crate) fn bound_within(
         &self,
         block: &BlockIntervals,
@@ -95,61 +98,87 @@ impl IntervalProgram {
             least,
             rests: &window.rests,
         };
-        self.run(&sought, bounds)
+        self.run::<false>(&sought, bounds)
     }
 
-    fn run(&self, sought: &Sought<'_>, bounds: &mut IntervalBounds) -> bool {
+    /// `TELLS` what sectors and beams have.
+    fn run<const TELLS: bool>(&self, sought: &Sought<'_>, bounds: &mut IntervalBounds) -> bool {
         // Most windows are narrow: half of the lanes take less time.
         #[cfg(target_arch = "x86_64")]
         let is_narrow = sought.among >> (HEADINGS / 2) == 0;
         match self.instruction_set {
             // SAFETY: the processor has the instruction set, or it would not be chosen.
             #[cfg(target_arch = "x86_64")]
-            InstructionSet::Avx512 if !is_narrow => unsafe { self.run_avx512(sought, bounds) },
+            InstructionSet::Avx512 if !is_narrow => unsafe {
+                self.run_avx512::<TELLS>(sought, bounds)
+            },
             // SAFETY: as above; whatever has AVX-512 has AVX2.
             #[cfg(target_arch = "x86_64")]
             InstructionSet::Avx512 | InstructionSet::Avx2 if is_narrow => unsafe {
-                self.run_narrow_avx2(sought, bounds)
+                self.run_narrow_avx2::<TELLS>(sought, bounds)
             },
             // SAFETY: as above.
             #[cfg(target_arch = "x86_64")]
-            InstructionSet::Avx2 => unsafe { self.run_avx2(sought, bounds) },
-            _ => self.run_with::<Portable>(sought, bounds),
+            InstructionSet::Avx2 => unsafe { self.run_avx2::<TELLS>(sought, bounds) },
+            _ => self.run_with::<Portable, TELLS>(sought, bounds),
         }
     }
 
     #[cfg(target_arch = "x86_64")]
     #[target_feature(enable = "avx512f,avx512bw,avx512vl,avx512vbmi")]
-    fn run_avx512(&self, sought: &Sought<'_>, bounds: &mut IntervalBounds) -> bool {
-        self.run_with::<super::heading_lanes::Avx512>(sought, bounds)
+    fn run_avx512<const TELLS: bool>(
+        &self,
+        sought: &Sought<'_>,
+        bounds: &mut IntervalBounds,
+    ) -> bool {
+        self.run_with::<super::heading_lanes::Avx512, TELLS>(sought, bounds)
     }
 
     #[cfg(target_arch = "x86_64")]
     #[target_feature(enable = "avx2")]
-    fn run_avx2(&self, sought: &Sought<'_>, bounds: &mut IntervalBounds) -> bool {
-        self.run_with::<super::heading_lanes::Avx2<2>>(sought, bounds)
+    fn run_avx2<const TELLS: bool>(
+        &self,
+        sought: &Sought<'_>,
+        bounds: &mut IntervalBounds,
+    ) -> bool {
+        self.run_with::<super::heading_lanes::Avx2<2>, TELLS>(sought, bounds)
     }
 
     /// The first half of the headings.
     #[cfg(target_arch = "x86_64")]
     #[target_feature(enable = "avx2")]
-    fn run_narrow_avx2(&self, sought: &Sought<'_>, bounds: &mut IntervalBounds) -> bool {
-        self.run_with::<super::heading_lanes::Avx2<1>>(sought, bounds)
+    fn run_narrow_avx2<const TELLS: bool>(
+        &self,
+        sought: &Sought<'_>,
+        bounds: &mut IntervalBounds,
+    ) -> bool {
+        self.run_with::<super::heading_lanes::Avx2<1>, TELLS>(sought, bounds)
     }
 
     #[inline(always)]
-    fn run_with<L: HeadingLanes>(&self, sought: &Sought<'_>, bounds: &mut IntervalBounds) -> bool {
+    fn run_with<L: HeadingLanes, const TELLS: bool>(
+        &self,
+        sought: &Sought<'_>,
+        bounds: &mut IntervalBounds,
+    ) -> bool {
         let rows = sought.block.rows();
         let mut sums = L::no_sums();
         let mut alive = false;
         bounds.sectors.clear();
+        bounds.voting.clear();
         for (beams, complete) in sought.order.pieces() {
             let mut votes = L::none();
             for beam in beams {
                 let direction = self.direction(beam, sought.heading);
-                votes = votes.add(&beam.votes, rows.from(direction));
+                let of_beam = L::of_beam(&beam.votes, rows.from(direction));
+                votes = votes.add(of_beam);
+                if TELLS {
+                    bounds.voting.push(of_beam.present());
+                }
             }
-            bounds.sectors.push(votes.to_bytes());
+            if TELLS {
+                bounds.sectors.push(votes.to_bytes());
+            }
             sums = votes.add_to(sums);
             let missing = sought.least.saturating_sub(sought.rests[complete]);
             alive = L::at_least(sums, missing) & sought.among != 0;

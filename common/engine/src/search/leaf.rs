@@ -60,22 +60,22 @@ impl LeafProgram {
 
     /// Adds the votes of a sector of beams to those of the block's cells, at headings from
     /// a first one on that bits tell, each with a count. What is added where a cell is not
-    /// open means nothing.
+    /// open means nothing. Of each beam of all sectors bits tell at which headings it may
+    /// vote.
     pub(crate) fn add(
         &self,
         looking: (&mut Outlook, &View<'_>),
-        sector: usize,
+        (sector, voting): (usize, &[u64]),
         headings: (usize, u64),
         counts: &mut [Count],
     ) {
         let beams = sectors::beams(sector, self.bearings.len());
-        let all = u64::MAX >> (u64::BITS as usize - beams.len());
-        self.add_beams(looking, (beams.start, all), headings, counts);
+        let of_sector = (beams.start, &voting[beams]);
+        self.add_beams(looking, of_sector, headings, counts);
     }
 
-    /// The votes of the block's cells at a heading, with looks only where its intervals
-    /// say that a beam may vote: this pays where many cannot, as far below the best pose.
-    /// What is counted where a cell is not open means nothing.
+    /// The votes of the block's cells at a heading, by beams that may vote as its
+    /// intervals say. What is counted where a cell is not open means nothing.
     pub(crate) fn count(
         &self,
         outlook: &mut Outlook,
@@ -85,24 +85,28 @@ impl LeafProgram {
         let mut count = Count::default();
         for sector in 0..sectors::count(self.bearings.len()) {
             let beams = sectors::beams(sector, self.bearings.len());
-            let may_vote = |&beam: &usize| {
+            let may_vote = |beam: usize| {
                 let (direction, table) = self.place(beam, heading);
                 let spans = outlook.spans(view, direction);
                 spans.into_iter().any(|span| table.has_votes_in(span))
             };
-            let voting = beams.clone().filter(may_vote);
-            let voting = voting.fold(0, |voting, beam| voting | 1 << (beam - beams.start));
+            let mut voting = [0; sectors::BEAMS];
+            for (voting, beam) in voting.iter_mut().zip(beams.clone()) {
+                *voting = u64::from(may_vote(beam));
+            }
+            let beams = (beams.start, &voting[..beams.len()]);
             let counts = std::slice::from_mut(&mut count);
-            self.add_beams((outlook, view), (beams.start, voting), (heading, 1), counts);
+            self.add_beams((outlook, view), beams, (heading, 1), counts);
         }
         count.votes
     }
 
-    /// Adds the votes of beams from a first one on that bits tell.
+    /// Adds the votes of beams from a first one on, at the headings at which bits tell that
+    /// each may vote.
     fn add_beams(
         &self,
         looking: (&mut Outlook, &View<'_>),
-        beams: (usize, u64),
+        beams: (usize, &[u64]),
         headings: (usize, u64),
         counts: &mut [Count],
     ) {
@@ -124,7 +128,7 @@ impl LeafProgram {
     fn add_avx512(
         &self,
         looking: (&mut Outlook, &View<'_>),
-        beams: (usize, u64),
+        beams: (usize, &[u64]),
         headings: (usize, u64),
         counts: &mut [Count],
     ) {
@@ -141,7 +145,7 @@ impl LeafProgram {
     fn add_avx2(
         &self,
         looking: (&mut Outlook, &View<'_>),
-        beams: (usize, u64),
+        beams: (usize, &[u64]),
         headings: (usize, u64),
         counts: &mut [Count],
     ) {
@@ -157,20 +161,21 @@ impl LeafProgram {
     fn add_with<R: RayLanes, C: CellLanes>(
         &self,
         (outlook, view): (&mut Outlook, &View<'_>),
-        (first_beam, beams): (usize, u64),
+        (first_beam, beams): (usize, &[u64]),
         (first, headings): (usize, u64),
         counts: &mut [Count],
     ) {
-        let beams = bits::ones(beams).map(|i| first_beam + i);
-        for lane in bits::ones(headings) {
-            for beam in beams.clone() {
+        for (beam, voting) in (first_beam..).zip(beams) {
+            for lane in bits::ones(headings & voting) {
                 outlook.look::<R>(view, self.direction(beam, first + lane));
             }
         }
         for lane in bits::ones(headings) {
             let count = &mut counts[lane];
             let mut sums = C::load(&count.votes);
-            for beam in beams.clone() {
+            let voting = beams.iter().enumerate();
+            let voting = voting.fold(0, |all, (i, voting)| all | (voting >> lane & 1) << i);
+            for beam in bits::ones(voting).map(|i| first_beam + i) {
                 let (direction, table) = self.place(beam, first + lane);
                 sums = sums.add(table, outlook.ranges(direction));
             }
@@ -234,8 +239,9 @@ mod tests {
                 outlook.prepare(&grid, directions);
                 outlook.enter((&view, &Limits::none(grid.width())), &intervals, block);
                 let mut counts = [Count::default()];
+                let all = vec![1; program.beams()];
                 for sector in 0..sectors::count(program.beams()) {
-                    leaf.add((&mut outlook, &view), sector, (heading, 1), &mut counts);
+                    leaf.add((&mut outlook, &view), (sector, &all), (heading, 1), &mut counts);
                 }
                 // The same with no more looks than needed.
                 outlook.enter((&view, &Limits::none(grid.width())), &intervals, block);

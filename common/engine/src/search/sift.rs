@@ -62,6 +62,8 @@ pub(super) struct Sift {
     first: Option<usize>,
     /// The most votes of each sector and those after it; 0 at the end.
     rests: Vec<u16>,
+    /// All beams may vote.
+    all: Vec<u64>,
 }
 
 impl Sift {
@@ -108,6 +110,8 @@ impl Sift {
         let beams = program.beams();
         self.samples.make(program);
         self.first = None;
+        self.all.clear();
+        self.all.resize(beams, 1);
         let (order, sectors) = (task.programs.leaf.order(), sectors::count(beams));
         self.rests.clear();
         self.rests.resize(sectors + 1, 0);
@@ -346,7 +350,8 @@ impl<'a> Sifting<'a> {
         let mut counts = [Count::default()];
         for (sector, rest) in rests[1..].iter().enumerate() {
             let program = &task.programs.leaf;
-            program.add((outlook, &view), sector, (heading, 1), &mut counts);
+            let beams = (sector, &self.sift.all[..]);
+            program.add((outlook, &view), beams, (heading, 1), &mut counts);
             if counts[0].votes[place] + rest < floor {
                 return 0;
             }

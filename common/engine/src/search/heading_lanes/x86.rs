@@ -53,16 +53,36 @@ impl<const REGISTERS: usize> HeadingLanes for Avx2<REGISTERS> {
     }
 
     #[inline(always)]
-    fn add(mut self, votes: &BinVotes, rows: IntervalRows<'_>) -> Self {
+    fn of_beam(votes: &BinVotes, rows: IntervalRows<'_>) -> Self {
         let [near_first, near_last, far_first, far_last] = rows;
-        for (half, sum) in self.0.iter_mut().enumerate() {
+        let mut most = Self::none();
+        for (half, most) in most.0.iter_mut().enumerate() {
             unsafe {
                 let near = look_up(votes, half_of(near_first, half), half_of(near_last, half));
                 let far = look_up(votes, half_of(far_first, half), half_of(far_last, half));
-                *sum = _mm256_add_epi8(*sum, _mm256_max_epu8(near, far));
+                *most = _mm256_max_epu8(near, far);
             }
         }
+        most
+    }
+
+    #[inline(always)]
+    fn add(mut self, other: Self) -> Self {
+        for (sum, votes) in self.0.iter_mut().zip(other.0) {
+            *sum = unsafe { _mm256_add_epi8(*sum, votes) };
+        }
         self
+    }
+
+    #[inline(always)]
+    fn present(self) -> u64 {
+        let mut present = 0;
+        for (half, votes) in self.0.into_iter().enumerate() {
+            let absent =
+                unsafe { _mm256_movemask_epi8(_mm256_cmpeq_epi8(votes, _mm256_setzero_si256())) };
+            present |= u64::from(!absent.cast_unsigned()) << (HALF * half);
+        }
+        present
     }
 
     #[inline(always)]
@@ -164,13 +184,23 @@ impl HeadingLanes for Avx512 {
     }
 
     #[inline(always)]
-    fn add(self, votes: &BinVotes, rows: IntervalRows<'_>) -> Self {
+    fn of_beam(votes: &BinVotes, rows: IntervalRows<'_>) -> Self {
         unsafe {
             let [near_first, near_last, far_first, far_last] = rows;
             let near = look_up_at_once(votes, near_first, near_last);
             let far = look_up_at_once(votes, far_first, far_last);
-            Avx512(_mm512_add_epi8(self.0, _mm512_max_epu8(near, far)))
+            Avx512(_mm512_max_epu8(near, far))
         }
+    }
+
+    #[inline(always)]
+    fn add(self, other: Self) -> Self {
+        unsafe { Avx512(_mm512_add_epi8(self.0, other.0)) }
+    }
+
+    #[inline(always)]
+    fn present(self) -> u64 {
+        unsafe { _mm512_test_epi8_mask(self.0, self.0) }
     }
 
     #[inline(always)]
