@@ -38,7 +38,8 @@ struct Options {
     /// Distinct poses that are wanted
     #[arg(long, default_value_t = 0)]
     candidates: u32,
-    /// Find so many of the best distinct poses instead, exactly
+    /// Find so many of the best distinct poses instead, exactly, with a fresh workspace for
+    /// each scan; how many poses are counted is not told then
     #[arg(long, conflicts_with_all = ["floor_share", "candidates"])]
     top: Option<usize>,
     #[arg(long, default_value_t = 1)]

@@ -52,14 +52,17 @@ impl Attempt<'_> {
     /// Adds the candidates that are wanted below what was found, however bounding the
     /// blocks ended.
     pub(super) fn add_candidates(&mut self, end: End, found: &mut VoteSet) {
-        let wanted = self.task.config.candidates as usize;
+        let Self {
+            task,
+            rooms,
+            alternatives,
+            ..
+        } = self;
+        let wanted = task.config.candidates as usize;
         if wanted > 0 && found.best > 0 {
-            let bounded = (end == End::Done).then_some(&*self.rooms);
+            let bounded = (end == End::Done).then_some(&**rooms);
             let floor = found.certified_floor;
-            Alternatives::new(&self.task, self.alternatives).find(wanted, floor, bounded);
-            let Self {
-                task, alternatives, ..
-            } = self;
+            Alternatives::new(task, alternatives).find(wanted, floor, bounded);
             let distinct = Distinct::new(task.space, wanted, &mut alternatives.distinct);
             found.add_candidates(&mut alternatives.votes, distinct);
         }

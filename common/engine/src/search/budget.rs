@@ -3,7 +3,7 @@
 //! In uniform clutter no bound tells blocks apart. The search tallies what it
 //! did, estimates what is left from what blocks of each level have cost so far,
 //! and gives up where counting every pose would be done sooner. Where that is seen at
-//! the first look, a tenth of what brute force costs is lost.
+//! the first look, a tenth of what brute force costs is lost, or a twentieth.
 
 use crate::grid::Grid;
 use crate::instruction_set::InstructionSet;
@@ -90,7 +90,8 @@ const DIVES: f64 = 0.4;
 /// search is given up then.
 const FIRST_LOOK: f64 = 0.1;
 
-/// The same where the floor is about known.
+/// The same where the floor is about known: then what blocks have cost so far tells sooner
+/// what those that are left will.
 const FIRST_LOOK_KNOWN: f64 = 0.05;
 
 /// How much more is spent until the next look.

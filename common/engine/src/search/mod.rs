@@ -15,7 +15,8 @@
 //! ```
 //!
 //! Alternatives below the floor come from the most promising blocks. Where bounds do
-//! not tell blocks apart, every pose is counted instead (`sift.rs`).
+//! not tell blocks apart, every pose is counted instead (`sift.rs`): `attempt.rs` is one
+//! search, whichever way it goes, and `top.rs` makes some for the best distinct poses.
 
 mod alternatives;
 mod attempt;

@@ -1,18 +1,21 @@
 //! Counting every pose, where bounds do not tell blocks apart: few beams tell most
 //! poses from the best one.
 //!
-//! In clutter most poses have half of the votes that are possible and some nine tenths,
-//! but hardly one has nearly all of them, and that shows after few beams. So a sample of
-//! the beams is swept at every heading, the poses with most of its votes are kept, and
-//! the first of them is counted with all beams: at one heading that is the best pose.
-//! What was not kept cannot reach the floor then, as a rule, whatever the other beams
-//! say, and of what was kept little is left to count.
+//! In clutter most poses have half of the votes that are possible, but hardly one has
+//! nearly all of them, and that shows after few beams. So a sample of the beams is swept
+//! at every heading, the poses with most of its votes are kept, and at each heading the
+//! first of them is counted with all beams: one of these is the best pose of all. What
+//! was not kept cannot reach the floor then, as a rule, whatever the other beams say, and
+//! of what was kept little is left to count. The lower the floor, the larger the sample
+//! must be, so some are tried first. The leading poses are found in the same way, with a
+//! floor that rises to the last of them.
 //!
 //! Headings at which that is not certain are swept again with more beams, at last with
 //! all of them.
 
 mod samples;
 mod share;
+mod trial;
 
 use std::ops::Range;
 use std::sync::atomic::Ordering;
@@ -27,8 +30,8 @@ use crate::accumulator::Query;
 use crate::program::ScanProgram;
 use crate::threads;
 use crate::votes::VoteSet;
-use samples::Samples;
 pub(super) use samples::likely_cost;
+use samples::{First, Samples};
 pub(super) use share::Share;
 use share::{Pose, Seen};
 
@@ -45,21 +48,12 @@ const STEP: u32 = 64;
 const CELLS_A_COUNT: usize = 2048;
 const FEW_COUNTS: usize = 4;
 
-/// At so many headings the best poses are not better, as a rule, than the last of the
-/// leading ones.
-const TRIED: usize = 6;
-
-/// At the heading at which samples are tried, a decisive one leaves this part of the poses
-/// that may be counted one by one: other headings have more, and the best pose may have
-/// fewer votes than expected.
-const LEFT_BY_DECISIVE: usize = 6;
-
 /// A scan program laid out for sifting, kept from scan to scan.
 #[derive(Debug, Default)]
 pub(super) struct Sift {
     samples: Samples,
     /// The sample that is swept at all headings, if one is decisive.
-    first: Option<usize>,
+    first: Option<First>,
     /// The most votes of each sector and those after it; 0 at the end.
     rests: Vec<u16>,
     /// All beams may vote.
@@ -85,12 +79,8 @@ impl Sift {
         let sampled = threads::run(shares, stop, |thread, share, stop| {
             share.start(task, sift);
             let mut sifting = Sifting::new(what, share, stop);
-            let headings = (thread..task.space.directions.count()).step_by(threads);
-            let limits = &task.index.within.limits;
-            let mut sought = headings.filter(|&heading| limits.hold_heading(heading));
-            sought
-                .try_for_each(|heading| sifting.look(heading))
-                .ok_or(())
+            let mut own = task.sought().skip(thread).step_by(threads);
+            own.try_for_each(|heading| sifting.look(heading)).ok_or(())
         });
         sampled.ok()?;
         let counted = threads::run(shares, stop, |_, share, stop| {
@@ -124,7 +114,8 @@ impl Sift {
 
     /// The sample that is swept at all headings.
     fn first(&self) -> Option<&ScanProgram> {
-        self.first.map(|first| &self.samples.all()[first])
+        let first = self.first.as_ref()?;
+        Some(&self.samples.all()[first.sample])
     }
 }
 
@@ -152,46 +143,6 @@ impl<'a> Sifting<'a> {
         }
     }
 
-    /// The smallest sample that leaves few poses at some heading, where the best one has
-    /// as many votes as expected.
-    fn decisive(&mut self) -> Option<usize> {
-        let task = self.task;
-        let count = task.space.directions.count();
-        let limits = &task.index.within.limits;
-        let mut headings = (0..count).filter(|&heading| limits.hold_heading(heading));
-        let expected = match task.leaders() {
-            Some(_) => self.most_votes(headings.clone().step_by(count.div_ceil(TRIED)))?,
-            None if samples::is_least_enough(task) => return Some(0),
-            None => samples::expected_floor(task, self.program),
-        };
-        let heading = headings.next()?;
-        for (i, sample) in self.sift.samples.all().iter().enumerate() {
-            let least = expected.saturating_sub(self.rest(sample));
-            // In clutter most poses have about half of the votes.
-            if u32::from(least) > sample.highest_possible() / 2 {
-                self.sweep(sample, heading)?;
-                self.share.least = least;
-                if self.share.keep(self.most_counts() / LEFT_BY_DECISIVE) {
-                    return Some(i);
-                }
-            }
-        }
-        None
-    }
-
-    /// The most votes of any pose at some headings but one, near which the best pose of all
-    /// may be.
-    fn most_votes(&mut self, headings: impl Iterator<Item = usize>) -> Option<u16> {
-        let (mut most, mut second) = (0, 0);
-        for heading in headings {
-            self.sweep(self.program, heading)?;
-            let votes = self.share.field.iter().copied().fold(0, u16::max);
-            second = second.max(votes.min(most));
-            most = most.max(votes);
-        }
-        Some(second)
-    }
-
     /// Keeps the poses that have most votes of the first sample at a heading, and
     /// counts the first of them.
     fn look(&mut self, heading: usize) -> Option<()> {
@@ -213,7 +164,7 @@ impl<'a> Sifting<'a> {
             self.share.least = self.share.least.saturating_sub(step).max(1);
         }
         if let Some(&Pose { cell, .. }) = kept.iter().max_by_key(|pose| pose.votes) {
-            let leaders = task.leaders();
+            let leaders = task.leaders;
             let floor = match leaders {
                 Some(_) => self.floor(),
                 None => task.best.load(Ordering::Relaxed),
@@ -274,7 +225,7 @@ impl<'a> Sifting<'a> {
         let Share {
             field, collector, ..
         } = &mut *self.share;
-        let leaders = self.task.leaders();
+        let leaders = self.task.leaders;
         collector.take_field(field, self.task.grid.width(), heading as u16, leaders);
         let best = collector.best();
         self.task.best.fetch_max(best, Ordering::Relaxed);
@@ -292,7 +243,7 @@ impl<'a> Sifting<'a> {
             }
             let floor = self.floor();
             let vote = self.vote(cell, heading, floor);
-            let leaders = self.task.leaders();
+            let leaders = self.task.leaders;
             self.share.collector.take_leading(vote, leaders);
             self.task.best.fetch_max(vote.intensity, Ordering::Relaxed);
         }

@@ -20,7 +20,9 @@ pub(super) struct Task<'a> {
     pub grid: &'a Grid,
     pub space: &'a Space,
     pub config: CollectConfig,
-    leading: usize,
+    /// The poses of which the last is the least that is wanted, if not all above the floor
+    /// are.
+    pub leaders: Option<Leaders<'a>>,
     pub programs: &'a Programs,
     /// The bound of each coarse block in which poses are sought.
     pub coarse_bounds: &'a [AtomicU16],
@@ -93,7 +95,7 @@ impl<'a> Task<'a> {
             grid,
             space,
             config,
-            leading: 0,
+            leaders: None,
             programs: &shared.programs,
             coarse_bounds: &shared.coarse_bounds,
             by_chunk: &shared.by_chunk,
@@ -104,17 +106,10 @@ impl<'a> Task<'a> {
 
     /// Once a thread knows so many distinct poses, it leaves out what lies below all
     /// of them; with 0 it leaves out nothing for that.
-    pub(super) fn leading(self, leading: usize) -> Self {
-        Task { leading, ..self }
-    }
-
-    /// The poses of which the last is the least that is wanted.
-    pub(super) fn leaders(&self) -> Option<Leaders<'a>> {
-        let leaders = Leaders {
-            wanted: self.leading,
-            space: self.space,
-        };
-        (self.leading > 0).then_some(leaders)
+    pub(super) fn leading(self, wanted: usize) -> Self {
+        let space = self.space;
+        let leaders = (wanted > 0).then_some(Leaders { wanted, space });
+        Task { leaders, ..self }
     }
 
     /// What poses of the map see.
@@ -131,6 +126,12 @@ impl<'a> Task<'a> {
     pub(super) fn by_chunk(&self, block: usize) -> &'a [AtomicU16] {
         let chunks = self.by_chunk.len() / self.coarse_bounds.len();
         &self.by_chunk[block * chunks..][..chunks]
+    }
+
+    /// The headings that are sought.
+    pub(super) fn sought(&self) -> impl Iterator<Item = usize> + Clone {
+        let limits = &self.index.within.limits;
+        (0..self.space.directions.count()).filter(|&heading| limits.hold_heading(heading))
     }
 
     /// The headings that are sought, a word a chunk.

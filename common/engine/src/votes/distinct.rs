@@ -53,7 +53,7 @@ impl<'a> Distinct<'a> {
     }
 }
 
-/// How many distinct poses are wanted, and where they are.
+/// How many distinct poses are wanted, and the space in which they are told apart.
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct Leaders<'a> {
     pub wanted: usize,

@@ -26,6 +26,15 @@ const LACKED: f64 = 4.0;
 /// What sweeping no beam at all would take, as a share of sweeping all.
 const SHARE_OF_NONE: f64 = 0.15;
 
+/// The sample that is swept at all headings.
+#[derive(Debug)]
+pub(super) struct First {
+    /// Its number.
+    pub sample: usize,
+    /// The least votes of it that a pose likely needs.
+    pub least: u16,
+}
+
 /// Programs of samples of a scan's beams, from few beams to most.
 #[derive(Debug, Default)]
 pub(super) struct Samples {
@@ -55,14 +64,15 @@ impl Samples {
     }
 }
 
-/// The least votes that are expected to matter, if these are not of leading poses.
+/// The least votes that matter by the floor's share, where the best pose has as many as
+/// expected.
 pub(super) fn expected_floor(task: &Task<'_>, program: &ScanProgram) -> u16 {
     let best = EXPECTED_BEST * f64::from(program.highest_possible());
     (best * task.config.floor_share) as u16
 }
 
-/// Whether the smallest sample is decisive as a rule: poses that are wanted lack so little
-/// of the best one's votes. Where it is not, the next one is little larger.
+/// Whether the smallest sample is taken untried: it has twice the votes that poses may lack
+/// which are wanted. Where that fails, the next one costs little more.
 pub(super) fn is_least_enough(task: &Task<'_>) -> bool {
     let (beams, least) = (task.programs.beams as f64, LEAST_BEAMS as f64);
     let lacked = beams * (1.0 - task.config.floor_share);
@@ -71,9 +81,11 @@ pub(super) fn is_least_enough(task: &Task<'_>) -> bool {
 
 /// What counting every pose likely takes, as a share of brute force.
 pub(in super::super) fn likely_cost(task: &Task<'_>) -> f64 {
-    let least = LEAST_BEAMS as f64 / task.programs.beams as f64;
-    let leading = task.leaders().map(|_| EXPECTED_LEADING);
-    let lacked = 1.0 - leading.unwrap_or(task.config.floor_share);
-    let part = (LACKED * lacked).max(least);
+    let part = if task.leaders.is_none() && is_least_enough(task) {
+        LEAST_BEAMS as f64 / task.programs.beams as f64
+    } else {
+        let leading = task.leaders.map_or(0.0, |_| EXPECTED_LEADING);
+        LACKED * (1.0 - leading.max(task.config.floor_share))
+    };
     (SHARE_OF_NONE + (1.0 - SHARE_OF_NONE) * part).min(1.0)
 }

@@ -3,7 +3,6 @@
 use super::super::outlook::Outlook;
 use super::super::task::Task;
 use super::Sift;
-use crate::program::ScanProgram;
 use crate::sweep;
 use crate::votes::Collector;
 
@@ -38,9 +37,9 @@ impl Share {
         self.entered = None;
         self.seen.clear();
         self.kept.clear();
-        let possible = sift.first().map_or(0, ScanProgram::highest_possible);
-        self.least = (possible * 3 / 4).max(1) as u16;
-        self.sample = sift.first.map_or(0, |first| first + 1);
+        let first = sift.first.as_ref();
+        self.least = first.map_or(1, |first| first.least);
+        self.sample = first.map_or(0, |first| first.sample + 1);
         self.collector.start(task.config);
         self.poses_evaluated = 0;
     }
