@@ -20,8 +20,8 @@ enum Place<'a> {
     Wide(&'a [u8]),
     /// A byte each.
     Narrow(&'a [u8]),
-    /// Hexadecimal words with a space between.
-    Words(&'a [u8]),
+    /// Words with a space between, each a number of so many bits.
+    Words(&'a [u8], u32),
     /// In memory.
     Listed(&'a [u16]),
 }
@@ -35,7 +35,8 @@ impl<'a> Values<'a> {
     ) -> Result<Self, SickError> {
         let place = match (cursor.encoding(), width) {
             (Encoding::Text, _) => {
-                Place::Words(cursor.numbers("values", count, 8 * width as u32)?)
+                let bits = 8 * width as u32;
+                Place::Words(cursor.numbers("values", count, bits)?, bits)
             }
             (Encoding::Binary, 1) => Place::Narrow(cursor.take("values", count)?),
             (Encoding::Binary, _) => Place::Wide(cursor.take("values", count * 2)?),
@@ -78,7 +79,7 @@ impl Iterator for Values<'_> {
                 *bytes = rest;
                 Some((*value).into())
             }
-            Place::Words(text) => next_word(text),
+            Place::Words(text, bits) => next_word(text, *bits),
             Place::Listed(values) => {
                 let (value, rest) = values.split_first()?;
                 *values = rest;
@@ -95,13 +96,27 @@ impl Iterator for Values<'_> {
 impl ExactSizeIterator for Values<'_> {}
 
 /// Takes a word off text that has been checked.
-fn next_word(text: &mut &[u8]) -> Option<u16> {
+fn next_word(text: &mut &[u8], bits: u32) -> Option<u16> {
     if let Some((value, length)) = leading_hex(text) {
         *text = text.get(length + 1..).unwrap_or_default();
         return Some(value as u16);
     }
     let mut cursor = Cursor::new(Encoding::Text, text, 0);
-    let value = cursor.number("values", 16).ok()?;
+    let value = cursor.number("values", bits).ok()?;
     *text = cursor.rest();
     Some(value as u16)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn words_with_a_sign_have_as_many_bits_as_the_channel() {
+        for (width, values) in [(1, [0xC8, 0xF7]), (2, [0xC8, 0xFFF7])] {
+            let mut cursor = Cursor::new(Encoding::Text, b"C8 -9", 0);
+            let read = Values::read(&mut cursor, 2, width).unwrap();
+            assert_eq!(read.collect::<Vec<_>>(), values);
+        }
+    }
 }
