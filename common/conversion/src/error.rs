@@ -1,6 +1,6 @@
 //! What a message cannot say.
 
-use messages::Name;
+use messages::FrameName;
 use recording::ros::ConversionError;
 
 /// What was found, and what is allowed.
@@ -8,7 +8,7 @@ use recording::ros::ConversionError;
 pub enum Unsayable {
     /// A frame's name does not fit into a message of the graph.
     #[error(
-        "the frame {frame:?} has {} bytes, at most {} are allowed", frame.len(), Name::CAPACITY
+        "the frame {frame:?} has {} bytes, at most {} are allowed", frame.len(), FrameName::CAPACITY
     )]
     Frame {
         /// The name.

@@ -5,6 +5,7 @@
 
 pub mod diagnostics;
 mod error;
+pub mod lasers;
 pub mod measurements;
 pub mod planar;
 pub mod poses;

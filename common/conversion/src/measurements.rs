@@ -3,7 +3,8 @@
 //! Stamps lack what only the moment of sending gives: when they enter the graph
 //! and their counter. Readings are not looked at.
 
-use messages::{GroundTruth, Name, Odometry, Pose2, ScanHeader, Stamp};
+use geometry::Mount;
+use messages::{FrameName, GroundTruth, Name, Odometry, ScanHeader, Stamp};
 use recording::ros::{self, LaserScan, PoseStamped, Time};
 
 use crate::Unsayable;
@@ -12,19 +13,20 @@ use crate::Unsayable;
 ///
 /// # Errors
 /// If it is longer than a message of the graph can hold.
-pub fn frame(frame: &str) -> Result<Name, Unsayable> {
-    if frame.len() <= Name::CAPACITY {
-        return Ok(Name::new(frame));
+pub fn frame(frame: &str) -> Result<FrameName, Unsayable> {
+    if frame.len() <= FrameName::CAPACITY {
+        return Ok(FrameName::new(frame));
     }
     Err(Unsayable::Frame {
         frame: frame.into(),
     })
 }
 
-/// The header of a scan; `mount` is where the laser sits on the base, if that is
-/// known.
+/// The header of a scan; `mount` is how the laser sits on the base, if that is known.
+/// It is of the graph's only laser.
 #[must_use]
-pub fn scan_header(scan: &LaserScan, frame: Name, mount: Option<Pose2>) -> ScanHeader {
+pub fn scan_header(scan: &LaserScan, frame: FrameName, mount: Option<Mount>) -> ScanHeader {
+    let known = mount.unwrap_or_default();
     ScanHeader {
         stamp: measured(scan.header.stamp),
         angle_min: scan.angle_min.into(),
@@ -33,12 +35,10 @@ pub fn scan_header(scan: &LaserScan, frame: Name, mount: Option<Pose2>) -> ScanH
         scan_time_s: scan.scan_time.into(),
         range_min_m: scan.range_min,
         range_max_m: scan.range_max,
-        base_from_laser: mount.unwrap_or(Pose2 {
-            x: 0.0,
-            y: 0.0,
-            yaw: 0.0,
-        }),
-        mount_known: u64::from(mount.is_some()),
+        base_from_laser: known.base_from_laser.into(),
+        mount_known: mount.is_some().into(),
+        upside_down: known.is_upside_down.into(),
+        laser: Name::new(""),
         frame,
     }
 }
@@ -96,23 +96,23 @@ mod tests {
         assert_eq!(header.stamp.measured_ns, 7_000_000_005);
         assert_eq!((header.angle_min, header.angle_increment), (-1.5, 0.25));
         assert_eq!(header.mount_known, 0);
-        let ahead = Pose2 {
-            x: 0.5,
-            y: 0.0,
-            yaw: 0.0,
+        let ahead = Mount {
+            base_from_laser: geometry::Pose::new(0.5, 0.0, 0.0),
+            is_upside_down: true,
         };
         let header = scan_header(&scan, header.frame, Some(ahead));
-        assert_eq!((header.base_from_laser, header.mount_known), (ahead, 1));
+        assert_eq!((header.base_from_laser.x, header.mount_known), (0.5, 1));
+        assert_eq!(header.upside_down, 1);
     }
 
     #[test]
     fn what_the_graph_cannot_say_is_refused() {
         let mut message = ros::Odometry::default();
         assert!(odometry(&message).is_ok());
-        message.child_frame_id = "f".repeat(33);
+        message.child_frame_id = "f".repeat(257);
         let error = odometry(&message).unwrap_err().to_string();
         assert!(
-            error.ends_with("has 33 bytes, at most 32 are allowed"),
+            error.ends_with("has 257 bytes, at most 256 are allowed"),
             "{error}"
         );
         let mut turned = PoseStamped::default();

@@ -53,6 +53,22 @@ pub fn transform(pose: Pose) -> ros::Transform {
     }
 }
 
+/// The transform of a laser that hangs upside down, where `level` is that of its frame
+/// seen from above: it is rolled by half a turn about its x axis.
+#[must_use]
+pub fn upside_down(level: ros::Transform) -> ros::Transform {
+    let turn = level.rotation;
+    ros::Transform {
+        rotation: Quaternion {
+            x: turn.w,
+            y: turn.z,
+            z: 0.0,
+            w: 0.0,
+        },
+        ..level
+    }
+}
+
 #[cfg(test)]
 mod tests {
     use std::f64::consts::PI;

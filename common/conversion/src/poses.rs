@@ -1,6 +1,6 @@
 //! Hypotheses as poses that every tool knows.
 
-use geometry::Pose;
+use geometry::{Covariance, Pose};
 use messages::{HypothesesHeader, Hypothesis};
 use recording::ros::{Header, PoseArray, PoseWithCovarianceStamped};
 
@@ -25,10 +25,11 @@ pub fn best(
     best: &Hypothesis,
 ) -> PoseWithCovarianceStamped {
     let pose = robot(from, best);
-    let covariance = moved(best.covariance, best.map_from_laser.into(), pose);
+    let covariance = Covariance::from_rows(best.covariance);
+    let covariance = covariance.carried(best.map_from_laser.into(), pose);
     PoseWithCovarianceStamped {
         header,
-        pose: planar::estimate(pose, covariance),
+        pose: planar::estimate(pose, covariance.to_rows()),
     }
 }
 
@@ -41,41 +42,11 @@ pub fn robot(from: &HypothesesHeader, item: &Hypothesis) -> Pose {
     }
 }
 
-/// The covariance of pose `of`, where `covariance` is that of pose `known` and
-/// the two are fixed to each other: a turn about the one moves the other.
-fn moved(covariance: [f64; 9], known: Pose, of: Pose) -> [f64; 9] {
-    let (dx, dy) = (of.x - known.x, of.y - known.y);
-    let jacobian = [[1.0, 0.0, -dy], [0.0, 1.0, dx], [0.0, 0.0, 1.0]];
-    std::array::from_fn(|i| {
-        let (row, column) = (jacobian[i / 3], jacobian[i % 3]);
-        let terms = covariance.iter().enumerate();
-        terms
-            .map(|(k, value)| row[k / 3] * value * column[k % 3])
-            .sum()
-    })
-}
-
 #[cfg(test)]
 mod tests {
     use bytemuck::Zeroable;
 
     use super::*;
-
-    #[test]
-    fn the_base_is_less_sure_to_the_side_than_the_laser_ahead_of_it() {
-        let known = Pose::new(5.0, 5.0, 0.0);
-        let base = Pose::new(4.0, 5.0, 0.0);
-        let covariance = [0.01, 0.0, 0.0, 0.0, 0.01, 0.0, 0.0, 0.0, 0.04];
-        let expected = [0.01, 0.0, 0.0, 0.0, 0.05, -0.04, 0.0, -0.04, 0.04];
-        for (found, expected) in moved(covariance, known, base).iter().zip(expected) {
-            // A few products and sums.
-            assert!(
-                (found - expected).abs() < 1e-15,
-                "{found} is not {expected}"
-            );
-        }
-        assert_eq!(moved(covariance, known, known), covariance);
-    }
 
     #[test]
     fn the_mount_decides_whose_pose_is_meant() {

@@ -2,6 +2,7 @@
 
 use std::f64::consts::TAU;
 
+use crate::observation::{CarriedScan, Observation};
 use crate::scan::Scan;
 use crate::space::Space;
 
@@ -36,12 +37,14 @@ pub(crate) struct Beam {
     pub bearing: usize,
     /// What rounding to the grid left over, radians.
     pub rounding: f64,
-    /// The bearing in the laser's frame, radians, not rounded.
+    /// The bearing in the frame that is sought, radians, not rounded.
     pub angle: f64,
     /// Metres.
     pub reading_m: f64,
     /// How much it counts; 1 weighs a beam in full.
     pub weight: f64,
+    /// Its number in its scan.
+    pub index: usize,
 }
 
 /// The beams that vote, by bearing, and those that say nothing; filled anew for
@@ -51,26 +54,62 @@ pub(crate) struct Chosen {
     pub beams: Vec<Beam>,
     /// The middles of the sectors that say nothing, radians.
     pub silent: Vec<f64>,
+    sectors: Vec<Sector>,
+}
+
+/// What lies in a sector of the turn.
+#[derive(Debug, Clone, Copy, Default, PartialEq)]
+enum Sector {
+    /// No beam points there.
+    #[default]
+    Unseen,
+    /// Beams do, and nothing returned.
+    Silent,
+    /// The beam that ends nearest.
+    Nearest(Beam),
 }
 
 impl Chosen {
+    /// Chooses the beams that vote, see [`Chosen::thin`] and [`Chosen::join`].
+    pub(crate) fn choose(
+        &mut self,
+        observation: Observation<'_>,
+        turn: f64,
+        space: &Space,
+        config: &BeamConfig,
+    ) {
+        match observation {
+            Observation::Still(scan) => {
+                let end = |i| Some((scan.bearing(i), scan.reading(i)?));
+                self.thin(&scan, end, turn, space, config);
+            }
+            Observation::Carried([alone]) => {
+                self.thin(&alone.scan, |i| alone.end(i), turn, space, config);
+            }
+            Observation::Carried(scans) => self.join(scans, turn, space, config),
+        }
+    }
+
     /// Divides the scan's arc evenly into at most `max_beams` sectors and takes
     /// from each the returned reading whose bearing lies nearest to the heading
     /// grid; of equally near ones that nearest to the sector's middle, then the
     /// first. A sector is silent where nothing returned, or from farther than the
     /// map reaches: nothing in it explains such a reading.
-    pub(crate) fn choose(
+    ///
+    /// `end_of` is where a beam ends, seen from the frame that is sought: its bearing
+    /// and how far it is.
+    fn thin(
         &mut self,
         scan: &Scan<'_>,
+        end_of: impl Fn(usize) -> Option<(f64, f64)>,
         turn: f64,
         space: &Space,
         config: &BeamConfig,
     ) {
         self.beams.clear();
         self.silent.clear();
-        let readings = scan.ranges.len();
-        let sectors = readings.min(config.max_beams as usize);
-        let arc = (readings as f64 * scan.angle_increment).min(TAU) / sectors as f64;
+        let readings = scan.beams();
+        let (sectors, arc) = thinned(scan, config);
         for sector in 0..sectors {
             // Integer bounds: every reading lies in exactly one sector.
             let (start, end) = (
@@ -79,19 +118,10 @@ impl Chosen {
             );
             let middle = (start + end - 1) as f64 / 2.0;
             let candidates = (start..end).filter_map(|i| {
-                let reading_m = scan.reading(i).filter(|&m| m <= space.longest_m)?;
-                let (bearing, rounding) = space.directions.nearest(scan.bearing(i) + turn);
-                let weight = weight(reading_m * arc, config.beam_arc_m);
-                Some((
-                    Beam {
-                        bearing,
-                        rounding,
-                        angle: scan.bearing(i),
-                        reading_m,
-                        weight,
-                    },
-                    (i as f64 - middle).abs(),
-                ))
+                let seen = end_of(i).filter(|&(_, reading_m)| reading_m <= space.longest_m)?;
+                let weight = weight(seen.1 * arc, config.beam_arc_m);
+                let beam = Beam::new(i, seen, turn, weight, space);
+                Some((beam, (i as f64 - middle).abs()))
             });
             let best = candidates.min_by(|(a, a_off), (b, b_off)| {
                 grid_distance(a)
@@ -100,13 +130,81 @@ impl Chosen {
             });
             match best {
                 Some((beam, _)) => self.beams.push(beam),
-                None => {
-                    let middle = scan.angle_min + middle * scan.angle_increment;
-                    self.silent.push(middle);
-                }
+                None => self.silent.push(scan.bearing_between(middle)),
             }
         }
     }
+
+    /// Divides the turn, seen from the origin of the sought frame, into `max_beams`
+    /// sectors and takes from each the reading that ends nearest, of equal ones the
+    /// first. A reading counts by the arc that its own laser's beam covers.
+    fn join(&mut self, scans: &[CarriedScan<'_>], turn: f64, space: &Space, config: &BeamConfig) {
+        self.sectors.clear();
+        let count = config.max_beams as usize;
+        self.sectors.resize(count, Sector::Unseen);
+        let sector_of = |angle: f64| {
+            let share = angle.rem_euclid(TAU) / TAU;
+            ((share * count as f64) as usize).min(count - 1)
+        };
+        for carried in scans {
+            let (_, arc) = thinned(&carried.scan, config);
+            for i in 0..carried.scan.beams() {
+                let end = carried.end(i).filter(|&(_, m)| m <= space.longest_m);
+                let Some((angle, distance_m)) = end else {
+                    let direction = carried.laser(i).yaw + carried.scan.bearing(i);
+                    let sector = &mut self.sectors[sector_of(direction)];
+                    if *sector == Sector::Unseen {
+                        *sector = Sector::Silent;
+                    }
+                    continue;
+                };
+                let sector = &mut self.sectors[sector_of(angle)];
+                if matches!(sector, Sector::Nearest(other) if other.reading_m <= distance_m) {
+                    continue;
+                }
+                let reading_m = carried.scan.reading(i).unwrap_or(distance_m);
+                let weight = weight(reading_m * arc, config.beam_arc_m);
+                *sector = Sector::Nearest(Beam::new(i, (angle, distance_m), turn, weight, space));
+            }
+        }
+        self.beams.clear();
+        self.silent.clear();
+        for (i, sector) in self.sectors.iter().enumerate() {
+            match sector {
+                Sector::Unseen => {}
+                Sector::Silent => self.silent.push((i as f64 + 0.5) * TAU / count as f64),
+                Sector::Nearest(beam) => self.beams.push(*beam),
+            }
+        }
+    }
+}
+
+impl Beam {
+    /// A beam that ends at `(angle, reading_m)` in the frame that is sought.
+    fn new(
+        index: usize,
+        (angle, reading_m): (f64, f64),
+        turn: f64,
+        weight: f64,
+        space: &Space,
+    ) -> Self {
+        let (bearing, rounding) = space.directions.nearest(angle + turn);
+        Beam {
+            bearing,
+            rounding,
+            angle,
+            reading_m,
+            weight,
+            index,
+        }
+    }
+}
+
+/// Into how many sectors a scan is thinned, and the arc of each, radians.
+fn thinned(scan: &Scan<'_>, config: &BeamConfig) -> (usize, f64) {
+    let sectors = scan.beams().min(config.max_beams as usize);
+    let arc = (scan.beams() as f64 * scan.angle_increment.abs()).min(TAU) / sectors as f64;
+    (sectors, arc)
 }
 
 /// `min(1, arc at the reading / full arc) + 0.05`; 1 where beams weigh the same.
@@ -130,7 +228,7 @@ mod tests {
 
     fn choose(scan: &Scan<'_>, turn: f64, space: &Space, config: &BeamConfig) -> Chosen {
         let mut chosen = Chosen::default();
-        chosen.choose(scan, turn, space, config);
+        chosen.choose(scan.into(), turn, space, config);
         chosen
     }
 

@@ -83,12 +83,45 @@ pub enum EngineError {
         .0.x, .0.y, .0.yaw
     )]
     Odometry(Pose),
+    /// Several lasers are to be joined, and it is not known where one sits.
+    #[error(
+        "it is not known where laser {laser} sits on the base: to join several, /tf_static or \
+         --mount must say so"
+    )]
+    NoMount {
+        /// Its name.
+        laser: String,
+    },
+    /// The mount says no pose.
+    #[error(
+        "the laser sits at x {} m, y {} m, yaw {} rad of the base: each must be finite",
+        .0.x, .0.y, .0.yaw
+    )]
+    Mount(Pose),
+    /// A reading of a message is unusable.
+    #[error(
+        "reading {beam} is unusable: place, bearing and weight must be finite, the range above \
+         zero, the weight 0 to 2"
+    )]
+    Reading {
+        /// Its number in the message.
+        beam: usize,
+    },
+    /// A carried scan lacks places of its laser.
+    #[error("{places} places of the laser for {ranges} ranges: as many are needed")]
+    Places {
+        /// Poses of the laser.
+        places: usize,
+        /// Ranges of the scan.
+        ranges: usize,
+    },
     /// The scan's first bearing is unusable.
     #[error("angle_min is {0}: it must be finite, in radians, within two turns")]
     AngleMin(f64),
     /// The scan's angular step is unusable.
     #[error(
-        "angle_increment is {0}: it must be finite and above zero, in radians, counter-clockwise"
+        "angle_increment is {0}: it must be finite and not zero, in radians; below zero is \
+         clockwise"
     )]
     AngleIncrement(f64),
     /// The scan covers more than a turn.

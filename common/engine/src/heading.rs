@@ -9,7 +9,7 @@ mod config;
 use std::collections::VecDeque;
 
 use geometry::{Pose, wrap_angle};
-use messages::{GroundTruth, Name, Odometry, ScanHeader};
+use messages::{FrameName, GroundTruth, Odometry, ScanHeader};
 
 pub use config::{HeadingConfig, HeadingFrom};
 
@@ -78,7 +78,7 @@ pub struct History {
 struct Driven {
     measured_ns: i64,
     odom_from_child: Pose,
-    child_frame: Name,
+    child_frame: FrameName,
 }
 
 #[derive(Debug, Clone, Copy)]
@@ -259,7 +259,7 @@ mod tests {
     fn scan(measured_ns: i64) -> ScanHeader {
         ScanHeader {
             stamp: stamp(measured_ns),
-            frame: Name::new("laser"),
+            frame: FrameName::new("laser"),
             ..Zeroable::zeroed()
         }
     }
@@ -268,7 +268,7 @@ mod tests {
         Odometry {
             stamp: stamp(measured_ns),
             odom_from_child: turned(yaw),
-            child_frame: Name::new("laser"),
+            child_frame: FrameName::new("laser"),
             ..Zeroable::zeroed()
         }
     }
@@ -277,7 +277,7 @@ mod tests {
         GroundTruth {
             stamp: stamp(measured_ns),
             map_from_laser: turned(yaw),
-            frame: Name::new("map"),
+            frame: FrameName::new("map"),
         }
     }
 
@@ -355,7 +355,7 @@ mod tests {
     fn odometry_of_the_base_is_turned_by_the_mount() {
         let mut history = History::keeping(KEPT);
         let of_base = Odometry {
-            child_frame: Name::new("base_link"),
+            child_frame: FrameName::new("base_link"),
             ..odometry(10, 0.25)
         };
         history.hear_odometry(&of_base);
@@ -381,7 +381,7 @@ mod tests {
     fn the_laser_sits_on_what_the_odometry_is_about() {
         let mut history = History::keeping(KEPT);
         let of_base = Odometry {
-            child_frame: Name::new("base_link"),
+            child_frame: FrameName::new("base_link"),
             ..odometry(10, std::f64::consts::FRAC_PI_2)
         };
         history.hear_odometry(&of_base);

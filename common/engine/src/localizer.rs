@@ -7,8 +7,8 @@ use crate::accumulator::Query;
 use crate::grid::{self, CellRules, Grid, GridFrame, Pooled};
 use crate::instruction_set::InstructionSet;
 use crate::limits::Limits;
+use crate::observation::Observation;
 use crate::program::ScanProgram;
-use crate::scan::Scan;
 use crate::search::{self, BlockBounds, SearchIndex};
 use crate::space::Space;
 use crate::sweep::{self, FieldSweep};
@@ -187,13 +187,13 @@ impl Localizer {
     /// [`Localizer::search_in`].
     ///
     /// # Errors
-    /// If the scan is refused, see [`Scan::check`].
+    /// If the scan is refused, see [`Observation::check`].
     ///
     /// # Panics
     /// If the localizer was prepared for known headings.
-    pub fn search(
+    pub fn search<'s>(
         &self,
-        scan: &Scan<'_>,
+        scan: impl Into<Observation<'s>>,
         stop: &dyn Fn() -> bool,
     ) -> Result<Option<Outcome>, EngineError> {
         let mut workspace = Workspace::default();
@@ -204,14 +204,14 @@ impl Localizer {
     /// Searches all poses; `None` if `stop` said so before the end.
     ///
     /// # Errors
-    /// If the scan is refused, see [`Scan::check`].
+    /// If the scan is refused, see [`Observation::check`].
     ///
     /// # Panics
     /// If the localizer was prepared for known headings.
-    pub fn search_in<'w>(
+    pub fn search_in<'w, 's>(
         &self,
         workspace: &'w mut Workspace,
-        scan: &Scan<'_>,
+        scan: impl Into<Observation<'s>>,
         stop: &dyn Fn() -> bool,
     ) -> Result<Option<&'w Outcome>, EngineError> {
         let index = self.index();
@@ -240,14 +240,14 @@ impl Localizer {
     /// robot may be, roughly.
     ///
     /// # Errors
-    /// If the scan is refused, see [`Scan::check`].
+    /// If the scan is refused, see [`Observation::check`].
     ///
     /// # Panics
     /// If the localizer was prepared for known headings.
-    pub fn block_bounds<'w>(
+    pub fn block_bounds<'w, 's>(
         &self,
         workspace: &'w mut Workspace,
-        scan: &Scan<'_>,
+        scan: impl Into<Observation<'s>>,
     ) -> Result<&'w BlockBounds, EngineError> {
         let index = self.index();
         let Workspace {
@@ -266,13 +266,13 @@ impl Localizer {
     /// outcome.
     ///
     /// # Errors
-    /// If the scan is refused, see [`Scan::check`], or the heading not finite.
+    /// If the scan is refused, see [`Observation::check`], or the heading not finite.
     ///
     /// # Panics
     /// If the localizer was prepared for unknown headings.
-    pub fn search_at(
+    pub fn search_at<'s>(
         &self,
-        scan: &Scan<'_>,
+        scan: impl Into<Observation<'s>>,
         heading: f64,
         stop: &dyn Fn() -> bool,
     ) -> Result<Option<(Outcome, Vec<u16>)>, EngineError> {
@@ -287,14 +287,14 @@ impl Localizer {
     /// said so before the end.
     ///
     /// # Errors
-    /// If the scan is refused, see [`Scan::check`], or the heading not finite.
+    /// If the scan is refused, see [`Observation::check`], or the heading not finite.
     ///
     /// # Panics
     /// If the localizer was prepared for unknown headings.
-    pub fn search_at_in<'w>(
+    pub fn search_at_in<'w, 's>(
         &self,
         workspace: &'w mut Workspace,
-        scan: &Scan<'_>,
+        scan: impl Into<Observation<'s>>,
         heading: f64,
         stop: &dyn Fn() -> bool,
     ) -> Result<Option<&'w Outcome>, EngineError> {

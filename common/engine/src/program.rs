@@ -6,7 +6,7 @@
 
 use crate::EngineError;
 use crate::beams::{Beam, BeamConfig, Chosen};
-use crate::scan::Scan;
+use crate::observation::Observation;
 use crate::space::Space;
 use crate::taper::TaperShape;
 
@@ -104,9 +104,9 @@ impl ScanProgram {
     /// known heading that the heading grid does not hold, else 0.
     ///
     /// # Errors
-    /// If [`Scan::check`] refuses the scan.
-    pub fn new(
-        scan: &Scan<'_>,
+    /// If [`Observation::check`] refuses the scan.
+    pub fn new<'a>(
+        scan: impl Into<Observation<'a>>,
         turn: f64,
         space: &Space,
         config: &VoteConfig,
@@ -121,13 +121,14 @@ impl ScanProgram {
     ///
     /// # Errors
     /// See [`ScanProgram::new`].
-    pub fn compile(
+    pub fn compile<'a>(
         &mut self,
-        scan: &Scan<'_>,
+        scan: impl Into<Observation<'a>>,
         turn: f64,
         space: &Space,
         config: &VoteConfig,
     ) -> Result<(), EngineError> {
+        let scan = scan.into();
         scan.check()?;
         self.chosen.choose(scan, turn, space, &config.beams);
         let full_vote = fitting_full_vote(&self.chosen.beams);
@@ -246,6 +247,7 @@ fn fitting_full_vote(beams: &[Beam]) -> u32 {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::scan::Scan;
 
     fn program(ranges: &[f32], config: &VoteConfig) -> ScanProgram {
         let scan = Scan {

@@ -6,16 +6,18 @@ use messages::ScanHeader;
 
 use crate::EngineError;
 
-/// A scan in the laser's frame, borrowed from wherever it lies.
+/// A scan in the laser's frame as it is seen from above, borrowed from wherever it
+/// lies. Beams are numbered counter-clockwise, whichever way the laser turns.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Scan<'a> {
-    /// Bearing of the first beam, radians counter-clockwise from ahead.
+    /// Bearing of the first range, radians counter-clockwise from ahead.
     pub angle_min: f64,
-    /// From one beam to the next, radians, above zero.
+    /// From one range to the next, radians; below zero where they run clockwise.
     pub angle_increment: f64,
     /// Readings below are no returns, metres.
     pub range_min_m: f32,
-    /// Readings above are no returns, metres.
+    /// Readings at or above are no returns, metres: many drivers report this value
+    /// where nothing came back.
     pub range_max_m: f32,
     /// Metres; NaN, infinite, zero and negative ones are no returns.
     pub ranges: &'a [f32],
@@ -26,12 +28,13 @@ const MAX_RANGES: usize = 65_536;
 
 impl<'a> Scan<'a> {
     /// The scan of a message, which is not copied; [`Scan::check`] is still to
-    /// come.
+    /// come. What a laser saw that hangs upside down is mirrored.
     #[must_use]
     pub fn of(header: &ScanHeader, ranges: &'a [f32]) -> Self {
+        let side = if header.upside_down == 1 { -1.0 } else { 1.0 };
         Scan {
-            angle_min: header.angle_min,
-            angle_increment: header.angle_increment,
+            angle_min: side * header.angle_min,
+            angle_increment: side * header.angle_increment,
             range_min_m: header.range_min_m,
             range_max_m: header.range_max_m,
             ranges,
@@ -42,7 +45,7 @@ impl<'a> Scan<'a> {
     ///
     /// # Errors
     /// If the scan is empty or too long, an angle is not finite, the increment
-    /// is not above zero, the beams cover more than a turn, or the range limits
+    /// is zero, the beams cover more than a turn, or the range limits
     /// contradict each other.
     pub fn check(&self) -> Result<(), EngineError> {
         let beams = self.ranges.len();
@@ -56,12 +59,12 @@ impl<'a> Scan<'a> {
             return Err(EngineError::AngleMin(self.angle_min));
         }
         let angle_increment = self.angle_increment;
-        if !angle_increment.is_finite() || angle_increment <= 0.0 {
+        if !angle_increment.is_finite() || angle_increment == 0.0 {
             return Err(EngineError::AngleIncrement(angle_increment));
         }
         // Drivers that close the turn send its first bearing twice, and store
         // the increment in 32 bits: half a step more than that is let through.
-        let turns = (beams as f64 - 1.5) * angle_increment / TAU;
+        let turns = (beams as f64 - 1.5) * angle_increment.abs() / TAU;
         if turns > 1.0 {
             return Err(EngineError::FieldOfView {
                 beams,
@@ -76,19 +79,43 @@ impl<'a> Scan<'a> {
         Ok(())
     }
 
+    /// How many beams there are.
+    #[must_use]
+    pub fn beams(&self) -> usize {
+        self.ranges.len()
+    }
+
     /// The reading of beam `i` in metres, if something came back.
     #[must_use]
     pub fn reading(&self, i: usize) -> Option<f64> {
-        let range = *self.ranges.get(i)?;
+        let range = *self.ranges.get(self.index(i))?;
         let returned = range.is_finite() && range > 0.0;
-        (returned && range >= self.range_min_m && range <= self.range_max_m)
+        (returned && range >= self.range_min_m && range < self.range_max_m)
             .then(|| f64::from(range))
     }
 
     /// Bearing of beam `i` in radians.
     #[must_use]
     pub fn bearing(&self, i: usize) -> f64 {
-        self.angle_min + i as f64 * self.angle_increment
+        self.bearing_between(i as f64)
+    }
+
+    /// The bearing at a share of the way from one beam to the next, radians.
+    pub(crate) fn bearing_between(&self, i: f64) -> f64 {
+        let index = match self.angle_increment < 0.0 {
+            true => (self.ranges.len() as f64 - 1.0) - i,
+            false => i,
+        };
+        self.angle_min + index * self.angle_increment
+    }
+
+    /// Where beam `i` stands among the ranges, which is the order in which they were
+    /// measured; no beam stands behind the last range.
+    pub(crate) fn index(&self, i: usize) -> usize {
+        match self.angle_increment < 0.0 {
+            true => self.ranges.len().checked_sub(i + 1).unwrap_or(usize::MAX),
+            false => i,
+        }
     }
 }
 
@@ -121,14 +148,8 @@ mod tests {
                 angle_increment: 0.0,
                 ..sound
             },
-            "angle_increment is 0: it must be finite and above zero, in radians, counter-clockwise",
-        );
-        check(
-            Scan {
-                angle_increment: -0.1,
-                ..sound
-            },
-            "angle_increment is -0.1: it must be finite and above zero, in radians, counter-clockwise",
+            "angle_increment is 0: it must be finite and not zero, in radians; below zero is \
+             clockwise",
         );
         check(
             Scan {
@@ -152,6 +173,13 @@ mod tests {
             },
             "3 beams of 7 rad cover 1.67 turns: at most one is allowed",
         );
+        check(
+            Scan {
+                angle_increment: -7.0,
+                ..sound
+            },
+            "3 beams of -7 rad cover 1.67 turns: at most one is allowed",
+        );
     }
 
     #[test]
@@ -165,6 +193,41 @@ mod tests {
     }
 
     #[test]
+    fn beams_run_counter_clockwise_whichever_way_the_laser_turns() {
+        let clockwise = Scan {
+            angle_min: 0.5,
+            angle_increment: -0.25,
+            ..scan(&[1.0, 2.0, 3.0])
+        };
+        assert_eq!(clockwise.check(), Ok(()));
+        let beams: Vec<_> = (0..3)
+            .map(|i| (clockwise.bearing(i), clockwise.reading(i)))
+            .collect();
+        assert_eq!(
+            beams,
+            [(0.0, Some(3.0)), (0.25, Some(2.0)), (0.5, Some(1.0))]
+        );
+        assert_eq!(clockwise.reading(3), None);
+    }
+
+    #[test]
+    fn a_laser_upside_down_sees_its_left_on_the_right() {
+        let header = ScanHeader {
+            angle_min: -0.5,
+            angle_increment: 0.25,
+            range_max_m: 30.0,
+            upside_down: 1,
+            ..bytemuck::Zeroable::zeroed()
+        };
+        let mirrored = Scan::of(&header, &[1.0, 2.0]);
+        assert_eq!(
+            (mirrored.bearing(0), mirrored.reading(0)),
+            (0.25, Some(2.0))
+        );
+        assert_eq!((mirrored.bearing(1), mirrored.reading(1)), (0.5, Some(1.0)));
+    }
+
+    #[test]
     fn readings_that_say_nothing_are_none() {
         let ranges = [
             f32::NAN,
@@ -174,11 +237,12 @@ mod tests {
             0.0,
             0.05,
             30.5,
+            30.0,
             2.5,
         ];
         let scan = scan(&ranges);
-        let readings: Vec<_> = (0..9).map(|i| scan.reading(i)).collect();
-        assert_eq!(readings[..7], [None; 7]);
-        assert_eq!(readings[7..], [Some(2.5), None]);
+        let readings: Vec<_> = (0..10).map(|i| scan.reading(i)).collect();
+        assert_eq!(readings[..8], [None; 8]);
+        assert_eq!(readings[8..], [Some(2.5), None]);
     }
 }

@@ -2,6 +2,8 @@
 
 use nalgebra::{Matrix2, Matrix3, Vector2};
 
+use crate::Pose;
+
 /// Covariance of a pose: rows and columns are x, y (metres) and yaw (radians),
 /// in the frame in which the pose is given.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -25,6 +27,18 @@ impl Covariance {
         Covariance(Matrix3::from_diagonal(
             &[x_m * x_m, y_m * y_m, yaw * yaw].into(),
         ))
+    }
+
+    /// The covariance of pose `of`, where this one is that of pose `known` and the two
+    /// are fixed to each other: a turn about the one moves the other.
+    #[must_use]
+    pub fn carried(self, known: Pose, of: Pose) -> Self {
+        if known == of {
+            return self;
+        }
+        let (dx, dy) = (of.x - known.x, of.y - known.y);
+        let jacobian = Matrix3::new(1.0, 0.0, -dy, 0.0, 1.0, dx, 0.0, 0.0, 1.0);
+        Covariance(jacobian * self.0 * jacobian.transpose())
     }
 
     /// Row by row, as messages carry it.
@@ -75,6 +89,23 @@ impl Covariance {
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn the_base_is_less_sure_to_the_side_than_the_laser_ahead_of_it() {
+        let known = Pose::new(5.0, 5.0, 0.0);
+        let base = Pose::new(4.0, 5.0, 0.0);
+        let covariance = Covariance::from_rows([0.01, 0.0, 0.0, 0.0, 0.01, 0.0, 0.0, 0.0, 0.04]);
+        let expected = [0.01, 0.0, 0.0, 0.0, 0.05, -0.04, 0.0, -0.04, 0.04];
+        let carried = covariance.carried(known, base).to_rows();
+        for (found, expected) in carried.iter().zip(expected) {
+            // A few products and sums.
+            assert!(
+                (found - expected).abs() < 1e-15,
+                "{found} is not {expected}"
+            );
+        }
+        assert_eq!(covariance.carried(known, known), covariance);
+    }
 
     #[test]
     fn rows_round_trip() {

@@ -10,4 +10,4 @@ mod pose;
 
 pub use angle::{angle_between, wrap_angle};
 pub use covariance::{Covariance, Ellipse};
-pub use pose::Pose;
+pub use pose::{Mount, Pose};

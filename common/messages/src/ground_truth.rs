@@ -5,11 +5,11 @@ use iceoryx2_bb_derive_macros::ZeroCopySend;
 use iceoryx2_bb_elementary_traits::zero_copy_send::ZeroCopySend;
 use serde::{Deserialize, Serialize};
 
-use crate::{Name, Pose2, Stamp};
+use crate::{FrameName, Pose2, Stamp};
 
 /// The message of topic `ground_truth`; its `measured_ns` is the scan's.
 #[derive(Debug, Clone, Copy, PartialEq, Pod, Zeroable, ZeroCopySend, Serialize, Deserialize)]
-#[type_name("GroundTruth/v1")]
+#[type_name("GroundTruth/v2")]
 #[repr(C)]
 pub struct GroundTruth {
     /// Of the scan that it belongs to.
@@ -17,11 +17,11 @@ pub struct GroundTruth {
     /// Pose of the laser in the map.
     pub map_from_laser: Pose2,
     /// The frame in which the pose is given.
-    pub frame: Name,
+    pub frame: FrameName,
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
-    crate::pin_layout!(GroundTruth, size 80, align 8, { stamp: 0, map_from_laser: 24, frame: 48 });
+    crate::pin_layout!(GroundTruth, size 304, align 8, { stamp: 0, map_from_laser: 24, frame: 48 });
 }

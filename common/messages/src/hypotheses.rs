@@ -40,7 +40,7 @@ pub struct HypothesesHeader {
 
 /// One place where the robot may be.
 #[derive(Debug, Clone, Copy, PartialEq, Pod, Zeroable, ZeroCopySend, Serialize, Deserialize)]
-#[type_name("Hypothesis/v2")]
+#[type_name("Hypothesis/v3")]
 #[repr(C)]
 pub struct Hypothesis {
     /// Pose of the laser in the map.
@@ -59,6 +59,8 @@ pub struct Hypothesis {
     pub intensity: u64,
     /// Votes that led there.
     pub support: u64,
+    /// The map that `map_from_laser` is about.
+    pub map_id: u64,
 }
 
 /// What the scan allows to say about the pose.
@@ -113,9 +115,9 @@ mod tests {
 
     mod hypothesis {
         use super::*;
-        crate::pin_layout!(Hypothesis, size 144, align 8, {
+        crate::pin_layout!(Hypothesis, size 152, align 8, {
             map_from_laser: 0, map_from_base: 24, covariance: 48, score: 120,
-            probability: 124, intensity: 128, support: 136,
+            probability: 124, intensity: 128, support: 136, map_id: 144,
         });
     }
 }

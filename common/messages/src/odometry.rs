@@ -5,11 +5,11 @@ use iceoryx2_bb_derive_macros::ZeroCopySend;
 use iceoryx2_bb_elementary_traits::zero_copy_send::ZeroCopySend;
 use serde::{Deserialize, Serialize};
 
-use crate::{Name, Pose2, Stamp};
+use crate::{FrameName, Pose2, Stamp};
 
 /// The message of topic `odometry`.
 #[derive(Debug, Clone, Copy, PartialEq, Pod, Zeroable, ZeroCopySend, Serialize, Deserialize)]
-#[type_name("Odometry/v1")]
+#[type_name("Odometry/v2")]
 #[repr(C)]
 pub struct Odometry {
     /// Of the measurement.
@@ -21,15 +21,15 @@ pub struct Odometry {
     /// Covariance of the pose, row by row over x, y and yaw: m², m·rad, rad².
     pub covariance: [f64; 9],
     /// The frame in which the pose is given.
-    pub frame: Name,
+    pub frame: FrameName,
     /// The frame that moves: the robot's base or the laser.
-    pub child_frame: Name,
+    pub child_frame: FrameName,
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
-    crate::pin_layout!(Odometry, size 208, align 8, {
-        stamp: 0, odom_from_child: 24, twist: 48, covariance: 72, frame: 144, child_frame: 176,
+    crate::pin_layout!(Odometry, size 656, align 8, {
+        stamp: 0, odom_from_child: 24, twist: 48, covariance: 72, frame: 144, child_frame: 400,
     });
 }

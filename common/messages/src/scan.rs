@@ -5,19 +5,20 @@ use iceoryx2_bb_derive_macros::ZeroCopySend;
 use iceoryx2_bb_elementary_traits::zero_copy_send::ZeroCopySend;
 use serde::{Deserialize, Serialize};
 
-use crate::{Name, Pose2, Stamp};
+use crate::{FrameName, Name, Pose2, Stamp};
 
 /// Header of topic `scan`; the items are ranges in metres. Beam `i` points to
 /// `angle_min + i · angle_increment` in the laser's frame.
 #[derive(Debug, Clone, Copy, PartialEq, Pod, Zeroable, ZeroCopySend, Serialize, Deserialize)]
-#[type_name("ScanHeader/v1")]
+#[type_name("ScanHeader/v2")]
 #[repr(C)]
 pub struct ScanHeader {
     /// Of the first beam.
     pub stamp: Stamp,
     /// Bearing of the first beam, radians counter-clockwise from ahead.
     pub angle_min: f64,
-    /// From one beam to the next, radians; positive is counter-clockwise.
+    /// From one beam to the next, radians; below zero where the laser turns
+    /// clockwise.
     pub angle_increment: f64,
     /// From one beam to the next, seconds; 0 where unknown.
     pub time_increment_s: f64,
@@ -25,21 +26,27 @@ pub struct ScanHeader {
     pub scan_time_s: f64,
     /// Readings below are no returns, metres.
     pub range_min_m: f32,
-    /// Readings above are no returns, metres.
+    /// Readings at or above are no returns, metres.
     pub range_max_m: f32,
     /// Where the laser sits on the robot; identity unless `mount_known`.
     pub base_from_laser: Pose2,
     /// 1 where the mount was given by a transform or the configuration, else 0.
     pub mount_known: u64,
+    /// 1 where the laser hangs upside down (rolled by half a turn about its x axis):
+    /// seen from above, bearing b of a beam is -b. Else 0.
+    pub upside_down: u64,
+    /// Which of several lasers it is; empty where the graph has one.
+    pub laser: Name,
     /// The laser's frame.
-    pub frame: Name,
+    pub frame: FrameName,
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
-    crate::pin_layout!(ScanHeader, size 128, align 8, {
+    crate::pin_layout!(ScanHeader, size 392, align 8, {
         stamp: 0, angle_min: 24, angle_increment: 32, time_increment_s: 40, scan_time_s: 48,
-        range_min_m: 56, range_max_m: 60, base_from_laser: 64, mount_known: 88, frame: 96,
+        range_min_m: 56, range_max_m: 60, base_from_laser: 64, mount_known: 88, upside_down: 96,
+        laser: 104, frame: 136,
     });
 }

@@ -5,8 +5,8 @@ use iceoryx2_bb_elementary_traits::zero_copy_send::ZeroCopySend;
 
 use crate::{
     Beam, BeamsHeader, BoundaryCell, BoundaryHeader, Corner, FieldHeader, GroundTruth,
-    HealthHeader, HypothesesHeader, Hypothesis, LogHeader, MapHeader, Odometry, RegionHeader,
-    SaveHeader, ScanHeader, Vote, VotesHeader,
+    HealthHeader, HypothesesHeader, Hypothesis, LogHeader, MapHeader, Odometry, Reading,
+    ReadingsHeader, RegionHeader, SaveHeader, ScanHeader, Vote, VotesHeader,
 };
 
 /// Plain data that one process may write and another may read in place.
@@ -61,8 +61,8 @@ macro_rules! topics {
 }
 
 topics! {
-    /// Ranges in metres, counter-clockwise; infinity where nothing came back.
-    Scan = "scan", ScanHeader, [f32];
+    /// Ranges in metres, in the order of the beams; infinity where nothing came back.
+    Scan = "scan", ScanHeader, [f32] { depth: 8, publishers: 8 };
     /// The pose that wheels report, with twist; no items.
     OdometryTopic = "odometry", Odometry, [u8] { depth: 16 };
     /// Occupancy, row by row from the lowest y: 0 free to 100 occupied, 255 unknown.
@@ -71,6 +71,8 @@ topics! {
     Boundary = "boundary", BoundaryHeader, [BoundaryCell] { latched: true, depth: 1 };
     /// The poses at or above the floor, most votes first.
     Votes = "votes", VotesHeader, [Vote];
+    /// What the second stage judges of a scan that was joined or moved.
+    Readings = "readings", ReadingsHeader, [Reading];
     /// The intensity image, row by row from the lowest y.
     Field = "field", FieldHeader, [u16] { depth: 1 };
     /// Where the robot may be, best first.

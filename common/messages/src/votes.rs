@@ -11,7 +11,7 @@ use crate::{Pose2, Stamp};
 /// by (heading, y, x): all at or above `certified_floor`, and distinct candidates
 /// below.
 #[derive(Debug, Clone, Copy, PartialEq, Pod, Zeroable, ZeroCopySend, Serialize, Deserialize)]
-#[type_name("VotesHeader/v3")]
+#[type_name("VotesHeader/v4")]
 #[repr(C)]
 pub struct VotesHeader {
     /// Of the scan.
@@ -63,6 +63,11 @@ pub struct VotesHeader {
     pub pooling: u32,
     /// Arc at the reading from which a beam counts fully, metres.
     pub beam_arc_m: f64,
+    /// 1 where topic `readings` holds what the second stage is to judge: the scan
+    /// was joined from several lasers, or its motion was taken out. Else 0.
+    pub has_readings: u32,
+    /// Lasers of which the scan was joined.
+    pub lasers_used: u32,
 }
 
 /// How a search ended.
@@ -108,12 +113,13 @@ pub struct Vote {
 #[cfg(test)]
 mod tests {
     use super::*;
-    crate::pin_layout!(VotesHeader, size 168, align 8, {
+    crate::pin_layout!(VotesHeader, size 176, align 8, {
         stamp: 0, map_id: 24, total: 32, engine_ns: 40, poses_evaluated: 48, outcome: 56,
         headings: 60, floor: 64, certified_floor: 68, best: 72, highest_possible: 76,
         truncated: 80, beams_used: 84, heading_known: 88, beams_silent: 92, known_heading: 96,
         bearing_rounding: 104, base_from_laser: 112, mount_known: 136,
-        occupied_from: 144, free_to: 148, max_beams: 152, pooling: 156, beam_arc_m: 160,
+        occupied_from: 144, free_to: 148, max_beams: 152, pooling: 156, beam_arc_m: 160, has_readings: 168,
+        lasers_used: 172,
     });
 
     mod vote {

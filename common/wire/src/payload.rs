@@ -153,7 +153,7 @@ fn packing<T: Wire>(error: impl std::error::Error + Send + Sync + 'static) -> Wi
 #[cfg(test)]
 mod tests {
     use bytemuck::Zeroable;
-    use messages::{HealthHeader, MapHeader, Name, ScanHeader, Stamp, topic};
+    use messages::{FrameName, HealthHeader, MapHeader, Name, ScanHeader, Stamp, topic};
     use proptest::prelude::*;
 
     use super::*;
@@ -173,7 +173,7 @@ mod tests {
             },
             angle_min: -1.5,
             angle_increment: 0.5,
-            frame: Name::new("laser"),
+            frame: FrameName::new("laser"),
             ..Zeroable::zeroed()
         }
     }

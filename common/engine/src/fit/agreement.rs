@@ -65,8 +65,9 @@ impl Terrain {
         let sigma = config.sigma_cells(self.frame.resolution_m);
         let turn = pose.heading.sin_cos();
         for end in &ends.ends {
-            let direction = end.direction(turn);
-            let (value, class) = self.judge_beam(end.reading, direction, pose, (sigma, config));
+            let (direction, (x, y)) = (end.direction(turn), end.start(turn));
+            let laser = (pose.x + x, pose.y + y);
+            let (value, class) = self.judge_beam(end.reading, direction, laser, (sigma, config));
             take(end, value, class);
         }
     }
@@ -76,13 +77,13 @@ impl Terrain {
         &self,
         reading: f64,
         (dx, dy): (f64, f64),
-        pose: GridPose,
+        (x, y): (f64, f64),
         (sigma, config): (f64, &FitConfig),
     ) -> (f64, BeamClass) {
-        let end = self.distance(pose.x + reading * dx, pose.y + reading * dy);
+        let end = self.distance(x + reading * dx, y + reading * dy);
         let off = end.map_or(f64::INFINITY, |(distance, _)| distance / sigma);
         let near = (-0.5 * off * off).exp();
-        let way = self.look((pose.x, pose.y), (dx, dy), reading);
+        let way = self.look((x, y), (dx, dy), reading);
         let longest = reading - THROUGH_SIGMAS * sigma;
         let is_through = way.occupied.is_some_and(|occupied| occupied < longest);
         let value = match (way.unknown, is_through) {
@@ -127,7 +128,12 @@ mod tests {
 
     fn ends(readings: &[(f64, f64)]) -> Ends {
         let end = |&(degrees, reading): &(f64, f64)| {
-            End::new(degrees.to_radians(), (0.1 * reading, reading), 1.0)
+            End::new(
+                (0.0, 0.0),
+                degrees.to_radians(),
+                (0.1 * reading, reading),
+                1.0,
+            )
         };
         Ends::of(readings.iter().map(end).collect())
     }

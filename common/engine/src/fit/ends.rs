@@ -1,9 +1,12 @@
-//! Where the beams of a scan end, seen from the laser.
+//! Where the beams of a scan end, seen from the frame whose pose is sought.
+
+use messages::Reading;
 
 use super::BeamClass;
 use crate::EngineError;
-use crate::beams::{Beam, BeamConfig, Chosen};
-use crate::scan::Scan;
+use crate::beams::{BeamConfig, Chosen};
+use crate::fit::readings::{Readings, is_sound};
+use crate::observation::Observation;
 use crate::space::Space;
 
 /// The end points of a scan's beams, in cells; by default those of a scan
@@ -13,6 +16,8 @@ use crate::space::Space;
 pub struct Ends {
     chosen: Chosen,
     pub(super) ends: Vec<End>,
+    silent: Vec<f64>,
+    readings: Readings,
     /// The weights of all beams together.
     pub(super) weight: f64,
 }
@@ -20,11 +25,14 @@ pub struct Ends {
 /// Where a beam ends.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(super) struct End {
-    /// In the laser's frame, radians.
+    /// Where the laser was, cells in the frame that is sought; its origin where the
+    /// laser stood still.
+    pub from: (f64, f64),
+    /// In the frame that is sought, radians.
     pub bearing: f64,
-    /// Metres.
+    /// Metres from the laser.
     pub reading_m: f64,
-    /// The unit vector along the beam, in the laser's frame.
+    /// The unit vector along the beam, in the frame that is sought.
     pub towards: (f64, f64),
     /// Cells.
     pub reading: f64,
@@ -33,12 +41,17 @@ pub(super) struct End {
 }
 
 impl Ends {
-    /// The ends of the beams that vote, of the scan as it is: bearings are not
-    /// rounded.
+    /// The ends of a scan's beams, thinned as for voting; bearings are not rounded.
+    /// Where several lasers are joined, they are the beams of each, seen from its
+    /// own place.
     ///
     /// # Errors
-    /// If [`Scan::check`] refuses the scan.
-    pub fn new(scan: &Scan<'_>, space: &Space, config: &BeamConfig) -> Result<Self, EngineError> {
+    /// If [`Observation::check`] refuses the scan.
+    pub fn new<'a>(
+        scan: impl Into<Observation<'a>>,
+        space: &Space,
+        config: &BeamConfig,
+    ) -> Result<Self, EngineError> {
         let mut ends = Ends::default();
         ends.find(scan, space, config)?;
         Ok(ends)
@@ -49,21 +62,65 @@ impl Ends {
     ///
     /// # Errors
     /// See [`Ends::new`].
-    pub fn find(
+    pub fn find<'a>(
         &mut self,
-        scan: &Scan<'_>,
+        scan: impl Into<Observation<'a>>,
         space: &Space,
         config: &BeamConfig,
     ) -> Result<(), EngineError> {
-        scan.check()?;
-        self.chosen.choose(scan, 0.0, space, config);
-        let end = |beam: &Beam| {
-            let reading = beam.reading_m / space.resolution_m;
-            End::new(beam.angle, (beam.reading_m, reading), beam.weight)
-        };
+        let scan = scan.into();
+        match scan {
+            Observation::Still(scan) => {
+                scan.check()?;
+                self.clear();
+                self.chosen.choose((&scan).into(), 0.0, space, config);
+                let cell_m = space.resolution_m;
+                self.ends.extend(self.chosen.beams.iter().map(|beam| {
+                    let reading = (beam.reading_m, beam.reading_m / cell_m);
+                    End::new((0.0, 0.0), beam.angle, reading, beam.weight)
+                }));
+                self.silent.extend_from_slice(&self.chosen.silent);
+                self.weight = self.ends.iter().map(|end| end.weight).sum();
+                Ok(())
+            }
+            Observation::Carried(_) => {
+                let mut readings = std::mem::take(&mut self.readings);
+                let found = readings.find(scan, space, config);
+                let taken = found.and_then(|()| self.take(&readings.found, space.resolution_m));
+                self.readings = readings;
+                taken
+            }
+        }
+    }
+
+    fn clear(&mut self) {
         self.ends.clear();
-        self.ends.extend(self.chosen.beams.iter().map(end));
-        self.weight = self.ends.iter().map(|end| end.weight).sum();
+        self.silent.clear();
+        self.weight = 0.0;
+    }
+
+    /// Takes the beams from a message, in the room of a scan before.
+    ///
+    /// # Errors
+    /// If a number is not finite, or a beam has no length or a weight that none can
+    /// have; nothing is left then.
+    pub fn take(&mut self, readings: &[Reading], resolution_m: f64) -> Result<(), EngineError> {
+        self.clear();
+        for (beam, reading) in readings.iter().enumerate() {
+            if !is_sound(reading) {
+                self.clear();
+                return Err(EngineError::Reading { beam });
+            }
+            if reading.range_m == f64::INFINITY {
+                self.silent.push(reading.bearing);
+                continue;
+            }
+            let from = (reading.from_x / resolution_m, reading.from_y / resolution_m);
+            let range = (reading.range_m, reading.range_m / resolution_m);
+            let end = End::new(from, reading.bearing, range, reading.weight);
+            self.weight += end.weight;
+            self.ends.push(end);
+        }
         Ok(())
     }
 
@@ -72,7 +129,7 @@ impl Ends {
         Ends {
             weight: ends.iter().map(|end| end.weight).sum(),
             ends,
-            chosen: Chosen::default(),
+            ..Ends::default()
         }
     }
 }
@@ -80,9 +137,10 @@ impl Ends {
 /// A beam, and what became of it.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct JudgedBeam {
-    /// In the laser's frame, counter-clockwise from ahead, radians.
+    /// Where it ends, seen from the origin of the frame that is sought (the laser's
+    /// where it stood still): counter-clockwise from ahead, radians.
     pub bearing: f64,
-    /// Metres.
+    /// Metres from there.
     pub reading_m: f64,
     /// How much it counted.
     pub weight: f64,
@@ -95,11 +153,14 @@ impl Ends {
     /// [`Terrain::classes`](super::Terrain::classes).
     pub fn judged(&self, classes: &[BeamClass]) -> impl Iterator<Item = JudgedBeam> {
         let both = self.ends.iter().zip(classes);
-        both.map(|(end, &class)| JudgedBeam {
-            bearing: end.bearing,
-            reading_m: end.reading_m,
-            weight: end.weight,
-            class,
+        both.map(|(end, &class)| {
+            let (bearing, reading_m) = end.from_origin();
+            JudgedBeam {
+                bearing,
+                reading_m,
+                weight: end.weight,
+                class,
+            }
         })
     }
 
@@ -128,10 +189,10 @@ impl Ends {
         self.weight * self.weight / squares.max(f64::MIN_POSITIVE)
     }
 
-    /// Bearings of the beams that say nothing, in the laser's frame, radians.
+    /// Bearings of the beams that say nothing, in the frame that is sought, radians.
     #[must_use]
     pub fn silent(&self) -> &[f64] {
-        &self.chosen.silent
+        &self.silent
     }
 
     /// Share of the beams by weight that are of a class, 0..=1; `classes` are
@@ -146,10 +207,16 @@ impl Ends {
 }
 
 impl End {
-    /// An end at a bearing; the reading in metres and in cells.
-    pub(super) fn new(bearing: f64, (reading_m, reading): (f64, f64), weight: f64) -> Self {
+    /// An end at a bearing from a place in cells; the reading in metres and in cells.
+    pub(super) fn new(
+        from: (f64, f64),
+        bearing: f64,
+        (reading_m, reading): (f64, f64),
+        weight: f64,
+    ) -> Self {
         let (sin, cos) = bearing.sin_cos();
         End {
+            from,
             bearing,
             reading_m,
             towards: (cos, sin),
@@ -158,12 +225,35 @@ impl End {
         }
     }
 
-    /// The direction of the beam where the laser is turned.
+    /// The direction of the beam where the sought frame is turned.
     #[inline]
-    pub(super) fn direction(&self, (sin, cos): (f64, f64)) -> (f64, f64) {
-        let (x, y) = self.towards;
-        (x * cos - y * sin, x * sin + y * cos)
+    pub(super) fn direction(&self, turn: (f64, f64)) -> (f64, f64) {
+        turned(self.towards, turn)
     }
+
+    /// Where the laser was from the sought frame's origin, where that is turned.
+    #[inline]
+    pub(super) fn start(&self, turn: (f64, f64)) -> (f64, f64) {
+        turned(self.from, turn)
+    }
+
+    /// Where the beam ends, seen from the origin of the sought frame: bearing and
+    /// metres.
+    fn from_origin(&self) -> (f64, f64) {
+        if self.from == (0.0, 0.0) {
+            return (self.bearing, self.reading_m);
+        }
+        let x = self.from.0 + self.reading * self.towards.0;
+        let y = self.from.1 + self.reading * self.towards.1;
+        let cell_m = self.reading_m / self.reading;
+        (y.atan2(x), x.hypot(y) * cell_m)
+    }
+}
+
+/// A vector that is turned by an angle, given as sine and cosine.
+#[inline]
+fn turned((x, y): (f64, f64), (sin, cos): (f64, f64)) -> (f64, f64) {
+    (x * cos - y * sin, x * sin + y * cos)
 }
 
 #[cfg(test)]
@@ -173,7 +263,9 @@ mod tests {
     #[test]
     fn a_scan_sees_another_piece_where_readings_leap() {
         let ends = |readings: &[(f64, f64)]| {
-            let end = |&(reading_m, weight): &(f64, f64)| End::new(0.0, (reading_m, 0.0), weight);
+            let end = |&(reading_m, weight): &(f64, f64)| {
+                End::new((0.0, 0.0), 0.0, (reading_m, 0.0), weight)
+            };
             Ends::of(readings.iter().map(end).collect())
         };
         let check = |readings: &[(f64, f64)], expected: f64| {

@@ -19,12 +19,14 @@ pub(crate) mod distance;
 #[cfg(test)]
 mod drawn;
 mod ends;
+mod readings;
 mod refine;
 mod terrain;
 
 pub use agreement::BeamClass;
 pub use config::FitConfig;
 pub use ends::{Ends, JudgedBeam};
+pub use readings::Readings;
 pub use refine::Refined;
 pub use terrain::Terrain;
 

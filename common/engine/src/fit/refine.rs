@@ -79,7 +79,8 @@ impl Terrain {
         let mut sums = Sums::default();
         for end in &ends.ends {
             let (dx, dy) = end.direction(turn);
-            let (ahead, aside) = (end.reading * dx, end.reading * dy);
+            let (x, y) = end.start(turn);
+            let (ahead, aside) = (x + end.reading * dx, y + end.reading * dy);
             let Some((distance, [along_x, along_y])) =
                 self.distance(pose.x + ahead, pose.y + aside)
             else {
@@ -185,7 +186,7 @@ mod tests {
             let reading = (0..4000)
                 .map(|step| 0.01 * f64::from(step))
                 .find(is_at_wall)?;
-            Some(End::new(angle, (0.1 * reading, reading), 1.0))
+            Some(End::new((0.0, 0.0), angle, (0.1 * reading, reading), 1.0))
         };
         let ends = (-180..180).step_by(3).filter_map(end);
         Ends::of(ends.collect())

@@ -10,6 +10,7 @@ use crate::fit::{Ends, Terrain};
 use crate::grid::drawn::grid;
 use crate::peaks::{self, PeakConfig, PeakInput};
 use crate::reference;
+use crate::scan::Scan;
 use crate::testing::{AnyScan, RESOLUTION_M, any_grid, any_scan};
 
 /// An L-shaped room with a pillar: no pose looks like another.

@@ -78,7 +78,8 @@ fn in_map(frame: GridFrame, in_cells: Matrix3<f64>) -> Covariance {
 /// One place where the robot may be.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Place {
-    /// Pose of the laser.
+    /// Pose of the frame that was sought: the laser or, where several are joined,
+    /// the base.
     pub map_from_laser: Pose,
     /// The peak's spread, in the map frame.
     pub covariance: Covariance,
@@ -115,18 +116,64 @@ pub struct Places {
 }
 
 impl Place {
-    /// As a message says it, where the laser sits on the robot like this.
+    /// As a message says it.
     #[must_use]
-    pub fn hypothesis(&self, laser_from_base: Pose) -> Hypothesis {
+    pub fn hypothesis(&self, map_id: u64, sought: Sought) -> Hypothesis {
+        let map_from_laser = sought.laser(self.map_from_laser);
         Hypothesis {
-            map_from_laser: self.map_from_laser.into(),
-            map_from_base: self.map_from_laser.then(laser_from_base).into(),
-            covariance: self.covariance.to_rows(),
+            map_id,
+            map_from_laser: map_from_laser.into(),
+            map_from_base: sought.base(self.map_from_laser).into(),
+            covariance: self
+                .covariance
+                .carried(self.map_from_laser, map_from_laser)
+                .to_rows(),
             score: self.score as f32,
             probability: self.probability as f32,
             intensity: self.intensity.into(),
             support: self.support,
         }
+    }
+}
+
+/// Whose poses were sought, and how it lies to the first laser and to the base.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Sought {
+    sought_from_laser: Pose,
+    sought_from_base: Pose,
+}
+
+impl Sought {
+    /// The laser, which may have a known place on the base, or the base of several
+    /// lasers, of which the first has one.
+    #[must_use]
+    pub fn of(base_from_laser: Option<Pose>, is_base: bool) -> Self {
+        let base_from_laser = base_from_laser.unwrap_or(Pose::IDENTITY);
+        match is_base {
+            true => Sought {
+                sought_from_laser: base_from_laser,
+                sought_from_base: Pose::IDENTITY,
+            },
+            false => Sought {
+                sought_from_laser: Pose::IDENTITY,
+                sought_from_base: base_from_laser.inverse(),
+            },
+        }
+    }
+
+    /// The first laser's pose where the sought frame has this one.
+    #[must_use]
+    pub fn laser(self, map_from_sought: Pose) -> Pose {
+        match self.sought_from_laser == Pose::IDENTITY {
+            true => map_from_sought,
+            false => map_from_sought.then(self.sought_from_laser),
+        }
+    }
+
+    /// The base's pose where the sought frame has this one.
+    #[must_use]
+    pub fn base(self, map_from_sought: Pose) -> Pose {
+        map_from_sought.then(self.sought_from_base)
     }
 }
 

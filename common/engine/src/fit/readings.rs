@@ -1,0 +1,174 @@
+//! The beams of carried scans, as the second stage judges them: each from its own
+//! laser's place.
+
+use messages::Reading;
+
+use crate::EngineError;
+use crate::beams::{BeamConfig, Chosen};
+use crate::observation::{CarriedScan, Observation};
+use crate::space::Space;
+
+/// The beams of an observation, in the frame that is sought; found anew for each
+/// scan, in the room of the one before.
+#[derive(Debug, Clone, Default, PartialEq)]
+pub struct Readings {
+    chosen: Chosen,
+    /// Those that end somewhere, laser by laser, and behind them those of which
+    /// nothing returned.
+    pub found: Vec<Reading>,
+}
+
+impl Readings {
+    /// The beams of each laser, thinned as for voting; none of a scan as it came.
+    ///
+    /// # Errors
+    /// If [`Observation::check`] refuses the scan; those of the scan before stay.
+    pub fn find(
+        &mut self,
+        observation: Observation<'_>,
+        space: &Space,
+        config: &BeamConfig,
+    ) -> Result<(), EngineError> {
+        observation.check()?;
+        self.found.clear();
+        let Observation::Carried(scans) = observation else {
+            return Ok(());
+        };
+        for carried in scans {
+            self.add(carried, space, config);
+        }
+        // Ends first; the order among them stays.
+        self.found
+            .sort_by_key(|reading| reading.range_m == f64::INFINITY);
+        Ok(())
+    }
+
+    fn add(&mut self, carried: &CarriedScan<'_>, space: &Space, config: &BeamConfig) {
+        self.chosen
+            .choose((&carried.scan).into(), 0.0, space, config);
+        self.found.extend(self.chosen.beams.iter().map(|beam| {
+            let laser = carried.laser(beam.index);
+            Reading {
+                from_x: laser.x,
+                from_y: laser.y,
+                bearing: laser.yaw + beam.angle,
+                range_m: beam.reading_m,
+                weight: beam.weight,
+            }
+        }));
+        let turn = carried.laser(carried.scan.beams() / 2).yaw;
+        self.found
+            .extend(self.chosen.silent.iter().map(|bearing| Reading {
+                bearing: turn + bearing,
+                range_m: f64::INFINITY,
+                ..Reading::default()
+            }));
+    }
+}
+
+/// Whether a reading that came from elsewhere is one.
+pub(super) fn is_sound(reading: &Reading) -> bool {
+    let Reading {
+        from_x,
+        from_y,
+        bearing,
+        range_m,
+        weight,
+    } = *reading;
+    let numbers = [from_x, from_y, bearing, weight];
+    numbers.iter().all(|number| number.is_finite())
+        && range_m > 0.0
+        && (0.0..=2.0).contains(&weight)
+}
+
+#[cfg(test)]
+mod tests {
+    use geometry::Pose;
+
+    use super::*;
+    use crate::fit::Ends;
+    use crate::scan::Scan;
+
+    fn space() -> Space {
+        Space::new(360, 0.1, 500, 500).unwrap()
+    }
+
+    fn scan(ranges: &[f32]) -> Scan<'_> {
+        Scan {
+            angle_min: -1.0,
+            angle_increment: 0.25,
+            range_min_m: 0.0,
+            range_max_m: 30.0,
+            ranges,
+        }
+    }
+
+    #[test]
+    fn a_scan_carried_nowhere_is_the_scan_as_it_came() {
+        let ranges = [1.0, f32::INFINITY, 3.0, 4.5, 30.0, 2.0];
+        let (still, config) = (scan(&ranges), BeamConfig::default());
+        let carried = [CarriedScan {
+            scan: still,
+            sought_from_laser: &[Pose::IDENTITY; 6],
+        }];
+        let expected = Ends::new(&still, &space(), &config).unwrap();
+        let found = Ends::new(Observation::Carried(&carried), &space(), &config).unwrap();
+        assert_eq!(found.ends, expected.ends);
+        assert_eq!(found.silent(), expected.silent());
+        assert_eq!(found.weight, expected.weight);
+    }
+
+    #[test]
+    fn each_beam_is_seen_from_its_own_lasers_place() {
+        let ranges = [2.0; 2];
+        let at = |x| Pose::new(x, 0.0, 0.5);
+        let scans = [
+            CarriedScan {
+                scan: scan(&ranges),
+                sought_from_laser: &[at(1.0), at(2.0)],
+            },
+            CarriedScan {
+                scan: scan(&[f32::NAN]),
+                sought_from_laser: &[at(3.0)],
+            },
+        ];
+        let mut readings = Readings::default();
+        let observation = Observation::Carried(&scans);
+        readings
+            .find(observation, &space(), &BeamConfig::default())
+            .unwrap();
+        let told = readings.found.iter();
+        let told: Vec<_> = told.map(|r| (r.from_x, r.bearing, r.range_m)).collect();
+        let silent = (0.0, -0.5, f64::INFINITY);
+        assert_eq!(told, [(1.0, -0.5, 2.0), (2.0, -0.25, 2.0), silent]);
+    }
+
+    #[test]
+    fn readings_from_elsewhere_are_checked() {
+        let sound = Reading {
+            range_m: 1.0,
+            weight: 1.0,
+            ..Reading::default()
+        };
+        let mut ends = Ends::default();
+        ends.take(&[sound], 0.1).unwrap();
+        for broken in [
+            Reading {
+                range_m: -1.0,
+                ..sound
+            },
+            Reading {
+                bearing: f64::NAN,
+                ..sound
+            },
+            Reading {
+                weight: 3.0,
+                ..sound
+            },
+        ] {
+            let refused = ends.take(&[sound, broken], 0.1);
+            assert_eq!(refused, Err(EngineError::Reading { beam: 1 }));
+            assert_eq!(ends.silent().len() + ends.ends.len(), 0);
+        }
+    }
+}

@@ -1,0 +1,332 @@
+//! Brings what lasers saw to one time and place: several scans become one, and the
+//! motion within a scan is taken out.
+//!
+//! Each beam is carried by the odometry from where its laser was when it measured
+//! to where the sought frame was at the stamp of the first laser's scan: that
+//! laser's own frame where the graph has one, the base where several are joined.
+//! Pure: when a scan comes and for how long odometry is waited for, others decide.
+
+mod config;
+mod laser;
+
+use geometry::Pose;
+use messages::{FrameName, Name, Odometry, ScanHeader};
+
+pub use config::{JoinConfig, ScanStamp};
+
+use crate::EngineError;
+use crate::motion::Motion;
+use crate::observation::{CarriedScan, Observation};
+use laser::Laser;
+
+/// Samples of odometry that are kept: ten seconds at 100 Hz.
+const ODOMETRY_KEPT: usize = 1024;
+
+/// The newest scan of each laser, and how the robot moved.
+#[derive(Debug, Clone)]
+pub struct Joiner {
+    config: JoinConfig,
+    motion: Motion,
+    /// The frame that the odometry is about.
+    child_frame: FrameName,
+    /// In the order in which they are configured; one where none are.
+    lasers: Vec<Laser>,
+    /// Those that the last answer joins.
+    used: Vec<usize>,
+    is_carried: bool,
+}
+
+/// What a scan that came is for.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Role {
+    /// It is to be answered.
+    Trigger,
+    /// It waits for a scan of the first laser.
+    Kept,
+    /// It is of a laser that is not joined.
+    Other,
+}
+
+/// How scans were brought to one time.
+#[derive(Debug, Clone, PartialEq, Default)]
+pub struct Brought {
+    /// Lasers that were joined.
+    pub lasers: u32,
+    /// Those that were left out, and why.
+    pub left_out: Vec<(Name, LeftOut)>,
+    /// How their motion was known.
+    pub motion: MotionKnown,
+}
+
+/// How the motion within a scan, and between scans, was known.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+pub enum MotionKnown {
+    /// It was not asked for: all beams are of one time.
+    #[default]
+    NotNeeded,
+    /// By odometry around the scans.
+    ByOdometry,
+    /// Odometry ended before the last beam, and its last twist was taken to go on.
+    LastTwist,
+    /// No odometry reaches the scan; the robot is taken to have stood still.
+    Unknown,
+}
+
+/// Why a laser was left out.
+#[derive(Debug, Clone, PartialEq, thiserror::Error)]
+pub enum LeftOut {
+    /// It sent nothing yet.
+    #[error("no scan has come")]
+    NoScan,
+    /// Its newest scan is too old.
+    #[error("its newest scan is {age_ms} ms older, more than one and a half of its periods")]
+    Old {
+        /// Milliseconds before the first laser's scan.
+        age_ms: i64,
+    },
+    /// It is not known where it sits.
+    #[error("it is not known where it sits on the base")]
+    NoMount,
+    /// The robot moves, and odometry does not reach the scan.
+    #[error("no odometry tells how the robot moved since")]
+    NoOdometry,
+    /// Its scan is refused.
+    #[error(transparent)]
+    Refused(EngineError),
+}
+
+/// The scans of an answer.
+#[derive(Debug)]
+pub enum Seen<'a> {
+    /// One, as it came.
+    Still(crate::scan::Scan<'a>),
+    /// Some, carried into the sought frame.
+    Carried(Vec<CarriedScan<'a>>),
+}
+
+impl Seen<'_> {
+    /// What is to be looked for.
+    #[must_use]
+    pub fn observation(&self) -> Observation<'_> {
+        match self {
+            Seen::Still(scan) => Observation::Still(*scan),
+            Seen::Carried(scans) => Observation::Carried(scans),
+        }
+    }
+}
+
+impl Joiner {
+    /// Nothing has come yet.
+    #[must_use]
+    pub fn new(config: JoinConfig) -> Self {
+        let lasers: Vec<Laser> = match &config.scans[..] {
+            [] => vec![Laser::new(Name::new(""))],
+            names => names
+                .iter()
+                .map(|name| Laser::new(Name::new(name)))
+                .collect(),
+        };
+        Joiner {
+            motion: Motion::keeping(ODOMETRY_KEPT),
+            child_frame: FrameName::new(""),
+            used: Vec::with_capacity(lasers.len()),
+            is_carried: false,
+            lasers,
+            config,
+        }
+    }
+
+    /// Keeps all odometry, as for a recording that is read at once.
+    #[must_use]
+    pub fn keeping_all(config: JoinConfig) -> Self {
+        Joiner {
+            motion: Motion::keeping(usize::MAX),
+            ..Joiner::new(config)
+        }
+    }
+
+    /// Whether poses are the base's, and not the laser's.
+    #[must_use]
+    pub fn seeks_base(&self) -> bool {
+        self.lasers.len() > 1
+    }
+
+    /// Takes odometry.
+    pub fn on_odometry(&mut self, odometry: &Odometry) {
+        let stamp_ns = odometry
+            .stamp
+            .measured_ns
+            .saturating_add(self.config.delay_ns());
+        self.child_frame = odometry.child_frame;
+        self.motion.add(stamp_ns, odometry.odom_from_child.into());
+    }
+
+    /// Takes a scan; it is checked when it is brought to one time with the others.
+    pub fn on_scan(&mut self, header: &ScanHeader, ranges: &[f32]) -> Role {
+        let is_meant = |laser: &Laser| self.config.scans.is_empty() || laser.name == header.laser;
+        match self.lasers.iter().position(is_meant) {
+            Some(index) => {
+                self.lasers[index].take(header, ranges, self.config.scan_stamp);
+                if index == 0 {
+                    Role::Trigger
+                } else {
+                    Role::Kept
+                }
+            }
+            None => Role::Other,
+        }
+    }
+
+    /// Whether odometry is still to come that tells of the last beam.
+    #[must_use]
+    pub fn lacks_odometry(&self) -> bool {
+        let lasers = self.lasers.iter().filter(|_| self.config.deskew);
+        let moving = lasers.filter(|laser| self.seeks_base() || laser.takes_time());
+        let last_ns = moving.filter_map(Laser::last_beam_ns).max();
+        last_ns.is_some_and(|last_ns| {
+            self.motion.may_reach(last_ns)
+                && self
+                    .motion
+                    .newest_ns()
+                    .is_some_and(|newest| newest < last_ns)
+        })
+    }
+
+    /// Whether odometry has come.
+    #[must_use]
+    pub fn flows(&self) -> bool {
+        self.motion.newest_ns().is_some()
+    }
+
+    /// Brings the newest scans to the time of the first laser's.
+    ///
+    /// # Errors
+    /// If the first laser's scan is refused or, where several are joined, it is not
+    /// known where it sits on the base.
+    pub fn bring(&mut self) -> Result<Brought, EngineError> {
+        self.used.clear();
+        self.is_carried = false;
+        self.lasers[0].check()?;
+        if self.seeks_base() {
+            return self.bring_all();
+        }
+        let mut brought = Brought {
+            lasers: 1,
+            ..Brought::default()
+        };
+        self.used.push(0);
+        if self.config.deskew && self.lasers[0].takes_time() {
+            brought.motion = self.carry(0, false);
+            self.is_carried = brought.motion != MotionKnown::Unknown;
+        }
+        Ok(brought)
+    }
+
+    fn bring_all(&mut self) -> Result<Brought, EngineError> {
+        let first = &self.lasers[0];
+        if !first.is_mounted() {
+            return Err(EngineError::NoMount {
+                laser: first.name.to_string(),
+            });
+        }
+        let stamp_ns = first.stamp_ns();
+        let mut brought = Brought {
+            motion: self.carry(0, true),
+            ..Brought::default()
+        };
+        self.used.push(0);
+        for index in 1..self.lasers.len() {
+            match self.fit_in(index, stamp_ns) {
+                Ok(motion) => {
+                    self.used.push(index);
+                    brought.motion = brought.motion.worse_of(motion);
+                }
+                Err(reason) => brought.left_out.push((self.lasers[index].name, reason)),
+            }
+        }
+        self.is_carried = true;
+        brought.lasers = self.used.len() as u32;
+        Ok(brought)
+    }
+
+    /// Carries another laser's newest scan to the time of the first laser's.
+    fn fit_in(&mut self, index: usize, stamp_ns: i64) -> Result<MotionKnown, LeftOut> {
+        let laser = &self.lasers[index];
+        laser.check_for(stamp_ns)?;
+        match self.carry(index, true) {
+            // Where odometry says nothing, nothing says that the robot moves.
+            MotionKnown::Unknown if self.motion.is_moving() => Err(LeftOut::NoOdometry),
+            motion => Ok(motion),
+        }
+    }
+
+    /// Notes where a laser was at each of its beams, in the sought frame; where
+    /// odometry does not tell, where it sits.
+    fn carry(&mut self, index: usize, to_base: bool) -> MotionKnown {
+        let sought_ns = self.lasers[0].stamp_ns();
+        let child_from_base = self.child_from_base();
+        let first_mount = self.lasers[0].base_from_laser();
+        let child_from_sought = match to_base {
+            true => child_from_base,
+            false => child_from_base.then(first_mount),
+        };
+        let child_from_laser = child_from_base.then(self.lasers[index].base_from_laser());
+        let still = child_from_sought.inverse().then(child_from_laser);
+        let laser = &mut self.lasers[index];
+        let Some(sought) = self.motion.at(sought_ns).filter(|_| self.config.deskew) else {
+            laser.stand(still);
+            return MotionKnown::Unknown;
+        };
+        let sought_from_odom = sought.odom_from_child.then(child_from_sought).inverse();
+        let mut is_between = sought.is_between;
+        let motion = &self.motion;
+        let moved = laser.carry(|at_ns| {
+            let located = motion.at(at_ns)?;
+            is_between &= located.is_between;
+            Some(
+                sought_from_odom
+                    .then(located.odom_from_child)
+                    .then(child_from_laser),
+            )
+        });
+        match moved {
+            None => {
+                laser.stand(still);
+                MotionKnown::Unknown
+            }
+            Some(()) if is_between => MotionKnown::ByOdometry,
+            Some(()) => MotionKnown::LastTwist,
+        }
+    }
+
+    /// The base in the frame that the odometry is about: that of a laser, or the base
+    /// itself.
+    fn child_from_base(&self) -> Pose {
+        let of_laser = self.lasers.iter().find(|l| l.has_frame(self.child_frame));
+        of_laser.map_or(Pose::IDENTITY, |laser| laser.base_from_laser().inverse())
+    }
+
+    /// What the last [`Joiner::bring`] brought together.
+    #[must_use]
+    pub fn seen(&self) -> Seen<'_> {
+        if !self.is_carried {
+            return Seen::Still(self.lasers[0].scan());
+        }
+        let used = self.used.iter().filter_map(|&index| self.lasers.get(index));
+        Seen::Carried(used.map(Laser::carried).collect())
+    }
+}
+
+impl MotionKnown {
+    fn worse_of(self, other: Self) -> Self {
+        match (self, other) {
+            (MotionKnown::Unknown, _) | (_, MotionKnown::Unknown) => MotionKnown::Unknown,
+            (MotionKnown::LastTwist, _) | (_, MotionKnown::LastTwist) => MotionKnown::LastTwist,
+            (MotionKnown::NotNeeded, other) => other,
+            (other, _) => other,
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests;

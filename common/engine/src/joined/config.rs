@@ -1,0 +1,64 @@
+//! The settings of joining.
+
+/// What is joined, and how the motion is known.
+#[derive(Debug, Clone, PartialEq, clap::Args)]
+pub struct JoinConfig {
+    /// Lasers whose scans are joined, the first one first: its new scan asks for an
+    /// answer. By default the graph has one.
+    #[arg(long, value_name = "LASER,LASER", value_delimiter = ',', value_parser = parse_laser)]
+    pub scans: Vec<String>,
+    /// Added to the stamps of odometry, seconds, -1..=1: above zero where odometry
+    /// leads the laser.
+    #[arg(long, value_name = "SECONDS", default_value_t = 0.0, allow_negative_numbers = true, value_parser = parse_delay)]
+    pub odometry_delay_s: f64,
+    /// Of which beam a scan's stamp is.
+    #[arg(long, value_enum, default_value_t = ScanStamp::First)]
+    pub scan_stamp: ScanStamp,
+    /// Whether the motion within a scan is taken out, where odometry tells it.
+    #[arg(long, value_name = "BOOL", default_value_t = true, action = clap::ArgAction::Set)]
+    pub deskew: bool,
+}
+
+/// Of which beam a scan's stamp is.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default, clap::ValueEnum)]
+pub enum ScanStamp {
+    /// The first, as `sensor_msgs/LaserScan` defines it.
+    #[default]
+    First,
+    /// The one in the middle.
+    Middle,
+    /// The last.
+    Last,
+}
+
+impl JoinConfig {
+    /// What is added to the stamps of odometry, nanoseconds.
+    pub(super) fn delay_ns(&self) -> i64 {
+        (self.odometry_delay_s * 1e9).round() as i64
+    }
+}
+
+impl Default for JoinConfig {
+    fn default() -> Self {
+        JoinConfig {
+            scans: Vec::new(),
+            odometry_delay_s: 0.0,
+            scan_stamp: ScanStamp::First,
+            deskew: true,
+        }
+    }
+}
+
+fn parse_delay(text: &str) -> Result<f64, String> {
+    crate::config::parse(text, -1.0..=1.0, "seconds")
+}
+
+fn parse_laser(text: &str) -> Result<String, String> {
+    match text.len() {
+        1..=messages::Name::CAPACITY => Ok(text.into()),
+        length => Err(format!(
+            "the name of a laser has {length} bytes: allowed are 1 to {}",
+            messages::Name::CAPACITY
+        )),
+    }
+}

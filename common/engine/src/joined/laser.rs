@@ -1,0 +1,162 @@
+//! The newest scan of one laser, and where the laser was at each of its beams.
+
+use bytemuck::Zeroable;
+use geometry::Pose;
+use messages::{FrameName, Name, ScanHeader};
+
+use super::{LeftOut, ScanStamp};
+use crate::EngineError;
+use crate::observation::CarriedScan;
+use crate::scan::Scan;
+
+/// No laser takes longer than this for a scan; increments that say so are wrong.
+const MAX_SCAN_TIME_NS: f64 = 1e9;
+
+/// A scan is of its time if it is at most so many periods of its laser older.
+const MAX_AGE_PERIODS: f64 = 1.5;
+
+#[derive(Debug, Clone)]
+pub(super) struct Laser {
+    pub(super) name: Name,
+    /// None before the first scan.
+    header: Option<ScanHeader>,
+    ranges: Vec<f32>,
+    /// Of the first range, nanoseconds.
+    first_beam_ns: i64,
+    /// From one range to the next, nanoseconds; 0 where all are of one time.
+    beam_ns: f64,
+    /// From the scan before to this one; 0 where there was none.
+    period_ns: i64,
+    sought_from_laser: Vec<Pose>,
+}
+
+impl Laser {
+    pub(super) fn new(name: Name) -> Self {
+        Laser {
+            name,
+            header: None,
+            ranges: Vec::new(),
+            first_beam_ns: 0,
+            beam_ns: 0.0,
+            period_ns: 0,
+            sought_from_laser: Vec::new(),
+        }
+    }
+
+    pub(super) fn take(&mut self, header: &ScanHeader, ranges: &[f32], stamp: ScanStamp) {
+        let stamp_ns = header.stamp.measured_ns;
+        if let Some(before) = &self.header {
+            self.period_ns = stamp_ns.saturating_sub(before.stamp.measured_ns).max(0);
+        }
+        self.header = Some(*header);
+        self.ranges.clear();
+        self.ranges.extend_from_slice(ranges);
+        let steps = ranges.len().saturating_sub(1) as f64;
+        let beam_ns = header.time_increment_s * 1e9;
+        let is_sound = (beam_ns * steps).abs() <= MAX_SCAN_TIME_NS;
+        self.beam_ns = if is_sound { beam_ns } else { 0.0 };
+        let before = match stamp {
+            ScanStamp::First => 0.0,
+            ScanStamp::Middle => 0.5,
+            ScanStamp::Last => 1.0,
+        };
+        self.first_beam_ns = stamp_ns.saturating_sub((before * steps * self.beam_ns) as i64);
+    }
+
+    fn header(&self) -> ScanHeader {
+        self.header.unwrap_or_else(ScanHeader::zeroed)
+    }
+
+    pub(super) fn stamp_ns(&self) -> i64 {
+        self.header().stamp.measured_ns
+    }
+
+    pub(super) fn takes_time(&self) -> bool {
+        self.header.is_some() && self.beam_ns != 0.0
+    }
+
+    pub(super) fn last_beam_ns(&self) -> Option<i64> {
+        let last = self.ranges.len().checked_sub(1)?;
+        Some(self.first_beam_ns.max(self.beam_at_ns(last)))
+    }
+
+    fn beam_at_ns(&self, range: usize) -> i64 {
+        self.first_beam_ns
+            .saturating_add((range as f64 * self.beam_ns) as i64)
+    }
+
+    pub(super) fn is_mounted(&self) -> bool {
+        self.header().mount_known == 1
+    }
+
+    pub(super) fn base_from_laser(&self) -> Pose {
+        match self.is_mounted() {
+            true => self.header().base_from_laser.into(),
+            false => Pose::IDENTITY,
+        }
+    }
+
+    pub(super) fn has_frame(&self, frame: FrameName) -> bool {
+        self.header.is_some_and(|header| header.frame == frame)
+    }
+
+    pub(super) fn scan(&self) -> Scan<'_> {
+        Scan::of(&self.header(), &self.ranges)
+    }
+
+    pub(super) fn carried(&self) -> CarriedScan<'_> {
+        CarriedScan {
+            scan: self.scan(),
+            sought_from_laser: &self.sought_from_laser,
+        }
+    }
+
+    pub(super) fn check(&self) -> Result<(), EngineError> {
+        self.scan().check()?;
+        let mount = self.base_from_laser();
+        match mount.is_finite() {
+            true => Ok(()),
+            false => Err(EngineError::Mount(mount)),
+        }
+    }
+
+    /// Whether the newest scan can be joined with one of that time.
+    pub(super) fn check_for(&self, stamp_ns: i64) -> Result<(), LeftOut> {
+        let header = self.header.ok_or(LeftOut::NoScan)?;
+        self.check().map_err(LeftOut::Refused)?;
+        if !self.is_mounted() {
+            return Err(LeftOut::NoMount);
+        }
+        let age_ns = stamp_ns.saturating_sub(header.stamp.measured_ns);
+        // What a driver states may be the device's period, of which some are left out.
+        let period_ns = (header.scan_time_s * 1e9).max(self.period_ns as f64);
+        if period_ns > 0.0 && age_ns as f64 > MAX_AGE_PERIODS * period_ns {
+            return Err(LeftOut::Old {
+                age_ms: age_ns / 1_000_000,
+            });
+        }
+        Ok(())
+    }
+
+    /// The laser stayed at one place in the sought frame.
+    pub(super) fn stand(&mut self, at: Pose) {
+        self.sought_from_laser.clear();
+        self.sought_from_laser.resize(self.ranges.len(), at);
+    }
+
+    /// The laser was where `at` says for the time of each beam; `None` where it does
+    /// not.
+    pub(super) fn carry(&mut self, mut at: impl FnMut(i64) -> Option<Pose>) -> Option<()> {
+        if self.beam_ns == 0.0 {
+            let place = at(self.first_beam_ns)?;
+            self.stand(place);
+            return Some(());
+        }
+        self.sought_from_laser.clear();
+        for range in 0..self.ranges.len() {
+            let place = at(self.beam_at_ns(range))?;
+            self.sought_from_laser.push(place);
+        }
+        Some(())
+    }
+}

@@ -1,0 +1,198 @@
+use bytemuck::Zeroable;
+use messages::{Pose2, Stamp};
+
+use super::*;
+
+const MS: i64 = 1_000_000;
+
+fn stamp(ms: i64) -> Stamp {
+    Stamp {
+        measured_ns: ms * MS,
+        ..Stamp::default()
+    }
+}
+
+/// Ahead at 0.5 m or behind at -0.5 m, three beams of 0, 90 and 180 degrees.
+fn scan(laser: &str, ms: i64) -> ScanHeader {
+    let ahead = laser != "rear";
+    ScanHeader {
+        stamp: stamp(ms),
+        angle_increment: std::f64::consts::FRAC_PI_2,
+        range_max_m: 30.0,
+        base_from_laser: Pose2 {
+            x: if ahead { 0.5 } else { -0.5 },
+            y: 0.0,
+            yaw: if ahead { 0.0 } else { std::f64::consts::PI },
+        },
+        mount_known: 1,
+        laser: Name::new(laser),
+        frame: FrameName::new(laser),
+        ..ScanHeader::zeroed()
+    }
+}
+
+/// Drives ahead, a metre a second.
+fn odometry(ms: i64) -> Odometry {
+    Odometry {
+        stamp: stamp(ms),
+        odom_from_child: Pose2 {
+            x: ms as f64 / 1000.0,
+            y: 0.0,
+            yaw: 0.0,
+        },
+        child_frame: FrameName::new("base_link"),
+        ..Odometry::zeroed()
+    }
+}
+
+fn pair() -> Joiner {
+    Joiner::new(JoinConfig {
+        scans: vec!["front".into(), "rear".into()],
+        ..JoinConfig::default()
+    })
+}
+
+/// x of the laser in the sought frame at each beam, by laser.
+fn places(joiner: &Joiner) -> Vec<Vec<f64>> {
+    match joiner.seen() {
+        Seen::Still(_) => Vec::new(),
+        Seen::Carried(scans) => {
+            let xs = |scan: &CarriedScan<'_>| scan.sought_from_laser.iter().map(|p| p.x).collect();
+            scans.iter().map(xs).collect()
+        }
+    }
+}
+
+/// Sums and rotations of numbers near 1 leave a few units in the last place.
+#[track_caller]
+fn check_places(joiner: &Joiner, expected: &[&[f64]]) {
+    let found = places(joiner);
+    assert_eq!(found.len(), expected.len(), "{found:?}");
+    for (found, expected) in found.iter().zip(expected) {
+        assert_eq!(found.len(), expected.len());
+        for (found, expected) in found.iter().zip(*expected) {
+            assert!((found - expected).abs() < 1e-9, "{found} is not {expected}");
+        }
+    }
+}
+
+const RANGES: [f32; 3] = [2.0, 2.0, 2.0];
+
+#[test]
+fn the_motion_within_a_scan_is_taken_out() {
+    let mut joiner = Joiner::new(JoinConfig::default());
+    let moving = ScanHeader {
+        time_increment_s: 0.02,
+        ..scan("", 100)
+    };
+    assert_eq!(joiner.on_scan(&moving, &RANGES), Role::Trigger);
+    assert!(!joiner.lacks_odometry(), "none flows");
+    assert_eq!(joiner.bring().unwrap().motion, MotionKnown::Unknown);
+    assert!(matches!(joiner.seen(), Seen::Still(_)));
+    joiner.on_odometry(&odometry(50));
+    joiner.on_odometry(&odometry(120));
+    assert!(joiner.lacks_odometry());
+    assert_eq!(joiner.bring().unwrap().motion, MotionKnown::LastTwist);
+    joiner.on_odometry(&odometry(150));
+    assert!(!joiner.lacks_odometry());
+    assert_eq!(joiner.bring().unwrap().motion, MotionKnown::ByOdometry);
+    check_places(&joiner, &[&[0.0, 0.02, 0.04]]);
+    assert!(!joiner.seeks_base());
+}
+
+#[test]
+fn the_stamp_may_be_of_another_beam_and_odometry_late() {
+    let mut joiner = Joiner::new(JoinConfig {
+        scan_stamp: ScanStamp::Last,
+        odometry_delay_s: 0.05,
+        ..JoinConfig::default()
+    });
+    for ms in [0, 50, 100] {
+        joiner.on_odometry(&odometry(ms));
+    }
+    let moving = ScanHeader {
+        time_increment_s: 0.02,
+        ..scan("", 100)
+    };
+    joiner.on_scan(&moving, &RANGES);
+    assert_eq!(joiner.bring().unwrap().motion, MotionKnown::ByOdometry);
+    check_places(&joiner, &[&[-0.04, -0.02, 0.0]]);
+    let still = ScanHeader {
+        time_increment_s: 0.0,
+        ..moving
+    };
+    joiner.on_scan(&still, &RANGES);
+    assert_eq!(joiner.bring().unwrap().motion, MotionKnown::NotNeeded);
+    assert!(matches!(joiner.seen(), Seen::Still(_)));
+}
+
+#[test]
+fn several_lasers_are_seen_from_the_base_at_the_time_of_the_first() {
+    let mut joiner = pair();
+    for ms in [0, 50, 100] {
+        joiner.on_odometry(&odometry(ms));
+    }
+    assert_eq!(joiner.on_scan(&scan("rear", 40), &RANGES), Role::Kept);
+    assert_eq!(joiner.on_scan(&scan("side", 40), &RANGES), Role::Other);
+    assert_eq!(joiner.on_scan(&scan("front", 100), &RANGES), Role::Trigger);
+    let brought = joiner.bring().unwrap();
+    assert_eq!((brought.lasers, brought.left_out.len()), (2, 0));
+    check_places(&joiner, &[&[0.5; 3], &[-0.56; 3]]);
+    assert!(joiner.seeks_base());
+}
+
+#[test]
+fn a_laser_that_cannot_be_joined_is_left_out_and_named() {
+    let mut joiner = pair();
+    let left_out = |joiner: &mut Joiner| {
+        let brought = joiner.bring().unwrap();
+        assert_eq!(brought.lasers + brought.left_out.len() as u32, 2);
+        let reasons = brought.left_out.into_iter();
+        reasons.map(|(laser, why)| format!("{laser}: {why}")).next()
+    };
+    joiner.on_scan(&scan("front", 100), &RANGES);
+    assert_eq!(left_out(&mut joiner).unwrap(), "rear: no scan has come");
+    joiner.on_scan(&scan("rear", 100), &RANGES);
+    assert_eq!(left_out(&mut joiner), None, "no odometry, nothing moves");
+    // Every 50 ms from now on.
+    joiner.on_scan(&scan("rear", 150), &RANGES);
+    joiner.on_scan(&scan("front", 225), &RANGES);
+    assert_eq!(left_out(&mut joiner), None);
+    joiner.on_scan(&scan("front", 226), &RANGES);
+    let old = "rear: its newest scan is 76 ms older, more than one and a half of its periods";
+    assert_eq!(left_out(&mut joiner).unwrap(), old);
+    let lost = ScanHeader {
+        mount_known: 0,
+        ..scan("rear", 226)
+    };
+    joiner.on_scan(&lost, &RANGES);
+    assert_eq!(
+        left_out(&mut joiner).unwrap(),
+        "rear: it is not known where it sits on the base"
+    );
+    joiner.on_scan(&scan("rear", 226), &[]);
+    assert!(left_out(&mut joiner).unwrap().contains("no ranges"));
+    // The robot moved when the odometry ended, long ago.
+    joiner.on_odometry(&odometry(300));
+    joiner.on_odometry(&odometry(400));
+    joiner.on_scan(&scan("rear", 990), &RANGES);
+    joiner.on_scan(&scan("front", 1000), &RANGES);
+    assert_eq!(
+        left_out(&mut joiner).unwrap(),
+        "rear: no odometry tells how the robot moved since"
+    );
+}
+
+#[test]
+fn the_first_laser_must_be_sound() {
+    let mut joiner = pair();
+    joiner.on_scan(&scan("front", 0), &[]);
+    assert_eq!(joiner.bring(), Err(EngineError::EmptyScan));
+    let lost = ScanHeader {
+        mount_known: 0,
+        ..scan("front", 0)
+    };
+    joiner.on_scan(&lost, &RANGES);
+    let error = joiner.bring().unwrap_err().to_string();
+    assert!(error.contains("where laser front sits"), "{error}");
+}

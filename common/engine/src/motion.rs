@@ -1,0 +1,168 @@
+//! How the robot moved by its odometry, between and a little beyond its samples.
+
+use std::collections::VecDeque;
+
+use geometry::Pose;
+
+/// Two samples that lie farther apart say too little of the motion between them:
+/// within half a second a robot brakes and turns.
+const MAX_GAP_NS: i64 = 500_000_000;
+
+/// How long the last twist is taken to go on, and the first to have been there
+/// before: a scan of a slow laser (8 Hz), and what odometry may lag behind it.
+const MAX_BEYOND_NS: i64 = 250_000_000;
+
+/// Samples that come this much earlier than the last are of a recording that was
+/// begun anew; others that are late are left out.
+const BEGUN_ANEW_NS: i64 = 1_000_000_000;
+
+/// The poses of a moving frame over time, by increasing stamps.
+#[derive(Debug, Clone)]
+pub struct Motion {
+    samples: VecDeque<(i64, Pose)>,
+    keep: usize,
+}
+
+/// Where the frame was at some time.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Located {
+    /// In the odometry's frame.
+    pub odom_from_child: Pose,
+    /// Whether it lies between two samples and not beyond them.
+    pub is_between: bool,
+}
+
+impl Motion {
+    /// Keeps the newest samples, so many at most.
+    #[must_use]
+    pub fn keeping(samples: usize) -> Self {
+        Motion {
+            samples: VecDeque::new(),
+            keep: samples,
+        }
+    }
+
+    /// Takes a sample; the stamp in nanoseconds.
+    pub fn add(&mut self, stamp_ns: i64, odom_from_child: Pose) {
+        match self.newest_ns() {
+            Some(newest) if stamp_ns < newest.saturating_sub(BEGUN_ANEW_NS) => self.samples.clear(),
+            Some(newest) if stamp_ns <= newest => return,
+            _ => {}
+        }
+        if !odom_from_child.is_finite() {
+            return;
+        }
+        if self.samples.len() >= self.keep {
+            self.samples.pop_front();
+        }
+        self.samples.push_back((stamp_ns, odom_from_child));
+    }
+
+    /// When the newest sample was measured, nanoseconds.
+    #[must_use]
+    pub fn newest_ns(&self) -> Option<i64> {
+        self.samples.back().map(|&(stamp, _)| stamp)
+    }
+
+    /// Whether a sample measured at this time or later may come soon: the newest is
+    /// not long before it.
+    #[must_use]
+    pub fn may_reach(&self, stamp_ns: i64) -> bool {
+        self.newest_ns()
+            .is_some_and(|newest| stamp_ns.saturating_sub(newest) <= MAX_GAP_NS)
+    }
+
+    /// Whether the newest two samples differ by more than rounding: a tenth of a
+    /// millimetre or of a milliradian.
+    #[must_use]
+    pub fn is_moving(&self) -> bool {
+        let mut newest = self.samples.iter().rev().map(|&(_, pose)| pose);
+        match (newest.next(), newest.next()) {
+            (Some(last), Some(before)) => !last.is_within(before, 1e-4, 1e-4),
+            _ => false,
+        }
+    }
+
+    /// Where the frame was at a time: on the arc of constant twist between the two
+    /// samples around it, or on that of the nearest two for at most a quarter of a
+    /// second beyond them. `None` where no samples tell.
+    #[must_use]
+    pub fn at(&self, stamp_ns: i64) -> Option<Located> {
+        let after = self.samples.partition_point(|&(stamp, _)| stamp < stamp_ns);
+        let exact = self.samples.get(after).filter(|(at, _)| *at == stamp_ns);
+        if let Some(&(_, odom_from_child)) = exact {
+            return Some(Located {
+                odom_from_child,
+                is_between: true,
+            });
+        }
+        let is_between = 0 < after && after < self.samples.len();
+        let second = after.clamp(1, self.samples.len().checked_sub(1).filter(|&n| n > 0)?);
+        let (&(start_ns, start), &(end_ns, end)) =
+            (self.samples.get(second - 1)?, self.samples.get(second)?);
+        let beyond_ns = (start_ns.saturating_sub(stamp_ns)).max(stamp_ns.saturating_sub(end_ns));
+        if end_ns - start_ns > MAX_GAP_NS || beyond_ns > MAX_BEYOND_NS {
+            return None;
+        }
+        let share = (stamp_ns - start_ns) as f64 / (end_ns - start_ns) as f64;
+        Some(Located {
+            odom_from_child: start.towards(end, share),
+            is_between,
+        })
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use std::f64::consts::FRAC_PI_2;
+
+    use super::*;
+
+    const TENTH: i64 = 100_000_000;
+
+    fn motion(poses: &[(i64, Pose)]) -> Motion {
+        let mut motion = Motion::keeping(8);
+        for &(tenth, pose) in poses {
+            motion.add(tenth * TENTH, pose);
+        }
+        motion
+    }
+
+    #[test]
+    fn between_samples_the_twist_is_constant() {
+        let quarter = motion(&[(0, Pose::IDENTITY), (2, Pose::new(1.0, 1.0, FRAC_PI_2))]);
+        // A quarter of a circle of radius 1 about (0, 1).
+        let eighth = Pose::new(0.5f64.sqrt(), 1.0 - 0.5f64.sqrt(), FRAC_PI_2 / 2.0);
+        let found = quarter.at(TENTH).unwrap();
+        assert!(found.is_between);
+        assert!(found.odom_from_child.is_within(eighth, 1e-12, 1e-12));
+        let beyond = quarter.at(4 * TENTH).unwrap();
+        assert!(!beyond.is_between);
+        let half = Pose::new(0.0, 2.0, 2.0 * FRAC_PI_2);
+        assert!(beyond.odom_from_child.is_within(half, 1e-12, 1e-12));
+        assert_eq!(quarter.at(5 * TENTH), None, "0.3 s beyond");
+        assert!(quarter.at(-TENTH).is_some_and(|found| !found.is_between));
+    }
+
+    #[test]
+    fn a_hole_says_nothing_and_a_single_sample_only_its_own_time() {
+        let hole = motion(&[(0, Pose::IDENTITY), (9, Pose::new(1.0, 0.0, 0.0))]);
+        assert_eq!(hole.at(4 * TENTH), None);
+        assert!(hole.at(9 * TENTH).is_some_and(|found| found.is_between));
+        let single = motion(&[(3, Pose::IDENTITY)]);
+        assert!(single.at(3 * TENTH).is_some());
+        assert_eq!(single.at(3 * TENTH + 1), None);
+        assert_eq!(motion(&[]).at(0), None);
+    }
+
+    #[test]
+    fn late_samples_are_left_out_and_a_recording_may_begin_anew() {
+        let east = |x| Pose::new(x, 0.0, 0.0);
+        let mut motion = motion(&[(20, east(0.0)), (22, east(2.0)), (21, east(9.0))]);
+        let middle = motion.at(21 * TENTH).unwrap().odom_from_child;
+        assert!(middle.is_within(east(1.0), 1e-12, 1e-12));
+        motion.add(0, east(5.0));
+        assert_eq!(motion.newest_ns(), Some(0));
+        assert!(motion.may_reach(5 * TENTH) && !motion.may_reach(6 * TENTH));
+    }
+}
