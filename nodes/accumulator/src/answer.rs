@@ -5,11 +5,10 @@ use engine::EngineError;
 use engine::beams::BeamConfig;
 use engine::grid::{CellRules, Grid};
 use engine::localizer::{Localizer, Outcome, Workspace};
-use engine::scan::Scan;
+use engine::observation::Observation;
 use engine::search::BlockBounds;
 use messages::{FieldHeader, FieldKind, ScanHeader, SearchOutcome, Vote, VotesHeader};
 
-use crate::AccumulatorError;
 use crate::preparation::PreparedMap;
 
 /// What is sent about a scan that was answered: header and items of `votes`,
@@ -19,19 +18,6 @@ pub type Answer<'a> = (VotesHeader, &'a [Vote]);
 /// Header and items of `field`.
 pub type Image<'a> = (FieldHeader, &'a [u16]);
 
-/// The scan as the engine takes it, borrowed from the message.
-///
-/// # Errors
-/// If the mount, which is copied onward, is no number. The engine checks the
-/// rest.
-pub fn scan<'a>(header: &ScanHeader, ranges: &'a [f32]) -> Result<Scan<'a>, AccumulatorError> {
-    let found = header.base_from_laser;
-    if header.mount_known == 1 && !geometry::Pose::from(found).is_finite() {
-        return Err(AccumulatorError::Mount { found });
-    }
-    Ok(Scan::of(header, ranges))
-}
-
 /// Asks the engine; `None` if `stop` said so before it was done. The localizer
 /// must be prepared for a known heading if and only if there is one.
 ///
@@ -40,7 +26,7 @@ pub fn scan<'a>(header: &ScanHeader, ranges: &'a [f32]) -> Result<Scan<'a>, Accu
 pub fn ask<'w>(
     localizer: &Localizer,
     workspace: &'w mut Workspace,
-    scan: &Scan<'_>,
+    scan: Observation<'_>,
     heading: Option<f64>,
     stop: &dyn Fn() -> bool,
 ) -> Result<Option<&'w Outcome>, EngineError> {
@@ -78,7 +64,7 @@ pub fn image<'w>(
     votes: &VotesHeader,
     localizer: &Localizer,
     workspace: &'w mut Workspace,
-    scan: &Scan<'_>,
+    scan: Observation<'_>,
 ) -> Result<Image<'w>, EngineError> {
     if votes.heading_known == 1 {
         let header = exact_header(votes, localizer.grid());
@@ -280,6 +266,8 @@ mod tests {
             max_beams: 90,
             pooling: 2,
             beam_arc_m: 0.5,
+            has_readings: 0,
+            lasers_used: 0,
         };
         assert_eq!(votes, expected);
         let known = Outcome {
@@ -348,32 +336,5 @@ mod tests {
         assert_eq!((votes.stamp, votes.map_id), (header().stamp, 77));
         assert_eq!((votes.base_from_laser, votes.mount_known), (MOUNT, 1));
         assert_eq!((votes.total, votes.engine_ns, votes.headings), (0, 0, 360));
-    }
-
-    #[test]
-    fn ranges_are_borrowed_from_the_message() {
-        let ranges = [1.0, 2.0];
-        let borrowed = scan(&header(), &ranges).unwrap();
-        assert!(std::ptr::eq(borrowed.ranges, &ranges[..]));
-        assert_eq!((borrowed.angle_min, borrowed.angle_increment), (-1.5, 0.5));
-        assert_eq!((borrowed.range_min_m, borrowed.range_max_m), (0.1, 30.0));
-    }
-
-    #[test]
-    fn a_mount_that_is_no_number_is_refused_where_it_counts() {
-        let broken = ScanHeader {
-            base_from_laser: Pose2 {
-                yaw: f64::NAN,
-                ..MOUNT
-            },
-            ..header()
-        };
-        let error = scan(&broken, &[1.0]).unwrap_err();
-        assert!(error.to_string().contains("yaw NaN rad"), "{error}");
-        let unknown = ScanHeader {
-            mount_known: 0,
-            ..broken
-        };
-        assert!(scan(&unknown, &[1.0]).is_ok());
     }
 }

@@ -3,6 +3,7 @@
 use clap::{CommandFactory, Parser, error::ErrorKind};
 use engine::directions::Directions;
 use engine::heading::HeadingConfig;
+use engine::joined::JoinConfig;
 use engine::localizer::{LocalizerConfig, Prior};
 use engine::regions::SonarConfig;
 
@@ -21,6 +22,10 @@ pub struct Config {
     /// What is known of the heading.
     #[command(flatten)]
     pub heading: HeadingConfig,
+
+    /// Which lasers are joined, and how their motion is known.
+    #[command(flatten)]
+    pub join: JoinConfig,
 
     /// What scans are read as.
     #[command(flatten)]
@@ -60,6 +65,13 @@ impl Config {
             return Err(format!(
                 "--max-votes is {max_votes}: a message of `votes` holds at most {MAX_VOTES}"
             ));
+        }
+        if self.join.scans.len() > 1 && self.sonar.sonar_way.is_some() {
+            return Err(
+                "--scans joins lasers and --sonar-way reads one ring of sonars: \
+                        allowed is one of them"
+                    .into(),
+            );
         }
         self.heading.check()
     }
@@ -124,5 +136,7 @@ mod tests {
         refuse("--field-rate 0", "0.1 to 100 images a second");
         refuse("--headings 100", "multiple of 8");
         refuse("--max-votes 65537", "at most 65536");
+        refuse("--scans front,rear --sonar-way 2", "one of them");
+        refuse("--odometry-delay-s 2", "-1 to 1 seconds");
     }
 }

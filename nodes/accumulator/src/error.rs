@@ -3,7 +3,7 @@
 
 use engine::EngineError;
 use engine::heading::HeadingError;
-use messages::{BoundaryCell, Pose2};
+use messages::BoundaryCell;
 use transport::TransportError;
 
 /// A scan or a map that is refused, or a failure of the node.
@@ -15,15 +15,6 @@ pub enum AccumulatorError {
     /// The scan, the map or a setting cannot be used.
     #[error(transparent)]
     Engine(#[from] EngineError),
-    /// The laser's mount is no number.
-    #[error(
-        "base_from_laser is x {} m, y {} m, yaw {} rad: each must be finite",
-        found.x, found.y, found.yaw
-    )]
-    Mount {
-        /// As the scan has it.
-        found: Pose2,
-    },
     /// The scan's heading is not known.
     #[error(transparent)]
     Heading(#[from] HeadingError),

@@ -6,6 +6,7 @@
 
 use engine::grid::{Cell, CellRules, Grid, GridFrame};
 use engine::localizer::{Localizer, LocalizerConfig, Prior};
+use engine::space::Space;
 use messages::{BoundaryCell, BoundaryHeader, MapHeader};
 
 use crate::AccumulatorError;
@@ -41,6 +42,8 @@ pub struct PreparedMap {
     pub rules: CellRules,
     /// Made from it.
     pub localizer: Localizer,
+    /// That of the map as it is: its cells may be finer than those that are searched.
+    pub space: Space,
 }
 
 /// A map with its boundary, on the way to a localizer.
@@ -91,11 +94,12 @@ impl Job {
         check_boundary(&self.boundary, &grid)?;
         let (cells, rules) = (&self.occupancy, self.rules);
         let localizer = Localizer::of_map(frame, sides, cells, rules, config, prior)?;
-        let map_id = self.map.map_id;
+        let headings = localizer.config().headings;
         Ok(PreparedMap {
-            map_id,
+            map_id: self.map.map_id,
             rules: self.rules,
             localizer,
+            space: Space::new(headings, frame.resolution_m, width, height)?,
         })
     }
 }

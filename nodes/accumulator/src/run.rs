@@ -4,15 +4,17 @@ mod inputs;
 mod outputs;
 mod supply;
 
+use std::collections::BTreeMap;
 use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, Ordering};
 use std::time::{Duration, Instant};
 
+use engine::fit::Readings;
 use engine::heading::{HeadingSource, History};
+use engine::joined::{Brought, JoinConfig, Joiner, LeftOut, MotionKnown, Role, Seen};
 use engine::localizer::Workspace;
-use engine::scan::Scan;
-use messages::{Vote, VotesHeader, topic};
-use transport::{Flow, GapCounter, Graph, Health, Sample, TransportError, with_causes};
+use messages::{ScanHeader, Vote, VotesHeader};
+use transport::{Flow, GapCounter, Graph, Health, TransportError, with_causes};
 
 use crate::answer::{self, Answer, Image};
 use crate::preparation::PreparedMap;
@@ -23,8 +25,12 @@ use outputs::Outputs;
 use supply::Supply;
 
 /// How long a map that has been prepared waits to be used at most, while no
-/// scan comes.
-const TICK: Duration = Duration::from_millis(50);
+/// scan comes; a scan that waits for odometry is looked at as often.
+const TICK: Duration = Duration::from_millis(25);
+
+/// A scan waits this long for odometry past its last beam and, as it is looked at
+/// once a tick, at most 50 ms.
+const ODOMETRY_WAIT: Duration = Duration::from_millis(25);
 
 /// Readings of each kind that are kept to take headings and poses from: ten seconds
 /// of odometry at 100 Hz.
@@ -43,11 +49,15 @@ pub fn run(graph: &Graph, config: &Config) -> Result<(), AccumulatorError> {
         source,
         headings: config.localizer.headings,
         history: History::keeping(POSES_KEPT),
+        joiner: Joiner::new(join_config(config)),
+        pending: None,
         supply: Supply::new(config.localizer.clone(), config.prior()),
         map: None,
         sonar: config.sonar.window().map(Sonar::new),
         workspace: Workspace::default(),
-        gaps: GapCounter::new(),
+        readings: Readings::default(),
+        gaps: BTreeMap::new(),
+        last_notes: String::new(),
         last_refusal: String::new(),
         outputs,
         stop: graph.stop_flag(),
@@ -56,17 +66,32 @@ pub fn run(graph: &Graph, config: &Config) -> Result<(), AccumulatorError> {
     graph.run(&inputs.all(), TICK, |_| node.step(&inputs))
 }
 
+/// A ring of sonars is read through a window of its own.
+fn join_config(config: &Config) -> JoinConfig {
+    JoinConfig {
+        deskew: config.join.deskew && config.sonar.sonar_way.is_none(),
+        ..config.join.clone()
+    }
+}
+
 struct Node {
     source: HeadingSource,
     headings: u32,
     history: History,
+    /// The newest scans, and how the robot moved.
+    joiner: Joiner,
+    /// A scan that is to be answered, and when it came.
+    pending: Option<(ScanHeader, Instant)>,
     supply: Supply,
     map: Option<PreparedMap>,
     /// What scans are read through, where they are those of sonars.
     sonar: Option<Sonar>,
     /// For all maps, one after the other.
     workspace: Workspace,
-    gaps: GapCounter,
+    readings: Readings,
+    /// By laser.
+    gaps: BTreeMap<String, GapCounter>,
+    last_notes: String,
     last_refusal: String,
     outputs: Outputs,
     stop: Arc<AtomicBool>,
@@ -80,28 +105,53 @@ impl Node {
             let prepared = self.supply.poll(inputs, &mut self.health)?;
             self.map = prepared.or(self.map.take());
             self.health.tick()?;
-            let scan = inputs.scans.receive()?;
+            while self.pending.is_none() && self.take_scan(inputs)? {}
             // What was sent before the scan has come by now.
-            inputs.hear_poses(&mut self.history, &mut self.health)?;
-            match scan {
-                Some(scan) => self.answer(&scan)?,
-                None => return Ok(Flow::Continue),
+            inputs.take_poses(&mut self.joiner, &mut self.history, &mut self.health)?;
+            let Some((scan, since)) = self.pending.take() else {
+                return Ok(Flow::Continue);
+            };
+            if self.joiner.lacks_odometry() && since.elapsed() < ODOMETRY_WAIT {
+                self.pending = Some((scan, since));
+                return Ok(Flow::Continue);
             }
+            self.answer(&scan)?;
         }
         Ok(Flow::Stop)
     }
 
-    fn answer(&mut self, scan: &Sample<topic::Scan>) -> Result<(), TransportError> {
-        let lost = self.gaps.lost_before(scan.header().stamp.counter);
+    /// Takes the next scan that has come, if there is one.
+    fn take_scan(&mut self, inputs: &Inputs) -> Result<bool, TransportError> {
+        let Some(scan) = inputs.scans.receive()? else {
+            return Ok(false);
+        };
+        let header = *scan.header();
+        let role = self.joiner.on_scan(&header, scan.items());
+        if role == Role::Other {
+            return Ok(true);
+        }
+        let gaps = self.gaps.entry(header.laser.to_string()).or_default();
+        self.health
+            .count_dropped(gaps.lost_before(header.stamp.counter));
         self.health.count_received(1);
-        self.health.count_dropped(lost);
-        let read = self.read_through(scan);
+        if role == Role::Trigger {
+            self.pending = Some((header, Instant::now()));
+        }
+        Ok(true)
+    }
+
+    fn answer(&mut self, scan: &ScanHeader) -> Result<(), TransportError> {
+        let brought = self.bring(scan);
         // What is sent lies in the workspace.
         let mut workspace = std::mem::take(&mut self.workspace);
-        let done = match read.and_then(|()| self.search(&mut workspace, scan)) {
+        let mut readings = std::mem::take(&mut self.readings);
+        let found =
+            brought.and_then(|lasers| self.search((&mut workspace, &mut readings), scan, lasers));
+        self.readings = readings;
+        let done = match found {
             Ok(Some((votes, poses))) => self
                 .send_votes(&votes, poses)
-                .and_then(|()| self.send_field(&mut workspace, scan, &votes)),
+                .and_then(|()| self.send_field(&mut workspace, &votes)),
             // Stopped half-way: nobody waits for the answer any more.
             Ok(None) => Ok(()),
             Err(error) => self.refuse(scan, &error),
@@ -110,33 +160,71 @@ impl Node {
         done
     }
 
-    /// Joins the scan with those before it, if it is one of sonars.
-    fn read_through(&mut self, scan: &Sample<topic::Scan>) -> Result<(), AccumulatorError> {
-        match &mut self.sonar {
-            Some(sonar) => sonar.hear(scan.header(), scan.items(), &self.history),
-            None => Ok(()),
+    /// Brings the scan to one time with those of the other lasers, or with those
+    /// before it if it is one of sonars; how many lasers were joined.
+    fn bring(&mut self, scan: &ScanHeader) -> Result<u32, AccumulatorError> {
+        let brought = self.joiner.bring()?;
+        if let Some(sonar) = &mut self.sonar
+            && let Seen::Still(ranges) = self.joiner.seen()
+        {
+            sonar.hear(scan, &ranges, &self.history)?;
         }
+        self.note(&notes(&brought, self.joiner.flows()))?;
+        let lost = brought.left_out.iter();
+        let lost = lost.filter(|(_, why)| *why != LeftOut::NoScan).count();
+        self.health.count_dropped(lost as u64);
+        Ok(match self.joiner.seeks_base() {
+            true => brought.lasers,
+            false => 0,
+        })
     }
 
-    /// What is to vote.
-    fn readings<'a>(&'a self, scan: &'a Sample<topic::Scan>) -> Result<Scan<'a>, AccumulatorError> {
-        let as_it_came = answer::scan(scan.header(), scan.items())?;
-        Ok(self.sonar.as_ref().map_or(as_it_came, Sonar::scan))
+    /// Says what is not as it should be, once for as long as it stays so.
+    fn note(&mut self, notes: &str) -> Result<(), TransportError> {
+        if notes != self.last_notes {
+            if !notes.is_empty() {
+                tracing::warn!("{notes}");
+                self.health.error(notes)?;
+            }
+            self.last_notes = notes.to_owned();
+        }
+        Ok(())
     }
 
     fn search<'w>(
         &self,
-        workspace: &'w mut Workspace,
-        scan: &Sample<topic::Scan>,
+        (workspace, readings): (&'w mut Workspace, &mut Readings),
+        scan: &ScanHeader,
+        lasers: u32,
     ) -> Result<Option<Answer<'w>>, AccumulatorError> {
         let map = self.map.as_ref().ok_or(AccumulatorError::NoMap)?;
-        let heading = self.source.heading_of(scan.header(), &self.history)?;
-        let borrowed = self.readings(scan)?;
+        let heading = self.source.heading_of(scan, &self.history)?;
+        let seen = self.seen();
+        let observation = seen.observation();
         let start = Instant::now();
         let stop = || self.stopped();
-        let outcome = answer::ask(&map.localizer, workspace, &borrowed, heading, &stop)?;
+        let outcome = answer::ask(&map.localizer, workspace, observation, heading, &stop)?;
         let engine_ns = start.elapsed().as_nanos() as u64;
-        Ok(outcome.map(|outcome| answer::answered(scan.header(), map, outcome, engine_ns)))
+        let Some(outcome) = outcome else {
+            return Ok(None);
+        };
+        let (mut votes, poses) = answer::answered(scan, map, outcome, engine_ns);
+        votes.lasers_used = lasers;
+        if matches!(seen, Seen::Carried(_)) {
+            votes.has_readings = 1;
+            let beams = &map.localizer.config().votes.beams;
+            readings.find(observation, &map.space, beams)?;
+            self.outputs.readings(scan.stamp, &readings.found)?;
+        }
+        Ok(Some((votes, poses)))
+    }
+
+    /// What is to vote.
+    fn seen(&self) -> Seen<'_> {
+        match &self.sonar {
+            Some(sonar) => Seen::Still(sonar.scan()),
+            None => self.joiner.seen(),
+        }
     }
 
     fn stopped(&self) -> bool {
@@ -154,11 +242,10 @@ impl Node {
     fn send_field(
         &mut self,
         workspace: &mut Workspace,
-        scan: &Sample<topic::Scan>,
         votes: &VotesHeader,
     ) -> Result<(), TransportError> {
         if self.outputs.is_field_due()
-            && let Some((header, intensities)) = self.image(workspace, scan, votes)
+            && let Some((header, intensities)) = self.image(workspace, votes)
         {
             self.outputs.field(&header, intensities)?;
             self.health.count_sent(1);
@@ -168,29 +255,23 @@ impl Node {
 
     /// The image of a scan that was answered, so that nothing can be wrong with
     /// it any more.
-    fn image<'w>(
-        &self,
-        workspace: &'w mut Workspace,
-        scan: &Sample<topic::Scan>,
-        votes: &VotesHeader,
-    ) -> Option<Image<'w>> {
+    fn image<'w>(&self, workspace: &'w mut Workspace, votes: &VotesHeader) -> Option<Image<'w>> {
         let localizer = &self.map.as_ref()?.localizer;
-        let borrowed = self.readings(scan).ok()?;
-        answer::image(votes, localizer, workspace, &borrowed).ok()
+        answer::image(votes, localizer, workspace, self.seen().observation()).ok()
     }
 
     /// Answers a refused scan all the same, for its source may be waiting.
     fn refuse(
         &mut self,
-        scan: &Sample<topic::Scan>,
+        scan: &ScanHeader,
         error: &AccumulatorError,
     ) -> Result<(), TransportError> {
         let map_id = self.map.as_ref().map_or(0, |map| map.map_id);
-        let votes = answer::refused(scan.header(), map_id, self.headings);
+        let votes = answer::refused(scan, map_id, self.headings);
         self.outputs.votes(&votes, &[])?;
         self.health.count_sent(1);
         self.health.count_refused(1);
-        let (counter, reason) = (scan.header().stamp.counter, with_causes(error));
+        let (counter, reason) = (scan.stamp.counter, with_causes(error));
         self.health
             .error(&format!("scan {counter} is refused: {reason}"))?;
         // A source that is always wrong would fill the log.
@@ -200,4 +281,27 @@ impl Node {
         }
         Ok(())
     }
+}
+
+/// What an operator should know of how scans were brought to one time; figures that
+/// change from scan to scan are left out.
+fn notes(brought: &Brought, odometry_flows: bool) -> String {
+    let mut notes: Vec<String> = brought
+        .left_out
+        .iter()
+        .map(|(laser, why)| match why {
+            LeftOut::Old { .. } => format!("laser {laser} is left out: its scans are too old"),
+            other => format!("laser {laser} is left out: {other}"),
+        })
+        .collect();
+    match brought.motion {
+        MotionKnown::LastTwist => {
+            notes.push("odometry comes late: its last twist is taken to go on".into());
+        }
+        MotionKnown::Unknown if odometry_flows => {
+            notes.push("odometry does not reach the scans: the motion stays in them".into());
+        }
+        _ => {}
+    }
+    notes.join("; ")
 }

@@ -37,13 +37,12 @@ impl Sonar {
     pub fn hear(
         &mut self,
         header: &ScanHeader,
-        ranges: &[f32],
+        scan: &Scan<'_>,
         history: &History,
     ) -> Result<(), AccumulatorError> {
         let odom_from_laser = history.odom_from_laser(header, MAX_AGE_NS)?;
-        let scan = Scan::of(header, ranges);
         self.window
-            .add(&scan, header.stamp.measured_ns, odom_from_laser)?;
+            .add(scan, header.stamp.measured_ns, odom_from_laser)?;
         self.ranges = self.window.ranges();
         Ok(())
     }

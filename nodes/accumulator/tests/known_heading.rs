@@ -12,8 +12,8 @@ use std::f64::consts::FRAC_PI_2;
 use bytemuck::Zeroable;
 use engine::localizer::Prior;
 use messages::{
-    FieldHeader, FieldKind, GroundTruth, Name, NodeState, Odometry, Pose2, SearchOutcome, Stamp,
-    topic,
+    FieldHeader, FieldKind, FrameName, GroundTruth, NodeState, Odometry, Pose2, SearchOutcome,
+    Stamp, topic,
 };
 use transport::testing::{Isolated, NodeProcess, wait_for, wait_for_health};
 use world::{FRAME, MOUNT, ROOM, World, localizer, ranges, scan};
@@ -129,7 +129,7 @@ fn headings_come_from_odometry_of_the_base() {
         *loan.header_mut() = Odometry {
             stamp: at(measured_ns),
             odom_from_child: turned(yaw),
-            child_frame: Name::new("base_link"),
+            child_frame: FrameName::new("base_link"),
             ..Zeroable::zeroed()
         };
         loan.send().unwrap();
@@ -163,7 +163,7 @@ fn headings_come_from_the_truth_of_the_scan() {
     *loan.header_mut() = GroundTruth {
         stamp: at(0),
         map_from_laser: turned(map_heading()),
-        frame: Name::new("map"),
+        frame: FrameName::new("map"),
     };
     loan.send().unwrap();
     let ranges = ranges(&ROOM, 3, 3, HEADING);

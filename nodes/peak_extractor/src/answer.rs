@@ -3,7 +3,7 @@
 use bytemuck::Zeroable;
 use engine::EngineError;
 use engine::fit::{BeamClass, Ends};
-use engine::peaks::{self, PeakConfig, Place, Places, Score};
+use engine::peaks::{self, PeakConfig, Place, Places, Score, Sought};
 use engine::space::Space;
 use geometry::Pose;
 use messages::{
@@ -39,8 +39,8 @@ pub struct Answer<'a> {
     pub beams_header: BeamsHeader,
     /// Items of `beams`; none where the votes alone decide.
     pub beams: &'a [Beam],
-    /// Where the laser sits on the robot, if that is known.
-    pub base_from_laser: Option<Pose>,
+    /// Whose poses the places are.
+    pub sought: Sought,
 }
 
 /// Reads the places from the votes of a scan and, unless the votes alone are to
@@ -60,6 +60,7 @@ pub fn answer<'w>(
         return Ok(nothing(header));
     };
     let base_from_laser = mount(header)?;
+    let sought = Sought::of(base_from_laser, header.lasers_used > 0);
     let Workspace {
         ends,
         peaks,
@@ -70,10 +71,15 @@ pub fn answer<'w>(
     let places = match config.score {
         Score::Votes => peaks.by_votes(&input, config),
         Score::Fit => {
-            let scan = scans.get(header.stamp)?;
-            let sides = (map.width as usize, map.height as usize);
-            let extent = (header.headings, map.frame.resolution_m, sides.0, sides.1);
-            ends.find(&scan, kept_or_made(space, extent)?, &beams)?;
+            let resolution_m = map.frame.resolution_m;
+            if header.has_readings == 1 {
+                ends.take(scans.readings(header.stamp)?, resolution_m)?;
+            } else {
+                let scan = scans.get(header.stamp)?;
+                let sides = (map.width as usize, map.height as usize);
+                let extent = (header.headings, resolution_m, sides.0, sides.1);
+                ends.find(&scan, kept_or_made(space, extent)?, &beams)?;
+            }
             let places = peaks.by_fit(&input, (&map.terrain, ends), config);
             beams_seen.extend(judged(ends, places));
             places
@@ -92,7 +98,7 @@ pub fn answer<'w>(
         },
         beams: beams_seen,
         places: &places.places,
-        base_from_laser,
+        sought,
     })
 }
 
@@ -126,17 +132,17 @@ pub fn nothing(votes: &VotesHeader) -> Answer<'static> {
             map_from_laser: Pose::IDENTITY.into(),
         },
         beams: &[],
-        base_from_laser: None,
+        sought: Sought::of(None, false),
     }
 }
 
 impl Answer<'_> {
     /// The message's items, to be filled in place.
     pub fn hypotheses(&self) -> impl ExactSizeIterator<Item = Hypothesis> {
-        let laser_from_base = self.base_from_laser.map_or(Pose::IDENTITY, Pose::inverse);
+        let (map_id, sought) = (self.header.map_id, self.sought);
         self.places
             .iter()
-            .map(move |place| place.hypothesis(laser_from_base))
+            .map(move |place| place.hypothesis(map_id, sought))
     }
 }
 

@@ -27,6 +27,7 @@ const TICK: Duration = Duration::from_millis(100);
 pub fn run(graph: &Graph, config: &Config) -> Result<(), PeakError> {
     let votes = graph.subscriber::<topic::Votes>()?;
     let scans = graph.subscriber::<topic::Scan>()?;
+    let readings = graph.subscriber::<topic::Readings>()?;
     let maps = graph.subscriber::<topic::Map>()?;
     let mut node = Node {
         config: config.peaks,
@@ -40,8 +41,8 @@ pub fn run(graph: &Graph, config: &Config) -> Result<(), PeakError> {
         beams: graph.publisher_for(BeamConfig::default().max_beams as usize)?,
         health: graph.health()?,
     };
-    graph.run(&[&votes, &scans, &maps], TICK, |_| {
-        node.step(&votes, &scans, &maps)?;
+    graph.run(&[&votes, &scans, &readings, &maps], TICK, |_| {
+        node.step(&votes, (&scans, &readings), &maps)?;
         Ok(Flow::Continue)
     })
 }
@@ -62,15 +63,20 @@ impl Node {
     fn step(
         &mut self,
         votes: &Subscriber<topic::Votes>,
-        scans: &Subscriber<topic::Scan>,
+        (scans, readings): (&Subscriber<topic::Scan>, &Subscriber<topic::Readings>),
         maps: &Subscriber<topic::Map>,
     ) -> Result<(), TransportError> {
         loop {
             let sample = votes.receive()?;
-            // The scan and the map that was searched were sent before the votes.
+            // The scan, what was made of it and the map that was searched were sent
+            // before the votes.
             while let Some(scan) = scans.receive()? {
                 self.health.count_received(1);
                 self.scans.hear(scan.header(), scan.items());
+            }
+            while let Some(sample) = readings.receive()? {
+                let stamp = sample.header().stamp;
+                self.scans.take_readings(stamp, sample.items());
             }
             if let Some(map) = maps.newest()? {
                 self.hear(&map)?;

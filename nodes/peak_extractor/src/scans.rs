@@ -1,9 +1,9 @@
-//! The last scans, until their votes come.
+//! The last scans, and what was made of them, until their votes come.
 
 use std::collections::VecDeque;
 
 use engine::scan::Scan;
-use messages::{ScanHeader, Stamp};
+use messages::{Reading, ScanHeader, Stamp};
 
 use crate::PeakError;
 
@@ -15,6 +15,8 @@ const KEPT: usize = 64;
 pub struct Scans {
     /// The newest last.
     kept: VecDeque<(ScanHeader, Vec<f32>)>,
+    /// Beams of scans that were joined or moved; the newest last.
+    readings: VecDeque<(Stamp, Vec<Reading>)>,
 }
 
 impl Scans {
@@ -30,6 +32,26 @@ impl Scans {
         room.clear();
         room.extend_from_slice(ranges);
         self.kept.push_back((*header, room));
+    }
+
+    /// Takes the beams of a scan that was joined or moved.
+    pub fn take_readings(&mut self, stamp: Stamp, readings: &[Reading]) {
+        if self.readings.len() == KEPT {
+            self.readings.pop_front();
+        }
+        self.readings.push_back((stamp, readings.to_vec()));
+    }
+
+    /// The beams of the scan with a stamp.
+    ///
+    /// # Errors
+    /// If they did not come, or too long ago.
+    pub fn readings(&self, stamp: Stamp) -> Result<&[Reading], PeakError> {
+        let mut newest_first = self.readings.iter().rev();
+        let found = newest_first.find(|(of, _)| of.is_of(stamp));
+        found
+            .map(|(_, readings)| &readings[..])
+            .ok_or(PeakError::UnknownScan)
     }
 
     /// The scan with a stamp.

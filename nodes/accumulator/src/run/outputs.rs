@@ -1,6 +1,7 @@
 //! What the node publishes.
 
-use messages::{FieldHeader, Vote, VotesHeader, topic};
+use engine::beams::BeamConfig;
+use messages::{FieldHeader, Reading, ReadingsHeader, Stamp, Vote, VotesHeader, topic};
 use transport::{Graph, Publisher, TransportError, monotonic_ns};
 
 use crate::Config;
@@ -9,6 +10,7 @@ use crate::pace::Pace;
 /// The node's publishers.
 pub(super) struct Outputs {
     votes: Publisher<topic::Votes>,
+    readings: Publisher<topic::Readings>,
     field: Publisher<topic::Field>,
     field_pace: Pace,
 }
@@ -17,6 +19,8 @@ impl Outputs {
     pub(super) fn open(graph: &Graph, config: &Config) -> Result<Self, TransportError> {
         Ok(Outputs {
             votes: graph.publisher_for(config.localizer.collect.max_votes as usize)?,
+            // As many as vote by default; more of them have it grow.
+            readings: graph.publisher_for(BeamConfig::default().max_beams as usize)?,
             field: graph.publisher()?,
             field_pace: Pace::new(config.field_rate),
         })
@@ -26,6 +30,17 @@ impl Outputs {
         let mut loan = self.votes.loan(votes.len())?;
         *loan.header_mut() = *header;
         loan.items_mut().copy_from_slice(votes);
+        loan.send()
+    }
+
+    pub(super) fn readings(
+        &self,
+        stamp: Stamp,
+        readings: &[Reading],
+    ) -> Result<(), TransportError> {
+        let mut loan = self.readings.loan(readings.len())?;
+        *loan.header_mut() = ReadingsHeader { stamp };
+        loan.items_mut().copy_from_slice(readings);
         loan.send()
     }
 

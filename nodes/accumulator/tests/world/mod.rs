@@ -17,7 +17,7 @@ use engine::scan::Scan;
 use engine::space::Space;
 use geometry::Pose;
 use messages::{
-    BoundaryHeader, HealthHeader, MapHeader, Name, NodeState, Pose2, ScanHeader, Stamp, Vote,
+    BoundaryHeader, FrameName, HealthHeader, MapHeader, NodeState, Pose2, ScanHeader, Stamp, Vote,
     VotesHeader, topic,
 };
 use transport::{Graph, Publisher, Subscriber, monotonic_ns};
@@ -177,7 +177,7 @@ impl World {
             range_max_m: plain.range_max_m,
             base_from_laser: MOUNT,
             mount_known: 1,
-            frame: Name::new("laser"),
+            frame: FrameName::new("laser"),
             ..Zeroable::zeroed()
         };
         change(&mut header);
