@@ -7,7 +7,7 @@ use conversion::measurements::scan_header;
 use engine::grid::{CellRules, Grid, GridFrame};
 use engine::localizer::{Localizer, LocalizerConfig, Prior};
 use engine::scan::Scan;
-use messages::{Name, ScanHeader};
+use messages::{FrameName, ScanHeader};
 use recording::ros::LaserScan;
 use recording::{Kind, Message, Recording};
 
@@ -82,7 +82,7 @@ pub fn scans_of(recording: &Path) -> Vec<LaserScan> {
 /// The header of a recorded scan as the graph has it, sent now.
 #[must_use]
 pub fn as_the_graph_has_it(scan: &LaserScan, counter: u64) -> ScanHeader {
-    let mut header = scan_header(scan, Name::new("laser"), None);
+    let mut header = scan_header(scan, FrameName::new("laser"), None);
     header.stamp.entered_ns = transport::monotonic_ns();
     header.stamp.counter = counter;
     header

@@ -28,8 +28,11 @@ pub struct Node {
     pub build: Vec<Command>,
     /// The topics that it takes.
     pub inputs: Vec<Input>,
-    /// The topics that it sends.
+    /// The topics that it sends, each once.
     pub outputs: Vec<String>,
+    /// What tells its outputs apart where it sends several of a topic: `front` and
+    /// `rear` for `scan_front` and `scan_rear`.
+    pub streams: Vec<String>,
     /// What happens when it ends.
     pub restart: Restart,
 }
@@ -67,6 +70,8 @@ pub struct Input {
     pub topic: String,
     /// The id of the node that sends it.
     pub from: String,
+    /// Which one, where that node sends several of the topic; else empty.
+    pub stream: String,
 }
 
 /// What happens when a node ends by itself.

@@ -66,7 +66,7 @@ pub fn load(path: &Path, topics: &Topics) -> Result<Dataflow, DataflowError> {
 pub fn parse(text: &str, topics: &Topics) -> Result<Dataflow, Vec<Problem>> {
     let raw = raw::parse(text).map_err(|problem| vec![problem])?;
     let mut problems = Vec::new();
-    let dataflow = node::read_all(&raw, text, &mut problems);
+    let dataflow = node::read_all(&raw, text, topics, &mut problems);
     wiring::check(&raw, topics, &mut problems);
     if problems.is_empty() {
         return Ok(dataflow);
@@ -98,6 +98,7 @@ mod tests {
     const TOPICS: Topics = Topics {
         names: &["scan"],
         shared: &[],
+        several: &[],
     };
 
     #[test]

@@ -6,12 +6,18 @@ use serde_saphyr::Spanned;
 
 use crate::{
     Dataflow, Fault, Input, MAX_ID_BYTES, MAX_NODES, Node, Place, Problem, Restart, RestartPolicy,
+    Topics,
     raw::{RawDataflow, RawNode, Text},
     scalar, words,
 };
 
 /// All nodes; what is wrong with them goes to `problems`.
-pub(crate) fn read_all(raw: &RawDataflow, source: &str, problems: &mut Vec<Problem>) -> Dataflow {
+pub(crate) fn read_all(
+    raw: &RawDataflow,
+    source: &str,
+    topics: &Topics,
+    problems: &mut Vec<Problem>,
+) -> Dataflow {
     let found = raw.nodes.value.len();
     let mut list_fault = |fault| {
         let place = raw.nodes.referenced.into();
@@ -23,7 +29,11 @@ pub(crate) fn read_all(raw: &RawDataflow, source: &str, problems: &mut Vec<Probl
     if found > MAX_NODES {
         list_fault(Fault::TooManyNodes { found });
     }
-    let mut reader = Reader { source, problems };
+    let mut reader = Reader {
+        source,
+        topics,
+        problems,
+    };
     let nodes = raw.nodes.value.iter().map(|n| reader.node(n)).collect();
     Dataflow { nodes }
 }
@@ -32,6 +42,7 @@ pub(crate) fn read_all(raw: &RawDataflow, source: &str, problems: &mut Vec<Probl
 /// it goes on with what an absent key means: the result is not used then.
 struct Reader<'a> {
     source: &'a str,
+    topics: &'a Topics<'a>,
     problems: &'a mut Vec<Problem>,
 }
 
@@ -48,8 +59,13 @@ impl Reader<'_> {
             args: self.optional(node.args.as_ref(), |t| words::split_args(&t.value)),
             env: self.env(node),
             build: self.optional(node.build.as_ref(), |t| words::split_build(&t.value)),
-            inputs: node.inputs().iter().filter_map(read_input).collect(),
-            outputs: node.outputs().iter().map(|o| o.value.clone()).collect(),
+            inputs: node
+                .inputs()
+                .iter()
+                .filter_map(|input| read_input(input, self.topics))
+                .collect(),
+            outputs: outputs(node, self.topics),
+            streams: streams(node, self.topics),
             restart: self.restart(node),
         }
     }
@@ -170,18 +186,40 @@ fn read_policy(text: &Text) -> Result<RestartPolicy, Fault> {
 }
 
 /// `topic: node/topic`; anything else is noted where the wiring is checked.
-fn read_input((name, source): &(Text, Text)) -> Option<Input> {
-    let (from, _) = source.value.split_once('/')?;
+fn read_input((name, source): &(Text, Text), topics: &Topics) -> Option<Input> {
+    let (from, output) = source.value.split_once('/')?;
+    let (topic, stream) = match topics.split(output) {
+        (topic, stream) if topics.several.contains(&topic) => (topic, stream),
+        _ => (&*name.value, ""),
+    };
     Some(Input {
-        topic: name.value.clone(),
+        topic: topic.to_owned(),
         from: from.to_owned(),
+        stream: stream.to_owned(),
     })
+}
+
+fn outputs(node: &RawNode, topics: &Topics) -> Vec<String> {
+    let mut outputs: Vec<String> = Vec::new();
+    for output in node.outputs() {
+        let (topic, _) = topics.split(&output.value);
+        if !outputs.iter().any(|known| known == topic) {
+            outputs.push(topic.to_owned());
+        }
+    }
+    outputs
+}
+
+fn streams(node: &RawNode, topics: &Topics) -> Vec<String> {
+    let streams = node.outputs().iter().map(|o| topics.split(&o.value).1);
+    let streams = streams.filter(|stream| !stream.is_empty());
+    streams.map(str::to_owned).collect()
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::{Topics, parse};
+    use crate::parse;
 
     fn faults(text: &str) -> Vec<String> {
         match parse(text, &Topics::default()) {

@@ -14,6 +14,28 @@ pub struct Topics<'a> {
     pub names: &'a [&'a str],
     /// Those of them that several nodes may send.
     pub shared: &'a [&'a str],
+    /// Those that a graph may have several of: `scan`, `scan_front`, `scan_rear`.
+    /// Several nodes may send one, and an input that is wired to one may have any
+    /// name.
+    pub several: &'a [&'a str],
+}
+
+impl Topics<'_> {
+    /// The topic that an output stands for, and what tells it apart from others of
+    /// that topic: `scan` and `front` for `scan_front`.
+    pub(crate) fn split<'n>(&self, output: &'n str) -> (&'n str, &'n str) {
+        let split = self.several.iter().find_map(|topic| {
+            let suffix = output.strip_prefix(topic)?.strip_prefix('_')?;
+            (!suffix.is_empty()).then(|| (&output[..topic.len()], suffix))
+        });
+        split
+            .filter(|_| !self.names.contains(&output))
+            .unwrap_or((output, ""))
+    }
+
+    fn is_several(&self, output: &str) -> bool {
+        self.several.contains(&self.split(output).0)
+    }
 }
 
 /// Notes what is wrong with the ids, ports and wires of the graph.
@@ -27,9 +49,17 @@ pub(crate) fn check(raw: &RawDataflow, topics: &Topics, problems: &mut Vec<Probl
     check_outputs(&nodes, topics, &mut note);
     for &node in &nodes {
         for (name, source) in node.inputs() {
-            if let Err(fault) = check_name(&name.value, topics) {
+            let is_free = source.value.split_once('/');
+            let is_free = is_free.is_some_and(|(_, output)| topics.is_several(output));
+            let named = match is_free {
+                true => Ok(()),
+                false => check_name(&name.value, topics),
+            };
+            if let Err(fault) = named {
                 note(name, fault);
-            } else if let Err(fault) = check_source(node, &name.value, &source.value, &nodes) {
+            } else if let Err(fault) =
+                check_source(node, (&name.value, is_free), &source.value, &nodes)
+            {
                 note(source, fault);
             }
         }
@@ -72,16 +102,18 @@ fn check_output<'a>(
         Some(first) if std::ptr::eq(first, node) => {
             Err(Fault::DuplicateOutput { topic: topic_text })
         }
-        Some(first) if !topics.shared.contains(&topic) => Err(Fault::SecondSender {
-            topic: topic_text,
-            first: first.id().to_owned(),
-        }),
+        Some(first) if !topics.shared.contains(&topic) && !topics.several.contains(&topic) => {
+            Err(Fault::SecondSender {
+                topic: topic_text,
+                first: first.id().to_owned(),
+            })
+        }
         _ => Ok(()),
     }
 }
 
 fn check_name(found: &str, topics: &Topics) -> Result<(), Fault> {
-    if topics.names.contains(&found) {
+    if topics.names.contains(&topics.split(found).0) {
         return Ok(());
     }
     Err(Fault::UnknownTopic {
@@ -92,7 +124,7 @@ fn check_name(found: &str, topics: &Topics) -> Result<(), Fault> {
 
 fn check_source(
     node: &RawNode,
-    input: &str,
+    (input, is_free): (&str, bool),
     source: &str,
     nodes: &[&RawNode],
 ) -> Result<(), Fault> {
@@ -127,7 +159,7 @@ fn check_source(
             allowed: list(sender.outputs().iter().map(|o| o.value.as_str())),
         });
     }
-    if topic != input {
+    if topic != input && !is_free {
         return Err(Fault::RenamedInput {
             input: input_text,
             topic: topic.to_owned(),
@@ -154,6 +186,7 @@ mod tests {
     const TOPICS: Topics = Topics {
         names: &["scan", "votes", "health"],
         shared: &["health"],
+        several: &[],
     };
 
     fn read(nodes: &[&str]) -> Result<Dataflow, Vec<Problem>> {
@@ -206,6 +239,41 @@ mod tests {
             &["id: a, outputs: [scan]", "id: b, inputs: {image: a/scan}"],
             &["3:31: there is no topic `image`; allowed are scan, votes, health"],
         );
+    }
+
+    #[test]
+    fn a_graph_may_have_several_of_some_topics() {
+        let topics = Topics {
+            several: &["scan"],
+            ..TOPICS
+        };
+        let text = "nodes:
+  - {id: front, path: x, outputs: [scan]}
+  - {id: rear, path: x, outputs: [scan]}
+  - {id: both, path: x, outputs: [scan_left, scan_right]}
+  - {id: a, path: x, inputs: {scan_front: front/scan, any: rear/scan, scan: both/scan_left, x: both/scan_right}}
+";
+        let graph = parse(text, &topics).unwrap();
+        let wires = graph.nodes[3].inputs.iter();
+        let wires: Vec<_> = wires.map(|i| (&*i.topic, &*i.from, &*i.stream)).collect();
+        let expected = [
+            ("scan", "front", ""),
+            ("scan", "rear", ""),
+            ("scan", "both", "left"),
+            ("scan", "both", "right"),
+        ];
+        assert_eq!(wires, expected);
+        assert_eq!(graph.nodes[2].outputs, ["scan"]);
+        assert_eq!(graph.nodes[2].streams, ["left", "right"]);
+        let wrong = text.replace("x: both/scan_right", "votes: front/health");
+        let problems = parse(&wrong, &topics).unwrap_err();
+        assert!(
+            problems[0].to_string().contains("does not list it"),
+            "{}",
+            problems[0]
+        );
+        let wrong = text.replace("[scan_left, scan_right]", "[scan_left, scan_left]");
+        assert!(parse(&wrong, &topics).is_err());
     }
 
     #[test]

@@ -2,7 +2,7 @@
 //! message stands.
 
 use conversion::{Unsayable, measurements};
-use messages::{GroundTruth, Name, Odometry};
+use messages::{FrameName, GroundTruth, Odometry};
 use recording::ros::{self, PoseStamped};
 
 use crate::PlaybackError;
@@ -14,7 +14,7 @@ pub(crate) struct Place<'a> {
 }
 
 impl Place<'_> {
-    pub(crate) fn name(&self, frame: &str) -> Result<Name, PlaybackError> {
+    pub(crate) fn name(&self, frame: &str) -> Result<FrameName, PlaybackError> {
         measurements::frame(frame).map_err(|reason| self.unusable(reason))
     }
 

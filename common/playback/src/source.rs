@@ -7,7 +7,8 @@ use std::collections::BTreeMap;
 use std::sync::Arc;
 
 use conversion::measurements::scan_header;
-use messages::{GroundTruth, Odometry, Pose2, ScanHeader};
+use geometry::Mount;
+use messages::{GroundTruth, Odometry, ScanHeader};
 use recording::{Channel, Kind, Message, Record, Recording, RecordingError, Records};
 
 use crate::PlaybackError;
@@ -104,7 +105,7 @@ pub struct Source<'a> {
     channels: Channels,
     selection: Selection,
     records: Records<'a>,
-    mounts: BTreeMap<String, Option<Pose2>>,
+    mounts: BTreeMap<String, Option<Mount>>,
 }
 
 impl<'a> Source<'a> {
@@ -144,12 +145,15 @@ impl<'a> Source<'a> {
     }
 
     /// Where the laser of this frame sits; looked up once.
-    fn mount(&mut self, frame: &str) -> Result<Option<Pose2>, RecordingError> {
+    fn mount(&mut self, frame: &str) -> Result<Option<Mount>, RecordingError> {
         if let Some(&known) = self.mounts.get(frame) {
             return Ok(known);
         }
         let mount = self.recording.base_from_laser(frame)?;
-        let mount = mount.map(|mount| mount.base_from_laser.into());
+        let mount = mount.map(|mount| Mount {
+            base_from_laser: mount.base_from_laser,
+            is_upside_down: mount.upside_down,
+        });
         self.mounts.insert(frame.into(), mount);
         Ok(mount)
     }

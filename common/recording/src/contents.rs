@@ -136,7 +136,7 @@ mod tests {
     use geometry::Pose;
 
     use super::*;
-    use crate::ros::{self, PoseStamped, TfMessage, TransformStamped};
+    use crate::ros::{self, PoseStamped};
     use crate::sample;
     use crate::write::{Packing, RecordingWriter};
 
@@ -223,27 +223,5 @@ mod tests {
         );
         let cause = std::error::Error::source(&error).unwrap();
         assert_eq!(cause.to_string(), "the position (NaN, 2) is not finite");
-    }
-
-    #[test]
-    fn a_laser_upside_down_is_refused() {
-        let mut transform = TransformStamped::default();
-        transform.header.frame_id = "base_link".to_owned();
-        transform.child_frame_id = "laser".to_owned();
-        transform.transform.rotation = ros::Quaternion {
-            x: 1.0,
-            y: 0.0,
-            z: 0.0,
-            w: 0.0,
-        };
-        let message = Message::StaticTransforms(TfMessage {
-            transforms: vec![transform],
-        });
-        let recording = recording(&[(crate::TF_STATIC, message)]);
-        let error = recording.base_from_laser("laser").unwrap_err().to_string();
-        assert!(
-            error.contains("laser is tilted by 180 degrees against base_link"),
-            "{error}"
-        );
     }
 }

@@ -1,6 +1,7 @@
 //! Where the laser sits on the robot.
 
 use std::collections::{BTreeMap, BTreeSet, VecDeque};
+use std::f64::consts::PI;
 
 use geometry::Pose;
 use nalgebra::{Isometry3, Quaternion, Translation3, UnitQuaternion, Vector3};
@@ -23,8 +24,11 @@ pub struct Mount {
     pub base_from_laser: Pose,
     /// How high the laser sits above the base frame, metres.
     pub height_m: f64,
-    /// Angle between the z axes of laser and base, degrees.
+    /// Angle between the z axes of laser and base, degrees, from level or from upside
+    /// down, whichever is nearer.
     pub tilt_degrees: f64,
+    /// Whether the laser hangs upside down.
+    pub upside_down: bool,
 }
 
 /// Frames and what is known between them.
@@ -70,7 +74,8 @@ impl TransformTree {
             base_frame: base.clone(),
             base_from_laser: Pose::new(place.x, place.y, forward.y.atan2(forward.x)),
             height_m: place.z,
-            tilt_degrees: up.z.clamp(-1.0, 1.0).acos().to_degrees(),
+            tilt_degrees: up.z.abs().min(1.0).acos().to_degrees(),
+            upside_down: up.z < 0.0,
         })
     }
 
@@ -79,7 +84,15 @@ impl TransformTree {
     #[must_use]
     pub fn laser_from(&self, laser: &str, frame: &str) -> Option<Pose> {
         let connected = self.connected_to(plain(laser));
-        let laser_from_frame = connected.get(plain(frame))?;
+        let laser_from_frame = *connected.get(plain(frame))?;
+        let laser_from_frame = match self.base_from(laser) {
+            // Seen from above, a laser upside down is mirrored.
+            Some(mount) if mount.upside_down => {
+                let roll = UnitQuaternion::from_axis_angle(&Vector3::x_axis(), PI);
+                Isometry3::from_parts(Translation3::identity(), roll) * laser_from_frame
+            }
+            _ => laser_from_frame,
+        };
         let forward = laser_from_frame.rotation * Vector3::x();
         let place = laser_from_frame.translation;
         Some(Pose::new(place.x, place.y, forward.y.atan2(forward.x)))
@@ -240,10 +253,7 @@ mod tests {
             w: 0.0,
         };
         let mount = tree(&[upside_down.clone()]).base_from("laser").unwrap();
-        assert!(
-            (mount.tilt_degrees - 180.0).abs() < 1e-6,
-            "acos is flat there"
-        );
+        assert!(mount.upside_down && mount.tilt_degrees < 1e-6);
         upside_down.transform.rotation.x = 0.0;
         assert!(TransformTree::default().add(&upside_down).is_err());
     }

@@ -132,7 +132,7 @@ impl<W: Write + Seek> RecordingWriter<W> {
     /// As [`RecordingWriter::write`].
     pub fn write_encoded(&mut self, message: &Encoded) -> Result<(), RecordingError> {
         let definition = Definition {
-            topic: message.topic,
+            topic: &message.topic,
             schema: message.schema,
             text: message.definition,
             encoding: "cdr",

@@ -3,7 +3,7 @@
 use std::cell::RefCell;
 use std::collections::BTreeMap;
 
-use messages::{HealthHeader, LogHeader, Topic, topic};
+use messages::{HealthHeader, LogHeader, ScanHeader, Topic, topic};
 use transport::{GapCounter, Graph, Input, Subscriber, TransportError, monotonic_ns};
 
 use crate::Transcript;
@@ -38,7 +38,9 @@ pub struct Inputs {
     map: Counted<topic::Map>,
     odometry: Counted<topic::OdometryTopic>,
     truths: Counted<topic::GroundTruthTopic>,
-    scans: Counted<topic::Scan>,
+    scans: Subscriber<topic::Scan>,
+    /// By laser, for each counts its own scans.
+    scan_gaps: RefCell<BTreeMap<String, GapCounter>>,
     votes: Counted<topic::Votes>,
     field: Option<Counted<topic::Field>>,
     hypotheses: Counted<topic::Hypotheses>,
@@ -79,7 +81,8 @@ impl Inputs {
             map: Counted::open(graph)?,
             odometry: Counted::open(graph)?,
             truths: Counted::open(graph)?,
-            scans: Counted::open(graph)?,
+            scans: graph.subscriber()?,
+            scan_gaps: RefCell::default(),
             votes: Counted::open(graph)?,
             field: field.then(|| Counted::open(graph)).transpose()?,
             hypotheses: Counted::open(graph)?,
@@ -101,7 +104,7 @@ impl Inputs {
             &self.map.subscriber,
             &self.odometry.subscriber,
             &self.truths.subscriber,
-            &self.scans.subscriber,
+            &self.scans,
             &self.votes.subscriber,
             &self.hypotheses.subscriber,
             &self.beams.subscriber,
@@ -143,6 +146,12 @@ impl Inputs {
         Ok(())
     }
 
+    fn scans_lost_before(&self, scan: &ScanHeader) -> u64 {
+        let mut gaps = self.scan_gaps.borrow_mut();
+        let gaps = gaps.entry(scan.laser.to_string()).or_default();
+        gaps.lost_before(scan.stamp.counter)
+    }
+
     fn lines_lost_before(&self, line: &LogHeader) -> u64 {
         let mut gaps = self.log_gaps.borrow_mut();
         gaps.entry(line.pid).or_default().lost_before(line.counter)
@@ -159,12 +168,10 @@ impl Inputs {
             let outcome = to.transcript().entries.ground_truth(sample.header());
             to.transcript().taken(lost, outcome)?;
         }
-        while let Some(sample) = self.scans.subscriber.receive()? {
-            let lost = self.scans.lost_before(sample.header().stamp.counter);
-            let outcome = to
-                .transcript()
-                .entries
-                .scan(sample.header(), sample.items());
+        while let Some(sample) = self.scans.receive()? {
+            let header = sample.header();
+            let lost = self.scans_lost_before(header);
+            let outcome = to.transcript().entries.scan(header, sample.items());
             to.transcript().taken(lost, outcome)?;
         }
         Ok(())

@@ -1,6 +1,6 @@
 //! What a user can set of a transcript.
 
-use messages::Name;
+use messages::FrameName;
 
 /// How frames are called that have no name in the graph.
 #[derive(Debug, Clone, clap::Args)]
@@ -16,10 +16,10 @@ pub struct Options {
 
 fn frame(text: &str) -> Result<String, String> {
     match text.len() {
-        1..=Name::CAPACITY => Ok(text.into()),
+        1..=FrameName::CAPACITY => Ok(text.into()),
         bytes => Err(format!(
             "it has {bytes} bytes, allowed are 1 to {}",
-            Name::CAPACITY
+            FrameName::CAPACITY
         )),
     }
 }
@@ -31,7 +31,7 @@ mod tests {
     #[test]
     fn frames_are_as_long_as_names_in_the_graph() {
         assert_eq!(frame("base_link").unwrap(), "base_link");
-        for refused in [String::new(), "x".repeat(Name::CAPACITY + 1)] {
+        for refused in [String::new(), "x".repeat(FrameName::CAPACITY + 1)] {
             let problem = frame(&refused).unwrap_err();
             assert!(problem.contains("allowed are 1 to 32"), "{problem}");
         }

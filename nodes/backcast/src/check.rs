@@ -81,6 +81,7 @@ mod tests {
         let topics = Topics {
             names: &["scan", "votes"],
             shared: &[],
+            several: &[],
         };
         let text = "nodes:
   - {id: a, path: x, outputs: [scan]}

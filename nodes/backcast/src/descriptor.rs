@@ -14,6 +14,7 @@ pub(crate) const DEFAULT_FILE: &str = "dataflow.yaml";
 const TOPICS: Topics = Topics {
     names: topic::NAMES,
     shared: &[topic::Health::NAME, topic::Log::NAME],
+    several: &[topic::Scan::NAME],
 };
 
 /// A descriptor and its folder.

@@ -27,6 +27,7 @@ impl Ports {
         let topics = Topics {
             names: topic::NAMES,
             shared: &[topic::Health::NAME, topic::Log::NAME],
+            several: &[topic::Scan::NAME],
         };
         Self::of(&dataflow::load(file, &topics)?, file, id)
     }
@@ -41,7 +42,13 @@ impl Ports {
             });
         };
         let into = node.outputs.clone();
-        let mut out: Vec<_> = node.inputs.iter().map(|i| i.topic.clone()).collect();
+        let mut out: Vec<String> = Vec::new();
+        for input in &node.inputs {
+            // Of several lasers, all scans are one topic.
+            if !out.contains(&input.topic) {
+                out.push(input.topic.clone());
+            }
+        }
         if let Some(both) = out.iter().find(|topic| into.contains(topic)) {
             let topic = both.clone();
             return Err(BridgeError::Circle { topic });

@@ -10,7 +10,7 @@ use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, Ordering};
 use std::time::Duration;
 
-use messages::{MapHeader, Name, Pose2, ScanHeader, Stamp, topic};
+use messages::{FrameName, MapHeader, Name, Pose2, ScanHeader, Stamp, topic};
 use tests::machine::Machine;
 use transport::testing::{Isolated, NodeProcess, wait_for_health, wait_until};
 use transport::{Flow, Graph, Publisher, TransportError, monotonic_ns};
@@ -54,7 +54,9 @@ fn scan(counter: u64) -> ScanHeader {
             yaw: 0.0,
         },
         mount_known: 1,
-        frame: Name::new("laser"),
+        upside_down: 0,
+        laser: Name::new("front"),
+        frame: FrameName::new("laser"),
     }
 }
 

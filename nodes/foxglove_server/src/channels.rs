@@ -1,5 +1,6 @@
 //! Topics of ROS as viewers see them.
 
+use std::borrow::Cow;
 use std::collections::BTreeMap;
 use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
 
@@ -21,7 +22,7 @@ const DEFINITIONS: &str = "ros2msg";
 pub(crate) struct Channels {
     context: Arc<Context>,
     field: Arc<RawChannel>,
-    open: Mutex<BTreeMap<&'static str, Open>>,
+    open: Mutex<BTreeMap<Cow<'static, str>, Open>>,
 }
 
 #[derive(Debug)]
@@ -43,7 +44,7 @@ impl Channels {
         Ok(Channels {
             context: Arc::clone(context),
             field,
-            open: Mutex::new(BTreeMap::from([(topics::FIELD, open)])),
+            open: Mutex::new(BTreeMap::from([(topics::FIELD.into(), open)])),
         })
     }
 
@@ -55,13 +56,13 @@ impl Channels {
     /// Shows a message to all who look at its topic.
     pub(crate) fn show(&self, message: Encoded) -> Result<(), ServerError> {
         let mut open = self.open();
-        if !open.contains_key(message.topic) {
+        if !open.contains_key(&message.topic) {
             let schema = (message.schema, message.definition);
-            let channel = offer(&self.context, message.topic, schema)?;
+            let channel = offer(&self.context, &message.topic, schema)?;
             let newest = None;
-            open.insert(message.topic, Open { channel, newest });
+            open.insert(message.topic.clone(), Open { channel, newest });
         }
-        if let Some(Open { channel, newest }) = open.get_mut(message.topic) {
+        if let Some(Open { channel, newest }) = open.get_mut(&message.topic) {
             channel.log_with_meta(&message.body, at(&message));
             if message.latched {
                 *newest = Some(message);
@@ -70,7 +71,7 @@ impl Channels {
         Ok(())
     }
 
-    fn open(&self) -> MutexGuard<'_, BTreeMap<&'static str, Open>> {
+    fn open(&self) -> MutexGuard<'_, BTreeMap<Cow<'static, str>, Open>> {
         self.open.lock().unwrap_or_else(PoisonError::into_inner)
     }
 }
@@ -89,13 +90,16 @@ impl ServerListener for Channels {
 
 fn offer(
     context: &Arc<Context>,
-    topic: &'static str,
+    topic: &str,
     (name, definition): (&'static str, &'static str),
 ) -> Result<Arc<RawChannel>, ServerError> {
     let channel = context.channel_builder(topic).message_encoding(ENCODING);
     let schema = Schema::new(name, DEFINITIONS, definition.as_bytes());
     let channel = channel.schema(schema).build_raw();
-    channel.map_err(|source| ServerError::Channel { topic, source })
+    channel.map_err(|source| ServerError::Channel {
+        topic: topic.to_owned(),
+        source,
+    })
 }
 
 fn at(message: &Encoded) -> PartialMetadata {

@@ -19,7 +19,7 @@ pub enum ServerError {
     #[error("cannot show {topic}")]
     Channel {
         /// The topic of ROS.
-        topic: &'static str,
+        topic: String,
         /// What the library says.
         source: FoxgloveError,
     },

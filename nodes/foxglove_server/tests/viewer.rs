@@ -9,8 +9,8 @@ use std::net::TcpStream;
 
 use bytemuck::Zeroable;
 use messages::{
-    FieldHeader, HypothesesHeader, Hypothesis, MapHeader, Name, Pose2, ScanHeader, Stamp, Verdict,
-    topic,
+    FieldHeader, FrameName, HypothesesHeader, Hypothesis, MapHeader, Pose2, ScanHeader, Stamp,
+    Verdict, topic,
 };
 use recording::ros::{LaserScan, OccupancyGridMsg, PoseWithCovarianceStamped};
 use serde::de::DeserializeOwned;
@@ -90,7 +90,7 @@ impl World {
             angle_increment: 0.5,
             range_max_m: 30.0,
             mount_known: 1,
-            frame: Name::new("laser"),
+            frame: FrameName::new("laser"),
             ..ScanHeader::zeroed()
         };
         loan.items_mut().copy_from_slice(&[1.5, counter as f32]);

@@ -3,7 +3,7 @@
 use std::path::PathBuf;
 
 use clap::{ArgAction, ArgGroup, CommandFactory, Parser, ValueEnum, error::ErrorKind};
-use messages::{Name, Pose2};
+use messages::{FrameName, Name, Pose2};
 use sick::cola::Encoding;
 use sick::lms2xx::{Baud, RangeMode, Unit};
 
@@ -84,9 +84,18 @@ pub struct Config {
     #[arg(long, value_name = "X,Y,YAW_DEG", value_parser = mount, allow_hyphen_values = true)]
     pub mount: Option<Pose2>,
 
-    /// The laser's frame, 1 to 32 bytes.
+    /// The laser hangs upside down: rolled by half a turn about its x axis.
+    #[arg(long)]
+    pub upside_down: bool,
+
+    /// The laser's frame, 1 to 256 bytes.
     #[arg(long, value_name = "NAME", default_value = "laser", value_parser = frame)]
-    pub frame: Name,
+    pub frame: FrameName,
+
+    /// Which of several lasers of the graph it is, at most 32 bytes; the accumulator's
+    /// --scans names it.
+    #[arg(long, value_name = "NAME", default_value = "", value_parser = laser)]
+    pub laser: Name,
 
     /// Readings below are no returns, metres, from 0.
     #[arg(long, value_name = "METRES", default_value_t = 0.05, value_parser = metres)]
@@ -180,6 +189,8 @@ impl Config {
             range_min_m: self.range_min_m,
             range_max_m: self.range_max_m,
             base_from_laser: self.mount,
+            upside_down: self.upside_down,
+            laser: self.laser,
             frame: self.frame,
             stamps: self.stamps,
         }
@@ -241,15 +252,25 @@ fn metres(text: &str) -> Result<f32, String> {
     }
 }
 
-fn frame(text: &str) -> Result<Name, String> {
-    if (1..=Name::CAPACITY).contains(&text.len()) {
-        return Ok(Name::new(text));
+fn frame(text: &str) -> Result<FrameName, String> {
+    if (1..=FrameName::CAPACITY).contains(&text.len()) {
+        return Ok(FrameName::new(text));
     }
     Err(format!(
         "it has {} bytes, allowed are 1 to {}",
         text.len(),
-        Name::CAPACITY
+        FrameName::CAPACITY
     ))
+}
+
+fn laser(text: &str) -> Result<Name, String> {
+    match text.len() {
+        0..=Name::CAPACITY => Ok(Name::new(text)),
+        length => Err(format!(
+            "it has {length} bytes, allowed are at most {}",
+            Name::CAPACITY
+        )),
+    }
 }
 
 fn mount(text: &str) -> Result<Pose2, String> {

@@ -78,6 +78,8 @@ impl<'a> WholeScan<'a> {
                 yaw: 0.0,
             }),
             mount_known: u64::from(settings.base_from_laser.is_some()),
+            upside_down: settings.upside_down.into(),
+            laser: settings.laser,
             frame: settings.frame,
         })
     }
@@ -118,7 +120,7 @@ impl<'a> WholeScan<'a> {
 
 #[cfg(test)]
 mod tests {
-    use messages::Name;
+    use messages::{FrameName, Name};
     use sick::lms2xx::RangeMode;
 
     use super::*;
@@ -133,7 +135,9 @@ mod tests {
             range_min_m: 0.05,
             range_max_m: 80.0,
             base_from_laser: None,
-            frame: Name::new("laser"),
+            upside_down: false,
+            laser: Name::new(""),
+            frame: FrameName::new("laser"),
             stamps: crate::Stamps::Host,
         }
     }

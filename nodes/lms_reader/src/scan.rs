@@ -3,7 +3,7 @@
 //! Pure: the caller says when the telegram came. It decides nothing about what
 //! a range is good for; it only tells readings from codes.
 
-use messages::{Name, Pose2, ScanHeader, Stamp};
+use messages::{FrameName, Name, Pose2, ScanHeader, Stamp};
 use sick::cola::{Channel, LmdScanData};
 
 use crate::clock::DeviceClock;
@@ -30,8 +30,12 @@ pub struct ScanSettings {
     pub range_max_m: f32,
     /// Where the laser sits on the robot, if that is known.
     pub base_from_laser: Option<Pose2>,
+    /// Whether it hangs upside down.
+    pub upside_down: bool,
+    /// Which of several lasers it is; empty where the graph has one.
+    pub laser: Name,
     /// The laser's frame.
-    pub frame: Name,
+    pub frame: FrameName,
     /// Whose time the scan gets.
     pub stamps: Stamps,
 }
@@ -130,6 +134,8 @@ pub fn header(
             yaw: 0.0,
         }),
         mount_known: u64::from(settings.base_from_laser.is_some()),
+        upside_down: settings.upside_down.into(),
+        laser: settings.laser,
         frame: settings.frame,
     })
 }
@@ -205,7 +211,9 @@ mod tests {
             range_min_m: 0.05,
             range_max_m: 25.0,
             base_from_laser: None,
-            frame: Name::new("laser"),
+            upside_down: false,
+            laser: Name::new(""),
+            frame: FrameName::new("laser"),
             stamps: Stamps::Host,
         }
     }

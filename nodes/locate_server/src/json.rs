@@ -2,7 +2,7 @@
 
 use bytemuck::Zeroable;
 use geometry::Pose;
-use messages::{HypothesesHeader, Hypothesis, Name, Pose2, ScanHeader, Stamp, Verdict};
+use messages::{FrameName, HypothesesHeader, Hypothesis, Pose2, ScanHeader, Stamp, Verdict};
 use serde::{Deserialize, Serialize};
 
 /// A scan; what is not given is as little as a scan needs.
@@ -90,7 +90,7 @@ pub(crate) fn read(
         range_max_m: scan.range_max,
         base_from_laser: mount.map_or(Pose::IDENTITY.into(), Pose2::from),
         mount_known: mount.is_some().into(),
-        frame: Name::new("laser"),
+        frame: FrameName::new("laser"),
         ..ScanHeader::zeroed()
     };
     let ranges = scan.ranges.into_iter();

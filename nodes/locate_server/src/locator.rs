@@ -10,10 +10,9 @@ use engine::beams::BeamConfig;
 use engine::fit::{Ends, Terrain};
 use engine::grid::{CellRules, GridFrame};
 use engine::localizer::{self, Localizer, LocalizerConfig, Prior};
-use engine::peaks::{self, PeakConfig, PeakInput, Places, Score};
+use engine::peaks::{self, PeakConfig, PeakInput, Places, Score, Sought};
 use engine::scan::Scan;
 use engine::space::Space;
-use geometry::Pose;
 use map::OccupancyGrid;
 use messages::{HypothesesHeader, Hypothesis, ScanHeader};
 
@@ -116,11 +115,7 @@ fn described(
     places: &Places,
 ) -> Answer {
     let mount_known = scan.mount_known == 1;
-    let laser_from_base = if mount_known {
-        Pose::from(scan.base_from_laser).inverse()
-    } else {
-        Pose::IDENTITY
-    };
+    let sought = Sought::of(mount_known.then(|| scan.base_from_laser.into()), false);
     let header = HypothesesHeader {
         stamp: scan.stamp,
         map_id,
@@ -134,6 +129,6 @@ fn described(
         ..HypothesesHeader::zeroed()
     };
     let places = places.places.iter();
-    let hypotheses = places.map(|place| place.hypothesis(laser_from_base));
+    let hypotheses = places.map(|place| place.hypothesis(map_id, sought));
     (header, hypotheses.collect())
 }

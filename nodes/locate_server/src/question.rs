@@ -100,7 +100,7 @@ pub fn write(
 #[cfg(test)]
 mod tests {
     use bytemuck::Zeroable;
-    use messages::{Name, Stamp};
+    use messages::{FrameName, Stamp};
 
     use super::*;
 
@@ -120,7 +120,7 @@ mod tests {
             angle_min: -1.5,
             angle_increment: 0.5,
             range_max_m: 30.0,
-            frame: Name::new("laser"),
+            frame: FrameName::new("laser"),
             ..Zeroable::zeroed()
         }
     }

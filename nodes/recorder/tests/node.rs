@@ -9,7 +9,8 @@ use std::path::{Path, PathBuf};
 
 use bytemuck::Zeroable;
 use messages::{
-    HypothesesHeader, Hypothesis, MapHeader, Name, NodeState, ScanHeader, Stamp, Verdict, topic,
+    FrameName, HypothesesHeader, Hypothesis, MapHeader, NodeState, ScanHeader, Stamp, Verdict,
+    topic,
 };
 use nix::sys::signal::{Signal, kill};
 use nix::unistd::Pid;
@@ -95,7 +96,7 @@ impl World {
             angle_min: -1.0,
             angle_increment: 1.0,
             range_max_m: 80.0,
-            frame: Name::new("laser"),
+            frame: FrameName::new("laser"),
             ..ScanHeader::zeroed()
         };
         loan.items_mut().copy_from_slice(&[1.0, 2.5, f32::INFINITY]);
@@ -111,7 +112,7 @@ impl World {
         let mut loan = self.scans.loan(LARGE).unwrap();
         *loan.header_mut() = ScanHeader {
             stamp: self.stamp(),
-            frame: Name::new("laser"),
+            frame: FrameName::new("laser"),
             ..ScanHeader::zeroed()
         };
         for range in loan.items_mut() {

@@ -74,7 +74,7 @@ fn finite(topic: &str, field: &'static str, found: f64) -> Result<(), GatewayErr
 
 #[cfg(test)]
 mod tests {
-    use messages::Name;
+    use messages::FrameName;
 
     use super::*;
 
@@ -89,7 +89,7 @@ mod tests {
         assert_eq!(odometry.stamp.measured_ns, 3_000_000_004);
         assert_eq!(
             (odometry.odom_from_child.x, odometry.child_frame),
-            (1.5, Name::new("base_link"))
+            (1.5, FrameName::new("base_link"))
         );
         transform.transform.rotation.w = 7.0;
         assert!(odometry_of(transform).is_err());

@@ -2,7 +2,7 @@
 
 use clap::{Parser, ValueEnum};
 use geometry::Pose;
-use messages::Name;
+use messages::FrameName;
 
 use crate::GatewayError;
 
@@ -49,6 +49,10 @@ pub struct Config {
     /// does not say it
     #[arg(long, value_name = "X,Y,YAW_DEG", value_parser = mount, allow_hyphen_values = true)]
     pub mount: Option<Pose>,
+
+    /// The laser of --mount hangs upside down: rolled by half a turn about its x axis.
+    #[arg(long, requires = "mount")]
+    pub upside_down: bool,
 
     /// The map's frame [default: that of the robot's map, else map]
     #[arg(long, value_name = "FRAME", value_parser = frame)]
@@ -205,10 +209,10 @@ fn mount(text: &str) -> Result<Pose, String> {
 }
 
 fn frame(text: &str) -> Result<String, String> {
-    if (1..=Name::CAPACITY).contains(&text.len()) {
+    if (1..=FrameName::CAPACITY).contains(&text.len()) {
         return Ok(text.to_owned());
     }
-    let (found, most) = (text.len(), Name::CAPACITY);
+    let (found, most) = (text.len(), FrameName::CAPACITY);
     Err(format!("it has {found} bytes, allowed are 1 to {most}"))
 }
 

@@ -5,7 +5,7 @@
 
 use std::collections::VecDeque;
 
-use geometry::Pose;
+use geometry::{Mount, Pose};
 use messages::{HypothesesHeader, Hypothesis, Odometry};
 use recording::ros::TfMessage;
 use recording::{MAX_TILT_DEGREES, TransformTree};
@@ -26,14 +26,14 @@ const MAX_NAME: usize = 256;
 pub(crate) struct Frames {
     fixed: TransformTree,
     /// What the user says.
-    given: Option<Pose>,
+    given: Option<Mount>,
     /// The laser that was asked for last, and its mount; none after a change.
-    laser: Option<(String, Option<Pose>)>,
+    laser: Option<(String, Option<Mount>)>,
     odometry: VecDeque<Odometry>,
 }
 
 impl Frames {
-    pub(crate) fn new(given: Option<Pose>) -> Self {
+    pub(crate) fn new(given: Option<Mount>) -> Self {
         Frames {
             fixed: TransformTree::default(),
             given,
@@ -72,7 +72,7 @@ impl Frames {
     }
 
     /// Where the laser of this frame sits on the base, if that is known.
-    pub(crate) fn base_from_laser(&mut self, laser: &str) -> Result<Option<Pose>, GatewayError> {
+    pub(crate) fn base_from_laser(&mut self, laser: &str) -> Result<Option<Mount>, GatewayError> {
         if let Some((known, mount)) = &self.laser
             && known == laser
         {
@@ -87,14 +87,18 @@ impl Frames {
                     tilt_degrees: mount.tilt_degrees,
                 });
             }
-            (None, mount) => mount.map(|mount| mount.base_from_laser),
+            (None, mount) => mount.map(|mount| Mount {
+                base_from_laser: mount.base_from_laser,
+                is_upside_down: mount.upside_down,
+            }),
         };
         if let Some(mount) = mount {
             tracing::info!(
                 laser,
-                x = mount.x,
-                y = mount.y,
-                yaw = mount.yaw,
+                x = mount.base_from_laser.x,
+                y = mount.base_from_laser.y,
+                yaw = mount.base_from_laser.yaw,
+                upside_down = mount.is_upside_down,
                 "the mount"
             );
         }
@@ -141,7 +145,7 @@ impl Frames {
 #[cfg(test)]
 mod tests {
     use bytemuck::Zeroable;
-    use messages::{Name, Pose2};
+    use messages::{FrameName, Pose2};
     use recording::ros::{Header, Quaternion, Transform, TransformStamped, Vector3};
 
     use super::*;
@@ -174,9 +178,16 @@ mod tests {
     fn odometry(child: &str, x: f64) -> Odometry {
         Odometry {
             odom_from_child: at(x),
-            frame: Name::new("odom"),
-            child_frame: Name::new(child),
+            frame: FrameName::new("odom"),
+            child_frame: FrameName::new(child),
             ..Odometry::zeroed()
+        }
+    }
+
+    fn mounted(x: f64) -> Mount {
+        Mount {
+            base_from_laser: Pose::new(x, 0.0, 0.0),
+            is_upside_down: false,
         }
     }
 
@@ -187,27 +198,28 @@ mod tests {
         let mount = fixed("base_link", "laser", 0.5, Quaternion::default());
         frames.hear_fixed(&mount).unwrap();
         let found = frames.base_from_laser("laser").unwrap();
-        assert_eq!(found, Some(Pose::new(0.5, 0.0, 0.0)));
-        let mut frames = Frames::new(Some(Pose::new(9.0, 0.0, 0.0)));
+        assert_eq!(found, Some(mounted(0.5)));
+        let mut frames = Frames::new(Some(mounted(9.0)));
         frames.hear_fixed(&mount).unwrap();
         let found = frames.base_from_laser("laser").unwrap();
-        assert_eq!(found, Some(Pose::new(9.0, 0.0, 0.0)));
+        assert_eq!(found, Some(mounted(9.0)));
     }
 
     #[test]
-    fn a_laser_upside_down_and_too_many_frames_are_refused() {
+    fn a_tilted_laser_and_too_many_frames_are_refused() {
         let mut frames = Frames::new(None);
-        let flipped = Quaternion {
-            x: 1.0,
+        let half = 0.5f64.sqrt();
+        let tilted = Quaternion {
+            x: half,
             y: 0.0,
             z: 0.0,
-            w: 0.0,
+            w: half,
         };
         frames
-            .hear_fixed(&fixed("base_link", "laser", 0.5, flipped))
+            .hear_fixed(&fixed("base_link", "laser", 0.5, tilted))
             .unwrap();
         let error = frames.base_from_laser("laser").unwrap_err().to_string();
-        assert!(error.contains("tilted by 180.0"), "{error}");
+        assert!(error.contains("tilted by 90.0"), "{error}");
         let long = fixed("base_link", &"f".repeat(257), 0.5, Quaternion::default());
         let error = frames.hear_fixed(&long).unwrap_err().to_string();
         assert!(error.contains("257 bytes"), "{error}");

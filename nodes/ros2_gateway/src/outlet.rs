@@ -1,7 +1,6 @@
 //! The graph's side of what comes from the robot.
 
 use conversion::measurements;
-use geometry::Pose;
 use messages::{MapHeader, Odometry, Stamp, topic};
 use network::Report;
 use recording::ros::{LaserScan, OccupancyGridMsg};
@@ -55,7 +54,7 @@ impl Outlet {
         check_scan(message)?;
         let frame = measurements::frame(&message.header.frame_id)?;
         let mount = frames.base_from_laser(&message.header.frame_id)?;
-        let mut header = measurements::scan_header(message, frame, mount.map(Pose::into));
+        let mut header = measurements::scan_header(message, frame, mount);
         header.stamp = entering(header.stamp, self.scans_sent);
         let mut loan = publisher.loan(message.ranges.len())?;
         *loan.header_mut() = header;

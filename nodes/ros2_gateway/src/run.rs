@@ -2,6 +2,7 @@
 
 use std::time::Duration;
 
+use geometry::Mount;
 use messages::topic;
 use network::Report;
 use transport::{Flow, Graph, Subscriber, TransportError};
@@ -71,7 +72,10 @@ impl Gateway {
             outgoing,
             watch,
             member,
-            frames: Frames::new(config.mount),
+            frames: Frames::new(config.mount.map(|base_from_laser| Mount {
+                base_from_laser,
+                is_upside_down: config.upside_down,
+            })),
             seeding: Seeding::new(config.seed, config.lost_beyond),
             map_frame: config.map_frame.clone(),
         })

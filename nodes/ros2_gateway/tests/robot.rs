@@ -8,8 +8,8 @@
 use bytemuck::Zeroable;
 use geometry::Pose;
 use messages::{
-    HypothesesHeader, Hypothesis, MapHeader, Name, Odometry, Pose2, ScanHeader, Stamp, Verdict,
-    topic,
+    FrameName, HypothesesHeader, Hypothesis, MapHeader, Odometry, Pose2, ScanHeader, Stamp,
+    Verdict, topic,
 };
 use recording::ros::LaserScan;
 use recording::{Kind, Message, Recording};
@@ -136,7 +136,10 @@ fn what_the_robot_sends_enters_the_graph_as_it_is() {
         expected.pose.pose.planar().unwrap().into()
     );
     assert_eq!(odometry.covariance, expected.pose.planar_covariance());
-    assert_eq!(odometry.child_frame, Name::new(&expected.child_frame_id));
+    assert_eq!(
+        odometry.child_frame,
+        FrameName::new(&expected.child_frame_id)
+    );
     joined.stop();
 }
 

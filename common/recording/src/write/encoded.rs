@@ -1,5 +1,7 @@
 //! A message as it will stand in a file: made on one thread, written on another.
 
+use std::borrow::Cow;
+
 use crate::ros::RosMessage;
 use crate::{RecordingError, cdr};
 
@@ -7,7 +9,7 @@ use crate::{RecordingError, cdr};
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct Encoded {
     /// The channel.
-    pub topic: &'static str,
+    pub topic: Cow<'static, str>,
     /// The schema's name.
     pub schema: &'static str,
     /// The schema's text.
@@ -27,10 +29,11 @@ impl Encoded {
     /// # Errors
     /// If a text or a list of it is longer than CDR can say.
     pub fn new<M: RosMessage>(
-        topic: &'static str,
+        topic: impl Into<Cow<'static, str>>,
         log_time_ns: i64,
         message: &M,
     ) -> Result<Self, RecordingError> {
+        let topic = topic.into();
         let body = cdr::encode(message).map_err(|error| RecordingError::Write {
             reason: format!("{topic} at {log_time_ns} ns: {error}"),
         })?;
@@ -49,7 +52,7 @@ impl Encoded {
     /// # Errors
     /// As [`Encoded::new`].
     pub fn latched<M: RosMessage>(
-        topic: &'static str,
+        topic: impl Into<Cow<'static, str>>,
         log_time_ns: i64,
         message: &M,
     ) -> Result<Self, RecordingError> {

@@ -28,10 +28,19 @@ const KEPT: usize = 256;
 pub(super) struct Frames {
     map: String,
     base: String,
-    /// The laser that was heard last, and its mount if it is known.
-    laser: Option<(String, Option<Pose>)>,
+    /// The laser whose scan came last, and how it sits.
+    laser: Option<Laser>,
     mounts: Vec<TransformStamped>,
     odometry: VecDeque<Odometry>,
+}
+
+/// A laser, and how it sits.
+#[derive(Debug, Clone, PartialEq)]
+struct Laser {
+    frame: String,
+    /// On the base, if that is known.
+    mount: Option<Pose>,
+    is_upside_down: bool,
 }
 
 impl Frames {
@@ -50,12 +59,17 @@ impl Frames {
         let frame = scan.frame.as_str();
         let mount =
             (scan.mount_known != 0).then(|| planar::as_recorded(scan.base_from_laser.into()));
-        let is_known = |laser: &(String, _)| laser.0 == frame && laser.1 == mount;
-        if self.laser.as_ref().is_some_and(is_known) {
+        let laser = Laser {
+            frame: frame.to_owned(),
+            mount,
+            is_upside_down: scan.upside_down == 1,
+        };
+        if self.laser.as_ref() == Some(&laser) {
             return None;
         }
-        self.laser = Some((frame.to_owned(), mount));
-        let transform = stamped(stamp, &self.base, frame, mount?);
+        let transform = mount.map(|mount| laser.stamped(stamp, &self.base, mount));
+        self.laser = Some(laser);
+        let transform = transform?;
         let known = self.mounts.iter_mut().find(|m| m.child_frame_id == frame);
         match known {
             Some(known) if known.transform == transform.transform => return None,
@@ -86,19 +100,20 @@ impl Frames {
         if Verdict::from_code(header.verdict) != Some(Verdict::Unique) {
             return None;
         }
-        let (laser, mount) = self.laser.as_ref()?;
+        let laser = self.laser.as_ref()?;
+        let mount = laser.mount;
         let map_from_robot = poses::robot(header, best);
         let odometry = self.odometry_at(header.stamp.measured_ns);
         let transform = match odometry {
             // Its frame is the laser's, or the mount tells how the two lie.
-            Some(odometry) if mount.is_some() || odometry.child_frame.as_str() == laser => {
+            Some(odometry) if mount.is_some() || odometry.child_frame.as_str() == laser.frame => {
                 let (_, odom_from_robot) = self.robot_in(odometry);
                 let map_from_odom = map_from_robot.then(odom_from_robot.inverse());
                 stamped(stamp, &self.map, odometry.frame.as_str(), map_from_odom)
             }
-            Some(_) => stamped(stamp, &self.map, laser, map_from_robot),
+            Some(_) => laser.stamped(stamp, &self.map, map_from_robot),
             None if mount.is_some() => stamped(stamp, &self.map, &self.base, map_from_robot),
-            None => stamped(stamp, &self.map, laser, map_from_robot),
+            None => laser.stamped(stamp, &self.map, map_from_robot),
         };
         Some(transforms(vec![transform]))
     }
@@ -109,7 +124,11 @@ impl Frames {
         let child = odometry.child_frame.as_str();
         let odom_from_child = planar::as_recorded(odometry.odom_from_child.into());
         match &self.laser {
-            Some((laser, Some(base_from_laser))) if laser == child => {
+            Some(Laser {
+                frame,
+                mount: Some(base_from_laser),
+                ..
+            }) if frame == child => {
                 let odom_from_base = odom_from_child.then(base_from_laser.inverse());
                 (self.base.clone(), odom_from_base)
             }
@@ -122,6 +141,17 @@ impl Frames {
         let by_then = |odometry: &&Odometry| odometry.stamp.measured_ns <= measured_ns;
         let newest = self.odometry.iter().rev().find(by_then);
         newest.or(self.odometry.front())
+    }
+}
+
+impl Laser {
+    /// Where the laser's frame is, seen from above.
+    fn stamped(&self, stamp: Time, parent: &str, parent_from_laser: Pose) -> TransformStamped {
+        let mut stamped = stamped(stamp, parent, &self.frame, parent_from_laser);
+        if self.is_upside_down {
+            stamped.transform = planar::upside_down(stamped.transform);
+        }
+        stamped
     }
 }
 
@@ -139,7 +169,7 @@ fn stamped(stamp: Time, parent: &str, child: &str, parent_from_child: Pose) -> T
 #[cfg(test)]
 mod tests {
     use bytemuck::Zeroable;
-    use messages::{Name, Pose2};
+    use messages::{FrameName, Pose2};
 
     use super::*;
 
@@ -159,7 +189,7 @@ mod tests {
 
     fn scan(mount_known: bool) -> ScanHeader {
         ScanHeader {
-            frame: Name::new("laser"),
+            frame: FrameName::new("laser"),
             base_from_laser: if mount_known { AHEAD } else { at(0.0) },
             mount_known: mount_known.into(),
             ..ScanHeader::zeroed()
@@ -169,8 +199,8 @@ mod tests {
     fn odometry(child: &str, x: f64) -> Odometry {
         Odometry {
             odom_from_child: at(x),
-            frame: Name::new("odom"),
-            child_frame: Name::new(child),
+            frame: FrameName::new("odom"),
+            child_frame: FrameName::new(child),
             ..Odometry::zeroed()
         }
     }

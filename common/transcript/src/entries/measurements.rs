@@ -52,7 +52,7 @@ pub(super) fn ground_truth(stamp: Time, truth: &GroundTruth) -> PoseStamped {
 #[cfg(test)]
 mod tests {
     use bytemuck::Zeroable;
-    use messages::{Name, Pose2};
+    use messages::{FrameName, Pose2};
 
     use super::*;
 
@@ -62,7 +62,7 @@ mod tests {
             angle_min: -1.5,
             angle_increment: 0.5,
             range_max_m: 80.0,
-            frame: Name::new("laser"),
+            frame: FrameName::new("laser"),
             ..ScanHeader::zeroed()
         };
         let message = scan(Time::default(), &header, &[1.0, f32::INFINITY, 3.0]);
@@ -84,8 +84,8 @@ mod tests {
             odom_from_child: pose,
             twist: pose,
             covariance: [0.25; 9],
-            frame: Name::new("odom"),
-            child_frame: Name::new("base_link"),
+            frame: FrameName::new("odom"),
+            child_frame: FrameName::new("base_link"),
             ..Odometry::zeroed()
         };
         let message = odometry(Time::default(), &given);

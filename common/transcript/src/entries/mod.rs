@@ -11,9 +11,10 @@ mod log;
 mod maps;
 mod measurements;
 
+use std::borrow::Cow;
 use std::collections::{BTreeMap, VecDeque};
 
-use conversion::{diagnostics, poses};
+use conversion::{diagnostics, lasers, poses};
 use messages::{
     Beam, BeamsHeader, FieldHeader, GroundTruth, HealthHeader, HypothesesHeader, Hypothesis,
     LogHeader, MapHeader, Odometry, ScanHeader, Stamp, Topic, Vote, VotesHeader, topic,
@@ -82,11 +83,11 @@ impl Entries {
         if let Some(mounts) = self.frames.hear_scan(scan, at.stamp) {
             self.latched(topics::TF_STATIC, at.ns, &mounts)?;
         }
-        self.message(
-            topics::SCAN,
-            at.ns,
-            &measurements::scan(at.stamp, scan, ranges),
-        )
+        let message = measurements::scan(at.stamp, scan, ranges);
+        match scan.laser.as_str() {
+            "" => self.message(topics::SCAN, at.ns, &message),
+            laser => self.message(lasers::topic_of(laser), at.ns, &message),
+        }
     }
 
     /// Takes odometry.
@@ -285,7 +286,7 @@ impl Entries {
 
     fn message<M: RosMessage>(
         &mut self,
-        topic: &'static str,
+        topic: impl Into<Cow<'static, str>>,
         ns: i64,
         message: &M,
     ) -> Result<(), TranscriptError> {
@@ -340,7 +341,7 @@ fn transforms(transforms: Vec<recording::ros::TransformStamped>) -> TfMessage {
 #[cfg(test)]
 mod tests {
     use bytemuck::Zeroable;
-    use messages::{Name, Verdict};
+    use messages::{FrameName, Verdict};
 
     use super::*;
 
@@ -362,7 +363,7 @@ mod tests {
     fn scan(at: Stamp) -> ScanHeader {
         ScanHeader {
             stamp: at,
-            frame: Name::new("laser"),
+            frame: FrameName::new("laser"),
             ..ScanHeader::zeroed()
         }
     }
@@ -380,7 +381,10 @@ mod tests {
     /// Topics and times of what was made, metadata by its name at time 0.
     fn made(entries: &mut Entries) -> Vec<(&'static str, i64)> {
         let show = |entry| match entry {
-            Entry::Message(message) => (message.topic, message.log_time_ns),
+            Entry::Message(message) => match message.topic {
+                Cow::Borrowed(topic) => (topic, message.log_time_ns),
+                Cow::Owned(topic) => panic!("{topic}: there is one laser"),
+            },
             Entry::Metadata(name, _) => (name, 0),
         };
         entries.take().into_iter().map(show).collect()

@@ -2,7 +2,7 @@
 
 use bytemuck::Zeroable;
 use engine::heading::{HeadingConfig, HeadingError, HeadingSource, History};
-use messages::{GroundTruth, Name, Odometry, ScanHeader, Stamp};
+use messages::{FrameName, GroundTruth, Odometry, ScanHeader, Stamp};
 use recording::{Kind, Message, Recording, RecordingError};
 
 use super::TakenScan;
@@ -48,7 +48,7 @@ impl Headings {
             stamp: measured(scan.stamp_ns),
             base_from_laser: scan.base_from_laser.unwrap_or_default().into(),
             mount_known: scan.base_from_laser.is_some().into(),
-            frame: Name::new(scan.frame()),
+            frame: FrameName::new(scan.frame()),
             ..ScanHeader::zeroed()
         };
         self.source.heading_of(&header, &self.history)
@@ -68,7 +68,7 @@ fn hear_truths(recording: &Recording, history: &mut History) -> Result<(), Recor
         history.hear_truth(&GroundTruth {
             stamp: measured(ns),
             map_from_laser: truth.pose.into(),
-            frame: Name::new(&truth.frame),
+            frame: FrameName::new(&truth.frame),
         });
     }
     Ok(())
@@ -100,7 +100,7 @@ fn hear_odometry(recording: &Recording, history: &mut History) -> Result<(), Rec
         history.hear_odometry(&Odometry {
             stamp: measured(message.header.stamp.as_ns()),
             odom_from_child: pose.into(),
-            child_frame: Name::new(&message.child_frame_id),
+            child_frame: FrameName::new(&message.child_frame_id),
             ..Odometry::zeroed()
         });
     }

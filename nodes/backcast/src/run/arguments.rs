@@ -106,6 +106,7 @@ mod tests {
         let topics = dataflow::Topics {
             names: &[],
             shared: &[],
+            several: &[],
         };
         dataflow::parse(&text, &topics).unwrap().nodes.remove(0)
     }

@@ -128,6 +128,7 @@ mod tests {
         let topics = dataflow::Topics {
             names: messages::topic::NAMES,
             shared: &[],
+            several: &[],
         };
         dataflow::parse(&text, &topics).unwrap()
     }
@@ -244,6 +245,7 @@ mod tests {
         let topics = dataflow::Topics {
             names: messages::topic::NAMES,
             shared: &[],
+            several: &[],
         };
         let nodes = |no_monitor| {
             let options = Options {

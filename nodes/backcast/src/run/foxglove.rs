@@ -38,6 +38,7 @@ pub(crate) fn add(dataflow: &mut Dataflow) -> Result<(), BackcastError> {
         build: added::build_alone(dataflow, SERVER),
         inputs: Vec::new(),
         outputs: Vec::new(),
+        streams: Vec::new(),
         restart: RESTART,
     };
     dataflow.nodes.push(node);

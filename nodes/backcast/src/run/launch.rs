@@ -23,6 +23,7 @@ use super::{
     crew::Crew,
     forward, foxglove,
     journal::Journal,
+    lasers,
     options::Config,
     output::{Output, Reader},
     record::{self, RECORDER},
@@ -75,6 +76,7 @@ pub(crate) fn run(config: &Config) -> Result<ExitCode, BackcastError> {
     let graph = config.options.graph_name()?;
     let mut descriptor = descriptor::load(&config.dataflow)?;
     forward::apply(&config.options, &mut descriptor.dataflow, &descriptor.file)?;
+    lasers::name(&mut descriptor.dataflow);
     record::add(
         &config.options.record,
         &mut descriptor.dataflow,
@@ -122,7 +124,8 @@ fn launch(
     journal: &mut Journal,
 ) -> Result<Course, BackcastError> {
     let graph = Graph::join_named(LAUNCHER, name)?;
-    let watch = Watch::new(&graph)?;
+    let first_laser = lasers::first(&descriptor.dataflow);
+    let watch = Watch::new(&graph, first_laser)?;
     note(&format!("graph {name} is starting; Ctrl-C stops it"));
     journal.begin();
     let mut crew = Crew::new(descriptor.dataflow.nodes, &descriptor.folder, name);

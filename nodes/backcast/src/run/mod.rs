@@ -13,6 +13,7 @@ pub(crate) mod crew;
 mod forward;
 mod foxglove;
 mod journal;
+mod lasers;
 mod launch;
 mod line;
 mod options;

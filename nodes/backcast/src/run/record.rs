@@ -67,6 +67,7 @@ pub(crate) fn add(
         build: added::build(dataflow, RECORDER),
         inputs: Vec::new(),
         outputs: Vec::new(),
+        streams: Vec::new(),
         restart: RESTART,
     };
     for source in &mut dataflow.nodes {
@@ -129,6 +130,7 @@ mod tests {
         let topics = dataflow::Topics {
             names: messages::topic::NAMES,
             shared: &[],
+            several: &[],
         };
         dataflow::parse(text, &topics).unwrap()
     }

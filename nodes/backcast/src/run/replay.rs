@@ -53,6 +53,7 @@ fn replayer(dataflow: &mut Dataflow) -> Node {
     let answers = sends(topic::Hypotheses::NAME).map(|node| Input {
         topic: topic::Hypotheses::NAME.to_owned(),
         from: node.id.clone(),
+        stream: String::new(),
     });
     let inputs = answers.into_iter().collect();
     // Those that only look on need not be waited for.
@@ -77,6 +78,7 @@ fn replayer(dataflow: &mut Dataflow) -> Node {
         build: added::build(dataflow, REPLAYER),
         inputs,
         outputs: MEASUREMENTS.map(str::to_owned).into(),
+        streams: Vec::new(),
         restart: RESTART,
     }
 }
@@ -89,6 +91,7 @@ mod tests {
         let topics = dataflow::Topics {
             names: messages::topic::NAMES,
             shared: &[],
+            several: &[],
         };
         dataflow::parse(text, &topics).unwrap()
     }

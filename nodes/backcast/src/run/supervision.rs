@@ -151,6 +151,7 @@ mod tests {
         let topics = dataflow::Topics {
             names: messages::topic::NAMES,
             shared: &[],
+            several: &[],
         };
         let text = "nodes:
   - {id: a, path: x, outputs: [odometry]}

@@ -7,6 +7,7 @@ use super::{journal::Journal, output::Reader};
 
 /// The topics that the launcher hears.
 pub(crate) struct Watch {
+    first_laser: Option<String>,
     scans: Subscriber<topic::Scan>,
     truths: Subscriber<topic::GroundTruthTopic>,
     hypotheses: Subscriber<topic::Hypotheses>,
@@ -27,8 +28,11 @@ impl Watch {
     ///
     /// # Errors
     /// The graph refuses.
-    pub(crate) fn new(graph: &Graph) -> Result<Self, TransportError> {
+    ///
+    /// `first_laser` is the one whose scans are answered, where there are several.
+    pub(crate) fn new(graph: &Graph, first_laser: Option<String>) -> Result<Self, TransportError> {
         Ok(Watch {
+            first_laser,
             scans: graph.subscriber()?,
             truths: graph.subscriber()?,
             hypotheses: graph.subscriber()?,
@@ -46,7 +50,18 @@ impl Watch {
     /// # Errors
     /// A topic cannot be read.
     pub(crate) fn take(&self, journal: &mut Journal) -> Result<Heard, TransportError> {
-        if let Some(scan) = self.scans.newest()? {
+        let mut newest = None;
+        while let Some(scan) = self.scans.receive()? {
+            let laser = scan.header().laser;
+            if self
+                .first_laser
+                .as_ref()
+                .is_none_or(|first| laser.as_str() == first)
+            {
+                newest = Some(scan);
+            }
+        }
+        if let Some(scan) = newest {
             journal.report.scan(scan.header().stamp);
         }
         while let Some(truth) = self.truths.receive()? {

@@ -131,7 +131,7 @@ mod tests {
 
     fn message(topic: &'static str, second: i64, latched: bool) -> Entry {
         Entry::Message(Encoded {
-            topic,
+            topic: topic.into(),
             schema: "n",
             definition: "int64 n",
             latched,

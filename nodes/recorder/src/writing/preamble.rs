@@ -1,6 +1,7 @@
 //! What stands at the head of each file: who wrote it and how, and the files
 //! that belong to it.
 
+use std::borrow::Cow;
 use std::collections::BTreeMap;
 use std::io::{Seek, Write};
 use std::path::Path;
@@ -19,7 +20,7 @@ pub(crate) struct Preamble {
     files: Vec<File>,
     /// What was said last under each name, and on each latched topic.
     said: BTreeMap<&'static str, BTreeMap<String, String>>,
-    latched: BTreeMap<&'static str, Encoded>,
+    latched: BTreeMap<Cow<'static, str>, Encoded>,
 }
 
 #[derive(Debug)]
@@ -60,7 +61,7 @@ impl Preamble {
     pub(super) fn note(&mut self, entry: &Entry) {
         match entry {
             Entry::Message(message) if message.latched => {
-                self.latched.insert(message.topic, message.clone());
+                self.latched.insert(message.topic.clone(), message.clone());
             }
             Entry::Message(_) => {}
             Entry::Metadata(name, entries) => {

@@ -1,0 +1,108 @@
+//! Several lasers in one graph: who sends which scans, and which the accumulator joins.
+//!
+//! Each `lms_reader` is told its name, and the accumulator in which order the lasers
+//! are wired to it. What the descriptor says itself stays.
+
+use dataflow::{Dataflow, Input};
+use messages::{Topic, topic};
+
+use super::arguments::{set, value};
+
+const ACCUMULATOR: &str = "accumulator";
+const LMS_READER: &str = "lms_reader";
+const SCANS: &str = "--scans";
+const LASER: &str = "--laser";
+
+/// Tells readers and accumulators of each other, where a graph has several lasers.
+pub(crate) fn name(dataflow: &mut Dataflow) {
+    let sends_scans = |node: &&dataflow::Node| node.outputs.iter().any(|o| o == topic::Scan::NAME);
+    let senders = dataflow.nodes.iter().filter(sends_scans);
+    let lasers: usize = senders.map(|node| node.streams.len().max(1)).sum();
+    if lasers < 2 {
+        return;
+    }
+    for node in &mut dataflow.nodes {
+        if node.executable() == LMS_READER && value(node, LASER).is_none() {
+            let id = node.id.clone();
+            set(node, LASER, Some(&id));
+        }
+        if node.executable() == ACCUMULATOR && value(node, SCANS).is_none() {
+            let scans = node.inputs.iter().filter(|i| i.topic == topic::Scan::NAME);
+            let wired: Vec<&str> = scans.map(laser).collect();
+            let wired = wired.join(",");
+            set(
+                node,
+                SCANS,
+                Some(&wired).filter(|w| !w.is_empty()).map(|w| &**w),
+            );
+        }
+    }
+}
+
+/// Has the accumulators join these lasers, whatever was wired to them.
+pub(crate) fn join(dataflow: &mut Dataflow, lasers: &[String]) {
+    let nodes = dataflow.nodes.iter_mut();
+    for node in nodes.filter(|node| node.executable() == ACCUMULATOR) {
+        set(node, SCANS, Some(&lasers.join(",")));
+    }
+}
+
+/// The laser whose new scan asks for an answer, where the graph has several.
+pub(crate) fn first(dataflow: &Dataflow) -> Option<String> {
+    let mut nodes = dataflow.nodes.iter();
+    let accumulator = nodes.find(|node| node.executable() == ACCUMULATOR)?;
+    let first = value(accumulator, SCANS)?.split(',').next()?;
+    Some(first.to_owned())
+}
+
+fn laser(input: &Input) -> &str {
+    match &*input.stream {
+        "" => &input.from,
+        stream => stream,
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn named(text: &str) -> Vec<Vec<String>> {
+        let topics = dataflow::Topics {
+            names: topic::NAMES,
+            several: &[topic::Scan::NAME],
+            ..dataflow::Topics::default()
+        };
+        let mut dataflow = dataflow::parse(text, &topics).unwrap();
+        name(&mut dataflow);
+        dataflow.nodes.into_iter().map(|node| node.args).collect()
+    }
+
+    #[test]
+    fn readers_are_named_and_joined_as_they_are_wired() {
+        let args = named(
+            "nodes:
+  - {id: rear, path: bin/lms_reader, outputs: [scan]}
+  - {id: front, path: bin/lms_reader, args: --laser=nose, outputs: [scan]}
+  - {id: bag, path: bin/replayer, outputs: [scan_left, scan_right]}
+  - {id: a, path: bin/accumulator, inputs: {scan_front: front/scan, scan_rear: rear/scan, l: bag/scan_left}}
+  - {id: b, path: bin/accumulator, args: --scans nose, inputs: {scan: front/scan}}
+",
+        );
+        assert_eq!(args[0], ["--laser=rear"]);
+        assert_eq!(args[1], ["--laser=nose"]);
+        assert!(args[2].is_empty());
+        assert_eq!(args[3], ["--scans=front,rear,left"]);
+        assert_eq!(args[4], ["--scans", "nose"]);
+    }
+
+    #[test]
+    fn one_laser_needs_no_name() {
+        let args = named(
+            "nodes:
+  - {id: front, path: bin/lms_reader, outputs: [scan]}
+  - {id: a, path: bin/accumulator, inputs: {scan: front/scan}}
+",
+        );
+        assert!(args.iter().all(Vec::is_empty));
+    }
+}
