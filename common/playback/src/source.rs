@@ -9,7 +9,7 @@ use std::sync::Arc;
 use conversion::measurements::scan_header;
 use geometry::Mount;
 use messages::{GroundTruth, Odometry, ScanHeader};
-use recording::{Channel, Kind, Message, Record, Recording, RecordingError, Records};
+use recording::{Channel, Kind, Message, Mounted, Record, Recording, RecordingError, Records};
 
 use crate::PlaybackError;
 use crate::convert::Place;
@@ -84,9 +84,9 @@ impl Channels {
     /// Readable messages of the channel with scans.
     #[must_use]
     pub fn scans(&self, recording: &Recording) -> u64 {
-        let mut channels = recording.channels();
-        let scan = channels.find(|channel| channel.topic == self.scan);
-        scan.map_or(0, |channel| channel.messages)
+        let channels = recording.channels();
+        let scans = channels.filter(|channel| channel.topic == self.scan);
+        scans.map(|channel| channel.messages).sum()
     }
 
     fn has(&self, topic: &str) -> bool {
@@ -149,7 +149,10 @@ impl<'a> Source<'a> {
         if let Some(&known) = self.mounts.get(frame) {
             return Ok(known);
         }
-        let mount = self.recording.base_from_laser(frame)?;
+        let Mounted { mount, notes } = self.recording.mounted(frame)?;
+        for note in notes {
+            tracing::warn!("{note}");
+        }
         let mount = mount.map(|mount| Mount {
             base_from_laser: mount.base_from_laser,
             is_upside_down: mount.upside_down,

@@ -1,9 +1,9 @@
-//! Bags of rosbag2 in SQLite (`.db3`), written anew as recordings.
+//! Files of rosbag2 in SQLite (`.db3`), written anew as recordings.
 //!
 //! SQLite keeps no checksums of what is stored: its structure is checked before
-//! anything is taken, and a bag that is damaged is refused as a whole, but a bit
-//! that flipped within a message goes unnoticed. `metadata.yaml` is not needed,
-//! for all that it says stands in the bag. Packed bags are refused.
+//! anything is taken, and a file that is damaged is refused as a whole, but a bit
+//! that flipped within a message goes unnoticed. How the database is opened, so
+//! that nothing is left beside it, is the business of `database`.
 //!
 //! | table | column | what it holds |
 //! |---|---|---|
@@ -11,22 +11,20 @@
 //! | `messages` | `topic_id`, `timestamp`, `data` | nanoseconds since 1970; the message as it was sent |
 //! | `message_definitions` | `topic_type`, `encoding`, `encoded_message_definition` | the schemas' text; not in bags before ROS 2 Iron |
 
+mod database;
+
 use std::collections::HashMap;
 use std::fs::File;
-use std::io::{BufWriter, Read, Seek, Write};
-use std::path::{Path, PathBuf};
+use std::io::{BufWriter, Seek, Write};
+use std::path::Path;
 
+use rusqlite::Row;
 use rusqlite::types::ValueRef;
-use rusqlite::{Connection, OpenFlags, Row};
 
+use crate::folder::Listed;
 use crate::write::{Packing, RecordingWriter, definition};
-use crate::{Kind, RecordingError};
-
-/// How a database of SQLite 3 begins.
-const MAGIC: &[u8] = b"SQLite format 3\0";
-
-/// How what zstd packed begins.
-const ZSTD_MAGIC: &[u8] = &[0x28, 0xb5, 0x2f, 0xfd];
+use crate::{Damage, Kind, RecordingError};
+use database::Database;
 
 /// The messages with their topics. The order of equal times is that of writing.
 const MESSAGES: &str = "SELECT name, type, serialization_format, timestamp, data \
@@ -36,46 +34,32 @@ const MESSAGES: &str = "SELECT name, type, serialization_format, timestamp, data
 const DEFINITIONS: &str = "SELECT topic_type, encoded_message_definition \
      FROM message_definitions WHERE encoding = 'ros2msg'";
 
-/// Whether it is a bag in SQLite, or a folder that holds some.
-#[must_use]
-pub fn is_bag(path: impl AsRef<Path>) -> bool {
-    let path = path.as_ref();
-    if path.is_dir() {
-        return !files_in(path).is_empty();
-    }
-    let mut start = [0; MAGIC.len()];
-    let read = File::open(path).and_then(|mut file| file.read_exact(&mut start));
-    read.is_ok() && start == MAGIC
-}
-
-/// Writes what a bag holds, or all bags of a folder one after the other; returns
-/// the number of messages.
-///
-/// # Errors
-/// If a bag is damaged, packed, or no bag of rosbag2, or the recording cannot be
-/// written.
-pub fn write_bag<W: Write + Seek>(
-    path: impl AsRef<Path>,
-    writer: &mut RecordingWriter<W>,
-) -> Result<u64, RecordingError> {
-    let path = path.as_ref();
-    let files = match path.is_dir() {
-        true => files_in(path),
-        false => vec![path.to_owned()],
-    };
-    let messages = files.iter().map(|file| Bag::open(file)?.write(writer));
-    messages.sum()
-}
-
-/// The bag as a recording, in a file that has no name and goes when it is closed.
-pub(crate) fn as_recording(path: &Path) -> Result<File, RecordingError> {
+/// The file at `place`, which errors call by its listed name, as a recording in a
+/// file that has no name and goes when it is closed; and what is missing of it.
+pub(crate) fn as_recording(
+    listed: &Listed,
+    place: &Path,
+) -> Result<(File, Option<Damage>), RecordingError> {
     let sink = tempfile::tempfile().map_err(|error| write_failed(&error))?;
     let mut writer = RecordingWriter::new(BufWriter::new(sink), Packing::Plain)?;
-    write_bag(path, &mut writer)?;
+    let bag = Bag {
+        path: &listed.path,
+        database: Database::open(&listed.path, place)?,
+    };
+    let found = bag.write(&mut writer)?;
+    let damage = match listed.messages {
+        Some(claimed) if claimed > found && bag.database.lacks_log => Some(Damage::MissingLog {
+            log: database::log_of(&listed.path).display().to_string(),
+            claimed,
+            found,
+        }),
+        _ => None,
+    };
     let buffered = writer.finish()?;
-    buffered
+    let file = buffered
         .into_inner()
-        .map_err(|error| write_failed(error.error()))
+        .map_err(|error| write_failed(error.error()))?;
+    Ok((file, damage))
 }
 
 fn write_failed(error: &std::io::Error) -> RecordingError {
@@ -85,55 +69,23 @@ fn write_failed(error: &std::io::Error) -> RecordingError {
     }
 }
 
-/// The bags of a folder by name. One that cannot be listed has none.
-fn files_in(folder: &Path) -> Vec<PathBuf> {
-    let entries = std::fs::read_dir(folder).into_iter().flatten().flatten();
-    let is_named = |path: &PathBuf| path.extension().is_some_and(|name| name == "db3");
-    let mut files: Vec<PathBuf> = entries.map(|entry| entry.path()).filter(is_named).collect();
-    files.sort();
-    files
-}
-
-/// An open database.
+/// An open bag.
 struct Bag<'p> {
     path: &'p Path,
-    database: Connection,
+    database: Database,
 }
 
-impl<'p> Bag<'p> {
-    /// Opens a bag for reading and checks its structure.
-    fn open(path: &'p Path) -> Result<Self, RecordingError> {
-        let flags = OpenFlags::SQLITE_OPEN_READ_ONLY | OpenFlags::SQLITE_OPEN_NO_MUTEX;
-        let refused = |error: rusqlite::Error| refused(path, error.to_string());
-        let database = Connection::open_with_flags(path, flags).map_err(refused)?;
-        let check = "PRAGMA quick_check(1)";
-        let found: String = database
-            .query_row(check, (), |row| row.get(0))
-            .map_err(refused)?;
-        if found != "ok" {
-            return Err(damaged(path, &found));
-        }
-        // SQLite takes what a last page lacks for zeros.
-        let page: u32 = database
-            .query_row("PRAGMA page_size", (), |row| row.get(0))
-            .map_err(refused)?;
-        let unreadable = |source| RecordingError::Open {
-            path: path.to_owned(),
-            source,
-        };
-        let length = std::fs::metadata(path).map_err(unreadable)?.len();
-        match length.checked_rem(page.into()) {
-            Some(0) => Ok(Bag { path, database }),
-            _ => Err(damaged(path, "it ends within a page")),
-        }
-    }
-
+impl Bag<'_> {
     fn write<W: Write + Seek>(
         &self,
         writer: &mut RecordingWriter<W>,
     ) -> Result<u64, RecordingError> {
         let definitions = self.definitions()?;
-        let mut query = self.database.prepare(MESSAGES).map_err(self.failed())?;
+        let mut query = self
+            .database
+            .connection
+            .prepare(MESSAGES)
+            .map_err(self.failed())?;
         let mut rows = query.query(()).map_err(self.failed())?;
         let mut messages = 0;
         while let Some(row) = rows.next().map_err(self.failed())? {
@@ -153,12 +105,17 @@ impl<'p> Bag<'p> {
     fn definitions(&self) -> Result<HashMap<String, String>, RecordingError> {
         let has_any = self
             .database
+            .connection
             .table_exists(None, "message_definitions")
             .map_err(self.failed())?;
         if !has_any {
             return Ok(HashMap::new());
         }
-        let mut query = self.database.prepare(DEFINITIONS).map_err(self.failed())?;
+        let mut query = self
+            .database
+            .connection
+            .prepare(DEFINITIONS)
+            .map_err(self.failed())?;
         let pairs = query.query_map((), |row| Ok((row.get(0)?, row.get(1)?)));
         let pairs = pairs.map_err(self.failed())?;
         pairs.collect::<Result<_, _>>().map_err(self.failed())
@@ -176,13 +133,6 @@ impl<'p> Bag<'p> {
                 return Err(refused(self.path, reason));
             }
         };
-        if data.starts_with(ZSTD_MAGIC) {
-            let reason = format!(
-                "the messages of {topic} are packed; allowed: bags as rosbag2 writes them without \
-                 compression, and MCAP"
-            );
-            return Err(refused(self.path, reason));
-        }
         Ok(Message {
             topic,
             schema: row.get(1).map_err(self.failed())?,
@@ -220,6 +170,9 @@ fn refused(path: &Path, reason: String) -> RecordingError {
 
 #[cfg(test)]
 mod tests {
+    use std::path::PathBuf;
+
+    use rusqlite::Connection;
     use tempfile::TempDir;
 
     use super::*;
@@ -290,16 +243,42 @@ mod tests {
     #[test]
     fn a_folder_is_read_with_all_its_parts() {
         let folder = TempDir::new().unwrap();
-        assert!(!is_bag(folder.path()));
         let records = sample::records();
         let (first, second) = records.split_at(7);
         // The parts of a bag are numbered, and their order by name may be another.
         bag(&folder, "r_2.db3", first);
         bag(&folder, "r_10.db3", second);
-        std::fs::write(folder.path().join("metadata.yaml"), "not needed").unwrap();
         let found = read(folder.path());
         assert_eq!(found.len(), records.len());
         assert!(records.iter().all(|record| found.contains(record)));
+    }
+
+    #[test]
+    fn messages_that_were_packed_one_by_one_are_unpacked() {
+        let folder = TempDir::new().unwrap();
+        let path = bag(&folder, "r.db3", &sample::records());
+        let database = Connection::open(&path).unwrap();
+        let all = "SELECT id, data FROM messages";
+        let mut all = database.prepare(all).unwrap();
+        let rows = all.query_map((), |row| Ok((row.get(0)?, row.get(1)?)));
+        for row in rows.unwrap() {
+            let (id, data): (i64, Vec<u8>) = row.unwrap();
+            let packed = zstd::encode_all(&*data, 3).unwrap();
+            let change = "UPDATE messages SET data = ?2 WHERE id = ?1";
+            database.execute(change, (id, packed)).unwrap();
+        }
+        let found = read(&path);
+        assert_eq!(found.len(), sample::records().len());
+        assert!(sample::records().iter().all(|r| found.contains(r)));
+        database
+            .execute("UPDATE messages SET data = x'28b52ffd00'", ())
+            .unwrap();
+        let recording = Recording::open(&path).unwrap();
+        let broken = recording.records().next().unwrap().unwrap_err().to_string();
+        assert!(
+            broken.contains("packed with zstd, and does not unpack"),
+            "{broken}"
+        );
     }
 
     #[test]
@@ -316,7 +295,7 @@ mod tests {
             .execute_batch(define)
             .unwrap();
         let mut writer = RecordingWriter::in_memory(Packing::Plain).unwrap();
-        assert_eq!(write_bag(&path, &mut writer).unwrap(), 2);
+        assert_eq!(crate::write_bag(&path, &mut writer).unwrap(), 2);
         let bytes = writer.finish().unwrap().into_inner();
         let has = |text: &str| bytes.windows(text.len()).any(|w| w == text.as_bytes());
         assert!(has("of the bag") && !has("of another kind"));
@@ -338,10 +317,6 @@ mod tests {
                 "is of type Text; allowed: blob",
             ),
             (
-                "UPDATE messages SET data = x'28b52ffd00'",
-                "are packed; allowed: bags",
-            ),
-            (
                 "UPDATE messages SET timestamp = -1",
                 "log time -1 ns is before 1970",
             ),
@@ -358,7 +333,7 @@ mod tests {
         let folder = TempDir::new().unwrap();
         let path = bag(&folder, "r.db3", &sample::records());
         let bytes = std::fs::read(&path).unwrap();
-        for length in [MAGIC.len(), 100, 4096, bytes.len() / 2, bytes.len() - 1] {
+        for length in [16, 100, 4096, bytes.len() / 2, bytes.len() - 1] {
             std::fs::write(&path, &bytes[..length]).unwrap();
             let refusal = Recording::open(&path).unwrap_err();
             assert!(

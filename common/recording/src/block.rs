@@ -6,11 +6,11 @@ use std::ops::Range;
 use mcap::records::MessageHeader;
 use mcap::sans_io::LinearReader;
 
+use crate::Damage;
 use crate::chunk::Chunk;
 use crate::feed::{each_record, part_options};
 use crate::parse::reason;
 use crate::registry::Registry;
-use crate::{Damage, Kind};
 
 /// A part of the file that holds messages: a chunk, or a run of messages outside
 /// of chunks.
@@ -43,8 +43,6 @@ pub(crate) struct Block {
     /// `newest_ns`.
     unsorted: u64,
     newest_ns: i64,
-    /// The kinds among them, as bits.
-    pub(crate) kinds: u8,
     /// Messages by channel.
     pub(crate) counts: BTreeMap<u16, u64>,
 }
@@ -69,7 +67,6 @@ impl Block {
             last_ns: i64::MIN,
             unsorted: 0,
             newest_ns: i64::MIN,
-            kinds: 0,
             counts: BTreeMap::new(),
         }
     }
@@ -105,7 +102,7 @@ impl Block {
             ),
         })?;
         let id = header.channel_id;
-        let channel = registry.channel(id).ok_or(Damage::Undefined {
+        registry.channel(id).ok_or(Damage::Undefined {
             at,
             kind: "message",
             missing: "channel",
@@ -115,7 +112,6 @@ impl Block {
         self.newest_ns = log_time;
         self.first_ns = self.first_ns.min(log_time);
         self.last_ns = self.last_ns.max(log_time);
-        self.kinds |= channel.kind.map_or(0, Kind::bit);
         *self.counts.entry(id).or_default() += 1;
         Ok(())
     }

@@ -134,6 +134,19 @@ pub enum Damage {
         /// Messages in the data.
         found: u64,
     },
+    /// A bag in SQLite without the log that holds its last messages.
+    #[error(
+        "metadata.yaml counts {claimed} messages, {found} are there: the others are in {log}, which \
+         is missing; copy it along"
+    )]
+    MissingLog {
+        /// The file that is missing.
+        log: String,
+        /// Messages by the bag's description.
+        claimed: u64,
+        /// Messages that are there.
+        found: u64,
+    },
     /// The file does not end as a recording does.
     #[error("byte {at} should begin the recording's last 8 bytes, but it goes on with {found}")]
     End {

@@ -4,7 +4,7 @@ use std::io;
 use std::path::PathBuf;
 
 use crate::ros::ConversionError;
-use crate::{Damage, Kind};
+use crate::{Damage, Kind, topics};
 
 /// What went wrong, and in which file.
 #[derive(Debug, thiserror::Error)]
@@ -27,7 +27,26 @@ pub enum RecordingError {
         /// What is wrong, and where.
         damage: Damage,
     },
-    /// A bag in SQLite that cannot be read, or whose content is not sound.
+    /// A kind of file that is known, but not read.
+    #[error("{} is {what}: {advice}", path.display())]
+    Foreign {
+        /// The file.
+        path: PathBuf,
+        /// What it is.
+        what: &'static str,
+        /// How to make of it what is read.
+        advice: String,
+    },
+    /// A packed file that cannot be unpacked.
+    #[error("{} cannot be unpacked: {reason}", path.display())]
+    Unpack {
+        /// The file.
+        path: PathBuf,
+        /// What is wrong.
+        reason: String,
+    },
+    /// A bag of rosbag2 whose files are not all there, or one in SQLite that cannot
+    /// be read, or whose content is not sound.
     #[error("the bag {}: {reason}", path.display())]
     Bag {
         /// The file.
@@ -83,8 +102,20 @@ pub enum RecordingError {
         /// The channels that it has, with their schemas.
         found: Vec<String>,
     },
+    /// The channel that was named is not in the recording.
+    #[error("{} has no {kind} on {topic}; it has {}", path.display(), listed(found))]
+    NoSuchTopic {
+        /// The file.
+        path: PathBuf,
+        /// What was asked for.
+        kind: Kind,
+        /// On which channel.
+        topic: String,
+        /// The channels that have some.
+        found: Vec<String>,
+    },
     /// Several channels could be meant.
-    #[error("{} has several channels of {kind}, {}, and none is called {name}", path.display(), listed(found))]
+    #[error("{} has several channels of {kind}, {}, and none is called {name}: name one with {}", path.display(), listed(found), topics::option(*kind))]
     SeveralTopics {
         /// The file.
         path: PathBuf,
@@ -95,8 +126,20 @@ pub enum RecordingError {
         /// The channels.
         found: Vec<String>,
     },
-    /// A laser that is not level.
-    #[error("{}: {laser} is tilted by {tilt_degrees:.0} degrees against {base}; allowed: 10, for what it sees is not the plane of the map", path.display())]
+    /// A laser whose place depends on a transform that is none.
+    #[error("{}: where {laser} sits is not known, for the transform {transform} is none: {reason}", path.display())]
+    BrokenMount {
+        /// The file.
+        path: PathBuf,
+        /// The laser's frame.
+        laser: String,
+        /// From which frame to which.
+        transform: String,
+        /// What is wrong.
+        reason: String,
+    },
+    /// A laser that is neither level nor upside down.
+    #[error("{}: {laser} is tilted by {tilt_degrees:.0} degrees against {base}; allowed: 10, also upside down, for what it sees is not the plane of the map", path.display())]
     TiltedLaser {
         /// The file.
         path: PathBuf,
@@ -104,7 +147,7 @@ pub enum RecordingError {
         laser: String,
         /// The base frame.
         base: String,
-        /// Angle between their z axes; 180 is upside down.
+        /// Angle between their z axes, or to the opposite one if that is nearer.
         tilt_degrees: f64,
     },
     /// Two ground truths that contradict each other.

@@ -23,7 +23,9 @@ pub struct AttachedFile {
     pub media_type: String,
     /// When it was put in, nanoseconds since 1970.
     pub log_time_ns: u64,
-    /// Where its bytes lie in the recording.
+    /// In which of the recording's files it is.
+    pub(crate) file: usize,
+    /// Where its bytes lie in that file.
     pub(crate) bytes: Range<usize>,
 }
 
@@ -76,6 +78,7 @@ impl Extras {
                     name: header.name,
                     media_type: header.media_type,
                     log_time_ns: header.log_time,
+                    file: 0,
                     bytes: from..from + data.len(),
                 });
             }

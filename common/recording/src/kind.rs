@@ -6,7 +6,7 @@ use crate::TF_STATIC;
 use crate::ros::{LaserScan, OccupancyGridMsg, Odometry, PoseStamped, RosMessage, TfMessage};
 
 /// A kind of message, by its schema.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, PartialOrd, Ord)]
 pub enum Kind {
     /// `sensor_msgs/msg/LaserScan`.
     Scan,
@@ -53,10 +53,6 @@ impl Kind {
         let kind = Kind::ALL.into_iter().find(is_named)?;
         let is_static = topic.ends_with(TF_STATIC);
         (kind != Kind::StaticTransforms || is_static).then_some(kind)
-    }
-
-    pub(crate) fn bit(self) -> u8 {
-        1 << self as u8
     }
 }
 

@@ -1,7 +1,8 @@
-//! Recordings: MCAP files that hold ROS 2 messages in CDR; with the feature
-//! `rosbag2` also bags in SQLite, as ROS 2 wrote them before.
+//! Recordings: MCAP files that hold ROS 2 messages in CDR, or a folder of such as
+//! rosbag2 writes it; with the feature `rosbag2` also bags in SQLite, as ROS 2
+//! wrote them before.
 //!
-//! [`Recording::open`] checks a file from start to end, [`Recording::records`]
+//! [`Recording::open`] checks all files from start to end, [`Recording::records`]
 //! gives its messages in the order of their log times, and [`mod@write`] writes
 //! recordings. Damage is never repaired and never passed over: what lies before
 //! it is given out, then the error that says where it is. The crate decodes the
@@ -13,14 +14,19 @@ mod bag;
 mod block;
 mod cdr;
 mod chunk;
+mod content;
 mod contents;
+mod copy;
 mod damage;
 mod error;
 mod extras;
 mod feed;
+mod file;
+mod folder;
 mod kind;
 mod message;
 mod mount;
+mod moving;
 mod parse;
 mod pass;
 mod raw;
@@ -35,13 +41,14 @@ mod soundness;
 mod survey;
 mod topics;
 mod truth;
+mod unpack;
 pub mod write;
 
-#[cfg(feature = "rosbag2")]
-pub use bag::{is_bag, write_bag};
 pub use block::Part;
 pub use cdr::{decode as decode_cdr, encode as encode_cdr};
 pub use chunk::MAX_CHUNK_BYTES;
+pub use contents::Mounted;
+pub use copy::{is_bag, is_recording, write_bag};
 pub use damage::Damage;
 pub use error::RecordingError;
 pub use extras::{AttachedFile, MetadataRecord};

@@ -1,4 +1,4 @@
-//! The messages of a recording as they stand in the file, in the order of their
+//! The messages of a recording as they stand in its files, in the order of their
 //! log times.
 //!
 //! A block (a chunk, or a run of messages outside of chunks) is unpacked when
@@ -10,13 +10,14 @@ use std::collections::BinaryHeap;
 use mcap::records::{Record, op};
 
 use crate::block::Block;
+use crate::file::RecordedFile;
 use crate::parse::parse;
-use crate::{Channel, Damage, Kind, Recording, RecordingError};
+use crate::{Channel, Damage, Recording, RecordingError};
 
 /// A message that is not decoded.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct RawRecord<'a> {
-    /// Its channel.
+    /// Its channel, with the messages that its file has of it.
     pub channel: &'a Channel,
     /// When it was recorded, nanoseconds since 1970.
     pub log_time_ns: i64,
@@ -27,39 +28,52 @@ pub struct RawRecord<'a> {
 }
 
 /// Iterates over a recording's messages by log time; where times are equal, in
-/// the order of the file. Damage of the file is the last item.
+/// the order of the files and then of the places there. Damage is the last item.
 pub struct RawRecords<'a> {
     recording: &'a Recording,
-    /// Bits of the kinds that are wanted; all messages where there are none.
-    kinds: Option<u8>,
-    /// Blocks that are not unpacked yet, by first log time.
-    blocks: std::slice::Iter<'a, Block>,
+    /// Which channels are wanted.
+    is_wanted: Box<dyn Fn(&Channel) -> bool + 'a>,
+    /// Blocks that are not unpacked yet and the number of their file, the next one
+    /// last.
+    blocks: Vec<(usize, &'a Block)>,
     next: BinaryHeap<Reverse<Pending>>,
-    damage: Option<Damage>,
+    damage: Option<RecordingError>,
 }
 
 /// A message that waits for its turn.
 struct Pending {
-    /// Log time, then place: of the block, and within it.
-    order: (i64, usize, usize),
+    /// Log time, then place: the file, the block, and within it.
+    order: (i64, usize, usize, usize),
     publish_time_ns: u64,
     channel: u16,
     body: Vec<u8>,
 }
 
 impl<'a> RawRecords<'a> {
-    /// The messages of some kinds or of all channels, and at the end what is
+    /// The messages of the channels that are wanted, and at the end what is
     /// damaged.
     pub(crate) fn new(
         recording: &'a Recording,
-        kinds: Option<&[Kind]>,
-        damage: Option<Damage>,
+        is_wanted: impl Fn(&Channel) -> bool + 'a,
+        damage: Option<RecordingError>,
     ) -> Self {
-        let bits = |kinds: &[Kind]| kinds.iter().fold(0, |bits, kind| bits | kind.bit());
+        let files = recording.files().iter().enumerate();
+        let has_wanted = |file: &RecordedFile, block: &Block| {
+            let channels = block.counts.keys();
+            let mut channels = channels.filter_map(|id| file.survey.registry.channel(*id));
+            channels.any(&is_wanted)
+        };
+        let of_file = |(index, file): (usize, &'a RecordedFile)| {
+            let blocks = file.survey.blocks.iter();
+            let blocks = blocks.filter(|block| has_wanted(file, block));
+            blocks.map(|block| (index, block)).collect::<Vec<_>>()
+        };
+        let mut blocks: Vec<(usize, &Block)> = files.flat_map(of_file).collect();
+        blocks.sort_by_key(|(file, block)| Reverse((block.first_ns, *file, block.at)));
         RawRecords {
             recording,
-            kinds: kinds.map(bits),
-            blocks: recording.survey.blocks.iter(),
+            is_wanted: Box::new(is_wanted),
+            blocks,
             next: BinaryHeap::new(),
             damage,
         }
@@ -70,30 +84,36 @@ impl<'a> RawRecords<'a> {
     }
 
     /// Unpacks all blocks that may hold the next message.
-    fn fill(&mut self) -> Result<(), Damage> {
-        while let Some(block) = self.blocks.as_slice().first() {
+    fn fill(&mut self) -> Result<(), RecordingError> {
+        while let Some(&(index, block)) = self.blocks.last() {
             if let Some(Reverse(next)) = self.next.peek()
                 && next.order.0 < block.first_ns
             {
                 break;
             }
-            self.blocks.next();
-            if self.kinds.is_none_or(|kinds| block.kinds & kinds != 0) {
-                self.unpack(block)?;
-            }
+            self.blocks.pop();
+            let Some(file) = self.recording.files().get(index) else {
+                continue;
+            };
+            self.unpack((index, file), block)
+                .map_err(|damage| RecordingError::Damaged {
+                    path: file.path.clone(),
+                    readable: self.recording.messages(),
+                    damage,
+                })?;
         }
         Ok(())
     }
 
-    fn unpack(&mut self, block: &Block) -> Result<(), Damage> {
-        let registry = &self.recording.survey.registry;
-        let kinds = self.kinds;
-        let wanted = |channel: &Channel| {
-            let bit = channel.kind.map_or(0, Kind::bit);
-            kinds.is_none_or(|kinds| bit & kinds != 0)
-        };
+    fn unpack(
+        &mut self,
+        (index, file): (usize, &RecordedFile),
+        block: &Block,
+    ) -> Result<(), Damage> {
+        let registry = &file.survey.registry;
+        let (is_wanted, next) = (&self.is_wanted, &mut self.next);
         let mut place = 0;
-        block.each_record(self.recording.bytes(), |opcode, body| {
+        block.each_record(file.bytes(), |opcode, body| {
             place += 1;
             if opcode != op::MESSAGE {
                 return Ok(());
@@ -102,11 +122,11 @@ impl<'a> RawRecords<'a> {
                 return Ok(());
             };
             let channel = header.channel_id;
-            if registry.channel(channel).is_some_and(wanted) {
+            if registry.channel(channel).is_some_and(is_wanted) {
                 // The survey has seen that the time fits.
                 let log_time = i64::try_from(header.log_time).unwrap_or(i64::MAX);
-                self.next.push(Reverse(Pending {
-                    order: (log_time, block.at, place),
+                next.push(Reverse(Pending {
+                    order: (log_time, index, block.at, place),
                     publish_time_ns: header.publish_time,
                     channel,
                     body: data.into_owned(),
@@ -117,15 +137,11 @@ impl<'a> RawRecords<'a> {
     }
 
     /// Ends the iteration.
-    fn end(&mut self, damage: Damage) -> RecordingError {
-        self.blocks = [].iter();
+    fn end(&mut self, error: RecordingError) -> RecordingError {
+        self.blocks.clear();
         self.next.clear();
         self.damage = None;
-        RecordingError::Damaged {
-            path: self.recording.path().to_owned(),
-            readable: self.recording.survey.messages,
-            damage,
-        }
+        error
     }
 }
 
@@ -133,16 +149,20 @@ impl<'a> Iterator for RawRecords<'a> {
     type Item = Result<RawRecord<'a>, RecordingError>;
 
     fn next(&mut self) -> Option<Self::Item> {
-        if let Err(damage) = self.fill() {
-            return Some(Err(self.end(damage)));
+        if let Err(error) = self.fill() {
+            return Some(Err(self.end(error)));
         }
         match self.next.pop() {
-            Some(Reverse(pending)) => Some(Ok(RawRecord {
-                channel: self.recording.survey.registry.channel(pending.channel)?,
-                log_time_ns: pending.order.0,
-                publish_time_ns: pending.publish_time_ns,
-                body: pending.body,
-            })),
+            Some(Reverse(pending)) => {
+                let (log_time_ns, file, ..) = pending.order;
+                let registry = &self.recording.files().get(file)?.survey.registry;
+                Some(Ok(RawRecord {
+                    channel: registry.channel(pending.channel)?,
+                    log_time_ns,
+                    publish_time_ns: pending.publish_time_ns,
+                    body: pending.body,
+                }))
+            }
             None => {
                 let damage = self.damage.take()?;
                 Some(Err(self.end(damage)))

@@ -1,7 +1,9 @@
 //! The messages of a recording that are read, decoded, in the order of their log
 //! times.
 
-use crate::{Damage, Kind, Message, RawRecord, RawRecords, Record, Recording, RecordingError};
+use crate::{
+    Channel, Kind, Message, RawRecord, RawRecords, Record, Recording, RecordingError, unpack,
+};
 
 /// Iterates over a recording's messages by log time; where times are equal, in
 /// the order of the file.
@@ -14,9 +16,15 @@ pub struct Records<'a> {
 
 impl<'a> Records<'a> {
     /// The messages of some kinds, and at the end what is damaged.
-    pub(crate) fn new(recording: &'a Recording, kinds: &[Kind], damage: Option<Damage>) -> Self {
+    pub(crate) fn new(
+        recording: &'a Recording,
+        kinds: &[Kind],
+        damage: Option<RecordingError>,
+    ) -> Self {
+        let kinds = kinds.to_owned();
+        let is_wanted = move |channel: &Channel| channel.kind.is_some_and(|k| kinds.contains(&k));
         Records {
-            raw: RawRecords::new(recording, Some(kinds), damage),
+            raw: RawRecords::new(recording, is_wanted, damage),
         }
     }
 
@@ -32,7 +40,8 @@ impl<'a> Records<'a> {
             });
         }
         let log_time_ns = raw.log_time_ns;
-        match Message::decode(kind, &raw.body) {
+        let unpacked = unpack::message(&raw.body);
+        match unpacked.and_then(|body| Message::decode(kind, &body)) {
             Ok(message) => Ok(Record {
                 topic: channel.topic.clone(),
                 log_time_ns,

@@ -1,35 +1,36 @@
 //! An open recording.
 
-use std::fs::File;
+use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
-use memmap2::Mmap;
-
 use crate::block::{Block, Part};
-use crate::survey::Survey;
+use crate::file::RecordedFile;
+use crate::folder;
 use crate::{
     AttachedFile, Channel, Damage, Kind, MetadataRecord, RawRecords, RecordingError, Records,
     topics,
 };
 
-/// A recording whose channels are known and whose checksums have been compared.
+/// A recording whose channels are known and whose checksums have been compared:
+/// one file, or several that are read as one.
 #[derive(Debug)]
 pub struct Recording {
     path: PathBuf,
-    bytes: Bytes,
-    pub(crate) survey: Survey,
-}
-
-#[derive(Debug)]
-enum Bytes {
-    Mapped(Mmap),
-    Owned(Vec<u8>),
+    files: Vec<RecordedFile>,
+    /// Those of all files; a topic of several files stands here once.
+    channels: Vec<Channel>,
+    attachments: Vec<AttachedFile>,
+    metadata: Vec<MetadataRecord>,
+    /// Channels that the user has named.
+    preferred: BTreeMap<Kind, Arc<str>>,
 }
 
 impl Recording {
-    /// Opens a file, or with the feature `rosbag2` a bag in SQLite or a folder of
-    /// such, and reads it once from start to end.
+    /// Opens a file, or the folder of a bag of rosbag2 with all its parts, and
+    /// reads it once from start to end. A bag may be named by its `metadata.yaml`,
+    /// and files may be packed with zstd; with the feature `rosbag2` they may also
+    /// be in SQLite. What a file holds is told by its content.
     ///
     /// A file that is cut short or damaged opens as far as it is sound; the
     /// damage is the last item of [`Recording::records`]. The file is mapped:
@@ -39,22 +40,30 @@ impl Recording {
     /// If it cannot be read, or does not even start as a recording; of a bag in
     /// SQLite, any damage.
     pub fn open(path: impl AsRef<Path>) -> Result<Self, RecordingError> {
-        let path = path.as_ref();
-        #[cfg(feature = "rosbag2")]
-        if crate::is_bag(path) {
-            return Recording::mapped(path, &crate::bag::as_recording(path)?);
-        }
-        let file = File::open(path).map_err(|source| unreadable(path, source))?;
-        Recording::mapped(path, &file)
+        Recording::open_all(&[path])
     }
 
-    /// A file that errors call `path`.
-    fn mapped(path: &Path, file: &File) -> Result<Self, RecordingError> {
-        // SAFETY: the map is only read. Should another process write to the
-        // file, bytes change under the reader, which checks each as if it came
-        // from anywhere; should one cut it, the system ends this process.
-        let map = unsafe { Mmap::map(file) }.map_err(|source| unreadable(path, source))?;
-        Recording::new(path.to_owned(), Bytes::Mapped(map))
+    /// Opens several files or folders as one recording.
+    ///
+    /// # Errors
+    /// As [`Recording::open`]; nothing is named.
+    pub fn open_all(paths: &[impl AsRef<Path>]) -> Result<Self, RecordingError> {
+        let paths = || paths.iter().map(AsRef::as_ref);
+        let mut files: Vec<RecordedFile> = Vec::new();
+        let mut seen = Vec::new();
+        for path in paths() {
+            for listed in folder::files(path)? {
+                // As `drive/*` names the parts and the description of them.
+                let place = listed.path.canonicalize();
+                let place = place.unwrap_or_else(|_| listed.path.clone());
+                if !seen.contains(&place) {
+                    files.push(RecordedFile::open(&listed)?);
+                    seen.push(place);
+                }
+            }
+        }
+        let names: Vec<String> = paths().map(|path| path.display().to_string()).collect();
+        Ok(Recording::of(names.join(" and ").into(), files))
     }
 
     /// A recording in memory; errors call it `name`.
@@ -62,81 +71,133 @@ impl Recording {
     /// # Errors
     /// If it does not even start as a recording.
     pub fn from_bytes(name: impl Into<PathBuf>, bytes: Vec<u8>) -> Result<Self, RecordingError> {
-        Recording::new(name.into(), Bytes::Owned(bytes))
+        let name = name.into();
+        let file = RecordedFile::from_bytes(name.clone(), bytes)?;
+        Ok(Recording::of(name, vec![file]))
     }
 
-    fn new(path: PathBuf, bytes: Bytes) -> Result<Self, RecordingError> {
-        match Survey::of(bytes.as_slice()) {
-            Ok(survey) => Ok(Recording {
-                path,
-                bytes,
-                survey,
-            }),
-            Err(damage) => Err(RecordingError::Damaged {
-                path,
-                readable: 0,
-                damage,
-            }),
+    fn of(path: PathBuf, files: Vec<RecordedFile>) -> Self {
+        let mut recording = Recording {
+            path,
+            files: Vec::new(),
+            channels: Vec::new(),
+            attachments: Vec::new(),
+            metadata: Vec::new(),
+            preferred: BTreeMap::new(),
+        };
+        for (index, file) in files.iter().enumerate() {
+            for channel in file.survey.registry.channels() {
+                recording.list(channel, index);
+            }
+            let extras = &file.survey.extras;
+            let attachments = extras.attachments.iter().map(|attached| AttachedFile {
+                file: index,
+                ..attached.clone()
+            });
+            recording.attachments.extend(attachments);
+            recording.metadata.extend(extras.metadata.iter().cloned());
+        }
+        recording.files = files;
+        recording
+    }
+
+    /// Lists a channel of a file. What a file defines twice is listed twice.
+    fn list(&mut self, channel: &Channel, file: usize) {
+        let is_same = |other: &&mut Channel| {
+            other.topic == channel.topic
+                && other.schema == channel.schema
+                && other.encoding == channel.encoding
+        };
+        match self.channels.iter_mut().find(is_same) {
+            Some(same) if file > 0 => same.messages += channel.messages,
+            _ => self.channels.push(channel.clone()),
         }
     }
 
-    /// The file.
+    /// The file or folder; of several, their names.
     #[must_use]
     pub fn path(&self) -> &Path {
         &self.path
     }
 
-    /// Its size in bytes.
+    /// The size of its files in bytes, once they are unpacked.
     #[must_use]
     pub fn size(&self) -> u64 {
-        self.bytes().len() as u64
+        let sizes = self.files.iter().map(|file| file.bytes().len() as u64);
+        sizes.sum()
+    }
+
+    /// How many files it has.
+    #[must_use]
+    pub fn file_count(&self) -> usize {
+        self.files.len()
     }
 
     /// All channels, also those whose messages are only counted.
     pub fn channels(&self) -> impl Iterator<Item = &Channel> {
-        self.survey.registry.channels()
+        self.channels.iter()
     }
 
     /// The files in it.
     #[must_use]
     pub fn attachments(&self) -> &[AttachedFile] {
-        &self.survey.extras.attachments
+        &self.attachments
     }
 
     /// The bytes of one of its [`Recording::attachments`]; none of another's.
     #[must_use]
-    pub fn content_of(&self, file: &AttachedFile) -> &[u8] {
-        self.bytes().get(file.bytes.clone()).unwrap_or_default()
+    pub fn content_of(&self, attached: &AttachedFile) -> &[u8] {
+        let file = self.files.get(attached.file);
+        let bytes = file.and_then(|file| file.bytes().get(attached.bytes.clone()));
+        bytes.unwrap_or_default()
     }
 
     /// What is said of it as a whole.
     #[must_use]
     pub fn metadata(&self) -> &[MetadataRecord] {
-        &self.survey.extras.metadata
+        &self.metadata
     }
 
-    /// How its messages are packed: the parts of the file that hold them.
+    /// How its messages are packed: the parts of the files that hold them.
     pub fn parts(&self) -> impl Iterator<Item = Part> {
-        self.survey.blocks.iter().map(Block::part)
+        let blocks = self.files.iter().flat_map(|file| &file.survey.blocks);
+        blocks.map(Block::part)
     }
 
     /// Readable messages of all channels.
     #[must_use]
     pub fn messages(&self) -> u64 {
-        self.survey.messages
+        self.files.iter().map(|file| file.survey.messages).sum()
     }
 
     /// Log times of the first and the last readable message, nanoseconds since
     /// 1970.
     #[must_use]
     pub fn time_range_ns(&self) -> Option<(i64, i64)> {
-        self.survey.time_range_ns()
+        let ranges = || self.files.iter().filter_map(|f| f.survey.time_range_ns());
+        let first = ranges().map(|(first, _)| first).min()?;
+        let last = ranges().map(|(_, last)| last).max()?;
+        Some((first, last))
     }
 
-    /// What is wrong with the file, if anything.
+    /// What is wrong with the first of its files that is damaged, if one is.
     #[must_use]
     pub fn damage(&self) -> Option<&Damage> {
-        self.survey.damage.as_ref()
+        let mut files = self.files.iter();
+        files.find_map(|file| file.survey.damage.as_ref())
+    }
+
+    /// As [`Recording::damage`], as an error that names the file.
+    #[must_use]
+    pub fn damage_error(&self) -> Option<RecordingError> {
+        let mut files = self.files.iter();
+        let file = files.find(|file| file.survey.damage.is_some())?;
+        let damage = file.survey.damage.clone()?;
+        Some(RecordingError::Damaged {
+            path: file.path.clone(),
+            readable: self.messages(),
+            damage,
+        })
     }
 
     /// All messages that are read, by log time, then the damage if there is any.
@@ -148,23 +209,46 @@ impl Recording {
     /// As [`Recording::records`], but only those of some kinds.
     #[must_use]
     pub fn records_of(&self, kinds: &[Kind]) -> Records<'_> {
-        Records::new(self, kinds, self.survey.damage.clone())
+        Records::new(self, kinds, self.damage_error())
     }
 
     /// The messages of all channels as they stand in the file, by log time, then
     /// the damage if there is any.
     #[must_use]
     pub fn raw_records(&self) -> RawRecords<'_> {
-        RawRecords::new(self, None, self.survey.damage.clone())
+        RawRecords::new(self, |_| true, self.damage_error())
     }
 
-    /// The channel that holds messages of a kind: the only one, or the one with
-    /// the conventional name; `None` where there is none. Poses are taken under
-    /// that name alone.
+    /// From now on, `topic` is meant wherever messages of this kind are asked for.
+    ///
+    /// # Errors
+    /// If no channel of that name has messages of the kind.
+    pub fn prefer(&mut self, kind: Kind, topic: &str) -> Result<(), RecordingError> {
+        let of_kind = |c: &&Channel| c.kind == Some(kind) && c.messages > 0;
+        let mut channels = self.channels.iter().filter(of_kind);
+        let Some(channel) = channels.clone().find(|channel| &*channel.topic == topic) else {
+            let found: Vec<String> = channels.by_ref().map(|c| c.topic.to_string()).collect();
+            return Err(RecordingError::NoSuchTopic {
+                path: self.path.clone(),
+                kind,
+                topic: topic.to_owned(),
+                found,
+            });
+        };
+        self.preferred.insert(kind, channel.topic.clone());
+        Ok(())
+    }
+
+    /// The channel that holds messages of a kind: the preferred one, the only one,
+    /// or the one with the conventional name; `None` where there is none. Poses are
+    /// taken under that name alone.
     ///
     /// # Errors
     /// If several could be meant.
     pub fn topic(&self, kind: Kind) -> Result<Option<Arc<str>>, RecordingError> {
+        if let Some(topic) = self.preferred.get(&kind) {
+            return Ok(Some(topic.clone()));
+        }
         let channels: Vec<&Channel> = self.channels().collect();
         let channel = topics::choose(&channels, kind, &self.path)?;
         Ok(channel.map(|channel| channel.topic.clone()))
@@ -181,6 +265,9 @@ impl Recording {
         kind: Kind,
         name_of: impl Fn(&str) -> Option<String>,
     ) -> Result<Option<Arc<str>>, RecordingError> {
+        if let Some(topic) = self.preferred.get(&kind) {
+            return Ok(Some(topic.clone()));
+        }
         let renamed = |channel: &Channel| {
             let topic = name_of(&channel.topic)?.into();
             let own = channel.topic.clone();
@@ -214,24 +301,16 @@ impl Recording {
         })
     }
 
-    pub(crate) fn bytes(&self) -> &[u8] {
-        self.bytes.as_slice()
+    /// The texts of the schemas that the files bring along, by their names.
+    pub(crate) fn definitions(&self) -> BTreeMap<String, String> {
+        let files = self.files.iter();
+        files
+            .flat_map(|file| file.survey.registry.definitions())
+            .collect()
     }
-}
 
-fn unreadable(path: &Path, source: std::io::Error) -> RecordingError {
-    RecordingError::Open {
-        path: path.to_owned(),
-        source,
-    }
-}
-
-impl Bytes {
-    fn as_slice(&self) -> &[u8] {
-        match self {
-            Bytes::Mapped(map) => map,
-            Bytes::Owned(bytes) => bytes,
-        }
+    pub(crate) fn files(&self) -> &[RecordedFile] {
+        &self.files
     }
 }
 

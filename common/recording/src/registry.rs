@@ -43,6 +43,15 @@ impl Registry {
         self.channels.values()
     }
 
+    /// The texts of the schemas as ROS 2 writes them, by their names.
+    pub(crate) fn definitions(&self) -> impl Iterator<Item = (String, String)> {
+        self.channels.keys().filter_map(|id| {
+            let schema = self.known.get(*id)?.schema.clone()?;
+            let text = String::from_utf8(schema.data.to_vec()).ok()?;
+            (schema.encoding == "ros2msg").then(|| (schema.name.clone(), text))
+        })
+    }
+
     /// Counts messages of a channel that is there.
     pub(crate) fn count(&mut self, id: u16, messages: u64) {
         if let Some(channel) = self.channels.get_mut(&id) {

@@ -28,6 +28,16 @@ fn conventional_name(kind: Kind) -> &'static str {
     }
 }
 
+/// The option of the commands that names a channel of a kind.
+pub(crate) fn option(kind: Kind) -> &'static str {
+    match kind {
+        Kind::Scan => "--scan-topic",
+        Kind::Map => "--map-topic",
+        Kind::Odometry => "--odom-topic",
+        Kind::PoseStamped | Kind::StaticTransforms => "--remap",
+    }
+}
+
 /// The channel with messages of a kind.
 pub(crate) fn choose<'a>(
     channels: &[&'a Channel],
@@ -94,7 +104,7 @@ mod tests {
         assert_eq!(
             chosen(Kind::Scan, &[("/a", 1), ("/b", 1)]).unwrap_err(),
             "r.mcap has several channels of sensor_msgs/msg/LaserScan, /a, /b, \
-             and none is called /scan"
+             and none is called /scan: name one with --scan-topic"
         );
     }
 

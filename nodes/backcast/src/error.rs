@@ -159,6 +159,24 @@ pub enum BackcastError {
         /// Why not.
         source: EngineError,
     },
+    /// No map that counts for a scan can be used.
+    #[error("{}: no map up to this scan can be searched: {reason}", file.display())]
+    NoUsableMap {
+        /// The recording that holds the maps.
+        file: PathBuf,
+        /// Why the last one cannot.
+        reason: String,
+    },
+    /// No scan was accepted.
+    #[error("{}: every scan was refused, {scans} in all; the first: {reason}", file.display())]
+    AllRefused {
+        /// The recording.
+        file: PathBuf,
+        /// Scans that were taken.
+        scans: u64,
+        /// Why the first was.
+        reason: String,
+    },
     /// A setting of the engine is out of range.
     #[error(transparent)]
     Setting(EngineError),

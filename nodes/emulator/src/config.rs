@@ -19,8 +19,8 @@ use crate::FaultPlan;
 #[command(name = "emulator", version)]
 #[command(group(ArgGroup::new("device").required(true).args(["listen", "pty"])))]
 pub struct Config {
-    /// The recording: an MCAP file with ROS 2 messages, or a bag of rosbag2 in SQLite
-    /// (.db3, or its folder).
+    /// The recording: an MCAP file with ROS 2 messages, or a bag of rosbag2 (its
+    /// folder, or .db3).
     #[arg(long, value_name = "FILE")]
     pub recording: PathBuf,
 

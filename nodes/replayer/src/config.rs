@@ -14,10 +14,18 @@ use playback::{Rate, Remap};
 #[derive(Debug, Clone, Parser)]
 #[command(name = "replayer", version)]
 pub struct Config {
-    /// The recording: an MCAP file with ROS 2 messages, or a bag of rosbag2 in SQLite
-    /// (.db3, or its folder).
-    #[arg(long, value_name = "FILE")]
-    pub recording: PathBuf,
+    /// The recording: an MCAP file with ROS 2 messages, or a bag of rosbag2 (its
+    /// folder, or .db3); several are played as one.
+    #[arg(long, value_name = "FILE", required = true)]
+    pub recording: Vec<PathBuf>,
+
+    /// The topic of the scans [default: the only one, or /scan]
+    #[arg(long, value_name = "TOPIC")]
+    pub scan_topic: Option<String>,
+
+    /// The topic of the odometry [default: the only one, or /odom]
+    #[arg(long, value_name = "TOPIC")]
+    pub odom_topic: Option<String>,
 
     /// Times the original speed, 0.001 to 1000; or max: the next scan follows
     /// the answer to the one before, and none is dropped.

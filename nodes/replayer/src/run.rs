@@ -12,7 +12,7 @@ use playback::{
     Action, Channels, InOrder, PlaybackError, Rate, Schedule, Selection, Source, Timed,
     wait_for_nodes,
 };
-use recording::Recording;
+use recording::{Kind, Recording};
 use transport::{Flow, Graph, Subscriber, monotonic_ns, with_causes};
 
 use crate::pause::Pause;
@@ -56,7 +56,7 @@ impl Summary {
 pub fn run(graph: &Graph, config: &Config) -> Result<Summary, ReplayerError> {
     let mut outlet = Outlet::open(graph)?;
     let answers = graph.subscriber::<topic::Hypotheses>()?;
-    let recording = Recording::open(&config.recording)?;
+    let recording = open(config)?;
     let selection = select(config, &recording)?;
     let channels = Channels::of(&recording, &selection)?;
     wait_for_nodes(graph, &config.wait_for, &mut outlet.health)?;
@@ -85,6 +85,18 @@ pub fn run(graph: &Graph, config: &Config) -> Result<Summary, ReplayerError> {
     player.advance()?;
     graph.run(&[&answers], TICK, |_| player.step(&answers))?;
     player.conclude()
+}
+
+/// The recording, with the topics that are meant.
+fn open(config: &Config) -> Result<Recording, ReplayerError> {
+    let mut recording = Recording::open_all(&config.recording)?;
+    if let Some(topic) = &config.scan_topic {
+        recording.prefer(Kind::Scan, topic)?;
+    }
+    if let Some(topic) = &config.odom_topic {
+        recording.prefer(Kind::Odometry, topic)?;
+    }
+    Ok(recording)
 }
 
 /// What is to be played.
@@ -119,9 +131,8 @@ fn listen(pause: bool) -> Result<Option<Keyboard>, ReplayerError> {
 /// Says what will be played; returns the usual time between two scans.
 fn announce(recording: &Recording, channels: &Channels, config: &Config) -> i64 {
     let scans = channels.scans(recording);
-    if let Some(damage) = recording.damage() {
-        let messages = recording.messages();
-        tracing::warn!("{damage}; the {messages} messages before that are played");
+    if let Some(damage) = recording.damage_error() {
+        tracing::warn!("{damage}; these are played");
     }
     let (first_ns, last_ns) = recording.time_range_ns().unwrap_or((0, 0));
     let duration_ns = last_ns.saturating_sub(first_ns);

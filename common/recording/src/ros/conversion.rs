@@ -5,8 +5,8 @@ use map::MapError;
 /// A message that decodes, but says something that cannot be.
 #[derive(Debug, thiserror::Error)]
 pub enum ConversionError {
-    /// A quaternion that is no rotation: its length is not 1 within half a
-    /// percent, or it is not a number.
+    /// A quaternion that is no rotation: its length is not 1 within a few percent,
+    /// or it is not a number.
     #[error("the quaternion ({x}, {y}, {z}, {w}) is no rotation; allowed: a length of 1")]
     Rotation {
         /// Of i.

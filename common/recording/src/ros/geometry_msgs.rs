@@ -7,6 +7,32 @@ use super::ConversionError;
 /// How far a quaternion's squared length may be from 1, as in tf2.
 const ROTATION_TOLERANCE: f64 = 0.01;
 
+/// How far a quaternion's length may be from 1 and be taken for a rounded one.
+const ROUNDING: f64 = 0.05;
+
+/// What was wrong with a quaternion that is taken for a rotation nevertheless.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub enum Mend {
+    /// All four numbers are zero; taken for no turn.
+    Zero,
+    /// Its length is not 1, but near.
+    Length(f64),
+}
+
+impl std::fmt::Display for Mend {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        match self {
+            Mend::Zero => f.write_str("the quaternion is all zeros: taken for no turn"),
+            Mend::Length(length) => {
+                write!(
+                    f,
+                    "the quaternion has a length of {length:.3}: taken as if it were 1"
+                )
+            }
+        }
+    }
+}
+
 /// Where x, y and yaw stand among x, y, z and the rotations about them.
 const PLANAR_AXES: [usize; 3] = [0, 1, 5];
 
@@ -115,24 +141,40 @@ impl Quaternion {
         }
     }
 
-    /// The heading of the turned x axis, radians in `[-π, π]`.
+    /// The heading of the turned x axis, radians in `[-π, π]`; of a quaternion
+    /// that is mended as [`Quaternion::mended`] says.
     ///
     /// # Errors
     /// If it is no rotation.
     pub fn yaw(self) -> Result<f64, ConversionError> {
-        self.check()?;
-        let Quaternion { x, y, z, w } = self;
+        let (Quaternion { x, y, z, w }, _) = self.mended()?;
         // Both arguments scale with the squared length, so it need not be 1.
         Ok((2.0 * (w * z + x * y)).atan2(w * w + x * x - y * y - z * z))
     }
 
-    pub(crate) fn check(self) -> Result<(), ConversionError> {
+    /// The rotation that is meant: no turn where nobody has filled in the fields,
+    /// and of a length of 1 where it was rounded; with what was wrong.
+    ///
+    /// # Errors
+    /// If it is no rotation.
+    pub fn mended(self) -> Result<(Self, Option<Mend>), ConversionError> {
         let Quaternion { x, y, z, w } = self;
         let squared = x * x + y * y + z * z + w * w;
         if (squared - 1.0).abs() < ROTATION_TOLERANCE {
-            return Ok(());
+            return Ok((self, None));
         }
-        Err(ConversionError::Rotation { x, y, z, w })
+        if squared == 0.0 {
+            return Ok((Quaternion::default(), Some(Mend::Zero)));
+        }
+        let length = squared.sqrt();
+        if (length - 1.0).abs() > ROUNDING {
+            return Err(ConversionError::Rotation { x, y, z, w });
+        }
+        let [x, y, z, w] = [x, y, z, w].map(|part| part / length);
+        match squared.is_finite() {
+            true => Ok((Quaternion { x, y, z, w }, Some(Mend::Length(length)))),
+            false => Err(ConversionError::Rotation { x, y, z, w }),
+        }
     }
 }
 
@@ -241,14 +283,16 @@ mod tests {
 
     #[test]
     fn what_is_no_pose_is_refused() {
-        let zero = Quaternion {
-            w: 0.0,
+        let of_length = |w| Quaternion {
+            w,
             ..Quaternion::default()
         };
-        let message = zero.yaw().unwrap_err().to_string();
+        assert_eq!(of_length(0.0).yaw().unwrap(), 0.0, "nobody filled it in");
+        assert_eq!(of_length(0.96).yaw().unwrap(), 0.0, "it was rounded");
+        let message = of_length(0.9).yaw().unwrap_err().to_string();
         assert_eq!(
             message,
-            "the quaternion (0, 0, 0, 0) is no rotation; allowed: a length of 1"
+            "the quaternion (0, 0, 0, 0.9) is no rotation; allowed: a length of 1"
         );
         let nan = Quaternion {
             x: f64::NAN,

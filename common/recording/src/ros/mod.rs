@@ -23,7 +23,8 @@ mod tf_message;
 pub use conversion::ConversionError;
 pub use diagnostic_array::{DiagnosticArray, DiagnosticStatus, KeyValue};
 pub use geometry_msgs::{
-    Point, Pose, PoseWithCovariance, Quaternion, Transform, Twist, TwistWithCovariance, Vector3,
+    Mend, Point, Pose, PoseWithCovariance, Quaternion, Transform, Twist, TwistWithCovariance,
+    Vector3,
 };
 pub use laser_scan::LaserScan;
 pub use log::Log;

@@ -2,14 +2,20 @@
 
 use std::collections::BTreeSet;
 
-use recording::{GROUND_TRUTH, Kind, Recording};
+use engine::grid::{CellRules, Grid};
+use map::OccupancyGrid;
+use recording::ros::OccupancyGridMsg;
+use recording::{GROUND_TRUTH, Kind, Mounted, Recording};
 
 use super::ailment::Ailment;
-use super::patient::{Patient, Seen};
+use super::patient::{Farthest, Patient, Seen};
 use transport::with_causes;
 
 /// A gap is worth a note from so many usual distances on.
 const GAP_FACTOR: i64 = 5;
+
+/// Share of readings at exactly one value from which it is no distance.
+const PILED_UP: f64 = 0.02;
 
 /// Share of silent readings from which a laser seems to look into nothing.
 const MOSTLY_SILENT: f64 = 0.9;
@@ -26,6 +32,7 @@ pub(super) fn all(recording: &Recording, patient: &Patient) -> Vec<Ailment> {
         stamps(patient),
         gaps(patient),
         scans(patient),
+        mended(patient),
         truths(recording, patient),
         order(recording),
     ];
@@ -37,9 +44,12 @@ pub(super) fn all(recording: &Recording, patient: &Patient) -> Vec<Ailment> {
 fn damage(recording: &Recording) -> Vec<Ailment> {
     let damage = recording.damage().map(|damage| {
         let messages = recording.messages();
-        Ailment::lost(format!(
-            "{damage}; {messages} messages before that are readable"
-        ))
+        let found = format!("{damage}; {messages} messages before that are readable");
+        Ailment::lost(match (recording.file_count(), recording.damage_error()) {
+            (1, _) | (_, None) => found,
+            // Of several files, the error names the one.
+            (_, Some(error)) => error.to_string(),
+        })
     });
     damage.into_iter().collect()
 }
@@ -73,29 +83,55 @@ fn topics(recording: &Recording, patient: &Patient) -> Vec<Ailment> {
     found
 }
 
+/// Whether the maps can be searched, and are those that the metadata names.
 fn map(recording: &Recording) -> Vec<Ailment> {
-    match recording.map() {
-        Err(error) => vec![Ailment::problem(with_causes(&error))],
-        Ok(None) => Vec::new(),
-        Ok(Some(grid)) => {
-            let found = format!("{:016x}", grid.id());
-            let named = recording.metadata().iter().filter_map(|record| {
-                let is_map = record.name == "backcast/map";
-                is_map.then(|| record.entries.get("map_id")).flatten()
-            });
-            let mut others = named.filter(|id| **id != found).peekable();
-            // A map that was changed while recording is named, too.
-            let several = recording
-                .channels()
-                .any(|c| c.kind == Some(Kind::Map) && c.messages > 1);
-            match others.next() {
-                Some(id) if !several => vec![Ailment::problem(format!(
-                    "the map is {found}, but the metadata says {id}"
-                ))],
-                _ => Vec::new(),
-            }
+    let maps = match recording.maps() {
+        Ok(maps) => maps,
+        // It is said with the topics.
+        Err(_) => return Vec::new(),
+    };
+    let (mut seen, mut refused, mut newest) = (0, Vec::new(), None);
+    // Those that do not decode are told with the other messages.
+    for (_, map) in maps.flatten() {
+        seen += 1;
+        match usable(&map) {
+            Ok(grid) => newest = Some(grid),
+            Err(refusal) => refused.push(refusal),
         }
     }
+    let mut found = Vec::new();
+    if let Some(first) = refused.first() {
+        let count = refused.len();
+        found.push(match newest {
+            Some(_) => Ailment::note(format!(
+                "{count} of {seen} maps cannot be searched and are left out; of the first: {first}"
+            )),
+            None => Ailment::problem(format!("no map can be searched: {first}")),
+        });
+    }
+    found.extend(newest.and_then(|grid| misnamed(recording, &grid, seen)));
+    found
+}
+
+/// The map in a message, if the engine takes it.
+fn usable(map: &OccupancyGridMsg) -> Result<OccupancyGrid, String> {
+    let grid = map.to_grid().map_err(|error| with_causes(&error))?;
+    let sides = (grid.width as usize, grid.height as usize);
+    Grid::new(sides.0, sides.1, &grid.cells, CellRules::default())
+        .map_err(|error| with_causes(&error))?;
+    Ok(grid)
+}
+
+fn misnamed(recording: &Recording, grid: &OccupancyGrid, maps: u64) -> Option<Ailment> {
+    let found = format!("{:016x}", grid.id());
+    let named = recording.metadata().iter().filter_map(|record| {
+        let is_map = record.name == "backcast/map";
+        is_map.then(|| record.entries.get("map_id")).flatten()
+    });
+    // A map that was changed while recording is named, too.
+    let other = named.filter(|id| **id != found).next()?;
+    (maps == 1)
+        .then(|| Ailment::problem(format!("the map is {found}, but the metadata says {other}")))
 }
 
 /// Whether the place of each laser on the robot is known.
@@ -104,14 +140,24 @@ fn mount(recording: &Recording, patient: &Patient) -> Vec<Ailment> {
         .of_kind(Kind::Scan)
         .flat_map(|(_, seen)| &seen.frames)
         .collect();
-    let finding = |laser: &&String| match recording.base_from_laser(laser) {
-        Ok(Some(_)) => None,
-        Ok(None) => Some(Ailment::note(format!(
-            "/tf_static does not say where {laser:?} sits on the robot: poses are of the laser"
-        ))),
-        Err(error) => Some(Ailment::problem(with_causes(&error))),
-    };
-    lasers.iter().filter_map(finding).collect()
+    let (mut found, mut said) = (Vec::new(), BTreeSet::new());
+    for laser in lasers {
+        match recording.mounted(laser) {
+            Ok(Mounted { mount, notes }) => {
+                let is_explained = notes.iter().any(|note| note.contains(laser.as_str()));
+                if mount.is_none() && !is_explained {
+                    found.push(Ailment::note(format!(
+                        "/tf_static does not say where {laser:?} sits on the robot: poses are of \
+                         the laser"
+                    )));
+                }
+                said.extend(notes);
+            }
+            Err(error) => found.push(Ailment::problem(with_causes(&error))),
+        }
+    }
+    found.extend(said.into_iter().map(Ailment::note));
+    found
 }
 
 /// Whether frames are named, one to a channel, and poses share the map's.
@@ -220,6 +266,7 @@ fn scans(patient: &Patient) -> Vec<Ailment> {
                 "{topic}: {odd} odd scans; of the first {oddity}"
             )));
         }
+        found.extend(pile(topic, seen));
         let share = seen.silent as f64 / seen.readings.max(1) as f64;
         if share > MOSTLY_SILENT {
             let percent = 100.0 * share;
@@ -229,6 +276,40 @@ fn scans(patient: &Patient) -> Vec<Ailment> {
         }
     }
     found
+}
+
+/// Whether many readings are exactly the farthest one: so some drivers say that
+/// nothing came back.
+fn pile(topic: &str, seen: &Seen) -> Option<Ailment> {
+    let Farthest {
+        range_m,
+        count,
+        range_max_m,
+    } = seen.farthest?;
+    let share = count as f64 / seen.readings.max(1) as f64;
+    let percent = 100.0 * share;
+    let what = format!("{topic}: {percent:.0} % of the readings are exactly {range_m} m");
+    let reason = match range_m >= range_max_m {
+        true => "which is range_max: readings at or above range_max are no returns".to_owned(),
+        false => format!(
+            "and none is farther: if that is how the laser says that nothing came back, its \
+             range_max of {range_max_m} m is too large, for only readings at or above range_max \
+             are no returns"
+        ),
+    };
+    (share >= PILED_UP).then(|| Ailment::note(format!("{what}, {reason}")))
+}
+
+/// What had to be mended to be used.
+fn mended(patient: &Patient) -> Vec<Ailment> {
+    let finding = |(topic, seen): (&String, &Seen)| {
+        let first = seen.first_mend?;
+        let count = seen.mended;
+        Some(Ailment::note(format!(
+            "{topic}: {count} orientations are mended; of the first, {first}"
+        )))
+    };
+    patient.channels.iter().filter_map(finding).collect()
 }
 
 /// Whether true poses are sound and belong to scans.

@@ -10,6 +10,7 @@ use super::ailment::{Ailment, Severity};
 use super::checks;
 use super::patient::Patient;
 use crate::cli::LOST_DATA;
+use crate::offline::TopicOptions;
 use crate::{BackcastError, stdout};
 
 /// What stands below the options.
@@ -19,9 +20,13 @@ Exit codes: 0 nothing but notes, 1 there are problems, 2 wrong use, 3 data was l
 /// What `backcast doctor` takes.
 #[derive(Debug, clap::Args)]
 pub(crate) struct Config {
-    /// The recordings: MCAP files
+    /// The recordings, each by itself: MCAP files, or bags of rosbag2 (their
+    /// folders, or .db3)
     #[arg(required = true, value_name = "FILE")]
     recordings: Vec<PathBuf>,
+
+    #[command(flatten)]
+    topics: TopicOptions,
 
     /// Print JSON, an object a file
     #[arg(long)]
@@ -42,7 +47,8 @@ struct Report {
 pub(crate) fn run(config: &Config) -> Result<ExitCode, BackcastError> {
     let mut worst = Severity::Note;
     for path in &config.recordings {
-        let recording = Recording::open(path)?;
+        let mut recording = Recording::open(path)?;
+        config.topics.apply(&mut recording)?;
         let findings = checks::all(&recording, &Patient::of(&recording));
         let severity = findings.iter().map(|ailment| ailment.severity).max();
         worst = worst.max(severity.unwrap_or(Severity::Note));

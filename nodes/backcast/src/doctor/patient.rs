@@ -2,7 +2,8 @@
 
 use std::collections::{BTreeMap, BTreeSet};
 
-use recording::ros::{Header, LaserScan, TfMessage};
+use engine::scan::Scan;
+use recording::ros::{Header, LaserScan, Mend, Quaternion, TfMessage};
 use recording::{Kind, Message, Record, Recording, RecordingError};
 
 /// What was seen on one channel.
@@ -23,6 +24,20 @@ pub(super) struct Seen {
     /// Readings, and those that say nothing.
     pub(super) readings: u64,
     pub(super) silent: u64,
+    pub(super) farthest: Option<Farthest>,
+    /// Orientations that were mended, and what was wrong with the first.
+    pub(super) mended: u64,
+    pub(super) first_mend: Option<Mend>,
+}
+
+/// The farthest reading of all scans.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(super) struct Farthest {
+    pub(super) range_m: f32,
+    /// Readings of exactly this value.
+    pub(super) count: u64,
+    /// Of the first scan that has it.
+    pub(super) range_max_m: f32,
 }
 
 /// What was seen on all channels.
@@ -63,11 +78,18 @@ impl Patient {
         seen.kind = Some(record.message.kind());
         match &record.message {
             Message::Scan(scan) => seen.scan(scan),
-            Message::Map(map) => seen.header(&map.header),
-            Message::PoseStamped(pose) => seen.header(&pose.header),
+            Message::Map(map) => {
+                seen.header(&map.header);
+                seen.orientation(map.info.origin.orientation);
+            }
+            Message::PoseStamped(pose) => {
+                seen.header(&pose.header);
+                seen.orientation(pose.pose.orientation);
+            }
             Message::StaticTransforms(transforms) => seen.transforms(transforms),
             Message::Odometry(odometry) => {
                 seen.header(&odometry.header);
+                seen.orientation(odometry.pose.pose.orientation);
                 seen.children.insert(odometry.child_frame_id.clone());
             }
         }
@@ -89,47 +111,71 @@ impl Seen {
         }
     }
 
+    fn orientation(&mut self, turn: Quaternion) {
+        if let Ok((_, Some(mend))) = turn.mended() {
+            self.mended += 1;
+            self.first_mend.get_or_insert(mend);
+        }
+    }
+
     fn scan(&mut self, scan: &LaserScan) {
         self.header(&scan.header);
-        let says = |range: &&f32| (scan.range_min..=scan.range_max).contains(*range);
-        let saying = scan.ranges.iter().filter(says).count();
+        let taken = as_taken(scan);
+        let beams = 0..scan.ranges.len();
+        let silent = beams.filter(|&beam| taken.reading(beam).is_none());
+        self.silent += silent.count() as u64;
         self.readings += scan.ranges.len() as u64;
-        self.silent += (scan.ranges.len() - saying) as u64;
+        for &range in scan.ranges.iter().filter(|range| range.is_finite()) {
+            self.reach(range, scan.range_max);
+        }
         if let Some(oddity) = oddity(scan) {
             self.odd_scans += 1;
             self.first_oddity.get_or_insert(oddity);
         }
     }
+
+    fn reach(&mut self, range_m: f32, range_max_m: f32) {
+        match &mut self.farthest {
+            Some(farthest) if range_m < farthest.range_m => {}
+            Some(farthest) if range_m == farthest.range_m => farthest.count += 1,
+            farthest => {
+                *farthest = Some(Farthest {
+                    range_m,
+                    count: 1,
+                    range_max_m,
+                });
+            }
+        }
+    }
 }
 
-/// What about a scan's numbers does not fit together.
+/// As the engine takes it.
+fn as_taken(scan: &LaserScan) -> Scan<'_> {
+    Scan {
+        angle_min: scan.angle_min.into(),
+        angle_increment: scan.angle_increment.into(),
+        range_min_m: scan.range_min,
+        range_max_m: scan.range_max,
+        ranges: &scan.ranges,
+    }
+}
+
+/// Why the engine refuses a scan, or what about its numbers does not fit together.
 fn oddity(scan: &LaserScan) -> Option<String> {
+    if let Err(refusal) = as_taken(scan).check() {
+        return Some(refusal.to_string());
+    }
     let LaserScan {
         angle_min,
         angle_max,
         angle_increment,
-        range_min,
-        range_max,
         ranges,
         ..
     } = scan;
     let beams = ranges.len();
-    if beams == 0 {
-        return Some("it has no readings".to_owned());
-    }
-    let finite = [angle_min, angle_max, angle_increment]
-        .iter()
-        .all(|x| x.is_finite());
-    if !finite || *angle_increment == 0.0 {
-        return Some(format!(
-            "its angles are {angle_min} to {angle_max} by {angle_increment} rad"
-        ));
-    }
-    if range_min.partial_cmp(range_max) != Some(std::cmp::Ordering::Less) {
-        return Some(format!("its ranges are {range_min} to {range_max} m"));
-    }
-    let last = angle_min + (beams - 1) as f32 * angle_increment;
-    // Some drivers say where the beam behind the last one would point.
+    let last = angle_min + beams.saturating_sub(1) as f32 * angle_increment;
+    // Some drivers say where the beam behind the last one would point. One that is
+    // no number is never far off, and nobody needs it.
     if (last - angle_max).abs() > 1.5 * angle_increment.abs() {
         return Some(format!(
             "its {beams} beams from {angle_min} by {angle_increment} rad end at {last:.4}, not at \
@@ -163,16 +209,39 @@ mod tests {
             spoil(&mut scan);
             oddity(&scan).unwrap()
         };
-        assert_eq!(odd(|s| s.ranges.clear()), "it has no readings");
-        assert_eq!(
-            odd(|s| s.angle_increment = 0.0),
-            "its angles are -1 to 1 by 0 rad"
+        let empty = odd(|s| s.ranges.clear());
+        assert_eq!(empty, "the scan is empty: it has no ranges");
+        let still = odd(|s| s.angle_increment = 0.0);
+        assert!(still.starts_with("angle_increment is 0"), "{still}");
+        let nowhere = odd(|s| s.range_max = 0.0);
+        assert!(
+            nowhere.starts_with("range_min 0.1 and range_max 0"),
+            "{nowhere}"
         );
-        assert_eq!(odd(|s| s.range_max = 0.0), "its ranges are 0.1 to 0 m");
         let beams = odd(|s| s.ranges.truncate(3));
         assert_eq!(
             beams,
             "its 3 beams from -1 by 0.5 rad end at 0.0000, not at 1"
         );
+    }
+
+    #[test]
+    fn readings_at_the_farthest_value_are_counted() {
+        let mut seen = Seen::default();
+        seen.scan(&LaserScan {
+            ranges: vec![1.0, 5.0, 5.0, f32::INFINITY, f32::NAN],
+            ..scan()
+        });
+        seen.scan(&LaserScan {
+            ranges: vec![6.0, 1.0, 6.0, 6.0, 5.0],
+            range_max: 6.0,
+            ..scan()
+        });
+        let expected = Farthest {
+            range_m: 6.0,
+            count: 3,
+            range_max_m: 6.0,
+        };
+        assert_eq!((seen.farthest, seen.readings), (Some(expected), 10));
     }
 }

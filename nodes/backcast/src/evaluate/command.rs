@@ -5,13 +5,13 @@ use std::path::{Path, PathBuf};
 use std::process::ExitCode;
 
 use map::OccupancyGrid;
-use recording::{GroundTruth, Recording};
+use recording::GroundTruth;
 
 use super::judge::{Effort, Evaluation, Judge};
 use super::memory;
 use super::table::{self, Table};
 use super::trust::Trust;
-use crate::offline::{Options, Progress, Session, damage_of, say};
+use crate::offline::{Accepted, Options, Progress, Session, World, damage_of, say};
 use crate::{BackcastError, stdout};
 
 /// What stands below the options.
@@ -27,8 +27,8 @@ Exit codes: 0 all evaluated, 1 a file could not be, 2 wrong use";
 /// What `backcast evaluate` takes.
 #[derive(Debug, clap::Args)]
 pub(crate) struct Config {
-    /// Recordings with true poses on /ground_truth: MCAP files with ROS 2
-    /// messages
+    /// Recordings with true poses on /ground_truth, each by itself: MCAP files, or
+    /// bags of rosbag2 (their folders, or .db3)
     #[arg(required = true, value_name = "FILE")]
     bags: Vec<PathBuf>,
 
@@ -60,7 +60,7 @@ fn radius(text: &str) -> Result<f64, String> {
 /// written.
 pub(crate) fn run(config: &Config) -> Result<ExitCode, BackcastError> {
     config.options.check()?;
-    let map = config.options.load_map()?;
+    let map = config.options.load_map(&config.bags)?;
     let table = Table::of(&config.bags);
     let mut code = ExitCode::SUCCESS;
     let mut trust = Trust::default();
@@ -104,7 +104,7 @@ fn evaluate(
     map: Option<&OccupancyGrid>,
     trust: &mut Trust,
 ) -> Result<Evaluation, BackcastError> {
-    let recording = Recording::open(bag)?;
+    let recording = config.options.open(&[bag.to_owned()])?;
     if let Some(damage) = damage_of(&recording) {
         return Err(damage.into());
     }
@@ -115,14 +115,15 @@ fn evaluate(
     let mut session = Session::open(&recording, &config.options, map)?;
     let name = bag.display().to_string();
     let progress = Progress::new(&name, session.scans.total());
-    let (judge, scans) = judge_all(&mut session, &truths, config.erase_place, &progress)?;
+    let (judge, accepted, scans) = judge_all(&mut session, &truths, config.erase_place, &progress)?;
+    accepted.check(bag)?;
     if let Some(complaint) = judge.complaint() {
         progress.say(&format!("{name}: {complaint}"));
     }
     trust.merge(judge.trust());
     let evaluation = judge.conclude(Effort {
         bag: name,
-        map_cells: session.world.cells(),
+        map_cells: session.world().map_or(0, World::cells),
         scans,
         prepare_cpu_ms: session.prepare_cpu_ms,
         peak_rss_mb: memory::peak_mb().map_err(BackcastError::Memory)?,
@@ -137,30 +138,35 @@ fn evaluate(
     }
 }
 
-/// Searches and judges the scans whose truth is known; returns with that how
-/// many were taken.
+/// Searches and judges the scans whose truth is known; returns with that which
+/// were accepted, and how many were taken.
 fn judge_all(
     session: &mut Session<'_>,
     truths: &BTreeMap<i64, GroundTruth>,
     erase_place: Option<f64>,
     progress: &Progress,
-) -> Result<(Judge, u64), BackcastError> {
+) -> Result<(Judge, Accepted, u64), BackcastError> {
     let mut judge = Judge::new();
+    let mut accepted = Accepted::default();
     let mut scans = 0;
     while let Some(scan) = session.scans.next() {
         let scan = scan?;
         scans += 1;
         if let Some(truth) = truths.get(&scan.stamp_ns) {
             if let Some(radius_m) = erase_place {
-                session.erase(truth.pose, radius_m)?;
+                session.erase(&scan, truth.pose, radius_m)?;
             }
             let reply = session.ask(&scan)?;
+            accepted.count(&reply);
             match reply.answer {
                 Ok(answer) => judge.answer(truth.pose, answer.places, reply.cpu_ms),
                 Err(refusal) => judge.refusal(truth.pose, transport::with_causes(&refusal)),
             }
         }
+        for note in session.take_notes() {
+            progress.say(&note);
+        }
         progress.step();
     }
-    Ok((judge, scans))
+    Ok((judge, accepted, scans))
 }

@@ -8,14 +8,19 @@ use recording::Recording;
 use super::contents::Contents;
 use super::text;
 use crate::cli::LOST_DATA;
+use crate::offline::TopicOptions;
 use crate::{BackcastError, stdout};
 
 /// What `backcast info` takes.
 #[derive(Debug, clap::Args)]
 pub(crate) struct Config {
-    /// The recordings: MCAP files
+    /// The recordings, each by itself: MCAP files, or bags of rosbag2 (their
+    /// folders, or .db3)
     #[arg(required = true, value_name = "FILE")]
     recordings: Vec<PathBuf>,
+
+    #[command(flatten)]
+    topics: TopicOptions,
 
     /// Print JSON, an object a file
     #[arg(long)]
@@ -29,7 +34,8 @@ pub(crate) struct Config {
 pub(crate) fn run(config: &Config) -> Result<ExitCode, BackcastError> {
     let mut code = ExitCode::SUCCESS;
     for path in &config.recordings {
-        let recording = Recording::open(path)?;
+        let mut recording = Recording::open(path)?;
+        config.topics.apply(&mut recording)?;
         let contents = Contents::of(&recording);
         if contents.damage.is_some() {
             code = ExitCode::from(LOST_DATA);

@@ -2,7 +2,7 @@
 
 use std::collections::BTreeMap;
 
-use recording::Recording;
+use recording::{Kind, Recording};
 use serde::Serialize;
 
 /// A recording in figures. Stamps are nanoseconds since 1970.
@@ -15,6 +15,10 @@ pub(crate) struct Contents {
     pub(crate) last_ns: Option<i64>,
     pub(crate) chunks: usize,
     pub(crate) channels: Vec<Channel>,
+    /// Which of them the commands take, by what they hold.
+    pub(crate) taken: BTreeMap<&'static str, String>,
+    /// Why it is not clear which one is taken.
+    pub(crate) unclear: Vec<String>,
     pub(crate) metadata: Vec<Metadata>,
     pub(crate) attachments: Vec<Attachment>,
     /// What is wrong with the file; all else is of what lies before.
@@ -58,9 +62,11 @@ impl Contents {
             last_ns: range.map(|(_, last)| last),
             chunks: recording.parts().filter(|part| part.is_chunk).count(),
             channels: channels(recording, seconds),
+            taken: taken(recording),
+            unclear: unclear(recording),
             metadata: recording.metadata().iter().map(metadata).collect(),
             attachments: recording.attachments().iter().map(attachment).collect(),
-            damage: recording.damage().map(ToString::to_string),
+            damage: damage(recording),
         }
     }
 
@@ -68,6 +74,31 @@ impl Contents {
     pub(crate) fn json(&self) -> String {
         // Texts and numbers always serialize.
         serde_json::to_string(self).unwrap_or_default() + "\n"
+    }
+}
+
+const TAKEN: [(&str, Kind); 3] = [
+    ("scans", Kind::Scan),
+    ("map", Kind::Map),
+    ("odometry", Kind::Odometry),
+];
+
+fn taken(recording: &Recording) -> BTreeMap<&'static str, String> {
+    let topic = |(what, kind)| Some((what, recording.topic(kind).ok()??.to_string()));
+    TAKEN.into_iter().filter_map(topic).collect()
+}
+
+fn unclear(recording: &Recording) -> Vec<String> {
+    let error = |(_, kind)| recording.topic(kind).err();
+    let errors = TAKEN.into_iter().filter_map(error);
+    errors.map(|error| error.to_string()).collect()
+}
+
+/// What is wrong; of several files, with the name of the one.
+fn damage(recording: &Recording) -> Option<String> {
+    match recording.file_count() {
+        1 => recording.damage().map(ToString::to_string),
+        _ => recording.damage_error().map(|error| error.to_string()),
     }
 }
 

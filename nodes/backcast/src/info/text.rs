@@ -29,6 +29,16 @@ fn write(contents: &Contents, text: &mut String) -> std::fmt::Result {
         writeln!(text, "from {from:.3} to {to:.3} s, {:.1} s long", to - from)?;
     }
     channels(contents, text)?;
+    let taken = contents.taken.iter();
+    let taken: Vec<String> = taken
+        .map(|(what, topic)| format!("{what} {topic}"))
+        .collect();
+    if !taken.is_empty() {
+        writeln!(text, "\n  taken: {}", taken.join(", "))?;
+    }
+    for unclear in &contents.unclear {
+        writeln!(text, "\n  unclear: {unclear}")?;
+    }
     for metadata in &contents.metadata {
         writeln!(text, "\nmetadata {}", metadata.name)?;
         for (key, value) in &metadata.entries {

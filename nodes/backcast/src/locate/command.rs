@@ -3,21 +3,26 @@
 use std::path::PathBuf;
 use std::process::ExitCode;
 
-use recording::{Recording, RecordingError};
+use recording::RecordingError;
 
 use super::object::Object;
 use super::row;
 use crate::cli::LOST_DATA;
-use crate::offline::{Options, Progress, Session};
+use crate::offline::{Accepted, Options, Progress, Session};
 use crate::run::Line;
 use crate::{BackcastError, stdout};
 
 /// What `backcast locate` takes.
 #[derive(Debug, clap::Args)]
 pub(crate) struct Config {
-    /// The recording: an MCAP file with ROS 2 messages
+    /// The recording: an MCAP file, or a bag of rosbag2 (its folder, or .db3);
+    /// several files are read as one
+    #[arg(value_name = "FILE", required_unless_present = "bag")]
+    recordings: Vec<PathBuf>,
+
+    /// The same, as an option
     #[arg(long, value_name = "FILE")]
-    bag: PathBuf,
+    bag: Vec<PathBuf>,
 
     /// Print JSON, an object a line
     #[arg(long)]
@@ -31,27 +36,32 @@ pub(crate) struct Config {
 /// reason; one that does not decode is lost, and told on standard error.
 ///
 /// # Errors
-/// Map or recording cannot be used, or the recording is damaged: that is told
-/// after what lies before the damage.
+/// Map or recording cannot be used, every scan was refused, or the recording is
+/// damaged: that is told after what lies before the damage.
 pub(crate) fn run(config: &Config) -> Result<ExitCode, BackcastError> {
     config.options.check()?;
-    let map = config.options.load_map()?;
-    let recording = Recording::open(&config.bag)?;
+    let files = [&config.recordings[..], &config.bag].concat();
+    let map = config.options.load_map(&files)?;
+    let recording = config.options.open(&files)?;
     let mut session = Session::open(&recording, &config.options, map.as_ref())?;
     if !config.json {
         stdout::print(&format!("{}\n", Line::header()))?;
     }
     let progress = Progress::new("locating", session.scans.total());
     let mut code = ExitCode::SUCCESS;
+    let mut accepted = Accepted::default();
     while let Some(scan) = session.scans.next() {
         match scan {
             Ok(scan) => {
-                let map_id = session.world.map_id;
                 let reply = session.ask(&scan)?;
+                accepted.count(&reply);
                 let line = match config.json {
-                    true => Object::new(&scan, map_id, &reply).json(),
+                    true => Object::new(&scan, &reply).json(),
                     false => row::text(scan.stamp_ns, &reply),
                 };
+                for note in session.take_notes() {
+                    progress.say(&note);
+                }
                 if progress.print(&line)?.is_break() {
                     break;
                 }
@@ -64,5 +74,6 @@ pub(crate) fn run(config: &Config) -> Result<ExitCode, BackcastError> {
         }
         progress.step();
     }
+    accepted.check(recording.path())?;
     Ok(code)
 }

@@ -88,10 +88,10 @@ struct Hypothesis {
 }
 
 impl Object {
-    pub(super) fn new(scan: &TakenScan, map_id: u64, reply: &Reply<'_>) -> Self {
+    pub(super) fn new(scan: &TakenScan, reply: &Reply<'_>) -> Self {
         let mut object = Object {
             stamp_ns: scan.stamp_ns,
-            map_id: format!("{map_id:016x}"),
+            map_id: format!("{:016x}", reply.map_id),
             verdict: Verdict::NoScan.as_str(),
             alternatives: 0,
             says: None,

@@ -3,7 +3,8 @@
 use bytemuck::Zeroable;
 use engine::heading::{HeadingConfig, HeadingError, HeadingSource, History};
 use messages::{FrameName, GroundTruth, Odometry, ScanHeader, Stamp};
-use recording::{Kind, Message, Recording, RecordingError};
+use recording::{Kind, Message, Record, Recording, RecordingError};
+use transport::with_causes;
 
 use super::TakenScan;
 
@@ -12,6 +13,8 @@ use super::TakenScan;
 pub(crate) struct Headings {
     source: HeadingSource,
     history: History,
+    /// What of the recording is left out.
+    notes: Vec<String>,
 }
 
 impl Headings {
@@ -25,12 +28,22 @@ impl Headings {
     ) -> Result<Self, RecordingError> {
         let source = config.source();
         let mut history = History::keeping(usize::MAX);
+        let mut notes = Vec::new();
         match source {
             HeadingSource::Searched | HeadingSource::Fixed(_) => {}
-            HeadingSource::Odometry { .. } => hear_odometry(recording, &mut history)?,
+            HeadingSource::Odometry { .. } => notes = hear_odometry(recording, &mut history)?,
             HeadingSource::Truth => hear_truths(recording, &mut history)?,
         }
-        Ok(Headings { source, history })
+        Ok(Headings {
+            source,
+            history,
+            notes,
+        })
+    }
+
+    /// What of the recording is left out.
+    pub(crate) fn notes(&self) -> &[String] {
+        &self.notes
     }
 
     /// Where the headings come from.
@@ -74,37 +87,53 @@ fn hear_truths(recording: &Recording, history: &mut History) -> Result<(), Recor
     Ok(())
 }
 
-fn hear_odometry(recording: &Recording, history: &mut History) -> Result<(), RecordingError> {
+/// Returns what is left out: how many messages cannot be used, and why the first.
+fn hear_odometry(
+    recording: &Recording,
+    history: &mut History,
+) -> Result<Vec<String>, RecordingError> {
     let topic = recording.required_topic(Kind::Odometry)?;
+    let (mut left_out, mut first) = (0, None);
     for record in recording.records_of(&[Kind::Odometry]) {
-        let record = match record {
-            Ok(record) => record,
+        let heard = match record {
+            Ok(record) if record.topic != topic => continue,
+            Ok(record) => odometry_of(recording, &record),
             // It lies behind all that can be read, and the scans come to it too.
             Err(RecordingError::Damaged { .. }) => break,
             Err(error) if concerns_other(&error, &topic) => continue,
+            Err(error @ RecordingError::Message { .. }) => Err(error),
             Err(error) => return Err(error),
         };
-        let Message::Odometry(message) = &record.message else {
-            continue;
-        };
-        if record.topic != topic {
-            continue;
+        match heard {
+            Ok(Some(odometry)) => history.hear_odometry(&odometry),
+            Ok(None) => {}
+            Err(error) => {
+                left_out += 1;
+                first.get_or_insert_with(|| with_causes(&error));
+            }
         }
-        let pose = message.pose.pose.planar();
-        let pose = pose.map_err(|source| RecordingError::Unusable {
-            path: recording.path().to_owned(),
-            topic: topic.to_string(),
-            log_time_ns: record.log_time_ns,
-            source,
-        })?;
-        history.hear_odometry(&Odometry {
-            stamp: measured(message.header.stamp.as_ns()),
-            odom_from_child: pose.into(),
-            child_frame: FrameName::new(&message.child_frame_id),
-            ..Odometry::zeroed()
-        });
     }
-    Ok(())
+    let note = |first| format!("{left_out} messages of {topic} are left out; the first: {first}");
+    Ok(first.map(note).into_iter().collect())
+}
+
+fn odometry_of(recording: &Recording, record: &Record) -> Result<Option<Odometry>, RecordingError> {
+    let Message::Odometry(message) = &record.message else {
+        return Ok(None);
+    };
+    let pose = message.pose.pose.planar();
+    let pose = pose.map_err(|source| RecordingError::Unusable {
+        path: recording.path().to_owned(),
+        topic: record.topic.to_string(),
+        log_time_ns: record.log_time_ns,
+        source,
+    })?;
+    Ok(Some(Odometry {
+        stamp: measured(message.header.stamp.as_ns()),
+        odom_from_child: pose.into(),
+        child_frame: FrameName::new(&message.child_frame_id),
+        ..Odometry::zeroed()
+    }))
 }
 
 /// Whether an error is about a message of a channel other than `topic`.
@@ -167,6 +196,8 @@ mod tests {
     fn scan(stamp_ns: i64, mount_yaw: Option<f64>) -> TakenScan {
         TakenScan {
             stamp_ns,
+            log_time_ns: stamp_ns,
+            upside_down: false,
             base_from_laser: mount_yaw.map(|yaw| Pose::new(0.78, 0.0, yaw)),
             message: ros::LaserScan {
                 header: header(0, "laser"),

@@ -5,18 +5,23 @@
 //! to the last one. Files are read and times are taken in here; nothing is
 //! printed but by the commands.
 
+mod accepted;
 mod cpu;
 mod heading;
 mod layout;
+mod maps;
 mod options;
 mod progress;
 mod scans;
 mod session;
+mod topics;
 mod world;
 
+pub(crate) use accepted::Accepted;
 pub(crate) use layout::{frame_of, sides_of};
 pub(crate) use options::Options;
 pub(crate) use progress::{Progress, say};
 pub(crate) use scans::TakenScan;
 pub(crate) use session::{Reply, Session, damage_of, map_in};
+pub(crate) use topics::TopicOptions;
 pub(crate) use world::{Answer, BeamEnd, Field, ScanAt, World};

@@ -1,6 +1,5 @@
 //! What all of them take on the command line.
 
-use std::ffi::OsStr;
 use std::path::{Path, PathBuf};
 
 use engine::directions::Directions;
@@ -9,18 +8,22 @@ use engine::heading::HeadingConfig;
 use engine::localizer::LocalizerConfig;
 use engine::peaks::PeakConfig;
 use map::OccupancyGrid;
-use recording::Recording;
+use recording::{Kind, Recording};
 
 use super::session::map_in;
+use super::topics::TopicOptions;
 use crate::BackcastError;
 
 /// The map, the scans that are taken, and how they are searched.
 #[derive(Debug, Clone, clap::Args)]
 pub(crate) struct Options {
-    /// The map, a YAML file as map_server reads it, or another recording (.mcap or
-    /// .db3) that holds one [default: the map in the recording]
+    /// The map, a YAML file as map_server reads it, or another recording that
+    /// holds one [default: in the recording, the newest before each scan]
     #[arg(long, value_name = "FILE")]
     pub(crate) map: Option<PathBuf>,
+
+    #[command(flatten)]
+    pub(crate) topics: TopicOptions,
 
     /// Take each N-th scan, beginning with the first; 1 takes all
     #[arg(long, value_name = "N", default_value_t = 1, value_parser = clap::value_parser!(u64).range(1..))]
@@ -55,21 +58,54 @@ impl Options {
         self.heading.check().map_err(BackcastError::Usage)
     }
 
-    /// The map that is named, if one is.
+    /// The map that is named, if one is; recordings to be searched are named, too,
+    /// for the case that the two were swapped.
     ///
     /// # Errors
     /// It cannot be read.
-    pub(crate) fn load_map(&self) -> Result<Option<OccupancyGrid>, BackcastError> {
-        self.map.as_deref().map(map_of).transpose()
+    pub(crate) fn load_map(
+        &self,
+        recordings: &[PathBuf],
+    ) -> Result<Option<OccupancyGrid>, BackcastError> {
+        let Some(file) = &self.map else {
+            return Ok(None);
+        };
+        if !recording::is_recording(file) {
+            return Ok(Some(map::load(file)?));
+        }
+        if let Some(other) = recordings.iter().find(|path| is_map(path)) {
+            let (other, file) = (other.display(), file.display());
+            return Err(BackcastError::Usage(format!(
+                "{other} is a map, and --map {file} a recording: the two look swapped"
+            )));
+        }
+        let mut recording = Recording::open(file)?;
+        if let Some(topic) = &self.topics.map_topic {
+            recording.prefer(Kind::Map, topic)?;
+        }
+        map_in(&recording).map(Some)
+    }
+
+    /// Opens a recording, or several files of one.
+    ///
+    /// # Errors
+    /// It cannot be read, or has no channel that is named.
+    pub(crate) fn open(&self, paths: &[PathBuf]) -> Result<Recording, BackcastError> {
+        let mut recording = Recording::open_all(paths)?;
+        // Where the map is another's, so is its channel.
+        let map_topic = self.topics.map_topic.clone().filter(|_| self.map.is_none());
+        let topics = TopicOptions {
+            map_topic,
+            ..self.topics.clone()
+        };
+        topics.apply(&mut recording)?;
+        Ok(recording)
     }
 }
 
-/// The map of a YAML file, or that in a recording.
-fn map_of(file: &Path) -> Result<OccupancyGrid, BackcastError> {
-    let is_recording = |name: &OsStr| name == "mcap" || name == "db3";
-    if file.extension().is_some_and(is_recording) {
-        map_in(&Recording::open(file)?)
-    } else {
-        Ok(map::load(file)?)
-    }
+/// Whether it is named as a map is, and is no recording.
+fn is_map(path: &Path) -> bool {
+    let endings = ["yaml", "yml", "pgm", "png", "bmp"];
+    let ending = path.extension().and_then(|ending| ending.to_str());
+    ending.is_some_and(|ending| endings.contains(&ending)) && !recording::is_recording(path)
 }

@@ -6,7 +6,7 @@ use std::sync::Arc;
 use engine::scan::Scan;
 use geometry::Pose;
 use recording::ros::LaserScan;
-use recording::{Kind, Message, Recording, RecordingError, Records};
+use recording::{Kind, Message, Mounted, Recording, RecordingError, Records};
 
 use super::heading::concerns_other;
 
@@ -15,8 +15,13 @@ use super::heading::concerns_other;
 pub(crate) struct TakenScan {
     /// When it was measured, nanoseconds since 1970.
     pub(crate) stamp_ns: i64,
+    /// When it was recorded, nanoseconds since 1970.
+    pub(crate) log_time_ns: i64,
     /// Where the laser sits on the robot, if that is known.
     pub(crate) base_from_laser: Option<Pose>,
+    /// Whether it hangs there upside down, so that its beams, seen from above, turn
+    /// the other way.
+    pub(crate) upside_down: bool,
     pub(crate) message: LaserScan,
 }
 
@@ -26,12 +31,13 @@ impl TakenScan {
         &self.message.header.frame_id
     }
 
-    /// As the engine takes it.
+    /// As the engine takes it: seen from above.
     pub(crate) fn borrowed(&self) -> Scan<'_> {
         let message = &self.message;
+        let turn = if self.upside_down { -1.0 } else { 1.0 };
         Scan {
-            angle_min: message.angle_min.into(),
-            angle_increment: message.angle_increment.into(),
+            angle_min: turn * f64::from(message.angle_min),
+            angle_increment: turn * f64::from(message.angle_increment),
             range_min_m: message.range_min,
             range_max_m: message.range_max,
             ranges: &message.ranges,
@@ -44,34 +50,48 @@ impl TakenScan {
 pub(crate) struct Scans<'a> {
     recording: &'a Recording,
     records: Records<'a>,
-    topic: Arc<str>,
+    topics: Vec<Arc<str>>,
     every: u64,
     seen: u64,
-    mounts: BTreeMap<String, Option<Pose>>,
+    mounts: BTreeMap<String, Mounting>,
+    notes: Vec<String>,
+}
+
+/// Where a laser sits, and whether upside down.
+#[derive(Debug, Clone, Copy, Default)]
+struct Mounting {
+    base_from_laser: Option<Pose>,
+    upside_down: bool,
 }
 
 impl<'a> Scans<'a> {
-    /// Each `every`-th scan of the channel that holds scans; `every` is at
-    /// least 1.
+    /// Each `every`-th scan of these channels; `every` is at least 1.
     ///
-    /// # Errors
-    /// There are no scans, or it is not clear which ones are meant.
-    pub(crate) fn of(recording: &'a Recording, every: u64) -> Result<Self, RecordingError> {
-        Ok(Scans {
+    /// This is the place where the scans of several lasers are to become one: those
+    /// of several channels come one after the other, each by itself.
+    pub(crate) fn of(recording: &'a Recording, topics: Vec<Arc<str>>, every: u64) -> Self {
+        Scans {
             recording,
             records: recording.records_of(&[Kind::Scan]),
-            topic: recording.required_topic(Kind::Scan)?,
+            topics,
             every,
             seen: 0,
             mounts: BTreeMap::new(),
-        })
+            notes: Vec::new(),
+        }
     }
 
     /// How many there are, those that do not decode included.
     pub(crate) fn total(&self) -> u64 {
-        let mut channels = self.recording.channels();
-        let channel = channels.find(|channel| channel.topic == self.topic);
-        channel.map_or(0, |channel| channel.messages.div_ceil(self.every))
+        let channels = self.recording.channels();
+        let meant = channels.filter(|channel| self.topics.contains(&channel.topic));
+        let scans: u64 = meant.map(|channel| channel.messages).sum();
+        scans.div_ceil(self.every)
+    }
+
+    /// What is worth knowing about the mounts, and has not been said yet.
+    pub(super) fn take_notes(&mut self) -> Vec<String> {
+        std::mem::take(&mut self.notes)
     }
 
     /// Counts a scan of the channel; whether it is taken.
@@ -81,22 +101,36 @@ impl<'a> Scans<'a> {
         is_taken
     }
 
-    fn with_mount(&mut self, message: LaserScan) -> Result<TakenScan, RecordingError> {
-        let frame = &message.header.frame_id;
-        let base_from_laser = match self.mounts.get(frame) {
-            Some(known) => *known,
-            None => {
-                let mount = self.recording.base_from_laser(frame)?;
-                let mount = mount.map(|mount| mount.base_from_laser);
-                self.mounts.insert(frame.clone(), mount);
-                mount
-            }
-        };
+    fn with_mount(
+        &mut self,
+        log_time_ns: i64,
+        message: LaserScan,
+    ) -> Result<TakenScan, RecordingError> {
+        let Mounting {
+            base_from_laser,
+            upside_down,
+        } = self.mounting(&message.header.frame_id)?;
         Ok(TakenScan {
             stamp_ns: message.header.stamp.as_ns(),
+            log_time_ns,
             base_from_laser,
+            upside_down,
             message,
         })
+    }
+
+    fn mounting(&mut self, frame: &str) -> Result<Mounting, RecordingError> {
+        if let Some(known) = self.mounts.get(frame) {
+            return Ok(*known);
+        }
+        let Mounted { mount, notes } = self.recording.mounted(frame)?;
+        self.notes.extend(notes);
+        let mounting = mount.map_or(Mounting::default(), |mount| Mounting {
+            base_from_laser: Some(mount.base_from_laser),
+            upside_down: mount.upside_down,
+        });
+        self.mounts.insert(frame.to_owned(), mounting);
+        Ok(mounting)
     }
 }
 
@@ -106,13 +140,15 @@ impl Iterator for Scans<'_> {
     fn next(&mut self) -> Option<Self::Item> {
         loop {
             let record = match self.records.next()? {
-                Ok(record) if record.topic != self.topic => continue,
-                Err(error) if concerns_other(&error, &self.topic) => continue,
+                Ok(record) if !self.topics.contains(&record.topic) => continue,
+                Err(error) if self.topics.iter().all(|t| concerns_other(&error, t)) => continue,
                 other => other,
             };
             let is_taken = self.take_next();
-            match record.map(|record| record.message) {
-                Ok(Message::Scan(message)) if is_taken => return Some(self.with_mount(message)),
+            match record.map(|record| (record.log_time_ns, record.message)) {
+                Ok((time, Message::Scan(message))) if is_taken => {
+                    return Some(self.with_mount(time, message));
+                }
                 Ok(_) => {}
                 // Also where it would not be taken: the file is not sound.
                 Err(error) => return Some(Err(error)),
@@ -152,7 +188,7 @@ mod tests {
     }
 
     fn seconds(recording: &Recording, every: u64) -> Vec<i64> {
-        let scans = Scans::of(recording, every).unwrap();
+        let scans = Scans::of(recording, vec!["/scan".into()], every);
         let total = scans.total();
         let seconds: Vec<i64> = scans
             .map(|scan| scan.unwrap().stamp_ns / 1_000_000_000)
@@ -183,8 +219,39 @@ mod tests {
         writer.write("/scan", 2, &sound).unwrap();
         let bytes = writer.finish().unwrap().into_inner();
         let recording = Recording::from_bytes("r.mcap", bytes).unwrap();
-        let scans = Scans::of(&recording, 1).unwrap();
+        let scans = Scans::of(&recording, vec!["/scan".into()], 1);
         let sound: Vec<bool> = scans.map(|scan| scan.is_ok()).collect();
         assert_eq!(sound, [true, false, true]);
+    }
+
+    #[test]
+    fn scans_of_several_channels_come_by_time() {
+        let recording = recording(&["/front", "/rear", "/front", "/scan"]);
+        let topics = vec!["/front".into(), "/rear".into()];
+        let scans = Scans::of(&recording, topics, 1);
+        assert_eq!(scans.total(), 3);
+        let times: Vec<i64> = scans.map(|scan| scan.unwrap().log_time_ns).collect();
+        assert_eq!(times, [0, 1000, 2000]);
+    }
+
+    #[test]
+    fn a_laser_upside_down_is_seen_from_above() {
+        let mut scan = TakenScan {
+            stamp_ns: 0,
+            log_time_ns: 0,
+            base_from_laser: None,
+            upside_down: false,
+            message: LaserScan {
+                angle_min: -1.0,
+                angle_increment: 0.5,
+                ranges: vec![1.0, 2.0],
+                ..LaserScan::default()
+            },
+        };
+        assert_eq!(scan.borrowed().bearing(1), -0.5);
+        scan.upside_down = true;
+        let above = scan.borrowed();
+        assert_eq!((above.angle_min, above.angle_increment), (1.0, -0.5));
+        assert_eq!((above.bearing(1), above.ranges), (0.5, &[1.0, 2.0][..]));
     }
 }

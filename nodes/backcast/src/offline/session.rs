@@ -2,6 +2,7 @@
 //! scan by scan.
 
 use std::borrow::Cow;
+use std::collections::BTreeSet;
 use std::path::{Path, PathBuf};
 
 use engine::localizer::Prior;
@@ -9,9 +10,11 @@ use geometry::Pose;
 use map::OccupancyGrid;
 use messages::UNKNOWN;
 use recording::{Recording, RecordingError};
+use transport::with_causes;
 
 use super::heading::Headings;
 use super::layout::{frame_of, sides_of};
+use super::maps::Maps;
 use super::options::EngineOptions;
 use super::scans::Scans;
 use super::world::{Answer, World};
@@ -21,17 +24,32 @@ use crate::BackcastError;
 /// A recording that is being gone through.
 pub(crate) struct Session<'a> {
     pub(crate) scans: Scans<'a>,
-    pub(crate) world: World,
-    /// Milliseconds of computing that preparing the map has cost.
+    /// Milliseconds of computing that preparing maps has cost.
     pub(crate) prepare_cpu_ms: f64,
-    pub(crate) map: Cow<'a, OccupancyGrid>,
+    maps: Maps<'a>,
+    /// The map that counts for the last scan that was asked for.
+    prepared: Option<Prepared<'a>>,
+    /// Why the newest map cannot be used.
+    refusal: String,
+    notes: Vec<String>,
+    said: BTreeSet<String>,
     map_file: PathBuf,
     engine: EngineOptions,
     headings: Headings,
 }
 
+/// A map that is ready to be searched.
+struct Prepared<'a> {
+    map: Cow<'a, OccupancyGrid>,
+    /// Of the map as it is, whatever has been erased since.
+    map_id: u64,
+    world: World,
+}
+
 /// What came of one scan.
 pub(crate) struct Reply<'a> {
+    /// The map's id, as the graph's messages have it; 0 without one.
+    pub(crate) map_id: u64,
     /// Milliseconds of computing from the scan to the verdict or the refusal;
     /// decoding is not in it.
     pub(crate) cpu_ms: f64,
@@ -40,11 +58,11 @@ pub(crate) struct Reply<'a> {
 }
 
 impl<'a> Session<'a> {
-    /// Prepares the map that is given, else the one in the recording.
+    /// Looks at the map that is given, else at those in the recording.
     ///
     /// # Errors
-    /// Something that is needed is not there or cannot be used. Where something
-    /// is missing in a damaged file, the damage is the error.
+    /// Something that is needed is not there, or the map that is given cannot be
+    /// used. Where something is missing in a damaged file, the damage is the error.
     pub(crate) fn open(
         recording: &'a Recording,
         options: &Options,
@@ -54,33 +72,124 @@ impl<'a> Session<'a> {
             RecordingError::NoTopic { .. } => damage_of(recording).unwrap_or(error),
             other => other,
         };
-        let scans = Scans::of(recording, options.every).map_err(damage)?;
-        let headings = Headings::of(&options.heading, recording).map_err(damage)?;
-        let map = match given {
-            Some(map) => Cow::Borrowed(map),
-            None => Cow::Owned(map_in(recording)?),
+        let topics = options.topics.scans(recording).map_err(damage)?;
+        let mut maps = match given {
+            Some(map) => Maps::given(map),
+            None => Maps::recorded(recording)?,
         };
-        let map_file = map_file(options, recording.path());
-        let prior = headings.source().prior();
-        let prepare = || prepared(&map, &map_file, &options.engine, prior);
-        let (world, prepare_cpu_ms) = cpu::timed(prepare)?;
-        Ok(Session {
-            scans,
-            world: world?,
-            prepare_cpu_ms,
-            map,
-            map_file,
+        if maps.is_empty() {
+            return Err(no_map(recording));
+        }
+        let mut session = Session {
+            scans: Scans::of(recording, topics, options.every),
+            prepare_cpu_ms: 0.0,
+            maps,
+            prepared: None,
+            refusal: String::new(),
+            notes: Vec::new(),
+            said: BTreeSet::new(),
+            map_file: map_file(options, recording.path()),
             engine: options.engine.clone(),
-            headings,
-        })
+            headings: Headings::of(&options.heading, recording).map_err(damage)?,
+        };
+        session.notes.extend_from_slice(session.headings.notes());
+        if let Some(map) = given {
+            // Without it there is nothing to be done for any scan.
+            session.maps.since(i64::MIN);
+            session.prepare(Cow::Borrowed(map))?.map_err(|source| {
+                let file = session.map_file.clone();
+                BackcastError::UnusableMap { file, source }
+            })?;
+        }
+        Ok(session)
     }
 
-    /// Prepares the map anew, unknown within a radius, metres, of a point.
+    /// The map that counts for the last scan that was asked for.
+    ///
+    /// # Errors
+    /// There is none that can be used.
+    pub(crate) fn map(&self) -> Result<&OccupancyGrid, BackcastError> {
+        Ok(&self.prepared()?.map)
+    }
+
+    /// The same map, ready to be searched.
+    ///
+    /// # Errors
+    /// As [`Session::map`].
+    pub(crate) fn world(&self) -> Result<&World, BackcastError> {
+        Ok(&self.prepared()?.world)
+    }
+
+    /// What is worth knowing, and has not been said yet.
+    pub(crate) fn take_notes(&mut self) -> Vec<String> {
+        self.notes.extend(self.scans.take_notes());
+        let mut notes = std::mem::take(&mut self.notes);
+        notes.retain(|note| self.said.insert(note.clone()));
+        notes
+    }
+
+    fn prepared(&self) -> Result<&Prepared<'a>, BackcastError> {
+        let none = || no_usable_map(&self.map_file, &self.refusal);
+        self.prepared.as_ref().ok_or_else(none)
+    }
+
+    /// Makes the map that counts for a scan the one that is searched. A map that
+    /// cannot be used is left out, as the graph does.
+    fn turn_to(&mut self, scan: &TakenScan) -> Result<(), BackcastError> {
+        // Most maps are never searched: the newest that can be used is enough.
+        let mut refusals = Vec::new();
+        for candidate in self.maps.since(scan.log_time_ns).into_iter().rev() {
+            let refusal = match candidate.and_then(|candidate| candidate.grid()) {
+                Ok(map) => match self.prepare(map)? {
+                    Ok(()) => break,
+                    Err(error) => with_causes(&error),
+                },
+                Err(refusal) => refusal,
+            };
+            refusals.push(refusal);
+        }
+        for refusal in refusals {
+            let file = self.map_file.display();
+            self.notes
+                .push(format!("{file}: a map is left out: {refusal}"));
+            self.refusal = refusal;
+        }
+        Ok(())
+    }
+
+    fn prepare(
+        &mut self,
+        map: Cow<'a, OccupancyGrid>,
+    ) -> Result<Result<(), engine::EngineError>, BackcastError> {
+        let map_id = map.id();
+        if self.prepared.as_ref().is_some_and(|p| p.map_id == map_id) {
+            return Ok(Ok(()));
+        }
+        let prior = self.headings.source().prior();
+        let (world, cpu_ms) = cpu::timed(|| World::prepare(&map, &self.engine, prior))?;
+        self.prepare_cpu_ms += cpu_ms;
+        Ok(world.map(|world| {
+            self.prepared = Some(Prepared { map, map_id, world });
+        }))
+    }
+
+    /// Prepares the map of a scan anew, unknown within a radius, metres, of a
+    /// point.
     ///
     /// # Errors
     /// Nothing is left that could be used.
-    pub(crate) fn erase(&mut self, centre: Pose, radius_m: f64) -> Result<(), BackcastError> {
-        let mut map = self.map.clone().into_owned();
+    pub(crate) fn erase(
+        &mut self,
+        scan: &TakenScan,
+        centre: Pose,
+        radius_m: f64,
+    ) -> Result<(), BackcastError> {
+        self.turn_to(scan)?;
+        let prior = self.headings.source().prior();
+        let Some(prepared) = &mut self.prepared else {
+            return Ok(());
+        };
+        let mut map = prepared.map.clone().into_owned();
         let (frame, (width, _)) = (frame_of(&map), sides_of(&map));
         for (i, cell) in map.cells.iter_mut().enumerate() {
             let (x, y) = ((i % width) as f64 + 0.5, (i / width) as f64 + 0.5);
@@ -88,8 +197,7 @@ impl<'a> Session<'a> {
                 *cell = UNKNOWN;
             }
         }
-        let prior = self.headings.source().prior();
-        self.world = prepared(&map, &self.map_file, &self.engine, prior)?;
+        prepared.world = erased(&map, &self.map_file, &self.engine, prior)?;
         Ok(())
     }
 
@@ -98,23 +206,36 @@ impl<'a> Session<'a> {
     /// # Errors
     /// The clock fails. A scan that is refused is a reply.
     pub(crate) fn ask(&mut self, scan: &TakenScan) -> Result<Reply<'_>, BackcastError> {
+        self.turn_to(scan)?;
+        let Some(prepared) = &mut self.prepared else {
+            return Ok(Reply {
+                map_id: 0,
+                cpu_ms: 0.0,
+                answer: Err(no_usable_map(&self.map_file, &self.refusal)),
+            });
+        };
+        let map_id = prepared.world.map_id;
         let heading = match self.headings.of_scan(scan) {
             Ok(heading) => heading,
             Err(refusal) => {
                 return Ok(Reply {
+                    map_id,
                     cpu_ms: 0.0,
                     answer: Err(refusal.into()),
                 });
             }
         };
         let borrowed = scan.borrowed();
-        let (found, cpu_ms) = cpu::timed(|| self.world.locate(&borrowed, heading))?;
-        let answer = found.map_err(BackcastError::Refused);
-        Ok(Reply { cpu_ms, answer })
+        let (found, cpu_ms) = cpu::timed(|| prepared.world.locate(&borrowed, heading))?;
+        Ok(Reply {
+            map_id,
+            cpu_ms,
+            answer: found.map_err(BackcastError::Refused),
+        })
     }
 }
 
-fn prepared(
+fn erased(
     map: &OccupancyGrid,
     file: &Path,
     options: &EngineOptions,
@@ -126,30 +247,33 @@ fn prepared(
     })
 }
 
-/// The damage of a recording, as an error.
-pub(crate) fn damage_of(recording: &Recording) -> Option<RecordingError> {
-    let damage = recording.damage()?.clone();
-    Some(RecordingError::Damaged {
-        path: recording.path().to_owned(),
-        readable: recording.messages(),
-        damage,
-    })
+fn no_usable_map(file: &Path, reason: &str) -> BackcastError {
+    BackcastError::NoUsableMap {
+        file: file.into(),
+        reason: reason.to_owned(),
+    }
 }
 
-/// The map that a recording holds.
+/// The damage of a recording, as an error.
+pub(crate) fn damage_of(recording: &Recording) -> Option<RecordingError> {
+    recording.damage_error()
+}
+
+/// The newest map that a recording holds.
 ///
 /// # Errors
 /// It holds none, or one that cannot be used.
 pub(crate) fn map_in(recording: &Recording) -> Result<OccupancyGrid, BackcastError> {
-    if let Some(map) = recording.map()? {
-        return Ok(map);
-    }
-    Err(match damage_of(recording) {
+    recording.map()?.ok_or_else(|| no_map(recording))
+}
+
+fn no_map(recording: &Recording) -> BackcastError {
+    match damage_of(recording) {
         Some(damage) => damage.into(),
         None => BackcastError::NoMap {
             recording: recording.path().to_owned(),
         },
-    })
+    }
 }
 
 fn map_file(options: &Options, bag: &Path) -> PathBuf {

@@ -18,7 +18,7 @@ use super::errors::Judged;
 use super::sheet::Panel;
 use super::subject::Subject;
 use super::{errors, field, outline, scan, sheet, surface};
-use crate::offline::{Field, Progress, Session, TakenScan, World, damage_of, map_in};
+use crate::offline::{Field, Progress, Session, TakenScan, World, damage_of, map_in, say};
 use crate::{BackcastError, stdout};
 
 /// Draws one picture and says how large it is.
@@ -28,11 +28,11 @@ use crate::{BackcastError, stdout};
 /// refused, or the picture cannot be written.
 pub(crate) fn run(config: &Config) -> Result<ExitCode, BackcastError> {
     let format = config.check()?;
-    let given = config.options.load_map()?;
-    let scene = match &config.bag {
-        None => draw_map(config, given, None)?,
-        Some(bag) => {
-            let recording = Recording::open(bag)?;
+    let given = config.options.load_map(&config.bag)?;
+    let scene = match &config.bag[..] {
+        [] => draw_map(config, given, None)?,
+        bag => {
+            let recording = config.options.open(bag)?;
             match config.kind {
                 Kind::Map => draw_map(config, given, Some(&recording))?,
                 _ => Plot::open(config, &recording, given.as_ref())?.draw()?,
@@ -120,7 +120,7 @@ impl<'a> Plot<'a> {
         let number = self.config.scan.unwrap_or(1);
         let scan = self.nth_scan(number)?;
         let subject = self.subject(number, &scan)?;
-        let (ground, name) = (self.config.ground(&self.session.map), self.name());
+        let (ground, name) = (self.config.ground(self.session.map()?), self.name());
         let size = self.config.size();
         if self.config.kind == Kind::Scan {
             return scan::draw(&ground, &subject, &name, size);
@@ -153,9 +153,13 @@ impl<'a> Plot<'a> {
     }
 
     fn subject(&mut self, number: u64, scan: &TakenScan) -> Result<Subject, BackcastError> {
-        let places = self.session.ask(scan)?.answer?.places.clone();
+        let answer = self.session.ask(scan)?.answer;
+        let places = answer.map(|answer| answer.places.clone());
+        for note in self.session.take_notes() {
+            say(&note);
+        }
         let truth = self.truths.get(&scan.stamp_ns).map(|truth| truth.pose);
-        Subject::new((number, scan), places, truth, &self.session.world)
+        Subject::new((number, scan), places?, truth, self.session.world()?)
             .map_err(BackcastError::Refused)
     }
 
@@ -169,7 +173,7 @@ impl<'a> Plot<'a> {
             });
         };
         let engine = &self.config.options.engine;
-        let world = World::prepare(&self.session.map, engine, Prior::Heading);
+        let world = World::prepare(self.session.map()?, engine, Prior::Heading);
         let heading = best.place.map_from_laser.yaw;
         world
             .and_then(|world| world.field_at(&scan.borrowed(), heading))
@@ -233,14 +237,16 @@ impl<'a> Plot<'a> {
             let scan = scan?;
             panels.push(match self.subject(number, &scan) {
                 Ok(subject) => Panel::Scan(Box::new(subject)),
-                Err(refusal @ (BackcastError::Refused(_) | BackcastError::Heading(_))) => {
-                    Panel::Refused(number, refusal.to_string())
-                }
+                Err(
+                    refusal @ (BackcastError::Refused(_)
+                    | BackcastError::Heading(_)
+                    | BackcastError::NoUsableMap { .. }),
+                ) => Panel::Refused(number, refusal.to_string()),
                 Err(error) => return Err(error),
             });
             progress.step();
         }
-        let ground = self.config.ground(&self.session.map);
+        let ground = self.config.ground(self.session.map()?);
         sheet::draw(&ground, &panels, &self.name(), self.config.size())
     }
 }

@@ -42,9 +42,10 @@ pub(crate) struct Config {
     #[arg(value_enum, default_value_t = Kind::Scan, value_name = "KIND")]
     pub(super) kind: Kind,
 
-    /// The recording: an MCAP file with ROS 2 messages
+    /// The recording: an MCAP file, or a bag of rosbag2 (its folder, or .db3);
+    /// several files are read as one
     #[arg(long, value_name = "FILE")]
-    pub(super) bag: Option<PathBuf>,
+    pub(super) bag: Vec<PathBuf>,
 
     /// The picture: a file whose name ends with .png or .svg
     #[arg(long, value_name = "FILE")]
@@ -90,7 +91,7 @@ impl Config {
     pub(super) fn check(&self) -> Result<Format, BackcastError> {
         self.options.check()?;
         let usage = |text: String| Err(BackcastError::Usage(text));
-        if self.bag.is_none() && (self.kind != Kind::Map || self.options.map.is_none()) {
+        if self.bag.is_empty() && (self.kind != Kind::Map || self.options.map.is_none()) {
             return usage(
                 "--bag is missing: only the picture `map` does without, and then needs --map"
                     .into(),

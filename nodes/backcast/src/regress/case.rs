@@ -43,11 +43,15 @@ impl Case {
             name: folder.file_name()?.to_string_lossy().into_owned(),
             folder: folder.to_owned(),
         };
-        (case.recording().is_file() && case.map().is_file()).then_some(case)
+        (case.recording().exists() && case.map().is_file()).then_some(case)
     }
 
+    /// Its recording: a file, or the folder of a bag.
     pub(super) fn recording(&self) -> PathBuf {
-        self.folder.join("recording.mcap")
+        let names = ["recording.mcap", "recording", "recording.db3"];
+        let mut paths = names.map(|name| self.folder.join(name)).into_iter();
+        let found = paths.find(|path| path.exists());
+        found.unwrap_or_else(|| self.folder.join("recording.mcap"))
     }
 
     pub(super) fn map(&self) -> PathBuf {

@@ -29,7 +29,7 @@ const PATIENCE: Duration = Duration::from_secs(20);
 pub(super) fn direct(descriptor: &mut Descriptor, case: &Case) -> Result<(), BackcastError> {
     let Descriptor { dataflow, file, .. } = descriptor;
     leave_out_monitors(dataflow);
-    let replayer = replay::play(dataflow, &case.recording());
+    let replayer = replay::play(dataflow, &[case.recording()]);
     set(replayer, "--rate", Some("max"));
     unset(replayer, "--loop", false);
     let server = find(dataflow, &[MAP_SERVER], "the map", file)?;
@@ -84,7 +84,10 @@ fn look_at(path: &Path) -> Result<(usize, Option<String>), BackcastError> {
         .channels()
         .filter(|channel| channel.topic == topic);
     let scans = of_topic.map(|channel| channel.messages as usize).sum();
-    Ok((scans, recording.damage().map(ToString::to_string)))
+    Ok((
+        scans,
+        recording.damage_error().map(|error| error.to_string()),
+    ))
 }
 
 fn collect(

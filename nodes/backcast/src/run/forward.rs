@@ -1,7 +1,7 @@
 //! Options of `run` that are meant for a node: they become arguments of the
 //! node with that executable, in place of what the descriptor gives there.
 
-use std::path::Path;
+use std::path::{Path, PathBuf};
 
 use dataflow::{Dataflow, Node};
 use engine::heading::{HeadingConfig, HeadingFrom, HeadingSource};
@@ -25,9 +25,8 @@ pub(crate) fn apply(
     dataflow: &mut Dataflow,
     file: &Path,
 ) -> Result<(), BackcastError> {
-    if let Some(recording) = &options.replay {
-        let recording = std::path::absolute(recording).map_err(BackcastError::Folder)?;
-        replay::play(dataflow, &recording);
+    if !options.replay.is_empty() {
+        forward_replay(options, dataflow)?;
     }
     if let Some(rate) = options.rate {
         let node = find(dataflow, &PLAYERS, "--rate", file)?;
@@ -41,6 +40,24 @@ pub(crate) fn apply(
         leave_out_monitors(dataflow);
     }
     forward_heading(&options.heading, dataflow, file)
+}
+
+/// The recordings, and which of their topics are meant.
+fn forward_replay(options: &Options, dataflow: &mut Dataflow) -> Result<(), BackcastError> {
+    let absolute = options.replay.iter().map(std::path::absolute);
+    let recordings: Vec<PathBuf> = absolute
+        .collect::<Result<_, _>>()
+        .map_err(BackcastError::Folder)?;
+    let replayer = replay::play(dataflow, &recordings);
+    for (option, topic) in [
+        ("--scan-topic", &options.scan_topic),
+        ("--odom-topic", &options.odom_topic),
+    ] {
+        if topic.is_some() {
+            set(replayer, option, topic.as_deref());
+        }
+    }
+    Ok(())
 }
 
 /// The options exclude or complete each other: a new source replaces all that

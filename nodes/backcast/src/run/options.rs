@@ -29,9 +29,18 @@ impl Config {
 /// The options of `run`, which may also stand without the command.
 #[derive(Debug, Clone, Default, Args)]
 pub(crate) struct Options {
-    /// Replay this recording in place of whatever feeds the graph, a laser say
+    /// Replay this recording in place of whatever feeds the graph, a laser say;
+    /// several files are replayed as one
     #[arg(long, value_name = "FILE")]
-    pub(crate) replay: Option<PathBuf>,
+    pub(crate) replay: Vec<PathBuf>,
+
+    /// With --replay: the topic of the scans [default: the only one, or /scan]
+    #[arg(long, value_name = "TOPIC", requires = "replay")]
+    pub(crate) scan_topic: Option<String>,
+
+    /// With --replay: the topic of the odometry [default: the only one, or /odom]
+    #[arg(long, value_name = "TOPIC", requires = "replay")]
+    pub(crate) odom_topic: Option<String>,
 
     /// Play so many times as fast as it was recorded, or `max`: wait for each
     /// answer and lose nothing

@@ -1,14 +1,14 @@
 //! A replayer in place of whatever feeds a graph: a laser, an emulated one, or
 //! another replayer. So a recording can be replayed exactly through any graph.
 
-use std::path::Path;
+use std::path::PathBuf;
 use std::time::Duration;
 
 use dataflow::{Dataflow, Input, Node, Place, Restart, RestartPolicy};
 use messages::{Topic, topic};
 
 use super::added;
-use super::arguments::{REPLAYER, set};
+use super::arguments::{REPLAYER, unset};
 use super::supervision::{MEASUREMENTS, is_source};
 
 /// Started again it would begin anew.
@@ -18,16 +18,20 @@ const RESTART: Restart = Restart {
     delay: Duration::ZERO,
 };
 
-/// Lets the graph's replayer play this recording; a graph that is fed by others
-/// gets a replayer instead of them.
-pub(crate) fn play<'d>(dataflow: &'d mut Dataflow, recording: &Path) -> &'d mut Node {
+/// Lets the graph's replayer play these recordings as one; a graph that is fed by
+/// others gets a replayer instead of them.
+pub(crate) fn play<'d>(dataflow: &'d mut Dataflow, recordings: &[PathBuf]) -> &'d mut Node {
     let at = dataflow
         .nodes
         .iter()
         .position(|node| node.executable() == REPLAYER)
         .unwrap_or_else(|| replace_sources(dataflow));
     let replayer = &mut dataflow.nodes[at];
-    set(replayer, "--recording", Some(&recording.to_string_lossy()));
+    unset(replayer, "--recording", true);
+    for recording in recordings {
+        let argument = format!("--recording={}", recording.to_string_lossy());
+        replayer.args.push(argument);
+    }
     replayer
 }
 
@@ -107,7 +111,7 @@ mod tests {
   - {id: m, path: bin/map_server, outputs: [map], build: cargo build -p emulator}
 ",
         );
-        play(&mut dataflow, Path::new("/r.mcap"));
+        play(&mut dataflow, &["/r.mcap".into()]);
         let ids: Vec<&str> = dataflow.nodes.iter().map(|node| &*node.id).collect();
         assert_eq!(ids, ["replayer", "a", "p", "m"]);
         let replayer = &dataflow.nodes[0];
@@ -130,7 +134,7 @@ mod tests {
         let text =
             "nodes: [{id: r, path: bin/replayer, args: --recording a --start 3, outputs: [scan]}]";
         let mut dataflow = parsed(text);
-        let replayer = play(&mut dataflow, Path::new("b"));
+        let replayer = play(&mut dataflow, &["b".into()]);
         assert_eq!(replayer.args, ["--start", "3", "--recording=b"]);
     }
 }

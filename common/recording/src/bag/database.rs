@@ -1,0 +1,273 @@
+//! How a database is opened that somebody else made: for reading, also where
+//! nothing can be written, and so that nothing is left beside it.
+//!
+//! SQLite writes beside a database even to read it where it is in WAL mode (bytes
+//! 18 and 19 of its header are 2): there the last messages may stand in a log of
+//! their own, `FILE-wal`, and readers agree in another, `FILE-shm`. So where there
+//! is a log with content, both are copied to a temporary folder and opened there;
+//! where there is none, the file is all there is, and SQLite is told that nobody
+//! changes it. The same holds for the journal of a writer that was cut off.
+//! (<https://www.sqlite.org/wal.html>, section 5, and `immutable` in
+//! <https://www.sqlite.org/uri.html>.)
+
+use std::fmt::Write;
+use std::fs::File;
+use std::io::Read;
+use std::os::unix::ffi::OsStrExt;
+use std::path::{Path, PathBuf};
+
+use rusqlite::{Connection, OpenFlags};
+use tempfile::TempDir;
+
+use super::{damaged, refused};
+use crate::RecordingError;
+
+/// An open database.
+pub(super) struct Database {
+    pub(super) connection: Connection,
+    /// Whether it is in WAL mode, and there is no log.
+    pub(super) lacks_log: bool,
+    /// Where it lies if it had to be copied; goes with it.
+    _copy: Option<TempDir>,
+}
+
+/// The log of a database in WAL mode.
+pub(super) fn log_of(path: &Path) -> PathBuf {
+    beside(path, "-wal")
+}
+
+fn beside(path: &Path, ending: &str) -> PathBuf {
+    let mut name = path.as_os_str().to_owned();
+    name.push(ending);
+    name.into()
+}
+
+impl Database {
+    /// Opens the database at `place`, which errors call `path`, and checks its
+    /// structure.
+    pub(super) fn open(path: &Path, place: &Path) -> Result<Self, RecordingError> {
+        let failed = |error: rusqlite::Error| refused(path, error.to_string());
+        let has_content =
+            |beside: &PathBuf| std::fs::metadata(beside).is_ok_and(|found| found.len() > 0);
+        let logs = ["-wal", "-journal"].map(|ending| beside(place, ending));
+        let copy = match logs.iter().any(has_content) {
+            true => Some(copied(path, place, &logs)?),
+            false => None,
+        };
+        let lacks_log = copy.is_none() && is_in_wal_mode(path, place)?;
+        let opened = match &copy {
+            Some(folder) => open_copy(&folder.path().join(COPY)),
+            None => open_alone(place, lacks_log),
+        };
+        let database = Database {
+            connection: opened.map_err(failed)?,
+            lacks_log,
+            _copy: copy,
+        };
+        database.check(path, place)?;
+        Ok(database)
+    }
+
+    fn check(&self, path: &Path, place: &Path) -> Result<(), RecordingError> {
+        let failed = |error: rusqlite::Error| refused(path, error.to_string());
+        let ask = "PRAGMA quick_check(1)";
+        let found: String = self
+            .connection
+            .query_row(ask, (), |row| row.get(0))
+            .map_err(failed)?;
+        if found != "ok" {
+            return Err(damaged(path, &found));
+        }
+        let has_messages = self.connection.table_exists(None, "messages");
+        if self.lacks_log && !has_messages.map_err(failed)? {
+            let log = log_of(path);
+            return Err(refused(
+                path,
+                format!(
+                    "its messages are in {}, which is missing: copy it along",
+                    log.display()
+                ),
+            ));
+        }
+        if self._copy.is_some() {
+            // Its last page may be in the log.
+            return Ok(());
+        }
+        // SQLite takes what a last page lacks for zeros.
+        let page: u32 = self
+            .connection
+            .query_row("PRAGMA page_size", (), |row| row.get(0))
+            .map_err(failed)?;
+        let length = std::fs::metadata(place).map_err(|error| unreadable(path, error))?;
+        match length.len().checked_rem(page.into()) {
+            Some(0) => Ok(()),
+            _ => Err(damaged(path, "it ends within a page")),
+        }
+    }
+}
+
+/// What a copy is called.
+const COPY: &str = "bag.db3";
+
+/// A folder with the database and what stands beside it.
+fn copied(path: &Path, place: &Path, logs: &[PathBuf; 2]) -> Result<TempDir, RecordingError> {
+    let no_room = |error: std::io::Error| {
+        let folder = std::env::temp_dir();
+        let folder = folder.display();
+        refused(
+            path,
+            format!("it cannot be copied to {folder} (TMPDIR names another place): {error}"),
+        )
+    };
+    let folder = TempDir::new().map_err(no_room)?;
+    let copy = folder.path().join(COPY);
+    std::fs::copy(place, &copy).map_err(no_room)?;
+    writable(&copy).map_err(no_room)?;
+    for (log, ending) in logs.iter().zip(["-wal", "-journal"]) {
+        let copy = beside(&copy, ending);
+        if log.is_file() {
+            std::fs::copy(log, &copy).map_err(no_room)?;
+            writable(&copy).map_err(no_room)?;
+        }
+    }
+    Ok(folder)
+}
+
+/// A copy has the permissions of what was copied.
+fn writable(path: &Path) -> std::io::Result<()> {
+    use std::os::unix::fs::PermissionsExt;
+    std::fs::set_permissions(path, std::fs::Permissions::from_mode(0o600))
+}
+
+/// A copy may be changed, as SQLite does where a log is to be applied.
+fn open_copy(copy: &Path) -> rusqlite::Result<Connection> {
+    let flags = OpenFlags::SQLITE_OPEN_READ_WRITE | OpenFlags::SQLITE_OPEN_NO_MUTEX;
+    Connection::open_with_flags(copy, flags)
+}
+
+/// `unchanged` says that the file is all there is.
+fn open_alone(place: &Path, unchanged: bool) -> rusqlite::Result<Connection> {
+    let flags = OpenFlags::SQLITE_OPEN_READ_ONLY | OpenFlags::SQLITE_OPEN_NO_MUTEX;
+    match unchanged {
+        true => Connection::open_with_flags(immutable(place), flags | OpenFlags::SQLITE_OPEN_URI),
+        false => Connection::open_with_flags(place, flags),
+    }
+}
+
+/// A file's name as SQLite takes one with options: all but plain letters written
+/// as `%` and two digits.
+fn immutable(place: &Path) -> String {
+    let place = std::path::absolute(place).unwrap_or_else(|_| place.to_owned());
+    let mut name = "file:".to_owned();
+    for &byte in place.as_os_str().as_bytes() {
+        match byte {
+            b'/' | b'.' | b'_' | b'-' | b'0'..=b'9' | b'a'..=b'z' | b'A'..=b'Z' => {
+                name.push(byte.into());
+            }
+            // Writing to a string cannot fail.
+            _ => _ = write!(name, "%{byte:02x}"),
+        }
+    }
+    name + "?immutable=1"
+}
+
+/// Versions of the format for writing and for reading, which say that there is a
+/// log.
+const WAL_VERSIONS: [u8; 2] = [2, 2];
+
+fn is_in_wal_mode(path: &Path, place: &Path) -> Result<bool, RecordingError> {
+    let mut header = Vec::new();
+    let file = File::open(place).map_err(|error| unreadable(path, error))?;
+    file.take(20)
+        .read_to_end(&mut header)
+        .map_err(|error| unreadable(path, error))?;
+    Ok(header.get(18..20) == Some(&WAL_VERSIONS[..]))
+}
+
+fn unreadable(path: &Path, source: std::io::Error) -> RecordingError {
+    RecordingError::Open {
+        path: path.to_owned(),
+        source,
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    const TABLE: &str = "CREATE TABLE messages(id INTEGER PRIMARY KEY);
+        INSERT INTO messages VALUES (1), (2);";
+
+    fn count(database: &Database) -> i64 {
+        let ask = "SELECT count(*) FROM messages";
+        let count = database.connection.query_row(ask, (), |row| row.get(0));
+        count.unwrap()
+    }
+
+    fn names(folder: &Path) -> Vec<String> {
+        let entries = std::fs::read_dir(folder).unwrap();
+        let name = |entry: std::io::Result<std::fs::DirEntry>| {
+            entry.unwrap().file_name().into_string().unwrap()
+        };
+        let mut names: Vec<String> = entries.map(name).collect();
+        names.sort();
+        names
+    }
+
+    /// A database in WAL mode whose rows are in its log, as a recorder that was cut
+    /// off leaves it.
+    fn cut_off(folder: &Path) -> PathBuf {
+        let (open, path) = (folder.join("open.db3"), folder.join("r ü.db3"));
+        let writer = Connection::open(&open).unwrap();
+        writer
+            .query_row("PRAGMA journal_mode = WAL", (), |_| Ok(()))
+            .unwrap();
+        writer.execute_batch(TABLE).unwrap();
+        std::fs::copy(&open, &path).unwrap();
+        std::fs::copy(log_of(&open), log_of(&path)).unwrap();
+        drop(writer);
+        std::fs::remove_file(open).unwrap();
+        path
+    }
+
+    #[test]
+    fn a_log_is_read_and_nothing_is_left_beside_it() {
+        let folder = TempDir::new().unwrap();
+        let path = cut_off(folder.path());
+        assert_eq!(names(folder.path()), ["r ü.db3", "r ü.db3-wal"]);
+        let before = std::fs::read(&path).unwrap();
+        let database = Database::open(&path, &path).unwrap();
+        assert_eq!((count(&database), database.lacks_log), (2, false));
+        drop(database);
+        assert_eq!(names(folder.path()), ["r ü.db3", "r ü.db3-wal"]);
+        assert_eq!(std::fs::read(&path).unwrap(), before);
+    }
+
+    #[test]
+    fn a_log_that_is_missing_is_named() {
+        let folder = TempDir::new().unwrap();
+        let path = cut_off(folder.path());
+        std::fs::remove_file(log_of(&path)).unwrap();
+        let refusal = Database::open(&path, &path).err().unwrap().to_string();
+        assert!(
+            refusal.ends_with("r ü.db3-wal, which is missing: copy it along"),
+            "{refusal}"
+        );
+    }
+
+    #[test]
+    fn a_database_that_was_closed_needs_no_log() {
+        let folder = TempDir::new().unwrap();
+        let path = folder.path().join("r?mode=rwc.db3");
+        let writer = Connection::open(&path).unwrap();
+        writer
+            .query_row("PRAGMA journal_mode = WAL", (), |_| Ok(()))
+            .unwrap();
+        writer.execute_batch(TABLE).unwrap();
+        drop(writer);
+        assert_eq!(names(folder.path()), ["r?mode=rwc.db3"]);
+        let database = Database::open(&path, &path).unwrap();
+        assert_eq!((count(&database), database.lacks_log), (2, true));
+        assert_eq!(names(folder.path()), ["r?mode=rwc.db3"]);
+    }
+}

@@ -1,0 +1,125 @@
+//! One file of a recording.
+
+use std::fs::File;
+use std::path::{Path, PathBuf};
+
+use memmap2::Mmap;
+
+use crate::content::{Content, foreign};
+use crate::folder::Listed;
+use crate::survey::Survey;
+use crate::{Damage, RecordingError, unpack};
+
+/// A file whose messages are known and whose checksums have been compared.
+#[derive(Debug)]
+pub(crate) struct RecordedFile {
+    pub(crate) path: PathBuf,
+    bytes: Bytes,
+    pub(crate) survey: Survey,
+}
+
+#[derive(Debug)]
+enum Bytes {
+    Mapped(Mmap),
+    Owned(Vec<u8>),
+}
+
+impl RecordedFile {
+    /// Opens a file, whatever of what is read it holds.
+    ///
+    /// # Errors
+    /// It cannot be read, or does not even start as a recording.
+    pub(crate) fn open(listed: &Listed) -> Result<Self, RecordingError> {
+        let path = &listed.path;
+        let content = Content::of(path)?;
+        if content != Content::Zstd {
+            return RecordedFile::with_content(listed, path, content);
+        }
+        let unpacked = unpack::file(path, |start| match Content::of_bytes(start) {
+            Content::Mcap | Content::Sqlite => Ok(()),
+            _ => Err(RecordingError::Unpack {
+                path: path.clone(),
+                reason: "what zstd packed there is neither an MCAP file nor a bag in SQLite".into(),
+            }),
+        })?;
+        RecordedFile::with_content(listed, unpacked.path(), Content::of(unpacked.path())?)
+    }
+
+    /// What errors call by the listed name, and lies at `place`.
+    fn with_content(
+        listed: &Listed,
+        place: &Path,
+        content: Content,
+    ) -> Result<Self, RecordingError> {
+        match content {
+            Content::Foreign(what, advice) => Err(foreign(&listed.path, what, advice)),
+            #[cfg(feature = "rosbag2")]
+            Content::Sqlite => {
+                let (file, damage) = crate::bag::as_recording(listed, place)?;
+                let mut mapped = RecordedFile::mapped(&listed.path, &file)?;
+                mapped.survey.damage = mapped.survey.damage.or(damage);
+                Ok(mapped)
+            }
+            _ => {
+                let file = File::open(place).map_err(|error| unreadable(&listed.path, error))?;
+                RecordedFile::mapped(&listed.path, &file)
+            }
+        }
+    }
+
+    /// A file that errors call `path`.
+    fn mapped(path: &Path, file: &File) -> Result<Self, RecordingError> {
+        // SAFETY: the map is only read. Should another process write to the
+        // file, bytes change under the reader, which checks each as if it came
+        // from anywhere; should one cut it, the system ends this process.
+        let map = unsafe { Mmap::map(file) }.map_err(|source| unreadable(path, source))?;
+        RecordedFile::new(path.to_owned(), Bytes::Mapped(map))
+    }
+
+    /// A file in memory; errors call it `path`.
+    ///
+    /// # Errors
+    /// It does not even start as a recording.
+    pub(crate) fn from_bytes(path: PathBuf, bytes: Vec<u8>) -> Result<Self, RecordingError> {
+        RecordedFile::new(path, Bytes::Owned(bytes))
+    }
+
+    fn new(path: PathBuf, bytes: Bytes) -> Result<Self, RecordingError> {
+        match Survey::of(bytes.as_slice()) {
+            Ok(survey) => Ok(RecordedFile {
+                path,
+                bytes,
+                survey,
+            }),
+            Err(damage) => Err(damaged(path, damage)),
+        }
+    }
+
+    pub(crate) fn bytes(&self) -> &[u8] {
+        self.bytes.as_slice()
+    }
+}
+
+fn damaged(path: PathBuf, damage: Damage) -> RecordingError {
+    RecordingError::Damaged {
+        path,
+        readable: 0,
+        damage,
+    }
+}
+
+fn unreadable(path: &Path, source: std::io::Error) -> RecordingError {
+    RecordingError::Open {
+        path: path.to_owned(),
+        source,
+    }
+}
+
+impl Bytes {
+    fn as_slice(&self) -> &[u8] {
+        match self {
+            Bytes::Mapped(map) => map,
+            Bytes::Owned(bytes) => bytes,
+        }
+    }
+}

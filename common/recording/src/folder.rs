@@ -1,0 +1,368 @@
+//! The files of a recording: one, or those of a bag of rosbag2.
+//!
+//! A bag is a folder. Its `metadata.yaml` names the parts in their order; where
+//! there is none, as after a recorder was cut off, the parts are the folder's
+//! `.mcap` or `.db3` files by name, numbers in it by their value. Parts are found
+//! packed (`.zstd`) or unpacked, whichever of the two is there.
+
+use std::cmp::Ordering;
+use std::path::{Component, Path, PathBuf};
+
+use serde::Deserialize;
+
+use crate::RecordingError;
+use crate::content::Content;
+
+/// What a bag's description is called.
+const METADATA: &str = "metadata.yaml";
+
+/// What may stand behind a part's name where it is packed.
+const PACKED: [&str; 2] = ["zstd", "zst"];
+
+/// A file, and how many messages the bag's description says it holds.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub(crate) struct Listed {
+    pub(crate) path: PathBuf,
+    pub(crate) messages: Option<u64>,
+}
+
+/// The files behind a name, in their order.
+///
+/// # Errors
+/// There is no such file, or no clear set of them in a folder.
+pub(crate) fn files(path: &Path) -> Result<Vec<Listed>, RecordingError> {
+    let unreadable = |source| RecordingError::Open {
+        path: path.to_owned(),
+        source,
+    };
+    if std::fs::metadata(path).map_err(unreadable)?.is_dir() {
+        let metadata = path.join(METADATA);
+        // A recorder that was cut off leaves an empty one.
+        return match std::fs::metadata(&metadata) {
+            Ok(found) if found.len() > 0 => named(&metadata, path),
+            _ => unnamed(path),
+        };
+    }
+    let is_named = path.file_name().is_some_and(|name| name == METADATA);
+    let folder = path.parent().unwrap_or(Path::new(""));
+    match is_named || Content::of(path)? == Content::Metadata {
+        true => named(path, folder),
+        false => Ok(vec![Listed {
+            messages: described(path, folder),
+            path: path.to_owned(),
+        }]),
+    }
+}
+
+#[derive(Deserialize)]
+struct Description {
+    rosbag2_bagfile_information: Information,
+}
+
+/// What is needed of a description; there is more.
+#[derive(Deserialize)]
+struct Information {
+    relative_file_paths: Vec<String>,
+    message_count: Option<u64>,
+    /// Since ROS 2 Galactic.
+    files: Option<Vec<Counted>>,
+}
+
+#[derive(Deserialize)]
+struct Counted {
+    path: String,
+    message_count: Option<u64>,
+}
+
+impl Information {
+    fn read(metadata: &Path) -> Result<Self, RecordingError> {
+        let text = std::fs::read_to_string(metadata).map_err(|source| RecordingError::Open {
+            path: metadata.to_owned(),
+            source,
+        })?;
+        let description: Description = serde_saphyr::from_str(&text).map_err(|error| {
+            let error = error.to_string();
+            let error = error.lines().next().unwrap_or_default();
+            refused(metadata, format!("it is no description of a bag: {error}"))
+        })?;
+        Ok(description.rosbag2_bagfile_information)
+    }
+
+    /// Messages of one of its files, if they are counted.
+    fn messages(&self, name: &str) -> Option<u64> {
+        let mut files = self.files.iter().flatten();
+        let counted = files.find(|file| file.path == name);
+        match (counted, &self.relative_file_paths[..]) {
+            (Some(counted), _) => counted.message_count,
+            (None, [_]) => self.message_count,
+            (None, _) => None,
+        }
+    }
+}
+
+/// The parts that a description names.
+fn named(metadata: &Path, folder: &Path) -> Result<Vec<Listed>, RecordingError> {
+    let information = Information::read(metadata)?;
+    let names = &information.relative_file_paths;
+    if names.is_empty() {
+        return Err(refused(metadata, "it names no files".to_owned()));
+    }
+    let part = |name: &String| {
+        let missing = || format!("it names {name}, which is not in {}", shown(folder));
+        let path = found(folder, name).ok_or_else(|| refused(metadata, missing()))?;
+        Ok(Listed {
+            path,
+            messages: information.messages(name),
+        })
+    };
+    names.iter().map(part).collect()
+}
+
+/// Where a part lies that is called so; some writers put the folder's own name
+/// before it.
+fn found(folder: &Path, name: &str) -> Option<PathBuf> {
+    let name = Path::new(name);
+    let is_inside = name.components().all(|c| matches!(c, Component::Normal(_)));
+    let own = Path::new(name.file_name()?);
+    let names = [name, own].into_iter().skip(usize::from(!is_inside));
+    let mut paths = names.flat_map(|name| {
+        let path = folder.join(name);
+        let packed = PACKED.map(|ending| with_ending(&path, ending));
+        let unpacked = without_ending(&path);
+        [path].into_iter().chain(packed).chain(unpacked)
+    });
+    paths.find(|path| path.is_file())
+}
+
+fn with_ending(path: &Path, ending: &str) -> PathBuf {
+    let mut name = path.as_os_str().to_owned();
+    name.push(".");
+    name.push(ending);
+    name.into()
+}
+
+/// The name of a packed file once it is unpacked.
+fn without_ending(path: &Path) -> Option<PathBuf> {
+    let ending = path.extension()?;
+    let is_packed = PACKED.iter().any(|packed| ending == *packed);
+    is_packed.then(|| path.with_extension(""))
+}
+
+/// How many messages the description beside a single file says that it holds.
+fn described(path: &Path, folder: &Path) -> Option<u64> {
+    let information = Information::read(&folder.join(METADATA)).ok()?;
+    let name = path.file_name()?.to_str()?;
+    let mut names = information.relative_file_paths.iter();
+    let is_listed = names.any(|listed| listed == name);
+    is_listed.then(|| information.messages(name)).flatten()
+}
+
+/// The parts of a folder that nothing describes.
+fn unnamed(folder: &Path) -> Result<Vec<Listed>, RecordingError> {
+    let unreadable = |source| RecordingError::Open {
+        path: folder.to_owned(),
+        source,
+    };
+    let mut paths = Vec::new();
+    for entry in std::fs::read_dir(folder).map_err(unreadable)? {
+        paths.push(entry.map_err(unreadable)?.path());
+    }
+    // One that lies there packed and unpacked is one part.
+    let all = paths.clone();
+    let is_twice = |path: &Path| without_ending(path).is_some_and(|path| all.contains(&path));
+    paths.retain(|path| storage(path).is_some() && path.is_file() && !is_twice(path));
+    paths.sort_by(|a, b| natural_order(&shown(a), &shown(b)));
+    let Some(first) = paths.first() else {
+        let reason = format!("it holds no {METADATA}, no .mcap and no .db3");
+        return Err(refused(folder, reason));
+    };
+    if let Some(other) = paths.iter().find(|path| storage(path) != storage(first)) {
+        let (first, other) = (shown(first), shown(other));
+        return Err(refused(
+            folder,
+            format!(
+                "it holds .mcap and .db3, as {first} and {other}, and no {METADATA} that says which \
+                 of them belong to it: name the files"
+            ),
+        ));
+    }
+    let listed = |path| Listed {
+        path,
+        messages: None,
+    };
+    Ok(paths.into_iter().map(listed).collect())
+}
+
+/// `mcap` or `db3`, by a part's name.
+fn storage(path: &Path) -> Option<String> {
+    let unpacked = without_ending(path).unwrap_or_else(|| path.to_owned());
+    let ending = unpacked.extension()?.to_str()?.to_lowercase();
+    ["mcap", "db3"].contains(&ending.as_str()).then_some(ending)
+}
+
+/// By the value of the numbers in them: `r_2` comes before `r_10`.
+fn natural_order(a: &str, b: &str) -> Ordering {
+    let (mut a, mut b) = (a, b);
+    while let (Some(first), Some(second)) = (a.chars().next(), b.chars().next()) {
+        let is_number = first.is_ascii_digit() && second.is_ascii_digit();
+        let order = match is_number {
+            true => {
+                let ((x, a_left), (y, b_left)) = (number(a), number(b));
+                (a, b) = (a_left, b_left);
+                (x.len(), x).cmp(&(y.len(), y))
+            }
+            false => {
+                (a, b) = (&a[first.len_utf8()..], &b[second.len_utf8()..]);
+                first.cmp(&second)
+            }
+        };
+        if order.is_ne() {
+            return order;
+        }
+    }
+    a.len().cmp(&b.len())
+}
+
+/// The digits at the start, without zeros before them, and what follows.
+fn number(text: &str) -> (&str, &str) {
+    let end = text.find(|c: char| !c.is_ascii_digit());
+    let (digits, rest) = text.split_at(end.unwrap_or(text.len()));
+    (digits.trim_start_matches('0'), rest)
+}
+
+fn shown(path: &Path) -> String {
+    path.display().to_string()
+}
+
+fn refused(path: &Path, reason: String) -> RecordingError {
+    RecordingError::Bag {
+        path: path.to_owned(),
+        reason,
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use tempfile::TempDir;
+
+    use super::*;
+
+    /// A folder with files of these names, empty but for the description.
+    fn folder(names: &[&str], metadata: Option<&str>) -> TempDir {
+        let folder = TempDir::new().unwrap();
+        for name in names {
+            std::fs::write(folder.path().join(name), b"").unwrap();
+        }
+        if let Some(text) = metadata {
+            std::fs::write(folder.path().join(METADATA), text).unwrap();
+        }
+        folder
+    }
+
+    fn description(names: &[&str]) -> String {
+        let names: String = names.iter().map(|name| format!("  - {name}\n")).collect();
+        format!(
+            "rosbag2_bagfile_information:\n  version: 9\n  message_count: 5\n  \
+             relative_file_paths:\n{names}  custom_data: ~\n"
+        )
+    }
+
+    fn names(folder: &TempDir) -> Result<Vec<String>, String> {
+        let files = files(folder.path()).map_err(|error| error.to_string())?;
+        let name = |file: &Listed| file.path.file_name().unwrap().to_str().unwrap().to_owned();
+        Ok(files.iter().map(name).collect())
+    }
+
+    #[test]
+    fn a_description_says_which_files_and_in_which_order() {
+        let text = description(&["r_1.mcap", "r_0.mcap"]);
+        let folder = folder(&["r_0.mcap", "r_1.mcap", "r_2.mcap"], Some(&text));
+        let expected = ["r_1.mcap", "r_0.mcap"].map(str::to_owned).to_vec();
+        assert_eq!(names(&folder), Ok(expected));
+        let by_metadata = files(&folder.path().join(METADATA)).unwrap();
+        assert_eq!(by_metadata, files(folder.path()).unwrap());
+    }
+
+    #[test]
+    fn a_part_is_found_packed_unpacked_and_by_its_own_name() {
+        let text = description(&["a_0.mcap", "a_1.mcap.zstd", "a/a_2.db3", "../a_3.db3"]);
+        let there = ["a_0.mcap.zstd", "a_1.mcap", "a_2.db3", "a_3.db3"];
+        assert_eq!(
+            names(&folder(&there, Some(&text))),
+            Ok(there.map(str::to_owned).to_vec())
+        );
+    }
+
+    #[test]
+    fn without_a_description_names_and_their_numbers_give_the_order() {
+        let there = [
+            "r_10.mcap",
+            "r_2.mcap",
+            "r_9.mcap.zstd",
+            "r_2.mcap.zstd",
+            "notes",
+        ];
+        let expected = ["r_2.mcap", "r_9.mcap.zstd", "r_10.mcap"].map(str::to_owned);
+        for metadata in [None, Some("")] {
+            assert_eq!(names(&folder(&there, metadata)), Ok(expected.to_vec()));
+        }
+    }
+
+    #[test]
+    fn what_is_not_clear_is_said() {
+        let said = |there: &[&str], metadata: Option<&str>| {
+            let refusal = names(&folder(there, metadata)).unwrap_err();
+            refusal.split_once(": ").unwrap().1.to_owned()
+        };
+        let missing = said(&["r_0.mcap"], Some(&description(&["r_0.mcap", "r_1.mcap"])));
+        assert!(
+            missing.starts_with("it names r_1.mcap, which is not in "),
+            "{missing}"
+        );
+        assert_eq!(
+            said(
+                &[],
+                Some(&description(&[]))
+                    .map(|text| text.replace("paths:", "paths: []"))
+                    .as_deref()
+            ),
+            "it names no files"
+        );
+        let yaml = said(&[], Some("resolution: 0.05"));
+        assert!(
+            yaml.starts_with("it is no description of a bag: "),
+            "{yaml}"
+        );
+        assert_eq!(
+            said(&["notes.txt"], None),
+            "it holds no metadata.yaml, no .mcap and no .db3"
+        );
+        let mixed = said(&["r_0.mcap", "r_0.db3"], None);
+        assert!(mixed.contains("it holds .mcap and .db3, as "), "{mixed}");
+        let nothing = files(Path::new("no/such/bag")).unwrap_err().to_string();
+        assert_eq!(nothing, "cannot read the recording no/such/bag");
+    }
+
+    #[test]
+    fn messages_are_counted_for_a_file_or_for_the_only_one() {
+        let text = description(&["r_0.db3"]);
+        let one = folder(&["r_0.db3"], Some(&text));
+        let counts = |path: &Path| {
+            let files = files(path).unwrap();
+            files.iter().map(|file| file.messages).collect::<Vec<_>>()
+        };
+        assert_eq!(counts(one.path()), [Some(5)]);
+        assert_eq!(counts(&one.path().join("r_0.db3")), [Some(5)]);
+        let counted = description(&["r_0.db3", "r_1.db3"])
+            + "  files:\n  - path: r_1.db3\n    message_count: 3\n";
+        let two = folder(&["r_0.db3", "r_1.db3"], Some(&counted));
+        assert_eq!(counts(two.path()), [None, Some(3)]);
+    }
+
+    #[test]
+    fn numbers_count_by_their_value() {
+        let mut names = ["r_10", "r_9b", "r_9", "r_009a", "q", "r_"];
+        names.sort_by(|a, b| natural_order(a, b));
+        assert_eq!(names, ["q", "r_", "r_9", "r_009a", "r_9b", "r_10"]);
+    }
+}

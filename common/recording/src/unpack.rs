@@ -1,0 +1,163 @@
+//! What rosbag2 packs with zstd: single messages, and whole files.
+
+use std::borrow::Cow;
+use std::fs::File;
+use std::io::{BufReader, Read, Seek, Write};
+use std::path::Path;
+
+use tempfile::NamedTempFile;
+use zstd::stream::read::Decoder;
+
+use crate::content::is_packed;
+use crate::{MAX_CHUNK_BYTES, RecordingError};
+
+/// Most bytes that a packed file may unpack to: so many for each that it has, and
+/// so many beside. A sound recording is packed to no less than a few hundredths;
+/// what a damaged or a malicious one claims must not fill the disk.
+const MAX_FACTOR: u64 = 1000;
+const MAX_BESIDE: u64 = 1 << 30;
+
+/// Bytes that are unpacked at a time.
+const STEP_BYTES: usize = 1 << 20;
+
+/// A message in CDR as it was sent. Neither byte order of CDR begins as what zstd
+/// packed does, so a packed message is known by its first bytes.
+///
+/// # Errors
+/// The reason why it does not unpack.
+pub(crate) fn message(bytes: &[u8]) -> Result<Cow<'_, [u8]>, String> {
+    match is_packed(bytes) {
+        true => within(bytes, MAX_CHUNK_BYTES).map(Cow::Owned),
+        false => Ok(Cow::Borrowed(bytes)),
+    }
+}
+
+fn within(packed: &[u8], most: u64) -> Result<Vec<u8>, String> {
+    let mut unpacked = Vec::new();
+    Decoder::with_buffer(packed)
+        .and_then(|decoder| decoder.take(most + 1).read_to_end(&mut unpacked))
+        .map_err(|error| format!("it is packed with zstd, and does not unpack: {error}"))?;
+    match unpacked.len() as u64 <= most {
+        true => Ok(unpacked),
+        false => Err(format!(
+            "it unpacks to more than {most} bytes, the most that are allowed"
+        )),
+    }
+}
+
+/// What a packed file holds, in a temporary one that goes when it is dropped.
+/// `allows` judges the first bytes, before the rest is unpacked.
+///
+/// # Errors
+/// The file does not unpack, or to more than is allowed, or there is no room.
+pub(crate) fn file(
+    path: &Path,
+    allows: impl FnOnce(&[u8]) -> Result<(), RecordingError>,
+) -> Result<NamedTempFile, RecordingError> {
+    let unreadable = |source| RecordingError::Open {
+        path: path.to_owned(),
+        source,
+    };
+    let packed = File::open(path).map_err(unreadable)?;
+    let size = packed.metadata().map_err(unreadable)?.len();
+    let most = size.saturating_mul(MAX_FACTOR).saturating_add(MAX_BESIDE);
+    let broken = |error: std::io::Error| refused(path, format!("its zstd is broken: {error}"));
+    let mut decoder = Decoder::new(BufReader::new(packed)).map_err(broken)?;
+    let mut sink = NamedTempFile::new().map_err(|error| no_room(path, &error))?;
+    let mut step = Vec::with_capacity(STEP_BYTES);
+    let mut allows = Some(allows);
+    let mut unpacked = 0;
+    loop {
+        step.clear();
+        let taken = decoder.by_ref().take(STEP_BYTES as u64);
+        read(taken, &mut step).map_err(broken)?;
+        if let Some(allows) = allows.take() {
+            allows(&step)?;
+        }
+        if step.is_empty() {
+            break;
+        }
+        unpacked += step.len() as u64;
+        if unpacked > most {
+            let reason = format!("it unpacks to more than {most} bytes, the most that are allowed");
+            return Err(refused(path, reason));
+        }
+        sink.write_all(&step)
+            .map_err(|error| no_room(path, &error))?;
+    }
+    sink.rewind().map_err(|error| no_room(path, &error))?;
+    Ok(sink)
+}
+
+fn read(mut from: impl Read, to: &mut Vec<u8>) -> std::io::Result<usize> {
+    from.read_to_end(to)
+}
+
+fn refused(path: &Path, reason: String) -> RecordingError {
+    RecordingError::Unpack {
+        path: path.to_owned(),
+        reason,
+    }
+}
+
+fn no_room(path: &Path, error: &std::io::Error) -> RecordingError {
+    let folder = std::env::temp_dir();
+    let folder = folder.display();
+    let reason = format!("a temporary file in {folder} (TMPDIR names another place): {error}");
+    refused(path, reason)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn packed(bytes: &[u8]) -> Vec<u8> {
+        zstd::encode_all(bytes, 3).unwrap()
+    }
+
+    #[test]
+    fn messages_are_unpacked_or_left_as_they_are() {
+        let sent = [&[0, 1, 0, 0][..], &[7; 500]].concat();
+        assert!(matches!(message(&sent), Ok(Cow::Borrowed(found)) if found == sent));
+        assert_eq!(*message(&packed(&sent)).unwrap(), *sent);
+        let mut broken = packed(&sent);
+        broken.truncate(broken.len() - 3);
+        let reason = message(&broken).unwrap_err();
+        assert!(reason.starts_with("it is packed with zstd"), "{reason}");
+    }
+
+    #[test]
+    fn a_message_that_unpacks_to_too_much_is_refused() {
+        let packed = packed(&[0; 1000]);
+        assert_eq!(within(&packed, 1000).unwrap(), [0; 1000]);
+        let reason = within(&packed, 999).unwrap_err();
+        assert!(
+            reason.starts_with("it unpacks to more than 999"),
+            "{reason}"
+        );
+    }
+
+    #[test]
+    fn a_packed_file_is_judged_by_its_start_before_it_is_unpacked() {
+        let folder = tempfile::TempDir::new().unwrap();
+        let path = folder.path().join("r.mcap.zstd");
+        std::fs::write(&path, packed(b"zeros")).unwrap();
+        let mut unpacked = Vec::new();
+        file(&path, |start| {
+            assert_eq!(start, b"zeros");
+            Ok(())
+        })
+        .unwrap()
+        .read_to_end(&mut unpacked)
+        .unwrap();
+        assert_eq!(unpacked, b"zeros");
+        let refusal = file(&path, |_| Err(refused(&path, "no".to_owned()))).unwrap_err();
+        assert!(refusal.to_string().ends_with("no"), "{refusal}");
+        std::fs::write(&path, &packed(&[7; 1000])[..12]).unwrap();
+        let refusal = file(&path, |_| Ok(())).unwrap_err().to_string();
+        assert!(
+            refusal.contains("r.mcap.zstd cannot be unpacked: its zstd is broken"),
+            "{refusal}"
+        );
+    }
+}
