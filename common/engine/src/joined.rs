@@ -12,7 +12,7 @@ mod laser;
 use geometry::Pose;
 use messages::{FrameName, Name, Odometry, ScanHeader};
 
-pub use config::{JoinConfig, ScanStamp};
+pub use config::{JoinConfig, MotionConfig, ScanStamp};
 
 use crate::EngineError;
 use crate::motion::Motion;
@@ -104,6 +104,26 @@ pub enum Seen<'a> {
     Carried(Vec<CarriedScan<'a>>),
 }
 
+impl Brought {
+    /// What an operator should know, where odometry flows or not; figures that change
+    /// from scan to scan are left out.
+    #[must_use]
+    pub fn notes(&self, odometry_flows: bool) -> Vec<String> {
+        let left_out = self.left_out.iter().map(|(laser, why)| match why {
+            LeftOut::Old { .. } => format!("laser {laser} is left out: its scans are too old"),
+            other => format!("laser {laser} is left out: {other}"),
+        });
+        let motion = match self.motion {
+            MotionKnown::LastTwist => Some("odometry comes late: its last twist is taken to go on"),
+            MotionKnown::Unknown if odometry_flows => {
+                Some("odometry does not reach the scans: their motion is not taken out")
+            }
+            _ => None,
+        };
+        left_out.chain(motion.map(str::to_owned)).collect()
+    }
+}
+
 impl Seen<'_> {
     /// What is to be looked for.
     #[must_use]
@@ -151,12 +171,21 @@ impl Joiner {
         self.lasers.len() > 1
     }
 
+    /// A heading of the first laser in the map, radians, as that of the sought frame.
+    #[must_use]
+    pub fn sought_heading(&self, laser_heading: f64) -> f64 {
+        match self.seeks_base() {
+            true => laser_heading - self.lasers[0].base_from_laser().yaw,
+            false => laser_heading,
+        }
+    }
+
     /// Takes odometry.
     pub fn on_odometry(&mut self, odometry: &Odometry) {
         let stamp_ns = odometry
             .stamp
             .measured_ns
-            .saturating_add(self.config.delay_ns());
+            .saturating_add(self.config.motion.delay_ns());
         self.child_frame = odometry.child_frame;
         self.motion.add(stamp_ns, odometry.odom_from_child.into());
     }
@@ -166,7 +195,7 @@ impl Joiner {
         let is_meant = |laser: &Laser| self.config.scans.is_empty() || laser.name == header.laser;
         match self.lasers.iter().position(is_meant) {
             Some(index) => {
-                self.lasers[index].take(header, ranges, self.config.scan_stamp);
+                self.lasers[index].take(header, ranges, self.config.motion.scan_stamp);
                 if index == 0 {
                     Role::Trigger
                 } else {
@@ -180,7 +209,7 @@ impl Joiner {
     /// Whether odometry is still to come that tells of the last beam.
     #[must_use]
     pub fn lacks_odometry(&self) -> bool {
-        let lasers = self.lasers.iter().filter(|_| self.config.deskew);
+        let lasers = self.lasers.iter().filter(|_| self.config.motion.deskew);
         let moving = lasers.filter(|laser| self.seeks_base() || laser.takes_time());
         let last_ns = moving.filter_map(Laser::last_beam_ns).max();
         last_ns.is_some_and(|last_ns| {
@@ -215,7 +244,7 @@ impl Joiner {
             ..Brought::default()
         };
         self.used.push(0);
-        if self.config.deskew && self.lasers[0].takes_time() {
+        if self.config.motion.deskew && self.lasers[0].takes_time() {
             brought.motion = self.carry(0, false);
             self.is_carried = brought.motion != MotionKnown::Unknown;
         }
@@ -273,7 +302,11 @@ impl Joiner {
         let child_from_laser = child_from_base.then(self.lasers[index].base_from_laser());
         let still = child_from_sought.inverse().then(child_from_laser);
         let laser = &mut self.lasers[index];
-        let Some(sought) = self.motion.at(sought_ns).filter(|_| self.config.deskew) else {
+        let Some(sought) = self
+            .motion
+            .at(sought_ns)
+            .filter(|_| self.config.motion.deskew)
+        else {
             laser.stand(still);
             return MotionKnown::Unknown;
         };

@@ -1,8 +1,8 @@
 //! Puts before a scan what was measured by then.
 //!
 //! A recording is in the order of log times, where odometry or a true pose may
-//! follow the scan that it belongs to. Whoever searches with a given heading
-//! needs it before. So a scan is held back until what was recorded shortly after
+//! follow the scan that it belongs to. Whoever searches with a given heading, or
+//! takes out the motion within a scan, needs it before. So a scan is held back until what was recorded shortly after
 //! it has been seen. All else keeps its order; memory is bounded by the window.
 
 use std::collections::VecDeque;
@@ -13,11 +13,17 @@ use crate::source::Timed;
 /// before it, nanoseconds of log time.
 const WINDOW_NS: i64 = 500_000_000;
 
+/// Odometry may lag behind the scans by so much and still tell of the motion within
+/// them, nanoseconds.
+const MARGIN_NS: i64 = 250_000_000;
+
 /// An iterator over the same items, errors included, in playing order.
 pub struct InOrder<I, E> {
     items: I,
     ended: bool,
     newest_ns: i64,
+    /// Of the odometry that was given.
+    odometry_ns: i64,
     ahead: VecDeque<Result<Timed, E>>,
 }
 
@@ -28,6 +34,7 @@ impl<E, I: Iterator<Item = Result<Timed, E>>> InOrder<I, E> {
             items,
             ended: false,
             newest_ns: i64::MIN,
+            odometry_ns: i64::MIN,
             ahead: VecDeque::new(),
         }
     }
@@ -57,7 +64,8 @@ impl<E, I: Iterator<Item = Result<Timed, E>>> InOrder<I, E> {
         }
     }
 
-    /// What was measured by the time of the scan in front, recorded after it.
+    /// What was measured by the time of the scan in front, recorded after it; of the
+    /// odometry also what tells of the motion within the scan.
     fn take_overdue(&mut self) -> Option<Timed> {
         let scan = self
             .ahead
@@ -66,9 +74,14 @@ impl<E, I: Iterator<Item = Result<Timed, E>>> InOrder<I, E> {
             .ok()
             .filter(|item| item.is_scan())?;
         let (stamp_ns, due_ns) = (scan.stamp_ns(), scan.log_time_ns);
+        let told_by_ns = scan
+            .motion_until_ns()
+            .map(|ns| ns.saturating_add(MARGIN_NS));
+        let lacks_odometry = told_by_ns.is_some_and(|until_ns| self.odometry_ns < until_ns);
         let belongs = |item: &Timed| {
             let delay_ns = item.log_time_ns.saturating_sub(due_ns);
-            !item.is_scan() && item.stamp_ns() <= stamp_ns && delay_ns <= WINDOW_NS
+            let by_then = item.stamp_ns() <= stamp_ns || (lacks_odometry && item.is_odometry());
+            !item.is_scan() && by_then && delay_ns <= WINDOW_NS
         };
         let mut items = self.ahead.iter();
         let index = items.position(|item| item.as_ref().is_ok_and(belongs))?;
@@ -84,16 +97,21 @@ impl<E, I: Iterator<Item = Result<Timed, E>>> Iterator for InOrder<I, E> {
     /// The next item; its log time never goes back.
     fn next(&mut self) -> Option<Self::Item> {
         self.look_ahead();
-        self.take_overdue()
-            .map(Ok)
-            .or_else(|| self.ahead.pop_front())
+        let overdue = self.take_overdue().map(Ok);
+        let item = overdue.or_else(|| self.ahead.pop_front())?;
+        if let Ok(timed) = &item
+            && timed.is_odometry()
+        {
+            self.odometry_ns = timed.stamp_ns();
+        }
+        Some(item)
     }
 }
 
 #[cfg(test)]
 mod tests {
     use bytemuck::Zeroable;
-    use messages::{GroundTruth, ScanHeader};
+    use messages::{GroundTruth, Odometry, ScanHeader};
     use proptest::prelude::*;
 
     use super::*;
@@ -135,6 +153,35 @@ mod tests {
     fn a_late_truth_comes_before_its_scan_and_is_due_with_it() {
         let items = vec![scan(10, 5), truth(12, 5), scan(20, 15), truth(21, 15)];
         assert_eq!(played(items), ["t5@10", "s5@10", "t15@20", "s15@20"]);
+    }
+
+    #[test]
+    fn odometry_comes_before_the_scan_whose_motion_it_tells() {
+        let odometry = |log_ms: i64| {
+            let mut odometry = Odometry::zeroed();
+            odometry.stamp.measured_ns = log_ms * MS;
+            Timed {
+                log_time_ns: log_ms * MS,
+                content: Content::Odometry(Box::new(odometry)),
+            }
+        };
+        let mut moving = scan(10, 10);
+        if let Content::Scan(header, ranges) = &mut moving.content {
+            header.time_increment_s = 0.05;
+            *ranges = vec![1.0; 3];
+        }
+        // Its last beam is at 110 ms, and the odometry may lag.
+        let items = vec![
+            moving,
+            odometry(100),
+            odometry(300),
+            odometry(400),
+            odometry(480),
+        ];
+        let expected = ["t100@10", "t300@10", "t400@10", "s10@10", "t480@480"];
+        assert_eq!(played(items), expected);
+        let items = vec![scan(10, 10), odometry(100)];
+        assert_eq!(played(items), ["s10@10", "t100@100"]);
     }
 
     #[test]

@@ -6,9 +6,10 @@
 use std::collections::BTreeMap;
 use std::sync::Arc;
 
+use conversion::lasers;
 use conversion::measurements::scan_header;
 use geometry::Mount;
-use messages::{GroundTruth, Odometry, ScanHeader};
+use messages::{GroundTruth, Name, Odometry, ScanHeader};
 use recording::{Channel, Kind, Message, Mounted, Record, Recording, RecordingError, Records};
 
 use crate::PlaybackError;
@@ -42,6 +43,25 @@ impl Timed {
         matches!(self.content, Content::Scan(..))
     }
 
+    /// Whether it is odometry.
+    #[must_use]
+    pub fn is_odometry(&self) -> bool {
+        matches!(self.content, Content::Odometry(_))
+    }
+
+    /// Until when the robot's motion matters to the scan, nanoseconds: its last beam
+    /// where it takes time, its stamp where it is one of several.
+    #[must_use]
+    pub fn motion_until_ns(&self) -> Option<i64> {
+        let Content::Scan(header, ranges) = &self.content else {
+            return None;
+        };
+        let steps = ranges.len().saturating_sub(1) as f64;
+        let duration_ns = (header.time_increment_s * steps * 1e9) as i64;
+        let matters = duration_ns != 0 || !header.laser.as_str().is_empty();
+        matters.then(|| self.stamp_ns().saturating_add(duration_ns.max(0)))
+    }
+
     /// When it was measured, nanoseconds.
     #[must_use]
     pub fn stamp_ns(&self) -> i64 {
@@ -56,7 +76,8 @@ impl Timed {
 /// The channels that are played.
 #[derive(Debug, Clone)]
 pub struct Channels {
-    scan: Arc<str>,
+    /// Of one laser, or of several by their names, the first one first.
+    scans: Vec<(Arc<str>, Name)>,
     odometry: Option<Arc<str>>,
     truth: Option<Arc<str>>,
 }
@@ -75,27 +96,66 @@ impl Channels {
             found: recording.channels().map(describe).collect(),
         };
         Ok(Channels {
-            scan: topic(Kind::Scan)?.ok_or_else(no_scans)?,
+            scans: vec![(topic(Kind::Scan)?.ok_or_else(no_scans)?, Name::new(""))],
             odometry: topic(Kind::Odometry)?,
             truth: topic(Kind::PoseStamped)?,
         })
     }
 
-    /// Readable messages of the channel with scans.
+    /// Those of the selection, with the scans of these lasers: each is named by its
+    /// topic, and the first one's scans are those that are answered.
+    ///
+    /// # Errors
+    /// If one has no scans.
+    pub fn of_lasers(
+        recording: &Recording,
+        selection: &Selection,
+        topics: &[String],
+    ) -> Result<Self, RecordingError> {
+        let channels = Channels::of(recording, selection)?;
+        if topics.len() < 2 {
+            return Ok(channels);
+        }
+        let laser = |topic: &String| {
+            let name = Name::new(&lasers::name_of(topic));
+            (topic.as_str().into(), name)
+        };
+        Ok(Channels {
+            scans: topics.iter().map(laser).collect(),
+            ..channels
+        })
+    }
+
+    /// Readable scans of the first laser.
     #[must_use]
     pub fn scans(&self, recording: &Recording) -> u64 {
         let channels = recording.channels();
-        let scans = channels.filter(|channel| channel.topic == self.scan);
+        let scans = channels.filter(|channel| self.is_first(&channel.topic));
         scans.map(|channel| channel.messages).sum()
     }
 
+    /// The laser whose scans are answered; without a name where there is one.
+    #[must_use]
+    pub fn first_laser(&self) -> Name {
+        let first = self.scans.first();
+        first.map_or(Name::new(""), |(_, laser)| *laser)
+    }
+
+    fn is_first(&self, topic: &str) -> bool {
+        let first = self.scans.first();
+        first.is_some_and(|(first, _)| **first == *topic)
+    }
+
     fn has(&self, topic: &str) -> bool {
-        let meant = [
-            Some(&self.scan),
-            self.odometry.as_ref(),
-            self.truth.as_ref(),
-        ];
-        meant.into_iter().flatten().any(|name| **name == *topic)
+        let scans = self.scans.iter().map(|(topic, _)| topic);
+        let others = [&self.odometry, &self.truth].into_iter().flatten();
+        scans.chain(others).any(|name| **name == *topic)
+    }
+
+    fn laser(&self, topic: &str) -> Name {
+        let mut scans = self.scans.iter();
+        let found = scans.find(|(name, _)| **name == *topic);
+        found.map_or(Name::new(""), |(_, laser)| *laser)
     }
 }
 
@@ -130,7 +190,11 @@ impl<'a> Source<'a> {
             Message::Scan(scan) => {
                 let frame = place.name(&scan.header.frame_id)?;
                 let mount = self.mount(&scan.header.frame_id)?;
-                Content::Scan(Box::new(scan_header(&scan, frame, mount)), scan.ranges)
+                let header = ScanHeader {
+                    laser: self.channels.laser(&record.topic),
+                    ..scan_header(&scan, frame, mount)
+                };
+                Content::Scan(Box::new(header), scan.ranges)
             }
             Message::Odometry(message) => Content::Odometry(Box::new(place.odometry(&message)?)),
             Message::PoseStamped(message) => {

@@ -11,7 +11,7 @@ use std::time::{Duration, Instant};
 
 use engine::fit::Readings;
 use engine::heading::{HeadingSource, History};
-use engine::joined::{Brought, JoinConfig, Joiner, LeftOut, MotionKnown, Role, Seen};
+use engine::joined::{JoinConfig, Joiner, LeftOut, Role, Seen};
 use engine::localizer::Workspace;
 use messages::{ScanHeader, Vote, VotesHeader};
 use transport::{Flow, GapCounter, Graph, Health, TransportError, with_causes};
@@ -68,10 +68,9 @@ pub fn run(graph: &Graph, config: &Config) -> Result<(), AccumulatorError> {
 
 /// A ring of sonars is read through a window of its own.
 fn join_config(config: &Config) -> JoinConfig {
-    JoinConfig {
-        deskew: config.join.deskew && config.sonar.sonar_way.is_none(),
-        ..config.join.clone()
-    }
+    let mut join = config.join.clone();
+    join.motion.deskew &= config.sonar.sonar_way.is_none();
+    join
 }
 
 struct Node {
@@ -169,7 +168,8 @@ impl Node {
         {
             sonar.hear(scan, &ranges, &self.history)?;
         }
-        self.note(&notes(&brought, self.joiner.flows()))?;
+        let notes = brought.notes(self.joiner.flows()).join("; ");
+        self.note(&notes)?;
         let lost = brought.left_out.iter();
         let lost = lost.filter(|(_, why)| *why != LeftOut::NoScan).count();
         self.health.count_dropped(lost as u64);
@@ -199,6 +199,7 @@ impl Node {
     ) -> Result<Option<Answer<'w>>, AccumulatorError> {
         let map = self.map.as_ref().ok_or(AccumulatorError::NoMap)?;
         let heading = self.source.heading_of(scan, &self.history)?;
+        let heading = heading.map(|heading| self.joiner.sought_heading(heading));
         let seen = self.seen();
         let observation = seen.observation();
         let start = Instant::now();
@@ -281,27 +282,4 @@ impl Node {
         }
         Ok(())
     }
-}
-
-/// What an operator should know of how scans were brought to one time; figures that
-/// change from scan to scan are left out.
-fn notes(brought: &Brought, odometry_flows: bool) -> String {
-    let mut notes: Vec<String> = brought
-        .left_out
-        .iter()
-        .map(|(laser, why)| match why {
-            LeftOut::Old { .. } => format!("laser {laser} is left out: its scans are too old"),
-            other => format!("laser {laser} is left out: {other}"),
-        })
-        .collect();
-    match brought.motion {
-        MotionKnown::LastTwist => {
-            notes.push("odometry comes late: its last twist is taken to go on".into());
-        }
-        MotionKnown::Unknown if odometry_flows => {
-            notes.push("odometry does not reach the scans: the motion stays in them".into());
-        }
-        _ => {}
-    }
-    notes.join("; ")
 }

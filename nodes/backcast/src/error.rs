@@ -18,6 +18,9 @@ pub enum BackcastError {
     /// The descriptor cannot be used.
     #[error(transparent)]
     Dataflow(#[from] DataflowError),
+    /// A message cannot be one of the graph.
+    #[error(transparent)]
+    Conversion(#[from] conversion::Unsayable),
     /// There is no descriptor.
     #[error(
         "there is no file {} in {}: run in a folder that has one, as the repository's root does, or name it: `backcast run path/to/dataflow.yaml`",

@@ -36,6 +36,8 @@ pub(crate) struct ColaDevice {
     data: ScanDataConfig,
     /// Millimetres in a unit of distance: 2 where the recording reaches far.
     scale: f32,
+    /// Whether the recording says how long a scan takes.
+    says_frequency: bool,
     /// Is filled and sent, again and again.
     distances: Vec<u16>,
 }
@@ -53,6 +55,7 @@ impl ColaDevice {
             .filter(|range| range.is_finite())
             .any(|&range| range > FARTHEST_M);
         ColaDevice {
+            says_frequency: sweep.says_time,
             encoding,
             full,
             scan: full,
@@ -237,7 +240,11 @@ impl ColaDevice {
             digital_inputs: [0, 0],
             digital_outputs: [0, 0],
             layer_angle_raw: 0,
-            scan_frequency_raw_1e2_hz: self.scan.frequency_raw_1e2_hz,
+            // 0 says nothing: from it, the time of each beam would be computed.
+            scan_frequency_raw_1e2_hz: match self.says_frequency {
+                true => self.scan.frequency_raw_1e2_hz,
+                false => 0,
+            },
             measurement_frequency_raw: 0,
             encoders: (&[][..]).into(),
             channels_16_bit: Channels::from(&channels[..]),

@@ -25,6 +25,8 @@ pub(crate) struct Sweep {
     pub(crate) count: usize,
     /// From one scan to the next, seconds.
     pub(crate) scan_time_s: f64,
+    /// Whether the recording says so, and it is no guess.
+    pub(crate) says_time: bool,
     /// Log times, nanoseconds.
     times_ns: Vec<i64>,
     /// When each was measured, microseconds since 1970.
@@ -68,6 +70,7 @@ impl Sweep {
             step_raw,
             count: ranges.len(),
             scan_time_s: scan.scan_time_s,
+            says_time: scan.scan_time_s > 0.0,
             times_ns: vec![time_ns],
             stamps_us: vec![scan.stamp.measured_ns.div_euclid(1000)],
             scans: vec![ranges],

@@ -19,9 +19,10 @@ pub struct Config {
     #[arg(long, value_name = "FILE", required = true)]
     pub recording: Vec<PathBuf>,
 
-    /// The topic of the scans [default: the only one, or /scan]
+    /// The topic of the scans [default: the only one, or /scan]; several lasers are
+    /// named one by one, the first one's scans are those that are answered
     #[arg(long, value_name = "TOPIC")]
-    pub scan_topic: Option<String>,
+    pub scan_topic: Vec<String>,
 
     /// The topic of the odometry [default: the only one, or /odom]
     #[arg(long, value_name = "TOPIC")]

@@ -58,12 +58,13 @@ pub fn run(graph: &Graph, config: &Config) -> Result<Summary, ReplayerError> {
     let answers = graph.subscriber::<topic::Hypotheses>()?;
     let recording = open(config)?;
     let selection = select(config, &recording)?;
-    let channels = Channels::of(&recording, &selection)?;
+    let channels = Channels::of_lasers(&recording, &selection, &config.scan_topic)?;
     wait_for_nodes(graph, &config.wait_for, &mut outlet.health)?;
     let stop = graph.stop_flag();
     if stop.load(Ordering::Relaxed) {
         return Ok(Summary::default());
     }
+    outlet.first_laser = channels.first_laser();
     let gap_ns = announce(&recording, &channels, config);
     outlet.health.state(NodeState::Ready)?;
     let mut player = Player {
@@ -90,7 +91,8 @@ pub fn run(graph: &Graph, config: &Config) -> Result<Summary, ReplayerError> {
 /// The recording, with the topics that are meant.
 fn open(config: &Config) -> Result<Recording, ReplayerError> {
     let mut recording = Recording::open_all(&config.recording)?;
-    if let Some(topic) = &config.scan_topic {
+    // The first is the one that is meant where only one can be.
+    for topic in config.scan_topic.iter().rev() {
         recording.prefer(Kind::Scan, topic)?;
     }
     if let Some(topic) = &config.odom_topic {

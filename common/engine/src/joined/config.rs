@@ -1,12 +1,20 @@
 //! The settings of joining.
 
 /// What is joined, and how the motion is known.
-#[derive(Debug, Clone, PartialEq, clap::Args)]
+#[derive(Debug, Clone, PartialEq, Default, clap::Args)]
 pub struct JoinConfig {
     /// Lasers whose scans are joined, the first one first: its new scan asks for an
     /// answer. By default the graph has one.
     #[arg(long, value_name = "LASER,LASER", value_delimiter = ',', value_parser = parse_laser)]
     pub scans: Vec<String>,
+    /// How the motion is known.
+    #[command(flatten)]
+    pub motion: MotionConfig,
+}
+
+/// How the motion within a scan, and between scans, is known.
+#[derive(Debug, Clone, PartialEq, clap::Args)]
+pub struct MotionConfig {
     /// Added to the stamps of odometry, seconds, -1..=1: above zero where odometry
     /// leads the laser.
     #[arg(long, value_name = "SECONDS", default_value_t = 0.0, allow_negative_numbers = true, value_parser = parse_delay)]
@@ -31,17 +39,16 @@ pub enum ScanStamp {
     Last,
 }
 
-impl JoinConfig {
+impl MotionConfig {
     /// What is added to the stamps of odometry, nanoseconds.
     pub(super) fn delay_ns(&self) -> i64 {
         (self.odometry_delay_s * 1e9).round() as i64
     }
 }
 
-impl Default for JoinConfig {
+impl Default for MotionConfig {
     fn default() -> Self {
-        JoinConfig {
-            scans: Vec::new(),
+        MotionConfig {
             odometry_delay_s: 0.0,
             scan_stamp: ScanStamp::First,
             deskew: true,

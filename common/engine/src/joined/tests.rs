@@ -103,8 +103,11 @@ fn the_motion_within_a_scan_is_taken_out() {
 #[test]
 fn the_stamp_may_be_of_another_beam_and_odometry_late() {
     let mut joiner = Joiner::new(JoinConfig {
-        scan_stamp: ScanStamp::Last,
-        odometry_delay_s: 0.05,
+        motion: MotionConfig {
+            scan_stamp: ScanStamp::Last,
+            odometry_delay_s: 0.05,
+            ..MotionConfig::default()
+        },
         ..JoinConfig::default()
     });
     for ms in [0, 50, 100] {

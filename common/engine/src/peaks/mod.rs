@@ -119,15 +119,12 @@ impl Place {
     /// As a message says it.
     #[must_use]
     pub fn hypothesis(&self, map_id: u64, sought: Sought) -> Hypothesis {
-        let map_from_laser = sought.laser(self.map_from_laser);
+        let laser = self.of_laser(sought);
         Hypothesis {
             map_id,
-            map_from_laser: map_from_laser.into(),
+            map_from_laser: laser.map_from_laser.into(),
             map_from_base: sought.base(self.map_from_laser).into(),
-            covariance: self
-                .covariance
-                .carried(self.map_from_laser, map_from_laser)
-                .to_rows(),
+            covariance: laser.covariance.to_rows(),
             score: self.score as f32,
             probability: self.probability as f32,
             intensity: self.intensity.into(),
@@ -174,6 +171,19 @@ impl Sought {
     #[must_use]
     pub fn base(self, map_from_sought: Pose) -> Pose {
         map_from_sought.then(self.sought_from_base)
+    }
+}
+
+impl Place {
+    /// The place of the first laser where this is one of the sought frame.
+    #[must_use]
+    pub fn of_laser(&self, sought: Sought) -> Place {
+        let map_from_laser = sought.laser(self.map_from_laser);
+        Place {
+            map_from_laser,
+            covariance: self.covariance.carried(self.map_from_laser, map_from_laser),
+            ..*self
+        }
     }
 }
 

@@ -1,5 +1,7 @@
 //! What a recording says about the headings of its scans.
 
+use std::sync::Arc;
+
 use bytemuck::Zeroable;
 use engine::heading::{HeadingConfig, HeadingError, HeadingSource, History};
 use messages::{FrameName, GroundTruth, Odometry, ScanHeader, Stamp};
@@ -87,25 +89,39 @@ fn hear_truths(recording: &Recording, history: &mut History) -> Result<(), Recor
     Ok(())
 }
 
-/// Returns what is left out: how many messages cannot be used, and why the first.
 fn hear_odometry(
     recording: &Recording,
     history: &mut History,
 ) -> Result<Vec<String>, RecordingError> {
     let topic = recording.required_topic(Kind::Odometry)?;
+    each_odometry(recording, &topic, |odometry| {
+        history.hear_odometry(odometry)
+    })
+}
+
+/// Goes through the odometry of a channel; returns what is left out: how many
+/// messages cannot be used, and why the first.
+///
+/// # Errors
+/// The file cannot be read.
+pub(super) fn each_odometry(
+    recording: &Recording,
+    topic: &Arc<str>,
+    mut take: impl FnMut(&Odometry),
+) -> Result<Vec<String>, RecordingError> {
     let (mut left_out, mut first) = (0, None);
     for record in recording.records_of(&[Kind::Odometry]) {
         let heard = match record {
-            Ok(record) if record.topic != topic => continue,
+            Ok(record) if record.topic != *topic => continue,
             Ok(record) => odometry_of(recording, &record),
             // It lies behind all that can be read, and the scans come to it too.
             Err(RecordingError::Damaged { .. }) => break,
-            Err(error) if concerns_other(&error, &topic) => continue,
+            Err(error) if concerns_other(&error, topic) => continue,
             Err(error @ RecordingError::Message { .. }) => Err(error),
             Err(error) => return Err(error),
         };
         match heard {
-            Ok(Some(odometry)) => history.hear_odometry(&odometry),
+            Ok(Some(odometry)) => take(&odometry),
             Ok(None) => {}
             Err(error) => {
                 left_out += 1;
@@ -203,6 +219,8 @@ mod tests {
                 header: header(0, "laser"),
                 ..ros::LaserScan::default()
             },
+            laser: String::new(),
+            others: Vec::new(),
         }
     }
 

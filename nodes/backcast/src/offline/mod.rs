@@ -10,6 +10,7 @@ mod cpu;
 mod heading;
 mod layout;
 mod maps;
+mod motion;
 mod options;
 mod progress;
 mod scans;

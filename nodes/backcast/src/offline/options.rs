@@ -5,6 +5,7 @@ use std::path::{Path, PathBuf};
 use engine::directions::Directions;
 use engine::grid::CellRules;
 use engine::heading::HeadingConfig;
+use engine::joined::MotionConfig;
 use engine::localizer::LocalizerConfig;
 use engine::peaks::PeakConfig;
 use map::OccupancyGrid;
@@ -31,6 +32,9 @@ pub(crate) struct Options {
 
     #[command(flatten)]
     pub(crate) heading: HeadingConfig,
+
+    #[command(flatten)]
+    pub(crate) motion: MotionConfig,
 
     #[command(flatten)]
     pub(crate) engine: EngineOptions,

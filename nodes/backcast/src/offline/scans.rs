@@ -3,8 +3,10 @@
 use std::collections::BTreeMap;
 use std::sync::Arc;
 
+use conversion::{Unsayable, lasers, measurements};
 use engine::scan::Scan;
-use geometry::Pose;
+use geometry::{Mount, Pose};
+use messages::{Name, ScanHeader};
 use recording::ros::LaserScan;
 use recording::{Kind, Message, Mounted, Recording, RecordingError, Records};
 
@@ -23,12 +25,32 @@ pub(crate) struct TakenScan {
     /// the other way.
     pub(crate) upside_down: bool,
     pub(crate) message: LaserScan,
+    /// Which of several lasers it is; empty where there is one.
+    pub(crate) laser: String,
+    /// Of the other lasers, what was recorded since the scan before.
+    pub(crate) others: Vec<TakenScan>,
 }
 
 impl TakenScan {
     /// The laser's frame.
     pub(crate) fn frame(&self) -> &str {
         &self.message.header.frame_id
+    }
+
+    /// As the graph has it.
+    ///
+    /// # Errors
+    /// The frame's name is longer than a message of the graph can hold.
+    pub(crate) fn header(&self) -> Result<ScanHeader, Unsayable> {
+        let frame = measurements::frame(self.frame())?;
+        let mount = self.base_from_laser.map(|base_from_laser| Mount {
+            base_from_laser,
+            is_upside_down: self.upside_down,
+        });
+        Ok(ScanHeader {
+            laser: Name::new(&self.laser),
+            ..measurements::scan_header(&self.message, frame, mount)
+        })
     }
 
     /// As the engine takes it: seen from above.
@@ -50,7 +72,10 @@ impl TakenScan {
 pub(crate) struct Scans<'a> {
     recording: &'a Recording,
     records: Records<'a>,
+    /// The first is that of the scans that are answered.
     topics: Vec<Arc<str>>,
+    /// Of the other lasers, since the last scan that was taken.
+    others: Vec<TakenScan>,
     every: u64,
     seen: u64,
     mounts: BTreeMap<String, Mounting>,
@@ -65,15 +90,14 @@ struct Mounting {
 }
 
 impl<'a> Scans<'a> {
-    /// Each `every`-th scan of these channels; `every` is at least 1.
-    ///
-    /// This is the place where the scans of several lasers are to become one: those
-    /// of several channels come one after the other, each by itself.
+    /// Each `every`-th scan of the first of these channels, with those of the others
+    /// that came since; `every` is at least 1.
     pub(crate) fn of(recording: &'a Recording, topics: Vec<Arc<str>>, every: u64) -> Self {
         Scans {
             recording,
             records: recording.records_of(&[Kind::Scan]),
             topics,
+            others: Vec::new(),
             every,
             seen: 0,
             mounts: BTreeMap::new(),
@@ -84,8 +108,8 @@ impl<'a> Scans<'a> {
     /// How many there are, those that do not decode included.
     pub(crate) fn total(&self) -> u64 {
         let channels = self.recording.channels();
-        let meant = channels.filter(|channel| self.topics.contains(&channel.topic));
-        let scans: u64 = meant.map(|channel| channel.messages).sum();
+        let first = channels.filter(|channel| self.topics.first() == Some(&channel.topic));
+        let scans: u64 = first.map(|channel| channel.messages).sum();
         scans.div_ceil(self.every)
     }
 
@@ -101,8 +125,20 @@ impl<'a> Scans<'a> {
         is_taken
     }
 
+    /// Keeps a scan of another laser: the newest two, which also tell its period.
+    fn keep(&mut self, scan: TakenScan) {
+        let of_laser = |other: &TakenScan| other.laser == scan.laser;
+        if self.others.iter().filter(|other| of_laser(other)).count() == 2
+            && let Some(oldest) = self.others.iter().position(of_laser)
+        {
+            self.others.remove(oldest);
+        }
+        self.others.push(scan);
+    }
+
     fn with_mount(
         &mut self,
+        topic: &str,
         log_time_ns: i64,
         message: LaserScan,
     ) -> Result<TakenScan, RecordingError> {
@@ -116,6 +152,11 @@ impl<'a> Scans<'a> {
             base_from_laser,
             upside_down,
             message,
+            laser: match self.topics.len() {
+                1 => String::new(),
+                _ => lasers::name_of(topic),
+            },
+            others: Vec::new(),
         })
     }
 
@@ -144,13 +185,30 @@ impl Iterator for Scans<'_> {
                 Err(error) if self.topics.iter().all(|t| concerns_other(&error, t)) => continue,
                 other => other,
             };
-            let is_taken = self.take_next();
-            match record.map(|record| (record.log_time_ns, record.message)) {
-                Ok((time, Message::Scan(message))) if is_taken => {
-                    return Some(self.with_mount(time, message));
-                }
-                Ok(_) => {}
+            let record = match record {
+                Ok(record) => record,
                 // Also where it would not be taken: the file is not sound.
+                Err(error) => {
+                    self.take_next();
+                    return Some(Err(error));
+                }
+            };
+            let Message::Scan(message) = record.message else {
+                continue;
+            };
+            let is_first = self.topics.first() == Some(&record.topic);
+            if is_first && !self.take_next() {
+                continue;
+            }
+            let scan = self.with_mount(&record.topic, record.log_time_ns, message);
+            match scan {
+                Ok(scan) if !is_first => self.keep(scan),
+                Ok(scan) => {
+                    return Some(Ok(TakenScan {
+                        others: std::mem::take(&mut self.others),
+                        ..scan
+                    }));
+                }
                 Err(error) => return Some(Err(error)),
             }
         }
@@ -225,13 +283,18 @@ mod tests {
     }
 
     #[test]
-    fn scans_of_several_channels_come_by_time() {
+    fn the_scans_of_other_lasers_come_with_the_next_of_the_first() {
         let recording = recording(&["/front", "/rear", "/front", "/scan"]);
         let topics = vec!["/front".into(), "/rear".into()];
         let scans = Scans::of(&recording, topics, 1);
-        assert_eq!(scans.total(), 3);
-        let times: Vec<i64> = scans.map(|scan| scan.unwrap().log_time_ns).collect();
-        assert_eq!(times, [0, 1000, 2000]);
+        assert_eq!(scans.total(), 2);
+        let scans: Vec<TakenScan> = scans.map(Result::unwrap).collect();
+        let times: Vec<i64> = scans.iter().map(|scan| scan.log_time_ns).collect();
+        assert_eq!(times, [0, 2000]);
+        let others: Vec<_> = scans.iter().map(|scan| scan.others.len()).collect();
+        assert_eq!(others, [0, 1]);
+        let rear = &scans[1].others[0];
+        assert_eq!((rear.log_time_ns, &*rear.laser), (1000, "rear"));
     }
 
     #[test]
@@ -247,6 +310,8 @@ mod tests {
                 ranges: vec![1.0, 2.0],
                 ..LaserScan::default()
             },
+            laser: String::new(),
+            others: Vec::new(),
         };
         assert_eq!(scan.borrowed().bearing(1), -0.5);
         scan.upside_down = true;

@@ -6,6 +6,7 @@ use std::collections::BTreeSet;
 use std::path::{Path, PathBuf};
 
 use engine::localizer::Prior;
+use engine::peaks::Sought;
 use geometry::Pose;
 use map::OccupancyGrid;
 use messages::UNKNOWN;
@@ -15,6 +16,7 @@ use transport::with_causes;
 use super::heading::Headings;
 use super::layout::{frame_of, sides_of};
 use super::maps::Maps;
+use super::motion::Motion;
 use super::options::EngineOptions;
 use super::scans::Scans;
 use super::world::{Answer, World};
@@ -36,6 +38,7 @@ pub(crate) struct Session<'a> {
     map_file: PathBuf,
     engine: EngineOptions,
     headings: Headings,
+    motion: Motion<'a>,
 }
 
 /// A map that is ready to be searched.
@@ -81,6 +84,7 @@ impl<'a> Session<'a> {
             return Err(no_map(recording));
         }
         let mut session = Session {
+            motion: Motion::of(recording, &topics, &options.motion),
             scans: Scans::of(recording, topics, options.every),
             prepare_cpu_ms: 0.0,
             maps,
@@ -123,6 +127,7 @@ impl<'a> Session<'a> {
     /// What is worth knowing, and has not been said yet.
     pub(crate) fn take_notes(&mut self) -> Vec<String> {
         self.notes.extend(self.scans.take_notes());
+        self.notes.extend(self.motion.take_notes());
         let mut notes = std::mem::take(&mut self.notes);
         notes.retain(|note| self.said.insert(note.clone()));
         notes
@@ -225,8 +230,21 @@ impl<'a> Session<'a> {
                 });
             }
         };
-        let borrowed = scan.borrowed();
-        let (found, cpu_ms) = cpu::timed(|| prepared.world.locate(&borrowed, heading))?;
+        let motion = &mut self.motion;
+        if let Err(refusal) = motion.take(scan) {
+            return Ok(Reply {
+                map_id,
+                cpu_ms: 0.0,
+                answer: Err(refusal),
+            });
+        }
+        let sought = Sought::of(scan.base_from_laser, motion.seeks_base());
+        let (found, cpu_ms) = cpu::timed(|| {
+            motion.bring()?;
+            let heading = heading.map(|heading| motion.sought_heading(heading));
+            let seen = motion.seen();
+            prepared.world.locate(seen.observation(), heading, sought)
+        })?;
         Ok(Reply {
             map_id,
             cpu_ms,

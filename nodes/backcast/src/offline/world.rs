@@ -6,7 +6,8 @@ use engine::beams::BeamConfig;
 use engine::fit::{BeamClass, Ends, GridPose, JudgedBeam, Terrain};
 use engine::grid::GridFrame;
 use engine::localizer::{self, Localizer, Outcome, Prior};
-use engine::peaks::{self, PeakConfig, PeakInput, Places, Score};
+use engine::observation::Observation;
+use engine::peaks::{self, PeakConfig, PeakInput, Places, Score, Sought};
 use engine::scan::Scan;
 use engine::space::Space;
 use geometry::Pose;
@@ -36,6 +37,8 @@ struct Workspace {
     localizer: localizer::Workspace,
     ends: Ends,
     peaks: peaks::Workspace,
+    /// The last places, of the first laser.
+    of_laser: Places,
 }
 
 /// What a scan says about the place.
@@ -134,17 +137,21 @@ impl World {
     /// Searches all poses or, where the heading in the map is given in radians,
     /// all positions; the world must be prepared for the one or the other.
     ///
+    /// The places are those of the first laser, also where the base is sought.
+    ///
     /// # Errors
     /// The scan is refused.
     pub(crate) fn locate(
         &mut self,
-        scan: &Scan<'_>,
+        scan: Observation<'_>,
         heading: Option<f64>,
+        sought: Sought,
     ) -> Result<Answer<'_>, EngineError> {
         let Workspace {
             localizer: workspace,
             ends,
             peaks,
+            of_laser,
         } = &mut self.workspace;
         let localizer = &self.localizer;
         let found = match heading {
@@ -160,7 +167,14 @@ impl World {
                 peaks.by_fit(&input, (&self.terrain, ends), &self.peaks)
             }
         };
-        Ok(Answer { outcome, places })
+        of_laser.clone_from(places);
+        for place in &mut of_laser.places {
+            *place = place.of_laser(sought);
+        }
+        Ok(Answer {
+            outcome,
+            places: of_laser,
+        })
     }
 
     /// How a scan fits if it was taken at a pose of the map.

@@ -3,13 +3,14 @@
 
 use std::path::{Path, PathBuf};
 
+use conversion::lasers::name_of;
 use dataflow::{Dataflow, Node};
 use engine::heading::{HeadingConfig, HeadingFrom, HeadingSource};
 use messages::{Topic, topic};
 
 use super::arguments::{PLAYERS, find, leave_out_monitors, set, unset, value};
 use super::options::{Options, Rate};
-use super::replay;
+use super::{lasers, replay};
 use crate::BackcastError;
 
 const ACCUMULATOR: &str = "accumulator";
@@ -49,13 +50,18 @@ fn forward_replay(options: &Options, dataflow: &mut Dataflow) -> Result<(), Back
         .collect::<Result<_, _>>()
         .map_err(BackcastError::Folder)?;
     let replayer = replay::play(dataflow, &recordings);
-    for (option, topic) in [
-        ("--scan-topic", &options.scan_topic),
-        ("--odom-topic", &options.odom_topic),
-    ] {
-        if topic.is_some() {
-            set(replayer, option, topic.as_deref());
-        }
+    if options.odom_topic.is_some() {
+        set(replayer, "--odom-topic", options.odom_topic.as_deref());
+    }
+    if !options.scan_topic.is_empty() {
+        unset(replayer, "--scan-topic", true);
+    }
+    for topic in &options.scan_topic {
+        replayer.args.push(format!("--scan-topic={topic}"));
+    }
+    if options.scan_topic.len() > 1 {
+        let names = options.scan_topic.iter().map(|topic| name_of(topic));
+        lasers::join(dataflow, &names.collect::<Vec<_>>());
     }
     Ok(())
 }

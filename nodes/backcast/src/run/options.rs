@@ -34,9 +34,10 @@ pub(crate) struct Options {
     #[arg(long, value_name = "FILE")]
     pub(crate) replay: Vec<PathBuf>,
 
-    /// With --replay: the topic of the scans [default: the only one, or /scan]
+    /// With --replay: the topic of the scans [default: the only one, or /scan];
+    /// several lasers, named one by one, are joined
     #[arg(long, value_name = "TOPIC", requires = "replay")]
-    pub(crate) scan_topic: Option<String>,
+    pub(crate) scan_topic: Vec<String>,
 
     /// With --replay: the topic of the odometry [default: the only one, or /odom]
     #[arg(long, value_name = "TOPIC", requires = "replay")]

@@ -1,6 +1,8 @@
 //! Where messages leave the node and troubles are reported.
 
-use messages::{NodeState, ScanHeader, Stamp, topic};
+use std::collections::BTreeMap;
+
+use messages::{Name, NodeState, ScanHeader, Stamp, topic};
 use playback::{Content, PlaybackError, Poses, Timed};
 use transport::{Graph, Health, Publisher, TransportError, monotonic_ns, with_causes};
 
@@ -11,6 +13,9 @@ pub(super) struct Outlet {
     poses: Poses,
     pub(super) health: Health,
     pub(super) summary: Summary,
+    pub(super) first_laser: Name,
+    /// Scans sent of the other lasers.
+    others: BTreeMap<String, u64>,
 }
 
 impl Outlet {
@@ -20,6 +25,8 @@ impl Outlet {
             poses: Poses::open(graph)?,
             health: graph.health()?,
             summary: Summary::default(),
+            first_laser: Name::new(""),
+            others: BTreeMap::new(),
         })
     }
 
@@ -28,11 +35,12 @@ impl Outlet {
         self.scans.has_subscribers()
     }
 
-    /// Sends a message now; returns the stamp that its answer will carry.
+    /// Sends a message now; returns the stamp that its answer will carry, if it is to
+    /// be answered.
     pub(super) fn send(&mut self, timed: Timed) -> Result<Option<Stamp>, TransportError> {
         self.health.count_sent(1);
         match timed.content {
-            Content::Scan(header, ranges) => self.send_scan(*header, &ranges).map(Some),
+            Content::Scan(header, ranges) => self.send_scan(*header, &ranges),
             Content::Odometry(odometry) => self.poses.send_odometry(*odometry).map(|()| None),
             Content::GroundTruth(truth) => self.poses.send_truth(*truth).map(|()| None),
         }
@@ -42,15 +50,21 @@ impl Outlet {
         &mut self,
         mut header: ScanHeader,
         ranges: &[f32],
-    ) -> Result<Stamp, TransportError> {
+    ) -> Result<Option<Stamp>, TransportError> {
         let mut loan = self.scans.loan(ranges.len())?;
         loan.items_mut().copy_from_slice(ranges);
-        header.stamp.counter = self.summary.scans;
+        // Each laser counts its own scans, and those of the first are answered.
+        let is_first = header.laser == self.first_laser;
+        let count = match is_first {
+            true => &mut self.summary.scans,
+            false => self.others.entry(header.laser.to_string()).or_default(),
+        };
+        header.stamp.counter = *count;
+        *count += 1;
         header.stamp.entered_ns = monotonic_ns();
         *loan.header_mut() = header;
         loan.send()?;
-        self.summary.scans += 1;
-        Ok(header.stamp)
+        Ok(is_first.then_some(header.stamp))
     }
 
     /// An answer came, to whichever scan.
