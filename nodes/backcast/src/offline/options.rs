@@ -11,6 +11,7 @@ use engine::peaks::PeakConfig;
 use map::OccupancyGrid;
 use recording::Recording;
 
+use super::progress::say;
 use super::session::map_in;
 use crate::BackcastError;
 
@@ -70,6 +71,6 @@ fn map_of(file: &Path) -> Result<OccupancyGrid, BackcastError> {
     if file.extension().is_some_and(is_recording) {
         map_in(&Recording::open(file)?)
     } else {
-        Ok(map::load(file)?)
+        Ok(map::load_noting(file, |key| say(&key.to_string()))?)
     }
 }
