@@ -333,6 +333,11 @@ fn where_nothing_can_be_converted_no_file_is_left() {
     let (code, _, said) = run(folder.path(), "convert r.mcap c.log");
     assert_eq!(code, 1, "{said}");
     assert!(!folder.path().join("c.log").exists(), "{said}");
+    // One of a kind that is no recording here is named by what reads recordings.
+    fs::write(folder.path().join("drive.bag"), "#ROSBAG V2.0\nrest").unwrap();
+    let (code, _, said) = run(folder.path(), "convert drive.bag b.mcap");
+    assert_eq!(code, 1, "{said}");
+    assert!(said.contains("drive.bag"), "{said}");
     let (code, _, said) = run(folder.path(), "convert none.log b.mcap");
     assert_eq!(code, 1, "{said}");
     assert!(said.contains("cannot read none.log"), "{said}");

@@ -49,9 +49,9 @@ pub(super) struct Laser {
 /// What a line tells beside its readings; kinds that tell more are greater.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
 pub(super) enum Kind {
-    /// `RAWLASER1` or `LASER3`: no poses.
+    /// `RAWLASER1`: angles, and no poses.
     Raw,
-    /// `FLASER`: poses, and no angles.
+    /// `FLASER` or `LASER3`: no angles, and poses of the first two.
     Old,
     /// `ROBOTLASER1`: both.
     Robot,

@@ -132,7 +132,11 @@ pub(crate) fn run(config: &Config) -> Result<ExitCode, BackcastError> {
         (file::Kind::Recording, false) => recording_to_log,
         (file::Kind::Recording, true) if is_bag(&config.from) => bag_to_recording,
         (file::Kind::Log, false) => return Err(no_conversion("log", &config.to)),
-        (file::Kind::Recording, true) => return Err(no_conversion("mcap", &config.to)),
+        (file::Kind::Recording, true) => {
+            // What cannot be read at all is told by what reads recordings.
+            Recording::open(&config.from)?;
+            return Err(no_conversion(&ending(&config.from), &config.to));
+        }
         (file::Kind::Unknown, _) => {
             return Err(no_conversion(&ending(&config.from), &config.to));
         }

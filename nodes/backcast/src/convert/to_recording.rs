@@ -12,7 +12,7 @@ use recording::{GROUND_TRUTH, Message, ODOM, SCAN, TF_STATIC};
 use transport::with_causes;
 
 use super::angles;
-use super::carmen::{Broken, Fault, Laser, Line, Odometry, name_of};
+use super::carmen::{Broken, Fault, Laser, Line, Odometry};
 use super::command::{Report, Rules};
 use super::file::for_each_line;
 use super::read;
@@ -79,21 +79,18 @@ impl<W: Write + Seek> Conversion<'_, W> {
             self.report.tally.repeated(laser.name());
             return Ok(());
         };
-        let name = || name_of(laser.kind, laser.number);
         let Some((ns, stamp)) = moment(laser.time_ns) else {
-            self.report
-                .tally
-                .broken(number, &late(name(), laser.time_ns));
+            let broken = late(laser.name(), laser.time_ns);
+            self.report.tally.broken(number, &broken);
             return Ok(());
         };
         let mounting = self.survey.parameters.of(laser.number);
         let angles = match angles::of(laser, mounting) {
             Ok(angles) => angles,
             Err(reason) => {
-                let (name, fault) = (name(), Fault::Angles);
                 let broken = Broken {
-                    name,
-                    fault,
+                    name: laser.name(),
+                    fault: Fault::Angles,
                     reason,
                 };
                 self.report.tally.broken(number, &broken);
@@ -104,27 +101,37 @@ impl<W: Write + Seek> Conversion<'_, W> {
         let (topic, frame) = (source.topic.clone(), source.frame.clone());
         let missing = laser.ranges.iter().filter(|range| range.is_nan()).count();
         self.report.tally.missing_readings += missing as u64;
-        match laser.poses {
-            Some(poses) if self.rules.truth => {
-                if topic == SCAN {
-                    self.truth(ns, stamp, poses.laser)?;
-                }
-            }
-            Some(poses) => {
-                let base_from_laser = poses.robot.inverse().then(poses.laser);
-                self.mount(ns, &frame, base_from_laser, stamp)?;
-            }
-            None => {
-                if let Some(mount) = mounting.base_from_laser(laser.number) {
-                    self.mount(ns, &frame, mount, stamp)?;
-                }
-            }
-        }
+        self.place(laser, (ns, stamp), &topic, &frame)?;
         if let Some(poses) = laser.poses {
             self.odometry_at(ns, stamp, poses.robot, (0.0, 0.0))?;
         }
         self.report.scans += 1;
         self.write(&topic, ns, &Message::Scan(message))
+    }
+
+    /// Notes where the laser was, or where it sits on the robot.
+    fn place(
+        &mut self,
+        laser: &Laser,
+        (ns, stamp): (i64, Time),
+        topic: &str,
+        frame: &str,
+    ) -> Result<(), BackcastError> {
+        let mount = match laser.poses {
+            Some(poses) if self.rules.truth && topic == SCAN => {
+                return self.truth(ns, stamp, poses.laser);
+            }
+            Some(_) if self.rules.truth => None,
+            Some(poses) => Some(poses.robot.inverse().then(poses.laser)),
+            None => {
+                let mounting = self.survey.parameters.of(laser.number);
+                mounting.base_from_laser(laser.number)
+            }
+        };
+        match mount {
+            Some(mount) => self.mount(ns, frame, mount, stamp),
+            None => Ok(()),
+        }
     }
 
     fn truth(&mut self, ns: i64, stamp: Time, laser: geometry::Pose) -> Result<(), BackcastError> {
