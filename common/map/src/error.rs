@@ -28,8 +28,8 @@ pub enum MapError {
         /// The most that are read.
         allowed: u64,
     },
-    /// The description is not YAML of the expected form: bad syntax, an unknown,
-    /// missing or repeated key, a value of the wrong type.
+    /// The description is not YAML of the expected form: bad syntax, a
+    /// missing or repeated key, a list where a value should stand.
     #[error("{}:{line}:{column}: {reason}", path.display())]
     Yaml {
         /// The YAML file.
@@ -41,7 +41,7 @@ pub enum MapError {
         /// What is wrong, and the keys or types that are allowed.
         reason: String,
     },
-    /// A value of the description is of the right type but not allowed.
+    /// A value of the description is not allowed.
     #[error("{}:{line}:{column}: {key} is {found}; allowed: {allowed}", path.display())]
     Value {
         /// The YAML file.
@@ -72,22 +72,12 @@ pub enum MapError {
         source: io::Error,
     },
     /// The image is of a kind that is not read.
-    #[error("{} starts with {found}; allowed: PGM (P2 or P5) and PNG", path.display())]
+    #[error("{} holds {found}; allowed: PGM (P2 or P5), PNG and BMP", path.display())]
     ImageKind {
         /// The image file.
         path: PathBuf,
-        /// Its first bytes.
+        /// The kind by its first bytes, or these.
         found: String,
-    },
-    /// The image is of another kind than the name in the description says.
-    #[error("{}, as the map description names it, should hold {named} but holds {found}", path.display())]
-    ImageName {
-        /// The image file.
-        path: PathBuf,
-        /// The kind that its suffix says.
-        named: &'static str,
-        /// The kind that it is.
-        found: &'static str,
     },
     /// The image claims a size that is not allowed.
     #[error("{} claims {width} x {height} cells; allowed: sides of 1..={MAX_SIDE} and at most {MAX_CELLS} cells", path.display())]

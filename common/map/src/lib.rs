@@ -1,15 +1,18 @@
 //! Occupancy grids, and the map files of ROS that hold them.
 //!
-//! [`load`] reads what `map_server` reads: a YAML description beside a PGM or
-//! PNG image, in trinary, scale or raw mode; [`save`] writes such a pair.
+//! [`load`] reads what `map_server` reads: a YAML description beside a PGM,
+//! PNG or BMP image, in trinary, scale or raw mode; [`save`] writes such a pair.
 //! [`OccupancyGrid::from_parts`] takes a grid from anywhere else. Every grid
 //! that the crate hands out is within the limits that it states. It knows no
 //! topic and no engine, and repairs nothing: a map that is not sound is refused
 //! with file, place and what is allowed.
 
+mod bmp;
 mod description;
 mod error;
 mod grid;
+mod keys;
+mod kind;
 mod load;
 mod pgm;
 mod png;
@@ -22,5 +25,6 @@ pub use error::MapError;
 pub use grid::{
     MAX_CELLS, MAX_ORIGIN_M, MAX_RESOLUTION_M, MAX_SIDE, MIN_RESOLUTION_M, OccupancyGrid, UNKNOWN,
 };
-pub use load::{image_of, load};
+pub use keys::UnknownKey;
+pub use load::{image_of, load, load_noting};
 pub use save::save;

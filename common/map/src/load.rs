@@ -6,7 +6,7 @@ use std::path::{Path, PathBuf};
 
 use crate::description::Description;
 use crate::raster::Raster;
-use crate::{MapError, OccupancyGrid, pgm, png};
+use crate::{MapError, OccupancyGrid, UnknownKey, kind};
 
 /// Most bytes of a description; a sound one has a few hundred.
 const MAX_DESCRIPTION_BYTES: u64 = 64 << 10;
@@ -21,9 +21,22 @@ const MAX_IMAGE_BYTES: u64 = 1 << 31;
 /// # Errors
 /// Says which file is not there, or what in it is not sound and what is allowed.
 pub fn load(yaml: impl AsRef<Path>) -> Result<OccupancyGrid, MapError> {
+    load_noting(yaml, |_| {})
+}
+
+/// As [`load`], and hands each key of the description that is not known to `note`,
+/// to be shown to the user.
+///
+/// # Errors
+/// As [`load`].
+pub fn load_noting(
+    yaml: impl AsRef<Path>,
+    note: impl FnMut(&UnknownKey),
+) -> Result<OccupancyGrid, MapError> {
     let yaml = yaml.as_ref();
     let text = read_text(yaml)?;
     let description = Description::parse(&text, yaml)?;
+    description.unknown.iter().for_each(note);
     let (line, column) = description.image_named_at;
     let bytes = read_file(&description.image, MAX_IMAGE_BYTES, |source| {
         MapError::Image {
@@ -34,7 +47,7 @@ pub fn load(yaml: impl AsRef<Path>) -> Result<OccupancyGrid, MapError> {
             source,
         }
     })?;
-    let raster = decode(&bytes, &description.image)?;
+    let raster = kind::decode(&bytes, &description.image)?;
     drop(bytes);
     OccupancyGrid::from_parts(
         raster.width,
@@ -59,49 +72,6 @@ fn cells(raster: &Raster, description: &Description) -> Vec<u8> {
     let rules = description.rules;
     let rows = (0..raster.height).rev().map(|y| raster.row(y));
     rows.flatten().map(|pixel| rules.occupancy(pixel)).collect()
-}
-
-fn decode(bytes: &[u8], path: &Path) -> Result<Raster, MapError> {
-    if bytes.starts_with(png::SIGNATURE) {
-        check_name(path, "PNG")?;
-        png::decode(bytes, path)
-    } else if bytes.starts_with(b"P2") || bytes.starts_with(b"P5") {
-        check_name(path, "PGM")?;
-        pgm::decode(bytes, path)
-    } else {
-        Err(wrong_kind(bytes, path))
-    }
-}
-
-/// A name that says one kind and a content of the other: most likely not the
-/// image that was meant. Names without such a suffix say nothing.
-fn check_name(path: &Path, found: &'static str) -> Result<(), MapError> {
-    let suffix = path.extension().unwrap_or_default().to_ascii_lowercase();
-    let named = match suffix.to_str() {
-        Some("pgm") => "PGM",
-        Some("png") => "PNG",
-        _ => return Ok(()),
-    };
-    if named == found {
-        return Ok(());
-    }
-    Err(MapError::ImageName {
-        path: path.to_owned(),
-        named,
-        found,
-    })
-}
-
-/// The error for a file that is neither PGM nor PNG.
-pub(crate) fn wrong_kind(bytes: &[u8], path: &Path) -> MapError {
-    let start = &bytes[..bytes.len().min(8)];
-    MapError::ImageKind {
-        path: path.to_owned(),
-        found: match start {
-            [] => "nothing: it is empty".to_owned(),
-            start => format!("\"{}\"", start.escape_ascii()),
-        },
-    }
 }
 
 fn read_text(yaml: &Path) -> Result<String, MapError> {
@@ -224,34 +194,38 @@ mod tests {
     }
 
     #[test]
-    fn image_and_description_that_disagree_are_refused() {
+    fn the_content_of_an_image_decides_not_its_name() {
         let grey = b"P5 1 1 255\n\x00";
-        let yaml = YAML.replace("floor.pgm", "floor.PNG");
-        let error = load_from(&folder(&yaml, "floor.PNG", grey)).unwrap_err();
-        assert!(
-            error.to_string().ends_with("should hold PNG but holds PGM"),
-            "{error}"
-        );
-        // A name that says nothing about the kind.
-        let yaml = YAML.replace("floor.pgm", "floor");
-        assert!(load_from(&folder(&yaml, "floor", grey)).is_ok());
+        for name in [
+            "floor.PNG",
+            "floor.bmp",
+            "floor.jpg",
+            "floor",
+            "my floor.pgm",
+        ] {
+            let yaml = YAML.replace("floor.pgm", name);
+            let map = load_from(&folder(&yaml, name, grey)).unwrap();
+            assert_eq!(map.cells, [100], "{name}");
+        }
     }
 
     #[test]
-    fn other_kinds_of_file_are_refused() {
-        for (image, shown) in [
-            (&b""[..], "starts with nothing: it is empty"),
-            (b"P6 1 1 255\n\x00\x00\x00", "starts with \"P6 1 1 2\""),
-            (b"\xff\xd8\xff\xe0", "starts with \"\\xff\\xd8\\xff\\xe0\""),
-        ] {
-            let error = load_from(&folder(YAML, "floor.pgm", image)).unwrap_err();
-            let message = error.to_string();
-            assert!(message.contains(shown), "{message}");
-            assert!(
-                message.contains("allowed: PGM (P2 or P5) and PNG"),
-                "{message}"
-            );
-        }
+    fn unknown_keys_are_noted_and_the_map_is_read() {
+        let yaml = format!("{YAML}frame_id: map\nlayers: [{{a: 1}}, b]\n");
+        let folder = folder(&yaml, "floor.pgm", b"P5 1 1 255\n\x00");
+        let mut notes = Vec::new();
+        let path = folder.path().join("floor.yaml");
+        let map = load_noting(&path, |key| notes.push(key.to_string())).unwrap();
+        assert_eq!(map.cells, [100]);
+        let place = |line: u32, key: &str| {
+            let path = path.display();
+            format!("{path}:{line}:1: the key {key} is not known and has no effect; known are ")
+        };
+        assert_eq!(notes.len(), 2);
+        assert!(notes[0].starts_with(&place(7, "frame_id")), "{notes:?}");
+        assert!(notes[1].starts_with(&place(8, "layers")), "{notes:?}");
+        assert!(notes[1].ends_with("free_thresh, mode"), "{notes:?}");
+        assert_eq!(load(&path).unwrap(), map);
     }
 
     #[test]

@@ -28,7 +28,7 @@ pub(crate) fn decode(bytes: &[u8], path: &Path) -> Result<Raster, MapError> {
         .map_err(damaged)?
         .into_inner();
     let Some(header) = header.as_graymap() else {
-        return Err(crate::load::wrong_kind(bytes, path));
+        return Err(crate::kind::wrong_kind(bytes, path));
     };
     if !size_is_allowed(header.width, header.height) {
         return Err(MapError::ImageSize {

@@ -139,7 +139,7 @@ fn layout(colour: ColorType, path: &Path) -> Result<(Channels, bool), MapError> 
         other => {
             return Err(MapError::ImageKind {
                 path: path.to_owned(),
-                found: format!("samples of type {other:?}"),
+                found: format!("a PNG with samples of type {other:?}"),
             });
         }
     })

@@ -272,6 +272,14 @@ pub enum BackcastError {
     /// A laser log cannot be read or written on.
     #[error("the log cannot be read or written to its end")]
     Log(#[source] io::Error),
+    /// A file to convert holds nothing that can be.
+    #[error("nothing in {} could be converted, and no file was written: {reason}", file.display())]
+    NothingConverted {
+        /// The file.
+        file: PathBuf,
+        /// What it holds instead.
+        reason: String,
+    },
     /// A graph did not answer every scan.
     #[error("{}: {answered} of {scans} scans were answered; the graph's own lines say why", recording.display())]
     Unanswered {

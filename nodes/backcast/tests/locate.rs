@@ -229,6 +229,18 @@ fn the_map_that_is_named_goes_before_the_one_in_the_recording() {
 }
 
 #[test]
+fn a_key_of_a_map_that_is_not_known_is_named_and_the_map_is_used() {
+    let folder = folder(&[scan_at(1, HERE)]);
+    let yaml = folder.path().join("room.yaml");
+    map::save(&room(), &yaml).unwrap();
+    let text = std::fs::read_to_string(&yaml).unwrap();
+    std::fs::write(&yaml, format!("{text}frame_id: map\n")).unwrap();
+    let (code, found, said) = run(folder.path(), "locate --json --bag r.mcap --map room.yaml");
+    assert_eq!((code, found.lines().count()), (0, 1), "{said}");
+    assert!(said.contains("the key frame_id is not known"), "{said}");
+}
+
+#[test]
 fn a_known_heading_comes_from_where_it_is_said_to() {
     let folder = folder(&[
         map_message(),

@@ -1,4 +1,4 @@
-//! `backcast info`, `doctor` and `convert` as processes.
+//! `backcast info` and `doctor` as processes.
 
 #![allow(
     clippy::unwrap_used,
@@ -208,47 +208,4 @@ fn what_will_not_work_is_a_problem() {
         ("/b", Message::Scan(scan(1, HERE))),
     ];
     finds(&two, 1, "problem", "several channels");
-}
-
-#[test]
-fn a_recording_becomes_a_log_and_a_recording_again() {
-    let folder = folder(&[]);
-    let from = recordings().join("malaga_corridor/recording.mcap");
-    let convert = |arguments: &str| run(folder.path(), &format!("convert {arguments}"));
-    let (code, _, said) = convert(&format!("{} a.log", from.display()));
-    assert_eq!(code, 0, "{said}");
-    assert!(
-        said.contains("37 scans, 37 poses of the odometry"),
-        "{said}"
-    );
-    let log = fs::read_to_string(folder.path().join("a.log")).unwrap();
-    assert_eq!(
-        log.lines()
-            .filter(|line| line.starts_with("FLASER 361 "))
-            .count(),
-        37
-    );
-    let (code, _, said) = convert("a.log a.mcap");
-    assert_eq!(code, 0, "{said}");
-    let (code, _, said) = convert("a.mcap b.log");
-    assert_eq!(code, 0, "{said}");
-    let again = fs::read_to_string(folder.path().join("b.log")).unwrap();
-    let numbers = |log: &str| -> Vec<f64> {
-        let words = log.split_ascii_whitespace();
-        words.filter_map(|word| word.parse().ok()).collect()
-    };
-    let (first, second) = (numbers(&log), numbers(&again));
-    assert_eq!(first.len(), second.len());
-    for (first, second) in first.iter().zip(&second) {
-        let is_same = first == second;
-        // Headings pass through a quaternion, laser poses through the mount.
-        assert!(
-            is_same || (first - second).abs() < 1e-9,
-            "{first} is not {second}"
-        );
-    }
-    let (code, _, said) = convert("a.log a.mcap");
-    assert_eq!(code, 1, "what exists is kept");
-    assert!(said.contains("cannot create a.mcap"), "{said}");
-    assert_eq!(convert("a.log c.bag").0, 2);
 }

@@ -51,9 +51,11 @@ pub fn run(graph: &Graph, config: &Config) -> Result<(), LocateError> {
 
 fn prepare(config: &Config) -> Result<Locator, LocateError> {
     let path = &config.map;
-    let grid = map::load(path).map_err(|source| LocateError::Map {
-        path: path.clone(),
-        source: Box::new(source),
+    let grid = map::load_noting(path, |key| tracing::warn!("{key}")).map_err(|source| {
+        LocateError::Map {
+            path: path.clone(),
+            source: Box::new(source),
+        }
     })?;
     let locator = Locator::new(&grid, config.cells, &config.localizer, config.peaks);
     locator.map_err(|source| LocateError::UnusableMap {

@@ -8,7 +8,7 @@ use clap::Parser;
 #[derive(Debug, Clone, Parser)]
 #[command(name = "map_server", version)]
 pub struct Config {
-    /// The map: a YAML file as ROS's map_server reads it, beside a PGM or PNG
+    /// The map: a YAML file as ROS's map_server reads it, beside a PGM, PNG or BMP
     /// image.
     #[arg(long, value_name = "FILE")]
     pub map: PathBuf,

@@ -85,8 +85,9 @@ fn named_image(yaml: &Path) -> Option<PathBuf> {
     let mut text = String::new();
     let file = fs::File::open(yaml).ok()?;
     file.take(MAX_YAML_BYTES).read_to_string(&mut text).ok()?;
-    let named: Named = serde_saphyr::from_str(&text).ok()?;
-    Some(yaml.parent()?.join(named.image))
+    let text = text.strip_prefix('\u{feff}').unwrap_or(&text);
+    let named: Named = serde_saphyr::from_str(text).ok()?;
+    Some(yaml.parent()?.join(named.image.trim()))
 }
 
 #[cfg(test)]

@@ -30,7 +30,7 @@ pub fn run(graph: &Graph, config: &Config) -> Result<(), MapServerError> {
     };
     // Looked at before loading: what changes in between is noticed.
     let mut watch = Watch::new(files.look());
-    let grid = map::load(&config.map).map_err(|source| MapServerError::Map {
+    let grid = load(config).map_err(|source| MapServerError::Map {
         path: config.map.clone(),
         source: Box::new(source),
     })?;
@@ -38,7 +38,7 @@ pub fn run(graph: &Graph, config: &Config) -> Result<(), MapServerError> {
     drop(grid);
     graph.run(&[], TICK, |_| {
         if watch.look(files.look()) == Look::Settled {
-            let outcome = map::load(&config.map);
+            let outcome = load(config);
             if watch.judged(files.look()) {
                 server.judge(outcome, config)?;
             }
@@ -46,6 +46,11 @@ pub fn run(graph: &Graph, config: &Config) -> Result<(), MapServerError> {
         server.health.tick()?;
         Ok(Flow::Continue)
     })
+}
+
+/// Reads the map; keys of its description that mean nothing are logged.
+fn load(config: &Config) -> Result<OccupancyGrid, map::MapError> {
+    map::load_noting(&config.map, |key| tracing::warn!("{key}"))
 }
 
 struct Server {

@@ -130,6 +130,20 @@ fn the_map_is_served_also_to_those_who_join_late() {
 }
 
 #[test]
+fn a_key_that_is_not_known_is_logged_and_the_map_is_served() {
+    let mut world = World::new("unknown_key", &[0, 255]);
+    let yaml = fs::read_to_string(world.at("map.yaml")).unwrap();
+    world.replace("map.yaml", format!("{yaml}frame_id: map\n").as_bytes());
+    let maps = world.graph.subscriber::<topic::Map>().unwrap();
+    world.start();
+    world.wait_for_cells(&maps, 0, &[100, 0]);
+    world.interrupt();
+    let (status, log) = world.finish();
+    assert!(status.success(), "{log}");
+    assert!(log.contains("the key frame_id is not known"), "{log}");
+}
+
+#[test]
 fn a_changed_map_is_served_and_a_broken_one_refused() {
     let mut world = World::new("change", &[0, 255]);
     let maps = world.graph.subscriber::<topic::Map>().unwrap();

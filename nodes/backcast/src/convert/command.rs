@@ -1,13 +1,15 @@
 //! What `backcast convert` does.
 
 use std::fs::File;
-use std::io::{BufReader, BufWriter, Write};
+use std::io::{BufWriter, Write};
 use std::path::{Path, PathBuf};
 use std::process::ExitCode;
 
 use recording::write::{Packing, RecordingWriter};
 use recording::{Kind, Recording, is_bag};
 
+use super::file::{self, ending};
+use super::tally::Tally;
 use super::{to_carmen, to_recording};
 use crate::BackcastError;
 use crate::cli::LOST_DATA;
@@ -15,15 +17,17 @@ use crate::offline::say;
 
 /// What stands below the options.
 pub(crate) const NOTES: &str = "\
-.log and .clf are CARMEN's laser logs, .mcap a recording with ROS 2 messages, .db3 (or a folder of
-such) a bag of rosbag2 in SQLite, of which all topics are converted.
+.log, .clf and .txt are CARMEN's laser logs, which may be packed with gzip (.log.gz); .mcap is a
+recording with ROS 2 messages, .db3 (or a folder of such) a bag of rosbag2 in SQLite, of which all
+topics are converted. What a file holds decides where its name does not tell.
 
-Exit codes: 0 done, 1 failed, 2 wrong use, 3 done but something could not be read";
+Exit codes: 0 done, 1 failed or nothing to convert, which leaves no file, 2 wrong use, 3 done but
+something could not be read";
 
 /// What `backcast convert` takes.
 #[derive(Debug, clap::Args)]
 pub(crate) struct Config {
-    /// The file to read: .log, .clf, .mcap or .db3, or the folder of a bag
+    /// The file to read: .log, .clf, .txt, .mcap or .db3, or the folder of a bag
     #[arg(value_name = "FROM")]
     from: PathBuf,
 
@@ -35,7 +39,7 @@ pub(crate) struct Config {
     #[arg(long)]
     truth: bool,
 
-    /// Readings above are no returns, metres, where the log does not say
+    /// Readings of so much and more are no returns, metres, where the log does not say
     #[arg(long, value_name = "METRES", default_value_t = 80.0, value_parser = range)]
     range_max: f32,
 }
@@ -60,43 +64,120 @@ pub(super) struct Rules {
 pub(super) struct Report {
     pub(super) scans: u64,
     pub(super) odometry: u64,
-    /// Lines of kinds that are not converted.
-    pub(super) left_out: u64,
-    /// What could not be read, and why the first could not.
+    /// Messages of a bag, whatever they are.
+    pub(super) messages: u64,
+    /// How lasers were understood, a line each.
+    pub(super) remarks: Vec<String>,
+    /// Lines of a log that were left out.
+    pub(super) tally: Tally,
+    /// Messages that could not be read, and why the first could not.
     pub(super) refused: u64,
     pub(super) first_refusal: Option<String>,
+    /// Why the file could not be read to its end.
+    pub(super) damage: Option<String>,
     /// Scans whose laser sits elsewhere than that of the first one.
     pub(super) moved_mounts: u64,
+}
+
+impl Report {
+    /// What could not be read, a line each.
+    fn losses(&self) -> Vec<String> {
+        let mut losses = Vec::new();
+        if let Some(first) = &self.tally.first_broken {
+            losses.push(format!(
+                "{} could not be read; {first}",
+                self.tally.broken_lines()
+            ));
+        }
+        if let Some(first) = &self.first_refusal {
+            losses.push(format!("{} could not be read; {first}", self.refused));
+        }
+        if let Some(damage) = &self.damage {
+            losses.push(format!(
+                "it is damaged, and was read only to there: {damage}"
+            ));
+        }
+        losses
+    }
+
+    /// Why there is nothing, in words.
+    fn why_nothing(&self) -> String {
+        let mut reasons = Vec::new();
+        if self.odometry > 0 {
+            reasons.push(format!("{} poses of the odometry", self.odometry));
+        }
+        reasons.extend(self.tally.text());
+        reasons.extend(self.losses());
+        match reasons.is_empty() {
+            true => "it is empty".to_owned(),
+            false => format!("it holds {}", reasons.join("; ")),
+        }
+    }
 }
 
 /// Converts one file.
 ///
 /// # Errors
-/// The files' kinds do not go together, one cannot be read or written, or the
-/// one to write exists.
+/// The files' kinds do not go together, one cannot be read or written, the one to
+/// write exists, or nothing could be converted.
 pub(crate) fn run(config: &Config) -> Result<ExitCode, BackcastError> {
-    let from = match is_bag(&config.from) {
-        true => "db3",
-        false => kind(&config.from),
-    };
-    let report = match (from, kind(&config.to)) {
-        ("log" | "clf", "mcap") => log_to_recording(config)?,
-        ("mcap" | "db3", "log" | "clf") => recording_to_log(config)?,
-        ("db3", "mcap") => bag_to_recording(config)?,
-        (from, to) => {
-            return Err(BackcastError::Usage(format!(
-                "from .{from} to .{to} is no conversion; allowed are .log, .clf and .db3 to \
-                 .mcap, and .mcap and .db3 to .log"
-            )));
+    let to = ending(&config.to);
+    let is_written = matches!(to.as_str(), "mcap" | "log" | "clf" | "txt");
+    if !is_written || ends_packed(&config.to) {
+        return Err(no_conversion(&ending(&config.from), &config.to));
+    }
+    let from = file::kind(&config.from).map_err(failed("read", &config.from))?;
+    let convert = match (from, to == "mcap") {
+        (file::Kind::Log, true) => log_to_recording,
+        (file::Kind::Recording, false) => recording_to_log,
+        (file::Kind::Recording, true) if is_bag(&config.from) => bag_to_recording,
+        (file::Kind::Log, false) => return Err(no_conversion("log", &config.to)),
+        (file::Kind::Recording, true) => {
+            // What cannot be read at all is told by what reads recordings.
+            Recording::open(&config.from)?;
+            return Err(no_conversion(&ending(&config.from), &config.to));
+        }
+        (file::Kind::Unknown, _) => {
+            return Err(no_conversion(&ending(&config.from), &config.to));
         }
     };
+    let (file, unfinished) = create(&config.to)?;
+    let report = convert(config, file)?;
+    if report.scans == 0 && report.messages == 0 {
+        return Err(BackcastError::NothingConverted {
+            file: config.from.clone(),
+            reason: report.why_nothing(),
+        });
+    }
+    unfinished.keep();
+    Ok(tell(&report, &config.to))
+}
+
+fn no_conversion(from: &str, to: &Path) -> BackcastError {
+    let to = to.extension().unwrap_or_default().to_string_lossy();
+    BackcastError::Usage(format!(
+        "from .{from} to .{to} is no conversion; allowed are .log, .clf, .txt and .db3 to .mcap, \
+         and .mcap and .db3 to .log"
+    ))
+}
+
+fn ends_packed(path: &Path) -> bool {
+    path.extension()
+        .is_some_and(|e| e.eq_ignore_ascii_case("gz"))
+}
+
+fn tell(report: &Report, to: &Path) -> ExitCode {
     let Report {
         scans, odometry, ..
     } = report;
-    let to = config.to.display();
+    let to = to.display();
+    if report.messages > 0 {
+        say(&format!("{} messages of all topics", report.messages));
+    }
     say(&format!(
         "{to}: {scans} scans, {odometry} poses of the odometry"
     ));
+    report.remarks.iter().for_each(|remark| say(remark));
     if report.moved_mounts > 0 {
         say(&format!(
             "{} scans were taken where the laser sat elsewhere than at first; poses that were \
@@ -104,52 +185,46 @@ pub(crate) fn run(config: &Config) -> Result<ExitCode, BackcastError> {
             report.moved_mounts
         ));
     }
-    match report.first_refusal {
-        None => Ok(ExitCode::SUCCESS),
-        Some(refusal) => {
-            say(&format!("{} could not be read; {refusal}", report.refused));
-            Ok(ExitCode::from(LOST_DATA))
-        }
+    if report.tally.missing_readings > 0 {
+        say(&format!(
+            "{} readings are no numbers, and so many beams are missing",
+            report.tally.missing_readings
+        ));
+    }
+    if let Some(left_out) = report.tally.text() {
+        say(&format!("left out: {left_out}"));
+    }
+    let losses = report.losses();
+    losses.iter().for_each(|loss| say(loss));
+    match losses.is_empty() {
+        true => ExitCode::SUCCESS,
+        false => ExitCode::from(LOST_DATA),
     }
 }
 
-fn kind(path: &Path) -> &str {
-    path.extension()
-        .and_then(|kind| kind.to_str())
-        .unwrap_or_default()
-}
-
-fn log_to_recording(config: &Config) -> Result<Report, BackcastError> {
-    let log = File::open(&config.from).map_err(failed("read", &config.from))?;
+fn log_to_recording(config: &Config, to: BufWriter<File>) -> Result<Report, BackcastError> {
     let rules = Rules {
         truth: config.truth,
         range_max_m: config.range_max,
     };
-    let mut writer = RecordingWriter::new(create(&config.to)?, Packing::Zstd)?;
-    let report = to_recording::convert(BufReader::new(log), &rules, &mut writer)?;
-    writer
-        .finish()?
-        .flush()
-        .map_err(failed("write", &config.to))?;
+    let open = || file::open(&config.from).map_err(failed("read", &config.from));
+    let mut writer = RecordingWriter::new(to, Packing::Zstd)?;
+    let report = to_recording::convert(open, &rules, &mut writer)?;
+    finish(writer, config)?;
     Ok(report)
 }
 
-fn recording_to_log(config: &Config) -> Result<Report, BackcastError> {
+fn recording_to_log(config: &Config, mut log: BufWriter<File>) -> Result<Report, BackcastError> {
     let recording = Recording::open(&config.from)?;
-    let mut log = create(&config.to)?;
-    let converted = to_carmen::convert(&recording, &mut log);
+    let report = to_carmen::convert(&recording, &mut log)?;
     log.flush().map_err(failed("write", &config.to))?;
-    converted
+    Ok(report)
 }
 
-fn bag_to_recording(config: &Config) -> Result<Report, BackcastError> {
-    let mut writer = RecordingWriter::new(create(&config.to)?, Packing::Zstd)?;
+fn bag_to_recording(config: &Config, to: BufWriter<File>) -> Result<Report, BackcastError> {
+    let mut writer = RecordingWriter::new(to, Packing::Zstd)?;
     let messages = recording::write_bag(&config.from, &mut writer)?;
-    writer
-        .finish()?
-        .flush()
-        .map_err(failed("write", &config.to))?;
-    say(&format!("{messages} messages of all topics"));
+    finish(writer, config)?;
     // Read again, which also tells whether it can be.
     let recording = Recording::open(&config.to)?;
     let of = |kind| {
@@ -159,14 +234,37 @@ fn bag_to_recording(config: &Config) -> Result<Report, BackcastError> {
     Ok(Report {
         scans: of(Kind::Scan),
         odometry: of(Kind::Odometry),
+        messages,
         ..Report::default()
     })
 }
 
-fn create(path: &Path) -> Result<BufWriter<File>, BackcastError> {
-    File::create_new(path)
-        .map(BufWriter::new)
-        .map_err(failed("create", path))
+fn finish(writer: RecordingWriter<BufWriter<File>>, config: &Config) -> Result<(), BackcastError> {
+    let flushed = writer.finish()?.flush();
+    flushed.map_err(failed("write", &config.to))
+}
+
+/// A file that goes again unless it is kept.
+struct Unfinished(Option<PathBuf>);
+
+impl Unfinished {
+    fn keep(mut self) {
+        self.0 = None;
+    }
+}
+
+impl Drop for Unfinished {
+    fn drop(&mut self) {
+        if let Some(path) = &self.0 {
+            // What made the conversion fail is told; this may fail for the same reason.
+            let _ = std::fs::remove_file(path);
+        }
+    }
+}
+
+fn create(path: &Path) -> Result<(BufWriter<File>, Unfinished), BackcastError> {
+    let file = File::create_new(path).map_err(failed("create", path))?;
+    Ok((BufWriter::new(file), Unfinished(Some(path.to_owned()))))
 }
 
 fn failed<'p>(

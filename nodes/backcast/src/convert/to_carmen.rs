@@ -5,17 +5,19 @@ use std::io::Write;
 use geometry::Pose;
 use recording::ros::LaserScan;
 use recording::{Kind, Message, Recording, RecordingError};
+use transport::with_causes;
 
-use super::carmen::{self, Laser, Odometry};
+use super::carmen::{Odometry, Poses};
 use super::command::Report;
+use super::write::{self, Scan};
 use crate::BackcastError;
 
 /// Writes the scans with the odometry and the mount that hold for each, and the
-/// odometry itself. Messages that do not decode are counted.
+/// odometry itself. Messages that do not decode are counted, and a damaged recording
+/// is written to the damage.
 ///
 /// # Errors
-/// The recording has no scans or is damaged, which is told after what lies
-/// before the damage; or the log cannot be written.
+/// The recording has no scans, or the log cannot be written.
 pub(super) fn convert(
     recording: &Recording,
     log: &mut impl Write,
@@ -35,7 +37,10 @@ pub(super) fn convert(
                     .get_or_insert_with(|| error.to_string());
                 continue;
             }
-            Err(error) => return Err(error.into()),
+            Err(error) => {
+                report.damage = Some(with_causes(&error));
+                break;
+            }
         };
         let is = |topic: Option<&str>| topic == Some(&*record.topic);
         let line = match &record.message {
@@ -48,7 +53,7 @@ pub(super) fn convert(
                 }
                 let base_from_laser = mounts.get(frame).copied().unwrap_or_default();
                 report.scans += 1;
-                carmen::laser(&laser(scan, odom_from_base, base_from_laser))
+                write::scan(&laser(scan, odom_from_base, base_from_laser))
             }
             Message::Odometry(message) if is(odometry.as_deref()) => {
                 let Ok(pose) = message.pose.pose.planar() else {
@@ -58,7 +63,7 @@ pub(super) fn convert(
                 odom_from_base = pose;
                 report.odometry += 1;
                 let motion = message.twist.twist.planar();
-                carmen::odometry(&Odometry {
+                write::odometry(&Odometry {
                     robot: pose,
                     velocities: (motion.x, motion.yaw),
                     time_ns: message.header.stamp.as_ns(),
@@ -71,15 +76,16 @@ pub(super) fn convert(
     Ok(report)
 }
 
-fn laser(scan: &LaserScan, odom_from_base: Pose, base_from_laser: Pose) -> Laser {
-    Laser {
-        name: String::new(),
+fn laser(scan: &LaserScan, odom_from_base: Pose, base_from_laser: Pose) -> Scan {
+    Scan {
         angle_min: scan.angle_min.into(),
         angle_increment: scan.angle_increment.into(),
-        range_max_m: Some(scan.range_max.into()),
+        range_max_m: scan.range_max.into(),
         ranges: scan.ranges.clone(),
-        laser: odom_from_base.then(base_from_laser),
-        robot: odom_from_base,
+        poses: Poses {
+            laser: odom_from_base.then(base_from_laser),
+            robot: odom_from_base,
+        },
         time_ns: scan.header.stamp.as_ns(),
     }
 }

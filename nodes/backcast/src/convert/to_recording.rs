@@ -4,52 +4,56 @@ use std::collections::BTreeSet;
 use std::io::{BufRead, Seek, Write};
 
 use recording::ros::{
-    self, Header, LaserScan, PoseStamped, Quaternion, TfMessage, Time, Transform, TransformStamped,
-    Twist, TwistWithCovariance, Vector3,
+    self, Header, PoseStamped, Quaternion, TfMessage, Time, Transform, TransformStamped, Twist,
+    TwistWithCovariance, Vector3,
 };
 use recording::write::RecordingWriter;
 use recording::{GROUND_TRUTH, Message, ODOM, SCAN, TF_STATIC};
+use transport::with_causes;
 
-use super::carmen::{self, Laser, Line, Odometry};
+use super::angles;
+use super::carmen::{Broken, Fault, Laser, Line, Odometry};
 use super::command::{Report, Rules};
+use super::file::for_each_line;
+use super::read;
+use super::source::Source;
+use super::survey::Survey;
 use crate::BackcastError;
 
 /// Two mounts are the same if they differ by less: logs have six digits.
 const SAME_MOUNT: f64 = 1e-3;
 
-/// Writes what the lines say. Lines that are broken are counted, and the first
-/// one is told.
+/// Writes what the lines say. `open` opens the log, which is read twice. What cannot
+/// be read is counted.
 ///
 /// # Errors
-/// The log cannot be read, or the recording not written.
-pub(super) fn convert<W: Write + Seek>(
-    log: impl BufRead,
+/// The log cannot be opened, or the recording not written.
+pub(super) fn convert<W: Write + Seek, L: BufRead>(
+    open: impl Fn() -> Result<L, BackcastError>,
     rules: &Rules,
     writer: &mut RecordingWriter<W>,
 ) -> Result<Report, BackcastError> {
+    let survey = Survey::of(open()?);
     let mut conversion = Conversion {
         rules,
         writer,
+        sources: Source::all(&survey),
+        survey: &survey,
         mounts: Vec::new(),
         odometry_ns: BTreeSet::new(),
         report: Report::default(),
     };
-    for (number, line) in (1u64..).zip(log.split(b'\n')) {
-        let line = line.map_err(BackcastError::Log)?;
-        // Logs are ASCII; what is not is in comments and names of hosts.
-        match carmen::parse(&String::from_utf8_lossy(&line)) {
-            Ok(Some(Line::Laser(laser))) => conversion.laser(&laser, number)?,
-            Ok(Some(Line::Odometry(odometry))) => conversion.odometry(&odometry, number)?,
-            Ok(None) => conversion.report.left_out += 1,
-            Err(reason) => conversion.refuse(number, &reason),
-        }
-    }
+    let read = for_each_line(open()?, |number, line| conversion.line(number, line))?;
+    conversion.report.damage = read.err().map(|error| with_causes(&error));
+    conversion.report.remarks = conversion.sources.iter().map(Source::text).collect();
     Ok(conversion.report)
 }
 
 struct Conversion<'a, W: Write + Seek> {
     rules: &'a Rules,
     writer: &'a mut RecordingWriter<W>,
+    survey: &'a Survey,
+    sources: Vec<Source>,
     /// Where each laser sits on the robot, by its frame.
     mounts: Vec<(String, geometry::Pose)>,
     /// Stamps of odometry that stands in the recording.
@@ -58,38 +62,92 @@ struct Conversion<'a, W: Write + Seek> {
 }
 
 impl<W: Write + Seek> Conversion<'_, W> {
+    fn line(&mut self, number: u64, line: &str) -> Result<(), BackcastError> {
+        match read::parse(line) {
+            Ok(Line::Laser(laser)) => self.laser(&laser, number)?,
+            Ok(Line::Odometry(odometry)) => self.odometry(&odometry, number)?,
+            Ok(Line::Parameter(_) | Line::Nothing) => {}
+            Ok(Line::Other(name)) => self.report.tally.other(&name),
+            Err(broken) => self.report.tally.broken(number, &broken),
+        }
+        Ok(())
+    }
+
     fn laser(&mut self, laser: &Laser, number: u64) -> Result<(), BackcastError> {
-        let Some((ns, stamp)) = moment(laser.time_ns) else {
-            self.refuse(number, &format!("a time of {} ns", laser.time_ns));
+        let is_source = |source: &&mut Source| source.is_of(laser);
+        let Some(source) = self.sources.iter_mut().find(is_source) else {
+            self.report.tally.repeated(laser.name());
             return Ok(());
         };
-        let (topic, frame) = match laser.name.as_str() {
-            "RLASER" | "ROBOTLASER2" => ("/scan_rear", "laser_rear"),
-            _ => (SCAN, "laser"),
+        let Some((ns, stamp)) = moment(laser.time_ns) else {
+            let broken = late(laser.name(), laser.time_ns);
+            self.report.tally.broken(number, &broken);
+            return Ok(());
         };
-        if self.rules.truth {
-            let pose = ros::Pose::from_planar(laser.laser);
-            let truth = PoseStamped {
-                header: header(stamp, "map"),
-                pose,
-            };
-            if topic == SCAN {
-                self.write(GROUND_TRUTH, ns, &Message::PoseStamped(truth))?;
+        let mounting = self.survey.parameters.of(laser.number);
+        let angles = match angles::of(laser, mounting) {
+            Ok(angles) => angles,
+            Err(reason) => {
+                let broken = Broken {
+                    name: laser.name(),
+                    fault: Fault::Angles,
+                    reason,
+                };
+                self.report.tally.broken(number, &broken);
+                return Ok(());
             }
-        } else {
-            self.mount(ns, frame, laser.robot.inverse().then(laser.laser), stamp)?;
+        };
+        let message = source.scan(laser, angles, stamp, self.rules.range_max_m);
+        let (topic, frame) = (source.topic.clone(), source.frame.clone());
+        let missing = laser.ranges.iter().filter(|range| range.is_nan()).count();
+        self.report.tally.missing_readings += missing as u64;
+        self.place(laser, (ns, stamp), &topic, &frame)?;
+        if let Some(poses) = laser.poses {
+            self.odometry_at(ns, stamp, poses.robot, (0.0, 0.0))?;
         }
-        self.odometry_at(ns, stamp, laser.robot, (0.0, 0.0))?;
-        let message = scan(laser, stamp, frame, self.rules.range_max_m);
         self.report.scans += 1;
-        self.write(topic, ns, &Message::Scan(message))
+        self.write(&topic, ns, &Message::Scan(message))
+    }
+
+    /// Notes where the laser was, or where it sits on the robot.
+    fn place(
+        &mut self,
+        laser: &Laser,
+        (ns, stamp): (i64, Time),
+        topic: &str,
+        frame: &str,
+    ) -> Result<(), BackcastError> {
+        let mount = match laser.poses {
+            Some(poses) if self.rules.truth && topic == SCAN => {
+                return self.truth(ns, stamp, poses.laser);
+            }
+            Some(_) if self.rules.truth => None,
+            Some(poses) => Some(poses.robot.inverse().then(poses.laser)),
+            None => {
+                let mounting = self.survey.parameters.of(laser.number);
+                mounting.base_from_laser(laser.number)
+            }
+        };
+        match mount {
+            Some(mount) => self.mount(ns, frame, mount, stamp),
+            None => Ok(()),
+        }
+    }
+
+    fn truth(&mut self, ns: i64, stamp: Time, laser: geometry::Pose) -> Result<(), BackcastError> {
+        let truth = PoseStamped {
+            header: header(stamp, "map"),
+            pose: ros::Pose::from_planar(laser),
+        };
+        self.write(GROUND_TRUTH, ns, &Message::PoseStamped(truth))
     }
 
     fn odometry(&mut self, odometry: &Odometry, number: u64) -> Result<(), BackcastError> {
         match moment(odometry.time_ns) {
             Some((ns, stamp)) => self.odometry_at(ns, stamp, odometry.robot, odometry.velocities),
             None => {
-                self.refuse(number, &format!("a time of {} ns", odometry.time_ns));
+                let broken = late("ODOM".to_owned(), odometry.time_ns);
+                self.report.tally.broken(number, &broken);
                 Ok(())
             }
         }
@@ -158,31 +216,17 @@ impl<W: Write + Seek> Conversion<'_, W> {
     fn write(&mut self, topic: &str, ns: i64, message: &Message) -> Result<(), BackcastError> {
         Ok(self.writer.write(topic, ns, message)?)
     }
+}
 
-    fn refuse(&mut self, number: u64, reason: &str) {
-        self.report.refused += 1;
-        self.report
-            .first_refusal
-            .get_or_insert_with(|| format!("line {number}: {reason}"));
+fn late(name: String, time_ns: i64) -> Broken {
+    Broken {
+        name,
+        fault: Fault::Time,
+        reason: format!("a recording cannot say a time of {time_ns} ns"),
     }
 }
 
-fn scan(laser: &Laser, stamp: Time, frame: &str, range_max_m: f32) -> LaserScan {
-    let steps = laser.ranges.len().saturating_sub(1) as f64;
-    let range_max = laser.range_max_m.map_or(range_max_m, |range| range as f32);
-    LaserScan {
-        header: header(stamp, frame),
-        angle_min: laser.angle_min as f32,
-        angle_max: (laser.angle_min + steps * laser.angle_increment) as f32,
-        angle_increment: laser.angle_increment as f32,
-        range_min: 0.0,
-        range_max,
-        ranges: laser.ranges.clone(),
-        ..LaserScan::default()
-    }
-}
-
-fn header(stamp: Time, frame: &str) -> Header {
+pub(super) fn header(stamp: Time, frame: &str) -> Header {
     Header {
         stamp,
         frame_id: frame.to_owned(),
@@ -209,9 +253,9 @@ FLASER 3 1.0 broken
 FLASER 3 2.0 81.83 2.5 1.5 0 0 1 0 0 2.0 h 2.0
 ";
 
-    fn converted(rules: &Rules) -> (Recording, Report) {
+    fn converted(log: &str, rules: &Rules) -> (Recording, Report) {
         let mut writer = RecordingWriter::in_memory(Packing::Zstd).unwrap();
-        let report = convert(LOG.as_bytes(), rules, &mut writer).unwrap();
+        let report = convert(|| Ok(log.as_bytes()), rules, &mut writer).unwrap();
         let bytes = writer.finish().unwrap().into_inner();
         (Recording::from_bytes("r.mcap", bytes).unwrap(), report)
     }
@@ -222,13 +266,20 @@ FLASER 3 2.0 81.83 2.5 1.5 0 0 1 0 0 2.0 h 2.0
             truth: false,
             range_max_m: 80.0,
         };
-        let (recording, report) = converted(&rules);
-        assert_eq!((report.scans, report.odometry, report.refused), (2, 3, 1));
-        assert_eq!((report.left_out, report.moved_mounts), (2, 0));
-        let refusal = report.first_refusal.unwrap();
-        assert!(
-            refusal.starts_with("line 5: \"broken\" is none"),
-            "{refusal}"
+        let (recording, report) = converted(LOG, &rules);
+        assert_eq!((report.scans, report.odometry), (2, 3));
+        assert_eq!((report.tally.broken_lines(), report.moved_mounts), (1, 0));
+        assert_eq!(
+            report.tally.first_broken.as_deref(),
+            Some("line 5, FLASER: of 3 readings 2 are there")
+        );
+        assert_eq!(
+            report.tally.text().as_deref(),
+            Some("1 FLASER line cut short")
+        );
+        assert_eq!(
+            report.remarks,
+            ["/scan holds FLASER: 2 scans, at first of 3 beams from -90.0 to 90.0°"]
         );
         let mount = recording.base_from_laser("laser").unwrap().unwrap();
         assert_eq!(mount.base_from_laser, geometry::Pose::new(0.5, 0.0, 0.0));
@@ -253,7 +304,7 @@ FLASER 3 2.0 81.83 2.5 1.5 0 0 1 0 0 2.0 h 2.0
             truth: true,
             range_max_m: 80.0,
         };
-        let (recording, _) = converted(&rules);
+        let (recording, _) = converted(LOG, &rules);
         let truths = recording.ground_truths().unwrap();
         assert_eq!(truths.len(), 2);
         assert_eq!(truths[&2_000_000_000].pose.x, 1.5);

@@ -11,6 +11,7 @@ use engine::peaks::PeakConfig;
 use map::OccupancyGrid;
 use recording::{Kind, Recording};
 
+use super::progress::say;
 use super::session::map_in;
 use super::topics::TopicOptions;
 use crate::BackcastError;
@@ -75,7 +76,8 @@ impl Options {
             return Ok(None);
         };
         if !recording::is_recording(file) {
-            return Ok(Some(map::load(file)?));
+            let grid = map::load_noting(file, |key| say(&key.to_string()))?;
+            return Ok(Some(grid));
         }
         if let Some(other) = recordings.iter().find(|path| is_map(path)) {
             let (other, file) = (other.display(), file.display());

@@ -9,7 +9,7 @@ use recording::{GROUND_TRUTH, MAP, ODOM, SCAN, TF_STATIC};
 use simulation::{Drive, DriveConfig, Path};
 
 use super::messages::Messages;
-use crate::offline::Progress;
+use crate::offline::{Progress, say};
 use crate::{BackcastError, stdout};
 
 const SECOND_NS: i64 = 1_000_000_000;
@@ -43,7 +43,7 @@ pub(crate) struct Config {
 /// The map cannot be used, the path cannot be driven, or the file cannot be
 /// written. What cannot be driven is refused before the file is touched.
 pub(crate) fn run(config: &Config) -> Result<ExitCode, BackcastError> {
-    let map = map::load(&config.map)?;
+    let map = map::load_noting(&config.map, |key| say(&key.to_string()))?;
     let drive = Drive::new(&map, &config.path, &config.drive)?;
     let messages = Messages::new(&config.drive, drive.bearings());
     let start_ns = config.start_time * SECOND_NS;

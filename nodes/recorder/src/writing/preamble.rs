@@ -104,6 +104,7 @@ fn read(path: &Path) -> Result<File, RecorderError> {
         "yaml" | "yml" => "application/yaml",
         "png" => "image/png",
         "pgm" => "image/x-portable-graymap",
+        "bmp" => "image/bmp",
         "json" => "application/json",
         _ => "application/octet-stream",
     };

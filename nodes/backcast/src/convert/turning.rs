@@ -1,0 +1,131 @@
+//! Whether the beams of a laser that is said to be mounted upside down run the way
+//! that its line says, or the other way.
+//!
+//! CARMEN's own driver reverses the readings of such a laser before anybody logs
+//! them (`laser/laser_ipc.c`); other programs log them as they come. The scans tell:
+//! as the robot turns left, what it sees moves to the right.
+
+use super::carmen::Laser;
+
+/// Turns from scan to scan that are looked at, radians: smaller ones move too few
+/// beams, in larger ones too little is seen twice.
+const TURNS: std::ops::RangeInclusive<f64> = 0.03..=0.5;
+
+/// Fewest beams that both scans have of the same directions.
+const MIN_BEAMS: usize = 20;
+
+/// Differences count as at most this, metres, so that a few edges do not decide.
+const MAX_DIFFERENCE_M: f32 = 0.5;
+
+/// One way fits where its mean difference is at most this share of the other's.
+const CLEAR: f32 = 0.8;
+
+/// The scans of one laser, one after the other.
+#[derive(Debug, Default)]
+pub(super) struct Turning {
+    last: Option<(f64, Vec<f32>)>,
+    as_logged: u32,
+    mirrored: u32,
+}
+
+impl Turning {
+    /// Notes a scan with the heading at which it was taken and the step of its beams.
+    pub(super) fn note(&mut self, laser: &Laser, yaw: f64, step: f64) {
+        if let Some((last_yaw, last)) = &self.last
+            && last.len() == laser.ranges.len()
+        {
+            let turn = geometry::wrap_angle(yaw - last_yaw);
+            if turn.abs() < *TURNS.start() {
+                // The next one is compared with the last that differs enough.
+                return;
+            }
+            if TURNS.contains(&turn.abs()) && step != 0.0 {
+                let beams = (turn / step).round() as i64;
+                let logged = difference(last, &laser.ranges, beams);
+                let mirrored = difference(last, &laser.ranges, -beams);
+                if let (Some(logged), Some(mirrored)) = (logged, mirrored) {
+                    self.as_logged += u32::from(logged < CLEAR * mirrored);
+                    self.mirrored += u32::from(mirrored < CLEAR * logged);
+                }
+            }
+        }
+        self.last = Some((yaw, laser.ranges.clone()));
+    }
+
+    /// Whether the beams run the other way; `None` where the scans do not tell.
+    pub(super) fn is_mirrored(&self) -> Option<bool> {
+        if self.mirrored > 2 * self.as_logged {
+            Some(true)
+        } else if self.as_logged > 2 * self.mirrored {
+            Some(false)
+        } else {
+            None
+        }
+    }
+}
+
+/// How much `new` differs from `old` if what was at a beam is now `shift` beams
+/// before it.
+fn difference(old: &[f32], new: &[f32], shift: i64) -> Option<f32> {
+    let skip = |by: i64| usize::try_from(by.max(0)).unwrap_or(usize::MAX);
+    let pairs = old
+        .iter()
+        .skip(skip(shift))
+        .zip(new.iter().skip(skip(-shift)));
+    let both = pairs.filter(|(old, new)| old.is_finite() && new.is_finite());
+    let (count, sum) = both.fold((0usize, 0.0), |(count, sum), (old, new)| {
+        (count + 1, sum + (old - new).abs().min(MAX_DIFFERENCE_M))
+    });
+    (count >= MIN_BEAMS).then(|| sum / count as f32)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::super::carmen::{Kind, Laser};
+    use super::*;
+
+    /// A scan of a room of 6 by 4 m from its middle, one beam a degree.
+    fn scan(yaw: f64, is_mirrored: bool) -> Laser {
+        let range = |degree: i32| {
+            let sign = if is_mirrored { -1.0 } else { 1.0 };
+            let (sin, cos) = (yaw + sign * f64::from(degree).to_radians()).sin_cos();
+            (3.0 / cos.abs()).min(2.0 / sin.abs()) as f32
+        };
+        Laser {
+            kind: Kind::Old,
+            number: 1,
+            angles: None,
+            range_max_m: None,
+            ranges: (-90..=90).map(range).collect(),
+            poses: None,
+            time_ns: 0,
+        }
+    }
+
+    fn told(yaws: &[f64], is_mirrored: bool) -> Option<bool> {
+        let mut turning = Turning::default();
+        for &yaw in yaws {
+            turning.note(&scan(yaw, is_mirrored), yaw, 1f64.to_radians());
+        }
+        turning.is_mirrored()
+    }
+
+    #[test]
+    fn a_turning_robot_tells_which_way_beams_run() {
+        for yaws in [[0.3, 0.4, 0.5], [0.5, 0.4, 0.3], [3.1, -3.1, -3.0]] {
+            assert_eq!(told(&yaws, true), Some(true), "{yaws:?}");
+            assert_eq!(told(&yaws, false), Some(false), "{yaws:?}");
+        }
+        // Small turns add up.
+        let slow: Vec<f64> = (0..20).map(|i| 0.3 + 0.01 * f64::from(i)).collect();
+        assert_eq!(told(&slow, true), Some(true));
+        assert_eq!(told(&slow, false), Some(false));
+    }
+
+    #[test]
+    fn a_robot_that_stands_tells_nothing() {
+        assert_eq!(told(&[0.3, 0.3, 0.3], true), None);
+        assert_eq!(told(&[], true), None);
+        assert_eq!(told(&[0.0, 2.0], true), None);
+    }
+}

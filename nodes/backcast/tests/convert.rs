@@ -1,0 +1,344 @@
+//! `backcast convert` as a process: the logs that robots leave, and what becomes of
+//! them.
+
+#![allow(
+    clippy::unwrap_used,
+    reason = "a test fails by panicking, helpers of tests too"
+)]
+
+mod drawn;
+
+use std::f64::consts::{FRAC_PI_2, PI};
+use std::fs;
+use std::io::Write;
+use std::path::Path;
+
+use drawn::{folder, recordings, run};
+use flate2::Compression;
+use flate2::write::GzEncoder;
+use geometry::Pose;
+use recording::ros::LaserScan;
+use recording::{Kind, Message, Recording};
+
+#[test]
+fn a_recording_becomes_a_log_and_a_recording_again() {
+    let folder = folder(&[]);
+    let from = recordings().join("malaga_corridor/recording.mcap");
+    let convert = |arguments: &str| run(folder.path(), &format!("convert {arguments}"));
+    let (code, _, said) = convert(&format!("{} a.log", from.display()));
+    assert_eq!(code, 0, "{said}");
+    assert!(
+        said.contains("37 scans, 37 poses of the odometry"),
+        "{said}"
+    );
+    let log = fs::read_to_string(folder.path().join("a.log")).unwrap();
+    assert_eq!(
+        log.lines()
+            .filter(|line| line.starts_with("FLASER 361 "))
+            .count(),
+        37
+    );
+    let (code, _, said) = convert("a.log a.mcap");
+    assert_eq!(code, 0, "{said}");
+    let (code, _, said) = convert("a.mcap b.log");
+    assert_eq!(code, 0, "{said}");
+    let again = fs::read_to_string(folder.path().join("b.log")).unwrap();
+    let numbers = |log: &str| -> Vec<f64> {
+        let words = log.split_ascii_whitespace();
+        words.filter_map(|word| word.parse().ok()).collect()
+    };
+    let (first, second) = (numbers(&log), numbers(&again));
+    assert_eq!(first.len(), second.len());
+    for (first, second) in first.iter().zip(&second) {
+        let is_same = first == second;
+        // Headings pass through a quaternion, laser poses through the mount.
+        assert!(
+            is_same || (first - second).abs() < 1e-9,
+            "{first} is not {second}"
+        );
+    }
+    let (code, _, said) = convert("a.log a.mcap");
+    assert_eq!(code, 1, "what exists is kept");
+    assert!(said.contains("cannot create a.mcap"), "{said}");
+    assert_eq!(convert("a.log c.bag").0, 2);
+    assert_eq!(convert("a.log c.log.gz").0, 2);
+}
+
+/// The scans of a recording's `/scan`.
+fn scans(file: &Path) -> Vec<LaserScan> {
+    let recording = Recording::open(file).unwrap();
+    let records = recording.records_of(&[Kind::Scan]);
+    let scans = records.filter_map(|record| match record.unwrap() {
+        record if &*record.topic != "/scan" => None,
+        record => match record.message {
+            Message::Scan(scan) => Some(*Box::new(scan)),
+            other => panic!("asked for scans: {other:?}"),
+        },
+    });
+    scans.collect()
+}
+
+/// The corridor as a log, and what it is made of.
+struct Corridor {
+    folder: tempfile::TempDir,
+    log: String,
+    scans: Vec<LaserScan>,
+}
+
+impl Corridor {
+    fn new() -> Self {
+        let folder = folder(&[]);
+        let recording = recordings().join("malaga_corridor/recording.mcap");
+        let command = format!("convert {} a.log", recording.display());
+        assert_eq!(run(folder.path(), &command).0, 0);
+        Corridor {
+            log: fs::read_to_string(folder.path().join("a.log")).unwrap(),
+            scans: scans(&recording),
+            folder,
+        }
+    }
+
+    /// The log with each scan's words rewritten; `head` goes before.
+    fn with(&self, head: &str, change: impl Fn(Vec<&str>) -> Vec<String>) -> String {
+        let line = |line: &str| match line.starts_with("FLASER ") {
+            true => change(line.split(' ').collect()).join(" "),
+            false => line.to_owned(),
+        };
+        let lines: Vec<String> = self.log.lines().map(line).collect();
+        format!("{head}\n{}\n", lines.join("\n"))
+    }
+
+    /// Converts `content` in a file called `name`; what is said, and the scans.
+    fn converted(&self, name: &str, content: &[u8]) -> (String, Vec<LaserScan>) {
+        let to = self.folder.path().join("to.mcap");
+        fs::write(self.folder.path().join(name), content).unwrap();
+        let (code, _, said) = run(self.folder.path(), &format!("convert {name} to.mcap"));
+        assert_eq!(code, 0, "{said}");
+        let scans = scans(&to);
+        fs::remove_file(to).unwrap();
+        (said, scans)
+    }
+
+    /// Asserts that these are the corridor's scans, each from beam `first` on.
+    fn assert_same(&self, found: &[LaserScan], first: usize, what: &str) {
+        assert_eq!(found.len(), self.scans.len(), "{what}");
+        for (found, scan) in found.iter().zip(&self.scans) {
+            let last = first + found.ranges.len();
+            assert_eq!(found.ranges, scan.ranges[first..last], "{what}");
+            let start = scan.angle_min + first as f32 * scan.angle_increment;
+            // Logs have six digits of a step, and there are 360 of them.
+            assert!((found.angle_min - start).abs() < 4e-4, "{what}");
+            assert!(
+                (found.angle_increment - scan.angle_increment).abs() < 2e-6,
+                "{what}"
+            );
+        }
+    }
+}
+
+fn owned(words: &[&str]) -> Vec<String> {
+    words.iter().map(|word| (*word).to_owned()).collect()
+}
+
+/// The words of an old line with its readings in the other order.
+fn reversed(words: &[&str]) -> Vec<String> {
+    let mut words = owned(words);
+    let readings = 2..2 + words[1].parse::<usize>().unwrap();
+    words[readings].reverse();
+    words
+}
+
+/// An old line as a raw one.
+fn raw(words: &[&str], number: u8, start: f64, step: f64) -> Vec<String> {
+    let count: usize = words[1].parse().unwrap();
+    let head = format!("RAWLASER{number} 0 {start} 3.141593 {step} 81.9 0.01 0");
+    let time = &words[words.len() - 3..];
+    [
+        &[head],
+        &owned(&words[1..count + 2])[..],
+        &owned(&["0"]),
+        &owned(time),
+    ]
+    .concat()
+}
+
+#[test]
+fn a_log_is_read_by_what_it_holds_packed_or_not() {
+    let corridor = Corridor::new();
+    let mut packed = GzEncoder::new(Vec::new(), Compression::fast());
+    packed.write_all(corridor.log.as_bytes()).unwrap();
+    let packed = packed.finish().unwrap();
+    for name in ["b.LOG", "b.clf", "b.Txt", "b", "b.log.1"] {
+        let (_, scans) = corridor.converted(name, corridor.log.as_bytes());
+        corridor.assert_same(&scans, 0, name);
+    }
+    for name in ["c.log.gz", "c.CLF.GZ", "c.gz", "c.log"] {
+        corridor.assert_same(&corridor.converted(name, &packed).1, 0, name);
+    }
+}
+
+#[test]
+fn raw_lines_of_any_laser_and_either_direction_are_scans() {
+    let corridor = Corridor::new();
+    let (half, step) = (FRAC_PI_2, 0.008_727);
+    for number in 1..=5 {
+        let log = corridor.with("", |words| raw(&words, number, -half, step));
+        let (said, scans) = corridor.converted("b.log", log.as_bytes());
+        corridor.assert_same(&scans, 0, &said);
+        assert!(
+            said.contains(&format!("/scan holds RAWLASER{number}: 37 scans")),
+            "{said}"
+        );
+        assert_eq!(scans[0].range_max, 81.9);
+    }
+    let log = corridor.with("", |words| {
+        let words = reversed(&words);
+        let words: Vec<&str> = words.iter().map(String::as_str).collect();
+        raw(&words, 1, half, -step)
+    });
+    corridor.assert_same(
+        &corridor.converted("b.log", log.as_bytes()).1,
+        0,
+        "clockwise",
+    );
+}
+
+#[test]
+fn a_laser_upside_down_is_turned_about_unless_its_driver_did_so() {
+    let corridor = Corridor::new();
+    for flipped in ["laser_front_laser_flipped 1", "laser_laser1_flipped on"] {
+        let head = format!("PARAM {flipped} nohost 0");
+        let log = corridor.with(&head, |words| reversed(&words));
+        let (said, scans) = corridor.converted("b.log", log.as_bytes());
+        corridor.assert_same(&scans, 0, flipped);
+        assert!(
+            said.contains("its beams run clockwise, and are turned about"),
+            "{said}"
+        );
+        let log = corridor.with(&head, |words| owned(&words));
+        let (said, scans) = corridor.converted("b.log", log.as_bytes());
+        corridor.assert_same(&scans, 0, flipped);
+        assert!(
+            said.contains("before they were logged, and are kept"),
+            "{said}"
+        );
+    }
+}
+
+#[test]
+fn parameters_tell_the_field_of_view_of_old_lines() {
+    let corridor = Corridor::new();
+    let narrow = |words: Vec<&str>| {
+        // 201 of 361 beams, the middle ones.
+        [
+            &owned(&["FLASER", "201"]),
+            &owned(&words[82..283])[..],
+            &owned(&words[363..]),
+        ]
+        .concat()
+    };
+    for view in ["1.745329", "100"] {
+        let head = format!("PARAM laser_front_laser_fov {view} nohost 0");
+        let (said, scans) = corridor.converted("b.log", corridor.with(&head, narrow).as_bytes());
+        corridor.assert_same(&scans, 80, view);
+        assert!(said.contains("201 beams from -50.0 to 50.0°"), "{said}");
+    }
+}
+
+#[test]
+fn several_lasers_become_topics_with_their_mounts() {
+    let corridor = Corridor::new();
+    let rear = corridor.with("PARAM robot_rearlaser_offset -0.4 nohost 0", |words| {
+        raw(&words, 2, -FRAC_PI_2, 0.008_727)
+    });
+    let log = [corridor.log.as_str(), &rear].concat();
+    let (code, _, said) = {
+        fs::write(corridor.folder.path().join("b.log"), log).unwrap();
+        run(corridor.folder.path(), "convert b.log b.mcap")
+    };
+    assert_eq!(code, 0, "{said}");
+    assert!(
+        said.contains("/scan_rear holds RAWLASER2: 37 scans"),
+        "{said}"
+    );
+    let recording = Recording::open(corridor.folder.path().join("b.mcap")).unwrap();
+    let mount = recording.base_from_laser("laser_rear").unwrap().unwrap();
+    // A rear laser looks back; the angle passes through a quaternion.
+    let back = Pose::new(-0.4, 0.0, PI);
+    assert!(
+        mount.base_from_laser.is_within(back, 1e-9, 1e-9),
+        "{mount:?}"
+    );
+}
+
+#[test]
+fn a_reading_that_is_no_number_is_one_missing_beam() {
+    let corridor = Corridor::new();
+    let log = corridor.with("", |mut words| {
+        words[22] = "nan";
+        words[62] = "???";
+        owned(&words)
+    });
+    let (said, scans) = corridor.converted("b.log", log.as_bytes());
+    assert!(said.contains("74 readings are no numbers"), "{said}");
+    assert_eq!(scans.len(), 37);
+    for (found, scan) in scans.iter().zip(&corridor.scans) {
+        let missing: Vec<usize> = (0..361).filter(|i| found.ranges[*i].is_nan()).collect();
+        assert_eq!(missing, [20, 60]);
+        assert_eq!(found.ranges[61..], scan.ranges[61..]);
+    }
+}
+
+#[test]
+fn what_is_left_out_is_counted_and_named() {
+    let corridor = Corridor::new();
+    let mut log = corridor.log.clone();
+    log += "FLASER 361 1.0 2.0\nTRUEPOS 1 2 3 4 5 6 7 h 7\nTRUEPOS 1 2 3 4 5 6 8 h 8\n";
+    fs::write(corridor.folder.path().join("b.log"), log).unwrap();
+    let (code, _, said) = run(corridor.folder.path(), "convert b.log b.mcap");
+    assert_eq!(code, 3, "{said}");
+    assert!(
+        said.contains(
+            "left out: 1 FLASER line cut short, 2 lines of kinds that are not converted (2 TRUEPOS)"
+        ),
+        "{said}"
+    );
+    assert!(
+        said.contains("FLASER: of 361 readings 2 are there"),
+        "{said}"
+    );
+    assert_eq!(scans(&corridor.folder.path().join("b.mcap")).len(), 37);
+}
+
+#[test]
+fn where_nothing_can_be_converted_no_file_is_left() {
+    let folder = folder(&[]);
+    for (content, reason) in [
+        ("", "it is empty"),
+        ("hello\n", "1 line that no log of CARMEN has"),
+        ("ODOM 1 2 3 0 0 0 1.0 h 1\n", "1 poses of the odometry"),
+        ("TRUEPOS 1 2 3 4 5 6 7 h 7\n", "(1 TRUEPOS)"),
+        ("FLASER 9 1.0\n", "1 FLASER line cut short"),
+    ] {
+        fs::write(folder.path().join("b.log"), content).unwrap();
+        let (code, _, said) = run(folder.path(), "convert b.log b.mcap");
+        assert_eq!(code, 1, "{said}");
+        assert!(
+            said.contains(reason) && said.contains("no file was written"),
+            "{said}"
+        );
+        assert!(!folder.path().join("b.mcap").exists(), "{content:?}");
+    }
+    // A recording without scans.
+    let (code, _, said) = run(folder.path(), "convert r.mcap c.log");
+    assert_eq!(code, 1, "{said}");
+    assert!(!folder.path().join("c.log").exists(), "{said}");
+    // One of a kind that is no recording here is named by what reads recordings.
+    fs::write(folder.path().join("drive.bag"), "#ROSBAG V2.0\nrest").unwrap();
+    let (code, _, said) = run(folder.path(), "convert drive.bag b.mcap");
+    assert_eq!(code, 1, "{said}");
+    assert!(said.contains("drive.bag"), "{said}");
+    let (code, _, said) = run(folder.path(), "convert none.log b.mcap");
+    assert_eq!(code, 1, "{said}");
+    assert!(said.contains("cannot read none.log"), "{said}");
+}
