@@ -124,12 +124,12 @@ fn usable(map: &OccupancyGridMsg) -> Result<OccupancyGrid, String> {
 
 fn misnamed(recording: &Recording, grid: &OccupancyGrid, maps: u64) -> Option<Ailment> {
     let found = format!("{:016x}", grid.id());
-    let named = recording.metadata().iter().filter_map(|record| {
+    let mut named = recording.metadata().iter().filter_map(|record| {
         let is_map = record.name == "backcast/map";
         is_map.then(|| record.entries.get("map_id")).flatten()
     });
     // A map that was changed while recording is named, too.
-    let other = named.filter(|id| **id != found).next()?;
+    let other = named.find(|id| **id != found)?;
     (maps == 1)
         .then(|| Ailment::problem(format!("the map is {found}, but the metadata says {other}")))
 }

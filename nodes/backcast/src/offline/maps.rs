@@ -139,9 +139,9 @@ mod tests {
         let recording = recording(&[3, 5, 9]);
         let mut maps = Maps::recorded(&recording).unwrap();
         assert_eq!(widths(&mut maps, 1), [3]);
-        assert_eq!(widths(&mut maps, 4), []);
+        assert_eq!(widths(&mut maps, 4), [0; 0]);
         assert_eq!(widths(&mut maps, 9), [5, 9]);
-        assert_eq!(widths(&mut maps, 10), []);
+        assert_eq!(widths(&mut maps, 10), [0; 0]);
         let mut late = Maps::recorded(&recording).unwrap();
         assert_eq!(widths(&mut late, 5), [3, 5]);
     }
@@ -152,7 +152,7 @@ mod tests {
         let mut maps = Maps::given(&grid);
         assert!(!maps.is_empty());
         assert_eq!(widths(&mut maps, 1), [7]);
-        assert_eq!(widths(&mut maps, 2), []);
+        assert_eq!(widths(&mut maps, 2), [0; 0]);
         assert!(Maps::recorded(&recording(&[])).unwrap().is_empty());
     }
 }

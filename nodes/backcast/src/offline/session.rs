@@ -14,7 +14,7 @@ use transport::with_causes;
 
 use super::heading::Headings;
 use super::layout::{frame_of, sides_of};
-use super::maps::Maps;
+use super::maps::{Candidate, Maps};
 use super::options::EngineOptions;
 use super::scans::Scans;
 use super::world::{Answer, World};
@@ -139,7 +139,7 @@ impl<'a> Session<'a> {
         // Most maps are never searched: the newest that can be used is enough.
         let mut refusals = Vec::new();
         for candidate in self.maps.since(scan.log_time_ns).into_iter().rev() {
-            let refusal = match candidate.and_then(|candidate| candidate.grid()) {
+            let refusal = match candidate.and_then(Candidate::grid) {
                 Ok(map) => match self.prepare(map)? {
                     Ok(()) => break,
                     Err(error) => with_causes(&error),
