@@ -131,16 +131,24 @@ fn a_part_that_is_cut_short_is_named_behind_all_that_is_readable() {
     let folder = TempDir::new().unwrap();
     let paths = split(folder.path(), 2, as_it_is);
     let bytes = std::fs::read(&paths[1]).unwrap();
-    std::fs::write(&paths[1], &bytes[..bytes.len() - 40]).unwrap();
-    let recording = Recording::open(folder.path()).unwrap();
-    let mut items: Vec<_> = recording.records().collect();
-    let last = items.pop().unwrap().unwrap_err();
+    for length in [bytes.len() - 40, 0] {
+        std::fs::write(&paths[1], &bytes[..length]).unwrap();
+        let recording = Recording::open(folder.path()).unwrap();
+        let mut items: Vec<_> = recording.records().collect();
+        let last = items.pop().unwrap().unwrap_err();
+        assert!(
+            matches!(&last, RecordingError::Damaged { path, .. } if *path == paths[1]),
+            "{last}"
+        );
+        assert!(!items.is_empty() && items.into_iter().all(|item| item.is_ok()));
+        assert!(recording.map().unwrap().is_some());
+    }
+    std::fs::write(&paths[0], b"").unwrap();
+    let nothing = Recording::open(folder.path()).unwrap_err().to_string();
     assert!(
-        matches!(&last, RecordingError::Damaged { path, .. } if *path == paths[1]),
-        "{last}"
+        nothing.contains("drive_0.mcap: the file starts with nothing"),
+        "{nothing}"
     );
-    assert!(items.into_iter().all(|item| item.is_ok()));
-    assert!(recording.map().unwrap().is_some());
 }
 
 #[test]
