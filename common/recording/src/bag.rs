@@ -282,6 +282,37 @@ mod tests {
     }
 
     #[test]
+    fn messages_that_a_missing_log_holds_are_damage() {
+        let folder = TempDir::new().unwrap();
+        let path = bag(&folder, "r.db3", &sample::records());
+        let all = sample::records().len();
+        let describe = |messages: usize| {
+            let text = format!(
+                "rosbag2_bagfile_information:\n  relative_file_paths: [r.db3]\n  \
+                 message_count: {messages}\n"
+            );
+            std::fs::write(folder.path().join("metadata.yaml"), text).unwrap();
+        };
+        describe(all + 3);
+        let lost = |path: &Path| Recording::open(path).unwrap().damage().cloned();
+        assert_eq!(lost(&path), None, "it never had a log");
+        Connection::open(&path)
+            .unwrap()
+            .query_row("PRAGMA journal_mode = WAL", (), |_| Ok(()))
+            .unwrap();
+        for name in [folder.path(), &path] {
+            let expected = Damage::MissingLog {
+                log: format!("{}-wal", path.display()),
+                claimed: all as u64 + 3,
+                found: all as u64,
+            };
+            assert_eq!(lost(name), Some(expected));
+        }
+        describe(all);
+        assert_eq!(lost(&path), None);
+    }
+
+    #[test]
     fn definitions_of_the_bag_are_kept() {
         let folder = TempDir::new().unwrap();
         let path = bag(&folder, "r.db3", &sample::records()[..2]);

@@ -84,6 +84,23 @@ impl RecordedFile {
         RecordedFile::new(path, Bytes::Owned(bytes))
     }
 
+    /// One that does not even start as a recording.
+    pub(crate) fn without_content(path: PathBuf, damage: Damage) -> Self {
+        RecordedFile {
+            path,
+            bytes: Bytes::Owned(Vec::new()),
+            survey: Survey {
+                damage: Some(damage),
+                ..Survey::default()
+            },
+        }
+    }
+
+    /// Whether it is such a one.
+    pub(crate) fn is_without_content(&self) -> bool {
+        self.bytes().is_empty()
+    }
+
     fn new(path: PathBuf, bytes: Bytes) -> Result<Self, RecordingError> {
         match Survey::of(bytes.as_slice()) {
             Ok(survey) => Ok(RecordedFile {

@@ -11,13 +11,16 @@ use std::path::{Component, Path, PathBuf};
 use serde::Deserialize;
 
 use crate::RecordingError;
-use crate::content::Content;
+use crate::content::{Content, foreign};
 
 /// What a bag's description is called.
 const METADATA: &str = "metadata.yaml";
 
 /// What may stand behind a part's name where it is packed.
 const PACKED: [&str; 2] = ["zstd", "zst"];
+
+/// What stands there where it is packed as is not read, so that this can be said.
+const PACKED_OTHERWISE: [&str; 4] = ["gz", "xz", "lz4", "bz2"];
 
 /// A file, and how many messages the bag's description says it holds.
 #[derive(Debug, Clone, PartialEq, Eq)]
@@ -125,9 +128,10 @@ fn found(folder: &Path, name: &str) -> Option<PathBuf> {
     let is_inside = name.components().all(|c| matches!(c, Component::Normal(_)));
     let own = Path::new(name.file_name()?);
     let names = [name, own].into_iter().skip(usize::from(!is_inside));
-    let mut paths = names.flat_map(|name| {
+    let mut paths = names.flat_map(|name: &Path| {
         let path = folder.join(name);
-        let packed = PACKED.map(|ending| with_ending(&path, ending));
+        let endings = PACKED.into_iter().chain(PACKED_OTHERWISE);
+        let packed: Vec<PathBuf> = endings.map(|ending| with_ending(&path, ending)).collect();
         let unpacked = without_ending(&path);
         [path].into_iter().chain(packed).chain(unpacked)
     });
@@ -173,6 +177,11 @@ fn unnamed(folder: &Path) -> Result<Vec<Listed>, RecordingError> {
     paths.retain(|path| storage(path).is_some() && path.is_file() && !is_twice(path));
     paths.sort_by(|a, b| natural_order(&shown(a), &shown(b)));
     let Some(first) = paths.first() else {
+        for path in all.iter().filter(|path| path.is_file()) {
+            if let Content::Foreign(what, advice) = Content::of(path)? {
+                return Err(foreign(path, what, advice));
+            }
+        }
         let reason = format!("it holds no {METADATA}, no .mcap and no .db3");
         return Err(refused(folder, reason));
     };

@@ -6,7 +6,7 @@ use std::sync::Arc;
 
 use crate::block::{Block, Part};
 use crate::file::RecordedFile;
-use crate::folder;
+use crate::folder::{self, Listed};
 use crate::{
     AttachedFile, Channel, Damage, Kind, MetadataRecord, RawRecords, RecordingError, Records,
     topics,
@@ -49,20 +49,20 @@ impl Recording {
     /// As [`Recording::open`]; nothing is named.
     pub fn open_all(paths: &[impl AsRef<Path>]) -> Result<Self, RecordingError> {
         let paths = || paths.iter().map(AsRef::as_ref);
-        let mut files: Vec<RecordedFile> = Vec::new();
-        let mut seen = Vec::new();
+        let (mut listed, mut seen) = (Vec::new(), Vec::new());
         for path in paths() {
-            for listed in folder::files(path)? {
+            for file in folder::files(path)? {
                 // As `drive/*` names the parts and the description of them.
-                let place = listed.path.canonicalize();
-                let place = place.unwrap_or_else(|_| listed.path.clone());
+                let place = file.path.canonicalize();
+                let place = place.unwrap_or_else(|_| file.path.clone());
                 if !seen.contains(&place) {
-                    files.push(RecordedFile::open(&listed)?);
                     seen.push(place);
+                    listed.push(file);
                 }
             }
         }
         let names: Vec<String> = paths().map(|path| path.display().to_string()).collect();
+        let files = opened(&listed)?;
         Ok(Recording::of(names.join(" and ").into(), files))
     }
 
@@ -311,6 +311,30 @@ impl Recording {
 
     pub(crate) fn files(&self) -> &[RecordedFile] {
         &self.files
+    }
+}
+
+/// Opens files. Where there are several, one that does not even start as a
+/// recording is damage, as the last part of a recorder that was cut off is.
+fn opened(listed: &[Listed]) -> Result<Vec<RecordedFile>, RecordingError> {
+    let (mut files, mut failure) = (Vec::new(), None);
+    for file in listed {
+        match RecordedFile::open(file) {
+            Ok(file) => files.push(file),
+            Err(RecordingError::Damaged { path, damage, .. }) => {
+                files.push(RecordedFile::without_content(path.clone(), damage.clone()));
+                failure.get_or_insert(RecordingError::Damaged {
+                    path,
+                    readable: 0,
+                    damage,
+                });
+            }
+            Err(error) => return Err(error),
+        }
+    }
+    match failure {
+        Some(error) if files.iter().all(RecordedFile::is_without_content) => Err(error),
+        _ => Ok(files),
     }
 }
 

@@ -175,7 +175,7 @@ fn a_recording_that_is_cut_short_gives_what_lies_before() {
 fn wrong_use_is_told_before_anything_is_opened() {
     let folder = tempfile::tempdir().unwrap();
     for (options, expected) in [
-        ("", "--bag <FILE>"),
+        ("", "<FILE>..."),
         ("--bag r.mcap --every 0", "0 is not in 1.."),
         ("--bag r.mcap --headings 100", "a multiple of 8"),
         ("--bag r.mcap --heading 400", "-360 to 360"),

@@ -83,8 +83,14 @@ fn info_lists_what_is_there() {
         "messages",
         "metadata",
         "recording",
+        "taken",
+        "unclear",
     ];
     assert_eq!(keys(&object), expected);
+    let taken = [("map", "/map"), ("odometry", "/odom"), ("scans", "/scan")];
+    for (what, topic) in taken {
+        assert_eq!(object["taken"][what], topic);
+    }
     let channels = object["channels"].as_array().unwrap();
     let scan = channels
         .iter()

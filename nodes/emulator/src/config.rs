@@ -24,6 +24,14 @@ pub struct Config {
     #[arg(long, value_name = "FILE")]
     pub recording: PathBuf,
 
+    /// The topic of the scans [default: the only one, or /scan]
+    #[arg(long, value_name = "TOPIC")]
+    pub scan_topic: Option<String>,
+
+    /// The topic of the odometry [default: the only one, or /odom]
+    #[arg(long, value_name = "TOPIC")]
+    pub odom_topic: Option<String>,
+
     /// Is an LMS1xx, LMS5xx or TiM on this socket: tcp://HOST:PORT. The host
     /// `graph` is an address on this machine that no other graph has.
     #[arg(long, value_name = "ADDRESS", value_parser = listen)]

@@ -7,7 +7,7 @@ use std::path::Path;
 
 use messages::{GroundTruth, Odometry, Stamp};
 use playback::{Channels, Content, InOrder, PlaybackError, Selection, Source, Timed};
-use recording::Recording;
+use recording::{Kind, Recording};
 
 use crate::EmulatorError;
 use crate::sweep::Sweep;
@@ -30,13 +30,26 @@ pub(crate) struct Drive {
     pub(crate) refused: Vec<PlaybackError>,
 }
 
+/// Which topics are meant, where that is not clear.
+#[derive(Debug, Clone, Copy, Default)]
+pub(crate) struct Topics<'a> {
+    pub(crate) scan: Option<&'a str>,
+    pub(crate) odometry: Option<&'a str>,
+}
+
 impl Drive {
     /// Reads a recording.
     ///
     /// # Errors
     /// If it cannot be read, holds no scans, or scans that differ in their beams.
-    pub(crate) fn open(path: &Path) -> Result<Self, EmulatorError> {
-        let recording = Recording::open(path)?;
+    pub(crate) fn open(path: &Path, topics: Topics<'_>) -> Result<Self, EmulatorError> {
+        let mut recording = Recording::open(path)?;
+        if let Some(topic) = topics.scan {
+            recording.prefer(Kind::Scan, topic)?;
+        }
+        if let Some(topic) = topics.odometry {
+            recording.prefer(Kind::Odometry, topic)?;
+        }
         let all = Selection::all();
         let channels = Channels::of(&recording, &all)?;
         let mut sweep: Option<Sweep> = None;
@@ -97,7 +110,7 @@ mod tests {
             env!("CARGO_MANIFEST_DIR"),
             "/../../recordings/malaga_corridor/recording.mcap"
         );
-        let drive = Drive::open(Path::new(path)).unwrap();
+        let drive = Drive::open(Path::new(path), Topics::default()).unwrap();
         assert!(drive.refused.is_empty());
         assert!(drive.happenings.is_sorted_by_key(|(log_ns, _)| *log_ns));
         let mut truth_us = None;

@@ -11,7 +11,7 @@ use messages::{NodeState, topic};
 use playback::{Awaited, Poses};
 use transport::{Graph, Health, Subscriber, TransportError, monotonic_ns, with_causes};
 
-use crate::drive::{Drive, Happening};
+use crate::drive::{Drive, Happening, Topics};
 use crate::faults::Faults;
 use crate::player::{Due, Player};
 use crate::sweep::Sweep;
@@ -83,7 +83,13 @@ impl Common {
             sweep,
             happenings,
             refused,
-        } = Drive::open(&config.recording)?;
+        } = Drive::open(
+            &config.recording,
+            Topics {
+                scan: config.scan_topic.as_deref(),
+                odometry: config.odom_topic.as_deref(),
+            },
+        )?;
         let mut health = graph.health()?;
         for error in &refused {
             tracing::warn!("{}", with_causes(error));

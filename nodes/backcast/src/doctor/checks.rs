@@ -2,13 +2,14 @@
 
 use std::collections::BTreeSet;
 
-use engine::grid::{CellRules, Grid};
+use engine::grid::CellRules;
 use map::OccupancyGrid;
 use recording::ros::OccupancyGridMsg;
 use recording::{GROUND_TRUTH, Kind, Mounted, Recording};
 
 use super::ailment::Ailment;
 use super::patient::{Farthest, Patient, Seen};
+use crate::offline::check_map;
 use transport::with_causes;
 
 /// A gap is worth a note from so many usual distances on.
@@ -116,20 +117,18 @@ fn map(recording: &Recording) -> Vec<Ailment> {
 /// The map in a message, if the engine takes it.
 fn usable(map: &OccupancyGridMsg) -> Result<OccupancyGrid, String> {
     let grid = map.to_grid().map_err(|error| with_causes(&error))?;
-    let sides = (grid.width as usize, grid.height as usize);
-    Grid::new(sides.0, sides.1, &grid.cells, CellRules::default())
-        .map_err(|error| with_causes(&error))?;
+    check_map(&grid, CellRules::default()).map_err(|error| with_causes(&error))?;
     Ok(grid)
 }
 
 fn misnamed(recording: &Recording, grid: &OccupancyGrid, maps: u64) -> Option<Ailment> {
     let found = format!("{:016x}", grid.id());
-    let named = recording.metadata().iter().filter_map(|record| {
+    let mut named = recording.metadata().iter().filter_map(|record| {
         let is_map = record.name == "backcast/map";
         is_map.then(|| record.entries.get("map_id")).flatten()
     });
     // A map that was changed while recording is named, too.
-    let other = named.filter(|id| **id != found).next()?;
+    let other = named.find(|id| **id != found)?;
     (maps == 1)
         .then(|| Ailment::problem(format!("the map is {found}, but the metadata says {other}")))
 }

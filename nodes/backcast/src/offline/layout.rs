@@ -1,7 +1,22 @@
-//! Where a map's cells lie, as the engine takes it.
+//! A map as the engine takes it: where its cells lie, and whether it can be used.
 
-use engine::grid::GridFrame;
+use engine::EngineError;
+use engine::grid::{CellRules, Grid, GridFrame};
 use map::OccupancyGrid;
+
+/// Whether a map can be searched at all, without preparing it.
+///
+/// # Errors
+/// As the engine would refuse it: its sides, or no occupied or no free cell.
+pub(crate) fn check_map(map: &OccupancyGrid, rules: CellRules) -> Result<(), EngineError> {
+    let (width, height) = sides_of(map);
+    let grid = Grid::new(width, height, &map.cells, rules)?;
+    match (grid.occupied_cells(), grid.free_cells()) {
+        (0, _) => Err(EngineError::NoOccupiedCell),
+        (_, 0) => Err(EngineError::NoFreeCell),
+        _ => Ok(()),
+    }
+}
 
 /// Size of a cell, and the pose of the lower left corner.
 pub(crate) fn frame_of(map: &OccupancyGrid) -> GridFrame {

@@ -54,54 +54,57 @@ impl<'a> Maps<'a> {
         self.given.is_none() && self.recorded.peek().is_none()
     }
 
-    /// The maps that have come since the last question, for a scan of this log
-    /// time, the oldest first: the last of them that can be used counts. Those
-    /// that do not decode are the reason why not.
-    pub(super) fn since(&mut self, log_time_ns: i64) -> Vec<Result<Candidate<'a>, String>> {
-        let mut found = Vec::new();
+    /// What has come since the last question, for a scan of this log time.
+    pub(super) fn since(
+        &mut self,
+        log_time_ns: i64,
+        check: impl Fn(&OccupancyGrid) -> Result<(), String>,
+    ) -> Arrived<'a> {
+        let mut arrived = Arrived::default();
         if let Some(map) = self.given.filter(|_| !self.began) {
-            found.push(Ok(Candidate::Given(map)));
+            arrived.take(Ok(Cow::Borrowed(map)), &check);
+            self.began = true;
         }
         while let Some(next) = self.recorded.peek() {
-            let is_first = !self.began && found.is_empty();
             // One that does not decode stands among those of its time.
             let is_due = next.as_ref().map_or(true, |(time, _)| *time <= log_time_ns);
-            if !is_due && !is_first {
+            if !is_due && self.began {
                 break;
             }
-            if let Some(next) = self.recorded.next() {
-                found.push(match next {
-                    Ok((_, map)) => Ok(Candidate::Recorded(Box::new(map))),
-                    Err(error) => Err(with_causes(&error)),
-                });
-            }
-            if !is_due {
-                break;
-            }
+            self.began = true;
+            let next = self.recorded.next();
+            // One at a time, for there may be many, and large ones.
+            arrived.take(next.map_or(Err(String::new()), grid), &check);
         }
-        self.began |= !found.is_empty();
-        found
+        arrived
     }
 }
 
-/// A map that may be the one that counts.
-pub(super) enum Candidate<'a> {
-    Given(&'a OccupancyGrid),
-    Recorded(Box<OccupancyGridMsg>),
+fn grid<'a>(recorded: Recorded) -> Result<Cow<'a, OccupancyGrid>, String> {
+    let (_, map) = recorded.map_err(|error| with_causes(&error))?;
+    let grid = map.to_grid();
+    grid.map(Cow::Owned).map_err(|error| with_causes(&error))
 }
 
-impl<'a> Candidate<'a> {
-    /// The grid in it.
-    ///
-    /// # Errors
-    /// Why there is none.
-    pub(super) fn grid(self) -> Result<Cow<'a, OccupancyGrid>, String> {
-        match self {
-            Candidate::Given(map) => Ok(Cow::Borrowed(map)),
-            Candidate::Recorded(map) => {
-                let grid = map.to_grid();
-                grid.map(Cow::Owned).map_err(|error| with_causes(&error))
-            }
+/// Maps that have come.
+#[derive(Debug, Default)]
+pub(super) struct Arrived<'a> {
+    /// The newest that can be used.
+    pub(super) map: Option<Cow<'a, OccupancyGrid>>,
+    /// Why others cannot.
+    pub(super) refusals: Vec<String>,
+}
+
+impl<'a> Arrived<'a> {
+    fn take(
+        &mut self,
+        map: Result<Cow<'a, OccupancyGrid>, String>,
+        check: impl Fn(&OccupancyGrid) -> Result<(), String>,
+    ) {
+        match map.and_then(|map| check(&map).map(|()| map)) {
+            Ok(map) => self.map = Some(map),
+            Err(refusal) if self.refusals.contains(&refusal) => {}
+            Err(refusal) => self.refusals.push(refusal),
         }
     }
 }
@@ -128,31 +131,45 @@ mod tests {
         Recording::from_bytes("r.mcap", bytes).unwrap()
     }
 
-    fn widths(maps: &mut Maps<'_>, log_time_ns: i64) -> Vec<u32> {
-        let candidates = maps.since(log_time_ns);
-        let grids = candidates.into_iter().map(|map| map.unwrap().grid());
-        grids.map(|grid| grid.unwrap().width).collect()
+    /// The width of the map that came, where those of 7 cells cannot be used.
+    fn width(maps: &mut Maps<'_>, log_time_ns: i64) -> (Option<u32>, usize) {
+        let check = |map: &OccupancyGrid| match map.width {
+            7 => Err("it is 7 cells wide".to_owned()),
+            _ => Ok(()),
+        };
+        let Arrived { map, refusals } = maps.since(log_time_ns, check);
+        (map.map(|map| map.width), refusals.len())
     }
 
     #[test]
-    fn those_before_a_scan_count_and_the_first_after_it_where_there_are_none() {
-        let recording = recording(&[3, 5, 9]);
+    fn the_newest_before_a_scan_counts_and_the_first_after_it_where_there_is_none() {
+        let recording = recording(&[3, 5, 6, 9]);
         let mut maps = Maps::recorded(&recording).unwrap();
-        assert_eq!(widths(&mut maps, 1), [3]);
-        assert!(widths(&mut maps, 4).is_empty());
-        assert_eq!(widths(&mut maps, 9), [5, 9]);
-        assert!(widths(&mut maps, 10).is_empty());
+        assert_eq!(width(&mut maps, 1), (Some(3), 0));
+        assert_eq!(width(&mut maps, 4), (None, 0));
+        assert_eq!(width(&mut maps, 6), (Some(6), 0));
+        assert_eq!(width(&mut maps, 20), (Some(9), 0));
         let mut late = Maps::recorded(&recording).unwrap();
-        assert_eq!(widths(&mut late, 5), [3, 5]);
+        assert_eq!(width(&mut late, 5), (Some(5), 0));
+    }
+
+    #[test]
+    fn what_cannot_be_used_is_left_out_and_told() {
+        let recording = recording(&[7, 8, 7, 7, 9]);
+        let mut maps = Maps::recorded(&recording).unwrap();
+        assert_eq!(width(&mut maps, 1), (None, 1), "the first after it");
+        assert_eq!(width(&mut maps, 8), (Some(8), 1), "two of the same kind");
+        assert_eq!(width(&mut maps, 9), (Some(9), 0));
     }
 
     #[test]
     fn a_map_that_is_given_counts_for_all() {
-        let grid = OccupancyGrid::from_parts(7, 1, 0.5, Default::default(), vec![0; 7]).unwrap();
+        let cells = vec![0; 6];
+        let grid = OccupancyGrid::from_parts(6, 1, 0.5, geometry::Pose::IDENTITY, cells).unwrap();
         let mut maps = Maps::given(&grid);
         assert!(!maps.is_empty());
-        assert_eq!(widths(&mut maps, 1), [7]);
-        assert!(widths(&mut maps, 2).is_empty());
+        assert_eq!(width(&mut maps, 1), (Some(6), 0));
+        assert_eq!(width(&mut maps, 2), (None, 0));
         assert!(Maps::recorded(&recording(&[])).unwrap().is_empty());
     }
 }

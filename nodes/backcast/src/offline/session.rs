@@ -14,8 +14,8 @@ use recording::{Recording, RecordingError};
 use transport::with_causes;
 
 use super::heading::Headings;
-use super::layout::{frame_of, sides_of};
-use super::maps::Maps;
+use super::layout::{check_map, frame_of, sides_of};
+use super::maps::{Arrived, Maps};
 use super::motion::Motion;
 use super::options::EngineOptions;
 use super::scans::Scans;
@@ -76,6 +76,7 @@ impl<'a> Session<'a> {
             other => other,
         };
         let topics = options.topics.scans(recording).map_err(damage)?;
+        let headings = Headings::of(&options.heading, recording).map_err(damage)?;
         let mut maps = match given {
             Some(map) => Maps::given(map),
             None => Maps::recorded(recording)?,
@@ -90,16 +91,15 @@ impl<'a> Session<'a> {
             maps,
             prepared: None,
             refusal: String::new(),
-            notes: Vec::new(),
+            notes: headings.notes().to_vec(),
             said: BTreeSet::new(),
             map_file: map_file(options, recording.path()),
             engine: options.engine.clone(),
-            headings: Headings::of(&options.heading, recording).map_err(damage)?,
+            headings,
         };
-        session.notes.extend_from_slice(session.headings.notes());
         if let Some(map) = given {
             // Without it there is nothing to be done for any scan.
-            session.maps.since(i64::MIN);
+            session.maps.since(i64::MIN, |_| Ok(()));
             session.prepare(Cow::Borrowed(map))?.map_err(|source| {
                 let file = session.map_file.clone();
                 BackcastError::UnusableMap { file, source }
@@ -141,17 +141,14 @@ impl<'a> Session<'a> {
     /// Makes the map that counts for a scan the one that is searched. A map that
     /// cannot be used is left out, as the graph does.
     fn turn_to(&mut self, scan: &TakenScan) -> Result<(), BackcastError> {
-        // Most maps are never searched: the newest that can be used is enough.
-        let mut refusals = Vec::new();
-        for candidate in self.maps.since(scan.log_time_ns).into_iter().rev() {
-            let refusal = match candidate.and_then(|candidate| candidate.grid()) {
-                Ok(map) => match self.prepare(map)? {
-                    Ok(()) => break,
-                    Err(error) => with_causes(&error),
-                },
-                Err(refusal) => refusal,
-            };
-            refusals.push(refusal);
+        let rules = self.engine.cells;
+        let check =
+            |map: &OccupancyGrid| check_map(map, rules).map_err(|error| with_causes(&error));
+        let Arrived { map, mut refusals } = self.maps.since(scan.log_time_ns, check);
+        if let Some(map) = map
+            && let Err(error) = self.prepare(map)?
+        {
+            refusals.push(with_causes(&error));
         }
         for refusal in refusals {
             let file = self.map_file.display();

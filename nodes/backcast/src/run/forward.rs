@@ -45,6 +45,12 @@ pub(crate) fn apply(
 
 /// The recordings, and which of their topics are meant.
 fn forward_replay(options: &Options, dataflow: &mut Dataflow) -> Result<(), BackcastError> {
+    if let Some(topic) = &options.map_topic {
+        return Err(BackcastError::Usage(format!(
+            "--map-topic {topic}: a graph takes its map from the map_server, as the descriptor says; \
+             `locate`, `evaluate` and `plot` take the one in the recording"
+        )));
+    }
     let absolute = options.replay.iter().map(std::path::absolute);
     let recordings: Vec<PathBuf> = absolute
         .collect::<Result<_, _>>()
@@ -288,5 +294,31 @@ mod tests {
         assert!(plays_at_max(&graph("--rate=max", "")));
         assert!(!plays_at_max(&graph("--rate 2", "")));
         assert!(!plays_at_max(&graph("max", "")));
+    }
+
+    #[test]
+    fn recordings_and_their_topics_go_to_the_replayer() {
+        let options = Options {
+            replay: vec!["/a.mcap".into(), "/b".into()],
+            scan_topic: Some("/front/scan".to_owned()),
+            odom_topic: Some("/wheels".to_owned()),
+            ..Options::default()
+        };
+        let before = "--recording x.mcap --rate=max --scan-topic /scan";
+        let args = applied(&options, graph(before, "")).unwrap();
+        let expected = [
+            "--rate=max",
+            "--recording=/a.mcap",
+            "--recording=/b",
+            "--scan-topic=/front/scan",
+            "--odom-topic=/wheels",
+        ];
+        assert_eq!(args[0], expected);
+        let options = Options {
+            map_topic: Some("/map".to_owned()),
+            ..options
+        };
+        let refusal = applied(&options, graph("", "")).unwrap_err().to_string();
+        assert!(refusal.contains("from the map_server"), "{refusal}");
     }
 }

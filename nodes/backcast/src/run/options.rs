@@ -52,6 +52,10 @@ pub(crate) struct Options {
     #[arg(long = "loop")]
     pub(crate) repeat: bool,
 
+    /// Not for a graph, whose map is map_server's: say there which one
+    #[arg(long, value_name = "TOPIC", requires = "replay", hide = true)]
+    pub(crate) map_topic: Option<String>,
+
     #[command(flatten)]
     pub(crate) heading: HeadingConfig,
 

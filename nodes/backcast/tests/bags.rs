@@ -1,0 +1,235 @@
+//! Recordings as others make them: in folders, with maps that grow, with several
+//! topics of a kind, with transforms that are none.
+
+#![allow(
+    clippy::unwrap_used,
+    reason = "a test fails by panicking, helpers of tests too"
+)]
+
+mod drawn;
+
+use std::fs;
+
+use drawn::{
+    HERE, THERE, folder, map_message, mount_message, record, recordings, room, run, scan, scan_at,
+    truth_at,
+};
+use recording::Message;
+use recording::ros::{LaserScan, OccupancyGridMsg};
+use serde_json::Value;
+
+/// The room as far as it is known: so many of its rows.
+fn known_rows(rows: usize) -> (&'static str, Message) {
+    let mut room = room();
+    let width = room.width as usize;
+    for cell in &mut room.cells[rows * width..] {
+        *cell = map::UNKNOWN;
+    }
+    ("/map", Message::Map(OccupancyGridMsg::from_grid(&room)))
+}
+
+fn verdicts(folder: &std::path::Path, arguments: &str) -> (i32, Vec<String>, String) {
+    let (code, stdout, stderr) = run(folder, &format!("locate --json {arguments}"));
+    let verdict = |line: &str| {
+        let object: Value = serde_json::from_str(line).unwrap();
+        object["verdict"].as_str().unwrap().to_owned()
+    };
+    (code, stdout.lines().map(verdict).collect(), stderr)
+}
+
+#[test]
+fn the_newest_map_before_a_scan_counts() {
+    let grows = [
+        known_rows(0),
+        scan_at(1, HERE),
+        known_rows(2),
+        known_rows(12),
+        scan_at(2, HERE),
+        known_rows(0),
+        scan_at(3, THERE),
+    ];
+    let folder = folder(&grows);
+    let (code, found, stderr) = verdicts(folder.path(), "r.mcap");
+    assert_eq!(found, ["NoScan", "Unique", "Unique"], "{stderr}");
+    assert_eq!(code, 0);
+    // The two maps without a cell are the same, and said once.
+    let note = "backcast: r.mcap: a map is left out: the map has no occupied cell: there is nothing \
+                that a laser could see\n";
+    assert_eq!(stderr, note);
+    let (_, stdout, _) = run(folder.path(), "locate r.mcap");
+    let refused = stdout.lines().nth(1).unwrap();
+    assert!(
+        refused.ends_with(
+            "r.mcap: no map up to this scan can be searched: the map has no occupied cell: there is \
+             nothing that a laser could see"
+        ),
+        "{refused}"
+    );
+}
+
+#[test]
+fn a_map_that_is_recorded_behind_all_scans_counts_for_them() {
+    let folder = folder(&[scan_at(1, HERE), scan_at(2, THERE), map_message()]);
+    let (code, found, stderr) = verdicts(folder.path(), "r.mcap");
+    assert_eq!((code, stderr.as_str()), (0, ""));
+    assert_eq!(found, ["Unique", "Unique"]);
+}
+
+#[test]
+fn where_every_scan_is_refused_there_is_an_error() {
+    let still = |second| {
+        let scan = LaserScan {
+            angle_increment: 0.0,
+            ..scan(second, HERE)
+        };
+        ("/scan", Message::Scan(scan))
+    };
+    let folder = folder(&[map_message(), still(1), truth_at(1, HERE), still(2)]);
+    let said = |scans: u32| {
+        format!(
+            "backcast: r.mcap: every scan was refused, {scans} in all; the first: angle_increment is 0"
+        )
+    };
+    let (code, found, stderr) = verdicts(folder.path(), "r.mcap");
+    assert_eq!((code, found.len()), (1, 2));
+    assert!(stderr.starts_with(&said(2)), "{stderr}");
+    let (code, stdout, stderr) = run(folder.path(), "evaluate r.mcap");
+    assert_eq!((code, stdout.as_str()), (1, ""));
+    assert!(stderr.starts_with(&said(1)), "{stderr}");
+    let (code, stdout, _) = run(folder.path(), "doctor r.mcap");
+    assert_eq!(code, 1);
+    assert!(
+        stdout.contains("problem  /scan: 2 odd scans; of the first angle_increment is 0"),
+        "{stdout}"
+    );
+}
+
+#[test]
+fn the_topic_is_named_where_several_could_be_meant() {
+    let on = |topic, second, place| (topic, Message::Scan(scan(second, place)));
+    let folder = folder(&[
+        map_message(),
+        on("/front/scan", 1, HERE),
+        on("/rear/scan", 2, THERE),
+        on("/front/scan", 3, THERE),
+    ]);
+    let (code, _, stderr) = verdicts(folder.path(), "r.mcap");
+    assert_eq!(code, 1);
+    assert!(
+        stderr.ends_with(
+            "/front/scan, /rear/scan, and none is called /scan: name one with --scan-topic\n"
+        ),
+        "{stderr}"
+    );
+    for (options, scans) in [
+        ("--scan-topic /front/scan", 2),
+        ("--scan-topic /rear/scan", 1),
+        ("--scan-topic /rear/scan --scan-topic /front/scan", 3),
+    ] {
+        let (code, found, stderr) = verdicts(folder.path(), &format!("r.mcap {options}"));
+        assert_eq!((code, stderr.as_str()), (0, ""), "{options}");
+        assert_eq!(found, vec!["Unique"; scans], "{options}");
+    }
+    let (code, _, stderr) = verdicts(folder.path(), "r.mcap --scan-topic /scan");
+    assert_eq!(code, 1);
+    assert!(
+        stderr.ends_with(
+            "has no sensor_msgs/msg/LaserScan on /scan; it has /front/scan, /rear/scan\n"
+        ),
+        "{stderr}"
+    );
+    let (_, stdout, _) = run(folder.path(), "info r.mcap --scan-topic /rear/scan");
+    assert!(
+        stdout.contains("taken: map /map, scans /rear/scan"),
+        "{stdout}"
+    );
+    let (code, _, _) = run(folder.path(), "doctor r.mcap --scan-topic /rear/scan");
+    assert_eq!(code, 0);
+}
+
+#[test]
+fn a_map_and_a_recording_that_are_swapped_are_told() {
+    let folder = folder(&[map_message(), scan_at(1, HERE)]);
+    map::save(&room(), folder.path().join("room.yaml")).unwrap();
+    for bag in ["--bag room.yaml", "room.yaml"] {
+        let (code, _, stderr) = verdicts(folder.path(), &format!("{bag} --map r.mcap"));
+        let said =
+            "backcast: room.yaml is a map, and --map r.mcap a recording: the two look swapped\n";
+        assert_eq!((code, stderr.as_str()), (2, said));
+    }
+    let (code, found, _) = verdicts(folder.path(), "--bag r.mcap --map room.yaml");
+    assert_eq!((code, found), (0, vec!["Unique".to_owned()]));
+}
+
+#[test]
+fn a_folder_stands_wherever_a_recording_does() {
+    let folder = tempfile::tempdir().unwrap();
+    let bag = folder.path().join("drive");
+    fs::create_dir(&bag).unwrap();
+    record(
+        &bag.join("drive_0.mcap"),
+        &[
+            map_message(),
+            mount_message(),
+            scan_at(1, HERE),
+            truth_at(1, HERE),
+        ],
+    );
+    record(
+        &bag.join("drive_1.mcap"),
+        &[scan_at(2, THERE), truth_at(2, THERE)],
+    );
+    for files in [
+        "drive",
+        "--bag drive",
+        "drive/drive_0.mcap drive/drive_1.mcap",
+    ] {
+        let (code, found, stderr) = verdicts(folder.path(), files);
+        assert_eq!((code, stderr.as_str()), (0, ""), "{files}");
+        assert_eq!(found, ["Unique", "Unique"], "{files}");
+    }
+    let (code, stdout, stderr) = run(folder.path(), "evaluate --json drive");
+    assert_eq!((code, stderr.as_str()), (0, ""));
+    let figures: Value = serde_json::from_str(&stdout).unwrap();
+    assert_eq!(
+        (&figures["truths"], &figures["unique"]),
+        (&2.into(), &2.into())
+    );
+    let (_, stdout, _) = run(folder.path(), "info drive");
+    assert!(
+        stdout.starts_with("drive: ") && stdout.contains("6 messages in 2 chunks"),
+        "{stdout}"
+    );
+    let (code, _, stderr) = run(folder.path(), "plot --bag drive --out scan.png");
+    assert_eq!((code, stderr.as_str()), (0, ""));
+    let (code, _, stderr) = run(folder.path(), "convert drive drive.mcap");
+    assert_eq!(code, 0, "{stderr}");
+    let (_, found, _) = verdicts(folder.path(), "drive.mcap");
+    assert_eq!(found, ["Unique", "Unique"]);
+    let corridor = recordings().join("malaga_corridor/map.yaml");
+    let map = format!("drive --map {}", corridor.display());
+    let (code, found, _) = verdicts(folder.path(), &map);
+    assert_eq!((code, found.len()), (0, 2), "the map that is given counts");
+}
+
+#[test]
+fn a_transform_that_is_none_is_a_note_where_the_laser_does_not_need_it() {
+    let broken = |child: &str| {
+        let (topic, mut message) = mount_message();
+        if let Message::StaticTransforms(message) = &mut message {
+            let mut camera = message.transforms[0].clone();
+            camera.child_frame_id = child.to_owned();
+            camera.transform.translation.x = f64::NAN;
+            message.transforms.push(camera);
+        }
+        (topic, message)
+    };
+    let camera = folder(&[map_message(), broken("camera"), scan_at(1, HERE)]);
+    let note = "the transform from base_link to camera is left out: the position (NaN, 0) is not \
+                finite\n";
+    let (code, found, stderr) = verdicts(camera.path(), "r.mcap");
+    assert_eq!((code, found), (0, vec!["Unique".to_owned()]));
+    assert_eq!(stderr, format!("backcast: {note}"));
+    let (code, stdout, _) = run(camera.path(), "doctor r.mcap");
+    assert_eq!((code, stdout), (0, format!("r.mcap:\n  note     {note}")));
+}
