@@ -1,8 +1,12 @@
 //! How the robot moved by its odometry, between and a little beyond its samples.
 
+mod delay;
+
 use std::collections::VecDeque;
 
 use geometry::Pose;
+
+pub use delay::Sighting;
 
 /// Two samples that lie farther apart say too little of the motion between them:
 /// within half a second a robot brakes and turns.

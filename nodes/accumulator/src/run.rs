@@ -11,7 +11,7 @@ use std::time::{Duration, Instant};
 
 use engine::fit::Readings;
 use engine::heading::{HeadingSource, History};
-use engine::joined::{JoinConfig, Joiner, LeftOut, Role, Seen};
+use engine::joined::{JoinConfig, Joiner, Role, Seen};
 use engine::localizer::Workspace;
 use messages::{ScanHeader, Vote, VotesHeader};
 use transport::{Flow, GapCounter, Graph, Health, TransportError, with_causes};
@@ -170,9 +170,6 @@ impl Node {
         }
         let notes = brought.notes(self.joiner.flows()).join("; ");
         self.note(&notes)?;
-        let lost = brought.left_out.iter();
-        let lost = lost.filter(|(_, why)| *why != LeftOut::NoScan).count();
-        self.health.count_dropped(lost as u64);
         Ok(match self.joiner.seeks_base() {
             true => brought.lasers,
             false => 0,

@@ -80,6 +80,12 @@ impl Laser {
         Some(self.first_beam_ns.max(self.beam_at_ns(last)))
     }
 
+    /// When half of the beams were measured.
+    pub(super) fn middle_ns(&self) -> i64 {
+        let last = self.ranges.len().saturating_sub(1);
+        (self.first_beam_ns / 2).saturating_add(self.beam_at_ns(last) / 2)
+    }
+
     fn beam_at_ns(&self, range: usize) -> i64 {
         self.first_beam_ns
             .saturating_add((range as f64 * self.beam_ns) as i64)

@@ -8,6 +8,7 @@ use recording::ros::OccupancyGridMsg;
 use recording::{GROUND_TRUTH, Kind, Mounted, Recording};
 
 use super::ailment::Ailment;
+use super::delay::odometry_delay;
 use super::patient::{Farthest, Patient, Seen};
 use crate::offline::check_map;
 use transport::with_causes;
@@ -36,6 +37,7 @@ pub(super) fn all(recording: &Recording, patient: &Patient) -> Vec<Ailment> {
         mended(patient),
         truths(recording, patient),
         order(recording),
+        odometry_delay(recording),
     ];
     let mut all: Vec<Ailment> = checks.into_iter().flatten().collect();
     all.sort_by_key(|ailment| std::cmp::Reverse(ailment.severity));

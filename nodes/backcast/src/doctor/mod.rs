@@ -6,6 +6,7 @@
 mod ailment;
 mod checks;
 mod command;
+mod delay;
 mod patient;
 
 pub(crate) use command::{Config, NOTES, run};

@@ -104,7 +104,7 @@ fn hear_odometry(
 ///
 /// # Errors
 /// The file cannot be read.
-pub(super) fn each_odometry(
+pub(crate) fn each_odometry(
     recording: &Recording,
     topic: &Arc<str>,
     mut take: impl FnMut(&Odometry),

@@ -19,6 +19,7 @@ mod topics;
 mod world;
 
 pub(crate) use accepted::Accepted;
+pub(crate) use heading::each_odometry;
 pub(crate) use layout::{check_map, frame_of, sides_of};
 pub(crate) use options::Options;
 pub(crate) use progress::{Progress, say};

@@ -1,0 +1,158 @@
+//! By how much the clock of the odometry is off that of the laser.
+
+use geometry::Pose;
+
+use super::Motion;
+
+/// A pose that a scan gave, and when.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Sighting {
+    /// When the middle of the scan was measured, nanoseconds.
+    pub at_ns: i64,
+    /// Where the laser was.
+    pub map_from_laser: Pose,
+}
+
+/// Delays that are tried, seconds: twice as many lie below 0, above it, and between.
+const MAX_DELAY_S: f64 = 0.5;
+const STEP_S: f64 = 0.005;
+
+/// Between two sightings at most, nanoseconds: farther apart, odometry drifts.
+const MAX_GAP_NS: i64 = 600_000_000;
+
+/// Fewest pairs of sightings that can tell a delay from chance.
+const MIN_PAIRS: usize = 20;
+
+/// What a pair differs by at most, metres; a pose in another place must not decide.
+const MAX_DIFFERENCE_M: f64 = 0.2;
+
+/// A delay is told only where it explains half of what the odometry at other delays
+/// leaves open: a robot that never speeds up or turns tells none.
+const MAX_REST: f64 = 0.5;
+
+impl Motion {
+    /// What is to be added to the stamps of the odometry, seconds, so that it moves as
+    /// the sightings do: above zero where it leads the laser. `None` where they do not
+    /// tell.
+    ///
+    /// The motion between neighbouring sightings is compared with that of the odometry
+    /// at the same times, shifted; a radian counts as a metre.
+    #[must_use]
+    pub fn delay_s(&self, sightings: &[Sighting], child_from_laser: Pose) -> Option<f64> {
+        let steps = (MAX_DELAY_S / STEP_S).round() as i32;
+        let pairs: Vec<&[Sighting]> = sightings
+            .windows(2)
+            .filter(|pair| self.covers(pair, child_from_laser))
+            .collect();
+        if pairs.len() < MIN_PAIRS {
+            return None;
+        }
+        let rest = |step: i32| {
+            let delay_ns = (f64::from(step) * STEP_S * 1e9) as i64;
+            let differences = pairs.iter().map(|pair| {
+                let moved = self.between(pair, delay_ns, child_from_laser);
+                moved.map_or(MAX_DIFFERENCE_M.powi(2), |moved| difference(pair, moved))
+            });
+            differences.sum::<f64>()
+        };
+        let rests: Vec<f64> = (-steps..=steps).map(rest).collect();
+        let (best, least) = rests
+            .iter()
+            .enumerate()
+            .min_by(|(_, a), (_, b)| a.total_cmp(b))?;
+        let mean = rests.iter().sum::<f64>() / rests.len() as f64;
+        let is_inside = 0 < best && best + 1 < rests.len();
+        if !is_inside || *least > MAX_REST * mean {
+            return None;
+        }
+        // The lowest point of the parabola through the best delay and its neighbours.
+        let (before, after) = (rests[best - 1], rests[best + 1]);
+        let curvature = before - 2.0 * least + after;
+        let off = if curvature > 0.0 {
+            0.5 * (before - after) / curvature
+        } else {
+            0.0
+        };
+        Some((best as f64 + off - f64::from(steps)) * STEP_S)
+    }
+
+    /// Whether odometry is there for all delays.
+    fn covers(&self, pair: &[Sighting], child_from_laser: Pose) -> bool {
+        let most_ns = (MAX_DELAY_S * 1e9) as i64;
+        let is_near = pair[1].at_ns - pair[0].at_ns <= MAX_GAP_NS;
+        is_near
+            && [-most_ns, most_ns]
+                .into_iter()
+                .all(|delay_ns| self.between(pair, delay_ns, child_from_laser).is_some())
+    }
+
+    /// How the laser moved between two sightings by the odometry, delayed.
+    fn between(&self, pair: &[Sighting], delay_ns: i64, child_from_laser: Pose) -> Option<Pose> {
+        let laser_at = |at_ns: i64| {
+            let located = self.at(at_ns.saturating_sub(delay_ns))?;
+            Some(located.odom_from_child.then(child_from_laser))
+        };
+        let before = laser_at(pair[0].at_ns)?;
+        Some(before.inverse().then(laser_at(pair[1].at_ns)?))
+    }
+}
+
+/// How far the motion between two sightings is from another one, squared metres.
+fn difference(pair: &[Sighting], moved: Pose) -> f64 {
+    let seen = pair[0]
+        .map_from_laser
+        .inverse()
+        .then(pair[1].map_from_laser);
+    let angle = seen.angle_to(moved);
+    let metres = seen.distance_to(moved).hypot(angle);
+    metres.min(MAX_DIFFERENCE_M).powi(2)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// A robot that swings to both sides while it drives.
+    fn at(seconds: f64) -> Pose {
+        Pose::new(0.5 * seconds, 0.0, 0.4 * (1.5 * seconds).sin())
+    }
+
+    fn ns(seconds: f64) -> i64 {
+        (seconds * 1e9) as i64
+    }
+
+    fn delay_s(truth: impl Fn(f64) -> Pose, lead_s: f64) -> Option<f64> {
+        let mut motion = Motion::keeping(usize::MAX);
+        for i in 0..600 {
+            let seconds = f64::from(i) * 0.02;
+            // The odometry shows now what the laser sees later.
+            motion.add(ns(seconds), truth(seconds + lead_s));
+        }
+        let mount = Pose::new(0.3, 0.0, 0.5);
+        let sightings: Vec<Sighting> = (10..110)
+            .map(|i| f64::from(i) * 0.1)
+            .map(|seconds| Sighting {
+                at_ns: ns(seconds),
+                map_from_laser: Pose::new(3.0, 1.0, 2.0).then(truth(seconds)).then(mount),
+            })
+            .collect();
+        motion.delay_s(&sightings, mount)
+    }
+
+    #[test]
+    fn a_lead_and_a_lag_are_told() {
+        for lead_s in [0.13, 0.0, -0.2] {
+            let found = delay_s(at, lead_s).unwrap();
+            // A parabola through steps of 5 ms, on a curve that is one nearby.
+            assert!((found - lead_s).abs() < 0.002, "{found} is not {lead_s}");
+        }
+    }
+
+    #[test]
+    fn a_robot_that_never_turns_tells_nothing() {
+        assert_eq!(
+            delay_s(|seconds| Pose::new(0.5 * seconds, 0.0, 0.0), 0.1),
+            None
+        );
+    }
+}
