@@ -19,6 +19,8 @@ use transport::{Flow, Graph, Subscriber, TransportError};
 /// How the two are joined.
 enum Cable {
     Tcp(&'static str),
+    /// Over CoLa B, a device that counts its angles otherwise.
+    Device(&'static str),
     Serial,
 }
 
@@ -101,6 +103,11 @@ fn ends(cable: &Cable) -> (Option<tempfile::TempDir>, Vec<String>, Vec<String>) 
                 words(&["--listen", "tcp://graph:2112", "--protocol", protocol]),
                 words(&["--tcp", "graph:2112", "--protocol", protocol]),
             )
+        }
+        Cable::Device(name) => {
+            let (none, mut device, reader) = ends(&Cable::Tcp("cola-b"));
+            device.extend(words(&["--device", name]));
+            (none, device, reader)
         }
         Cable::Serial => {
             let folder = tempfile::tempdir().unwrap();
@@ -253,4 +260,15 @@ fn cola_b_on_a_socket() {
 #[test]
 fn cola_a_on_a_socket() {
     every_scan_arrives("colaa", &Cable::Tcp("cola-a"), 0.002);
+}
+
+#[test]
+fn devices_that_count_their_angles_otherwise() {
+    for (tag, name) in [
+        ("tim240", "TiM240"),
+        ("nav310", "NAV310"),
+        ("lrs4000", "LRS4000"),
+    ] {
+        every_scan_arrives(tag, &Cable::Device(name), 0.002);
+    }
 }

@@ -53,9 +53,9 @@ fn emulated(tag: &str, arguments: &[&str], device: impl Fn(&str) -> String) -> S
 
 /// Whether somebody listens at the first port, or the link is made.
 fn is_there(device: &str) -> bool {
-    match device.strip_prefix("tcp://") {
-        Some(host) => TcpStream::connect((host, 2112)).is_ok(),
-        None => Path::new(device).exists(),
+    match device.starts_with('/') {
+        true => Path::new(device).exists(),
+        false => TcpStream::connect((device.trim_start_matches("tcp://"), 2112)).is_ok(),
     }
 }
 
@@ -79,9 +79,24 @@ fn cola_in_either_encoding() {
         assert!(said.contains(&format!(":2112: answers {name}")), "{said}");
         assert!(said.contains("LMS111 emulated"), "{said}");
         assert!(said.contains("every 0.5°, from 0° to 180°"), "{said}");
+        assert!(
+            said.contains("90° is ahead, angles grow counter-clockwise"),
+            "{said}"
+        );
         assert!(said.contains("a scan of 361 readings"), "{said}");
         has_a_picture(&said);
     }
+}
+
+#[test]
+fn a_clockwise_device_by_its_address_alone() {
+    let arguments = ["--listen", "tcp://graph:2112", "--device", "NAV310"];
+    let said = emulated("probenav", &arguments, |host| host.to_owned());
+    assert!(
+        said.contains("180° is ahead, angles grow clockwise (as a NAV310"),
+        "{said}"
+    );
+    has_a_picture(&said);
 }
 
 #[test]

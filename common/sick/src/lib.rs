@@ -2,7 +2,7 @@
 //!
 //! Pure: bytes in, typed telegrams or located errors out, and back. It opens
 //! nothing and knows no clock; what the values mean for a robot is not decided
-//! here.
+//! here, but for which of a device's angles points ahead, where its documents say so.
 //!
 //! | module | of | framing |
 //! |---|---|---|

@@ -4,12 +4,12 @@
 //! without a login, values that it cannot do, names that it does not know.
 
 use sick::cola::{
-    AUTHORIZED_CLIENT, Answer, Channel, Channels, Command, DeviceTime, Encoding, Fault,
-    LmdScanData, Method, OutputRange, PASSWORD_AUTHORIZED_CLIENT, ScanConfig, ScanDataConfig,
-    Telegram, Value, Variable,
+    AUTHORIZED_CLIENT, AngleConvention, Answer, Channel, Channels, Command, DeviceTime, Encoding,
+    Fault, KnownDevice, LmdScanData, Method, OutputRange, PASSWORD_AUTHORIZED_CLIENT, ScanConfig,
+    ScanDataConfig, Telegram, Value, Variable, sweep_us,
 };
 
-use crate::sweep::Sweep;
+use crate::sweep::{AHEAD_RAW, Sweep};
 
 /// Distances below are codes.
 const FIRST_DISTANCE: f64 = 16.0;
@@ -25,9 +25,49 @@ pub(crate) struct Session {
     pub(crate) subscribed: bool,
 }
 
+/// Which device it is.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(crate) struct Model {
+    /// As it says it.
+    name: &'static str,
+    /// How it counts its angles.
+    convention: AngleConvention,
+}
+
+impl Model {
+    /// A device of the table, an LMS111 where none is asked for.
+    pub(crate) fn of(row: Option<&KnownDevice>) -> Self {
+        let usual = AngleConvention::USUAL;
+        Model {
+            name: row.map_or("LMS111 emulated", |row| row.name),
+            convention: row.and_then(|row| row.convention).unwrap_or(usual),
+        }
+    }
+
+    /// The device's angle of an angle of the recording, which has 90° ahead and
+    /// counts counter-clockwise, and the other way round.
+    fn turn(&self, angle_raw: i32) -> i32 {
+        let ahead_raw = (self.convention.ahead_deg * 1e4).round() as i32;
+        match self.convention.clockwise {
+            true => ahead_raw + AHEAD_RAW - angle_raw,
+            false => ahead_raw - AHEAD_RAW + angle_raw,
+        }
+    }
+
+    /// The recording's angle of one of the device.
+    fn turn_back(&self, device_raw: i32) -> i32 {
+        let ahead_raw = (self.convention.ahead_deg * 1e4).round() as i32;
+        match self.convention.clockwise {
+            true => ahead_raw + AHEAD_RAW - device_raw,
+            false => device_raw - ahead_raw + AHEAD_RAW,
+        }
+    }
+}
+
 /// The device, as all clients see it.
 #[derive(Debug)]
 pub(crate) struct ColaDevice {
+    model: Model,
     encoding: Encoding,
     /// How it scans when it is switched on.
     full: ScanConfig,
@@ -43,12 +83,13 @@ pub(crate) struct ColaDevice {
 }
 
 impl ColaDevice {
-    pub(crate) fn new(encoding: Encoding, sweep: &Sweep) -> Self {
+    pub(crate) fn new(model: Model, encoding: Encoding, sweep: &Sweep) -> Self {
+        let ends = [sweep.start_raw, sweep.stop_raw()].map(|raw| model.turn(raw));
         let full = ScanConfig {
             frequency_raw_1e2_hz: (100.0 / sweep.scan_time_s).round() as u32,
             resolution_raw_1e4_deg: sweep.step_raw.unsigned_abs(),
-            start_angle_raw_1e4_deg: sweep.start_raw,
-            stop_angle_raw_1e4_deg: sweep.stop_raw(),
+            start_angle_raw_1e4_deg: ends[0].min(ends[1]),
+            stop_angle_raw_1e4_deg: ends[0].max(ends[1]),
         };
         let ranges = sweep.scans.iter().flatten();
         let is_far = ranges
@@ -56,6 +97,7 @@ impl ColaDevice {
             .any(|&range| range > FARTHEST_M);
         ColaDevice {
             says_frequency: sweep.says_time,
+            model,
             encoding,
             full,
             scan: full,
@@ -115,7 +157,7 @@ impl ColaDevice {
     fn value(&self, variable: Variable) -> Value<'static> {
         match variable {
             Variable::DeviceIdent => Value::DeviceIdent {
-                name: b"LMS111 emulated",
+                name: self.model.name.as_bytes(),
                 version: env!("CARGO_PKG_VERSION").as_bytes(),
             },
             Variable::DeviceState => Value::DeviceState(1),
@@ -252,16 +294,21 @@ impl ColaDevice {
             position: None,
             name: self.data.name.then_some(&b"emulated"[..]),
             comment: None,
-            time: self.time(sweep, scan),
+            time: self.time(sweep, scan, &channels[0]),
             event: None,
         };
         self.encoding.frame(&Telegram::ScanData(data), out);
     }
 
-    /// The device's clock stands at the recording's time.
-    fn time(&self, sweep: &Sweep, scan: usize) -> Option<DeviceTime> {
+    /// The device's clock stands at the recording's time, which is that of the
+    /// rightmost beam: a device that turns clockwise comes to it last.
+    fn time(&self, sweep: &Sweep, scan: usize, channel: &Channel<'_>) -> Option<DeviceTime> {
         let stamp_us = sweep.stamps_us.get(scan).filter(|_| self.data.time)?;
-        DeviceTime::from_unix_us(*stamp_us)
+        let before_us = match self.model.convention.clockwise {
+            true => sweep_us(channel, self.scan.frequency_raw_1e2_hz),
+            false => 0,
+        };
+        DeviceTime::from_unix_us(stamp_us - before_us)
     }
 
     fn fill_distances(&mut self, sweep: &Sweep, scan: usize) {
@@ -271,7 +318,8 @@ impl ColaDevice {
         self.distances.clear();
         let beams = angles.step_by(range.resolution_raw_1e4_deg.max(1) as usize);
         self.distances.extend(beams.map(|angle| {
-            let range = sweep.range(scan, angle).map(f64::from);
+            let range = sweep.range(scan, self.model.turn_back(angle));
+            let range = range.map(f64::from);
             let units = range.map_or(0.0, |metres| (metres / unit_m).round());
             match (FIRST_DISTANCE..=f64::from(u16::MAX)).contains(&units) {
                 true => units as u16,

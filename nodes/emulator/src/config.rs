@@ -4,7 +4,7 @@ use std::path::PathBuf;
 
 use clap::{ArgGroup, Parser};
 use playback::Rate;
-use sick::cola::Encoding;
+use sick::cola::{Encoding, KnownDevice};
 use sick::lms2xx::Baud;
 
 use crate::FaultPlan;
@@ -40,6 +40,11 @@ pub struct Config {
     /// The encoding of --listen.
     #[arg(long, value_enum, default_value_t = Encoding::Binary, conflicts_with = "pty")]
     pub protocol: Encoding,
+
+    /// The device that --listen is, such as TiM240 or NAV310: it counts its angles as
+    /// that one does [default: LMS111].
+    #[arg(long = "device", value_name = "NAME", value_parser = model, conflicts_with = "pty")]
+    pub model: Option<&'static KnownDevice>,
 
     /// Is an LMS2xx on a pseudo-terminal; this link leads to it.
     #[arg(long, value_name = "LINK")]
@@ -85,6 +90,11 @@ fn patience(text: &str) -> Result<f64, String> {
         Ok(seconds) if (0.1..=3600.0).contains(&seconds) => Ok(seconds),
         _ => Err("allowed are 0.1 to 3600 seconds".into()),
     }
+}
+
+fn model(text: &str) -> Result<&'static KnownDevice, String> {
+    let found = KnownDevice::named(text).filter(|row| row.convention.is_some());
+    found.ok_or_else(|| format!("known are {}", KnownDevice::names()))
 }
 
 fn listen(text: &str) -> Result<String, String> {
@@ -135,6 +145,8 @@ mod tests {
         refuse("", "--listen");
         refuse("--pty b --listen tcp://a:1", "cannot be used with");
         refuse("--pty b --protocol cola-a", "cannot be used with");
+        refuse("--pty b --device TiM240", "cannot be used with");
+        refuse("--listen tcp://a:1 --device XY7", "known are LMS1xx");
         refuse("--listen 127.0.0.1:2112", "tcp://HOST:PORT");
         refuse("--listen tcp://a:x", "0 to 65535");
         refuse("--pty b --baud 1", "38400 and 500000");

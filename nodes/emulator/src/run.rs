@@ -11,6 +11,7 @@ use messages::{NodeState, topic};
 use playback::{Awaited, Poses};
 use transport::{Graph, Health, Subscriber, TransportError, monotonic_ns, with_causes};
 
+use crate::cola_device::Model;
 use crate::drive::{Drive, Happening, Topics};
 use crate::faults::Faults;
 use crate::player::{Due, Player};
@@ -54,7 +55,11 @@ impl Summary {
 pub fn run(graph: &Graph, config: &Config) -> Result<Summary, EmulatorError> {
     let common = Common::open(graph, config)?;
     match (&config.listen, &config.pty) {
-        (Some(address), _) => tcp::run(&graph.name().resolve(address), config.protocol, common),
+        (Some(address), _) => {
+            let model = Model::of(config.model);
+            let address = graph.name().resolve(address);
+            tcp::run(&address, &model, config.protocol, common)
+        }
         (None, Some(link)) => pty::run(link, config.baud, common),
         // The command line allows nothing else.
         (None, None) => Ok(Summary::default()),

@@ -7,8 +7,8 @@
 use std::collections::VecDeque;
 
 use sick::cola::{
-    AUTHORIZED_CLIENT, Answer, Command, Method, OutputRange, PASSWORD_AUTHORIZED_CLIENT,
-    ScanConfig, ScanDataConfig, Value, Variable,
+    AUTHORIZED_CLIENT, Answer, Command, DeviceAngles, Field, Method, OutputRange,
+    PASSWORD_AUTHORIZED_CLIENT, ScanConfig, ScanDataConfig, Value, Variable,
 };
 
 use crate::LmsError;
@@ -18,8 +18,6 @@ use crate::attempts::{Attempt, Attempts, TRIES};
 const PATIENCE_NS: i64 = 1_000_000_000;
 /// The mirror may have to change its speed.
 const SLOW_NS: i64 = 10_000_000_000;
-/// Straight ahead.
-const AHEAD_RAW: i32 = 900_000;
 
 /// The settings that the device must have; the others stay.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Eq)]
@@ -49,6 +47,8 @@ enum Step {
     ReadScanConfig,
     SetResolution,
     CheckResolution,
+    /// Before the field is changed, for afterwards it tells no more.
+    CheckAhead,
     ReadRange,
     SetRange,
     CheckRange,
@@ -64,6 +64,11 @@ enum Step {
 #[derive(Debug)]
 pub(crate) struct Setup {
     wanted: Wanted,
+    /// Which way the device looks, by the configuration or by its name.
+    angles: DeviceAngles,
+    is_stated: bool,
+    /// The device's angle that is ahead, 1/10000°, once that is known.
+    ahead_raw: Option<i32>,
     steps: VecDeque<Step>,
     attempts: Attempts,
     /// As the device had it.
@@ -73,7 +78,7 @@ pub(crate) struct Setup {
 }
 
 impl Setup {
-    pub(crate) fn new(wanted: Wanted) -> Self {
+    pub(crate) fn new(wanted: Wanted, stated: Option<DeviceAngles>) -> Self {
         let mut steps = VecDeque::from([Step::Identify, Step::AskState]);
         if wanted.time {
             steps.push_back(Step::ReadContents);
@@ -87,14 +92,19 @@ impl Setup {
             steps.extend(change.into_iter().chain([Step::CheckResolution]));
         }
         if wanted.field_raw_1e4_deg.is_some() {
-            steps.extend([Step::ReadRange, Step::SetRange, Step::CheckRange]);
+            steps.extend([Step::CheckAhead, Step::ReadRange]);
+            steps.extend([Step::SetRange, Step::CheckRange]);
         }
         if changes {
             steps.push_back(Step::Run);
         }
         steps.push_back(Step::Subscribe);
+        let is_stated = stated.is_some();
         Setup {
             wanted,
+            angles: stated.unwrap_or_default(),
+            is_stated,
+            ahead_raw: None,
             steps,
             attempts: Attempts::default(),
             scan: None,
@@ -108,6 +118,7 @@ impl Setup {
     /// # Errors
     /// [`LmsError::NoAnswer`].
     pub(crate) fn next(&mut self, now_ns: i64) -> Result<Option<Command<'static>>, LmsError> {
+        self.skip_check()?;
         while let Some(&step) = self.steps.front() {
             let command = self.command(step);
             let patience_ns = if step == Step::SetResolution {
@@ -149,9 +160,18 @@ impl Setup {
                     fault: *fault,
                 });
             }
-            (Step::Identify, Answer::Value(Value::DeviceIdent { name, version })) => {
-                let (name, version) = (name.escape_ascii(), version.escape_ascii());
+            (
+                Step::Identify,
+                Answer::Value(Value::DeviceIdent {
+                    name: name_bytes,
+                    version,
+                }),
+            ) => {
+                let (name, version) = (name_bytes.escape_ascii(), version.escape_ascii());
                 tracing::info!(%name, %version, "the device says what it is");
+                if !self.is_stated {
+                    self.angles = DeviceAngles::of_name(name_bytes);
+                }
                 true
             }
             (Step::AskState, Answer::Value(Value::DeviceState(state))) => {
@@ -189,6 +209,14 @@ impl Setup {
                     &self.wanted.resolution_raw_1e4_deg,
                 )
             }
+            (Step::CheckAhead, Answer::Value(Value::ScanConfig(config))) => {
+                let (start, stop) = (
+                    config.start_angle_raw_1e4_deg,
+                    config.stop_angle_raw_1e4_deg,
+                );
+                self.heard_field(Field::between(start, stop))?;
+                Ok(true)
+            }
             (Step::ReadRange, Answer::Value(Value::OutputRange(range))) => {
                 self.range = Some(*range);
                 Ok(true)
@@ -207,6 +235,37 @@ impl Setup {
             }
             _ => Ok(false),
         }
+    }
+
+    /// Where the name tells which way the device looks, nothing else is asked; where
+    /// not even that helps, the setting stays as it is.
+    fn skip_check(&mut self) -> Result<(), LmsError> {
+        if self.steps.front() != Some(&Step::CheckAhead) {
+            return Ok(());
+        }
+        let whole = match (self.angles.certain(), self.scan) {
+            (Some(_), _) => Field::between(0, 0),
+            // It was read for the resolution.
+            (None, Some(scan)) => {
+                Field::between(scan.start_angle_raw_1e4_deg, scan.stop_angle_raw_1e4_deg)
+            }
+            (None, None) => return Ok(()),
+        };
+        self.heard_field(whole)?;
+        self.advance();
+        Ok(())
+    }
+
+    /// The whole field that the device measures.
+    fn heard_field(&mut self, whole: Field) -> Result<(), LmsError> {
+        let convention = self.angles.convention(whole)?;
+        self.ahead_raw = Some((convention.ahead_deg * 1e4).round() as i32);
+        Ok(())
+    }
+
+    /// Whether it is not known yet what the device is.
+    pub(crate) fn is_identifying(&self) -> bool {
+        self.steps.front() == Some(&Step::Identify)
     }
 
     /// The time is asked for where the device leaves it out.
@@ -247,7 +306,9 @@ impl Setup {
                 level: AUTHORIZED_CLIENT,
                 password: PASSWORD_AUTHORIZED_CLIENT,
             }),
-            Step::ReadScanConfig | Step::CheckResolution => Command::Read(Variable::ScanConfig),
+            Step::ReadScanConfig | Step::CheckResolution | Step::CheckAhead => {
+                Command::Read(Variable::ScanConfig)
+            }
             Step::SetResolution => match self.wanted_scan() {
                 Some(config) => Command::Call(Method::SetScanConfig(config)),
                 None => Command::Read(Variable::ScanConfig),
@@ -279,9 +340,10 @@ impl Setup {
 
     fn wanted_range(&self) -> Option<OutputRange> {
         let half = self.wanted.field_raw_1e4_deg? / 2;
+        let ahead_raw = self.ahead_raw?;
         Some(OutputRange {
-            start_angle_raw_1e4_deg: AHEAD_RAW - half,
-            stop_angle_raw_1e4_deg: AHEAD_RAW + half,
+            start_angle_raw_1e4_deg: ahead_raw - half,
+            stop_angle_raw_1e4_deg: ahead_raw + half,
             ..self.range?
         })
     }

@@ -4,7 +4,7 @@ use std::path::PathBuf;
 
 use clap::{ArgAction, ArgGroup, CommandFactory, Parser, ValueEnum, error::ErrorKind};
 use messages::{FrameName, Name, Pose2};
-use sick::cola::Encoding;
+use sick::cola::{AngleConvention, DeviceAngles, Encoding, KnownDevice, USUAL_REACH_M};
 use sick::lms2xx::{Baud, RangeMode, Unit};
 
 use crate::scan::ScanSettings;
@@ -101,10 +101,25 @@ pub struct Config {
     #[arg(long, value_name = "METRES", default_value_t = 0.05, value_parser = metres)]
     pub range_min_m: f32,
 
-    /// Readings above are no returns, metres, above --range-min-m. The default
-    /// is the farthest that any of these devices sees.
-    #[arg(long, value_name = "METRES", default_value_t = 80.0, value_parser = metres)]
-    pub range_max_m: f32,
+    /// Readings from here on are no returns, metres, above --range-min-m [default:
+    /// 80, or what the device is known to measure where that is farther].
+    #[arg(long, value_name = "METRES", value_parser = metres)]
+    pub range_max_m: Option<f32>,
+
+    /// The device of --tcp or --capture by its name, such as TiM240 or NAV310: it
+    /// tells which of its angles points ahead and which way they grow. Left out,
+    /// the name that the device says is taken.
+    #[arg(long, value_name = "NAME", value_parser = device, conflicts_with = "serial")]
+    pub device: Option<&'static KnownDevice>,
+
+    /// Which of the device's own angles points ahead, degrees: 90 on most. With
+    /// --tcp or --capture, instead of --device.
+    #[arg(long, value_name = "DEGREES", value_parser = zero, allow_hyphen_values = true, conflicts_with_all = ["serial", "device"])]
+    pub zero_deg: Option<f64>,
+
+    /// The device's own angles grow clockwise, seen from above.
+    #[arg(long, requires = "zero_deg")]
+    pub clockwise: bool,
 }
 
 /// How far an LMS2xx measures, and in which unit.
@@ -153,12 +168,13 @@ impl Config {
     /// Checks what no option can check alone.
     fn check(&self) -> Result<(), String> {
         self.check_serial()?;
-        if self.range_min_m < self.range_max_m {
+        let range_max_m = self.range_max_m.unwrap_or(USUAL_REACH_M);
+        if self.range_min_m < range_max_m {
             return Ok(());
         }
         Err(format!(
-            "--range-max-m is {} and --range-min-m {}: the maximum must be larger",
-            self.range_max_m, self.range_min_m
+            "--range-max-m is {range_max_m} and --range-min-m {}: the maximum must be larger",
+            self.range_min_m
         ))
     }
 
@@ -195,6 +211,42 @@ impl Config {
             stamps: self.stamps,
         }
     }
+}
+
+impl Config {
+    /// How the device counts its angles, where that is stated.
+    #[must_use]
+    pub fn stated_angles(&self) -> Option<DeviceAngles> {
+        let stated = self.zero_deg.map(|ahead_deg| {
+            DeviceAngles::Stated(AngleConvention {
+                ahead_deg,
+                clockwise: self.clockwise,
+            })
+        });
+        stated.or(self.device.map(DeviceAngles::Known))
+    }
+}
+
+fn device(text: &str) -> Result<&'static KnownDevice, String> {
+    let found = KnownDevice::named(text);
+    let row = found.ok_or_else(|| {
+        format!(
+            "known are {}; for another one state --zero-deg, and --clockwise if need be",
+            KnownDevice::names()
+        )
+    })?;
+    match row.convention {
+        Some(_) => Ok(row),
+        None => Err(format!(
+            "which of its angles points ahead is not known, the sources differ ({}): state \
+             --zero-deg, and --clockwise if need be",
+            row.source
+        )),
+    }
+}
+
+fn zero(text: &str) -> Result<f64, String> {
+    degrees(text, -360.0, 360.0)
 }
 
 fn address(text: &str) -> Result<String, String> {
@@ -315,6 +367,22 @@ mod tests {
     }
 
     #[test]
+    fn a_device_whose_zero_is_elsewhere() {
+        let angles = |arguments: &str| parse(arguments).unwrap().stated_angles();
+        assert_eq!(angles("--capture a"), None);
+        let tim = angles("--capture a --device tim240").unwrap();
+        assert_eq!(
+            tim.certain().map(|c| (c.ahead_deg, c.clockwise)),
+            Some((0.0, false))
+        );
+        let nav = angles("--tcp a:1 --zero-deg -180 --clockwise").unwrap();
+        assert_eq!(
+            nav.certain().map(|c| (c.ahead_deg, c.clockwise)),
+            Some((-180.0, true))
+        );
+    }
+
+    #[test]
     fn a_serial_device() {
         let config = parse("--serial /dev/ttyUSB0 --baud 500000 --range 80 --field 100").unwrap();
         let range = config.range.unwrap();
@@ -363,6 +431,16 @@ mod tests {
         refuse("--serial a --stamps device", "cannot be used with");
         refuse("--serial a --until-closed", "cannot be used with");
         refuse("--tcp a:1 --silence 0", "0.2 to 3600");
+        refuse("--tcp a:1 --device XY7", "known are LMS1xx, LMS5xx");
+        refuse("--tcp a:1 --device NAV245", "the sources differ");
+        refuse(
+            "--tcp a:1 --device TiM240 --zero-deg 0",
+            "cannot be used with",
+        );
+        refuse("--tcp a:1 --zero-deg 361", "-360 to 360 degrees");
+        refuse("--tcp a:1 --clockwise", "--zero-deg");
+        refuse("--serial a --device LMS111", "cannot be used with");
+        refuse("--tcp a:1 --range-min-m 90", "the maximum must be larger");
         refuse("--tcp a:1 --range-min-m nan", "finite");
         refuse("--tcp a:1 --range-max-m 0.01", "the maximum must be larger");
         refuse(

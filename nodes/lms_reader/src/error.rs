@@ -29,6 +29,9 @@ pub enum LmsError {
         /// What a scan needs.
         allowed: &'static str,
     },
+    /// Nobody says which way the device looks.
+    #[error(transparent)]
+    Convention(#[from] sick::cola::ConventionError),
     /// The readings of an LMS2xx cannot be laid out as a scan.
     #[error("the device sent {found} readings, {expected} are {field}")]
     Readings {
@@ -137,14 +140,18 @@ pub enum LmsError {
     },
     /// The capture was played and there was no scan in it.
     #[error(
-        "{}: no scan could be used, of {telegrams} telegrams; expected are CoLa telegrams \
-         `sSN LMDscandata` back to back", path.display()
+        "{}: no scan could be used, of {telegrams} telegrams; {}", path.display(),
+        reason.as_deref().unwrap_or(
+            "expected are CoLa telegrams `sSN LMDscandata` back to back"
+        )
     )]
     NoScans {
         /// As configured.
         path: PathBuf,
         /// Sound telegrams of any kind.
         telegrams: u64,
+        /// Why the last scan was refused, if there was one.
+        reason: Option<String>,
     },
     /// The graph failed.
     #[error(transparent)]

@@ -4,6 +4,7 @@
 //! and decides nothing else.
 
 use messages::{Pose2, ScanHeader, Stamp};
+use sick::cola::USUAL_REACH_M;
 use sick::lms2xx::{Readings, Scan, Unit};
 
 use crate::LmsError;
@@ -71,7 +72,7 @@ impl<'a> WholeScan<'a> {
             time_increment_s: if turns == 1.0 { TURN_S / 360.0 } else { 0.0 },
             scan_time_s,
             range_min_m: settings.range_min_m,
-            range_max_m: settings.range_max_m,
+            range_max_m: settings.range_max_m.unwrap_or(USUAL_REACH_M),
             base_from_laser: settings.base_from_laser.unwrap_or(Pose2 {
                 x: 0.0,
                 y: 0.0,
@@ -133,7 +134,7 @@ mod tests {
     fn settings() -> ScanSettings {
         ScanSettings {
             range_min_m: 0.05,
-            range_max_m: 80.0,
+            range_max_m: None,
             base_from_laser: None,
             upside_down: false,
             laser: Name::new(""),

@@ -23,7 +23,7 @@ use outlet::Outlet;
 /// If the graph fails, the capture cannot be read or holds no usable scan, or
 /// the configuration names no source.
 pub fn run(graph: &Graph, config: &Config) -> Result<(), LmsError> {
-    let mut outlet = Outlet::open(graph, config.scan_settings())?;
+    let mut outlet = Outlet::open(graph, config)?;
     match (&config.tcp, &config.serial, &config.capture) {
         (Some(address), _, _) => tcp::run(&graph.name().resolve(address), config, &mut outlet),
         (None, Some(device), _) => serial::run(device, config, &mut outlet),

@@ -4,7 +4,7 @@
 //! a range is good for; it only tells readings from codes.
 
 use messages::{FrameName, Name, Pose2, ScanHeader, Stamp};
-use sick::cola::{Channel, LmdScanData};
+use sick::cola::{AngleConvention, Channel, Field, LmdScanData, sweep_us};
 
 use crate::clock::DeviceClock;
 use crate::{LmsError, Stamps};
@@ -18,16 +18,14 @@ const FIRST_DISTANCE: u16 = 16;
 /// turns at 5 Hz or faster.
 const LONGEST_DELAY_US: u32 = 1_000_000;
 
-/// SICK counts angles from the right: 90° is straight ahead.
-const AHEAD_DEG: f64 = 90.0;
-
 /// What the telegram does not say.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct ScanSettings {
     /// Readings below are no returns, metres.
     pub range_min_m: f32,
-    /// Readings above are no returns, metres.
-    pub range_max_m: f32,
+    /// Readings from here on are no returns, metres; `None` is what the device is
+    /// known to measure.
+    pub range_max_m: Option<f32>,
     /// Where the laser sits on the robot, if that is known.
     pub base_from_laser: Option<Pose2>,
     /// Whether it hangs upside down.
@@ -96,27 +94,35 @@ pub(crate) fn measured_ns(
     Ok(received.realtime_ns - on_the_way_ns - delay_ns)
 }
 
-/// The header of the scan that was measured at `measured_ns`, with counter 0.
+/// The header of the scan whose first shot was at `measured_ns`, with counter 0.
+/// `angles` are those of the device, which has passed [`check`].
 ///
-/// # Errors
-/// [`LmsError::Scan`] where the telegram makes no scan.
+/// Beams go counter-clockwise whichever way the device turns. Where it turns
+/// clockwise, the first beam is the one that was measured last: the stamp is its
+/// time, and time runs backwards from beam to beam.
+#[must_use]
 pub fn header(
     data: &LmdScanData<'_>,
     distances: &Channel<'_>,
+    angles: (AngleConvention, f32),
     settings: &ScanSettings,
     measured_ns: i64,
     received: Received,
-) -> Result<ScanHeader, LmsError> {
+) -> ScanHeader {
+    let (convention, reach_m) = angles;
     let step_deg = f64::from(distances.step_raw_1e4_deg) * 1e-4;
-    check(data, distances, step_deg)?;
-    let angle_deg = f64::from(distances.start_angle_raw_1e4_deg) * 1e-4 - AHEAD_DEG;
+    let angle_deg = convention.rightmost_bearing_deg(Field::of(distances));
     let scan_time_s = match data.scan_frequency_raw_1e2_hz {
         0 => 0.0,
         frequency => 100.0 / f64::from(frequency),
     };
-    Ok(ScanHeader {
+    let (sign, sweep_us) = match convention.clockwise {
+        true => (-1.0, sweep_us(distances, data.scan_frequency_raw_1e2_hz)),
+        false => (1.0, 0),
+    };
+    ScanHeader {
         stamp: Stamp {
-            measured_ns,
+            measured_ns: measured_ns.saturating_add(sweep_us * 1000),
             entered_ns: received.monotonic_ns,
             counter: 0,
         },
@@ -124,10 +130,10 @@ pub fn header(
         angle_increment: recordable(step_deg.to_radians()),
         // From the turn of the mirror: firmware disagrees about the unit of the
         // measurement frequency, and a step takes its share of a turn anyway.
-        time_increment_s: scan_time_s * step_deg / 360.0,
+        time_increment_s: sign * scan_time_s * step_deg / 360.0,
         scan_time_s,
         range_min_m: settings.range_min_m,
-        range_max_m: settings.range_max_m,
+        range_max_m: settings.range_max_m.unwrap_or(reach_m),
         base_from_laser: settings.base_from_laser.unwrap_or(Pose2 {
             x: 0.0,
             y: 0.0,
@@ -137,7 +143,7 @@ pub fn header(
         upside_down: settings.upside_down.into(),
         laser: settings.laser,
         frame: settings.frame,
-    })
+    }
 }
 
 /// An angle as recordings hold it (`sensor_msgs/LaserScan` has single precision), so
@@ -146,9 +152,10 @@ pub(crate) fn recordable(radians: f64) -> f64 {
     f64::from(radians as f32)
 }
 
-/// Writes the distances in metres, infinity where nothing came back; `ranges`
-/// has as many places as there are distances.
-pub fn fill_ranges(distances: &Channel<'_>, ranges: &mut [f32]) {
+/// Writes the distances in metres, infinity where nothing came back, those of a
+/// device that turns `clockwise` from the last to the first; `ranges` has as many
+/// places as there are distances.
+pub fn fill_ranges(distances: &Channel<'_>, clockwise: bool, ranges: &mut [f32]) {
     let scale = f64::from(distances.scale_factor);
     let offset = f64::from(distances.scale_offset);
     for (range, raw) in ranges.iter_mut().zip(distances.values) {
@@ -158,9 +165,17 @@ pub fn fill_ranges(distances: &Channel<'_>, ranges: &mut [f32]) {
             ((f64::from(raw) * scale + offset) * 1e-3) as f32
         };
     }
+    if clockwise {
+        ranges.reverse();
+    }
 }
 
-fn check(data: &LmdScanData<'_>, distances: &Channel<'_>, step_deg: f64) -> Result<(), LmsError> {
+/// Whether the telegram makes a scan.
+///
+/// # Errors
+/// [`LmsError::Scan`] with the field that does not fit.
+pub fn check(data: &LmdScanData<'_>, distances: &Channel<'_>) -> Result<(), LmsError> {
+    let step_deg = f64::from(distances.step_raw_1e4_deg) * 1e-4;
     let sweep_deg = step_deg * distances.len().saturating_sub(1) as f64;
     let scale = f64::from(distances.scale_factor);
     let layer = f64::from(data.layer_angle_raw);
@@ -209,7 +224,7 @@ mod tests {
     fn settings() -> ScanSettings {
         ScanSettings {
             range_min_m: 0.05,
-            range_max_m: 25.0,
+            range_max_m: Some(25.0),
             base_from_laser: None,
             upside_down: false,
             laser: Name::new(""),
@@ -228,6 +243,7 @@ mod tests {
         start: i32,
         step: u16,
         raw: Vec<u16>,
+        convention: AngleConvention,
     }
 
     impl Default for World {
@@ -241,6 +257,7 @@ mod tests {
                 start: -450_000,
                 step: 3333,
                 raw: vec![1000; 811],
+                convention: AngleConvention::USUAL,
             }
         }
     }
@@ -268,9 +285,18 @@ mod tests {
             let distances = distances(&data)?;
             let mut clock = DeviceClock::default();
             let measured_ns = measured_ns(&data, &settings(), RECEIVED, &mut clock)?;
-            let header = header(&data, &distances, &settings(), measured_ns, RECEIVED)?;
+            check(&data, &distances)?;
+            let angles = (self.convention, 80.0);
+            let header = header(
+                &data,
+                &distances,
+                angles,
+                &settings(),
+                measured_ns,
+                RECEIVED,
+            );
             let mut ranges = vec![0.0; distances.len()];
-            fill_ranges(&distances, &mut ranges);
+            fill_ranges(&distances, self.convention.clockwise, &mut ranges);
             Ok((header, ranges))
         }
 
@@ -355,6 +381,51 @@ mod tests {
     }
 
     #[test]
+    fn a_clockwise_device_is_read_from_its_last_beam() {
+        // Half a turn at 15 Hz; 180° of the device is ahead.
+        let (header, ranges) = World {
+            start: 900_000,
+            step: 10_000,
+            raw: (1000..1181).collect(),
+            convention: AngleConvention {
+                ahead_deg: 180.0,
+                clockwise: true,
+            },
+            ..World::default()
+        }
+        .scan()
+        .unwrap();
+        assert_eq!(header.angle_min, recordable((-90f64).to_radians()));
+        assert_eq!(header.angle_increment, recordable(1f64.to_radians()));
+        // Its first reading, at 90°, is to the left.
+        assert_eq!((ranges.len(), ranges[0], ranges[180]), (181, 1.18, 1.0));
+        // The first beam of the message is the last that was measured.
+        let first_ns = RECEIVED.realtime_ns - 6_000_000;
+        assert_eq!(header.stamp.measured_ns, first_ns + 33_333_000);
+        let back_ns = (header.time_increment_s * 180.0 * 1e9).round() as i64;
+        // Whole microseconds.
+        assert!((header.stamp.measured_ns + back_ns - first_ns).abs() < 1000);
+    }
+
+    #[test]
+    fn zero_ahead_is_the_middle_of_a_tim240() {
+        let (header, _) = World {
+            start: -1_200_000,
+            step: 10_000,
+            raw: vec![1000; 241],
+            convention: AngleConvention {
+                ahead_deg: 0.0,
+                clockwise: false,
+            },
+            ..World::default()
+        }
+        .scan()
+        .unwrap();
+        assert_eq!(header.angle_min, recordable((-120f64).to_radians()));
+        assert!(header.time_increment_s > 0.0);
+    }
+
+    #[test]
     fn the_settings_are_passed_on() {
         let bytes = World::default().telegram();
         let data = LmdScanData::read(Encoding::Binary, &bytes).unwrap();
@@ -368,12 +439,20 @@ mod tests {
             base_from_laser: Some(mount),
             ..settings()
         };
-        let with = header(&data, &channel, &settings, 5, RECEIVED).unwrap();
+        let angles = (AngleConvention::USUAL, 250.0);
+        let with = header(&data, &channel, angles, &settings, 5, RECEIVED);
         assert_eq!(with.stamp.measured_ns, 5);
         assert_eq!((with.base_from_laser, with.mount_known), (mount, 1));
         assert_eq!((with.range_min_m, with.range_max_m), (0.05, 25.0));
         assert_eq!(with.frame.as_str(), "laser");
         assert_eq!(World::default().scan().unwrap().0.mount_known, 0);
+        // Where nobody says it, it is what the device is known to measure.
+        let settings = ScanSettings {
+            range_max_m: None,
+            ..settings
+        };
+        let far = header(&data, &channel, angles, &settings, 5, RECEIVED);
+        assert_eq!(far.range_max_m, 250.0);
     }
 
     #[test]

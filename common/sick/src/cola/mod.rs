@@ -13,17 +13,21 @@
 //! | anything | `sFA` code | the device refuses |
 //!
 //! Understood is what a stream of scans and its set-up need ([`Command`],
-//! [`Answer`]); the rest stays [`Telegram::Other`].
+//! [`Answer`]); the rest stays [`Telegram::Other`]. [`KnownDevice`] lists which device
+//! counts its angles in which way, [`DeviceAngles`] decides how a scan is read.
 
+mod angle_convention;
 mod answer;
 mod channel;
 pub mod cola_a;
 pub mod cola_b;
 mod command;
 mod cursor;
+mod device_angles;
 mod encoders;
 mod encoding;
 mod fault;
+mod known_device;
 mod lmd_scan_data;
 mod settings;
 mod tail;
@@ -33,12 +37,15 @@ mod variable;
 mod words;
 mod writer;
 
+pub use angle_convention::{AngleConvention, Field, sweep_us};
 pub use answer::Answer;
 pub use channel::{Channel, Channels};
 pub use command::{AUTHORIZED_CLIENT, Command, Method, PASSWORD_AUTHORIZED_CLIENT};
+pub use device_angles::{ConventionError, DeviceAngles};
 pub use encoders::{Encoder, Encoders};
 pub use encoding::{Cola, Encoding, Framer};
 pub use fault::Fault;
+pub use known_device::{KnownDevice, USUAL_REACH_M};
 pub use lmd_scan_data::LmdScanData;
 pub use settings::{OutputRange, ScanConfig, ScanDataConfig};
 pub use tail::{DeviceTime, Event, Position};

@@ -1,8 +1,12 @@
 //! A device that speaks CoLa, in either encoding, on one of its ports.
 
+use std::net::Ipv6Addr;
 use std::time::{Duration, Instant};
 
-use sick::cola::{Answer, Channel, Command, Encoding, Framer, Telegram, Value, Variable};
+use sick::cola::{
+    AngleConvention, Answer, Channel, Command, DeviceAngles, Encoding, Field, Framer, Telegram,
+    Value, Variable,
+};
 
 use super::line::Line;
 use super::picture::Seen;
@@ -16,8 +20,6 @@ const PATIENCE: Duration = Duration::from_secs(1);
 const SCAN_PATIENCE: Duration = Duration::from_secs(3);
 /// Distances below are codes.
 const FIRST_DISTANCE: u16 = 16;
-/// SICK counts angles from the right.
-const AHEAD_DEG: f64 = 90.0;
 
 /// A connection on which the device has answered.
 struct Device {
@@ -27,6 +29,8 @@ struct Device {
     framer: Framer,
     /// Bytes that came.
     heard: usize,
+    /// Which way it looks, by its name.
+    angles: DeviceAngles,
 }
 
 /// What is found at HOST or HOST:PORT, in lines for people, and a scan.
@@ -53,19 +57,13 @@ pub(super) fn probe(target: &str) -> Result<(Vec<String>, Seen), BackcastError> 
         said.push(device.describe(variable)?);
     }
     let (about, seen) = device.scan()?;
-    said.push(about);
+    said.extend(about);
     Ok((said, seen))
 }
 
 /// Tries each port in each encoding; what went wrong last says most.
 fn find(target: &str) -> Result<Device, BackcastError> {
-    let has_port = target
-        .rsplit_once(':')
-        .is_some_and(|(_, port)| port.parse::<u16>().is_ok());
-    let addresses = match has_port {
-        true => vec![target.to_owned()],
-        false => PORTS.map(|port| format!("{target}:{port}")).into(),
-    };
+    let addresses = addresses(target);
     let mut failure = None;
     let mut heard = 0;
     let mut reached = None;
@@ -78,6 +76,7 @@ fn find(target: &str) -> Result<Device, BackcastError> {
                     encoding,
                     framer: Framer::new(encoding),
                     heard: 0,
+                    angles: DeviceAngles::Unnamed,
                 },
                 Err(error) => {
                     failure = Some((address, error));
@@ -97,11 +96,22 @@ fn find(target: &str) -> Result<Device, BackcastError> {
             source,
         },
         (reached, _) => BackcastError::DeviceNotUnderstood {
-            address: reached.unwrap_or(&addresses[0]).clone(),
+            address: reached.map_or(target, String::as_str).to_owned(),
             heard,
             tried: "CoLa B and CoLa A".to_owned(),
         },
     })
+}
+
+/// Where to look for it: at its port, or at those that devices have.
+fn addresses(target: &str) -> Vec<String> {
+    let bare = target.parse::<Ipv6Addr>().map(|ip| format!("[{ip}]"));
+    let host = bare.as_deref().unwrap_or(target);
+    let port = host.rsplit_once(':').map(|(_, port)| port.parse::<u16>());
+    match port {
+        Some(Ok(_)) => vec![host.to_owned()],
+        _ => PORTS.map(|port| format!("{host}:{port}")).into(),
+    }
 }
 
 impl Device {
@@ -156,8 +166,12 @@ impl Device {
     /// A variable in words, or why the device does not say it.
     fn describe(&mut self, variable: Variable) -> Result<String, BackcastError> {
         let command = Command::Read(variable);
+        let mut angles = None;
         let found = self.ask(command, PATIENCE, |telegram| match telegram {
             Telegram::Answer(Answer::Value(value)) if value.variable() == variable => {
+                if let Value::DeviceIdent { name, .. } = value {
+                    angles = Some(DeviceAngles::of_name(name));
+                }
                 Some(in_words(value))
             }
             Telegram::Answer(Answer::Fault(fault)) => {
@@ -165,47 +179,71 @@ impl Device {
             }
             _ => None,
         })?;
+        if let Some(angles) = angles {
+            self.angles = angles;
+        }
         Ok(found.unwrap_or_else(|| format!("{variable:?}: no answer")))
     }
 
     /// One scan, in words and to be drawn.
-    fn scan(&mut self) -> Result<(String, Seen), BackcastError> {
+    fn scan(&mut self) -> Result<(Vec<String>, Seen), BackcastError> {
+        let angles = std::mem::take(&mut self.angles);
         let found = self.ask(Command::SubscribeScans(true), SCAN_PATIENCE, |telegram| {
             let Telegram::ScanData(scan) = telegram else {
                 return None;
             };
             let channel = scan.channels_16_bit.named(b"DIST1")?;
-            let (count, seen) = (channel.len(), seen(&channel));
+            let (looks, convention, up) = in_which_way(&angles, Field::of(&channel));
+            let (count, seen) = (channel.len(), seen(&channel, convention, up));
             let returns = seen.points.len();
-            Some((
-                format!("a scan of {count} readings, {returns} with a return"),
-                seen,
-            ))
+            let about = format!("a scan of {count} readings, {returns} with a return");
+            Some((vec![looks, about], seen))
         })?;
         self.ask(Command::SubscribeScans(false), PATIENCE, |telegram| {
             matches!(telegram, Telegram::Answer(_)).then_some(())
         })?;
         let none = || {
             (
-                "no scan came: does it measure?".to_owned(),
-                Seen { points: vec![] },
+                vec!["no scan came: does it measure?".to_owned()],
+                Seen::default(),
             )
         };
         Ok(found.unwrap_or_else(none))
     }
 }
 
-fn seen(channel: &Channel<'_>) -> Seen {
+/// What `lms_reader` makes of the angles, how a picture of them is laid out and what is
+/// up in it.
+fn in_which_way(angles: &DeviceAngles, field: Field) -> (String, AngleConvention, String) {
+    match angles.convention(field) {
+        Ok(convention) => {
+            let why = match angles {
+                DeviceAngles::Known(row) => format!("as a {}: {}", row.name, row.source),
+                _ => "its name is not in the table, its field is centred there".to_owned(),
+            };
+            let looks = format!("looks       {convention} ({why})");
+            (looks, convention, "ahead is up".to_owned())
+        }
+        Err(error) => {
+            let usual = AngleConvention::USUAL;
+            let up = format!("the device's {}° is up", usual.ahead_deg);
+            (format!("looks       {error}"), usual, up)
+        }
+    }
+}
+
+fn seen(channel: &Channel<'_>, convention: AngleConvention, up: String) -> Seen {
     let scale = f64::from(channel.scale_factor);
     let offset = f64::from(channel.scale_offset);
     let points = channel.values.enumerate().filter_map(|(beam, raw)| {
         let step_deg = f64::from(channel.step_raw_1e4_deg) * 1e-4;
         let deg = f64::from(channel.start_angle_raw_1e4_deg) * 1e-4 + beam as f64 * step_deg;
         let range = (f64::from(raw) * scale + offset) * 1e-3;
-        (raw >= FIRST_DISTANCE).then_some(((deg - AHEAD_DEG).to_radians(), range))
+        (raw >= FIRST_DISTANCE).then_some((convention.bearing_deg(deg).to_radians(), range))
     });
     Seen {
         points: points.collect(),
+        up,
     }
 }
 
@@ -222,7 +260,7 @@ fn in_words(value: &Value<'_>) -> String {
             format!("state       {word}")
         }
         Value::ScanConfig(config) => format!(
-            "measures    {} Hz, every {}°, from {}° to {}° (90° is ahead)",
+            "measures    {} Hz, every {}°, from {}° to {}°",
             f64::from(config.frequency_raw_1e2_hz) * 1e-2,
             f64::from(config.resolution_raw_1e4_deg) * 1e-4,
             deg(config.start_angle_raw_1e4_deg),
@@ -249,4 +287,38 @@ fn in_words(value: &Value<'_>) -> String {
 
 fn yes(is: bool) -> &'static str {
     if is { "yes" } else { "no" }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_host_alone_has_two_ports() {
+        let both = ["192.168.0.1:2112", "192.168.0.1:2111"];
+        assert_eq!(addresses("192.168.0.1"), both);
+        assert_eq!(addresses("laser:2111"), ["laser:2111"]);
+        assert_eq!(addresses("fe80::1"), ["[fe80::1]:2112", "[fe80::1]:2111"]);
+        assert_eq!(addresses("[fe80::1]:7"), ["[fe80::1]:7"]);
+    }
+
+    #[test]
+    fn what_is_to_be_stated_is_told() {
+        let around_zero = Field {
+            first_deg: -120.0,
+            last_deg: 120.0,
+        };
+        let (looks, _, up) = in_which_way(&DeviceAngles::of_name(b"XY7"), around_zero);
+        assert!(
+            looks.contains("--device NAME") && looks.contains("--zero-deg"),
+            "{looks}"
+        );
+        assert_eq!(up, "the device's 90° is up");
+        let (looks, convention, up) = in_which_way(&DeviceAngles::of_name(b"TiM240"), around_zero);
+        assert!(
+            looks.contains("0° is ahead") && looks.contains("TiM2xx"),
+            "{looks}"
+        );
+        assert_eq!((convention.ahead_deg, up.as_str()), (0.0, "ahead is up"));
+    }
 }

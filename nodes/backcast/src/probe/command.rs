@@ -18,7 +18,8 @@ const COLUMNS: usize = 80;
 /// What `backcast probe` takes.
 #[derive(Debug, clap::Args)]
 pub(crate) struct Config {
-    /// The device: /dev/ttyUSB0, or tcp://HOST or tcp://HOST:PORT
+    /// The device: an address such as 192.168.0.1, HOST or HOST:PORT (also after
+    /// tcp://), or a serial line such as /dev/ttyUSB0
     #[arg(value_name = "DEVICE")]
     device: String,
 
@@ -32,13 +33,23 @@ pub(crate) struct Config {
 /// # Errors
 /// No device answers, or standard output cannot be written.
 pub(crate) fn run(config: &Config) -> Result<ExitCode, BackcastError> {
-    let (said, seen) = match config.device.strip_prefix("tcp://") {
+    let (said, seen) = match address(&config.device) {
         Some(address) => cola::probe(address)?,
         None => lms2xx::probe(Path::new(&config.device))?,
     };
     let columns = config.width.map_or_else(columns, usize::from);
     stdout::print(&format!("{}\n\n{}", said.join("\n"), seen.draw(columns)))?;
     Ok(ExitCode::SUCCESS)
+}
+
+/// The address of a device on the network; `None` where a serial line is meant, which is
+/// a path or the name of a file that is there.
+fn address(device: &str) -> Option<&str> {
+    if let Some(address) = device.strip_prefix("tcp://") {
+        return Some(address.trim_end_matches('/'));
+    }
+    let is_path = device.contains('/') || device.is_empty() || Path::new(device).exists();
+    (!is_path).then_some(device)
 }
 
 /// As wide as the terminal.
@@ -51,4 +62,27 @@ fn columns() -> usize {
         false => told.unwrap_or(COLUMNS),
     }
     .clamp(10, 500)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn addresses_and_serial_lines_are_told_apart() {
+        for (device, expected) in [
+            ("192.168.0.1", Some("192.168.0.1")),
+            ("192.168.0.1:2111", Some("192.168.0.1:2111")),
+            ("laser", Some("laser")),
+            ("front.local:2112", Some("front.local:2112")),
+            ("fe80::1", Some("fe80::1")),
+            ("tcp://laser:1/", Some("laser:1")),
+            ("/dev/ttyUSB0", None),
+            ("./laser", None),
+            // Tests run where the crate is.
+            ("Cargo.toml", None),
+        ] {
+            assert_eq!(address(device), expected, "{device}");
+        }
+    }
 }

@@ -57,7 +57,7 @@ pub(super) fn probe(path: &Path) -> Result<(Vec<String>, Seen), BackcastError> {
             .map_or("status      no answer".to_owned(), in_words),
     );
     let seen = status.and_then(|status| device.scan(&status).transpose());
-    let seen = seen.transpose()?.unwrap_or(Seen { points: vec![] });
+    let seen = seen.transpose()?.unwrap_or_default();
     said.push(format!("a scan with {} returns", seen.points.len()));
     Ok((said, seen))
 }
@@ -142,6 +142,7 @@ fn seen(scan: &Scan<'_>, status: &DeviceStatus) -> Seen {
     });
     Seen {
         points: points.collect(),
+        up: "ahead is up".to_owned(),
     }
 }
 

@@ -1,5 +1,5 @@
 //! A scan drawn in characters of two by four dots (Unicode's Braille patterns).
-//! Pure. The laser is in the middle, ahead is up.
+//! Pure. The laser is in the middle, ahead is up where it is known.
 
 use std::f64::consts::{FRAC_PI_2, TAU};
 
@@ -12,8 +12,11 @@ const ROWS_PER_COLUMN: f64 = 0.5;
 
 /// What a scan looks like: bearings in radians counter-clockwise from ahead, and
 /// distances in metres.
+#[derive(Default)]
 pub(super) struct Seen {
     pub(super) points: Vec<(f64, f64)>,
+    /// What is up in the picture.
+    pub(super) up: String,
 }
 
 impl Seen {
@@ -57,7 +60,8 @@ impl Seen {
         let text: String = rows.collect();
         let text = text.trim_matches('\n');
         format!(
-            "{text}\nahead is up; from the laser (the ring) to the farthest side {reach_m:.1} m\n"
+            "{text}\n{}; from the laser (the ring) to the farthest side {reach_m:.1} m\n",
+            self.up
         )
     }
 
@@ -79,11 +83,18 @@ fn braille(dots: u8) -> char {
 mod tests {
     use super::*;
 
+    fn seen(points: Vec<(f64, f64)>) -> Seen {
+        Seen {
+            points,
+            up: "ahead is up".to_owned(),
+        }
+    }
+
     #[test]
     fn a_wall_ahead_is_a_line_above_the_laser() {
         let wall = (-40..=40).map(|deg| f64::from(deg).to_radians());
         let points = wall.map(|bearing| (bearing, 1.0 / bearing.cos())).collect();
-        let picture = Seen { points }.draw(20);
+        let picture = seen(points).draw(20);
         let lines: Vec<&str> = picture.lines().collect();
         // The wall is one row of characters and the laser is below it; nothing is
         // behind.
@@ -104,7 +115,7 @@ mod tests {
     #[test]
     fn left_is_left() {
         let points = vec![(FRAC_PI_2, 1.0)];
-        let picture = Seen { points }.draw(20);
+        let picture = seen(points).draw(20);
         let middle = picture.lines().next().unwrap();
         let marks: Vec<usize> = middle
             .chars()
@@ -117,7 +128,7 @@ mod tests {
 
     #[test]
     fn nothing_seen_is_drawn_too() {
-        let picture = Seen { points: vec![] }.draw(1);
+        let picture = seen(vec![]).draw(1);
         assert!(picture.contains("1.0 m"), "{picture}");
     }
 }

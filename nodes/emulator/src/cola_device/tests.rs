@@ -4,7 +4,11 @@ use super::*;
 use crate::sweep::five_beams;
 
 fn device() -> ColaDevice {
-    ColaDevice::new(Encoding::Binary, &five_beams(1.0))
+    ColaDevice::new(model("LMS111"), Encoding::Binary, &five_beams(1.0))
+}
+
+fn model(name: &str) -> Model {
+    Model::of(Some(KnownDevice::named(name).unwrap()))
 }
 
 fn ask(device: &mut ColaDevice, session: &mut Session, command: Command<'_>) -> Answer<'static> {
@@ -70,7 +74,7 @@ fn what_the_recording_does_not_have_is_refused() {
         Answer::ScanConfigSet { status, .. } => status,
         other => panic!("{other:?}"),
     };
-    let full = ColaDevice::new(Encoding::Binary, &five_beams(1.0)).full;
+    let full = self::device().full;
     assert_eq!(
         status(ScanConfig {
             frequency_raw_1e2_hz: 1,
@@ -138,4 +142,40 @@ fn scans_are_rounded_to_the_devices_unit() {
     assert_eq!(channel.start_angle_raw_1e4_deg, 880_000);
     assert_eq!((channel.step_raw_1e4_deg, scan.scan_counter), (10_000, 1));
     assert_eq!(scan.scan_frequency_raw_1e2_hz, 5000);
+}
+
+#[test]
+fn other_devices_turn_and_count_otherwise() {
+    let sweep = five_beams(1.0);
+    let scan = |name| {
+        let mut device = ColaDevice::new(model(name), Encoding::Binary, &sweep);
+        let mut content = Vec::new();
+        device.write_scan(&sweep, 0, 0, 9, &mut content);
+        let content = &content[8..content.len() - 1];
+        let scan = LmdScanData::read(Encoding::Binary, content).unwrap();
+        let channel = scan.channels_16_bit.named(b"DIST1").unwrap();
+        let values: Vec<u16> = channel.values.collect();
+        let unix_us = scan.time.and_then(|time| time.unix_us()).unwrap();
+        (channel.start_angle_raw_1e4_deg, values, unix_us)
+    };
+    // The beams are at 88° to 92° of the usual convention.
+    let (start, usual, first_us) = scan("LMS111");
+    assert_eq!(start, 880_000);
+    let (start, values, unix_us) = scan("TiM240");
+    assert_eq!((start, &values, unix_us), (-20_000, &usual, first_us));
+    let (start, mut values, unix_us) = scan("NAV310");
+    values.reverse();
+    assert_eq!((start, &values), (1_780_000, &usual));
+    // Four of 360 steps at 50 Hz are 222 µs.
+    assert_eq!(first_us - unix_us, 222);
+}
+
+#[test]
+fn it_says_which_device_it_is() {
+    let mut device = ColaDevice::new(model("NAV310"), Encoding::Text, &five_beams(1.0));
+    let ident = Command::Read(Variable::DeviceIdent);
+    match ask(&mut device, &mut Session::default(), ident) {
+        Answer::Value(Value::DeviceIdent { name, .. }) => assert_eq!(name, b"NAV310"),
+        other => panic!("{other:?}"),
+    }
 }

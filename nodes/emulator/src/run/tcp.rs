@@ -13,7 +13,7 @@ use transport::{TransportError, monotonic_ns};
 
 use super::{Common, PATIENCE_NS, Summary};
 use crate::EmulatorError;
-use crate::cola_device::{ColaDevice, Session};
+use crate::cola_device::{ColaDevice, Model, Session};
 use crate::faults::Faults;
 
 /// A client that leaves so much unread is given up, bytes.
@@ -21,6 +21,7 @@ const MOST_UNREAD: usize = 1 << 22;
 
 pub(super) fn run(
     address: &str,
+    model: &Model,
     encoding: Encoding,
     mut common: Common,
 ) -> Result<Summary, EmulatorError> {
@@ -31,7 +32,7 @@ pub(super) fn run(
     let listener = TcpListener::bind(address).map_err(failed)?;
     listener.set_nonblocking(true).map_err(failed)?;
     let local = listener.local_addr().map_err(failed)?;
-    let mut device = ColaDevice::new(encoding, &common.sweep);
+    let mut device = ColaDevice::new(*model, encoding, &common.sweep);
     tracing::info!(address = %local, ?encoding, scans = common.sweep.scans.len(), "listening");
     let mut clients: Vec<Client> = Vec::new();
     let started_ns = monotonic_ns();
@@ -42,7 +43,7 @@ pub(super) fn run(
         let now_ns = monotonic_ns();
         if common.faults.resets(now_ns) {
             tracing::info!("started anew: all clients are disconnected");
-            device = ColaDevice::new(encoding, &common.sweep);
+            device = ColaDevice::new(*model, encoding, &common.sweep);
             clients.clear();
         }
         for client in &mut clients {

@@ -18,7 +18,7 @@ const CONTENTS: ScanDataConfig = ScanDataConfig::DISTANCES;
 
 #[test]
 fn without_wishes_nothing_is_changed() {
-    let mut setup = Setup::new(Wanted::default());
+    let mut setup = Setup::new(Wanted::default(), None);
     let ident = Command::Read(Variable::DeviceIdent);
     assert_eq!(setup.next(0).unwrap(), Some(ident));
     assert_eq!(setup.next(1).unwrap(), None);
@@ -36,15 +36,23 @@ fn without_wishes_nothing_is_changed() {
     assert_eq!(setup.next(i64::MAX).unwrap(), None);
 }
 
-/// Answers as a device does that takes over what it is told, but for `range`.
+/// Answers as an LMS111 does that takes over what it is told, but for `range`.
 fn play(setup: &mut Setup, range: Option<OutputRange>) -> Result<Vec<String>, LmsError> {
+    play_as(b"LMS111", setup, range)
+}
+
+fn play_as(
+    name: &[u8],
+    setup: &mut Setup,
+    range: Option<OutputRange>,
+) -> Result<Vec<String>, LmsError> {
     let (mut scan, mut output, mut contents) = (SCAN, RANGE, CONTENTS);
     let mut said = Vec::new();
     while let Some(command) = setup.next(0)? {
         said.push(format!("{command:?}"));
         setup.hear(&match command {
             Command::Read(Variable::DeviceIdent) => Answer::Value(Value::DeviceIdent {
-                name: b"LMS",
+                name,
                 version: b"1",
             }),
             Command::Read(Variable::DeviceState) => Answer::Value(Value::DeviceState(1)),
@@ -76,7 +84,7 @@ fn play(setup: &mut Setup, range: Option<OutputRange>) -> Result<Vec<String>, Lm
 
 #[test]
 fn wishes_are_set_and_read_back() {
-    let mut setup = Setup::new(Wanted::of(Some(180.0), Some(0.5), false));
+    let mut setup = Setup::new(Wanted::of(Some(180.0), Some(0.5), false), None);
     let said = play(&mut setup, None).unwrap();
     assert_eq!(said.len(), 11, "{said:#?}");
     assert!(
@@ -90,14 +98,14 @@ fn wishes_are_set_and_read_back() {
 
 #[test]
 fn the_time_of_a_scan_is_asked_for_where_it_is_left_out() {
-    let mut setup = Setup::new(Wanted::of(None, None, true));
+    let mut setup = Setup::new(Wanted::of(None, None, true), None);
     let said = play(&mut setup, None).unwrap();
     // What it is and how it fares, its contents, login, change, check, run, scans.
     assert_eq!(said.len(), 8, "{said:#?}");
     assert!(said[3].contains("SetAccessMode"), "{said:#?}");
     assert!(said[4].contains("Write") && said[4].contains("time: true"));
     assert!(setup.is_done());
-    let mut setup = Setup::new(Wanted::of(Some(180.0), None, true));
+    let mut setup = Setup::new(Wanted::of(Some(180.0), None, true), None);
     let said = play(&mut setup, None).unwrap();
     let logins = said.iter().filter(|said| said.contains("SetAccessMode"));
     assert_eq!((logins.count(), said.len()), (1, 11), "{said:#?}");
@@ -105,7 +113,7 @@ fn the_time_of_a_scan_is_asked_for_where_it_is_left_out() {
 
 #[test]
 fn a_device_that_sends_the_time_already_is_not_changed() {
-    let mut setup = Setup::new(Wanted::of(None, None, true));
+    let mut setup = Setup::new(Wanted::of(None, None, true), None);
     for answer in [
         Answer::Fault(Fault::UNKNOWN_VARIABLE),
         Answer::Fault(Fault::UNKNOWN_VARIABLE),
@@ -123,14 +131,14 @@ fn a_device_that_sends_the_time_already_is_not_changed() {
 
 #[test]
 fn a_device_that_keeps_its_own_settings_is_an_error() {
-    let mut setup = Setup::new(Wanted::of(Some(180.0), None, false));
+    let mut setup = Setup::new(Wanted::of(Some(180.0), None, false), None);
     let error = play(&mut setup, Some(RANGE)).unwrap_err().to_string();
     assert!(error.contains("did not keep the field"), "{error}");
 }
 
 #[test]
 fn refusals_and_silence_name_the_command() {
-    let mut setup = Setup::new(Wanted::of(Some(180.0), None, false));
+    let mut setup = Setup::new(Wanted::of(Some(180.0), None, false), None);
     let mut hear = |answer| {
         setup.next(0).unwrap();
         setup.hear(&answer)
@@ -157,4 +165,57 @@ fn refusals_and_silence_name_the_command() {
         error.contains("SetAccessMode") && error.contains("3 times"),
         "{error}"
     );
+}
+
+#[test]
+fn a_field_is_laid_around_what_is_ahead_on_that_device() {
+    let wanted = Wanted::of(Some(90.0), None, false);
+    let written = |name, stated| {
+        let said = play_as(name, &mut Setup::new(wanted, stated), None).unwrap();
+        said.into_iter()
+            .find(|said| said.contains("Write"))
+            .unwrap()
+    };
+    let is_at = |text: &str, start: i32, stop: i32| {
+        let (start, stop) = (
+            format!("start_angle_raw_1e4_deg: {start},"),
+            format!("stop_angle_raw_1e4_deg: {stop}"),
+        );
+        assert!(text.contains(&start) && text.contains(&stop), "{text}");
+    };
+    is_at(&written(b"LMS111", None), 450_000, 1_350_000);
+    is_at(&written(b"TiM240", None), -450_000, 450_000);
+    let stated = Some(DeviceAngles::of_name(b"TiM240"));
+    is_at(&written(b"LMS111", stated), -450_000, 450_000);
+    // What it measures is centred where most have ahead.
+    is_at(&written(b"XY7", None), 450_000, 1_350_000);
+}
+
+#[test]
+fn an_unknown_device_that_looks_elsewhere_is_not_changed() {
+    let wanted = Wanted::of(Some(90.0), None, false);
+    let mut setup = Setup::new(wanted, None);
+    let mut hear = |answer| {
+        let said = setup.next(0)?;
+        setup.hear(&answer).map(|()| said)
+    };
+    hear(Answer::Fault(Fault::UNKNOWN_VARIABLE)).unwrap();
+    hear(Answer::Fault(Fault::UNKNOWN_VARIABLE)).unwrap();
+    hear(Answer::AccessMode(true)).unwrap();
+    let around_zero = ScanConfig {
+        start_angle_raw_1e4_deg: -1_200_000,
+        stop_angle_raw_1e4_deg: 1_200_000,
+        ..SCAN
+    };
+    let error = hear(Answer::Value(Value::ScanConfig(around_zero))).unwrap_err();
+    assert!(error.to_string().contains("--zero-deg"), "{error}");
+}
+
+#[test]
+fn scans_wait_for_the_name() {
+    let mut setup = Setup::new(Wanted::default(), None);
+    assert!(setup.is_identifying());
+    setup.next(0).unwrap();
+    setup.hear(&Answer::Fault(Fault::UNKNOWN_VARIABLE)).unwrap();
+    assert!(!setup.is_identifying());
 }

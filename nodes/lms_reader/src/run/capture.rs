@@ -5,7 +5,7 @@ use std::io::{ErrorKind, Read};
 use std::path::Path;
 use std::time::Instant;
 
-use sick::cola::{Encoding, Framer, Telegram};
+use sick::cola::{Answer, Encoding, Framer, Telegram, Value};
 
 use super::outlet::Outlet;
 use crate::pace::Pace;
@@ -24,6 +24,7 @@ pub(super) fn run(path: &Path, config: &Config, outlet: &mut Outlet) -> Result<(
             return Err(LmsError::NoScans {
                 path: path.into(),
                 telegrams: outlet.telegrams,
+                reason: outlet.scan_refusal.take(),
             });
         }
         if !config.looped {
@@ -72,6 +73,10 @@ fn send_all(
     while let Some(next) = framer.next_frame() {
         let data = match outlet.take(next)? {
             Some(Telegram::ScanData(data)) => data,
+            Some(Telegram::Answer(Answer::Value(Value::DeviceIdent { name, .. }))) => {
+                outlet.angles.heard_name(name);
+                continue;
+            }
             Some(other) => {
                 tracing::debug!(?other, "skipped a telegram");
                 continue;

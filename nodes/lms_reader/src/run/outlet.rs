@@ -5,16 +5,17 @@ use std::sync::atomic::{AtomicBool, Ordering};
 use std::time::{Duration, Instant};
 
 use messages::{NodeState, ScanHeader, topic};
-use sick::cola::LmdScanData;
+use sick::cola::{Field, LmdScanData};
 use sick::lms2xx::Status;
 use sick::{Frame, SickError};
 use transport::{Graph, Health, Publisher, TransportError, with_causes};
 
-use crate::LmsError;
+use crate::angles::Angles;
 use crate::clock::DeviceClock;
 use crate::complaints::Complaints;
 use crate::lms2xx_scan::WholeScan;
 use crate::scan::{self, Received, ScanSettings};
+use crate::{Config, LmsError};
 
 /// How long the stop flag may go unseen.
 pub(super) const SLICE: Duration = Duration::from_millis(20);
@@ -36,6 +37,8 @@ pub(super) struct Outlet {
     health: Health,
     stop: Arc<AtomicBool>,
     settings: ScanSettings,
+    /// Which way the device looks.
+    pub(super) angles: Angles,
     complaints: Complaints,
     /// Of the device that sends now.
     clock: DeviceClock,
@@ -46,15 +49,18 @@ pub(super) struct Outlet {
     pub(super) telegrams: u64,
     pub(super) sent: u64,
     pub(super) refused: u64,
+    /// Why the last telegram that was to be a scan made none.
+    pub(super) scan_refusal: Option<String>,
 }
 
 impl Outlet {
-    pub(super) fn open(graph: &Graph, settings: ScanSettings) -> Result<Self, TransportError> {
+    pub(super) fn open(graph: &Graph, config: &Config) -> Result<Self, TransportError> {
         Ok(Outlet {
             publisher: graph.publisher()?,
             health: graph.health()?,
             stop: graph.stop_flag(),
-            settings,
+            settings: config.scan_settings(),
+            angles: Angles::new(config.stated_angles()),
             complaints: Complaints::default(),
             clock: DeviceClock::default(),
             link: Link::Untried,
@@ -62,6 +68,7 @@ impl Outlet {
             telegrams: 0,
             sent: 0,
             refused: 0,
+            scan_refusal: None,
         })
     }
 
@@ -136,17 +143,23 @@ impl Outlet {
         received: Received,
     ) -> Result<(), LmsError> {
         let made = scan::distances(data).and_then(|distances| {
+            scan::check(data, &distances)?;
+            let angles = self.angles.of(Field::of(&distances))?;
             let (settings, clock) = (&self.settings, &mut self.clock);
             let measured_ns = scan::measured_ns(data, settings, received, clock)?;
-            let header = scan::header(data, &distances, settings, measured_ns, received)?;
-            Ok((distances, header))
+            let header = scan::header(data, &distances, angles, settings, measured_ns, received);
+            Ok((distances, angles.0.clockwise, header))
         });
-        let (distances, header) = match made {
+        let (distances, clockwise, header) = match made {
             Ok(made) => made,
-            Err(error) => return self.refuse(&error),
+            Err(error) => {
+                self.refuse(&error)?;
+                self.scan_refusal = Some(with_causes(&error));
+                return Ok(());
+            }
         };
         self.publish(header, distances.len(), |ranges| {
-            scan::fill_ranges(&distances, ranges);
+            scan::fill_ranges(&distances, clockwise, ranges);
         })?;
         let found = data.status;
         self.judge(u16::from_be_bytes(found), || LmsError::DeviceStatus {
@@ -212,6 +225,7 @@ impl Outlet {
         }
         self.link = lost;
         self.clock = DeviceClock::default();
+        self.angles.forget_name();
         self.health.state(NodeState::Degraded)?;
         Ok(())
     }

@@ -4,7 +4,7 @@ use std::io::{ErrorKind, Read, Write};
 use std::net::{TcpStream, ToSocketAddrs};
 use std::time::{Duration, Instant};
 
-use sick::cola::{Encoding, Framer, Telegram};
+use sick::cola::{Answer, Encoding, Framer, Telegram, Value};
 
 use super::outlet::{Outlet, SLICE};
 use crate::cola_setup::{Setup, Wanted};
@@ -73,7 +73,9 @@ impl<'a> Connection<'a> {
             silence_s: config.silence,
             encoding,
             stream,
-            setup: config.start_stream.then(|| Setup::new(wanted)),
+            setup: config
+                .start_stream
+                .then(|| Setup::new(wanted, config.stated_angles())),
             framer: Framer::new(encoding),
             command: Vec::new(),
         })
@@ -135,9 +137,14 @@ impl<'a> Connection<'a> {
         self.framer.push(piece);
         while let Some(next) = self.framer.next_frame() {
             match (outlet.take(next)?, &mut self.setup) {
+                // Which way it looks may hang on the name that it is about to say.
+                (Some(Telegram::ScanData(_)), Some(setup)) if setup.is_identifying() => {}
                 (Some(Telegram::ScanData(data)), _) => outlet.publish_cola(&data, received)?,
                 (Some(Telegram::Answer(answer)), Some(setup)) => {
                     setup.hear(&answer)?;
+                    if let Answer::Value(Value::DeviceIdent { name, .. }) = answer {
+                        outlet.angles.heard_name(name);
+                    }
                 }
                 (Some(other), _) => tracing::debug!(?other, "skipped a telegram"),
                 (None, _) => {}

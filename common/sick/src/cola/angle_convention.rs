@@ -1,0 +1,175 @@
+//! How a device counts its angles, and what that means seen from ahead.
+
+use super::Channel;
+
+/// Which of a device's angles points ahead, and which way its angles grow.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct AngleConvention {
+    /// The device's own angle that points ahead, degrees.
+    pub ahead_deg: f64,
+    /// Whether the device's angles grow clockwise, seen from above.
+    pub clockwise: bool,
+}
+
+impl AngleConvention {
+    /// Of most of SICK's devices: 0° is to the right, and angles grow
+    /// counter-clockwise, so that 90° is ahead.
+    pub const USUAL: AngleConvention = AngleConvention {
+        ahead_deg: 90.0,
+        clockwise: false,
+    };
+
+    /// The bearing of a device's angle: degrees counter-clockwise from ahead.
+    #[must_use]
+    pub fn bearing_deg(self, device_deg: f64) -> f64 {
+        match self.clockwise {
+            true => self.ahead_deg - device_deg,
+            false => device_deg - self.ahead_deg,
+        }
+    }
+
+    /// The bearing of the beam that is farthest to the right, from which the others
+    /// follow counter-clockwise; whole turns are taken off so that the middle of the
+    /// field is within half a turn of ahead.
+    #[must_use]
+    pub fn rightmost_bearing_deg(self, field: Field) -> f64 {
+        let rightmost_deg = self.bearing_deg(match self.clockwise {
+            true => field.last_deg,
+            false => field.first_deg,
+        });
+        let middle_deg = self.bearing_deg(field.middle_deg());
+        match middle_deg.abs() <= 180.0 {
+            true => rightmost_deg,
+            false => rightmost_deg - 360.0 * (middle_deg / 360.0).round(),
+        }
+    }
+}
+
+impl std::fmt::Display for AngleConvention {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        let direction = match self.clockwise {
+            true => "clockwise",
+            false => "counter-clockwise",
+        };
+        write!(f, "{}° is ahead, angles grow {direction}", self.ahead_deg)
+    }
+}
+
+/// The angles that a scan covers, in the device's own degrees; the first is the
+/// smaller one.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Field {
+    /// Of the first beam.
+    pub first_deg: f64,
+    /// Of the last beam.
+    pub last_deg: f64,
+}
+
+impl Field {
+    /// Of the values of a channel.
+    #[must_use]
+    pub fn of(channel: &Channel<'_>) -> Self {
+        let first_deg = f64::from(channel.start_angle_raw_1e4_deg) * 1e-4;
+        let steps = channel.len().saturating_sub(1) as f64;
+        Field {
+            first_deg,
+            last_deg: first_deg + steps * (f64::from(channel.step_raw_1e4_deg) * 1e-4),
+        }
+    }
+
+    /// Between two angles in 1/10000°, as settings say them.
+    #[must_use]
+    pub fn between(start_raw_1e4_deg: i32, stop_raw_1e4_deg: i32) -> Self {
+        Field {
+            first_deg: f64::from(start_raw_1e4_deg) * 1e-4,
+            last_deg: f64::from(stop_raw_1e4_deg) * 1e-4,
+        }
+    }
+
+    /// Half way from the first beam to the last, degrees.
+    #[must_use]
+    pub fn middle_deg(self) -> f64 {
+        0.5 * (self.first_deg + self.last_deg)
+    }
+}
+
+impl std::fmt::Display for Field {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        // A hundredth of a degree is finer than the steps of these devices.
+        let round = |deg: f64| (deg * 100.0).round() / 100.0;
+        write!(f, "{}° to {}°", round(self.first_deg), round(self.last_deg))
+    }
+}
+
+/// How long a device takes from the first value of a scan to the last,
+/// microseconds; 0 where it does not say how fast its mirror turns.
+#[must_use]
+pub fn sweep_us(channel: &Channel<'_>, scan_frequency_raw_1e2_hz: u32) -> i64 {
+    if scan_frequency_raw_1e2_hz == 0 {
+        return 0;
+    }
+    let field = Field::of(channel);
+    let turns = (field.last_deg - field.first_deg) / 360.0;
+    (turns * 1e8 / f64::from(scan_frequency_raw_1e2_hz)).round() as i64
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    const CLOCKWISE: AngleConvention = AngleConvention {
+        ahead_deg: 180.0,
+        clockwise: true,
+    };
+
+    fn field(first_deg: f64, last_deg: f64) -> Field {
+        Field {
+            first_deg,
+            last_deg,
+        }
+    }
+
+    #[test]
+    fn left_and_right_in_each_convention() {
+        // Device angle and bearing; 90° is to the left.
+        for (convention, pairs) in [
+            (AngleConvention::USUAL, [(0.0, -90.0), (180.0, 90.0)]),
+            (CLOCKWISE, [(90.0, 90.0), (270.0, -90.0)]),
+        ] {
+            for (device_deg, bearing_deg) in pairs {
+                assert_eq!(convention.bearing_deg(device_deg), bearing_deg);
+            }
+        }
+    }
+
+    #[test]
+    fn beams_begin_at_the_right_and_near_ahead() {
+        let usual = AngleConvention::USUAL;
+        assert_eq!(usual.rightmost_bearing_deg(field(-45.0, 225.0)), -135.0);
+        assert_eq!(usual.rightmost_bearing_deg(field(0.0, 90.0)), -90.0);
+        assert_eq!(CLOCKWISE.rightmost_bearing_deg(field(0.0, 359.75)), -179.75);
+        assert_eq!(CLOCKWISE.rightmost_bearing_deg(field(30.0, 330.0)), -150.0);
+        // The same world where the device counts from half a turn before.
+        let other = AngleConvention {
+            ahead_deg: 180.0,
+            clockwise: false,
+        };
+        assert_eq!(other.rightmost_bearing_deg(field(-170.0, -10.0)), 10.0);
+    }
+
+    #[test]
+    fn the_mirror_tells_how_long_a_scan_takes() {
+        let values = [0; 181];
+        let channel = Channel {
+            name: *b"DIST1",
+            scale_factor: 1.0,
+            scale_offset: 0.0,
+            start_angle_raw_1e4_deg: 0,
+            step_raw_1e4_deg: 10_000,
+            values: values[..].into(),
+        };
+        assert_eq!(sweep_us(&channel, 2500), 20_000);
+        assert_eq!(sweep_us(&channel, 0), 0);
+        assert_eq!(Field::of(&channel).to_string(), "0° to 180°");
+    }
+}

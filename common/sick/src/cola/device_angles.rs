@@ -1,0 +1,198 @@
+//! Which way a device looks, as far as that is known, and what to state where it is
+//! not: a scan that is turned or mirrored makes a pose that is wrong and looks right.
+
+use super::known_device::USUAL_REACH_M;
+use super::{AngleConvention, Field, KnownDevice};
+
+/// How far the middle of a field may be from where most devices have ahead,
+/// degrees: a device may leave out the last beam of a field that it centres, which
+/// is half of the coarsest step, 1°; its step is rounded to 1/10000°, which is 0.02°
+/// in 811 beams at a third of a degree.
+const TOLERANCE_DEG: f64 = 1.0;
+
+/// What is known of how a device counts its angles.
+#[derive(Debug, Clone, PartialEq, Default)]
+pub enum DeviceAngles {
+    /// It has not said its name.
+    #[default]
+    Unnamed,
+    /// Its name is not in the table.
+    Unknown(String),
+    /// Its name is in the table.
+    Known(&'static KnownDevice),
+    /// Whoever owns it says so.
+    Stated(AngleConvention),
+}
+
+impl DeviceAngles {
+    /// By the name that a device says (`DeviceIdent`).
+    #[must_use]
+    pub fn of_name(name: &[u8]) -> Self {
+        let name = name.escape_ascii().to_string();
+        match KnownDevice::named(&name) {
+            Some(row) => DeviceAngles::Known(row),
+            None => DeviceAngles::Unknown(name),
+        }
+    }
+
+    /// How the angles of a scan over `field` are to be read.
+    ///
+    /// # Errors
+    /// [`ConventionError`], which says what is to be stated: where nothing is known
+    /// and the middle of the field is not where most devices have ahead.
+    pub fn convention(&self, field: Field) -> Result<AngleConvention, ConventionError> {
+        let usual = AngleConvention::USUAL;
+        let is_centred = (field.middle_deg() - usual.ahead_deg).abs() <= TOLERANCE_DEG;
+        match self {
+            DeviceAngles::Stated(convention) => Ok(*convention),
+            DeviceAngles::Known(row) => row.convention.ok_or(ConventionError::Disputed {
+                row: row.name,
+                sources: row.source,
+            }),
+            DeviceAngles::Unnamed | DeviceAngles::Unknown(_) if is_centred => Ok(usual),
+            DeviceAngles::Unnamed => Err(ConventionError::Unnamed { field }),
+            DeviceAngles::Unknown(name) => Err(ConventionError::Unknown {
+                name: name.clone(),
+                field,
+            }),
+        }
+    }
+
+    /// The convention where no field is needed to tell it.
+    #[must_use]
+    pub fn certain(&self) -> Option<AngleConvention> {
+        match self {
+            DeviceAngles::Stated(convention) => Some(*convention),
+            DeviceAngles::Known(row) => row.convention,
+            DeviceAngles::Unnamed | DeviceAngles::Unknown(_) => None,
+        }
+    }
+
+    /// The farthest that the device is known to measure, metres.
+    #[must_use]
+    pub fn reach_m(&self) -> f32 {
+        match self {
+            DeviceAngles::Known(row) => row.reach_m(),
+            _ => USUAL_REACH_M,
+        }
+    }
+}
+
+/// Why it is not known which way a device looks.
+#[derive(Debug, Clone, PartialEq, thiserror::Error)]
+pub enum ConventionError {
+    /// No name, and the field is off the usual middle.
+    #[error(
+        "which way the laser looks is not known: its name was not read, and its field, {field}, \
+         is not centred on 90°, which is ahead on most SICK lasers; {}",
+        remedy()
+    )]
+    Unnamed {
+        /// Of its scans.
+        field: Field,
+    },
+    /// A name that is not in the table, and the field is off the usual middle.
+    #[error(
+        "which way the laser looks is not known: {name} is not in the table, and its field, \
+         {field}, is not centred on 90°, which is ahead on most SICK lasers; {}",
+        remedy()
+    )]
+    Unknown {
+        /// As it says it.
+        name: String,
+        /// Of its scans.
+        field: Field,
+    },
+    /// The sources for a device contradict each other.
+    #[error(
+        "which way a {row} looks is not known: the sources differ ({sources}); {}",
+        turned()
+    )]
+    Disputed {
+        /// Its name in the table.
+        row: &'static str,
+        /// What they say, and where.
+        sources: &'static str,
+    },
+}
+
+/// The options of `lms_reader` that help where a device may be in the table.
+fn remedy() -> String {
+    format!(
+        "no scan is published until lms_reader is told --device NAME (such as TiM240, NAV310 or \
+         LMS111), or {OPTIONS}"
+    )
+}
+
+/// Those that always help.
+fn turned() -> String {
+    format!("no scan is published until lms_reader is told {OPTIONS}")
+}
+
+const OPTIONS: &str = "--zero-deg DEGREES, the device's own angle that points ahead, with \
+                       --clockwise if its angles grow clockwise";
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn field(first_deg: f64, last_deg: f64) -> Field {
+        Field {
+            first_deg,
+            last_deg,
+        }
+    }
+
+    #[test]
+    fn a_known_name_needs_no_field_and_a_statement_no_name() {
+        let part = field(0.0, 90.0);
+        let lms = DeviceAngles::of_name(b"LMS111");
+        assert_eq!(lms.convention(part), Ok(AngleConvention::USUAL));
+        let tim = DeviceAngles::of_name(b"TiM240").certain().unwrap();
+        assert_eq!((tim.ahead_deg, tim.clockwise), (0.0, false));
+        let nav = DeviceAngles::of_name(b"NAV310").certain().unwrap();
+        assert_eq!((nav.ahead_deg, nav.clockwise), (180.0, true));
+        assert_eq!(DeviceAngles::Stated(nav).convention(part), Ok(nav));
+    }
+
+    #[test]
+    fn without_a_name_the_middle_decides() {
+        for angles in [DeviceAngles::Unnamed, DeviceAngles::of_name(b"XY-7")] {
+            for (first_deg, last_deg) in [(-45.0, 224.973), (-5.0, 185.0), (0.0, 179.0)] {
+                let found = angles.convention(field(first_deg, last_deg));
+                assert_eq!(found, Ok(AngleConvention::USUAL), "{first_deg}");
+            }
+            for (first_deg, last_deg) in [(-120.0, 120.0), (0.0, 359.75), (0.0, 90.0), (0.0, 177.9)]
+            {
+                let error = angles.convention(field(first_deg, last_deg)).unwrap_err();
+                let text = error.to_string();
+                for part in ["--device NAME", "TiM240", "--zero-deg", "--clockwise"] {
+                    assert!(text.contains(part), "{text}");
+                }
+                assert!(
+                    text.contains(&format!("{first_deg}° to {last_deg}°")),
+                    "{text}"
+                );
+            }
+        }
+        let unknown = DeviceAngles::of_name(b"XY-7\xff");
+        let text = unknown.convention(field(0.0, 1.0)).unwrap_err().to_string();
+        assert!(text.contains(r"XY-7\xff is not in the table"), "{text}");
+    }
+
+    #[test]
+    fn where_sources_differ_it_must_be_stated() {
+        let nav = DeviceAngles::of_name(b"NAV245");
+        let error = nav.convention(field(-45.0, 225.0)).unwrap_err();
+        assert!(error.to_string().contains("--zero-deg"), "{error}");
+        assert!(!error.to_string().contains("--device"), "{error}");
+        assert_eq!(nav.certain(), None);
+    }
+
+    #[test]
+    fn far_devices_reach_farther() {
+        assert_eq!(DeviceAngles::of_name(b"NAV310").reach_m(), 250.0);
+        assert_eq!(DeviceAngles::of_name(b"LMS511").reach_m(), 80.0);
+        assert_eq!(DeviceAngles::Unnamed.reach_m(), 80.0);
+    }
+}

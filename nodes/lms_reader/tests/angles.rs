@@ -1,0 +1,261 @@
+//! Devices whose zero and turning direction differ, as captures and on a socket.
+#![allow(
+    clippy::unwrap_used,
+    reason = "the lint spares test functions but not what they share"
+)]
+
+use std::io::{Read, Write};
+use std::net::{TcpListener, TcpStream};
+use std::path::{Path, PathBuf};
+
+use messages::{NodeState, ScanHeader, topic};
+use sick::cola::{
+    Answer, Channel, Channels, Command, Encoding, Framer, LmdScanData, Telegram, Value, Variable,
+};
+use transport::Graph;
+use transport::testing::{Isolated, NodeProcess, wait_for_health, wait_until};
+
+/// A scan with a reading every degree: the first at `first_deg` is 1 m, each
+/// further one a millimetre more.
+fn scan(first_deg: i32, beams: u16) -> Vec<u8> {
+    let values: Vec<u16> = (1000..1000 + beams).collect();
+    let channels = [Channel {
+        name: *b"DIST1",
+        scale_factor: 1.0,
+        scale_offset: 0.0,
+        start_angle_raw_1e4_deg: first_deg * 10_000,
+        step_raw_1e4_deg: 10_000,
+        values: values[..].into(),
+    }];
+    let data = LmdScanData {
+        version: 1,
+        device_number: 1,
+        serial_number: 1,
+        status: [0, 0],
+        telegram_counter: 0,
+        scan_counter: 0,
+        time_since_start_up_us: 0,
+        time_of_transmission_us: 0,
+        digital_inputs: [0, 0],
+        digital_outputs: [0, 0],
+        layer_angle_raw: 0,
+        scan_frequency_raw_1e2_hz: 1500,
+        measurement_frequency_raw: 0,
+        encoders: (&[][..]).into(),
+        channels_16_bit: Channels::from(&channels[..]),
+        channels_8_bit: Channels::from(&[][..]),
+        position: None,
+        name: None,
+        comment: None,
+        time: None,
+        event: None,
+    };
+    framed(&Telegram::ScanData(data))
+}
+
+fn framed(telegram: &Telegram<'_>) -> Vec<u8> {
+    let mut bytes = Vec::new();
+    Encoding::Binary.frame(telegram, &mut bytes);
+    bytes
+}
+
+fn ident(name: &str) -> Vec<u8> {
+    framed(&Telegram::Answer(Answer::Value(Value::DeviceIdent {
+        name: name.as_bytes(),
+        version: b"V1.0",
+    })))
+}
+
+/// A graph, and a capture in a folder.
+struct Bench {
+    isolated: Isolated,
+    folder: tempfile::TempDir,
+}
+
+impl Bench {
+    fn new(tag: &str) -> Self {
+        Bench {
+            isolated: Isolated::new(tag),
+            folder: tempfile::tempdir().unwrap(),
+        }
+    }
+
+    fn capture(&self, bytes: &[u8]) -> PathBuf {
+        let path = self.folder.path().join("capture.bin");
+        std::fs::write(&path, bytes).unwrap();
+        path
+    }
+
+    /// The first scan of a capture that is played over and over, and the log.
+    fn first(&self, bytes: &[u8], options: &[&str]) -> (ScanHeader, Vec<f32>, String) {
+        let graph = self.isolated.join("test");
+        let scans = graph.subscriber::<topic::Scan>().unwrap();
+        let node = start(
+            &graph,
+            &self.capture(bytes),
+            &[&["--loop"], options].concat(),
+        );
+        let mut first = None;
+        wait_until(&graph, &scans, |header, ranges| {
+            first = Some((*header, ranges.to_vec()));
+            true
+        });
+        node.interrupt();
+        let (_, log) = node.finish();
+        let (header, ranges) = first.unwrap();
+        (header, ranges, log)
+    }
+
+    /// How a capture ends of which no scan can be used: the log.
+    fn refusal(&self, bytes: &[u8], options: &[&str]) -> String {
+        let graph = self.isolated.join("test");
+        let scans = graph.subscriber::<topic::Scan>().unwrap();
+        let node = start(&graph, &self.capture(bytes), options);
+        let (status, log) = node.finish();
+        assert_eq!(status.code(), Some(1), "{log}");
+        assert!(scans.receive().unwrap().is_none(), "{log}");
+        log
+    }
+}
+
+fn start(graph: &Graph, capture: &Path, options: &[&str]) -> NodeProcess {
+    let capture = ["--capture", capture.to_str().unwrap(), "--rate", "max"];
+    let arguments = [&capture[..], options].concat();
+    NodeProcess::start(env!("CARGO_BIN_EXE_lms_reader"), graph, &arguments)
+}
+
+/// Single precision, as recordings have it.
+fn radians(deg: f64) -> f64 {
+    f64::from(deg.to_radians() as f32)
+}
+
+fn says_what_to_state(text: &str) {
+    for part in ["--device NAME", "--zero-deg DEGREES", "--clockwise"] {
+        assert!(text.contains(part), "{text}");
+    }
+}
+
+#[test]
+fn a_tim240_without_a_name_is_refused_and_with_one_read() {
+    let telegram = scan(-120, 241);
+    let log = Bench::new("tim0").refusal(&telegram, &[]);
+    says_what_to_state(&log);
+    assert!(log.contains("-120° to 120°"), "{log}");
+    for (tag, options) in [
+        ("tim1", &["--device", "TiM240"][..]),
+        ("tim2", &["--zero-deg", "0"]),
+    ] {
+        let (header, ranges, log) = Bench::new(tag).first(&telegram, options);
+        assert_eq!(header.angle_min, radians(-120.0), "{log}");
+        assert_eq!((ranges.len(), ranges[0], ranges[240]), (241, 1.0, 1.24));
+        assert!(log.contains("0° is ahead"), "{log}");
+    }
+    // The capture holds what the device answered.
+    let named = [ident("TIM2xx"), telegram].concat();
+    let (header, _, log) = Bench::new("tim3").first(&named, &[]);
+    assert_eq!(header.angle_min, radians(-120.0));
+    assert!(log.contains("TiM2xx") && log.contains("issue 478"), "{log}");
+}
+
+#[test]
+fn a_clockwise_device_is_published_counter_clockwise() {
+    // A whole turn, 0° behind: its middle is at 180°.
+    let telegram = scan(0, 360);
+    says_what_to_state(&Bench::new("nav0").refusal(&telegram, &[]));
+    for (tag, options) in [
+        ("nav1", &["--device", "NAV310"][..]),
+        ("nav2", &["--zero-deg", "180", "--clockwise"]),
+    ] {
+        let (header, ranges, log) = Bench::new(tag).first(&telegram, options);
+        assert_eq!(header.angle_min, radians(-179.0), "{log}");
+        assert_eq!(header.angle_increment, radians(1.0));
+        assert!(header.time_increment_s < 0.0);
+        // The device's 90° is to the left, that is beam 269.
+        assert_eq!((ranges.len(), ranges[269]), (360, 1.09));
+        assert!(ranges.iter().all(|&range| range < header.range_max_m));
+    }
+}
+
+#[test]
+fn a_part_of_a_field_needs_a_name() {
+    let telegram = scan(0, 91);
+    says_what_to_state(&Bench::new("part0").refusal(&telegram, &[]));
+    let unknown = [ident("XY7"), telegram.clone()].concat();
+    let log = Bench::new("part1").refusal(&unknown, &[]);
+    assert!(log.contains("XY7 is not in the table"), "{log}");
+    let named = [ident("LMS10x_FieldEval"), telegram.clone()].concat();
+    let (header, ranges, _) = Bench::new("part2").first(&named, &[]);
+    assert_eq!((header.angle_min, ranges.len()), (radians(-90.0), 91));
+    // What is stated counts more than what is read.
+    let options = ["--device", "TiM240"];
+    let (header, _, _) = Bench::new("part3").first(&named, &options);
+    assert_eq!(header.angle_min, 0.0);
+}
+
+/// Takes the node's connection; says `early` at once, its name when it is asked, and
+/// `late` once it is to send scans.
+fn device(listener: &TcpListener, name: &str, early: &[u8], late: &[u8]) -> TcpStream {
+    let (mut stream, _) = listener.accept().unwrap();
+    stream.write_all(early).unwrap();
+    let mut framer = Framer::new(Encoding::Binary);
+    let mut piece = [0; 1000];
+    loop {
+        let count = stream.read(&mut piece).unwrap();
+        assert!(count > 0, "the node has gone");
+        framer.push(&piece[..count]);
+        while let Some(next) = framer.next_frame() {
+            let answer = match next.unwrap().telegram {
+                Telegram::Command(Command::Read(Variable::DeviceIdent)) => ident(name),
+                Telegram::Command(Command::SubscribeScans(true)) => {
+                    let yes = framed(&Telegram::Answer(Answer::ScansSubscribed(true)));
+                    stream.write_all(&[&yes, late].concat()).unwrap();
+                    return stream;
+                }
+                _ => framed(&Telegram::Answer(Answer::Value(Value::DeviceState(1)))),
+            };
+            stream.write_all(&answer).unwrap();
+        }
+    }
+}
+
+#[test]
+fn a_device_says_its_name_before_its_scans_count() {
+    let isolated = Isolated::new("named");
+    let graph = isolated.join("test");
+    let scans = graph.subscriber::<topic::Scan>().unwrap();
+    let listener = TcpListener::bind("127.0.0.1:0").unwrap();
+    let address = listener.local_addr().unwrap().to_string();
+    let arguments = ["--tcp", &address];
+    let node = NodeProcess::start(env!("CARGO_BIN_EXE_lms_reader"), &graph, arguments);
+    // Half of its field, whose middle is where others have ahead: without the name it
+    // would be taken as that.
+    let half = scan(0, 181);
+    let _stream = device(&listener, "TiM240", &half, &half);
+    wait_until(&graph, &scans, |header, _| {
+        assert_eq!((header.angle_min, header.stamp.counter), (0.0, 0));
+        true
+    });
+    node.interrupt();
+    let (status, log) = node.finish();
+    assert!(status.success(), "{log}");
+}
+
+#[test]
+fn health_says_what_to_state() {
+    let isolated = Isolated::new("unnamed");
+    let graph = isolated.join("test");
+    let health = graph.subscriber::<topic::Health>().unwrap();
+    let listener = TcpListener::bind("127.0.0.1:0").unwrap();
+    let address = listener.local_addr().unwrap().to_string();
+    let arguments = ["--tcp", &address];
+    let node = NodeProcess::start(env!("CARGO_BIN_EXE_lms_reader"), &graph, arguments);
+    let _stream = device(&listener, "XY7", &[], &scan(-120, 241));
+    let (report, reason) = wait_for_health(&graph, &health, |report| {
+        report.refused == 1 && report.state == NodeState::Degraded as u32
+    });
+    assert_eq!(report.sent, 0);
+    says_what_to_state(&reason);
+    node.interrupt();
+    let (status, log) = node.finish();
+    assert!(status.success(), "{log}");
+}
