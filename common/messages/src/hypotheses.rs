@@ -9,7 +9,7 @@ use crate::{Pose2, Stamp};
 
 /// Header of topic `hypotheses`; the items are distinct poses, best first.
 #[derive(Debug, Clone, Copy, PartialEq, Pod, Zeroable, ZeroCopySend, Serialize, Deserialize)]
-#[type_name("HypothesesHeader/v2")]
+#[type_name("HypothesesHeader/v3")]
 #[repr(C)]
 pub struct HypothesesHeader {
     /// Of the scan.

@@ -70,6 +70,7 @@ round_trips! {
     map_arrives: topic::Map,
     boundary_arrives: topic::Boundary,
     votes_arrive: topic::Votes,
+    readings_arrive: topic::Readings,
     field_arrives: topic::Field,
     hypotheses_arrive: topic::Hypotheses,
     beams_arrive: topic::Beams,

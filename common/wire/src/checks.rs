@@ -8,8 +8,8 @@
 use messages::{
     Beam, BeamsHeader, BoundaryCell, BoundaryHeader, Corner, FieldHeader, FieldKind, GroundTruth,
     HealthHeader, HypothesesHeader, Hypothesis, LogHeader, LogLevel, MapHeader, NodeState,
-    Odometry, Pose2, RegionHeader, SaveHeader, ScanHeader, Topic, Verdict, Vote, VotesHeader,
-    topic,
+    Odometry, Pose2, Reading, ReadingsHeader, RegionHeader, SaveHeader, ScanHeader, Topic, Verdict,
+    Vote, VotesHeader, topic,
 };
 
 use crate::WireError;
@@ -52,6 +52,17 @@ pub(crate) fn votes(header: &VotesHeader, votes: &[Vote]) -> Checked {
     refuse.unless_finite("beam_arc_m", header.beam_arc_m)?;
     refuse.unless_pose("base_from_laser", header.base_from_laser)?;
     refuse.unless_count("votes", votes.len(), header.total)
+}
+
+pub(crate) fn readings(_: &ReadingsHeader, readings: &[Reading]) -> Checked {
+    let refuse = Refuse::on::<topic::Readings>();
+    for reading in readings {
+        refuse.unless_finite("from_x", reading.from_x)?;
+        refuse.unless_finite("from_y", reading.from_y)?;
+        refuse.unless_finite("bearing", reading.bearing)?;
+        refuse.unless_finite("weight", reading.weight)?;
+    }
+    Ok(())
 }
 
 pub(crate) fn field(header: &FieldHeader, pixels: &[u16]) -> Checked {

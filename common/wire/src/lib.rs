@@ -9,7 +9,7 @@
 //!
 //! | encoding | payload |
 //! |---|---|
-//! | `application/postcard;backcast.Scan/v1` | as above |
+//! | `application/postcard;backcast.Scan/v2` | as above |
 //! | `application/postcard+zstd;backcast.Map/v1` | one zstd frame of it |
 //!
 //! What is sent is not trusted: another schema, a payload or an item too many, a

@@ -89,15 +89,16 @@ macro_rules! wire {
 }
 
 wire! {
-    Scan = "Scan/v1", MIB, scan, [stamp.entered_ns];
-    OdometryTopic = "Odometry/v1", 4 * KIB, odometry, [stamp.entered_ns];
+    Scan = "Scan/v2", MIB, scan, [stamp.entered_ns];
+    OdometryTopic = "Odometry/v2", 4 * KIB, odometry, [stamp.entered_ns];
     Map = "Map/v1", 64 * MIB, map, [stamp.entered_ns], compressed, kept;
     Boundary = "Boundary/v1", 32 * MIB, boundary, [stamp.entered_ns], compressed, kept;
-    Votes = "Votes/v3", 16 * MIB, votes, [stamp.entered_ns];
+    Votes = "Votes/v4", 16 * MIB, votes, [stamp.entered_ns];
+    Readings = "Readings/v1", 4 * MIB, readings, [stamp.entered_ns];
     Field = "Field/v1", 64 * MIB, field, [stamp.entered_ns], compressed, on_demand;
-    Hypotheses = "Hypotheses/v2", MIB, hypotheses, [stamp.entered_ns, sent_ns];
+    Hypotheses = "Hypotheses/v3", MIB, hypotheses, [stamp.entered_ns, sent_ns];
     Beams = "Beams/v1", MIB, beams, [stamp.entered_ns];
-    GroundTruthTopic = "GroundTruth/v1", 4 * KIB, ground_truth, [stamp.entered_ns];
+    GroundTruthTopic = "GroundTruth/v2", 4 * KIB, ground_truth, [stamp.entered_ns];
     Region = "Region/v1", 64 * KIB, region, [stamp.entered_ns], kept;
     Save = "Save/v1", 4 * KIB, save, [stamp.entered_ns];
     Health = "Health/v1", 4 * KIB, health, [sent_ns];

@@ -16,7 +16,7 @@ pub const JSON: &str = "application/json;backcast.Scan/v1";
 /// That of its answer.
 pub const JSON_ANSWER: &str = "application/json;backcast.Hypotheses/v2";
 /// What a question may say of itself.
-pub(crate) const ENCODINGS: [&str; 2] = ["application/postcard;backcast.Scan/v1", JSON];
+pub(crate) const ENCODINGS: [&str; 2] = ["application/postcard;backcast.Scan/v2", JSON];
 /// Characters of a foreign encoding that an error shows.
 const SHOWN: usize = 80;
 
@@ -129,7 +129,8 @@ mod tests {
     fn the_forms_are_those_of_the_wire() {
         assert_eq!(ENCODINGS[0], wire::encoding::<topic::Scan>());
         let answer = wire::encoding::<topic::Hypotheses>();
-        assert!(answer.ends_with("backcast.Hypotheses/v2"), "{answer}");
+        assert!(answer.ends_with("backcast.Hypotheses/v3"), "{answer}");
+        // Its keys are those of version 2.
         assert!(JSON_ANSWER.ends_with("backcast.Hypotheses/v2"));
     }
 
