@@ -387,7 +387,7 @@ mod tests {
             ..ros::Odometry::default()
         };
         let recording = recording(&[
-            ("/scan", scan(0, &"f".repeat(33))),
+            ("/scan", scan(0, &"f".repeat(257))),
             ("/odom", Message::Odometry(Box::new(turned))),
             ("/scan", scan(2, "laser")),
         ]);

@@ -33,7 +33,7 @@ mod tests {
         assert_eq!(frame("base_link").unwrap(), "base_link");
         for refused in [String::new(), "x".repeat(FrameName::CAPACITY + 1)] {
             let problem = frame(&refused).unwrap_err();
-            assert!(problem.contains("allowed are 1 to 32"), "{problem}");
+            assert!(problem.contains("allowed are 1 to 256"), "{problem}");
         }
     }
 }

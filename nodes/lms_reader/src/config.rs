@@ -444,8 +444,8 @@ mod tests {
         refuse("--tcp a:1 --range-min-m nan", "finite");
         refuse("--tcp a:1 --range-max-m 0.01", "the maximum must be larger");
         refuse(
-            &format!("--tcp a:1 --frame {}", "f".repeat(33)),
-            "33 bytes, allowed are 1 to 32",
+            &format!("--tcp a:1 --frame {}", "f".repeat(257)),
+            "257 bytes, allowed are 1 to 256",
         );
     }
 }

@@ -110,6 +110,6 @@ mod tests {
             "cannot be used with",
         );
         refuse("--output r --save-on lost-pose", "--keep");
-        refuse("--output r --base-frame=", "allowed are 1 to 32");
+        refuse("--output r --base-frame=", "allowed are 1 to 256");
     }
 }

@@ -268,7 +268,7 @@ mod tests {
         refuse(&["--lost-beyond", "1"], "M,DEG");
         refuse(&["--spread", "NaN,1"], "M,DEG");
         refuse(&["--mount", "1,2"], "X,Y,YAW_DEG");
-        refuse(&["--map-frame", ""], "1 to 32");
+        refuse(&["--map-frame", ""], "1 to 256");
         refuse(&["--tf-ahead", "11"], "0 to 10");
     }
 }
