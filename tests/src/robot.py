@@ -34,6 +34,8 @@ DOMAIN = 0
 STORE = get_typestore(Stores.ROS2_JAZZY)
 TYPES = {
     "scan": "sensor_msgs/msg/LaserScan",
+    "front/scan": "sensor_msgs/msg/LaserScan",
+    "rear/scan": "sensor_msgs/msg/LaserScan",
     "odom": "nav_msgs/msg/Odometry",
     "map": "nav_msgs/msg/OccupancyGrid",
     "tf": "tf2_msgs/msg/TFMessage",
@@ -240,6 +242,30 @@ class Robot:
     def scan(self, index):
         for topic, qos in [("odom", RELIABLE), ("scan", SENSOR)]:
             self.put(topic, self.recorded[topic][index], qos)
+
+    def mounts(self, lasers):
+        """The frames of lasers: name, x, and a quaternion's x, y, z, w."""
+        t = STORE.types
+        stamp = t["builtin_interfaces/msg/Time"](0, 0)
+        transforms = [
+            t["geometry_msgs/msg/TransformStamped"](
+                t["std_msgs/msg/Header"](stamp, "base_link"),
+                f"{name}_laser",
+                t["geometry_msgs/msg/Transform"](
+                    t["geometry_msgs/msg/Vector3"](x, 0.0, 0.0),
+                    t["geometry_msgs/msg/Quaternion"](*turn),
+                ),
+            )
+            for name, x, turn in lasers
+        ]
+        message = t[TYPES["tf_static"]](transforms)
+        self.put("tf_static", bytes(STORE.serialize_cdr(message, TYPES["tf_static"])), KEPT)
+
+    def scan_of(self, laser, index):
+        """A recorded scan, as if it were that laser's."""
+        message = STORE.deserialize_cdr(self.recorded["scan"][index], TYPES["scan"])
+        message.header.frame_id = f"{laser}_laser"
+        self.put(f"{laser}/scan", bytes(STORE.serialize_cdr(message, TYPES["scan"])), SENSOR)
 
     def believe(self, index, x, y, yaw):
         msgtype = TYPES["amcl_pose"]

@@ -160,7 +160,7 @@ fn main() -> Result<(), Box<dyn Error>> {
         range_max_m: options.drive.range_max_m() as f32,
         half_width: options.drive.sonar.beam_width.to_radians() / 2.0,
     };
-    let drive = taken(drive, options.drive.mount.0);
+    let drive = taken(drive, options.drive.mount.base_from_laser);
     let localizer = localizer(&map, options.sigma)?;
     println!("way_m  echoes  read_as   beams  right_%  in_five_%  scans");
     for &way_m in &options.ways {

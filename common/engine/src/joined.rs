@@ -2,10 +2,10 @@
 //! motion within a scan is taken out.
 //!
 //! Each beam is carried by the odometry from where its laser was when it measured to
-//! where the sought frame was at one time. Where the graph has one laser, that is the
-//! laser's own frame in the middle of its scan: beams are carried least far, and the
-//! pose is that which the scan gives without odometry, too. Where several are joined,
-//! it is the base at the stamp of the first laser's scan. Pure: when a scan comes and for how long odometry is waited for, others decide.
+//! where the sought frame was in the middle of the first laser's scan: there they are
+//! carried least far, and the pose is that which the scan gives without odometry, too.
+//! That frame is the laser's own where the graph has one, the base where several are
+//! joined. Pure: when a scan comes and for how long odometry is waited for, others decide.
 
 mod config;
 mod laser;
@@ -293,10 +293,7 @@ impl Joiner {
     /// Notes where a laser was at each of its beams, in the sought frame; where
     /// odometry does not tell, where it sits.
     fn carry(&mut self, index: usize, to_base: bool) -> MotionKnown {
-        let sought_ns = match to_base {
-            true => self.lasers[0].stamp_ns(),
-            false => self.lasers[0].middle_ns(),
-        };
+        let sought_ns = self.lasers[0].middle_ns();
         let child_from_base = self.child_from_base();
         let first_mount = self.lasers[0].base_from_laser();
         let child_from_sought = match to_base {

@@ -2,9 +2,8 @@
 
 use std::f64::consts::TAU;
 use std::ops::RangeInclusive;
-use std::str::FromStr;
 
-use geometry::Pose;
+use geometry::{Mount, Pose};
 
 use crate::{LaserConfig, Noise, OdometryConfig, SonarConfig};
 
@@ -21,14 +20,29 @@ pub struct DriveConfig {
     #[arg(long, value_name = "HZ", default_value_t = 5.0, value_parser = parse_rate)]
     pub rate: f64,
     /// Where the sensor sits on the robot: metres ahead of the base and left of
-    /// it, degrees counter-clockwise.
+    /// it, degrees counter-clockwise. A fourth number of 180 is a laser upside
+    /// down, rolled by half a turn about its x axis.
     #[arg(
         long,
-        value_name = "X,Y,DEGREES",
+        value_name = "X,Y,DEGREES[,180]",
         default_value = "0,0,0",
+        value_parser = parse_mount,
         allow_hyphen_values = true
     )]
     pub mount: Mount,
+    /// A laser by its name and its mount, as front=0.4,0,0; several are given one by
+    /// one, the first one first.
+    #[arg(
+        long = "laser",
+        value_name = "NAME=X,Y,DEGREES[,180]",
+        value_parser = parse_laser,
+        conflicts_with_all = ["mount", "sonar"]
+    )]
+    pub lasers: Vec<NamedMount>,
+    /// From the first beam of a scan to its last, seconds, 0..=1: the robot drives on
+    /// meanwhile. 0 measures all beams at once.
+    #[arg(long, value_name = "SECONDS", default_value_t = 0.0, value_parser = parse_duration, conflicts_with = "sonar")]
+    pub scan_duration: f64,
     /// Standard deviation of a reading: metres, and with a second number what is
     /// added for each metre of range.
     #[arg(long, value_name = "METRES[,SHARE]", default_value = "0.01,0.002")]
@@ -64,27 +78,74 @@ impl DriveConfig {
         self.range_max
             .unwrap_or(if self.sonar.sonar { 5.0 } else { 30.0 })
     }
+
+    /// The sensors on the robot, the first one first; the only one has no name.
+    #[must_use]
+    pub fn mounts(&self) -> Vec<NamedMount> {
+        match &self.lasers[..] {
+            [] => vec![NamedMount {
+                name: String::new(),
+                mount: self.mount,
+            }],
+            lasers => lasers.to_vec(),
+        }
+    }
+
+    /// From one beam of a scan to the next, seconds, in the 32 bits of a `LaserScan`.
+    #[must_use]
+    pub fn time_increment_s(&self, beams: usize) -> f32 {
+        (self.scan_duration / beams.saturating_sub(1).max(1) as f64) as f32
+    }
 }
 
-/// Where the sensor sits: `base_from_laser`.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Mount(pub Pose);
+/// A sensor and where it sits on the robot.
+#[derive(Debug, Clone, PartialEq)]
+pub struct NamedMount {
+    /// What it is called; empty where it is the only one.
+    pub name: String,
+    /// Where it sits.
+    pub mount: Mount,
+}
 
-impl FromStr for Mount {
-    type Err = String;
+/// Most bytes of a laser's name, as in the messages of the graph.
+const MAX_NAME: usize = 32;
 
-    /// Reads `X,Y,DEGREES`.
-    fn from_str(text: &str) -> Result<Self, String> {
-        let [x, y, degrees] =
-            numbers(text).ok_or_else(|| format!("{text:?} is no mount; needed are X,Y,DEGREES"))?;
-        let metres = |metres: f64| within(metres, -5.0..=5.0, "metres");
-        let degrees = within(degrees, -360.0..=360.0, "degrees")?;
-        Ok(Mount(Pose::new(
-            metres(x)?,
-            metres(y)?,
-            degrees.to_radians(),
-        )))
+fn parse_mount(text: &str) -> Result<Mount, String> {
+    let level = numbers(text).map(|[x, y, degrees]| [x, y, degrees, 0.0]);
+    let Some([x, y, degrees, roll]) = level.or_else(|| numbers(text)) else {
+        return Err(format!("{text:?} is no mount; needed are X,Y,DEGREES"));
+    };
+    if roll != 0.0 && roll != 180.0 {
+        return Err(format!("a roll of {roll} degrees; allowed are 0 and 180"));
     }
+    let metres = |metres: f64| within(metres, -5.0..=5.0, "metres");
+    let degrees = within(degrees, -360.0..=360.0, "degrees")?;
+    Ok(Mount {
+        base_from_laser: Pose::new(metres(x)?, metres(y)?, degrees.to_radians()),
+        is_upside_down: roll != 0.0,
+    })
+}
+
+fn parse_laser(text: &str) -> Result<NamedMount, String> {
+    let (name, mount) = text
+        .split_once('=')
+        .ok_or_else(|| format!("{text:?} is no laser; needed are NAME=X,Y,DEGREES"))?;
+    let is_word = name.bytes().all(|b| b.is_ascii_alphanumeric() || b == b'_');
+    let begins = name.bytes().next().is_some_and(|b| b.is_ascii_alphabetic());
+    if !is_word || !begins || name.len() > MAX_NAME {
+        return Err(format!(
+            "{name:?} is no name of a laser; allowed are 1 to {MAX_NAME} letters, digits and _, \
+             a letter first"
+        ));
+    }
+    Ok(NamedMount {
+        name: name.to_owned(),
+        mount: parse_mount(mount)?,
+    })
+}
+
+fn parse_duration(text: &str) -> Result<f64, String> {
+    parse(text, 0.0..=1.0, "seconds")
 }
 
 /// Numbers with commas between them, if they are so many.
@@ -142,12 +203,18 @@ mod tests {
 
     #[test]
     fn mounts_are_read_and_nonsense_is_refused_by_what_is_wrong() {
-        let mount: Mount = "0.78, 0,-90".parse().unwrap();
+        let quarter = std::f64::consts::FRAC_PI_2;
+        let mount = |is_upside_down| Mount {
+            base_from_laser: Pose::new(0.78, 0.0, -quarter),
+            is_upside_down,
+        };
+        assert_eq!(parse_mount("0.78, 0,-90"), Ok(mount(false)));
+        assert_eq!(parse_mount("0.78,0,-90,180"), Ok(mount(true)));
+        let refused = |text: &str| parse_mount(text).unwrap_err();
         assert_eq!(
-            mount,
-            Mount(Pose::new(0.78, 0.0, -std::f64::consts::FRAC_PI_2))
+            refused("0,0,0,90"),
+            "a roll of 90 degrees; allowed are 0 and 180"
         );
-        let refused = |text: &str| text.parse::<Mount>().unwrap_err();
         assert_eq!(
             refused("1,2"),
             "\"1,2\" is no mount; needed are X,Y,DEGREES"
@@ -155,5 +222,22 @@ mod tests {
         assert_eq!(refused("9,0,0"), "9 is not within -5 to 5 metres");
         assert_eq!(refused("0,NaN,0"), "NaN is not within -5 to 5 metres");
         assert_eq!(refused("0,0,400"), "400 is not within -360 to 360 degrees");
+    }
+
+    #[test]
+    fn a_laser_has_a_name_and_a_mount() {
+        let laser = parse_laser("front_2=0.5,0,0").unwrap();
+        assert_eq!(laser.name, "front_2");
+        assert_eq!(laser.mount.base_from_laser, Pose::new(0.5, 0.0, 0.0));
+        let refused = |text: &str| parse_laser(text).unwrap_err();
+        assert_eq!(
+            refused("0,0,0"),
+            "\"0,0,0\" is no laser; needed are NAME=X,Y,DEGREES"
+        );
+        for name in ["", "a b", "2", "a/b"] {
+            let error = refused(&format!("{name}=0,0,0"));
+            assert!(error.contains("is no name of a laser"), "{error}");
+        }
+        assert!(refused("a=0,0").contains("is no mount"));
     }
 }

@@ -61,6 +61,22 @@ pub enum SimulationError {
         /// Whether it is still on the map.
         on_map: bool,
     },
+    /// Two lasers of one name.
+    #[error("two lasers are called {name}; allowed are lasers with names of their own")]
+    SameLaser {
+        /// The name.
+        name: String,
+    },
+    /// A scan that is not over when the next begins.
+    #[error(
+        "a scan takes {duration_s} s and the next begins after {period_s} s; allowed are scans that end before"
+    )]
+    LongScan {
+        /// From its first beam to its last, seconds.
+        duration_s: f64,
+        /// From scan to scan, seconds.
+        period_s: f64,
+    },
     /// More scans than a recording should hold.
     #[error("the drive takes {seconds:.0} s, which is {scans} scans; at most {most} are simulated")]
     TooLong {

@@ -1,8 +1,8 @@
-//! A laser: one ray a beam, all at one moment.
+//! A laser: one ray a beam, all at one moment or one after the other.
 
 use std::f64::consts::PI;
 
-use geometry::Pose;
+use geometry::{Mount, Pose};
 
 use crate::Bearings;
 use crate::config::parse_field_of_view;
@@ -31,17 +31,20 @@ impl LaserConfig {
     }
 }
 
-/// The readings of all beams, metres.
+/// The readings of all beams, metres; `map_from_base` says where the robot is at a
+/// beam.
 pub(crate) fn scan(
     scene: &Scene,
-    map_from_laser: Pose,
+    map_from_base: impl Fn(usize) -> Pose,
+    mount: Mount,
     bearings: Bearings,
     receiver: &mut Receiver,
 ) -> Vec<f32> {
-    let Pose { x, y, yaw } = map_from_laser;
     let range_max_m = receiver.range_max_m;
+    let turn = if mount.is_upside_down { -1.0 } else { 1.0 };
     let reading = |beam| {
-        let angle = yaw + bearings.get(beam);
+        let Pose { x, y, yaw } = map_from_base(beam).then(mount.base_from_laser);
+        let angle = yaw + turn * bearings.get(beam);
         receiver.reading(scene.range(x, y, angle, range_max_m))
     };
     (0..bearings.count).map(reading).collect()

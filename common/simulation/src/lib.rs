@@ -24,8 +24,8 @@ mod sonar;
 mod testing;
 
 pub use angles::Bearings;
-pub use config::{DriveConfig, Mount};
-pub use drive::{Drive, Snapshot};
+pub use config::{DriveConfig, NamedMount};
+pub use drive::{Drive, Snapshot, Wheels};
 pub use error::SimulationError;
 pub use laser::LaserConfig;
 pub use noise::Noise;

@@ -96,6 +96,16 @@ mod tests {
     }
 
     #[test]
+    fn a_laser_may_turn_clockwise() {
+        let scan = LaserScan {
+            angle_min: 1.5,
+            angle_increment: -0.01,
+            ..LaserScan::default()
+        };
+        check_scan(&scan).unwrap();
+    }
+
+    #[test]
     fn numbers_and_times_that_are_none_are_refused() {
         let refuse = |spoil: fn(&mut LaserScan), expected: &str| {
             let mut scan = LaserScan::default();

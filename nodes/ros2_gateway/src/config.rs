@@ -1,7 +1,7 @@
 //! What a user can set.
 
 use clap::{Parser, ValueEnum};
-use geometry::Pose;
+use geometry::{Mount, Pose};
 use messages::FrameName;
 
 use crate::GatewayError;
@@ -46,12 +46,14 @@ pub struct Config {
     pub spread: Reach,
 
     /// Where the laser sits on the robot, metres and degrees, if the robot's /tf_static
-    /// does not say it
-    #[arg(long, value_name = "X,Y,YAW_DEG", value_parser = mount, allow_hyphen_values = true)]
-    pub mount: Option<Pose>,
+    /// does not say it; a fourth number of 180 is a laser that hangs upside down, rolled
+    /// by half a turn about its x axis. For several lasers once each, in the order of
+    /// their --scan
+    #[arg(long = "mount", value_name = "X,Y,YAW_DEG[,180]", value_parser = mount, allow_hyphen_values = true)]
+    pub mounts: Vec<Mount>,
 
-    /// The laser of --mount hangs upside down: rolled by half a turn about its x axis.
-    #[arg(long, requires = "mount")]
+    /// The only laser, that of --mount, hangs upside down
+    #[arg(long, requires = "mounts")]
     pub upside_down: bool,
 
     /// The map's frame [default: that of the robot's map, else map]
@@ -84,9 +86,10 @@ pub struct Config {
 #[derive(Debug, Clone, clap::Args)]
 #[command(next_help_heading = "Names")]
 pub struct Names {
-    /// sensor_msgs/LaserScan, in
-    #[arg(long, value_name = "NAME", default_value = "scan")]
-    pub scan: String,
+    /// sensor_msgs/LaserScan, in; of several lasers once each, the first one first: the
+    /// graph calls them by their topics, front for front/scan, scan_front and front_scan
+    #[arg(long = "scan", value_name = "NAME", default_value = "scan")]
+    pub scans: Vec<String>,
     /// nav_msgs/Odometry, in
     #[arg(long, value_name = "NAME", default_value = "odom")]
     pub odom: String,
@@ -175,6 +178,28 @@ impl Config {
         }
     }
 
+    /// Where the lasers sit, in the order of their scans, if the user says so.
+    ///
+    /// # Errors
+    /// If it is not clear which mount is of which laser.
+    pub fn mounts(&self) -> Result<Vec<Mount>, GatewayError> {
+        let (mounts, lasers) = (self.mounts.len(), self.names.scans.len());
+        let refuse = |option, reason| Err(GatewayError::Option { option, reason });
+        if mounts != 0 && mounts != lasers {
+            let reason = format!("{mounts} mounts for {lasers} lasers: allowed is one for each");
+            return refuse("mount", reason);
+        }
+        if self.upside_down && lasers > 1 {
+            let reason = "which of the lasers is not clear: allowed is --mount X,Y,YAW_DEG,180";
+            return refuse("upside-down", reason.to_owned());
+        }
+        let turned = |mount: &Mount| Mount {
+            is_upside_down: mount.is_upside_down || self.upside_down,
+            ..*mount
+        };
+        Ok(self.mounts.iter().map(turned).collect())
+    }
+
     /// Whether a topic of the robot enters the graph.
     #[must_use]
     pub fn brings(&self, topic: Brought) -> bool {
@@ -201,10 +226,18 @@ fn reach(text: &str) -> Result<Reach, String> {
     }
 }
 
-fn mount(text: &str) -> Result<Pose, String> {
-    match numbers(text) {
-        Some([x, y, yaw_deg]) => Ok(Pose::new(x, y, yaw_deg.to_radians())),
-        None => Err("expected are three finite numbers: X,Y,YAW_DEG".into()),
+fn mount(text: &str) -> Result<Mount, String> {
+    let level = numbers(text).map(|[x, y, yaw_deg]| [x, y, yaw_deg, 0.0]);
+    match level.or_else(|| numbers(text)) {
+        Some([x, y, yaw_deg, roll_deg]) if [0.0, 180.0, -180.0].contains(&roll_deg) => Ok(Mount {
+            base_from_laser: Pose::new(x, y, yaw_deg.to_radians()),
+            is_upside_down: roll_deg != 0.0,
+        }),
+        _ => Err(
+            "expected are three finite numbers, X,Y,YAW_DEG, and of a laser upside down 180 as \
+             the fourth"
+                .into(),
+        ),
     }
 }
 
@@ -250,11 +283,37 @@ mod tests {
         assert_eq!(parse(&["--domain", "7"]).unwrap().domain().unwrap(), 7);
         let config = parse(&["--bring", "scan,odometry"]).unwrap();
         assert!(!config.brings(Brought::Map) && config.brings(Brought::Odometry));
-        let config = parse(&["--mount", "-0.5,0,180"]).unwrap();
+        assert_eq!(config.names.scans, ["scan"]);
+        assert_eq!(config.mounts().unwrap(), []);
+    }
+
+    #[test]
+    fn each_laser_has_a_mount_of_its_own() {
+        let behind = |is_upside_down| Mount {
+            base_from_laser: Pose::new(-0.5, 0.0, std::f64::consts::PI),
+            is_upside_down,
+        };
+        let mounts = |line: &str| {
+            let words: Vec<&str> = line.split(' ').collect();
+            parse(&words).unwrap().mounts()
+        };
+        assert_eq!(mounts("--mount -0.5,0,180").unwrap(), [behind(false)]);
+        let turned = mounts("--mount -0.5,0,180 --upside-down").unwrap();
+        assert_eq!(turned, [behind(true)]);
+        let two = "--scan front/scan --scan rear/scan";
+        let mounted = format!("{two} --mount 0.5,0,0 --mount -0.5,0,180,180");
+        let ahead = Mount {
+            base_from_laser: Pose::new(0.5, 0.0, 0.0),
+            is_upside_down: false,
+        };
+        assert_eq!(mounts(&mounted).unwrap(), [ahead, behind(true)]);
+        let refused = |line: &str| mounts(line).unwrap_err().to_string();
         assert_eq!(
-            config.mount,
-            Some(Pose::new(-0.5, 0.0, std::f64::consts::PI))
+            refused(&format!("{two} --mount 0.5,0,0")),
+            "--mount: 1 mounts for 2 lasers: allowed is one for each"
         );
+        let error = refused(&format!("{mounted} --upside-down"));
+        assert!(error.starts_with("--upside-down: which"), "{error}");
     }
 
     #[test]
@@ -268,6 +327,7 @@ mod tests {
         refuse(&["--lost-beyond", "1"], "M,DEG");
         refuse(&["--spread", "NaN,1"], "M,DEG");
         refuse(&["--mount", "1,2"], "X,Y,YAW_DEG");
+        refuse(&["--mount", "1,2,3,90"], "180 as the fourth");
         refuse(&["--map-frame", ""], "1 to 256");
         refuse(&["--tf-ahead", "11"], "0 to 10");
     }

@@ -114,10 +114,20 @@ pub enum GatewayError {
         /// Those of the messages that are taken.
         expected: String,
     },
+    /// A transform of `/tf_static` is none; the others of its message are taken.
+    #[error("the transform from {parent} to {child} is left out")]
+    Transform {
+        /// The parent frame.
+        parent: String,
+        /// The child frame.
+        child: String,
+        /// Why it is none.
+        source: ConversionError,
+    },
     /// A laser that does not look level.
     #[error(
         "the laser {laser} is tilted by {tilt_degrees:.1} degrees against {base}: allowed are at \
-         most {}",
+         most {}, also upside down",
         recording::MAX_TILT_DEGREES
     )]
     Tilted {

@@ -1,13 +1,14 @@
 //! How the robot's frames lie to each other: the laser on the base, and the base in the
 //! odometry's frame. Pure.
 //!
-//! Refuses lasers that do not look level, and more frames than a robot has.
+//! Refuses lasers that look neither level nor upside down, and more frames than a robot
+//! has.
 
-use std::collections::VecDeque;
+use std::collections::{BTreeMap, BTreeSet, VecDeque};
 
 use geometry::{Mount, Pose};
 use messages::{HypothesesHeader, Hypothesis, Odometry};
-use recording::ros::TfMessage;
+use recording::ros::{TfMessage, TransformStamped};
 use recording::{MAX_TILT_DEGREES, TransformTree};
 
 use crate::GatewayError;
@@ -21,45 +22,72 @@ const MAX_FRAMES: usize = 1000;
 /// Most bytes of a frame's name.
 const MAX_NAME: usize = 256;
 
+/// Most mounts that are kept: a robot has some lasers, each with one frame.
+const MAX_MOUNTS: usize = 64;
+
 /// What is known of the frames.
 #[derive(Debug)]
 pub(crate) struct Frames {
     fixed: TransformTree,
-    /// What the user says.
-    given: Option<Mount>,
-    /// The laser that was asked for last, and its mount; none after a change.
-    laser: Option<(String, Option<Mount>)>,
+    /// Children whose transform was mended, which is said once.
+    mended: BTreeSet<String>,
+    /// What the user says of each laser; empty where the transforms say it.
+    given: Vec<Mount>,
+    /// By laser and its frame, those that were asked for since the last change.
+    mounts: BTreeMap<(usize, String), Option<Mount>>,
+    /// The frame of the first laser, the one that hypotheses are about.
+    first: Option<String>,
     odometry: VecDeque<Odometry>,
 }
 
 impl Frames {
-    pub(crate) fn new(given: Option<Mount>) -> Self {
+    pub(crate) fn new(given: Vec<Mount>) -> Self {
         Frames {
             fixed: TransformTree::default(),
+            mended: BTreeSet::new(),
             given,
-            laser: None,
+            mounts: BTreeMap::new(),
+            first: None,
             odometry: VecDeque::with_capacity(KEPT),
         }
     }
 
-    /// Takes transforms that never change.
+    /// Takes transforms that never change. One that cannot be used does not keep the
+    /// others from being taken.
+    ///
+    /// # Errors
+    /// What is wrong with the first that cannot be used.
     pub(crate) fn hear_fixed(&mut self, message: &TfMessage) -> Result<(), GatewayError> {
-        for transform in &message.transforms {
-            let names = [&transform.header.frame_id, &transform.child_frame_id];
-            if let Some(frame) = names.into_iter().find(|name| name.len() > MAX_NAME) {
-                return Err(GatewayError::FrameName {
-                    found: frame.len(),
-                    most: MAX_NAME,
-                });
-            }
-            if self.fixed.children() >= MAX_FRAMES {
-                return Err(GatewayError::Frames {
-                    frame: transform.child_frame_id.clone(),
-                    most: MAX_FRAMES,
-                });
-            }
-            self.laser = None;
-            self.fixed.add(transform)?;
+        let outcomes: Vec<_> = message.transforms.iter().map(|t| self.add(t)).collect();
+        outcomes.into_iter().collect()
+    }
+
+    fn add(&mut self, transform: &TransformStamped) -> Result<(), GatewayError> {
+        let (parent, child) = (&transform.header.frame_id, &transform.child_frame_id);
+        if let Some(frame) = [parent, child].into_iter().find(|f| f.len() > MAX_NAME) {
+            return Err(GatewayError::FrameName {
+                found: frame.len(),
+                most: MAX_NAME,
+            });
+        }
+        if self.fixed.children() >= MAX_FRAMES {
+            return Err(GatewayError::Frames {
+                frame: child.clone(),
+                most: MAX_FRAMES,
+            });
+        }
+        self.fixed
+            .add(transform)
+            .map_err(|source| GatewayError::Transform {
+                parent: parent.clone(),
+                child: child.clone(),
+                source,
+            })?;
+        self.mounts.clear();
+        if let Ok((_, Some(mend))) = transform.transform.rotation.mended()
+            && self.mended.insert(child.clone())
+        {
+            tracing::warn!("the transform from {parent} to {child}: {mend}");
         }
         Ok(())
     }
@@ -71,15 +99,21 @@ impl Frames {
         self.odometry.push_back(*odometry);
     }
 
-    /// Where the laser of this frame sits on the base, if that is known.
-    pub(crate) fn base_from_laser(&mut self, laser: &str) -> Result<Option<Mount>, GatewayError> {
-        if let Some((known, mount)) = &self.laser
-            && known == laser
-        {
+    /// Where a laser with this frame sits on the base, if that is known.
+    pub(crate) fn base_from_laser(
+        &mut self,
+        index: usize,
+        laser: &str,
+    ) -> Result<Option<Mount>, GatewayError> {
+        if index == 0 && self.first.as_deref() != Some(laser) {
+            self.first = Some(laser.to_owned());
+        }
+        let key = (index, laser.to_owned());
+        if let Some(mount) = self.mounts.get(&key) {
             return Ok(*mount);
         }
-        let mount = match (self.given, self.fixed.base_from(laser)) {
-            (Some(given), _) => Some(given),
+        let mount = match (self.given.get(index), self.fixed.base_from(laser)) {
+            (Some(given), _) => Some(*given),
             (None, Some(mount)) if mount.tilt_degrees > MAX_TILT_DEGREES => {
                 return Err(GatewayError::Tilted {
                     laser: laser.to_owned(),
@@ -102,7 +136,10 @@ impl Frames {
                 "the mount"
             );
         }
-        self.laser = Some((laser.to_owned(), mount));
+        if self.mounts.len() >= MAX_MOUNTS {
+            self.mounts.clear();
+        }
+        self.mounts.insert(key, mount);
         Ok(mount)
     }
 
@@ -117,8 +154,7 @@ impl Frames {
         let odometry = self.odometry_at(header.stamp.measured_ns)?;
         let child = odometry.child_frame.as_str();
         let map_from_laser = Pose::from(best.map_from_laser);
-        let laser = self.laser.as_ref().map(|(laser, _)| laser.as_str());
-        let laser_from_child = match laser {
+        let laser_from_child = match self.first.as_deref() {
             Some(laser) if laser == child => Some(Pose::IDENTITY),
             Some(laser) => self.fixed.laser_from(laser, child),
             None => None,
@@ -193,21 +229,95 @@ mod tests {
 
     #[test]
     fn the_mount_comes_with_the_transforms_or_from_the_user() {
-        let mut frames = Frames::new(None);
-        assert_eq!(frames.base_from_laser("laser").unwrap(), None);
+        let mut frames = Frames::new(Vec::new());
+        assert_eq!(frames.base_from_laser(0, "laser").unwrap(), None);
         let mount = fixed("base_link", "laser", 0.5, Quaternion::default());
         frames.hear_fixed(&mount).unwrap();
-        let found = frames.base_from_laser("laser").unwrap();
+        let found = frames.base_from_laser(0, "laser").unwrap();
         assert_eq!(found, Some(mounted(0.5)));
-        let mut frames = Frames::new(Some(mounted(9.0)));
+        let mut frames = Frames::new(vec![mounted(9.0), mounted(8.0)]);
         frames.hear_fixed(&mount).unwrap();
-        let found = frames.base_from_laser("laser").unwrap();
-        assert_eq!(found, Some(mounted(9.0)));
+        for (index, expected) in [9.0, 8.0].into_iter().enumerate() {
+            let found = frames.base_from_laser(index, "laser").unwrap();
+            assert_eq!(found, Some(mounted(expected)));
+        }
+    }
+
+    /// A turn about x by half a turn.
+    const OVER: Quaternion = Quaternion {
+        x: 1.0,
+        y: 0.0,
+        z: 0.0,
+        w: 0.0,
+    };
+
+    #[test]
+    fn each_laser_has_its_own_mount_also_upside_down() {
+        let mut frames = Frames::new(Vec::new());
+        let front = fixed("base_link", "front", 0.5, Quaternion::default());
+        let rear = fixed("base_link", "rear", -0.4, OVER);
+        let transforms = [front.transforms, rear.transforms].concat();
+        frames.hear_fixed(&TfMessage { transforms }).unwrap();
+        let turned = Mount {
+            is_upside_down: true,
+            ..mounted(-0.4)
+        };
+        for _ in 0..2 {
+            let found = frames.base_from_laser(0, "front").unwrap();
+            assert_eq!(found, Some(mounted(0.5)));
+            let found = frames.base_from_laser(1, "rear").unwrap();
+            assert_eq!(found, Some(turned));
+        }
+        // What is kept is bounded, and changes with the transforms.
+        for i in 0..3 * MAX_MOUNTS {
+            frames.base_from_laser(1, &format!("f{i}")).unwrap();
+            assert!(frames.mounts.len() <= MAX_MOUNTS);
+        }
+        let moved = fixed("base_link", "rear", -0.6, Quaternion::default());
+        frames.hear_fixed(&moved).unwrap();
+        let found = frames.base_from_laser(1, "rear").unwrap();
+        assert_eq!(found, Some(mounted(-0.6)));
+    }
+
+    #[test]
+    fn a_transform_that_is_none_does_not_stop_the_rest() {
+        let mut frames = Frames::new(Vec::new());
+        let scaled = |w: f64| Quaternion {
+            w,
+            ..Quaternion::default()
+        };
+        let transforms = [
+            fixed("base_link", "camera", f64::NAN, Quaternion::default()),
+            fixed("base_link", "front", 0.5, scaled(0.0)),
+            fixed("base_link", "rear", -0.4, scaled(1.02)),
+        ]
+        .map(|message| message.transforms)
+        .concat();
+        let error = frames.hear_fixed(&TfMessage { transforms }).unwrap_err();
+        let text = transport::with_causes(&error);
+        let expected = "the transform from base_link to camera is left out: the position (NaN, 0)";
+        assert!(text.starts_with(expected), "{text}");
+        for (index, laser, x) in [(0, "front", 0.5), (1, "rear", -0.4)] {
+            let found = frames.base_from_laser(index, laser).unwrap();
+            assert_eq!(found, Some(mounted(x)));
+        }
+        let mended = ["front".to_owned(), "rear".to_owned()];
+        assert!(frames.mended.iter().eq(&mended));
+    }
+
+    #[test]
+    fn a_frame_may_have_the_longest_name_of_a_message() {
+        let mut frames = Frames::new(Vec::new());
+        let long = "f".repeat(FrameName::CAPACITY);
+        let mount = fixed("base_link", &long, 0.5, Quaternion::default());
+        frames.hear_fixed(&mount).unwrap();
+        let found = frames.base_from_laser(0, &long).unwrap();
+        assert_eq!(found, Some(mounted(0.5)));
     }
 
     #[test]
     fn a_tilted_laser_and_too_many_frames_are_refused() {
-        let mut frames = Frames::new(None);
+        let mut frames = Frames::new(Vec::new());
         let half = 0.5f64.sqrt();
         let tilted = Quaternion {
             x: half,
@@ -218,7 +328,7 @@ mod tests {
         frames
             .hear_fixed(&fixed("base_link", "laser", 0.5, tilted))
             .unwrap();
-        let error = frames.base_from_laser("laser").unwrap_err().to_string();
+        let error = frames.base_from_laser(0, "laser").unwrap_err().to_string();
         assert!(error.contains("tilted by 90.0"), "{error}");
         let long = fixed("base_link", &"f".repeat(257), 0.5, Quaternion::default());
         let error = frames.hear_fixed(&long).unwrap_err().to_string();
@@ -243,19 +353,23 @@ mod tests {
             ..Hypothesis::zeroed()
         };
         let check = |child: &str, expected: Option<f64>, header: &HypothesesHeader| {
-            let mut frames = Frames::new(None);
-            let mount = fixed("base_link", "laser", 0.5, Quaternion::default());
-            frames.hear_fixed(&mount).unwrap();
-            frames.base_from_laser("laser").unwrap();
+            let mut frames = Frames::new(Vec::new());
+            for (index, laser, x) in [(0, "laser", 0.5), (1, "rear", -0.4)] {
+                let mount = fixed("base_link", laser, x, Quaternion::default());
+                frames.hear_fixed(&mount).unwrap();
+                frames.base_from_laser(index, laser).unwrap();
+            }
             frames.hear_odometry(&odometry(child, 4.0));
             let found = frames.map_from_odom(header, &best);
             assert_eq!(found.map(|(pose, _)| pose.x), expected, "{child}");
         };
         check("base_link", Some(5.5), &header);
         check("laser", Some(6.0), &header);
+        // Hypotheses are about the first laser, whichever sent a scan last.
+        check("rear", Some(5.1), &header);
         check("base_footprint", Some(5.5), &header);
         check("base_footprint", None, &HypothesesHeader::zeroed());
-        let nobody = Frames::new(None);
+        let nobody = Frames::new(Vec::new());
         assert_eq!(nobody.map_from_odom(&header, &best), None);
     }
 }

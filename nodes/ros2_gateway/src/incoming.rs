@@ -1,8 +1,11 @@
 //! From the robot into the graph.
 
+use std::collections::BTreeSet;
+
 use network::Report;
 use recording::ros::{
-    LaserScan, OccupancyGridMsg, Odometry, PoseWithCovarianceStamped, RosMessage, TfMessage,
+    LaserScan, OccupancyGridMsg, Odometry, PoseWithCovarianceStamped, Quaternion, RosMessage,
+    TfMessage,
 };
 use serde::de::DeserializeOwned;
 use transport::{Graph, TransportError, monotonic_ns};
@@ -31,7 +34,8 @@ pub(crate) struct Incoming {
     fixed: Subscription<TfMessage>,
     moving: Option<Subscription<TfMessage>>,
     odometry: Option<Subscription<Odometry>>,
-    scans: Option<Subscription<LaserScan>>,
+    /// Of each laser, the first one first; none where they are not wanted.
+    scans: Vec<Subscription<LaserScan>>,
     maps: Option<Subscription<OccupancyGridMsg>>,
     beliefs: Option<Subscription<PoseWithCovarianceStamped>>,
     outlet: Outlet,
@@ -40,6 +44,8 @@ pub(crate) struct Incoming {
     odometry_ns: Option<i64>,
     /// The frame of the robot's map.
     map_frame: Option<String>,
+    /// Whose rotations were mended, which is said once.
+    mended: BTreeSet<&'static str>,
 }
 
 impl Incoming {
@@ -55,15 +61,19 @@ impl Incoming {
             member,
             watch,
         };
-        let (scan, odometry) = (Brought::Scan, Brought::Odometry);
+        let odometry = Brought::Odometry;
         let brings = |topic| config.brings(topic);
         let reliable = Keeping::Reliable;
         let sizes = (MAX_BYTES, MAX_MAP_BYTES);
+        let mut scans = Vec::with_capacity(topics.scans.len());
+        for of_laser in topics.scans.iter().filter(|_| brings(Brought::Scan)) {
+            scans.push(open.subscribe(&of_laser.topic, Keeping::Fresh, 5, sizes.0)?);
+        }
         Ok(Incoming {
+            scans,
             fixed: open.subscribe(&topics.tf_static, Keeping::Kept, 100, sizes.0)?,
             moving: open.wanted(brings(odometry), &topics.tf, reliable, 100, sizes.0)?,
             odometry: open.wanted(brings(odometry), &topics.odom, reliable, 16, sizes.0)?,
-            scans: open.wanted(brings(scan), &topics.scan, Keeping::Fresh, 5, sizes.0)?,
             maps: open.wanted(brings(Brought::Map), &topics.map, Keeping::Kept, 1, sizes.1)?,
             beliefs: open.wanted(
                 config.seed == Seed::Lost,
@@ -72,10 +82,11 @@ impl Incoming {
                 10,
                 sizes.0,
             )?,
-            outlet: Outlet::open(graph, config)?,
+            outlet: Outlet::open(graph, config, &topics.scans)?,
             odom_frame: config.odom_frame.clone(),
             odometry_ns: None,
             map_frame: None,
+            mended: BTreeSet::new(),
         })
     }
 
@@ -102,10 +113,12 @@ impl Incoming {
             odom_frame,
             odometry_ns,
             map_frame,
+            mended,
         } = self;
         take(fixed, report, |message, _| frames.hear_fixed(&message))?;
         take_if(odometry, report, |message, report| {
             let odometry = sound_odometry(&message)?;
+            note("the odometry", message.pose.pose.orientation, mended);
             *odometry_ns = Some(monotonic_ns());
             frames.hear_odometry(&odometry);
             outlet.send_odometry(odometry, report)
@@ -114,7 +127,9 @@ impl Incoming {
         take_if(moving, report, |message, report| {
             for transform in message.transforms {
                 if !alone && transform.header.frame_id.trim_start_matches('/') == odom_frame {
+                    let turn = transform.transform.rotation;
                     let odometry = odometry_of(transform)?;
+                    note("the odometry on /tf", turn, mended);
                     frames.hear_odometry(&odometry);
                     outlet.send_odometry(odometry, report)?;
                 }
@@ -127,16 +142,29 @@ impl Incoming {
             *map_frame = Some(frame).filter(|frame| !frame.is_empty());
             Ok(())
         })?;
-        take_if(scans, report, |message, report| {
-            outlet.send_scan(&message, frames, report)
-        })?;
+        for (laser, scans) in scans.iter_mut().enumerate() {
+            take(scans, report, |message, report| {
+                outlet.send_scan(laser, &message, frames, report)
+            })?;
+        }
         take_if(beliefs, report, |message, _| {
+            let turn = message.pose.pose.orientation;
             seeding.hear_belief(Belief {
                 measured_ns: measured_ns("the particle filter's pose", message.header.stamp)?,
                 map_from_base: message.pose.pose.planar()?,
             });
+            note("the particle filter's pose", turn, mended);
             Ok(())
         })
+    }
+}
+
+/// Says once that a rotation had to be mended.
+fn note(whose: &'static str, turn: Quaternion, mended: &mut BTreeSet<&'static str>) {
+    if let Ok((_, Some(mend))) = turn.mended()
+        && mended.insert(whose)
+    {
+        tracing::warn!("{whose}: {mend}");
     }
 }
 

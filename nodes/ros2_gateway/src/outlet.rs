@@ -1,7 +1,7 @@
 //! The graph's side of what comes from the robot.
 
 use conversion::measurements;
-use messages::{MapHeader, Odometry, Stamp, topic};
+use messages::{MapHeader, Name, Odometry, ScanHeader, Stamp, topic};
 use network::Report;
 use recording::ros::{LaserScan, OccupancyGridMsg};
 use transport::{Graph, Publisher, TransportError, monotonic_ns};
@@ -10,20 +10,26 @@ use crate::GatewayError;
 use crate::checks::{check_scan, measured_ns};
 use crate::config::{Brought, Config};
 use crate::frames::Frames;
+use crate::topics::Scans;
 
 /// Where messages enter the graph; what nobody sends has no publisher.
 pub(crate) struct Outlet {
     scans: Option<Publisher<topic::Scan>>,
     odometry: Option<Publisher<topic::OdometryTopic>>,
     maps: Option<Publisher<topic::Map>>,
-    scans_sent: u64,
+    /// Of each laser its name, and how many of its scans were sent.
+    lasers: Vec<(Name, u64)>,
     odometry_sent: u64,
     maps_sent: u64,
     map_id: Option<u64>,
 }
 
 impl Outlet {
-    pub(crate) fn open(graph: &Graph, config: &Config) -> Result<Self, TransportError> {
+    pub(crate) fn open(
+        graph: &Graph,
+        config: &Config,
+        scans: &[Scans],
+    ) -> Result<Self, TransportError> {
         let brings = |topic| config.brings(topic).then_some(());
         Ok(Outlet {
             scans: brings(Brought::Scan)
@@ -35,32 +41,39 @@ impl Outlet {
             maps: brings(Brought::Map)
                 .map(|()| graph.publisher())
                 .transpose()?,
-            scans_sent: 0,
+            lasers: scans.iter().map(|scans| (scans.laser, 0)).collect(),
             odometry_sent: 0,
             maps_sent: 0,
             map_id: None,
         })
     }
 
+    /// Sends a scan of a laser, by its place among them.
     pub(crate) fn send_scan(
         &mut self,
+        laser: usize,
         message: &LaserScan,
         frames: &mut Frames,
         report: &mut Report,
     ) -> Result<(), GatewayError> {
-        let Some(publisher) = &self.scans else {
+        let (Some(publisher), Some((name, sent))) = (&self.scans, self.lasers.get_mut(laser))
+        else {
             return Ok(());
         };
         check_scan(message)?;
         let frame = measurements::frame(&message.header.frame_id)?;
-        let mount = frames.base_from_laser(&message.header.frame_id)?;
-        let mut header = measurements::scan_header(message, frame, mount);
-        header.stamp = entering(header.stamp, self.scans_sent);
+        let mount = frames.base_from_laser(laser, &message.header.frame_id)?;
+        let header = measurements::scan_header(message, frame, mount);
+        let header = ScanHeader {
+            stamp: entering(header.stamp, *sent),
+            laser: *name,
+            ..header
+        };
         let mut loan = publisher.loan(message.ranges.len())?;
         *loan.header_mut() = header;
         loan.items_mut().copy_from_slice(&message.ranges);
         loan.send()?;
-        self.scans_sent += 1;
+        *sent += 1;
         report.sent();
         Ok(())
     }

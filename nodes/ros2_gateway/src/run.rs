@@ -28,13 +28,14 @@ const MAP_FRAME: &str = "map";
 /// or the graph fails. A robot that is not there is no error: it is waited for.
 pub fn run(graph: &Graph, config: &Config) -> Result<(), GatewayError> {
     let topics = Topics::of(config)?;
-    let domain = config.domain()?;
+    // What is wrong with options is said before anything is opened.
+    let (domain, mounts) = (config.domain()?, config.mounts()?);
     let mut report = Report::new(graph.health()?);
     let Some(session) = network::open(graph, &config.network, || report.tick())? else {
         return Ok(());
     };
     let member = Member::join(&session, domain, &config.namespace, &config.node)?;
-    let mut gateway = Gateway::open(graph, member, config, &topics)?;
+    let mut gateway = Gateway::open(graph, member, config, &topics, mounts)?;
     tracing::info!(domain, node = config.node, "joined the robot's domain");
     report.ready()?;
     let (hypotheses, health) = (graph.subscriber()?, graph.subscriber()?);
@@ -62,6 +63,7 @@ impl Gateway {
         member: Member,
         config: &Config,
         topics: &Topics,
+        mounts: Vec<Mount>,
     ) -> Result<Self, GatewayError> {
         // What is sent is there before anybody who waits for it is seen.
         let outgoing = Outgoing::open(&member, config, topics)?;
@@ -72,10 +74,7 @@ impl Gateway {
             outgoing,
             watch,
             member,
-            frames: Frames::new(config.mount.map(|base_from_laser| Mount {
-                base_from_laser,
-                is_upside_down: config.upside_down,
-            })),
+            frames: Frames::new(mounts),
             seeding: Seeding::new(config.seed, config.lost_beyond),
             map_frame: config.map_frame.clone(),
         })

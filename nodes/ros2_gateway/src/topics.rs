@@ -1,12 +1,15 @@
 //! The robot's topics and services by their whole names.
 
+use conversion::lasers;
+use messages::Name;
+
 use crate::config::{Config, Names};
 use crate::{GatewayError, ros};
 
 /// As in [`Names`], resolved.
 #[derive(Debug, Clone)]
 pub(crate) struct Topics {
-    pub(crate) scan: String,
+    pub(crate) scans: Vec<Scans>,
     pub(crate) odom: String,
     pub(crate) map: String,
     pub(crate) tf: String,
@@ -18,6 +21,14 @@ pub(crate) struct Topics {
     pub(crate) reinitialize: String,
 }
 
+/// The scans of a laser.
+#[derive(Debug, Clone, PartialEq)]
+pub(crate) struct Scans {
+    pub(crate) topic: String,
+    /// What the graph calls the laser; empty where it is the only one.
+    pub(crate) laser: Name,
+}
+
 impl Topics {
     pub(crate) fn of(config: &Config) -> Result<Self, GatewayError> {
         let resolve = |option, name: &str| {
@@ -27,7 +38,7 @@ impl Topics {
         // Refused here, before anything is opened: it becomes a part of every token.
         resolve("node", &config.node)?;
         let Names {
-            scan,
+            scans,
             odom,
             map,
             tf,
@@ -39,7 +50,7 @@ impl Topics {
             reinitialize,
         } = &config.names;
         Ok(Topics {
-            scan: resolve("scan", scan)?,
+            scans: named(scans, |name| resolve("scan", name))?,
             odom: resolve("odom", odom)?,
             map: resolve("map", map)?,
             tf: resolve("tf", tf)?,
@@ -53,6 +64,43 @@ impl Topics {
     }
 }
 
+/// The scans by the names of their lasers: as they are written and not as they are
+/// resolved, so that a graph fits robots in any namespace.
+fn named(
+    names: &[String],
+    resolve: impl Fn(&str) -> Result<String, GatewayError>,
+) -> Result<Vec<Scans>, GatewayError> {
+    let refuse = |reason| {
+        Err(GatewayError::Option {
+            option: "scan",
+            reason,
+        })
+    };
+    let mut found: Vec<Scans> = Vec::with_capacity(names.len());
+    for name in names {
+        let laser = match names.len() {
+            1 => String::new(),
+            _ => lasers::name_of(name),
+        };
+        let (bytes, most) = (laser.len(), Name::CAPACITY);
+        if bytes > most {
+            let reason =
+                format!("the laser {laser} has a name of {bytes} bytes: allowed are {most}");
+            return refuse(reason);
+        }
+        let (topic, laser) = (resolve(name)?, Name::new(&laser));
+        if let Some(other) = found.iter().find(|other| other.laser == laser) {
+            let other = &other.topic;
+            return refuse(format!(
+                "{other} and {topic} are both of a laser {laser}: allowed are topics that name \
+                 lasers apart"
+            ));
+        }
+        found.push(Scans { topic, laser });
+    }
+    Ok(found)
+}
+
 #[cfg(test)]
 mod tests {
     use clap::Parser;
@@ -63,8 +111,30 @@ mod tests {
     fn names_are_in_the_namespace_unless_they_begin_with_a_slash() {
         let words = ["ros2_gateway", "--namespace", "/r2", "--tf", "/tf"];
         let topics = Topics::of(&Config::parse_from(words)).unwrap();
-        assert_eq!((&*topics.scan, &*topics.tf), ("/r2/scan", "/tf"));
+        assert_eq!((&*topics.scans[0].topic, &*topics.tf), ("/r2/scan", "/tf"));
+        assert_eq!(topics.scans[0].laser.as_str(), "");
         assert_eq!(topics.diagnostics, "/diagnostics");
+    }
+
+    #[test]
+    fn several_lasers_are_called_by_their_topics_as_they_are_written() {
+        let line = |scans: &[&str]| {
+            let words = ["ros2_gateway", "--namespace", "/r2"];
+            let scans = scans.iter().flat_map(|scan| ["--scan", scan]);
+            Topics::of(&Config::parse_from(words.into_iter().chain(scans)))
+        };
+        let scans = line(&["front/scan", "scan_rear"]).unwrap().scans;
+        let found = scans.iter().map(|s| (&*s.topic, s.laser.as_str()));
+        let expected = [("/r2/front/scan", "front"), ("/r2/scan_rear", "rear")];
+        assert_eq!(found.collect::<Vec<_>>(), expected);
+        let error = line(&["front/scan", "scan_front"]).unwrap_err().to_string();
+        assert!(
+            error.contains("/r2/scan_front are both of a laser front"),
+            "{error}"
+        );
+        let long = "l".repeat(300);
+        let error = line(&["front/scan", &long]).unwrap_err().to_string();
+        assert!(error.contains("of 300 bytes: allowed are"), "{error}");
     }
 
     #[test]

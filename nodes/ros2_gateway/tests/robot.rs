@@ -143,6 +143,46 @@ fn what_the_robot_sends_enters_the_graph_as_it_is() {
     joined.stop();
 }
 
+#[test]
+fn several_lasers_enter_by_their_names_and_mounts() {
+    let options = ["--scan", "front/scan", "--scan", "rear/scan"];
+    let Some(mut joined) = Joined::new("ros-lasers", "/r2", &options) else {
+        return;
+    };
+    let graph = &joined.graph;
+    let scans_in = graph.subscriber::<topic::Scan>().unwrap();
+    // The rear one looks back and is rolled by half a turn: z by π, then x by π.
+    let level = [0.0, 0.0, 0.0, 1.0];
+    let over = [0.0, 1.0, 0.0, 0.0];
+    let lasers = json!([["front", 0.5, level], ["rear", -0.4, over]]);
+    joined.robot.order("mounts", json!({ "lasers": lasers }));
+    let expected = [
+        ("front", pose2(0.5, 0.0, 0.0), 0),
+        ("rear", pose2(-0.4, 0.0, std::f64::consts::PI), 1),
+    ];
+    let recorded = scans();
+    for index in 0..3 {
+        for (laser, mount, upside_down) in expected {
+            let order = json!({ "laser": laser, "index": index });
+            joined.robot.order("scan_of", order);
+            let (header, ranges): (ScanHeader, Vec<f32>) =
+                wait_for(graph, &scans_in, |header, items| {
+                    Some((*header, items.to_vec()))
+                });
+            assert_eq!(header.laser.as_str(), laser);
+            assert_eq!(header.frame.as_str(), format!("{laser}_laser"));
+            // Each laser counts its own scans.
+            assert_eq!(header.stamp.counter, index as u64);
+            assert_eq!(ranges, recorded[index].ranges);
+            assert_eq!((header.mount_known, header.upside_down), (1, upside_down));
+            // Through a quaternion: a yaw of π may come back as one of -π.
+            let found = Pose::from(header.base_from_laser);
+            assert!(found.is_within(mount.into(), 1e-12, 1e-12), "{found:?}");
+        }
+    }
+    joined.stop();
+}
+
 fn hypotheses(counter: u64, verdict: Verdict) -> (HypothesesHeader, Vec<Hypothesis>) {
     let header = HypothesesHeader {
         stamp: Stamp {

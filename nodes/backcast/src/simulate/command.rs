@@ -5,8 +5,8 @@ use std::process::ExitCode;
 
 use recording::ros::Time;
 use recording::write::{Packing, RecordingWriter};
-use recording::{GROUND_TRUTH, MAP, ODOM, SCAN, TF_STATIC};
-use simulation::{Drive, DriveConfig, Path};
+use recording::{GROUND_TRUTH, MAP, ODOM, TF_STATIC};
+use simulation::{Drive, DriveConfig, Path, Wheels};
 
 use super::messages::Messages;
 use crate::offline::{Progress, say};
@@ -52,13 +52,26 @@ pub(crate) fn run(config: &Config) -> Result<ExitCode, BackcastError> {
     let mut writer = RecordingWriter::create(&config.out, Packing::Zstd)?;
     let start = time(start_ns);
     writer.write(MAP, start_ns, &messages.map(&map, start))?;
-    writer.write(TF_STATIC, start_ns, &messages.mount(start))?;
+    writer.write(TF_STATIC, start_ns, &messages.mounts(start))?;
     for snapshot in drive {
         let stamp_ns = start_ns + snapshot.time_ns;
         let stamp = time(stamp_ns);
-        writer.write(ODOM, stamp_ns, &messages.odometry(&snapshot, stamp))?;
+        let wheels = Wheels {
+            time_ns: snapshot.time_ns,
+            odom_from_base: snapshot.odom_from_base,
+            twist: snapshot.twist,
+        };
+        writer.write(ODOM, stamp_ns, &messages.odometry(&wheels, stamp))?;
         writer.write(GROUND_TRUTH, stamp_ns, &messages.truth(&snapshot, stamp))?;
-        writer.write(SCAN, stamp_ns, &messages.scan(snapshot, stamp))?;
+        // A scan is there once its last beam is.
+        let mut end_ns = stamp_ns;
+        if let Some(wheels) = &snapshot.after {
+            end_ns = start_ns + wheels.time_ns;
+            writer.write(ODOM, end_ns, &messages.odometry(wheels, time(end_ns)))?;
+        }
+        for (topic, scan) in messages.scans(snapshot, stamp) {
+            writer.write(&topic, end_ns, &scan)?;
+        }
         progress.step();
     }
     writer.finish()?;

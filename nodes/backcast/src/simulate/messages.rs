@@ -1,7 +1,8 @@
 //! Snapshots of a drive as ROS 2 messages, with the frames that robots use:
-//! `map`, `odom`, `base_link` and `laser`.
+//! `map`, `odom`, `base_link` and `laser`, or `front_laser` of a laser called front.
 
-use geometry::Pose;
+use conversion::lasers;
+use geometry::{Mount, Pose};
 use map::OccupancyGrid;
 use recording::Message;
 use recording::ros;
@@ -9,12 +10,13 @@ use recording::ros::{
     Header, LaserScan, OccupancyGridMsg, Odometry, PoseStamped, Quaternion, TfMessage, Time,
     Transform, TransformStamped, Vector3,
 };
-use simulation::{Bearings, DriveConfig, Snapshot};
+use simulation::{Bearings, DriveConfig, NamedMount, Snapshot, Wheels};
 
 /// What all messages of a recording share.
 pub(super) struct Messages {
     bearings: Bearings,
-    base_from_laser: Pose,
+    lasers: Vec<NamedMount>,
+    time_increment_s: f32,
     range_max_m: f32,
     scan_time_s: f32,
 }
@@ -23,7 +25,8 @@ impl Messages {
     pub(super) fn new(config: &DriveConfig, bearings: Bearings) -> Self {
         Messages {
             bearings,
-            base_from_laser: config.mount.0,
+            lasers: config.mounts(),
+            time_increment_s: config.time_increment_s(bearings.count),
             range_max_m: config.range_max_m() as f32,
             scan_time_s: (1.0 / config.rate) as f32,
         }
@@ -36,27 +39,24 @@ impl Messages {
         Message::Map(message)
     }
 
-    pub(super) fn mount(&self, stamp: Time) -> Message {
-        let Pose { x, y, yaw } = self.base_from_laser;
-        let transforms = vec![TransformStamped {
+    pub(super) fn mounts(&self, stamp: Time) -> Message {
+        let transform = |laser: &NamedMount| TransformStamped {
             header: header(stamp, "base_link"),
-            child_frame_id: "laser".into(),
-            transform: Transform {
-                translation: Vector3 { x, y, z: 0.0 },
-                rotation: Quaternion::from_yaw(yaw),
-            },
-        }];
+            child_frame_id: frame(&laser.name),
+            transform: transform(laser.mount),
+        };
+        let transforms = self.lasers.iter().map(transform).collect();
         Message::StaticTransforms(TfMessage { transforms })
     }
 
-    pub(super) fn odometry(&self, snapshot: &Snapshot, stamp: Time) -> Message {
+    pub(super) fn odometry(&self, wheels: &Wheels, stamp: Time) -> Message {
         let mut message = Odometry {
             header: header(stamp, "odom"),
             child_frame_id: "base_link".into(),
             ..Odometry::default()
         };
-        message.pose.pose = ros::Pose::from_planar(snapshot.odom_from_base);
-        let Pose { x, y, yaw } = snapshot.twist;
+        message.pose.pose = ros::Pose::from_planar(wheels.odom_from_base);
+        let Pose { x, y, yaw } = wheels.twist;
         message.twist.twist.linear = Vector3 { x, y, z: 0.0 };
         message.twist.twist.angular.z = yaw;
         Message::Odometry(Box::new(message))
@@ -69,19 +69,58 @@ impl Messages {
         })
     }
 
-    pub(super) fn scan(&self, snapshot: Snapshot, stamp: Time) -> Message {
+    /// The scan of each laser, with its topic.
+    pub(super) fn scans(
+        &self,
+        snapshot: Snapshot,
+        stamp: Time,
+    ) -> impl Iterator<Item = (String, Message)> {
+        let scans = std::iter::once(snapshot.ranges).chain(snapshot.others);
+        self.lasers.iter().zip(scans).map(move |(laser, ranges)| {
+            let scan = self.scan(header(stamp, &frame(&laser.name)), ranges);
+            (lasers::topic_of(&laser.name), scan)
+        })
+    }
+
+    fn scan(&self, header: Header, ranges: Vec<f32>) -> Message {
         Message::Scan(LaserScan {
-            header: header(stamp, "laser"),
+            header,
             angle_min: self.bearings.angle_min,
             angle_max: self.bearings.angle_max(),
             angle_increment: self.bearings.angle_increment,
-            time_increment: 0.0,
+            time_increment: self.time_increment_s,
             scan_time: self.scan_time_s,
             range_min: 0.0,
             range_max: self.range_max_m,
-            ranges: snapshot.ranges,
+            ranges,
             intensities: Vec::new(),
         })
+    }
+}
+
+/// The frame of a laser.
+fn frame(laser: &str) -> String {
+    match laser {
+        "" => "laser".to_owned(),
+        name => format!("{name}_laser"),
+    }
+}
+
+fn transform(mount: Mount) -> Transform {
+    let Pose { x, y, yaw } = mount.base_from_laser;
+    let level = Quaternion::from_yaw(yaw);
+    Transform {
+        translation: Vector3 { x, y, z: 0.0 },
+        rotation: match mount.is_upside_down {
+            false => level,
+            // Rolled by half a turn about x before it is turned about z.
+            true => Quaternion {
+                x: level.w,
+                y: level.z,
+                z: 0.0,
+                w: 0.0,
+            },
+        },
     }
 }
 
