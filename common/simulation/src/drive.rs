@@ -191,7 +191,10 @@ impl Drive {
             people.walk(1.0 / self.rate, &self.scene.obstacles);
         }
         let wheels = self.wheels(start_s, map_from_base);
-        let map_from_laser = map_from_base.then(self.sensors[0].0.base_from_laser);
+        // A scan is of its middle: there the beams before and after weigh the same.
+        let middle = self.timetable.at(start_s + 0.5 * self.duration_s());
+        let base_from_laser = self.sensors[0].0.base_from_laser;
+        let map_from_laser = middle.unwrap_or(map_from_base).then(base_from_laser);
         let mut scans = self.scan(start_s, map_from_base).into_iter();
         let ranges = scans.next().unwrap_or_default();
         let end_s = start_s + self.duration_s();
