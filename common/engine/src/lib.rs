@@ -17,6 +17,9 @@
 //!                                     known heading   all headings
 //! ```
 //!
+//! Where a robot moves, or has several lasers, `joined` brings the scans to one time by
+//! odometry (`motion`), and what is searched is an `observation` of carried scans.
+//!
 //! `docs/engine.md` explains the method with drawings.
 //!
 //! The crate knows no process, socket, clock or file.

@@ -7,7 +7,7 @@ use super::Motion;
 /// A pose that a scan gave, and when.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Sighting {
-    /// When the middle of the scan was measured, nanoseconds.
+    /// The scan's stamp, with which its pose is published, nanoseconds.
     pub at_ns: i64,
     /// Where the laser was.
     pub map_from_laser: Pose,
@@ -17,8 +17,9 @@ pub struct Sighting {
 const MAX_DELAY_S: f64 = 0.5;
 const STEP_S: f64 = 0.005;
 
-/// Between two sightings at most, nanoseconds: farther apart, odometry drifts.
-const MAX_GAP_NS: i64 = 600_000_000;
+/// Between two sightings that are compared, nanoseconds: nearer to each other, the
+/// noise of the poses hides the motion; farther apart, odometry drifts.
+const GAP_NS: std::ops::RangeInclusive<i64> = 450_000_000..=1_000_000_000;
 
 /// Fewest pairs of sightings that can tell a delay from chance.
 const MIN_PAIRS: usize = 20;
@@ -35,13 +36,22 @@ impl Motion {
     /// the sightings do: above zero where it leads the laser. `None` where they do not
     /// tell.
     ///
-    /// The motion between neighbouring sightings is compared with that of the odometry
-    /// at the same times, shifted; a radian counts as a metre.
+    /// The motion between sightings half a second apart is compared with that of the
+    /// odometry at the same times, shifted; a radian counts as a metre.
     #[must_use]
     pub fn delay_s(&self, sightings: &[Sighting], child_from_laser: Pose) -> Option<f64> {
         let steps = (MAX_DELAY_S / STEP_S).round() as i32;
-        let pairs: Vec<&[Sighting]> = sightings
-            .windows(2)
+        let pairs: Vec<[Sighting; 2]> = sightings
+            .iter()
+            .enumerate()
+            .filter_map(|(i, first)| {
+                let after = sightings.get(i + 1..)?.iter();
+                let gap_ns = |second: &Sighting| second.at_ns.saturating_sub(first.at_ns);
+                let second = after
+                    .copied()
+                    .find(|second| GAP_NS.contains(&gap_ns(second)))?;
+                Some([*first, second])
+            })
             .filter(|pair| self.covers(pair, child_from_laser))
             .collect();
         if pairs.len() < MIN_PAIRS {
@@ -77,18 +87,16 @@ impl Motion {
     }
 
     /// Whether odometry is there for all delays.
-    fn covers(&self, pair: &[Sighting], child_from_laser: Pose) -> bool {
+    fn covers(&self, pair: &[Sighting; 2], child_from_laser: Pose) -> bool {
         let most_ns = (MAX_DELAY_S * 1e9) as i64;
-        let is_near = pair[1].at_ns - pair[0].at_ns <= MAX_GAP_NS;
-        is_near
-            && [-most_ns, most_ns]
-                .into_iter()
-                .all(|delay_ns| self.between(pair, delay_ns, child_from_laser).is_some())
+        [-most_ns, most_ns]
+            .into_iter()
+            .all(|delay_ns| self.between(pair, delay_ns, child_from_laser).is_some())
     }
 
     /// How the laser moved between two sightings by the odometry, delayed.
-    fn between(&self, pair: &[Sighting], delay_ns: i64, child_from_laser: Pose) -> Option<Pose> {
-        let laser_at = |at_ns: i64| {
+    fn between(&self, pair: &[Sighting; 2], delay_ns: i64, child_from_laser: Pose) -> Option<Pose> {
+        let laser_at = |at_ns: i64| -> Option<Pose> {
             let located = self.at(at_ns.saturating_sub(delay_ns))?;
             Some(located.odom_from_child.then(child_from_laser))
         };
@@ -98,7 +106,7 @@ impl Motion {
 }
 
 /// How far the motion between two sightings is from another one, squared metres.
-fn difference(pair: &[Sighting], moved: Pose) -> f64 {
+fn difference(pair: &[Sighting; 2], moved: Pose) -> f64 {
     let seen = pair[0]
         .map_from_laser
         .inverse()

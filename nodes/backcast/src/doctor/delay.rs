@@ -57,12 +57,9 @@ fn estimate(recording: &Recording) -> Result<Option<f64>, BackcastError> {
         let Ok(scan) = scan else {
             continue;
         };
-        let increment_s = f64::from(scan.message.time_increment);
-        if increment_s == 0.0 {
+        if scan.message.time_increment == 0.0 {
             return Ok(None);
         }
-        let half_s = 0.5 * increment_s * scan.message.ranges.len() as f64;
-        let at_ns = scan.stamp_ns.saturating_add((half_s * 1e9) as i64);
         let reply = session.ask(&scan)?;
         let Ok(answer) = reply.answer else {
             continue;
@@ -70,7 +67,7 @@ fn estimate(recording: &Recording) -> Result<Option<f64>, BackcastError> {
         // One in a wrong place is outvoted by the others.
         if let Some(best) = answer.places.places.first() {
             sightings.push(Sighting {
-                at_ns,
+                at_ns: scan.stamp_ns,
                 map_from_laser: best.map_from_laser,
             });
         }
