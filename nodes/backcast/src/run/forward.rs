@@ -56,14 +56,14 @@ fn forward_replay(options: &Options, dataflow: &mut Dataflow) -> Result<(), Back
         .collect::<Result<_, _>>()
         .map_err(BackcastError::Folder)?;
     let replayer = replay::play(dataflow, &recordings);
-    if options.odom_topic.is_some() {
-        set(replayer, "--odom-topic", options.odom_topic.as_deref());
-    }
     if !options.scan_topic.is_empty() {
         unset(replayer, "--scan-topic", true);
     }
     for topic in &options.scan_topic {
         replayer.args.push(format!("--scan-topic={topic}"));
+    }
+    if options.odom_topic.is_some() {
+        set(replayer, "--odom-topic", options.odom_topic.as_deref());
     }
     if options.scan_topic.len() > 1 {
         let names = options.scan_topic.iter().map(|topic| name_of(topic));
@@ -300,7 +300,7 @@ mod tests {
     fn recordings_and_their_topics_go_to_the_replayer() {
         let options = Options {
             replay: vec!["/a.mcap".into(), "/b".into()],
-            scan_topic: Some("/front/scan".to_owned()),
+            scan_topic: vec!["/front/scan".to_owned()],
             odom_topic: Some("/wheels".to_owned()),
             ..Options::default()
         };
