@@ -308,6 +308,7 @@ mod tests {
                 angle_min: -1.0,
                 angle_increment: 0.5,
                 ranges: vec![1.0, 2.0],
+                range_max: 30.0,
                 ..LaserScan::default()
             },
             laser: String::new(),
@@ -317,6 +318,6 @@ mod tests {
         scan.upside_down = true;
         let above = scan.borrowed();
         assert_eq!((above.angle_min, above.angle_increment), (1.0, -0.5));
-        assert_eq!((above.bearing(1), above.ranges), (0.5, &[1.0, 2.0][..]));
+        assert_eq!((above.bearing(0), above.reading(0)), (0.5, Some(2.0)));
     }
 }
