@@ -377,7 +377,7 @@ mod tests {
             pose: ros::PoseWithCovariance {
                 pose: ros::Pose {
                     orientation: ros::Quaternion {
-                        w: 0.0,
+                        w: f64::NAN,
                         ..ros::Quaternion::default()
                     },
                     ..ros::Pose::default()

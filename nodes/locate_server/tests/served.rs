@@ -178,7 +178,7 @@ fn what_is_no_question_is_refused_and_counted() {
         (
             "",
             JSON,
-            br#"{"angle_min":0,"angle_increment":-1,"range_max":9,"ranges":[1]}"#.to_vec(),
+            br#"{"angle_min":0,"angle_increment":0,"range_max":9,"ranges":[1]}"#.to_vec(),
         ),
         ("?deadline_ms=soon", postcard.as_str(), sound.clone()),
     ];
