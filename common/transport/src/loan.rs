@@ -86,8 +86,8 @@ mod tests {
     #[test]
     fn sizes_are_counted_or_refused_but_never_wrap() {
         let scan = |items| sample_bytes::<topic::Scan>(items);
-        assert_eq!(scan(0).unwrap(), 128 + 256);
-        assert_eq!(scan(361).unwrap(), 361 * 4 + 128 + 256);
+        assert_eq!(scan(0).unwrap(), 392 + 256);
+        assert_eq!(scan(361).unwrap(), 361 * 4 + 392 + 256);
         for items in [usize::MAX, usize::MAX / 4, usize::MAX / 8] {
             let error = scan(items).unwrap_err();
             assert!(matches!(error, TransportError::TooLarge { items: i, .. } if i == items));

@@ -164,7 +164,7 @@ fn another_version_of_a_message_is_refused_by_name() {
         text.contains("carries MapHeader/v1 (72 bytes) with [u8]"),
         "{text}"
     );
-    assert!(text.contains("expects ScanHeader/v1 (128 bytes)"), "{text}");
+    assert!(text.contains("expects ScanHeader/v2 (392 bytes)"), "{text}");
 }
 
 #[test]
@@ -180,7 +180,7 @@ fn a_topic_has_no_more_publishers_and_subscribers_than_it_allows() {
             error,
             TransportError::TooManyPublishers {
                 topic: "scan",
-                limit: 2
+                limit: 8
             }
         ),
         "{error}"

@@ -212,7 +212,7 @@ mod tests {
         for found in [
             "",
             "application/postcard",
-            "application/postcard;backcast.Scan/v2",
+            "application/postcard;backcast.Scan/v1",
             "zenoh/bytes",
         ] {
             let error = decode::<topic::Scan>(found, &[]).unwrap_err();

@@ -154,7 +154,7 @@ impl Ends {
     pub fn judged(&self, classes: &[BeamClass]) -> impl Iterator<Item = JudgedBeam> {
         let both = self.ends.iter().zip(classes);
         both.map(|(end, &class)| {
-            let (bearing, reading_m) = end.from_origin();
+            let (bearing, reading_m) = end.seen_from_origin();
             JudgedBeam {
                 bearing,
                 reading_m,
@@ -239,7 +239,7 @@ impl End {
 
     /// Where the beam ends, seen from the origin of the sought frame: bearing and
     /// metres.
-    fn from_origin(&self) -> (f64, f64) {
+    fn seen_from_origin(&self) -> (f64, f64) {
         if self.from == (0.0, 0.0) {
             return (self.bearing, self.reading_m);
         }
