@@ -91,7 +91,7 @@ fn cola_in_either_encoding() {
 #[test]
 fn a_clockwise_device_by_its_address_alone() {
     let arguments = ["--listen", "tcp://graph:2112", "--device", "NAV310"];
-    let said = emulated("probenav", &arguments, |host| host.to_owned());
+    let said = emulated("probenav", &arguments, str::to_owned);
     assert!(
         said.contains("180° is ahead, angles grow clockwise (as a NAV310"),
         "{said}"

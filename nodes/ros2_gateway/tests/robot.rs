@@ -161,7 +161,7 @@ fn several_lasers_enter_by_their_names_and_mounts() {
         ("rear", pose2(-0.4, 0.0, std::f64::consts::PI), 1),
     ];
     let recorded = scans();
-    for index in 0..3 {
+    for (index, scan) in recorded.iter().take(3).enumerate() {
         for (laser, mount, upside_down) in expected {
             let order = json!({ "laser": laser, "index": index });
             joined.robot.order("scan_of", order);
@@ -173,7 +173,7 @@ fn several_lasers_enter_by_their_names_and_mounts() {
             assert_eq!(header.frame.as_str(), format!("{laser}_laser"));
             // Each laser counts its own scans.
             assert_eq!(header.stamp.counter, index as u64);
-            assert_eq!(ranges, recorded[index].ranges);
+            assert_eq!(ranges, scan.ranges);
             assert_eq!((header.mount_known, header.upside_down), (1, upside_down));
             // Through a quaternion: a yaw of π may come back as one of -π.
             let found = Pose::from(header.base_from_laser);

@@ -95,7 +95,7 @@ fn hear_odometry(
 ) -> Result<Vec<String>, RecordingError> {
     let topic = recording.required_topic(Kind::Odometry)?;
     each_odometry(recording, &topic, |odometry| {
-        history.hear_odometry(odometry)
+        history.hear_odometry(odometry);
     })
 }
 
