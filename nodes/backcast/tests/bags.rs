@@ -104,11 +104,20 @@ fn where_every_scan_is_refused_there_is_an_error() {
     );
 }
 
+/// A map that names its frame, as `doctor` wants it.
+fn framed_map() -> (&'static str, Message) {
+    let (topic, mut map) = map_message();
+    if let Message::Map(map) = &mut map {
+        map.header.frame_id = "map".to_owned();
+    }
+    (topic, map)
+}
+
 #[test]
 fn the_topic_is_named_where_several_could_be_meant() {
     let on = |topic, second, place| (topic, Message::Scan(scan(second, place)));
     let folder = folder(&[
-        map_message(),
+        framed_map(),
         on("/front/scan", 1, HERE),
         on("/rear/scan", 2, THERE),
         on("/front/scan", 3, THERE),
@@ -230,11 +239,7 @@ fn a_transform_that_is_none_is_a_note_where_the_laser_does_not_need_it() {
         }
         (topic, message)
     };
-    let (topic, mut map) = map_message();
-    if let Message::Map(map) = &mut map {
-        map.header.frame_id = "map".to_owned();
-    }
-    let camera = folder(&[(topic, map), broken("camera"), scan_at(1, HERE)]);
+    let camera = folder(&[framed_map(), broken("camera"), scan_at(1, HERE)]);
     let note = "the transform from base_link to camera is left out: the position (NaN, 0) is not \
                 finite\n";
     let (code, found, stderr) = verdicts(camera.path(), "r.mcap");
