@@ -34,18 +34,18 @@ fn simulated(folder: &TempDir, lasers: &[&str]) -> String {
 }
 
 /// Verdict, x, y and yaw of each scan's best place.
-type Told = Vec<(String, f64, f64, f64)>;
+type Places = Vec<(String, f64, f64, f64)>;
 
-fn by_tools(recording: &str, topics: &[&str]) -> Told {
+fn by_tools(recording: &str, topics: &[&str]) -> Places {
     let lines = backcast(&[&["locate", "--json", "--bag", recording], topics].concat());
-    let told = lines.lines().map(|line| {
+    let places = lines.lines().map(|line| {
         let line: serde_json::Value = serde_json::from_str(line).unwrap();
         let best = &line["hypotheses"][0];
         let number = |key: &str| best[key].as_f64().unwrap();
         let verdict = line["verdict"].as_str().unwrap().to_owned();
         (verdict, number("x"), number("y"), number("yaw"))
     });
-    told.collect()
+    places.collect()
 }
 
 fn by_graph(
@@ -54,7 +54,7 @@ fn by_graph(
     topics: &[&str],
     accumulator: &[&str],
     scans: usize,
-) -> Told {
+) -> Places {
     let always = [
         "--rate",
         "max",
@@ -74,12 +74,12 @@ fn by_graph(
             .iter()
             .all(|(votes, _)| votes.has_readings == 1)
     );
-    let told = answers.hypotheses.iter().map(|(header, items)| {
+    let places = answers.hypotheses.iter().map(|(header, items)| {
         let verdict = Verdict::from_code(header.verdict).unwrap().to_string();
         let best = items[0].map_from_laser;
         (verdict, best.x, best.y, best.yaw)
     });
-    told.collect()
+    places.collect()
 }
 
 #[test]

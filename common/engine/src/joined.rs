@@ -59,8 +59,8 @@ pub struct Brought {
     pub motion: MotionKnown,
 }
 
-/// How the motion within a scan, and between scans, was known.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+/// How the motion within a scan, and between scans, was known; the worse, the greater.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Default)]
 pub enum MotionKnown {
     /// It was not asked for: all beams are of one time.
     #[default]
@@ -246,7 +246,7 @@ impl Joiner {
         };
         self.used.push(0);
         if self.config.motion.deskew && self.lasers[0].takes_time() {
-            brought.motion = self.carry(0, false);
+            brought.motion = self.carry(0);
             self.is_carried = brought.motion != MotionKnown::Unknown;
         }
         Ok(brought)
@@ -261,7 +261,7 @@ impl Joiner {
         }
         let stamp_ns = first.stamp_ns();
         let mut brought = Brought {
-            motion: self.carry(0, true),
+            motion: self.carry(0),
             ..Brought::default()
         };
         self.used.push(0);
@@ -269,7 +269,7 @@ impl Joiner {
             match self.fit_in(index, stamp_ns) {
                 Ok(motion) => {
                     self.used.push(index);
-                    brought.motion = brought.motion.worse_of(motion);
+                    brought.motion = brought.motion.max(motion);
                 }
                 Err(reason) => brought.left_out.push((self.lasers[index].name, reason)),
             }
@@ -283,7 +283,7 @@ impl Joiner {
     fn fit_in(&mut self, index: usize, stamp_ns: i64) -> Result<MotionKnown, LeftOut> {
         let laser = &self.lasers[index];
         laser.check_for(stamp_ns)?;
-        match self.carry(index, true) {
+        match self.carry(index) {
             // Where odometry says nothing, nothing says that the robot moves.
             MotionKnown::Unknown if self.motion.is_moving() => Err(LeftOut::NoOdometry),
             motion => Ok(motion),
@@ -292,11 +292,11 @@ impl Joiner {
 
     /// Notes where a laser was at each of its beams, in the sought frame; where
     /// odometry does not tell, where it sits.
-    fn carry(&mut self, index: usize, to_base: bool) -> MotionKnown {
+    fn carry(&mut self, index: usize) -> MotionKnown {
         let sought_ns = self.lasers[0].middle_ns();
         let child_from_base = self.child_from_base();
         let first_mount = self.lasers[0].base_from_laser();
-        let child_from_sought = match to_base {
+        let child_from_sought = match self.seeks_base() {
             true => child_from_base,
             false => child_from_base.then(first_mount),
         };
@@ -348,17 +348,6 @@ impl Joiner {
         }
         let used = self.used.iter().filter_map(|&index| self.lasers.get(index));
         Seen::Carried(used.map(Laser::carried).collect())
-    }
-}
-
-impl MotionKnown {
-    fn worse_of(self, other: Self) -> Self {
-        match (self, other) {
-            (MotionKnown::Unknown, _) | (_, MotionKnown::Unknown) => MotionKnown::Unknown,
-            (MotionKnown::LastTwist, _) | (_, MotionKnown::LastTwist) => MotionKnown::LastTwist,
-            (MotionKnown::NotNeeded, other) => other,
-            (other, _) => other,
-        }
     }
 }
 

@@ -31,13 +31,25 @@ impl<'a> Scan<'a> {
     /// come. What a laser saw that hangs upside down is mirrored.
     #[must_use]
     pub fn of(header: &ScanHeader, ranges: &'a [f32]) -> Self {
-        let side = if header.upside_down == 1 { -1.0 } else { 1.0 };
-        Scan {
-            angle_min: side * header.angle_min,
-            angle_increment: side * header.angle_increment,
+        let as_measured = Scan {
+            angle_min: header.angle_min,
+            angle_increment: header.angle_increment,
             range_min_m: header.range_min_m,
             range_max_m: header.range_max_m,
             ranges,
+        };
+        as_measured.seen_from_above(header.upside_down == 1)
+    }
+
+    /// What the laser measured in its own frame, as it is seen from above: mirrored
+    /// where the laser hangs upside down.
+    #[must_use]
+    pub fn seen_from_above(self, is_upside_down: bool) -> Self {
+        let side = if is_upside_down { -1.0 } else { 1.0 };
+        Scan {
+            angle_min: side * self.angle_min,
+            angle_increment: side * self.angle_increment,
+            ..self
         }
     }
 

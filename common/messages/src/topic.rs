@@ -62,6 +62,7 @@ macro_rules! topics {
 
 topics! {
     /// Ranges in metres, in the order of the beams; infinity where nothing came back.
+    /// Deeper than other topics, for a player sends the scans of all lasers.
     Scan = "scan", ScanHeader, [f32] { depth: 8, publishers: 8 };
     /// The pose that wheels report, with twist; no items.
     OdometryTopic = "odometry", Odometry, [u8] { depth: 16 };

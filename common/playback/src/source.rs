@@ -217,10 +217,7 @@ impl<'a> Source<'a> {
         for note in notes {
             tracing::warn!("{note}");
         }
-        let mount = mount.map(|mount| Mount {
-            base_from_laser: mount.base_from_laser,
-            is_upside_down: mount.upside_down,
-        });
+        let mount = mount.as_ref().map(Mount::from);
         self.mounts.insert(frame.into(), mount);
         Ok(mount)
     }

@@ -161,7 +161,8 @@ fn damaged(path: &Path, found: &str) -> RecordingError {
     refused(path, format!("it is damaged: {}; {advice}", found.trim()))
 }
 
-fn refused(path: &Path, reason: String) -> RecordingError {
+/// A bag that cannot be used, and why.
+pub(crate) fn refused(path: &Path, reason: String) -> RecordingError {
     RecordingError::Bag {
         path: path.to_owned(),
         reason,

@@ -11,6 +11,7 @@ use std::path::{Component, Path, PathBuf};
 use serde::Deserialize;
 
 use crate::RecordingError;
+use crate::bag::refused;
 use crate::content::{Content, foreign};
 
 /// What a bag's description is called.
@@ -241,13 +242,6 @@ fn number(text: &str) -> (&str, &str) {
 
 fn shown(path: &Path) -> String {
     path.display().to_string()
-}
-
-fn refused(path: &Path, reason: String) -> RecordingError {
-    RecordingError::Bag {
-        path: path.to_owned(),
-        reason,
-    }
 }
 
 #[cfg(test)]

@@ -32,6 +32,16 @@ pub struct Mount {
     pub tilt_degrees: f64,
 }
 
+impl From<&Mount> for geometry::Mount {
+    /// What matters in the plane.
+    fn from(mount: &Mount) -> Self {
+        geometry::Mount {
+            base_from_laser: mount.base_from_laser,
+            is_upside_down: mount.upside_down,
+        }
+    }
+}
+
 /// Frames and what is known between them.
 #[derive(Debug, Default)]
 pub struct TransformTree {

@@ -121,10 +121,7 @@ impl Frames {
                     tilt_degrees: mount.tilt_degrees,
                 });
             }
-            (None, mount) => mount.map(|mount| Mount {
-                base_from_laser: mount.base_from_laser,
-                is_upside_down: mount.upside_down,
-            }),
+            (None, mount) => mount.as_ref().map(Mount::from),
         };
         if let Some(mount) = mount {
             tracing::info!(

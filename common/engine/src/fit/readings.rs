@@ -137,10 +137,10 @@ mod tests {
         readings
             .find(observation, &space(), &BeamConfig::default())
             .unwrap();
-        let told = readings.found.iter();
-        let told: Vec<_> = told.map(|r| (r.from_x, r.bearing, r.range_m)).collect();
+        let found = readings.found.iter();
+        let found: Vec<_> = found.map(|r| (r.from_x, r.bearing, r.range_m)).collect();
         let silent = (0.0, -0.5, f64::INFINITY);
-        assert_eq!(told, [(1.0, -0.5, 2.0), (2.0, -0.25, 2.0), silent]);
+        assert_eq!(found, [(1.0, -0.5, 2.0), (2.0, -0.25, 2.0), silent]);
     }
 
     #[test]

@@ -27,7 +27,7 @@ const MIN_PAIRS: usize = 20;
 /// What a pair differs by at most, metres; a pose in another place must not decide.
 const MAX_DIFFERENCE_M: f64 = 0.2;
 
-/// A delay is told only where it explains half of what the odometry at other delays
+/// A delay is reported only where it explains half of what the odometry at other delays
 /// leaves open: a robot that never speeds up or turns tells none.
 const MAX_REST: f64 = 0.5;
 

@@ -56,14 +56,14 @@ impl TakenScan {
     /// As the engine takes it: seen from above.
     pub(crate) fn borrowed(&self) -> Scan<'_> {
         let message = &self.message;
-        let turn = if self.upside_down { -1.0 } else { 1.0 };
-        Scan {
-            angle_min: turn * f64::from(message.angle_min),
-            angle_increment: turn * f64::from(message.angle_increment),
+        let as_measured = Scan {
+            angle_min: message.angle_min.into(),
+            angle_increment: message.angle_increment.into(),
             range_min_m: message.range_min,
             range_max_m: message.range_max,
             ranges: &message.ranges,
-        }
+        };
+        as_measured.seen_from_above(self.upside_down)
     }
 }
 
@@ -78,15 +78,8 @@ pub(crate) struct Scans<'a> {
     others: Vec<TakenScan>,
     every: u64,
     seen: u64,
-    mounts: BTreeMap<String, Mounting>,
+    mounts: BTreeMap<String, Option<Mount>>,
     notes: Vec<String>,
-}
-
-/// Where a laser sits, and whether upside down.
-#[derive(Debug, Clone, Copy, Default)]
-struct Mounting {
-    base_from_laser: Option<Pose>,
-    upside_down: bool,
 }
 
 impl<'a> Scans<'a> {
@@ -142,15 +135,12 @@ impl<'a> Scans<'a> {
         log_time_ns: i64,
         message: LaserScan,
     ) -> Result<TakenScan, RecordingError> {
-        let Mounting {
-            base_from_laser,
-            upside_down,
-        } = self.mounting(&message.header.frame_id)?;
+        let mount = self.mount(&message.header.frame_id)?;
         Ok(TakenScan {
             stamp_ns: message.header.stamp.as_ns(),
             log_time_ns,
-            base_from_laser,
-            upside_down,
+            base_from_laser: mount.map(|mount| mount.base_from_laser),
+            upside_down: mount.is_some_and(|mount| mount.is_upside_down),
             message,
             laser: match self.topics.len() {
                 1 => String::new(),
@@ -160,18 +150,15 @@ impl<'a> Scans<'a> {
         })
     }
 
-    fn mounting(&mut self, frame: &str) -> Result<Mounting, RecordingError> {
+    fn mount(&mut self, frame: &str) -> Result<Option<Mount>, RecordingError> {
         if let Some(known) = self.mounts.get(frame) {
             return Ok(*known);
         }
         let Mounted { mount, notes } = self.recording.mounted(frame)?;
         self.notes.extend(notes);
-        let mounting = mount.map_or(Mounting::default(), |mount| Mounting {
-            base_from_laser: Some(mount.base_from_laser),
-            upside_down: mount.upside_down,
-        });
-        self.mounts.insert(frame.to_owned(), mounting);
-        Ok(mounting)
+        let mount = mount.as_ref().map(Mount::from);
+        self.mounts.insert(frame.to_owned(), mount);
+        Ok(mount)
     }
 }
 

@@ -12,6 +12,8 @@ pub(crate) const REPLAYER: &str = "replayer";
 pub(crate) const EMULATOR: &str = "emulator";
 /// Those that take --recording, --rate, --loop and --wait-for.
 pub(crate) const PLAYERS: [&str; 2] = [REPLAYER, EMULATOR];
+/// Searches each scan.
+pub(crate) const ACCUMULATOR: &str = "accumulator";
 /// Serves the map.
 pub(crate) const MAP_SERVER: &str = "map_server";
 

@@ -8,12 +8,11 @@ use dataflow::{Dataflow, Node};
 use engine::heading::{HeadingConfig, HeadingFrom, HeadingSource};
 use messages::{Topic, topic};
 
-use super::arguments::{PLAYERS, find, leave_out_monitors, set, unset, value};
+use super::arguments::{ACCUMULATOR, PLAYERS, find, leave_out_monitors, set, unset, value};
 use super::options::{Options, Rate};
 use super::{lasers, replay};
 use crate::BackcastError;
 
-const ACCUMULATOR: &str = "accumulator";
 const MAX_AGE: &str = "--heading-max-age-s";
 
 /// Puts the options into the arguments of their nodes. `file` is named in

@@ -6,9 +6,8 @@
 use dataflow::{Dataflow, Input};
 use messages::{Topic, topic};
 
-use super::arguments::{set, value};
+use super::arguments::{ACCUMULATOR, set, value};
 
-const ACCUMULATOR: &str = "accumulator";
 const LMS_READER: &str = "lms_reader";
 const SCANS: &str = "--scans";
 const LASER: &str = "--laser";
