@@ -7,6 +7,7 @@
 //! are also serde structures, field by field, for what leaves the machine. The
 //! crate holds no behaviour beyond conversions, and opens nothing.
 
+mod attention;
 mod beams;
 mod boundary;
 mod field;
@@ -24,8 +25,10 @@ mod save;
 mod scan;
 mod stamp;
 pub mod topic;
+mod tracked_pose;
 mod votes;
 
+pub use attention::AttentionHeader;
 pub use beams::{Beam, BeamFate, BeamsHeader};
 pub use boundary::{BoundaryCell, BoundaryHeader};
 pub use field::{FieldHeader, FieldKind};
@@ -43,6 +46,7 @@ pub use save::SaveHeader;
 pub use scan::ScanHeader;
 pub use stamp::Stamp;
 pub use topic::{Message, Topic};
+pub use tracked_pose::{PoseHeader, TrackReason, TrackState};
 pub use votes::{SearchOutcome, Vote, VotesHeader};
 
 /// Pins a message's size, alignment and the offset of every field.

@@ -4,9 +4,9 @@ use bytemuck::Pod;
 use iceoryx2_bb_elementary_traits::zero_copy_send::ZeroCopySend;
 
 use crate::{
-    Beam, BeamsHeader, BoundaryCell, BoundaryHeader, Corner, FieldHeader, GroundTruth,
-    HealthHeader, HypothesesHeader, Hypothesis, LogHeader, MapHeader, Odometry, Reading,
-    ReadingsHeader, RegionHeader, SaveHeader, ScanHeader, Vote, VotesHeader,
+    AttentionHeader, Beam, BeamsHeader, BoundaryCell, BoundaryHeader, Corner, FieldHeader,
+    GroundTruth, HealthHeader, HypothesesHeader, Hypothesis, LogHeader, MapHeader, Odometry,
+    PoseHeader, Reading, ReadingsHeader, RegionHeader, SaveHeader, ScanHeader, Vote, VotesHeader,
 };
 
 /// Plain data that one process may write and another may read in place.
@@ -78,6 +78,10 @@ topics! {
     Field = "field", FieldHeader, [u16] { depth: 1 };
     /// Where the robot may be, best first.
     Hypotheses = "hypotheses", HypothesesHeader, [Hypothesis] { depth: 16 };
+    /// Where the tracker has the robot; the items are why, in words, as UTF-8.
+    Tracked = "pose", PoseHeader, [u8] { depth: 16 };
+    /// Scans that the tracker wants searched; no items.
+    Attention = "attention", AttentionHeader, [u8] { depth: 16 };
     /// What became of each beam at the best pose.
     Beams = "beams", BeamsHeader, [Beam];
     /// The true pose of a scan, where a recording holds it; no items.

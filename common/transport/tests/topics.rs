@@ -71,6 +71,8 @@ round_trips! {
     boundary_arrives: topic::Boundary,
     votes_arrive: topic::Votes,
     readings_arrive: topic::Readings,
+    poses_arrive: topic::Tracked,
+    attention_arrives: topic::Attention,
     field_arrives: topic::Field,
     hypotheses_arrive: topic::Hypotheses,
     beams_arrive: topic::Beams,

@@ -6,10 +6,10 @@
 //! in all ways there are, and the engine knows them.
 
 use messages::{
-    Beam, BeamsHeader, BoundaryCell, BoundaryHeader, Corner, FieldHeader, FieldKind, GroundTruth,
-    HealthHeader, HypothesesHeader, Hypothesis, LogHeader, LogLevel, MapHeader, NodeState,
-    Odometry, Pose2, Reading, ReadingsHeader, RegionHeader, SaveHeader, ScanHeader, Topic, Verdict,
-    Vote, VotesHeader, topic,
+    AttentionHeader, Beam, BeamsHeader, BoundaryCell, BoundaryHeader, Corner, FieldHeader,
+    FieldKind, GroundTruth, HealthHeader, HypothesesHeader, Hypothesis, LogHeader, LogLevel,
+    MapHeader, NodeState, Odometry, Pose2, PoseHeader, Reading, ReadingsHeader, RegionHeader,
+    SaveHeader, ScanHeader, Topic, TrackReason, TrackState, Verdict, Vote, VotesHeader, topic,
 };
 
 use crate::WireError;
@@ -91,6 +91,34 @@ pub(crate) fn hypotheses(header: &HypothesesHeader, hypotheses: &[Hypothesis]) -
         }
     }
     Ok(())
+}
+
+pub(crate) fn tracked(header: &PoseHeader, words: &[u8]) -> Checked {
+    let refuse = Refuse::on::<topic::Tracked>();
+    refuse.unless_known("state", header.state, TrackState::from_code(header.state))?;
+    refuse.unless_known(
+        "reason",
+        header.reason,
+        TrackReason::from_code(header.reason),
+    )?;
+    refuse.unless_pose("map_from_laser", header.map_from_laser)?;
+    refuse.unless_pose("map_from_base", header.map_from_base)?;
+    refuse.unless_pose("map_from_odom", header.map_from_odom)?;
+    for value in header.laser_covariance {
+        refuse.unless_finite("laser_covariance", value)?;
+    }
+    for value in header.base_covariance {
+        refuse.unless_finite("base_covariance", value)?;
+    }
+    refuse.unless_finite("since_m", header.since_m)?;
+    refuse.unless_finite("probability", header.probability)?;
+    refuse.unless_finite("lead", header.lead)?;
+    refuse.unless_finite("score", header.score)?;
+    refuse.unless_text("words", words, PoseHeader::WORDS_CAPACITY)
+}
+
+pub(crate) fn attention(_: &AttentionHeader, items: &[u8]) -> Checked {
+    Refuse::on::<topic::Attention>().unless_count("items", items.len(), 0)
 }
 
 pub(crate) fn beams(header: &BeamsHeader, beams: &[Beam]) -> Checked {

@@ -97,6 +97,8 @@ wire! {
     Readings = "Readings/v1", 4 * MIB, readings, [stamp.entered_ns];
     Field = "Field/v1", 64 * MIB, field, [stamp.entered_ns], compressed, on_demand;
     Hypotheses = "Hypotheses/v3", MIB, hypotheses, [stamp.entered_ns, sent_ns];
+    Tracked = "Pose/v1", 4 * KIB, tracked, [stamp.entered_ns, sent_ns];
+    Attention = "Attention/v1", 4 * KIB, attention, [stamp.entered_ns];
     Beams = "Beams/v1", MIB, beams, [stamp.entered_ns];
     GroundTruthTopic = "GroundTruth/v2", 4 * KIB, ground_truth, [stamp.entered_ns];
     Region = "Region/v1", 64 * KIB, region, [stamp.entered_ns], kept;

@@ -1,0 +1,23 @@
+//! What the tracker wants searched.
+
+use bytemuck::{Pod, Zeroable};
+use iceoryx2_bb_derive_macros::ZeroCopySend;
+use iceoryx2_bb_elementary_traits::zero_copy_send::ZeroCopySend;
+use serde::{Deserialize, Serialize};
+
+use crate::Stamp;
+
+/// The message of topic `attention`: a scan that is to be searched.
+#[derive(Debug, Clone, Copy, PartialEq, Pod, Zeroable, ZeroCopySend, Serialize, Deserialize)]
+#[type_name("AttentionHeader/v1")]
+#[repr(C)]
+pub struct AttentionHeader {
+    /// Of the scan; of the first laser's, where several are joined.
+    pub stamp: Stamp,
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    crate::pin_layout!(AttentionHeader, size 24, align 8, { stamp: 0 });
+}

@@ -1,0 +1,182 @@
+//! Where the tracker has the robot, and how sure it is.
+
+use bytemuck::{Pod, Zeroable};
+use iceoryx2_bb_derive_macros::ZeroCopySend;
+use iceoryx2_bb_elementary_traits::zero_copy_send::ZeroCopySend;
+use serde::{Deserialize, Serialize};
+
+use crate::{FrameName, Pose2, Stamp};
+
+/// The message of topic `pose`; the items are the reason in words, and what to do, as
+/// UTF-8.
+#[derive(Debug, Clone, Copy, PartialEq, Pod, Zeroable, ZeroCopySend, Serialize, Deserialize)]
+#[type_name("PoseHeader/v1")]
+#[repr(C)]
+pub struct PoseHeader {
+    /// Of the scan or, between scans, of the odometry.
+    pub stamp: Stamp,
+    /// The map that the pose is about; 0 where there is none.
+    pub map_id: u64,
+    /// `CLOCK_MONOTONIC` in nanoseconds when the pose was sent.
+    pub sent_ns: i64,
+    /// Nanoseconds of computing, the search not included.
+    pub tracking_ns: u64,
+    /// When the state began, as the stamps of scans count: nanoseconds since 1970.
+    pub since_ns: i64,
+    /// Metres that the robot has gone since.
+    pub since_m: f64,
+    /// Pose of the laser in the map; of the first, where several are joined.
+    pub map_from_laser: Pose2,
+    /// Pose of the robot's base in the map; the laser's where no mount is known.
+    pub map_from_base: Pose2,
+    /// Where the odometry's frame lies in the map; meant where `odom_known` is 1.
+    pub map_from_odom: Pose2,
+    /// Of `map_from_laser`, row by row over x, y and yaw: m², m·rad, rad².
+    pub laser_covariance: [f64; 9],
+    /// Of `map_from_base`, row by row over x, y and yaw: m², m·rad, rad².
+    pub base_covariance: [f64; 9],
+    /// How likely the robot is there, 0..=1.
+    pub probability: f64,
+    /// By how much the place leads over the next, in natural logarithms of odds.
+    pub lead: f64,
+    /// How well the last scan fits the map there, at most 1.
+    pub score: f64,
+    /// A [`TrackState`].
+    pub state: u32,
+    /// A [`TrackReason`].
+    pub reason: u32,
+    /// Places that are kept as possible, the best included.
+    pub places: u32,
+    /// 1 where the pose is that of a scan, 0 where odometry carried it on since.
+    pub from_scan: u32,
+    /// 1 where a pose is known at all: in other states than `Searching` it is.
+    pub pose_known: u32,
+    /// 1 where the laser's mount is known and `map_from_base` is meant, else 0.
+    pub mount_known: u32,
+    /// 1 where odometry is known, and `map_from_odom` is meant, else 0.
+    pub odom_known: u64,
+    /// The frame of the odometry, where it is known.
+    pub odom_frame: FrameName,
+}
+
+impl PoseHeader {
+    /// Most bytes of the words.
+    pub const WORDS_CAPACITY: usize = 256;
+}
+
+/// What the tracker knows.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+#[repr(u32)]
+pub enum TrackState {
+    /// It has not found the robot yet.
+    Searching = 0,
+    /// One place is left, and the scans fit there.
+    Unique = 1,
+    /// The pose is kept, but something speaks against it.
+    Doubtful = 2,
+    /// It had the robot, and the scans say that it is not there any more.
+    Lost = 3,
+}
+
+impl TrackState {
+    /// The state with this number, if there is one.
+    #[must_use]
+    pub fn from_code(code: u32) -> Option<Self> {
+        [Self::Searching, Self::Unique, Self::Doubtful, Self::Lost]
+            .into_iter()
+            .find(|state| *state as u32 == code)
+    }
+
+    /// The word that logs and tables show.
+    #[must_use]
+    pub fn as_str(self) -> &'static str {
+        match self {
+            TrackState::Searching => "Searching",
+            TrackState::Unique => "Unique",
+            TrackState::Doubtful => "Doubtful",
+            TrackState::Lost => "Lost",
+        }
+    }
+}
+
+impl std::fmt::Display for TrackState {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        f.pad(self.as_str())
+    }
+}
+
+/// Why the tracker is in its state.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+#[repr(u32)]
+pub enum TrackReason {
+    /// No scan has been answered yet.
+    NoScan = 0,
+    /// No map has come yet.
+    NoMap = 1,
+    /// One place leads clearly, and the scan fits there.
+    OnePlace = 2,
+    /// Several places fit.
+    SeveralPlaces = 3,
+    /// One place leads, and not by enough yet.
+    TooEarly = 4,
+    /// The scan does not fit where the robot should be.
+    PoorFit = 5,
+    /// Odometry jumped, and the scans do not confirm it.
+    OdometryJump = 6,
+    /// Scans fit better at another place.
+    AnotherPlace = 7,
+    /// No place on the map fits.
+    NoPlace = 8,
+}
+
+impl TrackReason {
+    /// The reason with this number, if there is one.
+    #[must_use]
+    pub fn from_code(code: u32) -> Option<Self> {
+        [
+            Self::NoScan,
+            Self::NoMap,
+            Self::OnePlace,
+            Self::SeveralPlaces,
+            Self::TooEarly,
+            Self::PoorFit,
+            Self::OdometryJump,
+            Self::AnotherPlace,
+            Self::NoPlace,
+        ]
+        .into_iter()
+        .find(|reason| *reason as u32 == code)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    crate::pin_layout!(PoseHeader, size 592, align 8, {
+        stamp: 0, map_id: 24, sent_ns: 32, tracking_ns: 40, since_ns: 48, since_m: 56,
+        map_from_laser: 64, map_from_base: 88, map_from_odom: 112, laser_covariance: 136,
+        base_covariance: 208, probability: 280, lead: 288, score: 296, state: 304, reason: 308,
+        places: 312, from_scan: 316, pose_known: 320, mount_known: 324, odom_known: 328,
+        odom_frame: 336,
+    });
+
+    #[test]
+    fn codes_are_found_again() {
+        for code in 0..4 {
+            assert_eq!(
+                TrackState::from_code(code).map(|state| state as u32),
+                Some(code)
+            );
+        }
+        for code in 0..9 {
+            assert_eq!(
+                TrackReason::from_code(code).map(|reason| reason as u32),
+                Some(code)
+            );
+        }
+        assert_eq!(
+            (TrackState::from_code(4), TrackReason::from_code(9)),
+            (None, None)
+        );
+    }
+}
