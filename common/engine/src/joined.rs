@@ -340,6 +340,19 @@ impl Joiner {
         of_laser.map_or(Pose::IDENTITY, |laser| laser.base_from_laser().inverse())
     }
 
+    /// Where the sought frame was by the odometry when the newest scan of the first laser
+    /// was half measured, see [`Motion::until`].
+    #[must_use]
+    pub fn odom_from_sought(&self) -> Option<Pose> {
+        let child_from_base = self.child_from_base();
+        let child_from_sought = match self.seeks_base() {
+            true => child_from_base,
+            false => child_from_base.then(self.lasers[0].base_from_laser()),
+        };
+        let odom_from_child = self.motion.until(self.lasers[0].middle_ns())?;
+        Some(odom_from_child.then(child_from_sought))
+    }
+
     /// What the last [`Joiner::bring`] brought together.
     #[must_use]
     pub fn seen(&self) -> Seen<'_> {

@@ -55,6 +55,7 @@ pub mod taper;
 #[cfg(test)]
 mod testing;
 mod threads;
+pub mod tracking;
 pub mod votes;
 
 pub use error::EngineError;

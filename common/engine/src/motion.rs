@@ -87,6 +87,27 @@ impl Motion {
         }
     }
 
+    /// Where the frame was at a time, by what was measured until then alone: what comes
+    /// later changes nothing. The last twist is taken to go on for at most a quarter of a
+    /// second; beyond, the frame stays where it was. `None` before the first sample.
+    #[must_use]
+    pub fn until(&self, stamp_ns: i64) -> Option<Pose> {
+        let after = self
+            .samples
+            .partition_point(|&(stamp, _)| stamp <= stamp_ns);
+        let &(end_ns, end) = self.samples.get(after.checked_sub(1)?)?;
+        let start = after.checked_sub(2).and_then(|i| self.samples.get(i));
+        let Some(&(start_ns, start)) = start else {
+            return Some(end);
+        };
+        let beyond_ns = stamp_ns - end_ns;
+        if end_ns - start_ns > MAX_GAP_NS || beyond_ns > MAX_BEYOND_NS {
+            return Some(end);
+        }
+        let share = (stamp_ns - start_ns) as f64 / (end_ns - start_ns) as f64;
+        Some(start.towards(end, share))
+    }
+
     /// Where the frame was at a time: on the arc of constant twist between the two
     /// samples around it, or on that of the nearest two for at most a quarter of a
     /// second beyond them. `None` where no samples tell.

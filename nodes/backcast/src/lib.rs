@@ -22,6 +22,7 @@ mod plot;
 mod probe;
 mod regress;
 mod run;
+mod sequence;
 mod simulate;
 mod statistics;
 mod stdout;

@@ -93,6 +93,12 @@ impl Ends {
         }
     }
 
+    /// Beams that end somewhere.
+    #[must_use]
+    pub fn beams(&self) -> usize {
+        self.ends.len()
+    }
+
     fn clear(&mut self) {
         self.ends.clear();
         self.silent.clear();

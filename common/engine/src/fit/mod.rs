@@ -23,11 +23,15 @@ mod readings;
 mod refine;
 mod terrain;
 
+use geometry::{Pose, wrap_angle};
+use nalgebra::Vector3;
+
+use crate::grid::GridFrame;
 pub use agreement::BeamClass;
 pub use config::FitConfig;
 pub use ends::{Ends, JudgedBeam};
 pub use readings::Readings;
-pub use refine::Refined;
+pub use refine::{Expected, Refined};
 pub use terrain::Terrain;
 
 /// A pose in cells of the grid and radians in its frame.
@@ -39,4 +43,22 @@ pub struct GridPose {
     pub y: f64,
     /// Radians, counter-clockwise from the grid's x axis.
     pub heading: f64,
+}
+
+impl GridPose {
+    /// Of a pose in the map.
+    #[must_use]
+    pub fn of(frame: GridFrame, map_pose: Pose) -> Self {
+        let (x, y, heading) = frame.cells_from_map(map_pose);
+        GridPose { x, y, heading }
+    }
+
+    /// How far it lies from another one: cells, cells and radians in `(-π, π]`.
+    fn minus(self, other: GridPose) -> Vector3<f64> {
+        Vector3::new(
+            self.x - other.x,
+            self.y - other.y,
+            wrap_angle(self.heading - other.heading),
+        )
+    }
 }

@@ -21,6 +21,30 @@ pub struct Refined {
     pub weight: f64,
 }
 
+/// What is known of a pose before the scan.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Expected {
+    /// Where it should be.
+    pub pose: GridPose,
+    /// The inverse of its covariance over x, y (cells) and the heading (radians).
+    pub information: Matrix3<f64>,
+}
+
+/// What the pose is moved by.
+#[derive(Debug, Clone, Copy)]
+struct Known<'a> {
+    heading: bool,
+    expected: Option<&'a Expected>,
+}
+
+/// Neighbouring beams end on the same piece of wall, and maps err by walls, not
+/// by points: so many beams tell as much as one with an error of its own.
+const BEAMS_TOGETHER: f64 = 8.0;
+
+/// No end point is known better than the cell that it is compared with: the
+/// variance of a number that is anywhere within one, squared cells.
+const LEAST_VARIANCE: f64 = 1.0 / 12.0;
+
 /// Beams farther off have no say: coarse first, then fine, in standard
 /// deviations.
 const REACHES: [f64; 2] = [4.0, 2.0];
@@ -31,6 +55,20 @@ const MOST_STEPS: usize = 6;
 /// A step shorter than this, cells and radians times a hundred, is the last
 /// with each reach.
 const LAST_STEPS: [f64; 2] = [0.1, 0.02];
+
+/// The variance with which a beam counts, of one that is measured so.
+fn independent(variance: f64) -> f64 {
+    BEAMS_TOGETHER * variance.max(LEAST_VARIANCE)
+}
+
+impl Refined {
+    /// What the scan says about the pose: the inverse of its covariance over x, y
+    /// (cells) and the heading (radians).
+    #[must_use]
+    pub fn information(&self) -> Matrix3<f64> {
+        self.curvature / independent(self.variance)
+    }
+}
 
 /// Keeps steps short along what the scan does not tell, as a share of the
 /// weight of all beams.
@@ -47,12 +85,44 @@ impl Terrain {
         heading_is_known: bool,
         config: &FitConfig,
     ) -> Refined {
+        let known = Known {
+            heading: heading_is_known,
+            expected: None,
+        };
+        self.descend(ends, start, (REACHES, known), config)
+    }
+
+    /// Moves a pose to where the scan and what was expected agree best, by their
+    /// squared errors (maximum a posteriori). Beams have a say within these reaches,
+    /// standard deviations of the fit, first the one and then the other.
+    #[must_use]
+    pub fn refine_expected(
+        &self,
+        ends: &Ends,
+        start: GridPose,
+        (expected, reaches): (&Expected, [f64; 2]),
+        config: &FitConfig,
+    ) -> Refined {
+        let known = Known {
+            heading: false,
+            expected: Some(expected),
+        };
+        self.descend(ends, start, (reaches, known), config)
+    }
+
+    fn descend(
+        &self,
+        ends: &Ends,
+        start: GridPose,
+        (reaches, known): ([f64; 2], Known<'_>),
+        config: &FitConfig,
+    ) -> Refined {
         let sigma = config.sigma_cells(self.frame.resolution_m);
         let mut pose = start;
-        for (reach, last_step) in REACHES.into_iter().zip(LAST_STEPS) {
+        for (reach, last_step) in reaches.into_iter().zip(LAST_STEPS) {
             for _ in 0..MOST_STEPS {
                 let sums = self.linearise(ends, pose, reach * sigma);
-                let Some(step) = sums.step(ends.weight, heading_is_known) else {
+                let Some(step) = sums.step(ends.weight, pose, known) else {
                     break;
                 };
                 pose = GridPose {
@@ -65,11 +135,11 @@ impl Terrain {
                 }
             }
         }
-        let sums = self.linearise(ends, pose, REACHES[1] * sigma);
+        let sums = self.linearise(ends, pose, reaches[1] * sigma);
         Refined {
             pose,
             curvature: sums.curvature(),
-            variance: sums.squares / sums.weight.max(f64::MIN_POSITIVE),
+            variance: sums.variance(),
             weight: sums.weight,
         }
     }
@@ -130,14 +200,24 @@ impl Sums {
         Matrix3::new(xx, xy, xh, xy, yy, yh, xh, yh, hh)
     }
 
-    /// The step to the minimum, if the beams have a say.
-    fn step(&self, all: f64, heading_is_known: bool) -> Option<Vector3<f64>> {
+    fn variance(&self) -> f64 {
+        self.squares / self.weight.max(f64::MIN_POSITIVE)
+    }
+
+    /// The step to the minimum from a pose, if the beams have a say.
+    fn step(&self, all: f64, pose: GridPose, known: Known<'_>) -> Option<Vector3<f64>> {
         let curvature = self.curvature();
         let turning = curvature[(2, 2)].max(1.0);
         let damping = Vector3::new(DAMPING * all, DAMPING * all, DAMPING * turning);
         let mut damped = curvature + Matrix3::from_diagonal(&damping);
         let mut slope = Vector3::from(self.slope);
-        if heading_is_known {
+        if let Some(expected) = known.expected {
+            // Both in the units of the beams' squared distances.
+            let information = expected.information * independent(self.variance());
+            damped += information;
+            slope += information * pose.minus(expected.pose);
+        }
+        if known.heading {
             damped.fill_row(2, 0.0);
             damped.fill_column(2, 0.0);
             (damped[(2, 2)], slope[2]) = (1.0, 0.0);

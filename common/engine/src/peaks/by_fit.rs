@@ -1,7 +1,7 @@
 //! Places by how well the scan fits the map there: the votes' candidates are
 //! refined, judged again and put in order.
 
-use geometry::{Covariance, Pose, wrap_angle};
+use geometry::{Covariance, wrap_angle};
 use messages::Verdict;
 use nalgebra::{Matrix3, Vector3};
 
@@ -50,7 +50,7 @@ impl Workspace {
         keep_distinct(&self.refined, &mut self.places.places, config);
         if let Some(best) = self.places.places.first().copied() {
             let found = &mut self.places;
-            let pose = grid_pose(terrain.frame, best.map_from_laser);
+            let pose = GridPose::of(terrain.frame, best.map_from_laser);
             terrain.classify(ends, pose, &config.fit, &mut found.classes);
             found.inlier_share = ends.share(&found.classes, BeamClass::Hit);
             let through = ends.share(&found.classes, BeamClass::Through);
@@ -93,11 +93,6 @@ impl Places {
 /// one: where the scan fits well, small differences tell much.
 fn lead(best: f64, other: f64) -> f64 {
     (best - other) / (1.1 - best).sqrt()
-}
-
-fn grid_pose(frame: GridFrame, map_from_laser: Pose) -> GridPose {
-    let (x, y, heading) = frame.cells_from_map(map_from_laser);
-    GridPose { x, y, heading }
 }
 
 /// Keeps the best of all poses that came to lie at one place.
@@ -151,21 +146,15 @@ fn place(
     }
 }
 
-/// Neighbouring beams end on the same piece of wall, and maps err by walls, not
-/// by points: so many beams tell as much as one with an error of its own.
-const BEAMS_TOGETHER: f64 = 8.0;
-
 /// How far a place may reach along what no beam tells: metres, and radians.
 const LOOSE_M: f64 = 2.0;
 const LOOSE_RADIANS: f64 = 0.35;
 
 /// What the curvature of the fit says about its error, in the map frame.
 fn covariance(frame: GridFrame, heading_is_known: bool, refined: &Refined) -> Covariance {
-    // No end point is known better than the cell that it is compared with.
-    let variance = BEAMS_TOGETHER * refined.variance.max(1.0 / 12.0);
     let loose = LOOSE_M / frame.resolution_m;
     let prior = Vector3::new(loose.powi(-2), loose.powi(-2), LOOSE_RADIANS.powi(-2));
-    let mut information = refined.curvature / variance + Matrix3::from_diagonal(&prior);
+    let mut information = refined.information() + Matrix3::from_diagonal(&prior);
     if heading_is_known {
         // The heading does not err, and x and y not with it.
         information.fill_row(2, 0.0);
@@ -182,6 +171,8 @@ fn covariance(frame: GridFrame, heading_is_known: bool, refined: &Refined) -> Co
 
 #[cfg(test)]
 mod tests {
+    use geometry::Pose;
+
     use super::*;
 
     fn deviations(heading_is_known: bool, curvature: Matrix3<f64>) -> [f64; 3] {

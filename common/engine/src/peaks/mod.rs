@@ -167,6 +167,15 @@ impl Sought {
         }
     }
 
+    /// The sought frame's pose where the first laser has this one.
+    #[must_use]
+    pub fn of_laser(self, map_from_laser: Pose) -> Pose {
+        match self.sought_from_laser == Pose::IDENTITY {
+            true => map_from_laser,
+            false => map_from_laser.then(self.sought_from_laser.inverse()),
+        }
+    }
+
     /// The base's pose where the sought frame has this one.
     #[must_use]
     pub fn base(self, map_from_sought: Pose) -> Pose {

@@ -12,6 +12,7 @@ use super::memory;
 use super::table::{self, Table};
 use super::trust::Trust;
 use crate::offline::{Accepted, Options, Progress, Session, World, damage_of, say};
+use crate::sequence::{self, SequenceOptions};
 use crate::{BackcastError, stdout};
 
 /// What stands below the options.
@@ -44,6 +45,9 @@ pub(crate) struct Config {
 
     #[command(flatten)]
     options: Options,
+
+    #[command(flatten)]
+    sequence: SequenceOptions,
 }
 
 fn radius(text: &str) -> Result<f64, String> {
@@ -61,6 +65,10 @@ fn radius(text: &str) -> Result<f64, String> {
 pub(crate) fn run(config: &Config) -> Result<ExitCode, BackcastError> {
     config.options.check()?;
     let map = config.options.load_map(&config.bags)?;
+    if config.sequence.sequence {
+        let how = (&config.options, &config.sequence);
+        return sequence::evaluate(&config.bags, config.json, map.as_ref(), how);
+    }
     let table = Table::of(&config.bags);
     let mut code = ExitCode::SUCCESS;
     let mut trust = Trust::default();

@@ -6,7 +6,7 @@
 //! printed but by the commands.
 
 mod accepted;
-mod cpu;
+pub(crate) mod cpu;
 mod heading;
 mod layout;
 mod maps;
@@ -24,6 +24,6 @@ pub(crate) use layout::{check_map, frame_of, sides_of};
 pub(crate) use options::Options;
 pub(crate) use progress::{Progress, say};
 pub(crate) use scans::TakenScan;
-pub(crate) use session::{Reply, Session, damage_of, map_in};
+pub(crate) use session::{Reply, Session, View, damage_of, map_in};
 pub(crate) use topics::TopicOptions;
 pub(crate) use world::{Answer, BeamEnd, Field, ScanAt, World};

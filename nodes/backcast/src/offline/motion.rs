@@ -6,6 +6,7 @@ use std::sync::Arc;
 use conversion::lasers;
 use engine::EngineError;
 use engine::joined::{JoinConfig, Joiner, MotionConfig, Seen};
+use geometry::Pose;
 use recording::{Kind, Recording, RecordingError};
 
 use super::TakenScan;
@@ -48,7 +49,7 @@ impl<'a> Motion<'a> {
     /// The scan cannot be one of the graph, or the recording cannot be read.
     pub(crate) fn take(&mut self, scan: &TakenScan) -> Result<(), BackcastError> {
         let takes_time = self.joiner.seeks_base() || scan.message.time_increment != 0.0;
-        if takes_time && self.deskews && !self.is_read {
+        if takes_time && self.deskews {
             self.read_odometry()?;
         }
         for other in &scan.others {
@@ -58,8 +59,14 @@ impl<'a> Motion<'a> {
         Ok(())
     }
 
-    fn read_odometry(&mut self) -> Result<(), RecordingError> {
-        self.is_read = true;
+    /// Reads the odometry, unless that has been done.
+    ///
+    /// # Errors
+    /// The recording cannot be read.
+    pub(crate) fn read_odometry(&mut self) -> Result<(), RecordingError> {
+        if std::mem::replace(&mut self.is_read, true) {
+            return Ok(());
+        }
         match self.recording.topic(Kind::Odometry) {
             Ok(Some(topic)) => {
                 let joiner = &mut self.joiner;
@@ -84,6 +91,11 @@ impl<'a> Motion<'a> {
         let brought = self.joiner.bring()?;
         self.notes.extend(brought.notes(self.joiner.flows()));
         Ok(())
+    }
+
+    /// Where the sought frame was by the odometry when the scan was taken.
+    pub(crate) fn odom_from_sought(&self) -> Option<Pose> {
+        self.joiner.odom_from_sought()
     }
 
     /// What was brought.

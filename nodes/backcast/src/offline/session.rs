@@ -5,6 +5,7 @@ use std::borrow::Cow;
 use std::collections::BTreeSet;
 use std::path::{Path, PathBuf};
 
+use engine::fit::Ends;
 use engine::localizer::Prior;
 use engine::peaks::Sought;
 use geometry::Pose;
@@ -47,6 +48,14 @@ struct Prepared<'a> {
     /// Of the map as it is, whatever has been erased since.
     map_id: u64,
     world: World,
+}
+
+/// A scan as the tracker takes it.
+pub(crate) struct View {
+    pub(crate) ends: Ends,
+    /// Where the sought frame was by the odometry.
+    pub(crate) odom_from_sought: Option<Pose>,
+    pub(crate) sought: Sought,
 }
 
 /// What came of one scan.
@@ -201,6 +210,28 @@ impl<'a> Session<'a> {
         }
         prepared.world = erased(&map, &self.map_file, &self.engine, prior)?;
         Ok(())
+    }
+
+    /// Has odometry read, which is else left alone where nothing needs it.
+    ///
+    /// # Errors
+    /// The recording cannot be read.
+    pub(crate) fn read_odometry(&mut self) -> Result<(), BackcastError> {
+        Ok(self.motion.read_odometry()?)
+    }
+
+    /// What the tracker takes of the scan that was asked for last.
+    ///
+    /// # Errors
+    /// The scan is refused.
+    pub(crate) fn view(&self, scan: &TakenScan) -> Result<View, BackcastError> {
+        let seen = self.motion.seen();
+        let ends = self.world()?.ends(seen.observation());
+        Ok(View {
+            ends: ends.map_err(BackcastError::Refused)?,
+            odom_from_sought: self.motion.odom_from_sought(),
+            sought: Sought::of(scan.base_from_laser, self.motion.seeks_base()),
+        })
     }
 
     /// Finds the place of a scan.

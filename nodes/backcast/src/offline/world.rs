@@ -134,6 +134,24 @@ impl World {
         self.cells
     }
 
+    /// The map as the second stage reads it.
+    pub(crate) fn terrain(&self) -> &Terrain {
+        &self.terrain
+    }
+
+    /// How the second stage judges places.
+    pub(crate) fn peaks(&self) -> &PeakConfig {
+        &self.peaks
+    }
+
+    /// The beams of a scan, as the second stage judges them.
+    ///
+    /// # Errors
+    /// The scan is refused.
+    pub(crate) fn ends(&self, scan: Observation<'_>) -> Result<Ends, EngineError> {
+        Ends::new(scan, &self.space, &self.beams)
+    }
+
     /// Searches all poses or, where the heading in the map is given in radians,
     /// all positions; the world must be prepared for the one or the other.
     ///

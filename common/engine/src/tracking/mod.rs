@@ -1,0 +1,196 @@
+//! A pose that stays: scans and odometry over time, where one scan alone cannot tell,
+//! or tells wrong.
+//!
+//! The tracker keeps a few places where the robot may be. Every scan moves the place
+//! that is believed; at *key scans*, some decimetres apart, all places are predicted by
+//! odometry, fitted to the scan and weighed against each other, and places that a
+//! search found are added:
+//!
+//! ```text
+//! odometry ─ way ─► predict ─┐
+//! scan ─ ends ───────────────┴─► seen: fit from the prediction ─► places ─► weigh ─► verdict
+//! search ─ candidates ─────────────────────────────────────────────┘
+//! ```
+//!
+//! What one key scan says is capped, for the errors of a map repeat from scan to scan:
+//! one place is the only one when several key scans agree on it. It decides by stamps
+//! and the order of calls alone, so that the same calls give the same poses.
+//!
+//! docs/tracking.md explains the method and what each setting is for. The recursive
+//! weighing of hypotheses is that of multi-hypothesis localization (Jensfelt and
+//! Kristensen, "Active global localization for a mobile robot using multiple
+//! hypothesis tracking", IEEE Trans. Robotics and Automation 17(5), 2001), with
+//! evidence that is capped.
+
+mod config;
+mod place;
+mod places;
+mod report;
+mod seen;
+mod verdict;
+mod way;
+
+pub use config::TrackingConfig;
+pub use place::Candidate;
+pub use report::{Report, State};
+pub use seen::Seen;
+
+use geometry::Pose;
+use places::Places;
+use verdict::Belief;
+use way::Way;
+
+/// What is needed of a search before a scan is done with.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Need {
+    /// Nothing.
+    Nothing,
+    /// What a search for this scan finds.
+    ThisScan,
+    /// What the search finds that was asked for by [`Tracker::asks_ahead`].
+    EarlierScan,
+}
+
+/// A pose that is believed is checked by a search at each so many key scans.
+const CHECKED_EVERY: u32 = 10;
+
+/// What such a search finds counts so many scans later: nobody waits for it.
+const COUNTS_AFTER: u32 = 2;
+
+/// A robot that turns to and fro takes a key scan after so many times the distance.
+const KEY_PATHS: f64 = 2.0;
+
+/// Scans of fewer beams say nothing.
+const LEAST_BEAMS: usize = 10;
+
+/// Finds the robot, and keeps its pose.
+#[derive(Debug, Clone)]
+pub struct Tracker {
+    config: TrackingConfig,
+    places: Places,
+    belief: Belief,
+    /// Since the last key scan.
+    since_key: Way,
+    /// Since the last scan that was looked at.
+    since_scan: Way,
+    /// Since the scan that was asked for ahead, and how many scans are left.
+    ahead: Option<(Way, u32)>,
+    asks_ahead: bool,
+    keys_since_search: u32,
+    is_key: bool,
+    is_blank: bool,
+}
+
+impl Tracker {
+    /// Nothing is known yet.
+    #[must_use]
+    pub fn new(config: TrackingConfig) -> Self {
+        Tracker {
+            config,
+            places: Places::new(config),
+            belief: Belief::new(config),
+            since_key: Way::default(),
+            since_scan: Way::default(),
+            ahead: None,
+            asks_ahead: false,
+            keys_since_search: 0,
+            is_key: false,
+            is_blank: false,
+        }
+    }
+
+    /// Starts from a pose that is believed, with its covariance.
+    pub fn start_at(&mut self, seen: &Seen<'_>, pose: Pose, covariance: geometry::Covariance) {
+        *self = Tracker::new(self.config);
+        let id = self.places.start_at(seen, (pose, covariance.0));
+        self.belief.believe(id);
+    }
+
+    /// Takes the next scan and how the sought frame moved since the one before, if
+    /// that is known. The scan is done with at [`Tracker::finish`].
+    pub fn begin(&mut self, seen: &Seen<'_>, stamp_ns: i64, moved: Option<Pose>) -> Need {
+        self.belief.go_on(stamp_ns, moved);
+        self.asks_ahead = false;
+        for way in [&mut self.since_key, &mut self.since_scan] {
+            way.add(moved);
+        }
+        let mut is_due = false;
+        if let Some((way, left)) = &mut self.ahead {
+            way.add(moved);
+            *left = left.saturating_sub(1);
+            is_due = *left == 0;
+        }
+        self.is_blank = seen.ends.beams() < LEAST_BEAMS;
+        if self.is_blank {
+            return Need::Nothing;
+        }
+        let way = std::mem::take(&mut self.since_scan);
+        let was_doubtful = self.belief.is_doubtful();
+        if let Some(id) = self.belief.place() {
+            self.places.follow(id, seen, &way);
+        }
+        self.belief.look_at(&self.places);
+        let is_suspicious = self.belief.is_doubtful();
+        self.is_key = self.is_far() || (is_suspicious && !was_doubtful) || is_due;
+        match () {
+            () if !self.is_key => Need::Nothing,
+            () if self.belief.place().is_none() || is_suspicious => {
+                self.ahead = None;
+                Need::ThisScan
+            }
+            () if is_due => Need::EarlierScan,
+            () => Need::Nothing,
+        }
+    }
+
+    /// Whether the robot is far enough from the last key scan.
+    fn is_far(&self) -> bool {
+        let way = &self.since_key;
+        self.places.is_empty()
+            || way.distance_m() >= self.config.key_m
+            || way.step.yaw.abs() >= self.config.key_deg.to_radians()
+            || way.path_m > KEY_PATHS * self.config.key_m
+    }
+
+    /// Is done with the scan, with what the search found that was needed, if any.
+    pub fn finish(&mut self, seen: &Seen<'_>, found: Option<&[Candidate]>) {
+        if self.is_blank {
+            return;
+        }
+        if self.is_key {
+            let way = std::mem::take(&mut self.since_key);
+            let due = self.ahead.take_if(|(_, left)| *left == 0);
+            match (due, found) {
+                (_, None) => {}
+                (Some((since, _)), Some(found)) => self.places.take_ahead(seen, &since, found),
+                (None, Some(found)) => self.places.take(found),
+            }
+            if found.is_some() {
+                self.keys_since_search = 0;
+            }
+            self.places.weigh(seen, &way, &mut self.belief);
+            self.keys_since_search += 1;
+        }
+        self.belief.conclude(&self.places, self.is_key);
+        self.asks_ahead = self.is_key
+            && self.ahead.is_none()
+            && self.belief.is_sound()
+            && self.keys_since_search >= CHECKED_EVERY;
+        if self.asks_ahead {
+            self.ahead = Some((Way::default(), COUNTS_AFTER));
+        }
+    }
+
+    /// Whether a search for the scan that was done with last is needed a few scans
+    /// later, see [`Need::EarlierScan`].
+    #[must_use]
+    pub fn asks_ahead(&self) -> bool {
+        self.asks_ahead
+    }
+
+    /// Where the robot is, and how sure that is.
+    #[must_use]
+    pub fn report(&self) -> Report {
+        self.belief.report(&self.places)
+    }
+}

@@ -1,0 +1,118 @@
+//! A place where the robot may be, and how much speaks for it.
+
+use geometry::{Covariance, Pose};
+use messages::Hypothesis;
+use nalgebra::{Matrix3, Rotation2, SymmetricEigen};
+
+use super::seen::{Fitted, with_map_error};
+use crate::peaks::Sought;
+
+/// A place that a search found for one scan.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Candidate {
+    /// Of the frame that is sought.
+    pub pose: Pose,
+    /// Of that pose.
+    pub covariance: Covariance,
+    /// How well the scan fits there, at most 1.
+    pub score: f64,
+}
+
+/// Along what a scan does not tell, a candidate is taken to be known as well as this,
+/// metres, or a search would confirm places that lie metres apart.
+const LOOSEST_M: f64 = 0.3;
+
+impl Candidate {
+    /// As messages say it.
+    #[must_use]
+    pub fn of(hypothesis: &Hypothesis, sought: Sought) -> Self {
+        let laser = hypothesis.map_from_laser.into();
+        let pose = sought.of_laser(laser);
+        Candidate {
+            pose,
+            covariance: Covariance::from_rows(hypothesis.covariance).carried(laser, pose),
+            score: hypothesis.score.into(),
+        }
+    }
+
+    pub(super) fn fitted(&self) -> Fitted {
+        Fitted {
+            pose: self.pose,
+            covariance: tightened(with_map_error(self.covariance.0)),
+            score: self.score,
+            off: 0.0,
+        }
+    }
+}
+
+/// A covariance whose position has no longer axis than [`LOOSEST_M`].
+fn tightened(covariance: Matrix3<f64>) -> Matrix3<f64> {
+    let position = covariance.fixed_view::<2, 2>(0, 0).into_owned();
+    let SymmetricEigen {
+        eigenvectors,
+        eigenvalues,
+    } = position.symmetric_eigen();
+    let share = eigenvalues.map(|v| (LOOSEST_M / v.max(1e-12).sqrt()).min(1.0));
+    let squeeze =
+        eigenvectors * nalgebra::Matrix2::from_diagonal(&share) * eigenvectors.transpose();
+    let mut all = Rotation2::identity().to_homogeneous();
+    all.fixed_view_mut::<2, 2>(0, 0).copy_from(&squeeze);
+    all * covariance * all.transpose()
+}
+
+/// A place that is kept.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(super) struct Place {
+    /// Which it is; two that meet become one.
+    pub id: u32,
+    pub pose: Pose,
+    pub covariance: Matrix3<f64>,
+    /// How much speaks for it, natural logarithm of odds; that of the best is
+    /// subtracted at each key scan.
+    pub log_weight: f64,
+    /// Key scans that it has been kept for, the first included.
+    pub age: u32,
+    /// Of the scores at its last key scans.
+    pub mean: f64,
+    /// The score of the last scan.
+    pub last: f64,
+    /// Key scans in a row that hardly fit there.
+    pub bad: u32,
+    /// What it was found to be at this scan, and from where it was predicted.
+    pub predicted: (Pose, Matrix3<f64>),
+    pub off: f64,
+}
+
+/// A mean is over so many key scans.
+const MEAN_OVER: u32 = 8;
+
+impl Place {
+    pub(super) fn born(id: u32, found: &Fitted, log_weight: f64) -> Self {
+        Place {
+            id,
+            pose: found.pose,
+            covariance: found.covariance,
+            log_weight,
+            age: 1,
+            mean: found.score,
+            last: found.score,
+            bad: 0,
+            predicted: (found.pose, found.covariance),
+            off: 0.0,
+        }
+    }
+
+    pub(super) fn set(&mut self, fitted: &Fitted) {
+        self.pose = fitted.pose;
+        self.covariance = fitted.covariance;
+        self.last = fitted.score;
+        self.off = fitted.off;
+    }
+
+    /// Counts the last score as that of a key scan.
+    pub(super) fn grow(&mut self) {
+        let before = f64::from(self.age.min(MEAN_OVER));
+        self.mean = (self.mean * before + self.last) / (before + 1.0);
+        self.age += 1;
+    }
+}

@@ -1,0 +1,324 @@
+//! The places that are kept, and how a key scan weighs them.
+
+use geometry::Pose;
+use nalgebra::{Matrix3, Vector3};
+
+use super::TrackingConfig;
+use super::place::{Candidate, Place};
+use super::seen::{Fitted, Seen, information, squared_deviations};
+use super::verdict::Belief;
+use super::way::Way;
+
+/// Most places that are kept, and how many of them may be older than one key scan:
+/// the rest is room for new ones.
+const MOST: usize = 32;
+const MOST_OLD: usize = 20;
+
+/// A difference of scores, against what the best lacks of a perfect one, is worth a
+/// factor of e, as for the single scan (`--lead-scale`).
+const LEAD_SCALE: f64 = 0.025;
+
+/// A place so far behind the best is dropped, natural logarithm of odds.
+pub(super) const FARTHEST_BEHIND: f64 = 20.0;
+
+/// A candidate confirms a place whose prediction lies within four deviations.
+const GATE: f64 = 16.0;
+
+/// What a search adds to the deviations of a prediction in the gate: half its cell and
+/// heading, and the steps of its fit.
+const GATE_M: f64 = 0.1;
+const GATE_RADIANS: f64 = 2.0 * std::f64::consts::PI / 180.0;
+
+/// A candidate in the gate that scores better by so much, and by so much a squared
+/// deviation, is where the place is.
+const SNAP: f64 = 0.02;
+const SNAP_BY_DEVIATION: f64 = 0.01;
+
+/// Fits that come so close are of one place: as candidates of a search are told apart.
+const SAME_M: f64 = 0.3;
+const SAME_RADIANS: f64 = 6.5 * std::f64::consts::PI / 180.0;
+
+/// Places that come so close are one.
+const MERGED_M: f64 = 0.25;
+const MERGED_RADIANS: f64 = 5.0 * std::f64::consts::PI / 180.0;
+
+/// A scan this far below the best, or below the least, does not fit at a place; after
+/// two such key scans it is dropped.
+const JUNK_BEHIND: f64 = 0.4;
+const JUNK_SCORE: f64 = 0.35;
+const JUNK_SCANS: u32 = 2;
+
+/// Where odometry slips, the robot is this near to where it should be.
+pub(super) const NEAR_M: f64 = 1.5;
+const SLIP_RADIANS: f64 = 100.0 * std::f64::consts::PI / 180.0;
+
+/// There the scan has to fit nearly as well as the scans before.
+const SLIP_FALL: f64 = 0.15;
+const SLIP_BEHIND: f64 = 0.1;
+
+/// The places where the robot may be.
+#[derive(Debug, Clone)]
+pub(super) struct Places {
+    config: TrackingConfig,
+    kept: Vec<Place>,
+    candidates: Vec<Fitted>,
+    /// Which of them are at places that are kept.
+    is_known: Vec<bool>,
+    next_id: u32,
+    key_scans: u32,
+}
+
+impl Places {
+    pub(super) fn new(config: TrackingConfig) -> Self {
+        Places {
+            config,
+            kept: Vec::new(),
+            candidates: Vec::new(),
+            is_known: Vec::new(),
+            next_id: 0,
+            key_scans: 0,
+        }
+    }
+
+    pub(super) fn is_empty(&self) -> bool {
+        self.kept.is_empty()
+    }
+
+    /// Best first.
+    pub(super) fn all(&self) -> &[Place] {
+        &self.kept
+    }
+
+    pub(super) fn get(&self, id: u32) -> Option<&Place> {
+        self.kept.iter().find(|place| place.id == id)
+    }
+
+    /// Keeps one place, at which a scan was taken.
+    pub(super) fn start_at(&mut self, seen: &Seen<'_>, predicted: (Pose, Matrix3<f64>)) -> u32 {
+        let fitted = seen.settle(predicted);
+        let id = self.new_id();
+        // Old enough to lead.
+        let age = 2;
+        self.kept = vec![Place {
+            age,
+            ..Place::born(id, &fitted, 0.0)
+        }];
+        self.key_scans = age;
+        id
+    }
+
+    fn new_id(&mut self) -> u32 {
+        self.next_id += 1;
+        self.next_id
+    }
+
+    /// Moves one place by a way, and fits the scan there.
+    pub(super) fn follow(&mut self, id: u32, seen: &Seen<'_>, way: &Way) {
+        let TrackingConfig {
+            odometry_error,
+            restart_fall,
+            ..
+        } = self.config;
+        let Some(place) = self.kept.iter_mut().find(|place| place.id == id) else {
+            return;
+        };
+        let predicted = way.predict((place.pose, place.covariance), odometry_error);
+        let mut fitted = seen.settle(predicted);
+        if fitted.score < place.mean - restart_fall {
+            fitted = seen.settle_turned(predicted, fitted);
+        }
+        place.predicted = predicted;
+        place.set(&fitted);
+    }
+
+    /// Takes what a search found for the scan.
+    pub(super) fn take(&mut self, found: &[Candidate]) {
+        self.candidates.clear();
+        self.candidates.extend(found.iter().map(Candidate::fitted));
+    }
+
+    /// Takes what a search found for an earlier scan, from where the robot has gone a
+    /// way since.
+    pub(super) fn take_ahead(&mut self, seen: &Seen<'_>, way: &Way, found: &[Candidate]) {
+        let noise = self.config.odometry_error;
+        self.candidates.clear();
+        self.candidates.extend(found.iter().map(|candidate| {
+            let Fitted {
+                pose, covariance, ..
+            } = candidate.fitted();
+            seen.settle(way.predict((pose, covariance), noise))
+        }));
+    }
+
+    /// Weighs all places by a key scan, and those that were taken with them; those
+    /// that are not believed have gone `way` since the last one.
+    pub(super) fn weigh(&mut self, seen: &Seen<'_>, way: &Way, belief: &mut Belief) {
+        let noise = self.config.odometry_error;
+        for place in &mut self.kept {
+            if belief.place() != Some(place.id) {
+                place.predicted = way.predict((place.pose, place.covariance), noise);
+                place.set(&seen.settle(place.predicted));
+            }
+        }
+        self.snap();
+        let best = self.best_score();
+        let fits_badly = belief
+            .place()
+            .and_then(|id| self.get(id))
+            .is_some_and(|p| belief.is_doubtful_at(p));
+        self.count(best);
+        let born = self.kept.len();
+        self.add_new(best, belief, fits_badly);
+        if fits_badly {
+            self.follow_slip(best, born, belief);
+        }
+        self.candidates.clear();
+        self.key_scans += 1;
+        self.tidy(belief);
+    }
+
+    /// Moves places to candidates that confirm them and fit better.
+    fn snap(&mut self) {
+        let more = Vector3::new(GATE_M, GATE_M, GATE_RADIANS).map(|d| d * d);
+        for place in &mut self.kept {
+            let (pose, covariance) = place.predicted;
+            let known = information(&(covariance + Matrix3::from_diagonal(&more)));
+            let mut best: Option<(f64, f64, &Fitted)> = None;
+            for candidate in &self.candidates {
+                let off = squared_deviations(candidate.pose, pose, &known);
+                let worth = candidate.score - SNAP_BY_DEVIATION * off;
+                if off < GATE && best.is_none_or(|(most, _, _)| worth > most) {
+                    best = Some((worth, off, candidate));
+                }
+            }
+            if let Some((worth, off, candidate)) = best
+                && worth > place.last + SNAP
+            {
+                place.set(&Fitted { off, ..*candidate });
+            }
+        }
+        let places = &self.kept;
+        self.is_known.clear();
+        self.is_known
+            .extend(self.candidates.iter().map(|candidate| {
+                let at = |place: &Place| place.pose.is_within(candidate.pose, SAME_M, SAME_RADIANS);
+                places.iter().any(at)
+            }));
+    }
+
+    fn best_score(&self) -> f64 {
+        let places = self.kept.iter().map(|place| place.last);
+        let candidates = self.candidates.iter().map(|candidate| candidate.score);
+        places.chain(candidates).fold(0.0, f64::max)
+    }
+
+    /// What a key scan says against a place with a score.
+    fn against(&self, best: f64, score: f64) -> f64 {
+        let behind = (best - score) / (1.1 - best).sqrt() / LEAD_SCALE;
+        behind.min(self.config.scan_cap)
+    }
+
+    fn count(&mut self, best: f64) {
+        let top = self.top_weight();
+        for i in 0..self.kept.len() {
+            let against = self.against(best, self.kept[i].last);
+            let place = &mut self.kept[i];
+            place.log_weight += -top - against - 0.25 * place.off.min(GATE);
+            let is_bad = place.last < JUNK_SCORE.max(best - JUNK_BEHIND);
+            place.bad = if is_bad { place.bad + 1 } else { 0 };
+            place.grow();
+        }
+    }
+
+    fn top_weight(&self) -> f64 {
+        let weights = self.kept.iter().map(|place| place.log_weight);
+        weights.fold(f64::NEG_INFINITY, f64::max)
+    }
+
+    /// Adds the candidates that are at no place that is kept.
+    fn add_new(&mut self, best: f64, belief: &Belief, fits_badly: bool) {
+        let tracked = belief
+            .place()
+            .and_then(|id| self.get(id))
+            .map(|p| p.predicted.0);
+        let is_first = self.key_scans == 0;
+        for i in 0..self.candidates.len() {
+            if self.is_known[i] {
+                continue;
+            }
+            let found = self.candidates[i];
+            let far = match tracked {
+                _ if is_first => 0.0,
+                Some(_) if !fits_badly => self.config.newborn_lag_unique,
+                _ => self.config.newborn_lag,
+            };
+            let is_near = tracked.is_some_and(|pose| pose.distance_to(found.pose) <= NEAR_M);
+            let lag = match is_near {
+                true => far.min(self.config.newborn_lag_near),
+                false => far,
+            };
+            let log_weight = -self.against(best, found.score) - lag;
+            let id = self.new_id();
+            self.kept.push(Place::born(id, &found, log_weight));
+        }
+    }
+
+    /// Where the scan fits badly at the place that is believed, and well beside it,
+    /// odometry has slipped, and the robot is there.
+    fn follow_slip(&mut self, best: f64, born: usize, belief: &mut Belief) {
+        let Some(tracked) = belief.place().and_then(|id| self.get(id)).copied() else {
+            return;
+        };
+        let least = self
+            .config
+            .least_mean
+            .max(tracked.mean - SLIP_FALL)
+            .max(best - SLIP_BEHIND);
+        let scan_cap = self.config.scan_cap;
+        let is_slip = |place: &&mut Place| {
+            let pose = tracked.predicted.0;
+            place.last >= least && place.pose.is_within(pose, NEAR_M, SLIP_RADIANS)
+        };
+        let beside = self.kept[born..].iter_mut().filter(is_slip);
+        if let Some(place) = beside.reduce(|a, b| if b.last > a.last { b } else { a }) {
+            place.log_weight = place.log_weight.max(tracked.log_weight + scan_cap);
+            place.age = tracked.age;
+            place.mean = 0.9 * tracked.mean + 0.1 * place.last;
+            belief.slip(place.id, tracked.predicted.0.angle_to(place.pose));
+        }
+    }
+
+    /// Best first; drops what does not fit, lies too far behind, or has met another
+    /// place, and what there is no room for.
+    fn tidy(&mut self, belief: &mut Belief) {
+        // Ids grow: of equal places the older comes first.
+        self.kept.sort_unstable_by(|a, b| {
+            let by_weight = b.log_weight.total_cmp(&a.log_weight);
+            by_weight.then(a.id.cmp(&b.id))
+        });
+        let Some(top) = self.kept.first().map(|place| place.log_weight) else {
+            return;
+        };
+        let (mut count, mut old) = (0, 0);
+        for i in 0..self.kept.len() {
+            let place = self.kept[i];
+            let is_full = count == MOST || (place.age > 1 && old >= MOST_OLD);
+            if place.bad >= JUNK_SCANS || is_full || place.log_weight < top - FARTHEST_BEHIND {
+                continue;
+            }
+            let met = self.kept[..count]
+                .iter()
+                .find(|other| other.pose.is_within(place.pose, MERGED_M, MERGED_RADIANS));
+            if let Some(other) = met {
+                if belief.place() == Some(place.id) {
+                    belief.believe(other.id);
+                }
+                continue;
+            }
+            self.kept[count] = place;
+            count += 1;
+            old += usize::from(place.age > 1);
+        }
+        self.kept.truncate(count);
+    }
+}

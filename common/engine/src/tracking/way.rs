@@ -1,0 +1,72 @@
+//! The way that odometry tells, and how far it may be wrong.
+
+use geometry::Pose;
+use nalgebra::{Matrix3, Vector3};
+
+/// A way of several steps.
+#[derive(Debug, Clone, Copy, PartialEq, Default)]
+pub(super) struct Way {
+    /// From its start to its end.
+    pub step: Pose,
+    /// Metres along it.
+    pub path_m: f64,
+    /// Radians turned along it, to either side.
+    pub turned: f64,
+    /// Whether a step of it is not known; the robot is then taken to have stood.
+    pub has_hole: bool,
+}
+
+/// Standard deviations of odometry: at rest, for stamps that differ from the scans',
+/// metres and radians; by the metre, metres and radians; by the radian, radians.
+/// About the 95th percentile of what the odometry of eight robots drifted by over
+/// 5 m: 0.01 to 0.30 m/m and 0.2 to 4.9 degrees/m.
+const AT_REST_M: f64 = 0.05;
+const AT_REST: f64 = 1.5 * std::f64::consts::PI / 180.0;
+const PER_METRE_M: f64 = 0.15;
+const PER_METRE: f64 = 3.5 * std::f64::consts::PI / 180.0;
+const PER_RADIAN: f64 = 0.15;
+
+/// The same where a step is not known: what a robot may move between two scans.
+const UNKNOWN_M: f64 = 0.4;
+const UNKNOWN: f64 = 30.0 * std::f64::consts::PI / 180.0;
+
+impl Way {
+    /// Goes on by a step, if that is known.
+    pub(super) fn add(&mut self, step: Option<Pose>) {
+        let Some(step) = step else {
+            self.has_hole = true;
+            return;
+        };
+        self.step = self.step.then(step);
+        self.path_m += step.x.hypot(step.y);
+        self.turned += step.yaw.abs();
+    }
+
+    /// Straight from start to end, metres.
+    pub(super) fn distance_m(&self) -> f64 {
+        self.step.x.hypot(self.step.y)
+    }
+
+    /// Where a pose and its covariance, in the map, are after the way, whose standard
+    /// deviations are scaled by `noise`.
+    pub(super) fn predict(
+        &self,
+        (pose, covariance): (Pose, Matrix3<f64>),
+        noise: f64,
+    ) -> (Pose, Matrix3<f64>) {
+        let predicted = pose.then(self.step);
+        let (dx, dy) = (predicted.x - pose.x, predicted.y - pose.y);
+        let jacobian = Matrix3::new(1.0, 0.0, -dy, 0.0, 1.0, dx, 0.0, 0.0, 1.0);
+        let carried = jacobian * covariance * jacobian.transpose();
+        (predicted, carried + self.error(noise))
+    }
+
+    fn error(&self, noise: f64) -> Matrix3<f64> {
+        let hole = if self.has_hole { 1.0 } else { 0.0 };
+        let squares = |deviations: [f64; 3]| deviations.iter().map(|d| (noise * d).powi(2)).sum();
+        let position: f64 = squares([AT_REST_M, PER_METRE_M * self.path_m, hole * UNKNOWN_M]);
+        let heading: f64 = squares([AT_REST, PER_RADIAN * self.turned, PER_METRE * self.path_m])
+            + (hole * noise * UNKNOWN).powi(2);
+        Matrix3::from_diagonal(&Vector3::new(position, position, heading))
+    }
+}

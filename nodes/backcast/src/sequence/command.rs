@@ -1,0 +1,118 @@
+//! Reads drives, evaluates them one by one, and prints.
+
+use std::path::{Path, PathBuf};
+use std::process::ExitCode;
+
+use engine::tracking::TrackingConfig;
+use map::OccupancyGrid;
+
+use super::figures::Figures;
+use super::{drive, follow, jumps, starts};
+use crate::offline::{Accepted, Options, Progress, Session, damage_of, say};
+use crate::{BackcastError, stdout};
+
+/// What `backcast evaluate --sequence` takes in addition.
+#[derive(Debug, Clone, clap::Args)]
+#[command(next_help_heading = "Sequences")]
+pub(crate) struct SequenceOptions {
+    /// Follow the pose over each recording with the tracker, started at many scans, put
+    /// elsewhere, and over the whole
+    #[arg(long)]
+    pub(crate) sequence: bool,
+
+    /// Starts, spread over the recording, 1..=1000
+    #[arg(long, value_name = "COUNT", default_value_t = 80, value_parser = clap::value_parser!(u32).range(1..=1000))]
+    pub(crate) starts: u32,
+
+    /// Times that the robot is put elsewhere, 0..=1000
+    #[arg(long, value_name = "COUNT", default_value_t = 20, value_parser = clap::value_parser!(u32).range(0..=1000))]
+    pub(crate) kidnaps: u32,
+
+    /// Leave the odometry out
+    #[arg(long)]
+    pub(crate) without_odometry: bool,
+
+    /// Make the errors of odometry, against the truth, so many times as large
+    #[arg(long, value_name = "FACTOR", default_value_t = 1.0)]
+    pub(crate) odometry_noise: f64,
+
+    /// Truths that are known to be wrong, by the numbers of their scans from 0
+    #[arg(long, value_name = "N,N", value_delimiter = ',')]
+    pub(crate) ignore_truth: Vec<u64>,
+
+    #[command(flatten)]
+    pub(crate) tracking: TrackingConfig,
+}
+
+/// Evaluates one file after another. A file that cannot be evaluated is told on
+/// standard error, and the next one follows.
+///
+/// # Errors
+/// Output cannot be written.
+pub(crate) fn evaluate(
+    bags: &[PathBuf],
+    json: bool,
+    map: Option<&OccupancyGrid>,
+    (options, sequence): (&Options, &SequenceOptions),
+) -> Result<ExitCode, BackcastError> {
+    let mut code = ExitCode::SUCCESS;
+    for bag in bags {
+        match one(bag, map, options, sequence) {
+            Ok(figures) if json => stdout::print(&format!("{}\n", figures.json()))?,
+            Ok(figures) => stdout::print(&figures.text())?,
+            Err(error) => {
+                say(&transport::with_causes(&error));
+                code = ExitCode::FAILURE;
+            }
+        }
+    }
+    Ok(code)
+}
+
+fn one(
+    bag: &Path,
+    map: Option<&OccupancyGrid>,
+    options: &Options,
+    sequence: &SequenceOptions,
+) -> Result<Figures, BackcastError> {
+    let recording = options.open(&[bag.to_owned()])?;
+    if let Some(damage) = damage_of(&recording) {
+        return Err(damage.into());
+    }
+    let truths = recording.ground_truths()?;
+    if truths.is_empty() {
+        return Err(BackcastError::NoTruths { file: bag.into() });
+    }
+    let mut session = Session::open(&recording, options, map)?;
+    let name = bag.display().to_string();
+    let progress = Progress::new(&name, session.scans.total());
+    let mut accepted = Accepted::default();
+    let moments = drive::read(&mut session, &truths, sequence, (&progress, &mut accepted))?;
+    accepted.check(bag)?;
+    let (world, config) = (session.world()?, sequence.tracking);
+    let chosen = starts::choose(&moments, sequence.starts);
+    let starts = starts::evaluate(world, &moments, &chosen, config)?;
+    let followed = follow::evaluate(world, &moments, config)?;
+    let chosen = jumps::choose(&moments, sequence.kidnaps);
+    let jumps = jumps::evaluate(world, &moments, &chosen, config)?;
+    for (start, scan, off_m) in &starts.wrong {
+        progress.say(&format!(
+            "{name}: started at scan {start}, Unique and {off_m:.1} m off at scan {scan}"
+        ));
+    }
+    let lost: Vec<String> = followed.losses.iter().map(ToString::to_string).collect();
+    if !lost.is_empty() {
+        progress.say(&format!("{name}: lost at scans {}", lost.join(", ")));
+    }
+    for (from, to) in &jumps.wrong {
+        progress.say(&format!(
+            "{name}: put from scan {from} to {to}, Unique and wrong"
+        ));
+    }
+    let searching_ms = moments.iter().map(|moment| moment.search_ms);
+    Ok(Figures::new(
+        name,
+        (&starts, &followed, &jumps),
+        searching_ms,
+    ))
+}

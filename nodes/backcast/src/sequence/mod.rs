@@ -1,0 +1,13 @@
+//! `backcast evaluate --sequence`: how the tracker does on a drive whose true poses are
+//! known. It starts at many scans of the drive, follows the whole of it, and is put
+//! elsewhere; see docs/tracking.md.
+
+mod command;
+mod drive;
+mod figures;
+mod follow;
+mod jumps;
+mod run;
+mod starts;
+
+pub(crate) use command::{SequenceOptions, evaluate};
