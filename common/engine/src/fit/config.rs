@@ -21,6 +21,11 @@ pub struct FitConfig {
     /// it passes through an obstacle there.
     #[arg(long, value_name = "SHARE", default_value_t = 0.3, value_parser = parse_share)]
     pub unknown_score: f64,
+    /// A map that is drawn leaves out what its author did not know: so much the true
+    /// place may score worse there than another, 0..=1. A map counts as drawn by how
+    /// straight its walls are.
+    #[arg(long, value_name = "SCORE", default_value_t = 0.15, value_parser = parse_share)]
+    pub drawn_doubt: f64,
 }
 
 fn parse_cells(text: &str) -> Result<f64, String> {
@@ -34,6 +39,7 @@ impl Default for FitConfig {
             fit_sigma_cells: 2.0,
             through_penalty: 0.15,
             unknown_score: 0.3,
+            drawn_doubt: 0.15,
         }
     }
 }

@@ -16,6 +16,7 @@
 mod agreement;
 mod config;
 pub(crate) mod distance;
+mod drawing;
 #[cfg(test)]
 mod drawn;
 mod ends;

@@ -1,7 +1,7 @@
 //! A map as the second stage reads it: how far from obstacles a point is, and
 //! what a ray meets on its way.
 
-use super::distance;
+use super::{FitConfig, distance, drawing};
 use crate::EngineError;
 use crate::grid::{Cell, CellRules, Grid, GridFrame};
 
@@ -16,6 +16,8 @@ pub struct Terrain {
     to_occupied: Vec<f32>,
     /// To the nearest unknown cell, whole cells, 255 for more.
     to_unknown: Vec<u8>,
+    /// How far the map is a drawing, 0..=1.
+    drawn_share: f64,
 }
 
 /// What a ray meets, in cells from where it starts.
@@ -61,7 +63,15 @@ impl Terrain {
             height,
             to_occupied: distance::transform(width, height, |i| cells[i] == Cell::Occupied),
             to_unknown: to_unknown.into_iter().map(|cells| cells as u8).collect(),
+            drawn_share: drawing::share(&grid, frame.resolution_m),
         })
+    }
+
+    /// What the map may leave out of the score of the true place, 0..=1: nothing where
+    /// it was measured.
+    #[must_use]
+    pub fn left_out(&self, config: &FitConfig) -> f64 {
+        self.drawn_share * config.drawn_doubt
     }
 
     /// Distance of a point to the nearest occupied cell, and how it grows along

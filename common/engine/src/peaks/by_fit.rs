@@ -58,7 +58,8 @@ impl Workspace {
             let apart = PIECE_SIGMAS * config.fit.sigma_cells(resolution) * resolution;
             let scan = (ends.effective_beams(), ends.effective_pieces(apart));
             let needed = config.needed_lead((best.score, through), scan);
-            found.judge_by_fit((best.score, needed), &mut self.leads, config);
+            let left_out = lead(best.score, best.score - terrain.left_out(&config.fit));
+            found.judge_by_fit((best.score, needed, left_out), &mut self.leads, config);
         }
         &self.places
     }
@@ -66,19 +67,25 @@ impl Workspace {
 
 impl Places {
     /// What the scores of the places allow to say, where the best one needs such a
-    /// lead to stand alone; keeps as many as are wanted.
+    /// lead to stand alone, and such a lead may come from what the map leaves out; keeps
+    /// as many as are wanted.
     fn judge_by_fit(
         &mut self,
-        (best, needed): (f64, f64),
+        (best, needed, left_out): (f64, f64, f64),
         leads: &mut Vec<f64>,
         config: &PeakConfig,
     ) {
         let places = &mut self.places;
         leads.clear();
         leads.extend(places.iter().map(|place| lead(best, place.score)));
-        likelihood::assign(places, leads, config);
-        let rivals = leads[1..].iter().filter(|&&lead| lead < needed);
+        let rivals = leads[1..]
+            .iter()
+            .filter(|&&lead| lead < needed.max(left_out));
         self.alternatives = rivals.count() as u32;
+        for lead in leads.iter_mut() {
+            *lead = (*lead - left_out).max(0.0);
+        }
+        likelihood::assign(places, leads, config);
         self.verdict = match () {
             () if best < config.least_score => Verdict::PoorFit,
             () if self.alternatives > 0 => Verdict::Ambiguous,

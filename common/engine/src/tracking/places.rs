@@ -56,6 +56,15 @@ const SLIP_RADIANS: f64 = 100.0 * std::f64::consts::PI / 180.0;
 const SLIP_FALL: f64 = 0.15;
 const SLIP_BEHIND: f64 = 0.1;
 
+/// What a key scan is measured by.
+#[derive(Debug, Clone, Copy)]
+struct Best {
+    /// The highest score of any place.
+    score: f64,
+    /// What the true place may lack of it, for the map leaves it out.
+    left_out: f64,
+}
+
 /// The places where the robot may be.
 #[derive(Debug, Clone)]
 pub(super) struct Places {
@@ -161,7 +170,10 @@ impl Places {
             }
         }
         self.snap();
-        let best = self.best_score();
+        let best = Best {
+            score: self.best_score(),
+            left_out: seen.terrain.left_out(seen.fit),
+        };
         let fits_badly = belief
             .place()
             .and_then(|id| self.get(id))
@@ -212,19 +224,21 @@ impl Places {
         places.chain(candidates).fold(0.0, f64::max)
     }
 
-    /// What a key scan says against a place with a score.
-    fn against(&self, best: f64, score: f64) -> f64 {
-        let behind = (best - score) / (1.1 - best).sqrt() / LEAD_SCALE;
-        behind.min(self.config.scan_cap)
+    /// What a key scan says against a place with a score. What the map may leave out
+    /// says nothing.
+    fn against(&self, best: Best, score: f64) -> f64 {
+        let behind = (best.score - best.left_out - score).max(0.0);
+        let lead = behind / (1.1 - best.score).sqrt() / LEAD_SCALE;
+        lead.min(self.config.scan_cap)
     }
 
-    fn count(&mut self, best: f64) {
+    fn count(&mut self, best: Best) {
         let top = self.top_weight();
         for i in 0..self.kept.len() {
             let against = self.against(best, self.kept[i].last);
             let place = &mut self.kept[i];
             place.log_weight += -top - against - 0.25 * place.off.min(GATE);
-            let is_bad = place.last < JUNK_SCORE.max(best - JUNK_BEHIND);
+            let is_bad = place.last < JUNK_SCORE.max(best.score - JUNK_BEHIND);
             place.bad = if is_bad { place.bad + 1 } else { 0 };
             place.grow();
         }
@@ -236,7 +250,7 @@ impl Places {
     }
 
     /// Adds the candidates that are at no place that is kept.
-    fn add_new(&mut self, best: f64, belief: &Belief, fits_badly: bool) {
+    fn add_new(&mut self, best: Best, belief: &Belief, fits_badly: bool) {
         let tracked = belief
             .place()
             .and_then(|id| self.get(id))
@@ -265,7 +279,7 @@ impl Places {
 
     /// Where the scan fits badly at the place that is believed, and well beside it,
     /// odometry has slipped, and the robot is there.
-    fn follow_slip(&mut self, best: f64, born: usize, belief: &mut Belief) {
+    fn follow_slip(&mut self, best: Best, born: usize, belief: &mut Belief) {
         let Some(tracked) = belief.place().and_then(|id| self.get(id)).copied() else {
             return;
         };
@@ -273,7 +287,7 @@ impl Places {
             .config
             .least_mean
             .max(tracked.mean - SLIP_FALL)
-            .max(best - SLIP_BEHIND);
+            .max(best.score - SLIP_BEHIND);
         let scan_cap = self.config.scan_cap;
         let is_slip = |place: &&mut Place| {
             let pose = tracked.predicted.0;
