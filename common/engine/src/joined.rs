@@ -28,7 +28,8 @@ const ODOMETRY_KEPT: usize = 1024;
 pub struct Joiner {
     config: JoinConfig,
     motion: Motion,
-    /// The frame that the odometry is about.
+    /// The frame of the odometry, and the one that it is about.
+    odom_frame: FrameName,
     child_frame: FrameName,
     /// In the order in which they are configured; one where none are.
     lasers: Vec<Laser>,
@@ -125,6 +126,84 @@ impl Brought {
     }
 }
 
+/// The scans of an answer, kept for later.
+#[derive(Debug, Clone, PartialEq, Default)]
+pub struct Kept {
+    scans: Vec<KeptScan>,
+    is_carried: bool,
+}
+
+/// One of them, and where its laser was at each beam.
+#[derive(Debug, Clone, PartialEq)]
+struct KeptScan {
+    angle_min: f64,
+    angle_increment: f64,
+    range_min_m: f32,
+    range_max_m: f32,
+    ranges: Vec<f32>,
+    sought_from_laser: Vec<Pose>,
+}
+
+impl KeptScan {
+    fn of(scan: &crate::scan::Scan<'_>, sought_from_laser: &[Pose]) -> Self {
+        KeptScan {
+            angle_min: scan.angle_min,
+            angle_increment: scan.angle_increment,
+            range_min_m: scan.range_min_m,
+            range_max_m: scan.range_max_m,
+            ranges: scan.ranges.to_vec(),
+            sought_from_laser: sought_from_laser.to_vec(),
+        }
+    }
+
+    fn scan(&self) -> crate::scan::Scan<'_> {
+        crate::scan::Scan {
+            angle_min: self.angle_min,
+            angle_increment: self.angle_increment,
+            range_min_m: self.range_min_m,
+            range_max_m: self.range_max_m,
+            ranges: &self.ranges,
+        }
+    }
+}
+
+impl Kept {
+    /// Copies what was seen.
+    #[must_use]
+    pub fn of(seen: &Seen<'_>) -> Self {
+        match seen {
+            Seen::Still(scan) => Kept {
+                scans: vec![KeptScan::of(scan, &[])],
+                is_carried: false,
+            },
+            Seen::Carried(scans) => Kept {
+                scans: scans
+                    .iter()
+                    .map(|carried| KeptScan::of(&carried.scan, carried.sought_from_laser))
+                    .collect(),
+                is_carried: true,
+            },
+        }
+    }
+
+    /// What was seen; nothing where nothing is kept.
+    #[must_use]
+    pub fn seen(&self) -> Seen<'_> {
+        match &self.scans[..] {
+            [one] if !self.is_carried => Seen::Still(one.scan()),
+            scans => Seen::Carried(
+                scans
+                    .iter()
+                    .map(|kept| CarriedScan {
+                        scan: kept.scan(),
+                        sought_from_laser: &kept.sought_from_laser,
+                    })
+                    .collect(),
+            ),
+        }
+    }
+}
+
 impl Seen<'_> {
     /// What is to be looked for.
     #[must_use]
@@ -149,6 +228,7 @@ impl Joiner {
         };
         Joiner {
             motion: Motion::keeping(ODOMETRY_KEPT),
+            odom_frame: FrameName::new(""),
             child_frame: FrameName::new(""),
             used: Vec::with_capacity(lasers.len()),
             is_carried: false,
@@ -187,6 +267,7 @@ impl Joiner {
             .stamp
             .measured_ns
             .saturating_add(self.config.motion.delay_ns());
+        self.odom_frame = odometry.frame;
         self.child_frame = odometry.child_frame;
         self.motion.add(stamp_ns, odometry.odom_from_child.into());
     }
@@ -295,11 +376,7 @@ impl Joiner {
     fn carry(&mut self, index: usize) -> MotionKnown {
         let sought_ns = self.lasers[0].middle_ns();
         let child_from_base = self.child_from_base();
-        let first_mount = self.lasers[0].base_from_laser();
-        let child_from_sought = match self.seeks_base() {
-            true => child_from_base,
-            false => child_from_base.then(first_mount),
-        };
+        let child_from_sought = self.child_from_sought();
         let child_from_laser = child_from_base.then(self.lasers[index].base_from_laser());
         let still = child_from_sought.inverse().then(child_from_laser);
         let laser = &mut self.lasers[index];
@@ -344,13 +421,36 @@ impl Joiner {
     /// was half measured, see [`Motion::until`].
     #[must_use]
     pub fn odom_from_sought(&self) -> Option<Pose> {
+        let odom_from_child = self.motion.until(self.lasers[0].middle_ns())?;
+        Some(odom_from_child.then(self.child_from_sought()))
+    }
+
+    /// Where the sought frame was by the newest odometry.
+    #[must_use]
+    pub fn newest_odom_from_sought(&self) -> Option<Pose> {
+        let odom_from_child = self.motion.until(self.motion.newest_ns()?)?;
+        Some(odom_from_child.then(self.child_from_sought()))
+    }
+
+    /// The frame of the odometry; empty before the first.
+    #[must_use]
+    pub fn odom_frame(&self) -> FrameName {
+        self.odom_frame
+    }
+
+    /// Where the first laser sits on the base, if its newest scan says so.
+    #[must_use]
+    pub fn base_from_laser(&self) -> Option<Pose> {
+        let first = &self.lasers[0];
+        first.is_mounted().then(|| first.base_from_laser())
+    }
+
+    fn child_from_sought(&self) -> Pose {
         let child_from_base = self.child_from_base();
-        let child_from_sought = match self.seeks_base() {
+        match self.seeks_base() {
             true => child_from_base,
             false => child_from_base.then(self.lasers[0].base_from_laser()),
-        };
-        let odom_from_child = self.motion.until(self.lasers[0].middle_ns())?;
-        Some(odom_from_child.then(child_from_sought))
+        }
     }
 
     /// What the last [`Joiner::bring`] brought together.

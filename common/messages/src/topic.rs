@@ -5,8 +5,9 @@ use iceoryx2_bb_elementary_traits::zero_copy_send::ZeroCopySend;
 
 use crate::{
     AttentionHeader, Beam, BeamsHeader, BoundaryCell, BoundaryHeader, Corner, FieldHeader,
-    GroundTruth, HealthHeader, HypothesesHeader, Hypothesis, LogHeader, MapHeader, Odometry,
-    PoseHeader, Reading, ReadingsHeader, RegionHeader, SaveHeader, ScanHeader, Vote, VotesHeader,
+    GroundTruth, HealthHeader, HypothesesHeader, Hypothesis, InitialPose, LogHeader, MapHeader,
+    Odometry, PoseHeader, Reading, ReadingsHeader, RegionHeader, SaveHeader, ScanHeader, Vote,
+    VotesHeader,
 };
 
 /// Plain data that one process may write and another may read in place.
@@ -82,6 +83,8 @@ topics! {
     Tracked = "pose", PoseHeader, [u8] { depth: 16 };
     /// Scans that the tracker wants searched; no items.
     Attention = "attention", AttentionHeader, [u8] { depth: 16 };
+    /// Where the robot is said to be; no items.
+    InitialPoseTopic = "initial_pose", InitialPose, [u8];
     /// What became of each beam at the best pose.
     Beams = "beams", BeamsHeader, [Beam];
     /// The true pose of a scan, where a recording holds it; no items.

@@ -75,6 +75,7 @@ round_trips! {
     hypotheses_arrive: topic::Hypotheses,
     poses_arrive: topic::Tracked,
     attention_arrives: topic::Attention,
+    initial_poses_arrive: topic::InitialPoseTopic,
     beams_arrive: topic::Beams,
     ground_truth_arrives: topic::GroundTruthTopic,
     regions_arrive: topic::Region,

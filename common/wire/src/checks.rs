@@ -7,9 +7,10 @@
 
 use messages::{
     AttentionHeader, Beam, BeamsHeader, BoundaryCell, BoundaryHeader, Corner, FieldHeader,
-    FieldKind, GroundTruth, HealthHeader, HypothesesHeader, Hypothesis, LogHeader, LogLevel,
-    MapHeader, NodeState, Odometry, Pose2, PoseHeader, Reading, ReadingsHeader, RegionHeader,
-    SaveHeader, ScanHeader, Topic, TrackReason, TrackState, Verdict, Vote, VotesHeader, topic,
+    FieldKind, GroundTruth, HealthHeader, HypothesesHeader, Hypothesis, InitialPose, LogHeader,
+    LogLevel, MapHeader, NodeState, Odometry, Pose2, PoseHeader, Reading, ReadingsHeader,
+    RegionHeader, SaveHeader, ScanHeader, Topic, TrackReason, TrackState, Verdict, Vote,
+    VotesHeader, topic,
 };
 
 use crate::WireError;
@@ -119,6 +120,15 @@ pub(crate) fn tracked(header: &PoseHeader, words: &[u8]) -> Checked {
 
 pub(crate) fn attention(_: &AttentionHeader, items: &[u8]) -> Checked {
     Refuse::on::<topic::Attention>().unless_count("items", items.len(), 0)
+}
+
+pub(crate) fn initial_pose(header: &InitialPose, items: &[u8]) -> Checked {
+    let refuse = Refuse::on::<topic::InitialPoseTopic>();
+    refuse.unless_pose("map_from_base", header.map_from_base)?;
+    for value in header.covariance {
+        refuse.unless_finite("covariance", value)?;
+    }
+    refuse.unless_count("items", items.len(), 0)
 }
 
 pub(crate) fn beams(header: &BeamsHeader, beams: &[Beam]) -> Checked {

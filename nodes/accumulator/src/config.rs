@@ -31,11 +31,24 @@ pub struct Config {
     #[command(flatten)]
     pub sonar: SonarConfig,
 
+    /// Which scans are searched.
+    #[arg(long, value_enum, default_value_t = Searched::All)]
+    pub search: Searched,
+
     /// Most images on `field` a second, 0.1..=100. They are sent while somebody
     /// subscribes: the intensities of all cells where the heading is known, else
     /// the most that any pose in a block of cells could have.
     #[arg(long, value_name = "HERTZ", default_value_t = 2.0, value_parser = field_rate)]
     pub field_rate: f64,
+}
+
+/// Which scans are searched.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, clap::ValueEnum)]
+pub enum Searched {
+    /// Each as it comes.
+    All,
+    /// Those that `attention` asks for, of the last 64.
+    Asked,
 }
 
 impl Config {
@@ -70,6 +83,12 @@ impl Config {
             return Err(
                 "--scans joins lasers and --sonar-way reads one ring of sonars: \
                         allowed is one of them"
+                    .into(),
+            );
+        }
+        if self.search == Searched::Asked && self.sonar.sonar_way.is_some() {
+            return Err(
+                "--search asked and --sonar-way: a ring of sonars is searched with each scan"
                     .into(),
             );
         }
@@ -137,6 +156,7 @@ mod tests {
         refuse("--headings 100", "multiple of 8");
         refuse("--max-votes 65537", "at most 65536");
         refuse("--scans front,rear --sonar-way 2", "one of them");
+        refuse("--search asked --sonar-way 2", "with each scan");
         refuse("--odometry-delay-s 2", "-1 to 1 seconds");
     }
 }

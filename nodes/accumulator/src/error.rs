@@ -9,6 +9,9 @@ use transport::TransportError;
 /// A scan or a map that is refused, or a failure of the node.
 #[derive(Debug, thiserror::Error)]
 pub enum AccumulatorError {
+    /// A search is asked for of a scan that is not kept.
+    #[error("a search is asked for, but the scan is not among the last 64, or was searched")]
+    NotKept,
     /// The scan came before a map was ready.
     #[error("there is no map yet")]
     NoMap,

@@ -11,6 +11,7 @@ pub mod answer;
 mod background;
 mod config;
 mod error;
+mod kept;
 mod pace;
 pub mod preparation;
 mod run;

@@ -9,14 +9,17 @@ use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, Ordering};
 use std::time::{Duration, Instant};
 
+use bytemuck::Zeroable;
 use engine::fit::Readings;
 use engine::heading::{HeadingSource, History};
-use engine::joined::{JoinConfig, Joiner, Role, Seen};
+use engine::joined::{JoinConfig, Joiner, Kept, Role, Seen};
 use engine::localizer::Workspace;
 use messages::{ScanHeader, Vote, VotesHeader};
 use transport::{Flow, GapCounter, Graph, Health, TransportError, with_causes};
 
 use crate::answer::{self, Answer, Image};
+use crate::config::Searched;
+use crate::kept::{Asked, KeptScan, KeptScans};
 use crate::preparation::PreparedMap;
 use crate::sonar::Sonar;
 use crate::{AccumulatorError, Config};
@@ -51,6 +54,8 @@ pub fn run(graph: &Graph, config: &Config) -> Result<(), AccumulatorError> {
         history: History::keeping(POSES_KEPT),
         joiner: Joiner::new(join_config(config)),
         pending: None,
+        kept: (config.search == Searched::Asked).then(KeptScans::default),
+        recalled: None,
         supply: Supply::new(config.localizer.clone(), config.prior()),
         map: None,
         sonar: config.sonar.window().map(Sonar::new),
@@ -81,6 +86,10 @@ struct Node {
     joiner: Joiner,
     /// A scan that is to be answered, and when it came.
     pending: Option<(ScanHeader, Instant)>,
+    /// The last scans, where only those are searched that somebody asks for.
+    kept: Option<KeptScans>,
+    /// What the scan saw that is searched, where it is one of those.
+    recalled: Option<Kept>,
     supply: Supply,
     map: Option<PreparedMap>,
     /// What scans are read through, where they are those of sonars.
@@ -108,15 +117,53 @@ impl Node {
             // What was sent before the scan has come by now.
             inputs.take_poses(&mut self.joiner, &mut self.history, &mut self.health)?;
             let Some((scan, since)) = self.pending.take() else {
+                if self.answer_asked(inputs)? {
+                    continue;
+                }
                 return Ok(Flow::Continue);
             };
             if self.joiner.lacks_odometry() && since.elapsed() < ODOMETRY_WAIT {
                 self.pending = Some((scan, since));
                 return Ok(Flow::Continue);
             }
-            self.answer(&scan)?;
+            let brought = self.bring(&scan);
+            match (&mut self.kept, brought) {
+                (Some(kept), Ok(lasers)) => kept.keep(&scan, lasers, &self.joiner.seen()),
+                (_, brought) => self.answer(&scan, brought)?,
+            }
         }
         Ok(Flow::Stop)
+    }
+
+    /// Searches the next scan that somebody asks for; whether there was one.
+    fn answer_asked(&mut self, inputs: &Inputs) -> Result<bool, TransportError> {
+        let (Some(kept), Some(attention)) = (&mut self.kept, &inputs.attention) else {
+            return Ok(false);
+        };
+        while let Some(wish) = attention.receive()? {
+            self.health.count_received(1);
+            kept.wish(wish.header().stamp);
+        }
+        match kept.next() {
+            None => return Ok(false),
+            Some(Asked::Search(KeptScan {
+                header,
+                lasers,
+                kept,
+            })) => {
+                self.recalled = Some(kept);
+                self.answer(&header, Ok(lasers))?;
+                self.recalled = None;
+            }
+            Some(Asked::Refuse(stamp)) => {
+                let scan = ScanHeader {
+                    stamp,
+                    ..ScanHeader::zeroed()
+                };
+                self.refuse(&scan, &AccumulatorError::NotKept)?;
+            }
+        }
+        Ok(true)
     }
 
     /// Takes the next scan that has come, if there is one.
@@ -139,8 +186,11 @@ impl Node {
         Ok(true)
     }
 
-    fn answer(&mut self, scan: &ScanHeader) -> Result<(), TransportError> {
-        let brought = self.bring(scan);
+    fn answer(
+        &mut self,
+        scan: &ScanHeader,
+        brought: Result<u32, AccumulatorError>,
+    ) -> Result<(), TransportError> {
         // What is sent lies in the workspace.
         let mut workspace = std::mem::take(&mut self.workspace);
         let mut readings = std::mem::take(&mut self.readings);
@@ -219,9 +269,10 @@ impl Node {
 
     /// What is to vote.
     fn seen(&self) -> Seen<'_> {
-        match &self.sonar {
-            Some(sonar) => Seen::Still(sonar.scan()),
-            None => self.joiner.seen(),
+        match (&self.sonar, &self.recalled) {
+            (Some(sonar), _) => Seen::Still(sonar.scan()),
+            (None, Some(kept)) => kept.seen(),
+            (None, None) => self.joiner.seen(),
         }
     }
 

@@ -176,6 +176,12 @@ impl Sought {
         }
     }
 
+    /// The sought frame's pose where the base has this one.
+    #[must_use]
+    pub fn of_base(self, map_from_base: Pose) -> Pose {
+        map_from_base.then(self.sought_from_base.inverse())
+    }
+
     /// The base's pose where the sought frame has this one.
     #[must_use]
     pub fn base(self, map_from_sought: Pose) -> Pose {

@@ -32,10 +32,10 @@ mod way;
 
 pub use config::TrackingConfig;
 pub use place::Candidate;
-pub use report::{Report, State};
+pub use report::Report;
 pub use seen::Seen;
 
-use geometry::Pose;
+use geometry::{Covariance, Pose};
 use places::Places;
 use verdict::Belief;
 use way::Way;
@@ -79,6 +79,8 @@ pub struct Tracker {
     keys_since_search: u32,
     is_key: bool,
     is_blank: bool,
+    /// Where the robot should be at the next scan, and by how much that leads.
+    expected: Option<(Pose, Covariance, f64)>,
 }
 
 impl Tracker {
@@ -96,11 +98,22 @@ impl Tracker {
             keys_since_search: 0,
             is_key: false,
             is_blank: false,
+            expected: None,
         }
     }
 
+    /// Forgets all but where the robot should be at the next scan: that place is tried
+    /// first and leads by so much, natural logarithm of odds, over what a search finds.
+    /// It is not believed before scans confirm it.
+    pub fn expect(&mut self, pose: Pose, covariance: Covariance, lead: f64) {
+        *self = Tracker {
+            expected: Some((pose, covariance, lead)),
+            ..Tracker::new(self.config)
+        };
+    }
+
     /// Starts from a pose that is believed, with its covariance.
-    pub fn start_at(&mut self, seen: &Seen<'_>, pose: Pose, covariance: geometry::Covariance) {
+    pub fn start_at(&mut self, seen: &Seen<'_>, pose: Pose, covariance: Covariance) {
         *self = Tracker::new(self.config);
         let id = self.places.start_at(seen, (pose, covariance.0));
         self.belief.believe(id);
@@ -123,6 +136,12 @@ impl Tracker {
         self.is_blank = seen.ends.beams() < LEAST_BEAMS;
         if self.is_blank {
             return Need::Nothing;
+        }
+        if let Some((pose, covariance, lead)) = self.expected.take() {
+            self.places.expect(seen, (pose, covariance.0), lead);
+            self.since_key = Way::default();
+            self.is_key = true;
+            return Need::ThisScan;
         }
         let way = std::mem::take(&mut self.since_scan);
         let was_doubtful = self.belief.is_doubtful();

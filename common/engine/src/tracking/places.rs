@@ -75,6 +75,9 @@ pub(super) struct Places {
     is_known: Vec<bool>,
     next_id: u32,
     key_scans: u32,
+    /// What a place is behind that the first search finds: something where a place was
+    /// expected beforehand.
+    first_lag: f64,
 }
 
 impl Places {
@@ -86,6 +89,7 @@ impl Places {
             is_known: Vec::new(),
             next_id: 0,
             key_scans: 0,
+            first_lag: 0.0,
         }
     }
 
@@ -114,6 +118,18 @@ impl Places {
         }];
         self.key_scans = age;
         id
+    }
+
+    /// Keeps a place at which the robot is expected, ahead by `lead` of all that the
+    /// first search finds.
+    pub(super) fn expect(&mut self, seen: &Seen<'_>, predicted: (Pose, Matrix3<f64>), lead: f64) {
+        let fitted = seen.settle_turned(predicted, seen.settle(predicted));
+        let id = self.new_id();
+        self.kept.push(Place {
+            predicted,
+            ..Place::born(id, &fitted, 0.0)
+        });
+        self.first_lag = lead;
     }
 
     fn new_id(&mut self) -> u32 {
@@ -262,7 +278,7 @@ impl Places {
             }
             let found = self.candidates[i];
             let far = match tracked {
-                _ if is_first => 0.0,
+                _ if is_first => self.first_lag,
                 Some(_) if !fits_badly => self.config.newborn_lag_unique,
                 _ => self.config.newborn_lag,
             };

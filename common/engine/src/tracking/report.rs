@@ -1,38 +1,159 @@
 //! What the tracker says.
 
 use geometry::Pose;
+use messages::{TrackReason, TrackState};
 use nalgebra::Matrix3;
 
-/// What the tracker knows.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum State {
-    /// It has not found the robot yet.
-    Searching,
-    /// One place is left, and the scans fit there.
-    Unique,
-    /// The pose is kept, but something speaks against it.
-    Doubtful,
-    /// It had the robot, and the scans say that it is not there any more.
-    Lost,
-}
-
-/// Where the robot is, and how sure that is.
+/// Where the robot is, how sure that is, and why.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Report {
     /// What is known.
-    pub state: State,
-    /// Of the frame that is sought, in the map.
+    pub state: TrackState,
+    /// Why.
+    pub reason: TrackReason,
+    /// Of the frame that is sought, in the map: the place that is believed, else the
+    /// one that leads.
     pub pose: Option<Pose>,
-    /// Of that pose.
+    /// Of that pose. Where no place is believed, it spans all that are kept.
     pub covariance: Matrix3<f64>,
+    /// How likely the robot is there, 0..=1.
+    pub probability: f64,
     /// How well the last scan fits there, at most 1.
     pub score: f64,
     /// By how much the place leads, natural logarithm of odds.
     pub lead: f64,
-    /// Places that are kept.
-    pub places: usize,
+    /// Places that come near the best, itself included.
+    pub rivals: u32,
+    /// How far the nearest and the farthest of the others lie from it, metres.
+    pub apart_m: (f64, f64),
+    /// By how much odometry was wrong, where that is the reason, radians.
+    pub jumped: f64,
     /// When the state began, nanoseconds.
     pub since_ns: i64,
     /// Metres gone since.
     pub since_m: f64,
+}
+
+/// Places so near each other are one spot, in two headings, metres.
+const SAME_SPOT_M: f64 = 1.0;
+
+impl Report {
+    /// The reason in words, and what to do.
+    #[must_use]
+    pub fn words(&self) -> String {
+        let reason = self.reason_in_words();
+        match self.advice() {
+            "" => reason,
+            advice => format!("{reason}: {advice}"),
+        }
+    }
+
+    fn reason_in_words(&self) -> String {
+        let agrees = format!(
+            "{:.0} % of the scan agrees",
+            100.0 * self.score.clamp(0.0, 1.0)
+        );
+        let since = format!("since {:.0} m", self.since_m);
+        match (self.reason, self.state) {
+            (TrackReason::NoScan, _) => "no scan has been answered yet".into(),
+            (TrackReason::NoMap, _) => "no map has come yet".into(),
+            (TrackReason::OnePlace, _) => format!("one place fits, {agrees}, {since}"),
+            (TrackReason::SeveralPlaces, _) => {
+                format!("{} places fit, {}, {since}", self.rivals, self.apart())
+            }
+            (TrackReason::TooEarly, _) => format!("one place leads, {agrees}, {since}"),
+            (TrackReason::PoorFit, TrackState::Lost) => format!("lost: {agrees}"),
+            (TrackReason::PoorFit, _) => format!("only {agrees}, {since}"),
+            (TrackReason::OdometryJump, _) => format!(
+                "odometry jumped by {:.0}°, {agrees}",
+                self.jumped.to_degrees()
+            ),
+            (TrackReason::AnotherPlace, _) => format!("lost: scans fit better elsewhere, {since}"),
+            (TrackReason::NoPlace, _) => "no place on the map fits".into(),
+        }
+    }
+
+    fn apart(&self) -> String {
+        let (nearest, farthest) = self.apart_m;
+        match self.rivals {
+            _ if farthest <= SAME_SPOT_M => "on one spot".into(),
+            0..=2 => format!("{farthest:.0} m apart"),
+            _ => format!("{nearest:.0} to {farthest:.0} m apart"),
+        }
+    }
+
+    fn advice(&self) -> &'static str {
+        match self.reason {
+            TrackReason::SeveralPlaces if self.apart_m.1 <= SAME_SPOT_M => {
+                "turn, or drive a few metres"
+            }
+            TrackReason::SeveralPlaces | TrackReason::TooEarly | TrackReason::AnotherPlace => {
+                "drive a few metres, or mark a region"
+            }
+            TrackReason::PoorFit if self.state == TrackState::Doubtful => {
+                "is the view blocked, or the map out of date?"
+            }
+            TrackReason::PoorFit => "drive a few metres, or mark a region",
+            TrackReason::NoPlace => "is it this map?",
+            TrackReason::NoScan
+            | TrackReason::NoMap
+            | TrackReason::OnePlace
+            | TrackReason::OdometryJump => "",
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn report(state: TrackState, reason: TrackReason) -> Report {
+        Report {
+            state,
+            reason,
+            pose: None,
+            covariance: Matrix3::zeros(),
+            probability: 0.5,
+            score: 0.14,
+            lead: 1.0,
+            rivals: 2,
+            apart_m: (25.2, 25.2),
+            jumped: 80f64.to_radians(),
+            since_ns: 0,
+            since_m: 3.0,
+        }
+    }
+
+    #[test]
+    fn each_reason_has_its_words() {
+        let say = |state, reason| report(state, reason).words();
+        assert_eq!(
+            say(TrackState::Searching, TrackReason::SeveralPlaces),
+            "2 places fit, 25 m apart, since 3 m: drive a few metres, or mark a region"
+        );
+        assert_eq!(
+            say(TrackState::Lost, TrackReason::PoorFit),
+            "lost: 14 % of the scan agrees: drive a few metres, or mark a region"
+        );
+        assert_eq!(
+            say(TrackState::Unique, TrackReason::OdometryJump),
+            "odometry jumped by 80°, 14 % of the scan agrees"
+        );
+        assert_eq!(
+            say(TrackState::Unique, TrackReason::OnePlace),
+            "one place fits, 14 % of the scan agrees, since 3 m"
+        );
+    }
+
+    #[test]
+    fn one_spot_in_two_headings_is_told_apart_by_turning() {
+        let spot = Report {
+            apart_m: (0.1, 0.3),
+            ..report(TrackState::Searching, TrackReason::SeveralPlaces)
+        };
+        assert_eq!(
+            spot.words(),
+            "2 places fit, on one spot, since 3 m: turn, or drive a few metres"
+        );
+    }
 }

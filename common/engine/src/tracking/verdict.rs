@@ -5,7 +5,9 @@ use geometry::Pose;
 use super::TrackingConfig;
 use super::place::Place;
 use super::places::{FARTHEST_BEHIND, NEAR_M, Places};
-use super::report::{Report, State};
+use super::report::Report;
+use messages::{TrackReason, TrackState};
+use nalgebra::Matrix3;
 
 /// Places so near each other are not told apart by the verdict.
 const DISTINCT_M: f64 = 1.0;
@@ -33,7 +35,9 @@ pub(super) struct Belief {
     lead: f64,
     bad_keys: u32,
     slipped: Option<f64>,
-    state: State,
+    lost_by: TrackReason,
+    state: TrackState,
+    reason: TrackReason,
     stamp_ns: i64,
     since_ns: i64,
     since_m: f64,
@@ -49,7 +53,9 @@ impl Belief {
             lead: 0.0,
             bad_keys: 0,
             slipped: None,
-            state: State::Searching,
+            lost_by: TrackReason::PoorFit,
+            state: TrackState::Searching,
+            reason: TrackReason::NoScan,
             stamp_ns: 0,
             since_ns: 0,
             since_m: 0.0,
@@ -72,6 +78,7 @@ impl Belief {
     }
 
     pub(super) fn go_on(&mut self, stamp_ns: i64, moved: Option<Pose>) {
+        self.slipped = None;
         if self.since_ns == 0 {
             self.since_ns = stamp_ns;
         }
@@ -100,22 +107,51 @@ impl Belief {
         self.fits_badly = place.is_some_and(|place| self.is_doubtful_at(place));
     }
 
+    /// Sees what became of the places at a scan.
     pub(super) fn conclude(&mut self, places: &Places, is_key: bool) {
         if is_key {
             self.judge(places);
         }
         self.look_at(places);
         let state = match self.place {
-            Some(_) if !self.fits_badly && self.lead >= LEAST_LEAD => State::Unique,
-            Some(_) => State::Doubtful,
-            None if self.was_unique => State::Lost,
-            None => State::Searching,
+            Some(_) if !self.fits_badly && self.lead >= LEAST_LEAD => TrackState::Unique,
+            Some(_) => TrackState::Doubtful,
+            None if self.was_unique => TrackState::Lost,
+            None => TrackState::Searching,
         };
         if state != self.state {
             self.state = state;
             self.since_ns = self.stamp_ns;
             self.since_m = 0.0;
         }
+        self.reason = self.reason(places);
+    }
+
+    fn reason(&self, places: &Places) -> TrackReason {
+        let several = self.rivals(places.all()).count() > 1;
+        match self.state {
+            TrackState::Unique if self.slipped.is_some() => TrackReason::OdometryJump,
+            TrackState::Unique => TrackReason::OnePlace,
+            TrackState::Doubtful if self.fits_badly => TrackReason::PoorFit,
+            TrackState::Doubtful => TrackReason::SeveralPlaces,
+            TrackState::Lost => self.lost_by,
+            TrackState::Searching if places.is_empty() => TrackReason::NoPlace,
+            TrackState::Searching if several => TrackReason::SeveralPlaces,
+            TrackState::Searching => TrackReason::TooEarly,
+        }
+    }
+
+    /// The best place, and those elsewhere that it does not lead by enough.
+    fn rivals<'a>(&self, places: &'a [Place]) -> impl Iterator<Item = &'a Place> {
+        let sure_lead = self.config.sure_lead;
+        let best = places.first();
+        places.iter().filter(move |place| {
+            best.is_some_and(|best| {
+                let is_best = place.id == best.id;
+                let is_near = best.log_weight - place.log_weight < sure_lead;
+                is_best || (is_near && is_elsewhere(place, best))
+            })
+        })
     }
 
     fn judge(&mut self, places: &Places) {
@@ -130,7 +166,7 @@ impl Belief {
             let is_near = |place: &Place| place.pose.is_within(best.pose, NEAR_M, f64::INFINITY);
             match places.get(id).is_some_and(is_near) {
                 true => self.place = Some(best.id),
-                false => self.lose(),
+                false => self.lose(TrackReason::AnotherPlace),
             }
         }
         if self.place.is_some() {
@@ -143,7 +179,7 @@ impl Belief {
                 0
             };
             if self.bad_keys >= LOST_SCANS {
-                self.lose();
+                self.lose(TrackReason::PoorFit);
             }
         }
         if self.place.is_none() && self.is_unique(best) {
@@ -153,8 +189,9 @@ impl Belief {
         }
     }
 
-    fn lose(&mut self) {
+    fn lose(&mut self, why: TrackReason) {
         self.place = None;
+        self.lost_by = why;
     }
 
     fn is_unique(&self, best: &Place) -> bool {
@@ -166,19 +203,64 @@ impl Belief {
     }
 
     pub(super) fn report(&self, places: &Places) -> Report {
-        let place = self.place.and_then(|id| places.get(id));
-        let place = place.or(places.all().first());
+        let believed = self.place.and_then(|id| places.get(id));
+        let place = believed.or(places.all().first());
+        let distances = self.rivals(places.all()).skip(1).filter_map(|other| {
+            let from = places.all().first()?.pose;
+            Some(from.distance_to(other.pose))
+        });
+        let apart_m = distances.fold((f64::INFINITY, 0.0f64), |(near, far), distance| {
+            (near.min(distance), far.max(distance))
+        });
         Report {
             state: self.state,
+            reason: self.reason,
             pose: place.map(|place| place.pose),
-            covariance: place.map_or_else(nalgebra::Matrix3::zeros, |place| place.covariance),
+            covariance: match (believed, place) {
+                (Some(believed), _) if self.state == TrackState::Unique => believed.covariance,
+                (_, Some(place)) => spread(places.all(), place.pose),
+                (_, None) => Matrix3::zeros(),
+            },
+            probability: probability(self.lead),
             score: place.map_or(0.0, |place| place.last),
             lead: self.lead,
-            places: places.all().len(),
+            rivals: self.rivals(places.all()).count() as u32,
+            apart_m: match apart_m {
+                (near, far) if near <= far => (near, far),
+                _ => (0.0, 0.0),
+            },
+            jumped: self.slipped.unwrap_or(0.0),
             since_ns: self.since_ns,
             since_m: self.since_m,
         }
     }
+}
+
+/// The covariance, about a pose, of a robot that is at one of several places.
+fn spread(places: &[Place], about: Pose) -> Matrix3<f64> {
+    let top = places.first().map_or(0.0, |best| best.log_weight);
+    let weight = |place: &Place| (place.log_weight - top).exp();
+    let all: f64 = places.iter().map(weight).sum();
+    let parts = places.iter().map(|place| {
+        let off = nalgebra::Vector3::new(
+            place.pose.x - about.x,
+            place.pose.y - about.y,
+            geometry::wrap_angle(place.pose.yaw - about.yaw),
+        );
+        (place.covariance + off * off.transpose()) * (weight(place) / all)
+    });
+    parts.sum()
+}
+
+/// How likely the place is that leads by so much.
+fn probability(lead: f64) -> f64 {
+    1.0 / (1.0 + (-lead).exp())
+}
+
+fn is_elsewhere(place: &Place, best: &Place) -> bool {
+    !place
+        .pose
+        .is_within(best.pose, DISTINCT_M, DISTINCT_RADIANS)
 }
 
 /// By how much the best place leads over the next that lies elsewhere. A new one is

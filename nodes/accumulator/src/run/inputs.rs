@@ -6,6 +6,7 @@ use messages::topic;
 use transport::{Graph, Health, Input, Subscriber, TransportError};
 
 use crate::Config;
+use crate::config::Searched;
 
 /// The node's subscribers; the truth only where it is looked at.
 pub(super) struct Inputs {
@@ -14,6 +15,8 @@ pub(super) struct Inputs {
     pub(super) boundaries: Subscriber<topic::Boundary>,
     /// Wishes where to search.
     pub(super) regions: Subscriber<topic::Region>,
+    /// Scans that are to be searched; only where those alone are.
+    pub(super) attention: Option<Subscriber<topic::Attention>>,
     odometry: Subscriber<topic::OdometryTopic>,
     truths: Option<Subscriber<topic::GroundTruthTopic>>,
 }
@@ -27,6 +30,9 @@ impl Inputs {
             maps: graph.subscriber()?,
             boundaries: graph.subscriber()?,
             regions: graph.subscriber()?,
+            attention: (config.search == Searched::Asked)
+                .then(|| graph.subscriber())
+                .transpose()?,
             odometry: graph.subscriber()?,
             truths: by_truth.then(|| graph.subscriber()).transpose()?,
         })
@@ -41,7 +47,8 @@ impl Inputs {
             &self.odometry,
         ];
         let truths = self.truths.iter().map(|input| input as &dyn Input);
-        always.into_iter().chain(truths).collect()
+        let attention = self.attention.iter().map(|input| input as &dyn Input);
+        always.into_iter().chain(truths).chain(attention).collect()
     }
 
     /// Takes down all odometry and truths that have come.

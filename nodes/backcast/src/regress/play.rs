@@ -13,7 +13,7 @@ use crate::BackcastError;
 use crate::descriptor::Descriptor;
 use crate::run::arguments::{MAP_SERVER, find, leave_out_monitors, set, unset};
 use crate::run::crew::Crew;
-use crate::run::replay;
+use crate::run::{replay, tracker};
 
 /// The name under which the graph is joined.
 const NAME: &str = "regress";
@@ -34,6 +34,7 @@ pub(super) fn direct(descriptor: &mut Descriptor, case: &Case) -> Result<(), Bac
     unset(replayer, "--loop", false);
     let server = find(dataflow, &[MAP_SERVER], "the map", file)?;
     set(server, "--map", Some(&case.map().to_string_lossy()));
+    tracker::settle(dataflow);
     for node in &mut dataflow.nodes {
         // What goes wrong is told; what goes well is in the table.
         node.env

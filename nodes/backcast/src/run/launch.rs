@@ -27,6 +27,7 @@ use super::{
     options::Config,
     output::{Output, Reader},
     record::{self, RECORDER},
+    tracker,
     watch::Watch,
 };
 use crate::{
@@ -77,6 +78,7 @@ pub(crate) fn run(config: &Config) -> Result<ExitCode, BackcastError> {
     let mut descriptor = descriptor::load(&config.dataflow)?;
     forward::apply(&config.options, &mut descriptor.dataflow, &descriptor.file)?;
     lasers::name(&mut descriptor.dataflow);
+    tracker::settle(&mut descriptor.dataflow);
     record::add(
         &config.options.record,
         &mut descriptor.dataflow,

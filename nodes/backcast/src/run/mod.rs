@@ -25,6 +25,7 @@ pub(crate) mod replay;
 mod report;
 mod summary;
 mod supervision;
+pub(crate) mod tracker;
 mod watch;
 
 pub(crate) use launch::run;

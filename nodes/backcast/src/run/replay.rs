@@ -61,7 +61,11 @@ fn replayer(dataflow: &mut Dataflow) -> Node {
     });
     let inputs = answers.into_iter().collect();
     // Those that only look on need not be waited for.
-    let steps = [topic::Votes::NAME, topic::Hypotheses::NAME];
+    let steps = [
+        topic::Votes::NAME,
+        topic::Hypotheses::NAME,
+        topic::Tracked::NAME,
+    ];
     let takes_scans = |node: &&Node| {
         let (mut inputs, mut outputs) = (node.inputs.iter(), node.outputs.iter());
         inputs.any(|input| input.topic == topic::Scan::NAME)

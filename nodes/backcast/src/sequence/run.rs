@@ -1,8 +1,9 @@
 //! The tracker on moments of a drive, one after the other.
 
 use engine::fit::FitConfig;
-use engine::tracking::{Candidate, Need, Report, Seen, State, Tracker, TrackingConfig};
+use engine::tracking::{Candidate, Need, Report, Seen, Tracker, TrackingConfig};
 use geometry::{Covariance, Pose};
+use messages::TrackState;
 
 use super::drive::Moment;
 use crate::BackcastError;
@@ -39,7 +40,7 @@ pub(super) const RIGHT: (f64, f64) = crate::statistics::SUCCESS;
 
 impl Said {
     pub(super) fn is_unique(&self) -> bool {
-        self.report.state == State::Unique
+        self.report.state == TrackState::Unique
     }
 
     /// Unique, and right.
@@ -144,12 +145,11 @@ impl<'a> Run<'a> {
                 )
             });
             eprintln!(
-                "{index} {:.1} {:?} score {:.2} lead {:.1} places {} off {:?} need {need:?} truth {:?}",
+                "{index} {:.1} {:?} score {:.2} lead {:.1} off {:?} need {need:?} truth {:?}",
                 moment.gone_m,
                 report.state,
                 report.score,
                 report.lead,
-                report.places,
                 off.map(|(a, b)| ((100.0 * a).round() / 100.0, b.round())),
                 truth_best
             );

@@ -1,0 +1,119 @@
+//! The last scans, brought to one time, until somebody asks for a search.
+
+use std::collections::VecDeque;
+
+use engine::joined::{Kept, Seen};
+use messages::{ScanHeader, Stamp};
+
+/// Scans that are kept, and wishes for scans that have not come yet.
+const KEPT: usize = 64;
+
+/// A scan that may be searched.
+#[derive(Debug)]
+pub(crate) struct KeptScan {
+    pub(crate) header: ScanHeader,
+    /// Lasers that were joined; 0 where none are.
+    pub(crate) lasers: u32,
+    pub(crate) kept: Kept,
+}
+
+/// The last scans, and which of them are to be searched.
+#[derive(Debug, Default)]
+pub(crate) struct KeptScans {
+    scans: VecDeque<KeptScan>,
+    wishes: VecDeque<Stamp>,
+}
+
+/// What is to be done next.
+#[derive(Debug)]
+pub(crate) enum Asked {
+    /// To search this scan.
+    Search(KeptScan),
+    /// To refuse a wish for a scan that is not here any more.
+    Refuse(Stamp),
+}
+
+impl KeptScans {
+    /// Keeps a scan.
+    pub(crate) fn keep(&mut self, header: &ScanHeader, lasers: u32, seen: &Seen<'_>) {
+        if self.scans.len() == KEPT {
+            self.scans.pop_front();
+        }
+        self.scans.push_back(KeptScan {
+            header: *header,
+            lasers,
+            kept: Kept::of(seen),
+        });
+    }
+
+    /// Takes a wish.
+    pub(crate) fn wish(&mut self, stamp: Stamp) {
+        if self.wishes.len() == KEPT {
+            self.wishes.pop_front();
+        }
+        self.wishes.push_back(stamp);
+    }
+
+    /// The next wish that can be met, or never will be. One whose scan is still to come
+    /// waits.
+    pub(crate) fn next(&mut self) -> Option<Asked> {
+        let newest = self.scans.back()?.header.stamp.counter;
+        let at = self.wishes.iter().position(|wish| wish.counter <= newest)?;
+        let wish = self.wishes.remove(at)?;
+        let mut scans = self.scans.iter();
+        let found = scans.position(|scan| scan.header.stamp.is_of(wish));
+        Some(match found.and_then(|at| self.scans.remove(at)) {
+            Some(scan) => Asked::Search(scan),
+            None => Asked::Refuse(wish),
+        })
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use bytemuck::Zeroable;
+    use engine::scan::Scan;
+
+    use super::*;
+
+    fn stamp(counter: u64) -> Stamp {
+        Stamp {
+            counter,
+            ..Stamp::default()
+        }
+    }
+
+    fn keep(scans: &mut KeptScans, counter: u64) {
+        let header = ScanHeader {
+            stamp: stamp(counter),
+            ..Zeroable::zeroed()
+        };
+        let scan = Scan {
+            angle_min: 0.0,
+            angle_increment: 0.1,
+            range_min_m: 0.0,
+            range_max_m: 9.0,
+            ranges: &[counter as f32],
+        };
+        scans.keep(&header, 0, &Seen::Still(scan));
+    }
+
+    #[test]
+    fn wishes_wait_for_their_scans_and_old_ones_are_refused() {
+        let mut scans = KeptScans::default();
+        scans.wish(stamp(3));
+        assert!(scans.next().is_none());
+        (1..=3).for_each(|counter| keep(&mut scans, counter));
+        let Some(Asked::Search(found)) = scans.next() else {
+            panic!("scan 3 has come");
+        };
+        assert_eq!(found.header.stamp, stamp(3));
+        assert_eq!(found.kept, Kept::of(&found.kept.seen()));
+        scans.wish(stamp(3));
+        assert!(matches!(scans.next(), Some(Asked::Refuse(_)) | None));
+        (4..=3 + KEPT as u64).for_each(|counter| keep(&mut scans, counter));
+        scans.wish(stamp(2));
+        assert!(matches!(scans.next(), Some(Asked::Refuse(of)) if of == stamp(2)));
+        assert!(scans.next().is_none());
+    }
+}

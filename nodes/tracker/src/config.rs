@@ -1,0 +1,107 @@
+//! What a user can set.
+
+use std::path::PathBuf;
+
+use clap::Parser;
+use engine::beams::BeamConfig;
+use engine::fit::FitConfig;
+use engine::grid::CellRules;
+use engine::joined::JoinConfig;
+use engine::tracking::TrackingConfig;
+use geometry::Pose;
+
+/// Keeps the robot's pose over time, from scans, odometry and what searches find, and
+/// publishes it as `pose`.
+#[derive(Debug, Clone, Parser)]
+#[command(name = "tracker", version)]
+pub struct Config {
+    /// When a place is believed.
+    #[command(flatten)]
+    pub tracking: TrackingConfig,
+
+    /// Most poses a second, 0..=1000: between scans, odometry carries the pose on. With
+    /// 0 there is one for each scan only.
+    #[arg(long, value_name = "HERTZ", default_value_t = 50.0, value_parser = rate)]
+    pub rate: f64,
+
+    /// Keep the last pose in this file, and try it first after a start. It is not
+    /// believed before scans confirm it.
+    #[arg(long, value_name = "FILE")]
+    pub remember: Option<PathBuf>,
+
+    /// Where the robot is at the start, in the map: metres, metres and degrees. It is
+    /// tried first, and not believed before a scan confirms it.
+    #[arg(long, value_name = "X,Y,DEGREES", allow_hyphen_values = true, value_parser = pose)]
+    pub initial_pose: Option<Pose>,
+
+    /// Which lasers are joined, and how their motion is known.
+    #[command(flatten)]
+    pub join: JoinConfig,
+
+    /// How cells of the map are read.
+    #[command(flatten)]
+    pub cells: CellRules,
+
+    /// Which beams are judged.
+    #[command(flatten)]
+    pub beams: BeamConfig,
+
+    /// How they are judged.
+    #[command(flatten)]
+    pub fit: FitConfig,
+}
+
+fn rate(text: &str) -> Result<f64, String> {
+    match text.parse() {
+        Ok(rate) if (0.0..=1000.0).contains(&rate) => Ok(rate),
+        _ => Err("allowed are 0 to 1000 poses a second".into()),
+    }
+}
+
+fn pose(text: &str) -> Result<Pose, String> {
+    let numbers: Result<Vec<f64>, _> = text.split(',').map(|part| part.trim().parse()).collect();
+    match numbers.as_deref() {
+        Ok(&[x, y, degrees]) if [x, y, degrees].iter().all(|n| n.is_finite()) => {
+            Ok(Pose::new(x, y, degrees.to_radians()))
+        }
+        _ => Err("allowed are three numbers: metres, metres and degrees".into()),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use clap::CommandFactory;
+
+    use super::*;
+
+    fn parse(arguments: &str) -> Result<Config, String> {
+        let words = ["tracker"].into_iter().chain(arguments.split_whitespace());
+        Config::try_parse_from(words).map_err(|error| error.to_string())
+    }
+
+    #[test]
+    fn the_command_line_is_well_formed() {
+        Config::command().debug_assert();
+    }
+
+    #[test]
+    fn settings_have_defaults_and_limits() {
+        let config = parse("").unwrap();
+        assert_eq!(config.tracking, TrackingConfig::default());
+        assert_eq!((config.rate, config.initial_pose), (50.0, None));
+        let pose = parse("--initial-pose -1,2,90")
+            .unwrap()
+            .initial_pose
+            .unwrap();
+        assert!(pose.is_within(Pose::new(-1.0, 2.0, 1.570_796), 1e-9, 1e-6));
+        for (wrong, allowed) in [
+            ("--rate -1", "0 to 1000"),
+            ("--initial-pose 1,2", "three numbers"),
+            ("--initial-pose 1,2,NaN", "three numbers"),
+            ("--scan-cap 101", "0 to 100"),
+        ] {
+            let text = parse(wrong).unwrap_err();
+            assert!(text.contains(allowed), "{wrong}: {text}");
+        }
+    }
+}

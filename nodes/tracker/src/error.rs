@@ -1,0 +1,23 @@
+//! What keeps the node from running, and a scan from being tracked.
+
+use engine::EngineError;
+use transport::TransportError;
+
+/// A scan or a map that is refused, a file that cannot be used, or a failure of the graph.
+#[derive(Debug, thiserror::Error)]
+pub enum TrackerError {
+    /// The engine refused the map or the scan.
+    #[error(transparent)]
+    Engine(#[from] EngineError),
+    /// The file of the last pose cannot be used.
+    #[error("the last pose in {file} cannot be used: {reason}")]
+    Memory {
+        /// As it was named.
+        file: String,
+        /// What is wrong.
+        reason: String,
+    },
+    /// The graph failed.
+    #[error(transparent)]
+    Transport(#[from] TransportError),
+}

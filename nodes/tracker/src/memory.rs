@@ -1,0 +1,150 @@
+//! The last pose, kept on disk from one start to the next.
+
+use std::io::Write;
+use std::path::{Path, PathBuf};
+
+use geometry::{Covariance, Pose};
+use serde::{Deserialize, Serialize};
+
+use crate::TrackerError;
+
+/// A pose that was believed.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+pub(crate) struct Remembered {
+    /// The map that it is about, as messages name it, in hexadecimal.
+    pub(crate) map_id: String,
+    /// Of the scan, nanoseconds since 1970.
+    pub(crate) stamp_ns: i64,
+    /// Of the base, metres and radians.
+    pub(crate) map_from_base: Pose,
+    /// Of that pose, row by row over x, y and yaw: m², m·rad, rad².
+    pub(crate) covariance: [f64; 9],
+}
+
+/// The file of the last pose.
+#[derive(Debug)]
+pub(crate) struct Memory {
+    file: PathBuf,
+}
+
+impl Memory {
+    /// In this file.
+    #[must_use]
+    pub(crate) fn new(file: &Path) -> Self {
+        Memory { file: file.into() }
+    }
+
+    /// What is remembered; `None` where there is no file yet.
+    ///
+    /// # Errors
+    /// The file cannot be read, or holds no pose.
+    pub(crate) fn load(&self) -> Result<Option<Remembered>, TrackerError> {
+        let text = match std::fs::read_to_string(&self.file) {
+            Ok(text) => text,
+            Err(error) if error.kind() == std::io::ErrorKind::NotFound => return Ok(None),
+            Err(error) => return Err(self.refuse(&error)),
+        };
+        let found: Remembered = serde_json::from_str(&text).map_err(|error| self.refuse(&error))?;
+        let is_sound = found.map_from_base.is_finite()
+            && found.covariance.iter().all(|value| value.is_finite())
+            && Covariance::from_rows(found.covariance)
+                .0
+                .cholesky()
+                .is_some();
+        match is_sound {
+            true => Ok(Some(found)),
+            false => Err(self.refuse(&"its pose or covariance is none")),
+        }
+    }
+
+    /// Remembers a pose in place of the one before. The file is replaced at once, so
+    /// that it is whole whenever the power fails.
+    ///
+    /// # Errors
+    /// The file cannot be written.
+    pub(crate) fn save(&self, pose: &Remembered) -> Result<(), TrackerError> {
+        let text = serde_json::to_string(pose).map_err(|error| self.refuse(&error))?;
+        let folder = match self.file.parent() {
+            Some(folder) if folder != Path::new("") => folder,
+            _ => Path::new("."),
+        };
+        let write = || -> std::io::Result<()> {
+            let mut file = tempfile::NamedTempFile::new_in(folder)?;
+            file.write_all(text.as_bytes())?;
+            file.as_file().sync_data()?;
+            file.persist(&self.file)?;
+            Ok(())
+        };
+        write().map_err(|error| self.refuse(&error))
+    }
+
+    fn refuse(&self, reason: &dyn std::fmt::Display) -> TrackerError {
+        TrackerError::Memory {
+            file: self.file.display().to_string(),
+            reason: reason.to_string(),
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_pose_is_remembered_and_what_is_none_is_refused() {
+        let folder = tempfile::tempdir().unwrap();
+        let memory = Memory::new(&folder.path().join("pose.json"));
+        assert_eq!(memory.load().unwrap(), None);
+        let pose = Remembered {
+            map_id: "00ff".into(),
+            stamp_ns: 7,
+            map_from_base: Pose::new(1.0, 2.0, 0.5),
+            covariance: Covariance::from_deviations(0.1, 0.1, 0.01).to_rows(),
+        };
+        memory.save(&pose).unwrap();
+        memory
+            .save(&Remembered {
+                stamp_ns: 8,
+                ..pose.clone()
+            })
+            .unwrap();
+        assert_eq!(
+            memory.load().unwrap(),
+            Some(Remembered {
+                stamp_ns: 8,
+                ..pose.clone()
+            })
+        );
+        assert_eq!(std::fs::read_dir(folder.path()).unwrap().count(), 1);
+        for (wrong, reason) in [
+            ("{", "EOF"),
+            ("{}", "missing field"),
+            (
+                &serde_json::to_string(&Remembered {
+                    covariance: [0.0; 9],
+                    ..pose
+                })
+                .unwrap(),
+                "is none",
+            ),
+        ] {
+            std::fs::write(&memory.file, wrong).unwrap();
+            let error = memory.load().unwrap_err().to_string();
+            assert!(
+                error.contains(reason) && error.contains("pose.json"),
+                "{error}"
+            );
+        }
+        let nowhere = Memory::new(Path::new("/nowhere/pose.json"));
+        assert!(
+            nowhere
+                .save(&Remembered {
+                    stamp_ns: 8,
+                    map_id: String::new(),
+                    map_from_base: Pose::IDENTITY,
+                    covariance: [0.0; 9]
+                })
+                .is_err()
+        );
+    }
+}

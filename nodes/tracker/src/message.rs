@@ -1,0 +1,96 @@
+//! What is sent of a pose.
+
+use bytemuck::Zeroable;
+use engine::peaks::Sought;
+use engine::tracking::Report;
+use geometry::{Covariance, Pose};
+use messages::{FrameName, PoseHeader, Stamp, TrackReason, TrackState};
+
+/// All that a pose is said of.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(crate) struct Told {
+    /// Of the scan.
+    pub(crate) stamp: Stamp,
+    /// The map.
+    pub(crate) map_id: u64,
+    /// What the tracker says of the scan.
+    pub(crate) report: Report,
+    /// Whose pose that is.
+    pub(crate) sought: Sought,
+    /// Whether it is known how the laser sits on the base.
+    pub(crate) mount_known: bool,
+    /// Where the sought frame was by the odometry, and the odometry's frame.
+    pub(crate) odom_from_sought: Option<(Pose, FrameName)>,
+    /// Nanoseconds of computing.
+    pub(crate) tracking_ns: u64,
+}
+
+impl Told {
+    /// Where the odometry's frame lies in the map.
+    #[must_use]
+    pub(crate) fn map_from_odom(&self) -> Option<Pose> {
+        let (odom_from_sought, _) = self.odom_from_sought?;
+        Some(self.report.pose?.then(odom_from_sought.inverse()))
+    }
+
+    /// The message of the scan.
+    #[must_use]
+    pub(crate) fn header(&self) -> PoseHeader {
+        self.at(self.report.pose.unwrap_or_default(), self.stamp, true)
+    }
+
+    /// The message where odometry has carried the pose on since the scan.
+    #[must_use]
+    pub(crate) fn carried(&self, odom_from_sought: Pose, stamp: Stamp) -> Option<PoseHeader> {
+        let map_from_sought = self.map_from_odom()?.then(odom_from_sought);
+        Some(self.at(map_from_sought, stamp, false))
+    }
+
+    fn at(&self, map_from_sought: Pose, stamp: Stamp, from_scan: bool) -> PoseHeader {
+        let report = &self.report;
+        let laser = self.sought.laser(map_from_sought);
+        let base = self.sought.base(map_from_sought);
+        let covariance = |of: Pose| {
+            let sought = Covariance(report.covariance);
+            sought.carried(map_from_sought, of).to_rows()
+        };
+        let frame = self.odom_from_sought.map(|(_, frame)| frame);
+        PoseHeader {
+            stamp,
+            map_id: self.map_id,
+            tracking_ns: self.tracking_ns,
+            since_ns: report.since_ns,
+            since_m: report.since_m,
+            map_from_laser: laser.into(),
+            map_from_base: base.into(),
+            map_from_odom: self.map_from_odom().unwrap_or_default().into(),
+            laser_covariance: covariance(laser),
+            base_covariance: covariance(base),
+            probability: report.probability,
+            lead: report.lead,
+            score: report.score,
+            state: report.state as u32,
+            reason: report.reason as u32,
+            places: report.rivals,
+            from_scan: from_scan.into(),
+            pose_known: report.pose.is_some().into(),
+            mount_known: self.mount_known.into(),
+            odom_known: self.map_from_odom().is_some().into(),
+            odom_frame: frame.unwrap_or_else(|| FrameName::new("")),
+            ..PoseHeader::zeroed()
+        }
+    }
+}
+
+/// What is sent of a scan of which nothing can be said.
+#[must_use]
+pub(crate) fn nothing(stamp: Stamp, map_id: u64, reason: TrackReason) -> PoseHeader {
+    PoseHeader {
+        stamp,
+        map_id,
+        state: TrackState::Searching as u32,
+        reason: reason as u32,
+        from_scan: 1,
+        ..PoseHeader::zeroed()
+    }
+}

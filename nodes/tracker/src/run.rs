@@ -1,0 +1,479 @@
+//! Receives scans, odometry and what searches find, and sends poses.
+
+mod inputs;
+mod turn;
+
+use std::time::{Duration, Instant};
+
+use engine::EngineError;
+use engine::fit::Ends;
+use engine::joined::{Joiner, Role};
+use engine::peaks::Sought;
+use engine::tracking::{Candidate, Need, Seen, Tracker};
+use geometry::{Covariance, Pose};
+use messages::{
+    AttentionHeader, NodeState, PoseHeader, ScanHeader, Stamp, TrackReason, TrackState, topic,
+};
+use transport::{
+    Flow, GapCounter, Graph, Health, Publisher, TransportError, monotonic_ns, with_causes,
+};
+
+use crate::memory::{Memory, Remembered};
+use crate::message::{Told, nothing};
+use crate::queue::{Answers, Scans};
+use crate::world::World;
+use crate::{Config, TrackerError};
+use inputs::Inputs;
+use turn::{ODOMETRY_WAIT, SEARCH_WAIT, Turn};
+
+/// A scan that waits for odometry is looked at as often.
+const TICK: Duration = Duration::from_millis(25);
+
+/// The last pose is kept on disk as often.
+const REMEMBERED_EVERY: Duration = Duration::from_secs(1);
+
+/// What is expected beforehand leads by so much over what a search finds: what an
+/// operator says, as much as a place that was known before; what was true when the
+/// robot was last on, as much as one key scan says.
+const SAID_LEAD: f64 = 10.0;
+const REMEMBERED_LEAD: f64 = 4.0;
+
+/// What an operator's pose on the command line may err by.
+const SAID_ERROR: (f64, f64) = (0.5, 0.26);
+
+/// Follows the robot until the stop flag is set.
+///
+/// # Errors
+/// If the graph fails, or the file of the last pose cannot be used. A scan or a map that
+/// is refused is reported in `health`.
+pub fn run(graph: &Graph, config: &Config) -> Result<(), TrackerError> {
+    let inputs = Inputs::open(graph)?;
+    let memory = config.remember.as_deref().map(Memory::new);
+    let remembered = memory.as_ref().map_or(Ok(None), Memory::load)?;
+    let mut node = Node {
+        config: config.clone(),
+        joiner: Joiner::new(config.join.clone()),
+        world: None,
+        tracker: Tracker::new(config.tracking),
+        scans: Scans::default(),
+        answers: Answers::default(),
+        turn: Turn::Idle,
+        ends: Ends::default(),
+        asked: None,
+        before: None,
+        said: config.initial_pose.map(|pose| {
+            let (metres, radians) = SAID_ERROR;
+            (pose, Covariance::from_deviations(metres, metres, radians))
+        }),
+        told: None,
+        candidates: Vec::new(),
+        gaps: GapCounter::new(),
+        last_refusal: String::new(),
+        last_state: None,
+        carried_ns: 0,
+        memory,
+        remembered,
+        remembered_at: Instant::now(),
+        poses: graph.publisher_for(PoseHeader::WORDS_CAPACITY)?,
+        attention: graph.publisher()?,
+        health: graph.health()?,
+    };
+    graph.run(&inputs.all(), TICK, |_| {
+        node.step(&inputs)?;
+        Ok::<_, TrackerError>(Flow::Continue)
+    })?;
+    node.remember(true)
+}
+
+struct Node {
+    config: Config,
+    /// The newest scans, and how the robot moved.
+    joiner: Joiner,
+    world: Option<World>,
+    tracker: Tracker,
+    scans: Scans,
+    answers: Answers,
+    /// What the scan whose turn it is waits for.
+    turn: Turn,
+    /// Of that scan.
+    ends: Ends,
+    /// The scan whose search counts later.
+    asked: Option<Stamp>,
+    /// Where the sought frame was by the odometry at the scan before.
+    before: Option<Pose>,
+    /// Where the robot is said to be, of the base.
+    said: Option<(Pose, Covariance)>,
+    /// Of the last scan.
+    told: Option<Told>,
+    candidates: Vec<Candidate>,
+    gaps: GapCounter,
+    last_refusal: String,
+    last_state: Option<TrackState>,
+    /// When the last pose was sent that odometry carried on.
+    carried_ns: i64,
+    memory: Option<Memory>,
+    remembered: Option<Remembered>,
+    remembered_at: Instant,
+    poses: Publisher<topic::Tracked>,
+    attention: Publisher<topic::Attention>,
+    health: Health,
+}
+
+impl Node {
+    fn step(&mut self, inputs: &Inputs) -> Result<(), TrackerError> {
+        loop {
+            self.take(inputs)?;
+            self.health.tick()?;
+            if !self.go_on()? {
+                break;
+            }
+        }
+        self.remember(false)
+    }
+
+    /// Takes all that has come.
+    fn take(&mut self, inputs: &Inputs) -> Result<(), TrackerError> {
+        // What was sent before a scan has come by the time that the scan has.
+        while let Some(scan) = inputs.scans.receive()? {
+            self.health.count_received(1);
+            let dropped = self.scans.push(scan.header(), scan.items());
+            self.health.count_dropped(dropped);
+        }
+        if let Some(map) = inputs.maps.newest()? {
+            self.health.count_received(1);
+            self.take_map(map.header(), map.items())?;
+        }
+        while let Some(found) = inputs.hypotheses.receive()? {
+            self.health.count_received(1);
+            self.answers.push(found.header().stamp, found.items());
+        }
+        while let Some(said) = inputs.initial_poses.receive()? {
+            self.health.count_received(1);
+            let said = said.header();
+            let covariance = Covariance::from_rows(said.covariance);
+            let pose = Pose::from(said.map_from_base);
+            match pose.is_finite() && covariance.0.cholesky().is_some() {
+                true => self.said = Some((pose, covariance)),
+                false => self.refuse("an initial pose is refused: it or its covariance is none")?,
+            }
+        }
+        while let Some(odometry) = inputs.odometry.receive()? {
+            self.health.count_received(1);
+            self.joiner.on_odometry(odometry.header());
+            self.carry(odometry.header().stamp)?;
+        }
+        Ok(())
+    }
+
+    fn take_map(
+        &mut self,
+        header: &messages::MapHeader,
+        occupancy: &[u8],
+    ) -> Result<(), TransportError> {
+        match World::new(header, occupancy, self.config.cells) {
+            Ok(world) => {
+                let is_new = self
+                    .world
+                    .as_ref()
+                    .is_none_or(|old| old.map_id != world.map_id);
+                if is_new {
+                    self.start_on(&world);
+                    self.world = Some(world);
+                }
+                self.health.state(NodeState::Ready)
+            }
+            Err(error) => {
+                self.refuse(&format!(
+                    "map {:016x} is refused: {}",
+                    header.map_id,
+                    with_causes(&error)
+                ))?;
+                self.health.state(NodeState::Degraded)
+            }
+        }
+    }
+
+    /// Forgets what was known on another map, but for where the robot was: most new maps
+    /// are of the same building.
+    fn start_on(&mut self, world: &World) {
+        let on_map = |last: &Remembered| last.map_id == format!("{:016x}", world.map_id);
+        let believed = self
+            .told
+            .filter(|told| told.report.state == TrackState::Unique);
+        self.tracker = Tracker::new(self.config.tracking);
+        self.asked = None;
+        if let Some(told) = believed
+            && let Some(pose) = told.report.pose
+        {
+            let covariance = Covariance(told.report.covariance);
+            self.tracker.expect(pose, covariance, REMEMBERED_LEAD);
+        } else if let Some(last) = self.remembered.take().filter(on_map)
+            && self.said.is_none()
+        {
+            let covariance = Covariance::from_rows(last.covariance);
+            self.expect_base((last.map_from_base, covariance), REMEMBERED_LEAD);
+        }
+    }
+
+    fn expect_base(&mut self, (base, covariance): (Pose, Covariance), lead: f64) {
+        let sought = self.sought().of_base(base);
+        self.tracker
+            .expect(sought, covariance.carried(base, sought), lead);
+    }
+
+    fn sought(&self) -> Sought {
+        let mount = self.joiner.base_from_laser();
+        Sought::of(mount, self.joiner.seeks_base())
+    }
+
+    /// Goes on with the scan whose turn it is, or with the next; whether there is more
+    /// to do at once.
+    fn go_on(&mut self) -> Result<bool, TrackerError> {
+        match self.turn {
+            Turn::Idle => self.next_scan(),
+            Turn::Odometry { scan, since } => {
+                if self.joiner.lacks_odometry() && since.elapsed() < ODOMETRY_WAIT {
+                    return Ok(false);
+                }
+                self.begin(&scan)?;
+                Ok(true)
+            }
+            Turn::Search { scan, of, since } => {
+                let has_come = self.answers.of(of).is_some();
+                if !has_come && since.elapsed() < SEARCH_WAIT {
+                    return Ok(false);
+                }
+                if !has_come {
+                    self.refuse(&format!("no hypotheses came for scan {}", of.counter))?;
+                }
+                self.finish(&scan, has_come.then_some(of))?;
+                Ok(true)
+            }
+        }
+    }
+
+    fn next_scan(&mut self) -> Result<bool, TrackerError> {
+        let joiner = &mut self.joiner;
+        let taken = self
+            .scans
+            .pop(|header, ranges| (joiner.on_scan(header, ranges), *header));
+        let Some((role, scan)) = taken else {
+            return Ok(false);
+        };
+        if role == Role::Trigger {
+            let lost = self.gaps.lost_before(scan.stamp.counter);
+            self.health.count_dropped(lost);
+            self.turn = Turn::Odometry {
+                scan,
+                since: Instant::now(),
+            };
+        }
+        Ok(true)
+    }
+
+    /// Follows the robot to a scan, and asks for a search where one is needed.
+    fn begin(&mut self, scan: &ScanHeader) -> Result<(), TrackerError> {
+        let start = Instant::now();
+        self.turn = Turn::Idle;
+        let Some(world) = &self.world else {
+            return self.send_nothing(scan, TrackReason::NoMap);
+        };
+        let mut ends = std::mem::take(&mut self.ends);
+        let found = find_ends(&mut self.joiner, &mut ends, world, &self.config);
+        self.ends = ends;
+        if let Err(error) = found {
+            let (counter, reason) = (scan.stamp.counter, with_causes(&error));
+            self.refuse(&format!("scan {counter} is refused: {reason}"))?;
+            return self.send_nothing(scan, TrackReason::NoScan);
+        }
+        if let Some(said) = self.said.take() {
+            self.expect_base(said, SAID_LEAD);
+        }
+        let now = self.joiner.odom_from_sought();
+        let moved = self
+            .before
+            .zip(now)
+            .map(|(before, now)| before.inverse().then(now));
+        self.before = now;
+        let Some(world) = &self.world else {
+            return Ok(());
+        };
+        let seen = Seen {
+            terrain: &world.terrain,
+            ends: &self.ends,
+            fit: &self.config.fit,
+        };
+        let need = self.tracker.begin(&seen, scan.stamp.measured_ns, moved);
+        let of = match need {
+            Need::Nothing => None,
+            Need::ThisScan => {
+                self.asked = None;
+                Some(scan.stamp)
+            }
+            Need::EarlierScan => self.asked.take(),
+        };
+        if need == Need::ThisScan {
+            self.ask(scan.stamp)?;
+        }
+        match of {
+            None => self.finish_since(scan, None, start),
+            Some(of) => {
+                self.turn = Turn::Search {
+                    scan: *scan,
+                    of,
+                    since: start,
+                };
+                Ok(())
+            }
+        }
+    }
+
+    fn ask(&self, stamp: Stamp) -> Result<(), TransportError> {
+        let mut loan = self.attention.loan(0)?;
+        *loan.header_mut() = AttentionHeader { stamp };
+        loan.send()
+    }
+
+    fn finish(&mut self, scan: &ScanHeader, of: Option<Stamp>) -> Result<(), TrackerError> {
+        self.finish_since(scan, of, Instant::now())
+    }
+
+    /// Is done with a scan, with what the search found for one.
+    fn finish_since(
+        &mut self,
+        scan: &ScanHeader,
+        of: Option<Stamp>,
+        start: Instant,
+    ) -> Result<(), TrackerError> {
+        self.turn = Turn::Idle;
+        let sought = self.sought();
+        let Some(world) = &self.world else {
+            return self.send_nothing(scan, TrackReason::NoMap);
+        };
+        let seen = Seen {
+            terrain: &world.terrain,
+            ends: &self.ends,
+            fit: &self.config.fit,
+        };
+        self.candidates.clear();
+        let answer = of.and_then(|of| self.answers.of(of));
+        let of_map = answer
+            .into_iter()
+            .flatten()
+            .filter(|h| h.map_id == world.map_id);
+        self.candidates
+            .extend(of_map.map(|h| Candidate::of(h, sought)));
+        let found = answer.map(|_| &self.candidates[..]);
+        self.tracker.finish(&seen, found);
+        if self.tracker.asks_ahead() {
+            self.asked = Some(scan.stamp);
+            self.ask(scan.stamp)?;
+        }
+        let told = Told {
+            stamp: scan.stamp,
+            map_id: world.map_id,
+            report: self.tracker.report(),
+            sought,
+            mount_known: scan.mount_known == 1,
+            odom_from_sought: self.before.map(|pose| (pose, self.joiner.odom_frame())),
+            tracking_ns: start.elapsed().as_nanos() as u64,
+        };
+        self.told = Some(told);
+        let words = told.report.words();
+        self.log(told.report.state, &words);
+        self.last_refusal.clear();
+        Ok(self.send(told.header(), &words)?)
+    }
+
+    /// Logs when the state changes.
+    fn log(&mut self, state: TrackState, words: &str) {
+        if self.last_state != Some(state) {
+            tracing::info!("{state}: {words}");
+            self.last_state = Some(state);
+        }
+    }
+
+    /// Sends the pose that odometry has carried on, if one is due.
+    fn carry(&mut self, stamp: Stamp) -> Result<(), TransportError> {
+        let now_ns = monotonic_ns();
+        let is_due =
+            self.config.rate > 0.0 && (now_ns - self.carried_ns) as f64 >= 1e9 / self.config.rate;
+        let Some(told) = self
+            .told
+            .filter(|told| is_due && told.report.state != TrackState::Searching)
+        else {
+            return Ok(());
+        };
+        let newest = self.joiner.newest_odom_from_sought();
+        let Some(header) = newest.and_then(|pose| told.carried(pose, stamp)) else {
+            return Ok(());
+        };
+        self.send(header, &told.report.words())
+    }
+
+    fn send_nothing(&mut self, scan: &ScanHeader, reason: TrackReason) -> Result<(), TrackerError> {
+        let map_id = self.world.as_ref().map_or(0, |world| world.map_id);
+        Ok(self.send(nothing(scan.stamp, map_id, reason), "")?)
+    }
+
+    fn send(&mut self, mut header: PoseHeader, words: &str) -> Result<(), TransportError> {
+        let bytes = words.as_bytes();
+        let mut loan = self.poses.loan(bytes.len())?;
+        loan.items_mut().copy_from_slice(bytes);
+        header.sent_ns = monotonic_ns();
+        self.carried_ns = header.sent_ns;
+        *loan.header_mut() = header;
+        loan.send()?;
+        self.health.count_sent(1);
+        Ok(())
+    }
+
+    /// Keeps the last pose that was unique, now and then, and in the end.
+    fn remember(&mut self, is_end: bool) -> Result<(), TrackerError> {
+        let Some(memory) = &self.memory else {
+            return Ok(());
+        };
+        let is_due = is_end || self.remembered_at.elapsed() >= REMEMBERED_EVERY;
+        let Some(told) = self
+            .told
+            .filter(|told| is_due && told.report.state == TrackState::Unique)
+        else {
+            return Ok(());
+        };
+        let header = told.header();
+        self.remembered_at = Instant::now();
+        let saved = memory.save(&Remembered {
+            map_id: format!("{:016x}", told.map_id),
+            stamp_ns: told.stamp.measured_ns,
+            map_from_base: header.map_from_base.into(),
+            covariance: header.base_covariance,
+        });
+        match saved {
+            Err(error) if !is_end => Ok(self.refuse(&with_causes(&error))?),
+            other => other,
+        }
+    }
+
+    /// Says what is wrong, once for as long as it stays so.
+    fn refuse(&mut self, problem: &str) -> Result<(), TransportError> {
+        self.health.count_refused(1);
+        self.health.error(problem)?;
+        if problem != self.last_refusal {
+            tracing::warn!("{problem}");
+            self.last_refusal = problem.to_owned();
+        }
+        Ok(())
+    }
+}
+
+/// Brings the newest scans to one time, and finds where their beams end.
+fn find_ends(
+    joiner: &mut Joiner,
+    ends: &mut Ends,
+    world: &World,
+    config: &Config,
+) -> Result<(), EngineError> {
+    joiner.bring()?;
+    let seen = joiner.seen();
+    ends.find(seen.observation(), &world.space, &config.beams)
+}
