@@ -81,13 +81,16 @@ pub enum SearchOutcome {
     NoVotes = 1,
     /// The scan was refused; the sender's health says why.
     Refused = 2,
+    /// The scan is kept, and searched once `attention` asks for it. No hypotheses
+    /// follow; the counters of these messages tell what was lost.
+    NotAsked = 3,
 }
 
 impl SearchOutcome {
     /// The outcome with this number, if there is one.
     #[must_use]
     pub fn from_code(code: u32) -> Option<Self> {
-        [Self::Found, Self::NoVotes, Self::Refused]
+        [Self::Found, Self::NoVotes, Self::Refused, Self::NotAsked]
             .into_iter()
             .find(|o| *o as u32 == code)
     }

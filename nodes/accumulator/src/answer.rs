@@ -127,6 +127,15 @@ pub fn refused(scan: &ScanHeader, map_id: u64, headings: u32) -> VotesHeader {
     }
 }
 
+/// The header of the votes of a scan that is kept until somebody asks for it.
+#[must_use]
+pub fn kept(scan: &ScanHeader, map_id: u64, headings: u32) -> VotesHeader {
+    VotesHeader {
+        outcome: SearchOutcome::NotAsked as u32,
+        ..empty(scan, map_id, headings)
+    }
+}
+
 fn empty(scan: &ScanHeader, map_id: u64, headings: u32) -> VotesHeader {
     VotesHeader {
         stamp: scan.stamp,

@@ -128,7 +128,12 @@ impl Node {
             }
             let brought = self.bring(&scan);
             match (&mut self.kept, brought) {
-                (Some(kept), Ok(lasers)) => kept.keep(&scan, lasers, &self.joiner.seen()),
+                (Some(kept), Ok(lasers)) => {
+                    kept.keep(&scan, lasers, &self.joiner.seen());
+                    let map_id = self.map.as_ref().map_or(0, |map| map.map_id);
+                    let votes = answer::kept(&scan, map_id, self.headings);
+                    self.outputs.votes(&votes, &[])?;
+                }
                 (_, brought) => self.answer(&scan, brought)?,
             }
         }

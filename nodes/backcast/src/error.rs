@@ -234,6 +234,14 @@ pub enum BackcastError {
     /// A picture cannot be made.
     #[error(transparent)]
     Drawing(#[from] DrawingError),
+    /// A trajectory could not be written.
+    #[error("cannot write the trajectory {}", .file.display())]
+    Trajectory {
+        /// Where it was to be.
+        file: PathBuf,
+        /// Why.
+        source: std::io::Error,
+    },
     /// A picture cannot be stored.
     #[error("cannot write the picture {}", file.display())]
     Picture {

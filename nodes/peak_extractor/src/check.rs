@@ -44,7 +44,9 @@ pub fn check<'a>(
     let outcome = header.outcome;
     match SearchOutcome::from_code(outcome) {
         None => return Err(PeakError::Outcome { found: outcome }),
-        Some(SearchOutcome::NoVotes | SearchOutcome::Refused) => return Ok(None),
+        Some(SearchOutcome::NoVotes | SearchOutcome::Refused | SearchOutcome::NotAsked) => {
+            return Ok(None);
+        }
         Some(SearchOutcome::Found) => {}
     }
     let map = maps.get(header.map_id, rules(header)?)?;

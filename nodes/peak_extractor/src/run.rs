@@ -4,7 +4,7 @@ use std::time::{Duration, Instant};
 
 use engine::beams::BeamConfig;
 use engine::peaks::PeakConfig;
-use messages::{NodeState, topic};
+use messages::{NodeState, SearchOutcome, topic};
 use transport::{
     Flow, GapCounter, Graph, Health, Publisher, Sample, Subscriber, TransportError, monotonic_ns,
     with_causes,
@@ -35,6 +35,7 @@ pub fn run(graph: &Graph, config: &Config) -> Result<(), PeakError> {
         scans: Scans::default(),
         workspace: Workspace::default(),
         gaps: GapCounter::new(),
+        newest_kept: None,
         last_refusal: String::new(),
         hypotheses: graph.publisher_for(config.peaks.max_hypotheses as usize)?,
         // As many as vote by default; whoever lets more vote has it grow.
@@ -53,6 +54,8 @@ struct Node {
     scans: Scans,
     workspace: Workspace,
     gaps: GapCounter,
+    /// The counter of the newest scan that is searched only when asked for.
+    newest_kept: Option<u64>,
     last_refusal: String,
     hypotheses: Publisher<topic::Hypotheses>,
     beams: Publisher<topic::Beams>,
@@ -107,16 +110,23 @@ impl Node {
     fn answer(&mut self, votes: &Sample<topic::Votes>) -> Result<(), TransportError> {
         let start = Instant::now();
         let header = votes.header();
+        let counter = header.stamp.counter;
+        self.health.count_received(1);
+        if header.outcome == SearchOutcome::NotAsked as u32 {
+            self.newest_kept = Some(counter);
+            self.health.count_dropped(self.gaps.lost_before(counter));
+            return Ok(());
+        }
         let known = (&mut self.maps, &self.scans);
         // What is sent lies in the workspace.
         let mut workspace = std::mem::take(&mut self.workspace);
         let answered = answer(header, votes.items(), known, &self.config, &mut workspace);
         let extract_ns = start.elapsed().as_nanos() as u64;
         // Votes have the counter of their scan: one that is missing here was
-        // lost on one of its two ways.
-        let lost = self.gaps.lost_before(header.stamp.counter);
-        self.health.count_received(1);
-        self.health.count_dropped(lost);
+        // lost on one of its two ways. A scan that was kept has been counted.
+        if self.newest_kept.is_none_or(|newest| newest < counter) {
+            self.health.count_dropped(self.gaps.lost_before(counter));
+        }
         let done = match answered {
             Ok(answer) => {
                 self.last_refusal.clear();

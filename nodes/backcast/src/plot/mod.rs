@@ -13,12 +13,13 @@
 //! map ───────────────── outline ──┘
 //! ```
 //!
-//! `difference` is drawn by `backcast regress`.
+//! `difference` is drawn by `backcast regress`, `drive` by `backcast evaluate --sequence`.
 
 mod chart;
 mod command;
 mod config;
 mod difference;
+mod drive;
 mod errors;
 mod extent;
 mod field;
@@ -37,3 +38,4 @@ mod view;
 pub(crate) use command::run;
 pub(crate) use config::{Config, NOTES};
 pub(crate) use difference::{Contrast, draw as draw_contrast};
+pub(crate) use drive::{Stop, draw as draw_drive};

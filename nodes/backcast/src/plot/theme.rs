@@ -2,7 +2,7 @@
 
 use drawing::Color;
 use engine::fit::BeamClass;
-use messages::Verdict;
+use messages::{TrackState, Verdict};
 
 /// Text and axes.
 pub(super) const INK: Color = Color::rgb(0x1F_2933);
@@ -51,5 +51,15 @@ pub(super) fn of_verdict(verdict: Verdict) -> Color {
         Verdict::Ambiguous => Color::rgb(0xD9_7A00),
         Verdict::PoorFit => Color::rgb(0xC6_2F2B),
         Verdict::NoScan => Color::rgb(0x6B_7785),
+    }
+}
+
+/// The colour of a state of the tracker.
+pub(super) fn of_state(state: TrackState) -> Color {
+    match state {
+        TrackState::Unique => Color::rgb(0x0E_8A46),
+        TrackState::Doubtful => Color::rgb(0xD9_7A00),
+        TrackState::Lost => Color::rgb(0xC6_2F2B),
+        TrackState::Searching => Color::rgb(0x6B_7785),
     }
 }

@@ -6,9 +6,11 @@ use std::process::ExitCode;
 use engine::tracking::TrackingConfig;
 use map::OccupancyGrid;
 
+use super::drive::Moment;
 use super::figures::Figures;
-use super::{drive, follow, jumps, starts};
+use super::{course, drive, follow, jumps, starts};
 use crate::offline::{Accepted, Options, Progress, Session, damage_of, say};
+use crate::plot::draw_drive;
 use crate::{BackcastError, stdout};
 
 /// What `backcast evaluate --sequence` takes in addition.
@@ -39,6 +41,15 @@ pub(crate) struct SequenceOptions {
     /// Truths that are known to be wrong, by the numbers of their scans from 0
     #[arg(long, value_name = "N,N", value_delimiter = ',')]
     pub(crate) ignore_truth: Vec<u64>,
+
+    /// Write the drive from its first scan, with no guess, as trajectories to this
+    /// folder, and the true ones beside them (TUM format, which evo reads)
+    #[arg(long, value_name = "FOLDER")]
+    pub(crate) trajectories: Option<PathBuf>,
+
+    /// Draw it to this folder: the map, the way, and where it was not unique
+    #[arg(long, value_name = "FOLDER")]
+    pub(crate) pictures: Option<PathBuf>,
 
     #[command(flatten)]
     pub(crate) tracking: TrackingConfig,
@@ -90,6 +101,7 @@ fn one(
     let moments = drive::read(&mut session, &truths, sequence, (&progress, &mut accepted))?;
     accepted.check(bag)?;
     let (world, config) = (session.world()?, sequence.tracking);
+    show(&session, &moments, (options, sequence), bag)?;
     let chosen = starts::choose(&moments, sequence.starts);
     let starts = starts::evaluate(world, &moments, &chosen, config)?;
     let followed = follow::evaluate(world, &moments, config)?;
@@ -115,4 +127,30 @@ fn one(
         (&starts, &followed, &jumps),
         searching_ms,
     ))
+}
+
+/// Writes what is asked for of the drive from its first scan.
+fn show(
+    session: &Session<'_>,
+    moments: &[Moment],
+    (options, sequence): (&Options, &SequenceOptions),
+    bag: &Path,
+) -> Result<(), BackcastError> {
+    if sequence.trajectories.is_none() && sequence.pictures.is_none() {
+        return Ok(());
+    }
+    let name = bag.file_stem().unwrap_or_default().to_string_lossy();
+    let said = course::of(session.world()?, moments, sequence.tracking)?;
+    if let Some(folder) = &sequence.trajectories {
+        course::write(folder, &name, (moments, &said))?;
+    }
+    if let Some(folder) = &sequence.pictures {
+        let words = (name.to_string(), course::doubts(&said));
+        let stops = course::stops(moments, &said);
+        let scene = draw_drive(session.map()?, options.engine.cells, &stops, words)?;
+        let file = folder.join(format!("{name}.png"));
+        let picture = drawing::to_png(&scene)?;
+        std::fs::write(&file, picture).map_err(|source| BackcastError::Picture { file, source })?;
+    }
+    Ok(())
 }

@@ -3,6 +3,7 @@
 //! elsewhere; see docs/tracking.md.
 
 mod command;
+mod course;
 mod drive;
 mod figures;
 mod follow;
