@@ -19,12 +19,15 @@ mod line;
 mod options;
 mod output;
 mod pairs;
+mod pose_line;
 mod process;
 mod record;
 pub(crate) mod replay;
 mod report;
+mod rows;
 mod summary;
 mod supervision;
+mod tracking;
 mod watch;
 
 pub(crate) use launch::run;
