@@ -4,7 +4,7 @@ import { ask, savePicture, takeToken } from "./actions.js";
 import { Connection } from "./connection.js";
 import { listen } from "./gestures.js";
 import { MapView } from "./map_view.js";
-import { $, showAnswer, showEvents, showLegend, showNodes, showPlaces, showScale, showTiming } from "./panel.js";
+import { $, showAnswer, showEvents, showLegend, showNodes, showPlaces, showScale, showTiming, STALE_S } from "./panel.js";
 import { Store } from "./store.js";
 
 const store = new Store();
@@ -84,8 +84,13 @@ async function loadMap() {
 
 function showLink() {
   document.body.dataset.link = link;
-  const age = delay === null ? null : Math.round(delay + (store.answer?.age_ms ?? 0));
-  const words = { live: age === null ? "live" : `live · ${age} ms`, lost: "disconnected", connecting: "connecting", alone: "no robot yet" };
+  const silence = store.silence();
+  const silent = link === "live" && (silence === null || silence > STALE_S);
+  document.body.toggleAttribute("data-silent", silent);
+  const age = delay === null ? null : Math.round(delay + ((store.pose ?? store.answer)?.age_ms ?? 0));
+  const live = age === null ? "live" : `live · ${age} ms`;
+  const nothing = silence === null ? "no data yet" : `no data for ${Math.floor(silence)} s`;
+  const words = { live: silent ? nothing : live, lost: "disconnected", connecting: "connecting", alone: "no robot yet" };
   $("link-text").textContent = frozen && link === "live" ? "frozen" : words[link];
   $("lost").hidden = link !== "lost";
   if (link === "lost") {
@@ -118,7 +123,7 @@ function show(now) {
   const title = `${word} · ${robot} · Backcast`;
   if (document.title !== title) document.title = title;
 }
-setInterval(() => { dirty = true; showLink(); }, 500);
+setInterval(() => { dirty = true; showLink(); view.draw(); }, 500);
 
 function watch(name) {
   connection?.close();

@@ -2,6 +2,7 @@
 
 import { Camera } from "./camera.js";
 import { cellColors, fieldColors, palette } from "./colors.js";
+import { STALE_S } from "./panel.js";
 
 const MAX_SIDE = 8192; // pixels of an image along a side
 const SIGMAS = 2.448; // of an ellipse that holds 95 %
@@ -56,7 +57,7 @@ export class MapView {
     camera.fit(box);
     const near = Math.min(camera.width, camera.height) / NEAR_M;
     if (camera.scale < near) camera.scale = near;
-    const best = this.store.answer?.hypotheses[0];
+    const best = this.store.best();
     if (best) [camera.x, camera.y] = [best.laser.x, best.laser.y];
     this.draw();
   }
@@ -117,7 +118,7 @@ export class MapView {
 
   #drawNow() {
     const { camera, colors, store, layers } = this;
-    const best = store.answer?.hypotheses[0];
+    const best = store.best();
     if (this.follow && best) this.#keepInView(best.laser);
     const c = this.canvas.getContext("2d");
     c.setTransform(1, 0, 0, 1, 0, 0);
@@ -231,7 +232,9 @@ export class MapView {
   }
 
   #drawOthers(c) {
-    const places = this.store.answer?.hypotheses.slice(1) ?? [];
+    const { answer, pose } = this.store;
+    if (pose?.state === "Unique") return;
+    const places = answer?.hypotheses.slice(1) ?? [];
     c.font = "600 11px system-ui, sans-serif";
     c.textAlign = "center";
     c.textBaseline = "middle";
@@ -251,7 +254,11 @@ export class MapView {
   }
 
   #drawBest(c, { laser, base, ellipse }) {
-    const { colors, camera } = this;
+    const { camera } = this;
+    const stale = (this.store.silence() ?? Infinity) > STALE_S;
+    const state = this.store.pose?.state ?? "Unique";
+    const accent = stale ? this.colors.soft : { Unique: this.colors.accent, Lost: this.colors.beams.t }[state] ?? this.colors.beams.s;
+    const colors = { ...this.colors, accent };
     const [x, y] = camera.toScreen(laser.x, laser.y);
     this.#drawEllipse(c, x, y, ellipse, colors.accent, colors.accentSoft);
     if (base) {

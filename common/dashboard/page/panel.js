@@ -3,7 +3,7 @@
 import { FATES, palette } from "./colors.js";
 
 const PLACES = 6;
-const STALE_MS = 2000;
+export const STALE_S = 2; // without a scan: nothing is live any more
 
 export const $ = (id) => document.getElementById(id);
 
@@ -41,30 +41,42 @@ function clock(seconds) {
 }
 
 const WORDS = { Unique: "Located", Ambiguous: "Ambiguous", PoorFit: "Poor fit", NoScan: "No scan" };
+const STATES = { Unique: "Located", Searching: "Searching", Doubtful: "Doubtful", Lost: "Lost" };
 
-export function showAnswer({ answer, answeredAt }) {
-  const quiet = performance.now() - answeredAt;
-  const stale = !answer || quiet > STALE_MS;
+/** What is said of the pose: by the tracker or, without one, of the last scan. */
+function told({ pose, answer }) {
+  if (pose) return { word: STATES[pose.state] ?? pose.state, kind: pose.state, says: pose.says };
+  if (answer) return { word: WORDS[answer.verdict] ?? answer.verdict, kind: answer.verdict, says: answer.says };
+  return null;
+}
+
+export function showAnswer(store) {
+  const { answer, pose } = store;
+  const silence = store.silence();
+  const stale = silence === null || silence > STALE_S;
+  const is = told(store);
   $("verdict-card").classList.toggle("stale", stale);
-  if (!answer) {
+  if (!is) {
     write("verdict", "Waiting");
     $("verdict").dataset.verdict = "";
     write("says", "Waiting for the first scan.");
   } else {
-    write("verdict", stale ? "No answers" : WORDS[answer.verdict] ?? answer.verdict);
-    $("verdict").dataset.verdict = stale ? "" : answer.verdict;
-    const seconds = Math.floor(quiet / 1000);
-    write("says", stale ? `No scan was answered for ${seconds} s. The last one: ${answer.says}.` : `${answer.says}.`.replace("?.", "?"));
+    write("verdict", stale ? "No data" : is.word);
+    $("verdict").dataset.verdict = stale ? "" : is.kind;
+    write("says", stale ? `No scan came for ${Math.floor(silence ?? 0)} s. The last word was: ${sentence(is.says)}` : sentence(is.says));
   }
-  write("stamp", answer ? clock(answer.stamp_s) : "");
-  const best = answer?.hypotheses[0];
+  write("stamp", pose ? clock(pose.stamp_s) : answer ? clock(answer.stamp_s) : "");
+  const best = store.best();
   write("pose-x", fixed(best?.laser.x, 2));
   write("pose-y", fixed(best?.laser.y, 2));
   write("pose-yaw", fixed(best && degrees(best.laser.yaw), 1));
   const ellipse = best?.ellipse;
   $("spread").textContent = ellipse
     ? `± ${fixed(ellipse.major_m * 100, 1)} cm along, ${fixed(ellipse.minor_m * 100, 1)} cm across, ${fixed(degrees(ellipse.yaw), 2)}°` : "";
+  write("single", pose && answer ? `Single scan: ${WORDS[answer.verdict] ?? answer.verdict}, ${sentence(answer.says)}` : "");
 }
+
+const sentence = (text) => (/[.?!]$/.test(text) ? text : `${text}.`);
 
 export function showPlaces({ answer }) {
   const places = answer?.hypotheses ?? [];
@@ -80,10 +92,11 @@ export function showPlaces({ answer }) {
 }
 
 export function showTiming({ answer, latencies }, theme) {
-  write("latency", answer ? fixed(answer.latency_ms, answer.latency_ms < 100 ? 1 : 0) : "–");
+  const last = latencies.at(-1);
+  write("latency", last === undefined ? "–" : fixed(last, last < 100 ? 1 : 0));
   const sorted = [...latencies].sort((a, b) => a - b);
   const at = (share) => sorted[Math.min(sorted.length - 1, Math.floor(sorted.length * share))];
-  $("timing").textContent = sorted.length
+  $("timing").textContent = sorted.length && answer
     ? `median ${fixed(at(0.5), 1)}, most ${fixed(at(1), 1)} · search ${fixed(answer.search_ms, 1)}, fit ${fixed(answer.extract_ms, 1)}` : "";
   drawSpark($("spark"), latencies, palette(theme));
 }

@@ -12,7 +12,7 @@ export class Store {
 
   clear() {
     Object.assign(this, {
-      robot: "", map: null, cells: null, answer: null, answeredAt: 0, beams: null, field: null,
+      robot: "", map: null, cells: null, answer: null, pose: null, scanAt: null, beams: null, field: null,
       nodes: new Map(), track: [], region: [], latencies: [], missed: 0,
       abilities: { region: false, save: false },
     });
@@ -24,6 +24,7 @@ export class Store {
       case "snapshot": return this.#snapshot(message);
       case "map": this.map = message; this.field = null; return "map";
       case "answer": return this.#answer(message);
+      case "pose": return this.#pose(message);
       case "beams": this.beams = message; return "beams";
       case "node": return this.#node(message);
       case "log": return this.#log(message);
@@ -37,9 +38,9 @@ export class Store {
     }
   }
 
-  #snapshot({ robot, map, answer, beams, nodes, track, log, region, abilities }) {
-    Object.assign(this, { robot, map, answer, beams, track, region, abilities });
-    if (answer) this.answeredAt = performance.now();
+  #snapshot({ robot, map, answer, pose, ages, beams, nodes, track, log, region, abilities }) {
+    Object.assign(this, { robot, map, answer, pose, beams, track, region, abilities });
+    this.scanAt = ages.scan_s === null ? null : performance.now() - 1000 * ages.scan_s;
     this.nodes = new Map(nodes.map((node) => [node.name, node]));
     for (const line of log) this.#log(line);
     return "snapshot";
@@ -47,20 +48,54 @@ export class Store {
 
   #answer(answer) {
     const verdict = this.answer?.verdict;
-    if (verdict !== answer.verdict) {
+    if (verdict !== answer.verdict && !this.pose) {
       const level = { Unique: "good", Ambiguous: "warn", PoorFit: "bad" }[answer.verdict] ?? "warn";
       this.event(`${answer.verdict}: ${answer.says}`, level);
     }
-    const other = this.answer && this.answer.map_id !== answer.map_id;
-    if (other) this.track = [];
+    this.#scanned(answer.age_ms);
+    if (!this.pose) this.#went(this.answer, answer, answer.hypotheses[0]?.laser, answer.verdict);
     this.answer = answer;
-    this.answeredAt = performance.now();
-    const best = answer.hypotheses[0];
-    if (best) this.track.push([best.laser.x, best.laser.y, answer.verdict[0]]);
-    if (this.track.length > TRACK) this.track.shift();
-    this.latencies.push(answer.latency_ms);
-    if (this.latencies.length > LATENCIES) this.latencies.shift();
     return "answer";
+  }
+
+  /** Takes where the tracker has the robot, with a scan or between scans. */
+  #pose(pose) {
+    if (this.pose?.state !== pose.state) {
+      const level = { Unique: "good", Lost: "bad" }[pose.state] ?? "warn";
+      this.event(`${pose.state}: ${pose.says}`, level);
+    }
+    if (!this.pose) this.track = [];
+    if (pose.from_scan) {
+      this.#scanned(pose.age_ms);
+      this.#went(this.pose, pose, pose.laser, pose.state);
+    }
+    this.pose = pose;
+    return "pose";
+  }
+
+  /** When the newest scan came, by the clock of this page. */
+  #scanned(age_ms) {
+    this.scanAt = Math.max(this.scanAt ?? -Infinity, performance.now() - age_ms);
+  }
+
+  /** The way goes on, or begins anew on another map. */
+  #went(before, now, laser, word) {
+    if (before && before.map_id !== now.map_id) this.track = [];
+    if (laser) this.track.push([laser.x, laser.y, word[0]]);
+    if (this.track.length > TRACK) this.track.shift();
+    this.latencies.push(now.latency_ms);
+    if (this.latencies.length > LATENCIES) this.latencies.shift();
+  }
+
+  /** Seconds since the newest scan; null before the first. */
+  silence() {
+    return this.scanAt === null ? null : (performance.now() - this.scanAt) / 1000;
+  }
+
+  /** Where the robot is: what the tracker says or, without one, the last scan. */
+  best() {
+    if (!this.pose) return this.answer?.hypotheses[0] ?? null;
+    return this.pose.laser ? this.pose : null;
   }
 
   #node(node) {

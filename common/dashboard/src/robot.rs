@@ -11,13 +11,14 @@ use axum::body::Bytes;
 use axum::extract::ws::Utf8Bytes;
 use messages::{
     Beam, BeamsHeader, FieldHeader, HealthHeader, HypothesesHeader, Hypothesis, LogHeader,
-    MapHeader,
+    MapHeader, PoseHeader,
 };
 use serde::Serialize;
 use tokio::sync::{broadcast, watch};
 
 use crate::told::{
-    Answer, Beams, Log, LogLine, Map, Message, Region, Roster, Snapshot, Track, field_frame,
+    Answer, Beams, Log, LogLine, Map, Message, Region, Roster, Snapshot, Times, Track, Tracked,
+    field_frame,
 };
 
 /// Messages that may wait for a slow reader; beyond, it loses the oldest.
@@ -59,6 +60,9 @@ pub struct Robot {
 struct Known {
     map: Option<Arc<Map>>,
     answer: Option<Answer>,
+    /// None where no tracker was heard.
+    pose: Option<Tracked>,
+    times: Times,
     beams: Option<Beams>,
     roster: Roster,
     track: Track,
@@ -113,8 +117,19 @@ impl Robot {
         let answer = Answer::new(header, items, now_ns);
         let mut known = self.known();
         self.tell(&Message::Answer(&answer));
-        known.track.hear(&answer);
+        known.times.hear_answer(header);
+        known.track.hear_answer(&answer);
         known.answer = Some(answer);
+    }
+
+    /// Takes where the tracker has the robot, at a time of the host's clock.
+    pub fn hear_pose(&self, header: &PoseHeader, words: &[u8], now_ns: i64) {
+        let pose = Tracked::new(header, words, now_ns);
+        let mut known = self.known();
+        self.tell(&Message::Pose(&pose));
+        known.times.hear_pose(header);
+        known.track.hear_pose(&pose);
+        known.pose = Some(pose);
     }
 
     /// Takes what became of the beams of a scan.
@@ -199,18 +214,18 @@ impl Robot {
         &self.name
     }
 
-    /// All that is known, and all that comes from now on.
-    pub(crate) fn watch(&self) -> Watching {
+    /// All that is known at a time of the host's clock, and all that comes from then on.
+    pub(crate) fn watch(&self, now_ns: i64) -> Watching {
         let known = self.known();
         Watching {
             news: self.news.subscribe(),
-            snapshot: self.snapshot_of(&known),
+            snapshot: self.snapshot_of(&known, now_ns),
         }
     }
 
-    /// All that is known.
-    pub(crate) fn snapshot(&self) -> Utf8Bytes {
-        self.snapshot_of(&self.known())
+    /// All that is known at a time of the host's clock.
+    pub(crate) fn snapshot(&self, now_ns: i64) -> Utf8Bytes {
+        self.snapshot_of(&self.known(), now_ns)
     }
 
     /// The map, if there is one.
@@ -239,11 +254,13 @@ impl Robot {
         }
     }
 
-    fn snapshot_of(&self, known: &Known) -> Utf8Bytes {
+    fn snapshot_of(&self, known: &Known, now_ns: i64) -> Utf8Bytes {
         text(&Message::Snapshot(Snapshot {
             robot: &self.name,
             map: known.map.as_ref().map(|map| &map.info),
             answer: known.answer.as_ref(),
+            pose: known.pose.as_ref(),
+            ages: known.times.ages(now_ns),
             beams: known.beams.as_ref(),
             nodes: known.roster.reports().collect(),
             track: known.track.points().collect(),
@@ -273,7 +290,7 @@ pub(crate) fn text(message: &Message<'_>) -> Utf8Bytes {
 #[cfg(test)]
 mod tests {
     use bytemuck::Zeroable;
-    use messages::Verdict;
+    use messages::{TrackState, Verdict};
     use serde_json::Value;
 
     use super::*;
@@ -295,7 +312,7 @@ mod tests {
     fn who_comes_hears_what_is_known_and_then_all_that_follows() {
         let (robot, _wishes) = Robot::new("r".into());
         hear(&robot, 1);
-        let mut watching = robot.watch();
+        let mut watching = robot.watch(0);
         hear(&robot, 2);
         let snapshot = json(&watching.snapshot);
         assert_eq!(
@@ -313,9 +330,35 @@ mod tests {
     }
 
     #[test]
+    fn a_pose_is_told_beside_the_answer_and_so_is_its_age() {
+        let (robot, _wishes) = Robot::new("r".into());
+        hear(&robot, 1);
+        let mut watching = robot.watch(0);
+        assert_eq!(json(&watching.snapshot)["pose"], Value::Null, "no tracker");
+        let header = PoseHeader {
+            sent_ns: 1_000_000_000,
+            state: TrackState::Lost as u32,
+            ..PoseHeader::zeroed()
+        };
+        robot.hear_pose(&header, b"no place fits", 0);
+        let news = json(&watching.news.try_recv().unwrap());
+        assert_eq!(
+            (&news["type"], &news["state"]),
+            (&"pose".into(), &"Lost".into())
+        );
+        let snapshot = json(&robot.snapshot(3_500_000_000));
+        assert_eq!(snapshot["pose"]["says"], "no place fits");
+        assert_eq!(snapshot["answer"]["counter"], 1, "the single answer stays");
+        assert_eq!(
+            snapshot["ages"],
+            serde_json::json!({"scan_s": 3.5, "pose_s": 2.5})
+        );
+    }
+
+    #[test]
     fn who_is_slow_loses_the_oldest_and_hears_how_many() {
         let (robot, _wishes) = Robot::new("r".into());
-        let mut watching = robot.watch();
+        let mut watching = robot.watch(0);
         for counter in 0..QUEUE as u64 + 3 {
             hear(&robot, counter);
         }

@@ -4,6 +4,7 @@
 //! Lengths are metres, angles radians counter-clockwise, times seconds or, where
 //! the name says so, milliseconds. What is no number is `null`.
 
+mod ages;
 mod answer;
 mod beams;
 mod field;
@@ -11,7 +12,9 @@ mod log;
 mod map;
 mod roster;
 mod track;
+mod tracked;
 
+pub(crate) use ages::{Ages, Times};
 pub(crate) use answer::Answer;
 pub(crate) use beams::Beams;
 pub(crate) use field::frame as field_frame;
@@ -19,7 +22,9 @@ pub(crate) use log::{Log, LogLine};
 pub(crate) use map::{Map, MapInfo};
 pub(crate) use roster::{NodeReport, Roster};
 pub(crate) use track::{Track, TrackPoint};
+pub(crate) use tracked::Tracked;
 
+use geometry::Covariance;
 use messages::Pose2;
 use serde::Serialize;
 
@@ -35,6 +40,8 @@ pub(crate) enum Message<'a> {
     Map(&'a MapInfo),
     /// What a scan says of the pose.
     Answer(&'a Answer),
+    /// Where the tracker has the robot.
+    Pose(&'a Tracked),
     /// What became of its beams.
     Beams(&'a Beams),
     /// How a node fares.
@@ -70,6 +77,9 @@ pub(crate) struct Snapshot<'a> {
     pub(crate) robot: &'a str,
     pub(crate) map: Option<&'a MapInfo>,
     pub(crate) answer: Option<&'a Answer>,
+    /// None where the graph has no tracker.
+    pub(crate) pose: Option<&'a Tracked>,
+    pub(crate) ages: Ages,
     pub(crate) beams: Option<&'a Beams>,
     pub(crate) nodes: Vec<&'a NodeReport>,
     pub(crate) track: Vec<&'a TrackPoint>,
@@ -89,6 +99,34 @@ pub(crate) struct PoseTold {
 impl From<Pose2> for PoseTold {
     fn from(Pose2 { x, y, yaw }: Pose2) -> Self {
         PoseTold { x, y, yaw }
+    }
+}
+
+/// The ellipse of one standard deviation, of a covariance.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize)]
+pub(crate) struct Ellipse {
+    /// Half of the long axis.
+    pub(crate) major_m: f64,
+    /// Half of the short one.
+    pub(crate) minor_m: f64,
+    /// Of the long axis to the map's x.
+    pub(crate) angle: f64,
+    /// Standard deviation of the heading.
+    pub(crate) yaw: f64,
+}
+
+impl Ellipse {
+    /// Of a covariance row by row over x, y and yaw, as far as it is one.
+    pub(crate) fn new(rows: [f64; 9]) -> Option<Self> {
+        let is_finite = rows.iter().all(|value| value.is_finite());
+        let ellipse = is_finite.then(|| Covariance::from_rows(rows).ellipse())?;
+        let [.., yaw_variance] = rows;
+        Some(Ellipse {
+            major_m: ellipse.major_m,
+            minor_m: ellipse.minor_m,
+            angle: ellipse.angle,
+            yaw: yaw_variance.max(0.0).sqrt(),
+        })
     }
 }
 

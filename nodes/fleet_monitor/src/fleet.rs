@@ -65,6 +65,14 @@ impl Shown for topic::Hypotheses {
     }
 }
 
+impl Shown for topic::Tracked {
+    fn show(heard: &Heard<Self>, robot: &Robot) -> Result<(), &'static str> {
+        let message = &heard.message;
+        robot.hear_pose(&message.header, &message.items, monotonic_ns());
+        Ok(())
+    }
+}
+
 impl Shown for topic::Beams {
     fn show(heard: &Heard<Self>, robot: &Robot) -> Result<(), &'static str> {
         robot.hear_beams(&heard.message.header, &heard.message.items);

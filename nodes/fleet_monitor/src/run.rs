@@ -48,6 +48,7 @@ pub fn run(graph: &Graph, config: &Config) -> Result<(), FleetError> {
 struct Inputs {
     maps: Feed<topic::Map>,
     hypotheses: Feed<topic::Hypotheses>,
+    poses: Feed<topic::Tracked>,
     beams: Feed<topic::Beams>,
     health: Feed<topic::Health>,
     log: Feed<topic::Log>,
@@ -67,6 +68,7 @@ impl Inputs {
         Ok(Inputs {
             maps: Feed::open(session, ALL, graph.waker()?)?,
             hypotheses: Feed::open(session, ALL, graph.waker()?)?,
+            poses: Feed::open(session, ALL, graph.waker()?)?,
             beams: Feed::open(session, ALL, graph.waker()?)?,
             health: Feed::open(session, ALL, graph.waker()?)?,
             log: Feed::open(session, ALL, graph.waker()?)?,
@@ -92,6 +94,7 @@ impl Node {
         };
         desk.take(&inputs.maps)?;
         desk.take(&inputs.hypotheses)?;
+        desk.take(&inputs.poses)?;
         desk.take(&inputs.beams)?;
         desk.take(&inputs.health)?;
         desk.take(&inputs.log)?;

@@ -10,7 +10,8 @@ use std::time::Duration;
 
 use bytemuck::Zeroable;
 use messages::{
-    Corner, HypothesesHeader, Hypothesis, MapHeader, Pose2, RegionHeader, Verdict, topic,
+    Corner, HypothesesHeader, Hypothesis, MapHeader, Pose2, PoseHeader, RegionHeader, TrackState,
+    Verdict, topic,
 };
 use serde_json::{Value, json};
 use tempfile::TempDir;
@@ -164,6 +165,22 @@ impl FarRobot {
         self.put_at(time, &key, &wire::encoding::<topic::Hypotheses>(), payload);
     }
 
+    /// Where its tracker has it.
+    fn track(&self, sequence: u64, x: f64) {
+        let mut header = PoseHeader {
+            state: TrackState::Doubtful as u32,
+            pose_known: 1,
+            from_scan: 1,
+            ..PoseHeader::zeroed()
+        };
+        header.stamp.entered_ns = monotonic_ns();
+        header.sent_ns = monotonic_ns();
+        header.map_from_laser.x = x;
+        let payload = Self::payload::<topic::Tracked>(sequence, &header, b"the scans do not fit");
+        let key = wire::key::<topic::Tracked>(&self.name);
+        self.put(&key, &wire::encoding::<topic::Tracked>(), payload);
+    }
+
     /// A map that stays for those who come later.
     fn serve_map(&self) -> AdvancedPublisher<'static> {
         let publisher = self
@@ -213,6 +230,19 @@ fn robots_come_with_what_they_say_and_stay_apart() {
     let known = world.wait_for("/api/v1/robots/a", |known| known["map"]["width"] == 3);
     assert_eq!(known["answer"]["hypotheses"][0]["laser"]["x"], 1.5);
     assert_eq!(world.site.get("/api/v1/robots/b")["map"], Value::Null);
+}
+
+#[test]
+fn the_pose_of_a_robots_tracker_is_shown() {
+    let world = World::new("fleet-pose");
+    let a = world.robot("a");
+    a.answer(0, 9.0);
+    a.track(0, 1.5);
+    let known = world.wait_for("/api/v1/robots/a", |known| {
+        known["pose"]["laser"]["x"] == 1.5
+    });
+    assert_eq!(known["pose"]["state"], "Doubtful");
+    assert_eq!(known["pose"]["says"], "the scans do not fit");
 }
 
 /// Times are given by the router through which robots send, one after the other, but

@@ -10,8 +10,8 @@ use std::path::Path;
 
 use bytemuck::Zeroable;
 use messages::{
-    BeamsHeader, Corner, FieldHeader, HypothesesHeader, Hypothesis, MapHeader, Pose2, Verdict,
-    topic,
+    BeamsHeader, Corner, FieldHeader, HypothesesHeader, Hypothesis, MapHeader, Pose2, PoseHeader,
+    TrackState, Verdict, topic,
 };
 use serde_json::{Value, json};
 use tempfile::TempDir;
@@ -27,6 +27,7 @@ struct World {
     node: Option<NodeProcess>,
     site: Site,
     hypotheses: Publisher<topic::Hypotheses>,
+    poses: Publisher<topic::Tracked>,
     beams: Publisher<topic::Beams>,
     maps: Publisher<topic::Map>,
     graph: Graph,
@@ -46,6 +47,7 @@ impl World {
             node: None,
             site,
             hypotheses: graph.publisher().unwrap(),
+            poses: graph.publisher().unwrap(),
             beams: graph.publisher().unwrap(),
             maps: graph.publisher().unwrap(),
             graph,
@@ -88,6 +90,30 @@ impl World {
             },
             ..Hypothesis::zeroed()
         };
+        loan.send().unwrap();
+    }
+
+    /// Sends where the tracker has the robot, by a scan that came `age_s` ago.
+    fn track(&self, counter: u64, state: TrackState, x: f64, age_s: i64) {
+        let words = b"one place is left";
+        let mut loan = self.poses.loan(words.len()).unwrap();
+        let header = loan.header_mut();
+        *header = PoseHeader {
+            map_id: 0xabc,
+            sent_ns: transport::monotonic_ns(),
+            map_from_laser: Pose2 {
+                x,
+                y: 2.0,
+                yaw: 0.5,
+            },
+            state: state as u32,
+            from_scan: 1,
+            pose_known: 1,
+            ..PoseHeader::zeroed()
+        };
+        header.stamp.counter = counter;
+        header.stamp.entered_ns = header.sent_ns - age_s * 1_000_000_000;
+        loan.items_mut().copy_from_slice(words);
         loan.send().unwrap();
     }
 
@@ -179,6 +205,29 @@ fn what_flows_in_the_graph_is_told() {
         .map(|n| &n["name"])
         .collect();
     assert_eq!(names, ["monitor"]);
+}
+
+#[test]
+fn the_trackers_pose_is_told_with_its_age() {
+    let world = World::new("tracked");
+    world.wait_for_state(|known| !known["map"].is_null());
+    let mut socket = world.stream();
+    assert_eq!(next(&mut socket)["pose"], Value::Null, "no tracker yet");
+    world.answer(7, 9.0);
+    world.track(7, TrackState::Unique, 1.5, 61);
+    let pose = next_of(&mut socket, "pose");
+    assert_eq!(
+        (&pose["state"], &pose["laser"]["x"]),
+        (&json!("Unique"), &json!(1.5))
+    );
+    assert_eq!(pose["says"], "one place is left");
+    let known = world.site.get("/api/v1/robots/r");
+    assert_eq!(known["pose"]["counter"], 7);
+    assert_eq!(known["answer"]["hypotheses"][0]["laser"]["x"], 9.0);
+    assert_eq!(known["track"], json!([[1.5, 2.0, "U"]]));
+    // Who looks later is told how old it is.
+    let age_s = known["ages"]["scan_s"].as_f64().unwrap();
+    assert!(age_s >= 61.0, "{age_s}");
 }
 
 #[test]

@@ -23,7 +23,7 @@ pub(super) async fn robot(
     State(site): State<Arc<Site>>,
     Path(name): Path<String>,
 ) -> Result<Response, Refusal> {
-    let snapshot = site.robot(&name)?.snapshot();
+    let snapshot = site.robot(&name)?.snapshot(transport::monotonic_ns());
     let headers = [
         (CONTENT_TYPE, "application/json"),
         (CACHE_CONTROL, "no-store"),

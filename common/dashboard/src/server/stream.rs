@@ -64,7 +64,7 @@ pub(super) async fn open(
 }
 
 async fn serve(socket: WebSocket, robot: Arc<Robot>, _permit: OwnedSemaphorePermit) {
-    let Watching { snapshot, news } = robot.watch();
+    let Watching { snapshot, news } = robot.watch(transport::monotonic_ns());
     let mut reader = Reader {
         socket,
         robot,
@@ -94,7 +94,7 @@ impl Reader {
                     Ok(told) => self.send(Frame::Text(told)).await?,
                     Err(RecvError::Lagged(messages)) => {
                         self.send(Frame::Text(text(&Message::Missed { messages }))).await?;
-                        let Watching { snapshot, news: next } = self.robot.watch();
+                        let Watching { snapshot, news: next } = self.robot.watch(transport::monotonic_ns());
                         news = next;
                         self.send(Frame::Text(snapshot)).await?;
                     }

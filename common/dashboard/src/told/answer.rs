@@ -5,7 +5,7 @@ use geometry::{Covariance, Pose};
 use messages::{HypothesesHeader, Hypothesis, Verdict};
 use serde::Serialize;
 
-use super::{PoseTold, ms};
+use super::{Ellipse, PoseTold, ms};
 
 /// Most places that are told; the engine keeps 64.
 const MAX_PLACES: usize = 64;
@@ -58,19 +58,6 @@ pub(crate) struct Place {
     pub(crate) ellipse: Option<Ellipse>,
 }
 
-/// Of a covariance.
-#[derive(Debug, Clone, Copy, PartialEq, Serialize)]
-pub(crate) struct Ellipse {
-    /// Half of the long axis.
-    pub(crate) major_m: f64,
-    /// Half of the short one.
-    pub(crate) minor_m: f64,
-    /// Of the long axis to the map's x.
-    pub(crate) angle: f64,
-    /// Standard deviation of the heading.
-    pub(crate) yaw: f64,
-}
-
 impl Answer {
     /// Reads a message of `hypotheses` at a time of the host's clock.
     pub(crate) fn new(header: &HypothesesHeader, items: &[Hypothesis], now_ns: i64) -> Self {
@@ -121,23 +108,13 @@ fn stand(hypothesis: &Hypothesis) -> Option<Stand> {
 }
 
 fn place(hypothesis: &Hypothesis, mount_known: bool) -> Place {
-    let ellipse = covariance(hypothesis).map(|covariance| {
-        let ellipse = covariance.ellipse();
-        let [.., yaw_variance] = hypothesis.covariance;
-        Ellipse {
-            major_m: ellipse.major_m,
-            minor_m: ellipse.minor_m,
-            angle: ellipse.angle,
-            yaw: yaw_variance.max(0.0).sqrt(),
-        }
-    });
     Place {
         laser: hypothesis.map_from_laser.into(),
         base: mount_known.then(|| hypothesis.map_from_base.into()),
         score: hypothesis.score,
         probability: hypothesis.probability,
         support: hypothesis.support,
-        ellipse,
+        ellipse: Ellipse::new(hypothesis.covariance),
     }
 }
 

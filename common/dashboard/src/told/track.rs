@@ -4,39 +4,61 @@ use std::collections::VecDeque;
 
 use serde::Serialize;
 
-use super::Answer;
+use super::{Answer, PoseTold, Tracked};
 
 /// Poses that are kept: some minutes.
 const CAPACITY: usize = 3000;
 
-/// One pose of the way: x, y and the first letter of the verdict.
+/// One pose of the way: x, y and the first letter of the tracker's state or, where there
+/// is no tracker, of the verdict.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize)]
 pub(crate) struct TrackPoint(pub(crate) f64, pub(crate) f64, pub(crate) char);
 
-/// The best poses of the last scans, all in one map.
+/// The poses of the last scans, all in one map: the tracker's, or the best of each scan
+/// where there is no tracker.
 #[derive(Debug, Default)]
 pub(crate) struct Track {
     map_id: String,
     points: VecDeque<TrackPoint>,
+    /// Whether they are the tracker's.
+    is_tracked: bool,
 }
 
 impl Track {
-    /// Takes the best pose of an answer, if it has one. In another map a new way
-    /// begins.
-    pub(crate) fn hear(&mut self, answer: &Answer) {
-        if answer.map_id != self.map_id {
-            self.map_id.clone_from(&answer.map_id);
+    /// Takes the best pose of an answer, if it has one, and no tracker is there.
+    pub(crate) fn hear_answer(&mut self, answer: &Answer) {
+        if self.is_tracked {
+            return;
+        }
+        let best = answer.hypotheses.first().map(|best| best.laser);
+        self.add(&answer.map_id, answer.verdict, best);
+    }
+
+    /// Takes the tracker's pose, if it is of a scan. With the first one a new way begins.
+    pub(crate) fn hear_pose(&mut self, pose: &Tracked) {
+        if !std::mem::replace(&mut self.is_tracked, true) {
             self.points.clear();
         }
-        let Some(best) = answer.hypotheses.first() else {
+        if pose.from_scan {
+            self.add(&pose.map_id, pose.state, pose.laser);
+        }
+    }
+
+    /// In another map a new way begins.
+    fn add(&mut self, map_id: &str, word: &str, pose: Option<PoseTold>) {
+        if map_id != self.map_id {
+            map_id.clone_into(&mut self.map_id);
+            self.points.clear();
+        }
+        let Some(pose) = pose else {
             return;
         };
         if self.points.len() == CAPACITY {
             self.points.pop_front();
         }
         let millimetres = |metres: f64| (metres * 1e3).round() / 1e3;
-        let letter = answer.verdict.chars().next().unwrap_or('?');
-        let (x, y) = (millimetres(best.laser.x), millimetres(best.laser.y));
+        let letter = word.chars().next().unwrap_or('?');
+        let (x, y) = (millimetres(pose.x), millimetres(pose.y));
         self.points.push_back(TrackPoint(x, y, letter));
     }
 
@@ -49,8 +71,9 @@ impl Track {
 #[cfg(test)]
 mod tests {
     use bytemuck::Zeroable;
-    use messages::{HypothesesHeader, Hypothesis, Pose2, Verdict};
+    use messages::{HypothesesHeader, Hypothesis, Pose2, TrackState, Verdict};
 
+    use super::super::tracked::tests::header;
     use super::*;
 
     fn answer(map_id: u64, x: f64) -> Answer {
@@ -74,11 +97,25 @@ mod tests {
     fn the_newest_poses_of_one_map_are_kept() {
         let mut track = Track::default();
         for i in 0..CAPACITY + 5 {
-            track.hear(&answer(1, i as f64));
+            track.hear_answer(&answer(1, i as f64));
         }
         assert_eq!(track.points().count(), CAPACITY);
         assert_eq!(track.points().next(), Some(&TrackPoint(5.0, 0.0, 'U')));
-        track.hear(&answer(2, 1.0));
+        track.hear_answer(&answer(2, 1.0));
         assert_eq!(track.points().count(), 1);
+    }
+
+    #[test]
+    fn with_a_tracker_the_way_is_its_own() {
+        let mut track = Track::default();
+        track.hear_answer(&answer(0, 9.0));
+        let pose = header(TrackState::Doubtful, 1.5);
+        track.hear_pose(&Tracked::new(&pose, b"", 0));
+        track.hear_answer(&answer(0, 9.0));
+        let mut between = header(TrackState::Unique, 1.6);
+        between.from_scan = 0;
+        track.hear_pose(&Tracked::new(&between, b"", 0));
+        let points: Vec<_> = track.points().copied().collect();
+        assert_eq!(points, [TrackPoint(1.5, 2.0, 'D')]);
     }
 }

@@ -3,14 +3,16 @@
 
 use std::time::Duration;
 
-use messages::{HypothesesHeader, Hypothesis};
+use messages::{HypothesesHeader, Hypothesis, PoseHeader};
 use serde::Serialize;
 
 use super::{
     console::{LAUNCHER, say},
     line::Line,
     output::{Output, Reader},
+    pose_line::Row,
     report::Report,
+    rows::Rows,
     summary::Summary,
 };
 use crate::BackcastError;
@@ -18,15 +20,19 @@ use crate::BackcastError;
 /// The lines and the figures behind them.
 pub(crate) struct Journal {
     pub(crate) report: Report,
+    /// Where the graph has a tracker: what waits for its poses.
+    rows: Option<Rows>,
     output: Output,
     json: bool,
 }
 
 impl Journal {
-    /// Opens it on `output`, as a table or in JSON.
-    pub(crate) fn new(output: Output, json: bool) -> Self {
+    /// Opens it on `output`, as a table or in JSON, for a graph that has a tracker or
+    /// none.
+    pub(crate) fn new(output: Output, json: bool, is_tracked: bool) -> Self {
         Journal {
-            report: Report::new(),
+            report: Report::new(is_tracked),
+            rows: is_tracked.then(Rows::default),
             output,
             json,
         }
@@ -35,15 +41,42 @@ impl Journal {
     /// Prints what stands above the lines.
     pub(crate) fn begin(&mut self) {
         if !self.json {
-            self.output.line(Line::header());
+            let header = match self.rows {
+                Some(_) => Row::header(),
+                None => Line::header(),
+            };
+            self.output.line(header);
         }
     }
 
-    /// Enters and prints an answer.
+    /// Enters an answer and prints it; where there is a tracker, beside its pose.
     pub(crate) fn answer(&mut self, header: &HypothesesHeader, found: &[Hypothesis]) -> Reader {
         let line = self.report.answer(header, found);
-        let text = if self.json { json(&line) } else { line.text() };
-        self.output.line(text)
+        let Some(rows) = &mut self.rows else {
+            let text = if self.json { json(&line) } else { line.text() };
+            return self.output.line(text);
+        };
+        let due = rows.answer(header.stamp, line);
+        self.print(&due)
+    }
+
+    /// Enters the tracker's pose of a scan and prints it. Those between scans have no row.
+    pub(crate) fn pose(&mut self, header: &PoseHeader, words: &[u8]) -> Reader {
+        let (Some(rows), 1) = (&mut self.rows, header.from_scan) else {
+            return Reader::Reads;
+        };
+        let line = self.report.pose(header, words);
+        let due = rows.pose(header.stamp, line);
+        self.print(&due)
+    }
+
+    fn print(&mut self, rows: &[Row]) -> Reader {
+        let mut reader = Reader::Reads;
+        for row in rows {
+            let text = if self.json { json(row) } else { row.text() };
+            reader = self.output.line(text);
+        }
+        reader
     }
 
     /// Prints the figures where `wanted`, and waits until all is printed, at
@@ -61,6 +94,8 @@ impl Journal {
             summary: &'a Summary,
         }
         let summary = self.report.summary();
+        let rest = self.rows.as_mut().map(Rows::finish);
+        self.print(&rest.unwrap_or_default());
         if wanted {
             let last = Last { summary: &summary };
             self.output.line(if self.json {

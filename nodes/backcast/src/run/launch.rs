@@ -10,7 +10,8 @@ use std::{
     time::{Duration, Instant},
 };
 
-use messages::LogLevel;
+use dataflow::Dataflow;
+use messages::{LogLevel, Topic, topic};
 use nix::sys::signal::Signal;
 use signal_hook::consts::SIGUSR1;
 use transport::{
@@ -92,7 +93,9 @@ pub(crate) fn run(config: &Config) -> Result<ExitCode, BackcastError> {
     remove_leftovers(&graph)?;
 
     let lossless = forward::plays_at_max(&descriptor.dataflow);
-    let mut journal = Journal::new(Output::start(io::stdout())?, config.options.json);
+    let output = Output::start(io::stdout())?;
+    let is_tracked = has_tracker(&descriptor.dataflow);
+    let mut journal = Journal::new(output, config.options.json, is_tracked);
     let outcome = launch(descriptor, &graph, &mut journal);
     let cleared = clear(&graph);
     let finished = outcome
@@ -116,6 +119,12 @@ pub(crate) fn run(config: &Config) -> Result<ExitCode, BackcastError> {
         return Ok(ExitCode::from(LOST_DATA));
     }
     Ok(ExitCode::SUCCESS)
+}
+
+/// Whether anybody sends where the robot is, from scan to scan.
+fn has_tracker(dataflow: &Dataflow) -> bool {
+    let mut outputs = dataflow.nodes.iter().flat_map(|node| &node.outputs);
+    outputs.any(|output| output == topic::Tracked::NAME)
 }
 
 /// Joins the graph, starts its processes and stays until the end; all of them

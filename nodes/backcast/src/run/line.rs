@@ -5,7 +5,7 @@ use geometry::{Covariance, Pose};
 use messages::{HypothesesHeader, Hypothesis, Verdict};
 use serde::Serialize;
 
-const NS_PER_MS: f64 = 1e6;
+pub(super) const NS_PER_MS: f64 = 1e6;
 
 /// One scan and its answer. What has no pose has none of its figures.
 #[derive(Debug, Clone, PartialEq, Serialize)]
@@ -74,9 +74,6 @@ impl Line {
 
     /// A row of the table, without the end of the line.
     pub(crate) fn text(&self) -> String {
-        let number = |value: Option<f64>, decimals: usize| {
-            value.map_or("-".to_owned(), |v| format!("{v:.decimals$}"))
-        };
         let row = row([
             &seconds(self.stamp_ns),
             &number(self.x, 3),
@@ -117,8 +114,13 @@ fn row([stamp, x, y, heading, score, verdict, alternatives, ms]: [&str; 8]) -> S
     )
 }
 
+/// A figure, or a dash where there is none.
+pub(super) fn number(value: Option<f64>, decimals: usize) -> String {
+    value.map_or("-".to_owned(), |v| format!("{v:.decimals$}"))
+}
+
 /// Seconds with milliseconds, cut; exact where a float would round.
-fn seconds(ns: i64) -> String {
+pub(super) fn seconds(ns: i64) -> String {
     let (sign, ns) = (if ns < 0 { "-" } else { "" }, ns.unsigned_abs());
     format!("{sign}{}.{:03}", ns / 1_000_000_000, ns / 1_000_000 % 1000)
 }

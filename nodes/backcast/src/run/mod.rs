@@ -19,13 +19,16 @@ mod line;
 mod options;
 mod output;
 mod pairs;
+mod pose_line;
 mod process;
 mod record;
 pub(crate) mod replay;
 mod report;
+mod rows;
 mod summary;
 mod supervision;
 pub(crate) mod tracker;
+mod tracking;
 mod watch;
 
 pub(crate) use launch::run;

@@ -4,9 +4,11 @@
 use std::collections::HashMap;
 
 use geometry::Pose;
-use messages::{GroundTruth, HealthHeader, HypothesesHeader, Hypothesis, Stamp, Verdict};
+use messages::{
+    GroundTruth, HealthHeader, HypothesesHeader, Hypothesis, PoseHeader, Stamp, Verdict,
+};
 
-use super::{line::Line, pairs::Pairs, summary::Summary};
+use super::{line::Line, pairs::Pairs, pose_line::PoseLine, summary::Summary, tracking::Tracking};
 use crate::statistics::{Accuracy, Answer, Distribution};
 
 /// The newest scans that percentiles look at, so that a run may go on for
@@ -19,7 +21,11 @@ pub(crate) struct Report {
     earlier_scans: u64,
     newest_scan: Option<Stamp>,
     newest_answer: Option<Stamp>,
+    newest_pose: Option<Stamp>,
+    /// Whether the graph has a tracker, whose poses are awaited then.
+    is_tracked: bool,
     answered: u64,
+    tracking: Tracking,
     pairs: Pairs<Answer, Pose>,
     accuracy: Accuracy,
     latency_ms: Distribution,
@@ -30,13 +36,16 @@ pub(crate) struct Report {
 }
 
 impl Report {
-    /// Nothing heard.
-    pub(crate) fn new() -> Self {
+    /// Nothing heard, of a graph that has a tracker or none.
+    pub(crate) fn new(is_tracked: bool) -> Self {
         Report {
             earlier_scans: 0,
             newest_scan: None,
             newest_answer: None,
+            newest_pose: None,
+            is_tracked,
             answered: 0,
+            tracking: Tracking::new(WINDOW),
             pairs: Pairs::new(),
             accuracy: Accuracy::new(WINDOW),
             latency_ms: Distribution::new(WINDOW),
@@ -83,9 +92,18 @@ impl Report {
         line
     }
 
+    /// The tracker said where the robot is, by a scan.
+    pub(crate) fn pose(&mut self, header: &PoseHeader, words: &[u8]) -> PoseLine {
+        let line = PoseLine::new(header, words);
+        self.newest_pose = Some(header.stamp);
+        self.tracking.pose(header, line.latency_ms);
+        line
+    }
+
     /// The true pose of a scan.
     pub(crate) fn truth(&mut self, truth: &GroundTruth) {
         let pose = truth.map_from_laser.into();
+        self.tracking.truth(truth.stamp.measured_ns, pose);
         if let Some((answer, truth)) = self.pairs.truth(truth.stamp.measured_ns, pose) {
             self.accuracy.add(truth, &answer);
         }
@@ -102,9 +120,14 @@ impl Report {
         self.answered > 0
     }
 
-    /// Whether the newest scan has its answer.
+    /// Whether the newest scan has its answer: of the tracker, where there is one, for
+    /// not every scan is searched then.
     pub(crate) fn all_answered(&self) -> bool {
-        let answers = |scan: Stamp| self.newest_answer.is_some_and(|answer| answer.is_of(scan));
+        let newest = match self.is_tracked {
+            true => self.newest_pose,
+            false => self.newest_answer,
+        };
+        let answers = |scan: Stamp| newest.is_some_and(|answer| answer.is_of(scan));
         self.newest_scan.is_none_or(answers)
     }
 
@@ -114,10 +137,19 @@ impl Report {
         let sum = |pick: fn(&(u64, u64)) -> u64| {
             self.losses.values().map(pick).fold(0, u64::saturating_add)
         };
+        let tracking = self.tracking.figures();
+        let tracked = tracking.as_ref().map_or(0, |tracking| tracking.scans);
+        let answered = match self.is_tracked {
+            true => tracked,
+            false => self.answered,
+        };
+        let scans = self.earlier_scans.saturating_add(newest);
         Summary {
             // An answer proves its scan, should the scan itself not be heard.
-            scans: self.earlier_scans.saturating_add(newest).max(self.answered),
-            answered: self.answered,
+            scans: scans.max(self.answered).max(tracked),
+            answered,
+            searched: self.answered,
+            tracking,
             dropped: sum(|losses| losses.0),
             refused: sum(|losses| losses.1),
             accuracy: self.accuracy.figures(),
@@ -131,9 +163,9 @@ impl Report {
 #[cfg(test)]
 mod tests {
     use bytemuck::Zeroable;
-    use messages::Pose2;
+    use messages::{Pose2, TrackState};
 
-    use super::{super::line::tests::message, *};
+    use super::{super::line::tests::message, super::pose_line::tests::pose, *};
 
     fn truth(measured_ns: i64, x: f64) -> GroundTruth {
         let mut truth = GroundTruth::zeroed();
@@ -157,7 +189,7 @@ mod tests {
 
     #[test]
     fn answers_meet_their_truths_in_either_order() {
-        let mut report = Report::new();
+        let mut report = Report::new(false);
         report.truth(&truth(1, 1.0));
         answer(&mut report, 1, 0, Verdict::Unique);
         answer(&mut report, 2, 1, Verdict::Unique);
@@ -174,7 +206,7 @@ mod tests {
 
     #[test]
     fn scans_are_counted_by_their_counters() {
-        let mut report = Report::new();
+        let mut report = Report::new(false);
         assert!(report.all_answered());
         scan(&mut report, 10, 0);
         scan(&mut report, 50, 4);
@@ -189,7 +221,7 @@ mod tests {
 
     #[test]
     fn a_loop_repeats_times_but_not_counters() {
-        let mut report = Report::new();
+        let mut report = Report::new(false);
         scan(&mut report, 10, 0);
         answer(&mut report, 10, 0, Verdict::Unique);
         scan(&mut report, 10, 1);
@@ -198,7 +230,7 @@ mod tests {
 
     #[test]
     fn an_answer_may_come_from_a_machine_with_another_clock() {
-        let mut report = Report::new();
+        let mut report = Report::new(false);
         scan(&mut report, 10, 0);
         let (mut header, found) = message(10, 0, Verdict::Unique as u32);
         header.stamp.entered_ns += 1_000;
@@ -208,7 +240,7 @@ mod tests {
 
     #[test]
     fn times_are_split_in_engine_and_graph() {
-        let mut report = Report::new();
+        let mut report = Report::new(false);
         answer(&mut report, 1, 0, Verdict::Unique);
         let summary = report.summary();
         assert_eq!(summary.latency_ms.p50, Some(25.0));
@@ -218,7 +250,7 @@ mod tests {
 
     #[test]
     fn losses_add_up_over_processes() {
-        let mut report = Report::new();
+        let mut report = Report::new(false);
         let mut health = |pid, dropped, refused| {
             let mut header = HealthHeader::zeroed();
             (header.pid, header.dropped, header.refused) = (pid, dropped, refused);
@@ -229,5 +261,28 @@ mod tests {
         health(2, 3, 0);
         let summary = report.summary();
         assert_eq!((summary.dropped, summary.refused), (5, 5));
+    }
+
+    #[test]
+    fn with_a_tracker_the_poses_are_awaited_and_counted() {
+        let mut report = Report::new(true);
+        report.truth(&truth(1, 1.0));
+        report.truth(&truth(2, 1.0));
+        scan(&mut report, 1, 0);
+        scan(&mut report, 2, 1);
+        answer(&mut report, 2, 1, Verdict::Unique);
+        assert!(!report.all_answered(), "the tracker has not");
+        let header = pose(1, 0, TrackState::Searching);
+        report.pose(&header, b"");
+        let header = pose(2, 1, TrackState::Unique);
+        report.pose(&header, b"");
+        assert!(report.all_answered());
+        let summary = report.summary();
+        assert_eq!((summary.scans, summary.answered), (2, 2));
+        assert_eq!(summary.searched, 1, "not every scan is");
+        let tracking = summary.tracking.unwrap();
+        assert_eq!(tracking.states["Unique"], 0.5);
+        assert_eq!((tracking.accuracy.truths, tracking.accuracy.unique), (2, 1));
+        assert_eq!(summary.accuracy.truths, 1);
     }
 }

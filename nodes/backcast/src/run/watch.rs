@@ -11,6 +11,7 @@ pub(crate) struct Watch {
     scans: Subscriber<topic::Scan>,
     truths: Subscriber<topic::GroundTruthTopic>,
     hypotheses: Subscriber<topic::Hypotheses>,
+    poses: Subscriber<topic::Tracked>,
     health: Subscriber<topic::Health>,
 }
 
@@ -36,13 +37,14 @@ impl Watch {
             scans: graph.subscriber()?,
             truths: graph.subscriber()?,
             hypotheses: graph.subscriber()?,
+            poses: graph.subscriber()?,
             health: graph.subscriber()?,
         })
     }
 
     /// What should wake the launcher. Scans need not: their answers will.
-    pub(crate) fn inputs(&self) -> [&dyn Input; 3] {
-        [&self.truths, &self.hypotheses, &self.health]
+    pub(crate) fn inputs(&self) -> [&dyn Input; 4] {
+        [&self.truths, &self.hypotheses, &self.poses, &self.health]
     }
 
     /// Takes all that has come.
@@ -74,6 +76,14 @@ impl Watch {
         while let Some(found) = self.hypotheses.receive()? {
             heard.answers = true;
             heard.reader = journal.answer(found.header(), found.items());
+        }
+        // A pose follows the answer that it was made of.
+        while let Some(pose) = self.poses.receive()? {
+            heard.answers = true;
+            let reader = journal.pose(pose.header(), pose.items());
+            if reader == Reader::Gone {
+                heard.reader = reader;
+            }
         }
         while let Some(health) = self.health.receive()? {
             journal.report.health(health.header());

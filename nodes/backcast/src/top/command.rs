@@ -2,6 +2,7 @@
 
 use std::io::{IsTerminal, stdout};
 use std::process::ExitCode;
+use std::time::Instant;
 
 use super::{lines, screen, source};
 use crate::{BackcastError, stdout as output};
@@ -30,7 +31,7 @@ pub(crate) fn run(config: &Config) -> Result<ExitCode, BackcastError> {
     let robot = source::find(&config.address, config.robot.as_deref())?;
     let known = source::snapshot(&config.address, &robot)?;
     if config.once || !stdout().is_terminal() {
-        output::print(&lines::plain(&known))?;
+        output::print(&lines::plain(&known, Instant::now()))?;
     } else {
         screen::show(known, &source::follow(&config.address, &robot)?)?;
     }

@@ -1,8 +1,13 @@
-//! What the monitor has told. Fields that it does not tell are at rest.
+//! What the monitor has told, and how old it is. Fields that it does not tell are at
+//! rest. Pure: told the time, and knowing no clock.
 
 use std::collections::{BTreeMap, VecDeque};
+use std::time::{Duration, Instant};
 
 use serde::Deserialize;
+
+/// Scans and poses come more often than that where they come.
+const SILENT_AFTER: Duration = Duration::from_secs(2);
 
 /// Latencies that are kept: as many as a line can show.
 const LATENCIES: usize = 120;
@@ -15,6 +20,8 @@ pub(super) enum Message {
     Snapshot(Snapshot),
     /// Of one scan.
     Answer(Answer),
+    /// Where the tracker has the robot.
+    Pose(Tracked),
     /// How a node fares.
     Node(Node),
     /// What is not shown here.
@@ -28,7 +35,17 @@ pub(super) enum Message {
 pub(super) struct Snapshot {
     robot: String,
     answer: Option<Answer>,
+    pose: Option<Tracked>,
+    ages: Ages,
     nodes: Vec<Node>,
+}
+
+/// How old what the monitor knows is; none where it knows none.
+#[derive(Debug, Clone, Copy, Default, Deserialize)]
+#[serde(default)]
+struct Ages {
+    scan_s: Option<f64>,
+    pose_s: Option<f64>,
 }
 
 /// The answer to a scan.
@@ -41,7 +58,33 @@ pub(super) struct Answer {
     pub(super) latency_ms: f64,
     pub(super) search_ms: f64,
     pub(super) extract_ms: f64,
+    pub(super) age_ms: f64,
     pub(super) hypotheses: Vec<Place>,
+}
+
+/// Where the tracker has the robot.
+#[derive(Debug, Clone, Default, Deserialize)]
+#[serde(default)]
+pub(super) struct Tracked {
+    pub(super) counter: u64,
+    pub(super) from_scan: bool,
+    pub(super) state: String,
+    pub(super) says: String,
+    pub(super) laser: Option<Pose>,
+    pub(super) ellipse: Option<Ellipse>,
+    pub(super) probability: f64,
+    pub(super) score: f64,
+    pub(super) latency_ms: f64,
+    pub(super) age_ms: f64,
+    pub(super) sent_age_ms: f64,
+}
+
+/// Of one standard deviation: metres and radians.
+#[derive(Debug, Clone, Copy, Default, Deserialize)]
+#[serde(default)]
+pub(super) struct Ellipse {
+    pub(super) major_m: f64,
+    pub(super) yaw: f64,
 }
 
 /// One place: metres and radians in the map.
@@ -76,11 +119,39 @@ pub(super) struct Node {
     pub(super) last_error: String,
 }
 
+/// How old something is: so old when it was told, and older since.
+#[derive(Debug, Clone, Copy)]
+struct Age {
+    told: Instant,
+    then: Duration,
+}
+
+impl Age {
+    fn of(seconds: f64, told: Instant) -> Self {
+        let then = Duration::try_from_secs_f64(seconds.max(0.0));
+        Age {
+            told,
+            then: then.unwrap_or(Duration::MAX),
+        }
+    }
+
+    fn at(self, now: Instant) -> Duration {
+        let since = now.saturating_duration_since(self.told);
+        self.then.saturating_add(since)
+    }
+}
+
 /// The state of the graph.
 #[derive(Debug, Default)]
 pub(super) struct Known {
     pub(super) robot: String,
     pub(super) answer: Option<Answer>,
+    /// None where the graph has no tracker.
+    pub(super) pose: Option<Tracked>,
+    /// Of the newest scan that was answered, since it entered the graph.
+    scan_age: Option<Age>,
+    /// Of the tracker's newest pose, since it was sent.
+    pose_age: Option<Age>,
     pub(super) nodes: BTreeMap<String, Node>,
     pub(super) latencies_ms: VecDeque<f64>,
     /// Why nothing is heard at the moment.
@@ -88,28 +159,63 @@ pub(super) struct Known {
 }
 
 impl Known {
-    /// Takes a message.
-    pub(super) fn hear(&mut self, message: Message) {
+    /// Takes a message that came at `now`.
+    pub(super) fn hear(&mut self, message: Message, now: Instant) {
+        let age = |seconds: f64| Age::of(seconds, now);
         self.lost = None;
         match message {
             Message::Snapshot(all) => {
                 self.robot = all.robot;
                 self.answer = all.answer;
+                self.pose = all.pose;
+                self.scan_age = all.ages.scan_s.map(age);
+                self.pose_age = all.ages.pose_s.map(age);
                 let nodes = all.nodes.into_iter();
                 self.nodes = nodes.map(|node| (node.name.clone(), node)).collect();
             }
             Message::Answer(answer) => {
-                if self.latencies_ms.len() == LATENCIES {
-                    self.latencies_ms.pop_front();
+                self.scan_age = Some(age(answer.age_ms / 1e3));
+                if self.pose.is_none() {
+                    self.took(answer.latency_ms);
                 }
-                self.latencies_ms.push_back(answer.latency_ms);
                 self.answer = Some(answer);
+            }
+            Message::Pose(pose) => {
+                if pose.from_scan {
+                    self.scan_age = Some(age(pose.age_ms / 1e3));
+                    self.took(pose.latency_ms);
+                }
+                self.pose_age = Some(age(pose.sent_age_ms / 1e3));
+                self.pose = Some(pose);
             }
             Message::Node(node) => {
                 self.nodes.insert(node.name.clone(), node);
             }
             Message::Other => {}
         }
+    }
+
+    /// Why what is shown is not how it is at `now`: nothing new came for a while. None
+    /// where it came.
+    pub(super) fn silence(&self, now: Instant) -> Option<String> {
+        let quiet = |age: Option<Age>, what: &str| {
+            let age = age?.at(now);
+            let seconds = age.as_secs();
+            (age > SILENT_AFTER).then(|| format!("no {what} for {seconds} s"))
+        };
+        quiet(self.scan_age, "data").or_else(|| quiet(self.pose_age, "pose"))
+    }
+
+    /// Whether what is shown is of a scan: between scans the tracker counts odometry.
+    pub(super) fn is_of_scan(&self) -> bool {
+        self.pose.as_ref().is_none_or(|pose| pose.from_scan)
+    }
+
+    fn took(&mut self, latency_ms: f64) {
+        if self.latencies_ms.len() == LATENCIES {
+            self.latencies_ms.pop_front();
+        }
+        self.latencies_ms.push_back(latency_ms);
     }
 }
 
@@ -126,11 +232,45 @@ mod tests {
             r#"{"type":"beams","fate":"hh"}"#,
             r#"{"type":"answer","counter":7,"verdict":"Unique","latency_ms":20.5,"hypotheses":[]}"#,
         ] {
-            known.hear(serde_json::from_str(text).unwrap());
+            known.hear(serde_json::from_str(text).unwrap(), Instant::now());
         }
         assert_eq!(known.robot, "r");
         assert_eq!(known.nodes.keys().collect::<Vec<_>>(), ["a", "b"]);
         assert_eq!(known.answer.unwrap().counter, 7);
         assert_eq!(known.latencies_ms, [20.5]);
+    }
+
+    #[test]
+    fn what_is_old_is_said_to_be() {
+        let start = Instant::now();
+        let after = |seconds: u64| start + Duration::from_secs(seconds);
+        let mut known = Known::default();
+        let mut hear = |text: &str, at: u64| {
+            known.hear(serde_json::from_str(text).unwrap(), after(at));
+            known.silence(after(at))
+        };
+        assert_eq!(
+            hear(r#"{"type":"snapshot","ages":{}}"#, 0),
+            None,
+            "nothing came yet"
+        );
+        // Whoever looks a minute after the laser died is told so at once.
+        let old = r#"{"type":"snapshot","ages":{"scan_s":61.5},"answer":{"verdict":"Unique"}}"#;
+        assert_eq!(hear(old, 0).unwrap(), "no data for 61 s");
+        assert_eq!(hear(r#"{"type":"answer","age_ms":30.0}"#, 1), None);
+        let odometry = r#"{"type":"pose","from_scan":false,"age_ms":9.0}"#;
+        assert_eq!(hear(odometry, 3), None);
+        assert_eq!(
+            hear(odometry, 4).unwrap(),
+            "no data for 3 s",
+            "but odometry"
+        );
+        assert_eq!(hear(r#"{"type":"answer","age_ms":30.0}"#, 5), None);
+        let answer = r#"{"type":"answer","age_ms":30.0}"#;
+        assert_eq!(
+            hear(answer, 7).unwrap(),
+            "no pose for 3 s",
+            "the tracker ended"
+        );
     }
 }

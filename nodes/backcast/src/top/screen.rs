@@ -1,7 +1,7 @@
 //! The terminal: drawn when something is new, restored in the end.
 
 use std::sync::mpsc::Receiver;
-use std::time::Duration;
+use std::time::{Duration, Instant};
 
 use ratatui::DefaultTerminal;
 use ratatui::crossterm::event::{self, Event, KeyCode, KeyModifiers};
@@ -14,6 +14,9 @@ use crate::BackcastError;
 
 /// Between two looks at what was told and at the keys.
 const FRAME: Duration = Duration::from_millis(50);
+
+/// Ages are shown anew as often, where nothing comes.
+const AGES: Duration = Duration::from_millis(500);
 
 /// Shows what is known and what is told, until somebody wants no more.
 ///
@@ -32,17 +35,20 @@ fn follow(
     told: &Receiver<Told>,
 ) -> Result<(), BackcastError> {
     let mut is_new = true;
+    let mut drawn = Instant::now();
     loop {
         for message in told.try_iter() {
             is_new = true;
             match message {
-                Ok(message) => known.hear(message),
+                Ok(message) => known.hear(message, Instant::now()),
                 Err(problem) => known.lost = Some(problem),
             }
         }
-        if std::mem::take(&mut is_new) {
+        let now = Instant::now();
+        if std::mem::take(&mut is_new) || now - drawn >= AGES {
+            drawn = now;
             let draw = |frame: &mut ratatui::Frame<'_>| {
-                frame.render_widget(Paragraph::new(lines::text(known)), frame.area());
+                frame.render_widget(Paragraph::new(lines::text(known, now)), frame.area());
             };
             terminal.draw(draw).map_err(BackcastError::Terminal)?;
         }

@@ -3,7 +3,7 @@
 use std::net::TcpStream;
 use std::sync::mpsc::{Receiver, SyncSender, sync_channel};
 use std::thread;
-use std::time::Duration;
+use std::time::{Duration, Instant};
 
 use serde::Deserialize;
 use tungstenite::client;
@@ -50,7 +50,8 @@ pub(super) fn find(address: &str, robot: Option<&str>) -> Result<String, Backcas
 /// No monitor answers.
 pub(super) fn snapshot(address: &str, robot: &str) -> Result<Known, BackcastError> {
     let mut known = Known::default();
-    known.hear(ask(address, &format!("/api/v1/robots/{robot}"))?);
+    let told = ask(address, &format!("/api/v1/robots/{robot}"))?;
+    known.hear(told, Instant::now());
     Ok(known)
 }
 

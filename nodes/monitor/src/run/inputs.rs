@@ -8,6 +8,7 @@ use transport::{Graph, Health, Input, Subscriber, TransportError, monotonic_ns};
 pub(super) struct Inputs {
     maps: Subscriber<topic::Map>,
     hypotheses: Subscriber<topic::Hypotheses>,
+    poses: Subscriber<topic::Tracked>,
     beams: Subscriber<topic::Beams>,
     health: Subscriber<topic::Health>,
     log: Subscriber<topic::Log>,
@@ -18,21 +19,23 @@ impl Inputs {
         Ok(Inputs {
             maps: graph.subscriber()?,
             hypotheses: graph.subscriber()?,
+            poses: graph.subscriber()?,
             beams: graph.subscriber()?,
             health: graph.subscriber()?,
             log: graph.subscriber()?,
         })
     }
 
-    pub(super) fn all(&self) -> [&dyn Input; 5] {
+    pub(super) fn all(&self) -> [&dyn Input; 6] {
         let Inputs {
             maps,
             hypotheses,
+            poses,
             beams,
             health,
             log,
         } = self;
-        [maps, hypotheses, beams, health, log]
+        [maps, hypotheses, poses, beams, health, log]
     }
 
     /// Takes all that has come, a map before what was found in it.
@@ -48,6 +51,10 @@ impl Inputs {
             // slow for is only not seen, and no loss of the graph's.
             health.count_received(1);
             to.hear_answer(answer.header(), answer.items(), monotonic_ns());
+        }
+        while let Some(pose) = self.poses.receive()? {
+            health.count_received(1);
+            to.hear_pose(pose.header(), pose.items(), monotonic_ns());
         }
         if let Some(beams) = self.beams.newest()? {
             health.count_received(1);

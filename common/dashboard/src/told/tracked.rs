@@ -1,0 +1,138 @@
+//! Where the tracker has the robot.
+
+use messages::{PoseHeader, TrackState};
+use serde::Serialize;
+
+use super::{Ellipse, PoseTold, ms};
+
+/// The tracker's pose.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+pub(crate) struct Tracked {
+    /// Of the scan or, between scans, of the odometry.
+    pub(crate) counter: u64,
+    /// When that was measured, since 1970.
+    pub(crate) stamp_s: f64,
+    /// The map that the pose is about, as hexadecimal digits.
+    pub(crate) map_id: String,
+    /// Whether it is of a scan; else odometry carried it on.
+    pub(crate) from_scan: bool,
+    /// The state, or `?` for one that this version does not know.
+    pub(crate) state: &'static str,
+    /// Why it is in this state, and what to do.
+    pub(crate) says: String,
+    /// Of the laser in the map, where it is known.
+    pub(crate) laser: Option<PoseTold>,
+    /// Of the robot's base, where the laser's mount is known, too.
+    pub(crate) base: Option<PoseTold>,
+    /// The ellipse of one standard deviation of the laser's pose.
+    pub(crate) ellipse: Option<Ellipse>,
+    /// How likely the robot is there.
+    pub(crate) probability: f64,
+    /// By how much the place leads over the next, in natural logarithms of odds.
+    pub(crate) lead: f64,
+    /// How well the last scan fits there.
+    pub(crate) score: f64,
+    /// Places that are kept as possible.
+    pub(crate) places: u32,
+    /// When the state began, since 1970.
+    pub(crate) since_s: f64,
+    /// Metres that the robot has gone since.
+    pub(crate) since_m: f64,
+    /// From the measurement's entry into the graph to the pose.
+    pub(crate) latency_ms: f64,
+    /// Of that, the tracker.
+    pub(crate) tracking_ms: f64,
+    /// From the measurement's entry to this message.
+    pub(crate) age_ms: f64,
+    /// From the sending of the pose to this message.
+    pub(crate) sent_age_ms: f64,
+}
+
+impl Tracked {
+    /// Reads a message of `pose` at a time of the host's clock.
+    pub(crate) fn new(header: &PoseHeader, words: &[u8], now_ns: i64) -> Self {
+        let state = TrackState::from_code(header.state);
+        let since_entry = |ns: i64| ms(ns.saturating_sub(header.stamp.entered_ns));
+        let is_pose = geometry::Pose::from(header.map_from_laser).is_finite();
+        let is_known = header.pose_known == 1 && is_pose;
+        let words = words.get(..PoseHeader::WORDS_CAPACITY).unwrap_or(words);
+        let ellipse = Ellipse::new(header.laser_covariance);
+        Tracked {
+            counter: header.stamp.counter,
+            stamp_s: header.stamp.measured_ns as f64 / 1e9,
+            map_id: format!("{:016x}", header.map_id),
+            from_scan: header.from_scan == 1,
+            state: state.map_or("?", TrackState::as_str),
+            says: String::from_utf8_lossy(words).into_owned(),
+            laser: is_known.then(|| header.map_from_laser.into()),
+            base: (is_known && header.mount_known == 1).then(|| header.map_from_base.into()),
+            ellipse: ellipse.filter(|_| is_known),
+            probability: header.probability,
+            lead: header.lead,
+            score: header.score,
+            places: header.places,
+            since_s: header.since_ns as f64 / 1e9,
+            since_m: header.since_m,
+            latency_ms: since_entry(header.sent_ns),
+            tracking_ms: header.tracking_ns as f64 / 1e6,
+            age_ms: since_entry(now_ns),
+            sent_age_ms: ms(now_ns.saturating_sub(header.sent_ns)),
+        }
+    }
+}
+
+#[cfg(test)]
+pub(crate) mod tests {
+    use bytemuck::Zeroable;
+    use messages::{Pose2, Stamp};
+
+    use super::*;
+
+    pub(crate) fn header(state: TrackState, x: f64) -> PoseHeader {
+        PoseHeader {
+            stamp: Stamp {
+                measured_ns: 1_500_000_000,
+                entered_ns: 1_000_000,
+                counter: 7,
+            },
+            sent_ns: 23_000_000,
+            map_from_laser: Pose2 {
+                x,
+                y: 2.0,
+                yaw: 0.5,
+            },
+            laser_covariance: [0.04, 0.0, 0.0, 0.0, 0.01, 0.0, 0.0, 0.0, 0.0009],
+            state: state as u32,
+            from_scan: 1,
+            pose_known: 1,
+            ..PoseHeader::zeroed()
+        }
+    }
+
+    #[test]
+    fn a_pose_is_told_in_numbers_and_words() {
+        let words = b"2 places fit, 25 m apart";
+        let told = Tracked::new(&header(TrackState::Doubtful, 1.5), words, 33_000_000);
+        assert_eq!((told.counter, told.state), (7, "Doubtful"));
+        assert_eq!(told.says, "2 places fit, 25 m apart");
+        assert_eq!((told.latency_ms, told.age_ms), (22.0, 32.0));
+        assert_eq!(told.sent_age_ms, 10.0);
+        assert_eq!(told.laser.map(|pose| pose.x), Some(1.5));
+        assert_eq!(told.base, None, "no mount is known");
+        assert!((told.ellipse.unwrap().major_m - 0.2).abs() < 1e-12);
+    }
+
+    #[test]
+    fn what_is_not_known_is_not_told() {
+        let mut searching = header(TrackState::Searching, 1.5);
+        searching.pose_known = 0;
+        let told = Tracked::new(&searching, b"", 0);
+        assert_eq!((told.laser, told.ellipse), (None, None));
+        let told = Tracked::new(&header(TrackState::Unique, f64::NAN), &[0xff; 999], 0);
+        assert_eq!(told.laser, None);
+        assert_eq!(told.says.chars().count(), PoseHeader::WORDS_CAPACITY);
+        let mut unknown = header(TrackState::Unique, 1.0);
+        unknown.state = 99;
+        assert_eq!(Tracked::new(&unknown, b"", i64::MIN).state, "?");
+    }
+}
