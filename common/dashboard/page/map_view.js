@@ -7,6 +7,7 @@ import { STALE_S } from "./panel.js";
 const MAX_SIDE = 8192; // pixels of an image along a side
 const SIGMAS = 2.448; // of an ellipse that holds 95 %
 const NEAR_M = 34; // what a view that begins shows at least
+const BEAMS_MS = 500; // so long the beams of a scan are shown beside the tracker's pose
 const LEASH = 0.3; // how far off the middle a followed robot may go, of the view
 
 export class MapView {
@@ -128,7 +129,9 @@ export class MapView {
     c.setTransform(this.ratio ?? 1, 0, 0, this.ratio ?? 1, 0, 0);
     this.#drawRegion(c);
     if (layers.track) this.#drawTrack(c);
-    if (layers.beams && store.beams && best) this.#drawBeams(c);
+    // While the tracker is sure, few scans are searched: beams of an old one lie elsewhere.
+    const fresh = !store.pose || performance.now() - store.beamsAt < BEAMS_MS;
+    if (layers.beams && store.beams && best && fresh) this.#drawBeams(c);
     if (layers.hypotheses) this.#drawOthers(c);
     if (best) this.#drawBest(c, best);
     this.ondrawn?.();

@@ -12,7 +12,7 @@ export class Store {
 
   clear() {
     Object.assign(this, {
-      robot: "", map: null, cells: null, answer: null, pose: null, scanAt: null, beams: null, field: null,
+      robot: "", map: null, cells: null, answer: null, pose: null, scanAt: null, beams: null, beamsAt: 0, field: null,
       nodes: new Map(), track: [], region: [], latencies: [], missed: 0,
       abilities: { region: false, save: false },
     });
@@ -25,7 +25,7 @@ export class Store {
       case "map": this.map = message; this.field = null; return "map";
       case "answer": return this.#answer(message);
       case "pose": return this.#pose(message);
-      case "beams": this.beams = message; return "beams";
+      case "beams": this.beams = message; this.beamsAt = performance.now(); return "beams";
       case "node": return this.#node(message);
       case "log": return this.#log(message);
       case "region": this.region = message.corners; return "region";

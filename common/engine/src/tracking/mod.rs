@@ -207,18 +207,12 @@ impl Tracker {
         self.asks_ahead
     }
 
-    #[doc(hidden)]
-    pub fn debug(&self) -> Vec<(Pose, f64, f64, f64, u32)> {
-        self.places
-            .all()
-            .iter()
-            .map(|p| (p.pose, p.log_weight, p.mean, p.last, p.age))
-            .collect()
-    }
-
     /// Where the robot is, and how sure that is.
     #[must_use]
     pub fn report(&self) -> Report {
-        self.belief.report(&self.places)
+        self.belief.report(&self.places, &self.since_key)
     }
 }
+
+#[cfg(test)]
+mod tests;

@@ -97,6 +97,11 @@ impl Places {
         self.kept.is_empty()
     }
 
+    /// Key scans by which places were weighed.
+    pub(super) fn key_scans(&self) -> u32 {
+        self.key_scans
+    }
+
     /// Best first.
     pub(super) fn all(&self) -> &[Place] {
         &self.kept

@@ -6,6 +6,7 @@ use super::TrackingConfig;
 use super::place::Place;
 use super::places::{FARTHEST_BEHIND, NEAR_M, Places};
 use super::report::Report;
+use super::way::Way;
 use messages::{TrackReason, TrackState};
 use nalgebra::Matrix3;
 
@@ -159,7 +160,7 @@ impl Belief {
             (self.place, self.lead) = (None, 0.0);
             return;
         };
-        self.lead = lead(places.all());
+        self.lead = lead(places);
         if let Some(id) = self.place
             && id != best.id
         {
@@ -202,9 +203,15 @@ impl Belief {
             && best.last >= config.least_mean - LAST_BELOW
     }
 
-    pub(super) fn report(&self, places: &Places) -> Report {
+    /// What is to be said; places that are not believed have gone `since_key` since the
+    /// last key scan.
+    pub(super) fn report(&self, places: &Places, since_key: &Way) -> Report {
         let believed = self.place.and_then(|id| places.get(id));
         let place = believed.or(places.all().first());
+        let pose = place.map(|place| match believed {
+            Some(_) => place.pose,
+            None => place.pose.then(since_key.step),
+        });
         let distances = self.rivals(places.all()).skip(1).filter_map(|other| {
             let from = places.all().first()?.pose;
             Some(from.distance_to(other.pose))
@@ -215,7 +222,7 @@ impl Belief {
         Report {
             state: self.state,
             reason: self.reason,
-            pose: place.map(|place| place.pose),
+            pose,
             covariance: match (believed, place) {
                 (Some(believed), _) if self.state == TrackState::Unique => believed.covariance,
                 (_, Some(place)) => spread(places.all(), place.pose),
@@ -252,9 +259,11 @@ fn spread(places: &[Place], about: Pose) -> Matrix3<f64> {
     parts.sum()
 }
 
-/// How likely the place is that leads by so much.
+/// How likely the place is that leads by so much: a logistic regression over 2191 key
+/// scans of seven drives, which docs/tracking.md has as a table. The lead by itself
+/// promises too much, for scans of one place err together.
 fn probability(lead: f64) -> f64 {
-    1.0 / (1.0 + (-lead).exp())
+    1.0 / (1.0 + (-(0.2 + 0.4 * lead)).exp())
 }
 
 fn is_elsewhere(place: &Place, best: &Place) -> bool {
@@ -264,18 +273,15 @@ fn is_elsewhere(place: &Place, best: &Place) -> bool {
 }
 
 /// By how much the best place leads over the next that lies elsewhere. A new one is
-/// not the next, unless the best is new itself.
-fn lead(places: &[Place]) -> f64 {
-    let Some(best) = places.first() else {
+/// not the next, unless the best is new itself, or all are of the first key scan.
+fn lead(places: &Places) -> f64 {
+    let Some(best) = places.all().first() else {
         return 0.0;
     };
-    let counts = |place: &&Place| best.age <= 1 || place.age > 1;
-    let is_elsewhere = |place: &&Place| {
-        !place
-            .pose
-            .is_within(best.pose, DISTINCT_M, DISTINCT_RADIANS)
-    };
-    let next = places.iter().filter(counts).find(is_elsewhere);
+    let are_first = best.age <= 1 || places.key_scans() <= 1;
+    let counts = |place: &&Place| are_first || place.age > 1;
+    let mut others = places.all().iter().filter(counts);
+    let next = others.find(|place| is_elsewhere(place, best));
     next.map_or(FARTHEST_BEHIND, |next| {
         (best.log_weight - next.log_weight).min(FARTHEST_BEHIND)
     })

@@ -132,35 +132,6 @@ impl<'a> Run<'a> {
         let off = pose
             .zip(moment.truth)
             .map(|(pose, truth)| (pose.distance_to(truth), pose.angle_to(truth).to_degrees()));
-        if std::env::var_os("TRACE").is_some() {
-            let truth_best = moment.truth.map(|truth| {
-                let near = |c: &&Candidate| moment.laser(c.pose).is_within(truth, 0.5, 0.2);
-                (
-                    moment.found.iter().find(near).map(|c| c.score),
-                    moment
-                        .found
-                        .iter()
-                        .find(|c| !near(c))
-                        .map(|c| (c.score, moment.laser(c.pose).distance_to(truth))),
-                )
-            });
-            eprintln!(
-                "{index} {:.1} {:?} score {:.2} lead {:.1} off {:?} need {need:?} truth {:?}",
-                moment.gone_m,
-                report.state,
-                report.score,
-                report.lead,
-                off.map(|(a, b)| ((100.0 * a).round() / 100.0, b.round())),
-                truth_best
-            );
-            for place in self.tracker.debug().iter().take(4) {
-                let off = moment.truth.map(|t| moment.laser(place.0).distance_to(t));
-                eprintln!(
-                    "     L {:.1} mean {:.2} last {:.2} age {} off {:?}",
-                    place.1, place.2, place.3, place.4, off
-                );
-            }
-        }
         Ok(Said { report, pose, off })
     }
 }

@@ -62,9 +62,6 @@ pub(super) fn evaluate(
     for &start in chosen {
         all.starts += 1;
         let mut run = Run::new(world, moments, config);
-        if std::env::var_os("TRACE").is_some() {
-            eprintln!("START {start}");
-        }
         let farthest = AFTER_M[AFTER_M.len() - 1];
         let mut last: [Option<Said>; 5] = [None; 5];
         let (mut gone, mut is_wrong) = (0.0, false);

@@ -1,0 +1,327 @@
+use std::f64::consts::PI;
+
+use messages::{TrackReason, TrackState};
+
+use super::*;
+use crate::beams::BeamConfig;
+use crate::fit::{Ends, FitConfig, Terrain};
+use crate::grid::{CellRules, Grid, GridFrame};
+use crate::localizer::{Localizer, LocalizerConfig, Prior};
+use crate::peaks::{PeakConfig, PeakInput, Sought, by_fit};
+use crate::scan::Scan;
+use crate::space::Space;
+
+const BEAMS: usize = 180;
+const RESOLUTION_M: f64 = 0.1;
+
+/// A building in which scans are simulated and searched.
+struct Building {
+    grid: Grid,
+    terrain: Terrain,
+    localizer: Localizer,
+    space: Space,
+}
+
+/// Ragged walls, so that it does not count as drawn.
+fn building(rows: &[&str]) -> Building {
+    let (width, height) = (rows[0].len(), rows.len());
+    let cells: Vec<u8> = rows
+        .iter()
+        .rev()
+        .flat_map(|row| row.bytes())
+        .map(|cell| if cell == b'#' { 100 } else { 0 })
+        .collect();
+    let frame = GridFrame {
+        resolution_m: RESOLUTION_M,
+        map_from_grid: Pose::IDENTITY,
+    };
+    let rules = CellRules::default();
+    let grid = Grid::new(width, height, &cells, rules).unwrap();
+    let config = LocalizerConfig {
+        search_cell: 0.0,
+        ..LocalizerConfig::default()
+    };
+    Building {
+        terrain: Terrain::new(frame, (width, height), &cells, rules).unwrap(),
+        localizer: Localizer::new(frame, grid.clone(), config, Prior::None).unwrap(),
+        space: Space::new(360, RESOLUTION_M, width, height).unwrap(),
+        grid,
+    }
+}
+
+impl Building {
+    /// What a laser reads at a pose, all around, to a centimetre.
+    fn ranges(&self, pose: Pose) -> Vec<f32> {
+        let read = |beam: usize| {
+            let bearing = -PI + 2.0 * PI * beam as f64 / BEAMS as f64;
+            let (sin, cos) = (pose.yaw + bearing).sin_cos();
+            let is_wall = |range: &f64| {
+                let (x, y) = (pose.x + range * cos, pose.y + range * sin);
+                let (x, y) = (x / RESOLUTION_M, y / RESOLUTION_M);
+                let i = y as usize * self.grid.width() + x as usize;
+                self.grid.cells()[i] == crate::grid::Cell::Occupied
+            };
+            let mut ranges = (0..3000).map(|step| 0.01 * f64::from(step));
+            ranges
+                .find(is_wall)
+                .map_or(f32::INFINITY, |range| range as f32)
+        };
+        (0..BEAMS).map(read).collect()
+    }
+
+    fn scan<'a>(&self, ranges: &'a [f32]) -> Scan<'a> {
+        Scan {
+            angle_min: -PI,
+            angle_increment: 2.0 * PI / BEAMS as f64,
+            range_min_m: 0.0,
+            range_max_m: 30.0,
+            ranges,
+        }
+    }
+
+    fn ends(&self, pose: Pose) -> Ends {
+        let ranges = self.ranges(pose);
+        Ends::new(&self.scan(&ranges), &self.space, &BeamConfig::default()).unwrap()
+    }
+
+    fn found(&self, pose: Pose) -> Vec<Candidate> {
+        let ranges = self.ranges(pose);
+        let outcome = self.localizer.search(&self.scan(&ranges), &|| false);
+        let outcome = outcome.unwrap().unwrap();
+        let input = PeakInput::of(&outcome, self.localizer.frame());
+        let ends = self.ends(pose);
+        let places = by_fit(&input, (&self.terrain, &ends), &PeakConfig::default());
+        let sought = Sought::of(None, false);
+        let candidate =
+            |place: &crate::peaks::Place| Candidate::of(&place.hypothesis(1, sought), sought);
+        places.places.iter().map(candidate).collect()
+    }
+
+    fn seen<'a>(&'a self, ends: &'a Ends, fit: &'a FitConfig) -> Seen<'a> {
+        Seen {
+            terrain: &self.terrain,
+            ends,
+            fit,
+        }
+    }
+
+    /// Gives a tracker the scan at a pose; returns what was needed.
+    fn step(&self, tracker: &mut Tracker, truth: Pose, moved: Option<Pose>) -> Need {
+        let (ends, fit) = (self.ends(truth), FitConfig::default());
+        let seen = self.seen(&ends, &fit);
+        let need = tracker.begin(&seen, 1, moved);
+        let found = (need == Need::ThisScan).then(|| self.found(truth));
+        tracker.finish(&seen, found.as_deref());
+        need
+    }
+
+    /// Drives straight on by steps of 0.3 m.
+    fn drive(&self, tracker: &mut Tracker, from: Pose, steps: usize) -> Pose {
+        let step = Pose::new(0.3, 0.0, 0.0);
+        let mut pose = from;
+        for _ in 0..steps {
+            pose = pose.then(step);
+            self.step(tracker, pose, Some(step));
+        }
+        pose
+    }
+}
+
+/// A corridor with a niche; no two places look alike.
+const UNLIKE: [&str; 22] = [
+    "##################################################",
+    "#................................................#",
+    "##...............................................#",
+    "#.......................#........................#",
+    "##.....................##.......................##",
+    "#.......................#........................#",
+    "##..............................................##",
+    "#................................................#",
+    "##..................................######......##",
+    "#...................................#....#.......#",
+    "##......#...........................#....#......##",
+    "#......###..........................#....#.......#",
+    "##......#...........................######......##",
+    "#................................................#",
+    "##..............................................##",
+    "#.............####...............................#",
+    "##............#..#..............................##",
+    "#.............####...............................#",
+    "##..............................................##",
+    "#................................................#",
+    "##..............................................##",
+    "##################################################",
+];
+
+/// Looks the same when it is turned by half.
+const ALIKE: [&str; 12] = [
+    "########################################",
+    "#......................................#",
+    "#......................................#",
+    "#......................................#",
+    "#.....##...............................#",
+    "#......................................#",
+    "#......................................#",
+    "#...............................##.....#",
+    "#......................................#",
+    "#......................................#",
+    "#......................................#",
+    "########################################",
+];
+
+const START: Pose = Pose::new(1.0, 0.8, 0.0);
+
+fn is_at(tracker: &Tracker, truth: Pose) -> bool {
+    let pose = tracker.report().pose;
+    pose.is_some_and(|pose| pose.is_within(truth, 0.1, 0.05))
+}
+
+#[test]
+fn one_scan_is_never_enough_and_a_few_metres_are() {
+    let building = building(&UNLIKE);
+    let mut tracker = Tracker::new(TrackingConfig::default());
+    assert_eq!(building.step(&mut tracker, START, None), Need::ThisScan);
+    assert_eq!(tracker.report().state, TrackState::Searching);
+    let end = building.drive(&mut tracker, START, 10);
+    let report = tracker.report();
+    assert_eq!(
+        (report.state, report.reason),
+        (TrackState::Unique, TrackReason::OnePlace)
+    );
+    assert!(is_at(&tracker, end), "{report:?}");
+    assert!(report.covariance[(0, 0)].sqrt() < 0.1 && report.probability > 0.98);
+}
+
+#[test]
+fn places_that_look_alike_are_never_told_apart() {
+    let building = building(&ALIKE);
+    let mut tracker = Tracker::new(TrackingConfig::default());
+    building.step(&mut tracker, START, None);
+    building.drive(&mut tracker, START, 6);
+    let report = tracker.report();
+    assert_eq!(
+        (report.state, report.reason),
+        (TrackState::Searching, TrackReason::SeveralPlaces)
+    );
+    assert_eq!(report.rivals, 2, "{}", report.words());
+    // Half a turn away, metres apart: the covariance spans both.
+    assert!(
+        report.covariance[(0, 0)].sqrt() > 0.3,
+        "{:?}",
+        report.covariance
+    );
+}
+
+#[test]
+fn a_robot_that_is_carried_away_is_noticed_at_once_and_found_again() {
+    let building = building(&UNLIKE);
+    let mut tracker = Tracker::new(TrackingConfig::default());
+    building.step(&mut tracker, START, None);
+    building.drive(&mut tracker, START, 8);
+    assert_eq!(tracker.report().state, TrackState::Unique);
+    let elsewhere = Pose::new(4.0, 1.9, PI);
+    assert_eq!(
+        building.step(&mut tracker, elsewhere, Some(Pose::IDENTITY)),
+        Need::ThisScan
+    );
+    let report = tracker.report();
+    assert_eq!(
+        (report.state, report.reason),
+        (TrackState::Doubtful, TrackReason::PoorFit)
+    );
+    let end = building.drive(&mut tracker, elsewhere, 9);
+    assert_eq!(tracker.report().state, TrackState::Unique);
+    assert!(is_at(&tracker, end));
+}
+
+#[test]
+fn what_odometry_misses_is_followed() {
+    let building = building(&UNLIKE);
+    let mut tracker = Tracker::new(TrackingConfig::default());
+    building.step(&mut tracker, START, None);
+    let at = building.drive(&mut tracker, START, 8);
+    // A turn of 20° that the wheels do not report.
+    let turned = at.then(Pose::new(0.3, 0.0, 0.35));
+    building.step(&mut tracker, turned, Some(Pose::new(0.3, 0.0, 0.0)));
+    assert!(is_at(&tracker, turned), "{:?}", tracker.report());
+    assert_eq!(tracker.report().state, TrackState::Unique);
+}
+
+#[test]
+fn while_the_pose_is_sure_few_scans_are_searched() {
+    let building = building(&UNLIKE);
+    let mut tracker = Tracker::new(TrackingConfig::default());
+    building.step(&mut tracker, START, None);
+    let mut at = building.drive(&mut tracker, START, 4);
+    let step = Pose::new(0.0, 0.0, 0.36);
+    let (mut asked, mut due) = (0, 0);
+    // Turns on the spot: each scan is a key scan.
+    for _ in 0..40 {
+        at = at.then(step);
+        let (ends, fit) = (building.ends(at), FitConfig::default());
+        let seen = building.seen(&ends, &fit);
+        let need = tracker.begin(&seen, 1, Some(step));
+        assert_ne!(need, Need::ThisScan);
+        let found = (need == Need::EarlierScan)
+            .then(|| building.found(at.then(step.inverse()).then(step.inverse())));
+        due += u32::from(found.is_some());
+        tracker.finish(&seen, found.as_deref());
+        asked += u32::from(tracker.asks_ahead());
+    }
+    assert_eq!((asked, due), (3, 3));
+    assert_eq!(tracker.report().state, TrackState::Unique);
+    assert!(is_at(&tracker, at));
+}
+
+#[test]
+fn an_expected_pose_is_not_believed_before_scans_confirm_it() {
+    let building = building(&ALIKE);
+    let mut tracker = Tracker::new(TrackingConfig::default());
+    tracker.expect(START, Covariance::from_deviations(0.3, 0.3, 0.2), 10.0);
+    building.step(&mut tracker, START, None);
+    assert_eq!(tracker.report().state, TrackState::Searching);
+    let mut wrong = Tracker::new(TrackingConfig::default());
+    wrong.expect(
+        Pose::new(3.0, 0.3, 1.0),
+        Covariance::from_deviations(0.1, 0.1, 0.1),
+        10.0,
+    );
+    building.step(&mut wrong, START, None);
+    building.drive(&mut wrong, START, 4);
+    // It is one of the two that look alike, or none is believed.
+    assert_ne!(wrong.report().state, TrackState::Unique);
+}
+
+#[test]
+fn a_scan_of_nothing_changes_nothing() {
+    let building = building(&UNLIKE);
+    let mut tracker = Tracker::new(TrackingConfig::default());
+    let (ends, fit) = (Ends::default(), FitConfig::default());
+    let seen = building.seen(&ends, &fit);
+    assert_eq!(tracker.begin(&seen, 1, None), Need::Nothing);
+    tracker.finish(&seen, None);
+    assert_eq!(
+        (tracker.report().pose, tracker.report().reason),
+        (None, TrackReason::NoScan)
+    );
+}
+
+#[test]
+fn tracking_allocates_nothing() {
+    let building = building(&UNLIKE);
+    let mut tracker = Tracker::new(TrackingConfig::default());
+    building.step(&mut tracker, START, None);
+    let mut at = building.drive(&mut tracker, START, 8);
+    let step = Pose::new(0.0, 0.0, 0.1);
+    for _ in 0..20 {
+        at = at.then(step);
+        let (ends, fit) = (building.ends(at), FitConfig::default());
+        let seen = building.seen(&ends, &fit);
+        let allocated = allocation_counter::measure(|| {
+            if tracker.begin(&seen, 1, Some(step)) == Need::Nothing {
+                tracker.finish(&seen, None);
+            }
+        });
+        assert_eq!(allocated.count_total, 0);
+    }
+}

@@ -1,0 +1,187 @@
+//! The tracker in the graph and in `backcast evaluate --sequence` finds the same poses to
+//! the last bit, and searching on demand changes none of them.
+#![allow(
+    clippy::unwrap_used,
+    reason = "the lint spares test functions but not what they share"
+)]
+
+use std::path::{Path, PathBuf};
+use std::process::Command;
+use std::time::Duration;
+
+use messages::{PoseHeader, TrackState, topic};
+use serde_json::Value;
+use tempfile::TempDir;
+use tests::executables;
+use tests::world::World;
+use transport::testing::{Isolated, NodeProcess};
+use transport::{Flow, TransportError};
+
+/// Stamp, x, y, and the quaternion's z and w.
+type Track = Vec<(String, f64, f64, f64, f64)>;
+
+fn by_tools(recording: &Path, map: &Path) -> Track {
+    let folder = TempDir::new().unwrap();
+    let mut command = Command::new(executables::path("backcast"));
+    command.args([
+        "evaluate",
+        "--sequence",
+        "--starts",
+        "1",
+        "--kidnaps",
+        "0",
+        "--map",
+    ]);
+    command.arg(map).arg("--trajectories").arg(folder.path());
+    let output = command.arg(recording).output().unwrap();
+    assert!(
+        output.status.success(),
+        "{}",
+        String::from_utf8_lossy(&output.stderr)
+    );
+    let text = std::fs::read_to_string(folder.path().join("recording.tum")).unwrap();
+    let line = |line: &str| {
+        let words: Vec<&str> = line.split(' ').collect();
+        let number = |i: usize| words[i].parse().unwrap();
+        (
+            words[0].to_owned(),
+            number(1),
+            number(2),
+            number(6),
+            number(7),
+        )
+    };
+    text.lines().map(line).collect()
+}
+
+/// The poses of all scans, from a graph that is fed at a rate.
+fn by_graph(
+    tag: &str,
+    recording: &Path,
+    map: &Path,
+    rate: &str,
+    search: &str,
+    scans: usize,
+) -> Vec<PoseHeader> {
+    let isolated = Isolated::new(tag);
+    let graph = isolated.join("test");
+    let poses = graph.subscriber::<topic::Tracked>().unwrap();
+    let start = |name: &str, arguments: &[&str]| {
+        NodeProcess::start(executables::path(name).to_str().unwrap(), &graph, arguments)
+    };
+    let nodes = [
+        start("map_server", &["--map", map.to_str().unwrap()]),
+        start("boundary_extractor", &[]),
+        start("accumulator", &["--search", search]),
+        start("peak_extractor", &[]),
+        start("tracker", &[]),
+    ];
+    let recording = recording.to_str().unwrap();
+    let wait = "accumulator,peak_extractor,tracker";
+    let player = start(
+        "replayer",
+        &["--rate", rate, "--wait-for", wait, "--recording", recording],
+    );
+    let mut found: Vec<PoseHeader> = Vec::new();
+    let outcome = graph.run(&[&poses], Duration::from_millis(100), |_| {
+        while let Some(pose) = poses.receive()? {
+            if pose.header().from_scan == 1 {
+                found.push(*pose.header());
+            }
+        }
+        Ok::<_, TransportError>(if found.len() == scans {
+            Flow::Stop
+        } else {
+            Flow::Continue
+        })
+    });
+    outcome.unwrap();
+    assert_eq!(player.exit_code(), Some(0), "the player lost something");
+    for node in nodes {
+        node.stop();
+    }
+    found
+}
+
+/// Those that a trajectory holds.
+fn track(poses: &[PoseHeader]) -> Track {
+    let states = [TrackState::Unique as u32, TrackState::Doubtful as u32];
+    let meant = poses.iter().filter(|pose| states.contains(&pose.state));
+    meant
+        .map(|pose| {
+            let (stamp, at) = (pose.stamp.measured_ns, pose.map_from_laser);
+            let (sin, cos) = (0.5 * at.yaw).sin_cos();
+            let stamp = format!("{}.{:09}", stamp / 1_000_000_000, stamp % 1_000_000_000);
+            (stamp, at.x, at.y, sin, cos)
+        })
+        .collect()
+}
+
+#[test]
+fn the_graph_and_the_tools_track_alike() {
+    let world = World::of("malaga_corridor");
+    let (recording, map) = (world.recording(), world.map());
+    let expected = by_tools(&recording, &map);
+    let poses = by_graph("track-all", &recording, &map, "max", "all", 37);
+    assert!(expected.len() > 25, "{}", expected.len());
+    assert_eq!(track(&poses), expected);
+    // With odometry, the map's frame is tied to the odometry's.
+    assert!(poses.iter().all(|pose| pose.odom_known == 1));
+    let asked = by_graph("track-asked", &recording, &map, "4", "asked", 37);
+    assert_eq!(track(&asked), expected);
+}
+
+/// The folder of recordings of other robots, where these are at hand.
+fn data() -> Option<PathBuf> {
+    let folders = tests::root().canonicalize().unwrap();
+    let mut candidates = folders
+        .ancestors()
+        .map(|f| f.join("shared/data/evaluation"));
+    candidates.find(|folder| folder.is_dir())
+}
+
+fn figures(recording: &Path, options: &[&str]) -> Value {
+    let mut command = Command::new(executables::path("backcast"));
+    let output = command
+        .args(["evaluate", "--sequence", "--json"])
+        .args(options)
+        .arg(recording)
+        .output()
+        .unwrap();
+    assert!(
+        output.status.success(),
+        "{}",
+        String::from_utf8_lossy(&output.stderr)
+    );
+    serde_json::from_slice(&output.stdout).unwrap()
+}
+
+#[test]
+fn drives_of_other_robots_are_tracked() {
+    let Some(folder) = data() else {
+        eprintln!("left out: the recordings of other robots are not here");
+        return;
+    };
+    for (file, right) in [
+        ("intel_sequence.mcap", 0.98),
+        ("seattle_sequence.mcap", 0.95),
+    ] {
+        let found = figures(&folder.join(file), &["--starts", "20", "--kidnaps", "10"]);
+        assert_eq!(found["wrong_starts"], 0, "{file}: {found}");
+        assert_eq!(found["losses"], 0, "{file}: {found}");
+        assert_eq!(found["kidnaps_wrong"], 0, "{file}: {found}");
+        assert!(
+            found["right"]["5"].as_f64().unwrap() >= right,
+            "{file}: {found}"
+        );
+        assert!(found["rms_m"].as_f64().unwrap() <= 0.03, "{file}: {found}");
+    }
+    // A map that was drawn leaves out doors, and its bays repeat.
+    let drawn = folder.join("guardian_drawn_map.mcap");
+    let found = figures(
+        &drawn,
+        &["--starts", "20", "--kidnaps", "0", "--every", "2"],
+    );
+    assert_eq!(found["wrong_starts"], 0, "{found}");
+    assert!(found["right"]["20"].as_f64().unwrap() >= 0.8, "{found}");
+}
