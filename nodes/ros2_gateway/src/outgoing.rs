@@ -85,8 +85,8 @@ impl Outgoing {
             stamp: stamp(header.stamp.measured_ns)?,
             frame_id: map_frame.to_owned(),
         };
-        if let (Some(reason), Some(best)) = (reason, items.first()) {
-            let pose = conversion::poses::best(in_map.clone(), header, best);
+        let best = conversion::poses::best(in_map.clone(), header, items);
+        if let (Some(reason), Some(best), Some(pose)) = (reason, items.first(), best) {
             self.initial_pose.send(&spread(pose, self.spread))?;
             report.sent();
             let Pose { x, y, yaw } = conversion::poses::robot(header, best);
