@@ -118,7 +118,7 @@ mod tests {
             best(Header::default(), &header, &items)
                 .unwrap()
                 .pose
-                .covariance[0]
+                .covariance[0][0]
         };
         assert!((xx(Verdict::Unique) - 0.01).abs() < 1e-9);
         // A quarter of the robots is 10 m away.
