@@ -1,7 +1,7 @@
 //! Hypotheses as poses that every tool knows.
 
 use geometry::{Covariance, Pose};
-use messages::{HypothesesHeader, Hypothesis};
+use messages::{HypothesesHeader, Hypothesis, PoseHeader, Verdict};
 use recording::ros::{Header, PoseArray, PoseWithCovarianceStamped};
 
 use crate::planar;
@@ -17,20 +17,55 @@ pub fn array(header: Header, from: &HypothesesHeader, items: &[Hypothesis]) -> P
     }
 }
 
-/// The best one, with its covariance.
+/// The best one. Its covariance is its own where the verdict is Unique; else it spans
+/// all of them, by their probabilities, so that nobody takes the best for sure.
 #[must_use]
 pub fn best(
     header: Header,
     from: &HypothesesHeader,
-    best: &Hypothesis,
-) -> PoseWithCovarianceStamped {
-    let pose = robot(from, best);
-    let covariance = Covariance::from_rows(best.covariance);
-    let covariance = covariance.carried(best.map_from_laser.into(), pose);
-    PoseWithCovarianceStamped {
+    items: &[Hypothesis],
+) -> Option<PoseWithCovarianceStamped> {
+    let pose = robot(from, items.first()?);
+    let is_unique = from.verdict == Verdict::Unique as u32;
+    let meant = if is_unique { &items[..1] } else { items };
+    Some(PoseWithCovarianceStamped {
         header,
-        pose: planar::estimate(pose, covariance.to_rows()),
+        pose: planar::estimate(pose, spread(pose, from, meant).to_rows()),
+    })
+}
+
+/// The covariance about a pose of a robot that is at one of these places.
+fn spread(about: Pose, from: &HypothesesHeader, items: &[Hypothesis]) -> Covariance {
+    // By votes alone no place has a probability: then all are alike.
+    let all: f64 = items.iter().map(|item| f64::from(item.probability)).sum();
+    let weight = |item: &Hypothesis| match all > 0.0 {
+        true => f64::from(item.probability) / all,
+        false => 1.0 / items.len() as f64,
+    };
+    let parts = items.iter().map(|item| {
+        let pose = robot(from, item);
+        let own = Covariance::from_rows(item.covariance);
+        let own = own.carried(item.map_from_laser.into(), pose);
+        own.about(pose, about).0 * weight(item)
+    });
+    Covariance(parts.sum())
+}
+
+/// Where the tracker has the robot: of the base, or of the laser where no mount is known.
+/// `None` where it has no pose.
+#[must_use]
+pub fn tracked(header: Header, from: &PoseHeader) -> Option<PoseWithCovarianceStamped> {
+    if from.pose_known != 1 {
+        return None;
     }
+    let (pose, covariance) = match from.mount_known {
+        0 => (from.map_from_laser, from.laser_covariance),
+        _ => (from.map_from_base, from.base_covariance),
+    };
+    Some(PoseWithCovarianceStamped {
+        header,
+        pose: planar::estimate(pose.into(), covariance),
+    })
 }
 
 /// The pose that is meant: of the base, or of the laser where no mount is known.
@@ -63,5 +98,49 @@ mod tests {
                 .x,
             2.0
         );
+    }
+
+    #[test]
+    fn only_a_unique_answer_has_a_tight_covariance() {
+        let at = |x: f64, probability: f32| {
+            let mut item = Hypothesis::zeroed();
+            item.map_from_laser.x = x;
+            item.probability = probability;
+            item.covariance = Covariance::from_deviations(0.1, 0.1, 0.1).to_rows();
+            item
+        };
+        let items = [at(0.0, 0.6), at(10.0, 0.2)];
+        let xx = |verdict: Verdict| {
+            let header = HypothesesHeader {
+                verdict: verdict as u32,
+                ..HypothesesHeader::zeroed()
+            };
+            best(Header::default(), &header, &items)
+                .unwrap()
+                .pose
+                .covariance[0][0]
+        };
+        assert!((xx(Verdict::Unique) - 0.01).abs() < 1e-9);
+        // A quarter of the robots is 10 m away.
+        assert!((xx(Verdict::Ambiguous) - 25.01).abs() < 1e-6);
+        assert_eq!(
+            best(Header::default(), &HypothesesHeader::zeroed(), &[]),
+            None
+        );
+    }
+
+    #[test]
+    fn the_tracker_has_a_pose_or_none() {
+        let mut header = PoseHeader::zeroed();
+        header.map_from_laser.x = 1.0;
+        header.map_from_base.x = 2.0;
+        assert_eq!(tracked(Header::default(), &header), None);
+        header.pose_known = 1;
+        let x = |header: &PoseHeader| {
+            tracked(Header::default(), header).map(|p| p.pose.pose.position.x)
+        };
+        assert_eq!(x(&header), Some(1.0));
+        header.mount_known = 1;
+        assert_eq!(x(&header), Some(2.0));
     }
 }

@@ -1,6 +1,6 @@
 //! The uncertainty of a pose.
 
-use nalgebra::{Matrix2, Matrix3, Vector2};
+use nalgebra::{Matrix2, Matrix3, Vector2, Vector3};
 
 use crate::Pose;
 
@@ -39,6 +39,14 @@ impl Covariance {
         let (dx, dy) = (of.x - known.x, of.y - known.y);
         let jacobian = Matrix3::new(1.0, 0.0, -dy, 0.0, 1.0, dx, 0.0, 0.0, 1.0);
         Covariance(jacobian * self.0 * jacobian.transpose())
+    }
+
+    /// The second moment about another pose of what has this covariance about pose `mean`.
+    #[must_use]
+    pub fn about(self, mean: Pose, other: Pose) -> Self {
+        let yaw = crate::wrap_angle(mean.yaw - other.yaw);
+        let off = Vector3::new(mean.x - other.x, mean.y - other.y, yaw);
+        Covariance(self.0 + off * off.transpose())
     }
 
     /// Row by row, as messages carry it.

@@ -44,6 +44,7 @@ pub struct Inputs {
     votes: Counted<topic::Votes>,
     field: Option<Counted<topic::Field>>,
     hypotheses: Counted<topic::Hypotheses>,
+    poses: Counted<topic::Tracked>,
     beams: Counted<topic::Beams>,
     health: Counted<topic::Health>,
     log: Subscriber<topic::Log>,
@@ -86,6 +87,7 @@ impl Inputs {
             votes: Counted::open(graph)?,
             field: field.then(|| Counted::open(graph)).transpose()?,
             hypotheses: Counted::open(graph)?,
+            poses: Counted::open(graph)?,
             beams: Counted::open(graph)?,
             health: Counted::open(graph)?,
             log: graph.subscriber()?,
@@ -100,13 +102,14 @@ impl Inputs {
             .field
             .as_ref()
             .map(|field| -> &dyn Input { &field.subscriber });
-        let others: [&dyn Input; 9] = [
+        let others: [&dyn Input; 10] = [
             &self.map.subscriber,
             &self.odometry.subscriber,
             &self.truths.subscriber,
             &self.scans,
             &self.votes.subscriber,
             &self.hypotheses.subscriber,
+            &self.poses.subscriber,
             &self.beams.subscriber,
             &self.health.subscriber,
             &self.log,
@@ -205,6 +208,10 @@ impl Inputs {
             let outcome = to.transcript().entries.hypotheses(header, sample.items());
             to.transcript().taken(0, outcome)?;
             to.judged(header.verdict)?;
+        }
+        while let Some(sample) = self.poses.subscriber.receive()? {
+            let outcome = to.transcript().entries.tracked(sample.header());
+            to.transcript().taken(0, outcome)?;
         }
         while let Some(sample) = self.beams.subscriber.receive()? {
             let outcome = to

@@ -1,7 +1,9 @@
 //! From the graph to the robot.
 
 use geometry::Pose;
-use messages::{HealthHeader, HypothesesHeader, Hypothesis, Stamp, Verdict};
+use messages::{
+    HealthHeader, HypothesesHeader, Hypothesis, PoseHeader, Stamp, TrackState, Verdict,
+};
 use network::Report;
 use recording::ros::{
     DiagnosticArray, Header, PoseArray, PoseWithCovarianceStamped, TfMessage, Time,
@@ -31,6 +33,8 @@ pub(crate) struct Outgoing {
     spread: Reach,
     /// Where the odometry's frame lies, by the last verdict that was Unique.
     map_from_odom: Option<(Pose, String)>,
+    /// Whether a tracker was heard: where the robot is, it says then.
+    is_tracked: bool,
     /// The newest scan: where the robot's clock meets the host's.
     newest: Option<Stamp>,
 }
@@ -52,6 +56,7 @@ impl Outgoing {
             ahead_ns: (config.tf_ahead * 1e9) as i64,
             spread: config.spread,
             map_from_odom: None,
+            is_tracked: false,
             newest: None,
         })
     }
@@ -67,7 +72,11 @@ impl Outgoing {
         report: &mut Report,
     ) -> Result<(), TransportError> {
         self.newest = Some(header.stamp);
-        let reason = seeding.hear_answer(answer(header, items));
+        let answer = answer(header, items);
+        let reason = match self.is_tracked {
+            true => None,
+            false => seeding.hear_answer(answer),
+        };
         let outcome = self.tell(header, items, map_frame, frames, reason, report);
         outcome.or_else(|error| report.refused(&error))
     }
@@ -85,8 +94,8 @@ impl Outgoing {
             stamp: stamp(header.stamp.measured_ns)?,
             frame_id: map_frame.to_owned(),
         };
-        if let (Some(reason), Some(best)) = (reason, items.first()) {
-            let pose = conversion::poses::best(in_map.clone(), header, best);
+        let best = conversion::poses::best(in_map.clone(), header, items);
+        if let (Some(reason), Some(best), Some(pose)) = (reason, items.first(), best) {
             self.initial_pose.send(&spread(pose, self.spread))?;
             report.sent();
             let Pose { x, y, yaw } = conversion::poses::robot(header, best);
@@ -96,19 +105,67 @@ impl Outgoing {
         let poses = conversion::poses::array(in_map.clone(), header, items);
         self.hypotheses.send(&poses)?;
         report.sent();
+        if self.is_tracked {
+            return Ok(());
+        }
         if is_unique(header)
             && let Some(best) = items.first()
         {
             self.map_from_odom = frames.map_from_odom(header, best);
         }
-        self.broadcast(header, in_map, report)
+        self.broadcast(header.stamp, in_map, report)
+    }
+
+    /// Tells the robot where the tracker has it, by a scan.
+    pub(crate) fn tracked(
+        &mut self,
+        header: &PoseHeader,
+        map_frame: &str,
+        seeding: &mut Seeding,
+        report: &mut Report,
+    ) -> Result<(), TransportError> {
+        self.is_tracked = true;
+        if header.from_scan != 1 {
+            return Ok(());
+        }
+        self.newest = Some(header.stamp);
+        let reason = seeding.hear_answer(tracked(header));
+        let outcome = self.tell_tracked(header, map_frame, reason, report);
+        outcome.or_else(|error| report.refused(&error))
+    }
+
+    fn tell_tracked(
+        &mut self,
+        header: &PoseHeader,
+        map_frame: &str,
+        reason: Option<Reason>,
+        report: &mut Report,
+    ) -> Result<(), GatewayError> {
+        let in_map = Header {
+            stamp: stamp(header.stamp.measured_ns)?,
+            frame_id: map_frame.to_owned(),
+        };
+        let pose = conversion::poses::tracked(in_map.clone(), header);
+        if let (Some(reason), Some(pose)) = (reason, pose) {
+            self.initial_pose.send(&spread(pose, self.spread))?;
+            report.sent();
+            let Pose { x, y, yaw } = header.map_from_base.into();
+            let yaw_deg = yaw.to_degrees();
+            tracing::info!(?reason, x, y, yaw_deg, "told the robot where it is");
+        }
+        let believed = [TrackState::Unique as u32, TrackState::Doubtful as u32];
+        if header.odom_known == 1 && believed.contains(&header.state) {
+            let odom = header.odom_frame.as_str().to_owned();
+            self.map_from_odom = Some((header.map_from_odom.into(), odom));
+        }
+        self.broadcast(header.stamp, in_map, report)
     }
 
     /// The odometry goes on from where the map was last known to lie, so the
     /// transform is dated anew with each scan.
     fn broadcast(
         &mut self,
-        header: &HypothesesHeader,
+        of: Stamp,
         in_map: Header,
         report: &mut Report,
     ) -> Result<(), GatewayError> {
@@ -118,7 +175,7 @@ impl Outgoing {
         };
         let transform = TransformStamped {
             header: Header {
-                stamp: stamp(header.stamp.measured_ns.saturating_add(self.ahead_ns))?,
+                stamp: stamp(of.measured_ns.saturating_add(self.ahead_ns))?,
                 ..in_map
             },
             child_frame_id: odom.clone(),
@@ -176,6 +233,19 @@ fn answer(header: &HypothesesHeader, items: &[Hypothesis]) -> Answer {
     }
 }
 
+/// Where the tracker has the robot, as an answer to the scan.
+fn tracked(header: &PoseHeader) -> Answer {
+    let is_known = header.pose_known == 1 && header.mount_known == 1;
+    Answer {
+        measured_ns: header.stamp.measured_ns,
+        is_unique: is_known && header.state == TrackState::Unique as u32,
+        map_from_base: is_known
+            .then(|| header.map_from_base.into())
+            .into_iter()
+            .collect(),
+    }
+}
+
 /// As sure as `least` at most: particles that are drawn too close together follow no
 /// surprise.
 fn spread(mut pose: PoseWithCovarianceStamped, least: Reach) -> PoseWithCovarianceStamped {
@@ -215,6 +285,22 @@ mod tests {
         let expected = [1.0, 0.125, 0.0, 0.0, 0.25, 0.0, 0.0, 0.0, 0.0625];
         assert_eq!(pose.pose.planar_covariance(), expected);
         assert_eq!(pose.pose.pose.position.x, 3.0);
+    }
+
+    #[test]
+    fn a_tracker_that_is_not_sure_seeds_nothing() {
+        let mut header = PoseHeader {
+            state: TrackState::Unique as u32,
+            pose_known: 1,
+            mount_known: 1,
+            ..PoseHeader::zeroed()
+        };
+        assert!(tracked(&header).is_unique);
+        header.state = TrackState::Doubtful as u32;
+        assert!(!tracked(&header).is_unique);
+        header.state = TrackState::Unique as u32;
+        header.mount_known = 0;
+        assert!(!tracked(&header).is_unique && tracked(&header).map_from_base.is_empty());
     }
 
     #[test]

@@ -39,8 +39,9 @@ pub fn run(graph: &Graph, config: &Config) -> Result<(), GatewayError> {
     tracing::info!(domain, node = config.node, "joined the robot's domain");
     report.ready()?;
     let (hypotheses, health) = (graph.subscriber()?, graph.subscriber()?);
-    graph.run(&[&hypotheses, &health], TICK, |_| {
-        gateway.step(&hypotheses, &health, &mut report)?;
+    let poses = graph.subscriber()?;
+    graph.run(&[&hypotheses, &poses, &health], TICK, |_| {
+        gateway.step((&hypotheses, &poses), &health, &mut report)?;
         report.tick()?;
         Ok(Flow::Continue)
     })
@@ -82,7 +83,7 @@ impl Gateway {
 
     fn step(
         &mut self,
-        hypotheses: &Subscriber<topic::Hypotheses>,
+        (hypotheses, poses): (&Subscriber<topic::Hypotheses>, &Subscriber<topic::Tracked>),
         health: &Subscriber<topic::Health>,
         report: &mut Report,
     ) -> Result<(), TransportError> {
@@ -102,6 +103,12 @@ impl Gateway {
                 &mut self.seeding,
                 report,
             )?;
+        }
+        while let Some(sample) = poses.receive()? {
+            report.received();
+            let header = sample.header();
+            self.outgoing
+                .tracked(header, map_frame, &mut self.seeding, report)?;
         }
         while let Some(sample) = health.receive()? {
             self.outgoing

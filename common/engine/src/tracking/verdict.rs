@@ -1,6 +1,6 @@
 //! Which place is believed, and how far.
 
-use geometry::Pose;
+use geometry::{Covariance, Pose};
 
 use super::TrackingConfig;
 use super::place::Place;
@@ -249,12 +249,8 @@ fn spread(places: &[Place], about: Pose) -> Matrix3<f64> {
     let weight = |place: &Place| (place.log_weight - top).exp();
     let all: f64 = places.iter().map(weight).sum();
     let parts = places.iter().map(|place| {
-        let off = nalgebra::Vector3::new(
-            place.pose.x - about.x,
-            place.pose.y - about.y,
-            geometry::wrap_angle(place.pose.yaw - about.yaw),
-        );
-        (place.covariance + off * off.transpose()) * (weight(place) / all)
+        let about = Covariance(place.covariance).about(place.pose, about);
+        about.0 * (weight(place) / all)
     });
     parts.sum()
 }

@@ -16,7 +16,9 @@ use std::collections::VecDeque;
 
 use conversion::{planar, poses};
 use geometry::Pose;
-use messages::{HypothesesHeader, Hypothesis, Odometry, ScanHeader, Verdict};
+use messages::{
+    HypothesesHeader, Hypothesis, Odometry, PoseHeader, ScanHeader, TrackState, Verdict,
+};
 use recording::ros::{Header, TfMessage, Time, TransformStamped};
 
 use super::transforms;
@@ -114,6 +116,26 @@ impl Frames {
             Some(_) => laser.stamped(stamp, &self.map, map_from_robot),
             None if mount.is_some() => stamped(stamp, &self.map, &self.base, map_from_robot),
             None => laser.stamped(stamp, &self.map, map_from_robot),
+        };
+        Some(transforms(vec![transform]))
+    }
+
+    /// Where the map's frame lies, by the tracker: as long as it believes a place.
+    pub(super) fn tracked(&self, header: &PoseHeader, stamp: Time) -> Option<TfMessage> {
+        let is_believed = [TrackState::Unique as u32, TrackState::Doubtful as u32];
+        if header.pose_known != 1 || !is_believed.contains(&header.state) {
+            return None;
+        }
+        let transform = match (header.odom_known, header.mount_known) {
+            (1, _) => {
+                let odom = header.odom_frame.as_str();
+                stamped(stamp, &self.map, odom, header.map_from_odom.into())
+            }
+            (_, 0) => {
+                let laser = self.laser.as_ref()?;
+                laser.stamped(stamp, &self.map, header.map_from_laser.into())
+            }
+            _ => stamped(stamp, &self.map, &self.base, header.map_from_base.into()),
         };
         Some(transforms(vec![transform]))
     }
@@ -269,5 +291,27 @@ mod tests {
         assert_eq!(localized(&frames, false, Verdict::Unique), "map->laser 10");
         frames.hear_odometry(&odometry("laser", 2.0), Time::default());
         assert_eq!(localized(&frames, false, Verdict::Unique), "map->odom 8");
+    }
+
+    #[test]
+    fn the_tracker_says_where_the_map_lies_as_long_as_it_believes_a_place() {
+        let mut frames = Frames::new("map", "base_link");
+        frames.hear_scan(&scan(true), Time::default());
+        let mut header = PoseHeader {
+            map_from_base: at(9.5),
+            map_from_odom: at(7.0),
+            pose_known: 1,
+            mount_known: 1,
+            odom_known: 1,
+            odom_frame: FrameName::new("odom"),
+            state: TrackState::Doubtful as u32,
+            ..PoseHeader::zeroed()
+        };
+        let shown_of = |header: &PoseHeader| shown(frames.tracked(header, Time::default()));
+        assert_eq!(shown_of(&header), "map->odom 7");
+        header.odom_known = 0;
+        assert_eq!(shown_of(&header), "map->base_link 9.5");
+        header.state = TrackState::Lost as u32;
+        assert_eq!(shown_of(&header), "");
     }
 }

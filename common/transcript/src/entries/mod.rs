@@ -17,7 +17,7 @@ use std::collections::{BTreeMap, VecDeque};
 use conversion::{diagnostics, lasers, poses};
 use messages::{
     Beam, BeamsHeader, FieldHeader, GroundTruth, HealthHeader, HypothesesHeader, Hypothesis,
-    LogHeader, MapHeader, Odometry, ScanHeader, Stamp, Topic, Vote, VotesHeader, topic,
+    LogHeader, MapHeader, Odometry, PoseHeader, ScanHeader, Stamp, Topic, Vote, VotesHeader, topic,
 };
 use recording::ros::{Header, OccupancyGridMsg, RosMessage, TfMessage, Time};
 use recording::write::Encoded;
@@ -50,6 +50,8 @@ pub struct Entries {
     waiting_map: Option<OccupancyGridMsg>,
     waiting_health: VecDeque<(HealthHeader, String)>,
     waiting_log: VecDeque<(LogHeader, String)>,
+    /// Whether a tracker was heard.
+    is_tracked: bool,
     made: Vec<Entry>,
 }
 
@@ -65,6 +67,7 @@ impl Entries {
             waiting_map: None,
             waiting_health: VecDeque::new(),
             waiting_log: VecDeque::new(),
+            is_tracked: false,
             made: Vec::new(),
         }
     }
@@ -137,12 +140,35 @@ impl Entries {
         self.message(topics::OWN_HYPOTHESES, at.ns, &own)?;
         let array = poses::array(in_map.clone(), header, items);
         self.message(topics::HYPOTHESES, at.ns, &array)?;
-        let Some(best) = items.first() else {
+        // Where there is a tracker, it says where the robot is.
+        if self.is_tracked {
+            return Ok(());
+        }
+        let (Some(best), Some(pose)) = (items.first(), poses::best(in_map, header, items)) else {
             return Ok(());
         };
-        let pose = poses::best(in_map, header, best);
         self.message(topics::POSE, at.ns, &pose)?;
         if let Some(transform) = self.frames.localized(header, best, at.stamp) {
+            self.message(topics::TF, at.ns, &transform)?;
+        }
+        Ok(())
+    }
+
+    /// Takes where the tracker has the robot at a scan; what odometry carries on between
+    /// scans is left out, for the odometry is there itself.
+    ///
+    /// # Errors
+    /// If its stamp is no time of ROS, or CDR cannot say it.
+    pub fn tracked(&mut self, header: &PoseHeader) -> Result<(), TranscriptError> {
+        self.is_tracked = true;
+        if header.from_scan != 1 {
+            return Ok(());
+        }
+        let at = self.measured(header.stamp, topic::Tracked::NAME)?;
+        if let Some(pose) = poses::tracked(self.in_map(at.stamp), header) {
+            self.message(topics::POSE, at.ns, &pose)?;
+        }
+        if let Some(transform) = self.frames.tracked(header, at.stamp) {
             self.message(topics::TF, at.ns, &transform)?;
         }
         Ok(())
