@@ -1,7 +1,10 @@
 //! Hypotheses as poses that every tool knows.
 
+use std::f64::consts::PI;
+
 use geometry::{Covariance, Pose};
-use messages::{HypothesesHeader, Hypothesis, PoseHeader, Verdict};
+use messages::{HypothesesHeader, Hypothesis, PoseHeader, TrackState, Verdict};
+use nalgebra::Matrix3;
 use recording::ros::{Header, PoseArray, PoseWithCovarianceStamped};
 
 use crate::planar;
@@ -17,45 +20,54 @@ pub fn array(header: Header, from: &HypothesesHeader, items: &[Hypothesis]) -> P
     }
 }
 
-/// The best one. Its covariance is its own where the verdict is Unique; else it spans
-/// all of them, by their probabilities, so that nobody takes the best for sure.
+/// The best one. Its covariance is its own where the verdict is Unique. Else nobody is to
+/// take it for sure: where several places fit, it spans them, all alike; where none does,
+/// the robot may be anywhere.
 #[must_use]
 pub fn best(
     header: Header,
     from: &HypothesesHeader,
     items: &[Hypothesis],
 ) -> Option<PoseWithCovarianceStamped> {
-    let pose = robot(from, items.first()?);
-    let is_unique = from.verdict == Verdict::Unique as u32;
-    let meant = if is_unique { &items[..1] } else { items };
+    let best = items.first()?;
+    let pose = robot(from, best);
+    let covariance = match Verdict::from_code(from.verdict) {
+        Some(Verdict::Unique) => covariance(from, best),
+        Some(Verdict::Ambiguous) => {
+            let rivals = (from.alternatives as usize).saturating_add(1).max(2);
+            spread(pose, from, &items[..rivals.min(items.len())])
+        }
+        _ => Covariance::from_deviations(ANYWHERE_M, ANYWHERE_M, PI),
+    };
     Some(PoseWithCovarianceStamped {
         header,
-        pose: planar::estimate(pose, spread(pose, from, meant).to_rows()),
+        pose: planar::estimate(pose, covariance.to_rows()),
     })
+}
+
+/// A robot that may be anywhere: as far as a building is wide.
+const ANYWHERE_M: f64 = 100.0;
+
+/// Of the pose that is meant.
+fn covariance(from: &HypothesesHeader, item: &Hypothesis) -> Covariance {
+    let own = Covariance::from_rows(item.covariance);
+    own.carried(item.map_from_laser.into(), robot(from, item))
 }
 
 /// The covariance about a pose of a robot that is at one of these places.
 fn spread(about: Pose, from: &HypothesesHeader, items: &[Hypothesis]) -> Covariance {
-    // By votes alone no place has a probability: then all are alike.
-    let all: f64 = items.iter().map(|item| f64::from(item.probability)).sum();
-    let weight = |item: &Hypothesis| match all > 0.0 {
-        true => f64::from(item.probability) / all,
-        false => 1.0 / items.len() as f64,
-    };
-    let parts = items.iter().map(|item| {
-        let pose = robot(from, item);
-        let own = Covariance::from_rows(item.covariance);
-        let own = own.carried(item.map_from_laser.into(), pose);
-        own.about(pose, about).0 * weight(item)
-    });
-    Covariance(parts.sum())
+    let parts = items
+        .iter()
+        .map(|item| covariance(from, item).about(robot(from, item), about).0);
+    Covariance(parts.sum::<Matrix3<f64>>() / items.len() as f64)
 }
 
 /// Where the tracker has the robot: of the base, or of the laser where no mount is known.
-/// `None` where it has no pose.
+/// `None` where it believes no place.
 #[must_use]
 pub fn tracked(header: Header, from: &PoseHeader) -> Option<PoseWithCovarianceStamped> {
-    if from.pose_known != 1 {
+    let is_believed = [TrackState::Unique as u32, TrackState::Doubtful as u32];
+    if from.pose_known != 1 || !is_believed.contains(&from.state) {
         return None;
     }
     let (pose, covariance) = match from.mount_known {
@@ -121,8 +133,9 @@ mod tests {
                 .covariance[0][0]
         };
         assert!((xx(Verdict::Unique) - 0.01).abs() < 1e-9);
-        // A quarter of the robots is 10 m away.
-        assert!((xx(Verdict::Ambiguous) - 25.01).abs() < 1e-6);
+        // Half of the robots are 10 m away.
+        assert!((xx(Verdict::Ambiguous) - 50.01).abs() < 1e-6);
+        assert_eq!(xx(Verdict::PoorFit), 1e4);
         assert_eq!(
             best(Header::default(), &HypothesesHeader::zeroed(), &[]),
             None
@@ -136,6 +149,8 @@ mod tests {
         header.map_from_base.x = 2.0;
         assert_eq!(tracked(Header::default(), &header), None);
         header.pose_known = 1;
+        assert_eq!(tracked(Header::default(), &header), None, "it is searching");
+        header.state = TrackState::Doubtful as u32;
         let x = |header: &PoseHeader| {
             tracked(Header::default(), header).map(|p| p.pose.pose.position.x)
         };

@@ -12,7 +12,7 @@ export class Store {
 
   clear() {
     Object.assign(this, {
-      robot: "", map: null, cells: null, answer: null, pose: null, scanAt: null, beams: null, beamsAt: 0, field: null,
+      robot: "", map: null, cells: null, answer: null, pose: null, scanAt: null, posedAt: null, beams: null, beamsAt: 0, field: null,
       nodes: new Map(), track: [], region: [], latencies: [], missed: 0,
       abilities: { region: false, save: false },
     });
@@ -40,7 +40,9 @@ export class Store {
 
   #snapshot({ robot, map, answer, pose, ages, beams, nodes, track, log, region, abilities }) {
     Object.assign(this, { robot, map, answer, pose, beams, track, region, abilities });
-    this.scanAt = ages.scan_s === null ? null : performance.now() - 1000 * ages.scan_s;
+    const since = (seconds) => (seconds === null ? null : performance.now() - 1000 * seconds);
+    this.scanAt = since(ages.scan_s);
+    this.posedAt = since(ages.pose_s);
     this.nodes = new Map(nodes.map((node) => [node.name, node]));
     for (const line of log) this.#log(line);
     return "snapshot";
@@ -70,6 +72,7 @@ export class Store {
       this.#went(this.pose, pose, pose.laser, pose.state);
     }
     this.pose = pose;
+    this.posedAt = performance.now() - pose.sent_age_ms;
     return "pose";
   }
 
@@ -87,9 +90,11 @@ export class Store {
     if (this.latencies.length > LATENCIES) this.latencies.shift();
   }
 
-  /** Seconds since the newest scan; null before the first. */
+  /** Seconds since the newest scan or, with a tracker, its newest pose, whichever is
+   * older; null before the first. */
   silence() {
-    return this.scanAt === null ? null : (performance.now() - this.scanAt) / 1000;
+    const newest = this.pose ? Math.min(this.scanAt ?? Infinity, this.posedAt) : this.scanAt;
+    return newest === null ? null : (performance.now() - newest) / 1000;
   }
 
   /** Where the robot is: what the tracker says or, without one, the last scan. */

@@ -154,10 +154,11 @@ impl Outgoing {
             tracing::info!(?reason, x, y, yaw_deg, "told the robot where it is");
         }
         let believed = [TrackState::Unique as u32, TrackState::Doubtful as u32];
-        if header.odom_known == 1 && believed.contains(&header.state) {
+        let is_tied = header.odom_known == 1 && believed.contains(&header.state);
+        self.map_from_odom = is_tied.then(|| {
             let odom = header.odom_frame.as_str().to_owned();
-            self.map_from_odom = Some((header.map_from_odom.into(), odom));
-        }
+            (header.map_from_odom.into(), odom)
+        });
         self.broadcast(header.stamp, in_map, report)
     }
 
