@@ -259,7 +259,7 @@ mod tests {
         assert_eq!(hear(old, 0).unwrap(), "no data for 61 s");
         assert_eq!(hear(r#"{"type":"answer","age_ms":30.0}"#, 1), None);
         let odometry = r#"{"type":"pose","from_scan":false,"age_ms":9.0}"#;
-        assert_eq!(hear(odometry, 3), None);
+        assert_eq!(hear(odometry, 2), None);
         assert_eq!(
             hear(odometry, 4).unwrap(),
             "no data for 3 s",
