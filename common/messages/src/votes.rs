@@ -133,6 +133,7 @@ mod tests {
     #[test]
     fn codes_name_their_outcome() {
         assert_eq!(SearchOutcome::from_code(2), Some(SearchOutcome::Refused));
-        assert_eq!(SearchOutcome::from_code(3), None);
+        assert_eq!(SearchOutcome::from_code(3), Some(SearchOutcome::NotAsked));
+        assert_eq!(SearchOutcome::from_code(4), None);
     }
 }

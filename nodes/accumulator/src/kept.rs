@@ -28,7 +28,7 @@ pub(crate) struct KeptScans {
 #[derive(Debug)]
 pub(crate) enum Asked {
     /// To search this scan.
-    Search(KeptScan),
+    Search(Box<KeptScan>),
     /// To refuse a wish for a scan that is not here any more.
     Refuse(Stamp),
 }
@@ -63,7 +63,7 @@ impl KeptScans {
         let mut scans = self.scans.iter();
         let found = scans.position(|scan| scan.header.stamp.is_of(wish));
         Some(match found.and_then(|at| self.scans.remove(at)) {
-            Some(scan) => Asked::Search(scan),
+            Some(scan) => Asked::Search(Box::new(scan)),
             None => Asked::Refuse(wish),
         })
     }

@@ -151,11 +151,12 @@ impl Node {
         }
         match kept.next() {
             None => return Ok(false),
-            Some(Asked::Search(KeptScan {
-                header,
-                lasers,
-                kept,
-            })) => {
+            Some(Asked::Search(scan)) => {
+                let KeptScan {
+                    header,
+                    lasers,
+                    kept,
+                } = *scan;
                 self.recalled = Some(kept);
                 self.answer(&header, Ok(lasers))?;
                 self.recalled = None;

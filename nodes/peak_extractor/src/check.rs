@@ -295,7 +295,7 @@ mod tests {
             let error = check(&header, &votes, &mut maps()).unwrap_err();
             assert!(error.to_string().starts_with(expected), "{error}");
         };
-        refuse(|header, _| header.outcome = 3, "outcome is 3");
+        refuse(|header, _| header.outcome = 4, "outcome is 4");
         refuse(
             |header, _| header.map_id = 8,
             "they are of map 0000000000000008",

@@ -35,7 +35,9 @@ pub enum PeakError {
     #[error(transparent)]
     Engine(#[from] EngineError),
     /// No search ends like this.
-    #[error("outcome is {found}: allowed are 0 (found), 1 (no votes) and 2 (refused)")]
+    #[error(
+        "outcome is {found}: allowed are 0 (found), 1 (no votes), 2 (refused) and 3 (not asked)"
+    )]
     Outcome {
         /// By the header.
         found: u32,

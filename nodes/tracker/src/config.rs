@@ -93,7 +93,11 @@ mod tests {
             .unwrap()
             .initial_pose
             .unwrap();
-        assert!(pose.is_within(Pose::new(-1.0, 2.0, 1.570_796), 1e-9, 1e-6));
+        assert!(pose.is_within(
+            Pose::new(-1.0, 2.0, std::f64::consts::FRAC_PI_2),
+            1e-9,
+            1e-9
+        ));
         for (wrong, allowed) in [
             ("--rate -1", "0 to 1000"),
             ("--initial-pose 1,2", "three numbers"),

@@ -67,11 +67,13 @@ impl Terrain {
         })
     }
 
-    /// What the map may leave out of the score of the true place, 0..=1: nothing where
-    /// it was measured.
+    /// What the map may leave out of the score of the true place, 0..=1, where the best
+    /// place has this one: nothing where it was measured, and little where the best lacks
+    /// little itself.
     #[must_use]
-    pub fn left_out(&self, config: &FitConfig) -> f64 {
-        self.drawn_share * config.drawn_doubt
+    pub fn left_out(&self, best: f64, config: &FitConfig) -> f64 {
+        let lacks = 2.0 * (1.0 - best).max(0.0);
+        self.drawn_share * config.drawn_doubt.min(lacks)
     }
 
     /// Distance of a point to the nearest occupied cell, and how it grows along

@@ -58,7 +58,10 @@ impl Workspace {
             let apart = PIECE_SIGMAS * config.fit.sigma_cells(resolution) * resolution;
             let scan = (ends.effective_beams(), ends.effective_pieces(apart));
             let needed = config.needed_lead((best.score, through), scan);
-            let left_out = lead(best.score, best.score - terrain.left_out(&config.fit));
+            let left_out = lead(
+                best.score,
+                best.score - terrain.left_out(best.score, &config.fit),
+            );
             found.judge_by_fit((best.score, needed, left_out), &mut self.leads, config);
         }
         &self.places

@@ -191,9 +191,10 @@ impl Places {
             }
         }
         self.snap();
+        let score = self.best_score();
         let best = Best {
-            score: self.best_score(),
-            left_out: seen.terrain.left_out(seen.fit),
+            score,
+            left_out: seen.terrain.left_out(score, seen.fit),
         };
         let fits_badly = belief
             .place()

@@ -47,8 +47,8 @@ pub(super) fn evaluate(
     let mut run = Run::new(world, moments, config);
     run.start_at(first, truth);
     let mut off_for = 0;
-    for index in first + 1..moments.len() {
-        let said = run.take(index, moments[index].moved)?;
+    for (index, moment) in moments.iter().enumerate().skip(first + 1) {
+        let said = run.take(index, moment.moved)?;
         let is_lost = said.off.map(|(m, deg)| m > LOSS.0 || deg > LOSS.1);
         off_for = match is_lost {
             Some(true) => off_for + 1,
@@ -57,7 +57,7 @@ pub(super) fn evaluate(
         };
         all.said.push((index, said));
         if off_for == LOSS_TRUTHS
-            && let Some(truth) = moments[index].truth
+            && let Some(truth) = moment.truth
         {
             all.losses.push(index);
             run.start_at(index, truth);

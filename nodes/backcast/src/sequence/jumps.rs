@@ -73,8 +73,8 @@ pub(super) fn evaluate(
         let mut run = Run::new(world, moments, config);
         run.start_at(begin, truth);
         let mut was_right = false;
-        for index in begin + 1..=from {
-            was_right = run.take(index, moments[index].moved)?.is_right();
+        for (index, moment) in moments.iter().enumerate().take(from + 1).skip(begin + 1) {
+            was_right = run.take(index, moment.moved)?.is_right();
         }
         if !was_right {
             continue;
