@@ -169,7 +169,7 @@ fn an_operator_sees_the_graph_and_what_befalls_it() {
             return red > 2 * green && red > 2 * blue;
         })()",
     );
-    browser.wait_until("document.getElementById('verdict').textContent === 'No answers'");
+    browser.wait_until("document.getElementById('verdict').textContent === 'No data'");
 
     // A monitor that hangs is a lost connection, until it goes on.
     let monitor = process(&browser, "monitor");
