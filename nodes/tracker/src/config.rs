@@ -21,7 +21,7 @@ pub struct Config {
 
     /// Most poses a second, 0..=1000: between scans, odometry carries the pose on. With
     /// 0 there is one for each scan only.
-    #[arg(long, value_name = "HERTZ", default_value_t = 50.0, value_parser = rate)]
+    #[arg(long, value_name = "HERTZ", default_value_t = 50.0, allow_negative_numbers = true, value_parser = rate)]
     pub rate: f64,
 
     /// Keep the last pose in this file, and try it first after a start. It is not
