@@ -16,6 +16,17 @@ pub mod world;
 
 use std::path::PathBuf;
 
+/// The folder of recordings of other robots, beside the project or beside a folder that
+/// it is in, where these are at hand.
+#[must_use]
+pub fn evaluation_data() -> Option<PathBuf> {
+    let folders = root().canonicalize().unwrap();
+    let mut candidates = folders
+        .ancestors()
+        .map(|f| f.join("shared/data/evaluation"));
+    candidates.find(|folder| folder.is_dir())
+}
+
 /// The root of the repository.
 #[must_use]
 pub fn root() -> PathBuf {

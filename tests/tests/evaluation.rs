@@ -5,7 +5,7 @@
     reason = "the lint spares test functions but not what they share"
 )]
 
-use std::path::{Path, PathBuf};
+use std::path::Path;
 use std::process::Command;
 
 use recording::Recording;
@@ -37,16 +37,6 @@ const ERRORS: [&str; 4] = [
 ];
 const ROUNDING: f64 = 1e-9;
 
-/// The folder of the recordings, beside the project or beside a folder that it is
-/// in.
-fn data() -> Option<PathBuf> {
-    let folders = tests::root().canonicalize().unwrap();
-    let mut candidates = folders
-        .ancestors()
-        .map(|f| f.join("shared/data/evaluation"));
-    candidates.find(|folder| folder.is_dir())
-}
-
 /// The last line that a command prints, as JSON.
 fn last_line(command: &mut Command) -> Value {
     let outcome = command.output().unwrap();
@@ -73,7 +63,7 @@ fn of_graph(recording: &Path, folder: &TempDir) -> Value {
 
 #[test]
 fn the_graph_finds_what_evaluate_finds() {
-    let Some(data) = data() else {
+    let Some(data) = tests::evaluation_data() else {
         eprintln!("SKIPPED: there is no folder shared/data/evaluation beside the project");
         return;
     };

@@ -5,7 +5,7 @@
     reason = "the lint spares test functions but not what they share"
 )]
 
-use std::path::{Path, PathBuf};
+use std::path::Path;
 use std::process::Command;
 use std::time::Duration;
 
@@ -131,15 +131,6 @@ fn the_graph_and_the_tools_track_alike() {
     assert_eq!(track(&asked), expected);
 }
 
-/// The folder of recordings of other robots, where these are at hand.
-fn data() -> Option<PathBuf> {
-    let folders = tests::root().canonicalize().unwrap();
-    let mut candidates = folders
-        .ancestors()
-        .map(|f| f.join("shared/data/evaluation"));
-    candidates.find(|folder| folder.is_dir())
-}
-
 fn figures(recording: &Path, options: &[&str]) -> Value {
     let mut command = Command::new(executables::path("backcast"));
     let output = command
@@ -158,7 +149,7 @@ fn figures(recording: &Path, options: &[&str]) -> Value {
 
 #[test]
 fn drives_of_other_robots_are_tracked() {
-    let Some(folder) = data() else {
+    let Some(folder) = tests::evaluation_data() else {
         eprintln!("left out: the recordings of other robots are not here");
         return;
     };

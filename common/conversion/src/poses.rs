@@ -3,7 +3,7 @@
 use std::f64::consts::PI;
 
 use geometry::{Covariance, Pose};
-use messages::{HypothesesHeader, Hypothesis, PoseHeader, TrackState, Verdict};
+use messages::{HypothesesHeader, Hypothesis, PoseHeader, Verdict};
 use nalgebra::Matrix3;
 use recording::ros::{Header, PoseArray, PoseWithCovarianceStamped};
 
@@ -66,8 +66,7 @@ fn spread(about: Pose, from: &HypothesesHeader, items: &[Hypothesis]) -> Covaria
 /// `None` where it believes no place.
 #[must_use]
 pub fn tracked(header: Header, from: &PoseHeader) -> Option<PoseWithCovarianceStamped> {
-    let is_believed = [TrackState::Unique as u32, TrackState::Doubtful as u32];
-    if from.pose_known != 1 || !is_believed.contains(&from.state) {
+    if !from.is_believed() {
         return None;
     }
     let (pose, covariance) = match from.mount_known {
@@ -92,6 +91,7 @@ pub fn robot(from: &HypothesesHeader, item: &Hypothesis) -> Pose {
 #[cfg(test)]
 mod tests {
     use bytemuck::Zeroable;
+    use messages::TrackState;
 
     use super::*;
 

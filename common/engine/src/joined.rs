@@ -8,12 +8,14 @@
 //! joined. Pure: when a scan comes and for how long odometry is waited for, others decide.
 
 mod config;
+mod kept;
 mod laser;
 
 use geometry::Pose;
 use messages::{FrameName, Name, Odometry, ScanHeader};
 
 pub use config::{JoinConfig, MotionConfig, ScanStamp};
+pub use kept::Kept;
 
 use crate::EngineError;
 use crate::motion::Motion;
@@ -123,84 +125,6 @@ impl Brought {
             _ => None,
         };
         left_out.chain(motion.map(str::to_owned)).collect()
-    }
-}
-
-/// The scans of an answer, kept for later.
-#[derive(Debug, Clone, PartialEq, Default)]
-pub struct Kept {
-    scans: Vec<KeptScan>,
-    is_carried: bool,
-}
-
-/// One of them, and where its laser was at each beam.
-#[derive(Debug, Clone, PartialEq)]
-struct KeptScan {
-    angle_min: f64,
-    angle_increment: f64,
-    range_min_m: f32,
-    range_max_m: f32,
-    ranges: Vec<f32>,
-    sought_from_laser: Vec<Pose>,
-}
-
-impl KeptScan {
-    fn of(scan: &crate::scan::Scan<'_>, sought_from_laser: &[Pose]) -> Self {
-        KeptScan {
-            angle_min: scan.angle_min,
-            angle_increment: scan.angle_increment,
-            range_min_m: scan.range_min_m,
-            range_max_m: scan.range_max_m,
-            ranges: scan.ranges.to_vec(),
-            sought_from_laser: sought_from_laser.to_vec(),
-        }
-    }
-
-    fn scan(&self) -> crate::scan::Scan<'_> {
-        crate::scan::Scan {
-            angle_min: self.angle_min,
-            angle_increment: self.angle_increment,
-            range_min_m: self.range_min_m,
-            range_max_m: self.range_max_m,
-            ranges: &self.ranges,
-        }
-    }
-}
-
-impl Kept {
-    /// Copies what was seen.
-    #[must_use]
-    pub fn of(seen: &Seen<'_>) -> Self {
-        match seen {
-            Seen::Still(scan) => Kept {
-                scans: vec![KeptScan::of(scan, &[])],
-                is_carried: false,
-            },
-            Seen::Carried(scans) => Kept {
-                scans: scans
-                    .iter()
-                    .map(|carried| KeptScan::of(&carried.scan, carried.sought_from_laser))
-                    .collect(),
-                is_carried: true,
-            },
-        }
-    }
-
-    /// What was seen; nothing where nothing is kept.
-    #[must_use]
-    pub fn seen(&self) -> Seen<'_> {
-        match &self.scans[..] {
-            [one] if !self.is_carried => Seen::Still(one.scan()),
-            scans => Seen::Carried(
-                scans
-                    .iter()
-                    .map(|kept| CarriedScan {
-                        scan: kept.scan(),
-                        sought_from_laser: &kept.sought_from_laser,
-                    })
-                    .collect(),
-            ),
-        }
     }
 }
 

@@ -49,7 +49,8 @@ pub struct PoseHeader {
     pub places: u32,
     /// 1 where the pose is that of a scan, 0 where odometry carried it on since.
     pub from_scan: u32,
-    /// 1 where a pose is known at all: in other states than `Searching` it is.
+    /// 1 where there is a pose: of the place that is believed, else of the one that
+    /// leads.
     pub pose_known: u32,
     /// 1 where the laser's mount is known and `map_from_base` is meant, else 0.
     pub mount_known: u32,
@@ -62,6 +63,13 @@ pub struct PoseHeader {
 impl PoseHeader {
     /// Most bytes of the words.
     pub const WORDS_CAPACITY: usize = 256;
+
+    /// Whether there is a pose, and the tracker believes it.
+    #[must_use]
+    pub fn is_believed(&self) -> bool {
+        let state = TrackState::from_code(self.state);
+        self.pose_known == 1 && state.is_some_and(TrackState::is_believed)
+    }
 }
 
 /// What the tracker knows.
@@ -85,6 +93,12 @@ impl TrackState {
         [Self::Searching, Self::Unique, Self::Doubtful, Self::Lost]
             .into_iter()
             .find(|state| *state as u32 == code)
+    }
+
+    /// Whether the tracker believes a place.
+    #[must_use]
+    pub fn is_believed(self) -> bool {
+        matches!(self, Self::Unique | Self::Doubtful)
     }
 
     /// The word that logs and tables show.

@@ -5,7 +5,7 @@ use std::collections::VecDeque;
 use engine::joined::{Kept, Seen};
 use messages::{ScanHeader, Stamp};
 
-/// Scans that are kept, and wishes for scans that have not come yet.
+/// Scans that are kept, and requests for scans that have not come yet.
 const KEPT: usize = 64;
 
 /// A scan that may be searched.
@@ -21,7 +21,7 @@ pub(crate) struct KeptScan {
 #[derive(Debug, Default)]
 pub(crate) struct KeptScans {
     scans: VecDeque<KeptScan>,
-    wishes: VecDeque<Stamp>,
+    requests: VecDeque<Stamp>,
 }
 
 /// What is to be done next.
@@ -29,7 +29,7 @@ pub(crate) struct KeptScans {
 pub(crate) enum Asked {
     /// To search this scan.
     Search(Box<KeptScan>),
-    /// To refuse a wish for a scan that is not here any more.
+    /// To refuse a request for a scan that is not here any more.
     Refuse(Stamp),
 }
 
@@ -46,25 +46,28 @@ impl KeptScans {
         });
     }
 
-    /// Takes a wish.
-    pub(crate) fn wish(&mut self, stamp: Stamp) {
-        if self.wishes.len() == KEPT {
-            self.wishes.pop_front();
+    /// Takes a request.
+    pub(crate) fn request(&mut self, stamp: Stamp) {
+        if self.requests.len() == KEPT {
+            self.requests.pop_front();
         }
-        self.wishes.push_back(stamp);
+        self.requests.push_back(stamp);
     }
 
-    /// The next wish that can be met, or never will be. One whose scan is still to come
+    /// The next request that can be met, or never will be. One whose scan is still to come
     /// waits.
     pub(crate) fn next(&mut self) -> Option<Asked> {
         let newest = self.scans.back()?.header.stamp.counter;
-        let at = self.wishes.iter().position(|wish| wish.counter <= newest)?;
-        let wish = self.wishes.remove(at)?;
+        let at = self
+            .requests
+            .iter()
+            .position(|request| request.counter <= newest)?;
+        let request = self.requests.remove(at)?;
         let mut scans = self.scans.iter();
-        let found = scans.position(|scan| scan.header.stamp.is_of(wish));
+        let found = scans.position(|scan| scan.header.stamp.is_of(request));
         Some(match found.and_then(|at| self.scans.remove(at)) {
             Some(scan) => Asked::Search(Box::new(scan)),
-            None => Asked::Refuse(wish),
+            None => Asked::Refuse(request),
         })
     }
 }
@@ -99,9 +102,9 @@ mod tests {
     }
 
     #[test]
-    fn wishes_wait_for_their_scans_and_old_ones_are_refused() {
+    fn requests_wait_for_their_scans_and_old_ones_are_refused() {
         let mut scans = KeptScans::default();
-        scans.wish(stamp(3));
+        scans.request(stamp(3));
         assert!(scans.next().is_none());
         (1..=3).for_each(|counter| keep(&mut scans, counter));
         let Some(Asked::Search(found)) = scans.next() else {
@@ -110,11 +113,11 @@ mod tests {
         assert_eq!(found.header.stamp, stamp(3));
         assert_eq!(found.kept, Kept::of(&found.kept.seen()));
         // Nobody can tell yet whether it is still to come.
-        scans.wish(stamp(3));
+        scans.request(stamp(3));
         assert!(scans.next().is_none());
         (4..=3 + KEPT as u64).for_each(|counter| keep(&mut scans, counter));
         assert!(matches!(scans.next(), Some(Asked::Refuse(of)) if of == stamp(3)));
-        scans.wish(stamp(2));
+        scans.request(stamp(2));
         assert!(matches!(scans.next(), Some(Asked::Refuse(of)) if of == stamp(2)));
         assert!(scans.next().is_none());
     }

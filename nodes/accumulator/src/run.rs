@@ -145,9 +145,9 @@ impl Node {
         let (Some(kept), Some(attention)) = (&mut self.kept, &inputs.attention) else {
             return Ok(false);
         };
-        while let Some(wish) = attention.receive()? {
+        while let Some(request) = attention.receive()? {
             self.health.count_received(1);
-            kept.wish(wish.header().stamp);
+            kept.request(request.header().stamp);
         }
         match kept.next() {
             None => return Ok(false),

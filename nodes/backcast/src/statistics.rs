@@ -3,7 +3,7 @@
 
 use std::collections::VecDeque;
 
-use geometry::Pose;
+use geometry::{Covariance, Pose};
 use messages::Verdict;
 use serde::Serialize;
 
@@ -11,6 +11,16 @@ use serde::Serialize;
 pub(crate) const SUCCESS: (f64, f64) = (0.5, 10.0);
 /// Metres and degrees within which a pose is a close success.
 pub(crate) const CLOSE_SUCCESS: (f64, f64) = (0.2, 3.0);
+
+/// The share of the truths that the ellipses are to hold.
+const HELD: f64 = 0.95;
+
+/// Whether a position that lies so far off, x and y in metres, is in the ellipse of a
+/// covariance that is to hold 95 % of the truths.
+pub(crate) fn holds(covariance: Covariance, off: (f64, f64)) -> bool {
+    // The distribution of χ² with two degrees of freedom is exponential.
+    covariance.squared_deviations(off) <= -2.0 * (1.0 - HELD).ln()
+}
 /// The hypotheses among which recall looks for the truth.
 const RECALL_DEPTH: usize = 16;
 

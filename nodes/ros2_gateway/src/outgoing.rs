@@ -90,17 +90,11 @@ impl Outgoing {
         reason: Option<Reason>,
         report: &mut Report,
     ) -> Result<(), GatewayError> {
-        let in_map = Header {
-            stamp: stamp(header.stamp.measured_ns)?,
-            frame_id: map_frame.to_owned(),
-        };
+        let in_map = in_map(header.stamp, map_frame)?;
         let best = conversion::poses::best(in_map.clone(), header, items);
         if let (Some(reason), Some(best), Some(pose)) = (reason, items.first(), best) {
-            self.initial_pose.send(&spread(pose, self.spread))?;
-            report.sent();
-            let Pose { x, y, yaw } = conversion::poses::robot(header, best);
-            let yaw_deg = yaw.to_degrees();
-            tracing::info!(?reason, x, y, yaw_deg, "told the robot where it is");
+            let at = conversion::poses::robot(header, best);
+            self.seed(reason, (pose, at), report)?;
         }
         let poses = conversion::poses::array(in_map.clone(), header, items);
         self.hypotheses.send(&poses)?;
@@ -141,25 +135,30 @@ impl Outgoing {
         reason: Option<Reason>,
         report: &mut Report,
     ) -> Result<(), GatewayError> {
-        let in_map = Header {
-            stamp: stamp(header.stamp.measured_ns)?,
-            frame_id: map_frame.to_owned(),
-        };
+        let in_map = in_map(header.stamp, map_frame)?;
         let pose = conversion::poses::tracked(in_map.clone(), header);
         if let (Some(reason), Some(pose)) = (reason, pose) {
-            self.initial_pose.send(&spread(pose, self.spread))?;
-            report.sent();
-            let Pose { x, y, yaw } = header.map_from_base.into();
-            let yaw_deg = yaw.to_degrees();
-            tracing::info!(?reason, x, y, yaw_deg, "told the robot where it is");
+            self.seed(reason, (pose, header.map_from_base.into()), report)?;
         }
-        let believed = [TrackState::Unique as u32, TrackState::Doubtful as u32];
-        let is_tied = header.odom_known == 1 && believed.contains(&header.state);
+        let is_tied = header.odom_known == 1 && header.is_believed();
         self.map_from_odom = is_tied.then(|| {
             let odom = header.odom_frame.as_str().to_owned();
             (header.map_from_odom.into(), odom)
         });
         self.broadcast(header.stamp, in_map, report)
+    }
+
+    fn seed(
+        &mut self,
+        reason: Reason,
+        (pose, at): (PoseWithCovarianceStamped, Pose),
+        report: &mut Report,
+    ) -> Result<(), GatewayError> {
+        self.initial_pose.send(&spread(pose, self.spread))?;
+        report.sent();
+        let (x, y, yaw_deg) = (at.x, at.y, at.yaw.to_degrees());
+        tracing::info!(?reason, x, y, yaw_deg, "told the robot where it is");
+        Ok(())
     }
 
     /// The odometry goes on from where the map was last known to lie, so the
@@ -259,6 +258,13 @@ fn spread(mut pose: PoseWithCovarianceStamped, least: Reach) -> PoseWithCovarian
     with.pose = pose.pose.pose;
     pose.pose = with;
     pose
+}
+
+fn in_map(of: Stamp, map_frame: &str) -> Result<Header, GatewayError> {
+    Ok(Header {
+        stamp: stamp(of.measured_ns)?,
+        frame_id: map_frame.to_owned(),
+    })
 }
 
 fn stamp(stamp_ns: i64) -> Result<Time, GatewayError> {

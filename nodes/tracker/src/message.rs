@@ -6,9 +6,9 @@ use engine::tracking::Report;
 use geometry::{Covariance, Pose};
 use messages::{FrameName, PoseHeader, Stamp, TrackReason, TrackState};
 
-/// All that a pose is said of.
+/// All that there is to send of a scan.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub(crate) struct Told {
+pub(crate) struct Tracked {
     /// Of the scan.
     pub(crate) stamp: Stamp,
     /// The map.
@@ -25,7 +25,7 @@ pub(crate) struct Told {
     pub(crate) tracking_ns: u64,
 }
 
-impl Told {
+impl Tracked {
     /// Where the odometry's frame lies in the map.
     #[must_use]
     pub(crate) fn map_from_odom(&self) -> Option<Pose> {

@@ -1,6 +1,7 @@
 //! Receives scans, odometry and what searches find, and sends poses.
 
 mod inputs;
+mod outputs;
 mod turn;
 
 use std::time::{Duration, Instant};
@@ -9,21 +10,18 @@ use engine::EngineError;
 use engine::fit::Ends;
 use engine::joined::{Joiner, Role};
 use engine::peaks::Sought;
-use engine::tracking::{Candidate, Need, Seen, Tracker};
+use engine::tracking::{Candidate, Need, Tracker};
 use geometry::{Covariance, Pose};
-use messages::{
-    AttentionHeader, NodeState, PoseHeader, ScanHeader, Stamp, TrackReason, TrackState, topic,
-};
-use transport::{
-    Flow, GapCounter, Graph, Health, Publisher, TransportError, monotonic_ns, with_causes,
-};
+use messages::{NodeState, PoseHeader, ScanHeader, Stamp, TrackReason, TrackState};
+use transport::{Flow, GapCounter, Graph, Health, TransportError, with_causes};
 
 use crate::memory::{Memory, Remembered};
-use crate::message::{Told, nothing};
+use crate::message::{Tracked, nothing};
 use crate::queue::{Answers, Scans};
 use crate::world::World;
 use crate::{Config, TrackerError};
 use inputs::Inputs;
+use outputs::Outputs;
 use turn::{ODOMETRY_WAIT, SEARCH_WAIT, Turn};
 
 /// A scan that waits for odometry is looked at as often.
@@ -35,11 +33,11 @@ const REMEMBERED_EVERY: Duration = Duration::from_secs(1);
 /// What is expected beforehand leads by so much over what a search finds: what an
 /// operator says, as much as a place that was known before; what was true when the
 /// robot was last on, as much as one key scan says.
-const SAID_LEAD: f64 = 10.0;
+const INITIAL_LEAD: f64 = 10.0;
 const REMEMBERED_LEAD: f64 = 4.0;
 
 /// What an operator's pose on the command line may err by.
-const SAID_ERROR: (f64, f64) = (0.5, 0.26);
+const INITIAL_ERROR: (f64, f64) = (0.5, 0.26);
 
 /// Follows the robot until the stop flag is set.
 ///
@@ -61,21 +59,19 @@ pub fn run(graph: &Graph, config: &Config) -> Result<(), TrackerError> {
         ends: Ends::default(),
         asked: None,
         before: None,
-        said: config.initial_pose.map(|pose| {
-            let (metres, radians) = SAID_ERROR;
+        initial: config.initial_pose.map(|pose| {
+            let (metres, radians) = INITIAL_ERROR;
             (pose, Covariance::from_deviations(metres, metres, radians))
         }),
-        told: None,
+        last: None,
         candidates: Vec::new(),
         gaps: GapCounter::new(),
         last_refusal: String::new(),
         last_state: None,
-        carried_ns: 0,
         memory,
         remembered,
         remembered_at: Instant::now(),
-        poses: graph.publisher_for(PoseHeader::WORDS_CAPACITY)?,
-        attention: graph.publisher()?,
+        outputs: Outputs::open(graph, config.rate)?,
         health: graph.health()?,
     };
     graph.run(&inputs.all(), TICK, |_| {
@@ -102,20 +98,17 @@ struct Node {
     /// Where the sought frame was by the odometry at the scan before.
     before: Option<Pose>,
     /// Where the robot is said to be, of the base.
-    said: Option<(Pose, Covariance)>,
+    initial: Option<(Pose, Covariance)>,
     /// Of the last scan.
-    told: Option<Told>,
+    last: Option<Tracked>,
     candidates: Vec<Candidate>,
     gaps: GapCounter,
     last_refusal: String,
     last_state: Option<TrackState>,
-    /// When the last pose was sent that odometry carried on.
-    carried_ns: i64,
     memory: Option<Memory>,
     remembered: Option<Remembered>,
     remembered_at: Instant,
-    poses: Publisher<topic::Tracked>,
-    attention: Publisher<topic::Attention>,
+    outputs: Outputs,
     health: Health,
 }
 
@@ -147,13 +140,13 @@ impl Node {
             self.health.count_received(1);
             self.answers.push(found.header().stamp, found.items());
         }
-        while let Some(said) = inputs.initial_poses.receive()? {
+        while let Some(initial) = inputs.initial_poses.receive()? {
             self.health.count_received(1);
-            let said = said.header();
-            let covariance = Covariance::from_rows(said.covariance);
-            let pose = Pose::from(said.map_from_base);
+            let initial = initial.header();
+            let covariance = Covariance::from_rows(initial.covariance);
+            let pose = Pose::from(initial.map_from_base);
             match pose.is_finite() && covariance.0.cholesky().is_some() {
-                true => self.said = Some((pose, covariance)),
+                true => self.initial = Some((pose, covariance)),
                 false => self.refuse("an initial pose is refused: it or its covariance is none")?,
             }
         }
@@ -198,17 +191,17 @@ impl Node {
     fn start_on(&mut self, world: &World) {
         let on_map = |last: &Remembered| last.map_id == format!("{:016x}", world.map_id);
         let believed = self
-            .told
-            .filter(|told| told.report.state == TrackState::Unique);
+            .last
+            .filter(|last| last.report.state == TrackState::Unique);
         self.tracker = Tracker::new(self.config.tracking);
         self.asked = None;
-        if let Some(told) = believed
-            && let Some(pose) = told.report.pose
+        if let Some(last) = believed
+            && let Some(pose) = last.report.pose
         {
-            let covariance = Covariance(told.report.covariance);
+            let covariance = Covariance(last.report.covariance);
             self.tracker.expect(pose, covariance, REMEMBERED_LEAD);
         } else if let Some(last) = self.remembered.take().filter(on_map)
-            && self.said.is_none()
+            && self.initial.is_none()
         {
             let covariance = Covariance::from_rows(last.covariance);
             self.expect_base((last.map_from_base, covariance), REMEMBERED_LEAD);
@@ -216,7 +209,7 @@ impl Node {
     }
 
     fn expect_base(&mut self, (base, covariance): (Pose, Covariance), lead: f64) {
-        let sought = self.sought().of_base(base);
+        let sought = self.sought().from_base(base);
         self.tracker
             .expect(sought, covariance.carried(base, sought), lead);
     }
@@ -246,7 +239,7 @@ impl Node {
                 if !has_come {
                     self.refuse(&format!("no hypotheses came for scan {}", of.counter))?;
                 }
-                self.finish(&scan, has_come.then_some(of))?;
+                self.finish(&scan, has_come.then_some(of), Instant::now())?;
                 Ok(true)
             }
         }
@@ -286,8 +279,8 @@ impl Node {
             self.refuse(&format!("scan {counter} is refused: {reason}"))?;
             return self.send_nothing(scan, TrackReason::NoScan);
         }
-        if let Some(said) = self.said.take() {
-            self.expect_base(said, SAID_LEAD);
+        if let Some(initial) = self.initial.take() {
+            self.expect_base(initial, INITIAL_LEAD);
         }
         let now = self.joiner.odom_from_sought();
         let moved = self
@@ -298,11 +291,7 @@ impl Node {
         let Some(world) = &self.world else {
             return Ok(());
         };
-        let seen = Seen {
-            terrain: &world.terrain,
-            ends: &self.ends,
-            fit: &self.config.fit,
-        };
+        let seen = world.seen(&self.ends, &self.config.fit);
         let need = self.tracker.begin(&seen, scan.stamp.measured_ns, moved);
         let of = match need {
             Need::Nothing => None,
@@ -313,10 +302,10 @@ impl Node {
             Need::EarlierScan => self.asked.take(),
         };
         if need == Need::ThisScan {
-            self.ask(scan.stamp)?;
+            self.outputs.ask(scan.stamp)?;
         }
         match of {
-            None => self.finish_since(scan, None, start),
+            None => self.finish(scan, None, start),
             Some(of) => {
                 self.turn = Turn::Search {
                     scan: *scan,
@@ -328,18 +317,8 @@ impl Node {
         }
     }
 
-    fn ask(&self, stamp: Stamp) -> Result<(), TransportError> {
-        let mut loan = self.attention.loan(0)?;
-        *loan.header_mut() = AttentionHeader { stamp };
-        loan.send()
-    }
-
-    fn finish(&mut self, scan: &ScanHeader, of: Option<Stamp>) -> Result<(), TrackerError> {
-        self.finish_since(scan, of, Instant::now())
-    }
-
     /// Is done with a scan, with what the search found for one.
-    fn finish_since(
+    fn finish(
         &mut self,
         scan: &ScanHeader,
         of: Option<Stamp>,
@@ -350,11 +329,7 @@ impl Node {
         let Some(world) = &self.world else {
             return self.send_nothing(scan, TrackReason::NoMap);
         };
-        let seen = Seen {
-            terrain: &world.terrain,
-            ends: &self.ends,
-            fit: &self.config.fit,
-        };
+        let seen = world.seen(&self.ends, &self.config.fit);
         self.candidates.clear();
         let answer = of.and_then(|of| self.answers.of(of));
         let of_map = answer
@@ -367,9 +342,9 @@ impl Node {
         self.tracker.finish(&seen, found);
         if self.tracker.asks_ahead() {
             self.asked = Some(scan.stamp);
-            self.ask(scan.stamp)?;
+            self.outputs.ask(scan.stamp)?;
         }
-        let told = Told {
+        let last = Tracked {
             stamp: scan.stamp,
             map_id: world.map_id,
             report: self.tracker.report(),
@@ -378,11 +353,11 @@ impl Node {
             odom_from_sought: self.before.map(|pose| (pose, self.joiner.odom_frame())),
             tracking_ns: start.elapsed().as_nanos() as u64,
         };
-        self.told = Some(told);
-        let words = told.report.words();
-        self.log(told.report.state, &words);
+        self.last = Some(last);
+        let words = last.report.words();
+        self.log(last.report.state, &words);
         self.last_refusal.clear();
-        Ok(self.send(told.header(), &words)?)
+        Ok(self.send(last.header(), &words)?)
     }
 
     /// Logs when the state changes.
@@ -395,20 +370,18 @@ impl Node {
 
     /// Sends the pose that odometry has carried on, if one is due.
     fn carry(&mut self, stamp: Stamp) -> Result<(), TransportError> {
-        let now_ns = monotonic_ns();
-        let is_due =
-            self.config.rate > 0.0 && (now_ns - self.carried_ns) as f64 >= 1e9 / self.config.rate;
-        let Some(told) = self
-            .told
-            .filter(|told| is_due && told.report.state != TrackState::Searching)
+        let is_due = self.outputs.is_due();
+        let Some(last) = self
+            .last
+            .filter(|last| is_due && last.report.state != TrackState::Searching)
         else {
             return Ok(());
         };
         let newest = self.joiner.newest_odom_from_sought();
-        let Some(header) = newest.and_then(|pose| told.carried(pose, stamp)) else {
+        let Some(header) = newest.and_then(|pose| last.carried(pose, stamp)) else {
             return Ok(());
         };
-        self.send(header, &told.report.words())
+        self.send(header, &last.report.words())
     }
 
     fn send_nothing(&mut self, scan: &ScanHeader, reason: TrackReason) -> Result<(), TrackerError> {
@@ -416,14 +389,8 @@ impl Node {
         Ok(self.send(nothing(scan.stamp, map_id, reason), "")?)
     }
 
-    fn send(&mut self, mut header: PoseHeader, words: &str) -> Result<(), TransportError> {
-        let bytes = words.as_bytes();
-        let mut loan = self.poses.loan(bytes.len())?;
-        loan.items_mut().copy_from_slice(bytes);
-        header.sent_ns = monotonic_ns();
-        self.carried_ns = header.sent_ns;
-        *loan.header_mut() = header;
-        loan.send()?;
+    fn send(&mut self, header: PoseHeader, words: &str) -> Result<(), TransportError> {
+        self.outputs.pose(header, words)?;
         self.health.count_sent(1);
         Ok(())
     }
@@ -434,17 +401,17 @@ impl Node {
             return Ok(());
         };
         let is_due = is_end || self.remembered_at.elapsed() >= REMEMBERED_EVERY;
-        let Some(told) = self
-            .told
-            .filter(|told| is_due && told.report.state == TrackState::Unique)
+        let Some(last) = self
+            .last
+            .filter(|last| is_due && last.report.state == TrackState::Unique)
         else {
             return Ok(());
         };
-        let header = told.header();
+        let header = last.header();
         self.remembered_at = Instant::now();
         let saved = memory.save(&Remembered {
-            map_id: format!("{:016x}", told.map_id),
-            stamp_ns: told.stamp.measured_ns,
+            map_id: format!("{:016x}", last.map_id),
+            stamp_ns: last.stamp.measured_ns,
             map_from_base: header.map_from_base.into(),
             covariance: header.base_covariance,
         });

@@ -1,9 +1,10 @@
 //! The map as the tracker reads it.
 
 use engine::EngineError;
-use engine::fit::Terrain;
+use engine::fit::{Ends, FitConfig, Terrain};
 use engine::grid::{CellRules, GridFrame};
 use engine::space::Space;
+use engine::tracking::Seen;
 use messages::MapHeader;
 
 /// Headings a turn that scans are thinned for, as the search does by default.
@@ -37,5 +38,14 @@ impl World {
             terrain: Terrain::new(frame, (width, height), occupancy, rules)?,
             space: Space::new(HEADINGS, frame.resolution_m, width, height)?,
         })
+    }
+
+    /// A scan on this map.
+    pub(crate) fn seen<'a>(&'a self, ends: &'a Ends, fit: &'a FitConfig) -> Seen<'a> {
+        Seen {
+            terrain: &self.terrain,
+            ends,
+            fit,
+        }
     }
 }

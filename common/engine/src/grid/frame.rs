@@ -4,6 +4,7 @@ use std::f64::consts::TAU;
 
 use geometry::Pose;
 use messages::MapHeader;
+use nalgebra::{Matrix3, Rotation2, Vector3};
 
 use super::{MAX_ORIGIN_M, check_resolution, check_sides};
 use crate::EngineError;
@@ -47,6 +48,14 @@ impl GridFrame {
             y * self.resolution_m,
             heading,
         ))
+    }
+
+    /// Takes a difference of poses in cells and radians of the grid to metres and radians
+    /// along the map's axes.
+    pub(crate) fn metres_from_cells(&self) -> Matrix3<f64> {
+        let side = self.resolution_m;
+        let scale = Matrix3::from_diagonal(&Vector3::new(side, side, 1.0));
+        Rotation2::new(self.map_from_grid.yaw).to_homogeneous() * scale
     }
 
     /// The inverse of [`GridFrame::map_from_cells`]: x and y in cells, and the

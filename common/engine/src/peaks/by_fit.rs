@@ -101,7 +101,7 @@ impl Places {
 
 /// How far a score lies behind the best, against what that lacks of a perfect
 /// one: where the scan fits well, small differences tell much.
-fn lead(best: f64, other: f64) -> f64 {
+pub(crate) fn lead(best: f64, other: f64) -> f64 {
     (best - other) / (1.1 - best).sqrt()
 }
 

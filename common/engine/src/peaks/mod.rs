@@ -17,12 +17,13 @@ mod summits;
 
 use geometry::{Covariance, Pose, wrap_angle};
 use messages::{Hypothesis, Verdict, Vote};
-use nalgebra::{Matrix3, Rotation2, Vector3};
+use nalgebra::Matrix3;
 
 use crate::fit::BeamClass;
 use crate::grid::GridFrame;
 use crate::localizer::Outcome;
 pub use by_fit::by_fit;
+pub(crate) use by_fit::lead;
 pub use by_votes::by_votes;
 pub use config::{PeakConfig, Score};
 use sentence::Stand;
@@ -69,9 +70,7 @@ impl<'a> PeakInput<'a> {
 /// A covariance over cells and radians of a grid's frame, in metres along the
 /// map's axes.
 fn in_map(frame: GridFrame, in_cells: Matrix3<f64>) -> Covariance {
-    let side = frame.resolution_m;
-    let scale = Matrix3::from_diagonal(&Vector3::new(side, side, 1.0));
-    let turn = Rotation2::new(frame.map_from_grid.yaw).to_homogeneous() * scale;
+    let turn = frame.metres_from_cells();
     Covariance(turn * in_cells * turn.transpose())
 }
 
@@ -169,7 +168,7 @@ impl Sought {
 
     /// The sought frame's pose where the first laser has this one.
     #[must_use]
-    pub fn of_laser(self, map_from_laser: Pose) -> Pose {
+    pub fn from_laser(self, map_from_laser: Pose) -> Pose {
         match self.sought_from_laser == Pose::IDENTITY {
             true => map_from_laser,
             false => map_from_laser.then(self.sought_from_laser.inverse()),
@@ -178,7 +177,7 @@ impl Sought {
 
     /// The sought frame's pose where the base has this one.
     #[must_use]
-    pub fn of_base(self, map_from_base: Pose) -> Pose {
+    pub fn from_base(self, map_from_base: Pose) -> Pose {
         map_from_base.then(self.sought_from_base.inverse())
     }
 

@@ -61,7 +61,7 @@ const COUNTS_AFTER: u32 = 2;
 const KEY_PATHS: f64 = 2.0;
 
 /// Scans of fewer beams say nothing.
-const LEAST_BEAMS: usize = 10;
+pub const LEAST_BEAMS: usize = 10;
 
 /// Finds the robot, and keeps its pose.
 #[derive(Debug, Clone)]

@@ -27,7 +27,7 @@ impl Candidate {
     #[must_use]
     pub fn of(hypothesis: &Hypothesis, sought: Sought) -> Self {
         let laser = hypothesis.map_from_laser.into();
-        let pose = sought.of_laser(laser);
+        let pose = sought.from_laser(laser);
         Candidate {
             pose,
             covariance: Covariance::from_rows(hypothesis.covariance).carried(laser, pose),

@@ -8,6 +8,7 @@ use super::place::{Candidate, Place};
 use super::seen::{Fitted, Seen, information, squared_deviations};
 use super::verdict::Belief;
 use super::way::Way;
+use crate::peaks::lead;
 
 /// Most places that are kept, and how many of them may be older than one key scan:
 /// the rest is room for new ones.
@@ -249,13 +250,13 @@ impl Places {
     /// What a key scan says against a place with a score. What the map may leave out
     /// says nothing.
     fn against(&self, best: Best, score: f64) -> f64 {
-        let behind = (best.score - best.left_out - score).max(0.0);
-        let lead = behind / (1.1 - best.score).sqrt() / LEAD_SCALE;
-        lead.min(self.config.scan_cap)
+        let behind = lead(best.score, score + best.left_out).max(0.0);
+        (behind / LEAD_SCALE).min(self.config.scan_cap)
     }
 
     fn count(&mut self, best: Best) {
-        let top = self.top_weight();
+        // They were put in order at the key scan before, and no weight has changed since.
+        let top = self.kept.first().map_or(0.0, |best| best.log_weight);
         for i in 0..self.kept.len() {
             let against = self.against(best, self.kept[i].last);
             let place = &mut self.kept[i];
@@ -264,11 +265,6 @@ impl Places {
             place.bad = if is_bad { place.bad + 1 } else { 0 };
             place.grow();
         }
-    }
-
-    fn top_weight(&self) -> f64 {
-        let weights = self.kept.iter().map(|place| place.log_weight);
-        weights.fold(f64::NEG_INFINITY, f64::max)
     }
 
     /// Adds the candidates that are at no place that is kept.

@@ -1,7 +1,7 @@
 //! A scan on the map: where it fits best near what was expected.
 
 use geometry::{Pose, wrap_angle};
-use nalgebra::{Matrix3, Rotation2, Vector3};
+use nalgebra::{Matrix3, Vector3};
 
 use crate::fit::{Ends, Expected, FitConfig, GridPose, Terrain};
 
@@ -102,10 +102,7 @@ impl Seen<'_> {
         (reaches, known): ([f64; 2], Matrix3<f64>),
     ) -> Fitted {
         let frame = self.terrain.frame;
-        // From metres along the map's axes to cells along the grid's.
-        let side = frame.resolution_m;
-        let scale = Matrix3::from_diagonal(&Vector3::new(side, side, 1.0));
-        let map_from_cells = Rotation2::new(frame.map_from_grid.yaw).to_homogeneous() * scale;
+        let map_from_cells = frame.metres_from_cells();
         let cells_from_map = map_from_cells
             .try_inverse()
             .unwrap_or_else(Matrix3::identity);

@@ -1,14 +1,14 @@
 //! Which place is believed, and how far.
 
 use geometry::{Covariance, Pose};
+use messages::{TrackReason, TrackState};
+use nalgebra::Matrix3;
 
 use super::TrackingConfig;
 use super::place::Place;
 use super::places::{FARTHEST_BEHIND, NEAR_M, Places};
 use super::report::Report;
 use super::way::Way;
-use messages::{TrackReason, TrackState};
-use nalgebra::Matrix3;
 
 /// Places so near each other are not told apart by the verdict.
 const DISTINCT_M: f64 = 1.0;

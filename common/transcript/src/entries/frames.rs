@@ -16,9 +16,7 @@ use std::collections::VecDeque;
 
 use conversion::{planar, poses};
 use geometry::Pose;
-use messages::{
-    HypothesesHeader, Hypothesis, Odometry, PoseHeader, ScanHeader, TrackState, Verdict,
-};
+use messages::{HypothesesHeader, Hypothesis, Odometry, PoseHeader, ScanHeader, Verdict};
 use recording::ros::{Header, TfMessage, Time, TransformStamped};
 
 use super::transforms;
@@ -122,8 +120,7 @@ impl Frames {
 
     /// Where the map's frame lies, by the tracker: as long as it believes a place.
     pub(super) fn tracked(&self, header: &PoseHeader, stamp: Time) -> Option<TfMessage> {
-        let is_believed = [TrackState::Unique as u32, TrackState::Doubtful as u32];
-        if header.pose_known != 1 || !is_believed.contains(&header.state) {
+        if !header.is_believed() {
             return None;
         }
         let transform = match (header.odom_known, header.mount_known) {
@@ -191,7 +188,7 @@ fn stamped(stamp: Time, parent: &str, child: &str, parent_from_child: Pose) -> T
 #[cfg(test)]
 mod tests {
     use bytemuck::Zeroable;
-    use messages::{FrameName, Pose2};
+    use messages::{FrameName, Pose2, TrackState};
 
     use super::*;
 

@@ -5,12 +5,11 @@ use engine::peaks::Place;
 use geometry::Pose;
 use serde::Serialize;
 
+use crate::statistics;
+
 /// Where one range of probabilities ends and the next begins: closer where a user
 /// decides, near 1.
 const ENDS: [f64; 8] = [0.2, 0.4, 0.6, 0.8, 0.9, 0.95, 0.99, 1.0];
-
-/// The share of the truths that the ellipses are to hold.
-const HELD: f64 = 0.95;
 
 /// Answers whose best place had a probability in one range.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize)]
@@ -74,6 +73,5 @@ impl Trust {
 pub(super) fn is_in_ellipse(place: &Place, truth: Pose) -> bool {
     let pose = place.map_from_laser;
     let off = (truth.x - pose.x, truth.y - pose.y);
-    // The distribution of χ² with two degrees of freedom is exponential.
-    place.covariance.squared_deviations(off) <= -2.0 * (1.0 - HELD).ln()
+    statistics::holds(place.covariance, off)
 }

@@ -204,7 +204,7 @@ impl World {
         scan: &Scan<'_>,
         map_from_laser: Pose,
     ) -> Result<ScanAt, EngineError> {
-        let ends = Ends::new(scan, &self.space, &self.beams)?;
+        let ends = self.ends(scan.into())?;
         let frame = self.terrain.frame;
         let (x, y, heading) = frame.cells_from_map(map_from_laser);
         let pose = GridPose { x, y, heading };

@@ -1,4 +1,4 @@
-//! What the tracker is told of the nodes before it: it judges scans as they do, and where
+//! What the tracker takes over from the nodes before it: it judges scans as they do, and where
 //! it is wired to ask for searches, the accumulator waits to be asked.
 
 use dataflow::{Dataflow, Node};
@@ -37,12 +37,12 @@ const SHARED: [(&str, &[&str]); 3] = [
 ];
 const UNKNOWN_BLOCKS: &str = "--unknown-blocks";
 
-/// Gives trackers what others are told and they are not, and has accumulators search
+/// Gives trackers the settings of others that they do not have, and has accumulators search
 /// what is asked for alone, unless nothing is to be lost.
 pub(crate) fn settle(dataflow: &mut Dataflow) {
     for (executable, options) in SHARED {
         for option in options {
-            if let Some(found) = told(dataflow, executable, option) {
+            if let Some(found) = setting(dataflow, executable, option) {
                 for tracker in trackers(dataflow) {
                     if value(tracker, option).is_none() {
                         set(tracker, option, Some(&found));
@@ -70,7 +70,8 @@ pub(crate) fn settle(dataflow: &mut Dataflow) {
     }
 }
 
-fn told(dataflow: &Dataflow, executable: &str, option: &str) -> Option<String> {
+/// What the first node with an executable has for an option.
+fn setting(dataflow: &Dataflow, executable: &str, option: &str) -> Option<String> {
     let mut nodes = dataflow.nodes.iter();
     let node = nodes.find(|node| node.executable() == executable)?;
     value(node, option).map(str::to_owned)
@@ -104,7 +105,7 @@ mod tests {
     }
 
     #[test]
-    fn a_tracker_is_told_what_others_are() {
+    fn a_tracker_takes_over_the_settings_of_others() {
         let args = settled("--rate=1");
         let expected = [
             "--rate",

@@ -6,7 +6,6 @@ use std::path::Path;
 
 use engine::tracking::TrackingConfig;
 use geometry::Pose;
-use messages::TrackState;
 
 use super::drive::Moment;
 use super::run::{Run, Said};
@@ -40,9 +39,7 @@ pub(super) fn write(
     (moments, said): (&[Moment], &[Said]),
 ) -> Result<(), BackcastError> {
     let both = || moments.iter().zip(said);
-    let is_meant =
-        |said: &Said| matches!(said.report.state, TrackState::Unique | TrackState::Doubtful);
-    let tracked = both().filter(|(_, said)| is_meant(said));
+    let tracked = both().filter(|(_, said)| said.report.state.is_believed());
     let tracked = tracked.filter_map(|(moment, said)| Some((moment.stamp_ns, said.pose?)));
     let truths = both().filter_map(|(moment, _)| Some((moment.stamp_ns, moment.truth?)));
     let save = |file: String, lines: String| {

@@ -86,7 +86,8 @@ pub(super) fn read(
     Ok(moments)
 }
 
-/// Places of the first laser stay what they are.
+/// Places of the first laser stay what they are; as messages, scores have 32 bits, as in
+/// the graph.
 fn of_laser() -> Sought {
     Sought::of(None, false)
 }
@@ -101,7 +102,7 @@ fn connect(moments: &mut [Moment], options: &SequenceOptions) {
             .zip(now.view.odom_from_sought)
             .map(|(a, b)| a.inverse().then(b));
         let truly = before.truth.zip(now.truth).map(|(a, b)| {
-            let sought = |laser| now.view.sought.of_laser(laser);
+            let sought = |laser| now.view.sought.from_laser(laser);
             sought(a).inverse().then(sought(b))
         });
         let step = by_odometry

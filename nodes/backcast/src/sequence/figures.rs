@@ -99,7 +99,7 @@ impl Figures {
             false_alarms_per_hour: (followed.hours > 0.0).then(|| hourly(followed.false_alarms)),
             kidnaps: jumps.jumps,
             kidnaps_noticed_within_2: share(jumps.noticed, jumps.jumps),
-            kidnaps_right_after_5_m: share(jumps.right, jumps.judged),
+            kidnaps_right_after_5_m: share(jumps.right, jumps.jumps),
             kidnaps_wrong: jumps.wrong.len() as u64,
             searched_share: share(starts.searches, starts.scans),
             cpu_ms_tracking: Times::of(followed.tracking_ms.iter().copied()),

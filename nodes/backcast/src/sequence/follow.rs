@@ -5,8 +5,8 @@ use geometry::Covariance;
 
 use super::drive::Moment;
 use super::run::{Run, Said};
-use crate::BackcastError;
 use crate::offline::World;
+use crate::{BackcastError, statistics};
 
 /// Off by more than this for so many truths in a row, metres and degrees, the robot is
 /// lost, and put back to the truth.
@@ -28,7 +28,6 @@ pub(super) struct Followed {
     pub(super) unique_share: Option<f64>,
     /// Times that Unique was given up while the pose was right.
     pub(super) false_alarms: u64,
-    pub(super) wrong: u64,
     pub(super) hours: f64,
     pub(super) tracking_ms: Vec<f64>,
 }
@@ -77,7 +76,6 @@ fn sum_up(all: &mut Followed, moments: &[Moment]) {
     let (mut unique, mut unique_truths, mut held, mut was_right) = (0u32, 0u32, 0u32, false);
     for &(index, said) in &all.said {
         unique += u32::from(said.is_unique());
-        all.wrong += u64::from(said.is_wrong());
         let Some((m, deg)) = said.off else { continue };
         if was_right && !said.is_unique() && m <= super::run::RIGHT.0 {
             all.false_alarms += 1;
@@ -111,6 +109,5 @@ fn is_in_ellipse(moment: &Moment, said: &Said) -> bool {
     };
     let covariance = Covariance(said.report.covariance).carried(sought, laser);
     let off = (truth.x - laser.x, truth.y - laser.y);
-    // The distribution of χ² with two degrees of freedom is exponential.
-    covariance.squared_deviations(off) <= -2.0 * 0.05f64.ln()
+    statistics::holds(covariance, off)
 }

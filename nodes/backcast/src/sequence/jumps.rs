@@ -23,8 +23,7 @@ pub(super) struct Jumps {
     pub(super) jumps: u64,
     /// Not Unique any more at one of the first two scans.
     pub(super) noticed: u64,
-    /// Jumps with 5 m of the drive behind them, and of those right after these.
-    pub(super) judged: u64,
+    /// Right after 5 m.
     pub(super) right: u64,
     /// Unique and wrong from the third scan on.
     pub(super) wrong: Vec<(usize, usize)>,
@@ -99,7 +98,6 @@ pub(super) fn evaluate(
             }
         }
         all.noticed += u64::from(is_noticed);
-        all.judged += 1;
         all.right += u64::from(is_right);
         if is_wrong {
             all.wrong.push((from, to));

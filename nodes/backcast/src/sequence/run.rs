@@ -1,6 +1,5 @@
 //! The tracker on moments of a drive, one after the other.
 
-use engine::fit::FitConfig;
 use engine::tracking::{Candidate, Need, Report, Seen, Tracker, TrackingConfig};
 use geometry::{Covariance, Pose};
 use messages::TrackState;
@@ -16,10 +15,8 @@ pub(super) struct Run<'a> {
     tracker: Tracker,
     /// Of the moment whose search counts later.
     asked: Option<usize>,
-    /// Milliseconds of computing for each scan that was tracked without a search, and
-    /// for each that was searched, the search left out.
+    /// Milliseconds of computing for each scan that was tracked without a search.
     pub(super) tracking_ms: Vec<f64>,
-    pub(super) weighing_ms: Vec<f64>,
     pub(super) searches: u64,
 }
 
@@ -70,26 +67,25 @@ impl<'a> Run<'a> {
             tracker: Tracker::new(config),
             asked: None,
             tracking_ms: Vec::new(),
-            weighing_ms: Vec::new(),
             searches: 0,
         }
     }
 
-    fn fit(&self) -> &'a FitConfig {
-        &self.world.peaks().fit
+    fn seen(&self, moment: &'a Moment) -> Seen<'a> {
+        Seen {
+            terrain: self.world.terrain(),
+            ends: moment.ends(),
+            fit: &self.world.peaks().fit,
+        }
     }
 
     /// Puts the tracker at the truth of a moment.
     pub(super) fn start_at(&mut self, index: usize, truth: Pose) {
         let moment = &self.moments[index];
-        let seen = Seen {
-            terrain: self.world.terrain(),
-            ends: moment.ends(),
-            fit: self.fit(),
-        };
+        let seen = self.seen(moment);
         // What the truths at hand err by.
         let covariance = Covariance::from_deviations(0.05, 0.05, 1f64.to_radians());
-        let pose = moment.view.sought.of_laser(truth);
+        let pose = moment.view.sought.from_laser(truth);
         self.asked = None;
         self.tracker.start_at(&seen, pose, covariance);
     }
@@ -101,11 +97,7 @@ impl<'a> Run<'a> {
         moved: Option<Pose>,
     ) -> Result<Said, BackcastError> {
         let moment = &self.moments[index];
-        let seen = Seen {
-            terrain: self.world.terrain(),
-            ends: moment.ends(),
-            fit: self.fit(),
-        };
+        let seen = self.seen(moment);
         let (tracker, asked, moments) = (&mut self.tracker, &mut self.asked, self.moments);
         let (need, cost_ms) = cpu::timed(|| {
             let need = tracker.begin(&seen, moment.stamp_ns, moved);
@@ -122,10 +114,7 @@ impl<'a> Run<'a> {
         }
         match need {
             Need::Nothing => self.tracking_ms.push(cost_ms),
-            Need::ThisScan | Need::EarlierScan => {
-                self.searches += 1;
-                self.weighing_ms.push(cost_ms);
-            }
+            Need::ThisScan | Need::EarlierScan => self.searches += 1,
         }
         let report = self.tracker.report();
         let pose = report.pose.map(|pose| moment.laser(pose));

@@ -1,6 +1,6 @@
 //! The tracker started at many scans of a drive, with no guess.
 
-use engine::tracking::TrackingConfig;
+use engine::tracking::{LEAST_BEAMS, TrackingConfig};
 
 use super::drive::Moment;
 use super::run::{Run, Said};
@@ -28,9 +28,6 @@ pub(super) struct Starts {
     /// Starts with a pose that was Unique and wrong at any time: the scan of the start,
     /// that of the first such pose, and how far it was off, metres.
     pub(super) wrong: Vec<(usize, usize, f64)>,
-    /// Of all answers with a truth: the probability, and whether it was right.
-    pub(super) tracking_ms: Vec<f64>,
-    pub(super) weighing_ms: Vec<f64>,
     pub(super) scans: u64,
     pub(super) searches: u64,
 }
@@ -39,7 +36,7 @@ pub(super) struct Starts {
 pub(super) fn choose(moments: &[Moment], count: u32) -> Vec<usize> {
     let total = moments.last().map_or(0.0, |last| last.gone_m);
     let end = total - LEFT.0.min(LEFT.1 * total);
-    let is_fit = |moment: &Moment| moment.truth.is_some() && moment.ends().beams() >= 10;
+    let is_fit = |moment: &Moment| moment.truth.is_some() && moment.ends().beams() >= LEAST_BEAMS;
     let mut chosen: Vec<usize> = (0..count)
         .filter_map(|i| {
             let at = end * f64::from(i) / f64::from(count.max(2) - 1);
@@ -95,10 +92,8 @@ pub(super) fn evaluate(
             all.right[i] += u64::from(said.is_some_and(|said| said.is_right()));
             all.not_yet[i] += u64::from(said.is_none_or(|said| !said.is_unique()));
         }
-        all.scans += (run.tracking_ms.len() + run.weighing_ms.len()) as u64;
+        all.scans += run.tracking_ms.len() as u64 + run.searches;
         all.searches += run.searches;
-        all.tracking_ms.append(&mut run.tracking_ms);
-        all.weighing_ms.append(&mut run.weighing_ms);
     }
     Ok(all)
 }
