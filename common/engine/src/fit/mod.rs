@@ -17,7 +17,7 @@ mod agreement;
 mod config;
 pub(crate) mod distance;
 #[cfg(test)]
-mod drawn;
+pub(crate) mod drawn;
 mod ends;
 mod readings;
 mod refine;

@@ -68,7 +68,7 @@ impl<'a> PeakInput<'a> {
 
 /// A covariance over cells and radians of a grid's frame, in metres along the
 /// map's axes.
-fn in_map(frame: GridFrame, in_cells: Matrix3<f64>) -> Covariance {
+pub(crate) fn in_map(frame: GridFrame, in_cells: Matrix3<f64>) -> Covariance {
     let side = frame.resolution_m;
     let scale = Matrix3::from_diagonal(&Vector3::new(side, side, 1.0));
     let turn = Rotation2::new(frame.map_from_grid.yaw).to_homogeneous() * scale;
