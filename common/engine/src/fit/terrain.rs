@@ -124,6 +124,12 @@ impl Terrain {
         self.index(x, y).map(|at| self.to_occupied[at])
     }
 
+    /// Bytes of the distances.
+    #[must_use]
+    pub fn bytes(&self) -> usize {
+        size_of_val(&self.to_occupied[..]) + size_of_val(&self.to_unknown[..])
+    }
+
     /// The cells that are neither occupied nor unknown, row by row.
     pub(crate) fn free_cells(&self) -> impl Iterator<Item = usize> {
         let both = self.to_occupied.iter().zip(&self.to_unknown);

@@ -3,8 +3,6 @@
 //!
 //! Particles are one cluster whose bins touch, corners included (as AMCL has it).
 
-use std::f64::consts::TAU;
-
 use geometry::{Covariance, Pose};
 use nalgebra::{Matrix3, Vector3};
 
@@ -176,6 +174,8 @@ fn neighbours(bin: Bin, headings: i32) -> impl Iterator<Item = Bin> {
 
 #[cfg(test)]
 mod tests {
+    use std::f64::consts::FRAC_PI_2;
+
     use super::*;
     use crate::particles::ParticlesConfig;
 
@@ -183,7 +183,7 @@ mod tests {
     fn heaviest(particles: &[(f64, f64, f64, f64)]) -> Option<Estimate> {
         let frame = GridFrame {
             resolution_m: 0.5,
-            map_from_grid: Pose::new(10.0, 0.0, TAU / 4.0),
+            map_from_grid: Pose::new(10.0, 0.0, FRAC_PI_2),
         };
         let particle = |&(x, y, degrees, weight): &(f64, f64, f64, f64)| Particle {
             pose: GridPose {
