@@ -109,6 +109,11 @@ impl Enough {
     pub(super) fn number(&self) -> usize {
         self.number
     }
+
+    /// The same, or so many, if that is more and is allowed.
+    pub(super) fn at_least(&self, number: usize) -> usize {
+        self.number.max(number.min(self.max))
+    }
 }
 
 #[cfg(test)]

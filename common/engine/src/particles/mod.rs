@@ -214,12 +214,14 @@ impl ParticleFilter {
 
     /// How many are to be drawn: as many as are enough for the bins of so many. It
     /// differs from KLD-sampling in that drawing is systematic, so that the number must
-    /// be known before: it begins with the fewest and grows as their bins ask for.
+    /// be known before: it begins with the fewest and grows as their bins ask for, by a
+    /// quarter at least, which keeps the passes few and the number at most that much too
+    /// large.
     fn number(&mut self, total: f64, offset: f64) -> usize {
         self.enough.clear();
         let mut number = 0;
         while number < self.enough.number() {
-            number = self.enough.number();
+            number = self.enough.at_least(number + number / 4);
             for (particle, copies) in copies(&self.particles, total, number, offset) {
                 if copies > 0 {
                     self.enough.add(particle.pose);
