@@ -6,7 +6,7 @@ use engine::EngineError;
 use engine::fit::{Ends, Terrain};
 use engine::grid::{Cell, CellRules, GridFrame};
 use engine::particles::{
-    Estimate as Gathering, OdometryNoise, ParticleFilter, ParticlesConfig, StartHeadings,
+    Estimate as Gathering, OdometryNoise, Particle, ParticleFilter, ParticlesConfig, StartHeadings,
 };
 use engine::space::Space;
 use geometry::Pose;
@@ -49,9 +49,6 @@ impl Default for MonteCarloConfig {
 
 /// Particles within this many cells of their mean have gathered.
 const GATHERED_CELLS: f64 = 3.0;
-
-/// Gathered are this many of them at least.
-const GATHERED_SHARE: f64 = 0.95;
 
 /// Scatter of the particles after the first update, cells and radians; it shrinks as
 /// they gather.
@@ -108,26 +105,18 @@ impl MonteCarlo {
         let start = StartHeadings::OneOf(headings);
         let mut filter = ParticleFilter::uniform(&self.terrain, start, self.config.particles)?;
         self.effort = (0, 0);
-        let mut gathering = None;
         for update in 1..=self.config.most_updates {
             filter.weigh(&self.terrain, ends);
             self.effort = (update, self.effort.1 + filter.particles().len());
             filter.resample();
-            gathering = filter.estimate();
-            if gathering.is_some_and(|found| self.is_gathered(&found)) {
+            if spread_cells(filter.particles()) <= GATHERED_CELLS {
                 break;
             }
             let scatter = (1.0 / update as f64).max(LEAST_SCATTER);
             let noise = self.noise(scatter, headings.len() == 1);
             filter.predict(Pose::IDENTITY, &noise);
         }
-        Ok(gathering)
-    }
-
-    fn is_gathered(&self, gathering: &Gathering) -> bool {
-        let spread = gathering.covariance.0;
-        let metres = (spread[(0, 0)] + spread[(1, 1)]).sqrt();
-        gathering.share >= GATHERED_SHARE && metres <= GATHERED_CELLS * self.space.resolution_m
+        Ok(filter.estimate())
     }
 
     /// A known heading does not err.
@@ -197,5 +186,41 @@ impl Baseline for MonteCarlo {
 
     fn bytes(&self) -> usize {
         self.terrain.bytes()
+    }
+}
+
+/// Weighted deviation from the weighted mean, in cells.
+fn spread_cells(particles: &[Particle]) -> f64 {
+    let mean = |of: &dyn Fn(&Particle) -> f64| {
+        let add = |(sum, weight), particle: &Particle| {
+            (
+                sum + particle.weight * of(particle),
+                weight + particle.weight,
+            )
+        };
+        let (sum, weight) = particles.iter().fold((0.0, 0.0), add);
+        sum / weight
+    };
+    let (x, y) = (mean(&|p| p.pose.x), mean(&|p| p.pose.y));
+    mean(&|p| (p.pose.x - x).powi(2) + (p.pose.y - y).powi(2)).sqrt()
+}
+
+#[cfg(test)]
+mod tests {
+    use engine::fit::GridPose;
+
+    use super::*;
+
+    #[test]
+    fn the_spread_counts_by_weight() {
+        let particle = |x, weight| {
+            let (y, heading) = (5.0, 0.0);
+            let pose = GridPose { x, y, heading };
+            Particle { pose, weight }
+        };
+        let even = [particle(0.0, 1.0), particle(4.0, 1.0)];
+        assert_eq!(spread_cells(&even), 2.0);
+        let gathered = [particle(0.0, 1.0), particle(4.0, 0.0)];
+        assert_eq!(spread_cells(&gathered), 0.0);
     }
 }

@@ -45,7 +45,7 @@ struct Occupied {
 }
 
 impl Clusters {
-    /// The heaviest cluster; of equal ones the first by x, y and heading. `None` without
+    /// The heaviest cluster; of equal ones the first by heading, y and x. `None` without
     /// particles.
     pub(super) fn heaviest(
         &mut self,

@@ -28,12 +28,13 @@ fn number_for(bins: usize, error: f64) -> f64 {
     (freedoms / (2.0 * error) * root.powi(3)).ceil()
 }
 
-/// A bin of poses, by its numbers along each axis.
+/// A bin of poses, by its numbers along each axis; in order, neighbours at a heading
+/// follow each other.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, PartialOrd, Ord)]
 pub(super) struct Bin {
-    pub(super) x: i32,
-    pub(super) y: i32,
     pub(super) heading: i32,
+    pub(super) y: i32,
+    pub(super) x: i32,
 }
 
 /// How the poses of a grid are divided into bins.

@@ -156,6 +156,11 @@ impl ParticleFilter {
             self.enough.add(pose);
             self.particles.push(Particle { pose, weight: 1.0 });
         }
+        // Neighbours follow each other: they look up cells that lie close together, and
+        // systematic drawing takes of each neighbourhood what it weighs.
+        let binning = self.binning;
+        self.particles
+            .sort_by_cached_key(|particle| binning.bin(particle.pose));
     }
 
     /// Moves the particles by a step of the odometry, given in the sought frame before

@@ -16,8 +16,9 @@ use super::beams::{Beam, Beams};
 use super::{ParticlesConfig, SensorModel};
 use crate::fit::{GridPose, Terrain};
 
-/// Steps of a cell at which the likelihood field is kept.
-const STEPS: f64 = 16.0;
+/// Steps of a standard deviation at which the likelihood field is kept: between two, the
+/// likelihood differs by less than 2 %.
+const STEPS: f64 = 32.0;
 
 /// Beyond so many standard deviations a reading does not fit at all: 3 · 10⁻⁴ of the
 /// greatest likelihood, which is less than any random share.
@@ -43,18 +44,20 @@ pub(super) struct Sensor {
     sigma: f64,
     random: f64,
     short_cells: f64,
-    /// Logarithms of the likelihood of an end point at each [`STEPS`]th of a cell from
-    /// the nearest obstacle; the last is that of all that are farther.
+    /// Logarithms of the likelihood of an end point at each [`STEPS`]th of a standard
+    /// deviation from the nearest obstacle; the last is that of all that are farther.
     field: Vec<f64>,
+    /// Steps for each cell of distance.
+    steps_per_cell: f64,
 }
 
 impl Sensor {
     pub(super) fn new(config: &ParticlesConfig, resolution_m: f64) -> Self {
         let sigma = (config.particles_sigma_m / resolution_m).max(1.0);
         let random = config.particles_random;
-        let last = (REACH * sigma * STEPS).ceil() as usize;
+        let last = (REACH * STEPS) as usize;
         let value = |step: usize| {
-            let hit = fit(step as f64 / STEPS / sigma);
+            let hit = fit(step as f64 / STEPS);
             (random + (1.0 - random) * hit).ln()
         };
         let near = (0..last).map(value);
@@ -64,6 +67,7 @@ impl Sensor {
             random,
             short_cells: SHORT_M / resolution_m,
             field: near.chain([random.ln()]).collect(),
+            steps_per_cell: STEPS / sigma,
         }
     }
 
@@ -92,7 +96,9 @@ impl Sensor {
         let (x, y) = turned(beam.end, turn);
         let distance = terrain.cell_distance(pose.x + x, pose.y + y);
         let far = self.field.len() - 1;
-        let step = distance.map_or(far, |cells| (f64::from(cells) * STEPS) as usize);
+        let step = distance.map_or(far, |cells| {
+            (f64::from(cells) * self.steps_per_cell) as usize
+        });
         self.field[step.min(far)]
     }
 
