@@ -45,6 +45,15 @@ struct Occupied {
 }
 
 impl Clusters {
+    /// Makes room for so many particles, each in a bin of its own.
+    pub(super) fn reserve(&mut self, particles: usize) {
+        self.keys.clear();
+        self.keys.reserve(particles);
+        self.bins.clear();
+        self.bins.reserve(particles);
+        self.open.reserve(particles);
+    }
+
     /// The heaviest cluster; of equal ones the first by heading, y and x. `None` without
     /// particles.
     pub(super) fn heaviest(

@@ -16,7 +16,8 @@
 //! Poses of the interface are those of the frame that is sought (laser, or base) in the
 //! map, metres and radians; particles are kept in cells of the grid. All is
 //! deterministic: the same calls with the same seed give the same particles to the last
-//! bit on one machine. Once there is room, nothing is allocated from scan to scan.
+//! bit on one machine. Nothing is allocated from scan to scan while there are no more
+//! particles than at the start, or than there have been.
 //!
 //! It does not notice that it is lost: no random particles are added (as in table 8.3 of
 //! the book). A search of the whole map does that better, and its places start it anew
@@ -156,6 +157,9 @@ impl ParticleFilter {
             self.enough.add(pose);
             self.particles.push(Particle { pose, weight: 1.0 });
         }
+        self.drawn.clear();
+        self.drawn.reserve(self.particles.len());
+        self.clusters.reserve(self.particles.len());
         // Neighbours follow each other: they look up cells that lie close together, and
         // systematic drawing takes of each neighbourhood what it weighs.
         let binning = self.binning;
