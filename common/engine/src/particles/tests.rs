@@ -5,8 +5,10 @@ use std::f64::consts::TAU;
 use geometry::{Covariance, Pose};
 
 use super::*;
+use crate::EngineError;
 use crate::beams::BeamConfig;
 use crate::fit::drawn::terrain;
+use crate::fit::{Ends, Terrain};
 use crate::scan::Scan;
 use crate::space::Space;
 
@@ -35,7 +37,7 @@ const WORLD: [&str; 20] = [
 ];
 const TRUTH: Pose = Pose::new(0.8, 1.35, 0.4);
 
-/// The world's cells have sides of 0.1 m: what a robot of that size needs to be told.
+/// Enough for every bin of the world to hold some at the start.
 fn config() -> ParticlesConfig {
     ParticlesConfig {
         particles_max: 20_000,
