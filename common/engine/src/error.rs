@@ -57,6 +57,9 @@ pub enum EngineError {
     /// The limits leave no heading.
     #[error("none of the {0} headings a turn lies in the interval that is searched")]
     NoHeadingWithin(u32),
+    /// There is no pose at which particles could start.
+    #[error("no pose is given, with finite numbers, at which particles could start")]
+    NoStart,
     /// The number of headings is not supported.
     #[error("{0} headings a turn: it must be a multiple of 8 from 8 to 3600")]
     Headings(u32),

@@ -19,6 +19,7 @@
 //!
 //! Where a robot moves, or has several lasers, `joined` brings the scans to one time by
 //! odometry (`motion`), and what is searched is an `observation` of carried scans.
+//! Where the robot goes from the places that were found, `particles` follow it.
 //!
 //! `docs/engine.md` explains the method with drawings.
 //!
@@ -41,6 +42,7 @@ pub mod limits;
 pub mod localizer;
 pub mod motion;
 pub mod observation;
+pub mod particles;
 pub mod peaks;
 pub mod program;
 pub mod reference;

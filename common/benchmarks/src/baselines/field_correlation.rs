@@ -15,7 +15,7 @@ use crate::worlds::World;
 
 /// Likelihood of an end point in an obstacle: four bits, as fine as the votes
 /// of the engine.
-pub(super) const FULL: u8 = 15;
+const FULL: u8 = 15;
 
 /// Rows whose sum fits eight bits.
 const TOGETHER: usize = (u8::MAX / FULL) as usize;
@@ -118,7 +118,7 @@ pub(super) fn take_row(best: &mut Best, sums: &[u16], open: &[bool], y: usize, h
 }
 
 /// For each cell the likelihood of an end point there, up to [`FULL`].
-pub(super) fn likelihood(world: &World, sigma_cells: f64) -> Vec<u8> {
+fn likelihood(world: &World, sigma_cells: f64) -> Vec<u8> {
     // Beyond this distance the likelihood rounds to zero.
     let most = (0..)
         .find(|&square: &u32| level(square, sigma_cells) == 0)

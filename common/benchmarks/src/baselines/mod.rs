@@ -7,7 +7,7 @@
 //! | [`RangeTable`] | the same, ranges looked up in a table of all | no |
 //! | [`PatchCorrelation`] | the scan drawn as a patch, correlated with the map | yes |
 //! | [`FieldCorrelation`] | end points looked up in a likelihood field | yes |
-//! | [`MonteCarlo`] | particles, uniform at the start, on the same field | yes |
+//! | [`MonteCarlo`] | the engine's particles, uniform at the start, on such a field | yes |
 //!
 //! All but the last compute the score of every free cell at every heading asked
 //! for. None normalizes its posterior: the best pose does not depend on it, and

@@ -1,95 +1,94 @@
-//! Monte Carlo localization (the paper's [2]): particles all over the map are
-//! weighted by the scan, drawn anew by their weights and scattered a little,
-//! until they have gathered.
+//! Monte Carlo localization (the paper's [2]): the engine's particles all over the map,
+//! weighed by the scan, drawn anew by their weights and scattered a little, until they
+//! have gathered. The robot stands, so that the one scan is taken again and again.
 
+use engine::EngineError;
+use engine::fit::{Ends, Terrain};
+use engine::grid::{Cell, CellRules, GridFrame};
+use engine::particles::{
+    Estimate as Gathering, OdometryNoise, Particle, ParticleFilter, ParticlesConfig, StartHeadings,
+};
 use engine::space::Space;
-use rand::rngs::Xoshiro256PlusPlus;
-use rand::{RngExt, SeedableRng};
-use rand_distr::{Distribution, StandardNormal};
+use geometry::Pose;
+use messages::{Reading as Beam, UNKNOWN};
 
 use super::Baseline;
 use super::best::Estimate;
-use super::field_correlation::{FULL, likelihood};
 use super::reading::Readings;
 use crate::worlds::World;
 
 /// How many particles there are, and for how long.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct MonteCarloConfig {
-    /// Cells for each particle at the start, at a known heading.
-    pub cells_per_particle: f64,
-    /// Headings at which particles start in each cell, if it is unknown.
-    pub start_headings: f64,
-    /// Fewest particles; their number falls to this as they gather.
-    pub least_particles: usize,
+    /// The numbers of the filter. The standard deviation is that of the readings.
+    pub particles: ParticlesConfig,
     /// Most updates by the scan.
     pub most_updates: usize,
-    /// Beams that count as independent: weights are tempered to that many.
-    pub independent_beams: f64,
-    /// Where the random numbers begin.
-    pub seed: u64,
 }
 
 impl Default for MonteCarloConfig {
+    /// One particle for each bin of 5 · 5 cells and three degrees at the start: so near
+    /// must one be to the true pose to outweigh the others. The error of 0.32 asks for
+    /// as many particles as there are bins.
     fn default() -> Self {
         MonteCarloConfig {
-            cells_per_particle: 25.0,
-            start_headings: 120.0,
-            least_particles: 2000,
+            particles: ParticlesConfig {
+                particles_min: 2000,
+                particles_max: u32::MAX,
+                particles_error: 0.32,
+                particles_bin_m: 5.0 * crate::RESOLUTION_M,
+                particles_bin_deg: 3.0,
+                // All that the other methods have, too.
+                particles_beams: u32::MAX,
+                ..ParticlesConfig::default()
+            },
             most_updates: 20,
-            independent_beams: 16.0,
-            seed: 1,
         }
     }
 }
 
-/// Share of readings that anything may explain.
-const RANDOM_SHARE: f32 = 0.05;
-
 /// Particles within this many cells of their mean have gathered.
-const GATHERED_CELLS: f32 = 3.0;
+const GATHERED_CELLS: f64 = 3.0;
+
+/// Scatter of the particles after the first update, cells and radians; it shrinks as
+/// they gather.
+const SCATTER_CELLS: f64 = 4.0;
+const SCATTER_RADIANS: f64 = 0.03;
+
+/// And the least that is left of it.
+const LEAST_SCATTER: f64 = 0.125;
 
 /// Monte Carlo localization on a likelihood field, with particles that become
 /// fewer as they gather.
 #[derive(Debug, Clone)]
 pub struct MonteCarlo {
     space: Space,
-    width: usize,
-    height: usize,
-    field: Vec<u8>,
-    /// Free cells, where particles start.
-    free: Vec<u32>,
+    terrain: Terrain,
+    sides: (usize, usize),
     config: MonteCarloConfig,
     /// Updates of the last scan, and particles that were weighted in all.
     effort: (usize, usize),
 }
 
-/// A pose, in cells and radians, and its weight.
-#[derive(Debug, Clone, Copy, PartialEq)]
-struct Particle {
-    x: f32,
-    y: f32,
-    heading: f32,
-    weight: f32,
-}
-
 impl MonteCarlo {
     /// Prepares a map for readings with one deviation, in cells.
+    ///
+    /// # Panics
+    /// If the world has no cells, which none has.
     #[must_use]
     pub fn new(world: &World, space: &Space, sigma_cells: f64, config: MonteCarloConfig) -> Self {
-        let grid = &world.grid;
-        let width = grid.width();
-        let is_open = |i: &u32| {
-            let i = *i as usize;
-            grid.is_open((i % width) as i64, (i / width) as i64)
+        let particles = ParticlesConfig {
+            particles_sigma_m: sigma_cells * space.resolution_m,
+            ..config.particles
         };
         MonteCarlo {
             space: space.clone(),
-            width,
-            height: grid.height(),
-            field: likelihood(world, sigma_cells),
-            free: (0..grid.cells().len() as u32).filter(is_open).collect(),
-            config,
+            terrain: terrain(world, space.resolution_m),
+            sides: (world.grid.width(), world.grid.height()),
+            config: MonteCarloConfig {
+                particles,
+                ..config
+            },
             effort: (0, 0),
         }
     }
@@ -101,187 +100,123 @@ impl MonteCarlo {
         self.effort
     }
 
-    /// Particles at random free cells and headings.
-    fn start(&self, headings: &[usize], rng: &mut Xoshiro256PlusPlus) -> Vec<Particle> {
-        let share = headings.len() as f64 / self.space.directions.count() as f64;
-        let turns = (self.config.start_headings * share).max(1.0);
-        let count = self.free.len() as f64 / self.config.cells_per_particle * turns;
-        let spacing = self.space.directions.spacing() as f32;
-        let particle = |_| {
-            let cell = self.free[rng.random_range(0..self.free.len())] as usize;
-            let heading = headings[rng.random_range(0..headings.len())];
-            Particle {
-                x: (cell % self.width) as f32,
-                y: (cell / self.width) as f32,
-                heading: heading as f32 * spacing,
-                weight: 1.0,
+    /// Where the particles gather.
+    fn gather(&mut self, ends: &Ends, headings: &[f64]) -> Result<Option<Gathering>, EngineError> {
+        let start = StartHeadings::OneOf(headings);
+        let mut filter = ParticleFilter::uniform(&self.terrain, start, self.config.particles)?;
+        self.effort = (0, 0);
+        for update in 1..=self.config.most_updates {
+            filter.weigh(&self.terrain, ends);
+            self.effort = (update, self.effort.1 + filter.particles().len());
+            filter.resample();
+            if spread_cells(filter.particles()) <= GATHERED_CELLS {
+                break;
             }
-        };
-        let count = (count as usize).max(self.config.least_particles);
-        (0..count).map(particle).collect()
+            let scatter = (1.0 / update as f64).max(LEAST_SCATTER);
+            let noise = self.noise(scatter, headings.len() == 1);
+            filter.predict(Pose::IDENTITY, &noise);
+        }
+        Ok(filter.estimate())
     }
 
-    /// Weights each particle by where its beams would end.
-    fn weigh(&self, particles: &mut [Particle], beams: &[(f32, f32)]) {
-        let temper = (self.config.independent_beams / beams.len() as f64).min(1.0) as f32;
-        let log: Vec<f32> = (0..=FULL)
-            .map(|level| {
-                let hit = f32::from(level) / f32::from(FULL);
-                temper * (RANDOM_SHARE + (1.0 - RANDOM_SHARE) * hit).ln()
+    /// A known heading does not err.
+    fn noise(&self, scatter: f64, heading_is_known: bool) -> OdometryNoise {
+        let radians = match heading_is_known {
+            true => 0.0,
+            false => SCATTER_RADIANS * scatter,
+        };
+        OdometryNoise {
+            particles_noise_least_m: SCATTER_CELLS * scatter * self.space.resolution_m,
+            particles_noise_least_deg: radians.to_degrees(),
+            ..OdometryNoise::default()
+        }
+    }
+
+    fn ends(&self, readings: &Readings) -> Result<Ends, EngineError> {
+        let resolution_m = self.space.resolution_m;
+        let beams = readings.beams.iter().filter(|beam| beam.cells > 0.0);
+        let beams: Vec<Beam> = beams
+            .map(|beam| Beam {
+                bearing: beam.bearing as f64 * self.space.directions.spacing(),
+                range_m: beam.cells * resolution_m,
+                weight: 1.0,
+                ..Beam::default()
             })
             .collect();
-        for particle in &mut *particles {
-            let (sin, cos) = particle.heading.sin_cos();
-            let logs = beams.iter().map(|&(ahead, left)| {
-                let x = particle.x + cos * ahead - sin * left;
-                let y = particle.y + sin * ahead + cos * left;
-                log[usize::from(self.level(x, y))]
-            });
-            particle.weight = logs.sum();
-        }
-        let most = particles
-            .iter()
-            .map(|particle| particle.weight)
-            .fold(f32::MIN, f32::max);
-        for particle in particles {
-            particle.weight = (particle.weight - most).exp();
-        }
+        let mut ends = Ends::default();
+        ends.take(&beams, resolution_m)?;
+        Ok(ends)
     }
+}
 
-    /// The field at a place in cells; zero off the map.
-    #[inline]
-    fn level(&self, x: f32, y: f32) -> u8 {
-        let (x, y) = ((x + 0.5).floor() as i32, (y + 0.5).floor() as i32);
-        let is_within = (x as u32) < self.width as u32 && (y as u32) < self.height as u32;
-        if is_within {
-            self.field[y as usize * self.width + x as usize]
-        } else {
-            0
-        }
+/// The world as the filter reads it. No beam ends within an obstacle, so that what lies
+/// there counts as unknown.
+fn terrain(world: &World, resolution_m: f64) -> Terrain {
+    let (width, height) = (world.grid.width(), world.grid.height());
+    let inner = |&cell: &Cell| if cell == Cell::Open { 0 } else { UNKNOWN };
+    let mut occupancy: Vec<u8> = world.grid.cells().iter().map(inner).collect();
+    for cell in &world.boundary {
+        occupancy[usize::from(cell.y) * width + usize::from(cell.x)] = 100;
     }
-
-    fn cell(&self, particle: &Particle) -> (usize, usize) {
-        let to_cell = |at: f32, side: usize| (at.round().max(0.0) as usize).min(side - 1);
-        (
-            to_cell(particle.x, self.width),
-            to_cell(particle.y, self.height),
-        )
-    }
+    let frame = GridFrame {
+        resolution_m,
+        map_from_grid: Pose::IDENTITY,
+    };
+    Terrain::new(frame, (width, height), &occupancy, CellRules::default())
+        .expect("a world's grid is one of the engine's")
 }
 
 impl Baseline for MonteCarlo {
     fn locate(&mut self, readings: &Readings, headings: &[usize]) -> Option<Estimate> {
-        if self.free.is_empty() || headings.is_empty() || readings.beams.is_empty() {
+        if readings.beams.is_empty() {
             return None;
         }
-        let mut rng = Xoshiro256PlusPlus::seed_from_u64(self.config.seed);
-        let beams: Vec<(f32, f32)> = (readings.beams.iter())
-            .map(|reading| {
-                let (sin, cos) =
-                    (reading.bearing as f64 * self.space.directions.spacing()).sin_cos();
-                ((reading.cells * cos) as f32, (reading.cells * sin) as f32)
-            })
-            .collect();
-        let turn_rad = if headings.len() > 1 { 0.03 } else { 0.0 };
-        let mut particles = self.start(headings, &mut rng);
-        self.effort = (0, 0);
-        for update in 1..=self.config.most_updates {
-            self.weigh(&mut particles, &beams);
-            self.effort = (update, self.effort.1 + particles.len());
-            if spread_cells(&particles) <= GATHERED_CELLS {
-                break;
-            }
-            // The scatter shrinks as the particles gather.
-            let scatter = (4.0 / update as f32).max(0.5);
-            let count = (particles.len() / 4).max(self.config.least_particles);
-            particles = draw(&particles, count, &mut rng);
-            for particle in &mut particles {
-                let mut normal = || -> f32 { StandardNormal.sample(&mut rng) };
-                particle.x += scatter * normal();
-                particle.y += scatter * normal();
-                particle.heading += turn_rad * scatter / 4.0 * normal();
-            }
-        }
-        let best = particles
-            .iter()
-            .max_by(|a, b| a.weight.total_cmp(&b.weight))?;
-        let (x, y) = self.cell(best);
-        let (heading, _) = self.space.directions.nearest(f64::from(best.heading));
+        let spacing = self.space.directions.spacing();
+        let headings: Vec<f64> = headings.iter().map(|&i| i as f64 * spacing).collect();
+        let ends = self.ends(readings).ok()?;
+        let found = self.gather(&ends, &headings).ok()??;
+        let (x, y, heading) = self.terrain.frame.cells_from_map(found.map_from_sought);
         Some(Estimate {
-            x,
-            y,
-            heading,
-            score: best.weight,
+            x: (x as usize).min(self.sides.0 - 1),
+            y: (y as usize).min(self.sides.1 - 1),
+            heading: self.space.directions.nearest(heading).0,
+            score: found.share as f32,
         })
     }
 
     fn bytes(&self) -> usize {
-        self.field.len() + size_of_val(&self.free[..])
+        self.terrain.bytes()
     }
 }
 
 /// Weighted deviation from the weighted mean, in cells.
-fn spread_cells(particles: &[Particle]) -> f32 {
-    let mean = |of: &dyn Fn(&Particle) -> f32| {
-        let (sum, weight) = particles
-            .iter()
-            .fold((0.0f64, 0.0f64), |(sum, weight), particle| {
-                let share = f64::from(particle.weight);
-                (sum + share * f64::from(of(particle)), weight + share)
-            });
-        (sum / weight) as f32
+fn spread_cells(particles: &[Particle]) -> f64 {
+    let mean = |of: &dyn Fn(&Particle) -> f64| {
+        let add = |(sum, weight), particle: &Particle| {
+            (
+                sum + particle.weight * of(particle),
+                weight + particle.weight,
+            )
+        };
+        let (sum, weight) = particles.iter().fold((0.0, 0.0), add);
+        sum / weight
     };
-    let (x, y) = (mean(&|particle| particle.x), mean(&|particle| particle.y));
-    mean(&|particle| (particle.x - x).powi(2) + (particle.y - y).powi(2)).sqrt()
-}
-
-/// Draws particles by their weights, with one random number for all: each is
-/// taken as often as its weight says, to within one.
-fn draw(particles: &[Particle], count: usize, rng: &mut Xoshiro256PlusPlus) -> Vec<Particle> {
-    let total: f64 = particles
-        .iter()
-        .map(|particle| f64::from(particle.weight))
-        .sum();
-    let step = total / count as f64;
-    let mut next = rng.random_range(0.0..1.0) * step;
-    let mut drawn = Vec::with_capacity(count + 1);
-    let mut sum = 0.0;
-    for particle in particles {
-        sum += f64::from(particle.weight);
-        while next < sum {
-            drawn.push(*particle);
-            next += step;
-        }
-    }
-    drawn
+    let (x, y) = (mean(&|p| p.pose.x), mean(&|p| p.pose.y));
+    mean(&|p| (p.pose.x - x).powi(2) + (p.pose.y - y).powi(2)).sqrt()
 }
 
 #[cfg(test)]
 mod tests {
+    use engine::fit::GridPose;
+
     use super::*;
 
     #[test]
-    fn particles_are_drawn_as_often_as_they_weigh() {
-        let particle = |x, weight| Particle {
-            x,
-            y: 0.0,
-            heading: 0.0,
-            weight,
-        };
-        let particles = [particle(0.0, 1.0), particle(1.0, 0.0), particle(2.0, 3.0)];
-        let drawn = draw(&particles, 400, &mut Xoshiro256PlusPlus::seed_from_u64(1));
-        let of = |x: f32| drawn.iter().filter(|particle| particle.x == x).count();
-        assert!(of(0.0).abs_diff(100) <= 1 && of(2.0).abs_diff(300) <= 1);
-        assert_eq!(of(1.0), 0);
-    }
-
-    #[test]
     fn the_spread_counts_by_weight() {
-        let particle = |x, weight| Particle {
-            x,
-            y: 5.0,
-            heading: 0.0,
-            weight,
+        let particle = |x, weight| {
+            let (y, heading) = (5.0, 0.0);
+            let pose = GridPose { x, y, heading };
+            Particle { pose, weight }
         };
         let even = [particle(0.0, 1.0), particle(4.0, 1.0)];
         assert_eq!(spread_cells(&even), 2.0);

@@ -7,7 +7,7 @@ use messages::UNKNOWN;
 use super::Terrain;
 use crate::grid::{CellRules, GridFrame};
 
-pub(super) fn terrain(rows: &[&str]) -> Terrain {
+pub(crate) fn terrain(rows: &[&str]) -> Terrain {
     let cell = |cell| match cell {
         b'#' => 100,
         b'?' => UNKNOWN,

@@ -15,7 +15,7 @@ use crate::space::Space;
 #[derive(Debug, Clone, Default, PartialEq)]
 pub struct Ends {
     chosen: Chosen,
-    pub(super) ends: Vec<End>,
+    pub(crate) ends: Vec<End>,
     silent: Vec<f64>,
     readings: Readings,
     /// The weights of all beams together.
@@ -24,7 +24,7 @@ pub struct Ends {
 
 /// Where a beam ends.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub(super) struct End {
+pub(crate) struct End {
     /// Where the laser was, cells in the frame that is sought; its origin where the
     /// laser stood still.
     pub from: (f64, f64),

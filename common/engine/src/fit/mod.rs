@@ -18,7 +18,7 @@ mod config;
 pub(crate) mod distance;
 mod drawing;
 #[cfg(test)]
-mod drawn;
+pub(crate) mod drawn;
 mod ends;
 mod readings;
 mod refine;

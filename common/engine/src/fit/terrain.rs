@@ -22,7 +22,7 @@ pub struct Terrain {
 
 /// What a ray meets, in cells from where it starts.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub(super) struct Way {
+pub(crate) struct Way {
     /// To the first occupied cell, if it is on the map and near enough.
     pub occupied: Option<f64>,
     /// To the first unknown cell before that.
@@ -100,7 +100,7 @@ impl Terrain {
 
     /// What a ray from a point in a direction, a vector of length 1, meets
     /// within `limit` cells.
-    pub(super) fn look(&self, (x, y): (f64, f64), (dx, dy): (f64, f64), limit: f64) -> Way {
+    pub(crate) fn look(&self, (x, y): (f64, f64), (dx, dy): (f64, f64), limit: f64) -> Way {
         let mut way = Way {
             occupied: None,
             unknown: None,
@@ -129,6 +129,34 @@ impl Terrain {
         way
     }
 
+    /// Distance of the cell at a point to the nearest occupied one, between the cells'
+    /// centres: 0 in an occupied cell, 10⁶ where none is. `None` off the map.
+    #[inline(always)]
+    pub(crate) fn cell_distance(&self, x: f64, y: f64) -> Option<f32> {
+        self.index(x, y).map(|at| self.to_occupied[at])
+    }
+
+    /// Bytes of the distances.
+    #[must_use]
+    pub fn bytes(&self) -> usize {
+        size_of_val(&self.to_occupied[..]) + size_of_val(&self.to_unknown[..])
+    }
+
+    /// The cells that are neither occupied nor unknown, row by row.
+    pub(crate) fn free_cells(&self) -> impl Iterator<Item = usize> {
+        let both = self.to_occupied.iter().zip(&self.to_unknown);
+        let free = |(occupied, unknown): (&f32, &u8)| *occupied > 0.0 && *unknown > 0;
+        both.enumerate()
+            .filter(move |&(_, cell)| free(cell))
+            .map(|(at, _)| at)
+    }
+
+    /// Cells along x.
+    pub(crate) fn width(&self) -> usize {
+        self.width
+    }
+
+    #[inline(always)]
     fn index(&self, x: f64, y: f64) -> Option<usize> {
         let inside = x >= 0.0 && y >= 0.0 && x < self.width as f64 && y < self.height as f64;
         inside.then(|| y as usize * self.width + x as usize)

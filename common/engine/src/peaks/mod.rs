@@ -69,7 +69,7 @@ impl<'a> PeakInput<'a> {
 
 /// A covariance over cells and radians of a grid's frame, in metres along the
 /// map's axes.
-fn in_map(frame: GridFrame, in_cells: Matrix3<f64>) -> Covariance {
+pub(crate) fn in_map(frame: GridFrame, in_cells: Matrix3<f64>) -> Covariance {
     let turn = frame.metres_from_cells();
     Covariance(turn * in_cells * turn.transpose())
 }

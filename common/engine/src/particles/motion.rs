@@ -1,0 +1,192 @@
+//! How particles move with the robot.
+//!
+//! Each takes the step that odometry tells, in its own frame, with an error of its own:
+//! sampling from a motion model as in Probabilistic Robotics (Thrun, Burgard and Fox,
+//! 2005), section 5.4. It differs from table 5.6 there. The errors are normal on the
+//! step itself, not on a turn, a way and another turn: whoever stands still, or drives
+//! sideways, has no first turn that could be told. And their variances grow with the
+//! way, not with its square, as errors do that are independent from step to step, so
+//! that a step in two halves scatters as one does.
+
+use geometry::{Pose, wrap_angle};
+use rand_distr::{Distribution, StandardNormal};
+
+use super::{Particle, Rng};
+use crate::config::{parse, parse_length};
+use crate::fit::GridPose;
+
+/// How far a step errs: normal, along x, y and the heading independently.
+///
+/// The emulator's odometry is noisy in the same way, with half the deviations:
+/// particles that scatter too much are weighed down by the next scan, and those that
+/// scatter too little are not where the robot is.
+#[derive(Debug, Clone, Copy, PartialEq, clap::Args)]
+pub struct OdometryNoise {
+    /// Standard deviation after one metre: of x and y in metres and of the heading in
+    /// radians, 0..=2. It grows with the root of the way.
+    #[arg(long, value_name = "SIGMA", default_value_t = 0.06, value_parser = parse_length)]
+    pub particles_noise_per_metre: f64,
+    /// Standard deviation of the heading after turning by one radian, radians, 0..=2. It
+    /// grows with the root of the turn.
+    #[arg(long, value_name = "SIGMA", default_value_t = 0.06, value_parser = parse_turn)]
+    pub particles_noise_per_radian: f64,
+    /// Standard deviation of x and y that each step adds, metres, 0..=2: copies of a
+    /// particle come apart even where the robot stands. A fifth of a cell of 5 cm.
+    #[arg(long, value_name = "METRES", default_value_t = 0.01, value_parser = parse_length)]
+    pub particles_noise_least_m: f64,
+    /// The same of the heading, degrees, 0..=180.
+    #[arg(long, value_name = "DEGREES", default_value_t = 0.2, value_parser = crate::config::parse_degrees)]
+    pub particles_noise_least_deg: f64,
+}
+
+fn parse_turn(text: &str) -> Result<f64, String> {
+    parse(text, 0.0..=2.0, "radians")
+}
+
+impl Default for OdometryNoise {
+    fn default() -> Self {
+        OdometryNoise {
+            particles_noise_per_metre: 0.06,
+            particles_noise_per_radian: 0.06,
+            particles_noise_least_m: 0.01,
+            particles_noise_least_deg: 0.2,
+        }
+    }
+}
+
+impl OdometryNoise {
+    /// Standard deviations of a step: of x and y, metres, and of the heading, radians.
+    #[must_use]
+    pub fn deviations(&self, step: Pose) -> (f64, f64) {
+        let (way, turn) = (step.x.hypot(step.y), step.yaw.abs());
+        let by_way = self.particles_noise_per_metre.powi(2) * way;
+        let by_turn = self.particles_noise_per_radian.powi(2) * turn;
+        let least_m = self.particles_noise_least_m.powi(2);
+        let least_turn = self.particles_noise_least_deg.to_radians().powi(2);
+        (
+            (by_way + least_m).sqrt(),
+            (by_way + by_turn + least_turn).sqrt(),
+        )
+    }
+}
+
+/// Moves each particle by the step, in metres and radians of its own frame.
+pub(super) fn advance(
+    particles: &mut [Particle],
+    step: Pose,
+    noise: &OdometryNoise,
+    resolution_m: f64,
+    rng: &mut Rng,
+) {
+    let (way_m, turn) = noise.deviations(step);
+    let way = way_m / resolution_m;
+    let (ahead, left) = (step.x / resolution_m, step.y / resolution_m);
+    for particle in particles {
+        let mut error = || -> f64 { StandardNormal.sample(rng) };
+        let ahead = ahead + way * error();
+        let left = left + way * error();
+        let turned = step.yaw + turn * error();
+        let GridPose { x, y, heading } = particle.pose;
+        let (sin, cos) = heading.sin_cos();
+        particle.pose = GridPose {
+            x: x + cos * ahead - sin * left,
+            y: y + sin * ahead + cos * left,
+            heading: wrap_angle(heading + turned),
+        };
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use rand::SeedableRng;
+
+    use super::*;
+
+    const COUNT: usize = 20_000;
+    const NOISE: OdometryNoise = OdometryNoise {
+        particles_noise_per_metre: 0.1,
+        particles_noise_per_radian: 0.2,
+        particles_noise_least_m: 0.0,
+        particles_noise_least_deg: 0.0,
+    };
+
+    const START: GridPose = GridPose {
+        x: 100.0,
+        y: 50.0,
+        heading: std::f64::consts::FRAC_PI_2,
+    };
+
+    /// Particles after steps on cells of 0.1 m.
+    fn moved(steps: &[Pose], noise: &OdometryNoise) -> Vec<Particle> {
+        let start = Particle {
+            pose: START,
+            weight: 1.0,
+        };
+        let mut particles = vec![start; COUNT];
+        let mut rng = Rng::seed_from_u64(7);
+        for &step in steps {
+            advance(&mut particles, step, noise, 0.1, &mut rng);
+        }
+        particles
+    }
+
+    /// Means and deviations of x, y and heading after steps.
+    fn moments(steps: &[Pose], noise: &OdometryNoise) -> [(f64, f64); 3] {
+        let particles = moved(steps, noise);
+        let moment = |of: fn(&GridPose) -> f64| {
+            let values = || particles.iter().map(|particle| of(&particle.pose));
+            let mean = values().sum::<f64>() / COUNT as f64;
+            let variance = values().map(|value| (value - mean).powi(2)).sum::<f64>();
+            (mean, (variance / COUNT as f64).sqrt())
+        };
+        [moment(|p| p.x), moment(|p| p.y), moment(|p| p.heading)]
+    }
+
+    /// Means to within four of their own deviations, and deviations to within 3 %: four
+    /// of theirs, 1 / √(2 · 20000) each.
+    #[track_caller]
+    fn check(found: [(f64, f64); 3], expected: [(f64, f64); 3]) {
+        for ((mean, deviation), (true_mean, true_deviation)) in found.into_iter().zip(expected) {
+            let mean_error = 4.0 * true_deviation / (COUNT as f64).sqrt() + 1e-9;
+            assert!((mean - true_mean).abs() <= mean_error, "{found:?}");
+            let error = 0.03 * true_deviation + 1e-9;
+            assert!((deviation - true_deviation).abs() <= error, "{found:?}");
+        }
+    }
+
+    #[test]
+    fn a_step_has_the_mean_and_the_deviations_that_are_asked_for() {
+        let found = moments(&[Pose::new(4.0, 0.0, 0.5)], &NOISE);
+        // 4 m ahead, which is along y; 2 cells are 0.1 m times the root of 4.
+        let turn = (0.1f64.powi(2) * 4.0 + 0.2f64.powi(2) * 0.5).sqrt();
+        let heading = std::f64::consts::FRAC_PI_2 + 0.5;
+        check(found, [(100.0, 2.0), (90.0, 2.0), (heading, turn)]);
+    }
+
+    #[test]
+    fn a_step_in_two_halves_scatters_as_one_does() {
+        let straight = OdometryNoise {
+            particles_noise_per_radian: 0.0,
+            ..NOISE
+        };
+        let (whole, half) = (Pose::new(0.4, 0.0, 0.0), Pose::new(0.2, 0.0, 0.0));
+        check(
+            moments(&[half, half], &straight),
+            moments(&[whole], &straight),
+        );
+    }
+
+    #[test]
+    fn a_heading_that_does_not_err_stays_to_the_last_bit() {
+        let level = OdometryNoise {
+            particles_noise_per_metre: 0.0,
+            particles_noise_per_radian: 0.0,
+            particles_noise_least_m: 0.3,
+            particles_noise_least_deg: 0.0,
+        };
+        let mut particles = moved(&[Pose::IDENTITY], &level);
+        assert!(particles.iter().all(|p| p.pose.heading == START.heading));
+        particles.dedup();
+        assert_eq!(particles.len(), COUNT, "no two stay at one place");
+    }
+}

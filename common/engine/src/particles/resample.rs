@@ -1,0 +1,78 @@
+//! Drawing particles by their weights: systematic, or low variance, resampling
+//! (Probabilistic Robotics, table 4.4). One random number serves all.
+
+/// How often each of the weights is drawn where `number` are drawn in all: within one
+/// of its share. `total` is the sum of the weights in their order; `offset` lies in
+/// `0..1`.
+pub(super) fn copies(
+    weights: impl Iterator<Item = f64>,
+    total: f64,
+    number: usize,
+    offset: f64,
+) -> impl Iterator<Item = usize> {
+    let scale = number as f64 / total;
+    let (mut sum, mut drawn) = (0.0, 0);
+    weights.map(move |weight| {
+        sum += weight;
+        // The draws at offset, offset + 1, … that lie below the sum.
+        let below = (sum * scale - offset).ceil().max(0.0) as usize;
+        let copies = below - drawn;
+        drawn = below;
+        copies
+    })
+}
+
+/// How many particles of equal weight would tell as much: Kish's effective sample size,
+/// (Σ w)² / Σ w² (Liu, "Metropolized independent sampling", 1996, of particles).
+pub(super) fn effective_number(weights: impl Iterator<Item = f64>) -> f64 {
+    let (sum, squares) = weights.fold((0.0, 0.0), |(sum, squares), weight| {
+        (sum + weight, squares + weight * weight)
+    });
+    sum * sum / squares.max(f64::MIN_POSITIVE)
+}
+
+#[cfg(test)]
+mod tests {
+    use proptest::collection::vec;
+    use proptest::prelude::*;
+
+    use super::*;
+
+    #[test]
+    fn a_draw_falls_where_the_sums_say() {
+        let drawn = |offset| -> Vec<usize> {
+            let weights = [1.0, 0.0, 3.0];
+            copies(weights.into_iter(), 4.0, 6, offset).collect()
+        };
+        // Draws at 0.4, 1.4, …, 5.4 of 6; the first weight reaches to 1.5.
+        assert_eq!(drawn(0.4), [2, 0, 4]);
+        assert_eq!(drawn(0.6), [1, 0, 5]);
+    }
+
+    proptest! {
+        #[test]
+        fn each_is_drawn_within_one_of_its_share(
+            weights in vec(prop_oneof![0.0..1.0f64, Just(0.0)], 1..50),
+            number in 1usize..2000, offset in 0.0..1.0f64,
+        ) {
+            let total: f64 = weights.iter().sum();
+            prop_assume!(total > 0.0);
+            let drawn: Vec<usize> = copies(weights.iter().copied(), total, number, offset).collect();
+            prop_assert_eq!(drawn.iter().sum::<usize>(), number);
+            for (&copies, weight) in drawn.iter().zip(&weights) {
+                let share = number as f64 * weight / total;
+                // The sums round.
+                prop_assert!((copies as f64 - share).abs() < 1.0 + 1e-9);
+            }
+        }
+    }
+
+    #[test]
+    fn the_effective_number_counts_equal_weights() {
+        let effective = |weights: &[f64]| effective_number(weights.iter().copied());
+        assert_eq!(effective(&[0.25; 5]), 5.0);
+        assert_eq!(effective(&[3.0, 0.0, 0.0]), 1.0);
+        assert_eq!(effective(&[2.0, 1.0, 1.0]), 16.0 / 6.0);
+        assert_eq!(effective(&[]), 0.0);
+    }
+}

@@ -1,0 +1,191 @@
+//! Where particles start that follow the votes: around each place that these name.
+
+use geometry::{Covariance, Pose, wrap_angle};
+use nalgebra::{Matrix3, SymmetricEigen, Vector3};
+use rand::RngExt;
+use rand_distr::{Distribution, StandardNormal};
+
+use super::Rng;
+use crate::EngineError;
+use crate::fit::GridPose;
+use crate::grid::GridFrame;
+use crate::peaks::Place;
+
+/// A place where the robot may be.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Candidate {
+    /// Pose of the frame that is sought, in the map.
+    pub map_from_sought: Pose,
+    /// Its spread, in the map.
+    pub covariance: Covariance,
+    /// How likely the robot is there, against the other candidates.
+    pub weight: f64,
+}
+
+impl From<&Place> for Candidate {
+    fn from(place: &Place) -> Self {
+        Candidate {
+            map_from_sought: place.map_from_laser,
+            covariance: place.covariance,
+            weight: place.probability,
+        }
+    }
+}
+
+/// No candidate is surer than this, cells and degrees: it was refined by the scan that
+/// weighs the particles next, which must not count twice.
+const LEAST_CELLS: f64 = 0.5;
+const LEAST_DEG: f64 = 1.0;
+
+/// Draws poses around candidates, as often around each as it is likely.
+pub(super) struct Seeds {
+    seeds: Vec<Seed>,
+    total: f64,
+}
+
+struct Seed {
+    pose: GridPose,
+    /// Takes independent normal numbers to an error in cells and radians.
+    root: Matrix3<f64>,
+    weight: f64,
+}
+
+impl Seeds {
+    /// Candidates with numbers that are not finite are left out, and such with a weight
+    /// below zero; if none weighs anything, as where votes alone judge them, all weigh
+    /// the same.
+    pub(super) fn new(
+        frame: GridFrame,
+        candidates: impl IntoIterator<Item = Candidate>,
+    ) -> Result<Self, EngineError> {
+        let seeds = candidates.into_iter().filter_map(|c| Seed::new(frame, &c));
+        let mut seeds: Vec<Seed> = seeds.collect();
+        if seeds.iter().all(|seed| seed.weight == 0.0) {
+            seeds.iter_mut().for_each(|seed| seed.weight = 1.0);
+        }
+        if seeds.is_empty() {
+            return Err(EngineError::NoStart);
+        }
+        let total = seeds.iter().map(|seed| seed.weight).sum();
+        Ok(Seeds { seeds, total })
+    }
+
+    pub(super) fn draw(&self, rng: &mut Rng) -> GridPose {
+        let mut left = self.total * rng.random::<f64>();
+        let is_it = |seed: &&Seed| {
+            left -= seed.weight;
+            left < 0.0
+        };
+        // The sum rounds; then it is the last.
+        let last = &self.seeds[self.seeds.len() - 1];
+        let seed = self.seeds.iter().find(is_it).unwrap_or(last);
+        let mut normal = || -> f64 { StandardNormal.sample(rng) };
+        let error = seed.root * Vector3::new(normal(), normal(), normal());
+        GridPose {
+            x: seed.pose.x + error.x,
+            y: seed.pose.y + error.y,
+            heading: wrap_angle(seed.pose.heading + error.z),
+        }
+    }
+}
+
+impl Seed {
+    fn new(frame: GridFrame, candidate: &Candidate) -> Option<Self> {
+        let Candidate {
+            map_from_sought,
+            covariance: Covariance(covariance),
+            weight,
+        } = *candidate;
+        let (x, y, heading) = frame.cells_from_map(map_from_sought);
+        let mut numbers = covariance.iter().chain([&x, &y, &heading, &weight]);
+        if !(numbers.all(|number| number.is_finite()) && weight >= 0.0) {
+            return None;
+        }
+        Some(Seed {
+            pose: GridPose { x, y, heading },
+            root: root(in_cells(frame, covariance))?,
+            weight,
+        })
+    }
+}
+
+/// The covariance of a pose of the map in cells along the grid's axes and radians.
+fn in_cells(frame: GridFrame, covariance: Matrix3<f64>) -> Matrix3<f64> {
+    let (sin, cos) = frame.map_from_grid.yaw.sin_cos();
+    let scale = 1.0 / frame.resolution_m;
+    let (s, c) = (scale * sin, scale * cos);
+    let turn = Matrix3::new(c, s, 0.0, -s, c, 0.0, 0.0, 0.0, 1.0);
+    turn * covariance * turn.transpose()
+}
+
+/// A root of the covariance, no narrower than the least one. It may be flat, where the
+/// heading was known.
+fn root(covariance: Matrix3<f64>) -> Option<Matrix3<f64>> {
+    const MOST_STEPS: usize = 100;
+    let least = LEAST_DEG.to_radians();
+    let least = Vector3::new(LEAST_CELLS, LEAST_CELLS, least).map(|d| d * d);
+    let wide = covariance + Matrix3::from_diagonal(&least);
+    let SymmetricEigen {
+        eigenvalues,
+        eigenvectors,
+    } = SymmetricEigen::try_new(wide, f64::EPSILON, MOST_STEPS)?;
+    let roots = eigenvalues.map(|value| value.max(0.0).sqrt());
+    Some(eigenvectors * Matrix3::from_diagonal(&roots))
+}
+
+#[cfg(test)]
+mod tests {
+    use rand::SeedableRng;
+
+    use super::*;
+
+    const FRAME: GridFrame = GridFrame {
+        resolution_m: 0.1,
+        map_from_grid: Pose::new(3.0, -1.0, 0.5),
+    };
+
+    fn candidate(x: f64, weight: f64) -> Candidate {
+        Candidate {
+            map_from_sought: Pose::new(x, 2.0, 1.0),
+            covariance: Covariance::from_deviations(0.3, 0.1, 0.05),
+            weight,
+        }
+    }
+
+    #[test]
+    fn candidates_are_drawn_by_their_weights_and_spreads() {
+        let seeds = Seeds::new(FRAME, [candidate(0.0, 0.2), candidate(50.0, 0.6)]).unwrap();
+        let mut rng = Rng::seed_from_u64(1);
+        let drawn: Vec<Pose> = (0..8000)
+            .map(|_| seeds.draw(&mut rng))
+            .map(|p| FRAME.map_from_cells(p.x, p.y, p.heading))
+            .collect();
+        let first: Vec<&Pose> = drawn.iter().filter(|pose| pose.x < 25.0).collect();
+        // 2000 of 8000, with a deviation of 39: within four of those.
+        assert!(first.len().abs_diff(2000) < 156, "{}", first.len());
+        let deviation = |of: &dyn Fn(&Pose) -> f64| {
+            let squares: f64 = first.iter().map(|pose| of(pose).powi(2)).sum();
+            (squares / first.len() as f64).sqrt()
+        };
+        // Half a cell and a degree are added; 2000 samples tell a deviation to 1.6 %,
+        // four of which are allowed.
+        let check = |found: f64, asked: f64, least: f64| {
+            let expected = asked.hypot(least);
+            assert!((found / expected - 1.0).abs() < 0.064, "{found} {expected}");
+        };
+        check(deviation(&|p| p.x), 0.3, 0.05);
+        check(deviation(&|p| p.y - 2.0), 0.1, 0.05);
+        check(deviation(&|p| p.yaw - 1.0), 0.05, 1f64.to_radians());
+    }
+
+    #[test]
+    fn candidates_that_are_no_numbers_are_left_out() {
+        let mut broken = candidate(0.0, 1.0);
+        broken.covariance.0[(1, 1)] = f64::NAN;
+        let refused = Seeds::new(FRAME, [broken, candidate(1.0, -1.0)]);
+        assert_eq!(refused.err(), Some(EngineError::NoStart));
+        let seeds = Seeds::new(FRAME, [broken, candidate(0.0, 0.0), candidate(9.0, 0.0)]);
+        let seeds = seeds.unwrap();
+        assert_eq!((seeds.seeds.len(), seeds.total), (2, 2.0), "weigh the same");
+    }
+}

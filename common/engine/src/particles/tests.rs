@@ -1,0 +1,168 @@
+//! A drawn world, scans of it, and particles that find the robot there.
+
+use std::f64::consts::TAU;
+
+use geometry::{Covariance, Pose};
+
+use super::*;
+use crate::EngineError;
+use crate::beams::BeamConfig;
+use crate::fit::drawn::terrain;
+use crate::fit::{Ends, Terrain};
+use crate::scan::Scan;
+use crate::space::Space;
+
+/// Two rooms and a corridor, 4 m long; no turn and no mirror makes it look alike.
+const WORLD: [&str; 20] = [
+    "########################################",
+    "#...................#..................#",
+    "#...................#..................#",
+    "#...................#..................#",
+    "#......................................#",
+    "#......................................#",
+    "#......................................#",
+    "#...................#..........#########",
+    "#...................#..................#",
+    "#...................#..................#",
+    "#########...#########..................#",
+    "#...................#..................#",
+    "#...................#.......####.......#",
+    "#...................#.......####.......#",
+    "#...................####################",
+    "#......................................#",
+    "#......................................#",
+    "#..##..................................#",
+    "#..##..................................#",
+    "########################################",
+];
+const TRUTH: Pose = Pose::new(0.8, 1.35, 0.4);
+
+/// Enough for every bin of the world to hold some at the start.
+fn config() -> ParticlesConfig {
+    ParticlesConfig {
+        particles_max: 20_000,
+        ..ParticlesConfig::default()
+    }
+}
+
+/// The readings of a laser that sees all around, metres.
+fn scan(terrain: &Terrain, pose: Pose) -> Ends {
+    let (x, y, heading) = terrain.frame.cells_from_map(pose);
+    let range = |beam: i32| {
+        let (sin, cos) = (heading + f64::from(beam) * TAU / 120.0).sin_cos();
+        let way = terrain.look((x, y), (cos, sin), 1000.0);
+        way.occupied.map_or(f32::INFINITY, |cells| {
+            (cells * terrain.frame.resolution_m) as f32
+        })
+    };
+    let ranges: Vec<f32> = (0..120).map(range).collect();
+    let scan = Scan {
+        angle_min: 0.0,
+        angle_increment: TAU / 120.0,
+        range_min_m: 0.0,
+        range_max_m: 30.0,
+        ranges: &ranges,
+    };
+    let space = Space::new(360, terrain.frame.resolution_m, 40, 20).unwrap();
+    Ends::new(&scan, &space, &BeamConfig::default()).unwrap()
+}
+
+/// Drives an arc, scan by scan; the last estimate and the last true pose.
+fn drive(filter: &mut ParticleFilter, terrain: &Terrain, steps: usize) -> (Estimate, Pose) {
+    let step = Pose::new(0.05, 0.0, 0.06);
+    let mut pose = TRUTH;
+    for i in 0..=steps {
+        if i > 0 {
+            pose = pose.then(step);
+            filter.predict(step, &OdometryNoise::default());
+        }
+        filter.weigh(terrain, &scan(terrain, pose));
+        filter.resample();
+    }
+    (filter.estimate().unwrap(), pose)
+}
+
+fn candidate(pose: Pose, weight: f64) -> Candidate {
+    Candidate {
+        map_from_sought: pose,
+        covariance: Covariance::from_deviations(0.05, 0.05, 0.02),
+        weight,
+    }
+}
+
+#[track_caller]
+fn check_found((found, truth): (Estimate, Pose)) {
+    let pose = found.map_from_sought;
+    // A cell, and what an end point a cell off turns at 1 m.
+    assert!(pose.is_within(truth, 0.1, 0.1), "{pose:?} is not {truth:?}");
+    assert!(found.share > 0.95, "{}", found.share);
+    let deviation = found.covariance.ellipse().major_m;
+    assert!(deviation < 0.15, "{deviation}");
+}
+
+#[test]
+fn from_anywhere_particles_gather_where_the_robot_is() {
+    let terrain = terrain(&WORLD);
+    for model in [SensorModel::LikelihoodField, SensorModel::Beam] {
+        let config = ParticlesConfig {
+            particles_model: model,
+            ..config()
+        };
+        let mut filter = ParticleFilter::uniform(&terrain, StartHeadings::Any, config).unwrap();
+        let start = filter.particles().len();
+        assert!(start > 5000, "a bin for each 0.25 m² and 10°: {start}");
+        check_found(drive(&mut filter, &terrain, 20));
+        let end = filter.particles().len();
+        assert!(end < 2000, "gathered particles are fewer: {end}");
+    }
+}
+
+#[test]
+fn a_start_at_the_places_of_the_votes_is_right_at_once() {
+    let terrain = terrain(&WORLD);
+    let wrong = Pose::new(3.0, 0.3, 2.0);
+    let candidates = [candidate(wrong, 0.5), candidate(TRUTH, 0.5)];
+    let mut filter = ParticleFilter::seeded(terrain.frame, candidates, config()).unwrap();
+    assert!(filter.particles().len() < 2000);
+    check_found(drive(&mut filter, &terrain, 0));
+    // And told of another place, it starts there.
+    filter.seed([candidate(wrong, 1.0)]).unwrap();
+    let found = filter.estimate().unwrap();
+    assert!(found.map_from_sought.is_within(wrong, 0.05, 0.05));
+    assert_eq!(filter.seed([]), Err(EngineError::NoStart));
+}
+
+#[test]
+fn the_same_seed_gives_the_same_particles() {
+    let terrain = terrain(&WORLD);
+    let particles = |seed| {
+        let config = ParticlesConfig {
+            particles_seed: seed,
+            ..config()
+        };
+        let mut filter = ParticleFilter::uniform(&terrain, StartHeadings::Any, config).unwrap();
+        let (estimate, _) = drive(&mut filter, &terrain, 5);
+        (estimate, filter.particles().to_vec())
+    };
+    assert_eq!(particles(3), particles(3));
+    assert_ne!(particles(3).1, particles(4).1);
+}
+
+#[test]
+fn even_weights_are_not_drawn_anew() {
+    let terrain = terrain(&WORLD);
+    let mut filter =
+        ParticleFilter::seeded(terrain.frame, [candidate(TRUTH, 1.0)], config()).unwrap();
+    let before = filter.particles().to_vec();
+    assert!(!filter.resample());
+    filter.weigh(&terrain, &Ends::default());
+    filter.predict(Pose::new(f64::NAN, 0.0, 0.0), &OdometryNoise::default());
+    assert_eq!(
+        filter.particles(),
+        before,
+        "nothing was seen and nothing moved"
+    );
+    assert_eq!(filter.effective_number(), before.len() as f64);
+    let shares: f64 = filter.poses().map(|(_, share)| share).sum();
+    assert!((shares - 1.0).abs() < 1e-9);
+}
