@@ -10,8 +10,8 @@ use messages::Vote;
 use distinct::Leading;
 #[cfg(test)]
 pub(crate) use distinct::are_near;
+pub(crate) use distinct::{CLOSE_TIMES, Distinct, Leaders, is_close};
 pub use distinct::{DISTINCT_DEG, DISTINCT_M};
-pub(crate) use distinct::{Distinct, Leaders};
 pub(crate) use of_field::FieldVotes;
 pub use of_field::of_field;
 
@@ -27,7 +27,8 @@ pub struct CollectConfig {
     #[arg(long, value_name = "COUNT", default_value_t = 65_536, value_parser = clap::value_parser!(u32).range(1..=1_000_000))]
     pub max_votes: u32,
     /// Distinct poses that are wanted, 0..=1000: where fewer stand above the
-    /// floor, the most promising ones below are added.
+    /// floor, the most promising ones below are added. Where half of them have half
+    /// the best one's votes, up to four times as many that have are added.
     #[arg(long, value_name = "COUNT", default_value_t = 64, value_parser = clap::value_parser!(u32).range(0..=1000))]
     pub candidates: u32,
 }

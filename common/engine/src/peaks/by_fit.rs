@@ -9,6 +9,7 @@ use super::summits::{self, Reach, Summit};
 use super::{PeakConfig, PeakInput, Place, Places, Workspace, in_map, likelihood};
 use crate::fit::{BeamClass, Ends, GridPose, Refined, Terrain};
 use crate::grid::GridFrame;
+use crate::votes::CLOSE_TIMES;
 
 /// Reads the places from the votes of a scan and from the scan itself, see
 /// [`Workspace::by_fit`].
@@ -34,7 +35,9 @@ impl Workspace {
         config: &PeakConfig,
     ) -> &Places {
         let reach = Reach::new(input, config.candidate_m, config.candidate_deg);
-        summits::find(input, reach, config.max_candidates, &mut self.summits);
+        let wanted = config.max_candidates as usize;
+        let most = (wanted, CLOSE_TIMES * wanted);
+        summits::find(input, reach, most, &mut self.summits);
         self.refined.clear();
         let places = self
             .summits

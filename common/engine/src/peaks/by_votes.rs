@@ -25,7 +25,8 @@ impl Workspace {
     pub fn by_votes(&mut self, input: &PeakInput<'_>, config: &PeakConfig) -> &Places {
         let reach = Reach::new(input, config.same_place_m, config.same_place_deg);
         let (summits, found) = (&mut self.summits, &mut self.places);
-        summits::find(input, reach, config.max_hypotheses, summits);
+        let most = config.max_hypotheses as usize;
+        summits::find(input, reach, (most, most), summits);
         found.clear();
         let places = summits.iter().map(|summit| place(input, summit, reach));
         found.places.extend(places);

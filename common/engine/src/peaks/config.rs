@@ -30,7 +30,8 @@ pub struct PeakConfig {
     /// Most places that are reported, 1..=1000.
     #[arg(long, value_name = "COUNT", default_value_t = 64, value_parser = clap::value_parser!(u32).range(1..=1000))]
     pub max_hypotheses: u32,
-    /// Most candidates that are refined, 1..=1000: the first of the votes.
+    /// Candidates that are refined, 1..=1000: the first of the votes, and up to four
+    /// times as many as long as they have half the best one's votes.
     #[arg(long, value_name = "COUNT", default_value_t = 64, value_parser = clap::value_parser!(u32).range(1..=1000))]
     pub max_candidates: u32,
     /// Votes within this distance and `--candidate-deg` are refined together,

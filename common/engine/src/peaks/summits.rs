@@ -7,6 +7,7 @@ use geometry::angle_between;
 use messages::Vote;
 
 use super::PeakInput;
+use crate::votes::is_close;
 
 /// A place by its best vote.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -48,14 +49,23 @@ impl PeakInput<'_> {
     }
 }
 
-/// Fills in the best vote of each place, best first, at most so many.
-pub(super) fn find(input: &PeakInput<'_>, reach: Reach, most: u32, summits: &mut Vec<Summit>) {
+/// Fills in the best vote of each place, best first: so many at most, or up to so many
+/// as long as they are close to the best one.
+pub(super) fn find(
+    input: &PeakInput<'_>,
+    reach: Reach,
+    (most, most_close): (usize, usize),
+    summits: &mut Vec<Summit>,
+) {
     summits.clear();
+    let best = input.votes.first().map_or(0, |vote| vote.intensity);
     for vote in input.votes {
         let near = |summit: &&mut Summit| input.are_near(&summit.vote, vote, reach);
         if let Some(summit) = summits.iter_mut().find(near) {
             summit.support += 1;
-        } else if summits.len() < most as usize {
+        } else if summits.len() < most
+            || summits.len() < most_close && is_close(vote.intensity, best)
+        {
             let vote = *vote;
             summits.push(Summit { vote, support: 1 });
         } else {

@@ -6,7 +6,7 @@ use super::parts;
 use super::sift::{self, Sift};
 use super::task::Task;
 use crate::program::ScanProgram;
-use crate::votes::{Distinct, VoteSet};
+use crate::votes::{CLOSE_TIMES, Distinct, VoteSet, is_close};
 
 /// A search to be made, and the room for it, of as many threads as there are rooms and
 /// shares.
@@ -61,10 +61,19 @@ impl Attempt<'_> {
         let wanted = task.config.candidates as usize;
         if wanted > 0 && found.best > 0 {
             let bounded = (end == End::Done).then_some(&**rooms);
-            let floor = found.certified_floor;
-            Alternatives::new(task, alternatives).find(wanted, floor, bounded);
-            let distinct = Distinct::new(task.space, wanted, &mut alternatives.distinct);
-            found.add_candidates(&mut alternatives.votes, distinct);
+            let (floor, certain) = (found.certified_floor, found.votes.len());
+            for count in [wanted, CLOSE_TIMES * wanted] {
+                found.votes.truncate(certain);
+                Alternatives::new(task, alternatives).find(count, floor, bounded);
+                let distinct = Distinct::new(task.space, wanted, &mut alternatives.distinct);
+                let distinct = distinct.and_close(found.best);
+                found.add_candidates(&mut alternatives.votes, distinct);
+                let kept = alternatives.distinct.iter();
+                let close = kept.filter(|vote| is_close(vote.intensity, found.best));
+                if 2 * close.count() < wanted {
+                    break;
+                }
+            }
         }
     }
 }

@@ -28,7 +28,7 @@ impl FieldVotes {
         let wanted = config.candidates as usize;
         if wanted > 0 && found.best > 0 {
             best_of_blocks(field, width, heading, &mut self.bests);
-            let distinct = Distinct::new(space, wanted, &mut self.distinct);
+            let distinct = Distinct::new(space, wanted, &mut self.distinct).and_close(found.best);
             found.add_candidates(&mut self.bests, distinct);
         }
     }
