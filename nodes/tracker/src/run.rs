@@ -330,14 +330,12 @@ impl Node {
             return self.send_nothing(scan, TrackReason::NoMap);
         };
         let seen = world.seen(&self.ends, &self.config.fit);
-        self.candidates.clear();
         let answer = of.and_then(|of| self.answers.of(of));
         let of_map = answer
             .into_iter()
             .flatten()
             .filter(|h| h.map_id == world.map_id);
-        self.candidates
-            .extend(of_map.map(|h| Candidate::of(h, sought)));
+        Candidate::fill(&mut self.candidates, of_map, sought);
         let found = answer.map(|_| &self.candidates[..]);
         self.tracker.finish(&seen, found);
         if self.tracker.asks_ahead() {

@@ -1,9 +1,12 @@
 //! A place where the robot may be, and how much speaks for it.
 
+use std::cmp::Reverse;
+
 use geometry::{Covariance, Pose};
 use messages::Hypothesis;
 use nalgebra::{Matrix3, Rotation2, SymmetricEigen};
 
+use super::places::MOST;
 use super::seen::{Fitted, with_map_error};
 use crate::peaks::Sought;
 
@@ -16,6 +19,8 @@ pub struct Candidate {
     pub covariance: Covariance,
     /// How well the scan fits there, at most 1.
     pub score: f64,
+    /// Of the pose that led there.
+    pub votes: u64,
 }
 
 /// Along what a scan does not tell, a candidate is taken to be known as well as this,
@@ -23,16 +28,31 @@ pub struct Candidate {
 const LOOSEST_M: f64 = 0.3;
 
 impl Candidate {
-    /// As messages say it.
-    #[must_use]
-    pub fn of(hypothesis: &Hypothesis, sought: Sought) -> Self {
+    fn of(hypothesis: &Hypothesis, sought: Sought) -> Self {
         let laser = hypothesis.map_from_laser.into();
         let pose = sought.from_laser(laser);
         Candidate {
             pose,
             covariance: Covariance::from_rows(hypothesis.covariance).carried(laser, pose),
             score: hypothesis.score.into(),
+            votes: hypothesis.intensity,
         }
+    }
+
+    /// Fills in those of the places that a search found, as messages say them, for which
+    /// the votes speak most: of many places, some fit a scan well by chance, and with
+    /// each there is one more to tell from the true one.
+    pub fn fill<'a>(
+        candidates: &mut Vec<Self>,
+        found: impl Iterator<Item = &'a Hypothesis>,
+        sought: Sought,
+    ) {
+        candidates.clear();
+        candidates.extend(found.map(|hypothesis| Candidate::of(hypothesis, sought)));
+        candidates.sort_unstable_by_key(|candidate| Reverse(candidate.votes));
+        candidates.truncate(MOST);
+        let best = candidates.first().map_or(0, |best| best.votes);
+        candidates.retain(|candidate| 2 * candidate.votes >= best);
     }
 
     pub(super) fn fitted(&self) -> Fitted {

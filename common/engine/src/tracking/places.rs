@@ -10,10 +10,11 @@ use super::verdict::Belief;
 use super::way::Way;
 use crate::peaks::lead;
 
-/// Most places that are kept, and how many of them may be older than one key scan:
-/// the rest is room for new ones.
-const MOST: usize = 32;
+/// Most places that are kept, and how many of them may be older than one key scan, and
+/// new: those that a place was told from do not give way to what each search finds anew.
+pub(super) const MOST: usize = MOST_OLD + MOST_NEW;
 const MOST_OLD: usize = 20;
+const MOST_NEW: usize = 12;
 
 /// A difference of scores, against what the best lacks of a perfect one, is worth a
 /// factor of e, as for the single scan (`--lead-scale`).
@@ -49,7 +50,8 @@ const JUNK_BEHIND: f64 = 0.4;
 const JUNK_SCORE: f64 = 0.35;
 const JUNK_SCANS: u32 = 2;
 
-/// Where odometry slips, the robot is this near to where it should be.
+/// Where odometry slips, the robot is this near to where it should be, or turned by at
+/// most this; the more turned, the nearer: a turn that was missed was one in place.
 pub(super) const NEAR_M: f64 = 1.5;
 const SLIP_RADIANS: f64 = 100.0 * std::f64::consts::PI / 180.0;
 
@@ -309,7 +311,8 @@ impl Places {
         let scan_cap = self.config.scan_cap;
         let is_slip = |place: &&mut Place| {
             let pose = tracked.predicted.0;
-            place.last >= least && place.pose.is_within(pose, NEAR_M, SLIP_RADIANS)
+            let turned = pose.angle_to(place.pose) / SLIP_RADIANS;
+            place.last >= least && pose.distance_to(place.pose) / NEAR_M + turned <= 1.0
         };
         let beside = self.kept[born..].iter_mut().filter(is_slip);
         if let Some(place) = beside.reduce(|a, b| if b.last > a.last { b } else { a }) {
@@ -331,10 +334,14 @@ impl Places {
         let Some(top) = self.kept.first().map(|place| place.log_weight) else {
             return;
         };
-        let (mut count, mut old) = (0, 0);
+        let (mut count, mut old, mut new) = (0, 0, 0);
         for i in 0..self.kept.len() {
             let place = self.kept[i];
-            let is_full = count == MOST || (place.age > 1 && old >= MOST_OLD);
+            let is_full = match place.age > 1 {
+                true => old == MOST_OLD,
+                // At the first there are no others.
+                false => new == if self.key_scans > 1 { MOST_NEW } else { MOST },
+            };
             if place.bad >= JUNK_SCANS || is_full || place.log_weight < top - FARTHEST_BEHIND {
                 continue;
             }
@@ -350,6 +357,7 @@ impl Places {
             self.kept[count] = place;
             count += 1;
             old += usize::from(place.age > 1);
+            new += usize::from(place.age <= 1);
         }
         self.kept.truncate(count);
     }

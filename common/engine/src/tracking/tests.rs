@@ -92,9 +92,11 @@ impl Building {
         let ends = self.ends(pose);
         let places = by_fit(&input, (&self.terrain, &ends), &PeakConfig::default());
         let sought = Sought::of(None, false);
-        let candidate =
-            |place: &crate::peaks::Place| Candidate::of(&place.hypothesis(1, sought), sought);
-        places.places.iter().map(candidate).collect()
+        let hypothesis = |place: &crate::peaks::Place| place.hypothesis(1, sought);
+        let hypotheses: Vec<_> = places.places.iter().map(hypothesis).collect();
+        let mut found = Vec::new();
+        Candidate::fill(&mut found, hypotheses.iter(), sought);
+        found
     }
 
     fn seen<'a>(&'a self, ends: &'a Ends, fit: &'a FitConfig) -> Seen<'a> {

@@ -71,11 +71,12 @@ pub(super) fn read(
         number += 1;
         let Ok(hypotheses) = hypotheses else { continue };
         let view = session.view(&scan)?;
-        let found = hypotheses.iter().map(|h| Candidate::of(h, view.sought));
+        let mut found = Vec::new();
+        Candidate::fill(&mut found, hypotheses.iter(), view.sought);
         moments.push(Moment {
             stamp_ns: scan.stamp_ns,
             truth,
-            found: found.collect(),
+            found,
             search_ms,
             moved: None,
             gone_m: 0.0,
