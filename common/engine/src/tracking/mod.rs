@@ -23,6 +23,7 @@
 //! evidence that is capped.
 
 mod config;
+mod matching;
 mod place;
 mod places;
 mod report;
@@ -36,6 +37,7 @@ pub use report::Report;
 pub use seen::Seen;
 
 use geometry::{Covariance, Pose};
+use matching::ScanMatcher;
 use places::Places;
 use verdict::Belief;
 use way::Way;
@@ -69,6 +71,8 @@ pub struct Tracker {
     config: TrackingConfig,
     places: Places,
     belief: Belief,
+    /// Where odometry is missing.
+    matcher: ScanMatcher,
     /// Since the last key scan.
     since_key: Way,
     /// Since the last scan that was looked at.
@@ -91,6 +95,7 @@ impl Tracker {
             config,
             places: Places::new(config),
             belief: Belief::new(config),
+            matcher: ScanMatcher::default(),
             since_key: Way::default(),
             since_scan: Way::default(),
             ahead: None,
@@ -120,8 +125,18 @@ impl Tracker {
     }
 
     /// Takes the next scan and how the sought frame moved since the one before, if
-    /// that is known. The scan is done with at [`Tracker::finish`].
+    /// odometry tells; otherwise scans are matched. The scan is done with at
+    /// [`Tracker::finish`].
     pub fn begin(&mut self, seen: &Seen<'_>, stamp_ns: i64, moved: Option<Pose>) -> Need {
+        self.is_blank = seen.ends.beams() < LEAST_BEAMS;
+        let moved = match moved {
+            Some(_) => {
+                self.matcher.forget();
+                moved
+            }
+            None if self.is_blank => None,
+            None => self.matcher.step(seen, &self.config),
+        };
         self.belief.go_on(stamp_ns, moved);
         self.asks_ahead = false;
         for way in [&mut self.since_key, &mut self.since_scan] {
@@ -133,7 +148,6 @@ impl Tracker {
             *left = left.saturating_sub(1);
             is_due = *left == 0;
         }
-        self.is_blank = seen.ends.beams() < LEAST_BEAMS;
         if self.is_blank {
             return Need::Nothing;
         }

@@ -250,6 +250,29 @@ fn what_odometry_misses_is_followed() {
 }
 
 #[test]
+fn without_odometry_scans_tell_how_the_robot_moved() {
+    let building = building(&UNLIKE);
+    let mut matcher = matching::ScanMatcher::default();
+    let config = TrackingConfig::default();
+    let start = Pose::new(1.5, 1.0, 0.0);
+    let (mut at, mut found) = (start, start);
+    // A turn to the left, and back to the right.
+    for i in 0..12 {
+        let turn = if i < 6 { 0.08 } else { -0.08 };
+        let (ends, fit) = (building.ends(at), FitConfig::default());
+        let step = matcher.step(&building.seen(&ends, &fit), &config);
+        assert_eq!(step.is_none(), i == 0, "{i}");
+        found = found.then(step.unwrap_or(Pose::IDENTITY));
+        // A cell, and what a cell is wide at five metres.
+        assert!(found.is_within(at, 0.1, 0.02), "{i}: {found:?} at {at:?}");
+        at = at.then(Pose::new(0.05, 0.0, turn));
+    }
+    // A scan from elsewhere does not match.
+    let (ends, fit) = (building.ends(Pose::new(4.0, 1.9, PI)), FitConfig::default());
+    assert_eq!(matcher.step(&building.seen(&ends, &fit), &config), None);
+}
+
+#[test]
 fn while_the_pose_is_sure_few_scans_are_searched() {
     let building = building(&UNLIKE);
     let mut tracker = Tracker::new(TrackingConfig::default());

@@ -10,6 +10,10 @@ use super::places::{FARTHEST_BEHIND, NEAR_M, Places};
 use super::report::Report;
 use super::way::Way;
 
+/// Key scans since a step that is not known that have to agree before a place is the only
+/// one: nothing ties what was seen before to where the robot is now.
+const LEAST_KEYS: u32 = 3;
+
 /// Places so near each other are not told apart by the verdict.
 const DISTINCT_M: f64 = 1.0;
 const DISTINCT_RADIANS: f64 = 15.0 * std::f64::consts::PI / 180.0;
@@ -35,6 +39,8 @@ pub(super) struct Belief {
     fits_badly: bool,
     lead: f64,
     bad_keys: u32,
+    /// Key scans since it was not known how the robot moved.
+    connected_keys: u32,
     slipped: Option<f64>,
     lost_by: TrackReason,
     state: TrackState,
@@ -53,6 +59,7 @@ impl Belief {
             fits_badly: false,
             lead: 0.0,
             bad_keys: 0,
+            connected_keys: 0,
             slipped: None,
             lost_by: TrackReason::PoorFit,
             state: TrackState::Searching,
@@ -84,6 +91,9 @@ impl Belief {
             self.since_ns = stamp_ns;
         }
         self.stamp_ns = stamp_ns;
+        if moved.is_none() {
+            self.connected_keys = 0;
+        }
         self.since_m += moved.map_or(0.0, |step| step.x.hypot(step.y));
     }
 
@@ -156,6 +166,7 @@ impl Belief {
     }
 
     fn judge(&mut self, places: &Places) {
+        self.connected_keys += 1;
         let Some(best) = places.all().first() else {
             (self.place, self.lead) = (None, 0.0);
             return;
@@ -198,7 +209,8 @@ impl Belief {
     fn is_unique(&self, best: &Place) -> bool {
         let config = &self.config;
         let lack = (config.sure_mean - best.mean).max(0.0);
-        self.lead >= config.sure_lead + config.poor_fit_lead * lack
+        self.connected_keys >= LEAST_KEYS
+            && self.lead >= config.sure_lead + config.poor_fit_lead * lack
             && best.mean >= config.least_mean
             && best.last >= config.least_mean - LAST_BELOW
     }

@@ -1,0 +1,108 @@
+//! How the robot moved where no odometry tells: each scan is matched to one before, which
+//! stays the same until the robot is some way off, so that errors do not add up from
+//! scan to scan (Lu and Milios, "Robot pose estimation in unknown environments by
+//! matching 2D range scans", J. Intelligent and Robotic Systems 18, 1997).
+
+use geometry::Pose;
+use nalgebra::Matrix3;
+
+use super::TrackingConfig;
+use super::seen::Seen;
+use super::way::Way;
+use crate::EngineError;
+use crate::fit::{Ends, Terrain};
+use crate::grid::{CellRules, GridFrame};
+
+/// A match with a lower score says nothing: half of the beams see what the scan before
+/// did not, or the robot was carried away.
+const LEAST_SCORE: f64 = 0.6;
+
+/// A match with a lower score is tried again from other headings.
+const SURE_SCORE: f64 = 0.8;
+
+/// Ends of beams farther off are left out, cells: beams lie too far apart there, and a map
+/// as wide takes some milliseconds to prepare.
+const FARTHEST: f64 = 250.0;
+
+/// Matches scans to one before.
+#[derive(Debug, Clone, Default)]
+pub(super) struct ScanMatcher {
+    /// The scan that others are matched to, as a map in whose origin it was taken.
+    reference: Option<Terrain>,
+    /// From there to the last scan.
+    gone: Pose,
+    /// How the robot moved to the last scan: it goes on as it went.
+    step: Pose,
+}
+
+impl ScanMatcher {
+    /// Forgets the scans: odometry tells.
+    pub(super) fn forget(&mut self) {
+        self.reference = None;
+    }
+
+    /// How the sought frame moved since the scan before; `None` where the two do not
+    /// match, or there was none.
+    pub(super) fn step(&mut self, seen: &Seen<'_>, config: &TrackingConfig) -> Option<Pose> {
+        let step = self.matched(seen);
+        self.step = step.unwrap_or(Pose::IDENTITY);
+        self.gone = self.gone.then(self.step);
+        let is_near = self.gone.x.hypot(self.gone.y) < config.key_m
+            && self.gone.yaw.abs() < config.key_deg.to_radians();
+        if step.is_none() || !is_near {
+            self.reference = around(seen).ok();
+            self.gone = Pose::IDENTITY;
+        }
+        step
+    }
+
+    fn matched(&self, seen: &Seen<'_>) -> Option<Pose> {
+        let before = Seen {
+            terrain: self.reference.as_ref()?,
+            ..*seen
+        };
+        let unknown = Way {
+            has_hole: true,
+            step: self.step,
+            ..Way::default()
+        };
+        let predicted = unknown.predict((self.gone, Matrix3::zeros()), 1.0);
+        let mut fitted = before.settle(predicted);
+        if fitted.score < SURE_SCORE {
+            fitted = before.settle_turned(predicted, fitted);
+        }
+        let step = self.gone.inverse().then(fitted.pose);
+        (fitted.score >= LEAST_SCORE).then_some(step)
+    }
+}
+
+/// The ends of a scan as a map, with cells as large as those of the map on which the scan
+/// is looked for.
+fn around(seen: &Seen<'_>) -> Result<Terrain, EngineError> {
+    let resolution_m = seen.terrain.frame.resolution_m;
+    let ends = || near_ends(seen.ends);
+    let reach = ends().fold(1.0, |reach: f64, (x, y)| reach.max(x.abs()).max(y.abs()));
+    let half = reach as usize + 2;
+    let side = 2 * half;
+    let mut occupancy = vec![0; side * side];
+    for (x, y) in ends() {
+        let cell = |along: f64| (along + half as f64) as usize;
+        occupancy[cell(y) * side + cell(x)] = 100;
+    }
+    let corner = -(half as f64) * resolution_m;
+    let frame = GridFrame {
+        resolution_m,
+        map_from_grid: Pose::new(corner, corner, 0.0),
+    };
+    Terrain::new(frame, (side, side), &occupancy, CellRules::default())
+}
+
+/// Where beams end that end near, in cells about the frame that is sought.
+fn near_ends(ends: &Ends) -> impl Iterator<Item = (f64, f64)> {
+    let ends = ends.ends.iter().map(|end| {
+        let (x, y) = end.from;
+        let (dx, dy) = end.towards;
+        (x + end.reading * dx, y + end.reading * dy)
+    });
+    ends.filter(|(x, y)| x.hypot(*y) <= FARTHEST)
+}
