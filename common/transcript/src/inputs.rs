@@ -31,6 +31,14 @@ pub trait Listener {
     fn judged(&mut self, _verdict: u32) -> Result<(), Self::Error> {
         Ok(())
     }
+
+    /// The tracker's state at a scan came, by its number.
+    ///
+    /// # Errors
+    /// What keeps it from going on.
+    fn tracked(&mut self, _state: u32) -> Result<(), Self::Error> {
+        Ok(())
+    }
 }
 
 /// The ends of all topics that have a place in it.
@@ -210,8 +218,10 @@ impl Inputs {
             to.judged(header.verdict)?;
         }
         while let Some(sample) = self.poses.subscriber.receive()? {
-            let outcome = to.transcript().entries.tracked(sample.header());
+            let header = sample.header();
+            let outcome = to.transcript().entries.tracked(header);
             to.transcript().taken(0, outcome)?;
+            to.tracked(header.state)?;
         }
         while let Some(sample) = self.beams.subscriber.receive()? {
             let outcome = to

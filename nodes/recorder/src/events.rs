@@ -1,6 +1,6 @@
 //! What happened that is worth a look at the minutes before it.
 
-use messages::{HealthHeader, NodeState, Verdict};
+use messages::{HealthHeader, NodeState, TrackState, Verdict};
 
 /// Scans in a row that must be without a place after it was known.
 const LOST_AFTER: u32 = 5;
@@ -8,7 +8,8 @@ const LOST_AFTER: u32 = 5;
 /// Something on which a black box is saved.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, clap::ValueEnum)]
 pub enum Event {
-    /// The place was known, and is not for five scans in a row
+    /// The tracker lost the pose; without a tracker, the place was known, and is not for
+    /// five scans in a row
     LostPose,
     /// A node works no more as it should
     Degraded,
@@ -29,6 +30,8 @@ pub(crate) struct Lookout {
     /// Scans since the last known place, if there was one; none once the loss
     /// was noticed.
     unknown_for: Option<u32>,
+    /// What the tracker said last, if there is one.
+    tracked: Option<TrackState>,
     /// The nodes that are degraded.
     degraded: Vec<String>,
 }
@@ -36,6 +39,9 @@ pub(crate) struct Lookout {
 impl Lookout {
     /// Takes the verdict on a scan, by its number.
     pub(crate) fn verdict(&mut self, code: u32) -> Option<Event> {
+        if self.tracked.is_some() {
+            return None;
+        }
         if Verdict::from_code(code) == Some(Verdict::Unique) {
             self.unknown_for = Some(0);
             return None;
@@ -47,6 +53,14 @@ impl Lookout {
         }
         self.unknown_for = None;
         Some(Event::LostPose)
+    }
+
+    /// Takes the tracker's state, by its number.
+    pub(crate) fn state(&mut self, code: u32) -> Option<Event> {
+        let state = TrackState::from_code(code)?;
+        let before = self.tracked.replace(state);
+        let is_lost = state == TrackState::Lost && before != Some(TrackState::Lost);
+        is_lost.then_some(Event::LostPose)
     }
 
     /// Takes a node's report.
@@ -90,6 +104,26 @@ mod tests {
         assert!(lost(&[Verdict::Ambiguous; 4]).is_empty());
         assert!(lost(&[Verdict::Unique]).is_empty());
         assert_eq!(lost(&[Verdict::PoorFit; 20]), [4]);
+    }
+
+    #[test]
+    fn where_there_is_a_tracker_it_says_when_the_pose_is_lost() {
+        let mut lookout = Lookout::default();
+        assert_eq!(lookout.verdict(Verdict::Unique as u32), None);
+        let states = [
+            TrackState::Searching,
+            TrackState::Unique,
+            TrackState::Doubtful,
+            TrackState::Lost,
+            TrackState::Lost,
+            TrackState::Unique,
+            TrackState::Lost,
+        ];
+        let events = states.map(|state| lookout.state(state as u32));
+        let lost = Some(Event::LostPose);
+        assert_eq!(events, [None, None, None, lost, None, None, lost]);
+        let verdicts = [Verdict::Ambiguous; 20].map(|verdict| lookout.verdict(verdict as u32));
+        assert!(verdicts.iter().all(Option::is_none));
     }
 
     #[test]

@@ -207,6 +207,11 @@ impl Listener for Recorder {
         let event = self.lookout.verdict(verdict);
         self.happened(event)
     }
+
+    fn tracked(&mut self, state: u32) -> Result<(), RecorderError> {
+        let event = self.lookout.state(state);
+        self.happened(event)
+    }
 }
 
 /// Processor time of all threads until now, seconds.

@@ -124,6 +124,8 @@ impl Frames {
             return None;
         }
         let transform = match (header.odom_known, header.mount_known) {
+            // The odometry says where its frame has the robot, which has one parent.
+            (0, _) if !self.odometry.is_empty() => return None,
             (1, _) => {
                 let odom = header.odom_frame.as_str();
                 stamped(stamp, &self.map, odom, header.map_from_odom.into())
@@ -310,5 +312,9 @@ mod tests {
         assert_eq!(shown_of(&header), "map->base_link 9.5");
         header.state = TrackState::Lost as u32;
         assert_eq!(shown_of(&header), "");
+        header.state = TrackState::Unique as u32;
+        frames.hear_odometry(&odometry("base_link", 2.0), Time::default());
+        let shown_of = |header: &PoseHeader| shown(frames.tracked(header, Time::default()));
+        assert_eq!(shown_of(&header), "", "the base hangs on the odometry");
     }
 }
