@@ -37,7 +37,7 @@ enum Command {
     Locate(locate::Config),
     /// Judges the places that are found against the truth in recordings
     #[command(after_help = evaluate::NOTES)]
-    Evaluate(evaluate::Config),
+    Evaluate(Box<evaluate::Config>),
     /// Draws a map, a scan at its places, votes or errors, as PNG or SVG
     #[command(after_help = plot::NOTES)]
     Plot(plot::Config),

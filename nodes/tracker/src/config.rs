@@ -7,7 +7,7 @@ use engine::beams::BeamConfig;
 use engine::fit::FitConfig;
 use engine::grid::CellRules;
 use engine::joined::JoinConfig;
-use engine::tracking::TrackingConfig;
+use engine::tracking::FollowConfig;
 use geometry::Pose;
 
 /// Keeps the robot's pose over time, from scans, odometry and what searches find, and
@@ -15,9 +15,9 @@ use geometry::Pose;
 #[derive(Debug, Clone, Parser)]
 #[command(name = "tracker", version)]
 pub struct Config {
-    /// When a place is believed.
+    /// By what the robot is followed.
     #[command(flatten)]
-    pub tracking: TrackingConfig,
+    pub follow: FollowConfig,
 
     /// Most poses a second, 0..=1000: between scans, odometry carries the pose on. With
     /// 0 there is one for each scan only.
@@ -87,7 +87,7 @@ mod tests {
     #[test]
     fn settings_have_defaults_and_limits() {
         let config = parse("").unwrap();
-        assert_eq!(config.tracking, TrackingConfig::default());
+        assert_eq!(config.follow, FollowConfig::default());
         assert_eq!((config.rate, config.initial_pose), (50.0, None));
         let pose = parse("--initial-pose -1,2,90")
             .unwrap()

@@ -10,7 +10,7 @@ use engine::EngineError;
 use engine::fit::Ends;
 use engine::joined::{Joiner, Role};
 use engine::peaks::Sought;
-use engine::tracking::{Candidate, Need, Tracker};
+use engine::tracking::{Candidate, Follower, Need};
 use geometry::{Covariance, Pose};
 use messages::{NodeState, PoseHeader, ScanHeader, Stamp, TrackReason, TrackState};
 use transport::{Flow, GapCounter, Graph, Health, TransportError, with_causes};
@@ -52,7 +52,7 @@ pub fn run(graph: &Graph, config: &Config) -> Result<(), TrackerError> {
         config: config.clone(),
         joiner: Joiner::new(config.join.clone()),
         world: None,
-        tracker: Tracker::new(config.tracking),
+        tracker: Follower::new(&config.follow),
         scans: Scans::default(),
         answers: Answers::default(),
         turn: Turn::Idle,
@@ -86,7 +86,7 @@ struct Node {
     /// The newest scans, and how the robot moved.
     joiner: Joiner,
     world: Option<World>,
-    tracker: Tracker,
+    tracker: Follower,
     scans: Scans,
     answers: Answers,
     /// What the scan whose turn it is waits for.
@@ -193,7 +193,7 @@ impl Node {
         let believed = self
             .last
             .filter(|last| last.report.state == TrackState::Unique);
-        self.tracker = Tracker::new(self.config.tracking);
+        self.tracker = Follower::new(&self.config.follow);
         self.asked = None;
         if let Some(last) = believed
             && let Some(pose) = last.report.pose

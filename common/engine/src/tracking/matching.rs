@@ -36,14 +36,22 @@ pub(super) struct ScanMatcher {
 }
 
 impl ScanMatcher {
-    /// Forgets the scans: odometry tells.
-    pub(super) fn forget(&mut self) {
-        self.reference = None;
+    /// How the sought frame moved since the scan before: as odometry says, or where that
+    /// says nothing, as the two match; `None` where they do not, or there was none.
+    pub(super) fn moved(
+        &mut self,
+        seen: &Seen<'_>,
+        by_odometry: Option<Pose>,
+        config: &TrackingConfig,
+    ) -> Option<Pose> {
+        if by_odometry.is_some() {
+            self.reference = None;
+            return by_odometry;
+        }
+        self.step(seen, config)
     }
 
-    /// How the sought frame moved since the scan before; `None` where the two do not
-    /// match, or there was none.
-    pub(super) fn step(&mut self, seen: &Seen<'_>, config: &TrackingConfig) -> Option<Pose> {
+    fn step(&mut self, seen: &Seen<'_>, config: &TrackingConfig) -> Option<Pose> {
         let step = self.matched(seen);
         self.step = step.unwrap_or(Pose::IDENTITY);
         self.gone = self.gone.then(self.step);

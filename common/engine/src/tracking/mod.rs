@@ -24,6 +24,8 @@
 
 mod config;
 mod matching;
+mod method;
+mod particles;
 mod place;
 mod places;
 mod report;
@@ -32,6 +34,8 @@ mod verdict;
 mod way;
 
 pub use config::TrackingConfig;
+pub use method::{FollowConfig, Follower};
+pub use particles::ParticleTracker;
 pub use place::Candidate;
 pub use report::Report;
 pub use seen::Seen;
@@ -58,9 +62,6 @@ const CHECKED_EVERY: u32 = 10;
 
 /// What such a search finds counts so many scans later: nobody waits for it.
 const COUNTS_AFTER: u32 = 2;
-
-/// A robot that turns to and fro takes a key scan after so many times the distance.
-const KEY_PATHS: f64 = 2.0;
 
 /// Scans of fewer beams say nothing.
 pub const LEAST_BEAMS: usize = 10;
@@ -129,13 +130,9 @@ impl Tracker {
     /// [`Tracker::finish`].
     pub fn begin(&mut self, seen: &Seen<'_>, stamp_ns: i64, moved: Option<Pose>) -> Need {
         self.is_blank = seen.ends.beams() < LEAST_BEAMS;
-        let moved = match moved {
-            Some(_) => {
-                self.matcher.forget();
-                moved
-            }
-            None if self.is_blank => None,
-            None => self.matcher.step(seen, &self.config),
+        let moved = match self.is_blank {
+            true => moved,
+            false => self.matcher.moved(seen, moved, &self.config),
         };
         self.belief.go_on(stamp_ns, moved);
         self.asks_ahead = false;
@@ -178,11 +175,7 @@ impl Tracker {
 
     /// Whether the robot is far enough from the last key scan.
     fn is_far(&self) -> bool {
-        let way = &self.since_key;
-        self.places.is_empty()
-            || way.distance_m() >= self.config.key_m
-            || way.step.yaw.abs() >= self.config.key_deg.to_radians()
-            || way.path_m > KEY_PATHS * self.config.key_m
+        self.places.is_empty() || self.since_key.is_far(&self.config)
     }
 
     /// Is done with the scan, with what the search found that was needed, if any.

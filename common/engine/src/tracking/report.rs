@@ -38,6 +38,24 @@ pub struct Report {
 const SAME_SPOT_M: f64 = 1.0;
 
 impl Report {
+    /// Before the first scan.
+    pub(super) fn of_nothing() -> Self {
+        Report {
+            state: TrackState::Searching,
+            reason: TrackReason::NoScan,
+            pose: None,
+            covariance: Matrix3::zeros(),
+            probability: 0.0,
+            score: 0.0,
+            lead: 0.0,
+            rivals: 0,
+            apart_m: (0.0, 0.0),
+            jumped: 0.0,
+            since_ns: 0,
+            since_m: 0.0,
+        }
+    }
+
     /// The reason in words, and what to do.
     #[must_use]
     pub fn words(&self) -> String {

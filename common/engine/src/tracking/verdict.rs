@@ -12,7 +12,7 @@ use super::way::Way;
 
 /// Key scans since a step that is not known that have to agree before a place is the only
 /// one: nothing ties what was seen before to where the robot is now.
-const LEAST_KEYS: u32 = 3;
+pub(super) const LEAST_KEYS: u32 = 3;
 
 /// Places so near each other are not told apart by the verdict.
 const DISTINCT_M: f64 = 1.0;

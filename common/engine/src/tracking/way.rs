@@ -3,6 +3,11 @@
 use geometry::Pose;
 use nalgebra::{Matrix3, Vector3};
 
+use super::TrackingConfig;
+
+/// A robot that turns to and fro takes a key scan after so many times the distance.
+const KEY_PATHS: f64 = 2.0;
+
 /// A way of several steps.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
 pub(super) struct Way {
@@ -42,9 +47,11 @@ impl Way {
         self.turned += step.yaw.abs();
     }
 
-    /// Straight from start to end, metres.
-    pub(super) fn distance_m(&self) -> f64 {
-        self.step.x.hypot(self.step.y)
+    /// Whether it is long enough for the next key scan.
+    pub(super) fn is_far(&self, config: &TrackingConfig) -> bool {
+        self.step.x.hypot(self.step.y) >= config.key_m
+            || self.step.yaw.abs() >= config.key_deg.to_radians()
+            || self.path_m > KEY_PATHS * config.key_m
     }
 
     /// Where a pose and its covariance, in the map, are after the way, whose standard

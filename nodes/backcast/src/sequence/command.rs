@@ -3,7 +3,7 @@
 use std::path::{Path, PathBuf};
 use std::process::ExitCode;
 
-use engine::tracking::TrackingConfig;
+use engine::tracking::FollowConfig;
 use map::OccupancyGrid;
 
 use super::drive::Moment;
@@ -52,7 +52,7 @@ pub(crate) struct SequenceOptions {
     pub(crate) pictures: Option<PathBuf>,
 
     #[command(flatten)]
-    pub(crate) tracking: TrackingConfig,
+    pub(crate) follow: FollowConfig,
 }
 
 /// Evaluates one file after another. A file that cannot be evaluated is told on
@@ -100,7 +100,7 @@ fn one(
     let mut accepted = Accepted::default();
     let moments = drive::read(&mut session, &truths, sequence, (&progress, &mut accepted))?;
     accepted.check(bag)?;
-    let (world, config) = (session.world()?, sequence.tracking);
+    let (world, config) = (session.world()?, sequence.follow);
     show(&session, &moments, (options, sequence), bag)?;
     let chosen = starts::choose(&moments, sequence.starts);
     let starts = starts::evaluate(world, &moments, &chosen, config)?;
@@ -140,7 +140,7 @@ fn show(
         return Ok(());
     }
     let name = bag.file_stem().unwrap_or_default().to_string_lossy();
-    let said = course::of(session.world()?, moments, sequence.tracking)?;
+    let said = course::of(session.world()?, moments, sequence.follow)?;
     if let Some(folder) = &sequence.trajectories {
         course::write(folder, &name, (moments, &said))?;
     }

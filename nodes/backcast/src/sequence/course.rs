@@ -4,7 +4,7 @@
 use std::fmt::Write as _;
 use std::path::Path;
 
-use engine::tracking::TrackingConfig;
+use engine::tracking::FollowConfig;
 use geometry::Pose;
 
 use super::drive::Moment;
@@ -20,7 +20,7 @@ use crate::plot::Stop;
 pub(super) fn of(
     world: &World,
     moments: &[Moment],
-    config: TrackingConfig,
+    config: FollowConfig,
 ) -> Result<Vec<Said>, BackcastError> {
     let mut run = Run::new(world, moments, config);
     let indices = 0..moments.len();

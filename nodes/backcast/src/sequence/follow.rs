@@ -1,6 +1,6 @@
 //! The tracker over a whole drive, from the truth.
 
-use engine::tracking::TrackingConfig;
+use engine::tracking::FollowConfig;
 use geometry::Covariance;
 
 use super::drive::Moment;
@@ -36,7 +36,7 @@ pub(super) struct Followed {
 pub(super) fn evaluate(
     world: &World,
     moments: &[Moment],
-    config: TrackingConfig,
+    config: FollowConfig,
 ) -> Result<Followed, BackcastError> {
     let mut all = Followed::default();
     let first = moments.iter().position(|moment| moment.truth.is_some());

@@ -1,7 +1,7 @@
 //! Kidnapping: a robot that is followed finds itself elsewhere, with odometry that
 //! says that it stood still.
 
-use engine::tracking::TrackingConfig;
+use engine::tracking::FollowConfig;
 use geometry::Pose;
 
 use super::drive::Moment;
@@ -58,7 +58,7 @@ pub(super) fn evaluate(
     world: &World,
     moments: &[Moment],
     chosen: &[(usize, usize)],
-    config: TrackingConfig,
+    config: FollowConfig,
 ) -> Result<Jumps, BackcastError> {
     let mut all = Jumps::default();
     for &(from, to) in chosen {

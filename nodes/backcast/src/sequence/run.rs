@@ -1,6 +1,6 @@
 //! The tracker on moments of a drive, one after the other.
 
-use engine::tracking::{Candidate, Need, Report, Seen, Tracker, TrackingConfig};
+use engine::tracking::{Candidate, FollowConfig, Follower, Need, Report, Seen};
 use geometry::{Covariance, Pose};
 use messages::TrackState;
 
@@ -12,7 +12,7 @@ use crate::offline::{World, cpu};
 pub(super) struct Run<'a> {
     world: &'a World,
     moments: &'a [Moment],
-    tracker: Tracker,
+    tracker: Follower,
     /// Of the moment whose search counts later.
     asked: Option<usize>,
     /// Milliseconds of computing for each scan that was tracked without a search.
@@ -60,11 +60,11 @@ impl Said {
 }
 
 impl<'a> Run<'a> {
-    pub(super) fn new(world: &'a World, moments: &'a [Moment], config: TrackingConfig) -> Self {
+    pub(super) fn new(world: &'a World, moments: &'a [Moment], config: FollowConfig) -> Self {
         Run {
             world,
             moments,
-            tracker: Tracker::new(config),
+            tracker: Follower::new(&config),
             asked: None,
             tracking_ms: Vec::new(),
             searches: 0,

@@ -1,6 +1,6 @@
 //! The tracker started at many scans of a drive, with no guess.
 
-use engine::tracking::{LEAST_BEAMS, TrackingConfig};
+use engine::tracking::{FollowConfig, LEAST_BEAMS};
 
 use super::drive::Moment;
 use super::run::{Run, Said};
@@ -53,7 +53,7 @@ pub(super) fn evaluate(
     world: &World,
     moments: &[Moment],
     chosen: &[usize],
-    config: TrackingConfig,
+    config: FollowConfig,
 ) -> Result<Starts, BackcastError> {
     let mut all = Starts::default();
     for &start in chosen {
