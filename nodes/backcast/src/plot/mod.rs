@@ -15,9 +15,11 @@
 //!
 //! `difference` is drawn by `backcast regress`, `drive` by `backcast evaluate --sequence`.
 
+mod axes;
 mod chart;
 mod command;
 mod config;
+mod curves;
 mod difference;
 mod drive;
 mod errors;
@@ -28,6 +30,7 @@ mod marks;
 mod outline;
 mod page;
 mod places;
+mod scale;
 mod scan;
 mod sheet;
 mod subject;
