@@ -2,7 +2,10 @@
 //! (section II B), at a known heading, with every operation counted. They are for
 //! counting: the engine and the baselines do the same in less time.
 
+use std::ops::AddAssign;
+
 use engine::accumulator::Query;
+use engine::directions::Direction;
 use engine::grid::Cell;
 use engine::reference;
 
@@ -55,6 +58,24 @@ impl ReverseCounts {
     }
 }
 
+impl AddAssign for MarkovCounts {
+    fn add_assign(&mut self, other: Self) {
+        self.ranges += other.ranges;
+        self.squarings += other.squarings;
+        self.gaussians += other.gaussians;
+        self.additions += other.additions;
+    }
+}
+
+impl AddAssign for ReverseCounts {
+    fn add_assign(&mut self, other: Self) {
+        self.obstacles += other.obstacles;
+        self.projections += other.projections;
+        self.additions += other.additions;
+        self.worst_additions += other.worst_additions;
+    }
+}
+
 /// Markov localization at one heading: the likelihood of the readings in each cell, row
 /// by row from the lowest y, 0 where the robot cannot stand; and what it took.
 #[must_use]
@@ -92,36 +113,61 @@ pub fn markov(world: &World, readings: &Readings, query: Query<'_>) -> (Vec<f64>
 /// lowest y, as [`engine::scatter`] has it; and what it took.
 #[must_use]
 pub fn reverse_projection(world: &World, query: Query<'_>) -> (Vec<u16>, ReverseCounts) {
+    let mut field = vec![0u16; world.grid.cells().len()];
+    let counts = project(world, query, |index, votes| {
+        field[index] += u16::from(votes)
+    });
+    (field, counts)
+}
+
+/// The most beams that vote for one cell: by Lemma 1 no more than there are.
+#[must_use]
+pub fn most_beams(world: &World, query: Query<'_>) -> u16 {
+    let mut beams = vec![0u16; world.grid.cells().len()];
+    project(world, query, |index, _| beams[index] += 1);
+    beams.into_iter().max().unwrap_or(0)
+}
+
+/// Projects all readings back from all boundary cells; `add` is told of each cell that a
+/// taper reaches, and its votes.
+fn project(world: &World, query: Query<'_>, mut add: impl FnMut(usize, u8)) -> ReverseCounts {
     let mut counts = ReverseCounts::default();
-    let grid = &world.grid;
-    let mut field = vec![0u16; grid.cells().len()];
+    let mut visible = Vec::new();
     for cell in &world.boundary {
         for beam in 0..query.program.beams() {
             let (direction, taper) = query.beam(beam);
-            let back = direction.opposite();
-            let first = (taper.centre + 1)
-                .saturating_sub(taper.profile.len() as u16)
-                .max(1);
+            let first = (taper.centre + 1).saturating_sub(taper.profile.len() as u16);
+            let first = first.max(1);
             counts.worst_additions += u64::from(taper.end().saturating_sub(first));
             counts.obstacles += 1;
-            let (mut x, mut y) = back.advance(i64::from(cell.x), i64::from(cell.y));
-            let mut visible = Vec::new();
-            while grid.get(x, y) == Some(Cell::Open) && visible.len() + 1 < usize::from(taper.end())
-            {
-                visible.push(y as usize * grid.width() + x as usize);
-                (x, y) = back.advance(x, y);
-            }
+            let from = (i64::from(cell.x), i64::from(cell.y));
+            see_back(
+                world,
+                from,
+                &direction.opposite(),
+                taper.end(),
+                &mut visible,
+            );
             let reached = visible.iter().zip(1..).skip(usize::from(first) - 1);
-            let mut is_projected = false;
+            let before = counts.additions;
             for (&index, steps) in reached {
-                is_projected = true;
                 counts.additions += 1;
-                field[index] += u16::from(taper.votes(steps));
+                add(index, taper.votes(steps));
             }
-            counts.projections += u64::from(is_projected);
+            counts.projections += u64::from(counts.additions > before);
         }
     }
-    (field, counts)
+    counts
+}
+
+/// The cells before the nearest obstacle, and before `end` steps.
+fn see_back(world: &World, from: (i64, i64), back: &Direction, end: u16, visible: &mut Vec<usize>) {
+    visible.clear();
+    let (mut x, mut y) = back.advance(from.0, from.1);
+    while visible.len() + 1 < usize::from(end) && world.grid.get(x, y) == Some(Cell::Open) {
+        visible.push(y as usize * world.grid.width() + x as usize);
+        (x, y) = back.advance(x, y);
+    }
 }
 
 #[cfg(test)]
@@ -163,6 +209,7 @@ mod tests {
                 assert!(reverse.operations() <= 2 * m * p);
                 assert!(reverse.additions <= reverse.worst_additions);
                 assert!(reverse.additions <= m * n, "Theorem 1");
+                assert!(u64::from(most_beams(&world, query)) <= m, "Lemma 1");
                 let mut expected = Vec::new();
                 let filled =
                     Scatter::new(&world.grid, &world.boundary)

@@ -49,6 +49,9 @@ impl ScanConfig {
 /// Bearings of a ring scan: one a degree.
 const RING_BEARINGS: usize = 360;
 
+/// Sets the random numbers of bearings apart from those of poses and readings.
+const BEARING_ERRORS: u64 = 0x5f0b_3a91;
+
 /// A ring of few rangefinders, each of which looks along its axis only: the eight sonars
 /// of the paper, which neglects σ_θ (section II A).
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -57,6 +60,9 @@ pub struct RingConfig<'a> {
     pub bearings_deg: &'a [i32],
     /// Standard deviation of a reading, per cent of its range.
     pub noise_percent: f64,
+    /// Standard deviation of the bearing in which a reading is truly taken, degrees; it
+    /// is rounded to whole ones.
+    pub bearing_sigma_deg: f64,
 }
 
 impl RingConfig<'_> {
@@ -96,20 +102,24 @@ pub fn simulate_ring(
         noise_percent: ring.noise_percent,
     };
     let mut scans = simulate(world, space, &config, count, seed)?;
-    let turn = RING_BEARINGS as i32;
-    let looks: Vec<usize> = ring
-        .bearings_deg
-        .iter()
-        .map(|degrees| degrees.rem_euclid(turn) as usize)
-        .collect();
+    let mut rng = Xoshiro256PlusPlus::seed_from_u64(seed ^ BEARING_ERRORS);
     for scan in &mut scans {
-        for (bearing, range) in scan.ranges.iter_mut().enumerate() {
-            if !looks.contains(&bearing) {
-                *range = f32::NAN;
-            }
-        }
+        scan.ranges = looked_at(&scan.ranges, ring, &mut rng);
     }
     Ok(scans)
+}
+
+/// What of a full scan a ring reads.
+fn looked_at(full: &[f32], ring: &RingConfig<'_>, rng: &mut Xoshiro256PlusPlus) -> Vec<f32> {
+    let turn = RING_BEARINGS as i32;
+    let mut ranges = vec![f32::NAN; RING_BEARINGS];
+    for &degrees in ring.bearings_deg {
+        let error: f64 = StandardNormal.sample(rng);
+        let truly = degrees + (ring.bearing_sigma_deg * error).round() as i32;
+        let at = |degrees: i32| degrees.rem_euclid(turn) as usize;
+        ranges[at(degrees)] = full[at(truly)];
+    }
+    ranges
 }
 
 /// A scan, and where it was taken.
@@ -278,6 +288,7 @@ mod tests {
         let ring = RingConfig {
             bearings_deg: &[-90, 0, 41],
             noise_percent: 0.0,
+            bearing_sigma_deg: 0.0,
         };
         for scan in simulate_ring(&world, &space, &ring, 3, 1).unwrap() {
             let (x, y) = (scan.x as i64, scan.y as i64);

@@ -48,7 +48,8 @@ pub(crate) struct Curves {
 ///
 /// # Errors
 /// The picture would be too large.
-pub(crate) fn draw(chart: &Curves, width: u32) -> Result<Scene, BackcastError> {
+pub(crate) fn draw(chart: &Curves) -> Result<Scene, BackcastError> {
+    let width = page::COMMON_WIDTH;
     let heading = Heading {
         title: chart.title.clone(),
         verdict: None,
@@ -175,6 +176,6 @@ mod tests {
             panic!("{y:?}");
         };
         assert!(low <= 2.0 && high >= 30.0, "{low} {high}");
-        assert!(draw(&chart(), 600).is_ok());
+        assert!(draw(&chart()).is_ok());
     }
 }

@@ -37,7 +37,7 @@ pub(super) fn heat(share: f64) -> Color {
 
 /// What a picture of votes is made of.
 #[derive(Debug)]
-pub(super) struct Votes<'a> {
+pub(crate) struct Votes<'a> {
     pub(super) ground: Ground<'a>,
     pub(super) field: &'a Field,
     pub(super) heading: Heading,
@@ -63,6 +63,27 @@ impl<'a> Votes<'a> {
             extent: subject.extent(&ground, size.whole),
             truth: subject.truth.as_ref().map(|truth| truth.pose),
             width: size.width,
+        }
+    }
+
+    /// Those on a whole map.
+    pub(crate) fn whole(
+        (map, rules): (&'a OccupancyGrid, CellRules),
+        field: &'a Field,
+        truth: Option<Pose>,
+        (title, says): (String, String),
+    ) -> Self {
+        Votes {
+            ground: Ground { map, rules },
+            field,
+            heading: Heading {
+                title,
+                verdict: None,
+                says,
+            },
+            extent: Extent::of_map(map),
+            truth,
+            width: page::COMMON_WIDTH,
         }
     }
 
@@ -99,7 +120,7 @@ fn heading(subject: &Subject, field: &Field, bag: &str) -> Heading {
 ///
 /// # Errors
 /// The picture would be too large.
-pub(super) fn draw(votes: &Votes<'_>) -> Result<Scene, BackcastError> {
+pub(crate) fn draw(votes: &Votes<'_>) -> Result<Scene, BackcastError> {
     let extent = votes.extent;
     let ratio = (extent.height() / extent.width()).clamp(HEIGHTS.0, HEIGHTS.1);
     let height = (page::body_width(votes.width) * ratio).round();

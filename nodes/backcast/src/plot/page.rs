@@ -5,8 +5,10 @@ use messages::Verdict;
 
 use super::theme;
 
+/// Pictures are this wide unless somebody asks for another width.
+pub(super) const COMMON_WIDTH: u32 = 1200;
 /// All lengths are meant for a picture this wide.
-const WIDTH: f64 = 1200.0;
+const WIDTH: f64 = COMMON_WIDTH as f64;
 /// They grow with the width, but by less, so that a small picture is legible.
 const GROWTH: f64 = 0.7;
 

@@ -194,7 +194,7 @@ impl Relief {
 ///
 /// # Errors
 /// The picture would be too large.
-pub(super) fn draw(votes: &Votes<'_>) -> Result<Scene, BackcastError> {
+pub(crate) fn draw(votes: &Votes<'_>) -> Result<Scene, BackcastError> {
     let relief = Relief::of(votes);
     let width = page::body_width(votes.width);
     let height = (width * (HEIGHTS.0 + HEIGHTS.1)).round();
@@ -273,27 +273,48 @@ fn draw_edges(
     let along_x = |share: f64| ((2.0 * share - 1.0) * half_x, front);
     let along_y = |share: f64| (side, (2.0 * share - 1.0) * half_y);
     let at = |(x, y): (f64, f64)| placing.at(camera.look((x, y, 0.0)).at);
-    draw_edge(scene, (scale_x, "x, m"), &|share| at(along_x(share)), unit);
-    draw_edge(scene, (scale_y, "y, m"), &|share| at(along_y(share)), unit);
+    let middle = at((0.0, 0.0));
+    let edge = Edge { middle, unit };
+    edge.draw(scene, (scale_x, "x, m"), &|share| at(along_x(share)));
+    edge.draw(scene, (scale_y, "y, m"), &|share| at(along_y(share)));
 }
 
-/// An edge of the floor with its numbers below it.
-fn draw_edge(
-    scene: &mut Scene,
-    (scale, name): (Scale, &str),
-    at: &dyn Fn(f64) -> (f64, f64),
+/// An edge of the floor with its numbers outside.
+#[derive(Debug, Clone, Copy)]
+struct Edge {
+    /// Of the floor, in the picture.
+    middle: (f64, f64),
     unit: f64,
-) {
-    let mut lines = Path::line(at(0.0), at(1.0));
-    let style = TextStyle::new(13.0 * unit, theme::INK).anchored(Anchor::Middle);
-    for (value, text) in scale.ticks() {
-        let (x, y) = at(scale.share(value));
-        lines.add_line((x, y), (x, y + 6.0 * unit));
-        scene.text(&text, (x, y + 20.0 * unit), &style);
+}
+
+impl Edge {
+    /// `at` takes shares of the edge to points of the picture.
+    fn draw(self, scene: &mut Scene, (scale, name): (Scale, &str), at: &dyn Fn(f64) -> (f64, f64)) {
+        let unit = self.unit;
+        let mut lines = Path::line(at(0.0), at(1.0));
+        let style = TextStyle::new(13.0 * unit, theme::INK).anchored(Anchor::Middle);
+        let (out_x, out_y) = self.outwards(at(0.0), at(1.0));
+        let write = |scene: &mut Scene, text: &str, (x, y): (f64, f64), away: f64| {
+            let beside = (x + away * out_x, y + away * out_y + 4.5 * unit);
+            scene.text(text, beside, &style);
+        };
+        for (value, text) in scale.ticks() {
+            let (x, y) = at(scale.share(value));
+            lines.add_line((x, y), (x + 6.0 * unit * out_x, y + 6.0 * unit * out_y));
+            write(scene, &text, (x, y), 20.0 * unit);
+        }
+        scene.stroke(lines, Stroke::new(theme::INK, unit.max(1.0)));
+        write(scene, name, at(0.5), 46.0 * unit);
     }
-    scene.stroke(lines, Stroke::new(theme::INK, unit.max(1.0)));
-    let (x, y) = at(0.5);
-    scene.text(name, (x, y + 40.0 * unit), &style);
+
+    /// The direction across the edge that leads away from the floor.
+    fn outwards(self, from: (f64, f64), to: (f64, f64)) -> (f64, f64) {
+        let (along_x, along_y) = (to.0 - from.0, to.1 - from.1);
+        let length = along_x.hypot(along_y).max(f64::MIN_POSITIVE);
+        let (x, y) = (-along_y / length, along_x / length);
+        let is_inwards = (from.0 - self.middle.0) * x + (from.1 - self.middle.1) * y < 0.0;
+        if is_inwards { (-x, -y) } else { (x, y) }
+    }
 }
 
 fn arrow_stroke(unit: f64) -> Stroke {
