@@ -13,14 +13,17 @@ pub(super) enum Scale {
 /// Most numbers beside an axis with an even scale.
 const MOST_TICKS: f64 = 7.0;
 
+/// An even scale ends at a multiple of a round step, of which there are at most so many.
+const STEPS: f64 = 12.0;
+
 /// Up to so many decades 2 and 5 are written, too.
-const FEW_DECADES: f64 = 2.0;
+const FEW_DECADES: f64 = 2.8;
 
 impl Scale {
     /// An even scale over all values, from 0 on.
     pub(super) fn from_zero(values: impl Iterator<Item = f64>) -> Self {
         let high = values.filter(|value| value.is_finite()).fold(0.0, f64::max);
-        let step = round_step(high.max(f64::MIN_POSITIVE) / (MOST_TICKS - 1.0));
+        let step = round_step(high.max(f64::MIN_POSITIVE) / STEPS);
         Scale::Even(0.0, (high / step).ceil().max(1.0) * step)
     }
 

@@ -45,6 +45,7 @@ pub(super) struct Extent {
 /// Time and success of a method over all scans.
 #[derive(Debug, Clone, PartialEq)]
 pub(super) struct Tally {
+    /// The geometric mean.
     pub(super) cpu_ms: Interval,
     pub(super) found: Interval,
 }
@@ -238,7 +239,7 @@ fn summarized(noise_percent: u32, trials: &[Trial]) -> Saved {
         let outcomes = || trials.iter().map(|trial| trial.outcomes[method]);
         let times: Vec<f64> = outcomes().map(|(ms, _)| ms).collect();
         Tally {
-            cpu_ms: interval::of_mean(&times),
+            cpu_ms: interval::of_ratio(&times),
             found: interval::of_share(outcomes().filter(|o| o.1).count(), times.len()),
         }
     };
@@ -326,8 +327,7 @@ pub(super) fn draw(extent: Extent, all: &[Saved]) -> Result<Scene, BackcastError
                 CurvePoint {
                     x: f64::from(saved.noise_percent),
                     y: time.value,
-                    // A time is above 0, and the axis has no 0.
-                    interval: Some((time.low.max(0.1 * time.value), time.high)),
+                    interval: Some((time.low, time.high)),
                 }
             })
             .collect(),

@@ -39,7 +39,7 @@ pub(super) fn of_mean(values: &[f64]) -> Interval {
     }
 }
 
-/// The geometric mean of ratios above 0, whose logarithms are taken as normal.
+/// The geometric mean of ratios or times above 0, whose logarithms are taken as normal.
 pub(super) fn of_ratio(ratios: &[f64]) -> Interval {
     let logs: Vec<f64> = ratios.iter().map(|ratio| ratio.ln()).collect();
     let Interval { value, low, high } = of_mean(&logs);

@@ -40,7 +40,7 @@ pub(super) struct Measured {
     pub(super) noise: u32,
     /// Cells of a taper, on average.
     pub(super) k: f64,
-    /// Milliseconds for one scan, the mean of the worlds' medians.
+    /// Milliseconds for one scan, the geometric mean of the worlds' medians.
     pub(super) cpu_ms: Interval,
     /// Its time over that of the paper's method as written.
     pub(super) ratio: Interval,
@@ -128,7 +128,7 @@ fn summarized(table: Table, (p_over_n, noise): (u32, u32), worlds: &[Vec<Row>]) 
             p_over_n,
             noise,
             k: first.first().map_or(f64::NAN, |row| row.k),
-            cpu_ms: interval::of_mean(&own),
+            cpu_ms: interval::of_ratio(&own),
             ratio: interval::of_ratio(&ratios),
             found: interval::of_mean(&found).value,
             paper_ratio: printed.and_then(|printed| paper_ratio(method, printed)),
