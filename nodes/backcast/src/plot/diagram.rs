@@ -152,14 +152,14 @@ fn draw_cells(scene: &mut Scene, panel: &Panel, grid: Rect, side: f64) {
     }
 }
 
-/// Blue, orange and grey, which the colour-blind tell apart; what is rejected is dashed.
+/// Purple, blue and orange, which the colour-blind tell apart; what is rejected is dashed.
 fn stroke(role: Role, unit: f64) -> Stroke {
     match role {
         Role::Reading => Stroke::new(theme::TRUTH, 2.2 * unit),
         Role::Projected => Stroke::new(theme::CURVES[0], 1.5 * unit),
         Role::Rejected => Stroke {
             dash: 4.0 * unit,
-            ..Stroke::new(theme::QUIET, 1.1 * unit)
+            ..Stroke::new(theme::CURVES[1], 1.5 * unit)
         },
     }
 }
@@ -176,6 +176,8 @@ fn draw_arrow(scene: &mut Scene, (from, to): ((f64, f64), (f64, f64)), role: Rol
         )
     };
     scene.stroke(Path::line(from, to), stroke(role, unit));
+    let foot = Path::circle(from, 2.6 * unit);
+    scene.fill(foot, stroke(role, unit).color);
     let solid = Stroke {
         dash: 0.0,
         ..stroke(role, unit)
@@ -184,18 +186,23 @@ fn draw_arrow(scene: &mut Scene, (from, to): ((f64, f64), (f64, f64)), role: Rol
 }
 
 fn legend(diagram: &Diagram, unit: f64) -> Vec<Entry> {
-    let mut entries = vec![
-        (Sample::Square(theme::OCCUPIED), "obstacle".to_owned()),
-        (Sample::Square(theme::QUIET), "boundary cell".to_owned()),
-    ];
     let panels = &diagram.panels;
+    let mut entries = vec![(Sample::Square(theme::QUIET), "boundary cell".to_owned())];
+    let mut cells = panels.iter().flat_map(|panel| &panel.cells);
+    if cells.any(|&cell| cell == Cell::Obstacle) {
+        let name = "obstacle behind it".to_owned();
+        entries.push((Sample::Square(theme::OCCUPIED), name));
+    }
     if panels.iter().any(|panel| panel.robot.is_some()) {
         entries.push((Sample::Dot(theme::TRUTH), "robot".to_owned()));
     }
     let roles = [
         (Role::Reading, "reading"),
         (Role::Projected, "projected reading"),
-        (Role::Rejected, "does not match, or is blocked"),
+        (
+            Role::Rejected,
+            "the same, which does not match or is blocked",
+        ),
     ];
     for (role, name) in roles {
         let mut arrows = panels.iter().flat_map(|panel| &panel.arrows);

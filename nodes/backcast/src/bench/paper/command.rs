@@ -86,13 +86,13 @@ impl Scope {
     }
 
     fn table_1(self) -> tables::Extent {
-        let (size, worlds) = if self.is_quick { (200, 3) } else { (1200, 5) };
+        let (size, worlds) = if self.is_quick { (200, 6) } else { (1200, 5) };
         self.table(size, worlds)
     }
 
     /// The paper's size in both.
     fn table_2(self) -> tables::Extent {
-        self.table(100, if self.is_quick { 3 } else { 5 })
+        self.table(100, if self.is_quick { 6 } else { 10 })
     }
 
     fn table(self, size: u32, worlds: u64) -> tables::Extent {
@@ -115,9 +115,9 @@ impl Scope {
 
     fn aid(self) -> aid::Extent {
         let (size, worlds, scans) = if self.is_quick {
-            (80, 4, 6)
+            (80, 3, 4)
         } else {
-            (200, 5, 10)
+            (150, 5, 10)
         };
         aid::Extent {
             size,
