@@ -115,7 +115,7 @@ pub fn markov(world: &World, readings: &Readings, query: Query<'_>) -> (Vec<f64>
 pub fn reverse_projection(world: &World, query: Query<'_>) -> (Vec<u16>, ReverseCounts) {
     let mut field = vec![0u16; world.grid.cells().len()];
     let counts = project(world, query, |index, votes| {
-        field[index] += u16::from(votes)
+        field[index] += u16::from(votes);
     });
     (field, counts)
 }
