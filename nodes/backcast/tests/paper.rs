@@ -130,7 +130,7 @@ fn differences(id: &str, page: &OnPage, row: &Row) -> Vec<String> {
         FIGURES_DIFFER
     };
     let ratio = (said / measured).max(measured / said);
-    if said != measured && !(ratio <= allowed) {
+    if said != measured && ratio > allowed {
         found.push(format!(
             "{id}: the page says {said}, measured is {measured}"
         ));

@@ -1,6 +1,5 @@
 //! From the places of a scan to the poses with which a particle filter may start.
 
-use bytemuck::Zeroable;
 use engine::EngineError;
 use engine::particles::{self, Candidate};
 use messages::{Particle, ParticlesHeader};
@@ -33,7 +32,6 @@ pub fn draw(
         stamp: answer.header.stamp,
         map_id: answer.header.map_id,
         mount_known: answer.header.mount_known,
-        ..ParticlesHeader::zeroed()
     };
     let Some(frame) = answer.frame.filter(|_| !answer.places.is_empty()) else {
         return Ok((header, Vec::new()));
@@ -48,6 +46,8 @@ pub fn draw(
 
 #[cfg(test)]
 mod tests {
+    use bytemuck::Zeroable;
+
     use super::*;
     use crate::answer::nothing;
 

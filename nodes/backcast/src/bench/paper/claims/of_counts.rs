@@ -21,15 +21,11 @@ fn each(all: &[Counted], of: impl Fn(&Counted) -> f64) -> Vec<f64> {
 }
 
 /// A claim that no value exceeds 1; ours is the largest.
-fn at_most_one(claim: Claim, values: Vec<f64>) -> Claim {
-    Claim {
-        ours: most(values.iter().copied()),
-        cases: values
-            .into_iter()
-            .map(|value| Case::at_most(value, 1.0))
-            .collect(),
-        ..claim
-    }
+fn at_most_one(mut claim: Claim, values: &[f64]) -> Claim {
+    claim.ours = most(values.iter().copied());
+    let cases = values.iter().map(|&value| Case::at_most(value, 1.0));
+    claim.cases = cases.collect();
+    claim
 }
 
 fn blank(id: &'static str, section: &'static str) -> Claim {
@@ -68,7 +64,7 @@ pub(in super::super) fn of_counts(all: &[Counted]) -> Vec<Claim> {
                 is: "the largest share of Markov's operations, p < n",
                 ..blank("C4", "II B")
             },
-            each(&few(), operations),
+            &each(&few(), operations),
         ),
         at_most_one(
             Claim {
@@ -77,7 +73,7 @@ pub(in super::super) fn of_counts(all: &[Counted]) -> Vec<Claim> {
                 is: "the largest share of Markov's operations, p > n",
                 ..blank("C5", "II B")
             },
-            each(&many(), operations),
+            &each(&many(), operations),
         ),
         at_most_one(
             Claim {
@@ -86,7 +82,7 @@ pub(in super::super) fn of_counts(all: &[Counted]) -> Vec<Claim> {
                 is: "the largest share of the readings projected back that reach their cells",
                 ..blank("C6", "II B")
             },
-            each(all, |c| c.reverse.projections as f64 / c.mp() as f64),
+            &each(all, |c| c.reverse.projections as f64 / c.mp() as f64),
         ),
         at_most_one(
             Claim {
@@ -95,7 +91,7 @@ pub(in super::super) fn of_counts(all: &[Counted]) -> Vec<Claim> {
                 is: "the largest number of beams in a cell over m",
                 ..blank("T3", "III")
             },
-            each(all, |c| f64::from(c.most_votes) / Counted::M as f64),
+            &each(all, |c| f64::from(c.most_votes) / Counted::M as f64),
         ),
         at_most_one(
             Claim {
@@ -104,7 +100,7 @@ pub(in super::super) fn of_counts(all: &[Counted]) -> Vec<Claim> {
                 is: "the largest share of mn additions",
                 ..blank("T4", "III")
             },
-            each(all, of_mn),
+            &each(all, of_mn),
         ),
     ]);
     claims
@@ -134,7 +130,7 @@ fn formulas(all: &[Counted]) -> Vec<Claim> {
             is: "the largest share of 2mp",
             ..blank("C2", "II B")
         },
-        each(all, |c| c.reverse.operations() as f64 / (2 * c.mp()) as f64),
+        &each(all, |c| c.reverse.operations() as f64 / (2 * c.mp()) as f64),
     );
     let additions = at_most_one(
         Claim {
@@ -143,7 +139,7 @@ fn formulas(all: &[Counted]) -> Vec<Claim> {
             is: "the largest share of kmp",
             ..blank("C3", "II B")
         },
-        each(all, of_worst),
+        &each(all, of_worst),
     );
     vec![markov, operations, additions]
 }
