@@ -80,7 +80,7 @@ topics! {
     /// Where the robot may be, best first.
     Hypotheses = "hypotheses", HypothesesHeader, [Hypothesis] { depth: 16 };
     /// Where a particle filter may start, around the hypotheses of a scan.
-    Particles = "particles", ParticlesHeader, [Particle] { depth: 1 };
+    Particles = "particles", ParticlesHeader, [Particle];
     /// Where the tracker has the robot; the items are why, in words, as UTF-8.
     Tracked = "pose", PoseHeader, [u8] { depth: 16 };
     /// Scans that the tracker wants searched; no items.
