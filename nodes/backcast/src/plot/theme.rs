@@ -46,13 +46,14 @@ pub(super) const CLASSES: [BeamClass; 4] = [
     BeamClass::Unknown,
 ];
 
-/// The colour of a beam, and what it did in a few words.
+/// The colour of a beam, and what it did in a few words; the colours are those that the
+/// colour-blind tell apart, see [`CURVES`].
 pub(super) fn of_class(class: BeamClass) -> (Color, &'static str) {
     match class {
-        BeamClass::Hit => (Color::rgb(0x0E_8A46), "hit"),
-        BeamClass::Short => (Color::rgb(0xEE_8A12), "short"),
-        BeamClass::Through => (Color::rgb(0xD6_2728), "through a wall"),
-        BeamClass::Unknown => (Color::rgb(0x85_5FC4), "behind the unknown"),
+        BeamClass::Hit => (Color::rgb(0x00_9E73), "hit"),
+        BeamClass::Short => (Color::rgb(0xE6_9F00), "short"),
+        BeamClass::Through => (Color::rgb(0xD5_5E00), "through a wall"),
+        BeamClass::Unknown => (Color::rgb(0x56_5BB8), "behind the unknown"),
     }
 }
 
