@@ -4,6 +4,7 @@
 //! Everything is seeded: the same numbers give the same world, scan and answer.
 
 pub mod baselines;
+pub mod counted;
 mod error;
 pub mod scans;
 pub mod timing;

@@ -46,6 +46,82 @@ impl ScanConfig {
     }
 }
 
+/// Bearings of a ring scan: one a degree.
+const RING_BEARINGS: usize = 360;
+
+/// Sets the random numbers of bearings apart from those of poses and readings.
+const BEARING_ERRORS: u64 = 0x5f0b_3a91;
+
+/// A ring of few rangefinders, each of which looks along its axis only: the eight sonars
+/// of the paper, which neglects σ_θ (section II A).
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct RingConfig<'a> {
+    /// Where they look, whole degrees counter-clockwise from ahead.
+    pub bearings_deg: &'a [i32],
+    /// Standard deviation of a reading, per cent of its range.
+    pub noise_percent: f64,
+    /// Standard deviation of the bearing in which a reading is truly taken, degrees; it
+    /// is rounded to whole ones.
+    pub bearing_sigma_deg: f64,
+}
+
+impl RingConfig<'_> {
+    /// Votes to match: the same deviation, one taper for each rangefinder, and all of
+    /// them weigh the same.
+    #[must_use]
+    pub fn votes(&self, taper: TaperShape) -> VoteConfig {
+        let all = ScanConfig {
+            beams: RING_BEARINGS,
+            noise_percent: self.noise_percent,
+        };
+        all.votes(taper)
+    }
+}
+
+/// Takes `count` scans of a ring at random poses: 360 readings a degree apart, NaN where
+/// no rangefinder looks. Headings are those of a grid of 360.
+///
+/// # Errors
+/// If the space has other headings, or nowhere enough rangefinders return.
+pub fn simulate_ring(
+    world: &World,
+    space: &Space,
+    ring: &RingConfig<'_>,
+    count: usize,
+    seed: u64,
+) -> Result<Vec<SimulatedScan>, BenchmarksError> {
+    let headings = space.directions.count();
+    if headings != RING_BEARINGS {
+        let beams = RING_BEARINGS;
+        return Err(BenchmarksError::Beams { beams, headings });
+    }
+    // All bearings are simulated and those in between dropped: each reading is then that
+    // of a full scan with the same seed.
+    let config = ScanConfig {
+        beams: RING_BEARINGS,
+        noise_percent: ring.noise_percent,
+    };
+    let mut scans = simulate(world, space, &config, count, seed)?;
+    let mut rng = Xoshiro256PlusPlus::seed_from_u64(seed ^ BEARING_ERRORS);
+    for scan in &mut scans {
+        scan.ranges = looked_at(&scan.ranges, ring, &mut rng);
+    }
+    Ok(scans)
+}
+
+/// What of a full scan a ring reads.
+fn looked_at(full: &[f32], ring: &RingConfig<'_>, rng: &mut Xoshiro256PlusPlus) -> Vec<f32> {
+    let turn = RING_BEARINGS as i32;
+    let mut ranges = vec![f32::NAN; RING_BEARINGS];
+    for &degrees in ring.bearings_deg {
+        let error: f64 = StandardNormal.sample(rng);
+        let truly = degrees + (ring.bearing_sigma_deg * error).round() as i32;
+        let at = |degrees: i32| degrees.rem_euclid(turn) as usize;
+        ranges[at(degrees)] = full[at(truly)];
+    }
+    ranges
+}
+
 /// A scan, and where it was taken.
 #[derive(Debug, Clone, PartialEq)]
 pub struct SimulatedScan {
@@ -203,6 +279,31 @@ mod tests {
             "{}",
             square_mean.sqrt()
         );
+    }
+
+    #[test]
+    fn a_ring_reads_along_its_axes_and_nothing_else() {
+        let world = world();
+        let space = world.space(360).unwrap();
+        let ring = RingConfig {
+            bearings_deg: &[-90, 0, 41],
+            noise_percent: 0.0,
+            bearing_sigma_deg: 0.0,
+        };
+        for scan in simulate_ring(&world, &space, &ring, 3, 1).unwrap() {
+            let (x, y) = (scan.x as i64, scan.y as i64);
+            for (bearing, range) in scan.ranges.iter().enumerate() {
+                let direction = space.directions.get(scan.heading + bearing);
+                let steps = reference::range(&world.grid, x, y, direction).unwrap();
+                let true_m = f64::from(steps) / direction.steps_per_cell * space.resolution_m;
+                match [270, 0, 41].contains(&bearing) {
+                    // The range is kept as an f32.
+                    true => assert!((f64::from(*range) - true_m).abs() < 1e-5),
+                    false => assert!(range.is_nan()),
+                }
+            }
+        }
+        assert!(simulate_ring(&world, &world.space(72).unwrap(), &ring, 1, 1).is_err());
     }
 
     #[test]

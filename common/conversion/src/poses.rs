@@ -3,7 +3,7 @@
 use std::f64::consts::PI;
 
 use geometry::{Covariance, Pose};
-use messages::{HypothesesHeader, Hypothesis, PoseHeader, Verdict};
+use messages::{HypothesesHeader, Hypothesis, Particle, PoseHeader, Verdict};
 use nalgebra::Matrix3;
 use recording::ros::{Header, PoseArray, PoseWithCovarianceStamped};
 
@@ -14,6 +14,16 @@ use crate::planar;
 #[must_use]
 pub fn array(header: Header, from: &HypothesesHeader, items: &[Hypothesis]) -> PoseArray {
     let pose = |item| planar::pose(robot(from, item));
+    PoseArray {
+        header,
+        poses: items.iter().map(pose).collect(),
+    }
+}
+
+/// The start of a particle filter: of the base, or of the laser where no mount is known.
+#[must_use]
+pub fn particles(header: Header, items: &[Particle]) -> PoseArray {
+    let pose = |item: &Particle| planar::pose(item.map_from_base.into());
     PoseArray {
         header,
         poses: items.iter().map(pose).collect(),

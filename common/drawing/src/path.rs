@@ -196,6 +196,23 @@ impl Path {
         path
     }
 
+    /// The outlines turned by a quarter about a point, so that what ran to the right
+    /// runs up.
+    #[must_use]
+    pub fn turned_up(&self, (x, y): (f64, f64)) -> Self {
+        let turn = |(u, v): (f64, f64)| (x + (v - y), y - (u - x));
+        let pieces = self.pieces.iter().map(|piece| match *piece {
+            Piece::Move(to) => Piece::Move(turn(to)),
+            Piece::Line(to) => Piece::Line(turn(to)),
+            Piece::Quadratic(handle, to) => Piece::Quadratic(turn(handle), turn(to)),
+            Piece::Cubic(a, b, to) => Piece::Cubic(turn(a), turn(b), turn(to)),
+            Piece::Close => Piece::Close,
+        });
+        Path {
+            pieces: pieces.collect(),
+        }
+    }
+
     /// Whether nothing was added.
     #[must_use]
     pub fn is_empty(&self) -> bool {
@@ -237,6 +254,12 @@ mod tests {
             // One rotation of small numbers.
             assert!((x - ex).abs() < 1e-12 && (y - ey).abs() < 1e-12, "{x} {y}");
         }
+    }
+
+    #[test]
+    fn what_ran_to_the_right_runs_up_after_a_quarter_turn() {
+        let path = Path::polyline([(2.0, 5.0), (6.0, 5.0), (6.0, 7.0)]).turned_up((2.0, 5.0));
+        assert_eq!(corners(&path), [(2.0, 5.0), (2.0, 1.0), (4.0, 1.0)]);
     }
 
     #[test]

@@ -118,7 +118,15 @@ impl Scene {
 
     /// Writes a line of text at a point of its base line.
     pub fn text(&mut self, content: &str, at: (f64, f64), style: &TextStyle) {
-        let path = text::outline(content, at, style);
+        self.letters(text::outline(content, at, style), style);
+    }
+
+    /// The same, running up.
+    pub fn text_upwards(&mut self, content: &str, at: (f64, f64), style: &TextStyle) {
+        self.letters(text::outline(content, at, style).turned_up(at), style);
+    }
+
+    fn letters(&mut self, path: Path, style: &TextStyle) {
         if let Some((color, width)) = style.halo {
             self.stroke(path.clone(), Stroke::new(color, width));
         }

@@ -6,8 +6,8 @@ use iceoryx2_bb_elementary_traits::zero_copy_send::ZeroCopySend;
 use crate::{
     AttentionHeader, Beam, BeamsHeader, BoundaryCell, BoundaryHeader, Corner, FieldHeader,
     GroundTruth, HealthHeader, HypothesesHeader, Hypothesis, InitialPose, LogHeader, MapHeader,
-    Odometry, PoseHeader, Reading, ReadingsHeader, RegionHeader, SaveHeader, ScanHeader, Vote,
-    VotesHeader,
+    Odometry, Particle, ParticlesHeader, PoseHeader, Reading, ReadingsHeader, RegionHeader,
+    SaveHeader, ScanHeader, Vote, VotesHeader,
 };
 
 /// Plain data that one process may write and another may read in place.
@@ -79,6 +79,8 @@ topics! {
     Field = "field", FieldHeader, [u16] { depth: 1 };
     /// Where the robot may be, best first.
     Hypotheses = "hypotheses", HypothesesHeader, [Hypothesis] { depth: 16 };
+    /// Where a particle filter may start, around the hypotheses of a scan.
+    Particles = "particles", ParticlesHeader, [Particle];
     /// Where the tracker has the robot; the items are why, in words, as UTF-8.
     Tracked = "pose", PoseHeader, [u8] { depth: 16 };
     /// Scans that the tracker wants searched; no items.

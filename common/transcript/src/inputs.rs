@@ -52,6 +52,7 @@ pub struct Inputs {
     votes: Counted<topic::Votes>,
     field: Option<Counted<topic::Field>>,
     hypotheses: Counted<topic::Hypotheses>,
+    particles: Counted<topic::Particles>,
     poses: Counted<topic::Tracked>,
     beams: Counted<topic::Beams>,
     health: Counted<topic::Health>,
@@ -95,6 +96,7 @@ impl Inputs {
             votes: Counted::open(graph)?,
             field: field.then(|| Counted::open(graph)).transpose()?,
             hypotheses: Counted::open(graph)?,
+            particles: Counted::open(graph)?,
             poses: Counted::open(graph)?,
             beams: Counted::open(graph)?,
             health: Counted::open(graph)?,
@@ -110,13 +112,14 @@ impl Inputs {
             .field
             .as_ref()
             .map(|field| -> &dyn Input { &field.subscriber });
-        let others: [&dyn Input; 10] = [
+        let others: [&dyn Input; 11] = [
             &self.map.subscriber,
             &self.odometry.subscriber,
             &self.truths.subscriber,
             &self.scans,
             &self.votes.subscriber,
             &self.hypotheses.subscriber,
+            &self.particles.subscriber,
             &self.poses.subscriber,
             &self.beams.subscriber,
             &self.health.subscriber,
@@ -216,6 +219,13 @@ impl Inputs {
             let outcome = to.transcript().entries.hypotheses(header, sample.items());
             to.transcript().taken(0, outcome)?;
             to.judged(header.verdict)?;
+        }
+        while let Some(sample) = self.particles.subscriber.receive()? {
+            let outcome = to
+                .transcript()
+                .entries
+                .particles(sample.header(), sample.items());
+            to.transcript().taken(0, outcome)?;
         }
         while let Some(sample) = self.poses.subscriber.receive()? {
             let header = sample.header();

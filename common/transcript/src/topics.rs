@@ -8,6 +8,8 @@ pub const TF: &str = "/tf";
 pub const POSE: &str = "/pose";
 /// All places of a scan.
 pub const HYPOTHESES: &str = "/hypotheses";
+/// Where a particle filter may start.
+pub const PARTICLES: &str = "/particles";
 /// How the nodes fare.
 pub const DIAGNOSTICS: &str = "/diagnostics";
 /// What the nodes log.

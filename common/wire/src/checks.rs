@@ -8,9 +8,9 @@
 use messages::{
     AttentionHeader, Beam, BeamsHeader, BoundaryCell, BoundaryHeader, Corner, FieldHeader,
     FieldKind, GroundTruth, HealthHeader, HypothesesHeader, Hypothesis, InitialPose, LogHeader,
-    LogLevel, MapHeader, NodeState, Odometry, Pose2, PoseHeader, Reading, ReadingsHeader,
-    RegionHeader, SaveHeader, ScanHeader, Topic, TrackReason, TrackState, Verdict, Vote,
-    VotesHeader, topic,
+    LogLevel, MapHeader, NodeState, Odometry, Particle, ParticlesHeader, Pose2, PoseHeader,
+    Reading, ReadingsHeader, RegionHeader, SaveHeader, ScanHeader, Topic, TrackReason, TrackState,
+    Verdict, Vote, VotesHeader, topic,
 };
 
 use crate::WireError;
@@ -90,6 +90,14 @@ pub(crate) fn hypotheses(header: &HypothesesHeader, hypotheses: &[Hypothesis]) -
         for value in hypothesis.covariance {
             refuse.unless_finite("covariance", value)?;
         }
+    }
+    Ok(())
+}
+
+pub(crate) fn particles(_: &ParticlesHeader, particles: &[Particle]) -> Checked {
+    let refuse = Refuse::on::<topic::Particles>();
+    for particle in particles {
+        refuse.unless_pose("map_from_base", particle.map_from_base)?;
     }
     Ok(())
 }

@@ -97,6 +97,7 @@ wire! {
     Readings = "Readings/v1", 4 * MIB, readings, [stamp.entered_ns];
     Field = "Field/v1", 64 * MIB, field, [stamp.entered_ns], compressed, on_demand;
     Hypotheses = "Hypotheses/v3", MIB, hypotheses, [stamp.entered_ns, sent_ns];
+    Particles = "Particles/v1", 32 * MIB, particles, [stamp.entered_ns];
     Tracked = "Pose/v1", 4 * KIB, tracked, [stamp.entered_ns, sent_ns];
     Attention = "Attention/v1", 4 * KIB, attention, [stamp.entered_ns];
     InitialPoseTopic = "InitialPose/v1", 4 * KIB, initial_pose, [stamp.entered_ns];

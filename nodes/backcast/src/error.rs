@@ -250,6 +250,22 @@ pub enum BackcastError {
         /// Why not.
         source: io::Error,
     },
+    /// A folder cannot be made, or not be written into.
+    #[error("cannot write into the folder {}", folder.display())]
+    OutFolder {
+        /// As it was given.
+        folder: PathBuf,
+        /// Why not.
+        source: io::Error,
+    },
+    /// A table cannot be stored.
+    #[error("cannot write the table {}", file.display())]
+    Table {
+        /// Its file.
+        file: PathBuf,
+        /// Why not.
+        source: io::Error,
+    },
     /// There is no recording to replay.
     #[error(
         "{} holds no folder with recording.mcap and map.yaml, and is none",

@@ -124,6 +124,7 @@ fn an_object_tells_votes_and_hypotheses() {
             "cpu_ms",
             "hypotheses",
             "map_id",
+            "particles",
             "refused",
             "says",
             "stamp_ns",
@@ -184,6 +185,31 @@ fn an_object_tells_votes_and_hypotheses() {
     // Of the same transforms in another order: a few units in the last place.
     let base = pose(&best["map_from_base"]);
     assert!(base.then(BASE_FROM_LASER).is_within(pose(best), 1e-9, 1e-9));
+}
+
+#[test]
+fn particles_gather_around_the_place_the_same_with_a_seed() {
+    let folder = folder(&[map_message(), mount_message(), scan_at(7, HERE)]);
+    let asked = |options: &str| objects(folder.path(), options)[0]["particles"].clone();
+    assert_eq!(asked(""), Value::Null);
+    let particles = asked("--particles 50");
+    assert_eq!(particles, asked("--particles 50 --particles-seed 1"));
+    assert_ne!(particles, asked("--particles 50 --particles-seed 2"));
+    assert_eq!(particles["of"], "base");
+    let poses = particles["poses"].as_array().unwrap();
+    assert_eq!(poses.len(), 50);
+    let base = map_from_laser(HERE).then(BASE_FROM_LASER.inverse());
+    for particle in poses {
+        // The place is unique and its spread no more than half a cell and a degree or
+        // so; the base stands half a metre before the laser.
+        assert!(pose(particle).is_within(base, 1.0, 0.2), "{particle}");
+    }
+    let lines = lines(folder.path(), "--particles 2");
+    assert_eq!(lines.len(), 4, "{lines:?}");
+    assert!(
+        lines[2].trim_start().starts_with("particle of the base"),
+        "{lines:?}"
+    );
 }
 
 #[test]

@@ -3,6 +3,7 @@
 use bytemuck::Zeroable;
 use engine::EngineError;
 use engine::fit::{BeamClass, Ends};
+use engine::grid::GridFrame;
 use engine::peaks::{self, PeakConfig, Place, Places, Score, Sought};
 use engine::space::Space;
 use geometry::Pose;
@@ -41,6 +42,8 @@ pub struct Answer<'a> {
     pub beams: &'a [Beam],
     /// Whose poses the places are.
     pub sought: Sought,
+    /// Where the map's cells lie; none where there is no answer.
+    pub frame: Option<GridFrame>,
 }
 
 /// Reads the places from the votes of a scan and, unless the votes alone are to
@@ -60,6 +63,7 @@ pub fn answer<'w>(
         return Ok(nothing(header));
     };
     let base_from_laser = mount(header)?;
+    let frame = map.frame;
     let sought = Sought::of(base_from_laser, header.lasers_used > 0);
     let Workspace {
         ends,
@@ -99,6 +103,7 @@ pub fn answer<'w>(
         beams: beams_seen,
         places: &places.places,
         sought,
+        frame: Some(frame),
     })
 }
 
@@ -133,6 +138,7 @@ pub fn nothing(votes: &VotesHeader) -> Answer<'static> {
         },
         beams: &[],
         sought: Sought::of(None, false),
+        frame: None,
     }
 }
 

@@ -3,6 +3,8 @@
 use clap::Parser;
 use engine::peaks::PeakConfig;
 
+use crate::ParticlesConfig;
+
 /// Turns the votes of each scan into distinct poses with a verdict and
 /// publishes them as `hypotheses`.
 #[derive(Debug, Clone, Parser)]
@@ -11,6 +13,9 @@ pub struct Config {
     /// When votes make up one place, and when a place stands alone.
     #[command(flatten)]
     pub peaks: PeakConfig,
+    /// Whether particle filters are handed a start.
+    #[command(flatten)]
+    pub particles: ParticlesConfig,
 }
 
 #[cfg(test)]
@@ -44,5 +49,6 @@ mod tests {
                 .contains("1..=1000")
         );
         assert!(parse("--same-place-m -1").is_err());
+        assert!(parse("--particles 0").is_err());
     }
 }

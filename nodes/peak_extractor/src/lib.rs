@@ -1,6 +1,6 @@
 //! Node `peak_extractor`: from the votes of a scan to the places where the
 //! robot may be, from `votes`, `scan` and `map` to
-//! `hypotheses`.
+//! `hypotheses` and, where asked for, `particles`.
 //!
 //! Each message of `votes` is answered by exactly one of `hypotheses`, also
 //! where it holds nothing or is refused. How votes become places is the
@@ -13,9 +13,11 @@ pub mod check;
 mod config;
 mod error;
 pub mod maps;
+pub mod particles;
 mod run;
 pub mod scans;
 
 pub use config::Config;
 pub use error::PeakError;
+pub use particles::ParticlesConfig;
 pub use run::run;

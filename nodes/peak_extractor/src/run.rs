@@ -3,7 +3,6 @@
 use std::time::{Duration, Instant};
 
 use engine::beams::BeamConfig;
-use engine::peaks::PeakConfig;
 use messages::{NodeState, SearchOutcome, topic};
 use transport::{
     Flow, GapCounter, Graph, Health, Publisher, Sample, Subscriber, TransportError, monotonic_ns,
@@ -13,7 +12,7 @@ use transport::{
 use crate::answer::{Answer, Workspace, answer, nothing};
 use crate::maps::Maps;
 use crate::scans::Scans;
-use crate::{Config, PeakError};
+use crate::{Config, PeakError, particles};
 
 /// How long a report of health may be overdue.
 const TICK: Duration = Duration::from_millis(100);
@@ -30,7 +29,7 @@ pub fn run(graph: &Graph, config: &Config) -> Result<(), PeakError> {
     let readings = graph.subscriber::<topic::Readings>()?;
     let maps = graph.subscriber::<topic::Map>()?;
     let mut node = Node {
-        config: config.peaks,
+        config: config.clone(),
         maps: Maps::default(),
         scans: Scans::default(),
         workspace: Workspace::default(),
@@ -40,6 +39,10 @@ pub fn run(graph: &Graph, config: &Config) -> Result<(), PeakError> {
         hypotheses: graph.publisher_for(config.peaks.max_hypotheses as usize)?,
         // As many as vote by default; whoever lets more vote has it grow.
         beams: graph.publisher_for(BeamConfig::default().max_beams as usize)?,
+        particles: match config.particles.particles {
+            Some(count) => Some((graph.publisher_for(count as usize)?, count)),
+            None => None,
+        },
         health: graph.health()?,
     };
     graph.run(&[&votes, &scans, &readings, &maps], TICK, |_| {
@@ -49,7 +52,7 @@ pub fn run(graph: &Graph, config: &Config) -> Result<(), PeakError> {
 }
 
 struct Node {
-    config: PeakConfig,
+    config: Config,
     maps: Maps,
     scans: Scans,
     workspace: Workspace,
@@ -59,6 +62,8 @@ struct Node {
     last_refusal: String,
     hypotheses: Publisher<topic::Hypotheses>,
     beams: Publisher<topic::Beams>,
+    /// Where particles are asked for, with how many.
+    particles: Option<(Publisher<topic::Particles>, u32)>,
     health: Health,
 }
 
@@ -120,7 +125,13 @@ impl Node {
         let known = (&mut self.maps, &self.scans);
         // What is sent lies in the workspace.
         let mut workspace = std::mem::take(&mut self.workspace);
-        let answered = answer(header, votes.items(), known, &self.config, &mut workspace);
+        let answered = answer(
+            header,
+            votes.items(),
+            known,
+            &self.config.peaks,
+            &mut workspace,
+        );
         let extract_ns = start.elapsed().as_nanos() as u64;
         // Votes have the counter of their scan: one that is missing here was
         // lost on one of its two ways. A scan that was kept has been counted.
@@ -152,11 +163,29 @@ impl Node {
         header.sent_ns = monotonic_ns();
         loan.send()?;
         self.health.count_sent(1);
+        self.send_particles(answer)?;
         // Only pictures are made of them.
         if self.beams.has_subscribers() {
             self.send_beams(answer)?;
         }
         Ok(())
+    }
+
+    fn send_particles(&mut self, answer: &Answer<'_>) -> Result<(), TransportError> {
+        let Some((publisher, count)) = &self.particles else {
+            return Ok(());
+        };
+        let seed = self.config.particles.particles_seed;
+        let (header, particles) = match particles::draw(answer, *count, seed) {
+            Ok(message) => message,
+            Err(error) => {
+                return self.refuse(answer.header.stamp.counter, &error.into());
+            }
+        };
+        let mut loan = publisher.loan(particles.len())?;
+        *loan.header_mut() = header;
+        loan.items_mut().copy_from_slice(&particles);
+        loan.send()
     }
 
     fn send_beams(&self, answer: &Answer<'_>) -> Result<(), TransportError> {

@@ -207,6 +207,32 @@ fn header(map_id: u64, outcome: &Outcome) -> VotesHeader {
 }
 
 #[test]
+fn particles_lie_around_the_places_of_the_base() {
+    let isolated = Isolated::new("particles");
+    let world = World::new(&isolated);
+    let particles: Subscriber<topic::Particles> = world.graph.subscriber().unwrap();
+    world.publish_map(5, FRAME.resolution_m);
+    let node = world.start(&["--particles", "30"]);
+    world.wait_until(NodeState::Ready);
+    let Searched { ranges, outcome } = searched(3, 3, 40);
+    let (said, hypotheses) = world.ask(header(5, &outcome), &ranges, &outcome.found.votes);
+    assert_eq!(said.verdict, Verdict::Unique as u32);
+    let best = Pose::from(hypotheses[0].map_from_base);
+    let (start, drawn) = wait_for(&world.graph, &particles, |header, items| {
+        Some((*header, items.to_vec()))
+    });
+    assert_eq!((start.stamp, start.map_id), (said.stamp, 5));
+    assert_eq!((start.mount_known, drawn.len()), (1, 30));
+    for particle in drawn {
+        // Half a cell and a degree or a little more around the one place: five of those,
+        // the base turning about the laser.
+        let pose = Pose::from(particle.map_from_base);
+        assert!(pose.is_within(best, 1.0, 0.2), "{pose:?} {best:?}");
+    }
+    node.stop();
+}
+
+#[test]
 fn hypotheses_are_those_of_the_engine() {
     let isolated = Isolated::new("equal");
     let world = World::new(&isolated);

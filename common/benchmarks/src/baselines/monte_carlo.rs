@@ -6,7 +6,8 @@ use engine::EngineError;
 use engine::fit::{Ends, Terrain};
 use engine::grid::{Cell, CellRules, GridFrame};
 use engine::particles::{
-    Estimate as Gathering, OdometryNoise, Particle, ParticleFilter, ParticlesConfig, StartHeadings,
+    Candidate, Estimate as Gathering, OdometryNoise, Particle, ParticleFilter, ParticlesConfig,
+    StartHeadings,
 };
 use engine::space::Space;
 use geometry::Pose;
@@ -68,6 +69,8 @@ pub struct MonteCarlo {
     config: MonteCarloConfig,
     /// Updates of the last scan, and particles that were weighted in all.
     effort: (usize, usize),
+    /// Particles with which the last scan began.
+    started_with: usize,
 }
 
 impl MonteCarlo {
@@ -90,6 +93,7 @@ impl MonteCarlo {
                 ..config
             },
             effort: (0, 0),
+            started_with: 0,
         }
     }
 
@@ -100,11 +104,36 @@ impl MonteCarlo {
         self.effort
     }
 
+    /// With how many particles the last scan began.
+    #[must_use]
+    pub fn started_with(&self) -> usize {
+        self.started_with
+    }
+
+    /// Starts around candidates in place of the whole map, at any heading; the filter is
+    /// otherwise the same. The frame of the candidates is the grid's, metres. `None`
+    /// without readings or candidates.
+    #[must_use]
+    pub fn locate_from(
+        &mut self,
+        readings: &Readings,
+        candidates: &[Candidate],
+    ) -> Option<Estimate> {
+        let ends = self.ends(readings).ok()?;
+        let (frame, config) = (self.terrain.frame, self.config.particles);
+        let filter = ParticleFilter::seeded(frame, candidates.iter().copied(), config).ok()?;
+        self.gather(&ends, filter, false)
+    }
+
     /// Where the particles gather.
-    fn gather(&mut self, ends: &Ends, headings: &[f64]) -> Result<Option<Gathering>, EngineError> {
-        let start = StartHeadings::OneOf(headings);
-        let mut filter = ParticleFilter::uniform(&self.terrain, start, self.config.particles)?;
+    fn gather(
+        &mut self,
+        ends: &Ends,
+        mut filter: ParticleFilter,
+        heading_is_known: bool,
+    ) -> Option<Estimate> {
         self.effort = (0, 0);
+        self.started_with = filter.particles().len();
         for update in 1..=self.config.most_updates {
             filter.weigh(&self.terrain, ends);
             self.effort = (update, self.effort.1 + filter.particles().len());
@@ -113,10 +142,19 @@ impl MonteCarlo {
                 break;
             }
             let scatter = (1.0 / update as f64).max(LEAST_SCATTER);
-            let noise = self.noise(scatter, headings.len() == 1);
-            filter.predict(Pose::IDENTITY, &noise);
+            filter.predict(Pose::IDENTITY, &self.noise(scatter, heading_is_known));
         }
-        Ok(filter.estimate())
+        filter.estimate().map(|found| self.on_the_grid(&found))
+    }
+
+    fn on_the_grid(&self, found: &Gathering) -> Estimate {
+        let (x, y, heading) = self.terrain.frame.cells_from_map(found.map_from_sought);
+        Estimate {
+            x: (x as usize).min(self.sides.0 - 1),
+            y: (y as usize).min(self.sides.1 - 1),
+            heading: self.space.directions.nearest(heading).0,
+            score: found.share as f32,
+        }
     }
 
     /// A known heading does not err.
@@ -174,14 +212,9 @@ impl Baseline for MonteCarlo {
         let spacing = self.space.directions.spacing();
         let headings: Vec<f64> = headings.iter().map(|&i| i as f64 * spacing).collect();
         let ends = self.ends(readings).ok()?;
-        let found = self.gather(&ends, &headings).ok()??;
-        let (x, y, heading) = self.terrain.frame.cells_from_map(found.map_from_sought);
-        Some(Estimate {
-            x: (x as usize).min(self.sides.0 - 1),
-            y: (y as usize).min(self.sides.1 - 1),
-            heading: self.space.directions.nearest(heading).0,
-            score: found.share as f32,
-        })
+        let (start, config) = (StartHeadings::OneOf(&headings), self.config.particles);
+        let filter = ParticleFilter::uniform(&self.terrain, start, config).ok()?;
+        self.gather(&ends, filter, headings.len() == 1)
     }
 
     fn bytes(&self) -> usize {

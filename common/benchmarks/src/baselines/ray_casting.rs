@@ -83,6 +83,33 @@ impl RayCasting {
     }
 }
 
+impl RayCasting {
+    /// The best of some poses: columns, rows and headings of free cells. They are best
+    /// given heading by heading, for the beams of each are laid out once.
+    #[must_use]
+    pub fn locate_among(
+        &self,
+        readings: &Readings,
+        poses: impl IntoIterator<Item = (usize, usize, usize)>,
+    ) -> Option<Estimate> {
+        let mut best = Best::default();
+        let (mut beams, mut at) = (Vec::new(), None);
+        for (x, y, heading) in poses {
+            if at != Some(heading) {
+                beams = self.beams(readings, heading);
+                at = Some(heading);
+            }
+            best.take(Estimate {
+                x,
+                y,
+                heading,
+                score: -self.cost(x, y, &beams),
+            });
+        }
+        best.get()
+    }
+}
+
 impl Baseline for RayCasting {
     fn locate(&mut self, readings: &Readings, headings: &[usize]) -> Option<Estimate> {
         let mut best = Best::default();

@@ -43,7 +43,7 @@ pub use config::{ParticlesConfig, SensorModel};
 pub use estimate::Estimate;
 pub use filter::ParticleFilter;
 pub use motion::OdometryNoise;
-pub use seeds::Candidate;
+pub use seeds::{Candidate, draw};
 pub use start::StartHeadings;
 
 /// The generator of all random numbers; of those in `rand`, one whose numbers do not

@@ -2,7 +2,7 @@
 
 use geometry::{Covariance, Pose, wrap_angle};
 use nalgebra::{Matrix3, SymmetricEigen, Vector3};
-use rand::RngExt;
+use rand::{RngExt, SeedableRng};
 use rand_distr::{Distribution, StandardNormal};
 
 use super::Rng;
@@ -30,6 +30,26 @@ impl From<&Place> for Candidate {
             weight: place.probability,
         }
     }
+}
+
+/// Draws `count` poses in the map around candidates, as a start for any particle filter:
+/// as often around each as it is likely, and spread by its covariance, as
+/// [`super::ParticleFilter::seeded`] does (the paper, section VI: "those places where
+/// particles need to be initialized"). All weigh the same. The frame is that of the map's
+/// cells; the same seed gives the same poses.
+///
+/// # Errors
+/// If there is no candidate of finite numbers.
+pub fn draw(
+    frame: GridFrame,
+    candidates: impl IntoIterator<Item = Candidate>,
+    count: usize,
+    seed: u64,
+) -> Result<Vec<Pose>, EngineError> {
+    let seeds = Seeds::new(frame, candidates)?;
+    let mut rng = Rng::seed_from_u64(seed);
+    let pose = |GridPose { x, y, heading }| frame.map_from_cells(x, y, heading);
+    Ok((0..count).map(|_| pose(seeds.draw(&mut rng))).collect())
 }
 
 /// No candidate is surer than this, cells and degrees: it was refined by the scan that
@@ -135,8 +155,6 @@ fn root(covariance: Matrix3<f64>) -> Option<Matrix3<f64>> {
 
 #[cfg(test)]
 mod tests {
-    use rand::SeedableRng;
-
     use super::*;
 
     const FRAME: GridFrame = GridFrame {
@@ -176,6 +194,19 @@ mod tests {
         check(deviation(&|p| p.x), 0.3, 0.05);
         check(deviation(&|p| p.y - 2.0), 0.1, 0.05);
         check(deviation(&|p| p.yaw - 1.0), 0.05, 1f64.to_radians());
+    }
+
+    #[test]
+    fn as_many_are_drawn_as_asked_for_and_the_same_with_a_seed() {
+        let around = || [candidate(0.0, 0.2), candidate(50.0, 0.6)];
+        let drawn = draw(FRAME, around(), 100, 7).unwrap();
+        assert_eq!(drawn.len(), 100);
+        assert_eq!(draw(FRAME, around(), 100, 7).unwrap(), drawn);
+        assert_ne!(draw(FRAME, around(), 100, 8).unwrap(), drawn);
+        // Five deviations, with half a cell added.
+        let near = |pose: &Pose| pose.x.abs().min((pose.x - 50.0).abs()) < 5.0 * 0.31;
+        assert!(drawn.iter().all(near));
+        assert_eq!(draw(FRAME, [], 1, 1), Err(EngineError::NoStart));
     }
 
     #[test]

@@ -17,7 +17,8 @@ use std::collections::{BTreeMap, VecDeque};
 use conversion::{diagnostics, lasers, poses};
 use messages::{
     Beam, BeamsHeader, FieldHeader, GroundTruth, HealthHeader, HypothesesHeader, Hypothesis,
-    LogHeader, MapHeader, Odometry, PoseHeader, ScanHeader, Stamp, Topic, Vote, VotesHeader, topic,
+    LogHeader, MapHeader, Odometry, Particle, ParticlesHeader, PoseHeader, ScanHeader, Stamp,
+    Topic, Vote, VotesHeader, topic,
 };
 use recording::ros::{Header, OccupancyGridMsg, RosMessage, TfMessage, Time};
 use recording::write::Encoded;
@@ -152,6 +153,20 @@ impl Entries {
             self.message(topics::TF, at.ns, &transform)?;
         }
         Ok(())
+    }
+
+    /// Takes a start for particle filters.
+    ///
+    /// # Errors
+    /// If its stamp is no time of ROS, or CDR cannot say it.
+    pub fn particles(
+        &mut self,
+        header: &ParticlesHeader,
+        items: &[Particle],
+    ) -> Result<(), TranscriptError> {
+        let at = self.measured(header.stamp, topic::Particles::NAME)?;
+        let array = poses::particles(self.in_map(at.stamp), items);
+        self.message(topics::PARTICLES, at.ns, &array)
     }
 
     /// Takes where the tracker has the robot at a scan; what odometry carries on between
@@ -467,6 +482,19 @@ mod tests {
         assert_eq!(made(&mut entries), []);
         let error = entries.map(&map(1), &[0], 5).unwrap_err().to_string();
         assert_eq!(error, "topic map: 2 x 1 cells are claimed, 1 are there");
+    }
+
+    #[test]
+    fn particles_have_the_time_of_their_scan() {
+        let mut entries = entries();
+        let header = ParticlesHeader {
+            stamp: stamp(1000, 10),
+            ..ParticlesHeader::zeroed()
+        };
+        entries.scan(&scan(stamp(1000, 10)), &[1.0]).unwrap();
+        made(&mut entries);
+        entries.particles(&header, &[Particle::zeroed()]).unwrap();
+        assert_eq!(made(&mut entries), [("/particles", 1000)]);
     }
 
     #[test]

@@ -2,9 +2,11 @@
 
 use std::process::ExitCode;
 
+use clap::builder::PossibleValue;
 use engine::instruction_set::InstructionSet;
 
 use super::contest::{Contest, Effort};
+use super::paper;
 use super::progress::Progress;
 use super::row::Row;
 use super::scope::{Cases, Filter, Place, Table, cases};
@@ -16,16 +18,44 @@ pub(crate) const NOTES: &str = "\
 Worlds are generated: buildings, corridors or scattered boxes with the wanted p/n, boundary
 cells over free cells. Noise q % adds a normal error of q/100 of the range to each reading,
 and the votes expect the same. The full tables take an hour or so: --quick takes a minute,
-and the options above pick single cases.
+and the options above pick single cases. The table `paper` is not printed but written
+into a folder; in full it takes below an hour, with --quick two minutes.
 
 Exit codes: 0 measured, 1 failed, 2 wrong use";
+
+/// What is measured.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+enum Measured {
+    Table(Table),
+    Paper,
+}
+
+impl clap::ValueEnum for Measured {
+    fn value_variants<'a>() -> &'a [Self] {
+        &[
+            Measured::Table(Table::Table1),
+            Measured::Table(Table::Table2),
+            Measured::Table(Table::Search),
+            Measured::Paper,
+        ]
+    }
+
+    fn to_possible_value(&self) -> Option<PossibleValue> {
+        match self {
+            Measured::Table(table) => table.to_possible_value(),
+            Measured::Paper => Some(PossibleValue::new("paper").help(
+                "All claims of the paper's sections II to V, into a folder of tables and pictures",
+            )),
+        }
+    }
+}
 
 /// What `backcast bench` takes.
 #[derive(Debug, clap::Args)]
 pub(crate) struct Config {
     /// What is measured
-    #[arg(value_enum)]
-    table: Table,
+    #[arg(value_enum, value_name = "TABLE")]
+    table: Measured,
 
     /// Print JSON, an object for each method and case
     #[arg(long)]
@@ -46,6 +76,9 @@ pub(crate) struct Config {
 
     #[command(flatten)]
     filter: Filter,
+
+    #[command(flatten)]
+    paper: paper::Config,
 }
 
 impl Config {
@@ -80,22 +113,43 @@ impl Config {
     }
 }
 
-/// Measures case by case, and prints each as soon as it is done.
+/// Measures a table, or the paper.
 ///
 /// # Errors
-/// A case cannot be set up, or output cannot be written.
+/// Options contradict each other, a case cannot be set up, or output cannot be written.
 pub(crate) fn run(config: &Config) -> Result<ExitCode, BackcastError> {
-    let cases = cases(config.table, config.quick, &config.filter);
+    match config.table {
+        Measured::Table(table) if config.paper.is_empty() => run_table(config, table),
+        Measured::Table(table) => Err(BackcastError::Usage(format!(
+            "--out, --part and --recording are for `bench paper`, not for {}",
+            table.name()
+        ))),
+        Measured::Paper => {
+            let has_others =
+                config.json || config.scans.is_some() || config.filter != Filter::default();
+            if has_others {
+                return Err(BackcastError::Usage(
+                    "`bench paper` takes --quick, --seed, --out, --part and --recording".into(),
+                ));
+            }
+            paper::run(&config.paper, config.quick, config.seed)
+        }
+    }
+}
+
+/// Measures case by case, and prints each as soon as it is done.
+fn run_table(config: &Config, table: Table) -> Result<ExitCode, BackcastError> {
+    let cases = cases(table, config.quick, &config.filter);
     config.check(&cases)?;
     let sights: usize = cases.iter().map(|(_, sights)| sights.len()).sum();
-    let progress = Progress::new(sights * Contest::rows(config.table));
+    let progress = Progress::new(sights * Contest::rows(table));
     if !config.json {
         let instructions = InstructionSet::best().to_string();
-        progress.print(&text::title(config.table, &instructions))?;
+        progress.print(&text::title(table, &instructions))?;
     }
     for (place, sights) in cases {
         progress.say(format!("{} is prepared", name(&place)));
-        let mut contest = Contest::new(config.table, place, config.seed)?;
+        let mut contest = Contest::new(table, place, config.seed)?;
         for sight in sights {
             progress.say(format!("{}, {} beams", name(&place), sight.beams));
             let rows = contest.run(&sight, config.effort(), || progress.step())?;

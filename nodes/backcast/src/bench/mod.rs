@@ -1,5 +1,6 @@
 //! `backcast bench`: the paper's tables and the search, every method on the
-//! same generated worlds with the same scans, in one run and on one thread.
+//! same generated worlds with the same scans, in one run and on one thread; and, in
+//! `paper`, all claims of the paper.
 
 mod command;
 mod contest;
@@ -7,6 +8,7 @@ mod engine_methods;
 mod line_up;
 mod measure;
 mod method;
+mod paper;
 mod progress;
 mod row;
 mod scope;

@@ -6,6 +6,7 @@ use std::process::ExitCode;
 use recording::RecordingError;
 
 use super::object::Object;
+use super::particles::{Particles, ParticlesOptions};
 use super::row;
 use crate::cli::LOST_DATA;
 use crate::offline::{Accepted, Options, Progress, Session};
@@ -27,6 +28,9 @@ pub(crate) struct Config {
     /// Print JSON, an object a line
     #[arg(long)]
     json: bool,
+
+    #[command(flatten)]
+    particles: ParticlesOptions,
 
     #[command(flatten)]
     options: Options,
@@ -55,9 +59,13 @@ pub(crate) fn run(config: &Config) -> Result<ExitCode, BackcastError> {
             Ok(scan) => {
                 let reply = session.ask(&scan)?;
                 accepted.count(&reply);
+                let particles = Particles::draw(&config.particles, &scan, &reply)?;
                 let line = match config.json {
-                    true => Object::new(&scan, &reply).json(),
-                    false => row::text(scan.stamp_ns, &reply),
+                    true => Object::new(&scan, &reply).with(particles).json(),
+                    false => match particles {
+                        Some(particles) => row::text(scan.stamp_ns, &reply) + &particles.text(),
+                        None => row::text(scan.stamp_ns, &reply),
+                    },
                 };
                 for note in session.take_notes() {
                     progress.say(&note);

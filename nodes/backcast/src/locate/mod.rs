@@ -5,6 +5,7 @@
 
 mod command;
 mod object;
+mod particles;
 mod row;
 
 pub(crate) use command::{Config, run};

@@ -10,6 +10,7 @@ use geometry::Pose;
 use messages::Verdict;
 use serde::Serialize;
 
+use super::particles::Particles;
 use crate::offline::{Answer, Reply, TakenScan};
 
 /// One line.
@@ -36,6 +37,8 @@ pub(super) struct Object {
     beams: Option<Beams>,
     /// Best first.
     hypotheses: Vec<Hypothesis>,
+    /// A start for a particle filter; null where none is asked for.
+    particles: Option<Particles>,
 }
 
 /// What the header of topic `votes` says.
@@ -101,6 +104,7 @@ impl Object {
             votes: None,
             beams: None,
             hypotheses: Vec::new(),
+            particles: None,
         };
         match &reply.answer {
             Ok(answer) => object.fill(answer, scan.base_from_laser),
@@ -109,7 +113,18 @@ impl Object {
         object
     }
 
-    fn fill(&mut self, Answer { outcome, places }: &Answer<'_>, base_from_laser: Option<Pose>) {
+    /// The same with a start for a particle filter.
+    pub(super) fn with(self, particles: Option<Particles>) -> Self {
+        Object { particles, ..self }
+    }
+
+    fn fill(
+        &mut self,
+        Answer {
+            outcome, places, ..
+        }: &Answer<'_>,
+        base_from_laser: Option<Pose>,
+    ) {
         self.verdict = places.verdict.as_str();
         self.alternatives = places.alternatives;
         self.says = Some(places.sentence());

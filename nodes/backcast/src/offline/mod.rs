@@ -21,7 +21,7 @@ mod world;
 pub(crate) use accepted::Accepted;
 pub(crate) use heading::each_odometry;
 pub(crate) use layout::{check_map, frame_of, sides_of};
-pub(crate) use options::Options;
+pub(crate) use options::{EngineOptions, Options};
 pub(crate) use progress::{Progress, say};
 pub(crate) use scans::TakenScan;
 pub(crate) use session::{Reply, Session, View, damage_of, map_in};

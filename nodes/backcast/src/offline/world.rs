@@ -48,6 +48,8 @@ pub(crate) struct Answer<'a> {
     pub(crate) outcome: &'a Outcome,
     /// What they say, the verdict included.
     pub(crate) places: &'a Places,
+    /// Where the map's cells lie.
+    pub(crate) frame: GridFrame,
 }
 
 /// A scan at a pose.
@@ -192,6 +194,7 @@ impl World {
         Ok(Answer {
             outcome,
             places: of_laser,
+            frame: self.terrain.frame,
         })
     }
 

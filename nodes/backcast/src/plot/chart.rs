@@ -2,6 +2,7 @@
 
 use drawing::{Anchor, Path, Rect, Scene, Stroke, TextStyle};
 
+use super::scale::round_step;
 use super::theme;
 
 /// A part of the picture with its scales.
@@ -54,7 +55,8 @@ impl Chart {
             let text = format!("{}{unit_of_values}", plain(value, decade));
             scene.text(&text, at, &style.anchored(Anchor::End));
         }
-        let step = round_step(self.seconds.1 / 9.0);
+        // A whole second at least: scans are seldom told apart by less.
+        let step = round_step(self.seconds.1 / 9.0).max(1.0);
         let mut second = 0.0;
         while second <= self.seconds.1 {
             let (x, _) = self.at(second, 1.0);
@@ -91,15 +93,6 @@ fn plain(value: f64, decade: i32) -> String {
     format!("{value:.decimals$}")
 }
 
-/// The least of 1, 2, 5, 10 and so on that is not below `seconds`.
-fn round_step(seconds: f64) -> f64 {
-    let power = 10f64.powf(seconds.log10().floor());
-    let factors = [1.0, 2.0, 5.0];
-    let fits = factors.into_iter().find(|factor| factor * power >= seconds);
-    // A whole second at least: scans are seldom told apart by less.
-    (fits.unwrap_or(10.0) * power).max(1.0)
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -120,7 +113,7 @@ mod tests {
 
     #[test]
     fn steps_and_numbers_are_round() {
-        assert_eq!(round_step(0.3), 1.0);
+        assert_eq!(round_step(0.3), 0.5);
         assert_eq!(round_step(11.0), 20.0);
         assert_eq!(round_step(5.0), 5.0);
         assert_eq!(round_step(60.0), 100.0);

@@ -15,6 +15,7 @@ use recording::{GroundTruth, Recording, RecordingError};
 
 use super::config::{Config, Format, Kind};
 use super::errors::Judged;
+use super::field::Votes;
 use super::sheet::Panel;
 use super::subject::Subject;
 use super::{errors, field, outline, scan, sheet, surface};
@@ -126,9 +127,10 @@ impl<'a> Plot<'a> {
             return scan::draw(&ground, &subject, &name, size);
         }
         let field = self.field(&scan, &subject)?;
+        let votes = Votes::of(ground, (&subject, &field), &name, size);
         match self.config.kind {
-            Kind::Surface => surface::draw(&ground, (&subject, &field), &name, size),
-            _ => field::draw(&ground, (&subject, &field), &name, size),
+            Kind::Surface => surface::draw(&votes),
+            _ => field::draw(&votes),
         }
     }
 

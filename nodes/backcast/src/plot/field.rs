@@ -3,11 +3,15 @@
 
 use drawing::{Color, Path, Scene, Stroke};
 use engine::grid::CellRules;
+use geometry::Pose;
 use map::{OccupancyGrid, UNKNOWN};
 
+use super::axes::{self, Axis};
+use super::extent::Extent;
 use super::ground::{self, Sampler};
 use super::marks;
-use super::page::{self, Entry, Heading, Page, Sample};
+use super::page::{self, Heading, Page, Sample};
+use super::scale::Scale;
 use super::scan::Size;
 use super::subject::{Ground, Subject};
 use super::theme;
@@ -31,8 +35,70 @@ pub(super) fn heat(share: f64) -> Color {
     Color::WHITE.towards(color, 5.0 * share)
 }
 
+/// What a picture of votes is made of.
+#[derive(Debug)]
+pub(crate) struct Votes<'a> {
+    pub(super) ground: Ground<'a>,
+    pub(super) field: &'a Field,
+    pub(super) heading: Heading,
+    /// What is shown of the map.
+    pub(super) extent: Extent,
+    pub(super) truth: Option<Pose>,
+    /// Pixels.
+    pub(super) width: u32,
+}
+
+impl<'a> Votes<'a> {
+    /// Those of a scan at the heading of its best place.
+    pub(super) fn of(
+        ground: Ground<'a>,
+        (subject, field): (&Subject, &'a Field),
+        bag: &str,
+        size: Size,
+    ) -> Self {
+        Votes {
+            ground,
+            field,
+            heading: heading(subject, field, bag),
+            extent: subject.extent(&ground, size.whole),
+            truth: subject.truth.as_ref().map(|truth| truth.pose),
+            width: size.width,
+        }
+    }
+
+    /// Those on a whole map.
+    pub(crate) fn whole(
+        (map, rules): (&'a OccupancyGrid, CellRules),
+        field: &'a Field,
+        truth: Option<Pose>,
+        (title, says): (String, String),
+    ) -> Self {
+        Votes {
+            ground: Ground { map, rules },
+            field,
+            heading: Heading {
+                title,
+                verdict: None,
+                says,
+            },
+            extent: Extent::of_map(map),
+            truth,
+            width: page::COMMON_WIDTH,
+        }
+    }
+
+    /// What the bar of colours says.
+    pub(super) fn scale(&self) -> Axis<'static> {
+        let most = f64::from(self.field.outcome.found.best.max(1));
+        Axis {
+            scale: Scale::Even(0.0, most),
+            name: "votes",
+        }
+    }
+}
+
 /// The lines above a picture of a field.
-pub(super) fn heading(subject: &Subject, field: &Field, bag: &str) -> Heading {
+fn heading(subject: &Subject, field: &Field, bag: &str) -> Heading {
     let best = field.outcome.found.best;
     let degrees = field.outcome.known_heading.unwrap_or_default().to_degrees();
     Heading {
@@ -50,48 +116,37 @@ pub(super) fn heading(subject: &Subject, field: &Field, bag: &str) -> Heading {
     }
 }
 
-/// What the colours mean.
-pub(super) fn scale(field: &Field) -> Entry {
-    let most = field.outcome.found.best;
-    (Sample::Scale(heat), format!("0 to {most} votes"))
-}
-
 /// Draws the picture.
 ///
 /// # Errors
 /// The picture would be too large.
-pub(super) fn draw(
-    ground: &Ground<'_>,
-    (subject, field): (&Subject, &Field),
-    bag: &str,
-    size: Size,
-) -> Result<Scene, BackcastError> {
-    let extent = subject.extent(ground, size.whole);
+pub(crate) fn draw(votes: &Votes<'_>) -> Result<Scene, BackcastError> {
+    let extent = votes.extent;
     let ratio = (extent.height() / extent.width()).clamp(HEIGHTS.0, HEIGHTS.1);
-    let height = (page::body_width(size.width) * ratio).round();
+    let height = (page::body_width(votes.width) * ratio).round();
     let mut legend = vec![
-        scale(field),
+        (Sample::Square(WALL), "obstacle".to_owned()),
         (Sample::Ellipse(theme::BEST), "most votes".to_owned()),
     ];
-    if subject.truth.is_some() {
+    if votes.truth.is_some() {
         legend.push((Sample::Truth, "truth".to_owned()));
     }
-    let heading = heading(subject, field, bag);
-    let mut page = Page::new(size.width, height, &heading, &legend)?;
-    let view = View::fitting(extent, page.body);
-    fill(&mut page.scene, ground, field, &view)?;
+    let mut page = Page::new(votes.width, height, &votes.heading, &legend)?;
     let unit = page.unit;
+    let (rest, bar) = axes::beside_bar(page.body, unit);
+    let view = View::fitting(extent, axes::inside(rest, unit));
+    fill(&mut page.scene, votes, &view)?;
     page.scene.clipped(view.area(), |scene| {
-        if let Some(truth) = &subject.truth {
-            marks::truth(scene, marks::stand(&view, truth.pose), 7.0 * unit);
+        if let Some(truth) = votes.truth {
+            marks::truth(scene, marks::stand(&view, truth), 7.0 * unit);
         }
-        if let Some(best) = best_position(field) {
+        if let Some(best) = best_position(votes.field) {
             let ring = Path::circle(view.at(best), 16.0 * unit);
             scene.stroke(ring, Stroke::new(theme::BEST, 2.4 * unit));
         }
     });
-    marks::scale_bar(&mut page.scene, &view, unit);
-    page.frame(view.area());
+    axes::draw_metres(&mut page.scene, &view, unit);
+    axes::draw_bar(&mut page.scene, bar, votes.scale(), heat, unit);
     Ok(page.scene)
 }
 
@@ -103,19 +158,15 @@ pub(super) fn best_position(field: &Field) -> Option<(f64, f64)> {
     Some((pose.x, pose.y))
 }
 
-fn fill(
-    scene: &mut Scene,
-    ground: &Ground<'_>,
-    field: &Field,
-    view: &View,
-) -> Result<(), BackcastError> {
+fn fill(scene: &mut Scene, votes: &Votes<'_>, view: &View) -> Result<(), BackcastError> {
+    let (ground, field) = (&votes.ground, votes.field);
     let map = ground.map;
     let cells = Sampler::new(view, frame_of(map), sides_of(map));
-    let votes = Sampler::new(view, field.frame, field.sides);
+    let under = Sampler::new(view, field.frame, field.sides);
     let most = f64::from(field.outcome.found.best.max(1));
     ground::fill(scene, view, |column, row| {
         let mut highest = 0;
-        votes.each(column, row, |index| {
+        under.each(column, row, |index| {
             let intensity = index.and_then(|index| field.intensities.get(index));
             highest = highest.max(intensity.copied().unwrap_or_default());
         });

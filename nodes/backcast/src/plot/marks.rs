@@ -6,8 +6,13 @@ use geometry::{Covariance, Pose};
 use super::theme;
 use super::view::View;
 
-/// So many standard deviations an ellipse reaches.
-pub(super) const SIGMAS: f64 = 2.0;
+/// The share of the probability that an ellipse holds, per cent, as in all pictures.
+pub(super) const HELD_PERCENT: f64 = 95.0;
+
+/// So many standard deviations it reaches: χ² with two degrees of freedom is exponential.
+fn deviations() -> f64 {
+    (-2.0 * (1.0 - HELD_PERCENT / 100.0).ln()).sqrt()
+}
 
 /// A point of the picture, and a heading in the map, radians.
 pub(super) type Stand = ((f64, f64), f64);
@@ -42,7 +47,7 @@ pub(super) fn ellipse(
     stroke: Stroke,
 ) {
     let ellipse = covariance.ellipse();
-    let pixels = |metres: f64| SIGMAS * metres * view.pixels_per_m();
+    let pixels = |metres: f64| deviations() * metres * view.pixels_per_m();
     let axes = (pixels(ellipse.major_m), pixels(ellipse.minor_m));
     let mut path = Path::new();
     path.add_ellipse(view.at((pose.x, pose.y)), axes, -ellipse.angle);

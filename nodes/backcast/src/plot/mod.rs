@@ -13,11 +13,15 @@
 //! map ───────────────── outline ──┘
 //! ```
 //!
-//! `difference` is drawn by `backcast regress`, `drive` by `backcast evaluate --sequence`.
+//! `difference` is drawn by `backcast regress`, `drive` by `backcast evaluate --sequence`,
+//! `curves`, `diagram` and `places_on_map` by `backcast bench paper`.
 
+mod axes;
 mod chart;
 mod command;
 mod config;
+mod curves;
+mod diagram;
 mod difference;
 mod drive;
 mod errors;
@@ -28,6 +32,8 @@ mod marks;
 mod outline;
 mod page;
 mod places;
+mod places_on_map;
+mod scale;
 mod scan;
 mod sheet;
 mod subject;
@@ -37,5 +43,10 @@ mod view;
 
 pub(crate) use command::run;
 pub(crate) use config::{Config, NOTES};
+pub(crate) use curves::{Curve, CurvePoint, Curves, draw as draw_curves};
+pub(crate) use diagram::{Arrow, Cell, Diagram, Panel, Role, draw as draw_diagram};
 pub(crate) use difference::{Contrast, draw as draw_contrast};
 pub(crate) use drive::{Stop, draw as draw_drive};
+pub(crate) use field::{Votes, draw as draw_votes};
+pub(crate) use places_on_map::draw as draw_places;
+pub(crate) use surface::draw as draw_surface;

@@ -5,8 +5,10 @@ use messages::Verdict;
 
 use super::theme;
 
+/// Pictures are this wide unless somebody asks for another width.
+pub(super) const COMMON_WIDTH: u32 = 1200;
 /// All lengths are meant for a picture this wide.
-const WIDTH: f64 = 1200.0;
+const WIDTH: f64 = COMMON_WIDTH as f64;
 /// They grow with the width, but by less, so that a small picture is legible.
 const GROWTH: f64 = 0.7;
 
@@ -36,9 +38,6 @@ pub(super) enum Sample {
     Line(Stroke),
     /// An ellipse.
     Ellipse(Color),
-    /// Colours from the one end of a scale to the other, with its least value
-    /// beside it.
-    Scale(fn(f64) -> Color),
 }
 
 /// An entry of the legend.
@@ -71,7 +70,6 @@ const LEGEND_ROW: f64 = 30.0;
 const ENTRY_GAP: f64 = 26.0;
 /// The room that a sample takes, before the words.
 const SAMPLE: f64 = 30.0;
-const SCALE: f64 = 180.0;
 
 impl Page {
     /// A picture of so many pixels along x, whose body takes so many along y.
@@ -145,7 +143,7 @@ fn arranged(legend: &[Entry], width: f64, unit: f64) -> Vec<Vec<(f64, &Entry)>> 
     let mut rows: Vec<Vec<(f64, &Entry)>> = Vec::new();
     let mut x = f64::INFINITY;
     for entry in legend {
-        let length = sample_width(entry.0) * unit + style.width_of(&entry.1);
+        let length = SAMPLE * unit + style.width_of(&entry.1);
         if x + length > width {
             rows.push(Vec::new());
             x = 0.0;
@@ -156,13 +154,6 @@ fn arranged(legend: &[Entry], width: f64, unit: f64) -> Vec<Vec<(f64, &Entry)>> 
         x += length + ENTRY_GAP * unit;
     }
     rows
-}
-
-fn sample_width(sample: Sample) -> f64 {
-    match sample {
-        Sample::Scale(_) => SCALE + 8.0,
-        _ => SAMPLE,
-    }
 }
 
 /// Draws a sample around a point; returns how much room it takes from the left.
@@ -190,20 +181,8 @@ fn draw_sample(scene: &mut Scene, sample: Sample, at: (f64, f64), unit: f64) -> 
             path.add_ellipse(at, (9.0 * unit, 4.5 * unit), 0.0);
             scene.stroke(path, Stroke::new(color, 1.6 * unit));
         }
-        Sample::Scale(color) => {
-            let steps = 60;
-            let left = at.0 - (SAMPLE / 2.0 - 3.0) * unit;
-            let width = SCALE * unit / f64::from(steps);
-            for step in 0..steps {
-                let x = left + f64::from(step) * width;
-                // A little wider, so that no gap shows between them.
-                let rect = Rect::new(x, at.1 - 6.0 * unit, width + 0.5, 12.0 * unit);
-                let share = f64::from(step) / f64::from(steps - 1);
-                scene.fill(Path::rect(rect), color(share));
-            }
-        }
     }
-    sample_width(sample) * unit
+    SAMPLE * unit
 }
 
 /// Writes a verdict on a plate of its colour that starts at a point of the base

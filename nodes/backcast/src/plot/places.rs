@@ -105,7 +105,7 @@ pub(super) fn legend(subject: &Subject) -> Vec<Entry> {
                 entries.push((Sample::Dot(color), format!("{name} {count}")));
             }
         }
-        let name = format!("{} σ", marks::SIGMAS);
+        let name = format!("{} %", marks::HELD_PERCENT);
         entries.push((Sample::Ellipse(theme::BEST), name));
     }
     if subject.shown.len() > 1 {
@@ -212,6 +212,6 @@ mod tests {
     fn the_legend_names_what_there_is_and_counts_beams() {
         let entries = legend(&subject(Pose::IDENTITY));
         let names: Vec<&str> = entries.iter().map(|(_, name)| name.as_str()).collect();
-        assert_eq!(names, ["best place", "hit 1", "2 σ", "truth"]);
+        assert_eq!(names, ["best place", "hit 1", "95 %", "truth"]);
     }
 }

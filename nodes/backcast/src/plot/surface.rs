@@ -5,16 +5,16 @@ use std::f64::consts::PI;
 
 use drawing::{Anchor, Color, Path, Rect, Scene, Stroke, TextStyle};
 
+use super::axes;
 use super::extent::Extent;
-use super::field::{self, WALL};
+use super::field::{self, Votes, WALL};
 use super::ground::Sampler;
 use super::page::{self, Page, Sample};
-use super::scan::Size;
-use super::subject::{Ground, Subject};
+use super::scale::Scale;
 use super::theme;
 use super::view::View;
 use crate::BackcastError;
-use crate::offline::{Field, frame_of, sides_of};
+use crate::offline::{frame_of, sides_of};
 
 /// Patches along the longer side: finer ones are not told apart.
 const PATCHES: f64 = 150.0;
@@ -55,6 +55,10 @@ const CAMERAS: [Camera; 2] = [
 struct Relief {
     columns: usize,
     rows: usize,
+    /// The corner of the map with the lowest x and y, metres.
+    from: (f64, f64),
+    /// The longer side, metres.
+    longer_m: f64,
     /// 0..=1 at each corner.
     heights: Vec<f64>,
     /// Share of walls around each corner.
@@ -86,13 +90,14 @@ impl Camera {
 
 impl Relief {
     /// The surface over a part of the map.
-    fn of(ground: &Ground<'_>, field: &Field, extent: Extent) -> Self {
+    fn of(votes: &Votes<'_>) -> Self {
+        let (ground, field, extent) = (&votes.ground, votes.field, votes.extent);
         let longer = extent.width().max(extent.height());
         let count = |metres: f64| (PATCHES * metres / longer).round().max(2.0);
         let (columns, rows) = (count(extent.width()), count(extent.height()));
         // A view of one pixel a corner does the sampling.
         let view = View::fitting(extent, Rect::new(0.0, 0.0, columns, rows));
-        let votes = Sampler::new(&view, field.frame, field.sides);
+        let under = Sampler::new(&view, field.frame, field.sides);
         let map = ground.map;
         let cells = Sampler::new(&view, frame_of(map), sides_of(map));
         let most = f64::from(field.outcome.found.best.max(1));
@@ -100,13 +105,15 @@ impl Relief {
         let mut relief = Relief {
             columns: columns as usize,
             rows: rows as usize,
+            from: view.metres_at((0.0, f64::from(rows))),
+            longer_m: longer,
             heights: Vec::new(),
             walls: Vec::new(),
         };
         for row in (0..rows).rev() {
             for column in 0..columns {
                 let mut highest = 0;
-                votes.each(column, row, |index| {
+                under.each(column, row, |index| {
                     let intensity = index.and_then(|index| field.intensities.get(index));
                     highest = highest.max(intensity.copied().unwrap_or_default());
                 });
@@ -122,6 +129,13 @@ impl Relief {
             }
         }
         relief
+    }
+
+    /// Half of each side, as shares of the longer one.
+    fn halves(&self) -> (f64, f64) {
+        let longer = self.columns.max(self.rows) as f64;
+        let half = |corners: usize| corners as f64 / 2.0 / longer;
+        (half(self.columns), half(self.rows))
     }
 
     /// A corner as shares of the longer side.
@@ -180,43 +194,36 @@ impl Relief {
 ///
 /// # Errors
 /// The picture would be too large.
-pub(super) fn draw(
-    ground: &Ground<'_>,
-    (subject, field): (&Subject, &Field),
-    bag: &str,
-    size: Size,
-) -> Result<Scene, BackcastError> {
-    let extent = subject.extent(ground, size.whole);
-    let relief = Relief::of(ground, field, extent);
-    let width = page::body_width(size.width);
-    let heading = field::heading(subject, field, bag);
+pub(crate) fn draw(votes: &Votes<'_>) -> Result<Scene, BackcastError> {
+    let relief = Relief::of(votes);
+    let width = page::body_width(votes.width);
     let height = (width * (HEIGHTS.0 + HEIGHTS.1)).round();
+    let arrow = arrow_stroke(page::unit(votes.width));
     let legend = [
-        field::scale(field),
-        (
-            Sample::Line(arrow_stroke(page::unit(size.width))),
-            "most votes".to_owned(),
-        ),
+        (Sample::Square(WALL), "obstacle".to_owned()),
+        (Sample::Line(arrow), "most votes".to_owned()),
     ];
-    let mut page = Page::new(size.width, height, &heading, &legend)?;
-    let body = page.body;
+    let mut page = Page::new(votes.width, height, &votes.heading, &legend)?;
+    let unit = page.unit;
+    let (body, bar) = axes::beside_bar(page.body, unit);
     let first = Rect::new(body.x, body.y, body.width, width * HEIGHTS.0);
     let second = Rect::new(body.x, first.bottom(), body.width, width * HEIGHTS.1);
     for (camera, area) in CAMERAS.iter().zip([first, second]) {
         draw_from(&mut page, &relief, camera, area);
     }
+    axes::draw_bar(&mut page.scene, bar, votes.scale(), field::heat, unit);
     Ok(page.scene)
 }
 
 fn draw_from(page: &mut Page, relief: &Relief, camera: &Camera, area: Rect) {
     let unit = page.unit;
     let patches = relief.patches(camera);
-    // The arrow stands above the summit.
+    // The arrow stands above the summit, and the numbers of the axes below the edges.
     let room = Rect::new(
-        area.x,
+        area.x + 56.0 * unit,
         area.y + 46.0 * unit,
-        area.width,
-        area.height - 54.0 * unit,
+        area.width - 112.0 * unit,
+        area.height - 96.0 * unit,
     );
     let placing = Placing::of(&patches, room);
     for (corners, color) in patches {
@@ -225,6 +232,7 @@ fn draw_from(page: &mut Page, relief: &Relief, camera: &Camera, area: Rect) {
         page.scene.stroke(path.clone(), Stroke::new(color, 0.5));
         page.scene.fill(path, color);
     }
+    draw_edges(&mut page.scene, relief, (camera, &placing), unit);
     if let Some(summit) = relief.summit() {
         arrow(&mut page.scene, placing.at(camera.look(summit).at), unit);
     }
@@ -232,6 +240,81 @@ fn draw_from(page: &mut Page, relief: &Relief, camera: &Camera, area: Rect) {
     let at = (area.x, area.y + 20.0 * unit);
     page.scene
         .text(camera.name, at, &style.anchored(Anchor::Start));
+}
+
+/// The two edges of the floor that are nearest to the camera, with the metres of the map
+/// along them.
+fn draw_edges(
+    scene: &mut Scene,
+    relief: &Relief,
+    (camera, placing): (&Camera, &Placing),
+    unit: f64,
+) {
+    let (half_x, half_y) = relief.halves();
+    let nearness = |x: f64, y: f64| camera.look((x, y, 0.0)).nearness;
+    let front = if nearness(0.0, -half_y) > nearness(0.0, half_y) {
+        -half_y
+    } else {
+        half_y
+    };
+    let side = if nearness(-half_x, 0.0) > nearness(half_x, 0.0) {
+        -half_x
+    } else {
+        half_x
+    };
+    let scale_x = Scale::Even(
+        relief.from.0,
+        relief.from.0 + 2.0 * half_x * relief.longer_m,
+    );
+    let scale_y = Scale::Even(
+        relief.from.1,
+        relief.from.1 + 2.0 * half_y * relief.longer_m,
+    );
+    let along_x = |share: f64| ((2.0 * share - 1.0) * half_x, front);
+    let along_y = |share: f64| (side, (2.0 * share - 1.0) * half_y);
+    let at = |(x, y): (f64, f64)| placing.at(camera.look((x, y, 0.0)).at);
+    let middle = at((0.0, 0.0));
+    let edge = Edge { middle, unit };
+    edge.draw(scene, (scale_x, "x, m"), &|share| at(along_x(share)));
+    edge.draw(scene, (scale_y, "y, m"), &|share| at(along_y(share)));
+}
+
+/// An edge of the floor with its numbers outside.
+#[derive(Debug, Clone, Copy)]
+struct Edge {
+    /// Of the floor, in the picture.
+    middle: (f64, f64),
+    unit: f64,
+}
+
+impl Edge {
+    /// `at` takes shares of the edge to points of the picture.
+    fn draw(self, scene: &mut Scene, (scale, name): (Scale, &str), at: &dyn Fn(f64) -> (f64, f64)) {
+        let unit = self.unit;
+        let mut lines = Path::line(at(0.0), at(1.0));
+        let style = TextStyle::new(13.0 * unit, theme::INK).anchored(Anchor::Middle);
+        let (out_x, out_y) = self.outwards(at(0.0), at(1.0));
+        let write = |scene: &mut Scene, text: &str, (x, y): (f64, f64), away: f64| {
+            let beside = (x + away * out_x, y + away * out_y + 4.5 * unit);
+            scene.text(text, beside, &style);
+        };
+        for (value, text) in scale.ticks() {
+            let (x, y) = at(scale.share(value));
+            lines.add_line((x, y), (x + 6.0 * unit * out_x, y + 6.0 * unit * out_y));
+            write(scene, &text, (x, y), 20.0 * unit);
+        }
+        scene.stroke(lines, Stroke::new(theme::INK, unit.max(1.0)));
+        write(scene, name, at(0.5), 46.0 * unit);
+    }
+
+    /// The direction across the edge that leads away from the floor.
+    fn outwards(self, from: (f64, f64), to: (f64, f64)) -> (f64, f64) {
+        let (along_x, along_y) = (to.0 - from.0, to.1 - from.1);
+        let length = along_x.hypot(along_y).max(f64::MIN_POSITIVE);
+        let (x, y) = (-along_y / length, along_x / length);
+        let is_inwards = (from.0 - self.middle.0) * x + (from.1 - self.middle.1) * y < 0.0;
+        if is_inwards { (-x, -y) } else { (x, y) }
+    }
 }
 
 fn arrow_stroke(unit: f64) -> Stroke {
@@ -288,6 +371,8 @@ mod tests {
         Relief {
             columns: 5,
             rows: 5,
+            from: (0.0, 0.0),
+            longer_m: 5.0,
             heights,
             walls: vec![0.0; 25],
         }

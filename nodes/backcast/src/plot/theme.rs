@@ -26,6 +26,18 @@ pub(super) const BEST: Color = Color::rgb(0x1B_5FD0);
 pub(super) const OTHER: Color = Color::rgb(0x5E_86BF);
 pub(super) const TRUTH: Color = Color::rgb(0xC2_187A);
 
+/// Colours of the curves of a chart, which the colour-blind tell apart (Okabe and Ito,
+/// "Color Universal Design", 2008).
+pub(super) const CURVES: [Color; 7] = [
+    Color::rgb(0x00_72B2),
+    Color::rgb(0xD5_5E00),
+    Color::rgb(0x00_9E73),
+    Color::rgb(0xCC_79A7),
+    Color::rgb(0x56_B4E9),
+    Color::rgb(0xE6_9F00),
+    Color::rgb(0x1F_2933),
+];
+
 /// All classes of beams, in the order in which legends name them.
 pub(super) const CLASSES: [BeamClass; 4] = [
     BeamClass::Hit,
@@ -34,13 +46,14 @@ pub(super) const CLASSES: [BeamClass; 4] = [
     BeamClass::Unknown,
 ];
 
-/// The colour of a beam, and what it did in a few words.
+/// The colour of a beam, and what it did in a few words; the colours are those that the
+/// colour-blind tell apart, see [`CURVES`].
 pub(super) fn of_class(class: BeamClass) -> (Color, &'static str) {
     match class {
-        BeamClass::Hit => (Color::rgb(0x0E_8A46), "hit"),
-        BeamClass::Short => (Color::rgb(0xEE_8A12), "short"),
-        BeamClass::Through => (Color::rgb(0xD6_2728), "through a wall"),
-        BeamClass::Unknown => (Color::rgb(0x85_5FC4), "behind the unknown"),
+        BeamClass::Hit => (Color::rgb(0x00_9E73), "hit"),
+        BeamClass::Short => (Color::rgb(0xE6_9F00), "short"),
+        BeamClass::Through => (Color::rgb(0xD5_5E00), "through a wall"),
+        BeamClass::Unknown => (Color::rgb(0x56_5BB8), "behind the unknown"),
     }
 }
 

@@ -52,6 +52,15 @@ impl View {
         )
     }
 
+    /// The point of the map, metres, that lies at a point of the picture.
+    pub(super) fn metres_at(&self, (x, y): (f64, f64)) -> (f64, f64) {
+        let (left, top) = self.area.center();
+        (
+            self.center.0 + (x - left) / self.pixels_per_m,
+            self.center.1 - (y - top) / self.pixels_per_m,
+        )
+    }
+
     /// The inverse of [`View::at`] as a pose: of a frame whose x axis runs to
     /// the right and whose y axis runs up, in pixels from the area's upper left
     /// corner and divided by the scale.

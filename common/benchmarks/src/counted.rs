@@ -1,0 +1,222 @@
+//! Markov localization and reverse projection step by step as the paper writes them down
+//! (section II B), at a known heading, with every operation counted. They are for
+//! counting: the engine and the baselines do the same in less time.
+
+use std::ops::AddAssign;
+
+use engine::accumulator::Query;
+use engine::directions::Direction;
+use engine::grid::Cell;
+use engine::reference;
+
+use crate::baselines::Readings;
+use crate::worlds::World;
+
+/// What Markov localization did. The paper's formulas: mn ranges, mn squarings and n
+/// Gaussians, n(2m + 1) operations; 2mn additions and subtractions.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+pub struct MarkovCounts {
+    /// Shortest distances that were found.
+    pub ranges: u64,
+    /// Squares that were taken.
+    pub squarings: u64,
+    /// Gaussians that were computed.
+    pub gaussians: u64,
+    /// Additions and subtractions.
+    pub additions: u64,
+}
+
+impl MarkovCounts {
+    /// What the paper calls operations.
+    #[must_use]
+    pub fn operations(&self) -> u64 {
+        self.ranges + self.squarings + self.gaussians
+    }
+}
+
+/// What reverse projection did. The paper's formulas for the worst case: 2mp operations
+/// and kmp additions.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+pub struct ReverseCounts {
+    /// Nearest obstacles that were found along θ - π.
+    pub obstacles: u64,
+    /// Readings that were turned into cells and intensities; those that end behind an
+    /// obstacle are not.
+    pub projections: u64,
+    /// Intensities that were added to a cell.
+    pub additions: u64,
+    /// Additions if nothing stood in the way: the sum of k over all boundary cells and
+    /// beams, the paper's kmp.
+    pub worst_additions: u64,
+}
+
+impl ReverseCounts {
+    /// What the paper calls operations.
+    #[must_use]
+    pub fn operations(&self) -> u64 {
+        self.obstacles + self.projections
+    }
+}
+
+impl AddAssign for MarkovCounts {
+    fn add_assign(&mut self, other: Self) {
+        self.ranges += other.ranges;
+        self.squarings += other.squarings;
+        self.gaussians += other.gaussians;
+        self.additions += other.additions;
+    }
+}
+
+impl AddAssign for ReverseCounts {
+    fn add_assign(&mut self, other: Self) {
+        self.obstacles += other.obstacles;
+        self.projections += other.projections;
+        self.additions += other.additions;
+        self.worst_additions += other.worst_additions;
+    }
+}
+
+/// Markov localization at one heading: the likelihood of the readings in each cell, row
+/// by row from the lowest y, 0 where the robot cannot stand; and what it took.
+#[must_use]
+pub fn markov(world: &World, readings: &Readings, query: Query<'_>) -> (Vec<f64>, MarkovCounts) {
+    let mut counts = MarkovCounts::default();
+    let grid = &world.grid;
+    let mut belief = vec![0.0; grid.cells().len()];
+    for (i, likelihood) in belief.iter_mut().enumerate() {
+        let (x, y) = ((i % grid.width()) as i64, (i / grid.width()) as i64);
+        if !grid.is_open(x, y) {
+            continue;
+        }
+        let mut sum = 0.0;
+        for beam in &readings.beams {
+            let direction = query.space.directions.get(query.heading + beam.bearing);
+            counts.ranges += 1;
+            let steps = reference::range(grid, x, y, direction);
+            let cells = steps.map_or(f64::INFINITY, |steps| {
+                f64::from(steps) / direction.steps_per_cell
+            });
+            counts.additions += 1;
+            let error = (cells - beam.cells) / beam.sigma_cells;
+            counts.squarings += 1;
+            let square = error * error;
+            counts.additions += 1;
+            sum += square;
+        }
+        counts.gaussians += 1;
+        *likelihood = (-0.5 * sum).exp();
+    }
+    (belief, counts)
+}
+
+/// Reverse projection at one heading: the intensity of each cell, row by row from the
+/// lowest y, as [`engine::scatter`] has it; and what it took.
+#[must_use]
+pub fn reverse_projection(world: &World, query: Query<'_>) -> (Vec<u16>, ReverseCounts) {
+    let mut field = vec![0u16; world.grid.cells().len()];
+    let counts = project(world, query, |index, votes| {
+        field[index] += u16::from(votes);
+    });
+    (field, counts)
+}
+
+/// The most beams that vote for one cell: by Lemma 1 no more than there are.
+#[must_use]
+pub fn most_beams(world: &World, query: Query<'_>) -> u16 {
+    let mut beams = vec![0u16; world.grid.cells().len()];
+    project(world, query, |index, _| beams[index] += 1);
+    beams.into_iter().max().unwrap_or(0)
+}
+
+/// Projects all readings back from all boundary cells; `add` is told of each cell that a
+/// taper reaches, and its votes.
+fn project(world: &World, query: Query<'_>, mut add: impl FnMut(usize, u8)) -> ReverseCounts {
+    let mut counts = ReverseCounts::default();
+    let mut visible = Vec::new();
+    for cell in &world.boundary {
+        for beam in 0..query.program.beams() {
+            let (direction, taper) = query.beam(beam);
+            let first = (taper.centre + 1).saturating_sub(taper.profile.len() as u16);
+            let first = first.max(1);
+            counts.worst_additions += u64::from(taper.end().saturating_sub(first));
+            counts.obstacles += 1;
+            let from = (i64::from(cell.x), i64::from(cell.y));
+            see_back(
+                world,
+                from,
+                &direction.opposite(),
+                taper.end(),
+                &mut visible,
+            );
+            let reached = visible.iter().zip(1..).skip(usize::from(first) - 1);
+            let before = counts.additions;
+            for (&index, steps) in reached {
+                counts.additions += 1;
+                add(index, taper.votes(steps));
+            }
+            counts.projections += u64::from(counts.additions > before);
+        }
+    }
+    counts
+}
+
+/// The cells before the nearest obstacle, and before `end` steps.
+fn see_back(world: &World, from: (i64, i64), back: &Direction, end: u16, visible: &mut Vec<usize>) {
+    visible.clear();
+    let (mut x, mut y) = back.advance(from.0, from.1);
+    while visible.len() + 1 < usize::from(end) && world.grid.get(x, y) == Some(Cell::Open) {
+        visible.push(y as usize * world.grid.width() + x as usize);
+        (x, y) = back.advance(x, y);
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use engine::accumulator::Accumulator;
+    use engine::program::ScanProgram;
+    use engine::scatter::Scatter;
+    use engine::taper::TaperShape;
+
+    use super::*;
+    use crate::scans::{ScanConfig, simulate};
+    use crate::worlds::Kind;
+
+    const CONFIG: ScanConfig = ScanConfig {
+        beams: 8,
+        noise_percent: 5.0,
+    };
+
+    #[test]
+    fn counts_are_the_papers_or_below_and_the_fields_those_of_the_engine() {
+        for p_over_n in [0.2, 0.5, 1.2] {
+            let world = World::generate(Kind::Rooms, (90, 70), p_over_n, 3).unwrap();
+            let space = world.space(72).unwrap();
+            let (n, p) = (world.grid.free_cells() as u64, world.boundary.len() as u64);
+            let m = CONFIG.beams as u64;
+            for scan in simulate(&world, &space, &CONFIG, 3, 5).unwrap() {
+                let votes = CONFIG.votes(TaperShape::Trapezoid);
+                let program = ScanProgram::new(&scan.scan(), 0.0, &space, &votes).unwrap();
+                let readings = Readings::new(&scan.scan(), &space, &votes).unwrap();
+                let query = Query {
+                    program: &program,
+                    space: &space,
+                    heading: scan.heading,
+                };
+                let (_, markov) = markov(&world, &readings, query);
+                assert_eq!(markov.operations(), n * (2 * m + 1));
+                assert_eq!(markov.additions, 2 * m * n);
+                let (field, reverse) = reverse_projection(&world, query);
+                assert!(reverse.operations() <= 2 * m * p);
+                assert!(reverse.additions <= reverse.worst_additions);
+                assert!(reverse.additions <= m * n, "Theorem 1");
+                assert!(u64::from(most_beams(&world, query)) <= m, "Lemma 1");
+                let mut expected = Vec::new();
+                let filled =
+                    Scatter::new(&world.grid, &world.boundary)
+                        .fill(query, &mut expected, &|| false);
+                assert!(filled.is_some());
+                assert_eq!(field, expected);
+            }
+        }
+    }
+}

@@ -1,0 +1,29 @@
+//! `backcast bench paper`: every claim of the paper's sections II to V measured anew, and
+//! its figures drawn anew, into a folder of CSV and PNG files.
+//!
+//! A file an experiment; each makes its rows, its pictures and what the claims need.
+//! `docs/paper.md` says what came out.
+//!
+//! ```text
+//!            ┌─ method    figures 1 to 3
+//!            ├─ counts    operations against the formulas of section II B
+//! command ───┼─ sonar     section IV: eight sonars ──────────── claims ─ folder
+//!            ├─ tables    tables 1 and 2 (through `contest`)
+//!            ├─ corridor  section V
+//!            └─ aid       what the votes save Markov localization and particles
+//! ```
+
+mod aid;
+mod claims;
+mod command;
+mod corridor;
+mod counts;
+mod folder;
+mod interval;
+mod method;
+mod printed;
+mod ring;
+mod sonar;
+mod tables;
+
+pub(super) use command::{Config, run};

@@ -1,0 +1,159 @@
+//! From values to shares of an axis, and the round numbers that are written beside it.
+//! Pure.
+
+/// How values lie along an axis.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(super) enum Scale {
+    /// Evenly from the first value to the second.
+    Even(f64, f64),
+    /// By their logarithms; both are above 0.
+    Decades(f64, f64),
+}
+
+/// Most numbers beside an axis with an even scale.
+const MOST_TICKS: f64 = 7.0;
+
+/// An even scale ends at a multiple of a round step, of which there are at most so many.
+const STEPS: f64 = 12.0;
+
+/// Up to so many decades 2 and 5 are written, too.
+const FEW_DECADES: f64 = 2.8;
+
+impl Scale {
+    /// An even scale over all values, from 0 on.
+    pub(super) fn from_zero(values: impl Iterator<Item = f64>) -> Self {
+        let high = values.filter(|value| value.is_finite()).fold(0.0, f64::max);
+        let step = round_step(high.max(f64::MIN_POSITIVE) / STEPS);
+        Scale::Even(0.0, (high / step).ceil().max(1.0) * step)
+    }
+
+    /// A scale of decades that holds all values above 0, to the next 1, 2 or 5.
+    pub(super) fn of_decades(values: impl Iterator<Item = f64>) -> Self {
+        let above = values.filter(|&value| value.is_finite() && value > 0.0);
+        let (low, high) = above.fold((f64::INFINITY, 0.0_f64), |(low, high), value| {
+            (low.min(value), high.max(value))
+        });
+        if low > high {
+            return Scale::Decades(1.0, 10.0);
+        }
+        let below = 1.0 / round_step(1.0 / low);
+        Scale::Decades(below, round_step(high).max(2.0 * below))
+    }
+
+    /// Where a value lies, 0 at the axis' beginning and 1 at its end; what lies beyond
+    /// is put on the end.
+    pub(super) fn share(self, value: f64) -> f64 {
+        let share = match self {
+            Scale::Even(low, high) => (value - low) / (high - low),
+            Scale::Decades(low, high) => (value / low).ln() / (high / low).ln(),
+        };
+        if share.is_nan() {
+            return 0.0;
+        }
+        share.clamp(0.0, 1.0)
+    }
+
+    /// The values that are written beside the axis, with their text.
+    pub(super) fn ticks(self) -> Vec<(f64, String)> {
+        let values: Vec<f64> = match self {
+            Scale::Even(low, high) => {
+                let step = round_step((high - low) / MOST_TICKS);
+                let first = (low / step).ceil() as i64;
+                let last = (high / step + 1e-9).floor() as i64;
+                (first..=last).map(|i| i as f64 * step).collect()
+            }
+            Scale::Decades(low, high) => decades(low, high),
+        };
+        values
+            .into_iter()
+            .map(|value| (value, number(value)))
+            .collect()
+    }
+}
+
+fn decades(low: f64, high: f64) -> Vec<f64> {
+    let factors: &[f64] = match (high / low).log10() <= FEW_DECADES {
+        true => &[1.0, 2.0, 5.0],
+        false => &[1.0],
+    };
+    let powers = low.log10().floor() as i32..=high.log10().ceil() as i32;
+    let all = powers.flat_map(|power| factors.iter().map(move |f| f * 10f64.powi(power)));
+    // Powers of ten are not exact below 1.
+    let within = low * (1.0 - 1e-9)..=high * (1.0 + 1e-9);
+    all.filter(|value| within.contains(value)).collect()
+}
+
+/// The least of 1, 2, 5, 10 and so on that is not below a length above 0.
+pub(super) fn round_step(length: f64) -> f64 {
+    let power = 10f64.powf(length.log10().floor());
+    let factors = [1.0, 2.0, 5.0];
+    let fits = factors.into_iter().find(|factor| factor * power >= length);
+    fits.unwrap_or(10.0) * power
+}
+
+/// A round number without an exponent, up to a millionth.
+pub(super) fn number(value: f64) -> String {
+    let text = format!("{value:.6}");
+    let text = text.trim_end_matches('0').trim_end_matches('.');
+    match text {
+        "-0" | "" => "0".to_owned(),
+        text => text.to_owned(),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn texts(scale: Scale) -> Vec<String> {
+        scale.ticks().into_iter().map(|(_, text)| text).collect()
+    }
+
+    #[test]
+    fn ticks_are_round_and_within_the_axis() {
+        assert_eq!(
+            texts(Scale::Even(0.0, 120.0)),
+            ["0", "20", "40", "60", "80", "100", "120"]
+        );
+        assert_eq!(
+            texts(Scale::Even(-0.3, 0.3)),
+            ["-0.3", "-0.2", "-0.1", "0", "0.1", "0.2", "0.3"]
+        );
+        assert_eq!(
+            texts(Scale::Decades(0.5, 20.0)),
+            ["0.5", "1", "2", "5", "10", "20"]
+        );
+        assert_eq!(
+            texts(Scale::Decades(0.01, 100.0)),
+            ["0.01", "0.1", "1", "10", "100"]
+        );
+    }
+
+    #[test]
+    fn axes_hold_their_values() {
+        assert_eq!(
+            Scale::from_zero([3.0, 97.0].into_iter()),
+            Scale::Even(0.0, 100.0)
+        );
+        let Scale::Decades(low, high) = Scale::of_decades([0.3, 0.0, 41.0].into_iter()) else {
+            panic!("another scale");
+        };
+        // Roots and powers of ten round.
+        assert!(
+            (low - 0.2).abs() < 1e-9 && (high - 50.0).abs() < 1e-9,
+            "{low} {high}"
+        );
+        assert_eq!(
+            Scale::of_decades(std::iter::empty()),
+            Scale::Decades(1.0, 10.0)
+        );
+    }
+
+    #[test]
+    fn shares_run_along_the_axis_and_end_at_its_ends() {
+        let scale = Scale::Decades(1.0, 100.0);
+        assert_eq!(scale.share(10.0), 0.5);
+        assert_eq!((scale.share(0.0), scale.share(1e9)), (0.0, 1.0));
+        assert_eq!(Scale::Even(2.0, 4.0).share(3.0), 0.5);
+    }
+}
