@@ -58,7 +58,8 @@ impl Scale {
         let values: Vec<f64> = match self {
             Scale::Even(low, high) => {
                 let step = round_step((high - low) / MOST_TICKS);
-                let first = (low / step).ceil() as i64;
+                // Ends that are round are met but for their rounding.
+                let first = (low / step - 1e-9).ceil() as i64;
                 let last = (high / step + 1e-9).floor() as i64;
                 (first..=last).map(|i| i as f64 * step).collect()
             }
