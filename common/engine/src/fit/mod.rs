@@ -30,6 +30,7 @@ use nalgebra::Vector3;
 use crate::grid::GridFrame;
 pub use agreement::BeamClass;
 pub use config::FitConfig;
+pub(crate) use ends::End;
 pub use ends::{Ends, JudgedBeam};
 pub use readings::Readings;
 pub use refine::{Expected, Refined};

@@ -10,7 +10,7 @@ use super::TrackingConfig;
 use super::seen::Seen;
 use super::way::Way;
 use crate::EngineError;
-use crate::fit::{Ends, Terrain};
+use crate::fit::{End, Ends, Terrain};
 use crate::grid::{CellRules, GridFrame};
 
 /// A match with a lower score says nothing: half of the beams see what the scan before
@@ -22,7 +22,7 @@ const SURE_SCORE: f64 = 0.8;
 
 /// Ends of beams farther off are left out, cells: beams lie too far apart there, and a map
 /// as wide takes some milliseconds to prepare.
-const FARTHEST: f64 = 250.0;
+const FARTHEST: f64 = 400.0;
 
 /// Matches scans to one before.
 #[derive(Debug, Clone, Default)]
@@ -75,12 +75,14 @@ impl ScanMatcher {
             ..Way::default()
         };
         let predicted = unknown.predict((self.gone, Matrix3::zeros()), 1.0);
+        // The others end off the map.
+        let near = near_share(seen.ends);
         let mut fitted = before.settle(predicted);
-        if fitted.score < SURE_SCORE {
+        if fitted.score < SURE_SCORE * near {
             fitted = before.settle_turned(predicted, fitted);
         }
         let step = self.gone.inverse().then(fitted.pose);
-        (fitted.score >= LEAST_SCORE).then_some(step)
+        (fitted.score >= LEAST_SCORE * near).then_some(step)
     }
 }
 
@@ -107,10 +109,24 @@ fn around(seen: &Seen<'_>) -> Result<Terrain, EngineError> {
 
 /// Where beams end that end near, in cells about the frame that is sought.
 fn near_ends(ends: &Ends) -> impl Iterator<Item = (f64, f64)> {
-    let ends = ends.ends.iter().map(|end| {
-        let (x, y) = end.from;
-        let (dx, dy) = end.towards;
-        (x + end.reading * dx, y + end.reading * dy)
-    });
-    ends.filter(|(x, y)| x.hypot(*y) <= FARTHEST)
+    ends.ends.iter().map(point).filter(is_near)
+}
+
+/// Their share of the weights of all; at least that of ten beams of a hundred, or a few
+/// of them would tell.
+fn near_share(ends: &Ends) -> f64 {
+    let near = ends.ends.iter().filter(|end| is_near(&point(end)));
+    let all: f64 = ends.ends.iter().map(|end| end.weight).sum();
+    let near: f64 = near.map(|end| end.weight).sum();
+    (near / all).max(0.1)
+}
+
+fn point(end: &End) -> (f64, f64) {
+    let (x, y) = end.from;
+    let (dx, dy) = end.towards;
+    (x + end.reading * dx, y + end.reading * dy)
+}
+
+fn is_near(&(x, y): &(f64, f64)) -> bool {
+    x.hypot(y) <= FARTHEST
 }
