@@ -190,6 +190,7 @@ mod tests {
         any_grid, any_limited_grid, any_long_grid, any_scan, plain_votes, plain_votes_within,
         space_of,
     };
+    use crate::votes::{CLOSE_TIMES, is_close};
     use messages::Vote;
 
     fn check(
@@ -272,7 +273,10 @@ mod tests {
                     let found = VoteSet { poses_evaluated: 0, ..found };
                     let (above, below) = found.votes.split_at(plain.votes.len());
                     prop_assert_eq!(above, &plain.votes);
-                    prop_assert!(below.len() <= candidates as usize);
+                    let wanted = candidates as usize;
+                    prop_assert!(below.len() <= CLOSE_TIMES * wanted);
+                    let mut beyond = below.iter().skip(wanted);
+                    prop_assert!(beyond.all(|vote| is_close(vote.intensity, found.best)));
                     for vote in below {
                         let (x, y) = (i64::from(vote.x), i64::from(vote.y));
                         let intensity = reference::intensity(&grid, &program, &space, x, y, vote.heading.into());
