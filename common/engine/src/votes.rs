@@ -10,8 +10,8 @@ use messages::Vote;
 use distinct::Leading;
 #[cfg(test)]
 pub(crate) use distinct::are_near;
-pub(crate) use distinct::{CLOSE_TIMES, Distinct, Leaders, is_close};
 pub use distinct::{DISTINCT_DEG, DISTINCT_M};
+pub(crate) use distinct::{Distinct, Leaders, is_close, most_candidates};
 pub(crate) use of_field::FieldVotes;
 pub use of_field::of_field;
 

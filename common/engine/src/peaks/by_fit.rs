@@ -9,7 +9,7 @@ use super::summits::{self, Reach, Summit};
 use super::{PeakConfig, PeakInput, Place, Places, Workspace, in_map, likelihood};
 use crate::fit::{BeamClass, Ends, GridPose, Refined, Terrain};
 use crate::grid::GridFrame;
-use crate::votes::CLOSE_TIMES;
+use crate::votes::most_candidates;
 
 /// Reads the places from the votes of a scan and from the scan itself, see
 /// [`Workspace::by_fit`].
@@ -36,7 +36,7 @@ impl Workspace {
     ) -> &Places {
         let reach = Reach::new(input, config.candidate_m, config.candidate_deg);
         let wanted = config.max_candidates as usize;
-        let most = (wanted, CLOSE_TIMES * wanted);
+        let most = (wanted, most_candidates(wanted, input.frame.resolution_m));
         summits::find(input, reach, most, &mut self.summits);
         self.refined.clear();
         let places = self

@@ -6,7 +6,7 @@ use super::parts;
 use super::sift::{self, Sift};
 use super::task::Task;
 use crate::program::ScanProgram;
-use crate::votes::{CLOSE_TIMES, Distinct, VoteSet, is_close};
+use crate::votes::{Distinct, VoteSet, is_close, most_candidates};
 
 /// A search to be made, and the room for it, of as many threads as there are rooms and
 /// shares.
@@ -62,7 +62,8 @@ impl Attempt<'_> {
         if wanted > 0 && found.best > 0 {
             let bounded = (end == End::Done).then_some(&**rooms);
             let (floor, certain) = (found.certified_floor, found.votes.len());
-            for count in [wanted, CLOSE_TIMES * wanted] {
+            let most = most_candidates(wanted, task.space.resolution_m);
+            for count in [wanted, most] {
                 found.votes.truncate(certain);
                 Alternatives::new(task, alternatives).find(count, floor, bounded);
                 let distinct = Distinct::new(task.space, wanted, &mut alternatives.distinct);
@@ -70,7 +71,7 @@ impl Attempt<'_> {
                 found.add_candidates(&mut alternatives.votes, distinct);
                 let kept = alternatives.distinct.iter();
                 let close = kept.filter(|vote| is_close(vote.intensity, found.best));
-                if 2 * close.count() < wanted {
+                if most == wanted || 2 * close.count() < wanted {
                     break;
                 }
             }

@@ -190,7 +190,7 @@ mod tests {
         any_grid, any_limited_grid, any_long_grid, any_scan, plain_votes, plain_votes_within,
         space_of,
     };
-    use crate::votes::{CLOSE_TIMES, is_close};
+    use crate::votes::{is_close, most_candidates};
     use messages::Vote;
 
     fn check(
@@ -274,7 +274,7 @@ mod tests {
                     let (above, below) = found.votes.split_at(plain.votes.len());
                     prop_assert_eq!(above, &plain.votes);
                     let wanted = candidates as usize;
-                    prop_assert!(below.len() <= CLOSE_TIMES * wanted);
+                    prop_assert!(below.len() <= most_candidates(wanted, space.resolution_m));
                     let mut beyond = below.iter().skip(wanted);
                     prop_assert!(beyond.all(|vote| is_close(vote.intensity, found.best)));
                     for vote in below {

@@ -15,7 +15,17 @@ pub const DISTINCT_DEG: f64 = 6.5;
 /// Where many poses have almost as many votes, votes do not tell which are the first:
 /// beyond those that are wanted, poses close to the best are candidates as well, up to
 /// so many times as many.
-pub(crate) const CLOSE_TIMES: usize = 4;
+const CLOSE_TIMES: usize = 4;
+
+/// Most candidates where so many are wanted: those and the ones that are close. Where
+/// cells are larger than what tells candidates apart, the close ones are the neighbours
+/// of one place, and are not counted.
+pub(crate) fn most_candidates(wanted: usize, resolution_m: f64) -> usize {
+    match resolution_m <= DISTINCT_M {
+        true => CLOSE_TIMES * wanted,
+        false => wanted,
+    }
+}
 
 /// Whether a pose is close to the best one by votes: it has half as many. Of 24 true
 /// places of scans of three buildings that were not among the first 64, 23 were.
@@ -47,7 +57,7 @@ impl<'a> Distinct<'a> {
     }
 
     /// Keeps poses that are close to the best one beyond those that are wanted, see
-    /// [`CLOSE_TIMES`].
+    /// [`most_candidates`].
     pub(crate) fn and_close(self, best: u16) -> Self {
         Distinct {
             best: Some(best),
@@ -68,7 +78,8 @@ impl<'a> Distinct<'a> {
     fn has_room_for(&self, vote: &Vote) -> bool {
         let is_close = |best| is_close(vote.intensity, best);
         let kept = self.kept.len();
-        kept < self.wanted || kept < CLOSE_TIMES * self.wanted && self.best.is_some_and(is_close)
+        let most = most_candidates(self.wanted, self.space.resolution_m);
+        kept < self.wanted || kept < most && self.best.is_some_and(is_close)
     }
 
     /// Those of all poses.
