@@ -73,6 +73,7 @@ round_trips! {
     readings_arrive: topic::Readings,
     field_arrives: topic::Field,
     hypotheses_arrive: topic::Hypotheses,
+    particles_arrive: topic::Particles,
     poses_arrive: topic::Tracked,
     attention_arrives: topic::Attention,
     initial_poses_arrive: topic::InitialPoseTopic,
