@@ -15,6 +15,9 @@ pub mod robot;
 pub mod world;
 
 use std::path::PathBuf;
+use std::process::Command;
+
+use serde_json::Value;
 
 /// The folder of recordings of other robots, beside the project or beside a folder that
 /// it is in, where these are at hand.
@@ -25,6 +28,18 @@ pub fn evaluation_data() -> Option<PathBuf> {
         .ancestors()
         .map(|f| f.join("shared/data/evaluation"));
     candidates.find(|folder| folder.is_dir())
+}
+
+/// What a command that succeeds prints as JSON.
+#[must_use]
+pub fn json_of(command: &mut Command) -> Value {
+    let output = command.output().unwrap();
+    assert!(
+        output.status.success(),
+        "{}",
+        String::from_utf8_lossy(&output.stderr)
+    );
+    serde_json::from_slice(&output.stdout).unwrap()
 }
 
 /// The root of the repository.

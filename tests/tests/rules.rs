@@ -16,17 +16,9 @@ const ZENOH_NODES: [&str; 4] = ["bridge", "fleet_monitor", "locate_server", "ros
 
 /// What cargo knows of the workspace.
 fn metadata() -> Value {
-    let output = Command::new(env!("CARGO"))
-        .args(["metadata", "--format-version", "1", "--no-deps", "--locked"])
-        .current_dir(tests::root())
-        .output()
-        .unwrap();
-    assert!(
-        output.status.success(),
-        "{}",
-        String::from_utf8_lossy(&output.stderr)
-    );
-    serde_json::from_slice(&output.stdout).unwrap()
+    let options = ["metadata", "--format-version", "1", "--no-deps", "--locked"];
+    let mut command = Command::new(env!("CARGO"));
+    tests::json_of(command.args(options).current_dir(tests::root()))
 }
 
 /// The workspace's crates, each with the names of what it links; what only its

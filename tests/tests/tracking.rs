@@ -133,18 +133,8 @@ fn the_graph_and_the_tools_track_alike() {
 
 fn figures(recording: &Path, options: &[&str]) -> Value {
     let mut command = Command::new(executables::path("backcast"));
-    let output = command
-        .args(["evaluate", "--sequence", "--json"])
-        .args(options)
-        .arg(recording)
-        .output()
-        .unwrap();
-    assert!(
-        output.status.success(),
-        "{}",
-        String::from_utf8_lossy(&output.stderr)
-    );
-    serde_json::from_slice(&output.stdout).unwrap()
+    command.args(["evaluate", "--sequence", "--json"]);
+    tests::json_of(command.args(options).arg(recording))
 }
 
 #[test]

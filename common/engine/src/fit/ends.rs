@@ -19,7 +19,7 @@ pub struct Ends {
     silent: Vec<f64>,
     readings: Readings,
     /// The weights of all beams together.
-    pub(super) weight: f64,
+    pub(crate) weight: f64,
 }
 
 /// Where a beam ends.

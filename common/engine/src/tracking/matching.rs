@@ -13,8 +13,8 @@ use crate::EngineError;
 use crate::fit::{End, Ends, Terrain};
 use crate::grid::{CellRules, GridFrame};
 
-/// A match with a lower score says nothing: half of the beams see what the scan before
-/// did not, or the robot was carried away.
+/// A match with a lower score says nothing: two fifths of the beams see what the scan
+/// before did not, or the robot was carried away.
 const LEAST_SCORE: f64 = 0.6;
 
 /// A match with a lower score is tried again from other headings.
@@ -112,13 +112,12 @@ fn near_ends(ends: &Ends) -> impl Iterator<Item = (f64, f64)> {
     ends.ends.iter().map(point).filter(is_near)
 }
 
-/// Their share of the weights of all; at least that of ten beams of a hundred, or a few
-/// of them would tell.
+/// Their share of the weights of all, 0.1 at least: a match by a tenth of the beams is not
+/// taken for one by all.
 fn near_share(ends: &Ends) -> f64 {
     let near = ends.ends.iter().filter(|end| is_near(&point(end)));
-    let all: f64 = ends.ends.iter().map(|end| end.weight).sum();
     let near: f64 = near.map(|end| end.weight).sum();
-    (near / all).max(0.1)
+    (near / ends.weight).max(0.1)
 }
 
 fn point(end: &End) -> (f64, f64) {

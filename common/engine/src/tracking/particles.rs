@@ -151,10 +151,7 @@ impl ParticleTracker {
 
     fn conclude(&mut self, seen: &Seen<'_>) {
         let was = self.report.state;
-        let was_found = matches!(
-            was,
-            TrackState::Unique | TrackState::Doubtful | TrackState::Lost
-        );
+        let was_found = was != TrackState::Searching;
         let is_sure = self.agreeing >= LEAST_KEYS && self.report.score >= self.config.least_mean;
         let (state, reason) = match () {
             () if self.bad >= LOST_SCANS && was_found => (TrackState::Lost, TrackReason::PoorFit),

@@ -27,8 +27,8 @@ pub(crate) fn most_candidates(wanted: usize, resolution_m: f64) -> usize {
     }
 }
 
-/// Whether a pose is close to the best one by votes: it has half as many. Of 24 true
-/// places of scans of three buildings that were not among the first 64, 23 were.
+/// Whether a pose is close to the best one by votes: it has half as many. Of 29 true
+/// places, on three maps, that were among the first 256 and not among 64, 28 were.
 pub(crate) fn is_close(intensity: u16, best: u16) -> bool {
     2 * u32::from(intensity) >= u32::from(best)
 }
