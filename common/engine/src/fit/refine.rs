@@ -19,6 +19,9 @@ pub struct Refined {
     pub variance: f64,
     /// Weights of these beams together.
     pub weight: f64,
+    /// What all ends at walls of one direction pull by together, where these walls are
+    /// off by a cell: Σ (Σ w ∇d) (Σ w ∇d)ᵀ, the outer sum over the directions.
+    pub walls: Matrix3<f64>,
 }
 
 /// What is known of a pose before the scan.
@@ -45,6 +48,10 @@ const BEAMS_TOGETHER: f64 = 8.0;
 /// variance of a number that is anywhere within one, squared cells.
 const LEAST_VARIANCE: f64 = 1.0 / 12.0;
 
+/// What walls are off by at least, cells: they lie anywhere between the middle of
+/// their cells and their edges.
+const LEAST_WALL_ERROR: f64 = 0.5;
+
 /// Beams farther off have no say: coarse first, then fine, in standard
 /// deviations.
 const REACHES: [f64; 2] = [4.0, 2.0];
@@ -67,6 +74,17 @@ impl Refined {
     #[must_use]
     pub fn information(&self) -> Matrix3<f64> {
         self.curvature / independent(self.variance)
+    }
+
+    /// What is added to such a covariance of the pose, x, y (cells) and the heading
+    /// (radians), where the map errs by walls: the walls of one direction are off
+    /// together, by as much as the scan's ends lie from them and by `drawn` cells in
+    /// addition, those of other directions by as much for themselves.
+    #[must_use]
+    pub fn by_walls(&self, covariance: Matrix3<f64>, drawn: f64) -> Matrix3<f64> {
+        let error = self.variance.max(LEAST_WALL_ERROR.powi(2)) + drawn * drawn;
+        let pulled = covariance / independent(self.variance);
+        error * pulled * self.walls * pulled.transpose()
     }
 }
 
@@ -121,7 +139,10 @@ impl Terrain {
         let mut pose = start;
         for (reach, last_step) in reaches.into_iter().zip(LAST_STEPS) {
             for _ in 0..MOST_STEPS {
-                let sums = self.linearise(ends, pose, reach * sigma);
+                let mut sums = Sums::default();
+                self.linearise(ends, pose, reach * sigma, |weight, distance, slope| {
+                    sums.add(weight, distance, slope);
+                });
                 let Some(step) = sums.step(ends.weight, pose, known) else {
                     break;
                 };
@@ -135,18 +156,31 @@ impl Terrain {
                 }
             }
         }
-        let sums = self.linearise(ends, pose, reaches[1] * sigma);
+        let (mut sums, mut walls) = (Sums::default(), Walls::default());
+        self.linearise(ends, pose, reaches[1] * sigma, |weight, distance, slope| {
+            sums.add(weight, distance, slope);
+            walls.add(weight, slope);
+        });
         Refined {
             pose,
             curvature: sums.curvature(),
             variance: sums.variance(),
             weight: sums.weight,
+            walls: walls.products(),
         }
     }
 
-    fn linearise(&self, ends: &Ends, pose: GridPose, reach: f64) -> Sums {
+    /// Calls for each end that has a say: its weight, its distance, and how that grows
+    /// with x, y and the heading.
+    #[inline(always)]
+    fn linearise(
+        &self,
+        ends: &Ends,
+        pose: GridPose,
+        reach: f64,
+        mut add: impl FnMut(f64, f64, [f64; 3]),
+    ) {
         let turn = pose.heading.sin_cos();
-        let mut sums = Sums::default();
         for end in &ends.ends {
             let (dx, dy) = end.direction(turn);
             let (x, y) = end.start(turn);
@@ -163,9 +197,34 @@ impl Terrain {
             let share = 1.0 - off * off;
             // Turning by a radian moves the end by (-aside, ahead).
             let gradient = [along_x, along_y, ahead * along_y - aside * along_x];
-            sums.add(end.weight * share * share, distance, gradient);
+            add(end.weight * share * share, distance, gradient);
         }
-        sums
+    }
+}
+
+/// What the ends pull by at the walls of each of eight directions, by which way the
+/// distance to them grows.
+#[derive(Debug, Default)]
+struct Walls([Vector3<f64>; 8]);
+
+/// Directions along the axes reach half of 45° to either side: the tangent of that.
+const HALF_DIRECTION: f64 = std::f64::consts::SQRT_2 - 1.0;
+
+impl Walls {
+    #[inline(always)]
+    fn add(&mut self, weight: f64, slope: [f64; 3]) {
+        let [x, y, _] = slope;
+        let (right, up) = (usize::from(x > 0.0), usize::from(y > 0.0));
+        let direction = match () {
+            () if y.abs() < HALF_DIRECTION * x.abs() => right,
+            () if x.abs() < HALF_DIRECTION * y.abs() => 2 + up,
+            () => 4 + right + 2 * up,
+        };
+        self.0[direction] += weight * Vector3::from(slope);
+    }
+
+    fn products(&self) -> Matrix3<f64> {
+        self.0.iter().map(|pull| pull * pull.transpose()).sum()
     }
 }
 
@@ -327,6 +386,42 @@ mod tests {
         assert!((refined.pose.x - 13.0).abs() < 0.5, "{:?}", refined.pose);
         assert!((refined.pose.y - 2.5).abs() < 0.1);
         assert!(refined.curvature[(0, 0)] < 0.05 * refined.curvature[(1, 1)]);
+    }
+
+    /// The deviations that walls which err add to those of a corridor's pose.
+    fn by_walls(pulls: &[[f64; 3]], drawn: f64) -> [f64; 3] {
+        let (mut sums, mut walls) = (Sums::default(), Walls::default());
+        for &slope in pulls {
+            sums.add(1.0, 0.5, slope);
+            walls.add(1.0, slope);
+        }
+        let refined = Refined {
+            pose: TRUTH,
+            curvature: sums.curvature() + 1e-9 * Matrix3::identity(),
+            variance: 0.25,
+            weight: sums.weight,
+            walls: walls.products(),
+        };
+        let covariance = refined.information().try_inverse().unwrap();
+        let added = refined.by_walls(covariance, drawn);
+        std::array::from_fn(|i| added[(i, i)].sqrt())
+    }
+
+    #[test]
+    fn a_wall_that_is_off_moves_the_pose_however_many_beams_end_there() {
+        // One wall, ahead along x: the pose is off by what the wall is.
+        for beams in [10, 1000] {
+            let one = vec![[1.0, 0.0, 0.0]; beams];
+            assert!((by_walls(&one, 0.0)[0] - 0.5).abs() < 1e-6);
+            assert!((by_walls(&one, 1.2)[0] - 1.3).abs() < 1e-6);
+        }
+        // Two that face each other are each off for themselves: the mean of both is
+        // off by 1/√2 of that.
+        let both = [[[1.0, 0.0, 0.0]; 40], [[-1.0, 0.0, 0.0]; 40]].concat();
+        assert!((by_walls(&both, 0.0)[0] - 0.5 / 2f64.sqrt()).abs() < 1e-6);
+        // Parts of a wall that runs almost along an axis are one wall.
+        let bent = [[[1.0, 0.1, 0.0]; 40], [[1.0, -0.1, 0.0]; 40]].concat();
+        assert!((by_walls(&bent, 0.0)[0] - 0.5).abs() < 0.01);
     }
 
     #[test]

@@ -8,7 +8,6 @@ use nalgebra::{Matrix3, Vector3};
 use super::summits::{self, Reach, Summit};
 use super::{PeakConfig, PeakInput, Place, Places, Workspace, in_map, likelihood};
 use crate::fit::{BeamClass, Ends, GridPose, Refined, Terrain};
-use crate::grid::GridFrame;
 use crate::votes::most_candidates;
 
 /// Reads the places from the votes of a scan and from the scan itself, see
@@ -151,7 +150,7 @@ fn place(
     }
     Place {
         map_from_laser,
-        covariance: covariance(terrain.frame, is_known, &refined),
+        covariance: covariance(terrain, is_known, &refined),
         score: terrain.score(ends, pose, &config.fit),
         probability: 0.0,
         intensity: vote.intensity,
@@ -163,9 +162,10 @@ fn place(
 const LOOSE_M: f64 = 2.0;
 const LOOSE_RADIANS: f64 = 0.35;
 
-/// What the curvature of the fit says about its error, in the map frame.
-fn covariance(frame: GridFrame, heading_is_known: bool, refined: &Refined) -> Covariance {
-    let loose = LOOSE_M / frame.resolution_m;
+/// What the curvature of the fit and the walls of the map say about its error, in the
+/// map frame.
+fn covariance(terrain: &Terrain, heading_is_known: bool, refined: &Refined) -> Covariance {
+    let loose = LOOSE_M / terrain.frame.resolution_m;
     let prior = Vector3::new(loose.powi(-2), loose.powi(-2), LOOSE_RADIANS.powi(-2));
     let mut information = refined.information() + Matrix3::from_diagonal(&prior);
     if heading_is_known {
@@ -179,20 +179,18 @@ fn covariance(frame: GridFrame, heading_is_known: bool, refined: &Refined) -> Co
     if heading_is_known {
         in_cells[(2, 2)] = 0.0;
     }
-    in_map(frame, in_cells)
+    let drawn = terrain.drawn_error_m() / terrain.frame.resolution_m;
+    in_cells += refined.by_walls(in_cells, drawn);
+    in_map(terrain.frame, in_cells)
 }
 
 #[cfg(test)]
 mod tests {
-    use geometry::Pose;
-
     use super::*;
+    use crate::fit::drawn::terrain;
 
     fn deviations(heading_is_known: bool, curvature: Matrix3<f64>) -> [f64; 3] {
-        let frame = GridFrame {
-            resolution_m: 0.1,
-            map_from_grid: Pose::IDENTITY,
-        };
+        let measured = terrain(&["....", ".##.", "#..#"]);
         let refined = Refined {
             pose: GridPose {
                 x: 0.0,
@@ -202,8 +200,9 @@ mod tests {
             curvature,
             variance: 0.5,
             weight: 100.0,
+            walls: Matrix3::zeros(),
         };
-        let Covariance(covariance) = covariance(frame, heading_is_known, &refined);
+        let Covariance(covariance) = covariance(&measured, heading_is_known, &refined);
         std::array::from_fn(|i| covariance[(i, i)].sqrt())
     }
 

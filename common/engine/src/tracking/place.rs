@@ -58,7 +58,8 @@ impl Candidate {
     pub(super) fn fitted(&self) -> Fitted {
         Fitted {
             pose: self.pose,
-            covariance: tightened(with_map_error(self.covariance.0)),
+            // What a drawn map errs by in addition is in it.
+            covariance: tightened(with_map_error(self.covariance.0, 0.0)),
             score: self.score,
             off: 0.0,
         }

@@ -46,9 +46,11 @@ const SCORE_BY_DEVIATION: f64 = 0.004;
 const MAP_ERROR_M: f64 = 0.03;
 const MAP_ERROR: f64 = 0.4 * std::f64::consts::PI / 180.0;
 
-/// A covariance with what a map errs by in addition.
-pub(super) fn with_map_error(covariance: Matrix3<f64>) -> Matrix3<f64> {
-    let squares = [MAP_ERROR_M, MAP_ERROR_M, MAP_ERROR].map(|d| d * d);
+/// A covariance with what a map errs by in addition, one that was drawn by so many
+/// metres more.
+pub(super) fn with_map_error(covariance: Matrix3<f64>, drawn_m: f64) -> Matrix3<f64> {
+    let position = MAP_ERROR_M.hypot(drawn_m);
+    let squares = [position, position, MAP_ERROR].map(|d| d * d);
     covariance + Matrix3::from_diagonal(&Vector3::from(squares))
 }
 
@@ -121,7 +123,7 @@ impl Seen<'_> {
         let covariance = information(&(told + known));
         Fitted {
             pose,
-            covariance: with_map_error(covariance),
+            covariance: with_map_error(covariance, self.terrain.drawn_error_m()),
             score: self.terrain.score(self.ends, at, self.fit),
             off: squared_deviations(pose, mean, &known),
         }

@@ -1,6 +1,8 @@
 //! What is expected of a scan, and found.
 
-use messages::{HypothesesHeader, Hypothesis, Verdict, VotesHeader};
+use messages::{
+    HypothesesHeader, Hypothesis, PoseHeader, TrackReason, TrackState, Verdict, VotesHeader,
+};
 use serde::{Deserialize, Serialize};
 
 /// The graph's answer to one scan. What is computed in integers must come out
@@ -25,6 +27,40 @@ pub(super) struct Answer {
     pub(super) y_m: Option<f64>,
     pub(super) heading_deg: Option<f64>,
     pub(super) score: Option<f32>,
+    /// The tracker's pose with this scan; absent where the graph has no tracker.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub(super) pose: Option<TrackedPose>,
+}
+
+/// What the tracker says with a scan.
+#[derive(Debug, Clone, PartialEq, Default, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub(super) struct TrackedPose {
+    pub(super) state: String,
+    pub(super) reason: String,
+    pub(super) places: u32,
+    pub(super) probability: f64,
+    /// Of the laser in the map; absent where no place is known.
+    pub(super) x_m: Option<f64>,
+    pub(super) y_m: Option<f64>,
+    pub(super) heading_deg: Option<f64>,
+}
+
+impl TrackedPose {
+    fn of(header: &PoseHeader) -> Self {
+        let state = TrackState::from_code(header.state);
+        let reason = TrackReason::from_code(header.reason);
+        let laser = (header.pose_known == 1).then_some(header.map_from_laser);
+        TrackedPose {
+            state: state.map_or("unknown", TrackState::as_str).to_owned(),
+            reason: reason.map_or("unknown".to_owned(), |reason| format!("{reason:?}")),
+            places: header.places,
+            probability: header.probability,
+            x_m: laser.map(|laser| laser.x),
+            y_m: laser.map(|laser| laser.y),
+            heading_deg: laser.map(|laser| laser.yaw.to_degrees()),
+        }
+    }
 }
 
 impl Answer {
@@ -32,6 +68,7 @@ impl Answer {
         votes: &VotesHeader,
         header: &HypothesesHeader,
         hypotheses: &[Hypothesis],
+        pose: Option<&PoseHeader>,
     ) -> Self {
         let best = hypotheses.first();
         let verdict = Verdict::from_code(header.verdict);
@@ -51,6 +88,7 @@ impl Answer {
             y_m: best.map(|best| best.map_from_laser.y),
             heading_deg: best.map(|best| best.map_from_laser.yaw.to_degrees()),
             score: best.map(|best| best.score),
+            pose: pose.map(TrackedPose::of),
         }
     }
 }

@@ -19,8 +19,8 @@ use crate::{BackcastError, stdout};
 /// What stands below the options.
 pub(crate) const NOTES: &str = "\
 A case is a folder with recording.mcap (or the folder recording, of a bag), map.yaml and
-expected.json. Votes, verdicts and counts must
-come out exactly; positions within 1 mm, headings within 0.01 degrees, scores within 0.001.
+expected.json. Votes, verdicts, the tracker's states and counts must come out exactly;
+positions within 1 mm, headings within 0.01 degrees, scores within 0.001.
 
 Exit codes: 0 all as expected or accepted, 1 differences, a graph that fails or a recording that is
 damaged, 2 wrong use";

@@ -2,7 +2,7 @@
 
 use std::collections::BTreeMap;
 
-use super::answer::Answer;
+use super::answer::{Answer, TrackedPose};
 
 /// Far below what any laser resolves, far above rounding.
 pub(super) const POSITION_M: f64 = 0.001;
@@ -78,18 +78,50 @@ impl Scan<'_> {
         let share = |share: Option<f32>| share.map(f64::from);
         self.near("x_m", expected.x_m, found.x_m, POSITION_M);
         self.near("y_m", expected.y_m, found.y_m, POSITION_M);
-        // Headings are compared on the circle.
-        let turned = expected
-            .heading_deg
-            .zip(found.heading_deg)
-            .map(|(expected, found)| {
-                expected + (found - expected + 180.0).rem_euclid(360.0) - 180.0
-            });
-        let heading = turned.or(found.heading_deg);
-        self.near("heading_deg", expected.heading_deg, heading, HEADING_DEG);
+        let headings = (expected.heading_deg, found.heading_deg);
+        self.near_heading("heading_deg", headings);
         self.near("score", share(expected.score), share(found.score), SHARE);
         let (confidence, now) = (Some(expected.confidence), Some(found.confidence));
         self.near("confidence", share(confidence), share(now), SHARE);
+        match (&expected.pose, &found.pose) {
+            (Some(expected), Some(found)) => self.compare_tracked(expected, found),
+            (expected, found) => {
+                let shown = |pose: &Option<TrackedPose>| {
+                    pose.as_ref()
+                        .map_or("none".to_owned(), |pose| pose.state.clone())
+                };
+                let both_lack = expected.is_none() && found.is_none();
+                self.note("pose", both_lack, &shown(expected), &shown(found));
+            }
+        }
+    }
+
+    fn compare_tracked(&mut self, expected: &TrackedPose, found: &TrackedPose) {
+        macro_rules! exact {
+            ($($field:ident),+) => {
+                $(self.note(
+                    concat!("pose.", stringify!($field)),
+                    expected.$field == found.$field,
+                    &expected.$field,
+                    &found.$field,
+                );)+
+            };
+        }
+        exact!(state, reason, places);
+        self.near("pose.x_m", expected.x_m, found.x_m, POSITION_M);
+        self.near("pose.y_m", expected.y_m, found.y_m, POSITION_M);
+        let headings = (expected.heading_deg, found.heading_deg);
+        self.near_heading("pose.heading_deg", headings);
+        let (probability, now) = (Some(expected.probability), Some(found.probability));
+        self.near("pose.probability", probability, now, SHARE);
+    }
+
+    /// Headings are compared on the circle.
+    fn near_heading(&mut self, what: &'static str, (expected, found): (Option<f64>, Option<f64>)) {
+        let turned = expected.zip(found).map(|(expected, found)| {
+            expected + (found - expected + 180.0).rem_euclid(360.0) - 180.0
+        });
+        self.near(what, expected, turned.or(found), HEADING_DEG);
     }
 
     fn near(&mut self, what: &'static str, expected: Option<f64>, found: Option<f64>, by: f64) {
@@ -150,6 +182,12 @@ mod tests {
             y_m: Some(2.0),
             heading_deg: Some(179.999),
             score: Some(0.9),
+            pose: Some(TrackedPose {
+                state: "Unique".to_owned(),
+                x_m: Some(1.0),
+                heading_deg: Some(-180.0),
+                ..TrackedPose::default()
+            }),
             ..Answer::default()
         }
     }
@@ -179,6 +217,24 @@ mod tests {
         assert_eq!(spoilt(|a| a.heading_deg = Some(-179.9)), ["heading_deg"]);
         assert_eq!(spoilt(|a| a.score = None), ["score"]);
         assert_eq!(spoilt(|a| a.confidence = f32::NAN), ["confidence"]);
+    }
+
+    #[test]
+    fn the_trackers_pose_is_compared_with_the_scan() {
+        fn pose(answer: &mut Answer) -> &mut TrackedPose {
+            answer.pose.as_mut().unwrap()
+        }
+        assert_eq!(spoilt(|a| a.pose = None), ["pose"]);
+        let state = spoilt(|a| pose(a).state = "Lost".to_owned());
+        assert_eq!(state, ["pose.state"]);
+        assert_eq!(spoilt(|a| pose(a).places = 2), ["pose.places"]);
+        assert!(spoilt(|a| pose(a).x_m = Some(1.0009)).is_empty());
+        assert_eq!(spoilt(|a| pose(a).x_m = None), ["pose.x_m"]);
+        assert!(spoilt(|a| pose(a).heading_deg = Some(179.995)).is_empty());
+        let heading = spoilt(|a| pose(a).heading_deg = Some(179.9));
+        assert_eq!(heading, ["pose.heading_deg"]);
+        let probability = spoilt(|a| pose(a).probability = 0.5);
+        assert_eq!(probability, ["pose.probability"]);
     }
 
     #[test]

@@ -3,7 +3,7 @@
 use std::path::Path;
 use std::time::{Duration, Instant};
 
-use messages::{HypothesesHeader, Hypothesis, VotesHeader, topic};
+use messages::{HypothesesHeader, Hypothesis, PoseHeader, Topic, VotesHeader, topic};
 use recording::{Kind, Recording};
 use transport::{Flow, Graph, GraphName, Subscriber, TransportError, remove_leftovers};
 
@@ -99,13 +99,17 @@ fn collect(
     let graph = Graph::join_named(NAME, name)?;
     let votes = graph.subscriber::<topic::Votes>()?;
     let hypotheses = graph.subscriber::<topic::Hypotheses>()?;
-    let mut heard = Heard::default();
+    let poses = graph.subscriber::<topic::Tracked>()?;
+    let mut heard = Heard {
+        is_tracked: is_tracked(&descriptor),
+        ..Heard::default()
+    };
     let mut crew = Crew::new(descriptor.dataflow.nodes, &descriptor.folder, name);
     let mut last_progress = Instant::now();
-    let outcome = graph.run(&[&votes, &hypotheses], TICK, |_| {
+    let outcome = graph.run(&[&votes, &hypotheses, &poses], TICK, |_| {
         let now = Instant::now();
         let over = crew.is_over();
-        if heard.take(&votes, &hypotheses)? || !over {
+        if heard.take(&votes, &hypotheses, &poses)? || !over {
             last_progress = now;
         }
         if heard.is_complete(scans) || over && now - last_progress >= PATIENCE {
@@ -120,9 +124,19 @@ fn collect(
     Ok(heard.answers())
 }
 
+/// Whether a node of the graph tracks the pose.
+fn is_tracked(descriptor: &Descriptor) -> bool {
+    let nodes = &descriptor.dataflow.nodes;
+    let sends = |output: &String| output == topic::Tracked::NAME;
+    nodes.iter().any(|node| node.outputs.iter().any(sends))
+}
+
 /// What came until now.
 #[derive(Default)]
 struct Heard {
+    is_tracked: bool,
+    /// The tracker's poses of scans.
+    poses: Vec<PoseHeader>,
     votes: Vec<VotesHeader>,
     hypotheses: Vec<(HypothesesHeader, Vec<Hypothesis>)>,
 }
@@ -133,8 +147,9 @@ impl Heard {
         &mut self,
         votes: &Subscriber<topic::Votes>,
         hypotheses: &Subscriber<topic::Hypotheses>,
+        poses: &Subscriber<topic::Tracked>,
     ) -> Result<bool, TransportError> {
-        let before = self.votes.len() + self.hypotheses.len();
+        let before = self.messages();
         while let Some(sample) = votes.receive()? {
             self.votes.push(*sample.header());
         }
@@ -142,21 +157,35 @@ impl Heard {
             let answer = (*sample.header(), sample.items().to_vec());
             self.hypotheses.push(answer);
         }
-        Ok(self.votes.len() + self.hypotheses.len() > before)
+        while let Some(sample) = poses.receive()? {
+            if sample.header().from_scan == 1 {
+                self.poses.push(*sample.header());
+            }
+        }
+        Ok(self.messages() > before)
+    }
+
+    fn messages(&self) -> usize {
+        self.votes.len() + self.hypotheses.len() + self.poses.len()
     }
 
     fn is_complete(&self, scans: usize) -> bool {
-        self.votes.len() >= scans && self.hypotheses.len() >= scans
+        let is_tracked = !self.is_tracked || self.poses.len() >= scans;
+        self.votes.len() >= scans && self.hypotheses.len() >= scans && is_tracked
     }
 
-    /// Votes and hypotheses that belong to one scan.
+    /// Votes, hypotheses and the tracker's pose that belong to one scan.
     fn answers(&self) -> Vec<Answer> {
         let of = |(header, items): &(HypothesesHeader, Vec<Hypothesis>)| {
             let votes = self
                 .votes
                 .iter()
                 .find(|votes| votes.stamp.is_of(header.stamp))?;
-            Some(Answer::of(votes, header, items))
+            let pose = self
+                .poses
+                .iter()
+                .find(|pose| pose.stamp.is_of(header.stamp));
+            Some(Answer::of(votes, header, items, pose))
         };
         self.hypotheses.iter().filter_map(of).collect()
     }
