@@ -8,11 +8,11 @@ use recording::Recording;
 
 use crate::executables;
 
-/// Plays `recording` through a graph with the executables of this test run, and
-/// records that to `output`.
+/// Plays `recording` through a graph with the executables of this test run, one that
+/// tracks the pose too, and records that to `output`.
 pub fn record(recording: &Path, map: &Path, output: &Path) {
     let descriptor = output.with_extension("yaml");
-    std::fs::write(&descriptor, graph(recording, map)).unwrap();
+    std::fs::write(&descriptor, tracking_graph(recording, map)).unwrap();
     let outcome = Command::new(executables::path("backcast"))
         .arg("run")
         .arg(&descriptor)
@@ -31,7 +31,28 @@ pub fn graph(recording: &Path, map: &Path) -> String {
     graph_with(recording, map, "")
 }
 
-/// The same with lines that say more of the accumulator, each indented by four.
+/// The same, and a tracker that odometry helps.
+fn tracking_graph(recording: &Path, map: &Path) -> String {
+    let tracker = executables::path("tracker");
+    let graph = graph(recording, map).replace(
+        "--wait-for accumulator,peak_extractor",
+        "--wait-for accumulator,peak_extractor,tracker",
+    );
+    format!(
+        "{graph}  - id: tracker
+    path: {}
+    inputs:
+      scan: replayer/scan
+      odometry: replayer/odometry
+      map: map_server/map
+      hypotheses: peak_extractor/hypotheses
+    outputs: [pose]
+",
+        tracker.display()
+    )
+}
+
+/// The first with lines that say more of the accumulator, each indented by four.
 #[must_use]
 pub fn graph_with(recording: &Path, map: &Path, accumulator: &str) -> String {
     let path = |name: &str| executables::path(name).display().to_string();

@@ -72,7 +72,7 @@ from pathlib import Path
 reader, path = sys.argv[1:]
 counts = Counter()
 out = {"scans": [], "truths": [], "odometry": [], "maps": []}
-own = {"votes": [], "hypotheses": [], "beams": [], "log": []}
+own = {"votes": [], "hypotheses": [], "beams": [], "poses": [], "log": []}
 
 def ns(stamp):
     return stamp.sec * 10**9 + stamp.nanosec
@@ -95,6 +95,8 @@ def take(topic, log_time, m):
         own["hypotheses"].append([m.counter, m.verdict, m.best, best.map_from_laser.x, len(best.covariance)])
     elif topic == "/backcast/beams":
         own["beams"].append([m.counter, m.map_from_laser.x, len(m.beams), m.beams[0].range_m])
+    elif topic == "/backcast/pose":
+        own["poses"].append([m.counter, m.state, m.pose_known, m.map_from_laser.x, m.score, m.words])
     elif topic == "/rosout":
         own["log"].append([ns(m.stamp), m.level, m.name, m.msg])
 
@@ -168,6 +170,13 @@ fn the_readers_of_others_agree() {
     assert!(said.iter().any(started), "{said:?}");
     let beams = by_mcap["own"]["beams"].as_array().unwrap();
     assert!(beams.iter().all(|beam| beam[2] == 180), "{beams:?}");
+    let tracked = by_mcap["own"]["poses"].as_array().unwrap();
+    assert_eq!(tracked.len(), 37);
+    // It finds the place on the way, and says so in words.
+    let (first, last) = (&tracked[0], &tracked[36]);
+    assert_eq!((&first[1], &last[1]), (&json!(0), &json!(1)), "{tracked:?}");
+    assert_eq!(last[2], true);
+    assert!(!last[5].as_str().unwrap().is_empty(), "{last}");
     let poses = by_mcap["own"]["hypotheses"].as_array().unwrap();
     assert_eq!(poses.len(), 37);
     assert!(

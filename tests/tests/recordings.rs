@@ -19,7 +19,12 @@ use tests::recorded::{graph, messages, record};
 use tests::world::World;
 
 /// Topics whose messages tell how long something took, or when it was sent.
-const TIMED: [&str; 3] = ["/backcast/votes", "/backcast/hypotheses", "/backcast/beams"];
+const TIMED: [&str; 4] = [
+    "/backcast/votes",
+    "/backcast/hypotheses",
+    "/backcast/beams",
+    "/backcast/pose",
+];
 
 /// Topics on which nodes speak of themselves.
 const SPOKEN: [&str; 2] = ["/diagnostics", "/rosout"];
@@ -46,6 +51,8 @@ fn a_recording_of_a_recording_is_the_same_message_for_message() {
             _ => assert!(*messages == second[topic], "{topic} differs"),
         }
     }
+    // Where the tracker believes a place.
+    assert!(!first["/pose"].is_empty() && first["/pose"].len() < first["/scan"].len());
     // The recording itself comes back too, but for what the graph does not
     // carry: the height of the laser and the last bits of angles.
     let original = messages(&world.recording());
@@ -54,7 +61,7 @@ fn a_recording_of_a_recording_is_the_same_message_for_message() {
     }
     for topic in [
         "/hypotheses",
-        "/pose",
+        "/backcast/pose",
         "/backcast/votes",
         "/backcast/hypotheses",
         "/backcast/beams",

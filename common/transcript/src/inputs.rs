@@ -229,7 +229,8 @@ impl Inputs {
         }
         while let Some(sample) = self.poses.subscriber.receive()? {
             let header = sample.header();
-            let outcome = to.transcript().entries.tracked(header);
+            let entries = &mut to.transcript().entries;
+            let outcome = entries.tracked(header, sample.items());
             to.transcript().taken(0, outcome)?;
             to.tracked(header.state)?;
         }

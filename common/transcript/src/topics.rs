@@ -22,3 +22,5 @@ pub const OWN_VOTES: &str = "/backcast/votes";
 pub const OWN_HYPOTHESES: &str = "/backcast/hypotheses";
 /// Beams, lossless, with every field of the graph's header.
 pub const OWN_BEAMS: &str = "/backcast/beams";
+/// The tracker's pose at a scan, lossless, with every field of the graph's header.
+pub const OWN_POSE: &str = "/backcast/pose";

@@ -8,8 +8,8 @@
 use bytemuck::Zeroable;
 use geometry::Pose;
 use messages::{
-    FrameName, HypothesesHeader, Hypothesis, MapHeader, Odometry, Pose2, ScanHeader, Stamp,
-    Verdict, topic,
+    FrameName, HypothesesHeader, Hypothesis, MapHeader, Odometry, Pose2, PoseHeader, ScanHeader,
+    Stamp, TrackState, Verdict, topic,
 };
 use recording::ros::LaserScan;
 use recording::{Kind, Message, Recording};
@@ -301,6 +301,59 @@ fn what_the_graph_says_reaches_the_robot_byte_for_byte() {
         (&report["status"][0][1], &report["status"][0][2]),
         (&json!(0), &json!("Ready"))
     );
+    joined.stop();
+}
+
+#[test]
+fn a_robot_whose_pose_is_tracked_is_told_that_pose_and_no_single_answer() {
+    let options = ["--broadcast-tf", "--odom-frame", "odom"];
+    let Some(mut joined) = Joined::new("ros-pose", "/", &options) else {
+        return;
+    };
+    let answers = joined.graph.publisher::<topic::Hypotheses>().unwrap();
+    let poses = joined.graph.publisher::<topic::Tracked>().unwrap();
+    for order in ["arrive", "transforms", "filter"] {
+        joined.robot.order(order, json!({}));
+    }
+    let scans_in = joined.graph.subscriber::<topic::Scan>().unwrap();
+    joined.robot.order("scan", json!({ "index": 0 }));
+    wait_for(&joined.graph, &scans_in, |_, _| Some(()));
+
+    let (answer, items) = hypotheses(0, Verdict::Unique);
+    let mut loan = poses.loan(0).unwrap();
+    *loan.header_mut() = PoseHeader {
+        stamp: answer.stamp,
+        state: TrackState::Unique as u32,
+        from_scan: 1,
+        pose_known: 1,
+        mount_known: 1,
+        odom_known: 1,
+        odom_frame: FrameName::new("odom"),
+        map_from_base: pose2(3.0, 1.0, 0.25),
+        map_from_laser: pose2(3.5, 1.0, 0.25),
+        map_from_odom: pose2(-2.0, 0.5, 0.25),
+        base_covariance: [4e-4, 0.0, 0.0, 0.0, 1e-2, 0.0, 0.0, 0.0, 1e-6],
+        ..PoseHeader::zeroed()
+    };
+    loan.send().unwrap();
+    let told = joined.robot.wait_for("initialpose");
+    assert_eq!(told["same"], true, "the bytes differ");
+    assert_near(&told["pose"], Pose::new(3.0, 1.0, 0.25));
+    let tf = joined.robot.wait_for("tf");
+    assert_eq!(tf["child"], "odom");
+
+    // The single answer says elsewhere, and is shown; nobody is told to be there.
+    let mut header = answer;
+    header.stamp.counter += 1;
+    header.stamp.measured_ns += 1;
+    send(&answers, &(header, items));
+    loop {
+        let said = joined.robot.hear();
+        assert_ne!(said["event"], "initialpose", "{said}");
+        if said["event"] == "hypotheses" {
+            break;
+        }
+    }
     joined.stop();
 }
 

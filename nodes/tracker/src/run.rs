@@ -163,16 +163,14 @@ impl Node {
         header: &messages::MapHeader,
         occupancy: &[u8],
     ) -> Result<(), TransportError> {
+        let known = self.world.as_ref();
+        if known.is_some_and(|known| known.map_id == header.map_id) {
+            return self.health.state(NodeState::Ready);
+        }
         match World::new(header, occupancy, self.config.cells) {
             Ok(world) => {
-                let is_new = self
-                    .world
-                    .as_ref()
-                    .is_none_or(|old| old.map_id != world.map_id);
-                if is_new {
-                    self.start_on(&world);
-                    self.world = Some(world);
-                }
+                self.start_on(&world);
+                self.world = Some(world);
                 self.health.state(NodeState::Ready)
             }
             Err(error) => {

@@ -1,7 +1,7 @@
-//! Votes, hypotheses and beams, without loss, in messages of our own.
+//! Votes, hypotheses, beams and the tracker's pose, without loss, in messages of our own.
 
 use geometry::Pose;
-use messages::{Beam, BeamsHeader, HypothesesHeader, Hypothesis, Vote, VotesHeader};
+use messages::{Beam, BeamsHeader, HypothesesHeader, Hypothesis, PoseHeader, Vote, VotesHeader};
 use recording::ros::Header;
 use recording::ros::backcast_msgs as own;
 
@@ -90,5 +90,33 @@ pub(super) fn beams(header: Header, from: &BeamsHeader, items: &[Beam]) -> own::
         map_id: from.map_id,
         map_from_laser: Pose::from(from.map_from_laser).into(),
         beams: items.iter().map(beam).collect(),
+    }
+}
+
+pub(super) fn tracked(header: Header, from: &PoseHeader, words: &[u8]) -> own::TrackedPose {
+    own::TrackedPose {
+        header,
+        entered_ns: from.stamp.entered_ns,
+        counter: from.stamp.counter,
+        map_id: from.map_id,
+        sent_ns: from.sent_ns,
+        tracking_ns: from.tracking_ns,
+        since_ns: from.since_ns,
+        since_m: from.since_m,
+        map_from_laser: Pose::from(from.map_from_laser).into(),
+        map_from_base: Pose::from(from.map_from_base).into(),
+        map_from_odom: Pose::from(from.map_from_odom).into(),
+        laser_covariance: from.laser_covariance,
+        base_covariance: from.base_covariance,
+        probability: from.probability,
+        lead: from.lead,
+        score: from.score,
+        state: from.state,
+        reason: from.reason,
+        places: from.places,
+        pose_known: from.pose_known != 0,
+        mount_known: from.mount_known != 0,
+        odom_known: from.odom_known != 0,
+        words: String::from_utf8_lossy(words).into_owned(),
     }
 }

@@ -174,12 +174,14 @@ impl Entries {
     ///
     /// # Errors
     /// If its stamp is no time of ROS, or CDR cannot say it.
-    pub fn tracked(&mut self, header: &PoseHeader) -> Result<(), TranscriptError> {
+    pub fn tracked(&mut self, header: &PoseHeader, words: &[u8]) -> Result<(), TranscriptError> {
         self.is_tracked = true;
         if header.from_scan != 1 {
             return Ok(());
         }
         let at = self.measured(header.stamp, topic::Tracked::NAME)?;
+        let own = answers::tracked(self.in_map(at.stamp), header, words);
+        self.message(topics::OWN_POSE, at.ns, &own)?;
         if let Some(pose) = poses::tracked(self.in_map(at.stamp), header) {
             self.message(topics::POSE, at.ns, &pose)?;
         }
@@ -382,7 +384,7 @@ fn transforms(transforms: Vec<recording::ros::TransformStamped>) -> TfMessage {
 #[cfg(test)]
 mod tests {
     use bytemuck::Zeroable;
-    use messages::{FrameName, Verdict};
+    use messages::{FrameName, TrackState, Verdict};
 
     use super::*;
 
@@ -495,6 +497,34 @@ mod tests {
         made(&mut entries);
         entries.particles(&header, &[Particle::zeroed()]).unwrap();
         assert_eq!(made(&mut entries), [("/particles", 1000)]);
+    }
+
+    #[test]
+    fn the_tracker_stands_in_three_forms_and_its_state_in_one_where_it_has_no_pose() {
+        let mut entries = entries();
+        entries.scan(&scan(stamp(1000, 10)), &[1.0]).unwrap();
+        made(&mut entries);
+        let searching = PoseHeader {
+            stamp: stamp(1000, 10),
+            from_scan: 1,
+            ..PoseHeader::zeroed()
+        };
+        entries.tracked(&searching, b"drive a few metres").unwrap();
+        assert_eq!(made(&mut entries), [("/backcast/pose", 1000)]);
+        let unique = PoseHeader {
+            state: TrackState::Unique as u32,
+            pose_known: 1,
+            ..searching
+        };
+        entries.tracked(&unique, b"").unwrap();
+        let all = [("/backcast/pose", 1000), ("/pose", 1000), ("/tf", 1000)];
+        assert_eq!(made(&mut entries), all);
+        let between = PoseHeader {
+            from_scan: 0,
+            ..unique
+        };
+        entries.tracked(&between, b"").unwrap();
+        assert_eq!(made(&mut entries), []);
     }
 
     #[test]

@@ -34,8 +34,8 @@ pub(crate) struct SequenceOptions {
     #[arg(long)]
     pub(crate) without_odometry: bool,
 
-    /// Make the errors of odometry, against the truth, so many times as large
-    #[arg(long, value_name = "FACTOR", default_value_t = 1.0)]
+    /// Make the errors of odometry, against the truth, so many times as large, 0..=100
+    #[arg(long, value_name = "FACTOR", default_value_t = 1.0, value_parser = parse_factor)]
     pub(crate) odometry_noise: f64,
 
     /// Truths that are known to be wrong, by the numbers of their scans from 0
@@ -53,6 +53,14 @@ pub(crate) struct SequenceOptions {
 
     #[command(flatten)]
     pub(crate) follow: FollowConfig,
+}
+
+fn parse_factor(text: &str) -> Result<f64, String> {
+    let allowed = 0.0..=100.0;
+    match text.parse() {
+        Ok(factor) if allowed.contains(&factor) => Ok(factor),
+        _ => Err("0 to 100 are allowed".to_owned()),
+    }
 }
 
 /// Evaluates one file after another. A file that cannot be evaluated is told on

@@ -1,0 +1,106 @@
+//! `backcast_msgs/msg/TrackedPose`.
+
+use serde::{Deserialize, Serialize};
+
+use super::Pose2D;
+use crate::ros::definition::definition;
+use crate::ros::{Header, RosMessage};
+
+/// Where the tracker has the robot at a scan, and how sure it is: topic `pose` of the
+/// graph.
+#[derive(Debug, Clone, PartialEq, Default, Serialize, Deserialize)]
+pub struct TrackedPose {
+    /// When the scan was measured, and the frame of the map.
+    pub header: Header,
+    /// The host's `CLOCK_MONOTONIC` in nanoseconds when the scan entered the graph.
+    pub entered_ns: i64,
+    /// Counts the scans.
+    pub counter: u64,
+    /// The map that the pose is about; 0 where there was none.
+    pub map_id: u64,
+    /// `CLOCK_MONOTONIC` in nanoseconds when the pose was sent.
+    pub sent_ns: i64,
+    /// Nanoseconds of computing, the search not included.
+    pub tracking_ns: u64,
+    /// When the state began, as the stamps of scans count: nanoseconds since 1970.
+    pub since_ns: i64,
+    /// Metres that the robot has gone since.
+    pub since_m: f64,
+    /// Pose of the laser in the map, where one is known.
+    pub map_from_laser: Pose2D,
+    /// Pose of the robot's base in the map; the laser's where no mount is known.
+    pub map_from_base: Pose2D,
+    /// Where the odometry's frame lies in the map, where odometry is known.
+    pub map_from_odom: Pose2D,
+    /// Of the laser's pose, row by row over x, y and yaw: m², m·rad, rad².
+    pub laser_covariance: [f64; 9],
+    /// Of the base's pose, as the laser's.
+    pub base_covariance: [f64; 9],
+    /// How likely the robot is there, 0..=1.
+    pub probability: f64,
+    /// By how much the place leads over the next, natural logarithm of odds.
+    pub lead: f64,
+    /// How well the scan fits the map there, at most 1.
+    pub score: f64,
+    /// What the tracker knows.
+    pub state: u32,
+    /// Why.
+    pub reason: u32,
+    /// Places that are kept as possible, the best included.
+    pub places: u32,
+    /// Whether there is a pose.
+    pub pose_known: bool,
+    /// Whether the laser's mount was given.
+    pub mount_known: bool,
+    /// Whether odometry was.
+    pub odom_known: bool,
+    /// The reason in words, and what to do.
+    pub words: String,
+}
+
+impl RosMessage for TrackedPose {
+    const SCHEMA: &'static str = "backcast_msgs/msg/TrackedPose";
+    const DEFINITION: &'static str = definition!(
+        "\
+# Where the tracker has the robot at a scan, and how sure it is.
+uint32 SEARCHING=0
+uint32 UNIQUE=1
+uint32 DOUBTFUL=2
+uint32 LOST=3
+uint32 NO_SCAN=0
+uint32 NO_MAP=1
+uint32 ONE_PLACE=2
+uint32 SEVERAL_PLACES=3
+uint32 TOO_EARLY=4
+uint32 POOR_FIT=5
+uint32 ODOMETRY_JUMP=6
+uint32 ANOTHER_PLACE=7
+uint32 NO_PLACE=8
+std_msgs/Header header
+int64 entered_ns
+uint64 counter
+uint64 map_id
+int64 sent_ns
+uint64 tracking_ns
+int64 since_ns
+float64 since_m
+geometry_msgs/Pose2D map_from_laser
+geometry_msgs/Pose2D map_from_base
+geometry_msgs/Pose2D map_from_odom
+float64[9] laser_covariance
+float64[9] base_covariance
+float64 probability
+float64 lead
+float64 score
+uint32 state
+uint32 reason
+uint32 places
+bool pose_known
+bool mount_known
+bool odom_known
+string words
+",
+        Header,
+        Pose2D,
+    );
+}
