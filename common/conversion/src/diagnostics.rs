@@ -41,7 +41,7 @@ pub fn of(stamp: Time, report: &HealthHeader, error: &str) -> DiagnosticArray {
 /// A node that waits for its map is no trouble yet.
 fn level(state: Option<NodeState>) -> u8 {
     match state {
-        Some(NodeState::Waiting | NodeState::Ready) => DiagnosticStatus::OK,
+        Some(NodeState::Waiting | NodeState::Ready | NodeState::Busy) => DiagnosticStatus::OK,
         Some(NodeState::Degraded) => DiagnosticStatus::WARN,
         Some(NodeState::Stopped) => DiagnosticStatus::STALE,
         None => DiagnosticStatus::ERROR,

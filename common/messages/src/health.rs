@@ -23,7 +23,8 @@ pub struct HealthHeader {
     pub received: u64,
     /// Samples sent.
     pub sent: u64,
-    /// Samples lost before they could be taken: the node was too slow.
+    /// Samples lost before they could be taken, because the node was too slow, or that
+    /// could not be sent, because shared memory was full.
     pub dropped: u64,
     /// Samples taken and refused as unusable.
     pub refused: u64,
@@ -50,15 +51,24 @@ pub enum NodeState {
     Degraded = 2,
     /// About to end.
     Stopped = 3,
+    /// At work on something that may take longer than reports are apart; it answers
+    /// nothing meanwhile.
+    Busy = 4,
 }
 
 impl NodeState {
     /// The state with this number, if there is one.
     #[must_use]
     pub fn from_code(code: u32) -> Option<Self> {
-        [Self::Waiting, Self::Ready, Self::Degraded, Self::Stopped]
-            .into_iter()
-            .find(|s| *s as u32 == code)
+        [
+            Self::Waiting,
+            Self::Ready,
+            Self::Degraded,
+            Self::Stopped,
+            Self::Busy,
+        ]
+        .into_iter()
+        .find(|s| *s as u32 == code)
     }
 }
 

@@ -22,6 +22,7 @@ pub fn run(graph: &Graph, config: &Config) -> Result<(), BoundaryError> {
     graph.run(&[&maps], TICK, |_| {
         if let Some(map) = maps.newest()? {
             health.count_received(1);
+            health.state(NodeState::Busy)?;
             match extract(map.header(), map.items(), config.rules) {
                 Ok(extraction) => serve(&extraction, &boundaries, &mut health)?,
                 Err(error) => refuse(&map, &error, &mut health)?,

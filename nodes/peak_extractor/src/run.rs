@@ -99,6 +99,7 @@ impl Node {
 
     fn hear(&mut self, map: &Sample<topic::Map>) -> Result<(), TransportError> {
         self.health.count_received(1);
+        self.health.state(NodeState::Busy)?;
         match self.maps.hear(map.header(), map.items()) {
             Ok(()) => self.health.state(NodeState::Ready),
             Err(error) => {

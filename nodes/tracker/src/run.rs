@@ -167,6 +167,7 @@ impl Node {
         if known.is_some_and(|known| known.map_id == header.map_id) {
             return self.health.state(NodeState::Ready);
         }
+        self.health.state(NodeState::Busy)?;
         match World::new(header, occupancy, self.config.cells) {
             Ok(world) => {
                 self.start_on(&world);

@@ -16,7 +16,7 @@ const RATE_NS: i64 = 900_000_000;
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub(crate) struct NodeReport {
     pub(crate) name: String,
-    /// `waiting`, `ready`, `degraded`, `stopped`, or `silent` where no report
+    /// `waiting`, `ready`, `busy`, `degraded`, `stopped`, or `silent` where no report
     /// came for a while.
     pub(crate) state: &'static str,
     pub(crate) pid: u32,
@@ -134,6 +134,7 @@ impl Entry {
             Some(NodeState::Waiting) => "waiting",
             Some(NodeState::Ready) => "ready",
             Some(NodeState::Stopped) => "stopped",
+            Some(NodeState::Busy) => "busy",
             // A state that this version does not know is worth a look.
             Some(NodeState::Degraded) | None => "degraded",
         };
