@@ -188,3 +188,16 @@ pub enum MapError {
         source: io::Error,
     },
 }
+
+impl MapError {
+    /// Whether a file is not there, and may come yet.
+    #[must_use]
+    pub fn is_missing(&self) -> bool {
+        match self {
+            MapError::Description { source, .. } | MapError::Image { source, .. } => {
+                source.kind() == io::ErrorKind::NotFound
+            }
+            _ => false,
+        }
+    }
+}

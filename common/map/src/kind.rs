@@ -32,6 +32,20 @@ pub(crate) fn decode(bytes: &[u8], path: &Path) -> Result<Raster, MapError> {
     }
 }
 
+/// The most bytes that an image which begins with `head` may have, by its header;
+/// `path` is for errors.
+pub(crate) fn most_bytes(head: &[u8], path: &Path) -> Result<u64, MapError> {
+    if head.starts_with(png::SIGNATURE) {
+        png::most_bytes(head, path)
+    } else if head.starts_with(b"P2") || head.starts_with(b"P5") {
+        pgm::most_bytes(head, path)
+    } else if head.starts_with(bmp::SIGNATURE) {
+        bmp::most_bytes(head, path)
+    } else {
+        Err(wrong_kind(head, path))
+    }
+}
+
 /// The error for a file of another kind.
 pub(crate) fn wrong_kind(bytes: &[u8], path: &Path) -> MapError {
     MapError::ImageKind {

@@ -1,6 +1,6 @@
 //! From a description and its image to a grid.
 
-use std::fs::File;
+use std::fs::{self, File};
 use std::io::{self, Read};
 use std::path::{Path, PathBuf};
 
@@ -14,6 +14,9 @@ const MAX_DESCRIPTION_BYTES: u64 = 64 << 10;
 /// Most bytes of an image: the largest map as plain text of five digits a cell
 /// comes to 1.6 GB, as 16-bit colour with alpha to 2.1 GB.
 const MAX_IMAGE_BYTES: u64 = 1 << 31;
+
+/// What is read of an image to see what it claims to be: more than its header takes.
+pub(crate) const HEAD_BYTES: u64 = 64 << 10;
 
 /// Reads a map as `map_server` does: the YAML file at `yaml`, and the image that
 /// it names, relative to the YAML file's folder.
@@ -38,14 +41,12 @@ pub fn load_noting(
     let description = Description::parse(&text, yaml)?;
     description.unknown.iter().for_each(note);
     let (line, column) = description.image_named_at;
-    let bytes = read_file(&description.image, MAX_IMAGE_BYTES, |source| {
-        MapError::Image {
-            image: description.image.clone(),
-            yaml: yaml.to_owned(),
-            line,
-            column,
-            source,
-        }
+    let bytes = read_image(&description.image, |source| MapError::Image {
+        image: description.image.clone(),
+        yaml: yaml.to_owned(),
+        line,
+        column,
+        source,
     })?;
     let raster = kind::decode(&bytes, &description.image)?;
     drop(bytes);
@@ -96,6 +97,39 @@ fn read_text(yaml: &Path) -> Result<String, MapError> {
             reason: "not UTF-8 text".to_owned(),
         }
     })
+}
+
+/// Reads no more than the image's own header makes room for: what it claims is looked at
+/// before memory is taken for it.
+fn read_image(
+    path: &Path,
+    unreadable: impl Fn(io::Error) -> MapError,
+) -> Result<Vec<u8>, MapError> {
+    // Whoever opens a pipe that nobody writes to waits for ever.
+    if !fs::metadata(path).map_err(&unreadable)?.is_file() {
+        let problem = io::Error::new(io::ErrorKind::InvalidInput, "it is not a regular file");
+        return Err(unreadable(problem));
+    }
+    let mut file = File::open(path).map_err(&unreadable)?;
+    let mut bytes = Vec::new();
+    (&mut file)
+        .take(HEAD_BYTES)
+        .read_to_end(&mut bytes)
+        .map_err(&unreadable)?;
+    let allowed = kind::most_bytes(&bytes, path)?.min(MAX_IMAGE_BYTES);
+    let rest = (allowed + 1).saturating_sub(bytes.len() as u64);
+    file.take(rest)
+        .read_to_end(&mut bytes)
+        .map_err(&unreadable)?;
+    let found = bytes.len() as u64;
+    if found > allowed {
+        return Err(MapError::FileSize {
+            path: path.to_owned(),
+            found,
+            allowed,
+        });
+    }
+    Ok(bytes)
 }
 
 fn read_file(
@@ -258,5 +292,38 @@ mod tests {
             load(folder.path()),
             Err(MapError::Description { .. })
         ));
+    }
+
+    #[test]
+    fn no_more_is_read_than_the_header_makes_room_for() {
+        let refused = |image: &[u8]| {
+            let folder = folder(YAML, "floor.pgm", image);
+            load_from(&folder).unwrap_err().to_string()
+        };
+        let mut long = b"P5\n2 1\n255\n".to_vec();
+        long.resize(1 << 20, 0);
+        let error = refused(&long);
+        assert!(error.contains("bytes; at most"), "{error}");
+        let mut claims = b"P5\n32767 32767\n255\n".to_vec();
+        claims.resize(1 << 20, 0);
+        let error = refused(&claims);
+        assert!(error.contains("claims 32767 x 32767"), "{error}");
+        // Of what is no image, the head alone is read.
+        let error = refused(&vec![0; 1 << 20]);
+        assert!(error.contains("at its start"), "{error}");
+    }
+
+    #[test]
+    fn what_is_no_regular_file_is_not_opened() {
+        let folder = folder(YAML, "other", b"");
+        std::os::unix::fs::symlink("/dev/zero", folder.path().join("floor.pgm")).unwrap();
+        let error = load_from(&folder).unwrap_err();
+        let MapError::Image { source, .. } = &error else {
+            panic!("{error}");
+        };
+        assert!(
+            source.to_string().contains("not a regular file"),
+            "{source}"
+        );
     }
 }

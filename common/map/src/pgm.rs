@@ -12,14 +12,29 @@
 use std::io::Cursor;
 use std::path::Path;
 
-use image::codecs::pnm::{GraymapHeader, PnmDecoder, SampleEncoding};
+use image::codecs::pnm::{GraymapHeader, PnmDecoder, PnmHeader, SampleEncoding};
 
 use crate::MapError;
 use crate::grid::size_is_allowed;
+use crate::load::HEAD_BYTES;
 use crate::raster::{Channels, FULL, Raster, Samples};
 
-/// Decodes a file that starts with P2 or P5; `path` is for errors.
-pub(crate) fn decode(bytes: &[u8], path: &Path) -> Result<Raster, MapError> {
+/// The most bytes of a file that begins with `head`, P2 or P5.
+pub(crate) fn most_bytes(head: &[u8], path: &Path) -> Result<u64, MapError> {
+    let (_, header) = read_header(head, path)?;
+    let pixel = match header.as_graymap() {
+        Some(grey) if header.subtype().sample_encoding() == SampleEncoding::Binary => {
+            1 + u64::from(grey.maxwhite > 255)
+        }
+        // Five digits, and white space that fills columns.
+        _ => 8,
+    };
+    let pixels = u64::from(header.width()) * u64::from(header.height());
+    Ok(pixels * pixel + HEAD_BYTES)
+}
+
+/// The header, whose sides are allowed, and where the pixels begin.
+fn read_header(bytes: &[u8], path: &Path) -> Result<(usize, PnmHeader), MapError> {
     let damaged = |source| MapError::ImageDecode {
         path: path.to_owned(),
         source,
@@ -27,17 +42,24 @@ pub(crate) fn decode(bytes: &[u8], path: &Path) -> Result<Raster, MapError> {
     let (cursor, header) = PnmDecoder::new(Cursor::new(bytes))
         .map_err(damaged)?
         .into_inner();
-    let Some(header) = header.as_graymap() else {
-        return Err(crate::kind::wrong_kind(bytes, path));
-    };
-    if !size_is_allowed(header.width, header.height) {
+    let (width, height) = (header.width(), header.height());
+    if !size_is_allowed(width, height) {
         return Err(MapError::ImageSize {
             path: path.to_owned(),
-            width: header.width,
-            height: header.height,
+            width,
+            height,
         });
     }
     let start = usize::try_from(cursor.position()).unwrap_or(usize::MAX);
+    Ok((start, header))
+}
+
+/// Decodes a file that starts with P2 or P5; `path` is for errors.
+pub(crate) fn decode(bytes: &[u8], path: &Path) -> Result<Raster, MapError> {
+    let (start, header) = read_header(bytes, path)?;
+    let Some(header) = header.as_graymap() else {
+        return Err(crate::kind::wrong_kind(bytes, path));
+    };
     let pixels = Pixels {
         header,
         bytes: bytes.get(start..).unwrap_or_default(),

@@ -18,8 +18,8 @@ const TICK: Duration = Duration::from_millis(250);
 /// Serves the map until the stop flag is set.
 ///
 /// # Errors
-/// If the graph fails, or there is no usable map at the start. Later a broken
-/// map is reported in `health` and the one before stays.
+/// If the graph fails, or the map at the start is broken; one that is not there yet is
+/// waited for. Later a broken map is reported in `health` and the one before stays.
 pub fn run(graph: &Graph, config: &Config) -> Result<(), MapServerError> {
     let mut files = Files::new(&config.map);
     let mut server = Server {
@@ -30,14 +30,20 @@ pub fn run(graph: &Graph, config: &Config) -> Result<(), MapServerError> {
     };
     // Looked at before loading: what changes in between is noticed.
     let mut watch = Watch::new(files.look());
-    let grid = load(config).map_err(|source| MapServerError::Map {
-        path: config.map.clone(),
-        source: Box::new(source),
-    })?;
-    server.serve(&grid)?;
-    drop(grid);
+    server.health.state(NodeState::Busy)?;
+    match load(config) {
+        Ok(grid) => server.serve(&grid)?,
+        Err(error) if error.is_missing() => server.wait_for(&error)?,
+        Err(source) => {
+            return Err(MapServerError::Map {
+                path: config.map.clone(),
+                source: Box::new(source),
+            });
+        }
+    }
     graph.run(&[], TICK, |_| {
         if watch.look(files.look()) == Look::Settled {
+            server.health.state(NodeState::Busy)?;
             let outcome = load(config);
             if watch.judged(files.look()) {
                 server.judge(outcome, config)?;
@@ -75,13 +81,25 @@ impl Server {
                 Err(error @ TransportError::SharedMemoryFull { .. }) => self.refuse(&error, config),
                 outcome => outcome,
             },
+            Err(error) if self.served == 0 && error.is_missing() => self.wait_for(&error),
             Err(error) => self.refuse(&error, config),
         }
     }
 
+    fn wait_for(&mut self, error: &dyn Error) -> Result<(), TransportError> {
+        let problem = format!("the map is waited for: {}", with_causes(error));
+        tracing::warn!("{problem}");
+        self.health.error(&problem)?;
+        self.health.state(NodeState::Waiting)
+    }
+
     fn refuse(&mut self, error: &dyn Error, config: &Config) -> Result<(), TransportError> {
         let (path, error) = (config.map.display(), with_causes(error));
-        tracing::warn!("the changed map {path} is refused, the one before stays: {error}");
+        let kept = match self.served {
+            0 => "and there is none before",
+            _ => "the one before stays",
+        };
+        tracing::warn!("the changed map {path} is refused, {kept}: {error}");
         self.health.count_refused(1);
         self.health.error(&format!("map {path} refused: {error}"))?;
         self.health.state(NodeState::Degraded)

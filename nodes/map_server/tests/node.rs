@@ -144,6 +144,27 @@ fn a_key_that_is_not_known_is_logged_and_the_map_is_served() {
 }
 
 #[test]
+fn a_map_that_is_missing_at_the_start_is_waited_for() {
+    let mut world = World::new("missing", &[0, 255]);
+    let image_bytes = fs::read(world.at("map.pgm")).unwrap();
+    fs::remove_file(world.at("map.pgm")).unwrap();
+    let maps = world.graph.subscriber::<topic::Map>().unwrap();
+    let health = world.graph.subscriber::<topic::Health>().unwrap();
+    world.start();
+    wait_until(&world.graph, &health, |report, error| {
+        let error = String::from_utf8_lossy(error);
+        report.state == NodeState::Waiting as u32 && error.contains("map.pgm")
+    });
+    fs::write(world.at("map.pgm"), image_bytes).unwrap();
+    world.wait_for_cells(&maps, 0, &[100, 0]);
+    world.wait_for_state(&health, NodeState::Ready);
+    world.interrupt();
+    let (status, log) = world.finish();
+    assert!(status.success(), "{log}");
+    assert!(log.contains("the map is waited for"), "{log}");
+}
+
+#[test]
 fn a_changed_map_is_served_and_a_broken_one_refused() {
     let mut world = World::new("change", &[0, 255]);
     let maps = world.graph.subscriber::<topic::Map>().unwrap();
