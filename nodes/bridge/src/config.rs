@@ -4,7 +4,7 @@ use std::path::PathBuf;
 
 use clap::Parser;
 
-use crate::Rate;
+use crate::{Rate, memory};
 
 /// Joins graphs on several machines over Zenoh.
 ///
@@ -32,6 +32,12 @@ pub struct Config {
     #[arg(long, value_name = "TOPIC=HZ")]
     pub rate: Vec<Rate>,
 
+    /// Memory of this machine that the graph may use, megabytes; a map that needs more is
+    /// refused, and the one before stays [default: the limit of the control group, or
+    /// all that the machine has]
+    #[arg(long, value_name = "MB", value_parser = clap::value_parser!(u64).range(1..))]
+    pub memory_limit: Option<u64>,
+
     /// How it joins the network.
     #[command(flatten)]
     pub network: network::Options,
@@ -43,6 +49,15 @@ impl Config {
     pub fn robot(&self) -> String {
         let host = gethostname::gethostname();
         wire::robot_or_host(self.robot.as_deref(), &host.to_string_lossy())
+    }
+
+    /// The memory that the graph may use, bytes.
+    #[must_use]
+    pub fn memory_limit(&self) -> u64 {
+        match self.memory_limit {
+            Some(megabytes) => megabytes.saturating_mul(1 << 20),
+            None => memory::available(),
+        }
     }
 }
 

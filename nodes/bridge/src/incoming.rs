@@ -3,12 +3,13 @@
 //! It waits in a queue; the thread that owns the graph checks it, and writes it into
 //! shared memory.
 
+use messages::{MapHeader, Topic, topic};
 use network::{Past, Queue, Report, Room};
 use transport::{Graph, Publisher, TransportError, monotonic_ns};
 use wire::{Arrival, Arrivals, Received, Wire, WireError};
 use zenoh::Session;
 
-use crate::BridgeError;
+use crate::{BridgeError, memory};
 
 /// Receives one topic.
 pub(crate) struct Incoming<T: Wire> {
@@ -17,10 +18,17 @@ pub(crate) struct Incoming<T: Wire> {
     arrivals: Arrivals,
     /// The header of the kept sample that entered last, as it came.
     last: Option<T::Header>,
+    /// Bytes that the graph may take for a map.
+    memory_limit: u64,
 }
 
 impl<T: Wire> Incoming<T> {
-    pub(crate) fn open(graph: &Graph, session: &Session, robot: &str) -> Result<Self, BridgeError> {
+    pub(crate) fn open(
+        graph: &Graph,
+        session: &Session,
+        robot: &str,
+        memory_limit: u64,
+    ) -> Result<Self, BridgeError> {
         let key = wire::key::<T>(robot);
         let past = if T::KEPT { Past::Last(1) } else { Past::Gone };
         let room = Room::for_any(T::DEPTH.max(4), T::MAX_BYTES);
@@ -31,6 +39,7 @@ impl<T: Wire> Incoming<T> {
             publisher,
             arrivals: Arrivals::default(),
             last: None,
+            memory_limit,
         })
     }
 
@@ -51,7 +60,10 @@ impl<T: Wire> Incoming<T> {
             report.received();
             let encoding = sample.encoding().to_string();
             match wire::decode::<T>(&encoding, &sample.payload().to_bytes()) {
-                Ok(message) => self.enter(message, report)?,
+                Ok(message) => match refuse_too_large(&message, self.memory_limit) {
+                    Ok(()) => self.enter(message, report)?,
+                    Err(error) => report.refused(&error)?,
+                },
                 Err(error) => report.refused(&BridgeError::from(error))?,
             }
         }
@@ -89,4 +101,22 @@ impl<T: Wire> Incoming<T> {
         let last = self.last.as_ref();
         last.is_some_and(|last| bytemuck::bytes_of(last) == bytemuck::bytes_of(header))
     }
+}
+
+/// What came small may be more than the nodes can hold once they prepare for it.
+fn refuse_too_large<T: Wire>(message: &Received<T>, limit: u64) -> Result<(), BridgeError> {
+    // Every topic is received alike; the map alone is what others prepare for.
+    let Ok(map) = bytemuck::try_from_bytes::<MapHeader>(bytemuck::bytes_of(&message.header)) else {
+        return Ok(());
+    };
+    let cells = message.items.len() as u64;
+    if T::NAME != topic::Map::NAME || cells <= memory::most_cells(limit) {
+        return Ok(());
+    }
+    Err(BridgeError::MapTooLarge {
+        width: map.width,
+        height: map.height,
+        needed_mb: memory::bytes_of(cells) >> 20,
+        limit_mb: limit >> 20,
+    })
 }

@@ -15,6 +15,7 @@ mod config;
 mod error;
 mod exit;
 mod incoming;
+mod memory;
 mod outgoing;
 mod ports;
 mod rates;

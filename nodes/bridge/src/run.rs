@@ -97,11 +97,13 @@ fn ways(
         };
         wire::by_name(name, open)
     });
+    let memory_limit = config.memory_limit();
     let into = ports.into.iter().filter_map(|name| {
         let open = Inward {
             graph,
             session,
             robot,
+            memory_limit,
         };
         wire::by_name(name, open)
     });
@@ -136,13 +138,14 @@ struct Inward<'a> {
     graph: &'a Graph,
     session: &'a Session,
     robot: &'a str,
+    memory_limit: u64,
 }
 
 impl Visit for Inward<'_> {
     type Output = Result<Box<dyn Way>, BridgeError>;
 
     fn visit<T: Wire>(self) -> Self::Output {
-        let way = Incoming::<T>::open(self.graph, self.session, self.robot)?;
+        let way = Incoming::<T>::open(self.graph, self.session, self.robot, self.memory_limit)?;
         Ok(Box::new(way))
     }
 }
