@@ -187,6 +187,37 @@ pub enum TransportError {
         /// What iceoryx2 says.
         reason: String,
     },
+    /// The process may not open as many files as it needs.
+    #[error(
+        "this process may open {found} files at most, and a node needs up to {needed}: raise the limit \
+         (ulimit -n {needed}, LimitNOFILE= of a unit, docker run --ulimit nofile=)"
+    )]
+    Descriptors {
+        /// The hard limit.
+        found: u64,
+        /// What a member may need.
+        needed: u64,
+    },
+    /// A file of another user stands where one of the graph belongs.
+    #[error(
+        "{} belongs to user {owner}, and the graph of user {user} needs that name: \
+         have it removed, or give the graph another name (--graph)",
+        path.display()
+    )]
+    ForeignFile {
+        /// What is in the way.
+        path: PathBuf,
+        /// The user id that owns it.
+        owner: u32,
+        /// The user id of this process.
+        user: u32,
+    },
+    /// Files by which the processes of a graph find each other have been removed.
+    #[error("files of the running graph were removed from {}: nobody could join it any more", root.display())]
+    Vanished {
+        /// The folder where the graph's processes meet.
+        root: PathBuf,
+    },
     /// The graph's files cannot be removed while processes use them.
     #[error("graph {graph} still runs: {}; stop it first", processes.join(", "))]
     StillRunning {

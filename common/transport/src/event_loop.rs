@@ -73,7 +73,7 @@ impl Graph {
             if input || wake.tick {
                 self.publishers().serve_late_joiners()?;
                 let flow = step(wake)?;
-                self.send_log()?;
+                self.send_log();
                 if flow == Flow::Stop {
                     break;
                 }

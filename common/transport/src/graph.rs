@@ -4,6 +4,8 @@
 //! sends and waits for nothing itself.
 
 use std::cell::RefCell;
+use std::fs::File;
+use std::path::PathBuf;
 use std::rc::Rc;
 use std::sync::Arc;
 use std::sync::atomic::AtomicBool;
@@ -12,14 +14,16 @@ use std::time::Duration;
 use iceoryx2::node::Node;
 use iceoryx2::prelude::{NodeBuilder, NodeName, SignalHandlingMode, ipc};
 use messages::{HealthHeader, LogHeader, Name, Topic};
+use nix::fcntl::Flock;
 
 use crate::idle::IdlePublishers;
 use crate::log_sender::LogSender;
+use crate::losses::Losses;
 use crate::membership::Membership;
 use crate::signals::Signals;
 use crate::{
-    GraphName, Health, Publisher, Subscriber, TransportError, Waker, log, log_lines, root,
-    with_causes,
+    GraphName, Health, Publisher, Subscriber, TransportError, Waker, alive, descriptors, log,
+    log_lines, root,
 };
 
 /// How long joining waits for another process that is cleaning up after a dead
@@ -33,6 +37,13 @@ pub struct Graph {
     node: Node<ipc::Service>,
     signals: Signals,
     publishers: IdlePublishers,
+    losses: Losses,
+    /// What iceoryx2 has put down for this process.
+    own_files: Vec<PathBuf>,
+    /// Against the cleaning of temporary folders, unless another process has it.
+    root_lock: RefCell<Option<Flock<File>>>,
+    /// Says that a member is alive; let go of after the node.
+    _alive: alive::Lock,
     /// Where the process logs through `tracing`.
     log: Option<Rc<RefCell<LogSender>>>,
 }
@@ -57,8 +68,12 @@ impl Graph {
             let name = node_name.into();
             return Err(TransportError::NodeName { name });
         }
+        descriptors::ensure()?;
         let membership = Membership::of(graph);
         root::prepare(&membership.root, root::current_user())?;
+        membership.refuse_foreign_files(root::current_user())?;
+        let root_lock = root::keep_from_cleaning(&membership.root);
+        let alive = alive::as_member(&membership)?;
         let signals = Signals::catch()?;
         let failed = |reason: String| TransportError::Join {
             node: node_name.into(),
@@ -73,13 +88,19 @@ impl Graph {
             .signal_handling_mode(SignalHandlingMode::Disabled)
             .create::<ipc::Service>()
             .map_err(|e| failed(format!("{e:?}")))?;
+        membership.restrict_files();
         node.blocking_cleanup_dead_nodes(CLEANUP_WAIT);
+        let own_files = membership.files_of_node(node.id().value());
         let mut graph = Graph {
             node_name: node_name.into(),
             membership,
             node,
             signals,
             publishers: IdlePublishers::default(),
+            losses: Losses::default(),
+            own_files,
+            root_lock: RefCell::new(root_lock),
+            _alive: alive,
             log: None,
         };
         if log_lines::are_kept() {
@@ -120,7 +141,7 @@ impl Graph {
     /// # Errors
     /// As [`Graph::publisher`].
     pub fn publisher_for<T: Topic>(&self, items: usize) -> Result<Publisher<T>, TransportError> {
-        let publisher = Publisher::create(&self.node, items)?;
+        let publisher = Publisher::create(&self.node, items, self.losses.clone())?;
         self.publishers.add(publisher.for_event_loop());
         Ok(publisher)
     }
@@ -142,10 +163,15 @@ impl Graph {
         // No error message makes it grow: what it says last, just before it goes,
         // then lies in memory that its subscribers know already.
         let publisher = self.publisher_for(HealthHeader::ERROR_CAPACITY)?;
-        Health::new(&self.node_name, publisher, self.log.clone())
+        Health::new(
+            &self.node_name,
+            publisher,
+            self.losses.clone(),
+            self.log.clone(),
+        )
     }
 
-    /// A flag that SIGINT and SIGTERM set: to be looked at in long computations.
+    /// A flag that SIGINT, SIGTERM and SIGHUP set: to be looked at in long computations.
     #[must_use]
     pub fn stop_flag(&self) -> Arc<AtomicBool> {
         self.signals.flag()
@@ -162,19 +188,35 @@ impl Graph {
     /// Frees what members that died have left, so that others can take their
     /// places; returns how many there were. For a supervisor, now and then.
     pub fn cleanup_dead_nodes(&self) -> u64 {
+        let mut lock = self.root_lock.borrow_mut();
+        if lock.is_none() {
+            // Who had it may have gone.
+            *lock = root::keep_from_cleaning(&self.membership.root);
+        }
         self.node.try_cleanup_dead_nodes().cleanups
     }
 
     /// Sends what was logged since the last call, if the process logs through
-    /// [`crate::node::start_logging`]. [`Graph::run`] does so after each step.
+    /// [`crate::node::start_logging`]. [`Graph::run`] does so after each step. Lines
+    /// that cannot be sent are counted, and told of when others can.
+    pub fn send_log(&self) {
+        if let Some(log) = &self.log {
+            log.borrow_mut().send_waiting();
+        }
+    }
+
+    /// Whether the files by which others find this process are there: something that
+    /// cleans temporary folders may have removed them.
     ///
     /// # Errors
-    /// As [`Publisher::loan`] and [`crate::Loan::send`].
-    pub fn send_log(&self) -> Result<(), TransportError> {
-        match &self.log {
-            Some(log) => log.borrow_mut().send_waiting(),
-            None => Ok(()),
+    /// [`TransportError::Vanished`] if they are not.
+    pub fn ensure_intact(&self) -> Result<(), TransportError> {
+        let missing = |path: &PathBuf| matches!(path.try_exists(), Ok(false));
+        if self.own_files.iter().any(missing) {
+            let root = self.membership.root.clone();
+            return Err(TransportError::Vanished { root });
         }
+        Ok(())
     }
 
     pub(crate) fn signals(&self) -> &Signals {
@@ -188,9 +230,7 @@ impl Graph {
 
 impl Drop for Graph {
     fn drop(&mut self) {
-        if let Err(error) = self.send_log() {
-            tracing::warn!("the last log lines were not sent: {}", with_causes(&error));
-        }
+        self.send_log();
     }
 }
 

@@ -8,6 +8,7 @@ use std::net::Ipv4Addr;
 use twox_hash::XxHash3_64;
 
 use crate::TransportError;
+use crate::root::current_user;
 
 /// The environment variable that names the graph which a process joins.
 pub const GRAPH_VARIABLE: &str = "BACKCAST_GRAPH";
@@ -48,12 +49,17 @@ impl GraphName {
     }
 
     /// An address of this machine alone that is the graph's own: what its nodes
-    /// say to each other over sockets does not meet another graph. Two names share
-    /// one in 16 million times.
+    /// say to each other over sockets does not meet another graph, or one of the same
+    /// name of another user. Two share one in 16 million times.
     #[must_use]
     pub fn loopback(&self) -> Ipv4Addr {
+        self.loopback_of(current_user())
+    }
+
+    fn loopback_of(&self, user: u32) -> Ipv4Addr {
         // All of 127.0.0.0/8 is this machine; 127.0.0.x stays free for others.
-        let [b, c, d, ..] = XxHash3_64::oneshot(self.0.as_bytes()).to_le_bytes();
+        let name = XxHash3_64::oneshot_with_seed(u64::from(user), self.0.as_bytes());
+        let [b, c, d, ..] = name.to_le_bytes();
         Ipv4Addr::new(127, b.max(1), c, d.clamp(1, 254))
     }
 
@@ -89,6 +95,7 @@ mod tests {
         assert!(address("backcast").is_loopback());
         assert_eq!(address("bc7"), address("bc7"));
         let name = GraphName::new("bc7").unwrap();
+        assert_ne!(name.loopback_of(1000), name.loopback_of(1001));
         assert_eq!(
             name.resolve("graph:2112"),
             format!("{}:2112", address("bc7"))

@@ -9,6 +9,7 @@ use messages::topic;
 use messages::{HealthHeader, Name, NodeState};
 
 use crate::log_sender::LogSender;
+use crate::losses::Losses;
 use crate::{Publisher, TransportError, monotonic_ns, with_causes};
 
 /// Between two reports, nanoseconds.
@@ -20,6 +21,10 @@ pub struct Health {
     publisher: Publisher<topic::Health>,
     report: HealthHeader,
     last_error: String,
+    /// Samples that found no room.
+    losses: Losses,
+    /// How many of them the last report counted.
+    losses_told: u64,
     /// The node's, for nodes that have a loop of their own.
     log: Option<Rc<RefCell<LogSender>>>,
 }
@@ -28,6 +33,7 @@ impl Health {
     pub(crate) fn new(
         node: &str,
         publisher: Publisher<topic::Health>,
+        losses: Losses,
         log: Option<Rc<RefCell<LogSender>>>,
     ) -> Result<Self, TransportError> {
         let mut health = Health {
@@ -39,6 +45,8 @@ impl Health {
                 ..bytemuck::Zeroable::zeroed()
             },
             last_error: String::new(),
+            losses,
+            losses_told: 0,
             log,
         };
         health.send()?;
@@ -101,7 +109,7 @@ impl Health {
     /// As [`Publisher::loan`] and [`crate::Loan::send`].
     pub fn tick(&mut self) -> Result<(), TransportError> {
         if let Some(log) = &self.log {
-            log.borrow_mut().send_waiting()?;
+            log.borrow_mut().send_waiting();
         }
         if monotonic_ns() - self.report.sent_ns < PERIOD_NS {
             return Ok(());
@@ -117,12 +125,29 @@ impl Health {
         self.state(NodeState::Stopped)
     }
 
+    /// A report that finds no room is lost: the next one holds what it held.
     fn send(&mut self) -> Result<(), TransportError> {
         self.report.sent_ns = monotonic_ns();
-        let mut loan = self.publisher.loan(self.last_error.len())?;
-        *loan.header_mut() = self.report;
+        let losses = self.losses.count();
+        let mut report = self.report;
+        report.dropped += losses;
+        if losses > self.losses_told {
+            self.last_error = self.losses.reason();
+            let end = self
+                .last_error
+                .floor_char_boundary(HealthHeader::ERROR_CAPACITY);
+            self.last_error.truncate(end);
+            report.state = NodeState::Degraded as u32;
+        }
+        let mut loan = match self.publisher.loan(self.last_error.len()) {
+            Err(TransportError::SharedMemoryFull { .. }) => return Ok(()),
+            other => other?,
+        };
+        *loan.header_mut() = report;
         loan.items_mut().copy_from_slice(self.last_error.as_bytes());
-        loan.send()
+        loan.send()?;
+        self.losses_told = losses;
+        Ok(())
     }
 }
 

@@ -15,7 +15,8 @@ use iceoryx2::node::{DeadNodeView, Node, NodeDetails, NodeState, NodeView};
 use iceoryx2::prelude::{CallbackProgression, ipc};
 
 use crate::membership::{Membership, SHARED_MEMORY};
-use crate::{GraphName, TransportError, log};
+use crate::root::current_user;
+use crate::{Claim, GraphName, TransportError, alive, log, with_causes};
 
 /// How long to wait for another process that cleans up the same dead node.
 const CLEANUP_WAIT: Duration = Duration::from_secs(1);
@@ -31,6 +32,14 @@ pub fn remove_leftovers(graph: &GraphName) -> Result<(), TransportError> {
     log::route_to_tracing();
     let membership = Membership::of(graph);
     let dead = refuse_living(&membership)?;
+    // Members that iceoryx2 does not see here: in a container with another /tmp.
+    let Some(_nobody_joins) = alive::as_only_one(&membership)? else {
+        let lock = alive::path(&membership, alive::MEMBERS);
+        return Err(TransportError::StillRunning {
+            graph: graph.clone(),
+            processes: vec![format!("a process holds {}", lock.display())],
+        });
+    };
     for node in dead {
         // iceoryx2 knows best what belongs together. What it cannot take away,
         // because a process died while making it, is found by its name below.
@@ -39,6 +48,43 @@ pub fn remove_leftovers(graph: &GraphName) -> Result<(), TransportError> {
         }
     }
     remove_files(&membership)
+}
+
+/// Removes what graphs of this user have left that were killed as a whole, whatever
+/// their names: those whose files nobody holds. For a launcher, before it starts.
+///
+/// What cannot be removed is logged and stays; it keeps nobody from starting.
+pub fn remove_dead_graphs() {
+    let user = current_user();
+    let names = match entries(Path::new(SHARED_MEMORY)) {
+        Ok(paths) => dead_candidates(&paths, user),
+        Err(error) => {
+            tracing::warn!("leftovers are not looked for: {}", with_causes(&error));
+            return;
+        }
+    };
+    for name in names {
+        match remove_leftovers(&name) {
+            Ok(()) => {
+                // Its launcher's claim goes when it is let go of, unless it has a new one.
+                drop(Claim::take(&name));
+                tracing::info!("removed what graph {name} has left: it was killed");
+            }
+            Err(TransportError::StillRunning { .. }) => {}
+            Err(error) => tracing::warn!("leftovers stay: {}", with_causes(&error)),
+        }
+    }
+}
+
+/// The graphs of `user` whose members hold locks, or held them.
+fn dead_candidates(paths: &[PathBuf], user: u32) -> Vec<GraphName> {
+    let name = |path: &PathBuf| {
+        let file = path.file_name()?.to_str()?;
+        let (graph, whose) = file.split_once('.')?;
+        let graph = graph.strip_prefix(&format!("bc{user}_"))?;
+        (whose == alive::MEMBERS).then(|| GraphName::new(graph).ok())?
+    };
+    paths.iter().filter_map(name).collect()
 }
 
 fn refuse_living(
@@ -102,7 +148,9 @@ fn remove_prefixed(folder: &Path, prefix: &[u8]) -> Result<bool, TransportError>
     let mut any = false;
     for path in entries(folder)? {
         let name = path.file_name().map(OsStr::as_bytes);
-        if name.is_some_and(|name| name.starts_with(prefix)) {
+        // Who claims a graph removes the claim, and nobody else.
+        let is_claim = path.extension() == Some(OsStr::new(alive::LAUNCHER));
+        if name.is_some_and(|name| name.starts_with(prefix)) && !is_claim {
             gone(&path, remove_file(&path))?;
             any = true;
         }

@@ -41,12 +41,13 @@
 //! | `service`, `header` | a topic in terms of iceoryx2: quality of service, types |
 //! | `publisher`, `loan`, `idle` | sending; filling in place; late joiners |
 //! | `subscriber`, `gaps` | receiving; counting what was lost |
-//! | `event_loop`, `signals`, `waker` | waiting for inputs, ticks, SIGINT and SIGTERM, other threads |
+//! | `event_loop`, `signals`, `waker` | waiting for inputs, ticks, SIGINT, SIGTERM and SIGHUP, other threads |
 //! | `health`, `clock` | a node's report on itself; the clocks |
 //! | `node`, `log` | `main` of a node: logging, exit code |
-//! | `log_lines`, `log_sender` | what a node logs, on its way to topic `log` |
-//! | `space` | room in shared memory, looked up before it is used |
-//! | `leftovers` | removing what a graph leaves |
+//! | `log_lines`, `log_sender`, `log_limit` | what a node logs, on its way to topic `log`; what repeats too fast |
+//! | `space`, `losses` | room in shared memory, looked up before it is used; what was lost without it |
+//! | `alive`, `leftovers` | who lives, by locks; removing what a graph leaves |
+//! | `descriptors` | whether the process may open enough files |
 //! | `error`, `causes` | what can go wrong; an error with its causes on one line |
 //! | `testing` | for tests of nodes: a graph of their own, the node as a process |
 //!
@@ -70,6 +71,9 @@
 //! - **The dead make way.** Whoever joins cleans up after members that were
 //!   killed, and so do members that leave and [`Graph::cleanup_dead_nodes`].
 //!   Until then a dead subscriber counts as one.
+//! - **Full shared memory ends nothing.** A sample that finds no room is lost and
+//!   counted, and so are log lines and reports of health; only a sender of a latched topic
+//!   gets an error. iceoryx2 would be killed by SIGBUS, so room is looked up before.
 //! - **iceoryx2 handles no signals and prints nothing**; both are done here.
 //!
 //! One loss remains: a publisher that goes takes along what it sent to a
@@ -90,8 +94,10 @@
 //! the old one goes with its last sample. Wake-ups and connections take about
 //! 20 KiB for each pair of publisher and subscriber.
 
+mod alive;
 mod causes;
 mod clock;
+mod descriptors;
 mod error;
 mod event_loop;
 mod gaps;
@@ -103,8 +109,10 @@ mod idle;
 mod leftovers;
 mod loan;
 mod log;
+mod log_limit;
 mod log_lines;
 mod log_sender;
+mod losses;
 mod membership;
 pub mod node;
 mod publisher;
@@ -116,6 +124,7 @@ mod subscriber;
 pub mod testing;
 mod waker;
 
+pub use alive::Claim;
 pub use causes::with_causes;
 pub use clock::{monotonic_ns, wall_ns};
 pub use error::TransportError;
@@ -124,9 +133,11 @@ pub use gaps::GapCounter;
 pub use graph::Graph;
 pub use graph_name::{GRAPH_VARIABLE, GraphName};
 pub use health::Health;
-pub use leftovers::remove_leftovers;
+pub use leftovers::{remove_dead_graphs, remove_leftovers};
 pub use loan::Loan;
 pub use log_lines::{CONSOLE_ONLY, log_in_graph};
+pub use membership::{control_socket, running_graphs};
 pub use publisher::Publisher;
+pub use space::shared_memory_has_room;
 pub use subscriber::{Input, Sample, Subscriber};
 pub use waker::Waker;

@@ -1,6 +1,8 @@
 //! A sample on its way from being asked for to being sent.
 //!
-//! The node fills it where its subscribers will read it: nothing is copied.
+//! The node fills it where its subscribers will read it: nothing is copied. Where shared
+//! memory is full, it is filled in memory of the process alone and goes nowhere; the
+//! publisher counts it.
 
 use iceoryx2::prelude::ipc;
 use iceoryx2::sample_mut::SampleMut;
@@ -13,54 +15,96 @@ use crate::{Publisher, TransportError, space};
 /// Bytes of iceoryx2's own header in front of ours, and of padding, at most.
 const OVERHEAD: usize = 256;
 
+type SharedSample<T> = SampleMut<ipc::Service, [<T as Topic>::Item], Header<<T as Topic>::Header>>;
+
 /// A sample being filled; dropping it gives the memory back unsent.
 #[derive(Debug)]
 pub struct Loan<'p, T: Topic> {
-    sample: SampleMut<ipc::Service, [T::Item], Header<T::Header>>,
+    place: Place<T>,
     publisher: &'p Publisher<T>,
+}
+
+#[derive(Debug)]
+enum Place<T: Topic> {
+    Shared(SharedSample<T>),
+    /// Shared memory is full, as the error says.
+    Private {
+        header: T::Header,
+        items: Vec<T::Item>,
+        full: TransportError,
+    },
 }
 
 impl<'p, T: Topic> Loan<'p, T> {
     pub(crate) fn of(publisher: &'p Publisher<T>, items: usize) -> Result<Self, TransportError> {
-        space::ensure_free(T::NAME, sample_bytes::<T>(items)?)?;
-        let sample = publisher
-            .port()
-            .loan_slice_uninit(items)
-            .map_err(|error| TransportError::Loan {
-                topic: T::NAME,
-                items,
-                reason: format!("{error:?}"),
-            })?
-            .write_from_fn(|_| bytemuck::Zeroable::zeroed());
-        Ok(Loan { sample, publisher })
+        let place = match space::ensure_free(T::NAME, sample_bytes::<T>(items)?) {
+            Ok(()) => Place::Shared(shared(publisher, items)?),
+            // What stays for late joiners must not be missed, so its sender has to know.
+            Err(full @ TransportError::SharedMemoryFull { .. }) if !T::LATCHED => Place::Private {
+                header: bytemuck::Zeroable::zeroed(),
+                items: vec![bytemuck::Zeroable::zeroed(); items],
+                full,
+            },
+            Err(error) => return Err(error),
+        };
+        Ok(Loan { place, publisher })
     }
 
     /// The header, zeros at first.
     pub fn header_mut(&mut self) -> &mut T::Header {
-        &mut self.sample.user_header_mut().0
+        match &mut self.place {
+            Place::Shared(sample) => &mut sample.user_header_mut().0,
+            Place::Private { header, .. } => header,
+        }
     }
 
     /// The items, zeros at first.
     pub fn items_mut(&mut self) -> &mut [T::Item] {
-        self.sample.payload_mut()
+        match &mut self.place {
+            Place::Shared(sample) => sample.payload_mut(),
+            Place::Private { items, .. } => items,
+        }
     }
 
-    /// Hands the sample to every subscriber and wakes them.
+    /// Hands the sample to every subscriber and wakes them; where shared memory is full,
+    /// the sample is lost and counted.
     ///
     /// # Errors
     /// [`TransportError::Send`] if a subscriber could not be reached.
     pub fn send(self) -> Result<(), TransportError> {
         let address = self.address();
-        self.sample
-            .send()
-            .map_err(|error| send_failed::<T>(&error))?;
-        self.publisher.sent(address)
+        match self.place {
+            Place::Shared(sample) => {
+                sample.send().map_err(|error| send_failed::<T>(&error))?;
+                self.publisher.sent(address)
+            }
+            Place::Private { full, .. } => {
+                self.publisher.lost(&full);
+                Ok(())
+            }
+        }
     }
 
     /// Where the sample lies in this process.
     pub(crate) fn address(&self) -> usize {
-        std::ptr::from_ref(self.sample.user_header()).addr()
+        match &self.place {
+            Place::Shared(sample) => std::ptr::from_ref(sample.user_header()).addr(),
+            Place::Private { header, .. } => std::ptr::from_ref(header).addr(),
+        }
     }
+}
+
+fn shared<T: Topic>(
+    publisher: &Publisher<T>,
+    items: usize,
+) -> Result<SharedSample<T>, TransportError> {
+    let loan = publisher.port().loan_slice_uninit(items);
+    let sample = loan.map_err(|error| TransportError::Loan {
+        topic: T::NAME,
+        items,
+        reason: format!("{error:?}"),
+    })?;
+    Ok(sample.write_from_fn(|_| bytemuck::Zeroable::zeroed()))
 }
 
 /// Bytes that a sample touches at most. iceoryx2 rounds the size of its chunks

@@ -96,17 +96,16 @@ pub(crate) fn are_kept() -> bool {
     waiting().kept
 }
 
-/// Calls for each line that waits, and then with how many were dropped since the
-/// process began; what it logs itself is not kept.
-pub(crate) fn send_each<E>(mut send: impl FnMut(Line, u64) -> Result<(), E>) -> Result<(), E> {
+/// Calls for each line that waits, and with how many were dropped since the process
+/// began; what it logs itself is not kept.
+pub(crate) fn send_each(mut send: impl FnMut(Line, u64)) {
     let (lines, dropped) = {
         let mut waiting = waiting();
         (std::mem::take(&mut waiting.lines), waiting.dropped)
     };
     SENDING.set(true);
-    let outcome = lines.into_iter().try_for_each(|line| send(line, dropped));
+    lines.into_iter().for_each(|line| send(line, dropped));
     SENDING.set(false);
-    outcome
 }
 
 fn waiting() -> MutexGuard<'static, Waiting> {
@@ -122,14 +121,18 @@ impl<S: Subscriber> Layer<S> for KeepLines {
         if SENDING.get() || event.metadata().target() == CONSOLE_ONLY {
             return;
         }
-        let mut text = Text::default();
-        event.record(&mut text);
         let level = level(event.metadata().level());
-        waiting().put(Line::now(level, text.message + &text.fields));
+        waiting().put(Line::now(level, text_of(event)));
     }
 }
 
 /// The message of an event, and what it names beside.
+pub(crate) fn text_of(event: &Event<'_>) -> String {
+    let mut text = Text::default();
+    event.record(&mut text);
+    text.message + &text.fields
+}
+
 #[derive(Debug, Default)]
 struct Text {
     message: String,

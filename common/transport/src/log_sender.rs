@@ -11,8 +11,10 @@ pub(crate) struct LogSender {
     node: Name,
     publisher: Publisher<topic::Log>,
     sent: u64,
-    /// Losses that were told already.
-    told: u64,
+    /// Lines that found no room in shared memory.
+    unsent: u64,
+    /// Losses that were told already, of the first kind and the second.
+    told: (u64, u64),
 }
 
 impl LogSender {
@@ -21,29 +23,39 @@ impl LogSender {
             node: Name::new(node),
             publisher,
             sent: 0,
-            told: 0,
+            unsent: 0,
+            told: (0, 0),
         }
     }
 
-    /// Sends the lines that wait, and a line about those that were lost.
-    pub(crate) fn send_waiting(&mut self) -> Result<(), TransportError> {
+    /// Sends the lines that wait, and a line about those that were lost. Nothing fails
+    /// here: a log that ended what it logs of would be worse than none.
+    pub(crate) fn send_waiting(&mut self) {
         let mut last = None;
         log_lines::send_each(|line, dropped| {
-            self.send(&line, dropped)?;
+            if self.send(&line, dropped).is_err() {
+                self.unsent += 1;
+            }
             last = Some((line, dropped));
-            Ok(())
-        })?;
-        let Some((line, dropped)) = last.filter(|(_, dropped)| *dropped > self.told) else {
-            return Ok(());
+        });
+        let Some((line, dropped)) = last else {
+            return;
         };
-        let lost = dropped - self.told;
-        self.told = dropped;
+        let (too_fast, no_room) = (dropped - self.told.0, self.unsent - self.told.1);
+        let why = match (too_fast, no_room) {
+            (0, 0) => return,
+            (_, 0) => "they came faster than they could be sent",
+            (0, _) => "shared memory was full",
+            _ => "they came faster than they could be sent, and shared memory was full",
+        };
         let line = Line {
             level: LogLevel::Warn,
-            text: format!("{lost} log lines were lost: they came faster than they could be sent"),
+            text: format!("{} log lines were lost: {why}", too_fast + no_room),
             ..line
         };
-        self.send(&line, dropped)
+        if self.send(&line, dropped).is_ok() {
+            self.told = (dropped, self.unsent);
+        }
     }
 
     fn send(&mut self, line: &Line, dropped: u64) -> Result<(), TransportError> {
@@ -55,12 +67,13 @@ impl LogSender {
             written_ns: line.written_ns,
             wall_ns: line.wall_ns,
             counter: self.sent,
-            dropped,
+            dropped: dropped + self.unsent,
             level: line.level as u32,
             pid: std::process::id(),
         };
         loan.items_mut().copy_from_slice(text);
+        loan.send()?;
         self.sent += 1;
-        loan.send()
+        Ok(())
     }
 }

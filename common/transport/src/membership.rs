@@ -1,16 +1,21 @@
 //! What iceoryx2 must know so that one graph of one user stays apart from all
 //! others: the folder where its processes meet and the prefix of its files.
 
+use std::fs::{DirEntry, Permissions, read_dir, set_permissions};
+use std::os::unix::fs::{MetadataExt, PermissionsExt};
 use std::path::PathBuf;
 use std::time::Duration;
 
 use iceoryx2::prelude::{Config, FileName, Path as IoxPath, SemanticString};
 
-use crate::GraphName;
 use crate::root::{current_user, path_for};
+use crate::{Claim, GraphName, TransportError};
 
 /// Where Linux keeps POSIX shared memory.
 pub(crate) const SHARED_MEMORY: &str = "/dev/shm";
+
+/// Ends the name of a launcher's socket.
+const CONTROL: &str = "control";
 
 /// How long a process waits for another one that is just creating a topic. A
 /// loaded machine takes its time; one that died meanwhile never ends.
@@ -34,6 +39,50 @@ impl Membership {
         }
     }
 
+    /// Refuses a name that another user has taken in shared memory, which is common to all.
+    pub(crate) fn refuse_foreign_files(&self, user: u32) -> Result<(), TransportError> {
+        for path in self.shared_files() {
+            let Ok(found) = path.symlink_metadata() else {
+                continue;
+            };
+            let owner = found.uid();
+            if owner != user {
+                return Err(TransportError::ForeignFile { path, owner, user });
+            }
+        }
+        Ok(())
+    }
+
+    /// Takes the rights of others on files that iceoryx2 opens to everybody: what they
+    /// write there would end every process of the graph.
+    pub(crate) fn restrict_files(&self) {
+        for path in self.shared_files() {
+            let Ok(found) = path.symlink_metadata() else {
+                continue;
+            };
+            if found.is_file() && found.mode() & 0o077 != 0 {
+                // It may be gone, and then nobody can write to it.
+                let _ = set_permissions(&path, Permissions::from_mode(0o600));
+            }
+        }
+    }
+
+    fn shared_files(&self) -> impl Iterator<Item = PathBuf> {
+        let entries = read_dir(SHARED_MEMORY).into_iter().flatten().flatten();
+        let is_ours = |entry: &DirEntry| {
+            let name = entry.file_name();
+            name.as_encoded_bytes().starts_with(self.prefix.as_bytes())
+        };
+        entries.filter(is_ours).map(|entry| entry.path())
+    }
+
+    /// What iceoryx2 has put down for the node with this number.
+    pub(crate) fn files_of_node(&self, node: u128) -> Vec<PathBuf> {
+        let folder = self.root.join("nodes").join(node.to_string());
+        let entries = read_dir(folder).into_iter().flatten().flatten();
+        entries.map(|entry| entry.path()).collect()
+    }
+
     /// The configuration for every node of the graph. Files of the host are not
     /// consulted: two members that read different ones would not meet.
     pub(crate) fn config(&self) -> Config {
@@ -48,6 +97,33 @@ impl Membership {
         config.global.creation_timeout = CREATION_TIMEOUT;
         config
     }
+}
+
+/// Where the launcher of `graph` takes questions of its user.
+#[must_use]
+pub fn control_socket(graph: &GraphName) -> PathBuf {
+    let membership = Membership::of(graph);
+    membership
+        .root
+        .join(format!("{}{CONTROL}", membership.prefix))
+}
+
+/// The graphs of this user that have a launcher, by its socket.
+#[must_use]
+pub fn running_graphs() -> Vec<GraphName> {
+    let user = current_user();
+    let entries = read_dir(path_for(user)).into_iter().flatten().flatten();
+    let name = |entry: DirEntry| {
+        let file = entry.file_name().into_string().ok()?;
+        let (graph, rest) = file.split_once('.')?;
+        let graph = graph.strip_prefix(&format!("bc{user}_"))?;
+        let name = (rest == CONTROL).then(|| GraphName::new(graph).ok())??;
+        // Who holds the name lives; a socket may be left over.
+        Claim::take(&name).is_err().then_some(name)
+    };
+    let mut names: Vec<_> = entries.filter_map(name).collect();
+    names.sort_by(|a, b| a.as_str().cmp(b.as_str()));
+    names
 }
 
 /// The user is part of it, for all users share one folder of shared memory. The

@@ -13,6 +13,7 @@ use tracing_subscriber::layer::SubscriberExt;
 use tracing_subscriber::util::SubscriberInitExt;
 use tracing_subscriber::{EnvFilter, Layer};
 
+use crate::log_limit::Limit;
 use crate::{Graph, log_lines, with_causes};
 
 /// The environment variable that picks the form of log lines: `text` or `json`.
@@ -56,7 +57,8 @@ fn failed(error: &(dyn Error + 'static)) -> ExitCode {
 
 /// Sends events of `tracing` to standard error, and to topic `log` of a graph that
 /// is joined later: `RUST_LOG` filters them (`info` where it is unset),
-/// [`LOG_FORMAT_VARIABLE`] picks their form on standard error.
+/// [`LOG_FORMAT_VARIABLE`] picks their form on standard error. A message that repeats more
+/// than twenty times within ten seconds is left out and counted.
 ///
 /// # Errors
 /// A sentence that names the variable, its value and what is allowed; or that
@@ -85,6 +87,7 @@ fn start_logging_by(default: &str) -> Result<(), String> {
     };
     tracing_subscriber::registry()
         .with(filter)
+        .with(Limit::default())
         .with(console)
         .with(log_lines::keep())
         .try_init()

@@ -17,6 +17,7 @@ use messages::Topic;
 
 use crate::header::Header;
 use crate::idle::Connects;
+use crate::losses::Losses;
 use crate::service::{self, Samples};
 use crate::{Loan, TransportError, space};
 
@@ -39,6 +40,10 @@ struct Inner<T: Topic> {
     served: RefCell<Vec<u128>>,
     /// Where the sample lies that was sent last.
     last_sent: Cell<Option<usize>>,
+    /// Of the whole process.
+    losses: Losses,
+    /// Of this publisher, since one was sent last.
+    unsent: Cell<u64>,
 }
 
 impl<T: Topic> Publisher<T> {
@@ -47,7 +52,11 @@ impl<T: Topic> Publisher<T> {
 
     /// A publisher whose first segment holds samples of up to `items` items; it
     /// grows by itself.
-    pub(crate) fn create(node: &Node<ipc::Service>, items: usize) -> Result<Self, TransportError> {
+    pub(crate) fn create(
+        node: &Node<ipc::Service>,
+        items: usize,
+        losses: Losses,
+    ) -> Result<Self, TransportError> {
         space::ensure_free(T::NAME, 0)?;
         let samples = service::open_samples::<T>(node)?;
         let notifier = service::notifier::<T>(node)?;
@@ -71,6 +80,8 @@ impl<T: Topic> Publisher<T> {
                 samples,
                 served: RefCell::default(),
                 last_sent: Cell::new(None),
+                losses,
+                unsent: Cell::new(0),
             }),
         })
     }
@@ -86,7 +97,8 @@ impl<T: Topic> Publisher<T> {
     ///
     /// # Errors
     /// [`TransportError::SharedMemoryFull`] where shared memory has no room for
-    /// it, [`TransportError::TooLarge`] where no memory could have,
+    /// it and the topic is latched (on others it is lost when it is sent, and counted),
+    /// [`TransportError::TooLarge`] where no memory could have,
     /// [`TransportError::Loan`] where [`Publisher::MAX_LOANED`] samples are being
     /// filled already.
     pub fn loan(&self, items: usize) -> Result<Loan<'_, T>, TransportError> {
@@ -131,7 +143,24 @@ impl<T: Topic> Publisher<T> {
     /// Wakes the subscribers, after the sample at `address` was sent.
     pub(crate) fn sent(&self, address: usize) -> Result<(), TransportError> {
         self.inner.last_sent.set(Some(address));
+        let unsent = self.inner.unsent.replace(0);
+        if unsent > 0 {
+            let topic = T::NAME;
+            tracing::warn!("{unsent} samples of topic {topic} were lost: shared memory was full");
+        }
         self.inner.wake()
+    }
+}
+
+impl<T: Topic> Publisher<T> {
+    /// A sample is not sent, because of `full`.
+    pub(crate) fn lost(&self, full: &TransportError) {
+        let unsent = self.inner.unsent.get();
+        if unsent == 0 {
+            tracing::warn!("samples are lost: {full}");
+        }
+        self.inner.unsent.set(unsent + 1);
+        self.inner.losses.add(full);
     }
 }
 
@@ -162,7 +191,8 @@ impl<T: Topic> Inner<T> {
 impl<T: Topic> Connects for Inner<T> {
     fn serve_late_joiners(&self) -> Result<(), TransportError> {
         let subscribers = self.subscribers();
-        if *self.served.borrow() == subscribers {
+        // To connect takes room, too. Without it they wait for another tick.
+        if *self.served.borrow() == subscribers || space::ensure_free(T::NAME, 0).is_err() {
             return Ok(());
         }
         self.update_connections()?;

@@ -2,13 +2,15 @@
 //!
 //! iceoryx2 keeps its nodes, services and wake-up sockets in a folder that it
 //! makes for whoever comes first; a second user is then locked out. So each
-//! user has their own folder. Nothing here decides for another user: a folder
+//! user has their own folder, which is locked against the cleaning of /tmp. Nothing here decides for another user: a folder
 //! that is in the way is an error that says whose it is.
 
-use std::fs::{DirBuilder, Permissions, symlink_metadata};
+use std::fs::{DirBuilder, File, Permissions, symlink_metadata};
 use std::io::ErrorKind;
 use std::os::unix::fs::{DirBuilderExt, MetadataExt, PermissionsExt};
 use std::path::{Path, PathBuf};
+
+use nix::fcntl::{Flock, FlockArg};
 
 use crate::TransportError;
 
@@ -55,12 +57,29 @@ pub(crate) fn prepare(path: &Path, user: u32) -> Result<(), TransportError> {
     Ok(())
 }
 
+/// Keeps systemd from cleaning `path`: it leaves out a folder that is locked, and all
+/// that is below. One process of the user is enough, so nothing where another one has it.
+pub(crate) fn keep_from_cleaning(path: &Path) -> Option<Flock<File>> {
+    let folder = File::open(path).ok()?;
+    Flock::lock(folder, FlockArg::LockExclusiveNonblock).ok()
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
 
     fn mode(path: &Path) -> u32 {
         symlink_metadata(path).unwrap().mode() & 0o777
+    }
+
+    #[test]
+    fn one_process_keeps_the_folder_from_cleaning() {
+        let folder = tempfile::tempdir().unwrap();
+        let kept = keep_from_cleaning(folder.path());
+        assert!(kept.is_some());
+        assert!(keep_from_cleaning(folder.path()).is_none());
+        drop(kept);
+        assert!(keep_from_cleaning(folder.path()).is_some());
     }
 
     #[test]

@@ -1,4 +1,4 @@
-//! SIGINT and SIGTERM as a flag and as something to wait for.
+//! SIGINT, SIGTERM and SIGHUP as a flag and as something to wait for.
 //!
 //! A flag alone would be seen a tick late, and a signal between looking at the
 //! flag and falling asleep would interrupt nothing. So each signal also writes
@@ -13,7 +13,7 @@ use std::sync::atomic::{AtomicBool, Ordering};
 
 use iceoryx2::prelude::{FileDescriptor, FileDescriptorBased, SynchronousMultiplexing};
 use signal_hook::SigId;
-use signal_hook::consts::{SIGINT, SIGTERM};
+use signal_hook::consts::{SIGHUP, SIGINT, SIGTERM};
 
 use crate::TransportError;
 use crate::waker::Waker;
@@ -46,7 +46,10 @@ impl Signals {
             descriptor,
             registrations: Vec::new(),
         };
-        for signal in [SIGINT, SIGTERM] {
+        for signal in [SIGINT, SIGTERM, SIGHUP] {
+            if signal == SIGHUP && hangups_are_ignored() {
+                continue;
+            }
             // Actions run in this order: whoever is woken finds the flag set.
             let flag = signal_hook::flag::register(signal, Arc::clone(&signals.stop))?;
             signals.registrations.push(flag);
@@ -81,6 +84,16 @@ impl Signals {
         }
         any
     }
+}
+
+/// Whether whoever started the process wants it to outlive the terminal, as `nohup` does.
+fn hangups_are_ignored() -> bool {
+    let status = std::fs::read_to_string("/proc/self/status").unwrap_or_default();
+    let mask = status
+        .lines()
+        .find_map(|line| line.strip_prefix("SigIgn:"))
+        .and_then(|mask| u64::from_str_radix(mask.trim(), 16).ok());
+    mask.is_some_and(|mask| mask & (1 << (SIGHUP - 1)) != 0)
 }
 
 impl Drop for Signals {

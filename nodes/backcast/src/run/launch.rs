@@ -146,8 +146,7 @@ fn launch(
     if let Err(error) = &end {
         // The console hears of it when all have ended, a recorder has to before.
         log_in_graph(LogLevel::Error, &with_causes(error));
-        // What came first says most.
-        let _ = graph.send_log();
+        graph.send_log();
     }
     let stopped = crew.stop();
     // Nodes that are stopped send a last report on their health.

@@ -1,0 +1,158 @@
+//! Who is alive: whoever holds a lock.
+//!
+//! Numbers of processes mean nothing across containers that share `/dev/shm`, and the
+//! folder where iceoryx2 keeps its nodes may be another one there. A lock on a file in
+//! shared memory is seen by all of them, and the kernel takes it away with the process.
+
+use std::fs::{File, OpenOptions, remove_file};
+use std::os::unix::fs::{MetadataExt, OpenOptionsExt};
+use std::path::{Path, PathBuf};
+
+use nix::errno::Errno;
+use nix::fcntl::{Flock, FlockArg};
+use nix::libc::O_NOFOLLOW;
+
+use crate::membership::{Membership, SHARED_MEMORY};
+use crate::{GraphName, TransportError};
+
+/// Ends the name of the file that every member holds.
+pub(crate) const MEMBERS: &str = "alive";
+/// Ends the name of the file that a launcher holds.
+pub(crate) const LAUNCHER: &str = "launcher";
+
+/// A lock on a file, as long as this lives.
+#[derive(Debug)]
+pub(crate) struct Lock {
+    _file: Flock<File>,
+}
+
+/// A launcher's right to a graph's name: no other launcher has it, in whatever
+/// container that shares this machine's shared memory.
+#[derive(Debug)]
+pub struct Claim {
+    path: PathBuf,
+    _lock: Lock,
+}
+
+impl Claim {
+    /// Takes the name of `graph`.
+    ///
+    /// # Errors
+    /// [`TransportError::StillRunning`] if another launcher has it, and
+    /// [`TransportError::File`] if its file cannot be used.
+    pub fn take(graph: &GraphName) -> Result<Self, TransportError> {
+        let path = path(&Membership::of(graph), LAUNCHER);
+        let lock = lock(&path, FlockArg::LockExclusiveNonblock)?;
+        let Some(lock) = lock else {
+            return Err(TransportError::StillRunning {
+                graph: graph.clone(),
+                processes: vec![format!("its launcher holds {}", path.display())],
+            });
+        };
+        Ok(Claim { path, _lock: lock })
+    }
+}
+
+impl Drop for Claim {
+    fn drop(&mut self) {
+        // Whoever waits for it finds that the file is another one, and looks again.
+        let _ = remove_file(&self.path);
+    }
+}
+
+/// What each member holds, beside others.
+pub(crate) fn as_member(membership: &Membership) -> Result<Lock, TransportError> {
+    let path = path(membership, MEMBERS);
+    let lock = lock(&path, FlockArg::LockShared)?;
+    // To wait for a shared lock ends with it.
+    lock.ok_or(TransportError::File {
+        action: "lock",
+        path,
+        source: Errno::EWOULDBLOCK.into(),
+    })
+}
+
+/// What nobody holds while any member is alive.
+pub(crate) fn as_only_one(membership: &Membership) -> Result<Option<Lock>, TransportError> {
+    lock(&path(membership, MEMBERS), FlockArg::LockExclusiveNonblock)
+}
+
+pub(crate) fn path(membership: &Membership, whose: &str) -> PathBuf {
+    Path::new(SHARED_MEMORY).join(format!("{}{whose}", membership.prefix))
+}
+
+/// Nothing where somebody else has it.
+fn lock(path: &Path, how: FlockArg) -> Result<Option<Lock>, TransportError> {
+    let failed = |action: &'static str, source| TransportError::File {
+        action,
+        path: path.to_owned(),
+        source,
+    };
+    loop {
+        let file = OpenOptions::new()
+            .read(true)
+            .write(true)
+            .create(true)
+            .truncate(false)
+            .mode(0o600)
+            .custom_flags(O_NOFOLLOW)
+            .open(path)
+            .map_err(|source| failed("open", source))?;
+        match Flock::lock(file, how) {
+            Ok(file) if is_at(&file, path) => return Ok(Some(Lock { _file: file })),
+            // It was removed while we waited.
+            Ok(_) | Err((_, Errno::EINTR)) => {}
+            Err((_, Errno::EWOULDBLOCK)) => return Ok(None),
+            Err((_, errno)) => return Err(failed("lock", errno.into())),
+        }
+    }
+}
+
+fn is_at(file: &File, path: &Path) -> bool {
+    let same = |found: std::fs::Metadata| {
+        let ours = file.metadata().ok()?;
+        Some((ours.dev(), ours.ino()) == (found.dev(), found.ino()))
+    };
+    path.symlink_metadata().ok().and_then(same).unwrap_or(false)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn name(tag: &str) -> GraphName {
+        GraphName::new(&format!("u{}-{tag}", std::process::id())).unwrap()
+    }
+
+    #[test]
+    fn a_name_is_claimed_once_and_free_again_afterwards() {
+        let name = name("claim");
+        let claim = Claim::take(&name).unwrap();
+        let path = claim.path.clone();
+        let error = Claim::take(&name).unwrap_err();
+        assert!(
+            matches!(error, TransportError::StillRunning { .. }),
+            "{error}"
+        );
+        drop(claim);
+        assert!(!path.exists());
+        drop(Claim::take(&name).unwrap());
+    }
+
+    #[test]
+    fn nobody_is_the_only_one_beside_a_member() {
+        let membership = Membership::of(&name("members"));
+        let one = as_member(&membership).unwrap();
+        let other = as_member(&membership).unwrap();
+        assert!(as_only_one(&membership).unwrap().is_none());
+        drop(one);
+        assert!(as_only_one(&membership).unwrap().is_none());
+        drop(other);
+        let only = as_only_one(&membership).unwrap();
+        assert!(only.is_some());
+        remove_file(path(&membership, MEMBERS)).unwrap();
+        // The file that is locked is no more the one at its path.
+        assert!(as_only_one(&membership).unwrap().is_some());
+        remove_file(path(&membership, MEMBERS)).unwrap();
+    }
+}
