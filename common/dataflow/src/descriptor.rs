@@ -74,15 +74,42 @@ pub struct Input {
     pub stream: String,
 }
 
-/// What happens when a node ends by itself.
+/// What happens when a node ends by itself, or is silent for too long.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct Restart {
     /// Whether it is started again.
     pub policy: RestartPolicy,
-    /// How often at most in the life of the graph; 0 for no limit.
+    /// How often at most within `window`; 0 for no limit.
     pub max_restarts: u32,
     /// Before the first restart; each further restart waits twice as long.
     pub delay: Duration,
+    /// The longest wait before a restart.
+    pub max_delay: Duration,
+    /// Restarts that lie farther back do not count.
+    pub window: Duration,
+    /// How long a node may be without a sign of life before it is ended, and started
+    /// again by its policy.
+    pub health_timeout: Duration,
+}
+
+impl Restart {
+    /// What holds where the descriptor says nothing.
+    pub const DEFAULT: Restart = Restart {
+        policy: RestartPolicy::Never,
+        max_restarts: 0,
+        delay: Duration::ZERO,
+        max_delay: Duration::from_secs(5),
+        window: Duration::from_secs(60),
+        health_timeout: Duration::from_secs(15),
+    };
+    /// For a node that recovers by being started again.
+    pub const ON_FAILURE: Restart = Restart {
+        policy: RestartPolicy::OnFailure,
+        max_restarts: 15,
+        delay: Duration::from_millis(200),
+        max_delay: Duration::from_secs(3),
+        ..Restart::DEFAULT
+    };
 }
 
 /// When a node that ended is started again.

@@ -17,8 +17,14 @@
 //! | `inputs` | map of topic to `node/topic` | none |
 //! | `outputs` | list of topics | none |
 //! | `restart_policy` | `never`, `on-failure`, `always` | `never` |
-//! | `max_restarts` | 0 or more, 0 for no limit | 0 |
+//! | `max_restarts` | how often at most within `restart_window`, 0 for no limit | 0 |
 //! | `restart_delay` | seconds before the first restart; it doubles with each | at once |
+//! | `max_restart_delay` | seconds that it does not exceed | 5, or `restart_delay` if that is more |
+//! | `restart_window` | seconds | 60 |
+//! | `health_check_timeout` | seconds without a sign of life after which the node is ended | 15 |
+//!
+//! Where the last three are absent, dora waits ever longer, counts all restarts, and
+//! does not look for signs of life.
 
 mod descriptor;
 mod error;

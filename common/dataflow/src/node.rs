@@ -1,7 +1,5 @@
 //! From the file's entries to checked nodes, each looked at alone.
 
-use std::time::Duration;
-
 use serde_saphyr::Spanned;
 
 use crate::{
@@ -124,17 +122,30 @@ impl Reader<'_> {
         let max_restarts = self.optional(node.max_restarts.as_ref(), |t| {
             scalar::read_count(t, source)
         });
-        let delay: Duration = self.optional(node.restart_delay.as_ref(), |t| {
-            scalar::read_seconds(t, source)
+        let keys = [
+            ("restart_delay", node.restart_delay.as_ref()),
+            ("max_restart_delay", node.max_restart_delay.as_ref()),
+            ("restart_window", node.restart_window.as_ref()),
+            ("health_check_timeout", node.health_check_timeout.as_ref()),
+        ];
+        let [delay, max_delay, window, health_timeout] = keys.map(|(key, text)| {
+            self.optional(text, |t| scalar::read_seconds(key, t, source).map(Some))
         });
+        let delay = delay.unwrap_or(Restart::DEFAULT.delay);
         if policy == RestartPolicy::Never {
             self.note_unused("max_restarts", node.max_restarts.as_ref());
-            self.note_unused("restart_delay", node.restart_delay.as_ref());
+            for (key, text) in keys {
+                self.note_unused(key, text);
+            }
         }
         Restart {
             policy,
             max_restarts,
             delay,
+            // Whoever wants a long delay gets it.
+            max_delay: max_delay.unwrap_or(Restart::DEFAULT.max_delay.max(delay)),
+            window: window.unwrap_or(Restart::DEFAULT.window),
+            health_timeout: health_timeout.unwrap_or(Restart::DEFAULT.health_timeout),
         }
     }
 
@@ -218,6 +229,8 @@ fn streams(node: &RawNode, topics: &Topics) -> Vec<String> {
 
 #[cfg(test)]
 mod tests {
+    use std::time::Duration;
+
     use super::*;
     use crate::parse;
 
@@ -242,6 +255,9 @@ nodes:
     restart_policy: on-failure
     max_restarts: 3
     restart_delay: 0.5
+    max_restart_delay: 4
+    restart_window: 90
+    health_check_timeout: 2.5
 ";
         let node = parse(text, &Topics::default()).unwrap().nodes.remove(0);
         assert_eq!(node.id, "replayer");
@@ -263,17 +279,25 @@ nodes:
         assert_eq!(node.restart.policy, RestartPolicy::OnFailure);
         assert_eq!(node.restart.max_restarts, 3);
         assert_eq!(node.restart.delay, Duration::from_millis(500));
+        assert_eq!(node.restart.max_delay, Duration::from_secs(4));
+        assert_eq!(node.restart.window, Duration::from_secs(90));
+        assert_eq!(node.restart.health_timeout, Duration::from_millis(2500));
     }
 
     #[test]
-    fn absent_keys_mean_what_dora_means() {
+    fn a_long_delay_is_not_cut_short_by_the_default() {
+        let text = "nodes: [{id: a, path: x, restart_policy: always, restart_delay: 3600}]";
+        let node = parse(text, &Topics::default()).unwrap().nodes.remove(0);
+        assert_eq!(node.restart.max_delay, node.restart.delay);
+    }
+
+    #[test]
+    fn absent_keys_have_their_defaults() {
         let node = parse("nodes: [{id: a, path: x}]", &Topics::default())
             .unwrap()
             .nodes
             .remove(0);
-        assert_eq!(node.restart.policy, RestartPolicy::Never);
-        assert_eq!(node.restart.max_restarts, 0);
-        assert_eq!(node.restart.delay, Duration::ZERO);
+        assert_eq!(node.restart, Restart::DEFAULT);
         assert!(node.args.is_empty() && node.env.is_empty() && node.build.is_empty());
     }
 

@@ -46,6 +46,12 @@ pub(crate) struct RawNode {
     pub(crate) max_restarts: Option<Text>,
     #[serde(default, deserialize_with = "present")]
     pub(crate) restart_delay: Option<Text>,
+    #[serde(default, deserialize_with = "present")]
+    pub(crate) max_restart_delay: Option<Text>,
+    #[serde(default, deserialize_with = "present")]
+    pub(crate) restart_window: Option<Text>,
+    #[serde(default, deserialize_with = "present")]
+    pub(crate) health_check_timeout: Option<Text>,
 }
 
 impl RawNode {
@@ -211,7 +217,8 @@ mod tests {
         check(
             "nodes:\n  - id: a\n    pth: x\n",
             "3:5: unknown key `pth`; allowed are id, path, args, env, build, inputs, outputs, \
-             restart_policy, max_restarts, restart_delay",
+             restart_policy, max_restarts, restart_delay, max_restart_delay, restart_window, \
+             health_check_timeout",
         );
         check(
             "nodes: []\ndeploy: x\n",

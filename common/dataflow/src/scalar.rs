@@ -9,8 +9,8 @@ use crate::{
     raw::{Text, rest_of_line},
 };
 
-/// The longest delay before a restart, seconds.
-const MAX_DELAY_S: f64 = 3600.0;
+/// The longest time that a key can say, seconds.
+const MAX_SECONDS: f64 = 3600.0;
 
 /// Whether the text stands in the file as it is: not quoted, folded or tagged.
 fn is_plain(text: &Text, source: &str) -> bool {
@@ -30,8 +30,12 @@ pub(crate) fn read_count(text: &Text, source: &str) -> Result<u32, Fault> {
         })
 }
 
-/// Seconds, for `restart_delay`.
-pub(crate) fn read_seconds(text: &Text, source: &str) -> Result<Duration, Fault> {
+/// Seconds, for `key`.
+pub(crate) fn read_seconds(
+    key: &'static str,
+    text: &Text,
+    source: &str,
+) -> Result<Duration, Fault> {
     let looks_decimal = text.value.starts_with(|c: char| c.is_ascii_digit())
         && text.value.bytes().all(|b| b.is_ascii_digit() || b == b'.');
     // `007` and `1.` are texts to some parsers of YAML.
@@ -40,10 +44,10 @@ pub(crate) fn read_seconds(text: &Text, source: &str) -> Result<Duration, Fault>
     text.value
         .parse()
         .ok()
-        .filter(|s| looks_decimal && !ambiguous && *s <= MAX_DELAY_S && is_plain(text, source))
+        .filter(|s| looks_decimal && !ambiguous && *s <= MAX_SECONDS && is_plain(text, source))
         .map(Duration::from_secs_f64)
         .ok_or_else(|| Fault::BadNumber {
-            key: "restart_delay",
+            key,
             found: text.value.clone(),
             allowed: "seconds from 0 to 3600, like 0.5",
         })

@@ -5,7 +5,8 @@ use std::process::ExitCode;
 use clap::{Parser, Subcommand};
 
 use crate::{
-    bench, check, convert, doctor, evaluate, info, locate, plot, probe, regress, run, simulate, top,
+    bench, check, control, convert, doctor, evaluate, info, locate, plot, probe, regress, run,
+    simulate, top,
 };
 
 /// Finds where a robot is from its laser and a map, with no initial guess.
@@ -53,6 +54,18 @@ enum Command {
     /// Replays recordings through the graph and compares with what is expected
     #[command(after_help = regress::NOTES)]
     Regress(regress::Config),
+    /// Says which graphs run, and how their nodes fare
+    #[command(after_help = EXIT_CODES)]
+    Status(control::StatusConfig),
+    /// Stops a running graph in order
+    #[command(after_help = EXIT_CODES)]
+    Stop(control::StopConfig),
+    /// Ends one node of a running graph in order and starts it again
+    #[command(after_help = EXIT_CODES)]
+    Restart(control::RestartConfig),
+    /// Shows what the nodes of a running graph log
+    #[command(after_help = EXIT_CODES)]
+    Logs(control::LogsConfig),
     /// Shows a running graph in the terminal
     #[command(after_help = EXIT_CODES)]
     Top(top::Config),
@@ -82,6 +95,10 @@ pub fn main() -> ExitCode {
         Some(Command::Doctor(config)) => doctor::run(&config),
         Some(Command::Convert(config)) => convert::run(&config),
         Some(Command::Regress(config)) => regress::run(&config),
+        Some(Command::Status(config)) => control::status(&config),
+        Some(Command::Stop(config)) => control::stop(&config),
+        Some(Command::Restart(config)) => control::restart(&config),
+        Some(Command::Logs(config)) => control::logs(&config),
         Some(Command::Top(config)) => top::run(&config),
         Some(Command::Probe(config)) => probe::run(&config),
         Some(Command::Bench(config)) => bench::run(&config),
@@ -93,6 +110,8 @@ pub fn main() -> ExitCode {
     })
 }
 
+/// The exit code of what was started with the wrong options or settings.
+pub(crate) const WRONG_USE: u8 = 2;
 /// The exit code of a run that finished but lost data on the way.
 pub(crate) const LOST_DATA: u8 = 3;
 

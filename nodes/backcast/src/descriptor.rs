@@ -5,7 +5,7 @@ use std::path::{Path, PathBuf};
 use dataflow::{Dataflow, DataflowError, Topics};
 use messages::{Topic, topic};
 
-use crate::BackcastError;
+use crate::{BackcastError, run::supervision::is_essential};
 
 /// Where the descriptor is looked for.
 pub(crate) const DEFAULT_FILE: &str = "dataflow.yaml";
@@ -42,6 +42,9 @@ pub(crate) fn load(file: &Path) -> Result<Descriptor, BackcastError> {
         });
     }
     let dataflow = dataflow::load(file, &TOPICS)?;
+    for node in &dataflow.nodes {
+        is_essential(node)?;
+    }
     // A file has a folder; the root of the file system is none.
     let folder = absolute.parent().unwrap_or(Path::new("/")).to_owned();
     let problems = dataflow::check_executables(&dataflow, &folder);

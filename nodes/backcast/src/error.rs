@@ -78,6 +78,14 @@ pub enum BackcastError {
         /// The robots that it knows.
         known: Vec<String>,
     },
+    /// No launcher answers.
+    #[error("no launcher of graph {graph} answers: `backcast status` lists the graphs that run")]
+    NoLauncher {
+        /// The graph's name.
+        graph: String,
+        /// Why not.
+        source: io::Error,
+    },
     /// The terminal cannot be used.
     #[error("cannot use the terminal")]
     Terminal(#[source] io::Error),
@@ -314,6 +322,9 @@ pub enum BackcastError {
         /// Scans with votes and hypotheses.
         answered: usize,
     },
+    /// The service manager that started us cannot be told of it.
+    #[error("cannot tell the service manager: NOTIFY_SOCKET names no socket of one")]
+    Notify(#[source] io::Error),
     /// SIGUSR1 cannot be caught.
     #[error("cannot catch SIGUSR1")]
     Signal(#[source] io::Error),
@@ -374,7 +385,7 @@ impl BackcastError {
             | Self::NoCases { .. }
             | Self::Usage(_)
             | Self::Setting(_)
-            | Self::Logging(_) => 2,
+            | Self::Logging(_) => crate::cli::WRONG_USE,
             _ => 1,
         }
     }
@@ -383,8 +394,8 @@ impl BackcastError {
 fn after(restarts: u32) -> String {
     match restarts {
         0 => String::new(),
-        1 => " after 1 restart".to_owned(),
-        n => format!(" after {n} restarts"),
+        1 => " after 1 restart in short time".to_owned(),
+        n => format!(" after {n} restarts in short time"),
     }
 }
 

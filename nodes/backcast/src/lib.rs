@@ -10,6 +10,7 @@ pub mod cli;
 
 mod bench;
 mod check;
+mod control;
 mod convert;
 mod descriptor;
 mod doctor;

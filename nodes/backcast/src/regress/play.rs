@@ -104,7 +104,7 @@ fn collect(
         is_tracked: is_tracked(&descriptor),
         ..Heard::default()
     };
-    let mut crew = Crew::new(descriptor.dataflow.nodes, &descriptor.folder, name);
+    let mut crew = Crew::new(descriptor.dataflow.nodes, &descriptor.folder, name)?;
     let mut last_progress = Instant::now();
     let outcome = graph.run(&[&votes, &hypotheses, &poses], TICK, |_| {
         let now = Instant::now();

@@ -1,4 +1,7 @@
 //! The processes of the graph: started, watched, started again, stopped.
+//!
+//! A node that fails for good ends the run if the graph needs it; else the rest goes on
+//! without it, and [`Crew::given_up`] says so.
 
 use std::{
     io,
@@ -10,16 +13,20 @@ use std::{
 };
 
 use dataflow::Node;
-use messages::LogLevel;
+use messages::{HealthHeader, LogLevel, NodeState};
 use nix::sys::signal::Signal;
-use transport::{GraphName, log_in_graph};
+use transport::{GraphName, log_in_graph, with_causes};
 
 use super::{
     console::warn,
+    control::NodeStatus,
     process::{Process, executable},
-    supervision::{AfterEnd, Restarts, is_over, is_source},
+    supervision::{AfterEnd, Ended, Pulse, Restarts, is_essential, is_over, is_source},
 };
-use crate::{BackcastError, cli::LOST_DATA};
+use crate::{
+    BackcastError,
+    cli::{LOST_DATA, WRONG_USE},
+};
 
 /// What a process has to end in order once it is asked to. Those that send
 /// nothing and then all others have as long; each of the two stays below a
@@ -39,12 +46,23 @@ pub(crate) struct Crew {
     /// Every thread that forwards output holds a copy.
     output_open: Option<Sender<()>>,
     output_closed: Receiver<()>,
+    /// A sentence on each node that the graph goes on without.
+    given_up: Vec<String>,
 }
 
 struct Member {
     node: Node,
+    essential: bool,
     restarts: Restarts,
+    pulse: Pulse,
     state: State,
+    /// When its process was started last.
+    started: Option<Instant>,
+    /// How often it was started again, and how its last process ended.
+    restarted: u64,
+    last_end: Option<ExitStatus>,
+    /// Somebody wants its process to end and another one to follow.
+    wanted_anew: bool,
     /// Whether it said so with its exit code.
     lost_data: bool,
 }
@@ -59,39 +77,119 @@ enum State {
 impl Crew {
     /// The crew of `nodes`, in `folder`; nothing runs before the first
     /// [`Crew::tick`].
-    pub(crate) fn new(nodes: Vec<Node>, folder: &Path, graph: &GraphName) -> Self {
+    ///
+    /// # Errors
+    /// A node does not say as it should whether the graph needs it.
+    pub(crate) fn new(
+        nodes: Vec<Node>,
+        folder: &Path,
+        graph: &GraphName,
+    ) -> Result<Self, BackcastError> {
         let now = Instant::now();
         let (output_open, output_closed) = channel();
-        let member = |node: Node| Member {
-            restarts: Restarts::new(node.restart),
-            state: State::Due(now),
-            lost_data: false,
-            node,
+        let member = |node: Node| {
+            Ok(Member {
+                essential: is_essential(&node)?,
+                restarts: Restarts::new(node.restart),
+                pulse: Pulse::new(node.restart.health_timeout),
+                state: State::Due(now),
+                started: None,
+                restarted: 0,
+                last_end: None,
+                wanted_anew: false,
+                lost_data: false,
+                node,
+            })
         };
-        Crew {
-            members: nodes.into_iter().map(member).collect(),
+        let members = nodes.into_iter().map(member);
+        Ok(Crew {
+            members: members.collect::<Result<_, BackcastError>>()?,
             folder: folder.to_owned(),
             graph: graph.clone(),
             output_open: Some(output_open),
             output_closed,
-        }
+            given_up: Vec::new(),
+        })
     }
 
     /// Starts what is due and looks after what has ended. Says whether any
     /// process has ended since the last time.
     ///
     /// # Errors
-    /// A node cannot be started, or failed for good.
+    /// A node that the graph needs cannot be started at first, or failed for good.
     pub(crate) fn tick(&mut self, now: Instant) -> Result<bool, BackcastError> {
         let Some(open) = &self.output_open else {
             return Ok(false);
         };
         let mut any_ended = false;
         for member in &mut self.members {
-            member.start_if_due(now, &self.folder, &self.graph, open)?;
-            any_ended |= member.look_after(now)?;
+            let started = member.start_if_due(now, &self.folder, &self.graph, open);
+            let ended = started.and_then(|()| member.look_after(now));
+            match ended {
+                Ok(ended) => any_ended |= ended,
+                Err(error) if !member.essential => {
+                    any_ended = true;
+                    let goes_on = format!("the graph goes on without {}", member.node.id);
+                    let sentence = format!("{}; {goes_on}", with_causes(&error));
+                    warn(&sentence);
+                    self.given_up.push(sentence);
+                }
+                Err(error) => return Err(error),
+            }
         }
         Ok(any_ended)
+    }
+
+    /// A process reported on itself.
+    pub(crate) fn heard(&mut self, report: &HealthHeader, now: Instant) {
+        let is_it = |member: &&mut Member| match &member.state {
+            State::Running(process) => process.pid().cast_unsigned() == report.pid,
+            _ => false,
+        };
+        if let Some(member) = self.members.iter_mut().find(is_it) {
+            let busy = NodeState::from_code(report.state) == Some(NodeState::Busy);
+            member.pulse.heard(busy, now);
+        }
+    }
+
+    /// How each node fares at `now`.
+    pub(crate) fn status(&self, now: Instant) -> Vec<NodeStatus> {
+        self.members
+            .iter()
+            .map(|member| member.status(now))
+            .collect()
+    }
+
+    /// Ends a node in order, as its process is asked to, and starts it again: now, whatever
+    /// its policy says. One that has ended is started. Says whether there is such a node.
+    ///
+    /// # Errors
+    /// Its process cannot be signalled.
+    pub(crate) fn restart(&mut self, id: &str, now: Instant) -> Result<bool, BackcastError> {
+        let Some(member) = self.members.iter_mut().find(|member| member.node.id == id) else {
+            return Ok(false);
+        };
+        match &member.state {
+            State::Running(process) => {
+                member.wanted_anew = true;
+                let asked = process.signal(Signal::SIGTERM);
+                asked.map_err(|error| not_supervised(&member.node, process.pid(), error))?;
+            }
+            State::Due(_) | State::Done => member.state = State::Due(now),
+        }
+        Ok(true)
+    }
+
+    /// No process could report.
+    pub(crate) fn excuse(&mut self, now: Instant) {
+        for member in &mut self.members {
+            member.pulse.excuse(now);
+        }
+    }
+
+    /// A sentence on each node that failed for good and that the graph goes on without.
+    pub(crate) fn given_up(&self) -> &[String] {
+        &self.given_up
     }
 
     /// Whether nothing more can come of it.
@@ -198,29 +296,62 @@ impl Member {
         if !matches!(self.state, State::Due(at) if at <= now) {
             return Ok(());
         }
-        let process = Process::start(&self.node, folder, graph, open).map_err(|source| {
-            BackcastError::NotStarted {
-                node: self.node.id.clone(),
-                path: executable(&self.node, folder),
-                folder: folder.to_owned(),
-                source,
-            }
-        })?;
+        let process = match Process::start(&self.node, folder, graph, open) {
+            Ok(process) => process,
+            Err(source) => return self.not_started(source, folder, now),
+        };
         // The console need not have it.
         let started = format!("{} runs as process {}", self.node.id, process.pid());
         log_in_graph(LogLevel::Info, &started);
+        self.restarted += u64::from(self.started.is_some());
+        self.started = Some(now);
+        self.pulse.started(now);
         self.state = State::Running(process);
         Ok(())
+    }
+
+    /// What ran before can be started another time: memory or processes were short.
+    fn not_started(
+        &mut self,
+        source: io::Error,
+        folder: &Path,
+        now: Instant,
+    ) -> Result<(), BackcastError> {
+        let after = match self.started {
+            Some(_) => self.restarts.after_end(Ended::Badly, Duration::ZERO, now),
+            None => AfterEnd::Failed,
+        };
+        if let AfterEnd::Restart(delay) = after {
+            let id = &self.node.id;
+            warn(&format!(
+                "{id} cannot be started, and is tried again: {source}"
+            ));
+            self.state = State::Due(now + delay);
+            return Ok(());
+        }
+        self.state = State::Done;
+        Err(BackcastError::NotStarted {
+            node: self.node.id.clone(),
+            path: executable(&self.node, folder),
+            folder: folder.to_owned(),
+            source,
+        })
     }
 
     /// Says whether the process has ended, after deciding what follows.
     fn look_after(&mut self, now: Instant) -> Result<bool, BackcastError> {
         let Some(status) = self.poll()? else {
+            self.end_if_hung(now)?;
             return Ok(false);
         };
-        // Who did all that could be done, and lost data, would not do better anew.
         self.lost_data = lost_data(status);
-        self.state = match self.restarts.after_end(status.success() || self.lost_data) {
+        self.last_end = Some(status);
+        if std::mem::take(&mut self.wanted_anew) {
+            self.state = State::Due(now);
+            return Ok(true);
+        }
+        let worked = self.started.map_or(Duration::ZERO, |started| now - started);
+        self.state = match self.restarts.after_end(how_ended(status), worked, now) {
             AfterEnd::Done => State::Done,
             AfterEnd::Restart(delay) => {
                 let id = &self.node.id;
@@ -232,11 +363,44 @@ impl Member {
                 return Err(BackcastError::NodeFailed {
                     node: self.node.id.clone(),
                     status,
-                    restarts: self.restarts.used(),
+                    restarts: self.restarts.recent(),
                 });
             }
         };
         Ok(true)
+    }
+
+    fn status(&self, now: Instant) -> NodeStatus {
+        let (state, pid) = match &self.state {
+            State::Due(_) => ("waiting to start", None),
+            State::Running(process) => ("running", Some(process.pid())),
+            State::Done => ("ended", None),
+        };
+        let up = self.started.filter(|_| pid.is_some());
+        NodeStatus {
+            id: self.node.id.clone(),
+            state: state.to_owned(),
+            pid,
+            uptime_s: up.map(|started| (now - started).as_secs()),
+            restarts: self.restarted,
+            last_end: self.last_end.map(|status| status.to_string()),
+        }
+    }
+
+    /// What does not report any more does not work any more, or is stopped.
+    fn end_if_hung(&mut self, now: Instant) -> Result<(), BackcastError> {
+        let (Some(silent), State::Running(process)) = (self.pulse.missed_for(now), &self.state)
+        else {
+            return Ok(());
+        };
+        let (id, seconds) = (&self.node.id, silent.as_secs());
+        warn(&format!(
+            "{id} gave no sign of life for {seconds} s and is ended"
+        ));
+        // Its end is seen later; until then it is not ended again.
+        self.pulse.excuse(now);
+        let killed = process.signal(Signal::SIGKILL);
+        killed.map_err(|error| not_supervised(&self.node, process.pid(), error))
     }
 
     fn poll(&mut self) -> Result<Option<ExitStatus>, BackcastError> {
@@ -247,6 +411,17 @@ impl Member {
         process
             .poll()
             .map_err(|e| not_supervised(&self.node, pid, e))
+    }
+}
+
+/// Who did all that could be done, and lost data, would not do better anew.
+fn how_ended(status: ExitStatus) -> Ended {
+    if status.success() || lost_data(status) {
+        Ended::Well
+    } else if status.code() == Some(WRONG_USE.into()) {
+        Ended::Misused
+    } else {
+        Ended::Badly
     }
 }
 

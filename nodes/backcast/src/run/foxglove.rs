@@ -3,21 +3,12 @@
 //! It lies where the graph's other executables do. It takes every topic by itself and
 //! needs no wires; nobody waits for it.
 
-use std::time::Duration;
-
-use dataflow::{Dataflow, Node, Place, Restart, RestartPolicy};
+use dataflow::{Dataflow, Node, Place, Restart};
 
 use super::added;
 use crate::BackcastError;
 
 const SERVER: &str = "foxglove_server";
-
-/// As the page's: viewers come back by themselves.
-const RESTART: Restart = Restart {
-    policy: RestartPolicy::OnFailure,
-    max_restarts: 3,
-    delay: Duration::from_millis(200),
-};
 
 /// Adds the server.
 ///
@@ -39,7 +30,8 @@ pub(crate) fn add(dataflow: &mut Dataflow) -> Result<(), BackcastError> {
         inputs: Vec::new(),
         outputs: Vec::new(),
         streams: Vec::new(),
-        restart: RESTART,
+        // Viewers come back by themselves.
+        restart: Restart::ON_FAILURE,
     };
     dataflow.nodes.push(node);
     Ok(())

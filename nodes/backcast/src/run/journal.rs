@@ -24,6 +24,7 @@ pub(crate) struct Journal {
     rows: Option<Rows>,
     output: Output,
     json: bool,
+    begun: bool,
 }
 
 impl Journal {
@@ -35,12 +36,13 @@ impl Journal {
             rows: is_tracked.then(Rows::default),
             output,
             json,
+            begun: false,
         }
     }
 
-    /// Prints what stands above the lines.
+    /// Prints what stands above the lines, once.
     pub(crate) fn begin(&mut self) {
-        if !self.json {
+        if !std::mem::replace(&mut self.begun, true) && !self.json {
             let header = match self.rows {
                 Some(_) => Row::header(),
                 None => Line::header(),

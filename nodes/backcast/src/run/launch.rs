@@ -2,25 +2,32 @@
 
 use std::{
     io,
+    os::unix::fs::MetadataExt,
+    path::PathBuf,
     process::ExitCode,
     sync::{
         Arc,
         atomic::{AtomicBool, Ordering},
+        mpsc::Receiver,
     },
+    thread,
     time::{Duration, Instant},
 };
 
 use dataflow::Dataflow;
-use messages::{LogLevel, Topic, topic};
+use messages::{LogLevel, NodeState, Topic, topic};
 use nix::sys::signal::Signal;
+use sd_notify::NotifyState;
 use signal_hook::consts::SIGUSR1;
 use transport::{
-    Flow, Graph, GraphName, TransportError, log_in_graph, remove_leftovers, with_causes,
+    Claim, Flow, Graph, GraphName, Health, TransportError, control_socket, log_in_graph,
+    remove_dead_graphs, remove_leftovers, shared_memory_has_room, with_causes,
 };
 
 use super::{
     build,
     console::{LAUNCHER, note, say, warn},
+    control::{self, Answer, Asked, Question, Status},
     crew::Crew,
     forward, foxglove,
     journal::Journal,
@@ -44,6 +51,8 @@ const CLEANUP_PERIOD: Duration = Duration::from_secs(1);
 /// How long the last scans may go without an answer once the sources are done.
 /// A scan takes seconds on a large map and a busy machine.
 const LAST_ANSWERS: Duration = Duration::from_secs(20);
+/// How long nodes of an earlier launcher may take to end.
+const LAST_OF_BEFORE: Duration = Duration::from_secs(3);
 /// What a slow reader of our output has left, unless the run ended by itself.
 const LAST_OUTPUT: Duration = Duration::from_millis(100);
 
@@ -90,13 +99,25 @@ pub(crate) fn run(config: &Config) -> Result<ExitCode, BackcastError> {
         foxglove::add(&mut descriptor.dataflow)?;
     }
     build::build_all(&descriptor.dataflow, &descriptor.folder)?;
-    remove_leftovers(&graph)?;
+    let _claim = Claim::take(&graph)?;
+    remove_dead_graphs();
+    make_way(&graph)?;
 
     let lossless = forward::plays_at_max(&descriptor.dataflow);
     let output = Output::start(io::stdout())?;
     let is_tracked = has_tracker(&descriptor.dataflow);
     let mut journal = Journal::new(output, config.options.json, is_tracked);
-    let outcome = launch(descriptor, &graph, &mut journal);
+    let outcome = loop {
+        let outcome = launch(&descriptor, &graph, &mut journal);
+        let Err(BackcastError::Transport(TransportError::Vanished { .. })) = &outcome else {
+            break outcome;
+        };
+        // Nobody of the graph runs any more: all of it can begin anew.
+        if let Err(error) = clear(&graph) {
+            break Err(error.into());
+        }
+        say(LAUNCHER, "the whole graph is started again");
+    };
     let cleared = clear(&graph);
     let finished = outcome
         .as_ref()
@@ -130,7 +151,7 @@ fn has_tracker(dataflow: &Dataflow) -> bool {
 /// Joins the graph, starts its processes and stays until the end; all of them
 /// have ended when it returns.
 fn launch(
-    descriptor: Descriptor,
+    descriptor: &Descriptor,
     name: &GraphName,
     journal: &mut Journal,
 ) -> Result<Course, BackcastError> {
@@ -139,18 +160,35 @@ fn launch(
     let watch = Watch::new(&graph, first_laser)?;
     note(&format!("graph {name} is starting; Ctrl-C stops it"));
     journal.begin();
-    let mut crew = Crew::new(descriptor.dataflow.nodes, &descriptor.folder, name);
+    let nodes = descriptor.dataflow.nodes.clone();
+    let mut crew = Crew::new(nodes, &descriptor.folder, name)?;
+    let mut health = graph.health()?;
+    health.state(NodeState::Ready)?;
     let save = Arc::new(AtomicBool::new(false));
     signal_hook::flag::register(SIGUSR1, Arc::clone(&save)).map_err(BackcastError::Signal)?;
-    let end = stay(&graph, (&watch, &save), &mut crew, journal);
+    let desk = Desk {
+        questions: control::listen(&control_socket(name), graph.waker()?)?,
+        graph: name.clone(),
+        descriptor: descriptor.file.clone(),
+        started: Instant::now(),
+    };
+    let end = stay(
+        &graph,
+        (&watch, &save, &desk),
+        &mut crew,
+        &mut health,
+        journal,
+    );
     if let Err(error) = &end {
         // The console hears of it when all have ended, a recorder has to before.
         log_in_graph(LogLevel::Error, &with_causes(error));
         graph.send_log();
     }
+    // That we stop is seen all the same where it cannot be told.
+    let _ = sd_notify::notify(&[NotifyState::Stopping]);
     let stopped = crew.stop();
     // Nodes that are stopped send a last report on their health.
-    let heard = watch.take(journal);
+    let heard = watch.take(journal, |_| {});
     let end = end?;
     stopped?;
     heard?;
@@ -162,18 +200,20 @@ fn launch(
 /// to save where `save` is set.
 fn stay(
     graph: &Graph,
-    (watch, save): (&Watch, &AtomicBool),
+    (watch, save, desk): (&Watch, &AtomicBool, &Desk),
     crew: &mut Crew,
+    health: &mut Health,
     journal: &mut Journal,
 ) -> Result<End, BackcastError> {
     let mut end = End::Interrupted;
     let mut last_progress = Instant::now();
     let mut last_cleanup = last_progress;
+    let mut told = 0;
     graph.run(&watch.inputs(), TICK, |_| {
         let now = Instant::now();
         // What a source has sent is heard after its end has been seen.
         let over = crew.is_over();
-        let heard = watch.take(journal)?;
+        let heard = watch.take(journal, |health| crew.heard(health, now))?;
         if heard.reader == Reader::Gone {
             return Ok(Flow::Stop);
         }
@@ -185,16 +225,115 @@ fn stay(
             end = End::Finished;
             return Ok(Flow::Stop);
         }
+        if desk.answer(crew, now)? == Flow::Stop {
+            return Ok(Flow::Stop);
+        }
         if save.swap(false, Ordering::Relaxed) && crew.signal(RECORDER, Signal::SIGUSR1)? == 0 {
             warn("SIGUSR1 saves what a recorder keeps, but none runs");
         }
+        if !shared_memory_has_room() {
+            // Nobody can give a sign of life.
+            crew.excuse(now);
+        }
         if crew.tick(now)? || now - last_cleanup >= CLEANUP_PERIOD {
+            graph.ensure_intact()?;
             graph.cleanup_dead_nodes();
             last_cleanup = now;
+            // Where a service manager has started us, it hears that we are at work.
+            let at_work = [NotifyState::Ready, NotifyState::Watchdog];
+            sd_notify::notify(&at_work).map_err(BackcastError::Notify)?;
         }
+        if crew.given_up().len() > told {
+            told = crew.given_up().len();
+            health.error(&crew.given_up().join("; "))?;
+            health.state(NodeState::Degraded)?;
+        }
+        health.tick()?;
         Ok::<_, BackcastError>(Flow::Continue)
     })?;
     Ok(end)
+}
+
+/// Where other terminals ask the launcher.
+struct Desk {
+    questions: Receiver<Asked>,
+    graph: GraphName,
+    descriptor: PathBuf,
+    started: Instant,
+}
+
+impl Desk {
+    /// Answers what was asked; says to stop where that was wanted.
+    fn answer(&self, crew: &mut Crew, now: Instant) -> Result<Flow, BackcastError> {
+        let mut flow = Flow::Continue;
+        while let Ok(asked) = self.questions.try_recv() {
+            let answer = match asked.question {
+                Question::Status => Answer::Status(Status {
+                    graph: self.graph.to_string(),
+                    pid: std::process::id(),
+                    descriptor: self.descriptor.display().to_string(),
+                    uptime_s: (now - self.started).as_secs(),
+                    given_up: crew.given_up().to_vec(),
+                    nodes: crew.status(now),
+                }),
+                Question::Stop => {
+                    note("stopped from another terminal");
+                    flow = Flow::Stop;
+                    Answer::Done
+                }
+                Question::Restart { node } => {
+                    if crew.restart(&node, now)? {
+                        note(&format!("{node} is restarted from another terminal"));
+                        Answer::Done
+                    } else {
+                        let nodes = crew.status(now);
+                        let ids: Vec<_> = nodes.iter().map(|node| node.id.as_str()).collect();
+                        let ids = ids.join(", ");
+                        Answer::Refused(format!("there is no node {node}: allowed are {ids}"))
+                    }
+                }
+            };
+            // Who asked may have gone.
+            let _ = asked.answer.send(answer);
+        }
+        Ok(flow)
+    }
+}
+
+/// Removes what a graph of this name has left. Nodes of a launcher that was killed just
+/// now are ending, and are waited for.
+fn make_way(graph: &GraphName) -> Result<(), TransportError> {
+    let begin = Instant::now();
+    loop {
+        match remove_leftovers(graph) {
+            Err(TransportError::StillRunning { .. }) if begin.elapsed() < LAST_OF_BEFORE => {
+                thread::sleep(TICK);
+            }
+            Err(TransportError::File { path, source, .. })
+                if source.kind() == io::ErrorKind::PermissionDenied =>
+            {
+                return Err(foreign(path, source));
+            }
+            other => return other,
+        }
+    }
+}
+
+/// Names the user whose file is in the way.
+fn foreign(path: PathBuf, source: io::Error) -> TransportError {
+    let user = nix::unistd::geteuid().as_raw();
+    match path.symlink_metadata() {
+        Ok(found) if found.uid() != user => TransportError::ForeignFile {
+            owner: found.uid(),
+            path,
+            user,
+        },
+        _ => TransportError::File {
+            action: "remove",
+            path,
+            source,
+        },
+    }
 }
 
 /// Removes what the graph has left in shared memory. Tools that joined it by

@@ -1,6 +1,10 @@
 //! What `backcast run` takes on the command line.
 
-use std::{path::PathBuf, str::FromStr};
+use std::{
+    hash::{BuildHasher, Hasher, RandomState},
+    path::PathBuf,
+    str::FromStr,
+};
 
 use clap::Args;
 use engine::heading::HeadingConfig;
@@ -111,8 +115,8 @@ pub(crate) struct RecordOptions {
 }
 
 impl Options {
-    /// The graph to start: as the option says, or the environment, or one that
-    /// no other launcher of this machine has.
+    /// The graph to start: as the option says, or the environment, or one that no other
+    /// launcher has, also none in another container that shares this machine's memory.
     ///
     /// # Errors
     /// The environment holds no valid name.
@@ -120,9 +124,16 @@ impl Options {
         match &self.graph {
             Some(name) => Ok(name.clone()),
             None if std::env::var_os(GRAPH_VARIABLE).is_some() => GraphName::from_environment(),
-            None => GraphName::new(&format!("bc{}", std::process::id())),
+            None => GraphName::new(&format!("bc{:08x}", random())),
         }
     }
+}
+
+/// Numbers of processes repeat from container to container; this does not.
+fn random() -> u32 {
+    let hasher = RandomState::new().build_hasher();
+    // The upper half is as random as the lower one.
+    (hasher.finish() >> 32) as u32
 }
 
 /// How fast a recording is played.
@@ -170,13 +181,14 @@ mod tests {
     }
 
     #[test]
-    fn a_graph_that_nobody_names_is_named_after_the_process() {
+    fn a_graph_that_nobody_names_has_a_name_of_its_own() {
         let named = Options {
             graph: GraphName::new("robot7").ok(),
             ..Options::default()
         };
         assert_eq!(named.graph_name().unwrap().as_str(), "robot7");
-        let own = Options::default().graph_name().unwrap();
-        assert_eq!(own.as_str(), format!("bc{}", std::process::id()));
+        let own = || Options::default().graph_name().unwrap();
+        assert!(own().as_str().starts_with("bc"));
+        assert_ne!(own(), own(), "two of one process");
     }
 }

@@ -4,10 +4,8 @@
 //! them. It takes every topic by itself and needs no wires; sources wait for it,
 //! so that nothing is missed.
 
+use dataflow::{Dataflow, Node, Place, Restart};
 use std::path::{Path, PathBuf};
-use std::time::Duration;
-
-use dataflow::{Dataflow, Node, Place, Restart, RestartPolicy};
 
 use super::added;
 use super::arguments::{MAP_SERVER, PLAYERS, add_to_list, value};
@@ -15,13 +13,6 @@ use super::options::RecordOptions;
 use crate::BackcastError;
 
 pub(super) const RECORDER: &str = "recorder";
-
-/// A recorder that failed is started again so often, and goes on in another file.
-const RESTART: Restart = Restart {
-    policy: RestartPolicy::OnFailure,
-    max_restarts: 3,
-    delay: Duration::from_millis(200),
-};
 
 /// Adds a recorder where the options want one, to the graph of the descriptor
 /// `file` in `folder`.
@@ -68,7 +59,8 @@ pub(crate) fn add(
         inputs: Vec::new(),
         outputs: Vec::new(),
         streams: Vec::new(),
-        restart: RESTART,
+        // It goes on in another file.
+        restart: Restart::ON_FAILURE,
     };
     for source in &mut dataflow.nodes {
         if PLAYERS.contains(&source.executable()) {

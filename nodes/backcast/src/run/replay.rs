@@ -2,21 +2,13 @@
 //! another replayer. So a recording can be replayed exactly through any graph.
 
 use std::path::PathBuf;
-use std::time::Duration;
 
-use dataflow::{Dataflow, Input, Node, Place, Restart, RestartPolicy};
+use dataflow::{Dataflow, Input, Node, Place, Restart};
 use messages::{Topic, topic};
 
 use super::added;
 use super::arguments::{REPLAYER, unset};
 use super::supervision::{MEASUREMENTS, is_source};
-
-/// Started again it would begin anew.
-const RESTART: Restart = Restart {
-    policy: RestartPolicy::Never,
-    max_restarts: 0,
-    delay: Duration::ZERO,
-};
 
 /// Lets the graph's replayer play these recordings as one; a graph that is fed by
 /// others gets a replayer instead of them.
@@ -87,7 +79,8 @@ fn replayer(dataflow: &mut Dataflow) -> Node {
         inputs,
         outputs: MEASUREMENTS.map(str::to_owned).into(),
         streams: Vec::new(),
-        restart: RESTART,
+        // Started again it would begin anew.
+        restart: Restart::DEFAULT,
     }
 }
 

@@ -1,6 +1,6 @@
 //! Listens to the graph: takes what has come and enters it in the journal.
 
-use messages::topic;
+use messages::{HealthHeader, topic};
 use transport::{Graph, Input, Subscriber, TransportError};
 
 use super::{journal::Journal, output::Reader};
@@ -47,11 +47,15 @@ impl Watch {
         [&self.truths, &self.hypotheses, &self.poses, &self.health]
     }
 
-    /// Takes all that has come.
+    /// Takes all that has come, and calls for each report of a node on itself.
     ///
     /// # Errors
     /// A topic cannot be read.
-    pub(crate) fn take(&self, journal: &mut Journal) -> Result<Heard, TransportError> {
+    pub(crate) fn take(
+        &self,
+        journal: &mut Journal,
+        mut on_health: impl FnMut(&HealthHeader),
+    ) -> Result<Heard, TransportError> {
         let mut newest = None;
         while let Some(scan) = self.scans.receive()? {
             let laser = scan.header().laser;
@@ -87,6 +91,7 @@ impl Watch {
         }
         while let Some(health) = self.health.receive()? {
             journal.report.health(health.header());
+            on_health(health.header());
         }
         Ok(heard)
     }

@@ -1,0 +1,135 @@
+//! Finds the graph that is meant, asks its launcher and prints the answer.
+
+use std::{path::PathBuf, process::ExitCode};
+
+use clap::Args;
+use transport::{GraphName, control_socket, running_graphs};
+
+use super::text;
+use crate::{
+    BackcastError,
+    run::control::{Answer, Question, Status, ask},
+};
+
+/// What `backcast status` takes.
+#[derive(Debug, Args)]
+pub(crate) struct StatusConfig {
+    /// Of this graph alone [default: of all that this user runs]
+    #[arg(long, value_name = "NAME", value_parser = GraphName::new)]
+    graph: Option<GraphName>,
+
+    /// Print JSON, an object a line for each graph
+    #[arg(long)]
+    json: bool,
+}
+
+/// What `backcast stop` takes.
+#[derive(Debug, Args)]
+pub(crate) struct StopConfig {
+    /// The graph [default: the only one that this user runs]
+    #[arg(long, value_name = "NAME", value_parser = GraphName::new)]
+    graph: Option<GraphName>,
+}
+
+/// What `backcast restart` takes.
+#[derive(Debug, Args)]
+pub(crate) struct RestartConfig {
+    /// The node's id in the descriptor
+    node: String,
+
+    /// The graph [default: the only one that this user runs]
+    #[arg(long, value_name = "NAME", value_parser = GraphName::new)]
+    graph: Option<GraphName>,
+}
+
+/// Prints how graphs fare.
+///
+/// # Errors
+/// None runs, or the one that is meant does not answer.
+pub(crate) fn status(config: &StatusConfig) -> Result<ExitCode, BackcastError> {
+    let graphs = match &config.graph {
+        Some(graph) => vec![graph.clone()],
+        None => running_graphs(),
+    };
+    if graphs.is_empty() {
+        return Err(BackcastError::Usage(
+            "no graph of this user runs".to_owned(),
+        ));
+    }
+    for graph in &graphs {
+        let status = status_of(graph)?;
+        match config.json {
+            true => println!("{}", serde_json::to_string(&status).map_err(unreadable)?),
+            false => print!("{}", text::status(&status)),
+        }
+    }
+    Ok(ExitCode::SUCCESS)
+}
+
+/// Stops a graph in order.
+///
+/// # Errors
+/// It does not run, or does not answer.
+pub(crate) fn stop(config: &StopConfig) -> Result<ExitCode, BackcastError> {
+    let graph = the_graph(config.graph.as_ref())?;
+    done(&graph, &Question::Stop)
+}
+
+/// Restarts a node.
+///
+/// # Errors
+/// The graph does not run, or has no such node.
+pub(crate) fn restart(config: &RestartConfig) -> Result<ExitCode, BackcastError> {
+    let graph = the_graph(config.graph.as_ref())?;
+    let node = config.node.clone();
+    done(&graph, &Question::Restart { node })
+}
+
+/// The graph that is meant: the one that is named, or the only one that runs.
+pub(super) fn the_graph(named: Option<&GraphName>) -> Result<GraphName, BackcastError> {
+    if let Some(graph) = named {
+        return Ok(graph.clone());
+    }
+    let mut graphs = running_graphs();
+    match (graphs.pop(), graphs.len()) {
+        (Some(graph), 0) => Ok(graph),
+        (None, _) => Err(BackcastError::Usage(
+            "no graph of this user runs".to_owned(),
+        )),
+        (Some(last), _) => {
+            graphs.push(last);
+            let names: Vec<_> = graphs.iter().map(ToString::to_string).collect();
+            let names = names.join(", ");
+            Err(BackcastError::Usage(format!(
+                "several graphs run: say which one with --graph; there are {names}"
+            )))
+        }
+    }
+}
+
+fn done(graph: &GraphName, question: &Question) -> Result<ExitCode, BackcastError> {
+    match asked(graph, question)? {
+        Answer::Refused(why) => Err(BackcastError::Usage(why)),
+        _ => Ok(ExitCode::SUCCESS),
+    }
+}
+
+fn status_of(graph: &GraphName) -> Result<Status, BackcastError> {
+    match asked(graph, &Question::Status)? {
+        Answer::Status(status) => Ok(status),
+        Answer::Refused(why) => Err(BackcastError::Usage(why)),
+        Answer::Done => Err(BackcastError::Usage("it gave another answer".to_owned())),
+    }
+}
+
+fn asked(graph: &GraphName, question: &Question) -> Result<Answer, BackcastError> {
+    let file: PathBuf = control_socket(graph);
+    ask(&file, question).map_err(|source| BackcastError::NoLauncher {
+        graph: graph.to_string(),
+        source,
+    })
+}
+
+fn unreadable(error: serde_json::Error) -> BackcastError {
+    BackcastError::Output(error.into())
+}

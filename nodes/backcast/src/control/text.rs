@@ -1,0 +1,92 @@
+//! How a graph fares, as text. Pure.
+
+use std::fmt::Write;
+
+use crate::run::control::{NodeStatus, Status};
+
+/// A paragraph: the graph, then a line for each node.
+pub(super) fn status(status: &Status) -> String {
+    let Status {
+        graph,
+        pid,
+        descriptor,
+        uptime_s,
+        ..
+    } = status;
+    let mut text = format!(
+        "graph {graph}: {descriptor}, launcher is process {pid}, up {}\n",
+        duration(*uptime_s)
+    );
+    for node in &status.nodes {
+        // Writing to a text does not fail.
+        let _ = writeln!(text, "{}", line(node));
+    }
+    for sentence in &status.given_up {
+        let _ = writeln!(text, "  {sentence}");
+    }
+    text
+}
+
+fn line(node: &NodeStatus) -> String {
+    let pid = node.pid.map_or("-".to_owned(), |pid| pid.to_string());
+    let up = node.uptime_s.map_or("-".to_owned(), duration);
+    let mut line = format!("  {:<20} {:<18} {pid:>8} {up:>10}", node.id, node.state);
+    if node.restarts > 0 {
+        let _ = write!(line, "  restarts {}", node.restarts);
+    }
+    if let Some(end) = &node.last_end {
+        let _ = write!(line, "  last ended with {end}");
+    }
+    line
+}
+
+/// The two largest units, as `3 d 4 h`.
+fn duration(seconds: u64) -> String {
+    let (minutes, hours, days) = (seconds / 60, seconds / 3600, seconds / 86_400);
+    if days > 0 {
+        format!("{days} d {} h", hours % 24)
+    } else if hours > 0 {
+        format!("{hours} h {} min", minutes % 60)
+    } else if minutes > 0 {
+        format!("{minutes} min {} s", seconds % 60)
+    } else {
+        format!("{seconds} s")
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn durations_have_two_units() {
+        let all = [5, 65, 3_700, 100_000].map(duration);
+        assert_eq!(all, ["5 s", "1 min 5 s", "1 h 1 min", "1 d 3 h"]);
+    }
+
+    #[test]
+    fn a_graph_is_a_paragraph() {
+        let node = NodeStatus {
+            id: "tracker".into(),
+            state: "running".into(),
+            pid: Some(42),
+            uptime_s: Some(61),
+            restarts: 2,
+            last_end: Some("signal: 9 (SIGKILL)".into()),
+        };
+        let shown = status(&Status {
+            graph: "robot7".into(),
+            pid: 7,
+            descriptor: "/opt/dataflow.yaml".into(),
+            uptime_s: 4000,
+            given_up: vec!["recorder stays away".into()],
+            nodes: vec![node],
+        });
+        let expected = "\
+graph robot7: /opt/dataflow.yaml, launcher is process 7, up 1 h 6 min
+  tracker              running                  42    1 min 1 s  restarts 2  last ended with signal: 9 (SIGKILL)
+  recorder stays away
+";
+        assert_eq!(shown, expected);
+    }
+}
