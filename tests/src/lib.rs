@@ -7,6 +7,7 @@ pub mod browser;
 pub mod building;
 pub mod executables;
 pub mod http;
+pub mod live;
 pub mod machine;
 pub mod network;
 pub mod python;

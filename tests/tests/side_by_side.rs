@@ -10,12 +10,12 @@ use std::process::{Child, Command, Stdio};
 use serde_json::Value;
 use tests::executables;
 
-fn start() -> Child {
+fn start(name: &str) -> Child {
     // Built first, so that the runs below find nothing to build.
     let _ = executables::path("replayer");
     let backcast = executables::path("backcast");
     Command::new(backcast)
-        .args(["run", "--rate", "max", "--json"])
+        .args(["run", "--rate", "max", "--json", "--graph", name])
         .current_dir(tests::root())
         .stdout(Stdio::piped())
         .spawn()
@@ -33,8 +33,8 @@ fn lines(graph: Child) -> Vec<Value> {
 
 #[test]
 fn two_graphs_do_not_hear_each_other() {
-    let (first, second) = (start(), start());
-    let pids = [first.id(), second.id()];
+    let names = ["a", "b"].map(|tag| format!("s{}{tag}", std::process::id()));
+    let [first, second] = [start(&names[0]), start(&names[1])];
     for lines in [lines(first), lines(second)] {
         // A pose for each of the 37 scans, each heard once, and the summary.
         assert_eq!(lines.len(), 38);
@@ -47,11 +47,11 @@ fn two_graphs_do_not_hear_each_other() {
             "each scan is answered once: {stamps:?}"
         );
     }
-    for pid in pids {
+    for name in names {
         let left: Vec<_> = std::fs::read_dir(Path::new("/dev/shm"))
             .unwrap()
             .map(|entry| entry.unwrap().file_name().into_string().unwrap())
-            .filter(|name| name.contains(&format!("_bc{pid}.")))
+            .filter(|file| file.contains(&format!("_{name}.")))
             .collect();
         assert!(left.is_empty(), "left in shared memory: {left:?}");
     }

@@ -1,0 +1,197 @@
+//! The repository's own graph, run by the launcher as a user runs it, while a test does
+//! it harm.
+
+use std::io::{BufRead, BufReader, Lines};
+use std::path::Path;
+use std::process::{Child, ChildStdout, Command, ExitStatus, Stdio};
+use std::thread::JoinHandle;
+
+use nix::sys::signal::{Signal, kill};
+use nix::unistd::Pid;
+use serde_json::Value;
+use tempfile::TempDir;
+
+use crate::executables;
+
+/// A graph that plays a recording again and again.
+pub struct Live {
+    launcher: Child,
+    rows: Lines<BufReader<ChildStdout>>,
+    log: Option<JoinHandle<Vec<String>>>,
+    _folder: TempDir,
+}
+
+/// The repository's descriptor with the executables of this test run; `more` stands in
+/// each node that is restarted, each line indented by four.
+fn descriptor(more: &str) -> String {
+    let text = std::fs::read_to_string(crate::root().join("dataflow.yaml")).unwrap();
+    let folder = executables::path("backcast").with_file_name("");
+    let root = crate::root().canonicalize().unwrap();
+    let lines = text
+        .lines()
+        .filter(|line| !line.trim().starts_with("build:"));
+    let text: String = lines.map(|line| format!("{line}\n")).collect();
+    text.replace("target/release/", &folder.display().to_string())
+        .replace(" recordings/", &format!(" {}/recordings/", root.display()))
+        .replace(
+            "    restart_policy: on-failure\n",
+            &format!("    restart_policy: on-failure\n{more}"),
+        )
+}
+
+impl Live {
+    /// Starts the graph `name`.
+    ///
+    /// # Panics
+    /// If it cannot be started.
+    #[must_use]
+    pub fn start(name: &str, more: &str) -> Self {
+        let folder = tempfile::tempdir().unwrap();
+        let file = folder.path().join("dataflow.yaml");
+        std::fs::write(&file, descriptor(more)).unwrap();
+        let recording = crate::root().join("recordings/malaga_corridor/recording.mcap");
+        let mut launcher = Command::new(executables::path("backcast"));
+        launcher.arg("run").arg(&file).args(["--graph", name]);
+        launcher.args(["--json", "--loop", "--no-monitor", "--replay"]);
+        let mut launcher = launcher
+            .arg(recording)
+            .env_remove("RUST_LOG")
+            .stdout(Stdio::piped())
+            .stderr(Stdio::piped())
+            .spawn()
+            .unwrap();
+        let rows = BufReader::new(launcher.stdout.take().unwrap()).lines();
+        let said = BufReader::new(launcher.stderr.take().unwrap()).lines();
+        let log = std::thread::spawn(move || said.map_while(Result::ok).collect());
+        Live {
+            launcher,
+            rows,
+            log: Some(log),
+            _folder: folder,
+        }
+    }
+
+    /// Waits for the pose of a scan, in whatever state.
+    ///
+    /// # Panics
+    /// If the graph ends before.
+    pub fn pose(&mut self) -> Value {
+        loop {
+            let row = self.rows.next().expect("the graph goes on").unwrap();
+            let mut row: Value = serde_json::from_str(&row).unwrap();
+            assert!(row["summary"].is_null(), "the graph ended: {row}");
+            if !row["pose"].is_null() {
+                return row["pose"].take();
+            }
+        }
+    }
+
+    /// Waits for `count` of them.
+    pub fn poses(&mut self, count: usize) {
+        for _ in 0..count {
+            self.pose();
+        }
+    }
+
+    /// The launcher's process.
+    #[must_use]
+    pub fn launcher(&self) -> Pid {
+        Pid::from_raw(self.launcher.id().cast_signed())
+    }
+
+    /// The processes that it has started, by their executables.
+    ///
+    /// # Panics
+    /// If the system does not tell.
+    #[must_use]
+    pub fn nodes(&self) -> Vec<(String, Pid)> {
+        let pid = self.launcher();
+        let path = format!("/proc/{pid}/task/{pid}/children");
+        let children = std::fs::read_to_string(path).unwrap();
+        let node = |pid: &str| {
+            let name = std::fs::read_link(format!("/proc/{pid}/exe")).ok()?;
+            let name = name.file_name()?.to_str()?.to_owned();
+            Some((name, Pid::from_raw(pid.parse().ok()?)))
+        };
+        children.split_whitespace().filter_map(node).collect()
+    }
+
+    /// The process of one of them, as soon as there is one.
+    #[must_use]
+    pub fn node(&self, executable: &str) -> Pid {
+        loop {
+            let nodes = self.nodes();
+            if let Some((_, pid)) = nodes.iter().find(|(name, _)| name == executable) {
+                return *pid;
+            }
+            std::thread::yield_now();
+        }
+    }
+
+    /// Stops it in order: how it ended, its summary and what it said.
+    ///
+    /// # Panics
+    /// If it prints no summary.
+    #[must_use]
+    pub fn stop(mut self) -> (ExitStatus, Value, Vec<String>) {
+        kill(self.launcher(), Signal::SIGINT).unwrap();
+        let rows = self.rows.by_ref().map(Result::unwrap);
+        let last = rows.last().expect("a summary");
+        let mut last: Value = serde_json::from_str(&last).unwrap();
+        let said = self.log.take().unwrap().join().unwrap();
+        (self.launcher.wait().unwrap(), last["summary"].take(), said)
+    }
+
+    /// Kills the launcher and every node at the same time, as the end of memory would.
+    ///
+    /// # Panics
+    /// If one cannot be killed.
+    pub fn kill_all(mut self) {
+        let nodes = self.nodes();
+        // Stopped first, nobody can react to the end of another one.
+        for pid in nodes.iter().map(|(_, pid)| *pid) {
+            kill(pid, Signal::SIGSTOP).unwrap();
+        }
+        kill(self.launcher(), Signal::SIGKILL).unwrap();
+        for (_, pid) in nodes {
+            kill(pid, Signal::SIGKILL).unwrap();
+        }
+        // Their ends of the pipes are closed when they have ended.
+        let _ = self.log.take().unwrap().join().unwrap();
+        self.launcher.wait().unwrap();
+    }
+}
+
+impl Drop for Live {
+    fn drop(&mut self) {
+        // A test that failed; the nodes follow the launcher.
+        let _ = self.launcher.kill();
+        let _ = self.launcher.wait();
+    }
+}
+
+/// What a graph has in shared memory and in the temporary folder of this user.
+///
+/// # Panics
+/// If shared memory cannot be listed.
+#[must_use]
+pub fn files_of(name: &str) -> Vec<String> {
+    let mut found = Vec::new();
+    let root = format!("/tmp/backcast-{}", nix::unistd::geteuid());
+    for folder in ["/dev/shm", &root] {
+        collect(Path::new(folder), &format!("_{name}."), &mut found);
+    }
+    found
+}
+
+fn collect(folder: &Path, part: &str, found: &mut Vec<String>) {
+    // Others remove files and folders of theirs meanwhile.
+    let entries = std::fs::read_dir(folder).into_iter().flatten().flatten();
+    for path in entries.map(|entry| entry.path()) {
+        if path.is_dir() {
+            collect(&path, part, found);
+        } else if path.to_string_lossy().contains(part) {
+            found.push(path.display().to_string());
+        }
+    }
+}

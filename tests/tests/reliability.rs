@@ -1,0 +1,176 @@
+//! The repository's graph under faults: docs/reliability.md names these tests. A fault
+//! lasts as long as the test says; what comes after it is waited for without a limit.
+#![allow(
+    clippy::unwrap_used,
+    reason = "the lint spares test functions but not what they share"
+)]
+
+use std::process::{Command, Stdio};
+use std::thread::sleep;
+use std::time::Duration;
+
+use messages::topic;
+use nix::sys::signal::{Signal, kill};
+use tests::live::{Live, files_of};
+use transport::testing::wait_for_health;
+use transport::{Graph, GraphName};
+
+fn name(tag: &str) -> String {
+    format!("r{}-{tag}", std::process::id())
+}
+
+#[test]
+fn a_node_that_hangs_is_ended_and_started_again() {
+    let mut live = Live::start(&name("hang"), "    health_check_timeout: 2\n");
+    live.poses(3);
+    for executable in ["accumulator", "tracker"] {
+        let hung = live.node(executable);
+        kill(hung, Signal::SIGSTOP).unwrap();
+        while live.node(executable) == hung {
+            sleep(Duration::from_millis(20));
+        }
+        // Those that were under way may be among them.
+        live.poses(20);
+    }
+    let (status, summary, said) = live.stop();
+    assert!(status.success(), "{status}");
+    assert_eq!(summary["pose"]["unique_wrong"], 0, "{summary}");
+    let said = said.join("\n");
+    for executable in ["accumulator", "tracker"] {
+        let expected = format!("{executable} gave no sign of life for");
+        assert!(said.contains(&expected), "{said}");
+    }
+}
+
+#[test]
+fn nodes_that_are_killed_again_and_again_end_nothing_and_leave_nothing() {
+    let name = name("kills");
+    let mut live = Live::start(&name, "");
+    live.poses(3);
+    let nodes = [
+        "tracker",
+        "accumulator",
+        "map_server",
+        "peak_extractor",
+        "boundary_extractor",
+    ];
+    // Every node, and each with its neighbour.
+    for round in 0..2 {
+        for (i, executable) in nodes.iter().enumerate() {
+            let mut pids = vec![live.node(executable)];
+            if round == 1 {
+                pids.push(live.node(nodes[(i + 1) % nodes.len()]));
+            }
+            for pid in pids {
+                kill(pid, Signal::SIGKILL).unwrap();
+            }
+            live.poses(6);
+        }
+    }
+    let (status, summary, said) = live.stop();
+    assert!(status.success(), "{status}: {said:#?}");
+    assert_eq!(summary["pose"]["unique_wrong"], 0, "{summary}");
+    assert_eq!(files_of(&name), [""; 0]);
+}
+
+#[test]
+fn a_graph_that_was_killed_as_a_whole_is_cleaned_up_by_the_next() {
+    let (killed, next) = (name("killed"), name("next"));
+    let mut live = Live::start(&killed, "");
+    live.poses(2);
+    live.kill_all();
+    assert!(files_of(&killed).len() > 50, "{:#?}", files_of(&killed));
+    let mut live = Live::start(&next, "");
+    live.poses(1);
+    assert_eq!(files_of(&killed), [""; 0]);
+    let (status, ..) = live.stop();
+    assert!(status.success(), "{status}");
+    assert_eq!(files_of(&next), [""; 0]);
+}
+
+#[test]
+fn a_launcher_that_is_killed_is_started_again_under_the_same_name() {
+    let name = name("again");
+    for _ in 0..5 {
+        let mut live = Live::start(&name, "");
+        live.poses(2);
+        kill(live.launcher(), Signal::SIGKILL).unwrap();
+        // The next one does not wait for the end of these nodes: it does so itself.
+    }
+    let mut live = Live::start(&name, "");
+    live.poses(2);
+    let (status, ..) = live.stop();
+    assert!(status.success(), "{status}");
+    assert_eq!(files_of(&name), [""; 0]);
+}
+
+#[test]
+fn full_shared_memory_ends_nothing_and_is_told() {
+    let test = "full_shared_memory_ends_nothing_and_is_told";
+    if !has_own_shared_memory(test, "96m") {
+        return;
+    }
+    let name = name("full");
+    let mut live = Live::start(&name, "");
+    live.poses(5);
+    let before = live.nodes();
+    fill("/dev/shm/filler");
+    sleep(Duration::from_secs(1));
+    let member = GraphName::new(&name).unwrap();
+    std::fs::remove_file("/dev/shm/filler").unwrap();
+    let graph = Graph::join_named("test", &member).unwrap();
+    let health = graph.subscriber::<topic::Health>().unwrap();
+    let (_, error) = wait_for_health(&graph, &health, |report| {
+        report.node.as_str() == "replayer" && report.dropped > 0
+    });
+    assert!(error.contains("shared memory is full"), "{error}");
+    drop((health, graph));
+    live.poses(10);
+    assert_eq!(live.nodes(), before, "no process was started anew");
+    let (status, summary, _) = live.stop();
+    assert!(status.success(), "{status}");
+    assert_eq!(summary["pose"]["unique_wrong"], 0, "{summary}");
+}
+
+/// Writes until nothing more fits.
+fn fill(path: &str) {
+    let mut file = std::fs::File::create(path).unwrap();
+    for size in [1 << 16, 1] {
+        while std::io::Write::write_all(&mut file, &vec![0; size]).is_ok() {}
+    }
+}
+
+/// Whether the calling test, which is called `test`, runs where `/dev/shm` is its own, of
+/// so many bytes. If not, it has been run there, or the kernel forbids that, which is said.
+fn has_own_shared_memory(test: &str, size: &str) -> bool {
+    const INSIDE: &str = "BACKCAST_TEST_INSIDE";
+    if std::env::var_os(INSIDE).is_some() {
+        return true;
+    }
+    // The executables are built before, where there is room.
+    let _ = tests::executables::path("backcast");
+    let mount = format!("mount -t tmpfs -o size={size} tmpfs /dev/shm");
+    let user: &[&str] = match nix::unistd::geteuid().is_root() {
+        true => &["--mount"],
+        false => &["--mount", "--user", "--map-root-user"],
+    };
+    let probe = Command::new("unshare")
+        .args(user)
+        .args(["sh", "-c", &mount])
+        .stderr(Stdio::null())
+        .status();
+    if !probe.is_ok_and(|status| status.success()) {
+        eprintln!("SKIPPED: {test}: this kernel lets this user mount nothing");
+        return false;
+    }
+    let inner = format!("{mount} && exec \"$0\" {test} --exact --nocapture");
+    let status = Command::new("unshare")
+        .args(user)
+        .args(["sh", "-c", &inner])
+        .arg(std::env::current_exe().unwrap())
+        .env(INSIDE, "1")
+        .status()
+        .unwrap();
+    assert!(status.success(), "{test} fails in a namespace of its own");
+    false
+}
