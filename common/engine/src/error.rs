@@ -50,8 +50,8 @@ pub enum EngineError {
     NoFreeCell,
     /// The limits leave nowhere to stand.
     #[error(
-        "no open cell of the map lies in the region that is searched, as far from obstacles as \
-         the robot's radius asks"
+        "no open cell of the map lies in the region that is searched, near enough to a free cell \
+         and as far from obstacles as the robot's radius asks"
     )]
     NoCellWithin,
     /// The limits leave no heading.

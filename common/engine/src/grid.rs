@@ -3,12 +3,14 @@
 //! A grid has its own frame: x along columns, y along rows, cell (0, 0) at the
 //! origin. [`GridFrame`] says where that frame lies in the map.
 
+mod cell_set;
 mod frame;
 mod pooling;
 
 use messages::UNKNOWN;
 
 use crate::EngineError;
+pub(crate) use cell_set::CellSet;
 pub use frame::GridFrame;
 pub use pooling::{Pooled, pooling};
 
@@ -43,7 +45,7 @@ pub struct CellRules {
     #[arg(long, value_name = "PERCENT", default_value_t = 25, value_parser = clap::value_parser!(u8).range(0..=99))]
     pub free_to: u8,
     /// Unknown cells block rays and cannot hold the robot. Real maps are half
-    /// known, so by default they neither block nor are ruled out.
+    /// known, so by default they do not block, and those near free cells can.
     #[arg(long)]
     pub unknown_blocks: bool,
 }
@@ -58,11 +60,21 @@ impl Default for CellRules {
     }
 }
 
+impl CellRules {
+    fn is_occupied(self, occupancy: u8) -> bool {
+        occupancy >= self.occupied_from && occupancy != UNKNOWN
+    }
+
+    fn is_free(self, occupancy: u8) -> bool {
+        occupancy <= self.free_to && !self.is_occupied(occupancy)
+    }
+}
+
 /// What a ray meets in a cell.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Cell {
-    /// Rays pass and the robot may stand here: free, or unknown where unknown
-    /// cells do not block.
+    /// Rays pass and the robot may stand here, as far as limits do not say otherwise:
+    /// free, or unknown where unknown cells do not block.
     Open,
     /// An obstacle: a ray ends here.
     Occupied,
@@ -76,7 +88,8 @@ pub struct Grid {
     width: usize,
     height: usize,
     cells: Vec<Cell>,
-    free: usize,
+    free: CellSet,
+    free_cells: usize,
     occupied: usize,
     has_blocked: bool,
 }
@@ -98,16 +111,16 @@ impl Grid {
             width,
             height,
             cells: Vec::with_capacity(occupancy.len()),
-            free: 0,
+            free: CellSet::of(occupancy.len(), |i| rules.is_free(occupancy[i])),
+            free_cells: 0,
             occupied: 0,
             has_blocked: false,
         };
         for &value in occupancy {
-            let is_occupied = value >= rules.occupied_from && value != UNKNOWN;
-            let is_free = value <= rules.free_to && !is_occupied;
+            let (is_occupied, is_free) = (rules.is_occupied(value), rules.is_free(value));
             grid.has_blocked |= rules.unknown_blocks && !is_occupied && !is_free;
             grid.occupied += usize::from(is_occupied);
-            grid.free += usize::from(is_free);
+            grid.free_cells += usize::from(is_free);
             grid.cells.push(match (is_occupied, is_free) {
                 (true, _) => Cell::Occupied,
                 (false, false) if rules.unknown_blocks => Cell::Blocked,
@@ -145,7 +158,17 @@ impl Grid {
     /// Free cells, the paper's n; unknown ones do not count.
     #[must_use]
     pub fn free_cells(&self) -> usize {
-        self.free
+        self.free_cells
+    }
+
+    /// The free cells.
+    pub(crate) fn free(&self) -> &CellSet {
+        &self.free
+    }
+
+    /// Whether an open cell is not known to be free.
+    pub(crate) fn has_unknown(&self) -> bool {
+        !self.has_blocked && self.free_cells + self.occupied < self.cells.len()
     }
 
     /// Occupied cells.

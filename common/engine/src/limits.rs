@@ -1,4 +1,5 @@
-//! Where poses are sought: in a region, at some headings, away from obstacles.
+//! Where poses are sought: not far from free cells, in a region, at some headings, away
+//! from obstacles.
 //!
 //! Rays are not limited: they pass wherever they would. Poses outside the
 //! limits have no votes.
@@ -12,16 +13,15 @@ pub use region::Region;
 use crate::EngineError;
 use crate::directions::Directions;
 use crate::fit::distance;
-use crate::grid::{Cell, Grid, GridFrame};
+use crate::grid::{Cell, CellSet, Grid, GridFrame};
 
 /// The poses of a grid that are sought.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct Limits {
     /// Cells along x.
     width: usize,
-    /// For each cell, row by row, whether poses in it are sought; `None` where
-    /// all are.
-    cells: Option<Vec<bool>>,
+    /// The cells in which poses are sought; `None` where they are in all.
+    cells: Option<CellSet>,
     /// The same for each heading.
     headings: Option<Vec<bool>>,
 }
@@ -48,9 +48,8 @@ impl Limits {
         directions: &Directions,
     ) -> Result<Self, EngineError> {
         let cells = Self::cells(config, frame, grid);
-        let is_open = |(&cell, &sought): (&Cell, &bool)| sought && cell == Cell::Open;
         if let Some(cells) = &cells
-            && !grid.cells().iter().zip(cells).any(is_open)
+            && !cells.iter().any(|i| grid.cells()[i] == Cell::Open)
         {
             return Err(EngineError::NoCellWithin);
         }
@@ -75,35 +74,46 @@ impl Limits {
         })
     }
 
-    fn cells(config: &LimitsConfig, frame: GridFrame, grid: &Grid) -> Option<Vec<bool>> {
-        if config.robot_radius <= 0.0 && config.region.is_none() {
-            return None;
-        }
+    fn cells(config: &LimitsConfig, frame: GridFrame, grid: &Grid) -> Option<CellSet> {
         let (width, height) = (grid.width(), grid.height());
-        let mut cells = vec![true; width * height];
+        let mut all: Option<CellSet> = None;
+        let mut keep = |holds: &dyn Fn(usize) -> bool| match &mut all {
+            Some(cells) => cells.retain(holds),
+            None => all = Some(CellSet::of(width * height, holds)),
+        };
+        if grid.has_unknown() {
+            let reach = (config.unknown_reach / frame.resolution_m) as f32;
+            let distances = distance::transform(width, height, |i| grid.free().holds(i));
+            keep(&|i| distances[i] <= reach);
+        }
         if config.robot_radius > 0.0 {
             let least = (config.robot_radius / frame.resolution_m) as f32;
             let is_occupied = |i: usize| grid.cells()[i] == Cell::Occupied;
             let distances = distance::transform(width, height, is_occupied);
-            for (cell, distance) in cells.iter_mut().zip(distances) {
-                *cell = distance >= least;
-            }
+            keep(&|i| distances[i] >= least);
         }
         if let Some(region) = &config.region {
-            for (i, cell) in cells.iter_mut().enumerate() {
+            keep(&|i| {
                 let (x, y) = ((i % width) as f64 + 0.5, (i / width) as f64 + 0.5);
                 let middle = frame.map_from_cells(x, y, 0.0);
-                *cell &= region.holds(middle.x, middle.y);
-            }
+                region.holds(middle.x, middle.y)
+            });
         }
-        Some(cells)
+        all
     }
 
     /// Whether poses in the cell at column `x` of row `y` are sought.
     #[must_use]
     pub fn hold_cell(&self, x: usize, y: usize) -> bool {
         let cells = self.cells.as_ref();
-        cells.is_none_or(|cells| cells[y * self.width + x])
+        cells.is_none_or(|cells| cells.holds(y * self.width + x))
+    }
+
+    /// The open cells of the grid in which poses are sought, in ascending order.
+    pub(crate) fn open_cells(&self, grid: &Grid) -> impl Iterator<Item = usize> {
+        let is_open = |&i: &usize| grid.cells()[i] == Cell::Open;
+        let all = (0..grid.cells().len()).filter(is_open);
+        all.filter(|&i| self.cells.as_ref().is_none_or(|cells| cells.holds(i)))
     }
 
     /// Whether a heading is sought.
@@ -119,8 +129,8 @@ impl Limits {
         if !self.hold_heading(heading) {
             field.fill(0);
         }
-        for (votes, &sought) in field.iter_mut().zip(self.cells.iter().flatten()) {
-            *votes *= u16::from(sought);
+        if let Some(cells) = &self.cells {
+            cells.clear_others(field);
         }
     }
 
@@ -134,9 +144,9 @@ impl Limits {
     pub(crate) fn blocks(&self, side: usize) -> Option<Vec<bool>> {
         let cells = self.cells.as_ref()?;
         let columns = self.width.div_ceil(side);
-        let rows = (cells.len() / self.width).div_ceil(side);
+        let rows = (cells.cells() / self.width).div_ceil(side);
         let mut blocks = vec![false; columns * rows];
-        for (i, _) in cells.iter().enumerate().filter(|&(_, &sought)| sought) {
+        for i in cells.iter() {
             let (x, y) = (i % self.width, i / self.width);
             blocks[y / side * columns + x / side] = true;
         }
@@ -159,7 +169,11 @@ mod tests {
     const ROOM: [&str; 4] = ["######", "#....#", "#....#", "######"];
 
     fn limits(config: &LimitsConfig) -> Result<Limits, EngineError> {
-        Limits::new(config, FRAME, &grid(&ROOM), &Directions::new(8).unwrap())
+        limits_on(&ROOM, config)
+    }
+
+    fn limits_on(rows: &[&str], config: &LimitsConfig) -> Result<Limits, EngineError> {
+        Limits::new(config, FRAME, &grid(rows), &Directions::new(8).unwrap())
     }
 
     fn drawn(limits: &Limits) -> Vec<String> {
@@ -177,6 +191,34 @@ mod tests {
         assert_eq!(limits, Limits::none(6));
         assert!(limits.hold_cell(0, 0) && limits.hold_heading(7));
         assert_eq!(limits.blocks(4), None);
+    }
+
+    #[test]
+    fn unknown_cells_are_limited_by_how_far_the_next_free_one_is() {
+        let drawn_at = |rows: &[&str], unknown_reach| {
+            let config = LimitsConfig {
+                unknown_reach,
+                ..LimitsConfig::default()
+            };
+            drawn(&limits_on(rows, &config).unwrap())
+        };
+        // Cells of 0.5 m; occupied ones are limited, too, which does not matter.
+        let rows = ["??????", "?????#", "??.???", "??????"];
+        let none = ["------", "------", "--+---", "------"];
+        assert_eq!(drawn_at(&rows, 0.0), none);
+        assert_eq!(drawn_at(&rows, 0.49), none);
+        let plus = ["------", "--+---", "-+++--", "--+---"];
+        assert_eq!(drawn_at(&rows, 0.5), plus);
+        let octagon = ["--+---", "-+++--", "+++++-", "-+++--"];
+        assert_eq!(drawn_at(&rows, 1.0), octagon);
+        assert_eq!(drawn_at(&rows, 1000.0), ["++++++"; 4]);
+        assert_eq!(drawn_at(&ROOM, 0.0), ["++++++"; 4], "nothing is unknown");
+    }
+
+    #[test]
+    fn where_nothing_is_free_nothing_is_sought() {
+        let unknown = limits_on(&["??#", "???"], &LimitsConfig::default());
+        assert_eq!(unknown.unwrap_err(), EngineError::NoCellWithin);
     }
 
     #[test]

@@ -177,6 +177,28 @@ impl Localizer {
         &self.grid
     }
 
+    /// Cells in which poses are sought.
+    #[must_use]
+    pub fn searchable_cells(&self) -> usize {
+        self.limits().open_cells(&self.grid).count()
+    }
+
+    /// Bytes of what is kept of the map for searches, beside its cells.
+    #[must_use]
+    pub fn index_bytes(&self) -> usize {
+        match &self.method {
+            Method::Search(index) => index.bytes(),
+            Method::Sweep(sweeps, _) => sweeps.bytes(),
+        }
+    }
+
+    fn limits(&self) -> &Limits {
+        match &self.method {
+            Method::Search(index) => index.limits(),
+            Method::Sweep(_, limits) => limits,
+        }
+    }
+
     /// The space that is searched.
     #[must_use]
     pub fn space(&self) -> &Space {

@@ -21,7 +21,7 @@ use crate::votes::{CollectConfig, Collector, VoteSet};
 pub(crate) const RESOLUTION_M: f64 = 0.1;
 
 /// Grids of 1 to 40 cells a side, from empty to cluttered, with unknown cells
-/// that block or do not.
+/// that block or do not, often in one large piece.
 pub(crate) fn any_grid() -> impl Strategy<Value = Grid> {
     let cells = |count: usize| {
         (1u32..60, 0u32..30).prop_flat_map(move |(occupied, unknown)| {
@@ -33,9 +33,19 @@ pub(crate) fn any_grid() -> impl Strategy<Value = Grid> {
             vec(cell, count)
         })
     };
-    (1usize..=40, 1usize..=40, any::<bool>()).prop_flat_map(
-        move |(width, height, unknown_blocks)| {
-            cells(width * height).prop_map(move |occupancy| {
+    let ends = || (0usize..40, 0usize..60);
+    (1usize..=40, 1usize..=40, any::<bool>(), ends(), ends()).prop_flat_map(
+        move |(width, height, unknown_blocks, (left, right), (bottom, top))| {
+            cells(width * height).prop_map(move |mut occupancy| {
+                for y in bottom..top.min(height) {
+                    for cell in occupancy[y * width..][..width]
+                        .iter_mut()
+                        .take(right)
+                        .skip(left)
+                    {
+                        *cell = if *cell == 100 { 100 } else { UNKNOWN };
+                    }
+                }
                 let rules = CellRules {
                     unknown_blocks,
                     ..CellRules::default()
@@ -67,7 +77,8 @@ pub(crate) fn space_of(grid: &Grid, headings: u32) -> Space {
     Space::new(headings, RESOLUTION_M, grid.width(), grid.height()).expect("headings are allowed")
 }
 
-/// Limits of a test grid: none, a region, a radius, some headings or all three.
+/// Limits of a test grid: how far from free cells, a region, a radius, some headings, or
+/// all of them.
 pub(crate) fn any_limits(grid: &Grid, headings: u32) -> impl Strategy<Value = Limits> + use<> {
     let (grid, space) = (grid.clone(), space_of(grid, headings));
     let frame = GridFrame {
@@ -78,16 +89,20 @@ pub(crate) fn any_limits(grid: &Grid, headings: u32) -> impl Strategy<Value = Li
     let region = vec(corner(), 2..6).prop_map(|corners| Region::new(&corners).expect("corners"));
     let within = (0.0..6.3f64, 0.0..6.3f64).prop_map(|(from, to)| HeadingInterval { from, to });
     let radius = prop_oneof![Just(0.0), 0.05..0.3f64];
-    let config = (radius, of(region), of(within));
-    config.prop_map(move |(robot_radius, region, headings_within)| {
-        let config = LimitsConfig {
-            robot_radius,
-            region,
-            headings_within,
-        };
-        let limits = Limits::new(&config, frame, &grid, &space.directions);
-        limits.unwrap_or_else(|_| Limits::none(grid.width()))
-    })
+    let reach = prop_oneof![Just(0.0), 0.1..0.5f64, Just(1.0), Just(1000.0)];
+    let config = (reach, radius, of(region), of(within));
+    config.prop_map(
+        move |(unknown_reach, robot_radius, region, headings_within)| {
+            let config = LimitsConfig {
+                unknown_reach,
+                robot_radius,
+                region,
+                headings_within,
+            };
+            let limits = Limits::new(&config, frame, &grid, &space.directions);
+            limits.unwrap_or_else(|_| Limits::none(grid.width()))
+        },
+    )
 }
 
 /// All poses by the plain reference, collected as the search does it.
@@ -111,12 +126,9 @@ pub(crate) fn plain_votes_within(
 ) -> VoteSet {
     let mut collector = Collector::new(config);
     for heading in 0..space.directions.count() {
-        let field = reference::field(grid, program, space, heading);
+        let field = reference::field_within(limits, grid, program, space, heading);
         for (i, &intensity) in field.iter().enumerate() {
             let (x, y) = (i % grid.width(), i / grid.width());
-            if !(limits.hold_cell(x, y) && limits.hold_heading(heading)) {
-                continue;
-            }
             collector.take(Vote {
                 x: x as u16,
                 y: y as u16,

@@ -3,9 +3,15 @@
 use super::Region;
 use crate::config;
 
-/// Where poses are sought; by default everywhere.
-#[derive(Debug, Clone, PartialEq, Default, clap::Args)]
+/// Where poses are sought; by default wherever the robot may stand.
+#[derive(Debug, Clone, PartialEq, clap::Args)]
 pub struct LimitsConfig {
+    /// Of the unknown cells that do not block, only those can hold the laser whose
+    /// middle lies at most so far from that of a free cell, metres, 0..=1000: a map ends
+    /// where the robot that made it could not see, and not far behind that nothing can
+    /// be found.
+    #[arg(long, value_name = "METRES", default_value_t = 1.0, value_parser = parse_reach)]
+    pub unknown_reach: f64,
     /// Only cells at least so far from the middle of every occupied cell can
     /// hold the laser, metres, 0..=5: the distance from the laser to the robot's
     /// nearest side.
@@ -19,6 +25,17 @@ pub struct LimitsConfig {
     /// the map, -360..=360: "FROM,TO".
     #[arg(long, value_name = "FROM,TO", allow_hyphen_values = true)]
     pub headings_within: Option<HeadingInterval>,
+}
+
+impl Default for LimitsConfig {
+    fn default() -> Self {
+        LimitsConfig {
+            unknown_reach: 1.0,
+            robot_radius: 0.0,
+            region: None,
+            headings_within: None,
+        }
+    }
 }
 
 /// Headings from one counter-clockwise to another, both included, radians in
@@ -61,6 +78,10 @@ impl std::str::FromStr for HeadingInterval {
             to: degrees(to)?.to_radians(),
         })
     }
+}
+
+fn parse_reach(text: &str) -> Result<f64, String> {
+    config::parse(text, 0.0..=1000.0, "metres")
 }
 
 fn parse_radius(text: &str) -> Result<f64, String> {

@@ -78,6 +78,12 @@ impl SearchIndex {
         self
     }
 
+    /// Where poses are sought.
+    #[must_use]
+    pub fn limits(&self) -> &Limits {
+        &self.within.limits
+    }
+
     /// Bytes that the index takes.
     #[must_use]
     pub fn bytes(&self) -> usize {

@@ -135,6 +135,8 @@ fn evaluate(
         scans,
         prepare_cpu_ms: session.prepare_cpu_ms,
         peak_rss_mb: memory::peak_mb().map_err(BackcastError::Memory)?,
+        searchable_cells: session.world().map_or(0, World::searchable_cells),
+        index_bytes: session.world().map_or(0, World::index_bytes),
     });
     match evaluation.truths {
         0 => Err(BackcastError::NoTruthTaken {

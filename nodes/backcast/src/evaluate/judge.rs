@@ -29,6 +29,8 @@ pub(super) struct Effort {
     pub(super) scans: u64,
     pub(super) prepare_cpu_ms: f64,
     pub(super) peak_rss_mb: f64,
+    pub(super) searchable_cells: u64,
+    pub(super) index_bytes: u64,
 }
 
 /// The figures of one file; shares are 0..=1 of `truths`.
@@ -58,6 +60,10 @@ pub(super) struct Evaluation {
     pub(super) prepare_cpu_ms: f64,
     /// The most memory that the process held, megabytes of 10⁶ bytes.
     pub(super) peak_rss_mb: f64,
+    /// Cells in which poses are sought, as large as they are searched.
+    pub(super) searchable_cells: u64,
+    /// Bytes of what a search keeps of the map.
+    pub(super) index_bytes: u64,
     /// Distance of the best pose, metres, of the answers within 0.5 m and 10°:
     /// how well a place is met once it is found.
     pub(super) error_m: Spread,
@@ -160,6 +166,8 @@ impl Judge {
             cpu_ms: Times { median, p90, max },
             prepare_cpu_ms: effort.prepare_cpu_ms,
             peak_rss_mb: effort.peak_rss_mb,
+            searchable_cells: effort.searchable_cells,
+            index_bytes: effort.index_bytes,
             error_m: self.error_m.spread(),
             error_deg: self.error_deg.spread(),
             unique_in_ellipse: self.in_ellipse,
@@ -221,6 +229,8 @@ pub(super) mod tests {
             scans: 9,
             prepare_cpu_ms: 12.5,
             peak_rss_mb: 34.5,
+            searchable_cells: 300,
+            index_bytes: 9000,
         })
     }
 
@@ -276,7 +286,7 @@ pub(super) mod tests {
         evaluation.probabilities.truncate(1);
         assert_eq!(
             evaluation.json(),
-            r#"{"bag":"r.mcap","map_cells":720,"scans":9,"truths":5,"success_50cm_10deg":0.4,"success_20cm_3deg":0.2,"top16_recall":0.6,"unique":3,"unique_wrong":1,"cpu_ms":{"median":2.0,"p90":4.0,"max":4.0},"prepare_cpu_ms":12.5,"peak_rss_mb":34.5,"error_m":{"median":0.125,"p90":null},"error_deg":{"median":0.125,"p90":null},"unique_in_ellipse":1,"probabilities":[{"from":0.0,"to":0.2,"answers":0,"right":0,"mean":null}]}"#
+            r#"{"bag":"r.mcap","map_cells":720,"scans":9,"truths":5,"success_50cm_10deg":0.4,"success_20cm_3deg":0.2,"top16_recall":0.6,"unique":3,"unique_wrong":1,"cpu_ms":{"median":2.0,"p90":4.0,"max":4.0},"prepare_cpu_ms":12.5,"peak_rss_mb":34.5,"searchable_cells":300,"index_bytes":9000,"error_m":{"median":0.125,"p90":null},"error_deg":{"median":0.125,"p90":null},"unique_in_ellipse":1,"probabilities":[{"from":0.0,"to":0.2,"answers":0,"right":0,"mean":null}]}"#
         );
     }
 }

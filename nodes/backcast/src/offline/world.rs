@@ -136,6 +136,16 @@ impl World {
         self.cells
     }
 
+    /// Cells in which poses are sought, as large as they are searched.
+    pub(crate) fn searchable_cells(&self) -> u64 {
+        self.localizer.searchable_cells() as u64
+    }
+
+    /// Bytes of what a search keeps of the map.
+    pub(crate) fn index_bytes(&self) -> u64 {
+        self.localizer.index_bytes() as u64
+    }
+
     /// The map as the second stage reads it.
     pub(crate) fn terrain(&self) -> &Terrain {
         &self.terrain

@@ -1,0 +1,110 @@
+//! Some of the cells of a grid, a bit for each.
+
+/// Bits of a word.
+const WORD: usize = 64;
+
+/// Cells of a grid, by where they are in it, row by row.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub(crate) struct CellSet {
+    words: Vec<u64>,
+    /// All cells of the grid.
+    cells: usize,
+}
+
+impl CellSet {
+    /// Those of so many cells that `holds` says.
+    pub(crate) fn of(cells: usize, holds: impl Fn(usize) -> bool) -> Self {
+        let word = |first: usize| {
+            let word = first..cells.min(first + WORD);
+            word.fold(0, |word, i| word | u64::from(holds(i)) << (i - first))
+        };
+        CellSet {
+            words: (0..cells).step_by(WORD).map(word).collect(),
+            cells,
+        }
+    }
+
+    /// Leaves out those of which `holds` says no.
+    pub(crate) fn retain(&mut self, holds: impl Fn(usize) -> bool) {
+        for (i, word) in self.words.iter_mut().enumerate() {
+            let first = i * WORD;
+            for bit in ones(*word) {
+                *word &= !(u64::from(!holds(first + bit)) << bit);
+            }
+        }
+    }
+
+    /// All cells of the grid.
+    pub(crate) fn cells(&self) -> usize {
+        self.cells
+    }
+
+    /// Whether a cell is among them.
+    pub(crate) fn holds(&self, cell: usize) -> bool {
+        self.words[cell / WORD] >> (cell % WORD) & 1 == 1
+    }
+
+    /// The cells, in ascending order.
+    pub(crate) fn iter(&self) -> impl Iterator<Item = usize> {
+        let words = self.words.iter().enumerate();
+        words.flat_map(|(i, &word)| ones(word).map(move |bit| i * WORD + bit))
+    }
+
+    /// Makes 0 the votes of all other cells.
+    pub(crate) fn clear_others(&self, votes: &mut [u16]) {
+        for (votes, &word) in votes.chunks_mut(WORD).zip(&self.words) {
+            match word {
+                0 => votes.fill(0),
+                u64::MAX => {}
+                _ => {
+                    for (bit, votes) in votes.iter_mut().enumerate() {
+                        *votes *= (word >> bit & 1) as u16;
+                    }
+                }
+            }
+        }
+    }
+}
+
+/// The places of the ones of a word, in ascending order.
+fn ones(mut word: u64) -> impl Iterator<Item = usize> {
+    std::iter::from_fn(move || {
+        let bit = word.trailing_zeros() as usize;
+        word &= word.wrapping_sub(1);
+        (bit < WORD).then_some(bit)
+    })
+}
+
+#[cfg(test)]
+mod tests {
+    use proptest::collection::vec;
+    use proptest::prelude::*;
+
+    use super::*;
+
+    proptest! {
+        #[test]
+        fn a_set_holds_what_it_is_made_of(
+            held in vec(prop::bool::weighted(0.8), 0..300), kept in vec(any::<bool>(), 300),
+        ) {
+            let mut set = CellSet::of(held.len(), |i| held[i]);
+            prop_assert_eq!(set.cells(), held.len());
+            prop_assert!((0..held.len()).all(|i| set.holds(i) == held[i]));
+            set.retain(|i| kept[i]);
+            let both: Vec<usize> = (0..held.len()).filter(|&i| held[i] && kept[i]).collect();
+            prop_assert_eq!(set.iter().collect::<Vec<_>>(), both.clone());
+            let mut votes = vec![7; held.len()];
+            set.clear_others(&mut votes);
+            prop_assert!((0..held.len()).all(|i| (votes[i] == 7) == both.contains(&i)));
+        }
+
+        #[test]
+        fn all_cells_are_a_set_as_well(cells in 0usize..300) {
+            let mut votes = vec![7; cells];
+            CellSet::of(cells, |_| true).clear_others(&mut votes);
+            prop_assert!(votes.iter().all(|&votes| votes == 7));
+            CellSet::of(cells, |_| false).clear_others(&mut votes);
+            prop_assert!(votes.iter().all(|&votes| votes == 0));
+        }
+    }
+}
