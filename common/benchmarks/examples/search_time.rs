@@ -38,10 +38,6 @@ struct Options {
     /// Distinct poses that are wanted
     #[arg(long, default_value_t = 0)]
     candidates: u32,
-    /// Find so many of the best distinct poses instead, exactly, with a fresh workspace for
-    /// each scan; how many poses are counted is not told then
-    #[arg(long, conflicts_with_all = ["floor_share", "candidates"])]
-    top: Option<usize>,
     #[arg(long, default_value_t = 1)]
     seed: u64,
     #[arg(long, default_value_t = 1)]
@@ -87,15 +83,8 @@ fn main() -> Result<(), BenchmarksError> {
         let how = (instruction_set, options.threads);
         let run = || {
             let scan = (&program, &space);
-            let Some(count) = options.top else {
-                let collect = (collect, &mut found);
-                index.search_in(&mut workspace, how, &world.grid, scan, collect, &|| false);
-                return;
-            };
-            let top = index.top(how, &world.grid, scan, count, &|| false);
-            found.votes = top.map(|top| top.poses).unwrap_or_default();
-            found.best = found.votes.first().map_or(0, |vote| vote.intensity);
-            found.certified_floor = found.votes.last().map_or(0, |vote| vote.intensity);
+            let collect = (collect, &mut found);
+            index.search_in(&mut workspace, how, &world.grid, scan, collect, &|| false);
         };
         let ((), cost) = cpu_ms(run);
         let best_share = f64::from(found.best) / f64::from(program.highest_possible());

@@ -98,7 +98,7 @@ impl<'a, A: Accumulator> Share<'a, A> {
         self.poses += self.field.len() as u64;
         limits.clear(&mut self.field, heading);
         self.collector
-            .take_field(&self.field, limits.width(), heading as u16, None);
+            .take_field(&self.field, limits.width(), heading as u16);
     }
 }
 

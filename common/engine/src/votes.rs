@@ -7,11 +7,8 @@ use std::cmp::Reverse;
 
 use messages::Vote;
 
-use distinct::Leading;
-#[cfg(test)]
-pub(crate) use distinct::are_near;
-pub use distinct::{DISTINCT_DEG, DISTINCT_M};
-pub(crate) use distinct::{Distinct, Leaders, is_close, most_candidates};
+pub use distinct::{DISTINCT_DEG, DISTINCT_M, distinct};
+pub(crate) use distinct::{Distinct, is_close, most_candidates};
 pub(crate) use of_field::FieldVotes;
 pub use of_field::of_field;
 
@@ -86,11 +83,10 @@ pub(crate) struct Collector {
     config: CollectConfig,
     votes: Vec<Vote>,
     best: u16,
-    /// Below this intensity too many poses were seen for all to fit, or none is wanted.
+    /// Below this intensity too many poses were seen for all to fit.
     crowded_below: u16,
     /// The intensity of which not even all best poses fit.
     cut: Option<u16>,
-    leading: Leading,
 }
 
 impl Collector {
@@ -108,7 +104,6 @@ impl Collector {
         self.best = 0;
         self.crowded_below = 1;
         self.cut = None;
-        self.leading.start();
     }
 
     /// The least intensity that can still matter; at least 1.
@@ -132,33 +127,8 @@ impl Collector {
         }
     }
 
-    /// Takes a pose, unless it lies below the floor, and raises that to the last of the
-    /// leading ones, where these are all that is wanted.
-    pub(crate) fn take_leading(&mut self, vote: Vote, leaders: Option<Leaders<'_>>) {
-        if vote.intensity < self.floor() {
-            return;
-        }
-        self.take(vote);
-        self.hear_of_leading(&vote, leaders);
-    }
-
-    /// Raises the floor to the last of the leading poses, of which this may be one,
-    /// whether it is taken or not.
-    pub(crate) fn hear_of_leading(&mut self, vote: &Vote, leaders: Option<Leaders<'_>>) {
-        if let Some(floor) = leaders.and_then(|leaders| self.leading.take(vote, leaders)) {
-            self.crowded_below = self.crowded_below.max(floor);
-        }
-    }
-
-    /// Takes the poses of an intensity image, row by row, at one heading, each as
-    /// [`Collector::take_leading`] does.
-    pub(crate) fn take_field(
-        &mut self,
-        field: &[u16],
-        width: usize,
-        heading: u16,
-        leaders: Option<Leaders<'_>>,
-    ) {
+    /// Takes the poses of an intensity image, row by row, at one heading.
+    pub(crate) fn take_field(&mut self, field: &[u16], width: usize, heading: u16) {
         for (y, row) in (0..).zip(field.chunks_exact(width)) {
             // Few rows hold any pose that matters, and a maximum is quick.
             let floor = self.floor();
@@ -172,7 +142,7 @@ impl Collector {
                     heading,
                     intensity,
                 };
-                self.take_leading(vote, leaders);
+                self.take(vote);
             }
         }
     }

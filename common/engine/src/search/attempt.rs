@@ -102,7 +102,7 @@ mod tests {
             let index = SearchIndex::new(&grid, &space).within(limits);
             let mut workspace = Workspace::default();
             let (how, scan) = ((InstructionSet::best(), threads), (&program, &space));
-            let mut attempt = index.attempt(&mut workspace, how, &grid, scan, (config, 0), &|| false);
+            let mut attempt = index.attempt(&mut workspace, how, &grid, scan, config, &|| false);
             attempt.task.brute_force = Cost(f64::INFINITY);
             let mut found = VoteSet::default();
             prop_assert_eq!(attempt.by_bounds(&mut found), End::Done);
@@ -122,7 +122,7 @@ mod tests {
             let index = SearchIndex::new(&grid, &space);
             let mut workspace = Workspace::default();
             let (how, scan) = ((InstructionSet::best(), threads), (&program, &space));
-            let mut attempt = index.attempt(&mut workspace, how, &grid, scan, (config, 0), &|| false);
+            let mut attempt = index.attempt(&mut workspace, how, &grid, scan, config, &|| false);
             attempt.task.brute_force = Cost(0.0);
             let (mut found, plain) = (VoteSet::default(), plain_votes(&grid, &program, &space, config));
             // A search that is done after the first block has nothing to give up.

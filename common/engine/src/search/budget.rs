@@ -3,7 +3,7 @@
 //! In uniform clutter no bound tells blocks apart. The search tallies what it
 //! did, estimates what is left from what blocks of each level have cost so far,
 //! and gives up where counting every pose would be done sooner. Where that is seen at
-//! the first look, a tenth of what brute force costs is lost, or a twentieth.
+//! the first look, a tenth of what brute force costs is lost.
 
 use crate::grid::Grid;
 use crate::instruction_set::InstructionSet;
@@ -90,10 +90,6 @@ const DIVES: f64 = 0.4;
 /// search is given up then.
 const FIRST_LOOK: f64 = 0.1;
 
-/// The same where the floor is about known: then what blocks have cost so far tells sooner
-/// what those that are left will.
-const FIRST_LOOK_KNOWN: f64 = 0.05;
-
 /// How much more is spent until the next look.
 const NEXT_LOOK: f64 = 1.5;
 
@@ -136,18 +132,13 @@ impl Tally {
 
 impl Budget {
     /// For one of so many parts of a search. Counting every pose costs such a share of
-    /// brute force; the floor may be known, about.
-    pub(super) fn new(brute_force: Cost, counting: f64, parts: usize, is_known: bool) -> Self {
+    /// brute force.
+    pub(super) fn new(brute_force: Cost, counting: f64, parts: usize) -> Self {
         let brute_force = brute_force.0 / parts as f64;
-        let first_look = if is_known {
-            FIRST_LOOK_KNOWN
-        } else {
-            FIRST_LOOK
-        };
         Budget {
             most: brute_force * counting * HOPELESS,
             spent: 0.0,
-            next: brute_force * first_look,
+            next: brute_force * FIRST_LOOK,
             taken: [(0.0, 0.0); LEVELS],
         }
     }
@@ -198,7 +189,7 @@ mod tests {
 
     #[test]
     fn a_search_is_given_up_where_what_is_left_costs_more() {
-        let mut budget = Budget::new(Cost(4.0 * 3_550.0 / HOPELESS), 0.5, 2, false);
+        let mut budget = Budget::new(Cost(4.0 * 3_550.0 / HOPELESS), 0.5, 2);
         assert!(!budget.is_up());
         // Four coarse blocks came to eight fine ones, of which three were taken.
         for _ in 0..4 {
@@ -216,7 +207,7 @@ mod tests {
 
     #[test]
     fn the_smallest_blocks_come_before_their_turn_while_they_cost_little() {
-        let mut budget = Budget::new(Cost(1.0), 1.0, 1, false);
+        let mut budget = Budget::new(Cost(1.0), 1.0, 1);
         assert!(!budget.dives(), "nothing was done");
         budget.spend(0, Cost(100.0));
         assert!(budget.dives());

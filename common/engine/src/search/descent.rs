@@ -97,9 +97,7 @@ impl<'a> Descent<'a> {
     pub(super) fn run(mut self, (part, parts): (usize, usize), stop: &dyn Fn() -> bool) -> End {
         self.bound_coarse(part, parts);
         let task = self.task;
-        // Leading poses are sought once others of them are known, and so the floor is.
-        let (counting, is_known) = (sift::likely_cost(task), task.leaders.is_some());
-        let mut budget = Budget::new(task.brute_force, counting, parts, is_known);
+        let mut budget = Budget::new(task.brute_force, sift::likely_cost(task), parts);
         while let Some(block) = self.next(budget.dives()) {
             if stop() {
                 return End::Stopped;
@@ -387,7 +385,7 @@ impl<'a> Descent<'a> {
                     heading,
                     intensity,
                 };
-                self.room.collector.take_leading(vote, self.task.leaders);
+                self.room.collector.take(vote);
             }
         }
     }

@@ -146,19 +146,18 @@ impl SearchIndex {
         (config, found): (CollectConfig, &mut VoteSet),
         stop: &dyn Fn() -> bool,
     ) -> Option<()> {
-        let mut attempt = self.attempt(workspace, how, grid, scan, (config, 0), stop);
+        let mut attempt = self.attempt(workspace, how, grid, scan, config, stop);
         attempt.find(found)
     }
 
-    /// A search to be made, with a floor that rises to the last of so many distinct
-    /// poses, see [`Task::leading`].
+    /// A search to be made.
     pub(super) fn attempt<'a>(
         &'a self,
         workspace: &'a mut Workspace,
         (instruction_set, threads): (InstructionSet, usize),
         grid: &'a Grid,
         scan: (&'a ScanProgram, &'a Space),
-        (config, leading): (CollectConfig, usize),
+        config: CollectConfig,
         stop: &'a dyn Fn() -> bool,
     ) -> Attempt<'a> {
         let Workspace {
@@ -173,7 +172,7 @@ impl SearchIndex {
         rooms.resize_with(threads, descent::Room::default);
         shares.resize_with(threads, sift::Share::default);
         Attempt {
-            task: task.leading(leading),
+            task,
             program: scan.0,
             rooms,
             alternatives,

@@ -16,7 +16,7 @@
 //!
 //! Alternatives below the floor come from the most promising blocks. Where bounds do
 //! not tell blocks apart, every pose is counted instead (`sift.rs`): `attempt.rs` is one
-//! search, whichever way it goes, and `top.rs` makes some for the best distinct poses.
+//! search, whichever way it goes.
 
 mod alternatives;
 mod attempt;
@@ -50,10 +50,8 @@ mod sets;
 mod sift;
 mod steps;
 mod task;
-mod top;
 mod within;
 mod words;
 
 pub use block_bounds::BlockBounds;
 pub use index::{SearchIndex, Workspace};
-pub use top::Top;

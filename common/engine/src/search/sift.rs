@@ -7,8 +7,7 @@
 //! first of them is counted with all beams: one of these is the best pose of all. What
 //! was not kept cannot reach the floor then, as a rule, whatever the other beams say, and
 //! of what was kept little is left to count. The lower the floor, the larger the sample
-//! must be, so some are tried first. The leading poses are found in the same way, with a
-//! floor that rises to the last of them.
+//! must be, so some are tried first.
 //!
 //! Headings at which that is not certain are swept again with more beams, at last with
 //! all of them.
@@ -164,16 +163,9 @@ impl<'a> Sifting<'a> {
             self.share.least = self.share.least.saturating_sub(step).max(1);
         }
         if let Some(&Pose { cell, .. }) = kept.iter().max_by_key(|pose| pose.votes) {
-            let leaders = task.leaders;
-            let floor = match leaders {
-                Some(_) => self.floor(),
-                None => task.best.load(Ordering::Relaxed),
-            };
-            let vote = self.vote(cell, heading, floor);
-            if vote.intensity >= floor {
-                task.best.fetch_max(vote.intensity, Ordering::Relaxed);
-                self.share.collector.hear_of_leading(&vote, leaders);
-            }
+            let floor = task.best.load(Ordering::Relaxed);
+            let intensity = self.count(cell, heading, floor);
+            task.best.fetch_max(intensity, Ordering::Relaxed);
         }
         Some(())
     }
@@ -225,8 +217,7 @@ impl<'a> Sifting<'a> {
         let Share {
             field, collector, ..
         } = &mut *self.share;
-        let leaders = self.task.leaders;
-        collector.take_field(field, self.task.grid.width(), heading as u16, leaders);
+        collector.take_field(field, self.task.grid.width(), heading as u16);
         let best = collector.best();
         self.task.best.fetch_max(best, Ordering::Relaxed);
         self.share.poses_evaluated += self.share.field.len() as u64;
@@ -243,8 +234,7 @@ impl<'a> Sifting<'a> {
             }
             let floor = self.floor();
             let vote = self.vote(cell, heading, floor);
-            let leaders = self.task.leaders;
-            self.share.collector.take_leading(vote, leaders);
+            self.share.collector.take(vote);
             self.task.best.fetch_max(vote.intensity, Ordering::Relaxed);
         }
     }
@@ -349,8 +339,7 @@ mod tests {
     use crate::scan::Scan;
     use crate::space::Space;
     use crate::testing::{
-        any_dense_scan, any_grid, any_limited_grid, any_scan, plain_votes, plain_votes_within,
-        space_of,
+        any_dense_scan, any_limited_grid, any_scan, plain_votes_within, space_of,
     };
     use crate::votes::CollectConfig;
 
@@ -364,18 +353,16 @@ mod tests {
     }
 
     impl Sifter {
-        /// The outcome where some pose is known to have `best` votes, or where so many
-        /// leading ones are wanted.
+        /// The outcome where some pose is known to have `best` votes.
         fn count(
             &mut self,
             (instruction_set, threads): (InstructionSet, usize),
             (index, grid): (&SearchIndex, &Grid),
             scan: (&ScanProgram, &Space),
-            (config, best, leading): (CollectConfig, u16, usize),
+            (config, best): (CollectConfig, u16),
         ) -> &VoteSet {
             let shared = &mut self.shared;
             let task = Task::new(shared, instruction_set, index, grid, scan, config);
-            let task = task.leading(leading);
             task.best.store(best, Ordering::Relaxed);
             self.shares.resize_with(threads, Share::default);
             let scan = (&task, scan.0);
@@ -403,32 +390,10 @@ mod tests {
                 let best = if is_known { plain.best } else { 0 };
                 for instruction_set in InstructionSet::available() {
                     let how = (instruction_set, threads);
-                    let found = sifter.count(how, (&index, &grid), (&program, &space), (config, best, 0));
+                    let found = sifter.count(how, (&index, &grid), (&program, &space), (config, best));
                     let found = VoteSet { poses_evaluated: 0, ..found.clone() };
                     prop_assert_eq!(&found, &plain, "{:?}", how);
                 }
-            }
-        }
-    }
-
-    proptest! {
-        #[test]
-        fn the_leading_poses_are_sifted_down_to_the_last_of_them(
-            grid in any_grid(), scan in prop_oneof![2 => any_dense_scan(), 1 => any_scan()],
-            headings in 1u32..5, leading in 1usize..20, threads in 1usize..4,
-        ) {
-            let config = CollectConfig { floor_share: 0.0, max_votes: 1_000_000, candidates: 0 };
-            let space = space_of(&grid, headings * 8);
-            let program = scan.program(&space);
-            let plain = plain_votes(&grid, &program, &space, config);
-            let index = SearchIndex::new(&grid, &space);
-            let mut sifter = Sifter::default();
-            for instruction_set in InstructionSet::available() {
-                let how = (instruction_set, threads);
-                let found = sifter.count(how, (&index, &grid), (&program, &space), (config, 0, leading));
-                let floor = found.certified_floor;
-                let above = plain.votes.partition_point(|vote| vote.intensity >= floor);
-                prop_assert_eq!(&found.votes, &plain.votes[..above], "{:?}", how);
             }
         }
     }
@@ -483,7 +448,7 @@ mod tests {
                 floor_share,
                 ..CollectConfig::default()
             };
-            let wanted = (config, 0, 0);
+            let wanted = (config, 0);
             let found = sifter.count(how, (&index, &grid), (&program, &space), wanted);
             let best = found.votes[0];
             assert_eq!((usize::from(best.x), usize::from(best.y)), (x, y));

@@ -12,7 +12,7 @@ use crate::grid::Grid;
 use crate::instruction_set::InstructionSet;
 use crate::program::ScanProgram;
 use crate::space::Space;
-use crate::votes::{CollectConfig, Leaders};
+use crate::votes::CollectConfig;
 
 /// What is searched: a scan on a map.
 pub(super) struct Task<'a> {
@@ -20,9 +20,6 @@ pub(super) struct Task<'a> {
     pub grid: &'a Grid,
     pub space: &'a Space,
     pub config: CollectConfig,
-    /// The poses of which the last is the least that is wanted, if not all above the floor
-    /// are.
-    pub leaders: Option<Leaders<'a>>,
     pub programs: &'a Programs,
     /// The bound of each coarse block in which poses are sought.
     pub coarse_bounds: &'a [AtomicU16],
@@ -95,21 +92,12 @@ impl<'a> Task<'a> {
             grid,
             space,
             config,
-            leaders: None,
             programs: &shared.programs,
             coarse_bounds: &shared.coarse_bounds,
             by_chunk: &shared.by_chunk,
             best: AtomicU16::new(0),
             brute_force: Cost::of_brute_force(instruction_set, grid, program, space),
         }
-    }
-
-    /// Once a thread knows so many distinct poses, it leaves out what lies below all
-    /// of them; with 0 it leaves out nothing for that.
-    pub(super) fn leading(self, wanted: usize) -> Self {
-        let space = self.space;
-        let leaders = (wanted > 0).then_some(Leaders { wanted, space });
-        Task { leaders, ..self }
     }
 
     /// What poses of the map see.

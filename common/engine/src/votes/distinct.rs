@@ -81,61 +81,22 @@ impl<'a> Distinct<'a> {
         let most = most_candidates(self.wanted, self.space.resolution_m);
         kept < self.wanted || kept < most && self.best.is_some_and(is_close)
     }
-
-    /// Those of all poses.
-    pub(crate) fn of(votes: &[Vote], space: &'a Space, wanted: usize) -> Vec<Vote> {
-        let mut kept = Vec::new();
-        let mut distinct = Distinct::new(space, wanted, &mut kept);
-        votes.iter().for_each(|vote| {
-            distinct.take(vote);
-        });
-        kept
-    }
 }
 
-/// How many distinct poses are wanted, and the space in which they are told apart.
-#[derive(Debug, Clone, Copy)]
-pub(crate) struct Leaders<'a> {
-    pub wanted: usize,
-    pub space: &'a Space,
-}
-
-/// The best distinct poses of those that came so far, in whatever order.
-#[derive(Debug, Default)]
-pub(crate) struct Leading {
-    /// Most votes first.
-    kept: Vec<Vote>,
-}
-
-impl Leading {
-    /// Starts anew, with none.
-    pub(crate) fn start(&mut self) {
-        self.kept.clear();
-    }
-
-    /// Takes a pose. The votes of the last of the best ones wanted, where there are so
-    /// many; a better pose that comes later may push two of them aside, so that is no
-    /// bound of what the last one will have in the end.
-    pub(crate) fn take(&mut self, vote: &Vote, leaders: Leaders<'_>) -> Option<u16> {
-        let is_near = |kept: &Vote| are_near(vote, kept, leaders.space);
-        let is_hidden = |kept: &Vote| kept.intensity >= vote.intensity && is_near(kept);
-        if !self.kept.iter().any(is_hidden) {
-            self.kept.retain(|kept| !is_near(kept));
-            let place = |kept: &Vote| kept.intensity >= vote.intensity;
-            let place = self.kept.partition_point(place);
-            self.kept.insert(place, *vote);
-            self.kept.truncate(leaders.wanted);
-        }
-        let is_full = self.kept.len() == leaders.wanted;
-        self.kept
-            .last()
-            .filter(|_| is_full)
-            .map(|vote| vote.intensity)
-    }
+/// The distinct ones of poses in their order, at most so many: those that are more than
+/// [`DISTINCT_M`] or [`DISTINCT_DEG`] apart from all that were taken before.
+#[must_use]
+pub fn distinct(votes: &[Vote], space: &Space, wanted: usize) -> Vec<Vote> {
+    let mut kept = Vec::new();
+    let mut distinct = Distinct::new(space, wanted, &mut kept);
+    votes.iter().for_each(|vote| {
+        distinct.take(vote);
+    });
+    kept
 }
 
 /// Whether two poses are one candidate.
-pub(crate) fn are_near(a: &Vote, b: &Vote, space: &Space) -> bool {
+fn are_near(a: &Vote, b: &Vote, space: &Space) -> bool {
     let headings = space.directions.count() as u16;
     let turn = a.heading.abs_diff(b.heading);
     let degrees = f64::from(turn.min(headings - turn)) * 360.0 / f64::from(headings);
@@ -148,28 +109,17 @@ mod tests {
     use super::*;
 
     #[test]
-    fn the_leading_poses_are_distinct_and_better_ones_push_others_aside() {
+    fn of_poses_near_each_other_the_first_is_distinct() {
         let space = Space::new(360, 0.1, 100, 100).unwrap();
-        let mut leading = Leading::default();
-        let leaders = Leaders {
-            wanted: 2,
-            space: &space,
-        };
-        let mut last = |x, intensity| {
-            let vote = Vote {
-                x,
-                y: 0,
-                heading: 0,
-                intensity,
-            };
-            leading.take(&vote, leaders)
-        };
-        assert_eq!(last(0, 5), None, "one of two");
-        assert_eq!(last(2, 4), None, "beside a better one");
-        assert_eq!(last(4, 6), Some(5));
-        assert_eq!(last(50, 3), Some(5), "not among the best");
-        assert_eq!(last(2, 7), None, "in place of both");
-        assert_eq!(last(9, 1), Some(1));
-        assert_eq!(last(51, 8), Some(7));
+        let votes = [(0, 0), (2, 6), (4, 0), (0, 353), (4, 6), (50, 0), (60, 0)];
+        let votes = votes.map(|(x, heading)| Vote {
+            x,
+            y: 0,
+            heading,
+            intensity: 9,
+        });
+        let found = distinct(&votes, &space, 4);
+        let found: Vec<_> = found.iter().map(|vote| (vote.x, vote.heading)).collect();
+        assert_eq!(found, [(0, 0), (4, 0), (0, 353), (50, 0)]);
     }
 }

@@ -23,7 +23,7 @@ impl FieldVotes {
         found: &mut VoteSet,
     ) {
         self.collector.start(config);
-        self.collector.take_field(field, width, heading, None);
+        self.collector.take_field(field, width, heading);
         self.collector.finish(field.len() as u64, found);
         let wanted = config.candidates as usize;
         if wanted > 0 && found.best > 0 {
@@ -39,7 +39,7 @@ impl FieldVotes {
 pub fn of_field(field: &[u16], width: usize, heading: u16, config: CollectConfig) -> VoteSet {
     let (mut collector, mut found) = (Collector::default(), VoteSet::default());
     collector.start(config);
-    collector.take_field(field, width, heading, None);
+    collector.take_field(field, width, heading);
     collector.finish(field.len() as u64, &mut found);
     found
 }

@@ -4,12 +4,14 @@ use std::time::Instant;
 
 use benchmarks::worlds::World;
 use engine::accumulator::{Accumulator, Query};
+use engine::exhaustive;
 use engine::instruction_set::InstructionSet;
+use engine::limits::Limits;
 use engine::program::ScanProgram;
 use engine::scatter::Scatter;
 use engine::search::{SearchIndex, Workspace};
 use engine::sweep::FieldSweep;
-use engine::votes::{CollectConfig, VoteSet, of_field};
+use engine::votes::{CollectConfig, VoteSet, distinct, of_field};
 use messages::Vote;
 
 use super::measure::{Answer, Locate, Pose, Task};
@@ -92,22 +94,38 @@ fn collecting<'a>(world: &'a World, index: &'a SearchIndex, collect: CollectConf
     })
 }
 
-/// The sixteen best distinct poses, exactly. Gives up after so many seconds, or
-/// where a million poses are not enough.
+/// The sixteen best distinct poses, exactly, with every pose counted: down to half of the
+/// best one's votes at first, and lower where fewer are distinct. Gives up after so many
+/// seconds, or where a million poses are not enough.
 pub(super) fn top_sixteen<'a>(
     world: &'a World,
-    index: &'a SearchIndex,
+    sweeps: &'a FieldSweep,
     patience_s: f64,
 ) -> Locate<'a> {
+    const COUNT: usize = 16;
     Box::new(move |task, _| {
         let program = program(task)?;
         let start = Instant::now();
         let is_late = || start.elapsed().as_secs_f64() > patience_s;
-        let how = (InstructionSet::best(), 1);
-        let top = index.top(how, &world.grid, (&program, task.space), 16, &is_late);
-        Ok(match top {
-            Some(top) if top.is_complete => Answer::Best(top.poses.first().map(pose)),
-            _ => Answer::GaveUp,
-        })
+        let (limits, scan) = (Limits::none(world.grid.width()), (&program, task.space));
+        let mut accumulators = [sweeps.accumulator()];
+        let mut floor_share = 0.5;
+        loop {
+            let collect = CollectConfig {
+                floor_share,
+                max_votes: 1_000_000,
+                candidates: 0,
+            };
+            let found = exhaustive::search(&mut accumulators, &limits, scan, collect, &is_late);
+            let Some(found) = found.filter(|found| !found.truncated) else {
+                return Ok(Answer::GaveUp);
+            };
+            let poses = distinct(&found.votes, task.space, COUNT);
+            // At 1 or below, all poses that have votes were collected.
+            if poses.len() == COUNT || found.certified_floor <= 1 {
+                return Ok(Answer::Best(poses.first().map(pose)));
+            }
+            floor_share /= 2.0;
+        }
     })
 }

@@ -134,7 +134,7 @@ impl LineUp {
             if table == Table::Search {
                 add(
                     Method::TopSixteen,
-                    reverse::top_sixteen(world, &index.value, patience_s),
+                    reverse::top_sixteen(world, &self.sweeps.value, patience_s),
                 );
                 add(Method::Candidates, reverse::candidates(world, &index.value));
             }

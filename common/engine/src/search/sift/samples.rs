@@ -16,9 +16,6 @@ const SAMPLES: usize = 1 + EIGHTHS.len();
 /// as the map says. Where a scan's best pose has fewer, too small a sample may be chosen.
 const EXPECTED_BEST: f64 = 0.98;
 
-/// The same of the last of the leading poses in clutter, before anything was counted.
-const EXPECTED_LEADING: f64 = 0.8;
-
 /// A sample that tells enough has this many times the part of the best pose's votes that
 /// the poses which are wanted may lack: then some ten poses at each heading are left.
 const LACKED: f64 = 4.0;
@@ -81,11 +78,10 @@ pub(super) fn is_least_enough(task: &Task<'_>) -> bool {
 
 /// What counting every pose likely takes, as a share of brute force.
 pub(in super::super) fn likely_cost(task: &Task<'_>) -> f64 {
-    let part = if task.leaders.is_none() && is_least_enough(task) {
+    let part = if is_least_enough(task) {
         LEAST_BEAMS as f64 / task.programs.beams as f64
     } else {
-        let leading = task.leaders.map_or(0.0, |_| EXPECTED_LEADING);
-        LACKED * (1.0 - leading.max(task.config.floor_share))
+        LACKED * (1.0 - task.config.floor_share)
     };
     (SHARE_OF_NONE + (1.0 - SHARE_OF_NONE) * part).min(1.0)
 }
