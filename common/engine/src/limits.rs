@@ -139,18 +139,22 @@ impl Limits {
         self.width
     }
 
-    /// For blocks of so many cells a side, row by row, whether poses are sought
-    /// in any cell; `None` where they are in all.
-    pub(crate) fn blocks(&self, side: usize) -> Option<Vec<bool>> {
-        let cells = self.cells.as_ref()?;
-        let columns = self.width.div_ceil(side);
-        let rows = (cells.cells() / self.width).div_ceil(side);
-        let mut blocks = vec![false; columns * rows];
-        for i in cells.iter() {
-            let (x, y) = (i % self.width, i / self.width);
+    /// For blocks of so many cells a side, row by row, whether poses are sought in any
+    /// cell: the blocks of which an index has to know.
+    pub(crate) fn blocks(&self, side: usize, grid: &Grid) -> Vec<bool> {
+        let columns = grid.width().div_ceil(side);
+        let mut blocks = vec![false; columns * grid.height().div_ceil(side)];
+        for i in self.open_cells(grid) {
+            let (x, y) = (i % grid.width(), i / grid.width());
             blocks[y / side * columns + x / side] = true;
         }
-        Some(blocks)
+        blocks
+    }
+
+    /// Bytes that they take.
+    pub(crate) fn bytes(&self) -> usize {
+        let cells = self.cells.as_ref().map_or(0, CellSet::bytes);
+        cells + self.headings.as_ref().map_or(0, Vec::len)
     }
 }
 
@@ -190,7 +194,10 @@ mod tests {
         let limits = limits(&LimitsConfig::default()).unwrap();
         assert_eq!(limits, Limits::none(6));
         assert!(limits.hold_cell(0, 0) && limits.hold_heading(7));
-        assert_eq!(limits.blocks(4), None);
+        assert_eq!(
+            limits.blocks(1, &grid(&ROOM))[..8],
+            [false, false, false, false, false, false, false, true]
+        );
     }
 
     #[test]
@@ -230,7 +237,7 @@ mod tests {
         };
         let limits = limits(&config).unwrap();
         assert_eq!(drawn(&limits), ["------", "-+++--", "-+++--", "------"]);
-        assert_eq!(limits.blocks(4), Some(vec![true, false]));
+        assert_eq!(limits.blocks(4, &grid(&ROOM)), [true, false]);
         let mut field = vec![7; 24];
         limits.clear(&mut field, 0);
         assert_eq!(field.iter().filter(|&&votes| votes == 7).count(), 6);

@@ -138,7 +138,7 @@ impl Localizer {
         let limits = Limits::new(&config.limits, frame, &grid, &space.directions)?;
         let method = match prior {
             Prior::None => {
-                let index = SearchIndex::new(&grid, &space).within(limits);
+                let index = SearchIndex::within(&grid, &space, limits);
                 Method::Search(Box::new(index))
             }
             Prior::Heading => Method::Sweep(FieldSweep::new(&grid), limits),

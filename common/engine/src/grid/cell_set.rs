@@ -7,8 +7,6 @@ const WORD: usize = 64;
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub(crate) struct CellSet {
     words: Vec<u64>,
-    /// All cells of the grid.
-    cells: usize,
 }
 
 impl CellSet {
@@ -20,7 +18,6 @@ impl CellSet {
         };
         CellSet {
             words: (0..cells).step_by(WORD).map(word).collect(),
-            cells,
         }
     }
 
@@ -34,9 +31,9 @@ impl CellSet {
         }
     }
 
-    /// All cells of the grid.
-    pub(crate) fn cells(&self) -> usize {
-        self.cells
+    /// Bytes that they take.
+    pub(crate) fn bytes(&self) -> usize {
+        size_of_val(&self.words[..])
     }
 
     /// Whether a cell is among them.
@@ -88,7 +85,6 @@ mod tests {
             held in vec(prop::bool::weighted(0.8), 0..300), kept in vec(any::<bool>(), 300),
         ) {
             let mut set = CellSet::of(held.len(), |i| held[i]);
-            prop_assert_eq!(set.cells(), held.len());
             prop_assert!((0..held.len()).all(|i| set.holds(i) == held[i]));
             set.retain(|i| kept[i]);
             let both: Vec<usize> = (0..held.len()).filter(|&i| held[i] && kept[i]).collect();

@@ -192,7 +192,7 @@ impl<'a> Alternatives<'a> {
         let sides = (index.intervals.columns, index.intervals.rows);
         let smalls = quarters(block, index.fine.columns, sides);
         let mut best: Option<Spot> = None;
-        for small in smalls.filter(|&block| index.within.holds(Size::Small, block)) {
+        for small in smalls.filter(|&block| index.intervals.ids.holds(block)) {
             index.intervals.read(small, intervals);
             for (first, among) in bounds.reach(place) {
                 let least = best.map_or(1, |spot| spot.bound);

@@ -99,7 +99,7 @@ mod tests {
             let space = space_of(&grid, headings);
             let program = scan.program(&space);
             let config = CollectConfig { candidates, ..CollectConfig::default() };
-            let index = SearchIndex::new(&grid, &space).within(limits);
+            let index = SearchIndex::within(&grid, &space, limits);
             let mut workspace = Workspace::default();
             let (how, scan) = ((InstructionSet::best(), threads), (&program, &space));
             let mut attempt = index.attempt(&mut workspace, how, &grid, scan, config, &|| false);

@@ -135,6 +135,7 @@ impl<'a> Descent<'a> {
         let within = &self.task.index.within;
         let own = (part..coarse.quads()).step_by(parts);
         let own = own.map(|quad| within.quad(Size::Coarse, coarse, quad));
+        let own = own.filter(|quad| quad.blocks().next().is_some());
         let Room {
             set_bounds, queue, ..
         } = &mut *self.room;
@@ -250,10 +251,9 @@ impl<'a> Descent<'a> {
     /// Queues the blocks of 4 × 4 cells in one of 8 × 8.
     fn split_fine(&mut self, index: usize, windows: &Range<usize>) {
         let (fine, intervals) = (&self.task.index.fine, &self.task.index.intervals);
-        let within = &self.task.index.within;
         let quarters = quarters(index, fine.columns, (intervals.columns, intervals.rows));
         let mut sought = quarters
-            .filter(|&block| within.holds(Size::Small, block))
+            .filter(|&block| intervals.ids.holds(block))
             .peekable();
         while let Some(block) = sought.next() {
             if let Some(&next) = sought.peek() {

@@ -4,8 +4,9 @@ use super::alternatives;
 use super::attempt::Attempt;
 use super::bins::Bins;
 use super::block_bounds::Bounding;
+use super::block_ids::BlockIds;
 use super::descent;
-use super::intervals::RangeIntervals;
+use super::intervals::{RangeIntervals, SIDE};
 use super::obstacles::Obstacles;
 use super::sets::RangeSets;
 use super::sift::{self, Sift};
@@ -48,16 +49,25 @@ pub struct Workspace {
 }
 
 impl SearchIndex {
-    /// Prepares a map.
+    /// Prepares a map of which poses are sought in all open cells.
     #[must_use]
     pub fn new(grid: &Grid, space: &Space) -> Self {
+        Self::within(grid, space, Limits::none(grid.width()))
+    }
+
+    /// Prepares a map of which poses are sought only within limits, those of its grid.
+    /// What is kept of blocks is kept of those alone that hold such a pose.
+    #[must_use]
+    pub fn within(grid: &Grid, space: &Space, limits: Limits) -> Self {
         let directions = &space.directions;
         let bins = Bins::new(directions);
         // No ray has more steps than it crosses columns or rows.
         let longest = grid.width().max(grid.height()) as u16;
         let steps = BinSteps::new(&bins, directions, longest);
-        let (intervals, wide) = RangeIntervals::new(grid, directions, (&bins, &steps));
+        let blocks = BlockIds::new(&limits.blocks(SIDE, grid));
+        let (intervals, wide) = RangeIntervals::new(grid, directions, (&bins, &steps), blocks);
         let fine = RangeSets::new(&intervals, &wide);
+        drop(wide);
         let coarse = fine.joined();
         SearchIndex {
             steps,
@@ -65,17 +75,9 @@ impl SearchIndex {
             fine,
             coarse,
             obstacles: Obstacles::new(grid),
-            within: Within::new(Limits::none(grid.width())),
+            within: Within::new(limits, grid),
             sweeps: FieldSweep::new(grid),
         }
-    }
-
-    /// The same map, of which poses are sought only within limits: those of its
-    /// grid.
-    #[must_use]
-    pub fn within(mut self, limits: Limits) -> Self {
-        self.within = Within::new(limits);
-        self
     }
 
     /// Where poses are sought.
@@ -88,7 +90,7 @@ impl SearchIndex {
     #[must_use]
     pub fn bytes(&self) -> usize {
         let blocks = self.intervals.bytes() + self.fine.bytes() + self.coarse.bytes();
-        blocks + self.obstacles.bytes() + self.sweeps.bytes()
+        blocks + self.within.bytes() + self.obstacles.bytes() + self.sweeps.bytes()
     }
 
     /// The poses with the most votes; `None` if `stop` said so before the end.
@@ -239,16 +241,18 @@ mod tests {
             let program = scan.program(&space);
             let config = CollectConfig { floor_share, ..CollectConfig::default() };
             let plain = plain_votes_within(&limits, &grid, &program, &space, config);
-            let index = SearchIndex::new(&grid, &space).within(limits.clone());
+            let index = SearchIndex::within(&grid, &space, limits.clone());
             let scan = (&program, &space);
             let config = CollectConfig { candidates, ..config };
-            let how = (InstructionSet::best(), threads);
-            let found = index.search_with(how, &grid, scan, config, &|| false).unwrap();
-            let (above, below) = found.votes.split_at(plain.votes.len());
-            prop_assert_eq!(above, &plain.votes);
-            let is_held = |vote: &Vote| limits.hold_cell(vote.x.into(), vote.y.into())
-                && limits.hold_heading(vote.heading.into());
-            prop_assert!(below.iter().all(is_held));
+            for instruction_set in InstructionSet::available() {
+                let how = (instruction_set, threads);
+                let found = index.search_with(how, &grid, scan, config, &|| false).unwrap();
+                let (above, below) = found.votes.split_at(plain.votes.len());
+                prop_assert_eq!(above, &plain.votes);
+                let is_held = |vote: &Vote| limits.hold_cell(vote.x.into(), vote.y.into())
+                    && limits.hold_heading(vote.heading.into());
+                prop_assert!(below.iter().all(is_held));
+            }
         }
 
         #[test]
@@ -302,8 +306,8 @@ mod tests {
             let mut blocks = BlockBounds::default();
             for ((grid, limits, headings), scan, threads) in worlds {
                 let space = space_of(&grid, headings);
-                let (index, program) = (SearchIndex::new(&grid, &space), scan.program(&space));
-                let (index, scan) = (index.within(limits.clone()), (&program, &space));
+                let (index, program) = (SearchIndex::within(&grid, &space, limits), scan.program(&space));
+                let scan = (&program, &space);
                 for instruction_set in InstructionSet::available() {
                     let how = (instruction_set, threads);
                     let fresh = index.search_with(how, &grid, scan, config, &|| false).unwrap();

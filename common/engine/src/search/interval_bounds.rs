@@ -252,7 +252,8 @@ mod tests {
                         let rests = sets.rests((within, place), (first, among));
                         let window = Window { first: first as u16, among, rests };
                         let sides = (intervals.columns, intervals.rows);
-                        for small in quarters(block, fine.columns, sides) {
+                        let smalls = quarters(block, fine.columns, sides);
+                        for small in smalls.filter(|&small| intervals.ids.holds(small)) {
                             intervals.read(small, &mut read);
                             let plain = interval.bound(&read, first, among, least, &mut alone);
                             let found = interval.bound_within(&read, &window, least, &mut noted);

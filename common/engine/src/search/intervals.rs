@@ -15,6 +15,7 @@ use crate::directions::Directions;
 use crate::grid::Grid;
 use crate::instruction_set::InstructionSet;
 use crate::search::bins::Bins;
+use crate::search::block_ids::BlockIds;
 use crate::search::prefetch::prefetch;
 use crate::search::steps::BinSteps;
 use build::Source;
@@ -37,7 +38,7 @@ const ALL: u8 = 15;
 /// than before; up to the first a nibble is a width itself.
 const STRETCHES: [(u8, u8); 3] = [(4, 1), (8, 6), (12, 8)];
 
-/// The two intervals of all blocks in all directions.
+/// The two intervals in all directions of the blocks in which poses are sought.
 #[derive(Debug, Clone)]
 pub(crate) struct RangeIntervals {
     /// Blocks along x.
@@ -46,9 +47,11 @@ pub(crate) struct RangeIntervals {
     pub rows: usize,
     /// Directions of a turn.
     pub directions: usize,
+    /// The blocks whose intervals are kept.
+    pub ids: BlockIds,
     /// By which blocks are unpacked.
     set: InstructionSet,
-    /// For each block three rows with a byte for each direction: the nearest
+    /// For each block that is kept three rows with a byte for each direction: the nearest
     /// bin, the farthest bin, and the widths of the two intervals.
     packed: Vec<u8>,
 }
@@ -90,62 +93,80 @@ impl<'a> RowsOfBlock<'a> {
 }
 
 impl RangeIntervals {
-    /// Those of all blocks of a grid, and what they see where these are wide.
+    /// Those of some blocks of a grid, and what they see where these are wide.
     pub(crate) fn new(
         grid: &Grid,
         directions: &Directions,
         bins: (&Bins, &BinSteps),
+        blocks: BlockIds,
     ) -> (Self, WideViews) {
-        Self::with(grid, directions, bins, InstructionSet::best(), 1)
+        Self::with(grid, directions, bins, blocks, (InstructionSet::best(), 1))
     }
 
-    /// The same by a given instruction set and number of threads.
+    /// Those of all blocks.
+    #[cfg(test)]
+    pub(crate) fn of_all(
+        grid: &Grid,
+        directions: &Directions,
+        bins: (&Bins, &BinSteps),
+    ) -> (Self, WideViews) {
+        let blocks = grid.width().div_ceil(SIDE) * grid.height().div_ceil(SIDE);
+        Self::new(grid, directions, bins, BlockIds::all(blocks))
+    }
+
+    /// The same as [`RangeIntervals::new`] by a given instruction set and number of
+    /// threads.
     pub(crate) fn with(
         grid: &Grid,
         directions: &Directions,
         (bins, steps): (&Bins, &BinSteps),
-        set: InstructionSet,
-        threads: usize,
+        ids: BlockIds,
+        (set, threads): (InstructionSet, usize),
     ) -> (Self, WideViews) {
         let (columns, rows) = (grid.width().div_ceil(SIDE), grid.height().div_ceil(SIDE));
-        let mut packed = vec![0; PACKED * directions.count() * columns * rows];
+        let mut packed = vec![0; PACKED * directions.count() * ids.count()];
         let source = Source {
             grid,
             directions,
             bins,
             steps,
+            ids: &ids,
         };
         let views = build::build(source, set, threads, &mut packed);
+        let wide = WideViews::new(ids.count(), &views);
         let intervals = RangeIntervals {
             columns,
             rows,
             directions: directions.count(),
+            ids,
             set,
             packed,
         };
-        (intervals, WideViews::new(columns * rows, &views))
+        (intervals, wide)
     }
 
     /// Bytes that the intervals take.
     pub(crate) fn bytes(&self) -> usize {
-        self.packed.len()
+        self.packed.len() + self.ids.bytes()
     }
 
-    /// The nearest bins of a block, its farthest ones, and the widths.
+    /// The nearest bins of a block that is kept, its farthest ones, and the widths.
     pub(crate) fn packed(&self, block: usize) -> [&[u8]; PACKED] {
-        let packed = &self.packed[PACKED * self.directions * block..][..PACKED * self.directions];
+        let bytes = PACKED * self.directions;
+        let packed = &self.packed[bytes * self.ids.before(block)..][..bytes];
         let (nearest, rest) = packed.split_at(self.directions);
         let (farthest, widths) = rest.split_at(self.directions);
         [nearest, farthest, widths]
     }
 
-    /// Asks for the intervals of a block that is soon to be read.
+    /// Asks for the intervals of a block that is soon to be read, if it is kept.
     pub(crate) fn prefetch(&self, block: usize) {
-        let bytes = PACKED * self.directions;
-        prefetch(&self.packed[bytes * block..][..bytes]);
+        if self.ids.holds(block) {
+            self.packed(block).into_iter().for_each(prefetch);
+        }
     }
 
-    /// Unpacks the intervals of a block.
+    /// Unpacks the intervals of a block that is kept.
     pub(crate) fn read(&self, block: usize, into: &mut BlockIntervals) {
         let packed = self.packed(block);
         let ends = into.rows.each_mut().map(|row| {
@@ -180,6 +201,7 @@ impl RangeIntervals {
 mod tests {
     use std::collections::BTreeMap;
 
+    use proptest::collection::vec;
     use proptest::prelude::*;
 
     use super::*;
@@ -195,7 +217,11 @@ mod tests {
             let directions = &space_of(&grid, headings * 8).directions;
             let bins = Bins::new(directions);
             let steps = BinSteps::new(&bins, directions, grid.width().max(grid.height()) as u16);
-            let with = |set, threads| RangeIntervals::with(&grid, directions, (&bins, &steps), set, threads);
+            let blocks = grid.width().div_ceil(SIDE) * grid.height().div_ceil(SIDE);
+            let with = |set, threads| {
+                let ids = BlockIds::all(blocks);
+                RangeIntervals::with(&grid, directions, (&bins, &steps), ids, (set, threads))
+            };
             let (intervals, noted) = with(InstructionSet::Portable, 1);
             let views = |wide: &WideViews, block| wide.of(block).collect::<BTreeMap<_, _>>();
             for set in InstructionSet::available() {
@@ -246,6 +272,29 @@ mod tests {
                 for row in &read.rows {
                     let again = (directions.count()..row.len()).all(|i| row[i] == row[i - directions.count()]);
                     prop_assert!(again && row.len() == directions.count() + READ);
+                }
+            }
+        }
+    }
+
+    proptest! {
+        #[test]
+        fn blocks_that_are_left_out_change_nothing_of_the_others(
+            grid in prop_oneof![3 => any_grid(), 1 => any_long_grid()],
+            headings in prop_oneof![1u32..12, Just(45)], kept in vec(any::<bool>(), 300), threads in 1usize..4,
+        ) {
+            let directions = &space_of(&grid, headings * 8).directions;
+            let bins = Bins::new(directions);
+            let steps = BinSteps::new(&bins, directions, grid.width().max(grid.height()) as u16);
+            let (all, noted) = RangeIntervals::of_all(&grid, directions, (&bins, &steps));
+            let blocks = all.columns * all.rows;
+            for set in InstructionSet::available() {
+                let ids = BlockIds::new(&kept[..blocks]);
+                let (some, others) = RangeIntervals::with(&grid, directions, (&bins, &steps), ids, (set, threads));
+                for block in (0..blocks).filter(|&block| kept[block]) {
+                    prop_assert_eq!(some.packed(block), all.packed(block), "{} {}", set, threads);
+                    let views = |wide: &WideViews, id| wide.of(id).collect::<BTreeMap<_, _>>();
+                    prop_assert_eq!(views(&others, some.ids.before(block)), views(&noted, block));
                 }
             }
         }

@@ -23,6 +23,7 @@ mod attempt;
 mod bins;
 mod bits;
 mod block_bounds;
+mod block_ids;
 mod budget;
 mod bundle;
 mod cell_lanes;

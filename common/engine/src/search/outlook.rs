@@ -201,7 +201,7 @@ mod tests {
             let directions = &space_of(&grid, headings * 8).directions;
             let bins = Bins::new(directions);
             let steps = BinSteps::new(&bins, directions, grid.width().max(grid.height()) as u16);
-            let (intervals, _) = RangeIntervals::new(&grid, directions, (&bins, &steps));
+            let (intervals, _) = RangeIntervals::of_all(&grid, directions, (&bins, &steps));
             let obstacles = Obstacles::new(&grid);
             let view = View { grid: &grid, obstacles: &obstacles, steps: &steps, directions };
             let mut outlook = Outlook::default();

@@ -278,7 +278,7 @@ mod tests {
             let program = scan.program(&space);
             let bins = Bins::new(directions);
             let steps = BinSteps::new(&bins, directions, grid.width().max(grid.height()) as u16);
-            let (intervals, wide) = RangeIntervals::new(&grid, directions, (&bins, &steps));
+            let (intervals, wide) = RangeIntervals::of_all(&grid, directions, (&bins, &steps));
             let fine = RangeSets::new(&intervals, &wide);
             // Some headings, spread over the turn, are enough to meet any error.
             let fields: Vec<_> = (0..directions.count()).step_by(1 + headings / 8)
@@ -290,7 +290,7 @@ mod tests {
                 for instruction_set in InstructionSet::available() {
                     let mut set_program = SetProgram::default();
                     set_program.make(&program, directions, &steps, instruction_set);
-                    let all = Within::new(Limits::none(grid.width()));
+                    let all = Within::new(Limits::none(grid.width()), &grid);
                     let mut bounds = SetBounds::default();
                     bounds.fit(&set_program, all.headings(directions.count()));
                     let mut found = vec![0; sets.blocks()];

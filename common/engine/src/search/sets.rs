@@ -251,7 +251,7 @@ mod tests {
             let directions = &space_of(&grid, headings * 8).directions;
             let bins = Bins::new(directions);
             let steps = BinSteps::new(&bins, directions, grid.width().max(grid.height()) as u16);
-            let (intervals, wide) = RangeIntervals::new(&grid, directions, (&bins, &steps));
+            let (intervals, wide) = RangeIntervals::of_all(&grid, directions, (&bins, &steps));
             let fine = RangeSets::with(&intervals, &wide, InstructionSet::Portable, 1);
             for set in InstructionSet::available() {
                 for threads in 1..4 {
@@ -279,7 +279,7 @@ mod tests {
             let directions = &space_of(&grid, headings * 8).directions;
             let bins = Bins::new(directions);
             let steps = BinSteps::new(&bins, directions, grid.width().max(grid.height()) as u16);
-            let (intervals, wide) = RangeIntervals::new(&grid, directions, (&bins, &steps));
+            let (intervals, wide) = RangeIntervals::of_all(&grid, directions, (&bins, &steps));
             let sets = RangeSets::new(&intervals, &wide);
             let mut plain = vec![Vec::new(); sets.blocks()];
             let mut read = intervals::BlockIntervals::default();

@@ -386,7 +386,7 @@ mod tests {
                 let space = space_of(&grid, headings);
                 let program = scan.program(&space);
                 let plain = plain_votes_within(&limits, &grid, &program, &space, config);
-                let index = SearchIndex::new(&grid, &space).within(limits);
+                let index = SearchIndex::within(&grid, &space, limits);
                 let best = if is_known { plain.best } else { 0 };
                 for instruction_set in InstructionSet::available() {
                     let how = (instruction_set, threads);

@@ -1,41 +1,42 @@
 //! The limits of a search, laid out for blocks of each size.
 
 use super::bits::CHUNK;
+use super::block_ids::BlockIds;
 use super::intervals::SIDE;
 use super::sets::{Quad, RangeSets};
+use crate::grid::Grid;
 use crate::limits::Limits;
 
 /// Where poses are sought, block by block.
 #[derive(Debug, Clone)]
 pub(super) struct Within {
     pub limits: Limits,
-    /// For blocks of 4 × 4, 8 × 8 and 16 × 16 cells whether poses are sought in
-    /// them; `None` where they are in all.
-    blocks: Option<[Vec<bool>; 3]>,
+    /// The blocks of 8 × 8 and of 16 × 16 cells in which poses are sought.
+    blocks: [BlockIds; 2],
 }
 
-/// A size of blocks.
+/// A size of blocks that have sets.
 #[derive(Debug, Clone, Copy)]
 pub(super) enum Size {
-    Small,
     Fine,
     Coarse,
 }
 
 impl Within {
-    pub(super) fn new(limits: Limits) -> Self {
-        let [small, fine, coarse] = [SIDE, 2 * SIDE, 4 * SIDE].map(|side| limits.blocks(side));
-        let blocks = small.zip(fine).zip(coarse);
-        Within {
-            limits,
-            blocks: blocks.map(|((small, fine), coarse)| [small, fine, coarse]),
-        }
+    /// Lays out the limits of a grid.
+    pub(super) fn new(limits: Limits, grid: &Grid) -> Self {
+        let blocks = [2 * SIDE, 4 * SIDE].map(|side| BlockIds::new(&limits.blocks(side, grid)));
+        Within { limits, blocks }
     }
 
     /// Whether poses are sought in a block.
     pub(super) fn holds(&self, size: Size, block: usize) -> bool {
-        let blocks = self.blocks.as_ref();
-        blocks.is_none_or(|blocks| blocks[size as usize][block])
+        self.blocks[size as usize].holds(block)
+    }
+
+    /// Bytes that they take.
+    pub(super) fn bytes(&self) -> usize {
+        self.limits.bytes() + self.blocks.iter().map(BlockIds::bytes).sum::<usize>()
     }
 
     /// A quad of blocks of a size, for those in which poses are sought.

@@ -18,6 +18,8 @@ use crate::directions::{Directions, swap_unless};
 use crate::grid::Grid;
 use crate::instruction_set::InstructionSet;
 use crate::search::bins::Bins;
+use crate::search::bits;
+use crate::search::block_ids::BlockIds;
 use crate::search::lanes::{Lanes, Portable};
 use crate::search::steps::BinSteps;
 use crate::threads;
@@ -29,22 +31,27 @@ pub(super) struct Source<'a> {
     pub directions: &'a Directions,
     pub bins: &'a Bins,
     pub steps: &'a BinSteps,
+    /// The blocks that are wanted.
+    pub ids: &'a BlockIds,
 }
 
-/// [`TILE`] rows of blocks of the packed intervals. Threads fill it in different
-/// directions and take turns at that.
-type Band<'a> = Mutex<&'a mut [u8]>;
+/// The packed intervals of the wanted blocks in [`TILE`] rows of blocks. Threads fill
+/// them in different directions and take turns at that.
+struct Band<'a> {
+    /// The number of its first block.
+    first: usize,
+    packed: Mutex<&'a mut [u8]>,
+}
 
-/// Fills the packed intervals of all blocks, row by row. What is seen where they are
-/// wide, as each thread found it.
+/// Fills the packed intervals of the wanted blocks, row by row. What is seen where they
+/// are wide, as each thread found it.
 pub(super) fn build(
     source: Source<'_>,
     set: InstructionSet,
     threads: usize,
     packed: &mut [u8],
 ) -> Vec<Vec<WideView>> {
-    let row = source.grid.width().div_ceil(SIDE) * PACKED * source.directions.count();
-    let bands: Vec<Band<'_>> = packed.chunks_mut(TILE * row).map(Mutex::new).collect();
+    let bands = bands(source, packed);
     let parts = parts(source.directions, threads);
     let next = AtomicUsize::new(0);
     let mut views = vec![Vec::new(); threads];
@@ -57,6 +64,29 @@ pub(super) fn build(
         Ok::<(), Infallible>(())
     });
     views
+}
+
+fn bands<'a>(source: Source<'_>, mut packed: &'a mut [u8]) -> Vec<Band<'a>> {
+    let Source {
+        grid,
+        directions,
+        ids,
+        ..
+    } = source;
+    let (columns, rows) = (grid.width().div_ceil(SIDE), grid.height().div_ceil(SIDE));
+    let mut bands = Vec::with_capacity(rows.div_ceil(TILE));
+    for row in (0..rows).step_by(TILE) {
+        let first = ids.before(row * columns);
+        let end = ids.before((row + TILE).min(rows) * columns);
+        let bytes = (end - first) * PACKED * directions.count();
+        let (band, rest) = packed.split_at_mut(bytes);
+        bands.push(Band {
+            first,
+            packed: Mutex::new(band),
+        });
+        packed = rest;
+    }
+    bands
 }
 
 /// Where what is built goes: the packed intervals, and what is seen where they are wide.
@@ -138,6 +168,12 @@ fn sweep<L: Lanes>(lanes: L, source: Source<'_>, part: &Part, built: &mut Built<
     for i in 0..strips {
         let strip = if part.forward { strips - 1 - i } else { i };
         masks.fill(source.grid, part.x_major, strip);
+        let places = if part.x_major {
+            (strip, row_blocks)
+        } else {
+            (strip * row_blocks, 1)
+        };
+        let strip_blocks = StripBlocks::new(source.ids, places, blocks);
         for (slot, (&d, swept)) in part.directions.iter().zip(&mut swept).enumerate() {
             let direction = source.directions.get(d);
             let [a, b, c] = &mut between;
@@ -159,11 +195,7 @@ fn sweep<L: Lanes>(lanes: L, source: Source<'_>, part: &Part, built: &mut Built<
                 steps: source.steps,
                 direction: d,
                 class: direction.class,
-                blocks: if part.x_major {
-                    (strip, row_blocks)
-                } else {
-                    (strip * row_blocks, 1)
-                },
+                blocks: &strip_blocks,
             };
             if longest <= Bins::NEAR_STEPS {
                 pool(
@@ -183,7 +215,47 @@ fn sweep<L: Lanes>(lanes: L, source: Source<'_>, part: &Part, built: &mut Built<
                 );
             }
         }
-        planes.write(part, strip, blocks, row_blocks, built.bands);
+        planes.write(part, strip, &strip_blocks, built.bands);
+    }
+}
+
+/// The blocks of a strip.
+pub(super) struct StripBlocks<'a> {
+    ids: &'a BlockIds,
+    /// The first one, and how much farther each next one is.
+    places: (usize, usize),
+    /// A bit for each that is wanted.
+    wanted: Vec<u64>,
+}
+
+impl<'a> StripBlocks<'a> {
+    fn new(ids: &'a BlockIds, places: (usize, usize), blocks: usize) -> Self {
+        let holds = |block: usize| u64::from(ids.holds(places.0 + block * places.1));
+        let word = |first: usize| {
+            let tile = first..blocks.min(first + TILE);
+            tile.fold(0, |word, block| word | holds(block) << (block - first))
+        };
+        StripBlocks {
+            ids,
+            places,
+            wanted: (0..blocks).step_by(TILE).map(word).collect(),
+        }
+    }
+
+    /// Which are wanted of so many from `start` on, which are a part of a tile.
+    #[inline(always)]
+    pub(super) fn wanted(&self, start: usize, count: usize) -> u64 {
+        let word = self
+            .wanted
+            .get(start / TILE)
+            .map_or(0, |word| word >> (start % TILE));
+        word & (u64::MAX >> (TILE - count))
+    }
+
+    /// The number of a wanted one.
+    #[inline(always)]
+    pub(super) fn id(&self, block: usize) -> usize {
+        self.ids.before(self.places.0 + block * self.places.1)
     }
 }
 
@@ -231,36 +303,27 @@ impl Planes {
         [first, second, third]
     }
 
-    /// Writes what was filled in into the blocks of a strip, where a row of
-    /// blocks has `columns`.
+    /// Writes what was filled in into the wanted blocks of a strip.
     #[inline(always)]
-    fn write(
-        &mut self,
-        part: &Part,
-        strip: usize,
-        blocks: usize,
-        columns: usize,
-        bands: &[Band<'_>],
-    ) {
+    fn write(&mut self, part: &Part, strip: usize, blocks: &StripBlocks<'_>, bands: &[Band<'_>]) {
         let bytes = PACKED * self.directions;
-        for start in (0..blocks).step_by(TILE) {
-            let tile = TILE.min(blocks - start);
+        for tile in 0..blocks.wanted.len() {
+            let start = tile * TILE;
+            let wanted = blocks.wanted(start, TILE);
+            if wanted == 0 {
+                continue;
+            }
             // A tile across a column of blocks is as high as a band.
-            let (band, first, stride) = if part.x_major {
-                (start / TILE, strip, columns)
-            } else {
-                (strip / TILE, strip % TILE * columns + start, 1)
-            };
-            let mut band = bands[band].lock().unwrap_or_else(PoisonError::into_inner);
-            for block in 0..tile {
-                self.prefetch_block(&band[bytes * (first + block * stride)..][..bytes]);
+            let band = if part.x_major { tile } else { strip / TILE };
+            let Band { first, packed } = &bands[band];
+            let place = |block: usize| bytes * (blocks.id(start + block) - first);
+            let mut packed = packed.lock().unwrap_or_else(PoisonError::into_inner);
+            for block in bits::ones(wanted) {
+                self.prefetch_block(&packed[place(block)..][..bytes]);
             }
             self.turn(start);
-            for block in 0..tile {
-                self.write_block(
-                    block,
-                    &mut band[bytes * (first + block * stride)..][..bytes],
-                );
+            for block in bits::ones(wanted) {
+                self.write_block(block, &mut packed[place(block)..][..bytes]);
             }
         }
     }

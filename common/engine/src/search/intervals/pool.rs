@@ -8,7 +8,7 @@ use crate::search::lanes::Lanes;
 
 /// Pools the ranges of a strip's four rows of cells block by block, and packs
 /// the intervals of their bins, by `lines`, row by row of the packed format. Notes what
-/// is seen where they are wide.
+/// is seen where they are wide. Where no block is wanted, nothing is done.
 ///
 /// What lies up to the middle between the shortest and the longest range of a
 /// block is near, the rest is far; or what lies in the first quarter, if both parts
@@ -35,6 +35,10 @@ pub(super) fn pool<L: Lanes, const LINES: usize>(
         if start >= cells[0].len() {
             break;
         }
+        let wanted = noting.blocks.wanted(start, L::COUNT);
+        if wanted == 0 {
+            continue;
+        }
         let one = lanes.splat(1);
         let mut steps = [lanes.splat(0); SIDE * SIDE];
         for (steps, cells) in steps.iter_mut().zip(&cells) {
@@ -59,7 +63,7 @@ pub(super) fn pool<L: Lanes, const LINES: usize>(
         lanes.store_bytes(nearest_bin, nearest);
         lanes.store_bytes(farthest_bin, farthest);
         lanes.store_bytes(lanes.and(narrower, lanes.splat(u16::from(u8::MAX))), widths);
-        let wide = lanes.at_least(narrower, lanes.splat(u16::from(WIDE) << u8::BITS));
+        let wide = lanes.at_least(narrower, lanes.splat(u16::from(WIDE) << u8::BITS)) & wanted;
         if wide != 0 {
             noting.note(start, wide, &cells);
         }

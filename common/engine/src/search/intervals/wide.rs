@@ -4,6 +4,7 @@
 //! hold what lies between, too; so where they are wide the bins are noted one by one, for
 //! the sets that are made of the intervals. Searches do not need that any more.
 
+use super::build::StripBlocks;
 use crate::program::NO_RANGE;
 use crate::search::bits;
 use crate::search::steps::BinSteps;
@@ -60,7 +61,7 @@ impl WideViews {
         }
     }
 
-    /// The directions in which a block's intervals are wide, and a bit for each
+    /// The directions in which the intervals of a block, by its number, are wide, and a bit for each
     /// `1 << ROW_SHIFT` bins that it sees there.
     pub(crate) fn of(&self, block: usize) -> impl Iterator<Item = (usize, u64)> {
         let views = self.starts[block] as usize..self.starts[block + 1] as usize;
@@ -77,8 +78,7 @@ pub(super) struct Noting<'a> {
     pub steps: &'a BinSteps,
     pub direction: usize,
     pub class: usize,
-    /// The first block of the strip, and how much farther each next one is.
-    pub blocks: (usize, usize),
+    pub blocks: &'a StripBlocks<'a>,
 }
 
 impl Noting<'_> {
@@ -90,7 +90,7 @@ impl Noting<'_> {
             let seen = ranges.filter(|&range| range != 0 && range != NO_RANGE);
             let rows = seen.map(|range| self.steps.bin(self.class, range) >> ROW_SHIFT);
             self.views.push(WideView {
-                block: (self.blocks.0 + i * self.blocks.1) as u32,
+                block: self.blocks.id(i) as u32,
                 direction: self.direction as u16,
                 rows: rows.fold(0, |rows, row| rows | 1 << row),
             });

@@ -131,10 +131,13 @@ fn mark<M: Mark>(
             continue;
         }
         let block = y * intervals.columns + x;
+        if !intervals.ids.holds(block) {
+            continue;
+        }
         for (chunk_index, chunk) in chunks.iter_mut().enumerate() {
             set(chunk, i, intervals, block, CHUNK * chunk_index);
         }
-        for (direction, rows) in wide.of(block) {
+        for (direction, rows) in wide.of(intervals.ids.before(block)) {
             let (chunk_index, lane) = (direction / CHUNK, direction % CHUNK);
             chunks[chunk_index].leave_out(i, lane);
             for row in bits::ones(rows) {

@@ -1,0 +1,90 @@
+//! The blocks of a grid in which poses are sought, numbered without gaps.
+//!
+//! What is kept of blocks is kept of these alone, so that it grows with where a robot can
+//! be and not with the rectangle that the map fills.
+
+/// Blocks of a word.
+const WORD: usize = 64;
+
+/// Some of the blocks of a grid, by where they are in it, row by row.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub(crate) struct BlockIds {
+    /// A bit for each block.
+    words: Vec<u64>,
+    /// How many blocks lie before each word, and at the end how many there are.
+    before: Vec<u32>,
+}
+
+impl BlockIds {
+    /// Those of which `holds` says so, block by block.
+    pub(crate) fn new(holds: &[bool]) -> Self {
+        let bits = |word: &[bool]| {
+            let bits = word.iter().zip(0..);
+            bits.fold(0, |bits, (&holds, bit)| bits | u64::from(holds) << bit)
+        };
+        let words: Vec<u64> = holds.chunks(WORD).map(bits).collect();
+        let mut count = 0;
+        let mut before = vec![0];
+        before.extend(words.iter().map(|word| {
+            count += word.count_ones();
+            count
+        }));
+        BlockIds { words, before }
+    }
+
+    /// All of so many blocks.
+    #[cfg(test)]
+    pub(crate) fn all(blocks: usize) -> Self {
+        Self::new(&vec![true; blocks])
+    }
+
+    /// How many they are.
+    pub(crate) fn count(&self) -> usize {
+        self.before.last().map_or(0, |&count| count as usize)
+    }
+
+    /// Whether a block is among them.
+    #[inline(always)]
+    pub(crate) fn holds(&self, block: usize) -> bool {
+        self.words[block / WORD] >> (block % WORD) & 1 == 1
+    }
+
+    /// How many of them lie before a block: the number of the block, if it is among them.
+    #[inline(always)]
+    pub(crate) fn before(&self, block: usize) -> usize {
+        let (word, bit) = (block / WORD, block % WORD);
+        let lower = self
+            .words
+            .get(word)
+            .map_or(0, |word| word & ((1 << bit) - 1));
+        (self.before[word] + lower.count_ones()) as usize
+    }
+
+    /// Bytes that they take.
+    pub(crate) fn bytes(&self) -> usize {
+        size_of_val(&self.words[..]) + size_of_val(&self.before[..])
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use proptest::collection::vec;
+    use proptest::prelude::*;
+
+    use super::*;
+
+    proptest! {
+        #[test]
+        fn blocks_are_numbered_in_their_order(holds in vec(any::<bool>(), 0..300)) {
+            let ids = BlockIds::new(&holds);
+            let mut count = 0;
+            for (block, &is_held) in holds.iter().enumerate() {
+                prop_assert_eq!(ids.holds(block), is_held);
+                prop_assert_eq!(ids.before(block), count);
+                count += usize::from(is_held);
+            }
+            prop_assert_eq!(ids.count(), count);
+            prop_assert_eq!(ids.before(holds.len()), count);
+        }
+    }
+}
