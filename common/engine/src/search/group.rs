@@ -36,8 +36,6 @@ struct Plane {
     windows: Vec<Window>,
     /// The same four by four, those that are read as often side by side.
     fours: Vec<[Window; 4]>,
-    /// How many fours are read so often.
-    runs: Vec<(u32, usize)>,
     /// The windows that are left.
     pairs: Vec<[Window; 2]>,
 }
@@ -46,7 +44,6 @@ impl Plane {
     fn clear(&mut self) {
         self.windows.clear();
         self.fours.clear();
-        self.runs.clear();
         self.pairs.clear();
     }
 
@@ -54,10 +51,6 @@ impl Plane {
         self.windows.sort_unstable_by_key(|window| window.reads);
         let (fours, rest) = self.windows.as_chunks();
         self.fours.extend(fours);
-        let reads = |four: &[Window; 4]| four[3].reads;
-        let runs = fours.chunk_by(|a, b| reads(a) == reads(b));
-        self.runs
-            .extend(runs.map(|run| (reads(&run[0]), run.len())));
         let (pairs, rest) = rest.as_chunks();
         self.pairs.extend(pairs);
         self.pairs
@@ -182,34 +175,20 @@ impl<'a, W: BitWords, const N: usize> Column<'a, W, N> {
 
     #[inline(always)]
     fn add_windows(&mut self, reader: Reader<'_, N>, plane: &Plane) {
-        let mut fours = &plane.fours[..];
-        for &(reads, count) in &plane.runs {
-            let (alike, rest) = fours.split_at(count);
-            // Known numbers are read without a loop.
-            match reads {
-                1 => self.add_alike(reader, alike, 1),
-                2 => self.add_alike(reader, alike, 2),
-                3 => self.add_alike(reader, alike, 3),
-                reads => self.add_alike(reader, alike, reads),
-            }
-            fours = rest;
-        }
-        for pair in &plane.pairs {
-            let [a, b] = pair;
-            self.add_pair(reader.read(a, b.reads), reader.read(b, b.reads));
-        }
-    }
-
-    #[inline(always)]
-    fn add_alike(&mut self, reader: Reader<'_, N>, fours: &[[Window; 4]], reads: u32) {
-        for four in fours {
+        for four in &plane.fours {
             let [first, second, third, fourth] = four;
+            // They are sorted, and reading more often changes nothing.
+            let reads = fourth.reads;
             let (ones, a) = self
                 .ones
                 .full_adder(reader.read(first, reads), reader.read(second, reads));
             let (ones, b) = ones.full_adder(reader.read(third, reads), reader.read(fourth, reads));
             self.ones = ones;
             self.carry(a, b);
+        }
+        for pair in &plane.pairs {
+            let [a, b] = pair;
+            self.add_pair(reader.read(a, b.reads), reader.read(b, b.reads));
         }
     }
 

@@ -103,20 +103,10 @@ impl IntervalProgram {
 
     /// `TELLS` what sectors and beams have.
     fn run<const TELLS: bool>(&self, sought: &Sought<'_>, bounds: &mut IntervalBounds) -> bool {
-        // Most windows are narrow: half of the lanes take less time.
-        #[cfg(target_arch = "x86_64")]
-        let is_narrow = sought.among >> (HEADINGS / 2) == 0;
         match self.instruction_set {
             // SAFETY: the processor has the instruction set, or it would not be chosen.
             #[cfg(target_arch = "x86_64")]
-            InstructionSet::Avx512 if !is_narrow => unsafe {
-                self.run_avx512::<TELLS>(sought, bounds)
-            },
-            // SAFETY: as above; whatever has AVX-512 has AVX2.
-            #[cfg(target_arch = "x86_64")]
-            InstructionSet::Avx512 | InstructionSet::Avx2 if is_narrow => unsafe {
-                self.run_narrow_avx2::<TELLS>(sought, bounds)
-            },
+            InstructionSet::Avx512 => unsafe { self.run_avx512::<TELLS>(sought, bounds) },
             // SAFETY: as above.
             #[cfg(target_arch = "x86_64")]
             InstructionSet::Avx2 => unsafe { self.run_avx2::<TELLS>(sought, bounds) },
@@ -141,18 +131,7 @@ impl IntervalProgram {
         sought: &Sought<'_>,
         bounds: &mut IntervalBounds,
     ) -> bool {
-        self.run_with::<super::heading_lanes::Avx2<2>, TELLS>(sought, bounds)
-    }
-
-    /// The first half of the headings.
-    #[cfg(target_arch = "x86_64")]
-    #[target_feature(enable = "avx2")]
-    fn run_narrow_avx2<const TELLS: bool>(
-        &self,
-        sought: &Sought<'_>,
-        bounds: &mut IntervalBounds,
-    ) -> bool {
-        self.run_with::<super::heading_lanes::Avx2<1>, TELLS>(sought, bounds)
+        self.run_with::<super::heading_lanes::Avx2, TELLS>(sought, bounds)
     }
 
     #[inline(always)]

@@ -7,14 +7,11 @@
 //! first of them is counted with all beams: one of these is the best pose of all. What
 //! was not kept cannot reach the floor then, as a rule, whatever the other beams say, and
 //! of what was kept little is left to count. The lower the floor, the larger the sample
-//! must be, so some are tried first.
+//! must be: a few beams for the best pose alone, most of them for candidates.
 //!
-//! Headings at which that is not certain are swept again with more beams, at last with
-//! all of them.
+//! Headings at which that is not certain are swept again with all beams.
 
-mod samples;
 mod share;
-mod trial;
 
 use std::ops::Range;
 use std::sync::atomic::Ordering;
@@ -29,10 +26,24 @@ use crate::accumulator::Query;
 use crate::program::ScanProgram;
 use crate::threads;
 use crate::votes::VoteSet;
-pub(super) use samples::likely_cost;
-use samples::{First, Samples};
 pub(super) use share::Share;
 use share::{Pose, Seen};
+
+/// Beams of a sample where hardly more than the best pose is wanted. After 20, more poses
+/// are as good as the best one, and sweeping 40 takes longer.
+const FEW_BEAMS: usize = 30;
+
+/// Beams of a sample, in quarters of all, where poses that lack some of the best one's
+/// votes are wanted. Half of the beams say too little of a floor at 0.85, and what seven
+/// eighths spare is not worth sweeping them.
+const MOST_BEAMS_QUARTERS: usize = 3;
+
+/// Votes of the best pose, as a share of the highest possible, in scans of a world that is
+/// as the map says. Where a scan's best pose has fewer, the sample may say too little.
+const EXPECTED_BEST: f64 = 0.98;
+
+/// What sweeping no beam at all would take, as a share of sweeping all.
+const SHARE_OF_NONE: f64 = 0.15;
 
 /// Of so many cells one pose is kept at a heading, and not less than so many poses.
 const CELLS_A_KEPT: usize = 1024;
@@ -50,9 +61,11 @@ const FEW_COUNTS: usize = 4;
 /// A scan program laid out for sifting, kept from scan to scan.
 #[derive(Debug, Default)]
 pub(super) struct Sift {
-    samples: Samples,
-    /// The sample that is swept at all headings, if one is decisive.
-    first: Option<First>,
+    /// Some of the beams, as evenly as they go.
+    sample: ScanProgram,
+    /// The least votes of the sample that a pose likely needs; `None` where it says too
+    /// little, and all beams are swept.
+    least: Option<u16>,
     /// The most votes of each sector and those after it; 0 at the end.
     rests: Vec<u16>,
     /// All beams may vote.
@@ -70,9 +83,6 @@ impl Sift {
         stop: &dyn Fn() -> bool,
     ) -> Option<()> {
         self.make(task, program);
-        let own = shares.first_mut().expect("a thread");
-        own.start(task, self);
-        self.first = Sifting::new((task, program, self), own, stop).decisive();
         let (sift, threads) = (&*self, shares.len());
         let what = (task, program, sift);
         let sampled = threads::run(shares, stop, |thread, share, stop| {
@@ -97,8 +107,10 @@ impl Sift {
 
     fn make(&mut self, task: &Task<'_>, program: &ScanProgram) {
         let beams = program.beams();
-        self.samples.make(program);
-        self.first = None;
+        let size = sample_beams(task);
+        self.sample
+            .take_some(program, |beam| beam * size % beams < size);
+        self.least = self.least_of_sample(task, program);
         self.all.clear();
         self.all.resize(beams, 1);
         let (order, sectors) = (task.programs.leaf.order(), sectors::count(beams));
@@ -111,11 +123,37 @@ impl Sift {
         }
     }
 
-    /// The sample that is swept at all headings.
-    fn first(&self) -> Option<&ScanProgram> {
-        let first = self.first.as_ref()?;
-        Some(&self.samples.all()[first.sample])
+    fn least_of_sample(&self, task: &Task<'_>, program: &ScanProgram) -> Option<u16> {
+        let (all, some) = (program.highest_possible(), self.sample.highest_possible());
+        if is_best_enough(task) {
+            return Some((some * 3 / 4) as u16);
+        }
+        let floor = EXPECTED_BEST * f64::from(all) * task.config.floor_share;
+        let least = (floor as u32).saturating_sub(all - some);
+        // In clutter most poses have about half of the votes.
+        (least > some / 2).then_some(least as u16)
     }
+}
+
+/// Whether poses that are wanted lack hardly any of the best one's votes: at most half of
+/// what few beams have, of at least twice as many.
+fn is_best_enough(task: &Task<'_>) -> bool {
+    let (beams, few) = (task.programs.beams as f64, FEW_BEAMS as f64);
+    let lacked = beams * (1.0 - task.config.floor_share);
+    2.0 * few <= beams && 2.0 * lacked <= few
+}
+
+fn sample_beams(task: &Task<'_>) -> usize {
+    match is_best_enough(task) {
+        true => FEW_BEAMS,
+        false => task.programs.beams * MOST_BEAMS_QUARTERS / 4,
+    }
+}
+
+/// What counting every pose likely takes, as a share of brute force.
+pub(super) fn likely_cost(task: &Task<'_>) -> f64 {
+    let part = sample_beams(task) as f64 / task.programs.beams.max(1) as f64;
+    SHARE_OF_NONE + (1.0 - SHARE_OF_NONE) * part
 }
 
 /// One thread at it.
@@ -142,18 +180,19 @@ impl<'a> Sifting<'a> {
         }
     }
 
-    /// Keeps the poses that have most votes of the first sample at a heading, and
+    /// Keeps the poses that have most votes of the sample at a heading, and
     /// counts the first of them.
     fn look(&mut self, heading: usize) -> Option<()> {
         let task = self.task;
         let most = (task.grid.cells().len() / CELLS_A_KEPT).max(LEAST_KEPT);
         let start = self.share.kept.len();
-        let Some(first) = self.sift.first() else {
+        if self.sift.least.is_none() {
             self.share.see(heading);
             return Some(());
-        };
-        let step = (first.highest_possible() / STEP).max(1) as u16;
-        self.sweep(first, heading)?;
+        }
+        let sample = &self.sift.sample;
+        let step = (sample.highest_possible() / STEP).max(1) as u16;
+        self.sweep(sample, heading)?;
         while !self.share.keep(most) {
             self.share.least += step;
         }
@@ -172,8 +211,10 @@ impl<'a> Sifting<'a> {
 
     /// Takes the poses that reach the floor, now that the best one is likely known.
     fn count_seen(&mut self) -> Option<()> {
-        let first = self.sift.first();
-        let rest = first.map_or(u16::MAX, |first| self.rest(first));
+        // What the beams give at most that are not in the sample.
+        let sampled = self.sift.sample.highest_possible();
+        let rest = (self.program.highest_possible() - sampled) as u16;
+        let rest = self.sift.least.map_or(u16::MAX, |_| rest);
         let most = self.most_counts();
         let mut start = 0;
         for i in 0..self.share.seen.len() {
@@ -194,24 +235,8 @@ impl<'a> Sifting<'a> {
         Some(())
     }
 
-    /// Takes the poses of a heading that reach the floor, by more beams.
+    /// Takes the poses of a heading that reach the floor, by all beams.
     fn take_anew(&mut self, heading: usize) -> Option<()> {
-        let samples = self.sift.samples.all().iter().enumerate();
-        let start = self.share.kept.len();
-        for (i, sample) in samples.skip(self.share.sample) {
-            self.share.least = self.floor().saturating_sub(self.rest(sample));
-            if self.share.least == 0 {
-                continue;
-            }
-            self.sweep(sample, heading)?;
-            if self.share.keep(self.most_counts()) {
-                self.take_kept(start..self.share.kept.len(), 0, heading);
-                self.share.kept.truncate(start);
-                return Some(());
-            }
-            // Headings are alike.
-            self.share.sample = i + 1;
-        }
         self.sweep(self.program, heading)?;
         self.floor();
         let Share {
@@ -311,11 +336,6 @@ impl<'a> Sifting<'a> {
         let best = self.task.best.load(Ordering::Relaxed);
         self.share.collector.hear_of(best);
         self.share.collector.floor()
-    }
-
-    /// The most votes of the beams that are not in a sample.
-    fn rest(&self, sample: &ScanProgram) -> u16 {
-        (self.program.highest_possible() - sample.highest_possible()) as u16
     }
 
     /// Counting more poses of a heading one by one would take longer than sweeping

@@ -5,9 +5,9 @@ use std::arch::x86_64::*;
 use super::{BinVotes, HEADINGS, HeadingLanes, IntervalRows, TABLE};
 use crate::tables::look_up_avx2;
 
-/// Registers of 32 headings: two for all, one for the first half of them.
+/// Two registers of 32 headings.
 #[derive(Clone, Copy)]
-pub(in super::super) struct Avx2<const REGISTERS: usize>([__m256i; REGISTERS]);
+pub(in super::super) struct Avx2([__m256i; 2]);
 
 /// Headings of a register.
 const HALF: usize = HEADINGS / 2;
@@ -43,13 +43,13 @@ fn half_of(row: &[u8; HEADINGS], half: usize) -> &[u8; HALF] {
     reason = "one argument holds for all: lanes of an instruction set are made only where the \
               processor has it, and arrays are as long as what is stored to them"
 )]
-impl<const REGISTERS: usize> HeadingLanes for Avx2<REGISTERS> {
+impl HeadingLanes for Avx2 {
     /// For each register, of the first and of the second eight headings of each 16.
-    type Sums = [[__m256i; 2]; REGISTERS];
+    type Sums = [[__m256i; 2]; 2];
 
     #[inline(always)]
     fn none() -> Self {
-        unsafe { Avx2([_mm256_setzero_si256(); REGISTERS]) }
+        unsafe { Avx2([_mm256_setzero_si256(); 2]) }
     }
 
     #[inline(always)]
@@ -96,7 +96,7 @@ impl<const REGISTERS: usize> HeadingLanes for Avx2<REGISTERS> {
 
     #[inline(always)]
     fn no_sums() -> Self::Sums {
-        unsafe { [[_mm256_setzero_si256(); 2]; REGISTERS] }
+        unsafe { [[_mm256_setzero_si256(); 2]; 2] }
     }
 
     #[inline(always)]

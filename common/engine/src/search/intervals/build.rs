@@ -318,22 +318,9 @@ impl Planes {
             let Band { first, packed } = &bands[band];
             let place = |block: usize| bytes * (blocks.id(start + block) - first);
             let mut packed = packed.lock().unwrap_or_else(PoisonError::into_inner);
-            for block in bits::ones(wanted) {
-                self.prefetch_block(&packed[place(block)..][..bytes]);
-            }
             self.turn(start);
             for block in bits::ones(wanted) {
                 self.write_block(block, &mut packed[place(block)..][..bytes]);
-            }
-        }
-    }
-
-    /// Has the memory at hand that a block will be written to.
-    #[inline(always)]
-    fn prefetch_block(&self, packed: &[u8]) {
-        for row in packed.chunks_exact(self.directions) {
-            for (_, run) in &self.runs {
-                prefetch(&row[run.clone()]);
             }
         }
     }
@@ -369,21 +356,4 @@ impl Planes {
             }
         }
     }
-}
-
-/// Asks for all cache lines of some bytes, where one can.
-#[inline(always)]
-fn prefetch(bytes: &[u8]) {
-    #[cfg(target_arch = "x86_64")]
-    for line in bytes.chunks(64) {
-        use std::arch::x86_64::{_MM_HINT_T1, _mm_prefetch};
-        let ends = [&line[0], &line[line.len() - 1]];
-        for end in ends {
-            // SAFETY: every processor of the architecture has the instruction, and
-            // it reads nothing.
-            unsafe { _mm_prefetch::<_MM_HINT_T1>(std::ptr::from_ref(end).cast()) };
-        }
-    }
-    #[cfg(not(target_arch = "x86_64"))]
-    let _ = bytes;
 }

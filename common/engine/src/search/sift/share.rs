@@ -20,12 +20,10 @@ pub(in super::super) struct Share {
     pub(super) entered: Option<usize>,
     /// The headings of this thread.
     pub(super) seen: Vec<Seen>,
-    /// Poses that have most votes of the first sample, heading by heading.
+    /// Poses that have most votes of the sample, heading by heading.
     pub(super) kept: Vec<Pose>,
     /// They have so many or more.
     pub(super) least: u16,
-    /// Samples before this one leave too many poses.
-    pub(super) sample: usize,
     pub(super) collector: Collector,
     pub(super) poses_evaluated: u64,
 }
@@ -37,9 +35,7 @@ impl Share {
         self.entered = None;
         self.seen.clear();
         self.kept.clear();
-        let first = sift.first.as_ref();
-        self.least = first.map_or(1, |first| first.least);
-        self.sample = first.map_or(0, |first| first.sample + 1);
+        self.least = sift.least.unwrap_or(1);
         self.collector.start(task.config);
         self.poses_evaluated = 0;
     }
@@ -75,7 +71,7 @@ impl Share {
     }
 }
 
-/// What the first sample said of a heading.
+/// What the sample said of a heading.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Seen {
     pub(super) heading: usize,
