@@ -57,6 +57,18 @@ pub enum EngineError {
     /// The limits leave no heading.
     #[error("none of the {0} headings a turn lies in the interval that is searched")]
     NoHeadingWithin(u32),
+    /// More memory would be needed than is allowed.
+    #[error(
+        "preparing the map takes about {needed_mb} MB and --memory-limit allows {limit_mb}: larger \
+         cells (--search-cell), fewer headings (--headings) or a part of the map (--region) take \
+         less"
+    )]
+    Memory {
+        /// Megabytes of 10⁶ bytes.
+        needed_mb: u64,
+        /// The same.
+        limit_mb: u32,
+    },
     /// There is no pose at which particles could start.
     #[error("no pose is given, with finite numbers, at which particles could start")]
     NoStart,

@@ -115,8 +115,8 @@ impl Localizer {
     /// Prepares a grid, which is searched as it is.
     ///
     /// # Errors
-    /// If the map has no occupied or no free cell, a setting is out of range, or
-    /// the limits leave no pose.
+    /// If the map has no occupied or no free cell, a setting is out of range,
+    /// the limits leave no pose, or more memory would be needed than is allowed.
     pub fn new(
         frame: GridFrame,
         grid: Grid,
@@ -138,6 +138,7 @@ impl Localizer {
         let limits = Limits::new(&config.limits, frame, &grid, &space.directions)?;
         let method = match prior {
             Prior::None => {
+                check_memory(&config, SearchIndex::needed_bytes(&grid, &space, &limits))?;
                 let index = SearchIndex::within(&grid, &space, limits);
                 Method::Search(Box::new(index))
             }
@@ -370,6 +371,19 @@ impl Localizer {
         outcome.headings = self.config.headings;
         outcome.known_heading = known_heading;
         outcome
+    }
+}
+
+/// Refuses what needs more memory than is allowed, before it is allocated.
+fn check_memory(config: &LocalizerConfig, needed_bytes: usize) -> Result<(), EngineError> {
+    const MEGABYTE: u64 = 1_000_000;
+    let needed_mb = (needed_bytes as u64).div_ceil(MEGABYTE);
+    match config.memory_limit {
+        Some(limit_mb) if needed_mb > u64::from(limit_mb) => Err(EngineError::Memory {
+            needed_mb,
+            limit_mb,
+        }),
+        _ => Ok(()),
     }
 }
 

@@ -27,6 +27,11 @@ pub struct LocalizerConfig {
     /// is.
     #[arg(long, value_name = "METRES", default_value_t = 0.05, value_parser = parse_cell)]
     pub search_cell: f64,
+    /// A map is refused whose preparation for searches of unknown headings would take
+    /// more memory than this, about, megabytes of 10⁶ bytes, 1..=1000000; by default none
+    /// is.
+    #[arg(long, value_name = "MEGABYTES", value_parser = clap::value_parser!(u32).range(1..=1_000_000))]
+    pub memory_limit: Option<u32>,
 }
 
 fn parse_cell(text: &str) -> Result<f64, String> {
@@ -42,6 +47,7 @@ impl Default for LocalizerConfig {
             collect: CollectConfig::default(),
             limits: LimitsConfig::default(),
             search_cell: 0.05,
+            memory_limit: None,
         }
     }
 }

@@ -204,3 +204,28 @@ proptest! {
         }
     }
 }
+
+#[test]
+fn a_map_that_takes_more_memory_than_is_allowed_is_refused_with_the_figure() {
+    let grid = || crate::grid::drawn::grid(&["####", "#..#", "####"]);
+    let frame = GridFrame {
+        resolution_m: 0.5,
+        map_from_grid: Pose::IDENTITY,
+    };
+    let prepare = |memory_limit, prior| {
+        let config = LocalizerConfig {
+            memory_limit: Some(memory_limit),
+            ..LocalizerConfig::default()
+        };
+        Localizer::new(frame, grid(), config, prior).map(|_| ())
+    };
+    assert_eq!(
+        prepare(1, Prior::None),
+        Err(EngineError::Memory {
+            needed_mb: 2,
+            limit_mb: 1
+        })
+    );
+    assert_eq!(prepare(2, Prior::None), Ok(()));
+    assert_eq!(prepare(1, Prior::Heading), Ok(()), "there is no index");
+}

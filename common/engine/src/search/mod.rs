@@ -37,6 +37,7 @@ mod interval_program;
 mod intervals;
 mod lanes;
 mod leaf;
+mod needed;
 mod obstacles;
 mod outlook;
 mod parts;
