@@ -15,45 +15,18 @@
 //! ```
 //!
 //! Alternatives below the floor come from the most promising blocks. Where bounds do
-//! not tell blocks apart, every pose is counted instead (`sift.rs`): `attempt.rs` is one
-//! search, whichever way it goes.
+//! not tell blocks apart, every pose is counted instead (`fallback`).
+//!
+//! Each folder imports only those before it: `index`, what is known of a map; `bounds`,
+//! how many votes a block can have; `leaves`, how many a pose has; `task`, what threads
+//! share; `fallback`, counting every pose; `plan`, the order of a search.
 
-mod alternatives;
-mod attempt;
-mod bins;
-mod bits;
-mod block_bounds;
-mod block_ids;
-mod budget;
-mod bundle;
-mod cell_lanes;
-mod descent;
-mod group;
-mod heading_bounds;
-mod heading_lanes;
+mod bounds;
+mod fallback;
 mod index;
-mod interval_bounds;
-mod interval_program;
-mod intervals;
-mod lanes;
-mod leaf;
-mod needed;
-mod obstacles;
-mod outlook;
-mod parts;
-mod prefetch;
-mod quad_rows;
-mod queue;
-mod ray_lanes;
-mod sectors;
-mod set_bounds;
-mod set_program;
-mod sets;
-mod sift;
-mod steps;
+mod leaves;
+mod plan;
 mod task;
-mod within;
-mod words;
 
-pub use block_bounds::BlockBounds;
-pub use index::{SearchIndex, Workspace};
+pub use index::SearchIndex;
+pub use plan::{BlockBounds, Workspace};

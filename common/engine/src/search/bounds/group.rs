@@ -1,0 +1,234 @@
+//! Sums of the windows of a group of beams, bit by bit side by side.
+//!
+//! Three rows of bits become a sum and a carry for the next plane, so that
+//! adding a window to as many numbers takes two operations and as much again for
+//! its carries.
+
+use super::quad_rows::{Reader, Window};
+use crate::search::index::bits::Words;
+use crate::search::index::words::{BitWords, Several};
+
+/// Words in one line of the processor's cache.
+#[derive(Debug, Clone, Copy)]
+#[repr(align(64))]
+pub(in crate::search) struct Aligned(pub Words);
+
+/// Rows that are carried over to the plane that is added up, the next one, and that
+/// after it.
+pub(in crate::search) type Carries = [Vec<Aligned>; 3];
+
+/// Beams whose bearings leave the same rest by eight.
+#[derive(Debug, Clone)]
+pub(in crate::search) struct Group {
+    /// That rest.
+    shift: u32,
+    /// The windows with a share of `1 << i` units.
+    planes: Vec<Plane>,
+    /// The most units that the beams can give.
+    pub possible: u16,
+    /// What is read of a quad in a chunk.
+    pub reads: u32,
+}
+
+/// Windows with the same share.
+#[derive(Debug, Clone, Default)]
+struct Plane {
+    windows: Vec<Window>,
+    /// The same four by four, those that are read as often side by side.
+    fours: Vec<[Window; 4]>,
+    /// The windows that are left.
+    pairs: Vec<[Window; 2]>,
+}
+
+impl Plane {
+    fn clear(&mut self) {
+        self.windows.clear();
+        self.fours.clear();
+        self.pairs.clear();
+    }
+
+    fn lay_out(&mut self, nothing: Window) {
+        self.windows.sort_unstable_by_key(|window| window.reads);
+        let (fours, rest) = self.windows.as_chunks();
+        self.fours.extend(fours);
+        let (pairs, rest) = rest.as_chunks();
+        self.pairs.extend(pairs);
+        self.pairs
+            .extend(rest.iter().map(|&window| [nothing, window]));
+    }
+}
+
+impl Group {
+    pub(in crate::search) fn new(shift: u32) -> Self {
+        Group {
+            shift,
+            planes: Vec::new(),
+            possible: 0,
+            reads: 0,
+        }
+    }
+
+    pub(in crate::search) fn shift(&self) -> u32 {
+        self.shift
+    }
+
+    /// Lets go of all windows; their room stays.
+    pub(in crate::search) fn clear(&mut self) {
+        self.planes.iter_mut().for_each(Plane::clear);
+        self.possible = 0;
+        self.reads = 0;
+    }
+
+    pub(in crate::search) fn push(&mut self, plane: usize, window: Window) {
+        self.possible += 1 << plane;
+        self.reads += window.reads;
+        if self.planes.len() <= plane {
+            self.planes.resize_with(plane + 1, Plane::default);
+        }
+        self.planes[plane].windows.push(window);
+    }
+
+    /// Lays out the windows that were pushed; one that sees nothing fills up.
+    pub(in crate::search) fn lay_out(&mut self, nothing: Window) {
+        self.planes
+            .iter_mut()
+            .for_each(|plane| plane.lay_out(nothing));
+    }
+
+    /// How many words at most are carried over from a plane to another.
+    pub(in crate::search) fn carries(&self) -> usize {
+        let windows: usize = self.planes.iter().map(|plane| plane.windows.len()).sum();
+        windows.div_ceil(2) + 1
+    }
+
+    /// Adds up what the windows see, plane by plane with carry-save adders, and
+    /// adds that to the sums of all groups.
+    #[inline(always)]
+    pub(in crate::search) fn add<W: BitWords, const N: usize>(
+        &self,
+        reader: Reader<'_, N>,
+        carries: &mut Carries,
+        total: &mut [Several<W, N>],
+    ) {
+        let [mut carries, mut next, mut after] = carries.each_mut().map(|rows| &mut rows[..]);
+        let (mut carried, mut carried_next) = (0, 0);
+        let mut planes = self.planes.iter();
+        let mut twos = Several::empty();
+        // What adding to the total carries over.
+        let mut overflow = Several::empty();
+        let (own, others) = total.split_at_mut(self.sum_planes().min(total.len()));
+        for total in own {
+            let mut column = Column::new(twos, after);
+            if let Some(plane) = planes.next() {
+                column.add_windows(reader, plane);
+            }
+            column.add_rows(&carries[..carried * N]);
+            let (ones, made) = (column.ones, column.made);
+            twos = column.twos;
+            let sum = ones.sorted_and_down(self.shift);
+            (*total, overflow) = total.full_adder(sum, overflow);
+            (carries, next, after) = (next, after, carries);
+            (carried, carried_next) = (carried_next, made);
+        }
+        for total in others {
+            (*total, overflow) = total.full_adder(overflow, Several::empty());
+        }
+    }
+
+    /// Planes that hold all sums of the beams.
+    fn sum_planes(&self) -> usize {
+        (u16::BITS - self.possible.leading_zeros()) as usize
+    }
+}
+
+impl Aligned {
+    /// The rows of several chunks.
+    #[inline(always)]
+    fn read<W: BitWords, const N: usize>(rows: &[Aligned; N]) -> Several<W, N> {
+        let mut several = Several::empty();
+        for (words, row) in several.0.iter_mut().zip(rows) {
+            *words = W::from_words(&row.0);
+        }
+        several
+    }
+}
+
+/// Sums of a plane and the next one, of rows of bits four by four, with a carry for the
+/// plane after these for each.
+struct Column<'a, W, const N: usize> {
+    ones: Several<W, N>,
+    twos: Several<W, N>,
+    carries: &'a mut [Aligned],
+    made: usize,
+}
+
+impl<'a, W: BitWords, const N: usize> Column<'a, W, N> {
+    #[inline(always)]
+    fn new(ones: Several<W, N>, carries: &'a mut [Aligned]) -> Self {
+        Column {
+            ones,
+            twos: Several::empty(),
+            carries,
+            made: 0,
+        }
+    }
+
+    #[inline(always)]
+    fn add_windows(&mut self, reader: Reader<'_, N>, plane: &Plane) {
+        for four in &plane.fours {
+            let [first, second, third, fourth] = four;
+            // They are sorted, and reading more often changes nothing.
+            let reads = fourth.reads;
+            let (ones, a) = self
+                .ones
+                .full_adder(reader.read(first, reads), reader.read(second, reads));
+            let (ones, b) = ones.full_adder(reader.read(third, reads), reader.read(fourth, reads));
+            self.ones = ones;
+            self.carry(a, b);
+        }
+        for pair in &plane.pairs {
+            let [a, b] = pair;
+            self.add_pair(reader.read(a, b.reads), reader.read(b, b.reads));
+        }
+    }
+
+    #[inline(always)]
+    fn add_rows(&mut self, rows: &[Aligned]) {
+        let (rows, _) = rows.as_chunks::<N>();
+        let (fours, rest) = rows.as_chunks::<4>();
+        for four in fours {
+            let (ones, a) = self
+                .ones
+                .full_adder(Aligned::read(&four[0]), Aligned::read(&four[1]));
+            let (ones, b) = ones.full_adder(Aligned::read(&four[2]), Aligned::read(&four[3]));
+            self.ones = ones;
+            self.carry(a, b);
+        }
+        let (pairs, rest) = rest.as_chunks();
+        for [a, b] in pairs {
+            self.add_pair(Aligned::read(a), Aligned::read(b));
+        }
+        for row in rest {
+            self.add_pair(Aligned::read(row), Several::empty());
+        }
+    }
+
+    #[inline(always)]
+    fn add_pair(&mut self, a: Several<W, N>, b: Several<W, N>) {
+        let carry;
+        (self.ones, carry) = self.ones.full_adder(a, b);
+        self.carry(carry, Several::empty());
+    }
+
+    /// Adds two rows to the next plane.
+    #[inline(always)]
+    fn carry(&mut self, a: Several<W, N>, b: Several<W, N>) {
+        let carry;
+        (self.twos, carry) = self.twos.full_adder(a, b);
+        let to = &mut self.carries[self.made * N..][..N];
+        for (to, words) in to.iter_mut().zip(carry.0) {
+            to.0 = words.to_words();
+        }
+        self.made += 1;
+    }
+}

@@ -1,0 +1,264 @@
+//! Votes at 64 adjacent headings side by side in the registers of an instruction set.
+
+#[cfg(target_arch = "x86_64")]
+mod x86;
+
+use crate::search::index::intervals::{self, IntervalRows};
+use crate::tables::TABLE;
+#[cfg(target_arch = "x86_64")]
+pub(in crate::search) use x86::{Avx2, Avx512};
+
+/// Headings that are bounded at a time.
+pub(crate) const HEADINGS: usize = intervals::READ;
+
+/// The most votes of a beam for a range in a bin; they never rise away from one.
+#[derive(Debug, Clone)]
+#[repr(C)]
+pub(in crate::search) struct BinVotes {
+    /// Those in bins `base`, `base + 1`, …; the first and the last stand for all bins
+    /// beyond.
+    pub table: [u8; TABLE],
+    /// Behind this entry there are no others than 0.
+    pub used: u8,
+    /// The bin of most votes.
+    pub centre: u8,
+    pub base: u8,
+}
+
+/// A number of votes for each heading that fits a byte.
+///
+/// The methods must be inlined into functions that are compiled for the
+/// instruction set, and be called only where the processor has it.
+pub(in crate::search) trait HeadingLanes: Copy {
+    /// Sums of such numbers.
+    type Sums: Copy;
+
+    fn none() -> Self;
+
+    /// The most votes that a beam has for a range of either interval.
+    fn of_beam(votes: &BinVotes, rows: IntervalRows<'_>) -> Self;
+
+    fn add(self, other: Self) -> Self;
+
+    /// The headings with other votes than 0.
+    fn present(self) -> u64;
+
+    fn to_bytes(self) -> [u8; HEADINGS];
+
+    fn no_sums() -> Self::Sums;
+
+    fn add_to(self, sums: Self::Sums) -> Self::Sums;
+
+    /// The headings with a sum of at least so much.
+    fn at_least(sums: Self::Sums, least: u16) -> u64;
+
+    fn store(sums: Self::Sums, to: &mut [u16; HEADINGS]);
+}
+
+/// What every processor has; on ARM, which always has NEON, tables are looked up by
+/// its instructions.
+#[derive(Clone, Copy)]
+pub(in crate::search) struct Portable([u8; HEADINGS]);
+
+impl HeadingLanes for Portable {
+    type Sums = [u16; HEADINGS];
+
+    #[inline(always)]
+    fn none() -> Self {
+        Portable([0; HEADINGS])
+    }
+
+    #[inline(always)]
+    fn of_beam(votes: &BinVotes, rows: IntervalRows<'_>) -> Self {
+        let [near_first, near_last, far_first, far_last] = rows;
+        let near = look_up(votes, near_first, near_last);
+        let far = look_up(votes, far_first, far_last);
+        Portable(std::array::from_fn(|i| near[i].max(far[i])))
+    }
+
+    #[inline(always)]
+    fn add(self, other: Self) -> Self {
+        Portable(std::array::from_fn(|i| self.0[i] + other.0[i]))
+    }
+
+    #[inline(always)]
+    fn present(self) -> u64 {
+        let lanes = self.0.iter().enumerate();
+        lanes.fold(0, |all, (i, &votes)| all | u64::from(votes > 0) << i)
+    }
+
+    #[inline(always)]
+    fn to_bytes(self) -> [u8; HEADINGS] {
+        self.0
+    }
+
+    #[inline(always)]
+    fn no_sums() -> Self::Sums {
+        [0; HEADINGS]
+    }
+
+    #[inline(always)]
+    fn add_to(self, mut sums: Self::Sums) -> Self::Sums {
+        for (sum, votes) in sums.iter_mut().zip(self.0) {
+            *sum += u16::from(votes);
+        }
+        sums
+    }
+
+    #[inline(always)]
+    fn at_least(sums: Self::Sums, least: u16) -> u64 {
+        let lanes = sums.iter().enumerate();
+        lanes.fold(0, |all, (i, &sum)| all | u64::from(sum >= least) << i)
+    }
+
+    #[inline(always)]
+    fn store(sums: Self::Sums, to: &mut [u16; HEADINGS]) {
+        *to = sums;
+    }
+}
+
+/// The votes in the bin of each interval that is nearest to the centre.
+#[inline(always)]
+fn look_up(votes: &BinVotes, first: &[u8; HEADINGS], last: &[u8; HEADINGS]) -> [u8; HEADINGS] {
+    let index = std::array::from_fn(|i| {
+        let bin = votes.centre.min(last[i]).max(first[i]);
+        bin.saturating_sub(votes.base).min(TABLE as u8 - 1)
+    });
+    entries(votes, &index)
+}
+
+#[cfg(not(target_arch = "aarch64"))]
+#[inline(always)]
+fn entries(votes: &BinVotes, index: &[u8; HEADINGS]) -> [u8; HEADINGS] {
+    let mut found = [0; HEADINGS];
+    // Comparing all with each entry is quicker than looking them up one by one.
+    for (entry, &votes) in (0..).zip(&votes.table[..usize::from(votes.used)]) {
+        for (found, &index) in found.iter_mut().zip(index) {
+            *found |= if index == entry { votes } else { 0 };
+        }
+    }
+    found
+}
+
+#[cfg(target_arch = "aarch64")]
+#[inline(always)]
+fn entries(votes: &BinVotes, index: &[u8; HEADINGS]) -> [u8; HEADINGS] {
+    use std::arch::aarch64::{vld1q_u8, vst1q_u8};
+    let mut found = [0; HEADINGS];
+    for (found, index) in found.chunks_exact_mut(16).zip(index.chunks_exact(16)) {
+        // SAFETY: every ARM processor of 64 bits has NEON, and a chunk is as long as
+        // what is read of it or stored to it.
+        unsafe {
+            let index = vld1q_u8(index.as_ptr());
+            let looked_up = crate::tables::look_up_neon(&votes.table, votes.used.into(), index);
+            vst1q_u8(found.as_mut_ptr(), looked_up);
+        }
+    }
+    found
+}
+
+#[cfg(test)]
+mod tests {
+    use proptest::collection::vec;
+    use proptest::prelude::*;
+
+    use super::*;
+    use crate::instruction_set::InstructionSet;
+
+    /// Votes of some beams in some rows, their sums with others, where those reach a least
+    /// one, and where there are any votes.
+    #[inline(always)]
+    fn count<L: HeadingLanes>(
+        beams: &[(BinVotes, [[u8; HEADINGS]; 4])],
+        times: usize,
+        least: u16,
+    ) -> ([u8; HEADINGS], [u16; HEADINGS], [u64; 2]) {
+        let mut votes = L::none();
+        for (beam, [near_first, near_last, far_first, far_last]) in beams {
+            let rows = [near_first, near_last, far_first, far_last];
+            votes = votes.add(L::of_beam(beam, rows));
+        }
+        let mut sums = L::no_sums();
+        for _ in 0..times {
+            sums = votes.add_to(sums);
+        }
+        let mut all = [0; HEADINGS];
+        L::store(sums, &mut all);
+        let masks = [L::at_least(sums, least), votes.present()];
+        (votes.to_bytes(), all, masks)
+    }
+
+    #[cfg(target_arch = "x86_64")]
+    #[target_feature(enable = "avx2")]
+    fn count_avx2(
+        beams: &[(BinVotes, [[u8; HEADINGS]; 4])],
+        times: usize,
+        least: u16,
+    ) -> ([u8; HEADINGS], [u16; HEADINGS], [u64; 2]) {
+        count::<Avx2>(beams, times, least)
+    }
+
+    #[cfg(target_arch = "x86_64")]
+    #[target_feature(enable = "avx512f,avx512bw,avx512vl,avx512vbmi")]
+    fn count_avx512(
+        beams: &[(BinVotes, [[u8; HEADINGS]; 4])],
+        times: usize,
+        least: u16,
+    ) -> ([u8; HEADINGS], [u16; HEADINGS], [u64; 2]) {
+        count::<Avx512>(beams, times, least)
+    }
+
+    fn any_row() -> impl Strategy<Value = [u8; HEADINGS]> {
+        vec(any::<u8>(), HEADINGS).prop_map(|row| row.try_into().expect("as long"))
+    }
+
+    prop_compose! {
+        fn any_votes()(
+            votes in prop_oneof![vec(0u8..=15, 0..=16), vec(0u8..=15, 0..=TABLE)],
+            centre: u8, base: u8,
+        ) -> BinVotes {
+            let mut table = [0; TABLE];
+            table[..votes.len()].copy_from_slice(&votes);
+            BinVotes { table, used: votes.len() as u8, centre, base }
+        }
+    }
+
+    proptest! {
+        #[test]
+        fn votes_are_those_of_the_tables_on_every_instruction_set(
+            beams in vec((any_votes(), [any_row(), any_row(), any_row(), any_row()]), 0..16),
+            times in 1usize..270, share in 0.0..1.2f64,
+        ) {
+            let mut bytes = [0; HEADINGS];
+            for (beam, [near_first, near_last, far_first, far_last]) in &beams {
+                for (lane, votes) in bytes.iter_mut().enumerate() {
+                    let in_bin = |first: u8, last: u8| {
+                        let bin = beam.centre.min(last).max(first);
+                        beam.table[usize::from(bin.saturating_sub(beam.base)).min(TABLE - 1)]
+                    };
+                    *votes += in_bin(near_first[lane], near_last[lane])
+                        .max(in_bin(far_first[lane], far_last[lane]));
+                }
+            }
+            let sums = bytes.map(|votes| times as u16 * u16::from(votes));
+            let most = sums.iter().max().copied().unwrap_or(0);
+            let least = (f64::from(most) * share) as u16;
+            let where_is = |is: &dyn Fn(usize) -> bool| -> u64 {
+                (0..HEADINGS).map(|lane| u64::from(is(lane)) << lane).sum()
+            };
+            let masks = [where_is(&|lane| sums[lane] >= least), where_is(&|lane| bytes[lane] > 0)];
+            for set in InstructionSet::available() {
+                let counted = match set {
+                    // SAFETY: the processor has the instruction set.
+                    #[cfg(target_arch = "x86_64")]
+                    InstructionSet::Avx512 => unsafe { count_avx512(&beams, times, least) },
+                    // SAFETY: as above.
+                    #[cfg(target_arch = "x86_64")]
+                    InstructionSet::Avx2 => unsafe { count_avx2(&beams, times, least) },
+                    _ => count::<Portable>(&beams, times, least),
+                };
+                prop_assert_eq!(counted, (bytes, sums, masks), "{}", set);
+            }
+        }
+    }
+}

@@ -1,0 +1,249 @@
+//! Upper bounds of the votes in a small block from its intervals of ranges.
+//!
+//! A beam votes most for the range of an interval that lies nearest to its
+//! reading. Intervals of adjacent directions lie side by side, so one table
+//! look-up bounds a beam at 64 headings.
+
+use super::heading_lanes::{HEADINGS, HeadingLanes, Portable};
+use super::interval_program::{IntervalBeam, IntervalProgram, Order};
+use super::set_bounds::Rests;
+#[cfg(any(target_arch = "x86_64", test))]
+use crate::instruction_set::InstructionSet;
+use crate::search::index::intervals::BlockIntervals;
+
+/// Bounds of a block at adjacent headings.
+#[derive(Debug, Clone)]
+pub(crate) struct IntervalBounds {
+    /// By all beams.
+    pub all: [u16; HEADINGS],
+    /// By each sector of beams, in the order in which they are counted.
+    pub sectors: Vec<[u8; HEADINGS]>,
+    /// At which headings each beam may vote, in that order.
+    pub voting: Vec<u64>,
+}
+
+impl Default for IntervalBounds {
+    fn default() -> Self {
+        IntervalBounds {
+            all: [0; HEADINGS],
+            sectors: Vec::new(),
+            voting: Vec::new(),
+        }
+    }
+}
+
+/// Some of the headings at which a block may matter, less than [`HEADINGS`] behind
+/// the first.
+#[derive(Debug, Clone, Copy)]
+pub(crate) struct Window {
+    pub first: u16,
+    /// Those that may, from the first on.
+    pub among: u64,
+    /// What the beams from each group on give at most at any of them.
+    pub rests: Rests,
+}
+
+/// What is to be bounded, and when it may be given up.
+struct Sought<'a> {
+    order: &'a Order,
+    block: &'a BlockIntervals,
+    /// The first of the headings, and those that matter from there on.
+    heading: usize,
+    among: u64,
+    /// Votes that any of them must reach.
+    least: u16,
+    /// What the beams give at most that are missing when so many sectors or groups are
+    /// complete.
+    rests: &'a [u16],
+}
+
+impl IntervalProgram {
+    /// Bounds the votes of a block at 64 headings from `heading` on, of which
+    /// `among` matter. Whether any of those may have `least` votes; if not, the
+    /// bounds are not finished.
+    pub(crate) fn bound(
+        &self,
+        block: &BlockIntervals,
+        heading: usize,
+        among: u64,
+        least: u16,
+        bounds: &mut IntervalBounds,
+    ) -> bool {
+        let sought = Sought {
+            order: &self.by_sector,
+            block,
+            heading,
+            among,
+            least,
+            rests: &self.possible_from,
+        };
+        self.run::<true>(&sought, bounds)
+    }
+
+    /// The same at the headings of a window that is known of a block around it, but
+    /// for what is told of sectors and beams. What is known of the beams that are missing
+    /// tells sooner whether any heading may have so many votes.
+    pub(crate) fn bound_within(
+        &self,
+        block: &BlockIntervals,
+        window: &Window,
+        least: u16,
+        bounds: &mut IntervalBounds,
+    ) -> bool {
+        let sought = Sought {
+            order: &self.by_group,
+            block,
+            heading: usize::from(window.first),
+            among: window.among,
+            least,
+            rests: &window.rests,
+        };
+        self.run::<false>(&sought, bounds)
+    }
+
+    /// `TELLS` what sectors and beams have.
+    fn run<const TELLS: bool>(&self, sought: &Sought<'_>, bounds: &mut IntervalBounds) -> bool {
+        match self.instruction_set {
+            // SAFETY: the processor has the instruction set, or it would not be chosen.
+            #[cfg(target_arch = "x86_64")]
+            InstructionSet::Avx512 => unsafe { self.run_avx512::<TELLS>(sought, bounds) },
+            // SAFETY: as above.
+            #[cfg(target_arch = "x86_64")]
+            InstructionSet::Avx2 => unsafe { self.run_avx2::<TELLS>(sought, bounds) },
+            _ => self.run_with::<Portable, TELLS>(sought, bounds),
+        }
+    }
+
+    #[cfg(target_arch = "x86_64")]
+    #[target_feature(enable = "avx512f,avx512bw,avx512vl,avx512vbmi")]
+    fn run_avx512<const TELLS: bool>(
+        &self,
+        sought: &Sought<'_>,
+        bounds: &mut IntervalBounds,
+    ) -> bool {
+        self.run_with::<super::heading_lanes::Avx512, TELLS>(sought, bounds)
+    }
+
+    #[cfg(target_arch = "x86_64")]
+    #[target_feature(enable = "avx2")]
+    fn run_avx2<const TELLS: bool>(
+        &self,
+        sought: &Sought<'_>,
+        bounds: &mut IntervalBounds,
+    ) -> bool {
+        self.run_with::<super::heading_lanes::Avx2, TELLS>(sought, bounds)
+    }
+
+    #[inline(always)]
+    fn run_with<L: HeadingLanes, const TELLS: bool>(
+        &self,
+        sought: &Sought<'_>,
+        bounds: &mut IntervalBounds,
+    ) -> bool {
+        let rows = sought.block.rows();
+        let mut sums = L::no_sums();
+        let mut alive = false;
+        bounds.sectors.clear();
+        bounds.voting.clear();
+        for (beams, complete) in sought.order.pieces() {
+            let mut votes = L::none();
+            for beam in beams {
+                let direction = self.direction(beam, sought.heading);
+                let of_beam = L::of_beam(&beam.votes, rows.from(direction));
+                votes = votes.add(of_beam);
+                if TELLS {
+                    bounds.voting.push(of_beam.present());
+                }
+            }
+            if TELLS {
+                bounds.sectors.push(votes.to_bytes());
+            }
+            sums = votes.add_to(sums);
+            let missing = sought.least.saturating_sub(sought.rests[complete]);
+            alive = L::at_least(sums, missing) & sought.among != 0;
+            if !alive {
+                break;
+            }
+        }
+        L::store(sums, &mut bounds.all);
+        alive
+    }
+
+    /// The direction of a beam at a heading.
+    #[inline(always)]
+    fn direction(&self, beam: &IntervalBeam, heading: usize) -> usize {
+        let direction = heading + usize::from(beam.bearing);
+        if direction < self.directions {
+            direction
+        } else {
+            direction - self.directions
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use std::sync::atomic::AtomicU16;
+
+    use proptest::prelude::*;
+
+    use super::*;
+    use crate::search::bounds::set_bounds::SetBounds;
+    use crate::search::index::SearchIndex;
+    use crate::search::index::bits;
+    use crate::search::index::within::quarters;
+    use crate::search::task::{Programs, Shared, Task};
+    use crate::testing::{any_grid, any_scan, space_of};
+    use crate::votes::CollectConfig;
+
+    proptest! {
+        #[test]
+        fn what_is_known_of_the_block_around_changes_no_bound(
+            grid in any_grid(), scan in any_scan(), headings in prop_oneof![1usize..8, Just(80)],
+            share in 0.5..=1.0f64,
+        ) {
+            let space = space_of(&grid, 8 * headings as u32);
+            let program = scan.program(&space);
+            let index = SearchIndex::new(&grid, &space);
+            let SearchIndex { coarse, fine, intervals, .. } = &index;
+            let mut read = BlockIntervals::default();
+            for instruction_set in InstructionSet::available() {
+                let mut shared = Shared::default();
+                let scan = (&program, &space);
+                let task = Task::new(&mut shared, instruction_set, &index, &grid, scan, CollectConfig::default());
+                let Programs { sets, interval, .. } = task.programs;
+                let (mut outer_bounds, mut inner_bounds) = (SetBounds::default(), SetBounds::default());
+                outer_bounds.fit(sets, task.headings());
+                inner_bounds.fit(sets, task.headings());
+                let (mut alone, mut noted) = (IntervalBounds::default(), IntervalBounds::default());
+                for block in 0..fine.blocks() {
+                    let (outside, place) = fine.place_of(block);
+                    let (outer_quad, outer_place) = coarse.place_of(outside);
+                    let outer_quad = coarse.sought(outer_quad, |_| true);
+                    let around = sets.bound((coarse, &outer_quad), None, &mut outer_bounds);
+                    let known: Vec<_> = around.by_chunk(outer_place).map(AtomicU16::new).collect();
+                    let quad = fine.sought(outside, |other| other == block);
+                    let greatest = sets.bound((fine, &quad), None, &mut inner_bounds).greatest(place);
+                    let least = (f64::from(greatest) * share) as u16;
+                    let known = Some((&known[..], least.max(1)));
+                    let within = sets.bound((fine, &quad), known, &mut inner_bounds);
+                    for (first, among) in within.reach(place) {
+                        let rests = sets.rests((within, place), (first, among));
+                        let window = Window { first: first as u16, among, rests };
+                        let sides = (intervals.columns, intervals.rows);
+                        let smalls = quarters(block, fine.columns, sides);
+                        for small in smalls.filter(|&small| intervals.ids.holds(small)) {
+                            intervals.read(small, &mut read);
+                            let plain = interval.bound(&read, first, among, least, &mut alone);
+                            let found = interval.bound_within(&read, &window, least, &mut noted);
+                            prop_assert_eq!(found, plain);
+                            for lane in bits::ones(among).filter(|_| plain) {
+                                prop_assert_eq!(noted.all[lane], alone.all[lane]);
+                            }
+                        }
+                    }
+                }
+            }
+        }
+    }
+}

@@ -1,0 +1,15 @@
+//! Upper bounds of the votes in blocks, from what the index says they see.
+//!
+//! Each bound is admissible: no pose of the block has more votes at that heading, for each
+//! beam may choose the best cell of the block for itself. They differ in how near they
+//! come and in what they cost.
+
+pub(in crate::search) mod group;
+pub(in crate::search) mod heading_bounds;
+pub(in crate::search) mod heading_lanes;
+pub(in crate::search) mod interval_bounds;
+pub(in crate::search) mod interval_program;
+pub(in crate::search) mod quad_rows;
+pub(in crate::search) mod sectors;
+pub(in crate::search) mod set_bounds;
+pub(in crate::search) mod set_program;

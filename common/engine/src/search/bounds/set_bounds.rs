@@ -1,0 +1,396 @@
+//! Upper bounds of the votes in blocks from their sets of visible ranges.
+//!
+//! A beam's taper is covered by nested windows of distances, each with a share
+//! of its votes. Where a block sees no range within a window, at a heading, its
+//! share is missing there. The bits of a window are read at the beam's bearing:
+//! the whole bytes of it by where reading starts, the rest by grouping beams
+//! and shifting the sums of each group once. What is done is done for the four
+//! blocks of a quad, side by side.
+
+use std::sync::atomic::{AtomicU16, Ordering};
+
+use super::group::{Aligned, Carries, Group};
+use super::heading_bounds::HeadingBounds;
+use super::quad_rows::{QuadRows, Reader};
+use super::set_program::{GROUPS, SetProgram};
+#[cfg(any(target_arch = "x86_64", test))]
+use crate::instruction_set::InstructionSet;
+use crate::search::index::bits::{self, EMPTY, QUAD, Words};
+use crate::search::index::sets::{Quad, RangeSets};
+use crate::search::index::words::{BitWords, Several};
+
+/// Most chunks that are bounded at a time by any instruction set.
+const MOST_AT_A_TIME: usize = 3;
+
+/// What the beams from each group on give at most, in votes: more for the first
+/// group than they can, and 0 behind the last.
+pub(crate) type Rests = [u16; GROUPS + 1];
+
+/// What is known of the blocks of a quad: that none has more votes in each chunk, and how
+/// many matter.
+pub(crate) type Known<'a> = (&'a [AtomicU16], u16);
+
+/// The bounds of a quad, and a place there.
+pub(crate) type Placed<'a> = (&'a HeadingBounds, usize);
+
+/// Bounds of the blocks of a quad, and room to find them.
+#[derive(Debug, Clone, Default)]
+pub(crate) struct SetBounds {
+    pub found: HeadingBounds,
+    /// What was read in all, in words.
+    pub reads: u64,
+    /// The chunks in which any heading matters.
+    chunks: Vec<usize>,
+    rows: QuadRows,
+    carries: Carries,
+}
+
+impl SetBounds {
+    /// Makes room for the bounds by a program of blocks at some headings, a word a
+    /// chunk; nothing is left of what another program had.
+    pub(crate) fn fit(&mut self, program: &SetProgram, headings: impl Iterator<Item = u128>) {
+        self.found.fit(program.unit, headings);
+        self.reads = 0;
+        self.rows.fit(&program.layout);
+        let carries = program.groups().iter().map(Group::carries).max();
+        for rows in &mut self.carries {
+            rows.resize(MOST_AT_A_TIME * (carries.unwrap_or(0)), Aligned(EMPTY));
+        }
+    }
+}
+
+impl SetProgram {
+    /// What the beams from each group on give at most at the headings of a window, by
+    /// sums that were noted.
+    pub(crate) fn rests(&self, (bounds, place): Placed<'_>, (first, among): (usize, u64)) -> Rests {
+        let chunks = &bounds.chunks;
+        let others = self.groups().len().saturating_sub(1);
+        let mut rests = Rests::default();
+        rests[0] = u16::MAX;
+        for (group, rest) in rests.iter_mut().enumerate().take(others + 1).skip(1) {
+            // The last groups were added first.
+            let after = |chunk: usize| &chunks[chunk].after[others - group];
+            let sums = |plane: usize| {
+                let of_chunk = |chunk| bits::of_block(&after(chunk)[plane], place);
+                bits::window_of(chunks.len(), of_chunk, first)
+            };
+            *rest = self.unit * bits::greatest(self.planes, sums, among);
+        }
+        rests
+    }
+
+    /// Bounds the votes of blocks at all headings or, if something is known, where any may
+    /// have as many as matter. Then the bounds of others are not finished, and sums after
+    /// each group are noted for what lies in the blocks.
+    pub(crate) fn bound<'a>(
+        &self,
+        blocks: (&RangeSets, &Quad),
+        known: Option<Known<'_>>,
+        bounds: &'a mut SetBounds,
+    ) -> &'a HeadingBounds {
+        match self.instruction_set {
+            // SAFETY: the processor has the instruction set, or it would not be chosen.
+            #[cfg(target_arch = "x86_64")]
+            InstructionSet::Avx512 => unsafe { self.run_avx512(blocks, known, bounds) },
+            // SAFETY: as above.
+            #[cfg(target_arch = "x86_64")]
+            InstructionSet::Avx2 => unsafe { self.run_avx2(blocks, known, bounds) },
+            _ => self.run_with::<Words>(blocks, known, bounds),
+        }
+        &bounds.found
+    }
+
+    /// The greatest bound of each block.
+    pub(crate) fn bound_all(
+        &self,
+        sets: &RangeSets,
+        quads: impl Iterator<Item = Quad>,
+        bounds: &mut SetBounds,
+        mut take: impl FnMut(&Quad, &HeadingBounds),
+    ) {
+        let mut quads = quads.peekable();
+        while let Some(quad) = quads.next() {
+            if let Some(next) = quads.peek() {
+                sets.prefetch(next.index);
+            }
+            take(&quad, self.bound((sets, &quad), None, bounds));
+        }
+    }
+
+    #[cfg(target_arch = "x86_64")]
+    #[target_feature(enable = "avx512f,avx512bw,avx512dq,avx512vl")]
+    fn run_avx512(
+        &self,
+        blocks: (&RangeSets, &Quad),
+        known: Option<Known<'_>>,
+        bounds: &mut SetBounds,
+    ) {
+        self.run_with::<crate::search::index::words::Avx512>(blocks, known, bounds);
+    }
+
+    #[cfg(target_arch = "x86_64")]
+    #[target_feature(enable = "avx2")]
+    fn run_avx2(
+        &self,
+        blocks: (&RangeSets, &Quad),
+        known: Option<Known<'_>>,
+        bounds: &mut SetBounds,
+    ) {
+        self.run_with::<crate::search::index::words::Avx2>(blocks, known, bounds);
+    }
+
+    #[inline(always)]
+    fn run_with<W: BitWords>(
+        &self,
+        (sets, quad): (&RangeSets, &Quad),
+        known: Option<Known<'_>>,
+        bounds: &mut SetBounds,
+    ) {
+        let mut chunks = std::mem::take(&mut bounds.chunks);
+        bounds.found.greatest = [0; QUAD];
+        self.choose(quad, known, &mut bounds.found, &mut chunks);
+        if !chunks.is_empty() {
+            bounds.rows.set::<W>(&self.layout, &sets.quad(quad.index));
+        }
+        let least = known.map(|(_, least)| least.div_ceil(self.unit));
+        for chunks in chunks.chunks(W::AT_A_TIME) {
+            match *chunks {
+                [a, b, c, ..] => self.run_chunks::<W, 3>(least, [a, b, c], bounds),
+                [a, b] => self.run_chunks::<W, 2>(least, [a, b], bounds),
+                [a] => self.run_chunks::<W, 1>(least, [a], bounds),
+                [] => {}
+            }
+        }
+        bounds.chunks = chunks;
+    }
+
+    /// Notes at which headings the blocks are bounded, and in which chunks.
+    #[inline(always)]
+    fn choose(
+        &self,
+        quad: &Quad,
+        known: Option<Known<'_>>,
+        bounds: &mut HeadingBounds,
+        chunks: &mut Vec<usize>,
+    ) {
+        let matters = |chunk: usize| {
+            known.is_none_or(|(known, least)| known[chunk].load(Ordering::Relaxed) >= least)
+        };
+        chunks.clear();
+        for (i, chunk) in bounds.chunks.iter_mut().enumerate() {
+            chunk.greatest = [0; QUAD];
+            let valid = if matters(i) { chunk.valid } else { 0 };
+            chunk.reach = bits::words(|place| quad.blocks[place].map_or(0, |_| valid));
+            if chunk.reach != EMPTY {
+                chunks.push(i);
+            }
+        }
+    }
+
+    /// Bounds blocks at the headings of some chunks, if so many units matter as long as
+    /// any may have them.
+    #[inline(always)]
+    fn run_chunks<W: BitWords, const N: usize>(
+        &self,
+        least: Option<u16>,
+        places: [usize; N],
+        bounds: &mut SetBounds,
+    ) {
+        let groups = self.groups();
+        let SetBounds {
+            found,
+            reads,
+            carries,
+            rows,
+            ..
+        } = bounds;
+        let reader = Reader::new(&self.layout, rows, places);
+        let HeadingBounds {
+            chunks, greatest, ..
+        } = found;
+        let mut total = [Several::<W, N>::empty(); bits::PLANES];
+        let total = &mut total[..self.planes];
+        let mut valid = [W::empty(); N];
+        for (valid, place) in valid.iter_mut().zip(places) {
+            *valid = W::from_words(&chunks[place].reach);
+        }
+        let mut reach = valid;
+        for left in (0..groups.len()).rev() {
+            groups[left].add(reader, carries, total);
+            *reads += N as u64 * u64::from(groups[left].reads);
+            let Some(least) = least else {
+                continue;
+            };
+            let rest: u16 = groups[..left].iter().map(|group| group.possible).sum();
+            let least = least.saturating_sub(rest);
+            for (i, reach) in reach.iter_mut().enumerate() {
+                *reach = bits::at_least(self.planes, |plane| total[plane].0[i], least, valid[i]);
+            }
+            if reach.iter().all(|reach| reach.is_empty()) {
+                break;
+            }
+            if left > 0 {
+                for (i, place) in places.into_iter().enumerate() {
+                    let after = &mut chunks[place].after[groups.len() - left - 1];
+                    for (after, total) in after.iter_mut().zip(&*total) {
+                        *after = total.0[i].to_words();
+                    }
+                }
+            }
+        }
+        for (i, place) in places.into_iter().enumerate() {
+            let chunk = &mut chunks[place];
+            chunk.reach = reach[i].to_words();
+            if !reach[i].is_empty() {
+                let sums = |plane: usize| total[plane].0[i];
+                chunk.greatest = bits::greatest_of_each(self.planes, sums, reach[i]);
+                for (greatest, most) in greatest.iter_mut().zip(chunk.greatest) {
+                    *greatest = most.max(*greatest);
+                }
+            }
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use proptest::prelude::*;
+
+    use super::*;
+    use crate::limits::Limits;
+    use crate::reference;
+    use crate::search::index::SearchIndex;
+    use crate::search::index::bins::Bins;
+    use crate::search::index::intervals::RangeIntervals;
+    use crate::search::index::steps::BinSteps;
+    use crate::search::index::within::Within;
+    use crate::search::task::{Shared, Task};
+    use crate::testing::{any_grid, any_scan, space_of};
+    use crate::votes::CollectConfig;
+
+    proptest! {
+        #[test]
+        fn no_pose_of_a_block_has_more_votes_than_its_bound(
+            grid in any_grid(), scan in any_scan(), headings in prop_oneof![1usize..8, Just(45), Just(80)],
+        ) {
+            let space = space_of(&grid, 8 * headings as u32);
+            let directions = &space.directions;
+            let program = scan.program(&space);
+            let bins = Bins::new(directions);
+            let steps = BinSteps::new(&bins, directions, grid.width().max(grid.height()) as u16);
+            let (intervals, wide) = RangeIntervals::of_all(&grid, directions, (&bins, &steps));
+            let fine = RangeSets::new(&intervals, &wide);
+            // Some headings, spread over the turn, are enough to meet any error.
+            let fields: Vec<_> = (0..directions.count()).step_by(1 + headings / 8)
+                .map(|heading| (heading, reference::field(&grid, &program, &space, heading))).collect();
+            // As many votes as any chunk can have.
+            let possible: Vec<_> = (0..headings).map(|_| AtomicU16::new(program.highest_possible() as u16)).collect();
+            for sets in [&fine, &fine.joined()] {
+                let mut of_all_sets = Vec::new();
+                for instruction_set in InstructionSet::available() {
+                    let mut set_program = SetProgram::default();
+                    set_program.make(&program, directions, &steps, instruction_set);
+                    let all = Within::new(Limits::none(grid.width()), &grid);
+                    let mut bounds = SetBounds::default();
+                    bounds.fit(&set_program, all.headings(directions.count()));
+                    let mut found = vec![0; sets.blocks()];
+                    let all = |quad| sets.sought(quad, |_| true);
+                    set_program.bound_all(sets, (0..sets.quads()).map(all), &mut bounds, |quad, bounds| {
+                        for (place, block) in quad.blocks() {
+                            found[block] = bounds.greatest(place);
+                        }
+                    });
+                    for (block, &greatest) in found.iter().enumerate() {
+                        let (quad, place) = sets.place_of(block);
+                        let quad = sets.sought(quad, |other| other == block);
+                        let alone = set_program.bound((sets, &quad), None, &mut bounds);
+                        prop_assert_eq!(alone.greatest(place), greatest);
+                        let others = (0..QUAD).filter(|&other| other != place);
+                        prop_assert!(others.map(|place| alone.greatest(place)).all(|greatest| greatest == 0));
+                        prop_assert!(u32::from(greatest) <= program.highest_possible());
+                        for &(heading, ref field) in &fields {
+                            let most = cells(sets, block, &grid).map(|i| field[i]).max().unwrap_or(0);
+                            let known = Some((&possible[..], most));
+                            let mut reach = set_program.bound((sets, &quad), known, &mut bounds).reach(place);
+                            let is_held = |(first, among): (usize, u64)| {
+                                (first..first + 64).contains(&heading) && among >> (heading - first) & 1 == 1
+                            };
+                            prop_assert!(reach.any(is_held), "{} votes", most);
+                        }
+                    }
+                    of_all_sets.push(found);
+                }
+                prop_assert!(of_all_sets.windows(2).all(|pair| pair[0] == pair[1]));
+            }
+        }
+    }
+
+    proptest! {
+        #[test]
+        fn what_is_known_of_the_block_around_changes_no_answer(
+            grid in any_grid(), scan in any_scan(), headings in prop_oneof![1usize..8, Just(80)],
+            share in 0.0..=1.0f64,
+        ) {
+            let space = space_of(&grid, 8 * headings as u32);
+            let program = scan.program(&space);
+            let index = SearchIndex::new(&grid, &space);
+            let SearchIndex { coarse, fine, .. } = &index;
+            for instruction_set in InstructionSet::available() {
+                let mut shared = Shared::default();
+                let scan = (&program, &space);
+                let task = Task::new(&mut shared, instruction_set, &index, &grid, scan, CollectConfig::default());
+                let set_program = &task.programs.sets;
+                let [mut around, mut alone] = [(); 2].map(|()| {
+                    let mut bounds = SetBounds::default();
+                    bounds.fit(set_program, task.headings());
+                    bounds
+                });
+                let (mut found, mut plain) = (alone.clone(), alone.clone());
+                // As many votes as any chunk can have.
+                let possible: Vec<_> = (0..headings).map(|_| AtomicU16::new(program.highest_possible() as u16)).collect();
+                for outside in 0..coarse.blocks() {
+                    let (outer_quad, outer_place) = coarse.place_of(outside);
+                    let outer_quad = coarse.sought(outer_quad, |_| true);
+                    let around = set_program.bound((coarse, &outer_quad), None, &mut around);
+                    let known: Vec<_> = around.by_chunk(outer_place).map(AtomicU16::new).collect();
+                    let quad = fine.sought(outside, |_| true);
+                    // About as many votes as they have, where it matters most.
+                    let greatest = set_program.bound((fine, &quad), None, &mut alone).greatest(0);
+                    let least = (f64::from(greatest) * share) as u16;
+                    for least in [0, least, greatest, greatest + 1] {
+                        for wanted in 1..1 << QUAD {
+                            let places = |block: &usize| quad.blocks.iter().position(|other| other.as_ref() == Some(block));
+                            let quad = fine.sought(outside, |block| places(&block).is_some_and(|place| wanted >> place & 1 == 1));
+                            let found = set_program.bound((fine, &quad), Some((&known, least)), &mut found);
+                            let plain = set_program.bound((fine, &quad), Some((&possible, least)), &mut plain);
+                            let alone = set_program.bound((fine, &quad), None, &mut alone);
+                            for place in 0..QUAD {
+                                let is_sought = quad.blocks[place].is_some();
+                                let reaches = is_sought && alone.greatest(place) >= least;
+                                prop_assert_eq!(found.reach(place).next().is_some(), reaches);
+                                prop_assert!(found.reach(place).eq(plain.reach(place)));
+                                let greatest = if reaches { alone.greatest(place) } else { 0 };
+                                prop_assert_eq!([found, plain].map(|bounds| bounds.greatest(place)), [greatest; 2]);
+                            }
+                        }
+                    }
+                }
+            }
+        }
+    }
+
+    /// Places of the cells of a block.
+    fn cells(
+        sets: &RangeSets,
+        block: usize,
+        grid: &crate::grid::Grid,
+    ) -> impl Iterator<Item = usize> {
+        let (left, bottom) = (
+            block % sets.columns * sets.side,
+            block / sets.columns * sets.side,
+        );
+        let (width, height) = (grid.width(), grid.height());
+        let rows = bottom..(bottom + sets.side).min(height);
+        rows.flat_map(move |y| (left..(left + sets.side).min(width)).map(move |x| y * width + x))
+    }
+}

@@ -1,0 +1,132 @@
+//! A scan program laid out for bounds from sets of visible ranges.
+//!
+//! A beam's taper is covered by nested windows of distances, each with a share of its
+//! votes. Beams are grouped by what their bearings leave by eight.
+
+use std::ops::Range;
+
+use super::group::Group;
+use super::quad_rows::RowLayout;
+use crate::directions::Directions;
+use crate::instruction_set::InstructionSet;
+use crate::program::ScanProgram;
+use crate::search::index::bits;
+use crate::search::index::intervals::ROW_SHIFT;
+use crate::search::index::steps::BinSteps;
+
+/// Rests that bearings leave by eight, each with a group of beams.
+pub(in crate::search) const GROUPS: usize = 8;
+
+/// A scan program laid out for bounds from sets; made anew for each scan.
+#[derive(Debug, Clone)]
+pub(crate) struct SetProgram {
+    pub(in crate::search) instruction_set: InstructionSet,
+    /// Votes are counted in this unit, of which all peaks are multiples.
+    pub(in crate::search) unit: u16,
+    /// Planes that hold all sums.
+    pub(in crate::search) planes: usize,
+    /// One for each rest; those that have any beams come first.
+    groups: [Group; GROUPS],
+    /// How many of them have.
+    used: usize,
+    pub(in crate::search) layout: RowLayout,
+}
+
+impl Default for SetProgram {
+    fn default() -> Self {
+        SetProgram {
+            instruction_set: InstructionSet::Portable,
+            unit: 1,
+            planes: 0,
+            groups: [0, 1, 2, 3, 4, 5, 6, 7].map(Group::new),
+            used: 0,
+            layout: RowLayout::default(),
+        }
+    }
+}
+
+impl SetProgram {
+    /// Lays out a program.
+    pub(crate) fn make(
+        &mut self,
+        program: &ScanProgram,
+        directions: &Directions,
+        steps: &BinSteps,
+        instruction_set: InstructionSet,
+    ) {
+        let peaks = (0..program.beams()).map(|beam| program.peak(beam));
+        let unit = peaks.reduce(greatest_common_divisor).unwrap_or(1).max(1);
+        (self.instruction_set, self.unit) = (instruction_set, unit);
+        self.layout.start(directions.count());
+        self.groups.sort_unstable_by_key(Group::shift);
+        self.groups.iter_mut().for_each(Group::clear);
+        for beam in 0..program.beams() {
+            let bearing = program.bearing(beam);
+            for (plane, rows) in windows(program, beam, directions, steps, unit) {
+                let window = self.layout.window(rows, bearing / 8);
+                self.groups[bearing % 8].push(plane, window);
+            }
+        }
+        self.groups
+            .sort_unstable_by_key(|group| (group.possible == 0, group.shift()));
+        let nothing = self.layout.nothing();
+        self.groups
+            .iter_mut()
+            .for_each(|group| group.lay_out(nothing));
+        self.used = self.groups.partition_point(|group| group.possible > 0);
+        let possible: u16 = self.groups.iter().map(|group| group.possible).sum();
+        self.planes = possible
+            .checked_ilog2()
+            .map_or(0, |plane| plane as usize + 1);
+    }
+
+    /// What the bearings of each group of beams leave by eight.
+    pub(crate) fn shifts(&self) -> impl Iterator<Item = u32> {
+        self.groups().iter().map(Group::shift)
+    }
+
+    /// Those that have beams.
+    pub(in crate::search) fn groups(&self) -> &[Group] {
+        &self.groups[..self.used]
+    }
+}
+
+fn greatest_common_divisor(a: u16, b: u16) -> u16 {
+    if b == 0 {
+        a
+    } else {
+        greatest_common_divisor(b, a % b)
+    }
+}
+
+/// Windows of rows of sets that cover the taper of a beam in all classes of
+/// directions, each with the plane of its share: one for each binary digit of
+/// the peak, that of the highest for the whole taper.
+fn windows(
+    program: &ScanProgram,
+    beam: usize,
+    directions: &Directions,
+    steps: &BinSteps,
+    unit: u16,
+) -> impl Iterator<Item = (usize, Range<usize>)> {
+    let peak = program.peak(beam) / unit;
+    let planes = (0..bits::PLANES).rev();
+    planes
+        .filter(move |plane| peak >> plane & 1 == 1)
+        .filter_map(move |plane| {
+            // Windows of higher planes cover votes up to here.
+            let below = unit * (peak >> plane >> 1 << plane << 1);
+            let rows = (0..directions.classes()).filter_map(|class| {
+                let taper = program.taper(beam, class);
+                let votes = |&votes: &u8| u16::from(votes) > below;
+                let last = taper.profile.partition_point(votes).checked_sub(1)? as u16;
+                let row = |at| usize::from(steps.bin(class, at) >> ROW_SHIFT);
+                Some((
+                    row(taper.centre.saturating_sub(last)),
+                    row(taper.centre + last) + 1,
+                ))
+            });
+            let (first, end) = rows.reduce(|a, b| (a.0.min(b.0), a.1.max(b.1)))?;
+            Some((plane, first..end))
+        })
+}

@@ -1,0 +1,89 @@
+//! What one thread sifts with, and what it keeps of what it swept.
+
+use super::Sift;
+use crate::search::leaves::outlook::Outlook;
+use crate::search::task::Task;
+use crate::sweep;
+use crate::votes::Collector;
+
+/// Cells whose greatest votes are looked at together.
+const STRETCH: usize = 1024;
+
+/// What one thread sifts with and finds, kept from scan to scan.
+#[derive(Debug, Default)]
+pub(in crate::search) struct Share {
+    pub(super) sweep: sweep::Workspace,
+    /// The votes of a sample at a heading.
+    pub(super) field: Vec<u16>,
+    pub(super) outlook: Outlook,
+    /// The block in which the outlook is.
+    pub(super) entered: Option<usize>,
+    /// The headings of this thread.
+    pub(super) seen: Vec<Seen>,
+    /// Poses that have most votes of the sample, heading by heading.
+    pub(super) kept: Vec<Pose>,
+    /// They have so many or more.
+    pub(super) least: u16,
+    pub(super) collector: Collector,
+    pub(super) poses_evaluated: u64,
+}
+
+impl Share {
+    /// Starts with nothing.
+    pub(super) fn start(&mut self, task: &Task<'_>, sift: &Sift) {
+        self.outlook.prepare(task.grid, &task.space.directions);
+        self.entered = None;
+        self.seen.clear();
+        self.kept.clear();
+        self.least = sift.least.unwrap_or(1);
+        self.collector.start(task.config);
+        self.poses_evaluated = 0;
+    }
+
+    /// Notes what was kept at a heading.
+    pub(super) fn see(&mut self, heading: usize) {
+        self.seen.push(Seen {
+            heading,
+            end: self.kept.len(),
+            below: self.least,
+        });
+    }
+
+    /// Keeps the poses of the field that have the least votes or more; none if that
+    /// would be more than so many.
+    pub(super) fn keep(&mut self, most: usize) -> bool {
+        let start = self.kept.len();
+        for (first, cells) in (0..).step_by(STRETCH).zip(self.field.chunks(STRETCH)) {
+            // Few stretches hold any, and a maximum is quick.
+            if cells.iter().copied().fold(0, u16::max) < self.least {
+                continue;
+            }
+            let poses = (first..).zip(cells);
+            let poses = poses.map(|(cell, &votes)| Pose { votes, cell });
+            let least = self.least;
+            self.kept.extend(poses.filter(|pose| pose.votes >= least));
+            if self.kept.len() - start > most {
+                self.kept.truncate(start);
+                return false;
+            }
+        }
+        true
+    }
+}
+
+/// What the sample said of a heading.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct Seen {
+    pub(super) heading: usize,
+    /// The end of its poses among those kept.
+    pub(super) end: usize,
+    /// The others have fewer votes of the sample.
+    pub(super) below: u16,
+}
+
+/// A cell, and the votes that it has of a sample.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct Pose {
+    pub(super) votes: u16,
+    pub(super) cell: u32,
+}

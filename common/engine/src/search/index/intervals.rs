@@ -1,0 +1,324 @@
+//! Which ranges the cells of a small block see in each direction, as intervals.
+//!
+//! Four by four cells see one surface, or two where the edge of one hides a part
+//! of the other: a near interval of bins and a far one hold nearly just what
+//! they see.
+
+mod build;
+mod pool;
+mod strip;
+mod transpose;
+mod unpack;
+mod wide;
+
+use super::bins::Bins;
+use super::block_ids::BlockIds;
+use super::prefetch::prefetch;
+use super::steps::BinSteps;
+use crate::directions::Directions;
+use crate::grid::Grid;
+use crate::instruction_set::InstructionSet;
+use build::Source;
+pub(crate) use unpack::{far_start, near_end};
+pub(crate) use wide::{ROW_SHIFT, WideViews};
+
+/// Cells along the side of a block.
+pub(crate) const SIDE: usize = 4;
+
+/// Cells of a block, row by row.
+pub(crate) const CELLS: usize = SIDE * SIDE;
+
+/// Directions that are read at a time.
+pub(crate) const READ: usize = 64;
+
+/// Rows of bytes of a packed block.
+const PACKED: usize = 3;
+
+/// A nibble that stands for the width of all that the block sees.
+const ALL: u8 = 15;
+
+/// Nibbles beyond each of these stand for widths that are so many bins farther apart
+/// than before; up to the first a nibble is a width itself.
+const STRETCHES: [(u8, u8); 3] = [(4, 1), (8, 6), (12, 8)];
+
+/// The two intervals in all directions of the blocks in which poses are sought.
+#[derive(Debug, Clone)]
+pub(crate) struct RangeIntervals {
+    /// Blocks along x.
+    pub columns: usize,
+    /// Blocks along y.
+    pub rows: usize,
+    /// Directions of a turn.
+    pub directions: usize,
+    /// The blocks whose intervals are kept.
+    pub ids: BlockIds,
+    /// By which blocks are unpacked.
+    set: InstructionSet,
+    /// For each block that is kept three rows with a byte for each direction: the nearest
+    /// bin, the farthest bin, and the widths of the two intervals.
+    packed: Vec<u8>,
+}
+
+/// The intervals of one block, direction by direction for a turn and [`READ`]
+/// further ones, so that as many can be read from any direction on.
+#[derive(Debug, Clone, Default)]
+pub(crate) struct BlockIntervals {
+    /// First and last bin of the near interval, then of the far one. Where
+    /// there is none, the first lies behind the last.
+    pub rows: [Vec<u8>; 4],
+}
+
+/// [`READ`] directions of each of the four rows.
+pub(crate) type IntervalRows<'a> = [&'a [u8; READ]; 4];
+
+/// The rows of a block, all as long.
+#[derive(Debug, Clone, Copy)]
+pub(crate) struct RowsOfBlock<'a>([&'a [u8]; 4]);
+
+impl BlockIntervals {
+    /// The rows, to be read from.
+    #[inline(always)]
+    pub(crate) fn rows(&self) -> RowsOfBlock<'_> {
+        // With one length for all, each place needs to be checked only once.
+        let length = self.rows[0].len();
+        RowsOfBlock(self.rows.each_ref().map(|row| &row[..length]))
+    }
+}
+
+impl<'a> RowsOfBlock<'a> {
+    /// The rows from a direction on.
+    #[inline(always)]
+    pub(crate) fn from(&self, direction: usize) -> IntervalRows<'a> {
+        const ENOUGH: &str = "a row goes on for as many directions as are read";
+        self.0
+            .map(|row| row[direction..].first_chunk().expect(ENOUGH))
+    }
+}
+
+impl RangeIntervals {
+    /// Those of some blocks of a grid, and what they see where these are wide.
+    pub(crate) fn new(
+        grid: &Grid,
+        directions: &Directions,
+        bins: (&Bins, &BinSteps),
+        blocks: BlockIds,
+    ) -> (Self, WideViews) {
+        Self::with(grid, directions, bins, blocks, (InstructionSet::best(), 1))
+    }
+
+    /// Those of all blocks.
+    #[cfg(test)]
+    pub(crate) fn of_all(
+        grid: &Grid,
+        directions: &Directions,
+        bins: (&Bins, &BinSteps),
+    ) -> (Self, WideViews) {
+        let blocks = grid.width().div_ceil(SIDE) * grid.height().div_ceil(SIDE);
+        Self::new(grid, directions, bins, BlockIds::all(blocks))
+    }
+
+    /// The same as [`RangeIntervals::new`] by a given instruction set and number of
+    /// threads.
+    pub(crate) fn with(
+        grid: &Grid,
+        directions: &Directions,
+        (bins, steps): (&Bins, &BinSteps),
+        ids: BlockIds,
+        (set, threads): (InstructionSet, usize),
+    ) -> (Self, WideViews) {
+        let (columns, rows) = (grid.width().div_ceil(SIDE), grid.height().div_ceil(SIDE));
+        let mut packed = vec![0; PACKED * directions.count() * ids.count()];
+        let source = Source {
+            grid,
+            directions,
+            bins,
+            steps,
+            ids: &ids,
+        };
+        let views = build::build(source, set, threads, &mut packed);
+        let wide = WideViews::new(ids.count(), &views);
+        let intervals = RangeIntervals {
+            columns,
+            rows,
+            directions: directions.count(),
+            ids,
+            set,
+            packed,
+        };
+        (intervals, wide)
+    }
+
+    /// Bytes that the intervals take.
+    pub(crate) fn bytes(&self) -> usize {
+        self.packed.len() + self.ids.bytes()
+    }
+
+    /// The nearest bins of a block that is kept, its farthest ones, and the widths.
+    pub(crate) fn packed(&self, block: usize) -> [&[u8]; PACKED] {
+        let bytes = PACKED * self.directions;
+        let packed = &self.packed[bytes * self.ids.before(block)..][..bytes];
+        let (nearest, rest) = packed.split_at(self.directions);
+        let (farthest, widths) = rest.split_at(self.directions);
+        [nearest, farthest, widths]
+    }
+
+    /// Asks for the intervals of a block that is soon to be read, if it is kept.
+    pub(crate) fn prefetch(&self, block: usize) {
+        if self.ids.holds(block) {
+            self.packed(block).into_iter().for_each(prefetch);
+        }
+    }
+
+    /// Unpacks the intervals of a block that is kept.
+    pub(crate) fn read(&self, block: usize, into: &mut BlockIntervals) {
+        let packed = self.packed(block);
+        let ends = into.rows.each_mut().map(|row| {
+            row.resize(self.directions + READ, 0);
+            &mut row[..self.directions]
+        });
+        match self.set {
+            // SAFETY: the intervals were built by this instruction set, and what has
+            // AVX-512 has AVX2.
+            #[cfg(target_arch = "x86_64")]
+            InstructionSet::Avx512 | InstructionSet::Avx2 => unsafe {
+                unpack::unpack_avx2(packed, ends);
+            },
+            _ => unpack::unpack(packed, ends),
+        }
+        for row in &mut into.rows {
+            let (turn, further) = row.split_at_mut(self.directions);
+            if let (Some(turn), Some(further)) =
+                (turn.first_chunk::<READ>(), further.first_chunk_mut())
+            {
+                *further = *turn;
+                continue;
+            }
+            for further in further.chunks_mut(self.directions) {
+                further.copy_from_slice(&turn[..further.len()]);
+            }
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use std::collections::BTreeMap;
+
+    use proptest::collection::vec;
+    use proptest::prelude::*;
+
+    use super::*;
+    use crate::reference;
+    use crate::testing::{any_grid, any_long_grid, space_of};
+
+    proptest! {
+        #[test]
+        fn intervals_end_with_what_the_cells_see_and_hold_it_all(
+            grid in prop_oneof![3 => any_grid(), 1 => any_long_grid()],
+            headings in prop_oneof![1u32..12, Just(45)],
+        ) {
+            let directions = &space_of(&grid, headings * 8).directions;
+            let bins = Bins::new(directions);
+            let steps = BinSteps::new(&bins, directions, grid.width().max(grid.height()) as u16);
+            let blocks = grid.width().div_ceil(SIDE) * grid.height().div_ceil(SIDE);
+            let with = |set, threads| {
+                let ids = BlockIds::all(blocks);
+                RangeIntervals::with(&grid, directions, (&bins, &steps), ids, (set, threads))
+            };
+            let (intervals, noted) = with(InstructionSet::Portable, 1);
+            let views = |wide: &WideViews, block| wide.of(block).collect::<BTreeMap<_, _>>();
+            for set in InstructionSet::available() {
+                for threads in 1..4 {
+                    let (other, others) = with(set, threads);
+                    prop_assert!(other.packed == intervals.packed, "{} {}", set, threads);
+                    for block in 0..intervals.columns * intervals.rows {
+                        prop_assert_eq!(views(&others, block), views(&noted, block), "{} {}", set, threads);
+                    }
+                }
+            }
+            let mut read = BlockIntervals::default();
+            for block in 0..intervals.columns * intervals.rows {
+                intervals.read(block, &mut read);
+                let views = views(&noted, block);
+                for (d, direction) in directions.all().iter().enumerate() {
+                    let seen = seen(&grid, &intervals, block, |x, y| {
+                        reference::range(&grid, x, y, direction).map(|range| bins.bin(direction.class, range))
+                    });
+                    let [near_first, near_last, far_first, far_last] = [0, 1, 2, 3].map(|i| read.rows[i][d]);
+                    prop_assert_eq!(seen.iter().min().copied().unwrap_or(Bins::NOTHING), near_first);
+                    prop_assert_eq!(seen.iter().max().copied().unwrap_or(0), far_last);
+                    for bin in &seen {
+                        let near = (near_first..=near_last).contains(bin);
+                        prop_assert!(near || (far_first..=far_last).contains(bin), "{} {:?}", bin, seen);
+                    }
+                    // An inner end is seen, too, or lies less far behind one that is
+                    // than the next smaller width would.
+                    if !seen.is_empty() {
+                        let least = |width| (0..ALL).map(unpack::width).rev().find(|&less| less < width);
+                        let least = |width| least(width).map_or(0, |less| less + 1);
+                        let near = near_first + least(near_last - near_first)..=near_last;
+                        let far = far_first..=far_last - least(far_last - far_first);
+                        prop_assert!(near_last == far_last || seen.iter().any(|bin| near.contains(bin)));
+                        prop_assert!(far_first == near_first || seen.iter().any(|bin| far.contains(bin)));
+                        // What is wide for certain is noted, and nothing that cannot be.
+                        let widths = [near_last - near_first, far_last - far_first];
+                        let sum = |widths: [u8; 2]| widths.map(u16::from).iter().sum::<u16>();
+                        let is_noted = views.contains_key(&d);
+                        prop_assert!(is_noted || sum(widths.map(least)) < wide::WIDE.into());
+                        prop_assert!(!is_noted || sum(widths) >= wide::WIDE.into());
+                    }
+                    if let Some(rows) = views.get(&d) {
+                        let all = seen.iter().fold(0u64, |rows, bin| rows | 1 << (bin >> ROW_SHIFT));
+                        prop_assert_eq!(*rows, all);
+                    }
+                }
+                for row in &read.rows {
+                    let again = (directions.count()..row.len()).all(|i| row[i] == row[i - directions.count()]);
+                    prop_assert!(again && row.len() == directions.count() + READ);
+                }
+            }
+        }
+    }
+
+    proptest! {
+        #[test]
+        fn blocks_that_are_left_out_change_nothing_of_the_others(
+            grid in prop_oneof![3 => any_grid(), 1 => any_long_grid()],
+            headings in prop_oneof![1u32..12, Just(45)], kept in vec(any::<bool>(), 300), threads in 1usize..4,
+        ) {
+            let directions = &space_of(&grid, headings * 8).directions;
+            let bins = Bins::new(directions);
+            let steps = BinSteps::new(&bins, directions, grid.width().max(grid.height()) as u16);
+            let (all, noted) = RangeIntervals::of_all(&grid, directions, (&bins, &steps));
+            let blocks = all.columns * all.rows;
+            for set in InstructionSet::available() {
+                let ids = BlockIds::new(&kept[..blocks]);
+                let (some, others) = RangeIntervals::with(&grid, directions, (&bins, &steps), ids, (set, threads));
+                for block in (0..blocks).filter(|&block| kept[block]) {
+                    prop_assert_eq!(some.packed(block), all.packed(block), "{} {}", set, threads);
+                    let views = |wide: &WideViews, id| wide.of(id).collect::<BTreeMap<_, _>>();
+                    prop_assert_eq!(views(&others, some.ids.before(block)), views(&noted, block));
+                }
+            }
+        }
+    }
+
+    /// What the open cells of a block see.
+    fn seen(
+        grid: &Grid,
+        intervals: &RangeIntervals,
+        block: usize,
+        see: impl Fn(i64, i64) -> Option<u8>,
+    ) -> Vec<u8> {
+        let (left, bottom) = (
+            block % intervals.columns * SIDE,
+            block / intervals.columns * SIDE,
+        );
+        let cells =
+            (0..SIDE * SIDE).map(|i| ((left + i % SIDE) as i64, (bottom + i / SIDE) as i64));
+        cells
+            .filter(|&(x, y)| grid.is_open(x, y))
+            .filter_map(|(x, y)| see(x, y))
+            .collect()
+    }
+}

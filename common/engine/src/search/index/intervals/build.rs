@@ -1,0 +1,369 @@
+//! Builds the intervals of all blocks by range sweeps, strip by strip.
+//!
+//! Directions with the same major axis and sense sweep together: a strip of
+//! blocks is done in all of them before the next one, so that what is built
+//! leaves the cache once, with the bytes of a block side by side.
+
+use std::convert::Infallible;
+use std::ops::Range;
+use std::sync::atomic::{AtomicUsize, Ordering};
+use std::sync::{Mutex, PoisonError};
+
+use super::pool::pool;
+use super::strip::{Row, RowLayout, StripMasks};
+use super::transpose::{TILE, WORD, transpose};
+use super::wide::{Noting, WideView};
+use super::{PACKED, SIDE};
+use crate::directions::{Directions, swap_unless};
+use crate::grid::Grid;
+use crate::instruction_set::InstructionSet;
+use crate::search::index::bins::Bins;
+use crate::search::index::bits;
+use crate::search::index::block_ids::BlockIds;
+use crate::search::index::lanes::{Lanes, Portable};
+use crate::search::index::steps::BinSteps;
+use crate::threads;
+
+/// What the intervals are made of.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct Source<'a> {
+    pub grid: &'a Grid,
+    pub directions: &'a Directions,
+    pub bins: &'a Bins,
+    pub steps: &'a BinSteps,
+    /// The blocks that are wanted.
+    pub ids: &'a BlockIds,
+}
+
+/// The packed intervals of the wanted blocks in [`TILE`] rows of blocks. Threads fill
+/// them in different directions and take turns at that.
+struct Band<'a> {
+    /// The number of its first block.
+    first: usize,
+    packed: Mutex<&'a mut [u8]>,
+}
+
+/// Fills the packed intervals of the wanted blocks, row by row. What is seen where they
+/// are wide, as each thread found it.
+pub(super) fn build(
+    source: Source<'_>,
+    set: InstructionSet,
+    threads: usize,
+    packed: &mut [u8],
+) -> Vec<Vec<WideView>> {
+    let bands = bands(source, packed);
+    let parts = parts(source.directions, threads);
+    let next = AtomicUsize::new(0);
+    let mut views = vec![Vec::new(); threads];
+    let Ok(()) = threads::run(&mut views, &|| false, |_, views, _| {
+        let bands = &bands;
+        let mut built = Built { bands, views };
+        while let Some(part) = parts.get(next.fetch_add(1, Ordering::Relaxed)) {
+            sweep_on(set, source, part, &mut built);
+        }
+        Ok::<(), Infallible>(())
+    });
+    views
+}
+
+fn bands<'a>(source: Source<'_>, mut packed: &'a mut [u8]) -> Vec<Band<'a>> {
+    let Source {
+        grid,
+        directions,
+        ids,
+        ..
+    } = source;
+    let (columns, rows) = (grid.width().div_ceil(SIDE), grid.height().div_ceil(SIDE));
+    let mut bands = Vec::with_capacity(rows.div_ceil(TILE));
+    for row in (0..rows).step_by(TILE) {
+        let first = ids.before(row * columns);
+        let end = ids.before((row + TILE).min(rows) * columns);
+        let bytes = (end - first) * PACKED * directions.count();
+        let (band, rest) = packed.split_at_mut(bytes);
+        bands.push(Band {
+            first,
+            packed: Mutex::new(band),
+        });
+        packed = rest;
+    }
+    bands
+}
+
+/// Where what is built goes: the packed intervals, and what is seen where they are wide.
+struct Built<'a, 'b> {
+    bands: &'a [Band<'b>],
+    views: &'a mut Vec<WideView>,
+}
+
+/// Directions that sweep together.
+#[derive(Debug, Clone)]
+struct Part {
+    x_major: bool,
+    forward: bool,
+    /// In ascending order.
+    directions: Vec<usize>,
+}
+
+/// All directions by major axis and sense, in as many pieces as threads need.
+fn parts(directions: &Directions, threads: usize) -> Vec<Part> {
+    let mut parts = Vec::new();
+    for (x_major, forward) in [(true, true), (true, false), (false, true), (false, false)] {
+        let alike = |&d: &usize| {
+            let direction = directions.get(d);
+            direction.x_major == x_major && (direction.step > 0) == forward
+        };
+        let all: Vec<usize> = (0..directions.count()).filter(alike).collect();
+        let pieces = threads.div_ceil(2);
+        parts.extend(
+            all.chunks(all.len().div_ceil(pieces).max(1))
+                .map(|piece| Part {
+                    x_major,
+                    forward,
+                    directions: piece.to_vec(),
+                }),
+        );
+    }
+    parts
+}
+
+fn sweep_on(set: InstructionSet, source: Source<'_>, part: &Part, built: &mut Built<'_, '_>) {
+    match set.checked() {
+        InstructionSet::Portable => sweep(Portable, source, part, built),
+        #[cfg(target_arch = "x86_64")]
+        // SAFETY: the processor has the features that the function is compiled for.
+        InstructionSet::Avx2 => unsafe { sweep_avx2(source, part, built) },
+        #[cfg(target_arch = "x86_64")]
+        // SAFETY: as above.
+        InstructionSet::Avx512 => unsafe { sweep_avx512(source, part, built) },
+        #[cfg(not(target_arch = "x86_64"))]
+        _ => unreachable!("checked above"),
+    }
+}
+
+#[cfg(target_arch = "x86_64")]
+#[target_feature(enable = "avx2")]
+fn sweep_avx2(source: Source<'_>, part: &Part, built: &mut Built<'_, '_>) {
+    sweep(
+        crate::search::index::lanes::Avx2::new(),
+        source,
+        part,
+        built,
+    );
+}
+
+#[cfg(target_arch = "x86_64")]
+#[target_feature(enable = "avx512f,avx512bw,avx512dq,avx512vl")]
+fn sweep_avx512(source: Source<'_>, part: &Part, built: &mut Built<'_, '_>) {
+    sweep(
+        crate::search::index::lanes::Avx512::new(),
+        source,
+        part,
+        built,
+    );
+}
+
+/// Sweeps over the map in the directions of a part.
+#[inline(always)]
+fn sweep<L: Lanes>(lanes: L, source: Source<'_>, part: &Part, built: &mut Built<'_, '_>) {
+    let (width, height) = (source.grid.width(), source.grid.height());
+    let longest = (width.max(height) - 1) as u16;
+    let (majors, minors) = swap_unless(part.x_major, (width, height));
+    let row_blocks = width.div_ceil(SIDE);
+    let (strips, blocks) = (majors.div_ceil(SIDE), minors.div_ceil(SIDE));
+    let layout = RowLayout::new(blocks);
+    let mut masks = StripMasks::new(layout);
+    let mut swept = vec![Row::new(layout); part.directions.len()];
+    let mut between: [Row; SIDE - 1] = std::array::from_fn(|_| Row::new(layout));
+    let mut planes = Planes::new(part, blocks, source.directions.count());
+    for i in 0..strips {
+        let strip = if part.forward { strips - 1 - i } else { i };
+        masks.fill(source.grid, part.x_major, strip);
+        let places = if part.x_major {
+            (strip, row_blocks)
+        } else {
+            (strip * row_blocks, 1)
+        };
+        let strip_blocks = StripBlocks::new(source.ids, places, blocks);
+        for (slot, (&d, swept)) in part.directions.iter().zip(&mut swept).enumerate() {
+            let direction = source.directions.get(d);
+            let [a, b, c] = &mut between;
+            for i in 0..SIDE {
+                let row = if part.forward { SIDE - 1 - i } else { i };
+                let major = (SIDE * strip + row) as i64;
+                let shift = direction.minor(major + direction.step) - direction.minor(major);
+                let (next, ranges) = match i {
+                    0 => (&*swept, &mut *a),
+                    1 => (&*a, &mut *b),
+                    2 => (&*b, &mut *c),
+                    _ => (&*c, &mut *swept),
+                };
+                masks.sweep(lanes, row, shift, next, ranges);
+            }
+            let rows = [&*a, b, c, swept];
+            let mut noting = Noting {
+                views: &mut *built.views,
+                steps: source.steps,
+                direction: d,
+                class: direction.class,
+                blocks: &strip_blocks,
+            };
+            if longest <= Bins::NEAR_STEPS {
+                pool(
+                    lanes,
+                    rows,
+                    source.bins.near_lines(direction.class),
+                    planes.of(slot),
+                    &mut noting,
+                );
+            } else {
+                pool(
+                    lanes,
+                    rows,
+                    source.bins.lines(direction.class),
+                    planes.of(slot),
+                    &mut noting,
+                );
+            }
+        }
+        planes.write(part, strip, &strip_blocks, built.bands);
+    }
+}
+
+/// The blocks of a strip.
+pub(super) struct StripBlocks<'a> {
+    ids: &'a BlockIds,
+    /// The first one, and how much farther each next one is.
+    places: (usize, usize),
+    /// A bit for each that is wanted.
+    wanted: Vec<u64>,
+}
+
+impl<'a> StripBlocks<'a> {
+    fn new(ids: &'a BlockIds, places: (usize, usize), blocks: usize) -> Self {
+        let holds = |block: usize| u64::from(ids.holds(places.0 + block * places.1));
+        let word = |first: usize| {
+            let tile = first..blocks.min(first + TILE);
+            tile.fold(0, |word, block| word | holds(block) << (block - first))
+        };
+        StripBlocks {
+            ids,
+            places,
+            wanted: (0..blocks).step_by(TILE).map(word).collect(),
+        }
+    }
+
+    /// Which are wanted of so many from `start` on, which are a part of a tile.
+    #[inline(always)]
+    pub(super) fn wanted(&self, start: usize, count: usize) -> u64 {
+        let word = self
+            .wanted
+            .get(start / TILE)
+            .map_or(0, |word| word >> (start % TILE));
+        word & (u64::MAX >> (TILE - count))
+    }
+
+    /// The number of a wanted one.
+    #[inline(always)]
+    pub(super) fn id(&self, block: usize) -> usize {
+        self.ids.before(self.places.0 + block * self.places.1)
+    }
+}
+
+/// The packed intervals of a strip, direction by direction.
+struct Planes {
+    /// Directions of a turn.
+    directions: usize,
+    /// Bytes of a row of the packed format in one direction: one a block.
+    stride: usize,
+    bytes: Vec<u8>,
+    /// Bytes of a row of the packed format in one block.
+    turned_stride: usize,
+    /// Those of the blocks of a tile, block by block.
+    turned: Vec<u8>,
+    /// Runs of neighbouring directions, and where they start among all.
+    runs: Vec<(usize, Range<usize>)>,
+}
+
+impl Planes {
+    fn new(part: &Part, blocks: usize, directions: usize) -> Self {
+        let stride = blocks.next_multiple_of(TILE);
+        let slots = part.directions.len().next_multiple_of(WORD);
+        let mut runs = Vec::new();
+        let mut slot = 0;
+        for run in part.directions.chunk_by(|a, b| a + 1 == *b) {
+            runs.push((slot, run[0]..run[0] + run.len()));
+            slot += run.len();
+        }
+        Planes {
+            directions,
+            stride,
+            bytes: vec![0; PACKED * stride * slots],
+            turned_stride: slots,
+            turned: vec![0; PACKED * TILE * slots],
+            runs,
+        }
+    }
+
+    /// The rows of the packed format in one direction.
+    #[inline(always)]
+    fn of(&mut self, slot: usize) -> [&mut [u8]; PACKED] {
+        let rows = &mut self.bytes[PACKED * self.stride * slot..][..PACKED * self.stride];
+        let (first, rest) = rows.split_at_mut(self.stride);
+        let (second, third) = rest.split_at_mut(self.stride);
+        [first, second, third]
+    }
+
+    /// Writes what was filled in into the wanted blocks of a strip.
+    #[inline(always)]
+    fn write(&mut self, part: &Part, strip: usize, blocks: &StripBlocks<'_>, bands: &[Band<'_>]) {
+        let bytes = PACKED * self.directions;
+        for tile in 0..blocks.wanted.len() {
+            let start = tile * TILE;
+            let wanted = blocks.wanted(start, TILE);
+            if wanted == 0 {
+                continue;
+            }
+            // A tile across a column of blocks is as high as a band.
+            let band = if part.x_major { tile } else { strip / TILE };
+            let Band { first, packed } = &bands[band];
+            let place = |block: usize| bytes * (blocks.id(start + block) - first);
+            let mut packed = packed.lock().unwrap_or_else(PoisonError::into_inner);
+            self.turn(start);
+            for block in bits::ones(wanted) {
+                self.write_block(block, &mut packed[place(block)..][..bytes]);
+            }
+        }
+    }
+
+    /// Turns the tile of blocks from `start` on.
+    #[inline(always)]
+    fn turn(&mut self, start: usize) {
+        let stride = self.turned_stride;
+        for slot in (0..stride).step_by(WORD) {
+            for row in 0..PACKED {
+                let mut words = [[0; WORD]; WORD];
+                for (i, words) in words.iter_mut().enumerate() {
+                    let bytes = &self.bytes[(PACKED * (slot + i) + row) * self.stride + start..];
+                    *words = bytemuck::pod_read_unaligned(&bytes[..TILE]);
+                }
+                transpose(&mut words);
+                for (block, turned) in self.turned.chunks_exact_mut(PACKED * stride).enumerate() {
+                    let word = words[block % WORD][block / WORD];
+                    turned[row * stride + slot..][..WORD].copy_from_slice(&word.to_ne_bytes());
+                }
+            }
+        }
+    }
+
+    /// Writes a block of the turned tile.
+    #[inline(always)]
+    fn write_block(&self, block: usize, packed: &mut [u8]) {
+        let turned = &self.turned[PACKED * self.turned_stride * block..];
+        for row in 0..PACKED {
+            for (slot, run) in &self.runs {
+                let from = &turned[row * self.turned_stride + slot..][..run.len()];
+                packed[row * self.directions..][run.clone()].copy_from_slice(from);
+            }
+        }
+    }
+}

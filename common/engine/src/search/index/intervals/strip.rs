@@ -1,0 +1,168 @@
+//! Ranges of the cells of a strip: a row of blocks across the major axis of a
+//! bundle of lines.
+//!
+//! A row of cells is kept as four planes: plane `k` holds every fourth cell from
+//! the `k`-th on, one for each block. So all that is pooled over a block lies in
+//! the same lane of 16 vectors.
+
+use super::SIDE;
+use crate::directions::swap_unless;
+use crate::grid::{Cell, Grid};
+use crate::program::NO_RANGE;
+use crate::search::index::lanes::Lanes;
+
+/// Numbers in a cache line.
+const LINE: usize = 32;
+
+/// A cache line of numbers; rows made of them start where vectors should.
+#[derive(Debug, Clone, Copy, bytemuck::Pod, bytemuck::Zeroable)]
+#[repr(C, align(64))]
+struct CacheLine([u16; LINE]);
+
+/// How the cells of a row lie in memory.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct RowLayout {
+    /// Blocks along the row, rounded up to whole cache lines.
+    pub lanes: usize,
+}
+
+/// Numbers of a row of cells, with a margin of no ranges around each plane.
+#[derive(Debug, Clone)]
+pub(super) struct Row {
+    layout: RowLayout,
+    lines: Vec<CacheLine>,
+}
+
+impl RowLayout {
+    pub(super) fn new(blocks: usize) -> Self {
+        RowLayout {
+            lanes: blocks.next_multiple_of(LINE),
+        }
+    }
+
+    /// Where a plane starts, counted from the start of the row.
+    #[inline(always)]
+    fn plane(self, plane: usize) -> usize {
+        LINE + plane * (self.lanes + LINE)
+    }
+
+    /// Where the neighbours of a plane's cells start, -1 to +1 along the row.
+    #[inline(always)]
+    fn beside(self, plane: usize, shift: i64) -> usize {
+        match (plane, shift) {
+            (0, -1) => self.plane(SIDE - 1) - 1,
+            (_, -1) => self.plane(plane - 1),
+            (plane, 1) if plane == SIDE - 1 => self.plane(0) + 1,
+            (_, 1) => self.plane(plane + 1),
+            _ => self.plane(plane),
+        }
+    }
+}
+
+impl Row {
+    /// A row of cells that see nothing.
+    pub(super) fn new(layout: RowLayout) -> Self {
+        let lines = (layout.plane(SIDE)) / LINE;
+        Row {
+            layout,
+            lines: vec![CacheLine([NO_RANGE; LINE]); lines],
+        }
+    }
+
+    /// The cells of a plane.
+    #[inline(always)]
+    pub(super) fn plane(&self, plane: usize) -> &[u16] {
+        &self.numbers()[self.layout.plane(plane)..][..self.layout.lanes]
+    }
+
+    #[inline(always)]
+    fn plane_mut(&mut self, plane: usize) -> &mut [u16] {
+        let (start, lanes) = (self.layout.plane(plane), self.layout.lanes);
+        &mut bytemuck::cast_slice_mut(&mut self.lines)[start..][..lanes]
+    }
+
+    /// The neighbours of a plane's cells, `shift` cells on.
+    #[inline(always)]
+    fn beside(&self, plane: usize, shift: i64) -> &[u16] {
+        &self.numbers()[self.layout.beside(plane, shift)..][..self.layout.lanes]
+    }
+
+    #[inline(always)]
+    fn numbers(&self) -> &[u16] {
+        bytemuck::cast_slice(&self.lines)
+    }
+}
+
+/// What rays meet in the cells of one strip, as masks.
+#[derive(Debug, Clone)]
+pub(super) struct StripMasks {
+    /// 0 where the cell is occupied, else all ones.
+    pass: [Row; SIDE],
+    /// All ones where rays are lost in the cell or it is off the map, else 0.
+    lose: [Row; SIDE],
+}
+
+impl StripMasks {
+    pub(super) fn new(layout: RowLayout) -> Self {
+        let rows = || std::array::from_fn(|_| Row::new(layout));
+        StripMasks {
+            pass: rows(),
+            lose: rows(),
+        }
+    }
+
+    /// Takes the cells of a strip, a row of blocks or a column of them.
+    pub(super) fn fill(&mut self, grid: &Grid, x_major: bool, strip: usize) {
+        let (majors, minors) = swap_unless(x_major, (grid.width(), grid.height()));
+        let (major_stride, minor_stride) = swap_unless(x_major, (1, grid.width()));
+        for (row, (pass, lose)) in self.pass.iter_mut().zip(&mut self.lose).enumerate() {
+            let major = SIDE * strip + row;
+            for plane in 0..SIDE {
+                let (pass, lose) = (pass.plane_mut(plane), lose.plane_mut(plane));
+                let cells = if major < majors {
+                    minors.saturating_sub(plane).div_ceil(SIDE)
+                } else {
+                    0
+                };
+                lose[cells..].fill(u16::MAX);
+                let cells = grid
+                    .cells()
+                    .get(major * major_stride + plane * minor_stride..)
+                    .unwrap_or(&[])
+                    .iter()
+                    .step_by(SIDE * minor_stride)
+                    .take(cells);
+                for ((&cell, pass), lose) in cells.zip(pass).zip(lose) {
+                    *pass = if cell == Cell::Occupied { 0 } else { u16::MAX };
+                    *lose = if cell == Cell::Blocked { u16::MAX } else { 0 };
+                }
+            }
+        }
+    }
+
+    /// Ranges of the cells of the strip's row `row`, of which each one's next
+    /// cell lies `shift` cells on in the row `next`: 0 if the cell is occupied,
+    /// else one step more than the next one's.
+    #[inline(always)]
+    pub(super) fn sweep<L: Lanes>(
+        &self,
+        lanes: L,
+        row: usize,
+        shift: i64,
+        next: &Row,
+        ranges: &mut Row,
+    ) {
+        let one = lanes.splat(1);
+        for plane in 0..SIDE {
+            let next = next.beside(plane, shift).chunks_exact(L::COUNT);
+            let pass = self.pass[row].plane(plane).chunks_exact(L::COUNT);
+            let lose = self.lose[row].plane(plane).chunks_exact(L::COUNT);
+            let ranges = ranges.plane_mut(plane).chunks_exact_mut(L::COUNT);
+            for (((next, pass), lose), ranges) in next.zip(pass).zip(lose).zip(ranges) {
+                let further = lanes.add_saturating(lanes.load(next), one);
+                let passed = lanes.and(further, lanes.load(pass));
+                lanes.store(lanes.or(passed, lanes.load(lose)), ranges);
+            }
+        }
+    }
+}

@@ -1,0 +1,91 @@
+//! A map prepared for searches: what the blocks see in which poses are sought.
+//!
+//! It is made once for each map and then only read. What it says of a block holds for all
+//! its cells: no range that a cell sees is missing. Nothing here knows a scan, a floor or
+//! the order in which blocks are searched.
+
+pub(in crate::search) mod bins;
+pub(in crate::search) mod bits;
+pub(in crate::search) mod block_ids;
+pub(in crate::search) mod intervals;
+pub(in crate::search) mod lanes;
+mod needed;
+pub(in crate::search) mod obstacles;
+pub(in crate::search) mod prefetch;
+pub(in crate::search) mod ray_lanes;
+pub(in crate::search) mod sets;
+pub(in crate::search) mod steps;
+pub(in crate::search) mod within;
+pub(in crate::search) mod words;
+
+use bins::Bins;
+use block_ids::BlockIds;
+use intervals::{RangeIntervals, SIDE};
+use obstacles::Obstacles;
+use sets::RangeSets;
+use steps::BinSteps;
+use within::Within;
+
+use crate::grid::Grid;
+use crate::limits::Limits;
+use crate::space::Space;
+use crate::sweep::FieldSweep;
+
+/// A map prepared for searches: made once for each map.
+#[derive(Debug, Clone)]
+pub struct SearchIndex {
+    pub(in crate::search) steps: BinSteps,
+    pub(in crate::search) intervals: RangeIntervals,
+    pub(in crate::search) fine: RangeSets,
+    pub(in crate::search) coarse: RangeSets,
+    pub(in crate::search) obstacles: Obstacles,
+    pub(in crate::search) within: Within,
+    /// Where bounds do not help.
+    pub(in crate::search) sweeps: FieldSweep,
+}
+
+impl SearchIndex {
+    /// Prepares a map of which poses are sought in all open cells.
+    #[must_use]
+    pub fn new(grid: &Grid, space: &Space) -> Self {
+        Self::within(grid, space, Limits::none(grid.width()))
+    }
+
+    /// Prepares a map of which poses are sought only within limits, those of its grid.
+    /// What is kept of blocks is kept of those alone that hold such a pose.
+    #[must_use]
+    pub fn within(grid: &Grid, space: &Space, limits: Limits) -> Self {
+        let directions = &space.directions;
+        let bins = Bins::new(directions);
+        // No ray has more steps than it crosses columns or rows.
+        let longest = grid.width().max(grid.height()) as u16;
+        let steps = BinSteps::new(&bins, directions, longest);
+        let blocks = BlockIds::new(&limits.blocks(SIDE, grid));
+        let (intervals, wide) = RangeIntervals::new(grid, directions, (&bins, &steps), blocks);
+        let fine = RangeSets::new(&intervals, &wide);
+        drop(wide);
+        let coarse = fine.joined();
+        SearchIndex {
+            steps,
+            intervals,
+            fine,
+            coarse,
+            obstacles: Obstacles::new(grid),
+            within: Within::new(limits, grid),
+            sweeps: FieldSweep::new(grid),
+        }
+    }
+
+    /// Where poses are sought.
+    #[must_use]
+    pub fn limits(&self) -> &Limits {
+        &self.within.limits
+    }
+
+    /// Bytes that the index takes.
+    #[must_use]
+    pub fn bytes(&self) -> usize {
+        let blocks = self.intervals.bytes() + self.fine.bytes() + self.coarse.bytes();
+        blocks + self.within.bytes() + self.obstacles.bytes() + self.sweeps.bytes()
+    }
+}

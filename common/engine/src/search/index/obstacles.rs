@@ -1,0 +1,283 @@
+//! What ends a ray, as bits, so that rays side by side are followed together.
+//!
+//! Directions with the same major axis move all rays of a bundle by one row at a
+//! time. In a row of bits over the minor axis, rays side by side are bits side by
+//! side, and eight rows make one word. Where nothing is near they leap.
+
+use super::intervals::SIDE;
+use super::ray_lanes::{BitRows, ROWS, RayLanes};
+use crate::chessboard;
+use crate::directions::{Direction, swap_unless};
+use crate::grid::{Cell, Grid};
+
+/// Bits before the first and after the last column, for rays that leave the map.
+const MARGIN: i64 = 32;
+
+/// Bits from the start of a strip to that of the next one, `1 << STRIP`: half of what a
+/// strip holds. So all that rays side by side meet in eight rows lies in one strip.
+const STRIP: u32 = 4;
+
+/// The middle of the rays of a word.
+const MIDDLE: i64 = 4;
+
+/// Cells a side of what one clearance holds for, `1 << TILE`.
+const TILE: u32 = 2;
+
+/// The cells of a map that are not open, row by row along either axis.
+#[derive(Debug, Clone)]
+pub(crate) struct Obstacles {
+    along_x: Rows,
+    along_y: Rows,
+    clearance: Clearance,
+}
+
+/// How far away the nearest obstacle of each tile of the map is, in tiles: the
+/// larger of the distances along x and y, 0 in a tile that holds one. Tiles without
+/// any lie all around the map.
+#[derive(Debug, Clone)]
+struct Clearance {
+    columns: usize,
+    tiles: Vec<u8>,
+}
+
+/// The cells as rows over the major axis, with empty ones before and after. They are cut
+/// into strips that overlap, each row by row.
+#[derive(Debug, Clone)]
+struct Rows {
+    /// Cells along the major axis.
+    majors: i64,
+    /// Cells along the minor axis.
+    minors: i64,
+    /// Rows of a strip.
+    stride: usize,
+    bits: Vec<u32>,
+}
+
+/// Rays side by side on their way along a direction.
+#[derive(Debug)]
+pub(in crate::search) struct Rays<'a> {
+    rows: &'a Rows,
+    clearance: &'a Clearance,
+    direction: &'a Direction,
+    /// Where the first ray stands at position 0, along the major axis.
+    major: i64,
+    /// What the first ray has on the minor axis beyond the direction's own rise.
+    offset: i64,
+}
+
+impl Obstacles {
+    pub(crate) fn new(grid: &Grid) -> Self {
+        Obstacles {
+            along_x: Rows::new(grid, true),
+            along_y: Rows::new(grid, false),
+            clearance: Clearance::new(grid),
+        }
+    }
+
+    /// Bytes that they take.
+    pub(crate) fn bytes(&self) -> usize {
+        let rows = self.along_x.bits.len() + self.along_y.bits.len();
+        rows * size_of::<u32>() + self.clearance.tiles.len()
+    }
+
+    /// Whether all cells of a small block are on the map and open.
+    #[inline(always)]
+    pub(in crate::search) fn are_none_in(&self, (left, bottom): (usize, usize)) -> bool {
+        let Rows {
+            stride,
+            bits,
+            majors,
+            minors,
+        } = &self.along_x;
+        let (strip, bit) = strip_of(bottom as i64 + MARGIN);
+        let rows = &bits[strip * stride + ROWS as usize + left..];
+        (left + SIDE) as i64 <= *majors
+            && (bottom + SIDE) as i64 <= *minors
+            && rows[..SIDE]
+                .iter()
+                .all(|row| row >> bit & ((1 << SIDE) - 1) == 0)
+    }
+
+    /// Rays in a direction, of which the first one stands at `(major, minor)` at
+    /// position 0.
+    pub(in crate::search) fn rays<'a>(
+        &'a self,
+        direction: &'a Direction,
+        (major, minor): (i64, i64),
+    ) -> Rays<'a> {
+        Rays {
+            rows: match direction.x_major {
+                true => &self.along_x,
+                false => &self.along_y,
+            },
+            clearance: &self.clearance,
+            direction,
+            major,
+            offset: minor - direction.minor(major),
+        }
+    }
+}
+
+impl Rows {
+    fn new(grid: &Grid, x_major: bool) -> Self {
+        let (majors, minors) = swap_unless(x_major, (grid.width(), grid.height()));
+        let stride = majors + 2 * ROWS as usize;
+        let strips = (minors + 2 * MARGIN as usize).div_ceil(1 << STRIP);
+        let mut bits = vec![0; strips * stride];
+        for cell in grid.places(|cell| cell != Cell::Open) {
+            let (major, minor) = swap_unless(x_major, cell);
+            let row = major + ROWS as usize;
+            // The margin is wider than a strip, so that there is one before each.
+            let (strip, bit) = strip_of(minor as i64 + MARGIN);
+            bits[strip * stride + row] |= 1 << bit;
+            bits[(strip - 1) * stride + row] |= 1 << (bit + (1 << STRIP));
+        }
+        Rows {
+            majors: majors as i64,
+            minors: minors as i64,
+            stride,
+            bits,
+        }
+    }
+}
+
+/// The last strip that starts with a bit or before it, and the bit's place there.
+#[inline(always)]
+fn strip_of(bit: i64) -> (usize, i64) {
+    ((bit >> STRIP) as usize, bit & ((1 << STRIP) - 1))
+}
+
+impl Clearance {
+    /// Of a map; what lies beyond it is no obstacle.
+    fn new(grid: &Grid) -> Self {
+        let tiles = |cells: usize| cells.div_ceil(1 << TILE) + 2;
+        let (columns, rows) = (tiles(grid.width()), tiles(grid.height()));
+        let mut clearance = Clearance {
+            columns,
+            tiles: vec![u8::MAX; columns * rows],
+        };
+        for (x, y) in grid.places(|cell| cell != Cell::Open) {
+            let tile = clearance.tile(x, y);
+            clearance.tiles[tile] = 0;
+        }
+        chessboard::spread(&mut clearance.tiles, columns);
+        clearance
+    }
+
+    /// The tile of a cell.
+    #[inline(always)]
+    fn tile(&self, x: usize, y: usize) -> usize {
+        ((y >> TILE) + 1) * self.columns + (x >> TILE) + 1
+    }
+}
+
+impl Rays<'_> {
+    /// For how many positions from this one on no ray of a word can end, by what
+    /// is near its middle; 0 where that is not known.
+    #[inline(always)]
+    pub(crate) fn free(&self, position: i64) -> i64 {
+        let (major, minor) = self.at(MIDDLE as usize, position);
+        if !(0..self.rows.minors).contains(&minor) {
+            return 0;
+        }
+        let (x, y) = self.direction.swap((major, minor));
+        let tile = self.clearance.tile(x as usize, y as usize);
+        let tiles = i64::from(self.clearance.tiles[tile]);
+        // Between a cell and the nearest obstacle lie whole tiles, all but one;
+        // with each position a ray comes nearer by one cell at most.
+        let between = (tiles - 1) << TILE;
+        (between - MIDDLE + 1).max(0)
+    }
+
+    /// Positions on the map along the major axis.
+    pub(crate) fn positions(&self) -> i64 {
+        match self.direction.step > 0 {
+            true => self.rows.majors - self.major,
+            false => self.major + 1,
+        }
+    }
+
+    /// The cell of ray `i` at a position, as column and row.
+    pub(crate) fn cell(&self, i: usize, position: i64) -> (i64, i64) {
+        self.direction.swap(self.at(i, position))
+    }
+
+    /// The same along the major and the minor axis.
+    #[inline(always)]
+    fn at(&self, i: usize, position: i64) -> (i64, i64) {
+        let major = self.major + self.direction.step * position;
+        (major, self.offset + i as i64 + self.direction.minor(major))
+    }
+
+    /// What ends eight rays at eight positions: bit `i` of byte `j` says whether
+    /// ray `i` ends at `position + j`. `None` where all of them have left the map;
+    /// there must be a row at `position`.
+    #[inline(always)]
+    pub(in crate::search) fn ends<L: RayLanes>(&self, position: i64) -> Option<u64> {
+        const ENOUGH: &str = "rows go on before the first and behind the last";
+        let Rays {
+            rows, direction, ..
+        } = self;
+        let major = self.major + direction.step * position;
+        let rise = direction.rise(major);
+        // Rays leave for good: a bundle never turns.
+        let first = self.offset + (rise >> 32);
+        if first <= -ROWS || first >= rows.minors {
+            return None;
+        }
+        // Rows lie in memory as they do along the major axis.
+        let slope = direction.slope() * direction.step;
+        let (bit, last) = (rise, rise + (ROWS - 1) * slope);
+        let (lowest, _) = strip_of(self.offset + MARGIN + (bit.min(last) >> 32));
+        let before = (self.offset + MARGIN - ((lowest as i64) << STRIP)) << 32;
+        let backward = direction.step < 0;
+        let (top, bit, slope) = match backward {
+            true => (major - (ROWS - 1), last, -slope),
+            false => (major, bit, slope),
+        };
+        let start = lowest * rows.stride + (top + ROWS) as usize;
+        let word = L::word(&BitRows {
+            rows: rows.bits[start..].first_chunk().expect(ENOUGH),
+            bit: before + bit,
+            slope,
+        });
+        Some(if backward { word.swap_bytes() } else { word })
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use proptest::prelude::*;
+
+    use super::*;
+    use crate::search::index::ray_lanes::Portable;
+    use crate::testing::{any_grid, any_long_grid, space_of};
+
+    proptest! {
+        #[test]
+        fn rays_end_where_a_cell_is_not_open(
+            grid in prop_oneof![any_grid(), any_long_grid()], headings in 1u32..10, seed in any::<[usize; 2]>(), skip in 0i64..20,
+        ) {
+            let obstacles = Obstacles::new(&grid);
+            let (x, y) = ((seed[0] % grid.width()) as i64, (seed[1] % grid.height()) as i64);
+            for direction in space_of(&grid, headings * 8).directions.all() {
+                let rays = obstacles.rays(direction, direction.swap((x, y)));
+                prop_assert_eq!(rays.cell(0, 0), (x, y));
+                if skip >= rays.positions() {
+                    continue;
+                }
+                let ends = rays.ends::<Portable>(skip);
+                for (i, j) in (0..8).flat_map(|i| (0..8).map(move |j| (i, j))) {
+                    let (x, y) = rays.cell(i, skip + j);
+                    let expected = grid.get(x, y).is_some_and(|cell| cell != Cell::Open);
+                    let found = ends.unwrap_or(0) >> (8 * j + i as i64) & 1;
+                    prop_assert_eq!(found == 1, expected, "{:?} {:?}", (i, j), direction);
+                }
+                for (i, on) in (0..8).flat_map(|i| (0..rays.free(skip)).map(move |on| (i, on))) {
+                    let (x, y) = rays.cell(i, skip + on);
+                    prop_assert!(grid.get(x, y).is_none_or(|cell| cell == Cell::Open));
+                }
+            }
+        }
+    }
+}

@@ -1,0 +1,324 @@
+//! Which ranges the cells of a block see in each direction, as sets.
+//!
+//! For each block of cells and each bin of distances, one bit a direction says
+//! whether any open cell of the block sees an obstacle at such a distance in
+//! that direction. A beam can only vote in a block at headings whose bit is set
+//! for a bin that its taper covers, and one row of bits answers that for all
+//! headings at once.
+//!
+//! Two by two blocks are a quad. Their bits lie side by side, byte by byte, so that
+//! what is read of one is read of all.
+
+mod build;
+mod marks;
+mod packed;
+
+use std::convert::Infallible;
+
+use super::bits::QUAD;
+use super::intervals::{self, RangeIntervals, WideViews};
+use super::prefetch::prefetch;
+use super::words::BYTES;
+use crate::instruction_set::InstructionSet;
+use crate::threads;
+use build::{Rows, build};
+pub(crate) use packed::SetRows;
+use packed::{PackedRows, words};
+
+/// Bytes of directions that are read at a time: a word.
+pub(crate) const READ: usize = BYTES / QUAD;
+
+/// The bits of eight directions in each block of a quad.
+pub(crate) type Byte = [u8; QUAD];
+
+/// The visible ranges of all blocks of one size.
+#[derive(Debug, Clone)]
+pub(crate) struct RangeSets {
+    /// Cells along the side of a block.
+    pub side: usize,
+    /// Blocks along x.
+    pub columns: usize,
+    /// Blocks along y.
+    pub rows: usize,
+    /// Bytes of a row of bits: one bit for each direction. A row stands for
+    /// `1 << ROW_SHIFT` bins.
+    stride: usize,
+    /// Where the rows of each quad start, and behind them where the last ones end.
+    starts: Vec<Start>,
+    packed: PackedRows,
+}
+
+/// Two by two blocks.
+#[derive(Debug, Clone, Copy)]
+pub(crate) struct Quad {
+    pub index: usize,
+    /// Those that are on the map and wanted.
+    pub blocks: [Option<usize>; QUAD],
+}
+
+/// Where the rows of a quad start.
+#[derive(Debug, Clone, Copy, Default, PartialEq, Eq)]
+struct Start {
+    /// Counted through all quads, and so are the bytes that are kept.
+    row: u32,
+    byte: u32,
+    /// The first row that has any bits.
+    first: u32,
+}
+
+impl RangeSets {
+    /// Those of blocks of 2 × 2 blocks of intervals.
+    pub(crate) fn new(intervals: &RangeIntervals, wide: &WideViews) -> Self {
+        Self::with(intervals, wide, InstructionSet::best(), 1)
+    }
+
+    /// The same by a given instruction set and number of threads.
+    pub(crate) fn with(
+        intervals: &RangeIntervals,
+        wide: &WideViews,
+        set: InstructionSet,
+        threads: usize,
+    ) -> Self {
+        let (columns, rows) = (intervals.columns.div_ceil(2), intervals.rows.div_ceil(2));
+        let quad_rows = rows.div_ceil(2);
+        let piece = quad_rows.div_ceil(threads);
+        let pieces = (0..quad_rows).step_by(piece);
+        let pieces = pieces.map(|start| (start..quad_rows.min(start + piece), Rows::default()));
+        let mut pieces: Vec<_> = pieces.collect();
+        let Ok(()) = threads::run(&mut pieces, &|| false, |_, (rows, built), _| {
+            *built = build(set, (intervals, wide), rows.clone());
+            Ok::<(), Infallible>(())
+        });
+        let mut pieces = pieces.into_iter().map(|(_, built)| built);
+        let mut rows_of = pieces.next().unwrap_or_default();
+        pieces.for_each(|piece| rows_of.append(piece));
+        let side = 2 * intervals::SIDE;
+        let stride = intervals.directions / 8;
+        Self::of_rows(side, (columns, rows), stride, rows_of)
+    }
+
+    fn of_rows(
+        side: usize,
+        (columns, rows): (usize, usize),
+        stride: usize,
+        mut rows_of: Rows,
+    ) -> Self {
+        let mut starts = Vec::with_capacity(rows_of.quads.len() + 1);
+        let mut start = Start::default();
+        for (rows, bytes) in rows_of.quads {
+            let first = rows.start as u32;
+            starts.push(Start { first, ..start });
+            start.row += rows.len() as u32;
+            start.byte += bytes as u32;
+        }
+        starts.push(start);
+        rows_of.packed.finish();
+        RangeSets {
+            side,
+            columns,
+            rows,
+            stride,
+            starts,
+            packed: rows_of.packed,
+        }
+    }
+
+    /// Those of blocks that join two by two of these.
+    pub(crate) fn joined(&self) -> Self {
+        let (columns, rows) = (self.columns.div_ceil(2), self.rows.div_ceil(2));
+        let quads = (columns.div_ceil(2), rows.div_ceil(2));
+        let mut joined = Rows::default();
+        let mut turn = vec![[0; QUAD]; self.stride];
+        let mut unpacked = [(); QUAD].map(|()| Vec::new());
+        for quad in 0..quads.0 * quads.1 {
+            // A block is a quad of these.
+            let within = quad_of(quad, (columns, rows)).map(|block| Some(self.quad(block?)));
+            let all = within.iter().flatten().map(|quad| quad.rows.clone());
+            let all = all.filter(|rows| !rows.is_empty());
+            let all = all.reduce(|a, b| a.start.min(b.start)..a.end.max(b.end));
+            for (quad, unpacked) in within.iter().zip(&mut unpacked) {
+                quad.iter().for_each(|quad| quad.unpack(unpacked));
+            }
+            joined.push(all.unwrap_or(0..0), &mut turn, |row, turn| {
+                turn.fill([0; QUAD]);
+                for (place, (quad, unpacked)) in within.iter().zip(&unpacked).enumerate() {
+                    let quad = quad.as_ref().filter(|quad| quad.rows.contains(&row));
+                    let Some(quad) = quad else { continue };
+                    let row = &unpacked[(row - quad.rows.start) * self.stride..];
+                    for (to, &byte) in turn.iter_mut().zip(row) {
+                        let any = u32::from_ne_bytes(byte);
+                        let any = any | any >> 16;
+                        to[place] = (any | any >> 8) as u8;
+                    }
+                }
+            });
+        }
+        Self::of_rows(2 * self.side, (columns, rows), self.stride, joined)
+    }
+
+    /// How many blocks there are.
+    pub(crate) fn blocks(&self) -> usize {
+        self.columns * self.rows
+    }
+
+    /// How many quads there are.
+    pub(crate) fn quads(&self) -> usize {
+        self.starts.len() - 1
+    }
+
+    /// A quad, for those of its blocks that are wanted.
+    pub(crate) fn sought(&self, quad: usize, wanted: impl Fn(usize) -> bool) -> Quad {
+        let blocks = quad_of(quad, (self.columns, self.rows));
+        Quad {
+            index: quad,
+            blocks: blocks.map(|block| block.filter(|&block| wanted(block))),
+        }
+    }
+
+    /// Where a block lies: its quad, and its place there.
+    pub(crate) fn place_of(&self, block: usize) -> (usize, usize) {
+        let (x, y) = (block % self.columns, block / self.columns);
+        let quad = y / 2 * self.columns.div_ceil(2) + x / 2;
+        (quad, y % 2 * 2 + x % 2)
+    }
+
+    /// Bytes that the sets take.
+    pub(crate) fn bytes(&self) -> usize {
+        self.packed.size() + size_of_val(&self.starts[..])
+    }
+
+    /// The rows of a quad.
+    pub(crate) fn quad(&self, quad: usize) -> SetRows<'_> {
+        let (start, end) = (self.starts[quad], self.starts[quad + 1]);
+        let (row, rows) = (start.row as usize, (end.row - start.row) as usize);
+        let (first, words) = (start.first as usize, words(self.stride));
+        let masks = &self.packed.masks[row * words..(row + rows) * words];
+        let bytes = &self.packed.bytes[start.byte as usize..end.byte as usize + READ];
+        SetRows::new(first..first + rows, self.stride, (masks, bytes))
+    }
+
+    /// Asks for the rows of a quad that is soon to be read.
+    pub(crate) fn prefetch(&self, quad: usize) {
+        let rows = self.quad(quad);
+        prefetch(rows.masks);
+        prefetch(rows.bytes);
+    }
+}
+
+impl Quad {
+    /// The blocks that are wanted, and their places.
+    pub(crate) fn blocks(&self) -> impl Iterator<Item = (usize, usize)> + use<> {
+        let blocks = self.blocks.into_iter().enumerate();
+        blocks.filter_map(|(place, block)| Some((place, block?)))
+    }
+}
+
+/// The blocks of a quad on a map of so many columns and rows of blocks.
+fn quad_of(quad: usize, (columns, rows): (usize, usize)) -> [Option<usize>; QUAD] {
+    let quads = columns.div_ceil(2);
+    let (left, bottom) = (2 * (quad % quads), 2 * (quad / quads));
+    std::array::from_fn(|place| {
+        let (x, y) = (left + place % 2, bottom + place / 2);
+        (x < columns && y < rows).then(|| y * columns + x)
+    })
+}
+
+#[cfg(test)]
+mod tests {
+    use proptest::prelude::*;
+
+    use super::*;
+    use crate::reference;
+    use crate::search::index::bins::Bins;
+    use crate::search::index::bits;
+    use crate::search::index::steps::BinSteps;
+    use crate::testing::{any_grid, space_of};
+
+    /// A row as it was before it was packed, if it has bits.
+    fn row_of(rows: &SetRows<'_>, row: usize) -> Option<Vec<Byte>> {
+        let mut unpacked = Vec::new();
+        rows.unpack(&mut unpacked);
+        let stride = unpacked.len().checked_div(rows.rows.len())?;
+        let is_held = rows.rows.contains(&row);
+        is_held.then(|| unpacked[(row - rows.rows.start) * stride..][..stride].to_vec())
+    }
+
+    proptest! {
+        #[test]
+        fn sets_hold_the_bins_of_all_cells_on_every_instruction_set(
+            grid in any_grid(), headings in prop_oneof![1u32..12, Just(45)],
+        ) {
+            let directions = &space_of(&grid, headings * 8).directions;
+            let bins = Bins::new(directions);
+            let steps = BinSteps::new(&bins, directions, grid.width().max(grid.height()) as u16);
+            let (intervals, wide) = RangeIntervals::of_all(&grid, directions, (&bins, &steps));
+            let fine = RangeSets::with(&intervals, &wide, InstructionSet::Portable, 1);
+            for set in InstructionSet::available() {
+                for threads in 1..4 {
+                    let other = RangeSets::with(&intervals, &wide, set, threads);
+                    prop_assert!(other.packed == fine.packed && other.starts == fine.starts, "{} {}", set, threads);
+                }
+            }
+            for sets in [&fine, &fine.joined()] {
+                for (y, x) in (0..grid.height()).flat_map(|y| (0..grid.width()).map(move |x| (y, x))) {
+                    let (quad, place) = sets.place_of(y / sets.side * sets.columns + x / sets.side);
+                    let rows = sets.quad(quad);
+                    for (d, direction) in directions.all().iter().enumerate() {
+                        let range = reference::range(&grid, x as i64, y as i64, direction);
+                        let Some(range) = range.filter(|&range| range > 0) else { continue };
+                        let row = usize::from(bins.bin(direction.class, range) >> intervals::ROW_SHIFT);
+                        let bits = row_of(&rows, row).map_or(0, |row| row[d / 8][place]);
+                        prop_assert!(bits >> (d % 8) & 1 == 1);
+                    }
+                }
+            }
+        }
+
+        #[test]
+        fn sets_hold_nothing_but_the_intervals_and_wide_views(grid in any_grid(), headings in 1u32..10) {
+            let directions = &space_of(&grid, headings * 8).directions;
+            let bins = Bins::new(directions);
+            let steps = BinSteps::new(&bins, directions, grid.width().max(grid.height()) as u16);
+            let (intervals, wide) = RangeIntervals::of_all(&grid, directions, (&bins, &steps));
+            let sets = RangeSets::new(&intervals, &wide);
+            let mut plain = vec![Vec::new(); sets.blocks()];
+            let mut read = intervals::BlockIntervals::default();
+            for block in 0..intervals.columns * intervals.rows {
+                intervals.read(block, &mut read);
+                let (x, y) = (block % intervals.columns, block / intervals.columns);
+                let rows: &mut Vec<u8> = &mut plain[y / 2 * sets.columns + x / 2];
+                for d in 0..directions.count() {
+                    let [near_first, near_last, far_first, far_last] = [0, 1, 2, 3].map(|i| read.rows[i][d]);
+                    let within = (near_first..=near_last).chain(far_first..=far_last);
+                    let seen: Vec<usize> = match wide.of(block).find(|&(direction, _)| direction == d) {
+                        Some((_, rows)) => bits::ones(rows).collect(),
+                        None => within.map(|bin| usize::from(bin >> intervals::ROW_SHIFT)).collect(),
+                    };
+                    for row in seen {
+                        let at = row * sets.stride;
+                        rows.resize(rows.len().max(at + sets.stride), 0);
+                        rows[at + d / 8] |= 1 << (d % 8);
+                    }
+                }
+            }
+            for quad in 0..sets.quads() {
+                let rows = sets.quad(quad);
+                let mut any = 0..0;
+                for row in 0..=usize::from(u8::MAX) {
+                    let of_block = |block: Option<usize>| {
+                        let rows = plain.get(block?)?.get(row * sets.stride..)?;
+                        rows.get(..sets.stride)
+                    };
+                    let blocks = sets.sought(quad, |_| true).blocks.map(of_block);
+                    let turn = (0..sets.stride).map(|byte| blocks.map(|row| row.map_or(0, |row| row[byte])));
+                    let turn: Vec<Byte> = turn.collect();
+                    if turn.as_flattened().iter().any(|&byte| byte != 0) {
+                        any = if any.is_empty() { row..row + 1 } else { any.start..row + 1 };
+                        prop_assert_eq!(row_of(&rows, row), Some(turn));
+                    }
+                }
+                prop_assert_eq!(rows.rows, any);
+            }
+        }
+    }
+}

@@ -1,0 +1,182 @@
+//! Builds the sets of 2 × 2 blocks of intervals: of what these hold, or what was noted
+//! where they are wide.
+
+use std::ops::Range;
+
+use super::Byte;
+use super::marks::{CHUNK, Chunk, Mark};
+use super::packed::PackedRows;
+use crate::instruction_set::InstructionSet;
+use crate::search::index::bins::Bins;
+use crate::search::index::bits::{self, QUAD};
+use crate::search::index::intervals::{ROW_SHIFT, RangeIntervals, WideViews};
+use crate::search::index::lanes::Portable;
+
+/// No rows: any others start before and end behind.
+#[expect(clippy::reversed_empty_ranges, reason = "it is where growing starts")]
+const NONE: Range<usize> = usize::MAX..0;
+
+/// Rows of bits, quad by quad.
+#[derive(Debug, Clone, Default)]
+pub(super) struct Rows {
+    /// Which rows of each quad have any bits, and how many bytes are kept of them.
+    pub quads: Vec<(Range<usize>, usize)>,
+    pub packed: PackedRows,
+}
+
+impl Rows {
+    /// Adds a quad with such rows, which `row` fills in one by one.
+    pub(super) fn push(
+        &mut self,
+        rows: Range<usize>,
+        turn: &mut [Byte],
+        mut row: impl FnMut(usize, &mut [Byte]),
+    ) {
+        let before = self.packed.bytes.len();
+        for i in rows.clone() {
+            row(i, turn);
+            self.packed.push(turn);
+        }
+        self.quads.push((rows, self.packed.bytes.len() - before));
+    }
+
+    /// Adds those of other quads.
+    pub(super) fn append(&mut self, mut other: Self) {
+        self.quads.append(&mut other.quads);
+        self.packed.append(other.packed);
+    }
+}
+
+/// What the sets are made of.
+pub(super) type Source<'a> = (&'a RangeIntervals, &'a WideViews);
+
+/// The rows of the quads in some rows of them.
+pub(super) fn build(set: InstructionSet, source: Source<'_>, quad_rows: Range<usize>) -> Rows {
+    match set.checked() {
+        InstructionSet::Portable => join(Portable, source, quad_rows),
+        #[cfg(target_arch = "x86_64")]
+        // SAFETY: the processor has the features that the function is compiled for.
+        InstructionSet::Avx2 => unsafe { join_avx2(source, quad_rows) },
+        #[cfg(target_arch = "x86_64")]
+        // SAFETY: as above.
+        InstructionSet::Avx512 => unsafe { join_avx512(source, quad_rows) },
+        #[cfg(not(target_arch = "x86_64"))]
+        _ => unreachable!("checked above"),
+    }
+}
+
+#[cfg(target_arch = "x86_64")]
+#[target_feature(enable = "avx2")]
+fn join_avx2(source: Source<'_>, quad_rows: Range<usize>) -> Rows {
+    join(crate::search::index::lanes::Avx2::new(), source, quad_rows)
+}
+
+#[cfg(target_arch = "x86_64")]
+#[target_feature(enable = "avx512f,avx512bw,avx512dq,avx512vl")]
+fn join_avx512(source: Source<'_>, quad_rows: Range<usize>) -> Rows {
+    join(
+        crate::search::index::lanes::Avx512::new(),
+        source,
+        quad_rows,
+    )
+}
+
+#[inline(always)]
+fn join<M: Mark>(marker: M, source: Source<'_>, quad_rows: Range<usize>) -> Rows {
+    let (intervals, _) = source;
+    let stride = intervals.directions / 8;
+    let mut chunks = vec![Chunk::default(); intervals.directions.div_ceil(CHUNK)];
+    let (mut joined, mut turn) = (Rows::default(), vec![[0; QUAD]; stride]);
+    // For each block of a quad, a row of words for each row of bits.
+    let mut words = [(); QUAD].map(|()| vec![0u64; chunks.len() << (u8::BITS - ROW_SHIFT)]);
+    for y in quad_rows {
+        for x in 0..intervals.columns.div_ceil(4) {
+            let mut rows = NONE;
+            for (place, words) in words.iter_mut().enumerate() {
+                let block = (2 * x + place % 2, 2 * y + place / 2);
+                let marked = mark(marker, source, block, &mut chunks, words);
+                rows = rows.start.min(marked.start)..rows.end.max(marked.end);
+            }
+            if rows.is_empty() {
+                rows = 0..0;
+            }
+            joined.push(rows.clone(), &mut turn, |row, turn| {
+                let row = row * chunks.len();
+                let [a, b, c, d] = words
+                    .each_ref()
+                    .map(|words| &bytemuck::cast_slice(&words[row..])[..stride]);
+                let bytes = a.iter().zip(b).zip(c).zip(d);
+                let bytes = bytes.map(|(((&a, &b), &c), &d)| [a, b, c, d]);
+                turn.iter_mut().zip(bytes).for_each(|(to, byte)| *to = byte);
+            });
+            for words in &mut words {
+                words[rows.start * chunks.len()..rows.end * chunks.len()].fill(0);
+            }
+        }
+    }
+    joined
+}
+
+/// Marks what the block in column `x` and row `y` sees in words, of which all are 0:
+/// in which rows. The chunks are room for the directions of a turn.
+#[inline(always)]
+fn mark<M: Mark>(
+    marker: M,
+    (intervals, wide): Source<'_>,
+    (x, y): (usize, usize),
+    chunks: &mut [Chunk],
+    words: &mut [u64],
+) -> Range<usize> {
+    let count = chunks.len();
+    chunks.fill(Chunk::default());
+    for i in 0..4 {
+        let (x, y) = (2 * x + i % 2, 2 * y + i / 2);
+        if x >= intervals.columns || y >= intervals.rows {
+            continue;
+        }
+        let block = y * intervals.columns + x;
+        if !intervals.ids.holds(block) {
+            continue;
+        }
+        for (chunk_index, chunk) in chunks.iter_mut().enumerate() {
+            set(chunk, i, intervals, block, CHUNK * chunk_index);
+        }
+        for (direction, rows) in wide.of(intervals.ids.before(block)) {
+            let (chunk_index, lane) = (direction / CHUNK, direction % CHUNK);
+            chunks[chunk_index].leave_out(i, lane);
+            for row in bits::ones(rows) {
+                words[row * count + chunk_index] |= (1u64 << lane).to_le();
+            }
+        }
+    }
+    let mut rows = NONE;
+    for (chunk_index, chunk) in chunks.iter().enumerate() {
+        for row in chunk.rows() {
+            words[usize::from(row) * count + chunk_index] |= marker.mark(row, chunk).to_le();
+            rows = rows.start.min(row.into())..rows.end.max(usize::from(row) + 1);
+        }
+    }
+    rows
+}
+
+/// Takes the intervals of a block in the directions from `start` on.
+#[inline(always)]
+fn set(chunk: &mut Chunk, i: usize, intervals: &RangeIntervals, block: usize, start: usize) {
+    let [nearest, farthest, widths] = intervals.packed(block);
+    if let (Some(nearest), Some(farthest), Some(widths)) = (
+        nearest[start..].first_chunk(),
+        farthest[start..].first_chunk(),
+        widths[start..].first_chunk(),
+    ) {
+        chunk.set(i, [nearest, farthest, widths]);
+        return;
+    }
+    // Behind the last direction nothing is seen.
+    let mut rows = [[Bins::NOTHING; CHUNK], [0; CHUNK], [0; CHUNK]];
+    for (row, packed) in rows.iter_mut().zip([nearest, farthest, widths]) {
+        let packed = &packed[start..];
+        row[..packed.len()].copy_from_slice(packed);
+    }
+    let [nearest, farthest, widths] = &rows;
+    chunk.set(i, [nearest, farthest, widths]);
+}

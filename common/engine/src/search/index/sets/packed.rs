@@ -1,0 +1,152 @@
+//! Rows of bits of which only the bytes are kept that have any.
+//!
+//! A block sees few distances in a direction, so that three of four bytes have none. A
+//! mask for each sixteen says which are kept; the others need not come from memory.
+
+use std::ops::Range;
+
+use super::{Byte, READ};
+use crate::search::index::bits::QUAD;
+
+/// No block of a quad has bits.
+const NOTHING: Byte = [0; QUAD];
+
+/// Rows of bits of quads, one after the other.
+#[derive(Debug, Clone, Default, PartialEq, Eq)]
+pub(super) struct PackedRows {
+    /// For each word of each row, which of its bytes are kept.
+    pub masks: Vec<u16>,
+    /// Those that have bits.
+    pub bytes: Vec<Byte>,
+}
+
+/// The rows of a quad.
+#[derive(Debug, Clone)]
+pub(crate) struct SetRows<'a> {
+    /// Those that have any bits, from the nearest bin on.
+    pub rows: Range<usize>,
+    /// Bytes of a row.
+    stride: usize,
+    pub(super) masks: &'a [u16],
+    /// Behind the last of them, [`READ`] more can be read.
+    pub bytes: &'a [Byte],
+}
+
+/// How many words a row of so many bytes has.
+pub(super) fn words(stride: usize) -> usize {
+    stride.div_ceil(READ)
+}
+
+impl PackedRows {
+    /// Adds a row.
+    pub(super) fn push(&mut self, row: &[Byte]) {
+        for word in row.chunks(READ) {
+            let (mut kept, mut count, mut mask) = ([NOTHING; READ], 0, 0);
+            for (i, &byte) in word.iter().enumerate() {
+                let is_kept = byte != NOTHING;
+                kept[count] = byte;
+                count += usize::from(is_kept);
+                mask |= u16::from(is_kept) << i;
+            }
+            self.bytes.extend_from_slice(&kept[..count]);
+            self.masks.push(mask);
+        }
+    }
+
+    /// Adds all rows of others.
+    pub(super) fn append(&mut self, mut other: Self) {
+        self.masks.append(&mut other.masks);
+        self.bytes.append(&mut other.bytes);
+    }
+
+    /// Lets words be read from any byte on, and gives back what room is left.
+    pub(super) fn finish(&mut self) {
+        self.bytes.resize(self.bytes.len() + READ, NOTHING);
+        self.bytes.shrink_to_fit();
+        self.masks.shrink_to_fit();
+    }
+
+    /// Bytes of memory that they take.
+    pub(super) fn size(&self) -> usize {
+        size_of_val(&self.masks[..]) + size_of_val(&self.bytes[..])
+    }
+}
+
+impl<'a> SetRows<'a> {
+    /// Rows of so many bytes each, with their masks and the bytes that were kept.
+    #[inline(always)]
+    pub(super) fn new(
+        rows: Range<usize>,
+        stride: usize,
+        (masks, bytes): (&'a [u16], &'a [Byte]),
+    ) -> Self {
+        SetRows {
+            rows,
+            stride,
+            masks,
+            bytes,
+        }
+    }
+
+    /// The masks of the words of a row, which must have bits.
+    #[inline(always)]
+    pub(crate) fn masks_of(&self, row: usize) -> &'a [u16] {
+        let words = words(self.stride);
+        &self.masks[(row - self.rows.start) * words..][..words]
+    }
+
+    /// How many bytes are kept of the rows before one.
+    #[inline(always)]
+    pub(crate) fn kept_before(&self, row: usize) -> usize {
+        let before = row.saturating_sub(self.rows.start) * words(self.stride);
+        let masks = self.masks[..before.min(self.masks.len())].iter();
+        masks.map(|mask| mask.count_ones() as usize).sum()
+    }
+
+    /// Puts all rows into `plain`, as they were before they were packed.
+    pub(super) fn unpack(&self, plain: &mut Vec<Byte>) {
+        plain.clear();
+        let mut kept = self.bytes.iter();
+        for row in self.masks.chunks(words(self.stride)) {
+            let is_kept = |byte: usize| row[byte / READ] >> (byte % READ) & 1 == 1;
+            let byte = |byte| match is_kept(byte) {
+                true => *kept.next().expect("as many as the masks say"),
+                false => NOTHING,
+            };
+            plain.extend((0..self.stride).map(byte));
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use proptest::collection::vec;
+    use proptest::prelude::*;
+
+    use super::*;
+
+    proptest! {
+        #[test]
+        fn rows_are_unpacked_as_they_were(
+            stride in 1usize..100, count in 0usize..9, first in 0usize..9, seed in vec(any::<u32>(), 900),
+        ) {
+            // Most bytes have no bits.
+            let byte = |seed: u32| if seed.is_multiple_of(4) { seed.to_ne_bytes() } else { NOTHING };
+            let plain: Vec<Byte> = seed[..stride * count].iter().map(|&seed| byte(seed)).collect();
+            let mut packed = PackedRows::default();
+            plain.chunks(stride).for_each(|row| packed.push(row));
+            let kept = packed.bytes.len();
+            prop_assert_eq!(kept, plain.iter().filter(|&&byte| byte != NOTHING).count());
+            packed.finish();
+            let rows = SetRows::new(first..first + count, stride, (&packed.masks, &packed.bytes));
+            let mut unpacked = vec![[1; QUAD]];
+            rows.unpack(&mut unpacked);
+            prop_assert_eq!(&unpacked, &plain);
+            for row in 0..20 {
+                let before = (row.max(first) - first).min(count) * stride;
+                let kept = plain[..before].iter().filter(|&&byte| byte != NOTHING).count();
+                prop_assert_eq!(rows.kept_before(row), kept);
+            }
+        }
+    }
+}

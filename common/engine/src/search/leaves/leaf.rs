@@ -1,0 +1,260 @@
+//! Counting votes, pose by pose, for the 16 cells of a small block at once.
+//!
+//! The ranges of all cells in a direction lie side by side, so that a beam's
+//! votes for the whole block are one table look-up for each cell, all of them at once
+//! (`cell_lanes.rs`).
+
+use super::cell_lanes::{self, CellLanes};
+use super::outlook::{Outlook, View};
+use crate::directions::Directions;
+use crate::instruction_set::InstructionSet;
+use crate::program::ScanProgram;
+use crate::search::bounds::sectors;
+use crate::search::index::bits;
+use crate::search::index::intervals::CELLS;
+use crate::search::index::ray_lanes::{self, RayLanes};
+use crate::tables::{VoteTable, VoteTables};
+
+/// A scan program laid out for counting in blocks; made anew for each scan.
+#[derive(Debug, Clone, Default)]
+pub(crate) struct LeafProgram {
+    instruction_set: InstructionSet,
+    /// The beams, sector by sector, and their bearings.
+    order: Vec<usize>,
+    bearings: Vec<usize>,
+    tables: VoteTables,
+    /// Class of each direction.
+    classes: Vec<usize>,
+}
+
+/// Votes of a block's cells at a heading.
+#[derive(Debug, Clone, Copy, Default)]
+#[repr(align(64))]
+pub(crate) struct Count {
+    pub votes: [u16; CELLS],
+    /// The most where poses are sought.
+    pub most: u16,
+}
+
+impl LeafProgram {
+    pub(crate) fn make(
+        &mut self,
+        program: &ScanProgram,
+        directions: &Directions,
+        instruction_set: InstructionSet,
+    ) {
+        self.instruction_set = instruction_set;
+        sectors::order(program, &mut self.order);
+        let bearings = self.order.iter().map(|&beam| program.bearing(beam));
+        self.bearings.clear();
+        self.bearings.extend(bearings);
+        self.tables.make(program, directions);
+        let classes = directions.all().iter().map(|direction| direction.class);
+        self.classes.clear();
+        self.classes.extend(classes);
+    }
+
+    /// The beams, sector by sector.
+    pub(crate) fn order(&self) -> &[usize] {
+        &self.order
+    }
+
+    /// Adds the votes of a sector of beams to those of the block's cells, at headings from
+    /// a first one on that bits tell, each with a count. What is added where a cell is not
+    /// open means nothing. Of each beam of all sectors bits tell at which headings it may
+    /// vote.
+    pub(crate) fn add(
+        &self,
+        looking: (&mut Outlook, &View<'_>),
+        (sector, voting): (usize, &[u64]),
+        headings: (usize, u64),
+        counts: &mut [Count],
+    ) {
+        let beams = sectors::beams(sector, self.bearings.len());
+        let of_sector = (beams.start, &voting[beams]);
+        self.add_beams(looking, of_sector, headings, counts);
+    }
+
+    /// The votes of the block's cells at a heading, by beams that may vote as its
+    /// intervals say. What is counted where a cell is not open means nothing.
+    pub(crate) fn count(
+        &self,
+        outlook: &mut Outlook,
+        view: &View<'_>,
+        heading: usize,
+    ) -> [u16; CELLS] {
+        let mut count = Count::default();
+        for sector in 0..sectors::count(self.bearings.len()) {
+            let beams = sectors::beams(sector, self.bearings.len());
+            let may_vote = |beam: usize| {
+                let (direction, table) = self.place(beam, heading);
+                let spans = outlook.spans(view, direction);
+                spans.into_iter().any(|span| table.has_votes_in(span))
+            };
+            let mut voting = [0; sectors::BEAMS];
+            for (voting, beam) in voting.iter_mut().zip(beams.clone()) {
+                *voting = u64::from(may_vote(beam));
+            }
+            let beams = (beams.start, &voting[..beams.len()]);
+            let counts = std::slice::from_mut(&mut count);
+            self.add_beams((outlook, view), beams, (heading, 1), counts);
+        }
+        count.votes
+    }
+
+    /// Adds the votes of beams from a first one on, at the headings at which bits tell that
+    /// each may vote.
+    fn add_beams(
+        &self,
+        looking: (&mut Outlook, &View<'_>),
+        beams: (usize, &[u64]),
+        headings: (usize, u64),
+        counts: &mut [Count],
+    ) {
+        match self.instruction_set {
+            // SAFETY: the processor has the instruction set, or it would not be chosen.
+            #[cfg(target_arch = "x86_64")]
+            InstructionSet::Avx512 => unsafe { self.add_avx512(looking, beams, headings, counts) },
+            // SAFETY: as above.
+            #[cfg(target_arch = "x86_64")]
+            InstructionSet::Avx2 => unsafe { self.add_avx2(looking, beams, headings, counts) },
+            _ => self.add_with::<ray_lanes::Portable, cell_lanes::Portable>(
+                looking, beams, headings, counts,
+            ),
+        }
+    }
+
+    #[cfg(target_arch = "x86_64")]
+    #[target_feature(enable = "avx512f,avx512bw,avx512cd,avx512dq,avx512vl,avx512vbmi")]
+    fn add_avx512(
+        &self,
+        looking: (&mut Outlook, &View<'_>),
+        beams: (usize, &[u64]),
+        headings: (usize, u64),
+        counts: &mut [Count],
+    ) {
+        use ray_lanes::Avx512;
+        if self.tables.are_short() {
+            self.add_with::<Avx512, cell_lanes::Avx512>(looking, beams, headings, counts);
+        } else {
+            self.add_with::<Avx512, cell_lanes::Portable>(looking, beams, headings, counts);
+        }
+    }
+
+    #[cfg(target_arch = "x86_64")]
+    #[target_feature(enable = "avx2")]
+    fn add_avx2(
+        &self,
+        looking: (&mut Outlook, &View<'_>),
+        beams: (usize, &[u64]),
+        headings: (usize, u64),
+        counts: &mut [Count],
+    ) {
+        use ray_lanes::Avx2;
+        if self.tables.are_short() {
+            self.add_with::<Avx2, cell_lanes::Avx2>(looking, beams, headings, counts);
+        } else {
+            self.add_with::<Avx2, cell_lanes::Portable>(looking, beams, headings, counts);
+        }
+    }
+
+    #[inline(always)]
+    fn add_with<R: RayLanes, C: CellLanes>(
+        &self,
+        (outlook, view): (&mut Outlook, &View<'_>),
+        (first_beam, beams): (usize, &[u64]),
+        (first, headings): (usize, u64),
+        counts: &mut [Count],
+    ) {
+        for (beam, voting) in (first_beam..).zip(beams) {
+            for lane in bits::ones(headings & voting) {
+                outlook.look::<R>(view, self.direction(beam, first + lane));
+            }
+        }
+        for lane in bits::ones(headings) {
+            let count = &mut counts[lane];
+            let mut sums = C::load(&count.votes);
+            let voting = beams.iter().enumerate();
+            let voting = voting.fold(0, |all, (i, voting)| all | (voting >> lane & 1) << i);
+            for beam in bits::ones(voting).map(|i| first_beam + i) {
+                let (direction, table) = self.place(beam, first + lane);
+                sums = sums.add(table, outlook.ranges(direction));
+            }
+            sums.store(&mut count.votes);
+            count.most = sums.most(outlook.open());
+        }
+    }
+
+    #[inline(always)]
+    fn direction(&self, beam: usize, heading: usize) -> usize {
+        let direction = heading + self.bearings[beam];
+        let count = self.classes.len();
+        if direction < count {
+            direction
+        } else {
+            direction - count
+        }
+    }
+
+    /// The direction of a beam, and its table there.
+    #[inline(always)]
+    fn place(&self, beam: usize, heading: usize) -> (usize, VoteTable<'_>) {
+        let direction = self.direction(beam, heading);
+        let table = self.tables.get(self.order[beam], self.classes[direction]);
+        (direction, table)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use proptest::prelude::*;
+
+    use super::*;
+    use crate::limits::Limits;
+    use crate::reference;
+    use crate::search::index::bins::Bins;
+    use crate::search::index::intervals::RangeIntervals;
+    use crate::search::index::obstacles::Obstacles;
+    use crate::search::index::steps::BinSteps;
+    use crate::testing::{any_grid, any_scan, space_of};
+
+    proptest! {
+        #[test]
+        fn counts_equal_the_reference_on_every_instruction_set(
+            grid in any_grid(), scan in any_scan(), headings in 1u32..12, seed in any::<[usize; 2]>(),
+        ) {
+            let space = space_of(&grid, headings * 8);
+            let directions = &space.directions;
+            let program = scan.program(&space);
+            let bins = Bins::new(directions);
+            let steps = BinSteps::new(&bins, directions, grid.width().max(grid.height()) as u16);
+            let (intervals, _) = RangeIntervals::of_all(&grid, directions, (&bins, &steps));
+            let obstacles = Obstacles::new(&grid);
+            let view = View { grid: &grid, obstacles: &obstacles, steps: &steps, directions };
+            let block = seed[0] % (intervals.columns * intervals.rows);
+            let heading = seed[1] % directions.count();
+            for instruction_set in InstructionSet::available() {
+                let mut leaf = LeafProgram::default();
+                leaf.make(&program, directions, instruction_set);
+                let mut outlook = Outlook::default();
+                outlook.prepare(&grid, directions);
+                outlook.enter((&view, &Limits::none(grid.width())), &intervals, block);
+                let mut counts = [Count::default()];
+                let all = vec![1; program.beams()];
+                for sector in 0..sectors::count(program.beams()) {
+                    leaf.add((&mut outlook, &view), (sector, &all), (heading, 1), &mut counts);
+                }
+                // The same with no more looks than needed.
+                outlook.enter((&view, &Limits::none(grid.width())), &intervals, block);
+                let sparing = leaf.count(&mut outlook, &view, heading);
+                for (i, counts) in counts[0].votes.into_iter().zip(sparing).enumerate() {
+                    let (x, y) = outlook.cell(i);
+                    if grid.is_open(x as i64, y as i64) {
+                        let plain = reference::intensity(&grid, &program, &space, x as i64, y as i64, heading);
+                        prop_assert_eq!(counts, (plain, plain), "{:?} {:?}", (x, y), instruction_set);
+                    }
+                }
+            }
+        }
+    }
+}

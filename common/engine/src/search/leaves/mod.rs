@@ -1,0 +1,8 @@
+//! The votes of the poses in blocks of 4 × 4 cells, by exact ranges.
+//!
+//! What is counted here is what the plain reference counts, to the last vote.
+
+pub(in crate::search) mod bundle;
+pub(in crate::search) mod cell_lanes;
+pub(in crate::search) mod leaf;
+pub(in crate::search) mod outlook;

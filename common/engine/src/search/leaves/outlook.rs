@@ -1,0 +1,231 @@
+//! Exact ranges of the cells of a small block, in directions as they are asked
+//! for.
+//!
+//! The block's intervals say how far away the first obstacle lies at least, so
+//! rays are followed only from there, all that leave the block in a direction at
+//! once. Cells behind one another on a line share a ray.
+
+use super::bundle::{self, Bundle};
+use crate::directions::Directions;
+use crate::grid::{Cell, Grid};
+use crate::limits::Limits;
+use crate::program::NO_RANGE;
+use crate::search::index::intervals::{BlockIntervals, CELLS, RangeIntervals, SIDE};
+use crate::search::index::obstacles::Obstacles;
+use crate::search::index::ray_lanes::RayLanes;
+use crate::search::index::steps::BinSteps;
+
+/// What is looked at.
+#[derive(Debug, Clone, Copy)]
+pub(crate) struct View<'a> {
+    pub grid: &'a Grid,
+    pub obstacles: &'a Obstacles,
+    pub steps: &'a BinSteps,
+    pub directions: &'a Directions,
+}
+
+/// What one block sees.
+#[derive(Debug, Clone)]
+pub(crate) struct Outlook {
+    by_direction: Vec<[u16; CELLS]>,
+    /// The block for which each direction was looked in last, by its number.
+    looked_for: Vec<u32>,
+    /// Counts the blocks.
+    number: u32,
+    left: usize,
+    bottom: usize,
+    cells: [Cell; CELLS],
+    /// Whether all of them are open.
+    all_open: bool,
+    /// For each cell, all ones where poses are sought.
+    open: [u16; CELLS],
+    intervals: BlockIntervals,
+    /// Whether rays can be lost on the map: then they must be followed from the
+    /// start, as intervals say only where they hit.
+    can_lose: bool,
+    /// How often a direction was looked in.
+    looks: u64,
+}
+
+impl Default for Outlook {
+    fn default() -> Self {
+        Outlook {
+            by_direction: Vec::new(),
+            looked_for: Vec::new(),
+            number: 0,
+            left: 0,
+            bottom: 0,
+            cells: [Cell::Blocked; CELLS],
+            all_open: false,
+            open: [0; CELLS],
+            intervals: BlockIntervals::default(),
+            can_lose: false,
+            looks: 0,
+        }
+    }
+}
+
+impl Outlook {
+    /// Turns to a map. What was looked at before is forgotten with the next
+    /// block, whose number nothing has yet.
+    pub(crate) fn prepare(&mut self, grid: &Grid, directions: &Directions) {
+        let count = directions.count();
+        self.by_direction.resize(count, [NO_RANGE; CELLS]);
+        self.looked_for.resize(count, 0);
+        self.can_lose = grid.has_blocked();
+        self.looks = 0;
+    }
+
+    /// Turns to a block.
+    pub(crate) fn enter(
+        &mut self,
+        (view, limits): (&View<'_>, &Limits),
+        intervals: &RangeIntervals,
+        block: usize,
+    ) {
+        if self.number == u32::MAX {
+            self.looked_for.fill(0);
+            self.number = 0;
+        }
+        self.number += 1;
+        intervals.read(block, &mut self.intervals);
+        self.left = block % intervals.columns * SIDE;
+        self.bottom = block / intervals.columns * SIDE;
+        self.all_open = view.obstacles.are_none_in((self.left, self.bottom));
+        if self.all_open {
+            self.cells = [Cell::Open; CELLS];
+        } else {
+            self.cells = std::array::from_fn(|i| {
+                let (x, y) = self.cell(i);
+                view.grid.get(x as i64, y as i64).unwrap_or(Cell::Blocked)
+            });
+        }
+        self.open = std::array::from_fn(|i| {
+            let (x, y) = self.cell(i);
+            let is_sought = self.cells[i] == Cell::Open && limits.hold_cell(x, y);
+            if is_sought { u16::MAX } else { 0 }
+        });
+    }
+
+    /// Column and row of the block's cell `i`.
+    pub(crate) fn cell(&self, i: usize) -> (usize, usize) {
+        (self.left + i % SIDE, self.bottom + i / SIDE)
+    }
+
+    /// The block's intervals.
+    pub(crate) fn intervals(&self) -> &BlockIntervals {
+        &self.intervals
+    }
+
+    /// For each cell, all ones where the robot may stand and is sought.
+    pub(crate) fn open(&self) -> &[u16; CELLS] {
+        &self.open
+    }
+
+    /// Looks in direction `d`, unless that was done for this block. To be inlined into
+    /// what is compiled for the instruction set.
+    #[inline(always)]
+    pub(in crate::search) fn look<L: RayLanes>(&mut self, view: &View<'_>, d: usize) {
+        if self.looked_for[d] != self.number {
+            self.looked_for[d] = self.number;
+            self.looks += 1;
+            self.look_anew::<L>(view, d);
+        }
+    }
+
+    /// The ranges in direction `d`, in steps; it must have been looked in.
+    #[inline(always)]
+    pub(crate) fn ranges(&self, d: usize) -> &[u16; CELLS] {
+        &self.by_direction[d]
+    }
+
+    /// How often a direction of any block was looked in.
+    pub(crate) fn looks(&self) -> u64 {
+        self.looks
+    }
+
+    /// The steps at which rays in direction `d` may end, without the ends: two spans.
+    #[inline(always)]
+    pub(crate) fn spans(&self, view: &View<'_>, d: usize) -> [(u16, u16); 2] {
+        let class = view.directions.all()[d].class;
+        let [near_first, near_last, far_first, far_last] = &self.intervals.rows;
+        let span = |first: u8, last: u8| view.steps.span(class, first, last);
+        [
+            span(near_first[d], near_last[d]),
+            span(far_first[d], far_last[d]),
+        ]
+    }
+
+    #[inline(always)]
+    fn look_anew<L: RayLanes>(&mut self, view: &View<'_>, d: usize) {
+        let direction = &view.directions.all()[d];
+        let [near, far] = self.spans(view, d);
+        let spans = if self.can_lose {
+            [(1, near.1.max(far.1)), (0, 0)]
+        } else {
+            [near, far]
+        };
+        let bundle = Bundle::new(direction, (self.left, self.bottom));
+        let rays = view.obstacles.rays(direction, bundle.start);
+        let mut hits = bundle.follow::<L>(&rays, spans);
+        if self.can_lose {
+            bundle::lose(&rays, view.grid, &mut hits);
+        }
+        self.by_direction[d] = if self.all_open {
+            bundle.ranges::<L>(&hits)
+        } else {
+            bundle.ranges_among(hits, &self.cells)
+        };
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use proptest::prelude::*;
+
+    use super::*;
+    use crate::instruction_set::InstructionSet;
+    use crate::reference;
+    use crate::search::index::bins::Bins;
+    use crate::search::index::ray_lanes;
+    use crate::testing::{any_grid, any_long_grid, space_of};
+
+    proptest! {
+        #[test]
+        fn ranges_equal_those_of_stepping_along_each_ray(
+            grid in prop_oneof![3 => any_grid(), 1 => any_long_grid()], headings in 1u32..10,
+        ) {
+            let directions = &space_of(&grid, headings * 8).directions;
+            let bins = Bins::new(directions);
+            let steps = BinSteps::new(&bins, directions, grid.width().max(grid.height()) as u16);
+            let (intervals, _) = RangeIntervals::of_all(&grid, directions, (&bins, &steps));
+            let obstacles = Obstacles::new(&grid);
+            let view = View { grid: &grid, obstacles: &obstacles, steps: &steps, directions };
+            let mut outlook = Outlook::default();
+            outlook.prepare(&grid, directions);
+            let blocks = 0..intervals.columns * intervals.rows;
+            for (block, set) in InstructionSet::available().flat_map(|set| blocks.clone().map(move |block| (block, set))) {
+                outlook.enter((&view, &Limits::none(grid.width())), &intervals, block);
+                let open = *outlook.open();
+                for (d, direction) in directions.all().iter().enumerate() {
+                    match set {
+                        #[cfg(target_arch = "x86_64")]
+                        InstructionSet::Avx512 => outlook.look::<ray_lanes::Avx512>(&view, d),
+                        #[cfg(target_arch = "x86_64")]
+                        InstructionSet::Avx2 => outlook.look::<ray_lanes::Avx2>(&view, d),
+                        _ => outlook.look::<ray_lanes::Portable>(&view, d),
+                    }
+                    for (i, &open) in open.iter().enumerate() {
+                        let (x, y) = outlook.cell(i);
+                        let (x, y) = (x as i64, y as i64);
+                        prop_assert_eq!(open != 0, grid.is_open(x, y));
+                        if grid.is_open(x, y) {
+                            let plain = reference::range(&grid, x, y, direction).unwrap_or(NO_RANGE);
+                            prop_assert_eq!(outlook.ranges(d)[i], plain, "{:?} {:?}", (x, y), direction);
+                        }
+                    }
+                }
+            }
+        }
+    }
+}

@@ -1,0 +1,323 @@
+//! Candidates below the floor of a search: the best poses of the blocks that
+//! promise most.
+//!
+//! The search proves which poses stand above its floor. Below, where proofs
+//! would cost more than they are worth, single blocks are looked into: the 8 × 8
+//! with the highest bounds, and in each of those one pose of the 4 × 4 and the
+//! heading with the highest bound. The search bounded all blocks that the floor
+//! leaves. Where those are too few, the coarse blocks with the highest bounds are split.
+
+use std::cmp::Reverse;
+use std::collections::BinaryHeap;
+use std::sync::atomic::Ordering;
+
+use messages::Vote;
+
+use super::descent;
+use super::queue::Promise;
+use crate::search::bounds::heading_bounds::HeadingBounds;
+use crate::search::bounds::interval_bounds::IntervalBounds;
+use crate::search::bounds::set_bounds::SetBounds;
+use crate::search::index::SearchIndex;
+use crate::search::index::bits;
+use crate::search::index::intervals::{BlockIntervals, SIDE};
+use crate::search::index::sets::Quad;
+use crate::search::index::within::Size;
+use crate::search::index::within::quarters;
+use crate::search::leaves::outlook::Outlook;
+use crate::search::task::Task;
+use crate::votes::Distinct;
+
+/// Coarse blocks that are split for each candidate that is wanted.
+const COARSE_SHARE: usize = 6;
+
+/// On large maps, one of so many coarse blocks is split.
+const COARSE_PART: usize = 16;
+
+/// Blocks of 8 × 8 cells that are looked into for each candidate.
+const FINE_SHARE: usize = 1;
+
+/// All 8 × 8 blocks that are looked into likely promise this share of what the last of
+/// the coarse ones does that are split, in parts of 16.
+const LIKELY_SIXTEENTHS: u32 = 13;
+
+/// Headings with less than this share of a block's highest bound, in parts of
+/// 32, are not looked at.
+const LEAST_THIRTY_SECONDTHS: u32 = 31;
+
+/// Looks for candidates on one thread, whatever the search did.
+pub(in crate::search) struct Alternatives<'a> {
+    task: &'a Task<'a>,
+    room: &'a mut Room,
+}
+
+/// What candidates are looked for with, kept from scan to scan.
+#[derive(Debug, Default)]
+pub(in crate::search) struct Room {
+    bounds: SetBounds,
+    intervals: BlockIntervals,
+    interval_bounds: IntervalBounds,
+    outlook: Outlook,
+    coarse: Vec<Promise>,
+    /// Blocks of 8 × 8 cells that are looked into.
+    fine: Greatest,
+    spots: Vec<Spot>,
+    /// Poses or spots that are distinct.
+    pub distinct: Vec<Vote>,
+    /// What was found.
+    pub votes: Vec<Vote>,
+}
+
+/// A block of 4 × 4 cells at a heading.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
+struct Spot {
+    bound: u16,
+    block: Reverse<usize>,
+    heading: Reverse<usize>,
+}
+
+impl<'a> Alternatives<'a> {
+    pub(in crate::search) fn new(task: &'a Task<'a>, room: &'a mut Room) -> Self {
+        room.bounds.fit(&task.programs.sets, task.headings());
+        room.outlook.prepare(task.grid, &task.space.directions);
+        Alternatives { task, room }
+    }
+
+    /// Leaves in its room poses of the blocks that promise most, in no order, at
+    /// most so many. The search ended with a floor, in rooms that are given if it
+    /// bounded all blocks that the floor leaves.
+    pub(in crate::search) fn find(
+        &mut self,
+        wanted: usize,
+        floor: u16,
+        rooms: Option<&[descent::Room]>,
+    ) {
+        let count = FINE_SHARE * wanted;
+        self.room.fine.start(count);
+        match rooms {
+            Some(rooms) => {
+                let bounded = rooms.iter().flat_map(|room| &room.fine);
+                let left = bounded.filter(|&&(bound, _)| bound >= floor);
+                left.for_each(|&promise| self.room.fine.offer(promise));
+            }
+            None => {
+                self.take_most_promising(usize::MAX);
+                self.choose(floor);
+            }
+        }
+        if !self.room.fine.is_full() {
+            self.split_most_promising(wanted, count);
+        }
+        self.room.spots.clear();
+        for i in 0..self.room.fine.blocks().len() {
+            let Reverse(promise) = self.room.fine.blocks()[i];
+            let spot = self.best_spot(promise);
+            self.room.spots.extend(spot);
+        }
+        let Room {
+            spots, distinct, ..
+        } = &mut *self.room;
+        spots.sort_unstable_by(|a, b| b.cmp(a));
+        let columns = self.task.index.intervals.columns;
+        let mut distinct = Distinct::new(self.task.space, wanted, distinct);
+        spots.retain(|spot| distinct.take(&spot.corner(columns)));
+        self.room.votes.clear();
+        for i in 0..self.room.spots.len() {
+            let vote = self.count(self.room.spots[i]);
+            self.room.votes.extend(vote);
+        }
+    }
+
+    /// Chooses so many 8 × 8 blocks in the coarse ones that promise most.
+    fn split_most_promising(&mut self, wanted: usize, count: usize) {
+        let part = self.task.coarse_bounds.len() / COARSE_PART;
+        self.take_most_promising(part.max(COARSE_SHARE * wanted));
+        // With a guess of what the last one reaches, most others are dropped early.
+        let last = self.room.coarse.last().map_or(0, |&(bound, _)| bound);
+        let likely = (u32::from(last) * LIKELY_SIXTEENTHS / 16) as u16;
+        for floor in [likely.max(1), 1] {
+            self.room.fine.start(count);
+            self.choose(floor);
+            if self.room.fine.is_full() {
+                break;
+            }
+        }
+    }
+
+    /// Takes the coarse blocks that promise most.
+    fn take_most_promising(&mut self, count: usize) {
+        let task = self.task;
+        let blocks = (0..task.coarse_bounds.len())
+            .filter(|&block| task.index.within.holds(Size::Coarse, block))
+            .map(|block| promise(task, block));
+        self.room.coarse.clear();
+        self.room.coarse.extend(blocks);
+        keep_greatest(&mut self.room.coarse, count);
+    }
+
+    /// Chooses the 8 × 8 blocks with the highest bounds, none of them below a floor,
+    /// in the coarse ones that were taken.
+    fn choose(&mut self, floor: u16) {
+        let SearchIndex { fine, within, .. } = self.task.index;
+        let Room {
+            bounds,
+            coarse,
+            fine: chosen,
+            ..
+        } = &mut *self.room;
+        for &(bound, Reverse(block)) in &*coarse {
+            // Where enough are known, others matter only if they are as good.
+            let least = floor.max(chosen.least());
+            if bound < least {
+                break;
+            }
+            let quad = within.quad(Size::Fine, fine, block as usize);
+            let bounds = bound_fine(self.task, &quad, least, bounds);
+            let bounded = quad
+                .blocks()
+                .map(|(place, block)| (bounds.greatest(place), Reverse(block as u32)));
+            let left = bounded.filter(|&(bound, _)| bound >= least);
+            left.for_each(|promise| chosen.offer(promise));
+        }
+    }
+
+    /// Where in an 8 × 8 block the bound of a small block is highest.
+    fn best_spot(&mut self, (bound, Reverse(block)): Promise) -> Option<Spot> {
+        let (index, block) = (self.task.index, block as usize);
+        let Room {
+            bounds,
+            intervals,
+            interval_bounds,
+            ..
+        } = &mut *self.room;
+        let (quad, place) = index.fine.place_of(block);
+        let quad = index.fine.sought(quad, |other| other == block);
+        let least = (u32::from(bound) * LEAST_THIRTY_SECONDTHS / 32) as u16;
+        let bounds = bound_fine(self.task, &quad, least.max(1), bounds);
+        let program = &self.task.programs.interval;
+        let sides = (index.intervals.columns, index.intervals.rows);
+        let smalls = quarters(block, index.fine.columns, sides);
+        let mut best: Option<Spot> = None;
+        for small in smalls.filter(|&block| index.intervals.ids.holds(block)) {
+            index.intervals.read(small, intervals);
+            for (first, among) in bounds.reach(place) {
+                let least = best.map_or(1, |spot| spot.bound);
+                if program.bound(intervals, first, among, least, interval_bounds) {
+                    let spot = |lane| Spot {
+                        bound: interval_bounds.all[lane],
+                        block: Reverse(small),
+                        heading: Reverse(first + lane),
+                    };
+                    best = best.max(bits::ones(among).map(spot).max());
+                }
+            }
+        }
+        best
+    }
+
+    /// The best pose of a spot; `None` where nobody can stand or nothing votes.
+    fn count(&mut self, spot: Spot) -> Option<Vote> {
+        let index = self.task.index;
+        let (Reverse(block), Reverse(heading)) = (spot.block, spot.heading);
+        let view = self.task.view();
+        let outlook = &mut self.room.outlook;
+        outlook.enter((&view, &index.within.limits), &index.intervals, block);
+        let counts = self.task.programs.leaf.count(outlook, &view, heading);
+        let open = outlook.open();
+        let votes = counts.iter().zip(open).map(|(count, open)| count & open);
+        let (intensity, Reverse(i)) = votes.zip((0..).map(Reverse)).max()?;
+        let (x, y) = outlook.cell(i);
+        (intensity > 0).then_some(Vote {
+            x: x as u16,
+            y: y as u16,
+            heading: heading as u16,
+            intensity,
+        })
+    }
+}
+
+/// Bounds 8 × 8 blocks in chunks of headings in which they may have as many votes as
+/// matter.
+fn bound_fine<'a>(
+    task: &Task<'_>,
+    quad: &Quad,
+    least: u16,
+    bounds: &'a mut SetBounds,
+) -> &'a HeadingBounds {
+    // A coarse block is a quad of those within.
+    let known = (task.by_chunk(quad.index), least);
+    let blocks = (&task.index.fine, quad);
+    task.programs.sets.bound(blocks, Some(known), bounds)
+}
+
+/// What a coarse block promises.
+fn promise(task: &Task<'_>, block: usize) -> Promise {
+    let bound = task.coarse_bounds[block].load(Ordering::Relaxed);
+    (bound, Reverse(block as u32))
+}
+
+/// The greatest so many of what was offered.
+#[derive(Debug, Default)]
+struct Greatest {
+    count: usize,
+    /// The least first.
+    kept: BinaryHeap<Reverse<Promise>>,
+}
+
+impl Greatest {
+    /// Starts with nothing; so many will be kept, of which there is at least one.
+    fn start(&mut self, count: usize) {
+        self.count = count;
+        self.kept.clear();
+    }
+
+    fn is_full(&self) -> bool {
+        self.kept.len() == self.count
+    }
+
+    /// Nothing below this will be kept.
+    fn least(&self) -> u16 {
+        match self.kept.peek() {
+            Some(&Reverse((least, _))) if self.is_full() => least,
+            _ => 0,
+        }
+    }
+
+    fn offer(&mut self, promise: Promise) {
+        if promise.0 < self.least() {
+            return;
+        }
+        self.kept.push(Reverse(promise));
+        if self.kept.len() > self.count {
+            self.kept.pop();
+        }
+    }
+
+    /// What was kept, in no order.
+    fn blocks(&self) -> &[Reverse<Promise>] {
+        self.kept.as_slice()
+    }
+}
+
+impl Spot {
+    /// The spot as a pose, by which spots are told apart; blocks lie in so many
+    /// columns.
+    fn corner(&self, columns: usize) -> Vote {
+        let (Reverse(block), Reverse(heading)) = (self.block, self.heading);
+        Vote {
+            x: (block % columns * SIDE) as u16,
+            y: (block / columns * SIDE) as u16,
+            heading: heading as u16,
+            intensity: self.bound,
+        }
+    }
+}
+
+/// Keeps the greatest so many, in falling order.
+fn keep_greatest<T: Ord>(all: &mut Vec<T>, count: usize) {
+    if count < all.len() {
+        all.select_nth_unstable_by(count, |a, b| b.cmp(a));
+        all.truncate(count);
+    }
+    all.sort_unstable_by(|a, b| b.cmp(a));
+}

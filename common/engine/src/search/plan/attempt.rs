@@ -1,0 +1,139 @@
+//! One search: by bounds, or where these do not help by counting every pose.
+
+use super::alternatives::{self, Alternatives};
+use super::descent::{self, End};
+use super::parts;
+use crate::program::ScanProgram;
+use crate::search::fallback::{self, Sift};
+use crate::search::task::Task;
+use crate::votes::{Distinct, VoteSet, is_close, most_candidates};
+
+/// A search to be made, and the room for it, of as many threads as there are rooms and
+/// shares.
+pub(in crate::search) struct Attempt<'a> {
+    pub task: Task<'a>,
+    pub program: &'a ScanProgram,
+    pub rooms: &'a mut [descent::Room],
+    pub alternatives: &'a mut alternatives::Room,
+    pub sift: &'a mut Sift,
+    pub shares: &'a mut [fallback::Share],
+    pub stop: &'a dyn Fn() -> bool,
+}
+
+impl Attempt<'_> {
+    /// Finds the poses above the floor and candidates below, one way or the other;
+    /// `None` if it was told to stop.
+    pub(in crate::search) fn find(&mut self, found: &mut VoteSet) -> Option<()> {
+        let end = self.by_bounds(found);
+        match end {
+            End::Done => {}
+            End::Stopped => return None,
+            End::Hopeless => self.by_counting(found)?,
+        }
+        self.add_candidates(end, found);
+        Some(())
+    }
+
+    /// Finds the poses above the floor by bounds, unless that is hopeless.
+    pub(in crate::search) fn by_bounds(&mut self, found: &mut VoteSet) -> End {
+        let end = parts::run(&self.task, self.rooms, self.stop);
+        if end == End::Done {
+            parts::finish(self.rooms, found);
+        }
+        end
+    }
+
+    /// Finds them by counting every pose; `None` if it was told to stop.
+    pub(in crate::search) fn by_counting(&mut self, found: &mut VoteSet) -> Option<()> {
+        let what = (&self.task, self.program);
+        self.sift.count(what, self.shares, found, self.stop)
+    }
+
+    /// Adds the candidates that are wanted below what was found, however bounding the
+    /// blocks ended.
+    pub(in crate::search) fn add_candidates(&mut self, end: End, found: &mut VoteSet) {
+        let Self {
+            task,
+            rooms,
+            alternatives,
+            ..
+        } = self;
+        let wanted = task.config.candidates as usize;
+        if wanted > 0 && found.best > 0 {
+            let bounded = (end == End::Done).then_some(&**rooms);
+            let (floor, certain) = (found.certified_floor, found.votes.len());
+            let most = most_candidates(wanted, task.space.resolution_m);
+            for count in [wanted, most] {
+                found.votes.truncate(certain);
+                Alternatives::new(task, alternatives).find(count, floor, bounded);
+                let distinct = Distinct::new(task.space, wanted, &mut alternatives.distinct);
+                let distinct = distinct.and_close(found.best);
+                found.add_candidates(&mut alternatives.votes, distinct);
+                let kept = alternatives.distinct.iter();
+                let close = kept.filter(|vote| is_close(vote.intensity, found.best));
+                if most == wanted || 2 * close.count() < wanted {
+                    break;
+                }
+            }
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use proptest::prelude::*;
+
+    use super::*;
+    use crate::instruction_set::InstructionSet;
+    use crate::search::Workspace;
+    use crate::search::index::SearchIndex;
+    use crate::search::task::budget::Cost;
+    use crate::testing::{any_grid, any_limited_grid, any_scan, plain_votes, space_of};
+    use crate::votes::CollectConfig;
+
+    proptest! {
+        #[test]
+        fn candidates_are_the_same_where_the_search_was_given_up(
+            (grid, limits, headings) in any_limited_grid(8), scan in any_scan(),
+            threads in 1usize..4, candidates in 1u32..40,
+        ) {
+            let space = space_of(&grid, headings);
+            let program = scan.program(&space);
+            let config = CollectConfig { candidates, ..CollectConfig::default() };
+            let index = SearchIndex::within(&grid, &space, limits);
+            let mut workspace = Workspace::default();
+            let (how, scan) = ((InstructionSet::best(), threads), (&program, &space));
+            let mut attempt = index.attempt(&mut workspace, how, &grid, scan, config, &|| false);
+            attempt.task.brute_force = Cost(f64::INFINITY);
+            let mut found = VoteSet::default();
+            prop_assert_eq!(attempt.by_bounds(&mut found), End::Done);
+            let mut given_up = found.clone();
+            attempt.add_candidates(End::Done, &mut found);
+            attempt.add_candidates(End::Hopeless, &mut given_up);
+            prop_assert_eq!(found, given_up);
+        }
+
+        #[test]
+        fn a_search_that_would_cost_too_much_gives_up_at_once(
+            grid in any_grid(), scan in any_scan(), threads in 1usize..4,
+        ) {
+            let space = space_of(&grid, 64);
+            let program = scan.program(&space);
+            let config = CollectConfig { candidates: 0, ..CollectConfig::default() };
+            let index = SearchIndex::new(&grid, &space);
+            let mut workspace = Workspace::default();
+            let (how, scan) = ((InstructionSet::best(), threads), (&program, &space));
+            let mut attempt = index.attempt(&mut workspace, how, &grid, scan, config, &|| false);
+            attempt.task.brute_force = Cost(0.0);
+            let (mut found, plain) = (VoteSet::default(), plain_votes(&grid, &program, &space, config));
+            // A search that is done after the first block has nothing to give up.
+            match attempt.by_bounds(&mut found) {
+                End::Done => prop_assert_eq!(VoteSet { poses_evaluated: 0, ..found.clone() }, plain.clone()),
+                End::Hopeless => (),
+                End::Stopped => prop_assert!(false, "nobody said stop"),
+            }
+            prop_assert!(attempt.find(&mut found).is_some());
+            prop_assert_eq!(VoteSet { poses_evaluated: 0, ..found }, plain);
+        }
+    }
+}

@@ -1,0 +1,101 @@
+//! Where the robot may be, roughly: upper bounds, block by block.
+
+use super::Workspace;
+use crate::instruction_set::InstructionSet;
+use crate::program::ScanProgram;
+use crate::search::bounds::set_bounds::SetBounds;
+use crate::search::bounds::set_program::SetProgram;
+use crate::search::index::SearchIndex;
+use crate::search::index::within::Size;
+use crate::space::Space;
+
+/// Upper bounds of the intensities in square blocks, row by row from the
+/// lowest y.
+#[derive(Debug, Clone, Default, PartialEq, Eq)]
+pub struct BlockBounds {
+    /// Cells along the side of a block.
+    pub side: usize,
+    /// Blocks along x.
+    pub columns: usize,
+    /// No pose in the block, at any heading, has more votes.
+    pub bounds: Vec<u16>,
+}
+
+impl BlockBounds {
+    /// Blocks along y.
+    #[must_use]
+    pub fn rows(&self) -> usize {
+        self.bounds.len() / self.columns
+    }
+}
+
+/// What blocks are bounded with.
+#[derive(Debug, Default)]
+pub(in crate::search) struct Bounding {
+    program: SetProgram,
+    bounds: SetBounds,
+}
+
+impl SearchIndex {
+    /// Upper bounds of the intensities in all coarse blocks: where the robot
+    /// may be, roughly.
+    #[must_use]
+    pub fn block_bounds(&self, program: &ScanProgram, space: &Space) -> BlockBounds {
+        let (mut workspace, mut blocks) = (Workspace::default(), BlockBounds::default());
+        self.block_bounds_in(&mut workspace, (program, space), &mut blocks);
+        blocks
+    }
+
+    /// The same in a workspace that may have served other scans and maps.
+    pub fn block_bounds_in(
+        &self,
+        workspace: &mut Workspace,
+        (program, space): (&ScanProgram, &Space),
+        blocks: &mut BlockBounds,
+    ) {
+        let (coarse, directions) = (&self.coarse, &space.directions);
+        let best = InstructionSet::best();
+        let Bounding {
+            program: set_program,
+            bounds,
+        } = &mut workspace.bounding;
+        set_program.make(program, directions, &self.steps, best);
+        bounds.fit(set_program, self.within.headings(directions.count()));
+        blocks.side = coarse.side;
+        blocks.columns = coarse.columns;
+        blocks.bounds.clear();
+        blocks.bounds.resize(coarse.blocks(), 0);
+        let quads = (0..coarse.quads()).map(|quad| self.within.quad(Size::Coarse, coarse, quad));
+        set_program.bound_all(coarse, quads, bounds, |quad, found| {
+            for (place, block) in quad.blocks() {
+                blocks.bounds[block] = found.greatest(place);
+            }
+        });
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use proptest::prelude::*;
+
+    use super::*;
+    use crate::reference;
+    use crate::testing::{any_grid, any_scan, space_of};
+
+    proptest! {
+        #[test]
+        fn no_pose_has_more_votes_than_the_bound_of_its_block(
+            grid in any_grid(), scan in any_scan(), headings in 1u32..8, heading in 0usize..64,
+        ) {
+            let space = space_of(&grid, headings * 8);
+            let program = scan.program(&space);
+            let blocks = SearchIndex::new(&grid, &space).block_bounds(&program, &space);
+            prop_assert_eq!(blocks.rows(), grid.height().div_ceil(blocks.side));
+            let field = reference::field(&grid, &program, &space, heading % space.directions.count());
+            for (i, &votes) in field.iter().enumerate() {
+                let (x, y) = (i % grid.width(), i / grid.width());
+                prop_assert!(votes <= blocks.bounds[y / blocks.side * blocks.columns + x / blocks.side]);
+            }
+        }
+    }
+}

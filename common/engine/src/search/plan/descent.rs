@@ -1,0 +1,397 @@
+//! One search: from large blocks down to poses, the most promising first.
+
+use std::cmp::Reverse;
+use std::ops::Range;
+use std::sync::atomic::Ordering;
+
+use messages::Vote;
+
+use super::queue::{Block, Level, Promise, Queue};
+use crate::search::bounds::heading_lanes::HEADINGS;
+use crate::search::bounds::interval_bounds::{IntervalBounds, Window};
+use crate::search::bounds::set_bounds::SetBounds;
+use crate::search::fallback;
+use crate::search::index::SearchIndex;
+use crate::search::index::bits;
+use crate::search::index::intervals::BlockIntervals;
+use crate::search::index::intervals::CELLS;
+use crate::search::index::prefetch::prefetch;
+use crate::search::index::within::{Size, quarters};
+use crate::search::leaves::leaf::Count;
+use crate::search::leaves::outlook::Outlook;
+use crate::search::task::budget::{Budget, LEVELS, Tally};
+use crate::search::task::{Programs, Task};
+use crate::votes::Collector;
+
+/// One thread's part of a search.
+pub(in crate::search) struct Descent<'a> {
+    task: &'a Task<'a>,
+    room: &'a mut Room,
+}
+
+/// What a thread searches with, kept from scan to scan.
+#[derive(Debug, Default)]
+pub(in crate::search) struct Room {
+    set_bounds: SetBounds,
+    intervals: BlockIntervals,
+    interval_bounds: IntervalBounds,
+    outlook: Outlook,
+    /// The votes of a block of 4 × 4 cells at each of [`HEADINGS`].
+    counts: Vec<Count>,
+    queue: Queue,
+    /// Headings at which blocks of 8 × 8 cells may matter.
+    windows: Vec<Window>,
+    /// The bounds of these blocks: of all, once the search is done, whose bound
+    /// is not below the floor.
+    pub fine: Vec<Promise>,
+    /// Headings at which blocks of 4 × 4 cells may matter.
+    candidates: Vec<Candidate>,
+    /// The poses that matter.
+    pub collector: Collector,
+    /// How many were counted.
+    pub poses_evaluated: u64,
+    tally: Tally,
+}
+
+/// How a part of a search ended.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(in crate::search) enum End {
+    /// With the poses that matter.
+    Done,
+    /// It was told to stop.
+    Stopped,
+    /// Counting every pose would take less than what is left.
+    Hopeless,
+}
+
+/// A heading at which a block may still matter, and its bound there.
+#[derive(Debug, Clone, Copy)]
+struct Candidate {
+    heading: u16,
+    bound: u16,
+}
+
+impl Room {
+    /// Makes room for a task; nothing is left of the one before.
+    fn start(&mut self, task: &Task<'_>) {
+        let programs = task.programs;
+        self.set_bounds.fit(&programs.sets, task.headings());
+        self.outlook.prepare(task.grid, &task.space.directions);
+        self.counts.resize(HEADINGS, Count::default());
+        self.queue.clear();
+        self.windows.clear();
+        self.fine.clear();
+        self.candidates.clear();
+        self.collector.start(task.config);
+        self.poses_evaluated = 0;
+        self.tally = Tally::default();
+    }
+}
+
+impl<'a> Descent<'a> {
+    pub(in crate::search) fn new(task: &'a Task<'a>, room: &'a mut Room) -> Self {
+        room.start(task);
+        Descent { task, room }
+    }
+
+    /// Searches one of `parts` of the coarse blocks.
+    pub(in crate::search) fn run(
+        mut self,
+        (part, parts): (usize, usize),
+        stop: &dyn Fn() -> bool,
+    ) -> End {
+        self.bound_coarse(part, parts);
+        let task = self.task;
+        let mut budget = Budget::new(task.brute_force, fallback::likely_cost(task), parts);
+        while let Some(block) = self.next(budget.dives()) {
+            if stop() {
+                return End::Stopped;
+            }
+            if let Some(next) = self.room.queue.peek(budget.dives()) {
+                self.prefetch(&next);
+            }
+            let (level, index) = (block.level, block.index as usize);
+            match level {
+                Level::Coarse => self.split_coarse(index),
+                Level::Fine { start, end } => {
+                    self.split_fine(index, &(start as usize..end as usize));
+                }
+                Level::Leaf { start, end } => self.count(index, start as usize..end as usize),
+            }
+            let Programs {
+                instruction_set,
+                beams,
+                ..
+            } = self.task.programs;
+            let cost = self.room.tally.take(*instruction_set, *beams);
+            budget.spend(level.number(), cost);
+            if budget.is_up() && budget.is_hopeless(self.left()) {
+                return End::Hopeless;
+            }
+        }
+        End::Done
+    }
+
+    /// Bounds one of `parts` of the coarse quads, and queues them.
+    fn bound_coarse(&mut self, part: usize, parts: usize) {
+        let (coarse, program) = (&self.task.index.coarse, &self.task.programs.sets);
+        // Neighbouring blocks are alike, so parts take them in turn. All bounds
+        // are needed, also where another part gives up: candidates come of them.
+        let within = &self.task.index.within;
+        let own = (part..coarse.quads()).step_by(parts);
+        let own = own.map(|quad| within.quad(Size::Coarse, coarse, quad));
+        let own = own.filter(|quad| quad.blocks().next().is_some());
+        let Room {
+            set_bounds, queue, ..
+        } = &mut *self.room;
+        program.bound_all(coarse, own, set_bounds, |quad, found| {
+            for (place, block) in quad.blocks() {
+                let bound = found.greatest(place);
+                self.task.coarse_bounds[block].store(bound, Ordering::Relaxed);
+                for (known, bound) in self.task.by_chunk(block).iter().zip(found.by_chunk(place)) {
+                    known.store(bound, Ordering::Relaxed);
+                }
+                queue.push(Block {
+                    bound,
+                    index: block as u32,
+                    level: Level::Coarse,
+                });
+            }
+        });
+        // What is tallied is what blocks cost that are taken from the queue.
+        set_bounds.reads = 0;
+    }
+
+    /// The next block that may matter.
+    fn next(&mut self, dives: bool) -> Option<Block> {
+        let best = self.task.best.load(Ordering::Relaxed);
+        self.room.collector.hear_of(best);
+        self.room.queue.pop(dives, self.room.collector.floor())
+    }
+
+    /// Asks for what is known of a block that is likely the next one.
+    fn prefetch(&self, block: &Block) {
+        let SearchIndex {
+            fine, intervals, ..
+        } = self.task.index;
+        let index = block.index as usize;
+        match block.level {
+            // A coarse block is a quad of those within.
+            Level::Coarse => fine.prefetch(index),
+            Level::Fine { start, end } => {
+                prefetch(&self.room.windows[start as usize..end as usize]);
+                let sides = (intervals.columns, intervals.rows);
+                // The others are asked for one by one: more at a time would be waited for.
+                if let Some(first) = quarters(index, fine.columns, sides).next() {
+                    intervals.prefetch(first);
+                }
+            }
+            Level::Leaf { start, end } => {
+                prefetch(&self.room.candidates[start as usize..end as usize]);
+                intervals.prefetch(index);
+            }
+        }
+    }
+
+    /// How many blocks of each level are left that may matter.
+    fn left(&self) -> [usize; LEVELS] {
+        let mut left = [0; LEVELS];
+        let floor = self.room.collector.floor();
+        for block in self.room.queue.iter().filter(|block| block.bound >= floor) {
+            left[block.level.number()] += 1;
+        }
+        left
+    }
+
+    fn push(&mut self, bound: u16, index: usize, level: Level) {
+        if bound >= self.room.collector.floor() {
+            self.room.queue.push(Block {
+                bound,
+                index: index as u32,
+                level,
+            });
+        }
+    }
+
+    /// Bounds and queues the blocks of 8 × 8 cells in one of 16 × 16.
+    fn split_coarse(&mut self, index: usize) {
+        let SearchIndex { fine, within, .. } = self.task.index;
+        let program = &self.task.programs.sets;
+        let quad = within.quad(Size::Fine, fine, index);
+        let known = (self.task.by_chunk(index), self.room.collector.floor());
+        program.bound((fine, &quad), Some(known), &mut self.room.set_bounds);
+        for (place, block) in quad.blocks() {
+            self.queue_fine(block, place);
+        }
+        let Room {
+            set_bounds, tally, ..
+        } = &mut *self.room;
+        tally.reads = set_bounds.reads;
+    }
+
+    /// Queues a block of 8 × 8 cells that was just bounded, at the headings at which it
+    /// may matter.
+    fn queue_fine(&mut self, index: usize, place: usize) {
+        let program = &self.task.programs.sets;
+        let Room {
+            windows,
+            set_bounds,
+            ..
+        } = &mut *self.room;
+        let bounds = (&set_bounds.found, place);
+        let start = windows.len();
+        windows.extend(bounds.0.reach(place).map(|(first, among)| Window {
+            first: first as u16,
+            among,
+            rests: program.rests(bounds, (first, among)),
+        }));
+        let (start, end) = (start as u32, windows.len() as u32);
+        if start < end {
+            let bound = bounds.0.greatest(place);
+            self.room.fine.push((bound, Reverse(index as u32)));
+            self.push(bound, index, Level::Fine { start, end });
+        }
+    }
+
+    /// Queues the blocks of 4 × 4 cells in one of 8 × 8.
+    fn split_fine(&mut self, index: usize, windows: &Range<usize>) {
+        let (fine, intervals) = (&self.task.index.fine, &self.task.index.intervals);
+        let quarters = quarters(index, fine.columns, (intervals.columns, intervals.rows));
+        let mut sought = quarters
+            .filter(|&block| intervals.ids.holds(block))
+            .peekable();
+        while let Some(block) = sought.next() {
+            if let Some(&next) = sought.peek() {
+                intervals.prefetch(next);
+            }
+            self.queue_leaf(block, windows.clone());
+        }
+    }
+
+    /// Queues a block of 4 × 4 cells at the headings at which it may matter.
+    fn queue_leaf(&mut self, index: usize, windows: Range<usize>) {
+        let floor = self.room.collector.floor();
+        let start = self.room.candidates.len();
+        let Room {
+            intervals,
+            interval_bounds: bounds,
+            windows: known,
+            candidates,
+            tally,
+            ..
+        } = &mut *self.room;
+        self.task.index.intervals.read(index, intervals);
+        let program = &self.task.programs.interval;
+        for window in &known[windows] {
+            tally.windows += 1;
+            if !program.bound_within(intervals, window, floor, bounds) {
+                continue;
+            }
+            let bounded = bits::ones(window.among).map(|lane| (lane, bounds.all[lane]));
+            let left = bounded.filter(|&(_, bound)| bound >= floor);
+            candidates.extend(left.map(|(lane, bound)| Candidate {
+                heading: window.first + lane as u16,
+                bound,
+            }));
+        }
+        let left = candidates[start..].iter();
+        if let Some(bound) = left.map(|candidate| candidate.bound).max() {
+            let (start, end) = (start as u32, candidates.len() as u32);
+            self.push(bound, index, Level::Leaf { start, end });
+        }
+    }
+
+    /// Counts the votes of a block's poses at the candidate headings.
+    fn count(&mut self, index: usize, mut candidates: Range<usize>) {
+        let SearchIndex {
+            intervals, within, ..
+        } = self.task.index;
+        let outlook = &mut self.room.outlook;
+        outlook.enter((&self.task.view(), &within.limits), intervals, index);
+        while let Some((first, among)) = self.next_headings(&mut candidates) {
+            let floor = self.room.collector.floor();
+            let (intervals, bounds) = (
+                self.room.outlook.intervals(),
+                &mut self.room.interval_bounds,
+            );
+            let program = &self.task.programs.interval;
+            self.room.tally.windows += 1;
+            if program.bound(intervals, first, among, floor, bounds) {
+                self.count_at(first, among);
+            }
+        }
+    }
+
+    /// Takes candidates less than [`HEADINGS`] behind the first: its heading,
+    /// and those from there on that may still matter.
+    fn next_headings(&self, candidates: &mut Range<usize>) -> Option<(usize, u64)> {
+        let floor = self.room.collector.floor();
+        let first = usize::from(self.room.candidates[candidates.clone()].first()?.heading);
+        let mut among = 0;
+        for candidate in &self.room.candidates[candidates.clone()] {
+            let lane = usize::from(candidate.heading) - first;
+            if lane >= HEADINGS {
+                break;
+            }
+            among |= u64::from(candidate.bound >= floor) << lane;
+            candidates.start += 1;
+        }
+        Some((first, among))
+    }
+
+    /// Counts sector by sector at headings from `first` on, until no pose can
+    /// reach the floor with what the sectors left are bounded by.
+    fn count_at(&mut self, first: usize, among: u64) {
+        let view = self.task.view();
+        for lane in bits::ones(among) {
+            self.room.counts[lane] = Count::default();
+        }
+        let mut rest = self.room.interval_bounds.all;
+        let mut alive = among;
+        let floor = self.room.collector.floor();
+        let IntervalBounds {
+            sectors, voting, ..
+        } = &self.room.interval_bounds;
+        for (sector, bounds) in sectors.iter().enumerate() {
+            self.room.tally.sectors += u64::from(alive.count_ones());
+            let looking = (&mut self.room.outlook, &view);
+            let program = &self.task.programs.leaf;
+            let beams = (sector, &voting[..]);
+            program.add(looking, beams, (first, alive), &mut self.room.counts);
+            let mut still = 0;
+            for lane in bits::ones(alive) {
+                rest[lane] -= u16::from(bounds[lane]);
+                let most = self.room.counts[lane].most;
+                still |= u64::from(most + rest[lane] >= floor) << lane;
+            }
+            alive = still;
+            if alive == 0 {
+                break;
+            }
+        }
+        for lane in bits::ones(alive) {
+            let votes = self.room.counts[lane].votes;
+            self.take((first + lane) as u16, &votes);
+        }
+        self.room.tally.looks = self.room.outlook.looks();
+        let best = self.room.collector.best();
+        self.task.best.fetch_max(best, Ordering::Relaxed);
+    }
+
+    fn take(&mut self, heading: u16, counts: &[u16; CELLS]) {
+        let open = *self.room.outlook.open();
+        self.room.poses_evaluated += CELLS as u64;
+        for (i, &intensity) in counts.iter().enumerate() {
+            if open[i] != 0 {
+                let (x, y) = self.room.outlook.cell(i);
+                let vote = Vote {
+                    x: x as u16,
+                    y: y as u16,
+                    heading,
+                    intensity,
+                };
+                self.room.collector.take(vote);
+            }
+        }
+    }
+}

@@ -1,0 +1,16 @@
+//! How a map is searched: from large blocks down to poses, the most promising first.
+//!
+//! When a search ends, every pose at or above its floor was counted: a block is dropped
+//! only where its bound lies below. Where bounds do not tell blocks apart, all poses are
+//! counted instead. Candidates below the floor come from the blocks that promise most.
+
+mod alternatives;
+mod attempt;
+mod block_bounds;
+mod descent;
+mod parts;
+mod queue;
+mod search;
+
+pub use block_bounds::BlockBounds;
+pub use search::Workspace;

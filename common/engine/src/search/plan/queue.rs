@@ -1,0 +1,213 @@
+//! Blocks that wait to be searched, the most promising first.
+
+use std::cmp::Reverse;
+use std::num::NonZeroU32;
+
+use crate::search::index::prefetch::prefetch;
+
+/// The blocks that wait.
+///
+/// Blocks of 4 × 4 cells have tighter bounds than those that they came of, and so
+/// would all wait until nothing larger is left. Yet in one of the first lies the best
+/// pose, and the sooner it is known, the less else needs to be looked at.
+#[derive(Debug, Default)]
+pub(in crate::search) struct Queue {
+    larger: ByBound,
+    leaves: ByBound,
+}
+
+impl Queue {
+    pub(in crate::search) fn clear(&mut self) {
+        self.larger.clear();
+        self.leaves.clear();
+    }
+
+    pub(in crate::search) fn push(&mut self, block: Block) {
+        match block.level {
+            Level::Leaf { .. } => self.leaves.push(block),
+            _ => self.larger.push(block),
+        }
+    }
+
+    /// The next block with a bound that is not below the floor: the most promising
+    /// one, or if `dives` that of the smallest.
+    pub(in crate::search) fn pop(&mut self, dives: bool, floor: u16) -> Option<Block> {
+        loop {
+            let blocks = self.next_of(dives);
+            let block = blocks.pop()?;
+            if block.bound >= floor {
+                return Some(block);
+            }
+            // Those behind it have no higher bounds.
+            blocks.clear();
+        }
+    }
+
+    /// What would be popped now.
+    pub(in crate::search) fn peek(&mut self, dives: bool) -> Option<Block> {
+        self.next_of(dives).peek()
+    }
+
+    fn next_of(&mut self, dives: bool) -> &mut ByBound {
+        let is_leaf = match (self.leaves.greatest(), self.larger.greatest()) {
+            (Some(leaf), Some(larger)) => dives || leaf > larger,
+            (leaf, _) => leaf.is_some(),
+        };
+        if is_leaf {
+            &mut self.leaves
+        } else {
+            &mut self.larger
+        }
+    }
+
+    pub(in crate::search) fn iter(&self) -> impl Iterator<Item = &Block> {
+        self.larger.iter().chain(self.leaves.iter())
+    }
+}
+
+/// Blocks by their bounds, of which there are few different ones; of equal ones the last
+/// comes first.
+#[derive(Debug, Default)]
+struct ByBound {
+    /// For each bound the last block that was pushed with it.
+    last: Vec<Option<Place>>,
+    /// A bit for each bound that a block has.
+    bounds: Vec<u64>,
+    /// All that were pushed, each with the one before of the same bound.
+    blocks: Vec<(Block, Option<Place>)>,
+}
+
+/// A place in [`ByBound::blocks`], counted from 1 on.
+type Place = NonZeroU32;
+
+impl ByBound {
+    fn clear(&mut self) {
+        self.last.clear();
+        self.bounds.clear();
+        self.blocks.clear();
+    }
+
+    fn push(&mut self, block: Block) {
+        let bound = usize::from(block.bound);
+        if bound >= self.last.len() {
+            self.last.resize(bound + 1, None);
+            self.bounds.resize(bound / 64 + 1, 0);
+        }
+        self.blocks.push((block, self.last[bound]));
+        self.last[bound] = Place::new(self.blocks.len() as u32);
+        self.bounds[bound / 64] |= 1 << (bound % 64);
+    }
+
+    /// The greatest bound that a block has.
+    fn greatest(&mut self) -> Option<usize> {
+        while let Some(&bounds) = self.bounds.last() {
+            if let Some(highest) = bounds.checked_ilog2() {
+                return Some(64 * (self.bounds.len() - 1) + highest as usize);
+            }
+            self.bounds.pop();
+            self.last.truncate(64 * self.bounds.len());
+        }
+        None
+    }
+
+    fn peek(&mut self) -> Option<Block> {
+        let bound = self.greatest()?;
+        let &(block, before) = self.at(self.last[bound]?);
+        if let Some(before) = before {
+            // It likely comes after this one, and lies anywhere.
+            prefetch(std::slice::from_ref(self.at(before)));
+        }
+        Some(block)
+    }
+
+    fn pop(&mut self) -> Option<Block> {
+        let bound = self.greatest()?;
+        let (block, before) = *self.at(self.last[bound]?);
+        self.last[bound] = before;
+        if before.is_none() {
+            self.bounds[bound / 64] &= !(1 << (bound % 64));
+        }
+        Some(block)
+    }
+
+    fn iter(&self) -> impl Iterator<Item = &Block> {
+        self.last.iter().flat_map(|&last| {
+            let last = last.map(|last| self.at(last));
+            let all = std::iter::successors(last, |(_, before)| before.map(|place| self.at(place)));
+            all.map(|(block, _)| block)
+        })
+    }
+
+    fn at(&self, place: Place) -> &(Block, Option<Place>) {
+        &self.blocks[place.get() as usize - 1]
+    }
+}
+
+/// A block in the queue.
+#[derive(Debug, Clone, Copy)]
+pub(in crate::search) struct Block {
+    /// What none of its poses has more than: the order of the queue.
+    pub bound: u16,
+    pub index: u32,
+    pub level: Level,
+}
+
+/// The bound of a block, and which it is; of equal ones the first comes first.
+pub(in crate::search) type Promise = (u16, Reverse<u32>);
+
+/// How large a block is, and what is known of it.
+#[derive(Debug, Clone, Copy)]
+pub(in crate::search) enum Level {
+    /// A quad of 16 × 16 cells each.
+    Coarse,
+    /// 8 × 8 cells, at the headings of these windows.
+    Fine { start: u32, end: u32 },
+    /// 4 × 4 cells, at these candidate headings.
+    Leaf { start: u32, end: u32 },
+}
+
+impl Level {
+    /// From the largest blocks on.
+    pub(in crate::search) fn number(self) -> usize {
+        match self {
+            Level::Coarse => 0,
+            Level::Fine { .. } => 1,
+            Level::Leaf { .. } => 2,
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use proptest::collection::vec;
+    use proptest::prelude::*;
+
+    use super::*;
+
+    proptest! {
+        #[test]
+        fn blocks_come_with_the_greatest_bounds_first_and_each_once(
+            steps in vec(prop_oneof![2 => (0u16..300).prop_map(Some), 1 => Just(None)], 0..200),
+        ) {
+            let mut blocks = ByBound::default();
+            let mut waiting = Vec::new();
+            for (index, step) in (0..).zip(steps) {
+                if let Some(bound) = step {
+                    blocks.push(Block { bound, index, level: Level::Coarse });
+                    waiting.push((bound, index));
+                    continue;
+                }
+                // Of equal ones the last comes first.
+                let greatest = waiting.iter().copied().max();
+                waiting.retain(|&other| Some(other) != greatest);
+                prop_assert_eq!(blocks.greatest(), greatest.map(|(bound, _)| bound.into()));
+                let [next, popped] = [blocks.peek(), blocks.pop()]
+                    .map(|block| block.map(|block| (block.bound, block.index)));
+                prop_assert_eq!([next, popped], [greatest; 2]);
+                let mut left: Vec<_> = blocks.iter().map(|block| (block.bound, block.index)).collect();
+                left.sort_unstable_by_key(|&(_, index)| index);
+                prop_assert_eq!(&left, &waiting);
+            }
+        }
+    }
+}

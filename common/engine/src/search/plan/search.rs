@@ -1,0 +1,278 @@
+//! Searches of a prepared map, whichever way they go.
+
+use super::attempt::Attempt;
+use super::block_bounds::Bounding;
+use super::{alternatives, descent};
+use crate::grid::Grid;
+use crate::instruction_set::InstructionSet;
+use crate::program::ScanProgram;
+use crate::search::fallback::{self, Sift};
+use crate::search::index::SearchIndex;
+use crate::search::task::{Shared, Task};
+use crate::space::Space;
+use crate::votes::{CollectConfig, VoteSet};
+
+/// What searches need beside the map, kept from scan to scan: once there is room
+/// for all, nothing is allocated any more. It may serve any map.
+#[derive(Debug, Default)]
+pub struct Workspace {
+    shared: Shared,
+    /// One for each thread.
+    rooms: Vec<descent::Room>,
+    alternatives: alternatives::Room,
+    /// For counting every pose, the shares one for each thread.
+    sift: Sift,
+    shares: Vec<fallback::Share>,
+    pub(in crate::search) bounding: Bounding,
+}
+
+impl SearchIndex {
+    /// The poses with the most votes; `None` if `stop` said so before the end.
+    #[must_use]
+    pub fn search(
+        &self,
+        grid: &Grid,
+        program: &ScanProgram,
+        space: &Space,
+        config: CollectConfig,
+        stop: &dyn Fn() -> bool,
+    ) -> Option<VoteSet> {
+        let best = InstructionSet::best();
+        self.search_with((best, 1), grid, (program, space), config, stop)
+    }
+
+    /// The same with a certain instruction set on a number of threads, see
+    /// [`SearchIndex::search_in`].
+    ///
+    /// # Panics
+    /// If the processor does not have the instruction set, or there is no
+    /// thread.
+    #[must_use]
+    pub fn search_with(
+        &self,
+        (instruction_set, threads): (InstructionSet, usize),
+        grid: &Grid,
+        scan: (&ScanProgram, &Space),
+        config: CollectConfig,
+        stop: &dyn Fn() -> bool,
+    ) -> Option<VoteSet> {
+        let (mut workspace, mut found) = (Workspace::default(), VoteSet::default());
+        let how = (instruction_set, threads);
+        let collect = (config, &mut found);
+        self.search_in(&mut workspace, how, grid, scan, collect, stop)?;
+        Some(found)
+    }
+
+    /// Fills in the poses with the most votes, in a workspace that may have
+    /// served other scans and maps; `None` if `stop` said so before the end.
+    ///
+    /// The outcome is the same with any instruction set and number of threads,
+    /// but for the number of poses that were counted. Where bounds cannot tell
+    /// blocks apart, all poses are counted.
+    ///
+    /// # Panics
+    /// If the processor does not have the instruction set, or there is no
+    /// thread.
+    pub fn search_in(
+        &self,
+        workspace: &mut Workspace,
+        how: (InstructionSet, usize),
+        grid: &Grid,
+        scan: (&ScanProgram, &Space),
+        (config, found): (CollectConfig, &mut VoteSet),
+        stop: &dyn Fn() -> bool,
+    ) -> Option<()> {
+        let mut attempt = self.attempt(workspace, how, grid, scan, config, stop);
+        attempt.find(found)
+    }
+
+    /// A search to be made.
+    pub(in crate::search) fn attempt<'a>(
+        &'a self,
+        workspace: &'a mut Workspace,
+        (instruction_set, threads): (InstructionSet, usize),
+        grid: &'a Grid,
+        scan: (&'a ScanProgram, &'a Space),
+        config: CollectConfig,
+        stop: &'a dyn Fn() -> bool,
+    ) -> Attempt<'a> {
+        let Workspace {
+            shared,
+            rooms,
+            alternatives,
+            sift,
+            shares,
+            ..
+        } = workspace;
+        let task = Task::new(shared, instruction_set.checked(), self, grid, scan, config);
+        rooms.resize_with(threads, descent::Room::default);
+        shares.resize_with(threads, fallback::Share::default);
+        Attempt {
+            task,
+            program: scan.0,
+            rooms,
+            alternatives,
+            sift,
+            shares,
+            stop,
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use proptest::collection::vec;
+    use proptest::prelude::*;
+
+    use super::super::BlockBounds;
+    use super::*;
+    use crate::reference;
+    use crate::testing::{
+        any_grid, any_limited_grid, any_long_grid, any_scan, plain_votes, plain_votes_within,
+        space_of,
+    };
+    use crate::votes::{is_close, most_candidates};
+    use messages::Vote;
+
+    fn check(
+        grid: &Grid,
+        (program, space): (&ScanProgram, &Space),
+        config: CollectConfig,
+    ) -> Result<(), TestCaseError> {
+        let index = SearchIndex::new(grid, space);
+        let plain = plain_votes(grid, program, space, config);
+        for instruction_set in InstructionSet::available() {
+            for threads in 1..4 {
+                let how = (instruction_set, threads);
+                let found = index.search_with(how, grid, (program, space), config, &|| false);
+                let found = VoteSet {
+                    poses_evaluated: 0,
+                    ..found.unwrap()
+                };
+                prop_assert_eq!(&found, &plain, "{:?}", how);
+            }
+        }
+        Ok(())
+    }
+
+    proptest! {
+        #[test]
+        fn the_search_equals_the_reference_however_it_is_done(
+            grid in any_grid(), scan in any_scan(), headings in 1u32..8,
+            floor_share in 0.5..=1.0f64, max_votes in 1u32..400,
+        ) {
+            let space = space_of(&grid, headings * 8);
+            let config = CollectConfig { floor_share, max_votes, candidates: 0 };
+            check(&grid, (&scan.program(&space), &space), config)?;
+        }
+
+        #[test]
+        fn poses_beyond_the_limits_are_not_found(
+            (grid, limits, headings) in any_limited_grid(8), scan in any_scan(),
+            floor_share in 0.3..=1.0f64, threads in 1usize..3, candidates in 0u32..9,
+        ) {
+            let space = space_of(&grid, headings);
+            let program = scan.program(&space);
+            let config = CollectConfig { floor_share, ..CollectConfig::default() };
+            let plain = plain_votes_within(&limits, &grid, &program, &space, config);
+            let index = SearchIndex::within(&grid, &space, limits.clone());
+            let scan = (&program, &space);
+            let config = CollectConfig { candidates, ..config };
+            for instruction_set in InstructionSet::available() {
+                let how = (instruction_set, threads);
+                let found = index.search_with(how, &grid, scan, config, &|| false).unwrap();
+                let (above, below) = found.votes.split_at(plain.votes.len());
+                prop_assert_eq!(above, &plain.votes);
+                let is_held = |vote: &Vote| limits.hold_cell(vote.x.into(), vote.y.into())
+                    && limits.hold_heading(vote.heading.into());
+                prop_assert!(below.iter().all(is_held));
+            }
+        }
+
+        #[test]
+        fn the_search_finds_far_readings_and_wide_tapers(
+            grid in any_long_grid(), scan in any_scan(), floor_share in 0.5..=1.0f64,
+        ) {
+            let space = space_of(&grid, 16);
+            let config = CollectConfig { floor_share, candidates: 0, ..CollectConfig::default() };
+            check(&grid, (&scan.stretched(18.0).program(&space), &space), config)?;
+        }
+
+        #[test]
+        fn candidates_are_poses_below_the_floor_and_the_same_however_it_is_done(
+            grid in any_grid(), scan in any_scan(), headings in 1u32..8, candidates in 1u32..20,
+        ) {
+            let space = space_of(&grid, headings * 8);
+            let program = scan.program(&space);
+            let certain = CollectConfig { candidates: 0, ..CollectConfig::default() };
+            let config = CollectConfig { candidates, ..certain };
+            let index = SearchIndex::new(&grid, &space);
+            let plain = plain_votes(&grid, &program, &space, certain);
+            let mut first = None;
+            for instruction_set in InstructionSet::available() {
+                for threads in 1..3 {
+                    let how = (instruction_set, threads);
+                    let found = index.search_with(how, &grid, (&program, &space), config, &|| false).unwrap();
+                    let found = VoteSet { poses_evaluated: 0, ..found };
+                    let (above, below) = found.votes.split_at(plain.votes.len());
+                    prop_assert_eq!(above, &plain.votes);
+                    let wanted = candidates as usize;
+                    prop_assert!(below.len() <= most_candidates(wanted, space.resolution_m));
+                    let mut beyond = below.iter().skip(wanted);
+                    prop_assert!(beyond.all(|vote| is_close(vote.intensity, found.best)));
+                    for vote in below {
+                        let (x, y) = (i64::from(vote.x), i64::from(vote.y));
+                        let intensity = reference::intensity(&grid, &program, &space, x, y, vote.heading.into());
+                        prop_assert_eq!(vote.intensity, intensity);
+                        prop_assert!(grid.is_open(x, y) && intensity < found.certified_floor && intensity > 0);
+                    }
+                    prop_assert_eq!(first.get_or_insert(found.clone()), &found, "{:?}", how);
+                }
+            }
+        }
+
+        #[test]
+        fn a_workspace_that_served_other_scans_and_maps_changes_nothing(
+            worlds in vec((any_limited_grid(8), any_scan(), 1usize..4), 2..5), candidates in 0u32..9,
+        ) {
+            let config = CollectConfig { candidates, ..CollectConfig::default() };
+            let (mut workspace, mut found) = (Workspace::default(), VoteSet::default());
+            let mut blocks = BlockBounds::default();
+            for ((grid, limits, headings), scan, threads) in worlds {
+                let space = space_of(&grid, headings);
+                let (index, program) = (SearchIndex::within(&grid, &space, limits), scan.program(&space));
+                let scan = (&program, &space);
+                for instruction_set in InstructionSet::available() {
+                    let how = (instruction_set, threads);
+                    let fresh = index.search_with(how, &grid, scan, config, &|| false).unwrap();
+                    let collect = (config, &mut found);
+                    prop_assert!(index.search_in(&mut workspace, how, &grid, scan, collect, &|| false).is_some());
+                    // How many poses threads count depends on who is first.
+                    found.poses_evaluated = fresh.poses_evaluated;
+                    prop_assert_eq!(&found, &fresh, "{:?}", how);
+                }
+                index.block_bounds_in(&mut workspace, scan, &mut blocks);
+                prop_assert_eq!(&blocks, &index.block_bounds(&program, &space));
+            }
+        }
+    }
+
+    #[test]
+    fn a_search_that_is_told_to_stop_has_no_outcome() {
+        let grid = crate::grid::drawn::grid(&["####", "#..#", "####"]);
+        let space = space_of(&grid, 8);
+        let scan = crate::scan::Scan {
+            angle_min: 0.0,
+            angle_increment: 1.0,
+            range_min_m: 0.0,
+            range_max_m: 9.0,
+            ranges: &[0.1, 0.1],
+        };
+        let program = ScanProgram::new(&scan, 0.0, &space, &Default::default()).unwrap();
+        let index = SearchIndex::new(&grid, &space);
+        let search =
+            |stop| index.search(&grid, &program, &space, CollectConfig::default(), &|| stop);
+        assert!(search(true).is_none());
+        assert!(search(false).is_some());
+    }
+}

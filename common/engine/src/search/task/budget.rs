@@ -1,0 +1,239 @@
+//! When a search is worse than counting every pose.
+//!
+//! In uniform clutter no bound tells blocks apart. The search tallies what it
+//! did, estimates what is left from what blocks of each level have cost so far,
+//! and gives up where counting every pose would be done sooner. Where that is seen at
+//! the first look, a tenth of what brute force costs is lost.
+
+use crate::grid::Grid;
+use crate::instruction_set::InstructionSet;
+use crate::program::ScanProgram;
+use crate::space::Space;
+
+/// Sizes of blocks in the queue of a search.
+pub(in crate::search) const LEVELS: usize = 3;
+
+/// Work, in nanoseconds on a processor of 2 GHz. Only ratios matter.
+#[derive(Debug, Clone, Copy, PartialEq, PartialOrd)]
+pub(in crate::search) struct Cost(pub f64);
+
+/// What was done since it was last looked at.
+#[derive(Debug, Clone, Copy, Default)]
+pub(in crate::search) struct Tally {
+    /// Words that bounds from sets took, ever.
+    pub reads: u64,
+    reads_before: u64,
+    /// Bounds of blocks from intervals, 64 headings each.
+    pub windows: u64,
+    /// Sectors of beams that were counted at a heading.
+    pub sectors: u64,
+    /// Directions that were looked in, ever.
+    pub looks: u64,
+    looks_before: u64,
+}
+
+/// What a search has cost so far.
+#[derive(Debug)]
+pub(in crate::search) struct Budget {
+    /// What is left must cost less.
+    most: f64,
+    spent: f64,
+    /// When to look again.
+    next: f64,
+    /// Blocks of each level that were taken from the queue, and their cost.
+    taken: [(f64, f64); LEVELS],
+}
+
+/// What was measured for the parts of a search, in nanoseconds.
+#[derive(Debug, Clone, Copy)]
+struct Rates {
+    read: f64,
+    window_per_beam: f64,
+    sector: f64,
+    look: f64,
+    /// For counting every pose: at each heading, cell and beam.
+    vote: f64,
+}
+
+impl Rates {
+    fn of(instruction_set: InstructionSet) -> Self {
+        match instruction_set {
+            InstructionSet::Avx512 => Rates {
+                read: 0.9,
+                window_per_beam: 1.6,
+                sector: 40.0,
+                look: 55.0,
+                vote: 0.015,
+            },
+            InstructionSet::Avx2 => Rates {
+                read: 1.0,
+                window_per_beam: 1.8,
+                sector: 40.0,
+                look: 60.0,
+                vote: 0.03,
+            },
+            InstructionSet::Portable => Rates {
+                read: 3.5,
+                window_per_beam: 15.0,
+                sector: 75.0,
+                look: 200.0,
+                vote: 0.9,
+            },
+        }
+    }
+}
+
+/// Share of the work that goes into the smallest blocks before their turn.
+const DIVES: f64 = 0.4;
+
+/// The first look, as a share of what brute force costs: so much is lost where a
+/// search is given up then.
+const FIRST_LOOK: f64 = 0.1;
+
+/// How much more is spent until the next look.
+const NEXT_LOOK: f64 = 1.5;
+
+/// What is expected to be left, as a multiple of counting every pose, where a search is
+/// given up. The blocks that are left promise less and cost less, to half of those before;
+/// and at first the best pose may not be known, so that the floor is still low.
+const HOPELESS: f64 = 2.5;
+
+impl Cost {
+    /// What it costs to count every pose.
+    pub(in crate::search) fn of_brute_force(
+        instruction_set: InstructionSet,
+        grid: &Grid,
+        program: &ScanProgram,
+        space: &Space,
+    ) -> Self {
+        let fields = (grid.cells().len() * space.directions.count()) as f64;
+        Cost(fields * program.beams() as f64 * Rates::of(instruction_set).vote)
+    }
+}
+
+impl Tally {
+    /// What was done since the last time, with so many beams.
+    pub(in crate::search) fn take(
+        &mut self,
+        instruction_set: InstructionSet,
+        beams: usize,
+    ) -> Cost {
+        let (rates, beams) = (Rates::of(instruction_set), beams as f64);
+        let cost = (self.reads - self.reads_before) as f64 * rates.read
+            + self.windows as f64 * rates.window_per_beam * beams
+            + self.sectors as f64 * rates.sector
+            + (self.looks - self.looks_before) as f64 * rates.look;
+        *self = Tally {
+            looks: self.looks,
+            looks_before: self.looks,
+            reads: self.reads,
+            reads_before: self.reads,
+            ..Tally::default()
+        };
+        Cost(cost)
+    }
+}
+
+impl Budget {
+    /// For one of so many parts of a search. Counting every pose costs such a share of
+    /// brute force.
+    pub(in crate::search) fn new(brute_force: Cost, counting: f64, parts: usize) -> Self {
+        let brute_force = brute_force.0 / parts as f64;
+        Budget {
+            most: brute_force * counting * HOPELESS,
+            spent: 0.0,
+            next: brute_force * FIRST_LOOK,
+            taken: [(0.0, 0.0); LEVELS],
+        }
+    }
+
+    /// Notes what a block of a level has cost.
+    pub(in crate::search) fn spend(&mut self, level: usize, cost: Cost) {
+        self.spent += cost.0;
+        self.taken[level].0 += 1.0;
+        self.taken[level].1 += cost.0;
+    }
+
+    /// Whether the most promising of the smallest blocks is looked at next, be others
+    /// more promising: as long as that has cost a small part.
+    pub(in crate::search) fn dives(&self) -> bool {
+        self.taken[LEVELS - 1].1 < self.spent * DIVES
+    }
+
+    /// Whether it is time to see how much is left.
+    pub(in crate::search) fn is_up(&self) -> bool {
+        self.spent >= self.next
+    }
+
+    /// Whether counting every pose would be done sooner than what is left: blocks of
+    /// each level.
+    pub(in crate::search) fn is_hopeless(&mut self, left: [usize; LEVELS]) -> bool {
+        self.next = self.spent * NEXT_LOOK;
+        let mut below = 0.0;
+        // A block costs what those of its level did, and what those below it
+        // will that came of it.
+        let mut expected = 0.0;
+        for level in (0..LEVELS).rev() {
+            let (taken, cost) = self.taken[level];
+            let each = if taken > 0.0 { cost / taken } else { 0.0 };
+            let children = match self.taken.get(level + 1) {
+                Some(&(children, _)) if taken > 0.0 => (children + left[level + 1] as f64) / taken,
+                _ => 0.0,
+            };
+            below = each + children * below;
+            expected += left[level] as f64 * below;
+        }
+        expected > self.most
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_search_is_given_up_where_what_is_left_costs_more() {
+        let mut budget = Budget::new(Cost(4.0 * 3_550.0 / HOPELESS), 0.5, 2);
+        assert!(!budget.is_up());
+        // Four coarse blocks came to eight fine ones, of which three were taken.
+        for _ in 0..4 {
+            budget.spend(0, Cost(100.0));
+        }
+        for _ in 0..3 {
+            budget.spend(1, Cost(500.0));
+        }
+        assert!(budget.is_up());
+        // Five fine ones cost 500 each; a coarse one 100, and twice 500.
+        assert!(!budget.is_hopeless([0, 5, 0]));
+        assert!(!budget.is_up(), "not at once again");
+        assert!(budget.is_hopeless([1, 5, 0]));
+    }
+
+    #[test]
+    fn the_smallest_blocks_come_before_their_turn_while_they_cost_little() {
+        let mut budget = Budget::new(Cost(1.0), 1.0, 1);
+        assert!(!budget.dives(), "nothing was done");
+        budget.spend(0, Cost(100.0));
+        assert!(budget.dives());
+        budget.spend(LEVELS - 1, Cost(10.0));
+        assert!(budget.dives());
+        budget.spend(LEVELS - 1, Cost(60.0));
+        assert!(!budget.dives(), "70 of 170");
+    }
+
+    #[test]
+    fn a_tally_counts_each_thing_once() {
+        let mut tally = Tally {
+            reads: 1,
+            windows: 2,
+            sectors: 3,
+            looks: 4,
+            ..Tally::default()
+        };
+        let (best, rates) = (InstructionSet::best(), Rates::of(InstructionSet::best()));
+        let cost =
+            rates.read + 2.0 * rates.window_per_beam * 10.0 + 3.0 * rates.sector + 4.0 * rates.look;
+        assert_eq!(tally.take(best, 10), Cost(cost));
+        assert_eq!(tally.take(best, 10), Cost(0.0));
+    }
+}

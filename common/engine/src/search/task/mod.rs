@@ -1,0 +1,134 @@
+//! What the threads of a search share, and what it may cost.
+//!
+//! A task does not change while it is searched but for bounds and the best pose so far,
+//! which only tell threads what they need not look at.
+
+pub(in crate::search) mod budget;
+
+use std::sync::atomic::AtomicU16;
+
+use crate::grid::Grid;
+use crate::instruction_set::InstructionSet;
+use crate::program::ScanProgram;
+use crate::search::bounds::interval_program::IntervalProgram;
+use crate::search::bounds::set_program::SetProgram;
+use crate::search::index::SearchIndex;
+use crate::search::leaves::leaf::LeafProgram;
+use crate::search::leaves::outlook::View;
+use crate::search::task::budget::Cost;
+use crate::space::Space;
+use crate::votes::CollectConfig;
+
+/// What is searched: a scan on a map.
+pub(in crate::search) struct Task<'a> {
+    pub index: &'a SearchIndex,
+    pub grid: &'a Grid,
+    pub space: &'a Space,
+    pub config: CollectConfig,
+    pub programs: &'a Programs,
+    /// The bound of each coarse block in which poses are sought.
+    pub coarse_bounds: &'a [AtomicU16],
+    /// The same, chunk by chunk of headings.
+    by_chunk: &'a [AtomicU16],
+    /// The most votes of any pose so far, whoever found it.
+    pub best: AtomicU16,
+    /// What counting every pose with all beams would cost one thread.
+    pub brute_force: Cost,
+}
+
+/// What the threads of a search share, kept from scan to scan.
+#[derive(Debug, Default)]
+pub(in crate::search) struct Shared {
+    pub programs: Programs,
+    coarse_bounds: Vec<AtomicU16>,
+    by_chunk: Vec<AtomicU16>,
+}
+
+/// A scan program laid out for each way in which blocks are bounded and counted.
+#[derive(Debug, Default)]
+pub(in crate::search) struct Programs {
+    pub sets: SetProgram,
+    pub interval: IntervalProgram,
+    pub leaf: LeafProgram,
+    pub beams: usize,
+    pub instruction_set: InstructionSet,
+}
+
+impl Programs {
+    fn make(
+        &mut self,
+        instruction_set: InstructionSet,
+        index: &SearchIndex,
+        program: &ScanProgram,
+        space: &Space,
+    ) {
+        let (directions, steps) = (&space.directions, &index.steps);
+        self.sets.make(program, directions, steps, instruction_set);
+        self.leaf.make(program, directions, instruction_set);
+        let (shifts, ordered) = (self.sets.shifts(), (program, self.leaf.order()));
+        self.interval
+            .make(ordered, directions, steps, shifts, instruction_set);
+        self.beams = program.beams();
+        self.instruction_set = instruction_set;
+    }
+}
+
+impl<'a> Task<'a> {
+    /// `instruction_set` must be available.
+    pub(in crate::search) fn new(
+        shared: &'a mut Shared,
+        instruction_set: InstructionSet,
+        index: &'a SearchIndex,
+        grid: &'a Grid,
+        (program, space): (&ScanProgram, &'a Space),
+        config: CollectConfig,
+    ) -> Self {
+        shared.programs.make(instruction_set, index, program, space);
+        let chunks = index.within.headings(space.directions.count()).count();
+        for (bounds, count) in [
+            (&mut shared.coarse_bounds, index.coarse.blocks()),
+            (&mut shared.by_chunk, index.coarse.blocks() * chunks),
+        ] {
+            bounds.clear();
+            bounds.resize_with(count, AtomicU16::default);
+        }
+        Task {
+            index,
+            grid,
+            space,
+            config,
+            programs: &shared.programs,
+            coarse_bounds: &shared.coarse_bounds,
+            by_chunk: &shared.by_chunk,
+            best: AtomicU16::new(0),
+            brute_force: Cost::of_brute_force(instruction_set, grid, program, space),
+        }
+    }
+
+    /// What poses of the map see.
+    pub(in crate::search) fn view(&self) -> View<'a> {
+        View {
+            grid: self.grid,
+            obstacles: &self.index.obstacles,
+            steps: &self.index.steps,
+            directions: &self.space.directions,
+        }
+    }
+
+    /// The bounds of a coarse block in each chunk of headings.
+    pub(in crate::search) fn by_chunk(&self, block: usize) -> &'a [AtomicU16] {
+        let chunks = self.by_chunk.len() / self.coarse_bounds.len();
+        &self.by_chunk[block * chunks..][..chunks]
+    }
+
+    /// The headings that are sought.
+    pub(in crate::search) fn sought(&self) -> impl Iterator<Item = usize> + Clone {
+        let limits = &self.index.within.limits;
+        (0..self.space.directions.count()).filter(|&heading| limits.hold_heading(heading))
+    }
+
+    /// The headings that are sought, a word a chunk.
+    pub(in crate::search) fn headings(&self) -> impl Iterator<Item = u128> {
+        self.index.within.headings(self.space.directions.count())
+    }
+}
