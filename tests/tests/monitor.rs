@@ -137,7 +137,8 @@ fn an_operator_sees_the_graph_and_what_befalls_it() {
     // The pose moves, and the graph is well.
     let first = browser.run(&format!("return {POSE}"));
     browser.wait_until(&format!("{POSE} !== {first} && {POSE} !== '–'"));
-    browser.wait_until("document.querySelectorAll('.nodes [data-state=ready]').length === 6");
+    // Six nodes, and the launcher that reports on itself.
+    browser.wait_until("document.querySelectorAll('.nodes [data-state=ready]').length === 7");
 
     // A region in which to search, as an operator chooses it by keys.
     browser.wait_until("!document.getElementById('region').disabled");

@@ -56,11 +56,13 @@ fn the_object_has_the_keys_of_the_contract() {
             "cpu_ms",
             "error_deg",
             "error_m",
+            "index_bytes",
             "map_cells",
             "peak_rss_mb",
             "prepare_cpu_ms",
             "probabilities",
             "scans",
+            "searchable_cells",
             "success_20cm_3deg",
             "success_50cm_10deg",
             "top16_recall",
@@ -75,6 +77,10 @@ fn the_object_has_the_keys_of_the_contract() {
     assert_eq!(keys(&object["error_deg"]), ["median", "p90"]);
     assert_eq!(object["bag"], "r.mcap");
     assert_eq!(object["map_cells"], 240);
+    // Not where the walls are.
+    let searchable = object["searchable_cells"].as_u64().unwrap();
+    assert!((1..240).contains(&searchable), "{searchable}");
+    assert!(object["index_bytes"].as_u64().unwrap() > 0);
     assert_eq!(
         (&object["scans"], &object["truths"]),
         (&5.into(), &4.into())

@@ -84,7 +84,7 @@ mod tests {
         });
         let expected = "\
 graph robot7: /opt/dataflow.yaml, launcher is process 7, up 1 h 6 min
-  tracker              running                  42    1 min 1 s  restarts 2  last ended with signal: 9 (SIGKILL)
+  tracker              running                  42  1 min 1 s  restarts 2  last ended with signal: 9 (SIGKILL)
   recorder stays away
 ";
         assert_eq!(shown, expected);

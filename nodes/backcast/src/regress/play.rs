@@ -48,6 +48,8 @@ pub(super) fn direct(descriptor: &mut Descriptor, case: &Case) -> Result<(), Bac
 pub(super) struct Played {
     /// The answers to all scans, by their coming.
     pub(super) answers: Vec<Answer>,
+    /// Whether the graph tracks the pose.
+    pub(super) is_tracked: bool,
     /// Why the recording was not played to its end, if it was not.
     pub(super) damage: Option<String>,
 }
@@ -62,13 +64,18 @@ pub(super) fn play(
     recording: &Path,
 ) -> Result<Played, BackcastError> {
     let (scans, damage) = look_at(recording)?;
+    let is_tracked = is_tracked(&descriptor);
     remove_leftovers(name)?;
     let outcome = collect(descriptor, name, scans);
     let cleared = remove_leftovers(name);
     let answers = outcome?;
     cleared?;
     match answers.len() == scans {
-        true => Ok(Played { answers, damage }),
+        true => Ok(Played {
+            answers,
+            is_tracked,
+            damage,
+        }),
         false => Err(BackcastError::Unanswered {
             recording: recording.to_owned(),
             scans,
