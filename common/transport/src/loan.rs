@@ -40,11 +40,19 @@ impl<'p, T: Topic> Loan<'p, T> {
         let place = match space::ensure_free(T::NAME, sample_bytes::<T>(items)?) {
             Ok(()) => Place::Shared(shared(publisher, items)?),
             // What stays for late joiners must not be missed, so its sender has to know.
-            Err(full @ TransportError::SharedMemoryFull { .. }) if !T::LATCHED => Place::Private {
-                header: bytemuck::Zeroable::zeroed(),
-                items: vec![bytemuck::Zeroable::zeroed(); items],
-                full,
-            },
+            Err(full @ TransportError::SharedMemoryFull { .. }) if !T::LATCHED => {
+                // A size that no memory has is an error, as in shared memory.
+                let mut private = Vec::new();
+                if private.try_reserve_exact(items).is_err() {
+                    return Err(full);
+                }
+                private.resize(items, bytemuck::Zeroable::zeroed());
+                Place::Private {
+                    header: bytemuck::Zeroable::zeroed(),
+                    items: private,
+                    full,
+                }
+            }
             Err(error) => return Err(error),
         };
         Ok(Loan { place, publisher })

@@ -97,7 +97,8 @@ impl<T: Topic> Publisher<T> {
     ///
     /// # Errors
     /// [`TransportError::SharedMemoryFull`] where shared memory has no room for
-    /// it and the topic is latched (on others it is lost when it is sent, and counted),
+    /// it and the topic is latched, or the process has no room for it either (on other
+    /// topics it is lost when it is sent, and counted),
     /// [`TransportError::TooLarge`] where no memory could have,
     /// [`TransportError::Loan`] where [`Publisher::MAX_LOANED`] samples are being
     /// filled already.
