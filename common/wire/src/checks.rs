@@ -299,10 +299,10 @@ mod tests {
         );
         let outcome = health(&header, &[0xff]).unwrap_err().to_string();
         assert!(outcome.ends_with("but must be UTF-8"), "{outcome}");
-        header.state = 4;
+        header.state = 5;
         check(
             health(&header, b""),
-            "topic health: state is 4, but must be one of the codes of this version",
+            "topic health: state is 5, but must be one of the codes of this version",
         );
     }
 }

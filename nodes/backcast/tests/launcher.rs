@@ -41,8 +41,10 @@ fn graph(nodes: &[&str]) -> TempDir {
 }
 
 fn launcher(folder: &Path, args: &[&str]) -> Command {
-    let mut command = Command::new(env!("CARGO_BIN_EXE_backcast"));
+    // Under nohup hangups are ignored, and the launcher leaves it at that.
+    let mut command = Command::new("env");
     command
+        .args(["--default-signal=HUP", env!("CARGO_BIN_EXE_backcast")])
         .args(args)
         .current_dir(folder)
         .env_remove("BACKCAST_GRAPH")
