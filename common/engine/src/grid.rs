@@ -10,7 +10,7 @@ mod pooling;
 use messages::UNKNOWN;
 
 use crate::EngineError;
-pub(crate) use cell_set::CellSet;
+pub(crate) use cell_set::{CellSet, WORD};
 pub use frame::GridFrame;
 pub use pooling::{Pooled, pooling};
 

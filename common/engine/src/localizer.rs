@@ -138,7 +138,9 @@ impl Localizer {
         let limits = Limits::new(&config.limits, frame, &grid, &space.directions)?;
         let method = match prior {
             Prior::None => {
-                check_memory(&config, SearchIndex::needed_bytes(&grid, &space, &limits))?;
+                check_memory(&config, || {
+                    SearchIndex::needed_bytes(&grid, &space, &limits)
+                })?;
                 let index = SearchIndex::within(&grid, &space, limits);
                 Method::Search(Box::new(index))
             }
@@ -374,16 +376,23 @@ impl Localizer {
     }
 }
 
-/// Refuses what needs more memory than is allowed, before it is allocated.
-fn check_memory(config: &LocalizerConfig, needed_bytes: usize) -> Result<(), EngineError> {
+/// Refuses what needs more memory than is allowed, before it is allocated. What that
+/// is, is asked only where there is a limit.
+fn check_memory(
+    config: &LocalizerConfig,
+    needed_bytes: impl FnOnce() -> usize,
+) -> Result<(), EngineError> {
     const MEGABYTE: u64 = 1_000_000;
-    let needed_mb = (needed_bytes as u64).div_ceil(MEGABYTE);
-    match config.memory_limit {
-        Some(limit_mb) if needed_mb > u64::from(limit_mb) => Err(EngineError::Memory {
+    let Some(limit_mb) = config.memory_limit else {
+        return Ok(());
+    };
+    let needed_mb = (needed_bytes() as u64).div_ceil(MEGABYTE);
+    match needed_mb > u64::from(limit_mb) {
+        true => Err(EngineError::Memory {
             needed_mb,
             limit_mb,
         }),
-        _ => Ok(()),
+        false => Ok(()),
     }
 }
 

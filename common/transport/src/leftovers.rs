@@ -14,7 +14,7 @@ use std::time::Duration;
 use iceoryx2::node::{DeadNodeView, Node, NodeDetails, NodeState, NodeView};
 use iceoryx2::prelude::{CallbackProgression, ipc};
 
-use crate::membership::{Membership, SHARED_MEMORY};
+use crate::membership::{Membership, SHARED_MEMORY, graph_of_file};
 use crate::root::current_user;
 use crate::{Claim, GraphName, TransportError, alive, log, with_causes};
 
@@ -57,7 +57,11 @@ pub fn remove_leftovers(graph: &GraphName) -> Result<(), TransportError> {
 pub fn remove_dead_graphs() {
     let user = current_user();
     let names = match entries(Path::new(SHARED_MEMORY)) {
-        Ok(paths) => dead_candidates(&paths, user),
+        // Members hold locks on these files, or held them.
+        Ok(paths) => {
+            let graph = |path: &PathBuf| graph_of_file(path, user, alive::MEMBERS);
+            paths.iter().filter_map(graph).collect::<Vec<_>>()
+        }
         Err(error) => {
             tracing::warn!("leftovers are not looked for: {}", with_causes(&error));
             return;
@@ -74,17 +78,6 @@ pub fn remove_dead_graphs() {
             Err(error) => tracing::warn!("leftovers stay: {}", with_causes(&error)),
         }
     }
-}
-
-/// The graphs of `user` whose members hold locks, or held them.
-fn dead_candidates(paths: &[PathBuf], user: u32) -> Vec<GraphName> {
-    let name = |path: &PathBuf| {
-        let file = path.file_name()?.to_str()?;
-        let (graph, whose) = file.split_once('.')?;
-        let graph = graph.strip_prefix(&format!("bc{user}_"))?;
-        (whose == alive::MEMBERS).then(|| GraphName::new(graph).ok())?
-    };
-    paths.iter().filter_map(name).collect()
 }
 
 fn refuse_living(

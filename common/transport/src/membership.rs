@@ -3,7 +3,7 @@
 
 use std::fs::{DirEntry, Permissions, read_dir, set_permissions};
 use std::os::unix::fs::{MetadataExt, PermissionsExt};
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 use std::time::Duration;
 
 use iceoryx2::prelude::{Config, FileName, Path as IoxPath, SemanticString};
@@ -114,10 +114,7 @@ pub fn running_graphs() -> Vec<GraphName> {
     let user = current_user();
     let entries = read_dir(path_for(user)).into_iter().flatten().flatten();
     let name = |entry: DirEntry| {
-        let file = entry.file_name().into_string().ok()?;
-        let (graph, rest) = file.split_once('.')?;
-        let graph = graph.strip_prefix(&format!("bc{user}_"))?;
-        let name = (rest == CONTROL).then(|| GraphName::new(graph).ok())??;
+        let name = graph_of_file(&entry.path(), user, CONTROL)?;
         // Who holds the name lives; a socket may be left over.
         Claim::take(&name).is_err().then_some(name)
     };
@@ -132,9 +129,29 @@ fn prefix(user: u32, graph: &GraphName) -> String {
     format!("bc{user}_{graph}.")
 }
 
+/// The graph of `user` to which a file belongs that is called after its prefix and `end`.
+pub(crate) fn graph_of_file(path: &Path, user: u32, end: &str) -> Option<GraphName> {
+    let (graph, rest) = path.file_name()?.to_str()?.split_once('.')?;
+    let name = GraphName::new(graph.strip_prefix(&format!("bc{user}_"))?).ok()?;
+    (rest == end).then_some(name)
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn a_file_tells_its_graph() {
+        let robot = GraphName::new("robot-7").unwrap();
+        let path = PathBuf::from(format!("/dev/shm/{}alive", prefix(1000, &robot)));
+        assert_eq!(graph_of_file(&path, 1000, "alive"), Some(robot));
+        assert_eq!(graph_of_file(&path, 1000, "launcher"), None);
+        assert_eq!(graph_of_file(&path, 100, "alive"), None, "another user's");
+        assert_eq!(
+            graph_of_file(Path::new("/dev/shm/bc1000_"), 1000, "alive"),
+            None
+        );
+    }
 
     #[test]
     fn no_prefix_begins_another_one() {

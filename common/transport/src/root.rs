@@ -2,8 +2,9 @@
 //!
 //! iceoryx2 keeps its nodes, services and wake-up sockets in a folder that it
 //! makes for whoever comes first; a second user is then locked out. So each
-//! user has their own folder, which is locked against the cleaning of /tmp. Nothing here decides for another user: a folder
-//! that is in the way is an error that says whose it is.
+//! user has their own folder, which is locked against the cleaning of /tmp. Nothing
+//! here decides for another user: a folder that is in the way is an error that says
+//! whose it is.
 
 use std::fs::{DirBuilder, File, Permissions, symlink_metadata};
 use std::io::ErrorKind;

@@ -54,7 +54,7 @@ enum Command {
     /// Replays recordings through the graph and compares with what is expected
     #[command(after_help = regress::NOTES)]
     Regress(regress::Config),
-    /// Says which graphs run, and how their nodes fare
+    /// Lists the graphs that run, with the state of their nodes
     #[command(after_help = EXIT_CODES)]
     Status(control::StatusConfig),
     /// Stops a running graph in order

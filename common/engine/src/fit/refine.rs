@@ -388,7 +388,8 @@ mod tests {
         assert!(refined.curvature[(0, 0)] < 0.05 * refined.curvature[(1, 1)]);
     }
 
-    /// The deviations that walls which err add to those of a corridor's pose.
+    /// The deviations that walls which err add to those of a pose, by how the distances
+    /// of its ends grow.
     fn by_walls(pulls: &[[f64; 3]], drawn: f64) -> [f64; 3] {
         let (mut sums, mut walls) = (Sums::default(), Walls::default());
         for &slope in pulls {

@@ -1,7 +1,7 @@
 //! Some of the cells of a grid, a bit for each.
 
 /// Bits of a word.
-const WORD: usize = 64;
+pub(crate) const WORD: usize = 64;
 
 /// Cells of a grid, by where they are in it, row by row.
 #[derive(Debug, Clone, PartialEq, Eq)]
@@ -36,7 +36,14 @@ impl CellSet {
         size_of_val(&self.words[..])
     }
 
+    /// A bit for each cell, the first cell's lowest.
+    #[inline(always)]
+    pub(crate) fn words(&self) -> &[u64] {
+        &self.words
+    }
+
     /// Whether a cell is among them.
+    #[inline(always)]
     pub(crate) fn holds(&self, cell: usize) -> bool {
         self.words[cell / WORD] >> (cell % WORD) & 1 == 1
     }

@@ -9,6 +9,7 @@ use super::text;
 use crate::{
     BackcastError,
     run::control::{Answer, Question, Status, ask},
+    stdout::print,
 };
 
 /// What `backcast status` takes.
@@ -42,7 +43,7 @@ pub(crate) struct RestartConfig {
     graph: Option<GraphName>,
 }
 
-/// Prints how graphs fare.
+/// Prints the state of graphs and of their nodes.
 ///
 /// # Errors
 /// None runs, or the one that is meant does not answer.
@@ -52,16 +53,14 @@ pub(crate) fn status(config: &StatusConfig) -> Result<ExitCode, BackcastError> {
         None => running_graphs(),
     };
     if graphs.is_empty() {
-        return Err(BackcastError::Usage(
-            "no graph of this user runs".to_owned(),
-        ));
+        return Err(no_graph());
     }
     for graph in &graphs {
         let status = status_of(graph)?;
-        match config.json {
-            true => println!("{}", serde_json::to_string(&status).map_err(unreadable)?),
-            false => print!("{}", text::status(&status)),
-        }
+        print(&match config.json {
+            true => serde_json::to_string(&status).map_err(unreadable)? + "\n",
+            false => text::status(&status),
+        })?;
     }
     Ok(ExitCode::SUCCESS)
 }
@@ -90,21 +89,21 @@ pub(super) fn the_graph(named: Option<&GraphName>) -> Result<GraphName, Backcast
     if let Some(graph) = named {
         return Ok(graph.clone());
     }
-    let mut graphs = running_graphs();
-    match (graphs.pop(), graphs.len()) {
-        (Some(graph), 0) => Ok(graph),
-        (None, _) => Err(BackcastError::Usage(
-            "no graph of this user runs".to_owned(),
-        )),
-        (Some(last), _) => {
-            graphs.push(last);
-            let names: Vec<_> = graphs.iter().map(ToString::to_string).collect();
+    match &running_graphs()[..] {
+        [] => Err(no_graph()),
+        [graph] => Ok(graph.clone()),
+        several => {
+            let names: Vec<_> = several.iter().map(ToString::to_string).collect();
             let names = names.join(", ");
             Err(BackcastError::Usage(format!(
                 "several graphs run: say which one with --graph; there are {names}"
             )))
         }
     }
+}
+
+fn no_graph() -> BackcastError {
+    BackcastError::Usage("no graph of this user runs".to_owned())
 }
 
 fn done(graph: &GraphName, question: &Question) -> Result<ExitCode, BackcastError> {

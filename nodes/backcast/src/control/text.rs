@@ -1,4 +1,4 @@
-//! How a graph fares, as text. Pure.
+//! The state of a graph, as text. Pure.
 
 use std::fmt::Write;
 

@@ -3,7 +3,7 @@
 use std::path::Path;
 use std::time::{Duration, Instant};
 
-use messages::{HypothesesHeader, Hypothesis, PoseHeader, Topic, VotesHeader, topic};
+use messages::{HypothesesHeader, Hypothesis, PoseHeader, VotesHeader, topic};
 use recording::{Kind, Recording};
 use transport::{Flow, Graph, GraphName, Subscriber, TransportError, remove_leftovers};
 
@@ -64,9 +64,9 @@ pub(super) fn play(
     recording: &Path,
 ) -> Result<Played, BackcastError> {
     let (scans, damage) = look_at(recording)?;
-    let is_tracked = is_tracked(&descriptor);
+    let is_tracked = tracker::has_tracker(&descriptor.dataflow);
     remove_leftovers(name)?;
-    let outcome = collect(descriptor, name, scans);
+    let outcome = collect(descriptor, name, (scans, is_tracked));
     let cleared = remove_leftovers(name);
     let answers = outcome?;
     cleared?;
@@ -101,14 +101,14 @@ fn look_at(path: &Path) -> Result<(usize, Option<String>), BackcastError> {
 fn collect(
     descriptor: Descriptor,
     name: &GraphName,
-    scans: usize,
+    (scans, is_tracked): (usize, bool),
 ) -> Result<Vec<Answer>, BackcastError> {
     let graph = Graph::join_named(NAME, name)?;
     let votes = graph.subscriber::<topic::Votes>()?;
     let hypotheses = graph.subscriber::<topic::Hypotheses>()?;
     let poses = graph.subscriber::<topic::Tracked>()?;
     let mut heard = Heard {
-        is_tracked: is_tracked(&descriptor),
+        is_tracked,
         ..Heard::default()
     };
     let mut crew = Crew::new(descriptor.dataflow.nodes, &descriptor.folder, name)?;
@@ -129,13 +129,6 @@ fn collect(
     outcome?;
     stopped?;
     Ok(heard.answers())
-}
-
-/// Whether a node of the graph tracks the pose.
-fn is_tracked(descriptor: &Descriptor) -> bool {
-    let nodes = &descriptor.dataflow.nodes;
-    let sends = |output: &String| output == topic::Tracked::NAME;
-    nodes.iter().any(|node| node.outputs.iter().any(sends))
 }
 
 /// What came until now.

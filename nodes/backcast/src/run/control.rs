@@ -28,7 +28,7 @@ const PATIENCE: Duration = Duration::from_secs(5);
 #[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case", deny_unknown_fields)]
 pub(crate) enum Question {
-    /// How the graph fares.
+    /// The state of the graph.
     Status,
     /// That it stop in order.
     Stop,
@@ -43,7 +43,7 @@ pub(crate) enum Question {
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub(crate) enum Answer {
-    /// How the graph fares.
+    /// The state of the graph.
     Status(Status),
     /// It is being done.
     Done,
@@ -51,7 +51,7 @@ pub(crate) enum Answer {
     Refused(String),
 }
 
-/// How a graph fares.
+/// The state of a graph.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub(crate) struct Status {
     pub(crate) graph: String,
@@ -64,7 +64,7 @@ pub(crate) struct Status {
     pub(crate) nodes: Vec<NodeStatus>,
 }
 
-/// How a node fares.
+/// The state of a node.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub(crate) struct NodeStatus {
     pub(crate) id: String,

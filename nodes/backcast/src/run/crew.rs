@@ -152,7 +152,7 @@ impl Crew {
         }
     }
 
-    /// How each node fares at `now`.
+    /// The state of each node at `now`.
     pub(crate) fn status(&self, now: Instant) -> Vec<NodeStatus> {
         self.members
             .iter()

@@ -14,8 +14,7 @@ use std::{
     time::{Duration, Instant},
 };
 
-use dataflow::Dataflow;
-use messages::{LogLevel, NodeState, Topic, topic};
+use messages::{LogLevel, NodeState};
 use nix::sys::signal::Signal;
 use sd_notify::NotifyState;
 use signal_hook::consts::SIGUSR1;
@@ -105,7 +104,7 @@ pub(crate) fn run(config: &Config) -> Result<ExitCode, BackcastError> {
 
     let lossless = forward::plays_at_max(&descriptor.dataflow);
     let output = Output::start(io::stdout())?;
-    let is_tracked = has_tracker(&descriptor.dataflow);
+    let is_tracked = tracker::has_tracker(&descriptor.dataflow);
     let mut journal = Journal::new(output, config.options.json, is_tracked);
     let outcome = loop {
         let outcome = launch(&descriptor, &graph, &mut journal);
@@ -140,12 +139,6 @@ pub(crate) fn run(config: &Config) -> Result<ExitCode, BackcastError> {
         return Ok(ExitCode::from(LOST_DATA));
     }
     Ok(ExitCode::SUCCESS)
-}
-
-/// Whether anybody sends where the robot is, from scan to scan.
-fn has_tracker(dataflow: &Dataflow) -> bool {
-    let mut outputs = dataflow.nodes.iter().flat_map(|node| &node.outputs);
-    outputs.any(|output| output == topic::Tracked::NAME)
 }
 
 /// Joins the graph, starts its processes and stays until the end; all of them

@@ -37,6 +37,12 @@ const SHARED: [(&str, &[&str]); 3] = [
 ];
 const UNKNOWN_BLOCKS: &str = "--unknown-blocks";
 
+/// Whether anybody sends where the robot is, from scan to scan.
+pub(crate) fn has_tracker(dataflow: &Dataflow) -> bool {
+    let mut outputs = dataflow.nodes.iter().flat_map(|node| &node.outputs);
+    outputs.any(|output| output == topic::Tracked::NAME)
+}
+
 /// Gives trackers the settings of others that they do not have, and has accumulators search
 /// what is asked for alone, unless nothing is to be lost.
 pub(crate) fn settle(dataflow: &mut Dataflow) {

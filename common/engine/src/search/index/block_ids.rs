@@ -3,33 +3,27 @@
 //! What is kept of blocks is kept of these alone, so that it grows with where a robot can
 //! be and not with the rectangle that the map fills.
 
-/// Blocks of a word.
-const WORD: usize = 64;
+use crate::grid::{CellSet, WORD};
 
 /// Some of the blocks of a grid, by where they are in it, row by row.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub(crate) struct BlockIds {
-    /// A bit for each block.
-    words: Vec<u64>,
-    /// How many blocks lie before each word, and at the end how many there are.
+    blocks: CellSet,
+    /// How many blocks lie before each word of the set, and at the end how many there are.
     before: Vec<u32>,
 }
 
 impl BlockIds {
     /// Those of which `holds` says so, block by block.
     pub(crate) fn new(holds: &[bool]) -> Self {
-        let bits = |word: &[bool]| {
-            let bits = word.iter().zip(0..);
-            bits.fold(0, |bits, (&holds, bit)| bits | u64::from(holds) << bit)
-        };
-        let words: Vec<u64> = holds.chunks(WORD).map(bits).collect();
+        let blocks = CellSet::of(holds.len(), |block| holds[block]);
         let mut count = 0;
         let mut before = vec![0];
-        before.extend(words.iter().map(|word| {
+        before.extend(blocks.words().iter().map(|word| {
             count += word.count_ones();
             count
         }));
-        BlockIds { words, before }
+        BlockIds { blocks, before }
     }
 
     /// All of so many blocks.
@@ -46,23 +40,21 @@ impl BlockIds {
     /// Whether a block is among them.
     #[inline(always)]
     pub(crate) fn holds(&self, block: usize) -> bool {
-        self.words[block / WORD] >> (block % WORD) & 1 == 1
+        self.blocks.holds(block)
     }
 
     /// How many of them lie before a block: the number of the block, if it is among them.
     #[inline(always)]
     pub(crate) fn before(&self, block: usize) -> usize {
         let (word, bit) = (block / WORD, block % WORD);
-        let lower = self
-            .words
-            .get(word)
-            .map_or(0, |word| word & ((1 << bit) - 1));
+        let words = self.blocks.words();
+        let lower = words.get(word).map_or(0, |word| word & ((1 << bit) - 1));
         (self.before[word] + lower.count_ones()) as usize
     }
 
     /// Bytes that they take.
     pub(crate) fn bytes(&self) -> usize {
-        size_of_val(&self.words[..]) + size_of_val(&self.before[..])
+        self.blocks.bytes() + size_of_val(&self.before[..])
     }
 }
 
