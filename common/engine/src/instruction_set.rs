@@ -12,9 +12,9 @@ pub enum InstructionSet {
     /// far as the compiler uses it by itself.
     #[default]
     Portable,
-    /// AVX2 and POPCNT: x86-64 since Haswell and Zen.
+    /// AVX2, BMI 1 and 2, LZCNT and POPCNT: x86-64 since Haswell and Zen.
     Avx2,
-    /// AVX-512 F, BW, CD, DQ, VL and VBMI: x86-64 since Ice Lake and Zen 4.
+    /// The same and AVX-512 F, BW, CD, DQ, VL and VBMI: x86-64 since Ice Lake and Zen 4.
     Avx512,
 }
 
@@ -43,10 +43,17 @@ impl InstructionSet {
         match self {
             Self::Portable => true,
             #[cfg(target_arch = "x86_64")]
-            Self::Avx2 => is_x86_feature_detected!("avx2") && is_x86_feature_detected!("popcnt"),
+            Self::Avx2 => {
+                is_x86_feature_detected!("avx2")
+                    && is_x86_feature_detected!("bmi1")
+                    && is_x86_feature_detected!("bmi2")
+                    && is_x86_feature_detected!("lzcnt")
+                    && is_x86_feature_detected!("popcnt")
+            }
             #[cfg(target_arch = "x86_64")]
             Self::Avx512 => {
-                is_x86_feature_detected!("avx512f")
+                Self::Avx2.is_available()
+                    && is_x86_feature_detected!("avx512f")
                     && is_x86_feature_detected!("avx512bw")
                     && is_x86_feature_detected!("avx512cd")
                     && is_x86_feature_detected!("avx512dq")

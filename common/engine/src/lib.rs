@@ -50,6 +50,7 @@ pub mod regions;
 pub mod scan;
 pub mod scatter;
 pub mod search;
+mod simd;
 pub mod space;
 pub mod sweep;
 mod tables;

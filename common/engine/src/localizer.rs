@@ -10,6 +10,7 @@ use crate::limits::Limits;
 use crate::observation::Observation;
 use crate::program::ScanProgram;
 use crate::search::{self, BlockBounds, SearchIndex};
+use crate::simd::Simd;
 use crate::space::Space;
 use crate::sweep::{self, FieldSweep};
 use crate::votes::{FieldVotes, VoteSet};
@@ -348,7 +349,7 @@ impl Localizer {
             space: &self.space,
             heading: index,
         };
-        let best = InstructionSet::best();
+        let best = Simd::new(InstructionSet::best());
         if sweeps.fill(best, query, sweep, field, stop).is_none() {
             return Ok(None);
         }

@@ -6,15 +6,6 @@ use crate::program::ScanProgram;
 /// The most entries of a short table: what one instruction can look up.
 pub(crate) const TABLE: usize = 64;
 
-/// The same for instruction sets that look up less.
-#[cfg(any(target_arch = "x86_64", target_arch = "aarch64"))]
-const PIECE: usize = 16;
-
-/// Added to an index with AVX2, it sets the highest bit unless the index is below 16:
-/// then nothing is looked up.
-#[cfg(target_arch = "x86_64")]
-pub(crate) const BEYOND: i8 = (0x80 - PIECE) as i8;
-
 /// The tables of all beams, for each class of directions; made anew for each
 /// program. They lie one behind the other, as a search reads them all over again and
 /// little else then fits the processor's nearer caches.
@@ -114,62 +105,6 @@ impl<'a> VoteTable<'a> {
         for (votes, &range) in votes.iter_mut().zip(ranges) {
             let distance = range.abs_diff(self.centre).min(self.used);
             *votes += u16::from(self.votes[usize::from(distance)]);
-        }
-    }
-}
-
-/// Looks 32 numbers up in a table of which `used` entries are not 0; what lies beyond
-/// those is 0.
-///
-/// # Safety
-/// The processor must have AVX2.
-#[cfg(target_arch = "x86_64")]
-#[inline(always)]
-pub(crate) unsafe fn look_up_avx2(
-    table: &[u8; TABLE],
-    used: usize,
-    index: std::arch::x86_64::__m256i,
-) -> std::arch::x86_64::__m256i {
-    use std::arch::x86_64::*;
-    #[inline(always)]
-    unsafe fn shuffle(piece: &[u8; PIECE], index: __m256i) -> __m256i {
-        // SAFETY: as the caller says, and the piece is as long as what is read.
-        unsafe {
-            let piece = _mm256_broadcastsi128_si256(_mm_loadu_si128(piece.as_ptr().cast()));
-            _mm256_shuffle_epi8(piece, _mm256_adds_epu8(index, _mm256_set1_epi8(BEYOND)))
-        }
-    }
-    let (pieces, _) = table.as_chunks::<PIECE>();
-    let others = pieces.iter().take(used.div_ceil(PIECE)).enumerate().skip(1);
-    // SAFETY: as the caller says.
-    unsafe {
-        let mut found = shuffle(&pieces[0], index);
-        for (number, piece) in others {
-            // What goes below 0 lies beyond 16, too.
-            let index = _mm256_sub_epi8(index, _mm256_set1_epi8((PIECE * number) as i8));
-            found = _mm256_or_si256(found, shuffle(piece, index));
-        }
-        found
-    }
-}
-
-/// Looks 16 numbers up in a table of which `used` entries are not 0; what lies beyond
-/// those is 0.
-#[cfg(target_arch = "aarch64")]
-#[inline(always)]
-pub(crate) fn look_up_neon(
-    table: &[u8; TABLE],
-    used: usize,
-    index: std::arch::aarch64::uint8x16_t,
-) -> std::arch::aarch64::uint8x16_t {
-    use std::arch::aarch64::*;
-    // SAFETY: every ARM processor of 64 bits has NEON, and the table is as long as what
-    // is read of it.
-    unsafe {
-        if used <= PIECE {
-            vqtbl1q_u8(vld1q_u8(table.as_ptr()), index)
-        } else {
-            vqtbl4q_u8(vld1q_u8_x4(table.as_ptr()), index)
         }
     }
 }

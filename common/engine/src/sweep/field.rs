@@ -2,13 +2,14 @@
 
 use super::bits::BitGrid;
 use super::kernel::{self, Stretch, Sum};
-use super::lanes::{self, Lanes};
 use super::merge;
 use super::plan::{GROUPS, Plan};
 use super::wide::{self, Rows};
 use crate::accumulator::{Accumulator, Query};
 use crate::grid::Grid;
 use crate::instruction_set::InstructionSet;
+use crate::simd::bytes::Lanes;
+use crate::simd::{Kernel, Set, Simd};
 
 /// Rows that all batches pass before the next ones: their sums stay in the
 /// second cache meanwhile.
@@ -31,10 +32,9 @@ struct Room {
     wide: Rows,
 }
 
-/// A cache line, which is read and written through pointers only.
-#[derive(Debug, Clone, Copy)]
-#[expect(dead_code, reason = "it is the size and the alignment that matter")]
-#[repr(align(64))]
+/// A cache line.
+#[derive(Debug, Clone, Copy, bytemuck::Pod, bytemuck::Zeroable)]
+#[repr(C, align(64))]
 struct Line([u8; 64]);
 
 /// The sums of votes: along y and, lying on its side, along x.
@@ -75,40 +75,30 @@ impl FieldSweep {
     pub fn accumulator_with(&self, instruction_set: InstructionSet) -> Sweep<'_> {
         Sweep {
             sweeps: self,
-            instruction_set: instruction_set.checked(),
+            simd: Simd::new(instruction_set),
             workspace: Workspace::default(),
         }
     }
 
     /// Fills in the intensities of all cells like [`Accumulator::fill`], in a
     /// workspace that may have served another grid.
-    ///
-    /// # Panics
-    /// If this processor does not have the instruction set.
-    pub fn fill(
+    pub(crate) fn fill(
         &self,
-        instruction_set: InstructionSet,
+        simd: Simd,
         query: Query<'_>,
         workspace: &mut Workspace,
         field: &mut Vec<u16>,
         stop: &dyn Fn() -> bool,
     ) -> Option<()> {
-        let sweeps = self;
-        let job = Job {
-            sweeps,
-            query,
-            stop,
-        };
-        match instruction_set.checked() {
-            // SAFETY: the instruction set was checked.
-            #[cfg(target_arch = "x86_64")]
-            InstructionSet::Avx512 => unsafe { job.run_avx512(workspace, field) },
-            // SAFETY: as above.
-            #[cfg(target_arch = "x86_64")]
-            InstructionSet::Avx2 => unsafe { job.run_avx2(workspace, field) },
-            // SAFETY: every processor has it.
-            _ => unsafe { job.run_with::<lanes::Portable, 1>(workspace, field) },
-        }
+        simd.run(Filling {
+            job: Job {
+                sweeps: self,
+                query,
+                stop,
+            },
+            workspace,
+            field,
+        })
     }
 
     /// Bytes that the prepared grid takes.
@@ -122,7 +112,7 @@ impl FieldSweep {
 #[derive(Debug)]
 pub struct Sweep<'a> {
     sweeps: &'a FieldSweep,
-    instruction_set: InstructionSet,
+    simd: Simd,
     workspace: Workspace,
 }
 
@@ -133,8 +123,8 @@ impl Accumulator for Sweep<'_> {
         field: &mut Vec<u16>,
         stop: &dyn Fn() -> bool,
     ) -> Option<()> {
-        let (set, workspace) = (self.instruction_set, &mut self.workspace);
-        self.sweeps.fill(set, query, workspace, field, stop)
+        let workspace = &mut self.workspace;
+        self.sweeps.fill(self.simd, query, workspace, field, stop)
     }
 }
 
@@ -145,25 +135,25 @@ struct Job<'a> {
     stop: &'a dyn Fn() -> bool,
 }
 
-impl Job<'_> {
-    #[cfg(target_arch = "x86_64")]
-    #[target_feature(enable = "avx512f,avx512bw,avx512dq,avx512vl,avx512vbmi")]
-    unsafe fn run_avx512(&self, workspace: &mut Workspace, field: &mut Vec<u16>) -> Option<()> {
-        unsafe { self.run_with::<lanes::Avx512, 5>(workspace, field) }
-    }
+/// Filling in the field of a job.
+struct Filling<'a> {
+    job: Job<'a>,
+    workspace: &'a mut Workspace,
+    field: &'a mut Vec<u16>,
+}
 
-    #[cfg(target_arch = "x86_64")]
-    #[target_feature(enable = "avx2")]
-    unsafe fn run_avx2(&self, workspace: &mut Workspace, field: &mut Vec<u16>) -> Option<()> {
-        unsafe { self.run_with::<lanes::Avx2, 3>(workspace, field) }
-    }
+impl Kernel for Filling<'_> {
+    type Result = Option<()>;
 
     #[inline(always)]
-    unsafe fn run_with<L: Lanes, const N: usize>(
-        &self,
-        workspace: &mut Workspace,
-        field: &mut Vec<u16>,
-    ) -> Option<()> {
+    fn run<S: Set>(self, set: S) -> Option<()> {
+        self.job.fill(set, self.workspace, self.field)
+    }
+}
+
+impl Job<'_> {
+    #[inline(always)]
+    fn fill<S: Set>(&self, set: S, workspace: &mut Workspace, field: &mut Vec<u16>) -> Option<()> {
         let Workspace {
             plan,
             room,
@@ -171,24 +161,25 @@ impl Job<'_> {
             words,
         } = workspace;
         let sides = (self.sweeps.along_y.columns, self.sweeps.along_y.rows);
-        plan.make::<L>(self.query, sides);
+        plan.make(set, self.query, sides);
         room.store.clear();
         room.store.resize(plan.lines, Line([0; 64]));
         field.resize(sides.0 * sides.1, 0);
         // Few beams have so few votes that bytes hold their sums.
         if self.query.program.highest_possible() <= 255 && plan.wide.is_empty() {
-            unsafe { self.fill::<L, u8, N>(plan, room, bytes, field) }
+            self.sum_up(set, plan, room, bytes, field)
         } else {
-            unsafe { self.fill::<L, u16, N>(plan, room, words, field) }
+            self.sum_up(set, plan, room, words, field)
         }
     }
 
     #[inline(always)]
-    unsafe fn fill<L: Lanes, S: Sum, const N: usize>(
+    fn sum_up<S: Set, M: Sum>(
         &self,
+        set: S,
         plan: &Plan,
         room: &mut Room,
-        sums: &mut Sums<S>,
+        sums: &mut Sums<M>,
         field: &mut [u16],
     ) -> Option<()> {
         let Sums { rows, columns } = sums;
@@ -198,12 +189,10 @@ impl Job<'_> {
         ] {
             // Whole squares are merged.
             let rows = bits.rows.next_multiple_of(merge::SQUARE);
-            sums.resize(rows * stride(bits), S::default());
+            sums.resize(rows * stride(bits), M::default());
         }
-        unsafe {
-            self.sweep_axis::<L, S, N>(plan, room, columns, 2)?;
-            self.sweep_axis::<L, S, N>(plan, room, rows, 0)?;
-        }
+        self.sweep_axis(set, plan, room, columns, 2)?;
+        self.sweep_axis(set, plan, room, rows, 0)?;
         let rows = merge::Plane {
             sums: rows,
             stride: stride(&self.sweeps.along_y),
@@ -212,17 +201,18 @@ impl Job<'_> {
             sums: columns,
             stride: stride(&self.sweeps.along_x),
         };
-        S::merge(&self.sweeps.along_y, &rows, &columns, field);
+        M::merge(&self.sweeps.along_y, &rows, &columns, field);
         Some(())
     }
 
     /// Sums up the votes along one axis: those of a group and the next.
     #[inline(always)]
-    unsafe fn sweep_axis<L: Lanes, S: Sum, const N: usize>(
+    fn sweep_axis<S: Set, M: Sum>(
         &self,
+        set: S,
         plan: &Plan,
         Room { store, wide }: &mut Room,
-        sums: &mut [S],
+        sums: &mut [M],
         first_group: usize,
     ) -> Option<()> {
         let bits = if first_group == 0 {
@@ -243,17 +233,20 @@ impl Job<'_> {
                         sums,
                         stride: stride(bits),
                         adds: adds || i > 0,
-                        store: store.as_mut_ptr().cast(),
+                        store: bytemuck::cast_slice_mut(store),
                     };
-                    unsafe {
-                        kernel::sweep::<L, S, N>(&mut stretch, &plan.beams[batch.beams.clone()]);
+                    let beams = &plan.beams[batch.beams.clone()];
+                    match S::Bytes::AT_A_TIME {
+                        5 => kernel::sweep::<S, M, 5>(set, &mut stretch, beams),
+                        3 => kernel::sweep::<S, M, 3>(set, &mut stretch, beams),
+                        _ => kernel::sweep::<S, M, 1>(set, &mut stretch, beams),
                     }
                 }
             }
             adds |= !batches.is_empty();
         }
         if !adds {
-            sums.fill(S::default());
+            sums.fill(M::default());
         }
         for &beam in &plan.wide {
             let (direction, taper) = self.query.beam(beam);

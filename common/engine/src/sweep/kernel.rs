@@ -9,10 +9,11 @@
 use std::ops::{AddAssign, Range};
 
 use super::bits::BitGrid;
-use super::lanes::Lanes;
 use super::line::{Bytes, Words};
 use super::merge::{self, Plane};
 use super::plan::{MOST_BEAMS, SweptBeam};
+use crate::simd::Set;
+use crate::simd::bytes::Lanes;
 
 /// Where votes are added up: rows of bytes or of 16 bits.
 pub(super) trait Sum: Copy + Default + From<u8> + AddAssign {
@@ -23,10 +24,7 @@ pub(super) trait Sum: Copy + Default + From<u8> + AddAssign {
     fn merge(bits: &BitGrid, rows: &Plane<'_, Self>, columns: &Plane<'_, Self>, field: &mut [u16]);
 
     /// Adds votes to the sums of as many cells, or sets those.
-    ///
-    /// # Safety
-    /// As for [`Lanes`].
-    unsafe fn take<L: Lanes, const ADD: bool>(votes: L, to: *mut Self);
+    fn take<S: Set, const ADD: bool>(set: S, votes: S::Bytes, to: &mut [Self]);
 }
 
 impl Sum for u16 {
@@ -35,8 +33,8 @@ impl Sum for u16 {
     }
 
     #[inline(always)]
-    unsafe fn take<L: Lanes, const ADD: bool>(votes: L, to: *mut u16) {
-        unsafe { votes.widen::<ADD>(to) }
+    fn take<S: Set, const ADD: bool>(_: S, votes: S::Bytes, to: &mut [u16]) {
+        votes.widen::<ADD>(to);
     }
 }
 
@@ -46,64 +44,62 @@ impl Sum for u8 {
     }
 
     #[inline(always)]
-    unsafe fn take<L: Lanes, const ADD: bool>(votes: L, to: *mut u8) {
-        unsafe {
-            let sum = if ADD { L::load(to).add(votes) } else { votes };
-            sum.store(to);
-        }
+    fn take<S: Set, const ADD: bool>(set: S, votes: S::Bytes, to: &mut [u8]) {
+        let sum = if ADD {
+            S::Bytes::load(set, to).add(votes)
+        } else {
+            votes
+        };
+        sum.store(to);
     }
 }
 
 /// A batch's way through some rows of the grid.
-pub(super) struct Stretch<'a, S> {
+pub(super) struct Stretch<'a, N> {
     pub bits: &'a BitGrid,
     /// Rows, counted from where the sweep begins.
     pub steps: Range<usize>,
     /// Sums of all cells, row by row.
-    pub sums: &'a mut [S],
+    pub sums: &'a mut [N],
     /// From one row of sums to the next: the cells in whole words.
     pub stride: usize,
     /// Whether votes are added to the sums or set them.
     pub adds: bool,
     /// The rows of all beams, each at its place.
-    pub store: *mut u8,
+    pub store: &'a mut [u8],
 }
 
 /// Sweeps a batch, `N` vectors at a time.
-///
-/// # Safety
-/// The processor must have the instruction set of `L`, and the store must hold
-/// the beams' rows.
 #[inline(always)]
-pub(super) unsafe fn sweep<L: Lanes, S: Sum, const N: usize>(
-    stretch: &mut Stretch<'_, S>,
+pub(super) fn sweep<S: Set, M: Sum, const N: usize>(
+    set: S,
+    stretch: &mut Stretch<'_, M>,
     beams: &[SweptBeam],
 ) {
-    unsafe {
-        match (stretch.bits.has_blocked(), beams[0].is_far) {
-            (false, false) => stretch_on::<L, S, Near, N, false>(stretch, beams),
-            (true, false) => stretch_on::<L, S, Near, N, true>(stretch, beams),
-            (false, true) => stretch_on::<L, S, Far, N, false>(stretch, beams),
-            (true, true) => stretch_on::<L, S, Far, N, true>(stretch, beams),
-        }
+    match (stretch.bits.has_blocked(), beams[0].is_far) {
+        (false, false) => stretch_on::<S, M, Near, N, false>(set, stretch, beams),
+        (true, false) => stretch_on::<S, M, Near, N, true>(set, stretch, beams),
+        (false, true) => stretch_on::<S, M, Far, N, false>(set, stretch, beams),
+        (true, true) => stretch_on::<S, M, Far, N, true>(set, stretch, beams),
     }
 }
+
+type Cells<S> = <<S as Set>::Bytes as Lanes>::Cells;
 
 /// How many bits what is left takes.
 trait Depth {
     /// Bytes of a cell in a beam's row.
     const BYTES: usize;
 
-    /// What is left in `N` vectors of cells, read at `ahead` and kept at `here`.
-    ///
-    /// # Safety
-    /// As for [`Lanes`].
-    unsafe fn step<L: Lanes, const N: usize, const BLOCKED: bool>(
-        ahead: *const u8,
-        here: *mut u8,
-        cells: &[L::Cells; N],
+    /// What is left in `N` vectors of cells of a beam's row, read from byte `ahead` on and
+    /// kept from `here` on.
+    fn step<S: Set, const N: usize, const BLOCKED: bool>(
+        set: S,
+        row: &mut [u8],
+        places: (usize, usize),
+        cells: &[Cells<S>; N],
         end: u16,
-    ) -> [L; N];
+    ) -> [S::Bytes; N];
 }
 
 struct Near;
@@ -113,23 +109,25 @@ impl Depth for Near {
     const BYTES: usize = 1;
 
     #[inline(always)]
-    unsafe fn step<L: Lanes, const N: usize, const BLOCKED: bool>(
-        ahead: *const u8,
-        here: *mut u8,
-        cells: &[L::Cells; N],
+    fn step<S: Set, const N: usize, const BLOCKED: bool>(
+        set: S,
+        row: &mut [u8],
+        (ahead, here): (usize, usize),
+        cells: &[Cells<S>; N],
         end: u16,
-    ) -> [L; N] {
-        unsafe {
-            let end = L::splat(u32::from(end) * 0x0101_0101);
-            let mut left = [L::zero(); N];
-            for (i, left) in left.iter_mut().enumerate() {
-                *left = L::load(ahead.add(i * L::WIDTH)).step::<BLOCKED>(cells[i], end);
-            }
-            for (i, left) in left.iter().enumerate() {
-                left.store(here.add(i * L::WIDTH));
-            }
-            left
+    ) -> [S::Bytes; N] {
+        let (width, end) = (S::Bytes::WIDTH, S::Bytes::splat(set, end as u8));
+        let ahead = &row[ahead..][..N * width];
+        let mut left = [end; N];
+        for (i, left) in left.iter_mut().enumerate() {
+            let ahead = S::Bytes::load(set, &ahead[i * width..]);
+            *left = ahead.step::<BLOCKED>(cells[i], end);
         }
+        let here = &mut row[here..][..N * width];
+        for (i, left) in left.iter().enumerate() {
+            left.store(&mut here[i * width..]);
+        }
+        left
     }
 }
 
@@ -137,167 +135,169 @@ impl Depth for Far {
     const BYTES: usize = 2;
 
     #[inline(always)]
-    unsafe fn step<L: Lanes, const N: usize, const BLOCKED: bool>(
-        ahead: *const u8,
-        here: *mut u8,
-        cells: &[L::Cells; N],
+    fn step<S: Set, const N: usize, const BLOCKED: bool>(
+        set: S,
+        row: &mut [u8],
+        (ahead, here): (usize, usize),
+        cells: &[Cells<S>; N],
         end: u16,
-    ) -> [L; N] {
-        unsafe {
-            let end = L::splat_pair(u32::from(end) * 0x0001_0001);
-            let (ahead, here) = (ahead.cast::<u16>(), here.cast::<u16>());
-            let mut left = [L::splat_pair(0); N];
-            for (i, left) in left.iter_mut().enumerate() {
-                let pair = L::load_pair(ahead.add(i * L::WIDTH));
-                *left = L::step_pair::<BLOCKED>(pair, cells[i], end);
-            }
-            let mut narrow = [L::zero(); N];
-            for (i, (left, narrow)) in left.into_iter().zip(&mut narrow).enumerate() {
-                L::store_pair(left, here.add(i * L::WIDTH));
-                *narrow = L::narrow(left);
-            }
-            narrow
+    ) -> [S::Bytes; N] {
+        let bytes = Self::BYTES * S::Bytes::WIDTH;
+        let end = S::Bytes::splat_pair(set, end);
+        let ahead = &row[ahead..][..N * bytes];
+        let mut left = [end; N];
+        for (i, left) in left.iter_mut().enumerate() {
+            let pair = S::Bytes::load_pair(set, &ahead[i * bytes..]);
+            *left = S::Bytes::step_pair::<BLOCKED>(set, pair, cells[i], end);
         }
+        let here = &mut row[here..][..N * bytes];
+        let mut narrow = [S::Bytes::splat(set, 0); N];
+        for (i, (left, narrow)) in left.into_iter().zip(&mut narrow).enumerate() {
+            S::Bytes::store_pair(set, left, &mut here[i * bytes..]);
+            *narrow = S::Bytes::narrow(set, left);
+        }
+        narrow
     }
 }
 
-/// Where a beam stands.
-#[derive(Clone, Copy)]
+/// Where a beam stands, in bytes of its row.
+#[derive(Debug, Clone, Copy, Default)]
 struct Place {
     /// What is left in the cells that the beam looks at from this row's first.
-    ahead: *const u8,
+    ahead: usize,
     /// This row's first cell.
-    here: *mut u8,
+    here: usize,
     /// The next row's place on the minor axis.
     minor: i64,
 }
 
 #[inline(always)]
-unsafe fn stretch_on<L: Lanes, S: Sum, D: Depth, const N: usize, const BLOCKED: bool>(
-    stretch: &mut Stretch<'_, S>,
+fn stretch_on<S: Set, M: Sum, D: Depth, const N: usize, const BLOCKED: bool>(
+    set: S,
+    stretch: &mut Stretch<'_, M>,
     beams: &[SweptBeam],
 ) {
-    unsafe {
-        let vectors = stretch.bits.columns.div_ceil(L::WIDTH);
-        let vector = (L::WIDTH * D::BYTES) as isize;
-        let forward = beams[0].direction.step > 0;
-        let major = |step: usize| {
-            if forward {
-                stretch.bits.rows - 1 - step
-            } else {
-                step
-            }
-        };
-        let mut places = [Place {
-            ahead: std::ptr::null(),
-            here: std::ptr::null_mut(),
-            minor: 0,
-        }; MOST_BEAMS];
-        let first = major(stretch.steps.start) as i64;
-        for (beam, place) in beams.iter().zip(&mut places) {
-            place.minor = beam.direction.minor(first + beam.direction.step);
+    let vectors = stretch.bits.columns.div_ceil(S::Bytes::WIDTH);
+    let vector = S::Bytes::WIDTH * D::BYTES;
+    let forward = beams[0].direction.step > 0;
+    let major = |step: usize| {
+        if forward {
+            stretch.bits.rows - 1 - step
+        } else {
+            step
         }
-        for step in stretch.steps.clone() {
-            let major = major(step);
-            // Rows begin behind a margin, every other one a vector farther.
-            let leftward = step % 2 == 0;
-            let (from, to) = if leftward { (2, 1) } else { (1, 2) };
-            for (beam, place) in beams.iter().zip(&mut places) {
-                let row = stretch.store.add(beam.row);
-                let minor = beam.direction.minor(major as i64);
-                let shift = (place.minor - minor) as isize * D::BYTES as isize;
-                place.minor = minor;
-                place.ahead = row.offset(from * vector + shift);
-                place.here = row.offset(to * vector);
+    };
+    let mut places = [Place::default(); MOST_BEAMS];
+    let first = major(stretch.steps.start) as i64;
+    for (beam, place) in beams.iter().zip(&mut places) {
+        place.minor = beam.direction.minor(first + beam.direction.step);
+    }
+    for step in stretch.steps.clone() {
+        let major = major(step);
+        // Rows begin behind a margin, every other one a vector farther.
+        let leftward = step % 2 == 0;
+        let (from, to) = if leftward { (2, 1) } else { (1, 2) };
+        for (beam, place) in beams.iter().zip(&mut places) {
+            let minor = beam.direction.minor(major as i64);
+            let shift = (place.minor - minor) as isize * D::BYTES as isize;
+            place.minor = minor;
+            place.ahead = (beam.row + from * vector).wrapping_add_signed(shift);
+            place.here = beam.row + to * vector;
+        }
+        let (occupied, blocked) = stretch.bits.row(major);
+        let mut row = Row {
+            set,
+            occupied,
+            blocked,
+            sums: &mut stretch.sums[major * stretch.stride..][..stretch.stride],
+            adds: stretch.adds,
+            store: &mut *stretch.store,
+        };
+        let blocks = vectors / N;
+        if leftward {
+            for block in 0..blocks {
+                row.block::<D, N, BLOCKED>(beams, &places, block * N);
             }
-            let (occupied, blocked) = stretch.bits.row(major);
-            let row = Row {
-                occupied: occupied.as_ptr(),
-                blocked: blocked.as_ptr(),
-                sums: stretch.sums[major * stretch.stride..][..stretch.stride].as_mut_ptr(),
-                adds: stretch.adds,
-            };
-            let blocks = vectors / N;
-            if leftward {
-                for block in 0..blocks {
-                    row.block::<L, D, N, BLOCKED>(beams, &places, block * N);
-                }
-                row.rest::<L, D, N, BLOCKED>(beams, &places, vectors);
+            row.rest::<D, N, BLOCKED>(beams, &places, vectors);
+        } else {
+            row.rest::<D, N, BLOCKED>(beams, &places, vectors);
+            for block in (0..blocks).rev() {
+                row.block::<D, N, BLOCKED>(beams, &places, block * N);
+            }
+        }
+        // What the last row leaves beside this one must not be taken for
+        // cells of it.
+        for (_, place) in beams.iter().zip(&places) {
+            let beside = if leftward {
+                place.here + vectors * vector
             } else {
-                row.rest::<L, D, N, BLOCKED>(beams, &places, vectors);
-                for block in (0..blocks).rev() {
-                    row.block::<L, D, N, BLOCKED>(beams, &places, block * N);
-                }
-            }
-            // What the last row leaves beside this one must not be taken for
-            // cells of it.
-            for (_, place) in beams.iter().zip(&places) {
-                let beside = if leftward { vectors as isize } else { -1 };
-                let beside = place.here.offset(beside * vector);
-                for i in 0..D::BYTES {
-                    L::zero().store(beside.add(i * L::WIDTH));
-                }
-            }
+                place.here - vector
+            };
+            row.store[beside..][..vector].fill(0);
         }
     }
 }
 
 /// A row of cells.
-struct Row<S> {
-    occupied: *const u64,
-    blocked: *const u64,
-    sums: *mut S,
+struct Row<'a, S, M> {
+    set: S,
+    occupied: &'a [u64],
+    blocked: &'a [u64],
+    sums: &'a mut [M],
     adds: bool,
+    /// The rows of all beams.
+    store: &'a mut [u8],
 }
 
-impl<S: Sum> Row<S> {
+impl<S: Set, M: Sum> Row<'_, S, M> {
     /// The vectors that do not fill a block.
     #[inline(always)]
-    unsafe fn rest<L: Lanes, D: Depth, const N: usize, const BLOCKED: bool>(
-        &self,
+    fn rest<D: Depth, const N: usize, const BLOCKED: bool>(
+        &mut self,
         beams: &[SweptBeam],
         places: &[Place; MOST_BEAMS],
         vectors: usize,
     ) {
         let start = vectors / N * N;
-        unsafe {
-            match vectors - start {
-                0 => {}
-                1 => self.block::<L, D, 1, BLOCKED>(beams, places, start),
-                2 => self.block::<L, D, 2, BLOCKED>(beams, places, start),
-                3 => self.block::<L, D, 3, BLOCKED>(beams, places, start),
-                _ => self.block::<L, D, 4, BLOCKED>(beams, places, start),
-            }
+        match vectors - start {
+            0 => {}
+            1 => self.block::<D, 1, BLOCKED>(beams, places, start),
+            2 => self.block::<D, 2, BLOCKED>(beams, places, start),
+            3 => self.block::<D, 3, BLOCKED>(beams, places, start),
+            _ => self.block::<D, 4, BLOCKED>(beams, places, start),
         }
     }
 
     /// Moves `N` vectors from `start` on and lets the beams vote in them.
     #[inline(always)]
-    unsafe fn block<L: Lanes, D: Depth, const N: usize, const BLOCKED: bool>(
-        &self,
+    fn block<D: Depth, const N: usize, const BLOCKED: bool>(
+        &mut self,
         beams: &[SweptBeam],
         places: &[Place; MOST_BEAMS],
         start: usize,
     ) {
-        unsafe {
-            let mut cells = [L::cells::<BLOCKED>(self.occupied, self.blocked, start); N];
-            for (i, cells) in cells.iter_mut().enumerate().skip(1) {
-                *cells = L::cells::<BLOCKED>(self.occupied, self.blocked, start + i);
-            }
-            let mut votes = [L::zero(); N];
-            let offset = start * L::WIDTH * D::BYTES;
-            for (beam, place) in beams.iter().zip(places) {
-                let (ahead, here) = (place.ahead.add(offset), place.here.add(offset));
-                let left = D::step::<L, N, BLOCKED>(ahead, here, &cells, beam.end);
-                L::vote(&mut votes, &left, &beam.lookup);
-            }
-            for (i, votes) in votes.into_iter().enumerate() {
-                let sums = self.sums.add((start + i) * L::WIDTH);
-                if self.adds {
-                    S::take::<L, true>(votes, sums);
-                } else {
-                    S::take::<L, false>(votes, sums);
-                }
+        let set = self.set;
+        let mut cells = [S::Bytes::cells::<BLOCKED>(set, 0, 0); N];
+        for (i, cells) in cells.iter_mut().enumerate() {
+            let first = (start + i) * S::Bytes::WIDTH;
+            let bits = |row: &[u64]| row[first / 64] >> (first % 64);
+            let blocked = if BLOCKED { bits(self.blocked) } else { 0 };
+            *cells = S::Bytes::cells::<BLOCKED>(set, bits(self.occupied), blocked);
+        }
+        let mut votes = [S::Bytes::splat(set, 0); N];
+        let offset = start * S::Bytes::WIDTH * D::BYTES;
+        for (beam, place) in beams.iter().zip(places) {
+            let places = (place.ahead + offset, place.here + offset);
+            let left = D::step::<S, N, BLOCKED>(set, self.store, places, &cells, beam.end);
+            S::Bytes::vote(set, &mut votes, &left, &beam.lookup);
+        }
+        let width = S::Bytes::WIDTH;
+        let sums = &mut self.sums[start * width..][..N * width];
+        for (votes, sums) in votes.into_iter().zip(sums.chunks_exact_mut(width)) {
+            if self.adds {
+                M::take::<S, true>(set, votes, sums);
+            } else {
+                M::take::<S, false>(set, votes, sums);
             }
         }
     }

@@ -6,18 +6,20 @@
 #[cfg(target_arch = "x86_64")]
 use std::arch::x86_64::*;
 
+#[cfg(target_arch = "x86_64")]
+use bytemuck::must_cast;
+
+#[cfg(target_arch = "x86_64")]
+use crate::simd::sse2;
+
 /// Sums of `N` neighbouring cells, as many as there are in a vector.
 pub(super) trait Line<const N: usize>: Copy {
     /// One of them.
     type Sum: Copy + Default;
 
-    /// # Safety
-    /// There must be `N` sums to read.
-    unsafe fn load(from: *const Self::Sum) -> Self;
+    fn load(sums: &[Self::Sum; N]) -> Self;
 
-    /// # Safety
-    /// There must be room for `N` sums.
-    unsafe fn store(self, to: *mut Self::Sum);
+    fn sums(self) -> [Self::Sum; N];
 
     /// The square whose rows are the columns of this one.
     fn turned(rows: [Self; N]) -> [Self; N];
@@ -37,95 +39,71 @@ pub(super) struct Words(__m128i);
 pub(super) struct Bytes(__m128i);
 
 #[cfg(target_arch = "x86_64")]
-impl Line<8> for Words {
-    type Sum = u16;
+sse2! {
+    impl Line<8> for Words {
+        type Sum = u16;
 
-    #[inline(always)]
-    unsafe fn load(from: *const u16) -> Self {
-        // SAFETY: promised by the caller.
-        unsafe { Words(_mm_loadu_si128(from.cast())) }
-    }
+        fn load(sums: &[u16; 8]) -> Words {
+            Words(must_cast(*sums))
+        }
 
-    #[inline(always)]
-    unsafe fn store(self, to: *mut u16) {
-        // SAFETY: promised by the caller.
-        unsafe { _mm_storeu_si128(to.cast(), self.0) }
-    }
+        fn sums(self) -> [u16; 8] {
+            must_cast(self.0)
+        }
 
-    #[inline(always)]
-    fn turned(mut rows: [Self; 8]) -> [Self; 8] {
-        // Three rounds that interleave rows i and i + 4 turn a square over.
-        for _ in 0..3 {
-            let before = rows;
-            for i in 0..4 {
-                let (a, b) = (before[i].0, before[i + 4].0);
-                // SAFETY: these only move numbers between vectors.
-                unsafe {
+        fn turned(rows: [Words; 8]) -> [Words; 8] {
+            let mut rows = rows;
+            // Three rounds that interleave rows i and i + 4 turn a square over.
+            for _ in 0..3 {
+                let before = rows;
+                for i in 0..4 {
+                    let (a, b) = (before[i].0, before[i + 4].0);
                     rows[2 * i] = Words(_mm_unpacklo_epi16(a, b));
                     rows[2 * i + 1] = Words(_mm_unpackhi_epi16(a, b));
                 }
             }
+            rows
         }
-        rows
-    }
 
-    #[inline(always)]
-    fn plus(self, other: Self, open: u16) -> [u16; 8] {
-        // SAFETY: arrays and vectors have the same size, and all bits mean a
-        // number in both.
-        unsafe {
-            let open = OPEN_WORDS[usize::from(open & 0xff)].as_ptr();
-            let sums = _mm_add_epi16(self.0, other.0);
-            let sums = _mm_and_si128(sums, _mm_loadu_si128(open.cast()));
-            std::mem::transmute::<__m128i, [u16; 8]>(sums)
+        fn plus(self, other: Words, open: u16) -> [u16; 8] {
+            let open = must_cast(OPEN_WORDS[usize::from(open & 0xff)]);
+            must_cast(_mm_and_si128(_mm_add_epi16(self.0, other.0), open))
         }
     }
 }
 
 #[cfg(target_arch = "x86_64")]
-impl Line<16> for Bytes {
-    type Sum = u8;
+sse2! {
+    impl Line<16> for Bytes {
+        type Sum = u8;
 
-    #[inline(always)]
-    unsafe fn load(from: *const u8) -> Self {
-        // SAFETY: promised by the caller.
-        unsafe { Bytes(_mm_loadu_si128(from.cast())) }
-    }
+        fn load(sums: &[u8; 16]) -> Bytes {
+            Bytes(must_cast(*sums))
+        }
 
-    #[inline(always)]
-    unsafe fn store(self, to: *mut u8) {
-        // SAFETY: promised by the caller.
-        unsafe { _mm_storeu_si128(to.cast(), self.0) }
-    }
+        fn sums(self) -> [u8; 16] {
+            must_cast(self.0)
+        }
 
-    #[inline(always)]
-    fn turned(mut rows: [Self; 16]) -> [Self; 16] {
-        // As of words, in four rounds.
-        for _ in 0..4 {
-            let before = rows;
-            for i in 0..8 {
-                let (a, b) = (before[i].0, before[i + 8].0);
-                // SAFETY: these only move numbers between vectors.
-                unsafe {
+        fn turned(rows: [Bytes; 16]) -> [Bytes; 16] {
+            let mut rows = rows;
+            // As of words, in four rounds.
+            for _ in 0..4 {
+                let before = rows;
+                for i in 0..8 {
+                    let (a, b) = (before[i].0, before[i + 8].0);
                     rows[2 * i] = Bytes(_mm_unpacklo_epi8(a, b));
                     rows[2 * i + 1] = Bytes(_mm_unpackhi_epi8(a, b));
                 }
             }
+            rows
         }
-        rows
-    }
 
-    #[inline(always)]
-    fn plus(self, other: Self, open: u16) -> [u16; 16] {
-        // SAFETY: arrays and vectors have the same size, and all bits mean a
-        // number in both.
-        unsafe {
+        fn plus(self, other: Bytes, open: u16) -> [u16; 16] {
             let [low, high] = open.to_le_bytes().map(|bits| OPEN_BYTES[usize::from(bits)]);
-            let open = _mm_set_epi64x(high, low);
-            let sums = _mm_and_si128(_mm_add_epi8(self.0, other.0), open);
+            let sums = _mm_and_si128(_mm_add_epi8(self.0, other.0), _mm_set_epi64x(high, low));
             let zero = _mm_setzero_si128();
-            let halves = [_mm_unpacklo_epi8(sums, zero), _mm_unpackhi_epi8(sums, zero)];
-            std::mem::transmute::<[__m128i; 2], [u16; 16]>(halves)
+            must_cast([_mm_unpacklo_epi8(sums, zero), _mm_unpackhi_epi8(sums, zero)])
         }
     }
 }
@@ -179,15 +157,13 @@ mod plain {
         type Sum = S;
 
         #[inline(always)]
-        unsafe fn load(from: *const S) -> Self {
-            // SAFETY: promised by the caller.
-            Plain(unsafe { *from.cast::<[S; N]>() })
+        fn load(sums: &[S; N]) -> Self {
+            Plain(*sums)
         }
 
         #[inline(always)]
-        unsafe fn store(self, to: *mut S) {
-            // SAFETY: promised by the caller.
-            unsafe { *to.cast::<[S; N]>() = self.0 }
+        fn sums(self) -> [S; N] {
+            self.0
         }
 
         #[inline(always)]
@@ -211,9 +187,9 @@ mod tests {
 
     /// A square and its turned one added up row by row, some cells left out.
     fn sums<L: Line<N>, const N: usize>(numbers: &[L::Sum]) -> [[u16; N]; N] {
-        assert_eq!(numbers.len(), N * N);
-        // SAFETY: N rows of N are read.
-        let rows: [L; N] = array::from_fn(|i| unsafe { L::load(numbers[N * i..].as_ptr()) });
+        let (rows, rest) = numbers.as_chunks();
+        assert!(rows.len() == N && rest.is_empty());
+        let rows: [L; N] = array::from_fn(|i| L::load(&rows[i]));
         let turned = L::turned(rows);
         array::from_fn(|i| rows[i].plus(turned[i], 0xb5d3_u16.rotate_left(i as u32)))
     }

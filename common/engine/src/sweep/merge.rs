@@ -24,14 +24,13 @@ impl<S> Plane<'_, S> {
             && self.sums.len() >= rows.next_multiple_of(SQUARE) * self.stride
     }
 
-    /// From this cell on.
-    ///
-    /// # Safety
-    /// There must be one.
+    /// `N` sums of a row from a column on.
     #[inline(always)]
-    unsafe fn at(&self, row: usize, column: usize) -> *const S {
-        // SAFETY: promised by the caller.
-        unsafe { self.sums.as_ptr().add(row * self.stride + column) }
+    fn at<const N: usize>(&self, row: usize, column: usize) -> &[S; N] {
+        const COVERED: &str = "sums cover the squares that are read";
+        self.sums[row * self.stride + column..]
+            .first_chunk()
+            .expect(COVERED)
     }
 }
 
@@ -61,19 +60,15 @@ pub(super) fn merge<L: Line<N>, const N: usize>(
             let width = BLOCK.min(bits.columns - left);
             for x in (0..width).step_by(N) {
                 for y in (0..height).step_by(N) {
-                    // SAFETY: the square lies in the sums and in the block.
-                    unsafe {
-                        let square = columns.at(left + x, bottom + y);
-                        turn::<L, N>(square, columns.stride, &mut turned, (x, y));
-                    }
+                    let rows = |i| L::load(columns.at(left + x + i, bottom + y));
+                    turn::<L, N>(std::array::from_fn(rows), &mut turned, (x, y));
                 }
             }
             for (i, turned) in turned.0[..height].iter().enumerate() {
                 let y = bottom + i;
                 let open = bits.open_word(y, left);
                 let to = &mut field[y * bits.columns + left..][..width];
-                // SAFETY: rows of sums come in whole blocks.
-                let row = unsafe { &*rows.at(y, left).cast::<[L::Sum; BLOCK]>() };
+                let row = rows.at(y, left);
                 match to.first_chunk_mut::<BLOCK>() {
                     Some(to) => add_up::<L, N>(row, turned, open, to),
                     None => {
@@ -88,24 +83,15 @@ pub(super) fn merge<L: Line<N>, const N: usize>(
 }
 
 /// Turns a square over into its place in a block, at these columns and rows.
-///
-/// # Safety
-/// There must be `N` rows of `N` sums, from each row to the next `stride` of them, and
-/// the square must lie in the block.
 #[inline(always)]
-unsafe fn turn<L: Line<N>, const N: usize>(
-    square: *const L::Sum,
-    stride: usize,
+fn turn<L: Line<N>, const N: usize>(
+    square: [L; N],
     block: &mut Block<L::Sum>,
     (x, y): (usize, usize),
 ) {
-    // SAFETY: promised by the caller.
-    unsafe {
-        let rows = std::array::from_fn(|i| L::load(square.add(i * stride)));
-        let to = block.0.as_mut_ptr().cast::<L::Sum>().add(BLOCK * y + x);
-        for (i, row) in L::turned(rows).into_iter().enumerate() {
-            row.store(to.add(BLOCK * i));
-        }
+    let to = block.0[y..].iter_mut();
+    for (row, to) in L::turned(square).into_iter().zip(to) {
+        to[x..][..N].copy_from_slice(&row.sums());
     }
 }
 
@@ -117,10 +103,9 @@ fn add_up<L: Line<N>, const N: usize>(
     open: u64,
     to: &mut [u16; BLOCK],
 ) {
-    let (row, turned) = (row.as_ptr(), turned.as_ptr());
-    for (i, to) in to.as_chunks_mut::<N>().0.iter_mut().enumerate() {
-        // SAFETY: both have as many as are added up.
-        let (row, turned) = unsafe { (L::load(row.add(N * i)), L::load(turned.add(N * i))) };
-        *to = row.plus(turned, (open >> (N * i)) as u16);
+    let (rows, turned) = (row.as_chunks::<N>().0, turned.as_chunks::<N>().0);
+    let to = to.as_chunks_mut::<N>().0.iter_mut();
+    for (i, ((row, turned), to)) in rows.iter().zip(turned).zip(to).enumerate() {
+        *to = L::load(row).plus(L::load(turned), (open >> (N * i)) as u16);
     }
 }

@@ -6,24 +6,8 @@
 //! for all of them, so a row of ranges follows from the row before at once.
 
 mod bits;
-#[expect(
-    clippy::undocumented_unsafe_blocks,
-    reason = "unsafe functions hand on what their caller promised: an instruction set that the \
-              processor has, and rows with margins that hold what is read and written"
-)]
 mod field;
-#[expect(
-    clippy::undocumented_unsafe_blocks,
-    reason = "unsafe functions hand on what their caller promised: an instruction set that the \
-              processor has, and rows with margins that hold what is read and written"
-)]
 mod kernel;
-#[expect(
-    clippy::undocumented_unsafe_blocks,
-    reason = "unsafe functions hand on what their caller promised: an instruction set that the \
-              processor has, and rows with margins that hold what is read and written"
-)]
-mod lanes;
 mod line;
 mod merge;
 mod plan;

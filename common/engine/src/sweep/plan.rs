@@ -2,9 +2,10 @@
 
 use std::ops::Range;
 
-use super::lanes::{Lanes, Lookup, MAX_REACH};
 use crate::accumulator::Query;
 use crate::directions::Direction;
+use crate::simd::Set;
+use crate::simd::bytes::{Lanes, Lookup, MAX_REACH};
 
 /// Bytes of rows that are swept together: they must stay in the nearest cache,
 /// with the votes beside them.
@@ -57,7 +58,12 @@ pub(super) fn group(direction: &Direction) -> usize {
 
 impl Plan {
     /// Plans a scan at a heading on a grid of so many cells.
-    pub(super) fn make<L: Lanes>(&mut self, query: Query<'_>, (width, height): (usize, usize)) {
+    pub(super) fn make<S: Set>(
+        &mut self,
+        set: S,
+        query: Query<'_>,
+        (width, height): (usize, usize),
+    ) {
         self.beams.clear();
         self.wide.clear();
         for i in 0..query.program.beams() {
@@ -70,7 +76,7 @@ impl Plan {
                 let highest = end.min(255) as u8;
                 self.beams.push(SweptBeam {
                     direction: *direction,
-                    lookup: L::lookup(&taper, highest),
+                    lookup: S::Bytes::lookup(set, &taper, highest),
                     end,
                     is_far: end > 255,
                     peak: taper.profile[0],
@@ -80,7 +86,7 @@ impl Plan {
         }
         self.beams
             .sort_unstable_by_key(|beam| (group(&beam.direction), beam.is_far, beam.lookup.kind));
-        self.split::<L>((width, height));
+        self.split::<S::Bytes>((width, height));
     }
 
     /// Splits the beams into batches and gives each beam its row.

@@ -4,9 +4,8 @@
 //! adding a window to as many numbers takes two operations and as much again for
 //! its carries.
 
-use super::quad_rows::{Reader, Window};
-use crate::search::index::bits::Words;
-use crate::search::index::words::{BitWords, Several};
+use super::quad_rows::{Extent, Reader, Window, Windows};
+use crate::simd::words::{BitWords, Several, Words};
 
 /// Words in one line of the processor's cache.
 #[derive(Debug, Clone, Copy)]
@@ -28,6 +27,8 @@ pub(in crate::search) struct Group {
     pub possible: u16,
     /// What is read of a quad in a chunk.
     pub reads: u32,
+    /// How far all windows go.
+    extent: Extent,
 }
 
 /// Windows with the same share.
@@ -65,6 +66,7 @@ impl Group {
             planes: Vec::new(),
             possible: 0,
             reads: 0,
+            extent: Extent::default(),
         }
     }
 
@@ -77,11 +79,13 @@ impl Group {
         self.planes.iter_mut().for_each(Plane::clear);
         self.possible = 0;
         self.reads = 0;
+        self.extent = Extent::default();
     }
 
     pub(in crate::search) fn push(&mut self, plane: usize, window: Window) {
         self.possible += 1 << plane;
         self.reads += window.reads;
+        self.extent.take(&window);
         if self.planes.len() <= plane {
             self.planes.resize_with(plane + 1, Plane::default);
         }
@@ -90,6 +94,7 @@ impl Group {
 
     /// Lays out the windows that were pushed; one that sees nothing fills up.
     pub(in crate::search) fn lay_out(&mut self, nothing: Window) {
+        self.extent.take(&nothing);
         self.planes
             .iter_mut()
             .for_each(|plane| plane.lay_out(nothing));
@@ -106,21 +111,23 @@ impl Group {
     #[inline(always)]
     pub(in crate::search) fn add<W: BitWords, const N: usize>(
         &self,
+        set: W::Set,
         reader: Reader<'_, N>,
         carries: &mut Carries,
         total: &mut [Several<W, N>],
     ) {
+        let windows = reader.within(&self.extent);
         let [mut carries, mut next, mut after] = carries.each_mut().map(|rows| &mut rows[..]);
         let (mut carried, mut carried_next) = (0, 0);
         let mut planes = self.planes.iter();
-        let mut twos = Several::empty();
+        let mut twos = Several::empty(set);
         // What adding to the total carries over.
-        let mut overflow = Several::empty();
+        let mut overflow = Several::empty(set);
         let (own, others) = total.split_at_mut(self.sum_planes().min(total.len()));
         for total in own {
-            let mut column = Column::new(twos, after);
+            let mut column = Column::new(set, twos, after);
             if let Some(plane) = planes.next() {
-                column.add_windows(reader, plane);
+                column.add_windows(windows, plane);
             }
             column.add_rows(&carries[..carried * N]);
             let (ones, made) = (column.ones, column.made);
@@ -131,7 +138,7 @@ impl Group {
             (carried, carried_next) = (carried_next, made);
         }
         for total in others {
-            (*total, overflow) = total.full_adder(overflow, Several::empty());
+            (*total, overflow) = total.full_adder(overflow, Several::empty(set));
         }
     }
 
@@ -144,10 +151,10 @@ impl Group {
 impl Aligned {
     /// The rows of several chunks.
     #[inline(always)]
-    fn read<W: BitWords, const N: usize>(rows: &[Aligned; N]) -> Several<W, N> {
-        let mut several = Several::empty();
+    fn read<W: BitWords, const N: usize>(set: W::Set, rows: &[Aligned; N]) -> Several<W, N> {
+        let mut several = Several::empty(set);
         for (words, row) in several.0.iter_mut().zip(rows) {
-            *words = W::from_words(&row.0);
+            *words = W::from_words(set, &row.0);
         }
         several
     }
@@ -155,7 +162,8 @@ impl Aligned {
 
 /// Sums of a plane and the next one, of rows of bits four by four, with a carry for the
 /// plane after these for each.
-struct Column<'a, W, const N: usize> {
+struct Column<'a, W: BitWords, const N: usize> {
+    set: W::Set,
     ones: Several<W, N>,
     twos: Several<W, N>,
     carries: &'a mut [Aligned],
@@ -164,52 +172,59 @@ struct Column<'a, W, const N: usize> {
 
 impl<'a, W: BitWords, const N: usize> Column<'a, W, N> {
     #[inline(always)]
-    fn new(ones: Several<W, N>, carries: &'a mut [Aligned]) -> Self {
+    fn new(set: W::Set, ones: Several<W, N>, carries: &'a mut [Aligned]) -> Self {
         Column {
+            set,
             ones,
-            twos: Several::empty(),
+            twos: Several::empty(set),
             carries,
             made: 0,
         }
     }
 
     #[inline(always)]
-    fn add_windows(&mut self, reader: Reader<'_, N>, plane: &Plane) {
+    fn add_windows(&mut self, windows: Windows<'_, N>, plane: &Plane) {
+        let set = self.set;
+        // SAFETY: the extent of a group, within which the windows are, takes in all that are
+        // pushed to its planes and the one that fills up.
+        let read = |window: &Window, reads| unsafe { windows.read(set, window, reads) };
         for four in &plane.fours {
             let [first, second, third, fourth] = four;
             // They are sorted, and reading more often changes nothing.
             let reads = fourth.reads;
             let (ones, a) = self
                 .ones
-                .full_adder(reader.read(first, reads), reader.read(second, reads));
-            let (ones, b) = ones.full_adder(reader.read(third, reads), reader.read(fourth, reads));
+                .full_adder(read(first, reads), read(second, reads));
+            let (ones, b) = ones.full_adder(read(third, reads), read(fourth, reads));
             self.ones = ones;
             self.carry(a, b);
         }
         for pair in &plane.pairs {
             let [a, b] = pair;
-            self.add_pair(reader.read(a, b.reads), reader.read(b, b.reads));
+            self.add_pair(read(a, b.reads), read(b, b.reads));
         }
     }
 
     #[inline(always)]
     fn add_rows(&mut self, rows: &[Aligned]) {
+        let set = self.set;
         let (rows, _) = rows.as_chunks::<N>();
         let (fours, rest) = rows.as_chunks::<4>();
         for four in fours {
             let (ones, a) = self
                 .ones
-                .full_adder(Aligned::read(&four[0]), Aligned::read(&four[1]));
-            let (ones, b) = ones.full_adder(Aligned::read(&four[2]), Aligned::read(&four[3]));
+                .full_adder(Aligned::read(set, &four[0]), Aligned::read(set, &four[1]));
+            let (ones, b) =
+                ones.full_adder(Aligned::read(set, &four[2]), Aligned::read(set, &four[3]));
             self.ones = ones;
             self.carry(a, b);
         }
         let (pairs, rest) = rest.as_chunks();
         for [a, b] in pairs {
-            self.add_pair(Aligned::read(a), Aligned::read(b));
+            self.add_pair(Aligned::read(set, a), Aligned::read(set, b));
         }
         for row in rest {
-            self.add_pair(Aligned::read(row), Several::empty());
+            self.add_pair(Aligned::read(set, row), Several::empty(set));
         }
     }
 
@@ -217,7 +232,7 @@ impl<'a, W: BitWords, const N: usize> Column<'a, W, N> {
     fn add_pair(&mut self, a: Several<W, N>, b: Several<W, N>) {
         let carry;
         (self.ones, carry) = self.ones.full_adder(a, b);
-        self.carry(carry, Several::empty());
+        self.carry(carry, Several::empty(self.set));
     }
 
     /// Adds two rows to the next plane.

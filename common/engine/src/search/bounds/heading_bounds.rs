@@ -1,7 +1,8 @@
 //! What the blocks of a quad are bounded by at each heading: numbers as planes.
 
 use super::set_program::GROUPS;
-use crate::search::index::bits::{self, EMPTY, Planes, QUAD, Words};
+use crate::search::index::bits::{self, Planes};
+use crate::simd::words::{EMPTY, QUAD, Words};
 
 /// Bounds of the blocks of a quad for all headings.
 #[derive(Debug, Clone, Default)]

@@ -4,12 +4,11 @@
 //! reading. Intervals of adjacent directions lie side by side, so one table
 //! look-up bounds a beam at 64 headings.
 
-use super::heading_lanes::{HEADINGS, HeadingLanes, Portable};
 use super::interval_program::{IntervalBeam, IntervalProgram, Order};
 use super::set_bounds::Rests;
-#[cfg(any(target_arch = "x86_64", test))]
-use crate::instruction_set::InstructionSet;
 use crate::search::index::intervals::BlockIntervals;
+use crate::simd::headings::{HEADINGS, HeadingLanes};
+use crate::simd::{Kernel, Set};
 
 /// Bounds of a block at adjacent headings.
 #[derive(Debug, Clone)]
@@ -103,53 +102,30 @@ impl IntervalProgram {
 
     /// `TELLS` what sectors and beams have.
     fn run<const TELLS: bool>(&self, sought: &Sought<'_>, bounds: &mut IntervalBounds) -> bool {
-        match self.instruction_set {
-            // SAFETY: the processor has the instruction set, or it would not be chosen.
-            #[cfg(target_arch = "x86_64")]
-            InstructionSet::Avx512 => unsafe { self.run_avx512::<TELLS>(sought, bounds) },
-            // SAFETY: as above.
-            #[cfg(target_arch = "x86_64")]
-            InstructionSet::Avx2 => unsafe { self.run_avx2::<TELLS>(sought, bounds) },
-            _ => self.run_with::<Portable, TELLS>(sought, bounds),
-        }
-    }
-
-    #[cfg(target_arch = "x86_64")]
-    #[target_feature(enable = "avx512f,avx512bw,avx512vl,avx512vbmi")]
-    fn run_avx512<const TELLS: bool>(
-        &self,
-        sought: &Sought<'_>,
-        bounds: &mut IntervalBounds,
-    ) -> bool {
-        self.run_with::<super::heading_lanes::Avx512, TELLS>(sought, bounds)
-    }
-
-    #[cfg(target_arch = "x86_64")]
-    #[target_feature(enable = "avx2")]
-    fn run_avx2<const TELLS: bool>(
-        &self,
-        sought: &Sought<'_>,
-        bounds: &mut IntervalBounds,
-    ) -> bool {
-        self.run_with::<super::heading_lanes::Avx2, TELLS>(sought, bounds)
+        self.simd.run(Bounding::<TELLS> {
+            program: self,
+            sought,
+            bounds,
+        })
     }
 
     #[inline(always)]
-    fn run_with<L: HeadingLanes, const TELLS: bool>(
+    fn run_on<S: Set, const TELLS: bool>(
         &self,
+        set: S,
         sought: &Sought<'_>,
         bounds: &mut IntervalBounds,
     ) -> bool {
         let rows = sought.block.rows();
-        let mut sums = L::no_sums();
+        let mut sums = S::Headings::no_sums(set);
         let mut alive = false;
         bounds.sectors.clear();
         bounds.voting.clear();
         for (beams, complete) in sought.order.pieces() {
-            let mut votes = L::none();
+            let mut votes = S::Headings::none(set);
             for beam in beams {
                 let direction = self.direction(beam, sought.heading);
-                let of_beam = L::of_beam(&beam.votes, rows.from(direction));
+                let of_beam = S::Headings::of_beam(set, &beam.votes, rows.from(direction));
                 votes = votes.add(of_beam);
                 if TELLS {
                     bounds.voting.push(of_beam.present());
@@ -160,12 +136,12 @@ impl IntervalProgram {
             }
             sums = votes.add_to(sums);
             let missing = sought.least.saturating_sub(sought.rests[complete]);
-            alive = L::at_least(sums, missing) & sought.among != 0;
+            alive = S::Headings::at_least(set, sums, missing) & sought.among != 0;
             if !alive {
                 break;
             }
         }
-        L::store(sums, &mut bounds.all);
+        bounds.all = S::Headings::votes(set, sums);
         alive
     }
 
@@ -181,6 +157,23 @@ impl IntervalProgram {
     }
 }
 
+/// Bounding a block; `TELLS` what sectors and beams have.
+struct Bounding<'a, const TELLS: bool> {
+    program: &'a IntervalProgram,
+    sought: &'a Sought<'a>,
+    bounds: &'a mut IntervalBounds,
+}
+
+impl<const TELLS: bool> Kernel for Bounding<'_, TELLS> {
+    type Result = bool;
+
+    #[inline(always)]
+    fn run<S: Set>(self, set: S) -> bool {
+        self.program
+            .run_on::<S, TELLS>(set, self.sought, self.bounds)
+    }
+}
+
 #[cfg(test)]
 mod tests {
     use std::sync::atomic::AtomicU16;
@@ -188,11 +181,13 @@ mod tests {
     use proptest::prelude::*;
 
     use super::*;
+    use crate::instruction_set::InstructionSet;
     use crate::search::bounds::set_bounds::SetBounds;
     use crate::search::index::SearchIndex;
     use crate::search::index::bits;
     use crate::search::index::within::quarters;
     use crate::search::task::{Programs, Shared, Task};
+    use crate::simd::Simd;
     use crate::testing::{any_grid, any_scan, space_of};
     use crate::votes::CollectConfig;
 
@@ -210,7 +205,7 @@ mod tests {
             for instruction_set in InstructionSet::available() {
                 let mut shared = Shared::default();
                 let scan = (&program, &space);
-                let task = Task::new(&mut shared, instruction_set, &index, &grid, scan, CollectConfig::default());
+                let task = Task::new(&mut shared, Simd::new(instruction_set), &index, &grid, scan, CollectConfig::default());
                 let Programs { sets, interval, .. } = task.programs;
                 let (mut outer_bounds, mut inner_bounds) = (SetBounds::default(), SetBounds::default());
                 outer_bounds.fit(sets, task.headings());

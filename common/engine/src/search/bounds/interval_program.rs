@@ -1,11 +1,11 @@
 //! A scan program laid out for bounds from intervals of ranges.
 
-use super::heading_lanes::BinVotes;
 use super::sectors;
 use crate::directions::Directions;
-use crate::instruction_set::InstructionSet;
 use crate::program::ScanProgram;
 use crate::search::index::steps::BinSteps;
+use crate::simd::Simd;
+use crate::simd::headings::BinVotes;
 use crate::tables::TABLE;
 
 /// As many votes of at most 16 as fit into a byte.
@@ -15,7 +15,7 @@ const BEAMS_OF_A_BYTE: usize = 15;
 #[derive(Debug, Clone, Default)]
 pub(crate) struct IntervalProgram {
     pub(in crate::search) directions: usize,
-    pub(in crate::search) instruction_set: InstructionSet,
+    pub(in crate::search) simd: Simd,
     pub(in crate::search) by_sector: Order,
     /// By groups of beams as bounds from sets have them.
     pub(in crate::search) by_group: Order,
@@ -51,10 +51,10 @@ impl IntervalProgram {
         directions: &Directions,
         steps: &BinSteps,
         shifts: impl Iterator<Item = u32>,
-        instruction_set: InstructionSet,
+        simd: Simd,
     ) {
         self.directions = directions.count();
-        self.instruction_set = instruction_set;
+        self.simd = simd;
         let sectors = sectors::count(program.beams());
         self.possible_from.clear();
         self.possible_from.resize(sectors + 1, 0);

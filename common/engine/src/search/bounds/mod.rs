@@ -6,7 +6,6 @@
 
 pub(in crate::search) mod group;
 pub(in crate::search) mod heading_bounds;
-pub(in crate::search) mod heading_lanes;
 pub(in crate::search) mod interval_bounds;
 pub(in crate::search) mod interval_program;
 pub(in crate::search) mod quad_rows;

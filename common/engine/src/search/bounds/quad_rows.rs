@@ -7,10 +7,10 @@
 use std::ops::Range;
 
 use crate::search::index::bins::Bins;
-use crate::search::index::bits::{CHUNK, QUAD};
+use crate::search::index::bits::CHUNK;
 use crate::search::index::intervals::ROW_SHIFT;
 use crate::search::index::sets::{Byte, READ, SetRows};
-use crate::search::index::words::{BYTES, BitWords, Several};
+use crate::simd::words::{BYTES, BitWords, QUAD, Several};
 
 /// Where rows lie.
 #[derive(Debug, Clone, Default)]
@@ -49,6 +49,20 @@ pub(crate) struct QuadRows {
     bytes: Vec<Byte>,
     /// The rows that have any bits.
     used: Range<usize>,
+}
+
+/// How far windows go.
+#[derive(Debug, Clone, Copy, Default)]
+pub(crate) struct Extent {
+    /// The end of their bytes, and where the farthest of their rows starts.
+    bytes: usize,
+    rows: usize,
+}
+
+/// The rows of a quad, in which windows are read that were found to lie in them.
+#[derive(Clone, Copy)]
+pub(crate) struct Windows<'a, const N: usize> {
+    reader: Reader<'a, N>,
 }
 
 /// The rows of a quad, to be read at the headings of some chunks.
@@ -129,7 +143,12 @@ impl QuadRows {
 
     /// Takes the rows of a quad.
     #[inline(always)]
-    pub(crate) fn set<W: BitWords>(&mut self, layout: &RowLayout, rows: &SetRows<'_>) {
+    pub(crate) fn take<W: BitWords>(
+        &mut self,
+        set: W::Set,
+        layout: &RowLayout,
+        rows: &SetRows<'_>,
+    ) {
         let (row, stride) = (layout.row, layout.stride);
         // The row before the first one is joined with it.
         let first = rows.rows.start.saturating_sub(1).max(layout.needed.start);
@@ -150,16 +169,16 @@ impl QuadRows {
             };
             let (before, joined) = earlier[before..].split_at_mut(if is_joined { row } else { 0 });
             for (start, &mask) in (0..stride).step_by(READ).zip(rows.masks_of(i)) {
-                let words = W::expand(mask, bytes(&rows.bytes[kept..]));
+                let words = W::expand(set, mask, bytes(&rows.bytes[kept..]));
                 words.write(bytes_mut(&mut own[start..]));
                 if is_joined {
-                    let both = W::read(bytes(&before[start..])).or(words);
+                    let both = W::read(set, bytes(&before[start..])).or(words);
                     both.write(bytes_mut(&mut joined[start..]));
                 }
                 kept += mask.count_ones() as usize;
             }
             if is_joined {
-                go_round::<W>(joined, stride);
+                go_round::<W>(set, joined, stride);
             }
         }
         if let Some(last) = taken.clone().next_back() {
@@ -167,10 +186,10 @@ impl QuadRows {
             let rows = &mut self.bytes[2 * last * row..][..2 * row];
             let (last, joined) = rows.split_at_mut(row);
             joined.copy_from_slice(last);
-            go_round::<W>(joined, stride);
+            go_round::<W>(set, joined, stride);
         }
         for i in taken.clone().filter(|&i| layout.alone >> i & 1 == 1) {
-            go_round::<W>(&mut self.bytes[2 * i * row..][..row], stride);
+            go_round::<W>(set, &mut self.bytes[2 * i * row..][..row], stride);
         }
         for used in self.used.clone() {
             if !taken.contains(&used) {
@@ -183,8 +202,8 @@ impl QuadRows {
 
 /// Lets words be read from any byte of a row's first turn on.
 #[inline(always)]
-fn go_round<W: BitWords>(row: &mut [Byte], stride: usize) {
-    let turn = W::read(bytes(row));
+fn go_round<W: BitWords>(set: W::Set, row: &mut [Byte], stride: usize) {
+    let turn = W::read(set, bytes(row));
     // What is copied too much, the next turn overwrites.
     for start in (stride..stride + READ - 1).step_by(stride) {
         turn.write(bytes_mut(&mut row[start..]));
@@ -214,28 +233,62 @@ impl<'a, const N: usize> Reader<'a, N> {
         }
     }
 
+    /// A reader of windows, none of which goes further than `extent`.
+    ///
+    /// # Panics
+    /// If the rows do not go so far.
+    #[inline(always)]
+    pub(crate) fn within(self, extent: &Extent) -> Windows<'a, N> {
+        let stride = self.layout.stride;
+        assert!(extent.bytes <= stride && extent.rows + stride + READ <= self.bytes.len());
+        Windows { reader: self }
+    }
+}
+
+impl Extent {
+    /// Takes a window in.
+    pub(crate) fn take(&mut self, window: &Window) {
+        self.bytes = self.bytes.max(window.byte as usize + 1);
+        self.rows = self.rows.max(window.last as usize);
+    }
+}
+
+impl<const N: usize> Windows<'_, N> {
     /// The bits of a window that is read so often, in the order of sets, see
     /// [`BitWords::sorted`]. Reading oftener than needed changes nothing.
+    ///
+    /// # Safety
+    /// The extent within which windows are read must have taken this one in.
     #[inline(always)]
-    pub(crate) fn read<W: BitWords>(&self, window: &Window, reads: u32) -> Several<W, N> {
-        let RowLayout { row, turns, .. } = self.layout;
+    pub(crate) unsafe fn read<W: BitWords>(
+        &self,
+        set: W::Set,
+        window: &Window,
+        reads: u32,
+    ) -> Several<W, N> {
+        let Reader {
+            layout,
+            bytes,
+            starts,
+        } = self.reader;
         let mut places = [0; N];
-        for (place, start) in places.iter_mut().zip(self.starts) {
-            // SAFETY: a window's byte and where a chunk starts lie within a turn each.
-            *place = unsafe { *turns.get_unchecked(start + window.byte as usize) } as usize;
+        for (place, start) in places.iter_mut().zip(starts) {
+            // SAFETY: a window's byte and where a chunk starts lie within a turn each, as
+            // was asserted of the extent and of the chunks.
+            *place = unsafe { *layout.turns.get_unchecked(start + window.byte as usize) } as usize;
         }
-        let (mut start, last) = (window.first as usize, window.last as usize);
-        let mut all = Several::<W, N>::empty();
+        let last = window.last as usize;
+        let mut start = last.min(window.first as usize);
+        let mut all = Several::<W, N>::empty(set);
         for i in 0..reads {
             for (all, place) in all.0.iter_mut().zip(places) {
-                debug_assert!(start + place + READ <= self.bytes.len());
-                let at = self.bytes.as_ptr().wrapping_add(start + place);
-                // SAFETY: windows start with one of the layout's rows, of which each goes on
-                // for a word from any byte of a turn.
-                let words = W::read(unsafe { &*at.cast() });
+                // SAFETY: `start` is at most `last` and a place less than the stride; so far
+                // and for a word more there are bytes, as was asserted of the extent.
+                let word = unsafe { bytes.get_unchecked(start + place..start + place + READ) };
+                let words = W::read(set, self::bytes(word));
                 *all = if i == 0 { words } else { all.or(words) };
             }
-            start = (start + 4 * row).min(last);
+            start = last.min(start + 4 * layout.row);
         }
         all
     }

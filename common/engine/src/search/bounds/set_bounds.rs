@@ -13,11 +13,10 @@ use super::group::{Aligned, Carries, Group};
 use super::heading_bounds::HeadingBounds;
 use super::quad_rows::{QuadRows, Reader};
 use super::set_program::{GROUPS, SetProgram};
-#[cfg(any(target_arch = "x86_64", test))]
-use crate::instruction_set::InstructionSet;
-use crate::search::index::bits::{self, EMPTY, QUAD, Words};
+use crate::search::index::bits;
 use crate::search::index::sets::{Quad, RangeSets};
-use crate::search::index::words::{BitWords, Several};
+use crate::simd::words::{BitWords, EMPTY, QUAD, Several};
+use crate::simd::{Kernel, Set};
 
 /// Most chunks that are bounded at a time by any instruction set.
 const MOST_AT_A_TIME: usize = 3;
@@ -88,15 +87,12 @@ impl SetProgram {
         known: Option<Known<'_>>,
         bounds: &'a mut SetBounds,
     ) -> &'a HeadingBounds {
-        match self.instruction_set {
-            // SAFETY: the processor has the instruction set, or it would not be chosen.
-            #[cfg(target_arch = "x86_64")]
-            InstructionSet::Avx512 => unsafe { self.run_avx512(blocks, known, bounds) },
-            // SAFETY: as above.
-            #[cfg(target_arch = "x86_64")]
-            InstructionSet::Avx2 => unsafe { self.run_avx2(blocks, known, bounds) },
-            _ => self.run_with::<Words>(blocks, known, bounds),
-        }
+        self.simd.run(Bounding {
+            program: self,
+            blocks,
+            known,
+            bounds: &mut *bounds,
+        });
         &bounds.found
     }
 
@@ -117,31 +113,10 @@ impl SetProgram {
         }
     }
 
-    #[cfg(target_arch = "x86_64")]
-    #[target_feature(enable = "avx512f,avx512bw,avx512dq,avx512vl")]
-    fn run_avx512(
-        &self,
-        blocks: (&RangeSets, &Quad),
-        known: Option<Known<'_>>,
-        bounds: &mut SetBounds,
-    ) {
-        self.run_with::<crate::search::index::words::Avx512>(blocks, known, bounds);
-    }
-
-    #[cfg(target_arch = "x86_64")]
-    #[target_feature(enable = "avx2")]
-    fn run_avx2(
-        &self,
-        blocks: (&RangeSets, &Quad),
-        known: Option<Known<'_>>,
-        bounds: &mut SetBounds,
-    ) {
-        self.run_with::<crate::search::index::words::Avx2>(blocks, known, bounds);
-    }
-
     #[inline(always)]
-    fn run_with<W: BitWords>(
+    fn run<S: Set>(
         &self,
+        set: S,
         (sets, quad): (&RangeSets, &Quad),
         known: Option<Known<'_>>,
         bounds: &mut SetBounds,
@@ -150,14 +125,15 @@ impl SetProgram {
         bounds.found.greatest = [0; QUAD];
         self.choose(quad, known, &mut bounds.found, &mut chunks);
         if !chunks.is_empty() {
-            bounds.rows.set::<W>(&self.layout, &sets.quad(quad.index));
+            let rows = sets.quad(quad.index);
+            bounds.rows.take::<S::Words>(set, &self.layout, &rows);
         }
         let least = known.map(|(_, least)| least.div_ceil(self.unit));
-        for chunks in chunks.chunks(W::AT_A_TIME) {
+        for chunks in chunks.chunks(S::Words::AT_A_TIME) {
             match *chunks {
-                [a, b, c, ..] => self.run_chunks::<W, 3>(least, [a, b, c], bounds),
-                [a, b] => self.run_chunks::<W, 2>(least, [a, b], bounds),
-                [a] => self.run_chunks::<W, 1>(least, [a], bounds),
+                [a, b, c, ..] => self.run_chunks(set, least, [a, b, c], bounds),
+                [a, b] => self.run_chunks(set, least, [a, b], bounds),
+                [a] => self.run_chunks(set, least, [a], bounds),
                 [] => {}
             }
         }
@@ -190,8 +166,9 @@ impl SetProgram {
     /// Bounds blocks at the headings of some chunks, if so many units matter as long as
     /// any may have them.
     #[inline(always)]
-    fn run_chunks<W: BitWords, const N: usize>(
+    fn run_chunks<S: Set, const N: usize>(
         &self,
+        set: S,
         least: Option<u16>,
         places: [usize; N],
         bounds: &mut SetBounds,
@@ -208,15 +185,15 @@ impl SetProgram {
         let HeadingBounds {
             chunks, greatest, ..
         } = found;
-        let mut total = [Several::<W, N>::empty(); bits::PLANES];
+        let mut total = [Several::<S::Words, N>::empty(set); bits::PLANES];
         let total = &mut total[..self.planes];
-        let mut valid = [W::empty(); N];
+        let mut valid = [S::Words::empty(set); N];
         for (valid, place) in valid.iter_mut().zip(places) {
-            *valid = W::from_words(&chunks[place].reach);
+            *valid = S::Words::from_words(set, &chunks[place].reach);
         }
         let mut reach = valid;
         for left in (0..groups.len()).rev() {
-            groups[left].add(reader, carries, total);
+            groups[left].add(set, reader, carries, total);
             *reads += N as u64 * u64::from(groups[left].reads);
             let Some(least) = least else {
                 continue;
@@ -224,7 +201,8 @@ impl SetProgram {
             let rest: u16 = groups[..left].iter().map(|group| group.possible).sum();
             let least = least.saturating_sub(rest);
             for (i, reach) in reach.iter_mut().enumerate() {
-                *reach = bits::at_least(self.planes, |plane| total[plane].0[i], least, valid[i]);
+                let sums = |plane: usize| total[plane].0[i];
+                *reach = bits::at_least(set, self.planes, sums, least, valid[i]);
             }
             if reach.iter().all(|reach| reach.is_empty()) {
                 break;
@@ -243,7 +221,7 @@ impl SetProgram {
             chunk.reach = reach[i].to_words();
             if !reach[i].is_empty() {
                 let sums = |plane: usize| total[plane].0[i];
-                chunk.greatest = bits::greatest_of_each(self.planes, sums, reach[i]);
+                chunk.greatest = bits::greatest_of_each(set, self.planes, sums, reach[i]);
                 for (greatest, most) in greatest.iter_mut().zip(chunk.greatest) {
                     *greatest = most.max(*greatest);
                 }
@@ -252,11 +230,29 @@ impl SetProgram {
     }
 }
 
+/// Bounding the blocks of a quad.
+struct Bounding<'a, 'b> {
+    program: &'a SetProgram,
+    blocks: (&'a RangeSets, &'a Quad),
+    known: Option<Known<'a>>,
+    bounds: &'b mut SetBounds,
+}
+
+impl Kernel for Bounding<'_, '_> {
+    type Result = ();
+
+    #[inline(always)]
+    fn run<S: Set>(self, set: S) {
+        self.program.run(set, self.blocks, self.known, self.bounds);
+    }
+}
+
 #[cfg(test)]
 mod tests {
     use proptest::prelude::*;
 
     use super::*;
+    use crate::instruction_set::InstructionSet;
     use crate::limits::Limits;
     use crate::reference;
     use crate::search::index::SearchIndex;
@@ -265,6 +261,7 @@ mod tests {
     use crate::search::index::steps::BinSteps;
     use crate::search::index::within::Within;
     use crate::search::task::{Shared, Task};
+    use crate::simd::Simd;
     use crate::testing::{any_grid, any_scan, space_of};
     use crate::votes::CollectConfig;
 
@@ -289,7 +286,7 @@ mod tests {
                 let mut of_all_sets = Vec::new();
                 for instruction_set in InstructionSet::available() {
                     let mut set_program = SetProgram::default();
-                    set_program.make(&program, directions, &steps, instruction_set);
+                    set_program.make(&program, directions, &steps, Simd::new(instruction_set));
                     let all = Within::new(Limits::none(grid.width()), &grid);
                     let mut bounds = SetBounds::default();
                     bounds.fit(&set_program, all.headings(directions.count()));
@@ -338,7 +335,7 @@ mod tests {
             for instruction_set in InstructionSet::available() {
                 let mut shared = Shared::default();
                 let scan = (&program, &space);
-                let task = Task::new(&mut shared, instruction_set, &index, &grid, scan, CollectConfig::default());
+                let task = Task::new(&mut shared, Simd::new(instruction_set), &index, &grid, scan, CollectConfig::default());
                 let set_program = &task.programs.sets;
                 let [mut around, mut alone] = [(); 2].map(|()| {
                     let mut bounds = SetBounds::default();

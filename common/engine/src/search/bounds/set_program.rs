@@ -8,11 +8,11 @@ use std::ops::Range;
 use super::group::Group;
 use super::quad_rows::RowLayout;
 use crate::directions::Directions;
-use crate::instruction_set::InstructionSet;
 use crate::program::ScanProgram;
 use crate::search::index::bits;
 use crate::search::index::intervals::ROW_SHIFT;
 use crate::search::index::steps::BinSteps;
+use crate::simd::Simd;
 
 /// Rests that bearings leave by eight, each with a group of beams.
 pub(in crate::search) const GROUPS: usize = 8;
@@ -20,7 +20,7 @@ pub(in crate::search) const GROUPS: usize = 8;
 /// A scan program laid out for bounds from sets; made anew for each scan.
 #[derive(Debug, Clone)]
 pub(crate) struct SetProgram {
-    pub(in crate::search) instruction_set: InstructionSet,
+    pub(in crate::search) simd: Simd,
     /// Votes are counted in this unit, of which all peaks are multiples.
     pub(in crate::search) unit: u16,
     /// Planes that hold all sums.
@@ -35,7 +35,7 @@ pub(crate) struct SetProgram {
 impl Default for SetProgram {
     fn default() -> Self {
         SetProgram {
-            instruction_set: InstructionSet::Portable,
+            simd: Simd::default(),
             unit: 1,
             planes: 0,
             groups: [0, 1, 2, 3, 4, 5, 6, 7].map(Group::new),
@@ -52,11 +52,11 @@ impl SetProgram {
         program: &ScanProgram,
         directions: &Directions,
         steps: &BinSteps,
-        instruction_set: InstructionSet,
+        simd: Simd,
     ) {
         let peaks = (0..program.beams()).map(|beam| program.peak(beam));
         let unit = peaks.reduce(greatest_common_divisor).unwrap_or(1).max(1);
-        (self.instruction_set, self.unit) = (instruction_set, unit);
+        (self.simd, self.unit) = (simd, unit);
         self.layout.start(directions.count());
         self.groups.sort_unstable_by_key(Group::shift);
         self.groups.iter_mut().for_each(Group::clear);

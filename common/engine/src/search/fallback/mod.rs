@@ -278,8 +278,8 @@ impl<'a> Sifting<'a> {
             heading,
         };
         let Share { sweep, field, .. } = &mut *self.share;
-        let set = programs.instruction_set;
-        index.sweeps.fill(set, query, sweep, field, self.stop)?;
+        let simd = programs.simd;
+        index.sweeps.fill(simd, query, sweep, field, self.stop)?;
         index.within.limits.clear(field, heading);
         Some(())
     }
@@ -357,6 +357,7 @@ mod tests {
     use crate::scan::Scan;
     use crate::search::index::SearchIndex;
     use crate::search::task::Shared;
+    use crate::simd::Simd;
     use crate::space::Space;
     use crate::testing::{
         any_dense_scan, any_limited_grid, any_scan, plain_votes_within, space_of,
@@ -382,7 +383,14 @@ mod tests {
             (config, best): (CollectConfig, u16),
         ) -> &VoteSet {
             let shared = &mut self.shared;
-            let task = Task::new(shared, instruction_set, index, grid, scan, config);
+            let task = Task::new(
+                shared,
+                Simd::new(instruction_set),
+                index,
+                grid,
+                scan,
+                config,
+            );
             task.best.store(best, Ordering::Relaxed);
             self.shares.resize_with(threads, Share::default);
             let scan = (&task, scan.0);

@@ -3,22 +3,13 @@
 //! Headings come in chunks, a word of bits for each. Plane `j` of numbers holds bit
 //! `j` of all of them.
 
-use super::words::BitWords;
+use crate::simd::words::{BitWords, QUAD, Words};
 
 /// Headings of a chunk: a word less what shifting takes up.
 pub(crate) const CHUNK: usize = 120;
 
 /// The bits of a chunk.
 const WHOLE: u128 = u128::MAX >> (128 - CHUNK);
-
-/// Blocks whose bits lie side by side.
-pub(crate) const QUAD: usize = 4;
-
-/// A word of 128 bits for each block of a quad: the lower halves, then the upper ones.
-pub(crate) type Words = [[u64; QUAD]; 2];
-
-/// Words without bits.
-pub(crate) const EMPTY: Words = [[0; QUAD]; 2];
 
 /// Planes of numbers: they fit 16 bits.
 pub(crate) const PLANES: usize = 16;
@@ -59,16 +50,17 @@ pub(crate) fn greatest(planes: usize, number: impl Fn(usize) -> u64, among: u64)
 /// The greatest of the numbers of each block that `among` selects, of so many planes.
 #[inline(always)]
 pub(crate) fn greatest_of_each<W: BitWords>(
+    set: W::Set,
     planes: usize,
     number: impl Fn(usize) -> W,
     among: W,
 ) -> [u16; QUAD] {
-    let (mut candidates, mut value) = (among, W::empty());
+    let (mut candidates, mut value) = (among, W::empty(set));
     for plane in (0..planes).rev() {
         let higher = candidates.and(number(plane));
         let any = higher.filled();
         candidates = higher.or(candidates.without(any));
-        value = value.or(any.and(W::splat(1 << plane)));
+        value = value.or(any.and(W::splat(set, 1 << plane)));
     }
     value.to_words()[0].map(|value| value as u16)
 }
@@ -76,6 +68,7 @@ pub(crate) fn greatest_of_each<W: BitWords>(
 /// Where the numbers that `among` selects, of so many planes, are at least `least`.
 #[inline(always)]
 pub(crate) fn at_least<W: BitWords>(
+    set: W::Set,
     planes: usize,
     number: impl Fn(usize) -> W,
     least: u16,
@@ -85,10 +78,10 @@ pub(crate) fn at_least<W: BitWords>(
         return among;
     }
     if usize::from(least) >> planes != 0 {
-        return W::empty();
+        return W::empty(set);
     }
     // Equal so far from the highest plane down, or greater already.
-    let (mut equal, mut greater) = (among, W::empty());
+    let (mut equal, mut greater) = (among, W::empty(set));
     for plane in (0..planes).rev() {
         let bits = number(plane);
         if least >> plane & 1 == 1 {
@@ -157,6 +150,8 @@ mod tests {
     use proptest::prelude::*;
 
     use super::*;
+    use crate::simd::Portable;
+    use crate::simd::words::EMPTY;
 
     proptest! {
         #[test]
@@ -169,8 +164,8 @@ mod tests {
                     bits[i / 64 % 2][i / 128] |= u64::from(number >> plane & 1) << (i % 64);
                 }
             }
-            let found = at_least(PLANES, |plane| planes[plane], least, among);
-            let greatest_of_each = greatest_of_each(PLANES, |plane| planes[plane], among);
+            let found = at_least(Portable, PLANES, |plane| planes[plane], least, among);
+            let greatest_of_each = greatest_of_each(Portable, PLANES, |plane| planes[plane], among);
             for block in 0..QUAD {
                 let (among, found) = (of_block(&among, block), of_block(&found, block));
                 let numbers = &plain[128 * block..][..128];

@@ -18,18 +18,15 @@ use super::steps::BinSteps;
 use crate::directions::Directions;
 use crate::grid::Grid;
 use crate::instruction_set::InstructionSet;
+use crate::simd::Simd;
+use crate::simd::headings::{HEADINGS, IntervalRows};
+pub(crate) use crate::simd::{CELLS, SIDE};
 use build::Source;
 pub(crate) use unpack::{far_start, near_end};
 pub(crate) use wide::{ROW_SHIFT, WideViews};
 
-/// Cells along the side of a block.
-pub(crate) const SIDE: usize = 4;
-
-/// Cells of a block, row by row.
-pub(crate) const CELLS: usize = SIDE * SIDE;
-
 /// Directions that are read at a time.
-pub(crate) const READ: usize = 64;
+pub(crate) const READ: usize = HEADINGS;
 
 /// Rows of bytes of a packed block.
 const PACKED: usize = 3;
@@ -53,7 +50,7 @@ pub(crate) struct RangeIntervals {
     /// The blocks whose intervals are kept.
     pub ids: BlockIds,
     /// By which blocks are unpacked.
-    set: InstructionSet,
+    simd: Simd,
     /// For each block that is kept three rows with a byte for each direction: the nearest
     /// bin, the farthest bin, and the widths of the two intervals.
     packed: Vec<u8>,
@@ -67,9 +64,6 @@ pub(crate) struct BlockIntervals {
     /// there is none, the first lies behind the last.
     pub rows: [Vec<u8>; 4],
 }
-
-/// [`READ`] directions of each of the four rows.
-pub(crate) type IntervalRows<'a> = [&'a [u8; READ]; 4];
 
 /// The rows of a block, all as long.
 #[derive(Debug, Clone, Copy)]
@@ -135,14 +129,15 @@ impl RangeIntervals {
             steps,
             ids: &ids,
         };
-        let views = build::build(source, set, threads, &mut packed);
+        let simd = Simd::new(set);
+        let views = build::build(source, simd, threads, &mut packed);
         let wide = WideViews::new(ids.count(), &views);
         let intervals = RangeIntervals {
             columns,
             rows,
             directions: directions.count(),
             ids,
-            set,
+            simd,
             packed,
         };
         (intervals, wide)
@@ -176,14 +171,12 @@ impl RangeIntervals {
             row.resize(self.directions + READ, 0);
             &mut row[..self.directions]
         });
-        match self.set {
-            // SAFETY: the intervals were built by this instruction set, and what has
-            // AVX-512 has AVX2.
+        match self.simd {
             #[cfg(target_arch = "x86_64")]
-            InstructionSet::Avx512 | InstructionSet::Avx2 => unsafe {
-                unpack::unpack_avx2(packed, ends);
-            },
-            _ => unpack::unpack(packed, ends),
+            Simd::Avx512(set) => unpack::unpack_avx2(set.avx2(), packed, ends),
+            #[cfg(target_arch = "x86_64")]
+            Simd::Avx2(set) => unpack::unpack_avx2(set, packed, ends),
+            Simd::Portable(_) => unpack::unpack(packed, ends),
         }
         for row in &mut into.rows {
             let (turn, further) = row.split_at_mut(self.directions);

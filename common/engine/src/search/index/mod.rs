@@ -8,15 +8,12 @@ pub(in crate::search) mod bins;
 pub(in crate::search) mod bits;
 pub(in crate::search) mod block_ids;
 pub(in crate::search) mod intervals;
-pub(in crate::search) mod lanes;
 mod needed;
 pub(in crate::search) mod obstacles;
 pub(in crate::search) mod prefetch;
-pub(in crate::search) mod ray_lanes;
 pub(in crate::search) mod sets;
 pub(in crate::search) mod steps;
 pub(in crate::search) mod within;
-pub(in crate::search) mod words;
 
 use bins::Bins;
 use block_ids::BlockIds;

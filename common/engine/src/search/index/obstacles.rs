@@ -5,10 +5,10 @@
 //! side, and eight rows make one word. Where nothing is near they leap.
 
 use super::intervals::SIDE;
-use super::ray_lanes::{BitRows, ROWS, RayLanes};
 use crate::chessboard;
 use crate::directions::{Direction, swap_unless};
 use crate::grid::{Cell, Grid};
+use crate::simd::rays::{BitRows, ROWS, RayLanes};
 
 /// Bits before the first and after the last column, for rays that leave the map.
 const MARGIN: i64 = 32;
@@ -213,7 +213,7 @@ impl Rays<'_> {
     /// ray `i` ends at `position + j`. `None` where all of them have left the map;
     /// there must be a row at `position`.
     #[inline(always)]
-    pub(in crate::search) fn ends<L: RayLanes>(&self, position: i64) -> Option<u64> {
+    pub(in crate::search) fn ends<L: RayLanes>(&self, set: L::Set, position: i64) -> Option<u64> {
         const ENOUGH: &str = "rows go on before the first and behind the last";
         let Rays {
             rows, direction, ..
@@ -236,11 +236,12 @@ impl Rays<'_> {
             false => (major, bit, slope),
         };
         let start = lowest * rows.stride + (top + ROWS) as usize;
-        let word = L::word(&BitRows {
+        let rows = BitRows {
             rows: rows.bits[start..].first_chunk().expect(ENOUGH),
             bit: before + bit,
             slope,
-        });
+        };
+        let word = L::word(set, &rows);
         Some(if backward { word.swap_bytes() } else { word })
     }
 }
@@ -250,7 +251,7 @@ mod tests {
     use proptest::prelude::*;
 
     use super::*;
-    use crate::search::index::ray_lanes::Portable;
+    use crate::simd::{self, rays::Portable};
     use crate::testing::{any_grid, any_long_grid, space_of};
 
     proptest! {
@@ -266,7 +267,7 @@ mod tests {
                 if skip >= rays.positions() {
                     continue;
                 }
-                let ends = rays.ends::<Portable>(skip);
+                let ends = rays.ends::<Portable>(simd::Portable, skip);
                 for (i, j) in (0..8).flat_map(|i| (0..8).map(move |j| (i, j))) {
                     let (x, y) = rays.cell(i, skip + j);
                     let expected = grid.get(x, y).is_some_and(|cell| cell != Cell::Open);

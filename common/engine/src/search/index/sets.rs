@@ -15,11 +15,11 @@ mod packed;
 
 use std::convert::Infallible;
 
-use super::bits::QUAD;
 use super::intervals::{self, RangeIntervals, WideViews};
 use super::prefetch::prefetch;
-use super::words::BYTES;
 use crate::instruction_set::InstructionSet;
+use crate::simd::Simd;
+use crate::simd::words::{BYTES, QUAD};
 use crate::threads;
 use build::{Rows, build};
 pub(crate) use packed::SetRows;
@@ -79,6 +79,7 @@ impl RangeSets {
         set: InstructionSet,
         threads: usize,
     ) -> Self {
+        let simd = Simd::new(set);
         let (columns, rows) = (intervals.columns.div_ceil(2), intervals.rows.div_ceil(2));
         let quad_rows = rows.div_ceil(2);
         let piece = quad_rows.div_ceil(threads);
@@ -86,7 +87,7 @@ impl RangeSets {
         let pieces = pieces.map(|start| (start..quad_rows.min(start + piece), Rows::default()));
         let mut pieces: Vec<_> = pieces.collect();
         let Ok(()) = threads::run(&mut pieces, &|| false, |_, (rows, built), _| {
-            *built = build(set, (intervals, wide), rows.clone());
+            *built = build(simd, (intervals, wide), rows.clone());
             Ok::<(), Infallible>(())
         });
         let mut pieces = pieces.into_iter().map(|(_, built)| built);

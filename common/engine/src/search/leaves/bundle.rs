@@ -10,8 +10,7 @@ use crate::program::NO_RANGE;
 use crate::search::index::intervals::CELLS;
 use crate::search::index::intervals::SIDE;
 use crate::search::index::obstacles::Rays;
-use crate::search::index::ray_lanes::ROWS;
-use crate::search::index::ray_lanes::{Across, RAYS, RayLanes};
+use crate::simd::rays::{Across, RAYS, ROWS, RayLanes};
 
 /// The rays of a direction through a block, side by side. Positions count along
 /// the major axis from the first of the block's columns that a ray meets; here a
@@ -65,10 +64,11 @@ impl Bundle {
     #[inline(always)]
     pub(in crate::search) fn follow<L: RayLanes>(
         &self,
+        set: L::Set,
         rays: &Rays<'_>,
         spans: [(u16, u16); 2],
     ) -> [u16; RAYS] {
-        let mut hits = L::none();
+        let mut hits = L::none(set);
         let mut pending = u8::MAX >> (RAYS as u32 - self.rays);
         let mut mask = self.behind();
         let mut done = 0;
@@ -77,10 +77,13 @@ impl Bundle {
             let mut position = i64::from(first).max(done);
             // A span starts where a ray ends, as a rule: that is looked at first.
             while position < end && pending != 0 {
-                let Some(word) = rays.ends::<L>(position) else {
+                let Some(word) = rays.ends::<L>(set, position) else {
                     return hits.hits();
                 };
-                pending &= !hits.note(word & std::mem::replace(&mut mask, u64::MAX), position);
+                let word = word & std::mem::replace(&mut mask, u64::MAX);
+                let ended;
+                (hits, ended) = hits.note(word, position);
+                pending &= !ended;
                 position += ROWS;
                 while position < end && pending != 0 {
                     let free = rays.free(position);
@@ -103,8 +106,12 @@ impl Bundle {
 
     /// The ranges of the block's cells, all of them open: to where their rays end.
     #[inline(always)]
-    pub(in crate::search) fn ranges<L: RayLanes>(&self, hits: &[u16; RAYS]) -> [u16; CELLS] {
-        L::ranges(hits, &self.first, self.across())
+    pub(in crate::search) fn ranges<L: RayLanes>(
+        &self,
+        set: L::Set,
+        hits: &[u16; RAYS],
+    ) -> [u16; CELLS] {
+        L::ranges(set, hits, &self.first, self.across())
     }
 
     /// The same where some cells are not: to those that are in the way.

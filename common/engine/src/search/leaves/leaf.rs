@@ -2,23 +2,22 @@
 //!
 //! The ranges of all cells in a direction lie side by side, so that a beam's
 //! votes for the whole block are one table look-up for each cell, all of them at once
-//! (`cell_lanes.rs`).
+//! (`simd/cells.rs`).
 
-use super::cell_lanes::{self, CellLanes};
 use super::outlook::{Outlook, View};
 use crate::directions::Directions;
-use crate::instruction_set::InstructionSet;
 use crate::program::ScanProgram;
 use crate::search::bounds::sectors;
 use crate::search::index::bits;
 use crate::search::index::intervals::CELLS;
-use crate::search::index::ray_lanes::{self, RayLanes};
+use crate::simd::cells::{self, CellLanes};
+use crate::simd::{Kernel, Set, Simd};
 use crate::tables::{VoteTable, VoteTables};
 
 /// A scan program laid out for counting in blocks; made anew for each scan.
 #[derive(Debug, Clone, Default)]
 pub(crate) struct LeafProgram {
-    instruction_set: InstructionSet,
+    simd: Simd,
     /// The beams, sector by sector, and their bearings.
     order: Vec<usize>,
     bearings: Vec<usize>,
@@ -37,13 +36,8 @@ pub(crate) struct Count {
 }
 
 impl LeafProgram {
-    pub(crate) fn make(
-        &mut self,
-        program: &ScanProgram,
-        directions: &Directions,
-        instruction_set: InstructionSet,
-    ) {
-        self.instruction_set = instruction_set;
+    pub(crate) fn make(&mut self, program: &ScanProgram, directions: &Directions, simd: Simd) {
+        self.simd = simd;
         sectors::order(program, &mut self.order);
         let bearings = self.order.iter().map(|&beam| program.bearing(beam));
         self.bearings.clear();
@@ -111,76 +105,45 @@ impl LeafProgram {
         headings: (usize, u64),
         counts: &mut [Count],
     ) {
-        match self.instruction_set {
-            // SAFETY: the processor has the instruction set, or it would not be chosen.
-            #[cfg(target_arch = "x86_64")]
-            InstructionSet::Avx512 => unsafe { self.add_avx512(looking, beams, headings, counts) },
-            // SAFETY: as above.
-            #[cfg(target_arch = "x86_64")]
-            InstructionSet::Avx2 => unsafe { self.add_avx2(looking, beams, headings, counts) },
-            _ => self.add_with::<ray_lanes::Portable, cell_lanes::Portable>(
-                looking, beams, headings, counts,
-            ),
-        }
+        self.simd.run(Adding {
+            program: self,
+            looking,
+            beams,
+            headings,
+            counts,
+        });
     }
 
-    #[cfg(target_arch = "x86_64")]
-    #[target_feature(enable = "avx512f,avx512bw,avx512cd,avx512dq,avx512vl,avx512vbmi")]
-    fn add_avx512(
-        &self,
-        looking: (&mut Outlook, &View<'_>),
-        beams: (usize, &[u64]),
-        headings: (usize, u64),
-        counts: &mut [Count],
-    ) {
-        use ray_lanes::Avx512;
-        if self.tables.are_short() {
-            self.add_with::<Avx512, cell_lanes::Avx512>(looking, beams, headings, counts);
-        } else {
-            self.add_with::<Avx512, cell_lanes::Portable>(looking, beams, headings, counts);
-        }
-    }
-
-    #[cfg(target_arch = "x86_64")]
-    #[target_feature(enable = "avx2")]
-    fn add_avx2(
-        &self,
-        looking: (&mut Outlook, &View<'_>),
-        beams: (usize, &[u64]),
-        headings: (usize, u64),
-        counts: &mut [Count],
-    ) {
-        use ray_lanes::Avx2;
-        if self.tables.are_short() {
-            self.add_with::<Avx2, cell_lanes::Avx2>(looking, beams, headings, counts);
-        } else {
-            self.add_with::<Avx2, cell_lanes::Portable>(looking, beams, headings, counts);
-        }
-    }
-
+    /// Plain code adds votes by tables of any length, and so do all where one is long.
     #[inline(always)]
-    fn add_with<R: RayLanes, C: CellLanes>(
+    fn add_with<S: Set, C: CellLanes>(
         &self,
-        (outlook, view): (&mut Outlook, &View<'_>),
-        (first_beam, beams): (usize, &[u64]),
-        (first, headings): (usize, u64),
-        counts: &mut [Count],
+        set: S,
+        load: impl Fn(&[u16; CELLS]) -> C,
+        adding: Adding<'_, '_>,
     ) {
+        let Adding {
+            looking: (outlook, view),
+            beams: (first_beam, beams),
+            headings: (first, headings),
+            counts,
+            ..
+        } = adding;
         for (beam, voting) in (first_beam..).zip(beams) {
             for lane in bits::ones(headings & voting) {
-                outlook.look::<R>(view, self.direction(beam, first + lane));
+                outlook.look(set, view, self.direction(beam, first + lane));
             }
         }
         for lane in bits::ones(headings) {
             let count = &mut counts[lane];
-            let mut sums = C::load(&count.votes);
+            let mut sums = load(&count.votes);
             let voting = beams.iter().enumerate();
             let voting = voting.fold(0, |all, (i, voting)| all | (voting >> lane & 1) << i);
             for beam in bits::ones(voting).map(|i| first_beam + i) {
                 let (direction, table) = self.place(beam, first + lane);
                 sums = sums.add(table, outlook.ranges(direction));
             }
-            sums.store(&mut count.votes);
+            count.votes = sums.votes();
             count.most = sums.most(outlook.open());
         }
     }
@@ -205,11 +168,36 @@ impl LeafProgram {
     }
 }
 
+/// Adding the votes of beams from a first one on, at headings from a first one on, each
+/// with a count.
+struct Adding<'a, 'b> {
+    program: &'a LeafProgram,
+    looking: (&'b mut Outlook, &'a View<'a>),
+    beams: (usize, &'a [u64]),
+    headings: (usize, u64),
+    counts: &'b mut [Count],
+}
+
+impl Kernel for Adding<'_, '_> {
+    type Result = ();
+
+    #[inline(always)]
+    fn run<S: Set>(self, set: S) {
+        let program = self.program;
+        if program.tables.are_short() {
+            program.add_with(set, |votes| S::Cells::load(set, votes), self);
+        } else {
+            program.add_with(set, cells::Portable::new, self);
+        }
+    }
+}
+
 #[cfg(test)]
 mod tests {
     use proptest::prelude::*;
 
     use super::*;
+    use crate::instruction_set::InstructionSet;
     use crate::limits::Limits;
     use crate::reference;
     use crate::search::index::bins::Bins;
@@ -235,7 +223,7 @@ mod tests {
             let heading = seed[1] % directions.count();
             for instruction_set in InstructionSet::available() {
                 let mut leaf = LeafProgram::default();
-                leaf.make(&program, directions, instruction_set);
+                leaf.make(&program, directions, Simd::new(instruction_set));
                 let mut outlook = Outlook::default();
                 outlook.prepare(&grid, directions);
                 outlook.enter((&view, &Limits::none(grid.width())), &intervals, block);

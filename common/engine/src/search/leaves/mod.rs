@@ -3,6 +3,5 @@
 //! What is counted here is what the plain reference counts, to the last vote.
 
 pub(in crate::search) mod bundle;
-pub(in crate::search) mod cell_lanes;
 pub(in crate::search) mod leaf;
 pub(in crate::search) mod outlook;

@@ -12,8 +12,8 @@ use crate::limits::Limits;
 use crate::program::NO_RANGE;
 use crate::search::index::intervals::{BlockIntervals, CELLS, RangeIntervals, SIDE};
 use crate::search::index::obstacles::Obstacles;
-use crate::search::index::ray_lanes::RayLanes;
 use crate::search::index::steps::BinSteps;
+use crate::simd::Set;
 
 /// What is looked at.
 #[derive(Debug, Clone, Copy)]
@@ -125,11 +125,11 @@ impl Outlook {
     /// Looks in direction `d`, unless that was done for this block. To be inlined into
     /// what is compiled for the instruction set.
     #[inline(always)]
-    pub(in crate::search) fn look<L: RayLanes>(&mut self, view: &View<'_>, d: usize) {
+    pub(in crate::search) fn look<S: Set>(&mut self, set: S, view: &View<'_>, d: usize) {
         if self.looked_for[d] != self.number {
             self.looked_for[d] = self.number;
             self.looks += 1;
-            self.look_anew::<L>(view, d);
+            self.look_anew(set, view, d);
         }
     }
 
@@ -157,7 +157,7 @@ impl Outlook {
     }
 
     #[inline(always)]
-    fn look_anew<L: RayLanes>(&mut self, view: &View<'_>, d: usize) {
+    fn look_anew<S: Set>(&mut self, set: S, view: &View<'_>, d: usize) {
         let direction = &view.directions.all()[d];
         let [near, far] = self.spans(view, d);
         let spans = if self.can_lose {
@@ -167,12 +167,12 @@ impl Outlook {
         };
         let bundle = Bundle::new(direction, (self.left, self.bottom));
         let rays = view.obstacles.rays(direction, bundle.start);
-        let mut hits = bundle.follow::<L>(&rays, spans);
+        let mut hits = bundle.follow::<S::Rays>(set, &rays, spans);
         if self.can_lose {
             bundle::lose(&rays, view.grid, &mut hits);
         }
         self.by_direction[d] = if self.all_open {
-            bundle.ranges::<L>(&hits)
+            bundle.ranges::<S::Rays>(set, &hits)
         } else {
             bundle.ranges_among(hits, &self.cells)
         };
@@ -187,8 +187,20 @@ mod tests {
     use crate::instruction_set::InstructionSet;
     use crate::reference;
     use crate::search::index::bins::Bins;
-    use crate::search::index::ray_lanes;
+    use crate::simd::{Kernel, Simd};
     use crate::testing::{any_grid, any_long_grid, space_of};
+
+    /// Looking in a direction.
+    struct Looking<'a>(&'a mut Outlook, &'a View<'a>, usize);
+
+    impl Kernel for Looking<'_> {
+        type Result = ();
+
+        #[inline(always)]
+        fn run<S: Set>(self, set: S) {
+            self.0.look(set, self.1, self.2);
+        }
+    }
 
     proptest! {
         #[test]
@@ -208,13 +220,7 @@ mod tests {
                 outlook.enter((&view, &Limits::none(grid.width())), &intervals, block);
                 let open = *outlook.open();
                 for (d, direction) in directions.all().iter().enumerate() {
-                    match set {
-                        #[cfg(target_arch = "x86_64")]
-                        InstructionSet::Avx512 => outlook.look::<ray_lanes::Avx512>(&view, d),
-                        #[cfg(target_arch = "x86_64")]
-                        InstructionSet::Avx2 => outlook.look::<ray_lanes::Avx2>(&view, d),
-                        _ => outlook.look::<ray_lanes::Portable>(&view, d),
-                    }
+                    Simd::new(set).run(Looking(&mut outlook, &view, d));
                     for (i, &open) in open.iter().enumerate() {
                         let (x, y) = outlook.cell(i);
                         let (x, y) = (x as i64, y as i64);

@@ -7,6 +7,7 @@ use crate::search::bounds::set_bounds::SetBounds;
 use crate::search::bounds::set_program::SetProgram;
 use crate::search::index::SearchIndex;
 use crate::search::index::within::Size;
+use crate::simd::Simd;
 use crate::space::Space;
 
 /// Upper bounds of the intensities in square blocks, row by row from the
@@ -54,7 +55,7 @@ impl SearchIndex {
         blocks: &mut BlockBounds,
     ) {
         let (coarse, directions) = (&self.coarse, &space.directions);
-        let best = InstructionSet::best();
+        let best = Simd::new(InstructionSet::best());
         let Bounding {
             program: set_program,
             bounds,

@@ -7,7 +7,6 @@ use std::sync::atomic::Ordering;
 use messages::Vote;
 
 use super::queue::{Block, Level, Promise, Queue};
-use crate::search::bounds::heading_lanes::HEADINGS;
 use crate::search::bounds::interval_bounds::{IntervalBounds, Window};
 use crate::search::bounds::set_bounds::SetBounds;
 use crate::search::fallback;
@@ -21,6 +20,7 @@ use crate::search::leaves::leaf::Count;
 use crate::search::leaves::outlook::Outlook;
 use crate::search::task::budget::{Budget, LEVELS, Tally};
 use crate::search::task::{Programs, Task};
+use crate::simd::headings::HEADINGS;
 use crate::votes::Collector;
 
 /// One thread's part of a search.
@@ -118,12 +118,8 @@ impl<'a> Descent<'a> {
                 }
                 Level::Leaf { start, end } => self.count(index, start as usize..end as usize),
             }
-            let Programs {
-                instruction_set,
-                beams,
-                ..
-            } = self.task.programs;
-            let cost = self.room.tally.take(*instruction_set, *beams);
+            let Programs { simd, beams, .. } = self.task.programs;
+            let cost = self.room.tally.take(simd.set(), *beams);
             budget.spend(level.number(), cost);
             if budget.is_up() && budget.is_hopeless(self.left()) {
                 return End::Hopeless;

@@ -9,6 +9,7 @@ use crate::program::ScanProgram;
 use crate::search::fallback::{self, Sift};
 use crate::search::index::SearchIndex;
 use crate::search::task::{Shared, Task};
+use crate::simd::Simd;
 use crate::space::Space;
 use crate::votes::{CollectConfig, VoteSet};
 
@@ -104,7 +105,7 @@ impl SearchIndex {
             shares,
             ..
         } = workspace;
-        let task = Task::new(shared, instruction_set.checked(), self, grid, scan, config);
+        let task = Task::new(shared, Simd::new(instruction_set), self, grid, scan, config);
         rooms.resize_with(threads, descent::Room::default);
         shares.resize_with(threads, fallback::Share::default);
         Attempt {

@@ -8,7 +8,6 @@ pub(in crate::search) mod budget;
 use std::sync::atomic::AtomicU16;
 
 use crate::grid::Grid;
-use crate::instruction_set::InstructionSet;
 use crate::program::ScanProgram;
 use crate::search::bounds::interval_program::IntervalProgram;
 use crate::search::bounds::set_program::SetProgram;
@@ -16,6 +15,7 @@ use crate::search::index::SearchIndex;
 use crate::search::leaves::leaf::LeafProgram;
 use crate::search::leaves::outlook::View;
 use crate::search::task::budget::Cost;
+use crate::simd::Simd;
 use crate::space::Space;
 use crate::votes::CollectConfig;
 
@@ -51,39 +51,31 @@ pub(in crate::search) struct Programs {
     pub interval: IntervalProgram,
     pub leaf: LeafProgram,
     pub beams: usize,
-    pub instruction_set: InstructionSet,
+    pub simd: Simd,
 }
 
 impl Programs {
-    fn make(
-        &mut self,
-        instruction_set: InstructionSet,
-        index: &SearchIndex,
-        program: &ScanProgram,
-        space: &Space,
-    ) {
+    fn make(&mut self, simd: Simd, index: &SearchIndex, program: &ScanProgram, space: &Space) {
         let (directions, steps) = (&space.directions, &index.steps);
-        self.sets.make(program, directions, steps, instruction_set);
-        self.leaf.make(program, directions, instruction_set);
+        self.sets.make(program, directions, steps, simd);
+        self.leaf.make(program, directions, simd);
         let (shifts, ordered) = (self.sets.shifts(), (program, self.leaf.order()));
-        self.interval
-            .make(ordered, directions, steps, shifts, instruction_set);
+        self.interval.make(ordered, directions, steps, shifts, simd);
         self.beams = program.beams();
-        self.instruction_set = instruction_set;
+        self.simd = simd;
     }
 }
 
 impl<'a> Task<'a> {
-    /// `instruction_set` must be available.
     pub(in crate::search) fn new(
         shared: &'a mut Shared,
-        instruction_set: InstructionSet,
+        simd: Simd,
         index: &'a SearchIndex,
         grid: &'a Grid,
         (program, space): (&ScanProgram, &'a Space),
         config: CollectConfig,
     ) -> Self {
-        shared.programs.make(instruction_set, index, program, space);
+        shared.programs.make(simd, index, program, space);
         let chunks = index.within.headings(space.directions.count()).count();
         for (bounds, count) in [
             (&mut shared.coarse_bounds, index.coarse.blocks()),
@@ -101,7 +93,7 @@ impl<'a> Task<'a> {
             coarse_bounds: &shared.coarse_bounds,
             by_chunk: &shared.by_chunk,
             best: AtomicU16::new(0),
-            brute_force: Cost::of_brute_force(instruction_set, grid, program, space),
+            brute_force: Cost::of_brute_force(simd.set(), grid, program, space),
         }
     }
 

@@ -16,12 +16,11 @@ use super::wide::{Noting, WideView};
 use super::{PACKED, SIDE};
 use crate::directions::{Directions, swap_unless};
 use crate::grid::Grid;
-use crate::instruction_set::InstructionSet;
 use crate::search::index::bins::Bins;
 use crate::search::index::bits;
 use crate::search::index::block_ids::BlockIds;
-use crate::search::index::lanes::{Lanes, Portable};
 use crate::search::index::steps::BinSteps;
+use crate::simd::{Kernel, Set, Simd};
 use crate::threads;
 
 /// What the intervals are made of.
@@ -47,7 +46,7 @@ struct Band<'a> {
 /// are wide, as each thread found it.
 pub(super) fn build(
     source: Source<'_>,
-    set: InstructionSet,
+    simd: Simd,
     threads: usize,
     packed: &mut [u8],
 ) -> Vec<Vec<WideView>> {
@@ -59,7 +58,12 @@ pub(super) fn build(
         let bands = &bands;
         let mut built = Built { bands, views };
         while let Some(part) = parts.get(next.fetch_add(1, Ordering::Relaxed)) {
-            sweep_on(set, source, part, &mut built);
+            let built = &mut built;
+            simd.run(Sweeping {
+                source,
+                part,
+                built,
+            });
         }
         Ok::<(), Infallible>(())
     });
@@ -126,45 +130,25 @@ fn parts(directions: &Directions, threads: usize) -> Vec<Part> {
     parts
 }
 
-fn sweep_on(set: InstructionSet, source: Source<'_>, part: &Part, built: &mut Built<'_, '_>) {
-    match set.checked() {
-        InstructionSet::Portable => sweep(Portable, source, part, built),
-        #[cfg(target_arch = "x86_64")]
-        // SAFETY: the processor has the features that the function is compiled for.
-        InstructionSet::Avx2 => unsafe { sweep_avx2(source, part, built) },
-        #[cfg(target_arch = "x86_64")]
-        // SAFETY: as above.
-        InstructionSet::Avx512 => unsafe { sweep_avx512(source, part, built) },
-        #[cfg(not(target_arch = "x86_64"))]
-        _ => unreachable!("checked above"),
+/// Sweeping in the directions of a part.
+struct Sweeping<'a, 'b, 'c> {
+    source: Source<'a>,
+    part: &'a Part,
+    built: &'a mut Built<'b, 'c>,
+}
+
+impl Kernel for Sweeping<'_, '_, '_> {
+    type Result = ();
+
+    #[inline(always)]
+    fn run<S: Set>(self, set: S) {
+        sweep(set, self.source, self.part, self.built);
     }
-}
-
-#[cfg(target_arch = "x86_64")]
-#[target_feature(enable = "avx2")]
-fn sweep_avx2(source: Source<'_>, part: &Part, built: &mut Built<'_, '_>) {
-    sweep(
-        crate::search::index::lanes::Avx2::new(),
-        source,
-        part,
-        built,
-    );
-}
-
-#[cfg(target_arch = "x86_64")]
-#[target_feature(enable = "avx512f,avx512bw,avx512dq,avx512vl")]
-fn sweep_avx512(source: Source<'_>, part: &Part, built: &mut Built<'_, '_>) {
-    sweep(
-        crate::search::index::lanes::Avx512::new(),
-        source,
-        part,
-        built,
-    );
 }
 
 /// Sweeps over the map in the directions of a part.
 #[inline(always)]
-fn sweep<L: Lanes>(lanes: L, source: Source<'_>, part: &Part, built: &mut Built<'_, '_>) {
+fn sweep<S: Set>(lanes: S, source: Source<'_>, part: &Part, built: &mut Built<'_, '_>) {
     let (width, height) = (source.grid.width(), source.grid.height());
     let longest = (width.max(height) - 1) as u16;
     let (majors, minors) = swap_unless(part.x_major, (width, height));

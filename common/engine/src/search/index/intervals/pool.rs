@@ -4,7 +4,7 @@ use super::strip::Row;
 use super::wide::{Noting, WIDE};
 use super::{ALL, PACKED, SIDE, STRETCHES};
 use crate::search::index::bins::{Bins, Line};
-use crate::search::index::lanes::Lanes;
+use crate::simd::numbers::Numbers;
 
 /// Pools the ranges of a strip's four rows of cells block by block, and packs
 /// the intervals of their bins, by `lines`, row by row of the packed format. Notes what
@@ -18,7 +18,7 @@ use crate::search::index::lanes::Lanes;
 ///
 /// [`NO_RANGE`]: crate::program::NO_RANGE
 #[inline(always)]
-pub(super) fn pool<L: Lanes, const LINES: usize>(
+pub(super) fn pool<L: Numbers, const LINES: usize>(
     lanes: L,
     rows: [&Row; SIDE],
     lines: &[Line; LINES],
@@ -74,7 +74,7 @@ pub(super) fn pool<L: Lanes, const LINES: usize>(
 /// wide to be more, both widths together: from the first bin to that of the last near
 /// number, and from that of the first far one to the last bin.
 #[inline(always)]
-fn split<L: Lanes, const LINES: usize>(
+fn split<L: Numbers, const LINES: usize>(
     lanes: L,
     lines: &[Line; LINES],
     [first, last]: [L::Vector; 2],
@@ -90,7 +90,7 @@ fn split<L: Lanes, const LINES: usize>(
 
 /// The nibbles that stand for widths, of which some are rounded up.
 #[inline(always)]
-fn nibble<L: Lanes>(lanes: L, widths: L::Vector) -> L::Vector {
+fn nibble<L: Numbers>(lanes: L, widths: L::Vector) -> L::Vector {
     let mut least = lanes.min(widths, lanes.splat(u16::from(ALL)));
     // The widths from one nibble on, as a line: as many bins for each nibble, and how
     // far behind the start of that line the widths lie.
@@ -113,7 +113,7 @@ fn nibble<L: Lanes>(lanes: L, widths: L::Vector) -> L::Vector {
 
 /// First and last number of each lane.
 #[inline(always)]
-fn outermost<L: Lanes>(lanes: L, steps: &[L::Vector; SIDE * SIDE]) -> (L::Vector, L::Vector) {
+fn outermost<L: Numbers>(lanes: L, steps: &[L::Vector; SIDE * SIDE]) -> (L::Vector, L::Vector) {
     let (mut first, mut last) = (steps[0], steps[0]);
     for &steps in &steps[1..] {
         first = lanes.min(first, steps);
@@ -124,7 +124,7 @@ fn outermost<L: Lanes>(lanes: L, steps: &[L::Vector; SIDE * SIDE]) -> (L::Vector
 
 /// The last of the numbers below `far`, and the first of the others.
 #[inline(always)]
-fn part<L: Lanes>(lanes: L, steps: &[L::Vector; SIDE * SIDE], far: L::Vector) -> [L::Vector; 2] {
+fn part<L: Numbers>(lanes: L, steps: &[L::Vector; SIDE * SIDE], far: L::Vector) -> [L::Vector; 2] {
     // Counted from there, those below wrap around to the greatest numbers.
     let mut far_first = lanes.sub(steps[0], far);
     let mut near_last = far_first;
@@ -138,7 +138,7 @@ fn part<L: Lanes>(lanes: L, steps: &[L::Vector; SIDE * SIDE], far: L::Vector) ->
 
 /// The bins of ranges that are a step longer than these numbers.
 #[inline(always)]
-fn bin<L: Lanes, const N: usize, const LINES: usize>(
+fn bin<L: Numbers, const N: usize, const LINES: usize>(
     lanes: L,
     lines: &[Line; LINES],
     mut steps: [L::Vector; N],

@@ -9,7 +9,7 @@ use super::SIDE;
 use crate::directions::swap_unless;
 use crate::grid::{Cell, Grid};
 use crate::program::NO_RANGE;
-use crate::search::index::lanes::Lanes;
+use crate::simd::numbers::Numbers;
 
 /// Numbers in a cache line.
 const LINE: usize = 32;
@@ -144,7 +144,7 @@ impl StripMasks {
     /// cell lies `shift` cells on in the row `next`: 0 if the cell is occupied,
     /// else one step more than the next one's.
     #[inline(always)]
-    pub(super) fn sweep<L: Lanes>(
+    pub(super) fn sweep<L: Numbers>(
         &self,
         lanes: L,
         row: usize,

@@ -1,6 +1,14 @@
 //! The ends of the two intervals, direction by direction, from what is kept of them.
 
+#[cfg(target_arch = "x86_64")]
+use std::arch::x86_64::*;
+
+#[cfg(target_arch = "x86_64")]
+use bytemuck::{bytes_of, must_cast, pod_read_unaligned};
+
 use super::{ALL, PACKED, STRETCHES};
+#[cfg(target_arch = "x86_64")]
+use crate::simd::{Avx2, avx2};
 
 /// First and last bin of the near interval, then of the far one.
 pub(super) type Ends<'a> = [&'a mut [u8]; 4];
@@ -45,48 +53,45 @@ pub(super) fn unpack([nearest, farthest, widths]: [&[u8]; PACKED], ends: Ends<'_
     }
 }
 
-/// The same, 32 directions at a time.
+/// Directions that are unpacked at a time.
 #[cfg(target_arch = "x86_64")]
-#[target_feature(enable = "avx2")]
-pub(super) fn unpack_avx2(packed: [&[u8]; PACKED], ends: Ends<'_>) {
-    use std::arch::x86_64::*;
+const LANES: usize = 32;
 
-    const LANES: usize = 32;
-    /// The widths that nibbles stand for, twice.
-    const WIDTHS: [u8; LANES] = {
-        let mut widths = [0; LANES];
-        let mut i = 0;
-        while i < LANES {
-            widths[i] = width(i as u8 % 16);
-            i += 1;
-        }
-        widths
-    };
+/// The widths that nibbles stand for, twice.
+#[cfg(target_arch = "x86_64")]
+const WIDTHS: [u8; LANES] = {
+    let mut widths = [0; LANES];
+    let mut i = 0;
+    while i < LANES {
+        widths[i] = width(i as u8 % 16);
+        i += 1;
+    }
+    widths
+};
 
-    let directions = packed[0].len();
-    let Some(last) = directions.checked_sub(LANES) else {
-        return unpack(packed, ends);
-    };
-    let [nearest, farthest, widths] = packed.map(|row| &row[..directions]);
-    let mut ends = ends.map(|row| &mut row[..directions]);
-    for start in (0..directions).step_by(LANES) {
-        // Where directions do not come out even, some are unpacked twice.
-        let start = start.min(last);
-        // SAFETY: all rows have as many bytes from there on as are read or written.
-        unsafe {
-            let nearest = _mm256_loadu_si256(nearest.as_ptr().add(start).cast());
-            let farthest = _mm256_loadu_si256(farthest.as_ptr().add(start).cast());
-            let widths = _mm256_loadu_si256(widths.as_ptr().add(start).cast());
-            let nibble = _mm256_set1_epi8(15);
-            let by_nibble = _mm256_loadu_si256(WIDTHS.as_ptr().cast());
+#[cfg(target_arch = "x86_64")]
+avx2! {
+    /// The same, [`LANES`] directions at a time.
+    pub(super) fn unpack_avx2(_set: Avx2, packed: [&[u8]; PACKED], ends: Ends<'_>) {
+        let directions = packed[0].len();
+        let Some(last) = directions.checked_sub(LANES) else {
+            return unpack(packed, ends);
+        };
+        let [nearest, farthest, widths] = packed.map(|row| &row[..directions]);
+        let mut ends = ends.map(|row| &mut row[..directions]);
+        let (nibble, by_nibble) = (_mm256_set1_epi8(15), must_cast(WIDTHS));
+        for start in (0..directions).step_by(LANES) {
+            // Where directions do not come out even, some are unpacked twice.
+            let lanes = start.min(last)..start.min(last) + LANES;
+            let read = |row: &[u8]| -> __m256i { pod_read_unaligned(&row[lanes.clone()]) };
+            let (nearest, farthest, widths) = (read(nearest), read(farthest), read(widths));
             let near = _mm256_shuffle_epi8(by_nibble, _mm256_and_si256(widths, nibble));
             let far = _mm256_and_si256(_mm256_srli_epi16::<4>(widths), nibble);
             let far = _mm256_shuffle_epi8(by_nibble, far);
             let near_last = _mm256_min_epu8(_mm256_adds_epu8(nearest, near), farthest);
             let far_first = _mm256_max_epu8(_mm256_subs_epu8(farthest, far), nearest);
-            let unpacked = [nearest, near_last, far_first, farthest];
-            for (row, lanes) in ends.iter_mut().zip(unpacked) {
-                _mm256_storeu_si256(row.as_mut_ptr().add(start).cast(), lanes);
+            for (row, unpacked) in ends.iter_mut().zip([nearest, near_last, far_first, farthest]) {
+                row[lanes.clone()].copy_from_slice(bytes_of(&unpacked));
             }
         }
     }

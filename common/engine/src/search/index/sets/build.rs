@@ -4,13 +4,13 @@
 use std::ops::Range;
 
 use super::Byte;
-use super::marks::{CHUNK, Chunk, Mark};
+use super::marks::{CHUNK, Chunk};
 use super::packed::PackedRows;
-use crate::instruction_set::InstructionSet;
 use crate::search::index::bins::Bins;
-use crate::search::index::bits::{self, QUAD};
+use crate::search::index::bits;
 use crate::search::index::intervals::{ROW_SHIFT, RangeIntervals, WideViews};
-use crate::search::index::lanes::Portable;
+use crate::simd::words::QUAD;
+use crate::simd::{Kernel, Set, Simd};
 
 /// No rows: any others start before and end behind.
 #[expect(clippy::reversed_empty_ranges, reason = "it is where growing starts")]
@@ -51,38 +51,27 @@ impl Rows {
 pub(super) type Source<'a> = (&'a RangeIntervals, &'a WideViews);
 
 /// The rows of the quads in some rows of them.
-pub(super) fn build(set: InstructionSet, source: Source<'_>, quad_rows: Range<usize>) -> Rows {
-    match set.checked() {
-        InstructionSet::Portable => join(Portable, source, quad_rows),
-        #[cfg(target_arch = "x86_64")]
-        // SAFETY: the processor has the features that the function is compiled for.
-        InstructionSet::Avx2 => unsafe { join_avx2(source, quad_rows) },
-        #[cfg(target_arch = "x86_64")]
-        // SAFETY: as above.
-        InstructionSet::Avx512 => unsafe { join_avx512(source, quad_rows) },
-        #[cfg(not(target_arch = "x86_64"))]
-        _ => unreachable!("checked above"),
+pub(super) fn build(simd: Simd, source: Source<'_>, quad_rows: Range<usize>) -> Rows {
+    simd.run(Joining { source, quad_rows })
+}
+
+/// Joining the sets of some rows of quads.
+struct Joining<'a> {
+    source: Source<'a>,
+    quad_rows: Range<usize>,
+}
+
+impl Kernel for Joining<'_> {
+    type Result = Rows;
+
+    #[inline(always)]
+    fn run<S: Set>(self, set: S) -> Rows {
+        join(set, self.source, self.quad_rows)
     }
 }
 
-#[cfg(target_arch = "x86_64")]
-#[target_feature(enable = "avx2")]
-fn join_avx2(source: Source<'_>, quad_rows: Range<usize>) -> Rows {
-    join(crate::search::index::lanes::Avx2::new(), source, quad_rows)
-}
-
-#[cfg(target_arch = "x86_64")]
-#[target_feature(enable = "avx512f,avx512bw,avx512dq,avx512vl")]
-fn join_avx512(source: Source<'_>, quad_rows: Range<usize>) -> Rows {
-    join(
-        crate::search::index::lanes::Avx512::new(),
-        source,
-        quad_rows,
-    )
-}
-
 #[inline(always)]
-fn join<M: Mark>(marker: M, source: Source<'_>, quad_rows: Range<usize>) -> Rows {
+fn join<S: Set>(set: S, source: Source<'_>, quad_rows: Range<usize>) -> Rows {
     let (intervals, _) = source;
     let stride = intervals.directions / 8;
     let mut chunks = vec![Chunk::default(); intervals.directions.div_ceil(CHUNK)];
@@ -94,7 +83,7 @@ fn join<M: Mark>(marker: M, source: Source<'_>, quad_rows: Range<usize>) -> Rows
             let mut rows = NONE;
             for (place, words) in words.iter_mut().enumerate() {
                 let block = (2 * x + place % 2, 2 * y + place / 2);
-                let marked = mark(marker, source, block, &mut chunks, words);
+                let marked = mark(set, source, block, &mut chunks, words);
                 rows = rows.start.min(marked.start)..rows.end.max(marked.end);
             }
             if rows.is_empty() {
@@ -120,8 +109,8 @@ fn join<M: Mark>(marker: M, source: Source<'_>, quad_rows: Range<usize>) -> Rows
 /// Marks what the block in column `x` and row `y` sees in words, of which all are 0:
 /// in which rows. The chunks are room for the directions of a turn.
 #[inline(always)]
-fn mark<M: Mark>(
-    marker: M,
+fn mark<S: Set>(
+    set: S,
     (intervals, wide): Source<'_>,
     (x, y): (usize, usize),
     chunks: &mut [Chunk],
@@ -139,7 +128,7 @@ fn mark<M: Mark>(
             continue;
         }
         for (chunk_index, chunk) in chunks.iter_mut().enumerate() {
-            set(chunk, i, intervals, block, CHUNK * chunk_index);
+            take(chunk, i, intervals, block, CHUNK * chunk_index);
         }
         for (direction, rows) in wide.of(intervals.ids.before(block)) {
             let (chunk_index, lane) = (direction / CHUNK, direction % CHUNK);
@@ -152,7 +141,7 @@ fn mark<M: Mark>(
     let mut rows = NONE;
     for (chunk_index, chunk) in chunks.iter().enumerate() {
         for row in chunk.rows() {
-            words[usize::from(row) * count + chunk_index] |= marker.mark(row, chunk).to_le();
+            words[usize::from(row) * count + chunk_index] |= chunk.mark(set, row).to_le();
             rows = rows.start.min(row.into())..rows.end.max(usize::from(row) + 1);
         }
     }
@@ -161,7 +150,7 @@ fn mark<M: Mark>(
 
 /// Takes the intervals of a block in the directions from `start` on.
 #[inline(always)]
-fn set(chunk: &mut Chunk, i: usize, intervals: &RangeIntervals, block: usize, start: usize) {
+fn take(chunk: &mut Chunk, i: usize, intervals: &RangeIntervals, block: usize, start: usize) {
     let [nearest, farthest, widths] = intervals.packed(block);
     if let (Some(nearest), Some(farthest), Some(widths)) = (
         nearest[start..].first_chunk(),

@@ -6,7 +6,7 @@
 use std::ops::Range;
 
 use super::{Byte, READ};
-use crate::search::index::bits::QUAD;
+use crate::simd::words::QUAD;
 
 /// No block of a quad has bits.
 const NOTHING: Byte = [0; QUAD];

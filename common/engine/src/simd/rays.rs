@@ -1,40 +1,45 @@
-//! Eight rays side by side in the registers of an instruction set.
+//! Where eight rays side by side end.
 
-use super::intervals::{CELLS, SIDE};
+use super::{CELLS, SIDE};
 use crate::program::NO_RANGE;
 
 /// Rows of a word, and rays side by side in each.
-pub(in crate::search) const ROWS: i64 = 8;
+pub(crate) const ROWS: i64 = 8;
 
 /// The most rays of a bundle.
-pub(in crate::search) const RAYS: usize = ROWS as usize;
+pub(crate) const RAYS: usize = ROWS as usize;
 
 /// Where rays side by side end.
-///
-/// The methods must be inlined into functions that are compiled for the
-/// instruction set, and be called only where the processor has it.
-pub(in crate::search) trait RayLanes: Sized {
+pub(crate) trait RayLanes: Sized {
+    /// The token of the instruction set.
+    type Set: Copy;
+
     /// No ray has ended.
-    fn none() -> Self;
+    fn none(set: Self::Set) -> Self;
 
     /// Eight bits of each of eight rows, a row a byte.
-    fn word(rows: &BitRows<'_>) -> u64;
+    fn word(set: Self::Set, rows: &BitRows<'_>) -> u64;
 
     /// Notes where rays end at one of eight positions, unless they did before. Bit
-    /// `i` of byte `j` of the word says whether ray `i` ends at `position + j`; a
+    /// `i` of byte `j` of the word says whether ray `i` ends at `position + j`. And a
     /// bit for each ray that ends in it.
-    fn note(&mut self, word: u64, position: i64) -> u8;
+    fn note(self, word: u64, position: i64) -> (Self, u8);
 
     /// The position at which each ray ends first, or [`NO_RANGE`].
     fn hits(self) -> [u16; RAYS];
 
     /// The ranges of the cells of a block, given the ray of each column's first cell.
-    fn ranges(hits: &[u16; RAYS], first: &[u16; SIDE], across: &Across) -> [u16; CELLS];
+    fn ranges(
+        set: Self::Set,
+        hits: &[u16; RAYS],
+        first: &[u16; SIDE],
+        across: &Across,
+    ) -> [u16; CELLS];
 }
 
 /// Where the cells of a block lie as rays cross them.
 #[derive(Debug, Clone, Copy)]
-pub(in crate::search) struct Across {
+pub(crate) struct Across {
     /// How many columns a ray has met before.
     pub column: [u16; CELLS],
     /// The place in the column.
@@ -43,7 +48,7 @@ pub(in crate::search) struct Across {
 
 impl Across {
     /// For rays along y and along x, each forward and backward.
-    pub(in crate::search) const ALL: [[Across; 2]; 2] = [
+    pub(crate) const ALL: [[Across; 2]; 2] = [
         [Across::new(false, false), Across::new(false, true)],
         [Across::new(true, false), Across::new(true, true)],
     ];
@@ -68,7 +73,7 @@ impl Across {
 
 /// Rows of bits on a slope.
 #[derive(Debug, Clone, Copy)]
-pub(in crate::search) struct BitRows<'a> {
+pub(crate) struct BitRows<'a> {
     pub rows: &'a [u32; RAYS],
     /// The first bit of the first row that is read, times 2³², and how much further
     /// that is in each further row. Eight bits from there on are in each row.
@@ -78,16 +83,18 @@ pub(in crate::search) struct BitRows<'a> {
 
 /// What every processor has.
 #[derive(Debug, Clone, Copy)]
-pub(in crate::search) struct Portable([u16; RAYS]);
+pub(crate) struct Portable([u16; RAYS]);
 
 impl RayLanes for Portable {
+    type Set = super::Portable;
+
     #[inline(always)]
-    fn none() -> Self {
+    fn none(_: Self::Set) -> Self {
         Portable([NO_RANGE; RAYS])
     }
 
     #[inline(always)]
-    fn word(rows: &BitRows<'_>) -> u64 {
+    fn word(_: Self::Set, rows: &BitRows<'_>) -> u64 {
         let bytes = std::array::from_fn(|row| {
             let bit = (rows.bit + row as i64 * rows.slope) >> 32;
             (rows.rows[row] >> (bit & 31)) as u8
@@ -96,7 +103,7 @@ impl RayLanes for Portable {
     }
 
     #[inline(always)]
-    fn note(&mut self, word: u64, position: i64) -> u8 {
+    fn note(mut self, word: u64, position: i64) -> (Self, u8) {
         /// The bits of the first ray.
         const FIRST: u64 = 0x0101_0101_0101_0101;
         for (i, hit) in self.0.iter_mut().enumerate() {
@@ -107,7 +114,7 @@ impl RayLanes for Portable {
         }
         let folded = word | word >> 32;
         let folded = folded | folded >> 16;
-        (folded | folded >> 8) as u8
+        (self, (folded | folded >> 8) as u8)
     }
 
     #[inline(always)]
@@ -116,7 +123,12 @@ impl RayLanes for Portable {
     }
 
     #[inline(always)]
-    fn ranges(hits: &[u16; RAYS], first: &[u16; SIDE], across: &Across) -> [u16; CELLS] {
+    fn ranges(
+        _: Self::Set,
+        hits: &[u16; RAYS],
+        first: &[u16; SIDE],
+        across: &Across,
+    ) -> [u16; CELLS] {
         std::array::from_fn(|i| {
             let column = across.column[i];
             let hit = hits[usize::from(first[usize::from(column)] + across.minor[i])];
@@ -129,40 +141,45 @@ impl RayLanes for Portable {
 mod x86 {
     use std::arch::x86_64::*;
 
+    use bytemuck::must_cast;
+
     use super::{Across, BitRows, CELLS, NO_RANGE, Portable, RAYS, RayLanes, SIDE};
+    use crate::simd::{self, Avx2, Avx512, avx2, avx512};
 
     /// A ray a lane of 64 bits, in two registers.
     #[derive(Clone, Copy)]
-    pub(crate) struct Avx2([__m256i; 2]);
+    pub(crate) struct Avx2Rays([__m256i; 2]);
 
-    #[expect(
-        clippy::undocumented_unsafe_blocks,
-        reason = "one argument holds for all: lanes of an instruction set are made only where the \
-                  processor has it, and arrays are as long as what is read of them or stored to them"
-    )]
-    impl RayLanes for Avx2 {
-        #[inline(always)]
-        fn none() -> Self {
-            unsafe { Avx2([_mm256_set1_epi64x(i64::from(NO_RANGE)); 2]) }
+    avx2! {
+        /// Those of eight numbers, which are there twice, at places below eight.
+        fn number_at(_set: Avx2, numbers: __m256i, places: __m256i) -> __m256i {
+            let bytes = _mm256_mullo_epi16(places, _mm256_set1_epi16(0x0202));
+            let bytes = _mm256_add_epi16(bytes, _mm256_set1_epi16(0x0100));
+            _mm256_shuffle_epi8(numbers, bytes)
         }
+    }
 
-        #[inline(always)]
-        fn word(rows: &BitRows<'_>) -> u64 {
-            Portable::word(rows)
-        }
+    avx2! {
+        impl RayLanes for Avx2Rays {
+            type Set = Avx2;
 
-        #[inline(always)]
-        fn note(&mut self, word: u64, position: i64) -> u8 {
-            let mut ended = 0;
-            for half in 0..2 {
-                let first_ray = 4 * half as i64;
-                unsafe {
+            fn none(_set: Avx2) -> Avx2Rays {
+                Avx2Rays([_mm256_set1_epi64x(i64::from(NO_RANGE)); 2])
+            }
+
+            fn word(_set: Avx2, rows: &BitRows<'_>) -> u64 {
+                Portable::word(simd::Portable, rows)
+            }
+
+            fn note(self, word: u64, position: i64) -> (Avx2Rays, u8) {
+                let (mut hits, mut ended) = (self.0, 0);
+                for (half, hits) in hits.iter_mut().enumerate() {
+                    let ray = 4 * half as i64;
                     let zero = _mm256_setzero_si256();
-                    let ray =
-                        _mm256_set_epi64x(first_ray + 3, first_ray + 2, first_ray + 1, first_ray);
+                    let rays = _mm256_set_epi64x(ray + 3, ray + 2, ray + 1, ray);
                     let word = _mm256_set1_epi64x(word.cast_signed());
                     let first = _mm256_set1_epi64x(0x0101_0101_0101_0101);
-                    let ends = _mm256_and_si256(_mm256_srlv_epi64(word, ray), first);
+                    let ends = _mm256_and_si256(_mm256_srlv_epi64(word, rays), first);
                     // Below the lowest bit lie as many bytes as positions before it.
                     let below = _mm256_add_epi64(ends, _mm256_set1_epi64x(-1));
                     let below = _mm256_and_si256(_mm256_andnot_si256(ends, below), first);
@@ -171,93 +188,62 @@ mod x86 {
                     let goes_on = _mm256_cmpeq_epi64(ends, zero);
                     // Numbers fit the low half of a lane.
                     let at = _mm256_or_si256(at, goes_on);
-                    self.0[half] = _mm256_min_epu32(self.0[half], at);
+                    *hits = _mm256_min_epu32(*hits, at);
                     let on = _mm256_movemask_pd(_mm256_castsi256_pd(goes_on));
-                    ended |= (!on & 0b1111) << first_ray;
+                    ended |= (!on & 0b1111) << ray;
                 }
+                (Avx2Rays(hits), ended as u8)
             }
-            ended as u8
-        }
 
-        #[inline(always)]
-        fn hits(self) -> [u16; RAYS] {
-            let mut hits = [0; RAYS];
-            unsafe {
+            fn hits(self) -> [u16; RAYS] {
                 let packed = _mm256_packus_epi32(self.0[0], self.0[1]);
                 let packed = _mm256_packus_epi32(packed, packed);
                 let (low, high) = (
                     _mm256_castsi256_si128(packed),
                     _mm256_extracti128_si256::<1>(packed),
                 );
-                _mm_storeu_si128(hits.as_mut_ptr().cast(), _mm_unpacklo_epi32(low, high));
+                must_cast(_mm_unpacklo_epi32(low, high))
             }
-            hits
-        }
 
-        #[inline(always)]
-        fn ranges(hits: &[u16; RAYS], first: &[u16; SIDE], across: &Across) -> [u16; CELLS] {
-            let mut ranges = [0; CELLS];
-            unsafe {
-                let column = _mm256_loadu_si256(across.column.as_ptr().cast());
-                let minor = _mm256_loadu_si256(across.minor.as_ptr().cast());
-                let hits = _mm256_broadcastsi128_si256(_mm_loadu_si128(hits.as_ptr().cast()));
-                let first = _mm256_broadcastsi128_si256(_mm_loadl_epi64(first.as_ptr().cast()));
-                let ray = _mm256_add_epi16(number_at(first, column), minor);
-                let hit = number_at(hits, ray);
+            fn ranges(
+                set: Avx2,
+                hits: &[u16; RAYS],
+                first: &[u16; SIDE],
+                across: &Across,
+            ) -> [u16; CELLS] {
+                let (column, minor) = (must_cast(across.column), must_cast(across.minor));
+                let hits = _mm256_broadcastsi128_si256(must_cast(*hits));
+                let first = _mm256_set1_epi64x(must_cast(*first));
+                let ray = _mm256_add_epi16(number_at(set, first, column), minor);
+                let hit = number_at(set, hits, ray);
                 let no_range = _mm256_cmpeq_epi16(hit, _mm256_set1_epi16(NO_RANGE as i16));
-                let range = _mm256_sub_epi16(hit, _mm256_andnot_si256(no_range, column));
-                _mm256_storeu_si256(ranges.as_mut_ptr().cast(), range);
+                must_cast(_mm256_sub_epi16(hit, _mm256_andnot_si256(no_range, column)))
             }
-            ranges
-        }
-    }
-
-    /// Those of eight numbers, which are there twice, at places below eight.
-    ///
-    /// # Safety
-    /// The processor must have AVX2.
-    #[inline(always)]
-    unsafe fn number_at(numbers: __m256i, places: __m256i) -> __m256i {
-        // SAFETY: as the caller says.
-        unsafe {
-            let bytes = _mm256_mullo_epi16(places, _mm256_set1_epi16(0x0202));
-            let bytes = _mm256_add_epi16(bytes, _mm256_set1_epi16(0x0100));
-            _mm256_shuffle_epi8(numbers, bytes)
         }
     }
 
     /// A ray a lane of 64 bits.
     #[derive(Clone, Copy)]
-    pub(crate) struct Avx512(__m512i);
+    pub(crate) struct Avx512Rays(__m512i);
 
-    #[expect(
-        clippy::undocumented_unsafe_blocks,
-        reason = "one argument holds for all but the reading of rows: lanes of an instruction \
-                  set are made only where the processor has it"
-    )]
-    impl RayLanes for Avx512 {
-        #[inline(always)]
-        fn none() -> Self {
-            unsafe { Avx512(_mm512_set1_epi64(i64::from(NO_RANGE))) }
-        }
+    avx512! {
+        impl RayLanes for Avx512Rays {
+            type Set = Avx512;
 
-        #[inline(always)]
-        fn word(rows: &BitRows<'_>) -> u64 {
-            unsafe {
+            fn none(_set: Avx512) -> Avx512Rays {
+                Avx512Rays(_mm512_set1_epi64(i64::from(NO_RANGE)))
+            }
+
+            fn word(_set: Avx512, rows: &BitRows<'_>) -> u64 {
                 let row = _mm512_set_epi64(7, 6, 5, 4, 3, 2, 1, 0);
                 let further = _mm512_mullo_epi64(row, _mm512_set1_epi64(rows.slope));
                 let bit = _mm512_add_epi64(_mm512_set1_epi64(rows.bit), further);
                 let by = _mm512_cvtepi64_epi32(_mm512_srli_epi64::<32>(bit));
-                // SAFETY: there are as many rows as a register holds.
-                let read = _mm256_loadu_si256(rows.rows.as_ptr().cast());
-                let word = _mm256_cvtepi32_epi8(_mm256_srlv_epi32(read, by));
+                let word = _mm256_cvtepi32_epi8(_mm256_srlv_epi32(must_cast(*rows.rows), by));
                 _mm_cvtsi128_si64(word).cast_unsigned()
             }
-        }
 
-        #[inline(always)]
-        fn note(&mut self, word: u64, position: i64) -> u8 {
-            unsafe {
+            fn note(self, word: u64, position: i64) -> (Avx512Rays, u8) {
                 let ray = _mm512_set_epi64(7, 6, 5, 4, 3, 2, 1, 0);
                 let word = _mm512_set1_epi64(word.cast_signed());
                 let first = _mm512_set1_epi64(0x0101_0101_0101_0101);
@@ -269,24 +255,24 @@ mod x86 {
                 let row = _mm512_srli_epi64::<3>(row);
                 let at = _mm512_add_epi64(_mm512_set1_epi64(position), row);
                 let ended = _mm512_test_epi64_mask(ends, ends);
-                self.0 = _mm512_mask_min_epu64(self.0, ended, self.0, at);
-                ended
+                (Avx512Rays(_mm512_mask_min_epu64(self.0, ended, self.0, at)), ended)
             }
-        }
 
-        #[inline(always)]
-        fn hits(self) -> [u16; RAYS] {
-            let mut hits = [0; RAYS];
-            unsafe { _mm_storeu_si128(hits.as_mut_ptr().cast(), _mm512_cvtepi64_epi16(self.0)) };
-            hits
-        }
+            fn hits(self) -> [u16; RAYS] {
+                must_cast(_mm512_cvtepi64_epi16(self.0))
+            }
 
-        #[inline(always)]
-        fn ranges(hits: &[u16; RAYS], first: &[u16; SIDE], across: &Across) -> [u16; CELLS] {
-            Avx2::ranges(hits, first, across)
+            fn ranges(
+                set: Avx512,
+                hits: &[u16; RAYS],
+                first: &[u16; SIDE],
+                across: &Across,
+            ) -> [u16; CELLS] {
+                <Avx2Rays as RayLanes>::ranges(set.avx2(), hits, first, across)
+            }
         }
     }
 }
 
 #[cfg(target_arch = "x86_64")]
-pub(in crate::search) use x86::{Avx2, Avx512};
+pub(crate) use x86::{Avx2Rays, Avx512Rays};

@@ -1,20 +1,22 @@
-//! Votes at 64 adjacent headings side by side in the registers of an instruction set.
+//! Votes at 64 adjacent headings.
 
 #[cfg(target_arch = "x86_64")]
 mod x86;
 
-use crate::search::index::intervals::{self, IntervalRows};
 use crate::tables::TABLE;
 #[cfg(target_arch = "x86_64")]
-pub(in crate::search) use x86::{Avx2, Avx512};
+pub(crate) use x86::{Avx2Headings, Avx512Headings};
 
 /// Headings that are bounded at a time.
-pub(crate) const HEADINGS: usize = intervals::READ;
+pub(crate) const HEADINGS: usize = 64;
+
+/// First and last bins of two intervals, in the directions of a beam at [`HEADINGS`].
+pub(crate) type IntervalRows<'a> = [&'a [u8; HEADINGS]; 4];
 
 /// The most votes of a beam for a range in a bin; they never rise away from one.
 #[derive(Debug, Clone)]
 #[repr(C)]
-pub(in crate::search) struct BinVotes {
+pub(crate) struct BinVotes {
     /// Those in bins `base`, `base + 1`, …; the first and the last stand for all bins
     /// beyond.
     pub table: [u8; TABLE],
@@ -26,17 +28,16 @@ pub(in crate::search) struct BinVotes {
 }
 
 /// A number of votes for each heading that fits a byte.
-///
-/// The methods must be inlined into functions that are compiled for the
-/// instruction set, and be called only where the processor has it.
-pub(in crate::search) trait HeadingLanes: Copy {
+pub(crate) trait HeadingLanes: Copy {
+    /// The token of the instruction set.
+    type Set: Copy;
     /// Sums of such numbers.
     type Sums: Copy;
 
-    fn none() -> Self;
+    fn none(set: Self::Set) -> Self;
 
     /// The most votes that a beam has for a range of either interval.
-    fn of_beam(votes: &BinVotes, rows: IntervalRows<'_>) -> Self;
+    fn of_beam(set: Self::Set, votes: &BinVotes, rows: IntervalRows<'_>) -> Self;
 
     fn add(self, other: Self) -> Self;
 
@@ -45,31 +46,33 @@ pub(in crate::search) trait HeadingLanes: Copy {
 
     fn to_bytes(self) -> [u8; HEADINGS];
 
-    fn no_sums() -> Self::Sums;
+    fn no_sums(set: Self::Set) -> Self::Sums;
 
     fn add_to(self, sums: Self::Sums) -> Self::Sums;
 
     /// The headings with a sum of at least so much.
-    fn at_least(sums: Self::Sums, least: u16) -> u64;
+    fn at_least(set: Self::Set, sums: Self::Sums, least: u16) -> u64;
 
-    fn store(sums: Self::Sums, to: &mut [u16; HEADINGS]);
+    /// The sums, heading by heading.
+    fn votes(set: Self::Set, sums: Self::Sums) -> [u16; HEADINGS];
 }
 
 /// What every processor has; on ARM, which always has NEON, tables are looked up by
 /// its instructions.
 #[derive(Clone, Copy)]
-pub(in crate::search) struct Portable([u8; HEADINGS]);
+pub(crate) struct Portable([u8; HEADINGS]);
 
 impl HeadingLanes for Portable {
+    type Set = super::Portable;
     type Sums = [u16; HEADINGS];
 
     #[inline(always)]
-    fn none() -> Self {
+    fn none(_: Self::Set) -> Self {
         Portable([0; HEADINGS])
     }
 
     #[inline(always)]
-    fn of_beam(votes: &BinVotes, rows: IntervalRows<'_>) -> Self {
+    fn of_beam(_: Self::Set, votes: &BinVotes, rows: IntervalRows<'_>) -> Self {
         let [near_first, near_last, far_first, far_last] = rows;
         let near = look_up(votes, near_first, near_last);
         let far = look_up(votes, far_first, far_last);
@@ -93,7 +96,7 @@ impl HeadingLanes for Portable {
     }
 
     #[inline(always)]
-    fn no_sums() -> Self::Sums {
+    fn no_sums(_: Self::Set) -> Self::Sums {
         [0; HEADINGS]
     }
 
@@ -106,14 +109,14 @@ impl HeadingLanes for Portable {
     }
 
     #[inline(always)]
-    fn at_least(sums: Self::Sums, least: u16) -> u64 {
+    fn at_least(_: Self::Set, sums: Self::Sums, least: u16) -> u64 {
         let lanes = sums.iter().enumerate();
         lanes.fold(0, |all, (i, &sum)| all | u64::from(sum >= least) << i)
     }
 
     #[inline(always)]
-    fn store(sums: Self::Sums, to: &mut [u16; HEADINGS]) {
-        *to = sums;
+    fn votes(_: Self::Set, sums: Self::Sums) -> [u16; HEADINGS] {
+        sums
     }
 }
 
@@ -143,16 +146,10 @@ fn entries(votes: &BinVotes, index: &[u8; HEADINGS]) -> [u8; HEADINGS] {
 #[cfg(target_arch = "aarch64")]
 #[inline(always)]
 fn entries(votes: &BinVotes, index: &[u8; HEADINGS]) -> [u8; HEADINGS] {
-    use std::arch::aarch64::{vld1q_u8, vst1q_u8};
     let mut found = [0; HEADINGS];
-    for (found, index) in found.chunks_exact_mut(16).zip(index.chunks_exact(16)) {
-        // SAFETY: every ARM processor of 64 bits has NEON, and a chunk is as long as
-        // what is read of it or stored to it.
-        unsafe {
-            let index = vld1q_u8(index.as_ptr());
-            let looked_up = crate::tables::look_up_neon(&votes.table, votes.used.into(), index);
-            vst1q_u8(found.as_mut_ptr(), looked_up);
-        }
+    let pieces = found.as_chunks_mut().0.iter_mut().zip(index.as_chunks().0);
+    for (found, &index) in pieces {
+        *found = super::table::look_up_neon(&votes.table, votes.used.into(), index);
     }
     found
 }
@@ -164,48 +161,33 @@ mod tests {
 
     use super::*;
     use crate::instruction_set::InstructionSet;
+    use crate::simd::{Kernel, Set, Simd};
 
     /// Votes of some beams in some rows, their sums with others, where those reach a least
     /// one, and where there are any votes.
-    #[inline(always)]
-    fn count<L: HeadingLanes>(
-        beams: &[(BinVotes, [[u8; HEADINGS]; 4])],
+    struct Counting<'a> {
+        beams: &'a [(BinVotes, [[u8; HEADINGS]; 4])],
         times: usize,
         least: u16,
-    ) -> ([u8; HEADINGS], [u16; HEADINGS], [u64; 2]) {
-        let mut votes = L::none();
-        for (beam, [near_first, near_last, far_first, far_last]) in beams {
-            let rows = [near_first, near_last, far_first, far_last];
-            votes = votes.add(L::of_beam(beam, rows));
-        }
-        let mut sums = L::no_sums();
-        for _ in 0..times {
-            sums = votes.add_to(sums);
-        }
-        let mut all = [0; HEADINGS];
-        L::store(sums, &mut all);
-        let masks = [L::at_least(sums, least), votes.present()];
-        (votes.to_bytes(), all, masks)
     }
 
-    #[cfg(target_arch = "x86_64")]
-    #[target_feature(enable = "avx2")]
-    fn count_avx2(
-        beams: &[(BinVotes, [[u8; HEADINGS]; 4])],
-        times: usize,
-        least: u16,
-    ) -> ([u8; HEADINGS], [u16; HEADINGS], [u64; 2]) {
-        count::<Avx2>(beams, times, least)
-    }
+    impl Kernel for Counting<'_> {
+        type Result = ([u8; HEADINGS], [u16; HEADINGS], [u64; 2]);
 
-    #[cfg(target_arch = "x86_64")]
-    #[target_feature(enable = "avx512f,avx512bw,avx512vl,avx512vbmi")]
-    fn count_avx512(
-        beams: &[(BinVotes, [[u8; HEADINGS]; 4])],
-        times: usize,
-        least: u16,
-    ) -> ([u8; HEADINGS], [u16; HEADINGS], [u64; 2]) {
-        count::<Avx512>(beams, times, least)
+        #[inline(always)]
+        fn run<S: Set>(self, set: S) -> Self::Result {
+            let mut votes = S::Headings::none(set);
+            for (beam, rows) in self.beams {
+                votes = votes.add(S::Headings::of_beam(set, beam, rows.each_ref()));
+            }
+            let mut sums = S::Headings::no_sums(set);
+            for _ in 0..self.times {
+                sums = votes.add_to(sums);
+            }
+            let at_least = S::Headings::at_least(set, sums, self.least);
+            let all = S::Headings::votes(set, sums);
+            (votes.to_bytes(), all, [at_least, votes.present()])
+        }
     }
 
     fn any_row() -> impl Strategy<Value = [u8; HEADINGS]> {
@@ -248,16 +230,8 @@ mod tests {
             };
             let masks = [where_is(&|lane| sums[lane] >= least), where_is(&|lane| bytes[lane] > 0)];
             for set in InstructionSet::available() {
-                let counted = match set {
-                    // SAFETY: the processor has the instruction set.
-                    #[cfg(target_arch = "x86_64")]
-                    InstructionSet::Avx512 => unsafe { count_avx512(&beams, times, least) },
-                    // SAFETY: as above.
-                    #[cfg(target_arch = "x86_64")]
-                    InstructionSet::Avx2 => unsafe { count_avx2(&beams, times, least) },
-                    _ => count::<Portable>(&beams, times, least),
-                };
-                prop_assert_eq!(counted, (bytes, sums, masks), "{}", set);
+                let counting = Counting { beams: &beams, times, least };
+                prop_assert_eq!(Simd::new(set).run(counting), (bytes, sums, masks), "{}", set);
             }
         }
     }

@@ -12,12 +12,15 @@ mod avx512;
 mod portable;
 
 #[cfg(target_arch = "x86_64")]
-pub(crate) use avx2::Avx2;
+pub(crate) use avx2::Avx2Bytes;
 #[cfg(target_arch = "x86_64")]
-pub(crate) use avx512::Avx512;
+pub(crate) use avx512::Avx512Bytes;
 pub(crate) use portable::Portable;
 
 use crate::program::Taper;
+
+/// What every slice has that vectors are read of or stored to.
+const ENOUGH: &str = "as many numbers as a vector has";
 
 /// The longest profile whose taper a look-up holds: from its first vote to its
 /// end a byte counts the steps, and no vote is left at 255.
@@ -60,53 +63,56 @@ impl Lookup {
     }
 }
 
-/// A vector of bytes, one for each of neighbouring cells.
-///
-/// # Safety
-/// All functions need a processor with the vector's instruction set. Pointers
-/// must be good for a vector, or the two of a pair; they need no alignment.
+/// A vector of bytes, one for each of neighbouring cells. Slices hold a vector at least,
+/// or the bytes of two.
 pub(crate) trait Lanes: Copy {
-    /// Cells of a vector; at most 64 and a power of two.
-    const WIDTH: usize;
-    /// Numbers of 16 bits, one for each of the same cells.
+    /// The token of the instruction set.
+    type Set: Copy;
+    /// Numbers of 16 bits, one for each of the cells of a vector.
     type Pair: Copy;
     /// Where rays end among the cells of a vector.
     type Cells: Copy;
 
-    unsafe fn zero() -> Self;
-    /// The lowest byte of a number whose four bytes are the same.
-    unsafe fn splat(bytes: u32) -> Self;
-    unsafe fn load(from: *const u8) -> Self;
-    unsafe fn store(self, to: *mut u8);
-    unsafe fn add(self, other: Self) -> Self;
-    /// Adds the bytes to numbers of 16 bits, or sets those.
-    unsafe fn widen<const ADD: bool>(self, to: *mut u16);
+    /// Cells of a vector; at most 64 and a power of two.
+    const WIDTH: usize;
+    /// Vectors that are swept at a time, 1, 3 or 5: with their votes they fill the
+    /// registers.
+    const AT_A_TIME: usize;
 
-    /// The cells of vector `index` from rows of bits. `blocked` is read where
-    /// `BLOCKED` says that there is any such cell.
-    unsafe fn cells<const BLOCKED: bool>(
-        occupied: *const u64,
-        blocked: *const u64,
-        index: usize,
-    ) -> Self::Cells;
+    fn splat(set: Self::Set, byte: u8) -> Self;
+    fn load(set: Self::Set, from: &[u8]) -> Self;
+    fn store(self, to: &mut [u8]);
+    fn add(self, other: Self) -> Self;
+    /// Adds the bytes to numbers of 16 bits, or sets those.
+    fn widen<const ADD: bool>(self, to: &mut [u16]);
+
+    /// The cells of a vector, the first in the lowest bit. There are blocked ones only
+    /// where `BLOCKED` says so.
+    fn cells<const BLOCKED: bool>(set: Self::Set, occupied: u64, blocked: u64) -> Self::Cells;
     /// What is left a step before cells with so much left: `end` where the cell
     /// is occupied, nothing where it blocks.
-    unsafe fn step<const BLOCKED: bool>(self, cells: Self::Cells, end: Self) -> Self;
+    fn step<const BLOCKED: bool>(self, cells: Self::Cells, end: Self) -> Self;
 
-    unsafe fn splat_pair(numbers: u32) -> Self::Pair;
-    unsafe fn load_pair(from: *const u16) -> Self::Pair;
-    unsafe fn store_pair(pair: Self::Pair, to: *mut u16);
-    unsafe fn step_pair<const BLOCKED: bool>(
+    fn splat_pair(set: Self::Set, number: u16) -> Self::Pair;
+    fn load_pair(set: Self::Set, from: &[u8]) -> Self::Pair;
+    fn store_pair(set: Self::Set, pair: Self::Pair, to: &mut [u8]);
+    fn step_pair<const BLOCKED: bool>(
+        set: Self::Set,
         pair: Self::Pair,
         cells: Self::Cells,
         end: Self::Pair,
     ) -> Self::Pair;
     /// As bytes; what no byte holds becomes 255 or 0, which have no votes.
-    unsafe fn narrow(pair: Self::Pair) -> Self;
+    fn narrow(set: Self::Set, pair: Self::Pair) -> Self;
 
     /// The look-up of a taper of at most [`MAX_REACH`]; what is left is at most
     /// `highest`.
-    fn lookup(taper: &Taper<'_>, highest: u8) -> Lookup;
+    fn lookup(set: Self::Set, taper: &Taper<'_>, highest: u8) -> Lookup;
     /// Adds the votes for what is left.
-    unsafe fn vote<const N: usize>(votes: &mut [Self; N], left: &[Self; N], lookup: &Lookup);
+    fn vote<const N: usize>(
+        set: Self::Set,
+        votes: &mut [Self; N],
+        left: &[Self; N],
+        lookup: &Lookup,
+    );
 }

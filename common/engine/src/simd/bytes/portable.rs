@@ -4,8 +4,11 @@
 //! But votes only fall with the distance from the reading, in few levels, and
 //! to count the levels takes comparisons alone.
 
-use super::{Lanes, Lookup};
+use bytemuck::must_cast;
+
+use super::{ENOUGH, Lanes, Lookup};
 use crate::program::Taper;
+use crate::simd;
 
 const WIDTH: usize = 32;
 
@@ -20,32 +23,30 @@ pub(crate) struct Cells {
 }
 
 impl Lanes for Portable {
-    const WIDTH: usize = WIDTH;
+    type Set = simd::Portable;
     type Pair = [u16; WIDTH];
     type Cells = Cells;
 
+    const WIDTH: usize = WIDTH;
+    const AT_A_TIME: usize = 1;
+
     #[inline(always)]
-    unsafe fn zero() -> Self {
-        Portable([0; WIDTH])
+    fn splat(_: Self::Set, byte: u8) -> Self {
+        Portable([byte; WIDTH])
     }
 
     #[inline(always)]
-    unsafe fn splat(bytes: u32) -> Self {
-        Portable([bytes as u8; WIDTH])
+    fn load(_: Self::Set, from: &[u8]) -> Self {
+        Portable(*from.first_chunk().expect(ENOUGH))
     }
 
     #[inline(always)]
-    unsafe fn load(from: *const u8) -> Self {
-        unsafe { Portable(from.cast::<[u8; WIDTH]>().read_unaligned()) }
+    fn store(self, to: &mut [u8]) {
+        *to.first_chunk_mut().expect(ENOUGH) = self.0;
     }
 
     #[inline(always)]
-    unsafe fn store(self, to: *mut u8) {
-        unsafe { to.cast::<[u8; WIDTH]>().write_unaligned(self.0) }
-    }
-
-    #[inline(always)]
-    unsafe fn add(mut self, other: Self) -> Self {
+    fn add(mut self, other: Self) -> Self {
         for i in 0..WIDTH {
             self.0[i] = self.0[i].wrapping_add(other.0[i]);
         }
@@ -53,36 +54,27 @@ impl Lanes for Portable {
     }
 
     #[inline(always)]
-    unsafe fn widen<const ADD: bool>(self, to: *mut u16) {
-        unsafe {
-            let to = to.cast::<[u16; WIDTH]>();
-            let mut numbers = if ADD { to.read_unaligned() } else { [0; WIDTH] };
-            for (number, byte) in numbers.iter_mut().zip(self.0) {
-                *number = number.wrapping_add(u16::from(byte));
-            }
-            to.write_unaligned(numbers);
+    fn widen<const ADD: bool>(self, to: &mut [u16]) {
+        let to: &mut [u16; WIDTH] = to.first_chunk_mut().expect(ENOUGH);
+        let mut numbers = if ADD { *to } else { [0; WIDTH] };
+        for (number, byte) in numbers.iter_mut().zip(self.0) {
+            *number = number.wrapping_add(u16::from(byte));
         }
+        *to = numbers;
     }
 
     #[inline(always)]
-    unsafe fn cells<const BLOCKED: bool>(
-        occupied: *const u64,
-        blocked: *const u64,
-        index: usize,
-    ) -> Cells {
-        unsafe {
-            let bits = |rows: *const u64| *rows.add(index / 2) >> (32 * (index % 2)) as u32;
-            let blocked = if BLOCKED { bits(blocked) } else { 0 };
-            let (mut open, occupied) = (spread(bits(occupied) | blocked), spread(bits(occupied)));
-            for byte in &mut open {
-                *byte = !*byte;
-            }
-            Cells { open, occupied }
+    fn cells<const BLOCKED: bool>(_: Self::Set, occupied: u64, blocked: u64) -> Cells {
+        let blocked = if BLOCKED { blocked } else { 0 };
+        let (mut open, occupied) = (spread(occupied | blocked), spread(occupied));
+        for byte in &mut open {
+            *byte = !*byte;
         }
+        Cells { open, occupied }
     }
 
     #[inline(always)]
-    unsafe fn step<const BLOCKED: bool>(mut self, cells: Cells, end: Self) -> Self {
+    fn step<const BLOCKED: bool>(mut self, cells: Cells, end: Self) -> Self {
         for i in 0..WIDTH {
             let next = self.0[i].saturating_sub(1) & cells.open[i];
             self.0[i] = next | (end.0[i] & cells.occupied[i]);
@@ -91,22 +83,23 @@ impl Lanes for Portable {
     }
 
     #[inline(always)]
-    unsafe fn splat_pair(numbers: u32) -> [u16; WIDTH] {
-        [numbers as u16; WIDTH]
+    fn splat_pair(_: Self::Set, number: u16) -> [u16; WIDTH] {
+        [number; WIDTH]
     }
 
     #[inline(always)]
-    unsafe fn load_pair(from: *const u16) -> [u16; WIDTH] {
-        unsafe { from.cast::<[u16; WIDTH]>().read_unaligned() }
+    fn load_pair(_: Self::Set, from: &[u8]) -> [u16; WIDTH] {
+        must_cast::<[u8; 2 * WIDTH], _>(*from.first_chunk().expect(ENOUGH))
     }
 
     #[inline(always)]
-    unsafe fn store_pair(pair: [u16; WIDTH], to: *mut u16) {
-        unsafe { to.cast::<[u16; WIDTH]>().write_unaligned(pair) }
+    fn store_pair(_: Self::Set, pair: [u16; WIDTH], to: &mut [u8]) {
+        *to.first_chunk_mut().expect(ENOUGH) = must_cast::<_, [u8; 2 * WIDTH]>(pair);
     }
 
     #[inline(always)]
-    unsafe fn step_pair<const BLOCKED: bool>(
+    fn step_pair<const BLOCKED: bool>(
+        _: Self::Set,
         mut pair: [u16; WIDTH],
         cells: Cells,
         end: [u16; WIDTH],
@@ -120,15 +113,11 @@ impl Lanes for Portable {
     }
 
     #[inline(always)]
-    unsafe fn narrow(pair: [u16; WIDTH]) -> Self {
-        let mut bytes = [0; WIDTH];
-        for i in 0..WIDTH {
-            bytes[i] = pair[i].min(255) as u8;
-        }
-        Portable(bytes)
+    fn narrow(_: Self::Set, pair: [u16; WIDTH]) -> Self {
+        Portable(pair.map(|number| number.min(255) as u8))
     }
 
-    fn lookup(taper: &Taper<'_>, _highest: u8) -> Lookup {
+    fn lookup(_: Self::Set, taper: &Taper<'_>, _highest: u8) -> Lookup {
         let mut lookup = Lookup::new(0, taper);
         let below = taper.profile[1..].iter().chain([&0]);
         let drops = taper
@@ -146,7 +135,12 @@ impl Lanes for Portable {
     }
 
     #[inline(always)]
-    unsafe fn vote<const N: usize>(votes: &mut [Self; N], left: &[Self; N], lookup: &Lookup) {
+    fn vote<const N: usize>(
+        _: Self::Set,
+        votes: &mut [Self; N],
+        left: &[Self; N],
+        lookup: &Lookup,
+    ) {
         for (votes, left) in votes.iter_mut().zip(left) {
             let mut distances = [0; WIDTH];
             for (distance, left) in distances.iter_mut().zip(left.0) {

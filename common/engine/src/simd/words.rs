@@ -1,34 +1,43 @@
-//! Words of a quad of blocks in the registers of an instruction set.
+//! Words of bits, one for each of four neighbouring blocks: sums of votes bit by bit.
 
 #[cfg(target_arch = "x86_64")]
 mod x86;
 
-use super::bits::{EMPTY, QUAD, Words};
+use super::Portable;
 #[cfg(target_arch = "x86_64")]
-pub(crate) use x86::{Avx2, Avx512};
+pub(crate) use x86::{Avx2Words, Avx512Words};
+
+/// Blocks whose bits lie side by side.
+pub(crate) const QUAD: usize = 4;
+
+/// A word of 128 bits for each block of a quad: the lower halves, then the upper ones.
+pub(crate) type Words = [[u64; QUAD]; 2];
+
+/// Words without bits.
+pub(crate) const EMPTY: Words = [[0; QUAD]; 2];
 
 /// Bytes of the words of a quad.
 pub(crate) const BYTES: usize = 16 * QUAD;
 
 /// Words under way, one for each block.
-///
-/// The methods must be inlined into functions that are compiled for the
-/// instruction set, and be called only where the processor has it.
 pub(crate) trait BitWords: Copy {
+    /// The token of the instruction set.
+    type Set: Copy;
+
     /// How many chunks are bounded at a time: sums and what is added to them fit into
     /// the registers.
     const AT_A_TIME: usize;
 
     /// Words without bits.
-    fn empty() -> Self;
+    fn empty(set: Self::Set) -> Self;
     /// The same word for each block.
-    fn splat(word: u128) -> Self;
+    fn splat(set: Self::Set, word: u128) -> Self;
     /// Bytes as they lie in sets, see [`BitWords::sorted`].
-    fn read(bytes: &[u8; BYTES]) -> Self;
+    fn read(set: Self::Set, bytes: &[u8; BYTES]) -> Self;
     /// Fours of bytes: those that the mask tells, one after the other, and others
     /// without bits.
-    fn expand(mask: u16, bytes: &[u8; BYTES]) -> Self;
-    fn from_words(words: &Words) -> Self;
+    fn expand(set: Self::Set, mask: u16, bytes: &[u8; BYTES]) -> Self;
+    fn from_words(set: Self::Set, words: &Words) -> Self;
     fn to_words(self) -> Words;
     fn and(self, other: Self) -> Self;
     fn or(self, other: Self) -> Self;
@@ -58,8 +67,8 @@ pub(crate) struct Several<W, const N: usize>(pub [W; N]);
 
 impl<W: BitWords, const N: usize> Several<W, N> {
     #[inline(always)]
-    pub(crate) fn empty() -> Self {
-        Several([W::empty(); N])
+    pub(crate) fn empty(set: W::Set) -> Self {
+        Several([W::empty(set); N])
     }
 
     #[inline(always)]
@@ -82,25 +91,27 @@ impl<W: BitWords, const N: usize> Several<W, N> {
 }
 
 impl BitWords for Words {
+    type Set = Portable;
+
     const AT_A_TIME: usize = 1;
 
     #[inline(always)]
-    fn empty() -> Self {
+    fn empty(_: Portable) -> Self {
         EMPTY
     }
 
     #[inline(always)]
-    fn splat(word: u128) -> Self {
+    fn splat(_: Portable, word: u128) -> Self {
         [word as u64, (word >> 64) as u64].map(|half| [half; QUAD])
     }
 
     #[inline(always)]
-    fn read(bytes: &[u8; BYTES]) -> Self {
+    fn read(_: Portable, bytes: &[u8; BYTES]) -> Self {
         bytemuck::pod_read_unaligned(bytes)
     }
 
     #[inline(always)]
-    fn expand(mask: u16, bytes: &[u8; BYTES]) -> Self {
+    fn expand(_: Portable, mask: u16, bytes: &[u8; BYTES]) -> Self {
         let from: &[[u8; QUAD]; BYTES / QUAD] = bytemuck::cast_ref(bytes);
         let mut fours = [[0; QUAD]; BYTES / QUAD];
         let mut next = 0;
@@ -114,7 +125,7 @@ impl BitWords for Words {
     }
 
     #[inline(always)]
-    fn from_words(words: &Words) -> Self {
+    fn from_words(_: Portable, words: &Words) -> Self {
         *words
     }
 
@@ -187,18 +198,27 @@ mod tests {
 
     use super::*;
     use crate::instruction_set::InstructionSet;
+    use crate::simd::{Kernel, Set, Simd};
 
-    /// The words of a type, after sorting, shifting, filling and expanding.
-    fn done<W: BitWords>(bytes: &[u8; BYTES], (by, word, mask): (u32, u128, u16)) -> [Words; 5] {
-        let read = W::read(bytes);
-        let sorted = read.sorted();
-        [
-            sorted.to_words(),
-            sorted.shift_down(by).to_words(),
-            sorted.and(W::splat(word)).filled().to_words(),
-            W::splat(word).to_words(),
-            W::expand(mask, bytes).to_words(),
-        ]
+    /// Words after sorting, shifting, filling and expanding.
+    struct Done<'a>(&'a [u8; BYTES], (u32, u128, u16));
+
+    impl Kernel for Done<'_> {
+        type Result = [Words; 5];
+
+        #[inline(always)]
+        fn run<S: Set>(self, set: S) -> [Words; 5] {
+            let Done(bytes, (by, word, mask)) = self;
+            let sorted = S::Words::read(set, bytes).sorted();
+            let splat = S::Words::splat(set, word);
+            [
+                sorted.to_words(),
+                sorted.shift_down(by).to_words(),
+                sorted.and(splat).filled().to_words(),
+                splat.to_words(),
+                S::Words::expand(set, mask, bytes).to_words(),
+            ]
+        }
     }
 
     proptest! {
@@ -228,15 +248,9 @@ mod tests {
                 words(&|_| word),
                 bytemuck::cast(expanded),
             ];
-            prop_assert_eq!(done::<Words>(&bytes, (by, word, mask)), expected);
             for set in InstructionSet::available() {
-                match set {
-                    #[cfg(target_arch = "x86_64")]
-                    InstructionSet::Avx512 => prop_assert_eq!(done::<Avx512>(&bytes, (by, word, mask)), expected),
-                    #[cfg(target_arch = "x86_64")]
-                    InstructionSet::Avx2 => prop_assert_eq!(done::<Avx2>(&bytes, (by, word, mask)), expected),
-                    _ => {}
-                }
+                let done = Simd::new(set).run(Done(&bytes, (by, word, mask)));
+                prop_assert_eq!(done, expected, "{}", set);
             }
         }
     }

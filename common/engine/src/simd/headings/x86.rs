@@ -1,0 +1,193 @@
+//! Votes at headings in the registers of AVX-512 and AVX2.
+
+use std::arch::x86_64::*;
+
+use bytemuck::must_cast;
+
+use super::{BinVotes, HEADINGS, HeadingLanes, IntervalRows, TABLE};
+use crate::simd::table::look_up_avx2;
+use crate::simd::{Avx2, Avx512, avx2, avx512};
+
+/// Headings of a register of AVX2.
+const HALF: usize = HEADINGS / 2;
+
+/// Two registers of 32 headings.
+#[derive(Clone, Copy)]
+pub(crate) struct Avx2Headings([__m256i; 2]);
+
+avx2! {
+    /// The votes in the bin of each interval that is nearest to the centre.
+    fn look_up(set: Avx2, votes: &BinVotes, first: [u8; HALF], last: [u8; HALF]) -> __m256i {
+        let centre = _mm256_set1_epi8(votes.centre.cast_signed());
+        let bin = _mm256_max_epu8(_mm256_min_epu8(centre, must_cast(last)), must_cast(first));
+        let mut index = _mm256_subs_epu8(bin, _mm256_set1_epi8(votes.base.cast_signed()));
+        // Only then is the last entry, which stands for those beyond, anything but 0.
+        if usize::from(votes.used) == TABLE {
+            index = _mm256_min_epu8(index, _mm256_set1_epi8(TABLE as i8 - 1));
+        }
+        look_up_avx2(set, &votes.table, votes.used.into(), index)
+    }
+}
+
+fn half_of(row: &[u8; HEADINGS], half: usize) -> [u8; HALF] {
+    row.as_chunks().0[half]
+}
+
+avx2! {
+    impl HeadingLanes for Avx2Headings {
+        type Set = Avx2;
+        /// For each register, of the first and of the second eight headings of each 16.
+        type Sums = [[__m256i; 2]; 2];
+
+        fn none(_set: Avx2) -> Avx2Headings {
+            Avx2Headings([_mm256_setzero_si256(); 2])
+        }
+
+        fn of_beam(set: Avx2, votes: &BinVotes, rows: IntervalRows<'_>) -> Avx2Headings {
+            let [near_first, near_last, far_first, far_last] = rows;
+            let mut most = [_mm256_setzero_si256(); 2];
+            for (half, most) in most.iter_mut().enumerate() {
+                let near = look_up(set, votes, half_of(near_first, half), half_of(near_last, half));
+                let far = look_up(set, votes, half_of(far_first, half), half_of(far_last, half));
+                *most = _mm256_max_epu8(near, far);
+            }
+            Avx2Headings(most)
+        }
+
+        fn add(self, other: Avx2Headings) -> Avx2Headings {
+            let ([first, second], [other_first, other_second]) = (self.0, other.0);
+            Avx2Headings([
+                _mm256_add_epi8(first, other_first),
+                _mm256_add_epi8(second, other_second),
+            ])
+        }
+
+        fn present(self) -> u64 {
+            let mut present = 0;
+            for (half, votes) in self.0.into_iter().enumerate() {
+                let absent = _mm256_cmpeq_epi8(votes, _mm256_setzero_si256());
+                let absent = _mm256_movemask_epi8(absent).cast_unsigned();
+                present |= u64::from(!absent) << (HALF * half);
+            }
+            present
+        }
+
+        fn to_bytes(self) -> [u8; HEADINGS] {
+            must_cast(self.0)
+        }
+
+        fn no_sums(_set: Avx2) -> [[__m256i; 2]; 2] {
+            [[_mm256_setzero_si256(); 2]; 2]
+        }
+
+        fn add_to(self, sums: [[__m256i; 2]; 2]) -> [[__m256i; 2]; 2] {
+            let (mut sums, zero) = (sums, _mm256_setzero_si256());
+            for (votes, [low, high]) in self.0.into_iter().zip(&mut sums) {
+                *low = _mm256_add_epi16(*low, _mm256_unpacklo_epi8(votes, zero));
+                *high = _mm256_add_epi16(*high, _mm256_unpackhi_epi8(votes, zero));
+            }
+            sums
+        }
+
+        fn at_least(_set: Avx2, sums: [[__m256i; 2]; 2], least: u16) -> u64 {
+            let (least, zero) = (_mm256_set1_epi16(least.cast_signed()), _mm256_setzero_si256());
+            let mut reaching = 0;
+            for (half, [low, high]) in sums.into_iter().enumerate() {
+                let low = _mm256_cmpeq_epi16(_mm256_subs_epu16(least, low), zero);
+                let high = _mm256_cmpeq_epi16(_mm256_subs_epu16(least, high), zero);
+                // Packing puts the headings back in order.
+                let half_reaching = _mm256_movemask_epi8(_mm256_packs_epi16(low, high));
+                reaching |= u64::from(half_reaching.cast_unsigned()) << (HALF * half);
+            }
+            reaching
+        }
+
+        fn votes(_set: Avx2, sums: [[__m256i; 2]; 2]) -> [u16; HEADINGS] {
+            let [first, second] = sums;
+            must_cast([
+                _mm256_permute2x128_si256::<0x20>(first[0], first[1]),
+                _mm256_permute2x128_si256::<0x31>(first[0], first[1]),
+                _mm256_permute2x128_si256::<0x20>(second[0], second[1]),
+                _mm256_permute2x128_si256::<0x31>(second[0], second[1]),
+            ])
+        }
+    }
+}
+
+/// A register of 64 headings.
+#[derive(Clone, Copy)]
+pub(crate) struct Avx512Headings(__m512i);
+
+avx512! {
+    /// The votes in the bin of each interval that is nearest to the centre.
+    fn look_up_at_once(
+        _set: Avx512,
+        votes: &BinVotes,
+        first: &[u8; HEADINGS],
+        last: &[u8; HEADINGS],
+    ) -> __m512i {
+        let centre = _mm512_set1_epi8(votes.centre.cast_signed());
+        let bin = _mm512_max_epu8(_mm512_min_epu8(centre, must_cast(*last)), must_cast(*first));
+        let index = _mm512_subs_epu8(bin, _mm512_set1_epi8(votes.base.cast_signed()));
+        let index = _mm512_min_epu8(index, _mm512_set1_epi8(TABLE as i8 - 1));
+        _mm512_permutexvar_epi8(index, must_cast(votes.table))
+    }
+}
+
+avx512! {
+    impl HeadingLanes for Avx512Headings {
+        type Set = Avx512;
+        /// Of the first and of the second eight headings of each 16.
+        type Sums = [__m512i; 2];
+
+        fn none(_set: Avx512) -> Avx512Headings {
+            Avx512Headings(_mm512_setzero_si512())
+        }
+
+        fn of_beam(set: Avx512, votes: &BinVotes, rows: IntervalRows<'_>) -> Avx512Headings {
+            let [near_first, near_last, far_first, far_last] = rows;
+            let near = look_up_at_once(set, votes, near_first, near_last);
+            let far = look_up_at_once(set, votes, far_first, far_last);
+            Avx512Headings(_mm512_max_epu8(near, far))
+        }
+
+        fn add(self, other: Avx512Headings) -> Avx512Headings {
+            Avx512Headings(_mm512_add_epi8(self.0, other.0))
+        }
+
+        fn present(self) -> u64 {
+            _mm512_test_epi8_mask(self.0, self.0)
+        }
+
+        fn to_bytes(self) -> [u8; HEADINGS] {
+            must_cast(self.0)
+        }
+
+        fn no_sums(_set: Avx512) -> [__m512i; 2] {
+            [_mm512_setzero_si512(); 2]
+        }
+
+        fn add_to(self, sums: [__m512i; 2]) -> [__m512i; 2] {
+            let zero = _mm512_setzero_si512();
+            [
+                _mm512_add_epi16(sums[0], _mm512_unpacklo_epi8(self.0, zero)),
+                _mm512_add_epi16(sums[1], _mm512_unpackhi_epi8(self.0, zero)),
+            ]
+        }
+
+        fn at_least(_set: Avx512, sums: [__m512i; 2], least: u16) -> u64 {
+            let least = _mm512_set1_epi16(least.cast_signed());
+            let low = _mm512_movm_epi16(_mm512_cmpge_epu16_mask(sums[0], least));
+            let high = _mm512_movm_epi16(_mm512_cmpge_epu16_mask(sums[1], least));
+            // Packing puts the headings back in order.
+            _mm512_movepi8_mask(_mm512_packs_epi16(low, high))
+        }
+
+        fn votes(_set: Avx512, sums: [__m512i; 2]) -> [u16; HEADINGS] {
+            // Those of each sum by eights, which take turns.
+            let eights: [[[u16; 8]; 4]; 2] = must_cast(sums);
+            let [low, high] = eights;
+            must_cast([low[0], high[0], low[1], high[1], low[2], high[2], low[3], high[3]])
+        }
+    }
+}

@@ -1,0 +1,285 @@
+//! Numbers side by side in the registers of an instruction set.
+//!
+//! [`Portable`], [`Avx2`] and [`Avx512`] are tokens: whoever has one knows that the
+//! processor has the instructions, as it was asked when the first one was made
+//! ([`Simd::new`]). Vectors can only be made with a token, and nothing that takes these
+//! instructions can be called without a token or a vector. So the code of the search and
+//! of the sweeps is safe, and written once for all sets: it is a [`Kernel`], generic over
+//! the [`Set`], which [`Simd::run`] runs compiled for the one at hand.
+//!
+//! What differs from set to set lies in the modules here. There the macros `avx2!` and
+//! `avx512!` compile functions for their set, in which the instructions are safe to use.
+//! Calling such a function is all that is `unsafe`, and it happens in one place, in
+//! [`compiled!`]. Memory is read and written through arrays and slices alone.
+//!
+//! `fearless_simd` 1.2 was tried in place of this: its macro for a set's own instructions
+//! takes neither methods nor generic functions, and half of what is here has no operation
+//! among its portable ones (looking bytes up in tables of 64, sums and carries of three
+//! bits, leading zeros); `docs/engine.md` has the figures.
+
+pub(crate) mod bytes;
+pub(crate) mod cells;
+pub(crate) mod headings;
+pub(crate) mod numbers;
+pub(crate) mod rays;
+mod table;
+pub(crate) mod words;
+
+use crate::instruction_set::InstructionSet;
+
+/// Cells along the side of a small block, whose votes and ranges lie side by side.
+pub(crate) const SIDE: usize = 4;
+
+/// Cells of such a block, row by row.
+pub(crate) const CELLS: usize = SIDE * SIDE;
+
+/// Compiles functions for a set of instructions, those of an implementation of a trait or
+/// one by itself.
+///
+/// The first argument of each is a token of the set, or a value that is only made where
+/// there is one. What stands behind `plain` is not compiled for the set by itself: it
+/// calls what is, and is too large to be inlined unless it must be.
+macro_rules! compiled {
+    (
+        [$features:literal]
+        impl $trait:ident $(<$parameter:literal>)? for $type:ty {
+            $($(#[$about:meta])* type $associated:ident = $associated_type:ty;)*
+            $(const $constant:ident: $constant_type:ty = $constant_value:expr;)*
+            $(
+                fn $name:ident $(<$(const $generic:ident: $generic_type:ty),+>)? (
+                    $first:ident $(: $first_type:ty)? $(, $argument:ident: $argument_type:ty)* $(,)?
+                ) $(-> $result:ty)? $body:block
+            )*
+            $(plain { $($plain:tt)* })?
+        }
+    ) => {
+        impl $type {
+            $(
+                #[inline]
+                #[target_feature(enable = $features)]
+                fn $name $(<$(const $generic: $generic_type),+>)? (
+                    $first $(: $first_type)? $(, $argument: $argument_type)*
+                ) $(-> $result)? $body
+            )*
+        }
+
+        impl $trait $(<$parameter>)? for $type {
+            $($(#[$about])* type $associated = $associated_type;)*
+            $(const $constant: $constant_type = $constant_value;)*
+            $(
+                #[inline(always)]
+                fn $name $(<$(const $generic: $generic_type),+>)? (
+                    $first $(: $first_type)? $(, $argument: $argument_type)*
+                ) $(-> $result)? {
+                    // SAFETY: the first argument is a token or was made with one, so the
+                    // processor has the instructions.
+                    unsafe { <$type>::$name $(::<$($generic),+>)? ($first $(, $argument)*) }
+                }
+            )*
+            $($($plain)*)?
+        }
+    };
+    (
+        [$features:literal]
+        $(#[$attribute:meta])*
+        $visibility:vis fn $name:ident $(<$lifetime:lifetime>)? (
+            $token:ident: $token_type:ty $(, $argument:ident: $argument_type:ty)* $(,)?
+        ) $(-> $result:ty)? $body:block
+    ) => {
+        $(#[$attribute])*
+        #[inline(always)]
+        $visibility fn $name $(<$lifetime>)? (
+            $token: $token_type $(, $argument: $argument_type)*
+        ) $(-> $result)? {
+            #[inline]
+            #[target_feature(enable = $features)]
+            fn compiled $(<$lifetime>)? (
+                $token: $token_type $(, $argument: $argument_type)*
+            ) $(-> $result)? $body
+            // SAFETY: the token proves that the processor has the instructions.
+            unsafe { compiled($token $(, $argument)*) }
+        }
+    };
+}
+
+/// [`compiled!`] for AVX2; the features are those of [`InstructionSet::Avx2`].
+#[cfg(target_arch = "x86_64")]
+macro_rules! avx2 {
+    ($($item:tt)*) => {
+        $crate::simd::compiled! { ["avx2,bmi1,bmi2,lzcnt,popcnt"] $($item)* }
+    };
+}
+
+/// [`compiled!`] for AVX-512; the features are those of [`InstructionSet::Avx512`].
+#[cfg(target_arch = "x86_64")]
+macro_rules! avx512 {
+    ($($item:tt)*) => {
+        $crate::simd::compiled! {
+            ["avx512f,avx512bw,avx512cd,avx512dq,avx512vl,avx512vbmi,bmi1,bmi2,lzcnt,popcnt"]
+            $($item)*
+        }
+    };
+}
+
+/// [`compiled!`] for what every x86-64 processor has: no token is needed.
+#[cfg(target_arch = "x86_64")]
+macro_rules! sse2 {
+    ($($item:tt)*) => {
+        $crate::simd::compiled! { ["sse2"] $($item)* }
+    };
+}
+
+pub(crate) use compiled;
+#[cfg(target_arch = "x86_64")]
+pub(crate) use {avx2, avx512, sse2};
+
+/// What every processor has.
+#[derive(Debug, Clone, Copy, Default)]
+pub(crate) struct Portable;
+
+/// Proof that the processor has [`InstructionSet::Avx2`].
+#[cfg(target_arch = "x86_64")]
+#[derive(Debug, Clone, Copy)]
+pub(crate) struct Avx2(());
+
+/// Proof that the processor has [`InstructionSet::Avx512`].
+#[cfg(target_arch = "x86_64")]
+#[derive(Debug, Clone, Copy)]
+pub(crate) struct Avx512(());
+
+#[cfg(target_arch = "x86_64")]
+impl Avx512 {
+    /// What has AVX-512 has AVX2.
+    #[inline(always)]
+    pub(crate) fn avx2(self) -> Avx2 {
+        Avx2(())
+    }
+}
+
+/// A token, and what its instruction set can do.
+pub(crate) trait Set: numbers::Numbers {
+    type Words: words::BitWords<Set = Self>;
+    type Headings: headings::HeadingLanes<Set = Self>;
+    type Cells: cells::CellLanes<Set = Self>;
+    type Rays: rays::RayLanes<Set = Self>;
+    type Bytes: bytes::Lanes<Set = Self>;
+}
+
+impl Set for Portable {
+    type Words = words::Words;
+    type Headings = headings::Portable;
+    type Cells = cells::Portable;
+    type Rays = rays::Portable;
+    type Bytes = bytes::Portable;
+}
+
+#[cfg(target_arch = "x86_64")]
+impl Set for Avx2 {
+    type Words = words::Avx2Words;
+    type Headings = headings::Avx2Headings;
+    type Cells = cells::Avx2Cells;
+    type Rays = rays::Avx2Rays;
+    type Bytes = bytes::Avx2Bytes;
+}
+
+#[cfg(target_arch = "x86_64")]
+impl Set for Avx512 {
+    type Words = words::Avx512Words;
+    type Headings = headings::Avx512Headings;
+    type Cells = cells::Avx512Cells;
+    type Rays = rays::Avx512Rays;
+    type Bytes = bytes::Avx512Bytes;
+}
+
+/// Work that is compiled for each instruction set.
+pub(crate) trait Kernel {
+    type Result;
+
+    /// To be `#[inline(always)]`, and all that it calls in its loops.
+    fn run<S: Set>(self, set: S) -> Self::Result;
+}
+
+/// An instruction set that this processor has.
+#[derive(Debug, Clone, Copy)]
+pub(crate) enum Simd {
+    Portable(Portable),
+    #[cfg(target_arch = "x86_64")]
+    Avx2(Avx2),
+    #[cfg(target_arch = "x86_64")]
+    Avx512(Avx512),
+}
+
+impl Default for Simd {
+    fn default() -> Self {
+        Simd::Portable(Portable)
+    }
+}
+
+impl Simd {
+    /// The token of an instruction set.
+    ///
+    /// # Panics
+    /// If this processor does not have it.
+    pub(crate) fn new(set: InstructionSet) -> Self {
+        match set.checked() {
+            InstructionSet::Portable => Simd::Portable(Portable),
+            #[cfg(target_arch = "x86_64")]
+            InstructionSet::Avx2 => Simd::Avx2(Avx2(())),
+            #[cfg(target_arch = "x86_64")]
+            InstructionSet::Avx512 => Simd::Avx512(Avx512(())),
+            #[cfg(not(target_arch = "x86_64"))]
+            _ => unreachable!("checked above"),
+        }
+    }
+
+    /// The instruction set.
+    pub(crate) fn set(self) -> InstructionSet {
+        match self {
+            Simd::Portable(_) => InstructionSet::Portable,
+            #[cfg(target_arch = "x86_64")]
+            Simd::Avx2(_) => InstructionSet::Avx2,
+            #[cfg(target_arch = "x86_64")]
+            Simd::Avx512(_) => InstructionSet::Avx512,
+        }
+    }
+
+    /// Runs a kernel compiled for this set.
+    #[inline(always)]
+    pub(crate) fn run<K: Kernel>(self, kernel: K) -> K::Result {
+        match self {
+            Simd::Portable(set) => kernel.run(set),
+            #[cfg(target_arch = "x86_64")]
+            Simd::Avx2(set) => set.run(kernel),
+            #[cfg(target_arch = "x86_64")]
+            Simd::Avx512(set) => set.run(kernel),
+        }
+    }
+}
+
+#[cfg(target_arch = "x86_64")]
+impl Avx2 {
+    #[inline(always)]
+    fn run<K: Kernel>(self, kernel: K) -> K::Result {
+        #[target_feature(enable = "avx2,bmi1,bmi2,lzcnt,popcnt")]
+        fn compiled<K: Kernel>(set: Avx2, kernel: K) -> K::Result {
+            kernel.run(set)
+        }
+        // SAFETY: the token proves that the processor has the instructions.
+        unsafe { compiled(self, kernel) }
+    }
+}
+
+#[cfg(target_arch = "x86_64")]
+impl Avx512 {
+    #[inline(always)]
+    fn run<K: Kernel>(self, kernel: K) -> K::Result {
+        #[target_feature(
+            enable = "avx512f,avx512bw,avx512cd,avx512dq,avx512vl,avx512vbmi,bmi1,bmi2,lzcnt,popcnt"
+        )]
+        fn compiled<K: Kernel>(set: Avx512, kernel: K) -> K::Result {
+            kernel.run(set)
+        }
+        // SAFETY: the token proves that the processor has the instructions.
+        unsafe { compiled(self, kernel) }
+    }
+}

@@ -1,0 +1,71 @@
+//! Bytes looked up in short tables.
+
+use crate::tables::TABLE;
+
+/// Entries that an instruction of AVX2 and NEON looks up.
+const PIECE: usize = 16;
+
+/// Added to an index with AVX2, it sets the highest bit unless the index is below 16:
+/// then nothing is looked up.
+#[cfg(target_arch = "x86_64")]
+pub(super) const BEYOND: i8 = (0x80 - PIECE) as i8;
+
+#[cfg(target_arch = "x86_64")]
+mod x86 {
+    use std::arch::x86_64::*;
+
+    use bytemuck::{must_cast, must_cast_ref};
+
+    use super::{BEYOND, PIECE, TABLE};
+    use crate::simd::{Avx2, avx2};
+
+    avx2! {
+        fn shuffle(_set: Avx2, piece: [u8; PIECE], index: __m256i) -> __m256i {
+            let piece = _mm256_broadcastsi128_si256(must_cast(piece));
+            _mm256_shuffle_epi8(piece, _mm256_adds_epu8(index, _mm256_set1_epi8(BEYOND)))
+        }
+    }
+
+    avx2! {
+        /// Looks 32 numbers up in a table of which `used` entries are not 0; what lies
+        /// beyond those is 0.
+        pub(in crate::simd) fn look_up_avx2(
+            set: Avx2,
+            table: &[u8; TABLE],
+            used: usize,
+            index: __m256i,
+        ) -> __m256i {
+            let pieces: &[[u8; PIECE]; TABLE / PIECE] = must_cast_ref(table);
+            let [first, others @ ..] = pieces;
+            let mut found = shuffle(set, *first, index);
+            for (&piece, number) in others.iter().zip(1..used.div_ceil(PIECE)) {
+                // What goes below 0 lies beyond 16, too.
+                let index = _mm256_sub_epi8(index, _mm256_set1_epi8((PIECE * number) as i8));
+                found = _mm256_or_si256(found, shuffle(set, piece, index));
+            }
+            found
+        }
+    }
+}
+
+#[cfg(target_arch = "x86_64")]
+pub(super) use x86::look_up_avx2;
+
+/// Looks 16 numbers up in a table of which `used` entries are not 0; what lies beyond
+/// those is 0. Every ARM processor of 64 bits has NEON.
+#[cfg(target_arch = "aarch64")]
+#[inline(always)]
+pub(super) fn look_up_neon(table: &[u8; TABLE], used: usize, index: [u8; PIECE]) -> [u8; PIECE] {
+    use std::arch::aarch64::*;
+
+    use bytemuck::must_cast;
+
+    let index: uint8x16_t = must_cast(index);
+    let pieces: [uint8x16_t; 4] = must_cast(*table);
+    must_cast(if used <= PIECE {
+        vqtbl1q_u8(pieces[0], index)
+    } else {
+        let [first, second, third, fourth] = pieces;
+        vqtbl4q_u8(uint8x16x4_t(first, second, third, fourth), index)
+    })
+}

@@ -1,0 +1,218 @@
+//! Words in the registers of AVX-512 and AVX2.
+
+use std::arch::x86_64::*;
+
+use bytemuck::must_cast;
+
+use super::{BYTES, BitWords, Words};
+use crate::simd::{Avx2, Avx512, avx2, avx512};
+
+/// In each half of a register, four bytes of each block one after the other.
+const BY_BLOCKS: [u8; 16] = [0, 4, 8, 12, 1, 5, 9, 13, 2, 6, 10, 14, 3, 7, 11, 15];
+
+/// What AVX-512 holds in one register.
+#[derive(Clone, Copy)]
+pub(crate) struct Avx512Words(__m512i);
+
+avx512! {
+    impl BitWords for Avx512Words {
+        type Set = Avx512;
+        const AT_A_TIME: usize = 3;
+
+        fn empty(_set: Avx512) -> Avx512Words {
+            Avx512Words(_mm512_setzero_si512())
+        }
+
+        fn splat(_set: Avx512, word: u128) -> Avx512Words {
+            let low = _mm512_set1_epi64((word as u64).cast_signed());
+            let high = ((word >> 64) as u64).cast_signed();
+            Avx512Words(_mm512_mask_set1_epi64(low, 0xf0, high))
+        }
+
+        fn read(_set: Avx512, bytes: &[u8; BYTES]) -> Avx512Words {
+            Avx512Words(must_cast(*bytes))
+        }
+
+        fn expand(_set: Avx512, mask: u16, bytes: &[u8; BYTES]) -> Avx512Words {
+            Avx512Words(_mm512_maskz_expand_epi32(mask, must_cast(*bytes)))
+        }
+
+        fn from_words(_set: Avx512, words: &Words) -> Avx512Words {
+            Avx512Words(must_cast(*words))
+        }
+
+        fn to_words(self) -> Words {
+            must_cast(self.0)
+        }
+
+        fn and(self, other: Avx512Words) -> Avx512Words {
+            Avx512Words(_mm512_and_si512(self.0, other.0))
+        }
+
+        fn or(self, other: Avx512Words) -> Avx512Words {
+            Avx512Words(_mm512_or_si512(self.0, other.0))
+        }
+
+        fn without(self, other: Avx512Words) -> Avx512Words {
+            Avx512Words(_mm512_andnot_si512(other.0, self.0))
+        }
+
+        fn full_adder(self, b: Avx512Words, c: Avx512Words) -> (Avx512Words, Avx512Words) {
+            // The truth tables of the odd number of bits and of the majority.
+            (
+                Avx512Words(_mm512_ternarylogic_epi64::<0x96>(self.0, b.0, c.0)),
+                Avx512Words(_mm512_ternarylogic_epi64::<0xe8>(self.0, b.0, c.0)),
+            )
+        }
+
+        fn shift_down(self, by: u32) -> Avx512Words {
+            let next = _mm512_alignr_epi64::<4>(_mm512_setzero_si512(), self.0);
+            let low = _mm512_srl_epi64(self.0, _mm_cvtsi32_si128(by as i32));
+            let high = _mm512_sll_epi64(next, _mm_cvtsi32_si128(64 - by as i32));
+            Avx512Words(_mm512_or_si512(low, high))
+        }
+
+        fn filled(self) -> Avx512Words {
+            let halves = _mm512_or_si512(self.0, _mm512_alignr_epi64::<4>(self.0, self.0));
+            let any = _mm512_test_epi64_mask(halves, halves);
+            Avx512Words(_mm512_maskz_set1_epi64(any, -1))
+        }
+
+        fn sorted(self) -> Avx512Words {
+            // Then the parts of each block side by side, half by half.
+            let parts = _mm512_shuffle_epi8(self.0, _mm512_broadcast_i32x4(must_cast(BY_BLOCKS)));
+            let order = _mm512_setr_epi32(0, 4, 1, 5, 2, 6, 3, 7, 8, 12, 9, 13, 10, 14, 11, 15);
+            Avx512Words(_mm512_permutexvar_epi32(order, parts))
+        }
+
+        fn is_empty(self) -> bool {
+            _mm512_test_epi64_mask(self.0, self.0) == 0
+        }
+    }
+}
+
+/// Two registers of AVX2.
+#[derive(Clone, Copy)]
+pub(crate) struct Avx2Words([__m256i; 2]);
+
+/// For each mask of eight, which of those that it tells comes where.
+static PLACES: [u64; 256] = places();
+
+const fn places() -> [u64; 256] {
+    let mut places = [0; 256];
+    let mut mask = 0;
+    while mask < 256 {
+        let (mut i, mut next) = (0, 0);
+        while i < 8 {
+            places[mask] |= next << (8 * i);
+            next += mask as u64 >> i & 1;
+            i += 1;
+        }
+        mask += 1;
+    }
+    places
+}
+
+avx2! {
+    /// Eight times four bytes: those that the mask tells, one after the other, and
+    /// others without bits.
+    fn expand(_set: Avx2, mask: u8, bytes: [u8; BYTES / 2]) -> __m256i {
+        let places = _mm_cvtsi64_si128(PLACES[usize::from(mask)].cast_signed());
+        let spread = _mm256_permutevar8x32_epi32(must_cast(bytes), _mm256_cvtepu8_epi32(places));
+        let bits = _mm256_setr_epi32(1, 2, 4, 8, 16, 32, 64, 128);
+        let told = _mm256_and_si256(_mm256_set1_epi32(i32::from(mask)), bits);
+        _mm256_and_si256(spread, _mm256_cmpeq_epi32(told, bits))
+    }
+}
+
+avx2! {
+    impl BitWords for Avx2Words {
+        type Set = Avx2;
+        const AT_A_TIME: usize = 1;
+
+        fn empty(_set: Avx2) -> Avx2Words {
+            Avx2Words([_mm256_setzero_si256(); 2])
+        }
+
+        fn splat(_set: Avx2, word: u128) -> Avx2Words {
+            let halves = [word as u64, (word >> 64) as u64];
+            Avx2Words(halves.map(|half| _mm256_set1_epi64x(half.cast_signed())))
+        }
+
+        fn read(_set: Avx2, bytes: &[u8; BYTES]) -> Avx2Words {
+            Avx2Words(must_cast(*bytes))
+        }
+
+        fn expand(set: Avx2, mask: u16, bytes: &[u8; BYTES]) -> Avx2Words {
+            let [low, high] = mask.to_le_bytes();
+            let half = |from: usize| bytes[from..].first_chunk().copied().expect("half of them");
+            let rest = 4 * low.count_ones() as usize;
+            Avx2Words([expand(set, low, half(0)), expand(set, high, half(rest))])
+        }
+
+        fn from_words(_set: Avx2, words: &Words) -> Avx2Words {
+            Avx2Words(must_cast(*words))
+        }
+
+        fn to_words(self) -> Words {
+            must_cast(self.0)
+        }
+
+        fn and(self, other: Avx2Words) -> Avx2Words {
+            let ([low, high], [other_low, other_high]) = (self.0, other.0);
+            Avx2Words([_mm256_and_si256(low, other_low), _mm256_and_si256(high, other_high)])
+        }
+
+        fn or(self, other: Avx2Words) -> Avx2Words {
+            let ([low, high], [other_low, other_high]) = (self.0, other.0);
+            Avx2Words([_mm256_or_si256(low, other_low), _mm256_or_si256(high, other_high)])
+        }
+
+        fn without(self, other: Avx2Words) -> Avx2Words {
+            let ([low, high], [other_low, other_high]) = (self.0, other.0);
+            Avx2Words([_mm256_andnot_si256(other_low, low), _mm256_andnot_si256(other_high, high)])
+        }
+
+        fn full_adder(self, b: Avx2Words, c: Avx2Words) -> (Avx2Words, Avx2Words) {
+            let (mut sums, mut carries) = (self.0, self.0);
+            for half in 0..2 {
+                let (a, b, c) = (self.0[half], b.0[half], c.0[half]);
+                let odd = _mm256_xor_si256(a, b);
+                sums[half] = _mm256_xor_si256(odd, c);
+                let both = _mm256_and_si256(a, b);
+                carries[half] = _mm256_or_si256(both, _mm256_and_si256(odd, c));
+            }
+            (Avx2Words(sums), Avx2Words(carries))
+        }
+
+        fn shift_down(self, by: u32) -> Avx2Words {
+            let [low, high] = self.0;
+            let down = _mm_cvtsi32_si128(by as i32);
+            let up = _mm_cvtsi32_si128(64 - by as i32);
+            let (low, next) = (_mm256_srl_epi64(low, down), _mm256_sll_epi64(high, up));
+            Avx2Words([_mm256_or_si256(low, next), _mm256_srl_epi64(high, down)])
+        }
+
+        fn filled(self) -> Avx2Words {
+            let halves = _mm256_or_si256(self.0[0], self.0[1]);
+            let without = _mm256_cmpeq_epi64(halves, _mm256_setzero_si256());
+            Avx2Words([_mm256_xor_si256(without, _mm256_set1_epi64x(-1)); 2])
+        }
+
+        fn sorted(self) -> Avx2Words {
+            // Then the parts of each block side by side.
+            let bytes = _mm256_broadcastsi128_si256(must_cast(BY_BLOCKS));
+            let order = _mm256_setr_epi32(0, 4, 1, 5, 2, 6, 3, 7);
+            let [low, high] = self.0;
+            Avx2Words([
+                _mm256_permutevar8x32_epi32(_mm256_shuffle_epi8(low, bytes), order),
+                _mm256_permutevar8x32_epi32(_mm256_shuffle_epi8(high, bytes), order),
+            ])
+        }
+
+        fn is_empty(self) -> bool {
+            let all = _mm256_or_si256(self.0[0], self.0[1]);
+            _mm256_testz_si256(all, all) == 1
+        }
+    }
+}
