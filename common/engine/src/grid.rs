@@ -61,7 +61,9 @@ impl Default for CellRules {
 }
 
 impl CellRules {
-    fn is_occupied(self, occupancy: u8) -> bool {
+    /// Whether a cell is an obstacle.
+    #[must_use]
+    pub fn is_occupied(self, occupancy: u8) -> bool {
         occupancy >= self.occupied_from && occupancy != UNKNOWN
     }
 
@@ -71,7 +73,8 @@ impl CellRules {
 }
 
 /// What a ray meets in a cell.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, bytemuck::NoUninit)]
+#[repr(u8)]
 pub enum Cell {
     /// Rays pass and the robot may stand here, as far as limits do not say otherwise:
     /// free, or unknown where unknown cells do not block.

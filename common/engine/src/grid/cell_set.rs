@@ -21,6 +21,13 @@ impl CellSet {
         }
     }
 
+    /// None of so many cells.
+    pub(crate) fn none(cells: usize) -> Self {
+        CellSet {
+            words: vec![0; cells.div_ceil(WORD)],
+        }
+    }
+
     /// Leaves out those of which `holds` says no.
     pub(crate) fn retain(&mut self, holds: impl Fn(usize) -> bool) {
         for (i, word) in self.words.iter_mut().enumerate() {
@@ -40,6 +47,18 @@ impl CellSet {
     #[inline(always)]
     pub(crate) fn words(&self) -> &[u64] {
         &self.words
+    }
+
+    /// The same, to be filled in.
+    pub(crate) fn words_mut(&mut self) -> &mut [u64] {
+        &mut self.words
+    }
+
+    /// Whether no cell is among them but of the first so many.
+    pub(crate) fn are_below(&self, cells: usize) -> bool {
+        let (full, rest) = (cells / WORD, cells % WORD);
+        let mut beyond = self.words.iter().skip(full);
+        beyond.next().is_none_or(|word| word >> rest == 0) && beyond.all(|&word| word == 0)
     }
 
     /// Whether a cell is among them.

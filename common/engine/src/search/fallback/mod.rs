@@ -279,7 +279,8 @@ impl<'a> Sifting<'a> {
         };
         let Share { sweep, field, .. } = &mut *self.share;
         let set = programs.instruction_set;
-        index.sweeps.fill(set, query, sweep, field, self.stop)?;
+        let sweeps = index.sweeps(self.task.grid);
+        sweeps.fill(set, query, sweep, field, self.stop)?;
         index.within.limits.clear(field, heading);
         Some(())
     }
