@@ -6,6 +6,7 @@ use engine::heading::HeadingConfig;
 use engine::joined::JoinConfig;
 use engine::localizer::{LocalizerConfig, Prior};
 use engine::regions::SonarConfig;
+use index_cache::IndexCacheConfig;
 
 /// Most votes in a message: what the readers of `votes` are made for.
 const MAX_VOTES: u32 = 65_536;
@@ -18,6 +19,10 @@ pub struct Config {
     /// How scans are matched with the map.
     #[command(flatten)]
     pub localizer: LocalizerConfig,
+
+    /// Where prepared maps are kept.
+    #[command(flatten)]
+    pub index_cache: IndexCacheConfig,
 
     /// What is known of the heading.
     #[command(flatten)]
