@@ -110,27 +110,29 @@ impl Grid {
         rules: CellRules,
     ) -> Result<Self, EngineError> {
         check_cells(width, height, occupancy)?;
-        let mut grid = Grid {
+        let class = |occupancy: u8| match () {
+            () if rules.is_occupied(occupancy) => Cell::Occupied,
+            () if rules.unknown_blocks && !rules.is_free(occupancy) => Cell::Blocked,
+            () => Cell::Open,
+        };
+        // Whole maps are classed by looking up each cell, and counted class by class.
+        let classes: [Cell; 1 << u8::BITS] =
+            std::array::from_fn(|occupancy| class(occupancy as u8));
+        let cells: Vec<Cell> = occupancy
+            .iter()
+            .map(|&value| classes[usize::from(value)])
+            .collect();
+        let count = |kind| cells.iter().filter(|&&cell| cell == kind).count();
+        let free = CellSet::of_bytes(occupancy, |cell| rules.is_free(cell));
+        Ok(Grid {
             width,
             height,
-            cells: Vec::with_capacity(occupancy.len()),
-            free: CellSet::of(occupancy.len(), |i| rules.is_free(occupancy[i])),
-            free_cells: 0,
-            occupied: 0,
-            has_blocked: false,
-        };
-        for &value in occupancy {
-            let (is_occupied, is_free) = (rules.is_occupied(value), rules.is_free(value));
-            grid.has_blocked |= rules.unknown_blocks && !is_occupied && !is_free;
-            grid.occupied += usize::from(is_occupied);
-            grid.free_cells += usize::from(is_free);
-            grid.cells.push(match (is_occupied, is_free) {
-                (true, _) => Cell::Occupied,
-                (false, false) if rules.unknown_blocks => Cell::Blocked,
-                (false, _) => Cell::Open,
-            });
-        }
-        Ok(grid)
+            free_cells: free.count(),
+            free,
+            occupied: count(Cell::Occupied),
+            has_blocked: count(Cell::Blocked) > 0,
+            cells,
+        })
     }
 
     /// Cells along x.
