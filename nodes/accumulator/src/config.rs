@@ -11,6 +11,10 @@ use index_cache::IndexCacheConfig;
 /// Most votes in a message: what the readers of `votes` are made for.
 const MAX_VOTES: u32 = 65_536;
 
+/// Steps after which a search ends where nothing else is set, millions: some ten seconds.
+/// Of the scans of `docs/accuracy.md` none takes a tenth of that.
+const WORK_LIMIT: f64 = 10_000.0;
+
 /// Searches the poses at which each scan fits the map and publishes them as
 /// `votes`.
 #[derive(Debug, Clone, Parser)]
@@ -67,6 +71,13 @@ impl Config {
                 .error(ErrorKind::ValueValidation, problem)
                 .exit(),
         }
+    }
+
+    /// The settings of the localizer, where not even clutter keeps a robot waiting.
+    pub(crate) fn localizer(&self) -> LocalizerConfig {
+        let mut localizer = self.localizer.clone();
+        localizer.collect.work_limit.get_or_insert(WORK_LIMIT);
+        localizer
     }
 
     /// Whether the localizer has to search the heading.
@@ -144,6 +155,9 @@ mod tests {
         assert_eq!(config.prior(), Prior::None);
         assert_eq!(parse("--heading 0").unwrap().prior(), Prior::Heading);
         assert!(config.sonar.window().is_none());
+        assert_eq!(config.localizer().collect.work_limit, Some(WORK_LIMIT));
+        let endless = parse("--work-limit 0").unwrap().localizer();
+        assert_eq!(endless.collect.work_limit, Some(0.0));
         let sonar = parse("--sonar-way 2 --sonar-cone 25").unwrap().sonar;
         assert_eq!((sonar.sonar_way, sonar.sonar_cone), (Some(2.0), 25.0));
     }

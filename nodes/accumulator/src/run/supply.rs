@@ -53,7 +53,7 @@ impl Supply {
         Supply {
             configured: config.localizer.limits.region.clone(),
             wishes: 0,
-            config: config.localizer.clone(),
+            config: config.localizer(),
             prior: config.prior(),
             cache,
             map: None,

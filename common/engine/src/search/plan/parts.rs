@@ -26,6 +26,8 @@ pub(in crate::search) fn finish(rooms: &mut [Room], found: &mut VoteSet) {
     for other in others {
         own.collector.merge(&other.collector);
         own.poses_evaluated += other.poses_evaluated;
+        own.left = own.left.max(other.left);
     }
     own.collector.finish(own.poses_evaluated, found);
+    found.cut_at(own.left);
 }
