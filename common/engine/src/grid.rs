@@ -22,7 +22,7 @@ pub const MAX_SIDE: usize = 32_767;
 // no map that can be loaded is refused here.
 
 /// Most cells; a damaged header that claims more must not be believed.
-pub const MAX_CELLS: usize = 1 << 28;
+pub const MAX_CELLS: usize = 400_000_000;
 
 /// Shortest side of a cell, metres.
 pub const MIN_RESOLUTION_M: f64 = 0.001;
