@@ -11,9 +11,9 @@ use index_cache::IndexCacheConfig;
 /// Most votes in a message: what the readers of `votes` are made for.
 const MAX_VOTES: u32 = 65_536;
 
-/// Steps after which a search ends where nothing else is set, millions: some ten seconds.
+/// Steps after which a search ends where nothing else is set, millions: some five seconds.
 /// Of the scans of `docs/accuracy.md` none takes a tenth of that.
-const WORK_LIMIT: f64 = 10_000.0;
+const WORK_LIMIT: f64 = 5_000.0;
 
 /// Searches the poses at which each scan fits the map and publishes them as
 /// `votes`.

@@ -210,7 +210,7 @@ impl RangeIntervals {
             &mut row[..self.directions]
         });
         match self.set {
-            // SAFETY: the intervals were built by this instruction set, and what has
+            // SAFETY: the processor has the instruction set, and what has
             // AVX-512 has AVX2.
             #[cfg(target_arch = "x86_64")]
             InstructionSet::Avx512 | InstructionSet::Avx2 => unsafe {

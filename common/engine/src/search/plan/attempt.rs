@@ -1,11 +1,11 @@
 //! One search: by bounds, or where these do not help by counting every pose.
 
 use super::alternatives::{self, Alternatives};
-use super::descent::{self, End};
+use super::descent;
 use super::parts;
 use crate::program::ScanProgram;
 use crate::search::fallback::{self, Sift};
-use crate::search::task::Task;
+use crate::search::task::{End, Task};
 use crate::votes::{Distinct, VoteSet, is_close, most_candidates};
 
 /// A search to be made, and the room for it, of as many threads as there are rooms and

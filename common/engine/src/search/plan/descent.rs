@@ -20,7 +20,7 @@ use crate::search::index::within::{Size, quarters};
 use crate::search::leaves::leaf::Count;
 use crate::search::leaves::outlook::Outlook;
 use crate::search::task::budget::{Budget, LEVELS, Tally};
-use crate::search::task::{Programs, Task};
+use crate::search::task::{End, Programs, Task};
 use crate::votes::Collector;
 
 /// One thread's part of a search.
@@ -53,18 +53,6 @@ pub(in crate::search) struct Room {
     /// The most votes that any pose can have where the search did not come to.
     pub left: u16,
     tally: Tally,
-}
-
-/// How a part of a search ended.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub(in crate::search) enum End {
-    /// With the poses that matter, but for those in blocks that were left where it took
-    /// more work than it may.
-    Done,
-    /// It was told to stop.
-    Stopped,
-    /// Counting every pose would take less than what is left.
-    Hopeless,
 }
 
 /// A heading at which a block may still matter, and its bound there.

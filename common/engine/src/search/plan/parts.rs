@@ -3,8 +3,8 @@
 //! Threads share what is searched and the best pose so far, and each has a room
 //! that stays with it from scan to scan.
 
-use super::descent::{Descent, End, Room};
-use crate::search::task::Task;
+use super::descent::{Descent, Room};
+use crate::search::task::{End, Task};
 use crate::threads;
 use crate::votes::VoteSet;
 
