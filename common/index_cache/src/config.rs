@@ -13,12 +13,12 @@ pub struct IndexCacheConfig {
     /// is read the next time and not prepared: a folder that nobody else can use, which is
     /// made if it is missing; "user" for $XDG_CACHE_HOME/backcast or ~/.cache/backcast;
     /// "off" to keep none. Its files can be removed at any time.
-    /// [default: user in the nodes of a graph, off in the tools]
+    /// [default: user in the accumulator, off in the tools]
     #[arg(long, value_name = "FOLDER")]
     pub index_cache: Option<CachePlace>,
     /// Most that all prepared maps in the folder take, megabytes of 10⁶ bytes,
     /// 1..=1000000: those that were not used for longest are removed.
-    #[arg(long, value_name = "MEGABYTES", default_value_t = 4000, value_parser = clap::value_parser!(u32).range(1..=1_000_000))]
+    #[arg(long, value_name = "MEGABYTES", default_value_t = 2000, value_parser = clap::value_parser!(u32).range(1..=1_000_000))]
     pub index_cache_limit: u32,
 }
 
@@ -37,7 +37,7 @@ impl Default for IndexCacheConfig {
     fn default() -> Self {
         IndexCacheConfig {
             index_cache: None,
-            index_cache_limit: 4000,
+            index_cache_limit: 2000,
         }
     }
 }

@@ -225,6 +225,29 @@ mod tests {
     }
 
     #[test]
+    fn a_map_that_was_kept_is_read_by_its_rules() {
+        let folder = tempfile::tempdir().unwrap();
+        let cache = IndexCache::new(folder.path().join("maps"), 10_000_000);
+        let prepare = |pair: &Pair| {
+            let job = Job::new(&pair.map, &pair.occupancy, &pair.header, &pair.cells).unwrap();
+            job.prepare(LocalizerConfig::default(), Prior::None, Some(&cache))
+                .unwrap()
+        };
+        let mut pair = room();
+        let (_, kept) = prepare(&pair);
+        assert!(!kept.is_read);
+        kept.unsaved.unwrap().save().unwrap();
+        let (map, kept) = prepare(&pair);
+        assert!(kept.is_read && kept.unsaved.is_none());
+        assert_eq!((map.map_id, map.localizer.searchable_cells()), (77, 8));
+        // Of two rules that class all cells alike one index will do.
+        pair.header.occupied_from = 66;
+        assert!(prepare(&pair).1.is_read);
+        pair.occupancy[7] = 50;
+        assert!(!prepare(&pair).1.is_read, "a cell is unknown now");
+    }
+
+    #[test]
     fn a_pair_is_of_one_map_and_by_the_rules_of_the_boundary() {
         let mut pair = room();
         pair.header.unknown_blocks = 1;
