@@ -284,7 +284,8 @@ impl Quad {
 
 /// How many of a kind so many bytes are.
 fn count<T>(bytes: usize) -> Option<usize> {
-    (bytes % size_of::<T>() == 0).then_some(bytes / size_of::<T>())
+    let each = size_of::<T>();
+    bytes.is_multiple_of(each).then_some(bytes / each)
 }
 
 /// The blocks of a quad on a map of so many columns and rows of blocks.
