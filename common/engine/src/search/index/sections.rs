@@ -340,7 +340,7 @@ mod tests {
         let index = SearchIndex::new(&grid, &space);
         let back = |section: usize, place: usize, byte: u8| {
             taken_back(&index, (&grid, &space), |sections| {
-                sections[section][place] ^= byte
+                sections[section][place] ^= byte;
             })
             .map(|_| ())
         };
