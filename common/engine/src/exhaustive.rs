@@ -118,7 +118,7 @@ mod tests {
         ) {
             let space = space_of(&grid, headings * 8);
             let program = scan.program(&space);
-            let config = CollectConfig { floor_share, max_votes, candidates: 0 };
+            let config = CollectConfig { floor_share, max_votes, ..CollectConfig::exact() };
             let sweeps = FieldSweep::new(&grid);
             let mut accumulators: Vec<_> = (0..threads).map(|_| sweeps.accumulator()).collect();
             let found = search(&mut accumulators, &Limits::none(grid.width()), (&program, &space), config, &|| false).unwrap();

@@ -22,7 +22,7 @@ pub const MAX_SIDE: usize = 32_767;
 // no map that can be loaded is refused here.
 
 /// Most cells; a damaged header that claims more must not be believed.
-pub const MAX_CELLS: usize = 1 << 28;
+pub const MAX_CELLS: usize = 400_000_000;
 
 /// Shortest side of a cell, metres.
 pub const MIN_RESOLUTION_M: f64 = 0.001;
@@ -61,7 +61,9 @@ impl Default for CellRules {
 }
 
 impl CellRules {
-    fn is_occupied(self, occupancy: u8) -> bool {
+    /// Whether a cell is an obstacle.
+    #[must_use]
+    pub fn is_occupied(self, occupancy: u8) -> bool {
         occupancy >= self.occupied_from && occupancy != UNKNOWN
     }
 
@@ -71,7 +73,8 @@ impl CellRules {
 }
 
 /// What a ray meets in a cell.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, bytemuck::NoUninit)]
+#[repr(u8)]
 pub enum Cell {
     /// Rays pass and the robot may stand here, as far as limits do not say otherwise:
     /// free, or unknown where unknown cells do not block.
@@ -107,27 +110,29 @@ impl Grid {
         rules: CellRules,
     ) -> Result<Self, EngineError> {
         check_cells(width, height, occupancy)?;
-        let mut grid = Grid {
+        let class = |occupancy: u8| match () {
+            () if rules.is_occupied(occupancy) => Cell::Occupied,
+            () if rules.unknown_blocks && !rules.is_free(occupancy) => Cell::Blocked,
+            () => Cell::Open,
+        };
+        // Whole maps are classed by looking up each cell, and counted class by class.
+        let classes: [Cell; 1 << u8::BITS] =
+            std::array::from_fn(|occupancy| class(occupancy as u8));
+        let cells: Vec<Cell> = occupancy
+            .iter()
+            .map(|&value| classes[usize::from(value)])
+            .collect();
+        let count = |kind| cells.iter().filter(|&&cell| cell == kind).count();
+        let free = CellSet::of_bytes(occupancy, |cell| rules.is_free(cell));
+        Ok(Grid {
             width,
             height,
-            cells: Vec::with_capacity(occupancy.len()),
-            free: CellSet::of(occupancy.len(), |i| rules.is_free(occupancy[i])),
-            free_cells: 0,
-            occupied: 0,
-            has_blocked: false,
-        };
-        for &value in occupancy {
-            let (is_occupied, is_free) = (rules.is_occupied(value), rules.is_free(value));
-            grid.has_blocked |= rules.unknown_blocks && !is_occupied && !is_free;
-            grid.occupied += usize::from(is_occupied);
-            grid.free_cells += usize::from(is_free);
-            grid.cells.push(match (is_occupied, is_free) {
-                (true, _) => Cell::Occupied,
-                (false, false) if rules.unknown_blocks => Cell::Blocked,
-                (false, _) => Cell::Open,
-            });
-        }
-        Ok(grid)
+            free_cells: free.count(),
+            free,
+            occupied: count(Cell::Occupied),
+            has_blocked: count(Cell::Blocked) > 0,
+            cells,
+        })
     }
 
     /// Cells along x.

@@ -23,7 +23,7 @@ pub struct Limits {
     /// The cells in which poses are sought; `None` where they are in all.
     cells: Option<CellSet>,
     /// The same for each heading.
-    headings: Option<Vec<bool>>,
+    headings: Option<CellSet>,
 }
 
 impl Limits {
@@ -56,14 +56,11 @@ impl Limits {
         let headings = config.headings_within.map(|interval| {
             let step = std::f64::consts::TAU / directions.count() as f64;
             let heading = |index: usize| index as f64 * step + frame.map_from_grid.yaw;
-            let headings = 0..directions.count();
-            headings
-                .map(|index| interval.holds(heading(index)))
-                .collect()
+            CellSet::of(directions.count(), |index| interval.holds(heading(index)))
         });
         if headings
             .as_ref()
-            .is_some_and(|headings: &Vec<bool>| !headings.contains(&true))
+            .is_some_and(|headings| headings.iter().next().is_none())
         {
             return Err(EngineError::NoHeadingWithin(directions.count() as u32));
         }
@@ -120,7 +117,7 @@ impl Limits {
     #[must_use]
     pub fn hold_heading(&self, heading: usize) -> bool {
         let headings = self.headings.as_ref();
-        headings.is_none_or(|headings| headings[heading])
+        headings.is_none_or(|headings| headings.holds(heading))
     }
 
     /// Takes the votes off the cells of an image at a heading, row by row,
@@ -153,8 +150,29 @@ impl Limits {
 
     /// Bytes that they take.
     pub(crate) fn bytes(&self) -> usize {
-        let cells = self.cells.as_ref().map_or(0, CellSet::bytes);
-        cells + self.headings.as_ref().map_or(0, Vec::len)
+        let sets = self.sets().into_iter().flatten();
+        sets.map(CellSet::bytes).sum()
+    }
+
+    /// Limits of a grid and of some directions, to be filled in: by cells, by headings or
+    /// by neither.
+    pub(crate) fn unfilled(grid: &Grid, directions: &Directions, by: [bool; 2]) -> Self {
+        let [by_cells, by_headings] = by;
+        Limits {
+            width: grid.width(),
+            cells: by_cells.then(|| CellSet::none(grid.cells().len())),
+            headings: by_headings.then(|| CellSet::none(directions.count())),
+        }
+    }
+
+    /// The cells and the headings in which poses are sought, where not in all.
+    pub(crate) fn sets(&self) -> [Option<&CellSet>; 2] {
+        [self.cells.as_ref(), self.headings.as_ref()]
+    }
+
+    /// The same, to be filled in.
+    pub(crate) fn sets_mut(&mut self) -> [Option<&mut CellSet>; 2] {
+        [self.cells.as_mut(), self.headings.as_mut()]
     }
 }
 

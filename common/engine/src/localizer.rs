@@ -1,10 +1,13 @@
 //! A map and its settings, ready to be asked where scans were taken.
 
 mod config;
+mod preparation;
+
+use std::sync::Arc;
 
 use crate::EngineError;
 use crate::accumulator::Query;
-use crate::grid::{self, CellRules, Grid, GridFrame, Pooled};
+use crate::grid::{CellRules, Grid, GridFrame};
 use crate::instruction_set::InstructionSet;
 use crate::limits::Limits;
 use crate::observation::Observation;
@@ -15,6 +18,7 @@ use crate::space::Space;
 use crate::sweep::{self, FieldSweep};
 use crate::votes::{FieldVotes, VoteSet};
 pub use config::LocalizerConfig;
+pub use preparation::Preparation;
 
 /// What the localizer knows of the heading beforehand.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -38,7 +42,7 @@ pub struct Localizer {
 
 #[derive(Debug, Clone)]
 enum Method {
-    Search(Box<SearchIndex>),
+    Search(Arc<SearchIndex>),
     Sweep(FieldSweep, Limits),
 }
 
@@ -89,72 +93,38 @@ impl Localizer {
     /// lowest y; one finer than is searched is pooled.
     ///
     /// # Errors
-    /// See [`Grid::new`] and [`Localizer::new`].
+    /// See [`Preparation::of_map`] and [`Preparation::finish`].
     pub fn of_map(
         frame: GridFrame,
-        (width, height): (usize, usize),
+        sides: (usize, usize),
         occupancy: &[u8],
         rules: CellRules,
         config: LocalizerConfig,
         prior: Prior,
     ) -> Result<Self, EngineError> {
-        let pooling = grid::pooling(frame.resolution_m, config.search_cell);
-        if pooling == 1 {
-            let grid = Grid::new(width, height, occupancy, rules)?;
-            return Localizer::new(frame, grid, config, prior);
-        }
-        let pooled = Pooled::new(frame, (width, height), occupancy, rules, pooling)?;
-        let (width, height) = pooled.sides;
-        let grid = Grid::new(width, height, &pooled.occupancy, rules)?;
-        let localizer = Localizer::new(pooled.frame, grid, config, prior)?;
-        Ok(Localizer {
-            pooling,
-            ..localizer
-        })
+        Preparation::of_map(frame, sides, occupancy, rules, config, prior)?.finish()
     }
 
     /// Prepares a grid, which is searched as it is.
     ///
     /// # Errors
-    /// If the map has no occupied or no free cell, a setting is out of range,
-    /// the limits leave no pose, or more memory would be needed than is allowed.
+    /// See [`Preparation::new`] and [`Preparation::finish`].
     pub fn new(
         frame: GridFrame,
         grid: Grid,
         config: LocalizerConfig,
         prior: Prior,
     ) -> Result<Self, EngineError> {
-        if grid.occupied_cells() == 0 {
-            return Err(EngineError::NoOccupiedCell);
+        Preparation::new(frame, grid, config, prior)?.finish()
+    }
+
+    /// The index, where headings are searched: what is worth keeping for the next time.
+    #[must_use]
+    pub fn search_index(&self) -> Option<Arc<SearchIndex>> {
+        match &self.method {
+            Method::Search(index) => Some(Arc::clone(index)),
+            Method::Sweep(..) => None,
         }
-        if grid.free_cells() == 0 {
-            return Err(EngineError::NoFreeCell);
-        }
-        let space = Space::new(
-            config.headings,
-            frame.resolution_m,
-            grid.width(),
-            grid.height(),
-        )?;
-        let limits = Limits::new(&config.limits, frame, &grid, &space.directions)?;
-        let method = match prior {
-            Prior::None => {
-                check_memory(&config, || {
-                    SearchIndex::needed_bytes(&grid, &space, &limits)
-                })?;
-                let index = SearchIndex::within(&grid, &space, limits);
-                Method::Search(Box::new(index))
-            }
-            Prior::Heading => Method::Sweep(FieldSweep::new(&grid), limits),
-        };
-        Ok(Localizer {
-            frame,
-            pooling: 1,
-            grid,
-            space,
-            config,
-            method,
-        })
     }
 
     /// Cells of the map along the side of a cell that is searched.
@@ -374,26 +344,6 @@ impl Localizer {
         outcome.headings = self.config.headings;
         outcome.known_heading = known_heading;
         outcome
-    }
-}
-
-/// Refuses what needs more memory than is allowed, before it is allocated. What that
-/// is, is asked only where there is a limit.
-fn check_memory(
-    config: &LocalizerConfig,
-    needed_bytes: impl FnOnce() -> usize,
-) -> Result<(), EngineError> {
-    const MEGABYTE: u64 = 1_000_000;
-    let Some(limit_mb) = config.memory_limit else {
-        return Ok(());
-    };
-    let needed_mb = (needed_bytes() as u64).div_ceil(MEGABYTE);
-    match needed_mb > u64::from(limit_mb) {
-        true => Err(EngineError::Memory {
-            needed_mb,
-            limit_mb,
-        }),
-        false => Ok(()),
     }
 }
 

@@ -1,5 +1,6 @@
 //! The outcome of a search: the poses that have the most votes.
 
+mod config;
 mod distinct;
 mod of_field;
 
@@ -7,38 +8,11 @@ use std::cmp::Reverse;
 
 use messages::Vote;
 
+pub use config::CollectConfig;
 pub use distinct::{DISTINCT_DEG, DISTINCT_M, distinct};
 pub(crate) use distinct::{Distinct, is_close, most_candidates};
 pub(crate) use of_field::FieldVotes;
 pub use of_field::of_field;
-
-/// What is collected of a search.
-#[derive(Debug, Clone, Copy, PartialEq, clap::Args)]
-pub struct CollectConfig {
-    /// Poses with at least this share of the best pose's votes are collected,
-    /// 0..=1; lower shares show more alternatives and take longer.
-    #[arg(long, value_name = "SHARE", default_value_t = 0.85, value_parser = crate::config::parse_share)]
-    pub floor_share: f64,
-    /// Most poses that are collected, 1..=1000000; the floor rises until they
-    /// fit.
-    #[arg(long, value_name = "COUNT", default_value_t = 65_536, value_parser = clap::value_parser!(u32).range(1..=1_000_000))]
-    pub max_votes: u32,
-    /// Distinct poses that are wanted, 0..=1000: where fewer stand above the
-    /// floor, the most promising ones below are added. Where half of them have half
-    /// the best one's votes, up to four times as many that have are added.
-    #[arg(long, value_name = "COUNT", default_value_t = 64, value_parser = clap::value_parser!(u32).range(0..=1000))]
-    pub candidates: u32,
-}
-
-impl Default for CollectConfig {
-    fn default() -> Self {
-        CollectConfig {
-            floor_share: 0.85,
-            max_votes: 65_536,
-            candidates: 64,
-        }
-    }
-}
 
 /// The poses with the most votes, and how complete they are.
 #[derive(Debug, Clone, PartialEq, Eq, Default)]
@@ -53,8 +27,12 @@ pub struct VoteSet {
     pub certified_floor: u16,
     /// The highest intensity of any pose.
     pub best: u16,
-    /// Whether poses above the share asked for were left out.
+    /// Whether poses above the share asked for were left out, as they did not fit.
     pub truncated: bool,
+    /// Whether such poses may have been missed, as the search took more work than it may:
+    /// then only what stands at or above the certified floor is certain, which can be more
+    /// than the best has.
+    pub cut: bool,
     /// Poses whose intensity was computed one by one.
     pub poses_evaluated: u64,
 }
@@ -71,6 +49,24 @@ impl VoteSet {
         others.retain(|vote| distinct.take(vote));
         self.votes.append(others);
         self.floor = self.votes.last().map_or(0, |vote| vote.intensity);
+    }
+
+    /// Notes that no more is known of some poses than that none has more votes than this.
+    pub(crate) fn cut_at(&mut self, left: u16) {
+        if left >= self.certified_floor {
+            self.certified_floor = left.saturating_add(1);
+            self.cut = true;
+        }
+    }
+
+    /// Puts the votes in order: where the search was cut, candidates can be better than
+    /// what it found.
+    pub(crate) fn put_in_order(&mut self) {
+        if self.cut {
+            self.votes.sort_unstable_by_key(order);
+            self.best = self.votes.first().map_or(0, |vote| vote.intensity);
+            self.floor = self.votes.last().map_or(0, |vote| vote.intensity);
+        }
     }
 }
 
@@ -198,6 +194,7 @@ impl Collector {
         outcome.certified_floor = self.floor().saturating_add(u16::from(best_is_cut));
         outcome.best = self.best;
         outcome.truncated = best_is_cut || self.crowded_below > self.share_floor();
+        outcome.cut = false;
         outcome.poses_evaluated = poses_evaluated;
         std::mem::swap(&mut outcome.votes, &mut self.votes);
         self.votes.clear();
@@ -247,7 +244,7 @@ mod tests {
         let config = CollectConfig {
             floor_share: 0.5,
             max_votes: 10,
-            candidates: 0,
+            ..CollectConfig::exact()
         };
         let set = collect(config, &[3, 0, 10, 5, 4, 7]);
         assert_eq!(levels(&set), [10, 7, 5]);
@@ -262,7 +259,7 @@ mod tests {
         let config = CollectConfig {
             floor_share: 0.0,
             max_votes: 4,
-            candidates: 0,
+            ..CollectConfig::exact()
         };
         let set = collect(config, &[9, 8, 8, 7, 7, 6]);
         assert_eq!(levels(&set), [9, 8, 8]);
@@ -277,7 +274,7 @@ mod tests {
         let config = CollectConfig {
             floor_share: 1.0,
             max_votes: 2,
-            candidates: 0,
+            ..CollectConfig::exact()
         };
         let set = collect(config, &[5; 9]);
         assert_eq!(
@@ -323,7 +320,7 @@ mod tests {
         fn the_order_of_taking_does_not_matter(
             intensities in vec(0u16..12, 1..80), max_votes in 1u32..30, floor_share in 0.0..=1.0f64,
         ) {
-            let config = CollectConfig { floor_share, max_votes, candidates: 0 };
+            let config = CollectConfig { floor_share, max_votes, ..CollectConfig::exact() };
             let forward = collect(config, &intensities);
             let mut backward = Collector::new(config);
             for (x, &intensity) in intensities.iter().enumerate().rev() {

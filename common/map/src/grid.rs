@@ -15,10 +15,10 @@ pub const UNKNOWN: u8 = 255;
 /// with room to step off the grid by one.
 pub const MAX_SIDE: u32 = 32_767;
 
-/// Most cells: 16,384 squared, 819 m by 819 m at 5 cm. Several processes keep
-/// the map and tables as large as it; this much still fits a robot's computer,
+/// Most cells: 20,000 squared, a square kilometre at 5 cm. Several processes keep
+/// the map and tables as large as it; this much still fits a large robot's computer,
 /// while a damaged header that claims more must not be believed.
-pub const MAX_CELLS: u64 = 1 << 28;
+pub const MAX_CELLS: u64 = 400_000_000;
 
 /// Shortest side of a cell, metres.
 pub const MIN_RESOLUTION_M: f64 = 0.001;

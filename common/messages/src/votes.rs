@@ -36,7 +36,9 @@ pub struct VotesHeader {
     pub best: u32,
     /// What a pose would have if every beam agreed fully.
     pub highest_possible: u32,
-    /// 1 where the floor was raised so that the items fit, else 0.
+    /// 1 where the floor was raised so that the items fit; [`VotesHeader::CUT`] where the
+    /// search took more work than it may, so that poses below the certified floor may have
+    /// been missed, which can lie above the best; else 0.
     pub truncated: u32,
     /// Beams that voted.
     pub beams_used: u32,
@@ -68,6 +70,11 @@ pub struct VotesHeader {
     pub has_readings: u32,
     /// Lasers of which the scan was joined.
     pub lasers_used: u32,
+}
+
+impl VotesHeader {
+    /// What `truncated` is where the search was cut.
+    pub const CUT: u32 = 2;
 }
 
 /// How a search ended.

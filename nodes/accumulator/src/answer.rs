@@ -103,7 +103,10 @@ fn votes_header(
         certified_floor: found.certified_floor.into(),
         best: found.best.into(),
         highest_possible: outcome.highest_possible,
-        truncated: found.truncated.into(),
+        truncated: match found.cut {
+            true => VotesHeader::CUT,
+            false => found.truncated.into(),
+        },
         beams_used: outcome.beams_used,
         beams_silent: outcome.beams_silent,
         heading_known: outcome.known_heading.is_some().into(),
@@ -236,6 +239,7 @@ mod tests {
                 certified_floor: 7,
                 best,
                 truncated: true,
+                cut: false,
                 poses_evaluated: 99,
             },
             highest_possible: 200,
@@ -285,6 +289,10 @@ mod tests {
         };
         let votes = votes_header(&header(), &TERMS, &known, 1234);
         assert_eq!((votes.heading_known, votes.known_heading), (1, 0.25));
+        let mut cut = outcome(100);
+        cut.found.cut = true;
+        let votes = votes_header(&header(), &TERMS, &cut, 1234);
+        assert_eq!(votes.truncated, VotesHeader::CUT);
     }
 
     #[test]

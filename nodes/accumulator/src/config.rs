@@ -6,9 +6,14 @@ use engine::heading::HeadingConfig;
 use engine::joined::JoinConfig;
 use engine::localizer::{LocalizerConfig, Prior};
 use engine::regions::SonarConfig;
+use index_cache::IndexCacheConfig;
 
 /// Most votes in a message: what the readers of `votes` are made for.
 const MAX_VOTES: u32 = 65_536;
+
+/// Steps after which a search ends where nothing else is set, millions: some five seconds.
+/// Of the scans of `docs/accuracy.md` none takes a tenth of that.
+const WORK_LIMIT: f64 = 5_000.0;
 
 /// Searches the poses at which each scan fits the map and publishes them as
 /// `votes`.
@@ -18,6 +23,10 @@ pub struct Config {
     /// How scans are matched with the map.
     #[command(flatten)]
     pub localizer: LocalizerConfig,
+
+    /// Where prepared maps are kept.
+    #[command(flatten)]
+    pub index_cache: IndexCacheConfig,
 
     /// What is known of the heading.
     #[command(flatten)]
@@ -62,6 +71,13 @@ impl Config {
                 .error(ErrorKind::ValueValidation, problem)
                 .exit(),
         }
+    }
+
+    /// The settings of the localizer, where not even clutter keeps a robot waiting.
+    pub(crate) fn localizer(&self) -> LocalizerConfig {
+        let mut localizer = self.localizer.clone();
+        localizer.collect.work_limit.get_or_insert(WORK_LIMIT);
+        localizer
     }
 
     /// Whether the localizer has to search the heading.
@@ -139,6 +155,9 @@ mod tests {
         assert_eq!(config.prior(), Prior::None);
         assert_eq!(parse("--heading 0").unwrap().prior(), Prior::Heading);
         assert!(config.sonar.window().is_none());
+        assert_eq!(config.localizer().collect.work_limit, Some(WORK_LIMIT));
+        let endless = parse("--work-limit 0").unwrap().localizer();
+        assert_eq!(endless.collect.work_limit, Some(0.0));
         let sonar = parse("--sonar-way 2 --sonar-cone 25").unwrap().sonar;
         assert_eq!((sonar.sonar_way, sonar.sonar_cone), (Some(2.0), 25.0));
     }

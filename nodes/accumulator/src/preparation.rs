@@ -4,9 +4,10 @@
 //! been checked. That a boundary is complete cannot be seen without extracting
 //! it again, and is left to its sender.
 
-use engine::grid::{Cell, CellRules, Grid, GridFrame};
-use engine::localizer::{Localizer, LocalizerConfig, Prior};
+use engine::grid::{CellRules, GridFrame};
+use engine::localizer::{Localizer, LocalizerConfig, Preparation, Prior};
 use engine::space::Space;
+use index_cache::{IndexCache, Kept, Prepared};
 use messages::{BoundaryCell, BoundaryHeader, MapHeader};
 
 use crate::AccumulatorError;
@@ -78,7 +79,8 @@ impl Job {
         })
     }
 
-    /// Makes the localizer, which takes from milliseconds to seconds.
+    /// Makes the localizer, which takes from milliseconds to seconds, unless what takes
+    /// long is in a file that was kept.
     ///
     /// # Errors
     /// If map or boundary cannot be used, or do not belong together.
@@ -86,21 +88,40 @@ impl Job {
         self,
         config: LocalizerConfig,
         prior: Prior,
-    ) -> Result<PreparedMap, AccumulatorError> {
+        cache: Option<&IndexCache>,
+    ) -> Result<(PreparedMap, Kept), AccumulatorError> {
         let frame = GridFrame::of(&self.map)?;
         let (width, height) = (self.map.width as usize, self.map.height as usize);
-        let sides = (width, height);
-        let grid = Grid::new(width, height, &self.occupancy, self.rules)?;
-        check_boundary(&self.boundary, &grid)?;
+        let space = Space::new(config.headings, frame.resolution_m, width, height)?;
         let (cells, rules) = (&self.occupancy, self.rules);
-        let localizer = Localizer::of_map(frame, sides, cells, rules, config, prior)?;
-        let headings = localizer.config().headings;
-        Ok(PreparedMap {
+        let preparation = Preparation::of_map(frame, (width, height), cells, rules, config, prior)?;
+        self.check_boundary()?;
+        let Prepared { localizer, kept } = Prepared::new(cache, preparation)?;
+        let map = PreparedMap {
             map_id: self.map.map_id,
-            rules: self.rules,
+            rules,
             localizer,
-            space: Space::new(headings, frame.resolution_m, width, height)?,
-        })
+            space,
+        };
+        Ok((map, kept))
+    }
+
+    /// The engine takes each cell for an obstacle of its grid, and each but once.
+    fn check_boundary(&self) -> Result<(), AccumulatorError> {
+        let (width, height) = (self.map.width, self.map.height);
+        let is_occupied = |cell: BoundaryCell| {
+            let (x, y) = (u32::from(cell.x), u32::from(cell.y));
+            let occupancy = self.occupancy.get(y as usize * width as usize + x as usize);
+            x < width && y < height && occupancy.is_some_and(|&cell| self.rules.is_occupied(cell))
+        };
+        if let Some(&cell) = self.boundary.iter().find(|&&cell| !is_occupied(cell)) {
+            return Err(AccumulatorError::BoundaryCell { cell });
+        }
+        let mut neighbours = self.boundary.iter().zip(self.boundary.iter().skip(1));
+        match neighbours.find(|(previous, cell)| (previous.y, previous.x) >= (cell.y, cell.x)) {
+            Some((&previous, &cell)) => Err(AccumulatorError::BoundaryOrder { previous, cell }),
+            None => Ok(()),
+        }
     }
 }
 
@@ -134,24 +155,11 @@ fn rules_of(boundary: &BoundaryHeader) -> Result<CellRules, AccumulatorError> {
     })
 }
 
-/// The engine takes each cell for an obstacle of its grid, and each but once.
-fn check_boundary(boundary: &[BoundaryCell], grid: &Grid) -> Result<(), AccumulatorError> {
-    for &cell in boundary {
-        if grid.get(cell.x.into(), cell.y.into()) != Some(Cell::Occupied) {
-            return Err(AccumulatorError::BoundaryCell { cell });
-        }
-    }
-    let mut neighbours = boundary.iter().zip(boundary.iter().skip(1));
-    match neighbours.find(|(previous, cell)| (previous.y, previous.x) >= (cell.y, cell.x)) {
-        Some((&previous, &cell)) => Err(AccumulatorError::BoundaryOrder { previous, cell }),
-        None => Ok(()),
-    }
-}
-
 #[cfg(test)]
 mod tests {
     use bytemuck::Zeroable;
     use engine::boundary;
+    use engine::grid::Grid;
 
     use super::*;
 
@@ -198,7 +206,8 @@ mod tests {
         let mut pair = room();
         change(&mut pair);
         Job::new(&pair.map, &pair.occupancy, &pair.header, &pair.cells)?
-            .prepare(LocalizerConfig::default(), Prior::Heading)
+            .prepare(LocalizerConfig::default(), Prior::Heading, None)
+            .map(|(map, _)| map)
     }
 
     #[track_caller]
@@ -213,6 +222,29 @@ mod tests {
         assert_eq!(prepared.map_id, 77);
         assert_eq!(prepared.localizer.frame().map_from_grid.x, 3.0);
         assert_eq!(prepared.localizer.grid().free_cells(), 8);
+    }
+
+    #[test]
+    fn a_map_that_was_kept_is_read_by_its_rules() {
+        let folder = tempfile::tempdir().unwrap();
+        let cache = IndexCache::new(folder.path().join("maps"), 10_000_000);
+        let prepare = |pair: &Pair| {
+            let job = Job::new(&pair.map, &pair.occupancy, &pair.header, &pair.cells).unwrap();
+            job.prepare(LocalizerConfig::default(), Prior::None, Some(&cache))
+                .unwrap()
+        };
+        let mut pair = room();
+        let (_, kept) = prepare(&pair);
+        assert!(!kept.is_read);
+        kept.unsaved.unwrap().save().unwrap();
+        let (map, kept) = prepare(&pair);
+        assert!(kept.is_read && kept.unsaved.is_none());
+        assert_eq!((map.map_id, map.localizer.searchable_cells()), (77, 8));
+        // Of two rules that class all cells alike one index will do.
+        pair.header.occupied_from = 66;
+        assert!(prepare(&pair).1.is_read);
+        pair.occupancy[7] = 50;
+        assert!(!prepare(&pair).1.is_read, "a cell is unknown now");
     }
 
     #[test]

@@ -56,7 +56,7 @@ pub fn run(graph: &Graph, config: &Config) -> Result<(), AccumulatorError> {
         pending: None,
         kept: (config.search == Searched::Asked).then(KeptScans::default),
         recalled: None,
-        supply: Supply::new(config.localizer.clone(), config.prior()),
+        supply: Supply::new(config),
         map: None,
         sonar: config.sonar.window().map(Sonar::new),
         workspace: Workspace::default(),

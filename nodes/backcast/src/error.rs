@@ -18,6 +18,9 @@ pub enum BackcastError {
     /// The descriptor cannot be used.
     #[error(transparent)]
     Dataflow(#[from] DataflowError),
+    /// Prepared maps cannot be kept.
+    #[error(transparent)]
+    IndexCache(#[from] index_cache::CacheError),
     /// A message cannot be one of the graph.
     #[error(transparent)]
     Conversion(#[from] conversion::Unsayable),

@@ -61,6 +61,7 @@ pub fn check<'a>(
     let input = PeakInput {
         votes,
         certified_floor: header.certified_floor,
+        cut: header.truncated == VotesHeader::CUT,
         highest_possible: header.highest_possible,
         headings: header.headings,
         known_heading: (header.heading_known == 1).then_some(header.known_heading),

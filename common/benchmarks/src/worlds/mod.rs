@@ -6,6 +6,7 @@
 //! pieces hide more boundary than they bring.
 
 mod canvas;
+mod city;
 mod clutter;
 mod corridors;
 mod rooms;
@@ -19,6 +20,7 @@ use rand::rngs::Xoshiro256PlusPlus;
 
 use crate::{BenchmarksError, RESOLUTION_M};
 use canvas::Canvas;
+pub use city::city;
 
 /// Fewest cells along a side.
 const LEAST_SIDE: usize = 16;

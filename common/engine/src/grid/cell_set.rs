@@ -21,6 +21,34 @@ impl CellSet {
         }
     }
 
+    /// Those of some cells, a byte each, of which `holds` says so: the same many times as
+    /// fast.
+    pub(crate) fn of_bytes(cells: &[u8], holds: impl Fn(u8) -> bool) -> Self {
+        /// Multiplied by this, the lowest bits of eight bytes come together in the last one.
+        const GATHER: u64 = 0x0102_0408_1020_4080;
+        let word = |cells: &[u8]| {
+            let mut flags = [0; WORD];
+            for (flag, &cell) in flags.iter_mut().zip(cells) {
+                *flag = u8::from(holds(cell));
+            }
+            let (eights, _) = flags.as_chunks();
+            let bits = eights
+                .iter()
+                .map(|&eight| u64::from_le_bytes(eight).wrapping_mul(GATHER) >> 56);
+            bits.rev().fold(0, |word, bits| word << 8 | bits)
+        };
+        CellSet {
+            words: cells.chunks(WORD).map(word).collect(),
+        }
+    }
+
+    /// None of so many cells.
+    pub(crate) fn none(cells: usize) -> Self {
+        CellSet {
+            words: vec![0; cells.div_ceil(WORD)],
+        }
+    }
+
     /// Leaves out those of which `holds` says no.
     pub(crate) fn retain(&mut self, holds: impl Fn(usize) -> bool) {
         for (i, word) in self.words.iter_mut().enumerate() {
@@ -29,6 +57,14 @@ impl CellSet {
                 *word &= !(u64::from(!holds(first + bit)) << bit);
             }
         }
+    }
+
+    /// How many they are.
+    pub(crate) fn count(&self) -> usize {
+        self.words
+            .iter()
+            .map(|word| word.count_ones() as usize)
+            .sum()
     }
 
     /// Bytes that they take.
@@ -40,6 +76,18 @@ impl CellSet {
     #[inline(always)]
     pub(crate) fn words(&self) -> &[u64] {
         &self.words
+    }
+
+    /// The same, to be filled in.
+    pub(crate) fn words_mut(&mut self) -> &mut [u64] {
+        &mut self.words
+    }
+
+    /// Whether no cell is among them but of the first so many.
+    pub(crate) fn are_below(&self, cells: usize) -> bool {
+        let (full, rest) = (cells / WORD, cells % WORD);
+        let mut beyond = self.words.iter().skip(full);
+        beyond.next().is_none_or(|word| word >> rest == 0) && beyond.all(|&word| word == 0)
     }
 
     /// Whether a cell is among them.
@@ -93,6 +141,11 @@ mod tests {
         ) {
             let mut set = CellSet::of(held.len(), |i| held[i]);
             prop_assert!((0..held.len()).all(|i| set.holds(i) == held[i]));
+            let bytes: Vec<u8> = held.iter().map(|&held| if held { 7 } else { 200 }).collect();
+            prop_assert_eq!(&CellSet::of_bytes(&bytes, |byte| byte < 100), &set);
+            prop_assert_eq!(set.count(), held.iter().filter(|&&held| held).count());
+            prop_assert!(set.are_below(held.len()));
+            prop_assert_eq!(set.are_below(held.len() / 2), held[held.len() / 2..].iter().all(|&held| !held));
             set.retain(|i| kept[i]);
             let both: Vec<usize> = (0..held.len()).filter(|&i| held[i] && kept[i]).collect();
             prop_assert_eq!(set.iter().collect::<Vec<_>>(), both.clone());

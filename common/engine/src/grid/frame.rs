@@ -123,7 +123,7 @@ mod tests {
         );
         check(
             |map| (map.width, map.height) = (32_767, 32_767),
-            "a grid of 32767 x 32767 cells: at most 268435456 cells are allowed",
+            "a grid of 32767 x 32767 cells: at most 400000000 cells are allowed",
         );
         for (resolution_m, found) in [
             (0.0, "0"),

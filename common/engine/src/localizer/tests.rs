@@ -7,7 +7,7 @@ use proptest::prelude::*;
 
 use super::*;
 use crate::fit::{Ends, Terrain};
-use crate::grid::drawn::grid;
+use crate::grid::{self, drawn::grid};
 use crate::peaks::{self, PeakConfig, PeakInput};
 use crate::reference;
 use crate::scan::Scan;

@@ -65,6 +65,9 @@ impl Workspace {
                 best.score - terrain.left_out(best.score, &config.fit),
             );
             found.judge_by_fit((best.score, needed, left_out), &mut self.leads, config);
+            if found.verdict == Verdict::Unique && input.may_lack(config.ambiguous_share) {
+                found.verdict = Verdict::Ambiguous;
+            }
         }
         &self.places
     }

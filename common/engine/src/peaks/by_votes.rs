@@ -31,7 +31,7 @@ impl Workspace {
         let places = summits.iter().map(|summit| place(input, summit, reach));
         found.places.extend(places);
         if let Some(best) = found.places.first().copied() {
-            found.judge_by_votes(best, input.certified_floor, config);
+            found.judge_by_votes(best, input, config);
         }
         found
     }
@@ -39,19 +39,21 @@ impl Workspace {
 
 impl Places {
     /// What the votes of the places allow to say.
-    fn judge_by_votes(&mut self, best: Place, certified_floor: u32, config: &PeakConfig) {
+    fn judge_by_votes(&mut self, best: Place, input: &PeakInput<'_>, config: &PeakConfig) {
         let rival = f64::from(best.intensity) * config.ambiguous_share;
         let others = self.places[1..].iter();
         let rivals = others.filter(|place| f64::from(place.intensity) >= rival);
         self.alternatives = rivals.count() as u32;
         let next = self.places.get(1).map_or_else(
-            || certified_floor.saturating_sub(1),
+            || input.certified_floor.saturating_sub(1),
             |next| u32::from(next.intensity),
         );
         self.confidence = (1.0 - f64::from(next) / f64::from(best.intensity)).clamp(0.0, 1.0);
         self.verdict = match () {
             () if best.score < config.poor_fit_share => Verdict::PoorFit,
-            () if self.alternatives > 0 => Verdict::Ambiguous,
+            () if self.alternatives > 0 || input.may_lack(config.ambiguous_share) => {
+                Verdict::Ambiguous
+            }
             () => Verdict::Unique,
         };
         self.inlier_share = best.score;

@@ -36,6 +36,8 @@ pub struct PeakInput<'a> {
     pub votes: &'a [Vote],
     /// All poses at or above this intensity are among the votes.
     pub certified_floor: u32,
+    /// Whether the search ended before it could tell that no other pose comes near the best.
+    pub cut: bool,
     /// What a pose would have if every beam agreed fully.
     pub highest_possible: u32,
     /// Headings a turn.
@@ -53,11 +55,20 @@ impl<'a> PeakInput<'a> {
         PeakInput {
             votes: &outcome.found.votes,
             certified_floor: u32::from(outcome.found.certified_floor),
+            cut: outcome.found.cut,
             highest_possible: outcome.highest_possible,
             headings: outcome.headings,
             known_heading: outcome.known_heading,
             frame,
         }
+    }
+
+    /// Whether a pose that the search did not come to may have such a share of the best
+    /// one's votes.
+    fn may_lack(&self, share: f64) -> bool {
+        let best = self.votes.first().map_or(0, |best| best.intensity);
+        let unseen = self.certified_floor.saturating_sub(1);
+        self.cut && f64::from(unseen) >= f64::from(best) * share
     }
 
     /// The given heading in the grid's frame, radians.

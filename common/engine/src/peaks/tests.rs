@@ -15,6 +15,7 @@ fn input(votes: &[Vote]) -> PeakInput<'_> {
     PeakInput {
         votes,
         certified_floor: 85,
+        cut: false,
         highest_possible: 200,
         headings: 360,
         known_heading: None,
@@ -93,6 +94,24 @@ fn equal_places_are_ambiguous_and_weak_ones_fit_poorly() {
         by_votes(&weak, &PeakConfig::default()).verdict,
         Verdict::PoorFit
     );
+}
+
+#[test]
+fn a_cut_search_is_unique_only_where_no_rival_can_have_been_missed() {
+    let votes = [vote(10, 20, 0, 100), vote(40, 20, 0, 60)];
+    let verdict = |cut, certified_floor| {
+        let input = PeakInput {
+            cut,
+            certified_floor,
+            ..input(&votes)
+        };
+        by_votes(&input, &PeakConfig::default()).verdict
+    };
+    // Rivals have 92 votes at least, and poses with one less than the floor may be missing.
+    assert_eq!(verdict(true, 92), Verdict::Unique);
+    assert_eq!(verdict(true, 93), Verdict::Ambiguous);
+    assert_eq!(verdict(true, 180), Verdict::Ambiguous);
+    assert_eq!(verdict(false, 93), Verdict::Unique);
 }
 
 #[test]

@@ -28,5 +28,5 @@ mod leaves;
 mod plan;
 mod task;
 
-pub use index::SearchIndex;
+pub use index::{IndexKey, SECTIONS, SearchIndex, SectionError, UncheckedIndex};
 pub use plan::{BlockBounds, Workspace};

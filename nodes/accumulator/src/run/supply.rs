@@ -1,16 +1,18 @@
 //! Maps and boundaries on their way to localizers.
 
+use std::error::Error;
 use std::time::Instant;
 
 use engine::limits::Region;
 use engine::localizer::{LocalizerConfig, Prior};
+use index_cache::{CachePlace, IndexCache, Kept};
 use messages::{Corner, NodeState, topic};
 use transport::{Health, Sample, Subscriber, TransportError, with_causes};
 
 use super::inputs::Inputs;
-use crate::AccumulatorError;
 use crate::background::Background;
 use crate::preparation::{Job, Key, PreparedMap};
+use crate::{AccumulatorError, Config};
 
 /// What has come, what is wanted of it, and what is being prepared: one
 /// localizer at a time, always for what came last.
@@ -21,6 +23,8 @@ pub(super) struct Supply {
     /// Counts the regions that were wished for.
     wishes: u64,
     prior: Prior,
+    /// Where prepared maps are kept.
+    cache: Option<IndexCache>,
     map: Option<Sample<topic::Map>>,
     boundary: Option<Sample<topic::Boundary>>,
     /// To be prepared, once nothing else is.
@@ -36,16 +40,22 @@ type Order = (Key, u64);
 struct UnderWay {
     order: Order,
     since: Instant,
-    work: Background<Result<PreparedMap, AccumulatorError>>,
+    work: Background<Result<(PreparedMap, Kept), AccumulatorError>>,
 }
 
 impl Supply {
-    pub(super) fn new(config: LocalizerConfig, prior: Prior) -> Self {
+    pub(super) fn new(config: &Config) -> Self {
+        let cache = config.index_cache.open(CachePlace::User);
+        let cache = cache.unwrap_or_else(|problem| {
+            tracing::warn!("prepared maps are not kept: {}", with_causes(&problem));
+            None
+        });
         Supply {
-            configured: config.limits.region.clone(),
+            configured: config.localizer.limits.region.clone(),
             wishes: 0,
-            config,
-            prior,
+            config: config.localizer(),
+            prior: config.prior(),
+            cache,
             map: None,
             boundary: None,
             wanted: None,
@@ -140,7 +150,7 @@ impl Supply {
         let outcome = work
             .finish()
             .map_err(|reason| AccumulatorError::PreparationDied { map_id, reason })?;
-        let prepared = match outcome {
+        let (prepared, kept) = match outcome {
             Ok(prepared) => prepared,
             Err(error) => {
                 refuse(map_id, &error, health)?;
@@ -153,8 +163,10 @@ impl Supply {
             width = grid.width(),
             height = grid.height(),
             seconds = since.elapsed().as_secs_f64(),
+            from_file = kept.is_read,
             "map prepared"
         );
+        keep(kept);
         self.handed_out = Some(order);
         health.state(NodeState::Ready)?;
         Ok(Some(prepared))
@@ -181,8 +193,9 @@ impl Supply {
             Ok(job) => job,
             Err(error) => return Ok(refuse(order.0.map_id, &error, health)?),
         };
-        let (config, prior) = (self.config.clone(), self.prior);
-        let work = Background::start("prepare map", move || job.prepare(config, prior));
+        let (config, prior, cache) = (self.config.clone(), self.prior, self.cache.clone());
+        let prepare = move || job.prepare(config, prior, cache.as_ref());
+        let work = Background::start("prepare map", prepare);
         self.under_way = Some(UnderWay {
             order,
             since: Instant::now(),
@@ -202,6 +215,20 @@ fn region(corners: &[Corner]) -> Result<Option<Region>, String> {
         return Ok(None);
     }
     Region::new(&corners).map(Some)
+}
+
+/// Reports on the file of an index, and writes one that is to be written, beside the scans
+/// that are answered meanwhile. Nobody waits for that.
+fn keep(kept: Kept) {
+    let warn = |problem: &dyn Error| tracing::warn!("kept index: {}", with_causes(problem));
+    if let Some(problem) = kept.problem {
+        warn(&problem);
+    }
+    let Some(unsaved) = kept.unsaved else { return };
+    let save = move || unsaved.save().unwrap_or_else(|problem| warn(&problem));
+    if let Err(problem) = Background::start("keep index", save) {
+        warn(&problem);
+    }
 }
 
 /// Scans are answered as before.

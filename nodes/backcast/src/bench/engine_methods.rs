@@ -22,6 +22,7 @@ const ARGMAX: CollectConfig = CollectConfig {
     floor_share: 1.0,
     max_votes: 1,
     candidates: 0,
+    work_limit: None,
 };
 
 fn program(task: &Task<'_>) -> Result<ScanProgram, BackcastError> {
@@ -115,6 +116,7 @@ pub(super) fn top_sixteen<'a>(
                 floor_share,
                 max_votes: 1_000_000,
                 candidates: 0,
+                work_limit: None,
             };
             let found = exhaustive::search(&mut accumulators, &limits, scan, collect, &is_late);
             let Some(found) = found.filter(|found| !found.truncated) else {

@@ -171,7 +171,7 @@ fn votes(outcome: &Outcome) -> Votes {
         certified_floor: found.certified_floor,
         highest_possible: outcome.highest_possible,
         total: found.votes.len() as u64,
-        truncated: found.truncated,
+        truncated: found.truncated || found.cut,
         beams_used: outcome.beams_used,
         beams_silent: outcome.beams_silent,
         poses_evaluated: found.poses_evaluated,

@@ -8,6 +8,7 @@ use engine::heading::HeadingConfig;
 use engine::joined::MotionConfig;
 use engine::localizer::LocalizerConfig;
 use engine::peaks::PeakConfig;
+use index_cache::IndexCacheConfig;
 use map::OccupancyGrid;
 use recording::{Kind, Recording};
 
@@ -39,6 +40,9 @@ pub(crate) struct Options {
 
     #[command(flatten)]
     pub(crate) engine: EngineOptions,
+
+    #[command(flatten, next_help_heading = "Kept maps")]
+    pub(crate) index_cache: IndexCacheConfig,
 }
 
 /// All settings of the engine, as the nodes of the graph take them.

@@ -9,6 +9,7 @@ use engine::fit::Ends;
 use engine::localizer::Prior;
 use engine::peaks::Sought;
 use geometry::Pose;
+use index_cache::{CachePlace, IndexCache, Kept, Unsaved};
 use map::OccupancyGrid;
 use messages::UNKNOWN;
 use recording::{Recording, RecordingError};
@@ -38,6 +39,8 @@ pub(crate) struct Session<'a> {
     said: BTreeSet<String>,
     map_file: PathBuf,
     engine: EngineOptions,
+    /// Where prepared maps are kept.
+    cache: Option<IndexCache>,
     headings: Headings,
     motion: Motion<'a>,
 }
@@ -104,6 +107,7 @@ impl<'a> Session<'a> {
             said: BTreeSet::new(),
             map_file: map_file(options, recording.path()),
             engine: options.engine.clone(),
+            cache: options.index_cache.open(CachePlace::Off)?,
             headings,
         };
         if let Some(map) = given {
@@ -177,11 +181,23 @@ impl<'a> Session<'a> {
             return Ok(Ok(()));
         }
         let prior = self.headings.source().prior();
-        let (world, cpu_ms) = cpu::timed(|| World::prepare(&map, &self.engine, prior))?;
+        let cache = self.cache.as_ref();
+        let prepare = || World::prepare_with(&map, &self.engine, prior, cache);
+        let (prepared, cpu_ms) = cpu::timed(prepare)?;
         self.prepare_cpu_ms += cpu_ms;
-        Ok(world.map(|world| {
+        Ok(prepared.map(|(world, kept)| {
+            self.keep(kept);
             self.prepared = Some(Prepared { map, map_id, world });
         }))
+    }
+
+    /// Notes what is to be said of the file of an index, and writes one that is to be
+    /// written.
+    fn keep(&mut self, kept: Kept) {
+        let saved = kept.unsaved.map(Unsaved::save);
+        let problems = kept.problem.into_iter().chain(saved.and_then(Result::err));
+        let notes = problems.map(|problem| format!("kept index: {}", with_causes(&problem)));
+        self.notes.extend(notes);
     }
 
     /// Prepares the map of a scan anew, unknown within a radius, metres, of a

@@ -5,12 +5,13 @@ use engine::EngineError;
 use engine::beams::BeamConfig;
 use engine::fit::{BeamClass, Ends, GridPose, JudgedBeam, Terrain};
 use engine::grid::GridFrame;
-use engine::localizer::{self, Localizer, Outcome, Prior};
+use engine::localizer::{self, Localizer, Outcome, Preparation, Prior};
 use engine::observation::Observation;
 use engine::peaks::{self, PeakConfig, PeakInput, Places, Score, Sought};
 use engine::scan::Scan;
 use engine::space::Space;
 use geometry::Pose;
+use index_cache::{IndexCache, Kept, Prepared};
 use map::OccupancyGrid;
 
 use super::layout::{frame_of, sides_of};
@@ -111,12 +112,28 @@ impl World {
         options: &EngineOptions,
         prior: Prior,
     ) -> Result<Self, EngineError> {
+        Self::prepare_with(map, options, prior, None).map(|(world, _)| world)
+    }
+
+    /// The same by way of kept indexes.
+    ///
+    /// # Errors
+    /// See [`World::prepare`].
+    pub(crate) fn prepare_with(
+        map: &OccupancyGrid,
+        options: &EngineOptions,
+        prior: Prior,
+        cache: Option<&IndexCache>,
+    ) -> Result<(Self, Kept), EngineError> {
         let (frame, sides) = (frame_of(map), sides_of(map));
         let (cells, rules) = (&map.cells, options.cells);
         let config = options.localizer.clone();
-        Ok(World {
+        let terrain = Terrain::new(frame, sides, cells, rules)?;
+        let preparation = Preparation::of_map(frame, sides, cells, rules, config, prior)?;
+        let Prepared { localizer, kept } = Prepared::new(cache, preparation)?;
+        let world = World {
             map_id: map.id(),
-            terrain: Terrain::new(frame, sides, cells, rules)?,
+            terrain,
             space: Space::new(
                 options.localizer.headings,
                 frame.resolution_m,
@@ -124,11 +141,12 @@ impl World {
                 sides.1,
             )?,
             beams: options.localizer.votes.beams,
-            localizer: Localizer::of_map(frame, sides, cells, rules, config, prior)?,
+            localizer,
             cells: u64::from(map.width) * u64::from(map.height),
             peaks: options.peaks,
             workspace: Workspace::default(),
-        })
+        };
+        Ok((world, kept))
     }
 
     /// Cells of the map.

@@ -279,7 +279,8 @@ impl<'a> Sifting<'a> {
         };
         let Share { sweep, field, .. } = &mut *self.share;
         let simd = programs.simd;
-        index.sweeps.fill(simd, query, sweep, field, self.stop)?;
+        let sweeps = index.sweeps(self.task.grid);
+        sweeps.fill(simd, query, sweep, field, self.stop)?;
         index.within.limits.clear(field, heading);
         Some(())
     }
@@ -408,7 +409,7 @@ mod tests {
             worlds in vec((any_limited_grid(4), prop_oneof![2 => any_dense_scan(), 1 => any_scan()], 1usize..4), 1..4),
             floor_share in prop_oneof![1 => Just(1.0), 2 => 0.6..1.0f64], max_votes in 1u32..400, is_known: bool,
         ) {
-            let config = CollectConfig { floor_share, max_votes, candidates: 0 };
+            let config = CollectConfig { floor_share, max_votes, ..CollectConfig::exact() };
             let mut sifter = Sifter::default();
             for ((grid, limits, headings), scan, threads) in worlds {
                 let space = space_of(&grid, headings);

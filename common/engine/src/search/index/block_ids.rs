@@ -16,14 +16,38 @@ pub(crate) struct BlockIds {
 impl BlockIds {
     /// Those of which `holds` says so, block by block.
     pub(crate) fn new(holds: &[bool]) -> Self {
-        let blocks = CellSet::of(holds.len(), |block| holds[block]);
+        Self::of(CellSet::of(holds.len(), |block| holds[block]))
+    }
+
+    /// The blocks of a set.
+    pub(crate) fn of(blocks: CellSet) -> Self {
+        let mut ids = BlockIds {
+            blocks,
+            before: Vec::new(),
+        };
+        ids.number();
+        ids
+    }
+
+    /// Numbers the blocks of the set, which may have been filled in anew.
+    pub(crate) fn number(&mut self) {
         let mut count = 0;
-        let mut before = vec![0];
-        before.extend(blocks.words().iter().map(|word| {
+        self.before.clear();
+        self.before.push(0);
+        self.before.extend(self.blocks.words().iter().map(|word| {
             count += word.count_ones();
             count
         }));
-        BlockIds { blocks, before }
+    }
+
+    /// The set of them.
+    pub(crate) fn set(&self) -> &CellSet {
+        &self.blocks
+    }
+
+    /// The same, to be filled in; [`BlockIds::number`] is to follow.
+    pub(crate) fn set_mut(&mut self) -> &mut CellSet {
+        &mut self.blocks
     }
 
     /// All of so many blocks.

@@ -16,7 +16,7 @@ use super::block_ids::BlockIds;
 use super::prefetch::prefetch;
 use super::steps::BinSteps;
 use crate::directions::Directions;
-use crate::grid::Grid;
+use crate::grid::{CellSet, Grid};
 use crate::instruction_set::InstructionSet;
 use crate::simd::Simd;
 use crate::simd::headings::{HEADINGS, IntervalRows};
@@ -141,6 +141,39 @@ impl RangeIntervals {
             packed,
         };
         (intervals, wide)
+    }
+
+    /// Those of some blocks of a grid, to be filled in: so many bytes. `None` where there
+    /// cannot be so many.
+    pub(crate) fn unfilled(grid: &Grid, directions: &Directions, bytes: usize) -> Option<Self> {
+        let (columns, rows) = (grid.width().div_ceil(SIDE), grid.height().div_ceil(SIDE));
+        let most = PACKED * directions.count() * columns * rows;
+        (bytes <= most).then(|| RangeIntervals {
+            columns,
+            rows,
+            directions: directions.count(),
+            ids: BlockIds::of(CellSet::none(columns * rows)),
+            simd: Simd::new(InstructionSet::best()),
+            packed: vec![0; bytes],
+        })
+    }
+
+    /// All that is packed.
+    pub(crate) fn all_packed(&self) -> &[u8] {
+        &self.packed
+    }
+
+    /// The same and the set of the blocks, to be filled in.
+    pub(crate) fn filling(&mut self) -> (&mut CellSet, &mut [u8]) {
+        (self.ids.set_mut(), &mut self.packed)
+    }
+
+    /// Numbers the blocks that were filled in; whether they are those of the grid, and as
+    /// many as intervals are packed.
+    pub(crate) fn number(&mut self) -> bool {
+        self.ids.number();
+        let packed = PACKED * self.directions * self.ids.count();
+        self.ids.set().are_below(self.columns * self.rows) && packed == self.packed.len()
     }
 
     /// Bytes that the intervals take.

@@ -8,12 +8,19 @@ pub(in crate::search) mod bins;
 pub(in crate::search) mod bits;
 pub(in crate::search) mod block_ids;
 pub(in crate::search) mod intervals;
+mod key;
 mod needed;
 pub(in crate::search) mod obstacles;
 pub(in crate::search) mod prefetch;
+mod sections;
 pub(in crate::search) mod sets;
 pub(in crate::search) mod steps;
 pub(in crate::search) mod within;
+
+pub use key::IndexKey;
+pub use sections::{SECTIONS, SectionError, UncheckedIndex};
+
+use std::sync::OnceLock;
 
 use bins::Bins;
 use block_ids::BlockIds;
@@ -37,8 +44,8 @@ pub struct SearchIndex {
     pub(in crate::search) coarse: RangeSets,
     pub(in crate::search) obstacles: Obstacles,
     pub(in crate::search) within: Within,
-    /// Where bounds do not help.
-    pub(in crate::search) sweeps: FieldSweep,
+    /// Where bounds do not help: made when they first do not.
+    sweeps: OnceLock<FieldSweep>,
 }
 
 impl SearchIndex {
@@ -53,10 +60,7 @@ impl SearchIndex {
     #[must_use]
     pub fn within(grid: &Grid, space: &Space, limits: Limits) -> Self {
         let directions = &space.directions;
-        let bins = Bins::new(directions);
-        // No ray has more steps than it crosses columns or rows.
-        let longest = grid.width().max(grid.height()) as u16;
-        let steps = BinSteps::new(&bins, directions, longest);
+        let (steps, bins) = Self::scale(grid, space);
         let blocks = BlockIds::new(&limits.blocks(SIDE, grid));
         let (intervals, wide) = RangeIntervals::new(grid, directions, (&bins, &steps), blocks);
         let fine = RangeSets::new(&intervals, &wide);
@@ -69,8 +73,17 @@ impl SearchIndex {
             coarse,
             obstacles: Obstacles::new(grid),
             within: Within::new(limits, grid),
-            sweeps: FieldSweep::new(grid),
+            sweeps: OnceLock::new(),
         }
+    }
+
+    /// The bins of distances, and the steps that they stand for.
+    fn scale(grid: &Grid, space: &Space) -> (BinSteps, Bins) {
+        let bins = Bins::new(&space.directions);
+        // No ray has more steps than it crosses columns or rows.
+        let longest = grid.width().max(grid.height()) as u16;
+        let steps = BinSteps::new(&bins, &space.directions, longest);
+        (steps, bins)
     }
 
     /// Where poses are sought.
@@ -79,10 +92,16 @@ impl SearchIndex {
         &self.within.limits
     }
 
+    /// The grid of the index, prepared for counting every pose.
+    pub(in crate::search) fn sweeps(&self, grid: &Grid) -> &FieldSweep {
+        self.sweeps.get_or_init(|| FieldSweep::new(grid))
+    }
+
     /// Bytes that the index takes.
     #[must_use]
     pub fn bytes(&self) -> usize {
         let blocks = self.intervals.bytes() + self.fine.bytes() + self.coarse.bytes();
-        blocks + self.within.bytes() + self.obstacles.bytes() + self.sweeps.bytes()
+        let sweeps = self.sweeps.get().map_or(0, FieldSweep::bytes);
+        blocks + self.within.bytes() + self.obstacles.bytes() + sweeps
     }
 }

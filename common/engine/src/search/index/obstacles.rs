@@ -74,6 +74,27 @@ impl Obstacles {
         }
     }
 
+    /// Those of a grid, to be filled in.
+    pub(crate) fn unfilled(grid: &Grid) -> Self {
+        Obstacles {
+            along_x: Rows::empty(grid, true),
+            along_y: Rows::empty(grid, false),
+            clearance: Clearance::unknown(grid),
+        }
+    }
+
+    /// The rows along either axis, and the clearances.
+    pub(crate) fn parts(&self) -> ([&[u32]; 2], &[u8]) {
+        let rows = [&self.along_x.bits[..], &self.along_y.bits];
+        (rows, &self.clearance.tiles)
+    }
+
+    /// The same, to be filled in.
+    pub(crate) fn parts_mut(&mut self) -> ([&mut [u32]; 2], &mut [u8]) {
+        let rows = [&mut self.along_x.bits[..], &mut self.along_y.bits];
+        (rows, &mut self.clearance.tiles)
+    }
+
     /// Bytes that they take.
     pub(crate) fn bytes(&self) -> usize {
         let rows = self.along_x.bits.len() + self.along_y.bits.len();
@@ -119,25 +140,31 @@ impl Obstacles {
 }
 
 impl Rows {
-    fn new(grid: &Grid, x_major: bool) -> Self {
+    /// Rows of a grid without any obstacle.
+    fn empty(grid: &Grid, x_major: bool) -> Self {
         let (majors, minors) = swap_unless(x_major, (grid.width(), grid.height()));
         let stride = majors + 2 * ROWS as usize;
         let strips = (minors + 2 * MARGIN as usize).div_ceil(1 << STRIP);
-        let mut bits = vec![0; strips * stride];
+        Rows {
+            majors: majors as i64,
+            minors: minors as i64,
+            stride,
+            bits: vec![0; strips * stride],
+        }
+    }
+
+    fn new(grid: &Grid, x_major: bool) -> Self {
+        let mut rows = Self::empty(grid, x_major);
+        let Rows { stride, bits, .. } = &mut rows;
         for cell in grid.places(|cell| cell != Cell::Open) {
             let (major, minor) = swap_unless(x_major, cell);
             let row = major + ROWS as usize;
             // The margin is wider than a strip, so that there is one before each.
             let (strip, bit) = strip_of(minor as i64 + MARGIN);
-            bits[strip * stride + row] |= 1 << bit;
-            bits[(strip - 1) * stride + row] |= 1 << (bit + (1 << STRIP));
+            bits[strip * *stride + row] |= 1 << bit;
+            bits[(strip - 1) * *stride + row] |= 1 << (bit + (1 << STRIP));
         }
-        Rows {
-            majors: majors as i64,
-            minors: minors as i64,
-            stride,
-            bits,
-        }
+        rows
     }
 }
 
@@ -150,18 +177,24 @@ fn strip_of(bit: i64) -> (usize, i64) {
 impl Clearance {
     /// Of a map; what lies beyond it is no obstacle.
     fn new(grid: &Grid) -> Self {
-        let tiles = |cells: usize| cells.div_ceil(1 << TILE) + 2;
-        let (columns, rows) = (tiles(grid.width()), tiles(grid.height()));
-        let mut clearance = Clearance {
-            columns,
-            tiles: vec![u8::MAX; columns * rows],
-        };
+        let mut clearance = Self::unknown(grid);
+        let columns = clearance.columns;
         for (x, y) in grid.places(|cell| cell != Cell::Open) {
             let tile = clearance.tile(x, y);
             clearance.tiles[tile] = 0;
         }
         chessboard::spread(&mut clearance.tiles, columns);
         clearance
+    }
+
+    /// Of a map on which no obstacle is known.
+    fn unknown(grid: &Grid) -> Self {
+        let tiles = |cells: usize| cells.div_ceil(1 << TILE) + 2;
+        let (columns, rows) = (tiles(grid.width()), tiles(grid.height()));
+        Clearance {
+            columns,
+            tiles: vec![u8::MAX; columns * rows],
+        }
     }
 
     /// The tile of a cell.

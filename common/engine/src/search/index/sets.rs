@@ -17,6 +17,8 @@ use std::convert::Infallible;
 
 use super::intervals::{self, RangeIntervals, WideViews};
 use super::prefetch::prefetch;
+use crate::directions::Directions;
+use crate::grid::Grid;
 use crate::instruction_set::InstructionSet;
 use crate::simd::Simd;
 use crate::simd::words::{BYTES, QUAD};
@@ -57,7 +59,8 @@ pub(crate) struct Quad {
 }
 
 /// Where the rows of a quad start.
-#[derive(Debug, Clone, Copy, Default, PartialEq, Eq)]
+#[derive(Debug, Clone, Copy, Default, PartialEq, Eq, bytemuck::Pod, bytemuck::Zeroable)]
+#[repr(C)]
 struct Start {
     /// Counted through all quads, and so are the bytes that are kept.
     row: u32,
@@ -122,6 +125,72 @@ impl RangeSets {
             starts,
             packed: rows_of.packed,
         }
+    }
+
+    /// Those of blocks of so many cells a side, to be filled in: so many bytes of where
+    /// quads start, of masks, and of bytes that are kept. `None` where there cannot be so
+    /// many.
+    pub(crate) fn unfilled(
+        side: usize,
+        grid: &Grid,
+        directions: &Directions,
+        [starts, masks, bytes]: [usize; 3],
+    ) -> Option<Self> {
+        let (columns, rows) = (grid.width().div_ceil(side), grid.height().div_ceil(side));
+        let quads = columns.div_ceil(2) * rows.div_ceil(2);
+        let stride = directions.count() / 8;
+        let most_rows = quads << (u8::BITS - intervals::ROW_SHIFT);
+        let masks = count::<u16>(masks).filter(|&masks| masks <= most_rows * words(stride))?;
+        let bytes = count::<Byte>(bytes).filter(|&bytes| bytes <= most_rows * stride + READ)?;
+        (count::<Start>(starts) == Some(quads + 1)).then(|| RangeSets {
+            side,
+            columns,
+            rows,
+            stride,
+            starts: vec![Start::default(); quads + 1],
+            packed: PackedRows {
+                masks: vec![0; masks],
+                bytes: vec![[0; QUAD]; bytes],
+            },
+        })
+    }
+
+    /// Where quads start, the masks, and the bytes that are kept.
+    pub(crate) fn parts(&self) -> [&[u8]; 3] {
+        let PackedRows { masks, bytes } = &self.packed;
+        let starts = bytemuck::cast_slice(&self.starts);
+        [starts, bytemuck::cast_slice(masks), bytes.as_flattened()]
+    }
+
+    /// The same, to be filled in.
+    pub(crate) fn parts_mut(&mut self) -> [&mut [u8]; 3] {
+        let PackedRows { masks, bytes } = &mut self.packed;
+        let starts = bytemuck::cast_slice_mut(&mut self.starts);
+        let masks = bytemuck::cast_slice_mut(masks);
+        [starts, masks, bytes.as_flattened_mut()]
+    }
+
+    /// Whether what was filled in can be read: the quads follow each other, no row lies
+    /// beyond the last bin, and as many bytes are kept of each quad as its masks say.
+    pub(crate) fn are_sound(&self) -> bool {
+        let PackedRows { masks, bytes } = &self.packed;
+        let words = words(self.stride);
+        let mut masks = &masks[..];
+        let are_sound = self.starts.windows(2).all(|pair| {
+            let [start, end] = [pair[0], pair[1]];
+            let rows = end.row.checked_sub(start.row).unwrap_or(u32::MAX);
+            let last_row = start.first.saturating_add(rows);
+            let Some((own, rest)) = masks.split_at_checked(rows as usize * words) else {
+                return false;
+            };
+            masks = rest;
+            let kept: u32 = own.iter().map(|mask| mask.count_ones()).sum();
+            last_row <= 1 << (u8::BITS - intervals::ROW_SHIFT)
+                && end.byte.checked_sub(start.byte) == Some(kept)
+        });
+        let first = self.starts.first().map(|start| (start.row, start.byte));
+        let last = self.starts.last().map(|end| end.byte as usize + READ);
+        are_sound && masks.is_empty() && first == Some((0, 0)) && last == Some(bytes.len())
     }
 
     /// Those of blocks that join two by two of these.
@@ -212,6 +281,12 @@ impl Quad {
         let blocks = self.blocks.into_iter().enumerate();
         blocks.filter_map(|(place, block)| Some((place, block?)))
     }
+}
+
+/// How many of a kind so many bytes are.
+fn count<T>(bytes: usize) -> Option<usize> {
+    let each = size_of::<T>();
+    bytes.is_multiple_of(each).then_some(bytes / each)
 }
 
 /// The blocks of a quad on a map of so many columns and rows of blocks.

@@ -1,10 +1,9 @@
 //! The limits of a search, laid out for blocks of each size.
 
 use super::bits::CHUNK;
-use super::block_ids::BlockIds;
 use super::intervals::SIDE;
 use super::sets::{Quad, RangeSets};
-use crate::grid::Grid;
+use crate::grid::{CellSet, Grid};
 use crate::limits::Limits;
 
 /// Where poses are sought, block by block.
@@ -12,7 +11,7 @@ use crate::limits::Limits;
 pub(in crate::search) struct Within {
     pub limits: Limits,
     /// The blocks of 8 × 8 and of 16 × 16 cells in which poses are sought.
-    blocks: [BlockIds; 2],
+    pub blocks: [CellSet; 2],
 }
 
 /// A size of blocks that have sets.
@@ -25,7 +24,19 @@ pub(in crate::search) enum Size {
 impl Within {
     /// Lays out the limits of a grid.
     pub(in crate::search) fn new(limits: Limits, grid: &Grid) -> Self {
-        let blocks = [2 * SIDE, 4 * SIDE].map(|side| BlockIds::new(&limits.blocks(side, grid)));
+        let blocks = [2 * SIDE, 4 * SIDE].map(|side| {
+            let blocks = limits.blocks(side, grid);
+            CellSet::of(blocks.len(), |block| blocks[block])
+        });
+        Within { limits, blocks }
+    }
+
+    /// Limits and blocks of a grid that are still to be filled in.
+    pub(in crate::search) fn unfilled(limits: Limits, grid: &Grid) -> Self {
+        let blocks = [2 * SIDE, 4 * SIDE].map(|side| {
+            let (columns, rows) = (grid.width().div_ceil(side), grid.height().div_ceil(side));
+            CellSet::none(columns * rows)
+        });
         Within { limits, blocks }
     }
 
@@ -36,7 +47,7 @@ impl Within {
 
     /// Bytes that they take.
     pub(in crate::search) fn bytes(&self) -> usize {
-        self.limits.bytes() + self.blocks.iter().map(BlockIds::bytes).sum::<usize>()
+        self.limits.bytes() + self.blocks.iter().map(CellSet::bytes).sum::<usize>()
     }
 
     /// A quad of blocks of a size, for those in which poses are sought.

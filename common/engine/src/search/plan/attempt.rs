@@ -1,11 +1,11 @@
 //! One search: by bounds, or where these do not help by counting every pose.
 
 use super::alternatives::{self, Alternatives};
-use super::descent::{self, End};
+use super::descent;
 use super::parts;
 use crate::program::ScanProgram;
 use crate::search::fallback::{self, Sift};
-use crate::search::task::Task;
+use crate::search::task::{End, Task};
 use crate::votes::{Distinct, VoteSet, is_close, most_candidates};
 
 /// A search to be made, and the room for it, of as many threads as there are rooms and
@@ -61,7 +61,9 @@ impl Attempt<'_> {
         let wanted = task.config.candidates as usize;
         if wanted > 0 && found.best > 0 {
             let bounded = (end == End::Done).then_some(&**rooms);
-            let (floor, certain) = (found.certified_floor, found.votes.len());
+            let certain = found.votes.len();
+            // Of a search that was cut, all that it bounded may hold candidates.
+            let floor = if found.cut { 1 } else { found.certified_floor };
             let most = most_candidates(wanted, task.space.resolution_m);
             for count in [wanted, most] {
                 found.votes.truncate(certain);
@@ -75,6 +77,7 @@ impl Attempt<'_> {
                     break;
                 }
             }
+            found.put_in_order();
         }
     }
 }

@@ -19,7 +19,7 @@ use crate::search::index::within::{Size, quarters};
 use crate::search::leaves::leaf::Count;
 use crate::search::leaves::outlook::Outlook;
 use crate::search::task::budget::{Budget, LEVELS, Tally};
-use crate::search::task::{Programs, Task};
+use crate::search::task::{End, Programs, Task};
 use crate::simd::headings::HEADINGS;
 use crate::votes::Collector;
 
@@ -50,18 +50,9 @@ pub(in crate::search) struct Room {
     pub collector: Collector,
     /// How many were counted.
     pub poses_evaluated: u64,
+    /// The most votes that any pose can have where the search did not come to.
+    pub left: u16,
     tally: Tally,
-}
-
-/// How a part of a search ended.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub(in crate::search) enum End {
-    /// With the poses that matter.
-    Done,
-    /// It was told to stop.
-    Stopped,
-    /// Counting every pose would take less than what is left.
-    Hopeless,
 }
 
 /// A heading at which a block may still matter, and its bound there.
@@ -84,6 +75,7 @@ impl Room {
         self.candidates.clear();
         self.collector.start(task.config);
         self.poses_evaluated = 0;
+        self.left = 0;
         self.tally = Tally::default();
     }
 }
@@ -102,7 +94,8 @@ impl<'a> Descent<'a> {
     ) -> End {
         self.bound_coarse(part, parts);
         let task = self.task;
-        let mut budget = Budget::new(task.brute_force, fallback::likely_cost(task), parts);
+        let (counting, most_steps) = (fallback::likely_cost(task), task.config.most_steps());
+        let mut budget = Budget::new(task.brute_force, counting, most_steps, parts);
         while let Some(block) = self.next(budget.dives()) {
             if stop() {
                 return End::Stopped;
@@ -121,6 +114,12 @@ impl<'a> Descent<'a> {
             let Programs { simd, beams, .. } = self.task.programs;
             let cost = self.room.tally.take(simd.set(), *beams);
             budget.spend(level.number(), cost);
+            // Some pose has to be found: without any it would seem that no beam votes.
+            if budget.is_used_up() && self.room.collector.best() > 0 {
+                let left = self.room.queue.iter().map(|block| block.bound).max();
+                self.room.left = left.unwrap_or(0);
+                return End::Done;
+            }
             if budget.is_up() && budget.is_hopeless(self.left()) {
                 return End::Hopeless;
             }

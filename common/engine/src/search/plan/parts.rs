@@ -3,8 +3,8 @@
 //! Threads share what is searched and the best pose so far, and each has a room
 //! that stays with it from scan to scan.
 
-use super::descent::{Descent, End, Room};
-use crate::search::task::Task;
+use super::descent::{Descent, Room};
+use crate::search::task::{End, Task};
 use crate::threads;
 use crate::votes::VoteSet;
 
@@ -26,6 +26,8 @@ pub(in crate::search) fn finish(rooms: &mut [Room], found: &mut VoteSet) {
     for other in others {
         own.collector.merge(&other.collector);
         own.poses_evaluated += other.poses_evaluated;
+        own.left = own.left.max(other.left);
     }
     own.collector.finish(own.poses_evaluated, found);
+    found.cut_at(own.left);
 }

@@ -163,7 +163,7 @@ mod tests {
             floor_share in 0.5..=1.0f64, max_votes in 1u32..400,
         ) {
             let space = space_of(&grid, headings * 8);
-            let config = CollectConfig { floor_share, max_votes, candidates: 0 };
+            let config = CollectConfig { floor_share, max_votes, ..CollectConfig::exact() };
             check(&grid, (&scan.program(&space), &space), config)?;
         }
 
@@ -230,6 +230,61 @@ mod tests {
                     prop_assert_eq!(first.get_or_insert(found.clone()), &found, "{:?}", how);
                 }
             }
+        }
+
+        #[test]
+        fn a_search_that_is_cut_says_what_it_may_have_missed(
+            grid in any_grid(), scan in any_scan(), headings in 1u32..8, floor_share in 0.3..=1.0f64,
+            work_limit in prop_oneof![Just(1e-9), 1e-6..0.1f64], candidates in 0u32..9,
+        ) {
+            let space = space_of(&grid, headings * 8);
+            let program = scan.program(&space);
+            let config = CollectConfig { floor_share, ..CollectConfig::exact() };
+            let plain = plain_votes(&grid, &program, &space, config);
+            let index = SearchIndex::new(&grid, &space);
+            let config = CollectConfig { work_limit: Some(work_limit), candidates, ..config };
+            for instruction_set in InstructionSet::available() {
+                for threads in 1..4 {
+                    let search = || {
+                        let how = (instruction_set, threads);
+                        index.search_with(how, &grid, (&program, &space), config, &|| false).unwrap()
+                    };
+                    let found = search();
+                    if threads == 1 {
+                        prop_assert_eq!(&found, &search());
+                    }
+                    let certain = |set: &VoteSet| {
+                        let floor = plain.certified_floor.max(found.certified_floor);
+                        set.votes.iter().copied().filter(|vote| vote.intensity >= floor).collect::<Vec<_>>()
+                    };
+                    prop_assert_eq!(certain(&found), certain(&plain));
+                    prop_assert!(found.cut || found.certified_floor == plain.certified_floor);
+                    prop_assert!(found.best <= plain.best && (found.best > 0) == (plain.best > 0));
+                    prop_assert!(found.votes.is_sorted_by_key(|vote| std::cmp::Reverse(vote.intensity)));
+                    prop_assert_eq!(found.votes.first().map_or(0, |vote| vote.intensity), found.best);
+                    for vote in &found.votes {
+                        let (x, y) = (i64::from(vote.x), i64::from(vote.y));
+                        let intensity = reference::intensity(&grid, &program, &space, x, y, vote.heading.into());
+                        prop_assert_eq!(vote.intensity, intensity);
+                    }
+                }
+            }
+        }
+
+        #[test]
+        fn a_limit_that_is_not_reached_changes_nothing(
+            grid in any_grid(), scan in any_scan(), headings in 1u32..8, candidates in 0u32..9,
+        ) {
+            let space = space_of(&grid, headings * 8);
+            let program = scan.program(&space);
+            let index = SearchIndex::new(&grid, &space);
+            let [none, zero, large] = [None, Some(0.0), Some(1e9)].map(|work_limit| {
+                let config = CollectConfig { work_limit, candidates, ..CollectConfig::default() };
+                index.search(&grid, &program, &space, config, &|| false).unwrap()
+            });
+            prop_assert!(!none.cut);
+            prop_assert_eq!(&none, &zero);
+            prop_assert_eq!(&none, &large);
         }
 
         #[test]

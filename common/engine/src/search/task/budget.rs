@@ -37,6 +37,10 @@ pub(in crate::search) struct Tally {
 pub(in crate::search) struct Budget {
     /// What is left must cost less.
     most: f64,
+    /// When the search ends, done or not.
+    limit: f64,
+    /// What counting every pose costs.
+    counting: f64,
     spent: f64,
     /// When to look again.
     next: f64,
@@ -135,12 +139,19 @@ impl Tally {
 }
 
 impl Budget {
-    /// For one of so many parts of a search. Counting every pose costs such a share of
-    /// brute force.
-    pub(in crate::search) fn new(brute_force: Cost, counting: f64, parts: usize) -> Self {
+    /// For one of so many parts of a search, which takes so many steps at most. Counting
+    /// every pose costs such a share of brute force.
+    pub(in crate::search) fn new(
+        brute_force: Cost,
+        counting: f64,
+        most_steps: f64,
+        parts: usize,
+    ) -> Self {
         let brute_force = brute_force.0 / parts as f64;
         Budget {
             most: brute_force * counting * HOPELESS,
+            limit: most_steps / parts as f64,
+            counting: brute_force * counting,
             spent: 0.0,
             next: brute_force * FIRST_LOOK,
             taken: [(0.0, 0.0); LEVELS],
@@ -165,10 +176,18 @@ impl Budget {
         self.spent >= self.next
     }
 
-    /// Whether counting every pose would be done sooner than what is left: blocks of
-    /// each level.
+    /// Whether the search has to end.
+    pub(in crate::search) fn is_used_up(&self) -> bool {
+        self.spent >= self.limit
+    }
+
+    /// Whether counting every pose would be done sooner than what is left, blocks of
+    /// each level, and before the search has to end.
     pub(in crate::search) fn is_hopeless(&mut self, left: [usize; LEVELS]) -> bool {
         self.next = self.spent * NEXT_LOOK;
+        if self.spent + self.counting > self.limit {
+            return false;
+        }
         let mut below = 0.0;
         // A block costs what those of its level did, and what those below it
         // will that came of it.
@@ -193,7 +212,7 @@ mod tests {
 
     #[test]
     fn a_search_is_given_up_where_what_is_left_costs_more() {
-        let mut budget = Budget::new(Cost(4.0 * 3_550.0 / HOPELESS), 0.5, 2);
+        let mut budget = Budget::new(Cost(4.0 * 3_550.0 / HOPELESS), 0.5, f64::INFINITY, 2);
         assert!(!budget.is_up());
         // Four coarse blocks came to eight fine ones, of which three were taken.
         for _ in 0..4 {
@@ -211,7 +230,7 @@ mod tests {
 
     #[test]
     fn the_smallest_blocks_come_before_their_turn_while_they_cost_little() {
-        let mut budget = Budget::new(Cost(1.0), 1.0, 1);
+        let mut budget = Budget::new(Cost(1.0), 1.0, f64::INFINITY, 1);
         assert!(!budget.dives(), "nothing was done");
         budget.spend(0, Cost(100.0));
         assert!(budget.dives());
@@ -219,6 +238,17 @@ mod tests {
         assert!(budget.dives());
         budget.spend(LEVELS - 1, Cost(60.0));
         assert!(!budget.dives(), "70 of 170");
+    }
+
+    #[test]
+    fn a_search_ends_where_its_limit_is_used_up() {
+        let mut budget = Budget::new(Cost(1000.0), 0.5, 600.0, 2);
+        budget.spend(0, Cost(60.0));
+        assert!(budget.is_up() && !budget.is_used_up(), "of 300");
+        // Counting takes 250 of them, and all that is left more.
+        assert!(!budget.is_hopeless([1000, 0, 0]));
+        budget.spend(0, Cost(240.0));
+        assert!(budget.is_used_up());
     }
 
     #[test]

@@ -36,6 +36,18 @@ pub(in crate::search) struct Task<'a> {
     pub brute_force: Cost,
 }
 
+/// How a part of a search ended.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(in crate::search) enum End {
+    /// With the poses that matter, but for those in blocks that were left where it took
+    /// more work than it may.
+    Done,
+    /// It was told to stop.
+    Stopped,
+    /// Counting every pose would take less than what is left.
+    Hopeless,
+}
+
 /// What the threads of a search share, kept from scan to scan.
 #[derive(Debug, Default)]
 pub(in crate::search) struct Shared {

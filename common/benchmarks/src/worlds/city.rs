@@ -1,0 +1,284 @@
+//! A city: streets between buildings, of which some are known inside.
+//!
+//! The cells of a map of it, not a world with a wanted p/n: what counts here is its size,
+//! and that robots can be in a small part of it only. Streets, and what is known inside
+//! of buildings, are free, walls are occupied, and all else is unknown.
+
+use rand::rngs::Xoshiro256PlusPlus;
+use rand::{RngExt, SeedableRng};
+
+use super::canvas::Rect;
+use crate::RESOLUTION_M;
+
+const FREE: u8 = 0;
+const OCCUPIED: u8 = 100;
+
+/// Widths of streets and sides of buildings, from and to, metres.
+const STREET_M: (f64, f64) = (4.0, 7.0);
+const BUILDING_M: (f64, f64) = (50.0, 110.0);
+
+/// Sides of rooms, and how wide their doors are.
+const ROOM_M: (f64, f64) = (3.0, 9.0);
+const DOOR_M: f64 = 1.0;
+
+/// Niches and porches of façades: how far apart, how wide and how deep.
+const NICHE_EVERY_M: (f64, f64) = (3.0, 14.0);
+const NICHE_M: (f64, f64) = (0.8, 4.0);
+const NICHE_DEPTH_M: (f64, f64) = (0.2, 1.5);
+
+/// Share of the buildings that are known inside.
+const KNOWN_SHARE: f64 = 0.05;
+
+/// What stands in streets, such as cars and lamps, for each square metre of them.
+const THINGS_PER_M2: f64 = 0.01;
+
+/// Cells of a wall.
+const WALL: usize = 2;
+
+struct City {
+    width: usize,
+    height: usize,
+    cells: Vec<u8>,
+    random: Xoshiro256PlusPlus,
+}
+
+/// The occupancies of a city, row by row.
+#[must_use]
+pub fn city((width, height): (usize, usize), seed: u64) -> Vec<u8> {
+    let mut city = City {
+        width,
+        height,
+        cells: vec![FREE; width * height],
+        random: Xoshiro256PlusPlus::seed_from_u64(seed),
+    };
+    let (columns, rows) = (city.spans(width), city.spans(height));
+    city.put_things();
+    for &(bottom, top) in &rows {
+        for &(left, right) in &columns {
+            city.build(Rect {
+                x: left,
+                y: bottom,
+                width: right - left,
+                height: top - bottom,
+            });
+        }
+    }
+    city.cells
+}
+
+impl City {
+    fn length(&mut self, (from, to): (f64, f64)) -> usize {
+        (self.random.random_range(from..to) / RESOLUTION_M).round() as usize
+    }
+
+    /// Where buildings start and end along an axis; streets lie between.
+    fn spans(&mut self, cells: usize) -> Vec<(usize, usize)> {
+        let (mut spans, mut at) = (Vec::new(), 0);
+        loop {
+            let start = at + self.length(STREET_M);
+            let end = start + self.length(BUILDING_M);
+            // The last ones go on beyond the map.
+            if end >= cells {
+                spans.extend((start + 2 * WALL < cells).then_some((start, cells)));
+                return spans;
+            }
+            spans.push((start, end));
+            at = end;
+        }
+    }
+
+    fn fill(&mut self, rect: Rect, cell: u8) {
+        for y in rect.y..(rect.y + rect.height).min(self.height) {
+            let row = &mut self.cells[y * self.width..][..self.width];
+            let end = (rect.x + rect.width).min(self.width);
+            row[rect.x.min(end)..end].fill(cell);
+        }
+    }
+
+    fn put_things(&mut self) {
+        let area_m2 = self.cells.len() as f64 * RESOLUTION_M * RESOLUTION_M;
+        for _ in 0..(area_m2 * THINGS_PER_M2) as usize {
+            let (x, y) = (
+                self.random.random_range(0..self.width),
+                self.random.random_range(0..self.height),
+            );
+            let (width, height) = match self.random.random_range(0..4) {
+                0 => (self.length((1.6, 2.0)), self.length((3.8, 5.0))),
+                1 => (self.length((3.8, 5.0)), self.length((1.6, 2.0))),
+                _ => (self.length((0.1, 0.4)), self.length((0.1, 0.4))),
+            };
+            self.fill(
+                Rect {
+                    x,
+                    y,
+                    width,
+                    height,
+                },
+                OCCUPIED,
+            );
+        }
+    }
+
+    fn build(&mut self, building: Rect) {
+        self.fill(building, OCCUPIED);
+        let is_known = self.random.random_bool(KNOWN_SHARE);
+        self.fill(
+            shrunk(building),
+            if is_known { FREE } else { messages::UNKNOWN },
+        );
+        if is_known {
+            self.divide(shrunk(building));
+        }
+        for (x_major, far) in [(true, false), (true, true), (false, false), (false, true)] {
+            self.put_niches(building, x_major, far);
+        }
+    }
+
+    /// Cuts niches with walls of their own into one of a building's façades.
+    fn put_niches(&mut self, building: Rect, x_major: bool, far: bool) {
+        let length = if x_major {
+            building.width
+        } else {
+            building.height
+        };
+        let mut at = self.length(NICHE_EVERY_M);
+        loop {
+            let (wide, deep) = (self.length(NICHE_M), self.length(NICHE_DEPTH_M));
+            if at + wide + WALL >= length {
+                return;
+            }
+            let outer = self.niche(
+                building,
+                (x_major, far),
+                (at - WALL, wide + 2 * WALL, deep + WALL),
+            );
+            self.fill(outer, OCCUPIED);
+            let inner = self.niche(building, (x_major, far), (at, wide, deep));
+            self.fill(inner, FREE);
+            at += wide + self.length(NICHE_EVERY_M);
+        }
+    }
+
+    fn niche(
+        &self,
+        building: Rect,
+        (x_major, far): (bool, bool),
+        (at, wide, deep): (usize, usize, usize),
+    ) -> Rect {
+        let across = if x_major {
+            building.height
+        } else {
+            building.width
+        };
+        let start = if far { across - deep } else { 0 };
+        let Rect { x, y, .. } = building;
+        match x_major {
+            true => Rect {
+                x: x + at,
+                y: y + start,
+                width: wide,
+                height: deep,
+            },
+            false => Rect {
+                x: x + start,
+                y: y + at,
+                width: deep,
+                height: wide,
+            },
+        }
+    }
+
+    /// Divides a floor into rooms with doors, again and again.
+    fn divide(&mut self, floor: Rect) {
+        let upright = floor.width > floor.height;
+        let length = floor.width.max(floor.height);
+        let largest = (ROOM_M.1 / RESOLUTION_M) as usize;
+        if length < largest {
+            return;
+        }
+        let least = (ROOM_M.0 / RESOLUTION_M) as usize;
+        let at = self.random.random_range(least..length - least);
+        let door = (DOOR_M / RESOLUTION_M) as usize;
+        let across = floor.width.min(floor.height);
+        let gap = self
+            .random
+            .random_range(0..across.saturating_sub(door).max(1));
+        let [wall, opening, first, second] = match upright {
+            true => [
+                Rect {
+                    x: floor.x + at,
+                    width: WALL,
+                    ..floor
+                },
+                Rect {
+                    x: floor.x + at,
+                    y: floor.y + gap,
+                    width: WALL,
+                    height: door,
+                },
+                Rect { width: at, ..floor },
+                Rect {
+                    x: floor.x + at + WALL,
+                    width: length - at - WALL,
+                    ..floor
+                },
+            ],
+            false => [
+                Rect {
+                    y: floor.y + at,
+                    height: WALL,
+                    ..floor
+                },
+                Rect {
+                    x: floor.x + gap,
+                    y: floor.y + at,
+                    width: door,
+                    height: WALL,
+                },
+                Rect {
+                    height: at,
+                    ..floor
+                },
+                Rect {
+                    y: floor.y + at + WALL,
+                    height: length - at - WALL,
+                    ..floor
+                },
+            ],
+        };
+        self.fill(wall, OCCUPIED);
+        self.fill(opening, FREE);
+        self.divide(first);
+        self.divide(second);
+    }
+}
+
+/// What lies within the walls.
+fn shrunk(building: Rect) -> Rect {
+    Rect {
+        x: building.x + WALL,
+        y: building.y + WALL,
+        width: building.width - 2 * WALL,
+        height: building.height - 2 * WALL,
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_small_part_of_a_city_is_free() {
+        let sides = (6_000, 4_000);
+        let cells = city(sides, 1);
+        assert_eq!(cells.len(), sides.0 * sides.1);
+        let share =
+            |kind| cells.iter().filter(|&&cell| cell == kind).count() as f64 / cells.len() as f64;
+        let (free, occupied) = (share(FREE), share(OCCUPIED));
+        assert!((0.08..0.25).contains(&free), "{free}");
+        assert!((0.005..0.05).contains(&occupied), "{occupied}");
+        assert!((free + occupied + share(messages::UNKNOWN) - 1.0).abs() < 1e-9);
+        assert_eq!(cells, city(sides, 1));
+        assert!(cells != city(sides, 2));
+    }
+}

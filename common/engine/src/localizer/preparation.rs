@@ -1,0 +1,188 @@
+//! From a map to a localizer, whose index is made or was kept.
+
+use std::sync::Arc;
+
+use super::{Localizer, LocalizerConfig, Method, Prior};
+use crate::EngineError;
+use crate::grid::{self, CellRules, Grid, GridFrame, Pooled};
+use crate::limits::Limits;
+use crate::search::{IndexKey, SECTIONS, SearchIndex, SectionError, UncheckedIndex};
+use crate::space::Space;
+use crate::sweep::FieldSweep;
+
+const MEGABYTE: u64 = 1_000_000;
+
+/// A map and its settings, checked: of a localizer all but what takes long to make.
+#[derive(Debug)]
+pub struct Preparation {
+    frame: GridFrame,
+    pooling: usize,
+    grid: Grid,
+    space: Space,
+    config: LocalizerConfig,
+    prior: Prior,
+}
+
+impl Preparation {
+    /// Takes a map of `width · height` occupancies, row by row from the lowest y; one finer
+    /// than is searched is pooled.
+    ///
+    /// # Errors
+    /// See [`Grid::new`] and [`Preparation::new`].
+    pub fn of_map(
+        frame: GridFrame,
+        (width, height): (usize, usize),
+        occupancy: &[u8],
+        rules: CellRules,
+        config: LocalizerConfig,
+        prior: Prior,
+    ) -> Result<Self, EngineError> {
+        let pooling = grid::pooling(frame.resolution_m, config.search_cell);
+        if pooling == 1 {
+            let grid = Grid::new(width, height, occupancy, rules)?;
+            return Preparation::new(frame, grid, config, prior);
+        }
+        let pooled = Pooled::new(frame, (width, height), occupancy, rules, pooling)?;
+        let (width, height) = pooled.sides;
+        let grid = Grid::new(width, height, &pooled.occupancy, rules)?;
+        let preparation = Preparation::new(pooled.frame, grid, config, prior)?;
+        Ok(Preparation {
+            pooling,
+            ..preparation
+        })
+    }
+
+    /// Takes a grid, which is searched as it is.
+    ///
+    /// # Errors
+    /// If the map has no occupied or no free cell, or a setting is out of range.
+    pub fn new(
+        frame: GridFrame,
+        grid: Grid,
+        config: LocalizerConfig,
+        prior: Prior,
+    ) -> Result<Self, EngineError> {
+        if grid.occupied_cells() == 0 {
+            return Err(EngineError::NoOccupiedCell);
+        }
+        if grid.free_cells() == 0 {
+            return Err(EngineError::NoFreeCell);
+        }
+        let space = Space::new(
+            config.headings,
+            frame.resolution_m,
+            grid.width(),
+            grid.height(),
+        )?;
+        Ok(Preparation {
+            frame,
+            pooling: 1,
+            grid,
+            space,
+            config,
+            prior,
+        })
+    }
+
+    /// The key of the index that would be made; `None` where headings are known, for which
+    /// none is.
+    #[must_use]
+    pub fn key(&self) -> Option<IndexKey> {
+        let Preparation {
+            frame,
+            grid,
+            space,
+            config,
+            ..
+        } = self;
+        let key = || IndexKey::of(grid, space, *frame, &config.limits);
+        (self.prior == Prior::None).then(key)
+    }
+
+    /// Room for the sections of an index that was kept, of such lengths in bytes.
+    ///
+    /// # Errors
+    /// They are none of an index of this map, or take more memory than is allowed.
+    pub fn unchecked_index(
+        &self,
+        lengths: [u64; SECTIONS],
+    ) -> Result<UncheckedIndex, SectionError> {
+        let bytes = lengths
+            .iter()
+            .fold(0u64, |sum, &length| sum.saturating_add(length));
+        match self.memory_limit() {
+            Some(limit) if bytes > limit => Err(SectionError::Memory { bytes, limit }),
+            _ => UncheckedIndex::new(lengths, &self.grid, &self.space),
+        }
+    }
+
+    /// Ends with an index that was kept under the key of this map.
+    #[must_use]
+    pub fn with(self, index: SearchIndex) -> Localizer {
+        self.localizer(Method::Search(Arc::new(index)))
+    }
+
+    /// Ends with all that is still to be made.
+    ///
+    /// # Errors
+    /// If the limits leave no pose, or more memory would be needed than is allowed.
+    pub fn finish(self) -> Result<Localizer, EngineError> {
+        let Preparation {
+            frame,
+            grid,
+            space,
+            config,
+            ..
+        } = &self;
+        let limits = Limits::new(&config.limits, *frame, grid, &space.directions)?;
+        let method = match self.prior {
+            Prior::None => {
+                self.check_memory(&limits)?;
+                Method::Search(Arc::new(SearchIndex::within(grid, space, limits)))
+            }
+            Prior::Heading => Method::Sweep(FieldSweep::new(grid), limits),
+        };
+        Ok(self.localizer(method))
+    }
+
+    fn localizer(self, method: Method) -> Localizer {
+        let Preparation {
+            frame,
+            pooling,
+            grid,
+            space,
+            config,
+            ..
+        } = self;
+        Localizer {
+            frame,
+            pooling,
+            grid,
+            space,
+            config,
+            method,
+        }
+    }
+
+    /// Bytes.
+    fn memory_limit(&self) -> Option<u64> {
+        let megabytes = self.config.memory_limit?;
+        Some(u64::from(megabytes) * MEGABYTE)
+    }
+
+    /// Refuses what needs more memory than is allowed, before it is allocated. What that
+    /// is, is asked only where there is a limit.
+    fn check_memory(&self, limits: &Limits) -> Result<(), EngineError> {
+        let Some(limit) = self.memory_limit() else {
+            return Ok(());
+        };
+        let needed = SearchIndex::needed_bytes(&self.grid, &self.space, limits) as u64;
+        match needed > limit {
+            true => Err(EngineError::Memory {
+                needed_mb: needed.div_ceil(MEGABYTE),
+                limit_mb: (limit / MEGABYTE) as u32,
+            }),
+            false => Ok(()),
+        }
+    }
+}

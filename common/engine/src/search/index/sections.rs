@@ -1,0 +1,357 @@
+//! An index as sections of plain bytes, for whoever keeps it between runs.
+//!
+//! They hold all that takes long to make. What is taken back is not believed: an index is
+//! searched only once all that a search reads by was found to lie within it. Whether the
+//! index is that of the map is for the keeper to know, see [`IndexKey`](super::IndexKey).
+
+use bytemuck::{cast_slice, cast_slice_mut};
+
+use super::SearchIndex;
+use super::intervals::RangeIntervals;
+use super::obstacles::Obstacles;
+use super::sets::RangeSets;
+use super::within::Within;
+use crate::grid::{CellSet, Grid};
+use crate::limits::Limits;
+use crate::space::Space;
+
+/// How many sections an index has.
+pub const SECTIONS: usize = 15;
+
+/// What they are, in their order.
+const NAMES: [&str; SECTIONS] = [
+    "cells",
+    "headings",
+    "blocks of 4 x 4",
+    "blocks of 8 x 8",
+    "blocks of 16 x 16",
+    "intervals",
+    "starts of fine sets",
+    "masks of fine sets",
+    "bytes of fine sets",
+    "starts of coarse sets",
+    "masks of coarse sets",
+    "bytes of coarse sets",
+    "obstacles along x",
+    "obstacles along y",
+    "clearance",
+];
+
+/// Sections that are none of an index of the map.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, thiserror::Error)]
+pub enum SectionError {
+    /// No index of the map has as many bytes there.
+    #[error("section {section:?} has {bytes} bytes, which no index of the map has")]
+    Length {
+        /// What it holds.
+        section: &'static str,
+        /// Its bytes.
+        bytes: u64,
+    },
+    /// More bytes than are allowed.
+    #[error("the index takes {bytes} bytes, and --memory-limit allows {limit}")]
+    Memory {
+        /// All of them.
+        bytes: u64,
+        /// Most that may be taken.
+        limit: u64,
+    },
+    /// Its numbers do not fit together.
+    #[error("what section {0:?} holds does not fit the others")]
+    Content(&'static str),
+}
+
+/// An index of a map whose sections are being filled in.
+#[derive(Debug)]
+pub struct UncheckedIndex(SearchIndex);
+
+impl SearchIndex {
+    /// Counted up whenever the same map comes to other sections.
+    pub const VERSION: u32 = 1;
+
+    /// All sections.
+    #[must_use]
+    pub fn sections(&self) -> [&[u8]; SECTIONS] {
+        let [cells, headings] = self
+            .within
+            .limits
+            .sets()
+            .map(|set| set.map_or(&[][..], words));
+        let [fine_blocks, coarse_blocks] = self.within.blocks.each_ref().map(words);
+        let [a, b, c] = self.fine.parts();
+        let [d, e, f] = self.coarse.parts();
+        let ([along_x, along_y], clearance) = self.obstacles.parts();
+        [
+            cells,
+            headings,
+            words(self.intervals.ids.set()),
+            fine_blocks,
+            coarse_blocks,
+            self.intervals.all_packed(),
+            a,
+            b,
+            c,
+            d,
+            e,
+            f,
+            cast_slice(along_x),
+            cast_slice(along_y),
+            clearance,
+        ]
+    }
+}
+
+impl UncheckedIndex {
+    /// Room for sections of such lengths, in bytes, if an index of the map can have them.
+    pub(crate) fn new(
+        lengths: [u64; SECTIONS],
+        grid: &Grid,
+        space: &Space,
+    ) -> Result<Self, SectionError> {
+        let impossible = |section: usize| SectionError::Length {
+            section: NAMES[section],
+            bytes: lengths[section],
+        };
+        let length =
+            |section: usize| usize::try_from(lengths[section]).map_err(|_| impossible(section));
+        let lengths_from =
+            |first: usize| Ok([length(first)?, length(first + 1)?, length(first + 2)?]);
+        let directions = &space.directions;
+        let by = [lengths[0] > 0, lengths[1] > 0];
+        let limits = Limits::unfilled(grid, directions, by);
+        let (steps, _) = SearchIndex::scale(grid, space);
+        let intervals = RangeIntervals::unfilled(grid, directions, length(5)?);
+        let sets = |side, first| {
+            let sets = RangeSets::unfilled(side, grid, directions, lengths_from(first)?);
+            sets.ok_or_else(|| impossible(first))
+        };
+        let mut unchecked = UncheckedIndex(SearchIndex {
+            steps,
+            intervals: intervals.ok_or_else(|| impossible(5))?,
+            fine: sets(8, 6)?,
+            coarse: sets(16, 9)?,
+            obstacles: Obstacles::unfilled(grid),
+            within: Within::unfilled(limits, grid),
+            sweeps: Default::default(),
+        });
+        let sections = unchecked.sections_mut();
+        let mut sections = sections
+            .iter()
+            .zip(lengths)
+            .map(|(section, length)| section.len() as u64 == length);
+        match sections.position(|is_right| !is_right) {
+            Some(section) => Err(impossible(section)),
+            None => Ok(unchecked),
+        }
+    }
+
+    /// All sections, to be filled in.
+    pub fn sections_mut(&mut self) -> [&mut [u8]; SECTIONS] {
+        let SearchIndex {
+            intervals,
+            fine,
+            coarse,
+            obstacles,
+            within: Within { limits, blocks },
+            ..
+        } = &mut self.0;
+        let [cells, headings] = limits
+            .sets_mut()
+            .map(|set| set.map_or(&mut [][..], words_mut));
+        let [fine_blocks, coarse_blocks] = blocks.each_mut().map(words_mut);
+        let (small_blocks, packed) = intervals.filling();
+        let [a, b, c] = fine.parts_mut();
+        let [d, e, f] = coarse.parts_mut();
+        let ([along_x, along_y], clearance) = obstacles.parts_mut();
+        [
+            cells,
+            headings,
+            words_mut(small_blocks),
+            fine_blocks,
+            coarse_blocks,
+            packed,
+            a,
+            b,
+            c,
+            d,
+            e,
+            f,
+            cast_slice_mut(along_x),
+            cast_slice_mut(along_y),
+            clearance,
+        ]
+    }
+
+    /// The index, if no search can read beyond what was filled in.
+    ///
+    /// # Errors
+    /// Names the section that does not fit.
+    pub fn check(mut self) -> Result<SearchIndex, SectionError> {
+        let SearchIndex {
+            intervals,
+            fine,
+            coarse,
+            ..
+        } = &mut self.0;
+        for (is_sound, section) in [
+            (intervals.number(), 5),
+            (fine.are_sound(), 6),
+            (coarse.are_sound(), 9),
+        ] {
+            if !is_sound {
+                return Err(SectionError::Content(NAMES[section]));
+            }
+        }
+        Ok(self.0)
+    }
+}
+
+fn words(set: &CellSet) -> &[u8] {
+    cast_slice(set.words())
+}
+
+fn words_mut(set: &mut CellSet) -> &mut [u8] {
+    cast_slice_mut(set.words_mut())
+}
+
+#[cfg(test)]
+mod tests {
+    use proptest::collection::vec;
+    use proptest::prelude::*;
+    use twox_hash::XxHash3_64;
+
+    use super::*;
+    use crate::grid::CellRules;
+    use crate::instruction_set::InstructionSet;
+    use crate::testing::{any_limited_grid, any_scan, space_of};
+    use crate::votes::CollectConfig;
+
+    fn lengths(index: &SearchIndex) -> [u64; SECTIONS] {
+        index.sections().map(|section| section.len() as u64)
+    }
+
+    /// An index from the sections of another one, as `change` leaves them.
+    fn taken_back(
+        index: &SearchIndex,
+        (grid, space): (&Grid, &Space),
+        change: impl FnOnce(&mut [&mut [u8]; SECTIONS]),
+    ) -> Result<SearchIndex, SectionError> {
+        let mut unchecked = UncheckedIndex::new(lengths(index), grid, space)?;
+        let mut sections = unchecked.sections_mut();
+        for (to, from) in sections.iter_mut().zip(index.sections()) {
+            to.copy_from_slice(from);
+        }
+        change(&mut sections);
+        unchecked.check()
+    }
+
+    proptest! {
+        #[test]
+        fn what_is_taken_back_equals_what_was_made(
+            (grid, limits, headings) in any_limited_grid(8), scan in any_scan(), candidates in 0u32..9,
+        ) {
+            let space = space_of(&grid, headings);
+            let made = SearchIndex::within(&grid, &space, limits);
+            let back = taken_back(&made, (&grid, &space), |_| ()).unwrap();
+            prop_assert_eq!(back.sections(), made.sections());
+            prop_assert_eq!(back.limits(), made.limits());
+            let program = scan.program(&space);
+            let config = CollectConfig { candidates, floor_share: 0.6, ..CollectConfig::default() };
+            for set in InstructionSet::available() {
+                let [back, made] = [&back, &made].map(|index| {
+                    index.search_with((set, 1), &grid, (&program, &space), config, &|| false)
+                });
+                prop_assert_eq!(back, made);
+            }
+        }
+
+        // Checksums find what went wrong on a disk; this is for what they cannot know.
+        #[test]
+        fn sections_of_anything_are_refused_or_searched_without_harm(
+            (grid, limits, headings) in any_limited_grid(8), scan in any_scan(),
+            changes in vec((0..SECTIONS, any::<usize>(), any::<u8>()), 1..20),
+        ) {
+            let space = space_of(&grid, headings);
+            let made = SearchIndex::within(&grid, &space, limits);
+            let back = taken_back(&made, (&grid, &space), |sections| {
+                for (section, place, byte) in changes {
+                    let section = &mut sections[section];
+                    if let Some(place) = place.checked_rem(section.len()) {
+                        section[place] = byte;
+                    }
+                }
+            });
+            let Ok(back) = back else { return Ok(()) };
+            let program = scan.program(&space);
+            for set in InstructionSet::available() {
+                let found = back.search_with((set, 1), &grid, (&program, &space), CollectConfig::default(), &|| false);
+                prop_assert!(found.is_some(), "it comes to an end");
+            }
+        }
+
+        #[test]
+        fn lengths_that_no_index_of_the_map_has_are_refused(
+            (grid, limits, headings) in any_limited_grid(8), section in 0..SECTIONS, by in 1u64..99,
+        ) {
+            let space = space_of(&grid, headings);
+            let made = SearchIndex::within(&grid, &space, limits);
+            let mut lengths = lengths(&made);
+            for length in [lengths[section] + by, u64::MAX - by] {
+                lengths[section] = length;
+                let refused = UncheckedIndex::new(lengths, &grid, &space).map(|_| ());
+                // What depends on the cells is known only once it was read.
+                let depends = matches!(section, 5 | 7 | 8 | 10 | 11);
+                prop_assert!(refused.is_err() || depends && length < 1 << 30);
+            }
+        }
+    }
+
+    /// Rooms and clutter.
+    fn world() -> (Grid, Space) {
+        const SIDES: (usize, usize) = (150, 90);
+        let mut state = 1u32;
+        let occupancy: Vec<u8> = (0..SIDES.0 * SIDES.1)
+            .map(|i| {
+                state = state.wrapping_mul(1_664_525).wrapping_add(1_013_904_223);
+                let (x, y) = (i % SIDES.0, i / SIDES.0);
+                let is_wall = x % 40 == 0 && y % 40 > 8 || y % 40 == 0 && x % 40 > 8;
+                100 * u8::from(is_wall || x > 100 && state >> 24 < 20)
+            })
+            .collect();
+        let grid = Grid::new(SIDES.0, SIDES.1, &occupancy, CellRules::default()).unwrap();
+        let space = space_of(&grid, 360);
+        (grid, space)
+    }
+
+    /// If this fails, files that were written before would be read as what they are not:
+    /// count up [`SearchIndex::VERSION`], then write the new hash here.
+    #[test]
+    fn a_version_always_has_the_same_sections() {
+        let (grid, space) = world();
+        let index = SearchIndex::new(&grid, &space);
+        let hashes = index.sections().map(XxHash3_64::oneshot);
+        let hash = XxHash3_64::oneshot(bytemuck::cast_slice(&hashes));
+        assert_eq!((SearchIndex::VERSION, hash), (1, 1_150_297_720_418_113_986));
+    }
+
+    #[test]
+    fn blocks_that_are_more_than_are_packed_are_refused() {
+        let (grid, space) = world();
+        let index = SearchIndex::new(&grid, &space);
+        let back = |section: usize, place: usize, byte: u8| {
+            taken_back(&index, (&grid, &space), |sections| {
+                sections[section][place] ^= byte;
+            })
+            .map(|_| ())
+        };
+        assert_eq!(back(2, 7, 128), Err(SectionError::Content("intervals")));
+        assert_eq!(
+            back(7, 0, 1),
+            Err(SectionError::Content("starts of fine sets"))
+        );
+        assert_eq!(
+            back(9, 8, 64),
+            Err(SectionError::Content("starts of coarse sets"))
+        );
+    }
+}

@@ -1,0 +1,58 @@
+//! What a user can set of what is collected.
+
+/// What is collected of a search.
+#[derive(Debug, Clone, Copy, PartialEq, clap::Args)]
+pub struct CollectConfig {
+    /// Poses with at least this share of the best pose's votes are collected,
+    /// 0..=1; lower shares show more alternatives and take longer.
+    #[arg(long, value_name = "SHARE", default_value_t = 0.85, value_parser = crate::config::parse_share)]
+    pub floor_share: f64,
+    /// Most poses that are collected, 1..=1000000; the floor rises until they
+    /// fit.
+    #[arg(long, value_name = "COUNT", default_value_t = 65_536, value_parser = clap::value_parser!(u32).range(1..=1_000_000))]
+    pub max_votes: u32,
+    /// Distinct poses that are wanted, 0..=1000: where fewer stand above the
+    /// floor, the most promising ones below are added. Where half of them have half
+    /// the best one's votes, up to four times as many that have are added.
+    #[arg(long, value_name = "COUNT", default_value_t = 64, value_parser = clap::value_parser!(u32).range(0..=1000))]
+    pub candidates: u32,
+    /// A search of unknown headings ends with the best that it found, and says what it may
+    /// have missed, once it has taken so much work, millions of steps, 0 to 10⁹; 0 is
+    /// without end. A step takes about a nanosecond of one processor of 2 GHz, but steps are
+    /// counted and not timed: on one thread the same scan always ends alike.
+    /// [default: 5000 in the accumulator, none in the tools]
+    #[arg(long, value_name = "MILLIONS", value_parser = parse_work)]
+    pub work_limit: Option<f64>,
+}
+
+fn parse_work(text: &str) -> Result<f64, String> {
+    crate::config::parse(text, 0.0..=1e9, "millions of steps")
+}
+
+impl CollectConfig {
+    /// All that stands above the floor, and no candidates below.
+    #[cfg(test)]
+    pub(crate) fn exact() -> Self {
+        CollectConfig {
+            candidates: 0,
+            ..CollectConfig::default()
+        }
+    }
+
+    /// Steps after which a search ends; infinitely many without a limit.
+    pub(crate) fn most_steps(&self) -> f64 {
+        let limit = self.work_limit.filter(|&millions| millions > 0.0);
+        limit.map_or(f64::INFINITY, |millions| millions * 1e6)
+    }
+}
+
+impl Default for CollectConfig {
+    fn default() -> Self {
+        CollectConfig {
+            floor_share: 0.85,
+            max_votes: 65_536,
+            candidates: 64,
+            work_limit: None,
+        }
+    }
+}

@@ -1,0 +1,354 @@
+//! From a map to a localizer, by way of a folder of files.
+
+use std::fs::File;
+use std::io::ErrorKind;
+use std::path::{Path, PathBuf};
+use std::sync::Arc;
+use std::time::SystemTime;
+
+use engine::EngineError;
+use engine::localizer::{Localizer, Preparation};
+use engine::search::{IndexKey, SearchIndex};
+
+use crate::error::FileError;
+use crate::{CacheError, file, folder};
+
+/// A folder of kept indexes. It may be used by several processes at once, and any file
+/// of it removed at any time.
+#[derive(Debug, Clone)]
+pub struct IndexCache {
+    folder: PathBuf,
+    /// Most bytes of all files together.
+    limit: u64,
+}
+
+/// A localizer, and what became of its file.
+#[derive(Debug)]
+pub struct Prepared {
+    /// Ready for scans.
+    pub localizer: Localizer,
+    /// Where its index came from, and where it is to go.
+    pub kept: Kept,
+}
+
+/// What is to be said of the file of an index, and to be done.
+#[derive(Debug, Default)]
+pub struct Kept {
+    /// Whether the index was read.
+    pub is_read: bool,
+    /// Why a file that is there could not be read.
+    pub problem: Option<CacheError>,
+    /// What is to be kept for the next time, whenever there is time.
+    pub unsaved: Option<Unsaved>,
+}
+
+/// An index that is not kept in a file yet.
+#[derive(Debug)]
+pub struct Unsaved {
+    cache: IndexCache,
+    key: IndexKey,
+    index: Arc<SearchIndex>,
+}
+
+impl Prepared {
+    /// Prepares a map: with the index that is kept of it, else anew.
+    ///
+    /// # Errors
+    /// If the map cannot be searched, see [`Preparation::finish`].
+    pub fn new(cache: Option<&IndexCache>, preparation: Preparation) -> Result<Self, EngineError> {
+        let mut kept = Kept::default();
+        let Some((cache, key)) = cache.zip(preparation.key()) else {
+            let localizer = preparation.finish()?;
+            return Ok(Prepared { localizer, kept });
+        };
+        match cache.read(key, &preparation) {
+            Ok(Some(index)) => {
+                let localizer = preparation.with(index);
+                kept.is_read = true;
+                return Ok(Prepared { localizer, kept });
+            }
+            Ok(None) => {}
+            Err(problem) => kept.problem = Some(problem),
+        }
+        let localizer = preparation.finish()?;
+        let unsaved = |index| Unsaved {
+            cache: cache.clone(),
+            key,
+            index,
+        };
+        kept.unsaved = localizer.search_index().map(unsaved);
+        Ok(Prepared { localizer, kept })
+    }
+}
+
+impl Unsaved {
+    /// Writes the file, and removes those that were not used for longest where all of them
+    /// together are too large.
+    ///
+    /// # Errors
+    /// The folder cannot be used, or the file not be written.
+    pub fn save(self) -> Result<(), CacheError> {
+        let Unsaved { cache, key, index } = self;
+        let bytes = file::size(&index);
+        if bytes > cache.limit {
+            const MEGABYTE: u64 = 1_000_000;
+            return Err(CacheError::TooLarge {
+                needed_mb: bytes.div_ceil(MEGABYTE),
+                limit_mb: cache.limit / MEGABYTE,
+            });
+        }
+        let path = cache.path(key);
+        let failed = failed("write", &path);
+        folder::make(&cache.folder)?;
+        // Whoever reads sees the old file or the whole new one, whoever else writes. What a
+        // crash leaves half written has a wrong checksum, so nothing waits for the disk.
+        let mut new = folder::new_file(&cache.folder).map_err(&failed)?;
+        file::write(new.as_file_mut(), key, &index).map_err(&failed)?;
+        new.persist(&path).map_err(|error| failed(error.error))?;
+        folder::trim(&cache.folder, &path, cache.limit)
+    }
+}
+
+impl IndexCache {
+    /// In a folder, which is made with the first file, of at most so many bytes.
+    #[must_use]
+    pub fn new(folder: PathBuf, limit: u64) -> Self {
+        IndexCache { folder, limit }
+    }
+
+    /// The file of an index.
+    #[must_use]
+    pub fn path(&self, key: IndexKey) -> PathBuf {
+        self.folder.join(format!("{key}.{}", folder::ENDING))
+    }
+
+    /// Reads an index, if it is kept.
+    fn read(
+        &self,
+        key: IndexKey,
+        preparation: &Preparation,
+    ) -> Result<Option<SearchIndex>, CacheError> {
+        let path = self.path(key);
+        if !folder::is_there(&self.folder)? {
+            return Ok(None);
+        }
+        let mut file = match File::open(&path) {
+            Ok(file) => file,
+            Err(error) if error.kind() == ErrorKind::NotFound => return Ok(None),
+            Err(error) => return Err(failed("open", &path)(error)),
+        };
+        let bytes = file.metadata().map_err(failed("look at", &path))?.len();
+        let index = file::read(&mut file, bytes, key, preparation);
+        let index = index.map_err(|source: FileError| CacheError::Unusable {
+            path: path.clone(),
+            source,
+        })?;
+        // It is the last to be removed now; where that cannot be noted, so be it.
+        let _ = file.set_modified(SystemTime::now());
+        Ok(Some(index))
+    }
+}
+
+pub(crate) fn failed(
+    action: &'static str,
+    path: &Path,
+) -> impl Fn(std::io::Error) -> CacheError + use<> {
+    let path = path.to_owned();
+    move |source| CacheError::File {
+        action,
+        path: path.clone(),
+        source,
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use std::fs::{read, read_dir, remove_dir_all, write};
+
+    use engine::grid::{CellRules, GridFrame};
+    use engine::limits::LimitsConfig;
+    use engine::localizer::{LocalizerConfig, Prior};
+    use engine::search::{SECTIONS, SectionError};
+
+    use super::*;
+    use crate::testing::{FRAME, SIDES, occupancy, preparation, preparation_with};
+
+    const LIMIT: u64 = 100_000_000;
+
+    fn prepare(cache: &IndexCache, seed: usize) -> Prepared {
+        Prepared::new(Some(cache), preparation(seed)).unwrap()
+    }
+
+    /// Prepares and saves what is new; whether something was.
+    fn prepare_and_save(cache: &IndexCache, seed: usize) -> bool {
+        let unsaved = prepare(cache, seed).kept.unsaved;
+        let is_new = unsaved.is_some();
+        unsaved
+            .into_iter()
+            .for_each(|unsaved| unsaved.save().unwrap());
+        is_new
+    }
+
+    #[test]
+    fn a_map_is_prepared_once_whatever_else_is_and_removed() {
+        let folder = tempfile::tempdir().unwrap();
+        let cache = IndexCache::new(folder.path().join("new"), LIMIT);
+        assert!(prepare_and_save(&cache, 1));
+        assert!(prepare_and_save(&cache, 2));
+        let read = prepare(&cache, 1);
+        assert!(read.kept.is_read && read.kept.problem.is_none() && read.kept.unsaved.is_none());
+        let made = preparation(1).finish().unwrap().search_index().unwrap();
+        assert_eq!(
+            read.localizer.search_index().unwrap().sections(),
+            made.sections()
+        );
+        remove_dir_all(folder.path().join("new")).unwrap();
+        assert!(prepare_and_save(&cache, 1), "the folder is made again");
+        assert!(!prepare_and_save(&cache, 1));
+    }
+
+    #[test]
+    fn a_damaged_file_is_reported_and_replaced() {
+        let folder = tempfile::tempdir().unwrap();
+        let cache = IndexCache::new(folder.path().join("new"), LIMIT);
+        prepare_and_save(&cache, 1);
+        let path = cache.path(preparation(1).key().unwrap());
+        let sound = read(&path).unwrap();
+        let mut damaged = sound.clone();
+        damaged[sound.len() / 2] ^= 4;
+        for bytes in [&damaged[..], &sound[..sound.len() - 1], &[]] {
+            write(&path, bytes).unwrap();
+            let prepared = prepare(&cache, 1);
+            assert!(matches!(
+                prepared.kept.problem,
+                Some(CacheError::Unusable { .. })
+            ));
+            prepared.kept.unsaved.unwrap().save().unwrap();
+            assert_eq!(read(&path).unwrap(), sound);
+        }
+    }
+
+    #[test]
+    fn the_key_is_of_all_that_an_index_is_made_of() {
+        let default = LocalizerConfig::default();
+        let limited = |limits| LocalizerConfig {
+            limits,
+            ..LocalizerConfig::default()
+        };
+        let limits = LimitsConfig::default;
+        let other = |config| preparation_with(1, config).key().unwrap();
+        let of = |frame, cells: &[u8], rules| {
+            let config = LocalizerConfig::default();
+            let preparation = Preparation::of_map(frame, SIDES, cells, rules, config, Prior::None);
+            preparation.unwrap().key().unwrap()
+        };
+        let frame = GridFrame {
+            resolution_m: 0.06,
+            ..FRAME
+        };
+        let rules = CellRules {
+            unknown_blocks: true,
+            ..CellRules::default()
+        };
+        let mut known = occupancy(1);
+        let unknown = known.iter().position(|&cell| cell == 255).unwrap();
+        known[unknown] = 0;
+        let keys = [
+            other(default.clone()),
+            preparation_with(2, default.clone()).key().unwrap(),
+            other(LocalizerConfig {
+                headings: 48,
+                ..default.clone()
+            }),
+            other(LocalizerConfig {
+                search_cell: 0.1,
+                ..default.clone()
+            }),
+            other(limited(LimitsConfig {
+                unknown_reach: 0.2,
+                ..limits()
+            })),
+            other(limited(LimitsConfig {
+                robot_radius: 0.1,
+                ..limits()
+            })),
+            other(limited(LimitsConfig {
+                region: Some("0,0 3,3".parse().unwrap()),
+                ..limits()
+            })),
+            other(limited(LimitsConfig {
+                headings_within: Some("0,90".parse().unwrap()),
+                ..limits()
+            })),
+            of(frame, &occupancy(1), CellRules::default()),
+            of(FRAME, &occupancy(1), rules),
+            of(FRAME, &known, CellRules::default()),
+        ];
+        for (i, key) in keys.iter().enumerate() {
+            assert!(!keys[..i].contains(key), "setting {i}");
+        }
+        // What a search is told alone does not matter.
+        assert_eq!(
+            other(LocalizerConfig {
+                threads: 3,
+                ..default
+            }),
+            keys[0]
+        );
+        let known = Preparation::of_map(
+            FRAME,
+            SIDES,
+            &occupancy(1),
+            CellRules::default(),
+            LocalizerConfig::default(),
+            Prior::Heading,
+        );
+        assert_eq!(known.unwrap().key(), None);
+    }
+
+    #[test]
+    fn several_may_write_and_read_at_once() {
+        let folder = tempfile::tempdir().unwrap();
+        let cache = IndexCache::new(folder.path().join("new"), LIMIT);
+        prepare_and_save(&cache, 1);
+        let saves = || {
+            let key = preparation(1).key().unwrap();
+            let index = preparation(1).finish().unwrap().search_index().unwrap();
+            for _ in 0..20 {
+                let (cache, index) = (cache.clone(), Arc::clone(&index));
+                Unsaved { cache, key, index }.save().unwrap();
+            }
+        };
+        std::thread::scope(|scope| {
+            scope.spawn(saves);
+            scope.spawn(saves);
+            for _ in 0..20 {
+                let kept = prepare(&cache, 1).kept;
+                assert!(kept.is_read && kept.problem.is_none());
+            }
+        });
+        assert_eq!(read_dir(folder.path().join("new")).unwrap().count(), 1);
+    }
+
+    #[test]
+    fn what_takes_more_than_all_may_is_not_kept() {
+        let folder = tempfile::tempdir().unwrap();
+        let small = IndexCache::new(folder.path().join("new"), 1000);
+        let refused = prepare(&small, 1).kept.unsaved.unwrap().save().unwrap_err();
+        assert!(matches!(refused, CacheError::TooLarge { limit_mb: 0, .. }));
+        assert!(!folder.path().join("new").exists());
+    }
+
+    #[test]
+    fn a_memory_limit_holds_for_what_is_read() {
+        let config = LocalizerConfig {
+            memory_limit: Some(1),
+            ..LocalizerConfig::default()
+        };
+        let mut lengths = [0; SECTIONS];
+        (lengths[0], lengths[5]) = (1, 1_000_000);
+        let refused = preparation_with(1, config).unchecked_index(lengths);
+        let (bytes, limit) = (1_000_001, 1_000_000);
+        assert_eq!(refused.unwrap_err(), SectionError::Memory { bytes, limit });
+    }
+}

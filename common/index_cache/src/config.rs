@@ -1,0 +1,105 @@
+//! What a user can set.
+
+use std::convert::Infallible;
+use std::path::PathBuf;
+use std::str::FromStr;
+
+use crate::{CacheError, IndexCache, folder};
+
+/// Where prepared maps are kept.
+#[derive(Debug, Clone, PartialEq, Eq, clap::Args)]
+pub struct IndexCacheConfig {
+    /// Folder in which prepared maps are kept, so that the same map with the same settings
+    /// is read the next time and not prepared: a folder that nobody else can use, which is
+    /// made if it is missing; "user" for $XDG_CACHE_HOME/backcast or ~/.cache/backcast;
+    /// "off" to keep none. Its files can be removed at any time.
+    /// [default: user in the accumulator, off in the tools]
+    #[arg(long, value_name = "FOLDER")]
+    pub index_cache: Option<CachePlace>,
+    /// Most that all prepared maps in the folder take, megabytes of 10⁶ bytes,
+    /// 1..=1000000: those that were not used for longest are removed.
+    #[arg(long, value_name = "MEGABYTES", default_value_t = 2000, value_parser = clap::value_parser!(u32).range(1..=1_000_000))]
+    pub index_cache_limit: u32,
+}
+
+/// A folder, or none.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub enum CachePlace {
+    /// Nothing is kept.
+    Off,
+    /// That of the user.
+    User,
+    /// Another one.
+    Folder(PathBuf),
+}
+
+impl Default for IndexCacheConfig {
+    fn default() -> Self {
+        IndexCacheConfig {
+            index_cache: None,
+            index_cache_limit: 2000,
+        }
+    }
+}
+
+impl IndexCacheConfig {
+    /// The folder that is set, else `default`; `None` where nothing is kept.
+    ///
+    /// # Errors
+    /// Nothing says where the user's folder is.
+    pub fn open(&self, default: CachePlace) -> Result<Option<IndexCache>, CacheError> {
+        let place = self.index_cache.clone().unwrap_or(default);
+        let folder = match place {
+            CachePlace::Off => return Ok(None),
+            CachePlace::User => folder::of_user()?,
+            CachePlace::Folder(folder) => folder,
+        };
+        let limit = u64::from(self.index_cache_limit) * 1_000_000;
+        Ok(Some(IndexCache::new(folder, limit)))
+    }
+}
+
+impl FromStr for CachePlace {
+    type Err = Infallible;
+
+    fn from_str(text: &str) -> Result<Self, Infallible> {
+        Ok(match text {
+            "off" => CachePlace::Off,
+            "user" => CachePlace::User,
+            folder => CachePlace::Folder(folder.into()),
+        })
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use clap::Parser;
+
+    use super::*;
+
+    #[derive(Parser)]
+    struct Arguments {
+        #[command(flatten)]
+        config: IndexCacheConfig,
+    }
+
+    fn config(arguments: &str) -> IndexCacheConfig {
+        Arguments::parse_from(["node"].into_iter().chain(arguments.split_whitespace())).config
+    }
+
+    #[test]
+    fn a_folder_is_named_or_the_default_or_none() {
+        assert_eq!(config(""), IndexCacheConfig::default());
+        let place = |arguments: &str| config(arguments).index_cache.unwrap();
+        assert_eq!(place("--index-cache off"), CachePlace::Off);
+        assert_eq!(place("--index-cache user"), CachePlace::User);
+        assert_eq!(
+            place("--index-cache ./off"),
+            CachePlace::Folder("./off".into())
+        );
+        let open = |arguments: &str, default| config(arguments).open(default).unwrap();
+        assert!(open("", CachePlace::Off).is_none());
+        assert!(open("--index-cache off", CachePlace::Folder("x".into())).is_none());
+        assert!(open("--index-cache x", CachePlace::Off).is_some());
+    }
+}

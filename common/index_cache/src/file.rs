@@ -1,0 +1,302 @@
+//! The format of a file: a header, then the sections of an index one behind the other.
+//!
+//! | bytes | what |
+//! |---|---|
+//! | 8 | magic, `BCINDEX` and a line feed in the byte order of the machine |
+//! | 4 | [`SearchIndex::VERSION`] |
+//! | 4 | how many sections there are |
+//! | 16 | the key |
+//! | 16 each | length and checksum of each section |
+//! | 8 | checksum of all before |
+//!
+//! Numbers and sections are in the byte order of the machine, which the magic tells.
+//! Checksums are XXH3 of 64 bits.
+
+use std::hash::Hasher;
+use std::io::{self, Read, Write};
+
+use bytemuck::{Pod, Zeroable, bytes_of, bytes_of_mut};
+use engine::localizer::Preparation;
+use engine::search::{IndexKey, SECTIONS, SearchIndex};
+use twox_hash::XxHash3_64;
+
+use crate::error::FileError;
+
+const MAGIC: u64 = u64::from_be_bytes(*b"BCINDEX\n");
+
+/// Bytes that are read and hashed at a time: they stay in the cache between.
+const PIECE: usize = 1 << 18;
+
+/// Pages of memory, bytes; on other machines they may be larger, and advice on parts of
+/// them is ignored.
+const PAGE: usize = 1 << 12;
+const LARGE_PAGE: usize = 1 << 21;
+
+#[derive(Debug, Clone, Copy, Pod, Zeroable)]
+#[repr(C)]
+struct Header {
+    magic: u64,
+    version: u32,
+    count: u32,
+    key: [u8; 16],
+    sections: [Section; SECTIONS],
+    checksum: u64,
+}
+
+#[derive(Debug, Clone, Copy, Pod, Zeroable)]
+#[repr(C)]
+struct Section {
+    bytes: u64,
+    checksum: u64,
+}
+
+impl Header {
+    fn of(key: IndexKey, sections: &[&[u8]; SECTIONS]) -> Self {
+        let mut header = Header {
+            magic: MAGIC,
+            version: SearchIndex::VERSION,
+            count: SECTIONS as u32,
+            key: key.to_bytes(),
+            sections: sections.map(|section| Section {
+                bytes: section.len() as u64,
+                checksum: XxHash3_64::oneshot(section),
+            }),
+            checksum: 0,
+        };
+        header.checksum = header.sum();
+        header
+    }
+
+    /// The checksum of all but itself.
+    fn sum(&self) -> u64 {
+        let bytes = bytes_of(self);
+        XxHash3_64::oneshot(&bytes[..bytes.len() - size_of::<u64>()])
+    }
+
+    fn check(&self, key: IndexKey, file_bytes: u64) -> Result<(), FileError> {
+        if self.magic != MAGIC {
+            return Err(FileError::Foreign);
+        }
+        if self.version != SearchIndex::VERSION {
+            return Err(FileError::Version {
+                found: self.version,
+                expected: SearchIndex::VERSION,
+            });
+        }
+        if self.checksum != self.sum() || self.count != SECTIONS as u32 {
+            return Err(FileError::Header);
+        }
+        if self.key != key.to_bytes() {
+            return Err(FileError::OtherKey);
+        }
+        let lengths = self.sections.iter().map(|section| section.bytes);
+        let expected = lengths.fold(size_of::<Header>() as u64, u64::saturating_add);
+        match file_bytes == expected {
+            true => Ok(()),
+            false => Err(FileError::Length {
+                found: file_bytes,
+                expected,
+            }),
+        }
+    }
+}
+
+/// How many bytes a file of an index has.
+pub(crate) fn size(index: &SearchIndex) -> u64 {
+    let sections = index.sections().map(<[u8]>::len).into_iter().sum::<usize>();
+    (size_of::<Header>() + sections) as u64
+}
+
+/// Writes an index.
+pub(crate) fn write(to: &mut impl Write, key: IndexKey, index: &SearchIndex) -> io::Result<()> {
+    let sections = index.sections();
+    to.write_all(bytes_of(&Header::of(key, &sections)))?;
+    sections
+        .into_iter()
+        .try_for_each(|section| to.write_all(section))
+}
+
+/// Reads the index of a map from a file of so many bytes.
+pub(crate) fn read(
+    from: &mut impl Read,
+    file_bytes: u64,
+    key: IndexKey,
+    preparation: &Preparation,
+) -> Result<SearchIndex, FileError> {
+    let mut header = Header::zeroed();
+    from.read_exact(bytes_of_mut(&mut header))?;
+    header.check(key, file_bytes)?;
+    let mut unchecked =
+        preparation.unchecked_index(header.sections.map(|section| section.bytes))?;
+    let sections = unchecked.sections_mut().into_iter().zip(header.sections);
+    for (i, (section, Section { checksum, .. })) in sections.enumerate() {
+        ask_for_large_pages(section);
+        if read_hashing(from, section)? != checksum {
+            return Err(FileError::Section(i));
+        }
+    }
+    Ok(unchecked.check()?)
+}
+
+/// Asks for large pages in what is about to be filled: making small ones takes as long as
+/// reading. Where the system has none, nothing changes.
+fn ask_for_large_pages(section: &mut [u8]) {
+    #[cfg(target_os = "linux")]
+    if section.len() >= LARGE_PAGE {
+        let start = section.as_ptr().align_offset(PAGE);
+        let pages = &mut section[start..];
+        // SAFETY: this is advice on memory that is borrowed; what it holds stays as it is.
+        unsafe {
+            libc::madvise(pages.as_mut_ptr().cast(), pages.len(), libc::MADV_HUGEPAGE);
+        }
+    }
+}
+
+/// Fills `into`, and hashes what came.
+fn read_hashing(from: &mut impl Read, into: &mut [u8]) -> io::Result<u64> {
+    let mut hash = XxHash3_64::new();
+    for piece in into.chunks_mut(PIECE) {
+        from.read_exact(piece)?;
+        hash.write(piece);
+    }
+    Ok(hash.finish())
+}
+
+#[cfg(test)]
+mod tests {
+    use proptest::prelude::*;
+
+    use super::*;
+    use crate::testing::preparation;
+
+    /// A file of the map of seed 1.
+    fn file() -> Vec<u8> {
+        let localizer = preparation(1).finish().unwrap();
+        let index = localizer.search_index().unwrap();
+        let mut bytes = Vec::new();
+        write(&mut bytes, key(), &index).unwrap();
+        assert_eq!(bytes.len() as u64, size(&index));
+        bytes
+    }
+
+    fn key() -> IndexKey {
+        preparation(1).key().unwrap()
+    }
+
+    fn read_back(bytes: &[u8]) -> Result<SearchIndex, FileError> {
+        read(&mut &*bytes, bytes.len() as u64, key(), &preparation(1))
+    }
+
+    #[test]
+    fn the_header_is_as_the_table_says() {
+        let bytes = file();
+        assert_eq!(bytes[..8], MAGIC.to_ne_bytes());
+        assert_eq!(bytes[8..12], SearchIndex::VERSION.to_ne_bytes());
+        assert_eq!(bytes[12..16], (SECTIONS as u32).to_ne_bytes());
+        assert_eq!(bytes[16..32], key().to_bytes());
+        let header = 32 + 16 * SECTIONS;
+        let lengths = bytes[32..header].chunks(16);
+        let lengths = lengths.map(|section| u64::from_ne_bytes(*section.first_chunk().unwrap()));
+        let sum = XxHash3_64::oneshot(&bytes[..header]);
+        assert_eq!(bytes[header..header + 8], sum.to_ne_bytes());
+        assert_eq!(lengths.sum::<u64>() as usize + header + 8, bytes.len());
+    }
+
+    #[test]
+    fn what_is_read_equals_what_was_made() {
+        let made = preparation(1).finish().unwrap().search_index().unwrap();
+        assert_eq!(read_back(&file()).unwrap().sections(), made.sections());
+    }
+
+    #[test]
+    fn each_byte_of_the_header_counts() {
+        let mut bytes = file();
+        for place in 0..size_of::<Header>() {
+            for flip in [1, 128, 255] {
+                bytes[place] ^= flip;
+                let refused = read_back(&bytes).unwrap_err();
+                let expected = match place {
+                    0..8 => matches!(refused, FileError::Foreign),
+                    8..12 => matches!(refused, FileError::Version { .. }),
+                    _ => matches!(refused, FileError::Header),
+                };
+                assert!(expected, "byte {place}: {refused}");
+                bytes[place] ^= flip;
+            }
+        }
+        assert!(read_back(&bytes).is_ok(), "all is as it was");
+    }
+
+    /// A file that claims what it likes, with a sound header.
+    fn claiming(change: impl FnOnce(&mut Header)) -> Result<SearchIndex, FileError> {
+        let mut bytes = file();
+        let (header, _) = bytes.split_at_mut(size_of::<Header>());
+        let mut claimed: Header = bytemuck::pod_read_unaligned(header);
+        change(&mut claimed);
+        claimed.checksum = claimed.sum();
+        header.copy_from_slice(bytes_of(&claimed));
+        read_back(&bytes)
+    }
+
+    #[test]
+    fn a_sound_header_that_claims_too_much_is_refused_before_room_is_made() {
+        assert!(claiming(|_| ()).is_ok());
+        let moved = claiming(|header| {
+            // From the intervals to the sought cells: as many bytes together.
+            header.sections[5].bytes -= 48 * 3;
+            header.sections[0].bytes += 48 * 3;
+        });
+        assert!(matches!(moved.unwrap_err(), FileError::Sections(_)));
+        for section in 0..SECTIONS {
+            let huge = claiming(|header| header.sections[section].bytes = u64::MAX);
+            assert!(matches!(huge.unwrap_err(), FileError::Length { .. }));
+        }
+        let other = claiming(|header| header.key[3] ^= 1);
+        assert!(matches!(other.unwrap_err(), FileError::OtherKey));
+        let sections = claiming(|header| header.count += 1);
+        assert!(matches!(sections.unwrap_err(), FileError::Header));
+    }
+
+    #[test]
+    fn a_file_that_is_cut_or_longer_is_refused() {
+        let mut bytes = file();
+        let header: Header = bytemuck::pod_read_unaligned(&bytes[..size_of::<Header>()]);
+        let mut ends = vec![0, 1, size_of::<Header>() - 1, size_of::<Header>()];
+        for section in header.sections {
+            let start = ends.last().unwrap();
+            let end = start + section.bytes as usize;
+            ends.extend([end.saturating_sub(1), end]);
+        }
+        assert_eq!(ends.pop(), Some(bytes.len()));
+        for end in ends {
+            assert!(read_back(&bytes[..end]).is_err(), "{end}");
+            // Cut while it is read: there is less than the file had at first.
+            let mut cut = &bytes[..end];
+            let cut = read(&mut cut, bytes.len() as u64, key(), &preparation(1));
+            assert!(matches!(cut.unwrap_err(), FileError::Read(_)), "{end}");
+        }
+        bytes.push(0);
+        assert!(matches!(
+            read_back(&bytes).unwrap_err(),
+            FileError::Length { .. }
+        ));
+    }
+
+    proptest! {
+        #[test]
+        fn a_file_with_other_bytes_is_refused(changes in prop::collection::vec((any::<usize>(), 1u8..), 1..4)) {
+            let sound = file();
+            let mut bytes = sound.clone();
+            for (place, flip) in changes {
+                let place = place % bytes.len();
+                bytes[place] ^= flip;
+            }
+            prop_assert!(read_back(&bytes).is_err() || bytes == sound);
+        }
+
+        #[test]
+        fn anything_is_refused(bytes in prop::collection::vec(any::<u8>(), 0..2000)) {
+            prop_assert!(read_back(&bytes).is_err());
+        }
+    }
+}

@@ -1,0 +1,46 @@
+//! Small maps for the tests of this crate.
+
+use engine::grid::{CellRules, GridFrame};
+use engine::localizer::{LocalizerConfig, Preparation, Prior};
+use geometry::Pose;
+
+/// Cells along x and y.
+pub(crate) const SIDES: (usize, usize) = (61, 40);
+
+pub(crate) const FRAME: GridFrame = GridFrame {
+    resolution_m: 0.05,
+    map_from_grid: Pose::new(1.0, 2.0, 0.5),
+};
+
+/// A room with a pillar, a box that `seed` places, and a part that is unknown.
+pub(crate) fn occupancy(seed: usize) -> Vec<u8> {
+    let (width, height) = SIDES;
+    let cell = |i: usize| {
+        let (x, y) = (i % width, i / width);
+        let is_wall = x == 0 || y == 0 || x == width - 1 || y == height - 1;
+        let is_pillar = (20..24).contains(&x) && (9..14).contains(&y);
+        let is_box = x == 30 + seed && y == 30;
+        let is_unknown = x > 50 && y > 20;
+        match (is_wall || is_pillar || is_box, is_unknown) {
+            (true, _) => 100,
+            (false, true) => 255,
+            (false, false) => 0,
+        }
+    };
+    (0..width * height).map(cell).collect()
+}
+
+/// The map of a seed, with some settings.
+pub(crate) fn preparation_with(seed: usize, config: LocalizerConfig) -> Preparation {
+    let (cells, rules) = (occupancy(seed), CellRules::default());
+    Preparation::of_map(FRAME, SIDES, &cells, rules, config, Prior::None).unwrap()
+}
+
+/// The same with few headings.
+pub(crate) fn preparation(seed: usize) -> Preparation {
+    let config = LocalizerConfig {
+        headings: 48,
+        ..LocalizerConfig::default()
+    };
+    preparation_with(seed, config)
+}
