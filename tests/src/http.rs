@@ -1,9 +1,26 @@
 //! Questions to a page's server, byte for byte as a test wants them.
 
+use std::fs::OpenOptions;
 use std::io::{BufRead, BufReader, Read, Write};
 use std::net::{SocketAddr, TcpListener, TcpStream};
+use std::os::unix::fs::OpenOptionsExt;
+use std::path::{Path, PathBuf};
 
 use serde_json::Value;
+
+/// Writes a token where only this user can read it.
+///
+/// # Panics
+/// If it cannot be written.
+#[must_use]
+pub fn token_file(folder: &Path, token: &str) -> PathBuf {
+    let path = folder.join("token");
+    let mut options = OpenOptions::new();
+    options.write(true).create_new(true).mode(0o600);
+    let mut file = options.open(&path).unwrap();
+    file.write_all(token.as_bytes()).unwrap();
+    path
+}
 
 /// A server on this machine.
 #[derive(Debug, Clone, Copy)]

@@ -2,7 +2,7 @@
 //! it harm.
 
 use std::io::{BufRead, BufReader, Lines};
-use std::path::Path;
+use std::path::PathBuf;
 use std::process::{Child, ChildStdout, Command, ExitStatus, Stdio};
 use std::thread::JoinHandle;
 
@@ -10,6 +10,7 @@ use nix::sys::signal::{Signal, kill};
 use nix::unistd::Pid;
 use serde_json::Value;
 use tempfile::TempDir;
+use transport::GraphName;
 
 use crate::executables;
 
@@ -23,7 +24,11 @@ pub struct Live {
 
 /// The repository's descriptor with the executables of this test run; `more` stands in
 /// each node that is restarted, each line indented by four.
-fn descriptor(more: &str) -> String {
+///
+/// # Panics
+/// If it cannot be read.
+#[must_use]
+pub fn descriptor(more: &str) -> String {
     let text = std::fs::read_to_string(crate::root().join("dataflow.yaml")).unwrap();
     let folder = executables::path("backcast").with_file_name("");
     let root = crate::root().canonicalize().unwrap();
@@ -173,25 +178,10 @@ impl Drop for Live {
 /// What a graph has in shared memory and in the temporary folder of this user.
 ///
 /// # Panics
-/// If shared memory cannot be listed.
+/// If there can be no graph of this name.
 #[must_use]
 pub fn files_of(name: &str) -> Vec<String> {
-    let mut found = Vec::new();
-    let root = format!("/tmp/backcast-{}", nix::unistd::geteuid());
-    for folder in ["/dev/shm", &root] {
-        collect(Path::new(folder), &format!("_{name}."), &mut found);
-    }
-    found
-}
-
-fn collect(folder: &Path, part: &str, found: &mut Vec<String>) {
-    // Others remove files and folders of theirs meanwhile.
-    let entries = std::fs::read_dir(folder).into_iter().flatten().flatten();
-    for path in entries.map(|entry| entry.path()) {
-        if path.is_dir() {
-            collect(&path, part, found);
-        } else if path.to_string_lossy().contains(part) {
-            found.push(path.display().to_string());
-        }
-    }
+    let files = transport::files_of(&GraphName::new(name).unwrap());
+    let text = |file: &PathBuf| file.display().to_string();
+    files.iter().map(text).collect()
 }

@@ -13,6 +13,7 @@ use nix::unistd::Pid;
 use tempfile::TempDir;
 use tests::browser::Browser;
 use tests::executables;
+use tests::http::token_file;
 use tests::recorded::graph_with;
 use tests::world::World;
 
@@ -29,8 +30,7 @@ struct Graph {
 impl Graph {
     fn start(world: &World) -> Graph {
         let folder = TempDir::new().unwrap();
-        let token = folder.path().join("token");
-        std::fs::write(&token, TOKEN).unwrap();
+        let token = token_file(folder.path(), TOKEN);
         let descriptor = folder.path().join("g.yaml");
         std::fs::write(&descriptor, nodes(world, &token.display().to_string())).unwrap();
         let mut launcher = Command::new(executables::path("backcast"))

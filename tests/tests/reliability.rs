@@ -11,6 +11,7 @@ use std::time::Duration;
 
 use messages::topic;
 use nix::sys::signal::{Signal, kill};
+use serde_json::{Value, json};
 use tests::live::{Live, files_of};
 use transport::testing::wait_for_health;
 use transport::{Graph, GraphName};
@@ -130,6 +131,35 @@ fn full_shared_memory_ends_nothing_and_is_told() {
     let (status, summary, _) = live.stop();
     assert!(status.success(), "{status}");
     assert_eq!(summary["pose"]["unique_wrong"], 0, "{summary}");
+}
+
+#[test]
+fn a_graph_that_is_done_harm_for_a_while_keeps_its_promises() {
+    let test = "a_graph_that_is_done_harm_for_a_while_keeps_its_promises";
+    if !has_own_shared_memory(test, "256m") {
+        return;
+    }
+    let folder = tempfile::tempdir().unwrap();
+    let descriptor = folder.path().join("dataflow.yaml");
+    std::fs::write(&descriptor, tests::live::descriptor("")).unwrap();
+    let output = Command::new(tests::executables::path("backcast"))
+        .arg("soak")
+        .arg(&descriptor)
+        .args(["--minutes", "1.5", "--seed", "7", "--json"])
+        .args(["--faults", "kill,pair,stop,map,launcher,tmp,shm"])
+        .stderr(Stdio::inherit())
+        .output()
+        .unwrap();
+    let report: Value = serde_json::from_slice(&output.stdout).unwrap();
+    assert_eq!(report["failures"], json!([]), "{report}");
+    assert_eq!(report["leftovers"], json!([]), "{report}");
+    assert_eq!(report["wrong"], 0, "{report}");
+    assert!(output.status.success(), "{report}");
+    // A round holds seventeen, of which twelve kill nodes.
+    let faults = report["faults"].as_array().unwrap();
+    let killed = faults.iter().filter_map(|felt| felt["killed"].as_u64());
+    assert!(killed.sum::<u64>() > 5, "{report}");
+    assert!(report["judged"].as_u64() > Some(50), "{report}");
 }
 
 /// Writes until nothing more fits.

@@ -28,6 +28,14 @@ pub enum DashboardError {
         /// What the system says.
         source: io::Error,
     },
+    /// Everybody on the machine can read the token, or replace it.
+    #[error("{} has mode {mode:o}, so that everybody on this machine knows the token: chmod 600, or 640 for a group, is needed", path.display())]
+    OpenTokenFile {
+        /// The file.
+        path: PathBuf,
+        /// Its rights.
+        mode: u32,
+    },
     /// The token could be guessed, or cannot be sent.
     #[error("the token in {} has {found} characters; needed are 16 to 256 of ASCII without spaces", path.display())]
     Token {

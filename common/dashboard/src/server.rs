@@ -11,6 +11,7 @@
 //! | `POST /api/v1/robots/{robot}/save` | save the last minutes; needs the token |
 
 mod actions;
+mod connections;
 mod gate;
 mod listening;
 mod page;
@@ -30,7 +31,6 @@ use transport::CONSOLE_ONLY;
 
 use crate::token::Token;
 use crate::{DashboardError, Options, Robot, Robots};
-use listening::Guarded;
 use refusal::Refusal;
 
 /// Most bytes of a request's body.
@@ -127,13 +127,12 @@ impl Server {
         let (stop, stopped) = oneshot::channel();
         let listener = {
             let _inside = runtime.enter();
-            Guarded::new(listener).map_err(DashboardError::Server)?
+            listening::in_runtime(listener).map_err(DashboardError::Server)?
         };
         let work = move || {
             runtime.block_on(async {
                 tokio::select! {
-                    // It only returns what cannot happen: it tries for ever.
-                    _ = axum::serve(listener, app) => {}
+                    () = listening::serve(listener, app) => {}
                     _ = stopped => {}
                 }
             });

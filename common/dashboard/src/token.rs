@@ -1,10 +1,16 @@
 //! The token that write actions need.
 
+use std::fs::File;
+use std::io::Read;
+use std::os::unix::fs::MetadataExt;
 use std::path::Path;
 
 use subtle::ConstantTimeEq;
 
 use crate::DashboardError;
+
+/// Rights on a file that everybody on the machine has.
+const OTHERS: u32 = 0o007;
 
 /// Something that only those who may change the graph know.
 pub(crate) struct Token(String);
@@ -13,12 +19,20 @@ impl Token {
     /// Reads it from a file, spaces around it left out.
     ///
     /// # Errors
-    /// The file cannot be read, or holds none.
+    /// The file cannot be read, or by everybody, or holds none.
     pub(crate) fn read(path: &Path) -> Result<Self, DashboardError> {
-        let text = std::fs::read_to_string(path).map_err(|source| DashboardError::TokenFile {
+        let unreadable = |source| DashboardError::TokenFile {
             path: path.to_owned(),
             source,
-        })?;
+        };
+        let mut file = File::open(path).map_err(unreadable)?;
+        let mode = file.metadata().map_err(unreadable)?.mode() & 0o777;
+        if mode & OTHERS != 0 {
+            let path = path.to_owned();
+            return Err(DashboardError::OpenTokenFile { path, mode });
+        }
+        let mut text = String::new();
+        file.read_to_string(&mut text).map_err(unreadable)?;
         let token = text.trim();
         if !(16..=256).contains(&token.len()) || !token.bytes().all(|b| b.is_ascii_graphic()) {
             return Err(DashboardError::Token {
@@ -53,6 +67,9 @@ impl Token {
 
 #[cfg(test)]
 mod tests {
+    use std::fs::Permissions;
+    use std::os::unix::fs::PermissionsExt;
+
     use super::*;
 
     #[test]
@@ -63,12 +80,35 @@ mod tests {
         assert!(!one.is(other.reveal()) && !one.is(""));
     }
 
+    fn set_mode(path: &Path, mode: u32) {
+        let permissions = Permissions::from_mode(mode);
+        std::fs::set_permissions(path, permissions).unwrap();
+    }
+
+    #[test]
+    fn a_file_that_everybody_can_use_is_refused() {
+        let folder = tempfile::tempdir().unwrap();
+        let path = folder.path().join("token");
+        std::fs::write(&path, "0123456789abcdef").unwrap();
+        for mode in [0o600, 0o640, 0o400] {
+            set_mode(&path, mode);
+            assert!(Token::read(&path).is_ok(), "{mode:o}");
+        }
+        for mode in [0o644, 0o602, 0o777] {
+            set_mode(&path, mode);
+            let error = Token::read(&path).err().unwrap().to_string();
+            let told = [format!("{mode:o}"), "chmod".to_owned()];
+            assert!(told.iter().all(|word| error.contains(word)), "{error}");
+        }
+    }
+
     #[test]
     fn files_hold_tokens_that_cannot_be_guessed() {
         let folder = tempfile::tempdir().unwrap();
         let path = folder.path().join("token");
         let read = |text: &str| {
             std::fs::write(&path, text).unwrap();
+            set_mode(&path, 0o600);
             Token::read(&path).map(|token| token.reveal().to_owned())
         };
         assert_eq!(read("0123456789abcdef\n").unwrap(), "0123456789abcdef");

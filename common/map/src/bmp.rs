@@ -11,6 +11,7 @@ use image::{ColorType, ImageDecoder};
 
 use crate::MapError;
 use crate::grid::size_is_allowed;
+use crate::kind::Claim;
 use crate::load::HEAD_BYTES;
 use crate::raster::{Channels, Raster, Samples};
 
@@ -20,16 +21,22 @@ pub(crate) const SIGNATURE: &[u8] = b"BM";
 /// Most pixels that two bytes of a packed bitmap stand for.
 const MAX_RUN: u64 = 255;
 
-/// The most bytes of a file that begins with `head`.
-pub(crate) fn most_bytes(head: &[u8], path: &Path) -> Result<u64, MapError> {
+/// What a file claims that begins with `head`.
+pub(crate) fn claim(head: &[u8], path: &Path) -> Result<Claim, MapError> {
     let Some(claims) = Claims::read(head) else {
-        return Ok(HEAD_BYTES);
+        return Ok(Claim {
+            sides: (0, 0),
+            most_bytes: HEAD_BYTES,
+        });
     };
     if !size_is_allowed(claims.width, claims.height) {
         return Err(size(path, claims.width, claims.height));
     }
     let pixels = (u64::from(claims.width) + 1) * u64::from(claims.height);
-    Ok(pixels * 4 + HEAD_BYTES + claims.first_pixel.min(HEAD_BYTES))
+    Ok(Claim {
+        sides: (claims.width, claims.height),
+        most_bytes: pixels * 4 + HEAD_BYTES + claims.first_pixel.min(HEAD_BYTES),
+    })
 }
 
 /// Decodes a file that starts with [`SIGNATURE`]; `path` is for errors.

@@ -18,6 +18,20 @@ pub enum MapError {
         /// What the system says.
         source: io::Error,
     },
+    /// The graph could not hold the map.
+    #[error(
+        "a map of {width} x {height} cells takes about {needed_mb} MB in the graph; allowed are {limit_mb} MB (--memory-limit)"
+    )]
+    Memory {
+        /// Cells along x.
+        width: u32,
+        /// Cells along y.
+        height: u32,
+        /// What it takes, megabytes.
+        needed_mb: u64,
+        /// What the graph may use.
+        limit_mb: u64,
+    },
     /// The file is larger than any sound one of its kind.
     #[error("{} has {found} bytes; at most {allowed} are allowed", path.display())]
     FileSize {

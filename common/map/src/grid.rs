@@ -1,15 +1,12 @@
 //! The occupancy grid, its limits and its identity.
 
 use std::f64::consts::TAU;
-use std::hash::Hasher;
 
 use geometry::Pose;
-use twox_hash::XxHash3_64;
 
 use crate::MapError;
 
-/// The occupancy of a cell about which nothing is known.
-pub const UNKNOWN: u8 = 255;
+pub use messages::UNKNOWN;
 
 /// Most cells along a side: a cell's column and row fit a signed 16-bit number,
 /// with room to step off the grid by one.
@@ -89,23 +86,11 @@ impl OccupancyGrid {
         Ok(grid)
     }
 
-    /// Hash of geometry and cells (XXH3, 64 bits), the same on every machine.
-    ///
-    /// Lengths and angles count to the nanometre and nanoradian, so that a map
-    /// and its copy in a recording have one id although they were written with
-    /// different roundings.
+    /// The id of the map, by its geometry and cells: see [`messages::map_id`].
     #[must_use]
     pub fn id(&self) -> u64 {
-        let mut hasher = XxHash3_64::new();
-        hasher.write(&self.width.to_le_bytes());
-        hasher.write(&self.height.to_le_bytes());
-        let Pose { x, y, yaw } = self.map_from_grid;
-        for value in [self.resolution_m, x, y, yaw] {
-            // MAX_ORIGIN_M in nanometres is 1e17, well within an i64.
-            hasher.write(&((value * 1e9).round() as i64).to_le_bytes());
-        }
-        hasher.write(&self.cells);
-        hasher.finish()
+        let (sides, origin) = ((self.width, self.height), self.map_from_grid.into());
+        messages::map_id(sides, self.resolution_m, origin, &self.cells)
     }
 
     /// The centre of a cell in the map frame, metres; cells off the grid go on

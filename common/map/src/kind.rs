@@ -32,15 +32,23 @@ pub(crate) fn decode(bytes: &[u8], path: &Path) -> Result<Raster, MapError> {
     }
 }
 
-/// The most bytes that an image which begins with `head` may have, by its header;
-/// `path` is for errors.
-pub(crate) fn most_bytes(head: &[u8], path: &Path) -> Result<u64, MapError> {
+/// What the header of an image claims.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(crate) struct Claim {
+    /// Pixels along x and y; 0 where the header is cut off.
+    pub(crate) sides: (u32, u32),
+    /// The most bytes that such an image may have.
+    pub(crate) most_bytes: u64,
+}
+
+/// What an image claims that begins with `head`; `path` is for errors.
+pub(crate) fn claim(head: &[u8], path: &Path) -> Result<Claim, MapError> {
     if head.starts_with(png::SIGNATURE) {
-        png::most_bytes(head, path)
+        png::claim(head, path)
     } else if head.starts_with(b"P2") || head.starts_with(b"P5") {
-        pgm::most_bytes(head, path)
+        pgm::claim(head, path)
     } else if head.starts_with(bmp::SIGNATURE) {
-        bmp::most_bytes(head, path)
+        bmp::claim(head, path)
     } else {
         Err(wrong_kind(head, path))
     }

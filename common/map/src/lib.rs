@@ -14,6 +14,7 @@ mod grid;
 mod keys;
 mod kind;
 mod load;
+mod memory;
 mod pgm;
 mod png;
 mod raster;
@@ -26,5 +27,6 @@ pub use grid::{
     MAX_CELLS, MAX_ORIGIN_M, MAX_RESOLUTION_M, MAX_SIDE, MIN_RESOLUTION_M, OccupancyGrid, UNKNOWN,
 };
 pub use keys::UnknownKey;
-pub use load::{image_of, load, load_noting};
+pub use load::{image_of, load, load_noting, load_within};
+pub use memory::{MemoryLimit, MemoryOptions};
 pub use save::save;

@@ -6,7 +6,7 @@ use std::path::{Path, PathBuf};
 
 use crate::description::Description;
 use crate::raster::Raster;
-use crate::{MapError, OccupancyGrid, UnknownKey, kind};
+use crate::{MapError, MemoryLimit, OccupancyGrid, UnknownKey, kind};
 
 /// Most bytes of a description; a sound one has a few hundred.
 const MAX_DESCRIPTION_BYTES: u64 = 64 << 10;
@@ -27,6 +27,19 @@ pub fn load(yaml: impl AsRef<Path>) -> Result<OccupancyGrid, MapError> {
     load_noting(yaml, |_| {})
 }
 
+/// As [`load_noting`], unless the graph could not hold the map: its sides are looked at
+/// before memory is taken for it.
+///
+/// # Errors
+/// As [`load`], and [`MapError::Memory`].
+pub fn load_within(
+    limit: MemoryLimit,
+    yaml: impl AsRef<Path>,
+    note: impl FnMut(&UnknownKey),
+) -> Result<OccupancyGrid, MapError> {
+    load_from(yaml.as_ref(), limit, note)
+}
+
 /// As [`load`], and hands each key of the description that is not known to `note`,
 /// to be shown to the user.
 ///
@@ -36,12 +49,19 @@ pub fn load_noting(
     yaml: impl AsRef<Path>,
     note: impl FnMut(&UnknownKey),
 ) -> Result<OccupancyGrid, MapError> {
-    let yaml = yaml.as_ref();
+    load_from(yaml.as_ref(), MemoryLimit::NONE, note)
+}
+
+fn load_from(
+    yaml: &Path,
+    limit: MemoryLimit,
+    note: impl FnMut(&UnknownKey),
+) -> Result<OccupancyGrid, MapError> {
     let text = read_text(yaml)?;
     let description = Description::parse(&text, yaml)?;
     description.unknown.iter().for_each(note);
     let (line, column) = description.image_named_at;
-    let bytes = read_image(&description.image, |source| MapError::Image {
+    let bytes = read_image(&description.image, limit, |source| MapError::Image {
         image: description.image.clone(),
         yaml: yaml.to_owned(),
         line,
@@ -103,6 +123,7 @@ fn read_text(yaml: &Path) -> Result<String, MapError> {
 /// before memory is taken for it.
 fn read_image(
     path: &Path,
+    limit: MemoryLimit,
     unreadable: impl Fn(io::Error) -> MapError,
 ) -> Result<Vec<u8>, MapError> {
     // Whoever opens a pipe that nobody writes to waits for ever.
@@ -116,7 +137,9 @@ fn read_image(
         .take(HEAD_BYTES)
         .read_to_end(&mut bytes)
         .map_err(&unreadable)?;
-    let allowed = kind::most_bytes(&bytes, path)?.min(MAX_IMAGE_BYTES);
+    let claim = kind::claim(&bytes, path)?;
+    limit.check(claim.sides)?;
+    let allowed = claim.most_bytes.min(MAX_IMAGE_BYTES);
     let rest = (allowed + 1).saturating_sub(bytes.len() as u64);
     file.take(rest)
         .read_to_end(&mut bytes)
@@ -163,7 +186,7 @@ mod tests {
     use tempfile::TempDir;
 
     use super::*;
-    use crate::UNKNOWN;
+    use crate::{MemoryOptions, UNKNOWN};
 
     const YAML: &str = "image: floor.pgm\nresolution: 0.5\norigin: [1, 2, 0.25]\n\
                         negate: 0\noccupied_thresh: 0.65\nfree_thresh: 0.196\n";
@@ -260,6 +283,26 @@ mod tests {
         assert!(notes[1].starts_with(&place(8, "layers")), "{notes:?}");
         assert!(notes[1].ends_with("free_thresh, mode"), "{notes:?}");
         assert_eq!(load(&path).unwrap(), map);
+    }
+
+    #[test]
+    fn a_map_that_the_graph_could_not_hold_is_refused_by_its_header() {
+        let memory_limit = Some(1);
+        let limit = MemoryOptions { memory_limit }.limit();
+        // Nothing but headers: whoever decodes them finds no pixels.
+        let mut png = b"\x89PNG\r\n\x1a\n\0\0\0\x0dIHDR".to_vec();
+        png.extend([0, 0, 0x10, 0, 0, 0, 0x10, 0]);
+        for image in [&png[..], b"P5 4096 4096 255\n", b"P2 4096 4096 255\n"] {
+            let folder = folder(YAML, "floor.pgm", image);
+            let path = folder.path().join("floor.yaml");
+            let error = load_within(limit, path, |_| {}).unwrap_err();
+            assert!(
+                matches!(error, MapError::Memory { limit_mb: 1, .. }),
+                "{error}"
+            );
+        }
+        let folder = folder(YAML, "floor.pgm", b"P5 1 1 255\n\x00");
+        assert!(load_within(limit, folder.path().join("floor.yaml"), |_| {}).is_ok());
     }
 
     #[test]

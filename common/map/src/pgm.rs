@@ -16,11 +16,12 @@ use image::codecs::pnm::{GraymapHeader, PnmDecoder, PnmHeader, SampleEncoding};
 
 use crate::MapError;
 use crate::grid::size_is_allowed;
+use crate::kind::Claim;
 use crate::load::HEAD_BYTES;
 use crate::raster::{Channels, FULL, Raster, Samples};
 
-/// The most bytes of a file that begins with `head`, P2 or P5.
-pub(crate) fn most_bytes(head: &[u8], path: &Path) -> Result<u64, MapError> {
+/// What a file claims that begins with `head`, P2 or P5.
+pub(crate) fn claim(head: &[u8], path: &Path) -> Result<Claim, MapError> {
     let (_, header) = read_header(head, path)?;
     let pixel = match header.as_graymap() {
         Some(grey) if header.subtype().sample_encoding() == SampleEncoding::Binary => {
@@ -30,7 +31,10 @@ pub(crate) fn most_bytes(head: &[u8], path: &Path) -> Result<u64, MapError> {
         _ => 8,
     };
     let pixels = u64::from(header.width()) * u64::from(header.height());
-    Ok(pixels * pixel + HEAD_BYTES)
+    Ok(Claim {
+        sides: (header.width(), header.height()),
+        most_bytes: pixels * pixel + HEAD_BYTES,
+    })
 }
 
 /// The header, whose sides are allowed, and where the pixels begin.

@@ -11,6 +11,7 @@ use image::codecs::png::PngDecoder;
 use image::{ColorType, ImageDecoder, Limits};
 
 use crate::grid::size_is_allowed;
+use crate::kind::Claim;
 use crate::load::HEAD_BYTES;
 use crate::raster::{Channels, Raster, Samples};
 use crate::{MAX_SIDE, MapError};
@@ -30,11 +31,14 @@ const DECODER_BYTES: u64 = 64 << 20;
 /// Most bytes of what a file says beside its pixels: colour profiles, say.
 const BESIDE_BYTES: u64 = 16 << 20;
 
-/// The most bytes of a file that begins with `head`: pixels that do not shrink.
-pub(crate) fn most_bytes(head: &[u8], path: &Path) -> Result<u64, MapError> {
+/// What a file claims that begins with `head`; its pixels may be such that do not shrink.
+pub(crate) fn claim(head: &[u8], path: &Path) -> Result<Claim, MapError> {
     let side = |at: usize| Some(u32::from_be_bytes(*head.get(at..)?.first_chunk()?));
     let (Some(width), Some(height)) = (side(16), side(20)) else {
-        return Ok(HEAD_BYTES);
+        return Ok(Claim {
+            sides: (0, 0),
+            most_bytes: HEAD_BYTES,
+        });
     };
     if !size_is_allowed(width, height) {
         return Err(MapError::ImageSize {
@@ -44,7 +48,11 @@ pub(crate) fn most_bytes(head: &[u8], path: &Path) -> Result<u64, MapError> {
         });
     }
     // Four samples of two bytes each, and what tells how a row is filtered.
-    Ok((u64::from(width) * 8 + 1) * u64::from(height) + BESIDE_BYTES)
+    let pixels = (u64::from(width) * 8 + 1) * u64::from(height);
+    Ok(Claim {
+        sides: (width, height),
+        most_bytes: pixels + BESIDE_BYTES,
+    })
 }
 
 /// Decodes a file that starts with [`SIGNATURE`]; `path` is for errors.

@@ -39,7 +39,7 @@ pub use health::{HealthHeader, NodeState};
 pub use hypotheses::{HypothesesHeader, Hypothesis, Verdict};
 pub use initial_pose::InitialPose;
 pub use log::{LogHeader, LogLevel};
-pub use map::{MapHeader, UNKNOWN};
+pub use map::{MapHeader, UNKNOWN, WrongMapId, map_id};
 pub use name::{FrameName, Name};
 pub use odometry::Odometry;
 pub use particles::{Particle, ParticlesHeader};

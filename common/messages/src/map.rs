@@ -1,9 +1,13 @@
 //! The occupancy grid.
 
+use std::hash::Hasher;
+
 use bytemuck::{Pod, Zeroable};
 use iceoryx2_bb_derive_macros::ZeroCopySend;
 use iceoryx2_bb_elementary_traits::zero_copy_send::ZeroCopySend;
 use serde::{Deserialize, Serialize};
+
+use twox_hash::XxHash3_64;
 
 use crate::{Pose2, Stamp};
 
@@ -31,9 +35,99 @@ pub struct MapHeader {
     pub map_from_grid: Pose2,
 }
 
+/// The id of a map: a hash of geometry and cells (XXH3, 64 bits), the same on every machine.
+///
+/// Lengths and angles count to the nanometre and nanoradian, so that a map and its copy
+/// in a recording have one id although they were written with different roundings.
+#[must_use]
+pub fn map_id(
+    (width, height): (u32, u32),
+    resolution_m: f64,
+    map_from_grid: Pose2,
+    cells: &[u8],
+) -> u64 {
+    let mut hasher = XxHash3_64::new();
+    hasher.write(&width.to_le_bytes());
+    hasher.write(&height.to_le_bytes());
+    let Pose2 { x, y, yaw } = map_from_grid;
+    for value in [resolution_m, x, y, yaw] {
+        // Origins end at 1e8 m, 1e17 nanometres, well within an i64.
+        hasher.write(&((value * 1e9).round() as i64).to_le_bytes());
+    }
+    hasher.write(cells);
+    hasher.finish()
+}
+
+/// A map whose id is not that of its content: what is known of one map would be taken for
+/// another one's.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub struct WrongMapId {
+    /// As the header says.
+    pub found: u64,
+    /// Of the content.
+    pub expected: u64,
+}
+
+impl std::fmt::Display for WrongMapId {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        let WrongMapId { found, expected } = self;
+        write!(
+            f,
+            "its id {found:016x} is not that of its cells, {expected:016x}"
+        )
+    }
+}
+
+impl std::error::Error for WrongMapId {}
+
+impl MapHeader {
+    /// The id that a map with this geometry and these cells has.
+    #[must_use]
+    pub fn id_of(&self, cells: &[u8]) -> u64 {
+        let sides = (self.width, self.height);
+        map_id(sides, self.resolution_m, self.map_from_grid, cells)
+    }
+
+    /// Whether the id is that of the content: to be asked by whoever receives a map.
+    ///
+    /// # Errors
+    /// It is another one.
+    pub fn check_id(&self, cells: &[u8]) -> Result<(), WrongMapId> {
+        let (found, expected) = (self.map_id, self.id_of(cells));
+        match found == expected {
+            true => Ok(()),
+            false => Err(WrongMapId { found, expected }),
+        }
+    }
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn a_map_with_the_id_of_another_is_refused() {
+        let mut map = MapHeader {
+            width: 3,
+            height: 1,
+            resolution_m: 0.05,
+            ..MapHeader::zeroed()
+        };
+        map.map_id = map.id_of(&[0, 100, UNKNOWN]);
+        assert_eq!(map.check_id(&[0, 100, UNKNOWN]), Ok(()));
+        let error = map.check_id(&[0, 100, 0]).unwrap_err();
+        assert_eq!(error.found, map.map_id);
+        assert!(
+            error.to_string().contains("is not that of its cells"),
+            "{error}"
+        );
+        map.map_from_grid.x = 1.0;
+        assert!(
+            map.check_id(&[0, 100, UNKNOWN]).is_err(),
+            "it lies elsewhere"
+        );
+    }
+
     crate::pin_layout!(MapHeader, size 72, align 8, {
         stamp: 0, map_id: 24, width: 32, height: 36, resolution_m: 40, map_from_grid: 48,
     });

@@ -62,6 +62,15 @@ impl Report {
         self.health.count_dropped(messages);
     }
 
+    /// A map was refused, and the one before stays.
+    ///
+    /// # Errors
+    /// If the graph fails.
+    pub fn map_refused(&mut self, error: &(dyn Error + 'static)) -> Result<(), TransportError> {
+        self.refused(error)?;
+        self.health.state(NodeState::Degraded)
+    }
+
     /// A message was refused.
     ///
     /// # Errors

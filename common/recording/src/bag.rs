@@ -21,7 +21,7 @@ use std::path::Path;
 use rusqlite::Row;
 use rusqlite::types::ValueRef;
 
-use crate::folder::Listed;
+use crate::folder::{Listed, refused};
 use crate::write::{Packing, RecordingWriter, definition};
 use crate::{Damage, Kind, RecordingError};
 use database::Database;
@@ -159,14 +159,6 @@ struct Message<'r> {
 fn damaged(path: &Path, found: &str) -> RecordingError {
     let advice = "what can be saved of it, `sqlite3 FILE .recover` saves";
     refused(path, format!("it is damaged: {}; {advice}", found.trim()))
-}
-
-/// A bag that cannot be used, and why.
-pub(crate) fn refused(path: &Path, reason: String) -> RecordingError {
-    RecordingError::Bag {
-        path: path.to_owned(),
-        reason,
-    }
 }
 
 #[cfg(test)]

@@ -11,7 +11,6 @@ use std::path::{Component, Path, PathBuf};
 use serde::Deserialize;
 
 use crate::RecordingError;
-use crate::bag::refused;
 use crate::content::{Content, foreign};
 
 /// What a bag's description is called.
@@ -242,6 +241,14 @@ fn number(text: &str) -> (&str, &str) {
 
 fn shown(path: &Path) -> String {
     path.display().to_string()
+}
+
+/// A bag that cannot be used, and why.
+pub(crate) fn refused(path: &Path, reason: String) -> RecordingError {
+    RecordingError::Bag {
+        path: path.to_owned(),
+        reason,
+    }
 }
 
 #[cfg(test)]

@@ -28,6 +28,9 @@ pub enum TranscriptError {
         /// Items of the sample.
         found: usize,
     },
+    /// A map that is not the one that its id says.
+    #[error("topic map: {0}")]
+    MapId(#[from] messages::WrongMapId),
     /// It cannot be said in CDR.
     #[error(transparent)]
     Encoding(Box<RecordingError>),

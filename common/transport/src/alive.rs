@@ -7,6 +7,7 @@
 use std::fs::{File, OpenOptions, remove_file};
 use std::os::unix::fs::{MetadataExt, OpenOptionsExt};
 use std::path::{Path, PathBuf};
+use std::time::{Duration, Instant};
 
 use nix::errno::Errno;
 use nix::fcntl::{Flock, FlockArg};
@@ -19,6 +20,9 @@ use crate::{GraphName, TransportError};
 pub(crate) const MEMBERS: &str = "alive";
 /// Ends the name of the file that a launcher holds.
 pub(crate) const LAUNCHER: &str = "launcher";
+
+/// For how long a claim may be held by whoever only looks whether it is taken.
+const LOOK: Duration = Duration::from_millis(200);
 
 /// A lock on a file, as long as this lives.
 #[derive(Debug)]
@@ -42,14 +46,29 @@ impl Claim {
     /// [`TransportError::File`] if its file cannot be used.
     pub fn take(graph: &GraphName) -> Result<Self, TransportError> {
         let path = path(&Membership::of(graph), LAUNCHER);
-        let lock = lock(&path, FlockArg::LockExclusiveNonblock)?;
-        let Some(lock) = lock else {
-            return Err(TransportError::StillRunning {
-                graph: graph.clone(),
-                processes: vec![format!("its launcher holds {}", path.display())],
-            });
-        };
-        Ok(Claim { path, _lock: lock })
+        let begin = Instant::now();
+        loop {
+            if let Some(lock) = lock(&path, FlockArg::LockExclusiveNonblock)? {
+                return Ok(Claim { path, _lock: lock });
+            }
+            if begin.elapsed() >= LOOK {
+                return Err(TransportError::StillRunning {
+                    graph: graph.clone(),
+                    processes: vec![format!("its launcher holds {}", path.display())],
+                });
+            }
+            std::thread::sleep(LOOK / 20);
+        }
+    }
+
+    /// Whether a launcher has the name of `graph`.
+    pub(crate) fn is_taken(graph: &GraphName) -> bool {
+        let path = path(&Membership::of(graph), LAUNCHER);
+        let mut options = OpenOptions::new();
+        let file = options.read(true).custom_flags(O_NOFOLLOW).open(path);
+        // Shared, so that several who look do not take each other for a launcher.
+        let look = |file| Flock::lock(file, FlockArg::LockSharedNonblock);
+        matches!(file.map(look), Ok(Err((_, Errno::EWOULDBLOCK))))
     }
 }
 
@@ -137,6 +156,25 @@ mod tests {
         drop(claim);
         assert!(!path.exists());
         drop(Claim::take(&name).unwrap());
+    }
+
+    #[test]
+    fn to_look_whether_a_name_is_claimed_takes_it_from_nobody() {
+        let name = name("look");
+        assert!(!Claim::is_taken(&name));
+        let claim = Claim::take(&name).unwrap();
+        assert!(Claim::is_taken(&name));
+        drop(claim);
+        assert!(!Claim::is_taken(&name));
+        // Others look all the time.
+        let file = path(&Membership::of(&name), LAUNCHER);
+        let looking = lock(&file, FlockArg::LockShared).unwrap();
+        assert!(!Claim::is_taken(&name), "who looks is no launcher");
+        std::thread::scope(|scope| {
+            let taken = scope.spawn(|| Claim::take(&name));
+            drop(looking);
+            assert!(taken.join().unwrap().is_ok());
+        });
     }
 
     #[test]

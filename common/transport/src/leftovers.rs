@@ -80,6 +80,34 @@ pub fn remove_dead_graphs() {
     }
 }
 
+/// Every file that this user's `graph` has: in shared memory, and in the user's folder.
+#[must_use]
+pub fn files_of(graph: &GraphName) -> Vec<PathBuf> {
+    let membership = Membership::of(graph);
+    let nodes = entries(&membership.root.join("nodes")).unwrap_or_default();
+    // Others remove files and folders of theirs meanwhile.
+    let folders = shared_folders(&membership).into_iter().chain(nodes);
+    let files = folders.flat_map(|folder| entries(&folder).unwrap_or_default());
+    files
+        .filter(|file| is_of(&membership, file) && !file.is_dir())
+        .collect()
+}
+
+/// Those that hold files of several graphs.
+fn shared_folders(membership: &Membership) -> [PathBuf; 4] {
+    [
+        PathBuf::from(SHARED_MEMORY),
+        membership.root.clone(),
+        membership.root.join("services"),
+        membership.root.join("nodes"),
+    ]
+}
+
+fn is_of(membership: &Membership, path: &Path) -> bool {
+    let name = path.file_name().map(OsStr::as_bytes);
+    name.is_some_and(|name| name.starts_with(membership.prefix.as_bytes()))
+}
+
 fn refuse_living(
     membership: &Membership,
 ) -> Result<Vec<DeadNodeView<ipc::Service>>, TransportError> {
@@ -115,35 +143,26 @@ fn describe(details: Option<&NodeDetails>) -> String {
 }
 
 fn remove_files(membership: &Membership) -> Result<(), TransportError> {
-    let prefix = membership.prefix.as_bytes();
-    let nodes = membership.root.join("nodes");
-    let folders = [
-        Path::new(SHARED_MEMORY),
-        &membership.root,
-        &membership.root.join("services"),
-        &nodes,
-    ];
-    for folder in folders {
-        remove_prefixed(folder, prefix)?;
+    for folder in shared_folders(membership) {
+        remove_own(&folder, membership)?;
     }
     // Each node has a folder of its own, named after its number alone. Whose it
     // is shows in the files; an empty one may be another graph's, just made.
-    for folder in entries(&nodes)? {
-        if folder.is_dir() && remove_prefixed(&folder, prefix)? {
+    for folder in entries(&membership.root.join("nodes"))? {
+        if folder.is_dir() && remove_own(&folder, membership)? {
             gone(&folder, remove_dir(&folder))?;
         }
     }
     Ok(())
 }
 
-/// Removes the files in `folder` that begin with `prefix`; says if there were any.
-fn remove_prefixed(folder: &Path, prefix: &[u8]) -> Result<bool, TransportError> {
+/// Removes the graph's files in `folder`; says if there were any.
+fn remove_own(folder: &Path, membership: &Membership) -> Result<bool, TransportError> {
     let mut any = false;
     for path in entries(folder)? {
-        let name = path.file_name().map(OsStr::as_bytes);
         // Who claims a graph removes the claim, and nobody else.
         let is_claim = path.extension() == Some(OsStr::new(alive::LAUNCHER));
-        if name.is_some_and(|name| name.starts_with(prefix)) && !is_claim {
+        if is_of(membership, &path) && !is_claim {
             gone(&path, remove_file(&path))?;
             any = true;
         }

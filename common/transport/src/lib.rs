@@ -133,7 +133,7 @@ pub use gaps::GapCounter;
 pub use graph::Graph;
 pub use graph_name::{GRAPH_VARIABLE, GraphName};
 pub use health::Health;
-pub use leftovers::{remove_dead_graphs, remove_leftovers};
+pub use leftovers::{files_of, remove_dead_graphs, remove_leftovers};
 pub use loan::Loan;
 pub use log_lines::{CONSOLE_ONLY, log_in_graph};
 pub use membership::{control_socket, running_graphs};

@@ -116,7 +116,7 @@ pub fn running_graphs() -> Vec<GraphName> {
     let name = |entry: DirEntry| {
         let name = graph_of_file(&entry.path(), user, CONTROL)?;
         // Who holds the name lives; a socket may be left over.
-        Claim::take(&name).is_err().then_some(name)
+        Claim::is_taken(&name).then_some(name)
     };
     let mut names: Vec<_> = entries.filter_map(name).collect();
     names.sort_by(|a, b| a.as_str().cmp(b.as_str()));

@@ -38,7 +38,11 @@ pub(crate) fn map(header: &MapHeader, cells: &[u8]) -> Checked {
     let refuse = Refuse::on::<topic::Map>();
     refuse.unless_finite("resolution_m", header.resolution_m)?;
     refuse.unless_pose("map_from_grid", header.map_from_grid)?;
-    refuse.unless_count("cells", cells.len(), area(header.width, header.height))
+    refuse.unless_count("cells", cells.len(), area(header.width, header.height))?;
+    header.check_id(cells).or_else(|error| {
+        let expected = format!("{:016x}, that of the cells", error.expected);
+        refuse.refuse("map_id", &format_args!("{:016x}", error.found), expected)
+    })
 }
 
 pub(crate) fn boundary(header: &BoundaryHeader, cells: &[BoundaryCell]) -> Checked {
@@ -282,6 +286,18 @@ mod tests {
         let expected =
             "topic map: cells is 3, but must be 18446744065119617025, as the header says";
         check(map(&header, &[0; 3]), expected);
+        let mut header = MapHeader {
+            width: 3,
+            height: 1,
+            ..Zeroable::zeroed()
+        };
+        let expected = format!(
+            "topic map: map_id is 0000000000000000, but must be {:016x}, that of the cells",
+            header.id_of(&[0; 3])
+        );
+        check(map(&header, &[0; 3]), &expected);
+        header.map_id = header.id_of(&[0; 3]);
+        check(map(&header, &[0; 3]), "accepted");
         check(boundary(&Zeroable::zeroed(), &[]), "accepted");
         check(
             votes(&Zeroable::zeroed(), &[Zeroable::zeroed()]),

@@ -18,6 +18,9 @@ pub enum AccumulatorError {
     /// The scan, the map or a setting cannot be used.
     #[error(transparent)]
     Engine(#[from] EngineError),
+    /// The map is not the one that its id says.
+    #[error(transparent)]
+    MapId(#[from] messages::WrongMapId),
     /// The scan's heading is not known.
     #[error(transparent)]
     Heading(#[from] HeadingError),

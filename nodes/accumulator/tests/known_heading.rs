@@ -16,7 +16,7 @@ use messages::{
     Stamp, topic,
 };
 use transport::testing::{Isolated, NodeProcess, wait_for, wait_for_health};
-use world::{FRAME, MOUNT, ROOM, World, localizer, ranges, scan};
+use world::{FRAME, MOUNT, ROOM, World, id, localizer, ranges, scan};
 
 /// In the grid's frame, as the scans are drawn.
 const HEADING: usize = 40;
@@ -28,8 +28,8 @@ fn map_heading() -> f64 {
 
 fn start(world: &World, arguments: &[&str]) -> NodeProcess {
     let node = world.start(arguments);
-    world.publish_map(5, &ROOM);
-    world.publish_boundary(5, &ROOM);
+    world.publish_map(&ROOM);
+    world.publish_boundary(id(&ROOM), &ROOM);
     world.wait_until(NodeState::Ready);
     node
 }
@@ -73,7 +73,7 @@ fn a_fixed_heading_gives_the_votes_and_the_image_of_the_engine() {
 
     let expected = FieldHeader {
         stamp: votes.stamp,
-        map_id: 5,
+        map_id: id(&ROOM),
         width: 16,
         height: 9,
         block: 1,

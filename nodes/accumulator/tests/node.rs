@@ -9,12 +9,12 @@ mod world;
 
 use engine::localizer::{Outcome, Prior};
 use messages::{
-    BoundaryCell, Corner, FieldHeader, FieldKind, NodeState, SearchOutcome, Vote, VotesHeader,
-    topic,
+    BoundaryCell, Corner, FieldHeader, FieldKind, HealthHeader, NodeState, SearchOutcome, Vote,
+    VotesHeader, topic,
 };
 use transport::Publisher;
 use transport::testing::{Isolated, wait_for, wait_for_health};
-use world::{FRAME, MOUNT, ROOM, World, localizer, ranges, scan};
+use world::{FRAME, MOUNT, ROOM, World, id, localizer, map_header, occupancy, ranges, scan};
 
 /// The same room after somebody has moved the pillar and opened a door.
 const CHANGED: [&str; 9] = [
@@ -83,8 +83,8 @@ fn votes_are_those_of_the_engine() {
     let isolated = Isolated::new("equal");
     let world = World::new(&isolated);
     // Both are there before the node, which is thus a late joiner.
-    world.publish_map(5, &ROOM);
-    world.publish_boundary(5, &ROOM);
+    world.publish_map(&ROOM);
+    world.publish_boundary(id(&ROOM), &ROOM);
     let node = world.start(&[]);
     world.wait_until(NodeState::Ready);
     for (x, y, heading) in [(3, 3, 40), (12, 6, 211), (9, 4, 0)] {
@@ -92,7 +92,7 @@ fn votes_are_those_of_the_engine() {
         let (votes, poses) = world.ask(&ranges);
         let outcome = searched(&ROOM, &ranges);
         assert_equals(&votes, &poses, &outcome);
-        assert_eq!((votes.map_id, votes.heading_known), (5, 0));
+        assert_eq!((votes.map_id, votes.heading_known), (id(&ROOM), 0));
         assert_eq!((votes.base_from_laser, votes.mount_known), (MOUNT, 1));
         assert_eq!(votes.total, poses.len() as u64);
         assert!(votes.engine_ns > 0 && votes.poses_evaluated > 0);
@@ -113,8 +113,8 @@ fn the_image_bounds_the_votes_where_the_heading_is_searched() {
     let world = World::new(&isolated);
     let node = world.start(&["--field-rate", "0.1"]);
     let fields = world.graph.subscriber::<topic::Field>().unwrap();
-    world.publish_map(5, &HALL);
-    world.publish_boundary(5, &HALL);
+    world.publish_map(&HALL);
+    world.publish_boundary(id(&HALL), &HALL);
     world.wait_until(NodeState::Ready);
     let ranges = ranges(&HALL, 35, 4, 211);
     let (votes, poses) = world.ask(&ranges);
@@ -124,7 +124,7 @@ fn the_image_bounds_the_votes_where_the_heading_is_searched() {
 
     let expected = FieldHeader {
         stamp: votes.stamp,
-        map_id: 5,
+        map_id: id(&HALL),
         width: 3,
         height: 2,
         block: 16,
@@ -165,8 +165,8 @@ fn bad_scans_are_refused_and_counted_and_the_next_good_one_is_answered() {
     let (_, error) = wait_for_health(&world.graph, &world.health, |report| report.refused == 1);
     assert_eq!(error, "scan 0 is refused: there is no map yet");
 
-    world.publish_map(5, &ROOM);
-    world.publish_boundary(5, &ROOM);
+    world.publish_map(&ROOM);
+    world.publish_boundary(id(&ROOM), &ROOM);
     world.wait_until(NodeState::Ready);
     let bad = [
         world.ask(&[]),
@@ -176,7 +176,7 @@ fn bad_scans_are_refused_and_counted_and_the_next_good_one_is_answered() {
     ];
     for (votes, poses) in bad {
         assert!(is_refused(&votes) && poses.is_empty());
-        assert_eq!(votes.map_id, 5);
+        assert_eq!(votes.map_id, id(&ROOM));
     }
     let (_, error) = wait_for_health(&world.graph, &world.health, |report| report.refused == 5);
     assert!(
@@ -214,12 +214,16 @@ fn ask_until_swapped(world: &World, map_id: u64) {
     let scanned = ranges(&CHANGED, 3, 3, 40);
     loop {
         let (votes, poses) = world.ask(&scanned);
-        let rows = if votes.map_id == 5 { &ROOM } else { &CHANGED };
+        let rows = if votes.map_id == id(&ROOM) {
+            &ROOM
+        } else {
+            &CHANGED
+        };
         assert_equals(&votes, &poses, &searched(rows, &scanned));
         if votes.map_id == map_id {
             return;
         }
-        assert_eq!(votes.map_id, 5);
+        assert_eq!(votes.map_id, id(&ROOM));
     }
 }
 
@@ -228,15 +232,19 @@ fn a_new_map_is_used_once_it_and_its_boundary_are_there() {
     let isolated = Isolated::new("swap");
     let world = World::new(&isolated);
     let node = world.start(&[]);
-    world.publish_boundary(5, &ROOM);
-    world.publish_map(5, &ROOM);
+    world.publish_boundary(id(&ROOM), &ROOM);
+    world.publish_map(&ROOM);
     world.wait_until(NodeState::Ready);
 
-    world.publish_map(6, &CHANGED);
+    world.publish_map(&CHANGED);
     let (votes, _) = world.ask(&ranges(&ROOM, 3, 3, 40));
-    assert_eq!(votes.map_id, 5, "the boundary of the new map is missing");
-    world.publish_boundary(6, &CHANGED);
-    ask_until_swapped(&world, 6);
+    assert_eq!(
+        votes.map_id,
+        id(&ROOM),
+        "the boundary of the new map is missing"
+    );
+    world.publish_boundary(id(&CHANGED), &CHANGED);
+    ask_until_swapped(&world, id(&CHANGED));
     node.stop();
 }
 
@@ -245,31 +253,40 @@ fn a_map_that_is_refused_leaves_the_one_before_in_use() {
     let isolated = Isolated::new("refuse");
     let world = World::new(&isolated);
     let node = world.start(&[]);
-    world.publish_map(5, &ROOM);
-    world.publish_boundary(5, &ROOM);
+    world.publish_map(&ROOM);
+    world.publish_boundary(id(&ROOM), &ROOM);
     world.wait_until(NodeState::Ready);
 
-    world.publish_map(6, &CHANGED);
+    // What is known of one map would be taken for another one's.
+    let mut loan = world.maps.loan(occupancy(&CHANGED).len()).unwrap();
+    *loan.header_mut() = map_header(&ROOM);
+    loan.items_mut().copy_from_slice(&occupancy(&CHANGED));
+    loan.send().unwrap();
+    let (report, error) = world.wait_until(NodeState::Degraded);
+    assert_eq!(report.refused, 1);
+    assert!(error.contains("is not that of its cells"), "{error}");
+
+    world.publish_map(&CHANGED);
     let mut loan = world.boundaries.loan(1).unwrap();
-    loan.header_mut().map_id = 6;
+    loan.header_mut().map_id = id(&CHANGED);
     loan.header_mut().boundary_cells = 1;
     loan.header_mut().occupied_from = 65;
     loan.items_mut()[0] = BoundaryCell { x: 999, y: 0 };
     loan.send().unwrap();
-    let (report, error) = world.wait_until(NodeState::Degraded);
-    assert_eq!(report.refused, 1);
-    assert_eq!(
-        error,
-        "map 0000000000000006 is refused: cell 999, 0 of the boundary is no occupied cell of the \
-         map"
+    let degraded = |report: &HealthHeader| report.refused == 2;
+    let (_, error) = wait_for_health(&world.graph, &world.health, degraded);
+    let expected = format!(
+        "map {:016x} is refused: cell 999, 0 of the boundary is no occupied cell of the map",
+        id(&CHANGED)
     );
+    assert_eq!(error, expected);
     let (votes, _) = world.ask(&ranges(&ROOM, 3, 3, 40));
-    assert_eq!(votes.map_id, 5);
+    assert_eq!(votes.map_id, id(&ROOM));
 
     // The extractor is started again and sends a sound one.
-    world.publish_boundary(6, &CHANGED);
+    world.publish_boundary(id(&CHANGED), &CHANGED);
     world.wait_until(NodeState::Ready);
-    ask_until_swapped(&world, 6);
+    ask_until_swapped(&world, id(&CHANGED));
     node.stop();
 }
 
@@ -278,17 +295,17 @@ fn a_map_that_is_taken_back_is_in_use_again() {
     let isolated = Isolated::new("back");
     let world = World::new(&isolated);
     let node = world.start(&[]);
-    world.publish_map(5, &ROOM);
-    world.publish_boundary(5, &ROOM);
+    world.publish_map(&ROOM);
+    world.publish_boundary(id(&ROOM), &ROOM);
     world.wait_until(NodeState::Ready);
-    world.publish_map(6, &["####", "####"]);
-    world.publish_boundary(6, &["####", "#..#", "####"]);
+    world.publish_map(&["####", "####"]);
+    world.publish_boundary(id(&["####", "####"]), &["####", "#..#", "####"]);
     world.wait_until(NodeState::Degraded);
-    world.publish_map(5, &ROOM);
-    world.publish_boundary(5, &ROOM);
+    world.publish_map(&ROOM);
+    world.publish_boundary(id(&ROOM), &ROOM);
     world.wait_until(NodeState::Ready);
     let (votes, _) = world.ask(&ranges(&ROOM, 3, 3, 40));
-    assert_eq!(votes.map_id, 5);
+    assert_eq!(votes.map_id, id(&ROOM));
     node.stop();
 }
 
@@ -311,8 +328,8 @@ fn a_region_that_somebody_wishes_for_holds_until_it_is_taken_back() {
     let isolated = Isolated::new("region");
     let world = World::new(&isolated);
     let regions = world.graph.publisher::<topic::Region>().unwrap();
-    world.publish_map(5, &ROOM);
-    world.publish_boundary(5, &ROOM);
+    world.publish_map(&ROOM);
+    world.publish_boundary(id(&ROOM), &ROOM);
     let node = world.start(&[]);
     world.wait_until(NodeState::Ready);
     let ranges = ranges(&ROOM, 12, 6, 211);

@@ -6,7 +6,7 @@ use clap::{Parser, Subcommand};
 
 use crate::{
     bench, check, control, convert, doctor, evaluate, info, locate, plot, probe, regress, run,
-    simulate, top,
+    simulate, soak, top,
 };
 
 /// Finds where a robot is from its laser and a map, with no initial guess.
@@ -66,6 +66,9 @@ enum Command {
     /// Shows what the nodes of a running graph log
     #[command(after_help = EXIT_CODES)]
     Logs(control::LogsConfig),
+    /// Runs a graph for long, does it harm, and says whether it kept its promises
+    #[command(after_help = soak::NOTES)]
+    Soak(soak::Config),
     /// Shows a running graph in the terminal
     #[command(after_help = EXIT_CODES)]
     Top(top::Config),
@@ -99,6 +102,7 @@ pub fn main() -> ExitCode {
         Some(Command::Stop(config)) => control::stop(&config),
         Some(Command::Restart(config)) => control::restart(&config),
         Some(Command::Logs(config)) => control::logs(&config),
+        Some(Command::Soak(config)) => soak::run(&config),
         Some(Command::Top(config)) => top::run(&config),
         Some(Command::Probe(config)) => probe::run(&config),
         Some(Command::Bench(config)) => bench::run(&config),
@@ -171,6 +175,9 @@ mod tests {
             "backcast bench table1 --p-over-n 0",
             "backcast bench table1 --noise 26",
             "backcast bench table2 --headings 361",
+            "backcast soak --minutes 0",
+            "backcast soak --minutes 1 --hours 1",
+            "backcast soak --faults kill,quake",
             "backcast simulate --map m.yaml --path 0,0 --out r.mcap",
             "backcast simulate --map m.yaml --path 0,0,1,1 --out r.mcap --beams 1",
         ] {

@@ -328,8 +328,11 @@ pub enum BackcastError {
     /// The service manager that started us cannot be told of it.
     #[error("cannot tell the service manager: NOTIFY_SOCKET names no socket of one")]
     Notify(#[source] io::Error),
-    /// SIGUSR1 cannot be caught.
-    #[error("cannot catch SIGUSR1")]
+    /// The launcher cannot be started as a child process, or not be signalled.
+    #[error("cannot start, signal or wait for the processes of the graph")]
+    NotLaunched(#[source] io::Error),
+    /// A signal cannot be caught.
+    #[error("cannot catch signals")]
     Signal(#[source] io::Error),
     /// A drive cannot be simulated.
     #[error(transparent)]

@@ -25,6 +25,7 @@ mod regress;
 mod run;
 mod sequence;
 mod simulate;
+mod soak;
 mod statistics;
 mod stdout;
 mod top;

@@ -9,6 +9,9 @@ pub enum BoundaryError {
     /// The map's geometry or cells cannot be used.
     #[error(transparent)]
     Engine(#[from] EngineError),
+    /// The map is not the one that its id says.
+    #[error(transparent)]
+    MapId(#[from] messages::WrongMapId),
     /// No ray can reach an obstacle.
     #[error(
         "the map has {occupied} occupied cells, but none touches a cell that a laser sees \

@@ -23,7 +23,9 @@ pub fn run(graph: &Graph, config: &Config) -> Result<(), BoundaryError> {
         if let Some(map) = maps.newest()? {
             health.count_received(1);
             health.state(NodeState::Busy)?;
-            match extract(map.header(), map.items(), config.rules) {
+            let (header, cells) = (map.header(), map.items());
+            let checked = header.check_id(cells).map_err(BoundaryError::from);
+            match checked.and_then(|()| extract(header, cells, config.rules)) {
                 Ok(extraction) => serve(&extraction, &boundaries, &mut health)?,
                 Err(error) => refuse(&map, &error, &mut health)?,
             }

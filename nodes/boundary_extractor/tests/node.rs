@@ -22,15 +22,16 @@ fn occupancy(rows: &[&str]) -> Vec<u8> {
     cells.map(|cell| 100 * u8::from(cell == b'#')).collect()
 }
 
-fn publish(maps: &Publisher<topic::Map>, map_id: u64, rows: &[&str]) {
+/// Sends the map that is drawn so, and gives its id.
+fn publish(maps: &Publisher<topic::Map>, counter: u64, rows: &[&str]) -> u64 {
     let cells = occupancy(rows);
     let mut loan = maps.loan(cells.len()).unwrap();
-    *loan.header_mut() = MapHeader {
+    let mut header = MapHeader {
         stamp: Stamp {
-            counter: map_id,
+            counter,
             ..Stamp::default()
         },
-        map_id,
+        map_id: 0,
         width: rows[0].len() as u32,
         height: rows.len() as u32,
         resolution_m: 0.1,
@@ -40,8 +41,11 @@ fn publish(maps: &Publisher<topic::Map>, map_id: u64, rows: &[&str]) {
             yaw: 0.0,
         },
     };
+    header.map_id = header.id_of(&cells);
+    *loan.header_mut() = header;
     loan.items_mut().copy_from_slice(&cells);
     loan.send().unwrap();
+    header.map_id
 }
 
 fn expected(rows: &[&str]) -> Vec<BoundaryCell> {
@@ -65,12 +69,12 @@ fn each_map_is_answered_with_its_boundary() {
 
     let maps = graph.publisher::<topic::Map>().unwrap();
     let smaller = &ROOM[..4];
-    for (map_id, rows) in [(5, &ROOM[..]), (6, smaller)] {
-        publish(&maps, map_id, rows);
+    for (counter, rows) in [(5, &ROOM[..]), (6, smaller)] {
+        let map_id = publish(&maps, counter, rows);
         let (header, cells) = wait_for(&graph, &boundaries, |header, cells| {
             Some((*header, cells.to_vec()))
         });
-        assert_eq!((header.map_id, header.stamp.counter), (map_id, map_id));
+        assert_eq!((header.map_id, header.stamp.counter), (map_id, counter));
         assert_eq!(header.boundary_cells, cells.len() as u64);
         assert_eq!(header.occupied_from, 70);
         assert_eq!(cells, expected(rows));
@@ -89,31 +93,33 @@ fn a_refused_map_leaves_the_boundary_before_it_in_service() {
     let graph = isolated.join("test");
     let health = graph.subscriber::<topic::Health>().unwrap();
     let maps = graph.publisher::<topic::Map>().unwrap();
-    publish(&maps, 5, &ROOM);
+    let room = publish(&maps, 5, &ROOM);
     let node = start(&graph, &[]);
     // The map was there before the node: it comes to a late joiner.
     wait_for_health(&graph, &health, |report| {
         report.state == NodeState::Ready as u32
     });
 
-    publish(&maps, 6, &["....", "...."]);
+    let empty = publish(&maps, 6, &["....", "...."]);
     let (report, error) = wait_for_health(&graph, &health, |report| {
         report.state == NodeState::Degraded as u32
     });
     assert_eq!((report.refused, report.sent), (1, 1));
     assert!(
-        error.starts_with("map 0000000000000006 is refused: the map has no occupied cell"),
+        error.starts_with(&format!(
+            "map {empty:016x} is refused: the map has no occupied cell"
+        )),
         "{error}"
     );
     let late = graph.subscriber::<topic::Boundary>().unwrap();
     let map_id = wait_for(&graph, &late, |header, _| Some(header.map_id));
-    assert_eq!(map_id, 5);
+    assert_eq!(map_id, room);
 
-    publish(&maps, 7, &ROOM[1..]);
+    let other = publish(&maps, 7, &ROOM[1..]);
     let map_id = wait_for(&graph, &late, |header, _| {
-        (header.map_id != 5).then_some(header.map_id)
+        (header.map_id != room).then_some(header.map_id)
     });
-    assert_eq!(map_id, 7);
+    assert_eq!(map_id, other);
     wait_for_health(&graph, &health, |report| {
         report.state == NodeState::Ready as u32
     });

@@ -121,22 +121,25 @@ fn maps(from: &Machine<'_>, to: &Machine<'_>, world: &World) -> Times {
     let (width, height) = SIDES;
     let mut cells = repeated(world);
     let mut times = Vec::new();
-    for map_id in 1..=MAPS {
+    for counter in 1..=MAPS {
         // Each is another one, by a single cell.
-        cells[map_id as usize] ^= 1;
-        let start = Instant::now();
-        let mut loan = publisher.loan(cells.len()).unwrap();
-        *loan.header_mut() = MapHeader {
-            stamp: stamp(map_id),
-            map_id,
+        cells[counter as usize] ^= 1;
+        let mut map = MapHeader {
+            stamp: stamp(counter),
             width,
             height,
             resolution_m: 0.05,
             ..Zeroable::zeroed()
         };
+        map.map_id = map.id_of(&cells);
+        let start = Instant::now();
+        let mut loan = publisher.loan(cells.len()).unwrap();
+        *loan.header_mut() = map;
         loan.items_mut().copy_from_slice(&cells);
         loan.send().unwrap();
-        wait_until(&to.graph, &received, |header, _| header.map_id == map_id);
+        wait_until(&to.graph, &received, |header, _| {
+            header.map_id == map.map_id
+        });
         times.push(start.elapsed().as_secs_f64() * 1e3);
     }
     // The first one waits for the bridges to find each other.

@@ -4,7 +4,7 @@ use std::path::PathBuf;
 
 use clap::Parser;
 
-use crate::{Rate, memory};
+use crate::Rate;
 
 /// Joins graphs on several machines over Zenoh.
 ///
@@ -32,11 +32,9 @@ pub struct Config {
     #[arg(long, value_name = "TOPIC=HZ")]
     pub rate: Vec<Rate>,
 
-    /// Memory of this machine that the graph may use, megabytes; a map that needs more is
-    /// refused, and the one before stays [default: the limit of the control group, or
-    /// all that the machine has]
-    #[arg(long, value_name = "MB", value_parser = clap::value_parser!(u64).range(1..))]
-    pub memory_limit: Option<u64>,
+    /// What the graph may use.
+    #[command(flatten)]
+    pub memory: map::MemoryOptions,
 
     /// How it joins the network.
     #[command(flatten)]
@@ -49,15 +47,6 @@ impl Config {
     pub fn robot(&self) -> String {
         let host = gethostname::gethostname();
         wire::robot_or_host(self.robot.as_deref(), &host.to_string_lossy())
-    }
-
-    /// The memory that the graph may use, bytes.
-    #[must_use]
-    pub fn memory_limit(&self) -> u64 {
-        match self.memory_limit {
-            Some(megabytes) => megabytes.saturating_mul(1 << 20),
-            None => memory::available(),
-        }
     }
 }
 

@@ -42,19 +42,8 @@ pub enum BridgeError {
     #[error("cannot draw a random number to be known by")]
     Random(#[source] getrandom::Error),
     /// A map that the graph could not hold.
-    #[error(
-        "a map of {width} x {height} cells takes about {needed_mb} MB in the graph; allowed are {limit_mb} MB (--memory-limit)"
-    )]
-    MapTooLarge {
-        /// Cells along x.
-        width: u32,
-        /// Cells along y.
-        height: u32,
-        /// What the nodes take for it.
-        needed_mb: u64,
-        /// What they may take.
-        limit_mb: u64,
-    },
+    #[error(transparent)]
+    Map(#[from] map::MapError),
     /// A message cannot leave or enter.
     #[error(transparent)]
     Wire(#[from] WireError),

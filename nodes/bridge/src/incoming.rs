@@ -3,13 +3,14 @@
 //! It waits in a queue; the thread that owns the graph checks it, and writes it into
 //! shared memory.
 
+use map::MemoryLimit;
 use messages::{MapHeader, Topic, topic};
 use network::{Past, Queue, Report, Room};
 use transport::{Graph, Publisher, TransportError, monotonic_ns};
 use wire::{Arrival, Arrivals, Received, Wire, WireError};
 use zenoh::Session;
 
-use crate::{BridgeError, memory};
+use crate::BridgeError;
 
 /// Receives one topic.
 pub(crate) struct Incoming<T: Wire> {
@@ -18,8 +19,8 @@ pub(crate) struct Incoming<T: Wire> {
     arrivals: Arrivals,
     /// The header of the kept sample that entered last, as it came.
     last: Option<T::Header>,
-    /// Bytes that the graph may take for a map.
-    memory_limit: u64,
+    /// What the graph may take for a map.
+    memory_limit: MemoryLimit,
 }
 
 impl<T: Wire> Incoming<T> {
@@ -27,7 +28,7 @@ impl<T: Wire> Incoming<T> {
         graph: &Graph,
         session: &Session,
         robot: &str,
-        memory_limit: u64,
+        memory_limit: MemoryLimit,
     ) -> Result<Self, BridgeError> {
         let key = wire::key::<T>(robot);
         let past = if T::KEPT { Past::Last(1) } else { Past::Gone };
@@ -62,7 +63,7 @@ impl<T: Wire> Incoming<T> {
             match wire::decode::<T>(&encoding, &sample.payload().to_bytes()) {
                 Ok(message) => match refuse_too_large(&message, self.memory_limit) {
                     Ok(()) => self.enter(message, report)?,
-                    Err(error) => report.refused(&error)?,
+                    Err(error) => report.map_refused(&error)?,
                 },
                 Err(error) => report.refused(&BridgeError::from(error))?,
             }
@@ -92,6 +93,10 @@ impl<T: Wire> Incoming<T> {
         loan.items_mut().copy_from_slice(&message.items);
         loan.send()?;
         report.sent();
+        if T::NAME == topic::Map::NAME {
+            // One that was refused before is no more what is wanted.
+            report.ready()?;
+        }
         Ok(())
     }
 
@@ -104,19 +109,13 @@ impl<T: Wire> Incoming<T> {
 }
 
 /// What came small may be more than the nodes can hold once they prepare for it.
-fn refuse_too_large<T: Wire>(message: &Received<T>, limit: u64) -> Result<(), BridgeError> {
-    // Every topic is received alike; the map alone is what others prepare for.
-    let Ok(map) = bytemuck::try_from_bytes::<MapHeader>(bytemuck::bytes_of(&message.header)) else {
-        return Ok(());
-    };
-    let cells = message.items.len() as u64;
-    if T::NAME != topic::Map::NAME || cells <= memory::most_cells(limit) {
+fn refuse_too_large<T: Wire>(message: &Received<T>, limit: MemoryLimit) -> Result<(), BridgeError> {
+    if T::NAME != topic::Map::NAME {
         return Ok(());
     }
-    Err(BridgeError::MapTooLarge {
-        width: map.width,
-        height: map.height,
-        needed_mb: memory::bytes_of(cells) >> 20,
-        limit_mb: limit >> 20,
-    })
+    // Every topic is received alike; the map alone is what others prepare for.
+    match bytemuck::try_from_bytes::<MapHeader>(bytemuck::bytes_of(&message.header)) {
+        Ok(map) => Ok(limit.check((map.width, map.height))?),
+        Err(_) => Ok(()),
+    }
 }

@@ -15,7 +15,6 @@ mod config;
 mod error;
 mod exit;
 mod incoming;
-mod memory;
 mod outgoing;
 mod ports;
 mod rates;

@@ -97,7 +97,7 @@ fn ways(
         };
         wire::by_name(name, open)
     });
-    let memory_limit = config.memory_limit();
+    let memory_limit = config.memory.limit();
     let into = ports.into.iter().filter_map(|name| {
         let open = Inward {
             graph,
@@ -138,7 +138,7 @@ struct Inward<'a> {
     graph: &'a Graph,
     session: &'a Session,
     robot: &'a str,
-    memory_limit: u64,
+    memory_limit: map::MemoryLimit,
 }
 
 impl Visit for Inward<'_> {

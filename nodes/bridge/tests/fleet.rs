@@ -242,14 +242,15 @@ fn a_late_joiner_gets_the_map_through_the_router() {
     let isolated = Isolated::new("kept-r1");
     let graph = isolated.join("test");
     let maps = graph.publisher::<topic::Map>().unwrap();
-    let mut loan = maps.loan(6).unwrap();
-    *loan.header_mut() = MapHeader {
-        map_id: 77,
+    let mut header = MapHeader {
         width: 3,
         height: 2,
         resolution_m: 0.05,
         ..Zeroable::zeroed()
     };
+    header.map_id = header.id_of(&[0; 6]);
+    let mut loan = maps.loan(6).unwrap();
+    *loan.header_mut() = header;
     loan.items_mut().fill(0);
     loan.send().unwrap();
     let health = graph.subscriber::<topic::Health>().unwrap();
@@ -268,6 +269,6 @@ fn a_late_joiner_gets_the_map_through_the_router() {
     assert_eq!(sample.key_expr().as_str(), "backcast/r1/map");
     let encoding = sample.encoding().to_string();
     let map = wire::decode::<topic::Map>(&encoding, &sample.payload().to_bytes()).unwrap();
-    assert_eq!(map.header.map_id, 77);
+    assert_eq!(map.header.map_id, header.map_id);
     bridge.stop();
 }

@@ -70,13 +70,14 @@ fn ranges(counter: u64) -> Vec<f32> {
 }
 
 fn map(counter: u64, width: u32, height: u32) -> (MapHeader, Vec<u8>) {
-    let header = MapHeader {
+    let cells: Vec<u8> = (0..width * height).map(|i| (i * i % 101) as u8).collect();
+    let mut header = MapHeader {
         stamp: Stamp {
             measured_ns: 5,
             entered_ns: monotonic_ns(),
             counter,
         },
-        map_id: 40 + counter,
+        map_id: 0,
         width,
         height,
         resolution_m: 0.05,
@@ -86,7 +87,7 @@ fn map(counter: u64, width: u32, height: u32) -> (MapHeader, Vec<u8>) {
             yaw: 0.5,
         },
     };
-    let cells = (0..width * height).map(|i| (i * i % 101) as u8).collect();
+    header.map_id = header.id_of(&cells);
     (header, cells)
 }
 

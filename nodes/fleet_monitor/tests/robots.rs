@@ -15,7 +15,7 @@ use messages::{
 };
 use serde_json::{Value, json};
 use tempfile::TempDir;
-use tests::http::Site;
+use tests::http::{Site, token_file};
 use transport::testing::{Isolated, NodeProcess, wait_for_health, wait_until_ready};
 use transport::{Flow, Graph, TransportError, monotonic_ns};
 use wire::{Preamble, Wire};
@@ -43,8 +43,7 @@ impl World {
         let isolated = Isolated::new(test);
         let graph = isolated.join("test");
         let folder = tempfile::tempdir().unwrap();
-        let token = folder.path().join("token");
-        std::fs::write(&token, TOKEN).unwrap();
+        let token = token_file(folder.path(), TOKEN);
         let (site, endpoint) = (
             Site::free(),
             format!("tcp/{}:7447", isolated.name().loopback()),
@@ -193,14 +192,15 @@ impl FarRobot {
             .publisher_detection()
             .wait()
             .unwrap();
-        let header = MapHeader {
-            map_id: 0xabc,
+        let cells = [0, 100, 255, 0, 0, 100];
+        let mut header = MapHeader {
             width: 3,
             height: 2,
             resolution_m: 0.05,
             ..MapHeader::zeroed()
         };
-        let payload = Self::payload::<topic::Map>(0, &header, &[0, 100, 255, 0, 0, 100]);
+        header.map_id = header.id_of(&cells);
+        let payload = Self::payload::<topic::Map>(0, &header, &cells);
         publisher.put(payload).wait().unwrap();
         publisher
     }

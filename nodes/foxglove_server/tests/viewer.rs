@@ -26,6 +26,19 @@ const SECOND: i64 = 1_000_000_000;
 /// When the first scan was measured.
 const START: i64 = 1_137_772_793 * SECOND;
 
+const CELLS: [u8; 6] = [0, 100, 255, 0, 0, 100];
+
+fn map_header() -> MapHeader {
+    let mut header = MapHeader {
+        width: 3,
+        height: 2,
+        resolution_m: 0.05,
+        ..MapHeader::zeroed()
+    };
+    header.map_id = header.id_of(&CELLS);
+    header
+}
+
 /// The node in a graph of its own, which the test feeds.
 struct World {
     node: Option<NodeProcess>,
@@ -63,15 +76,9 @@ impl World {
     }
 
     fn send_map(&self) {
-        let mut loan = self.maps.loan(6).unwrap();
-        *loan.header_mut() = MapHeader {
-            map_id: 0xabc,
-            width: 3,
-            height: 2,
-            resolution_m: 0.05,
-            ..MapHeader::zeroed()
-        };
-        loan.items_mut().copy_from_slice(&[0, 100, 255, 0, 0, 100]);
+        let mut loan = self.maps.loan(CELLS.len()).unwrap();
+        *loan.header_mut() = map_header();
+        loan.items_mut().copy_from_slice(&CELLS);
         loan.send().unwrap();
     }
 
@@ -101,7 +108,7 @@ impl World {
         let mut loan = self.hypotheses.loan(1).unwrap();
         *loan.header_mut() = HypothesesHeader {
             stamp: Self::stamp(counter),
-            map_id: 0xabc,
+            map_id: map_header().map_id,
             verdict: Verdict::Unique as u32,
             mount_known: 1,
             ..HypothesesHeader::zeroed()
@@ -121,7 +128,7 @@ impl World {
         let mut loan = self.fields.loan(2).unwrap();
         *loan.header_mut() = FieldHeader {
             stamp: Self::stamp(0),
-            map_id: 0xabc,
+            map_id: map_header().map_id,
             width: 2,
             height: 1,
             block: 2,

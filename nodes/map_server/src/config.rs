@@ -12,4 +12,8 @@ pub struct Config {
     /// image.
     #[arg(long, value_name = "FILE")]
     pub map: PathBuf,
+
+    /// What the graph may use.
+    #[command(flatten)]
+    pub memory: map::MemoryOptions,
 }

@@ -54,9 +54,11 @@ pub fn run(graph: &Graph, config: &Config) -> Result<(), MapServerError> {
     })
 }
 
-/// Reads the map; keys of its description that mean nothing are logged.
+/// Reads the map, if the graph can hold it; keys of its description that mean nothing are logged.
 fn load(config: &Config) -> Result<OccupancyGrid, map::MapError> {
-    map::load_noting(&config.map, |key| tracing::warn!("{key}"))
+    map::load_within(config.memory.limit(), &config.map, |key| {
+        tracing::warn!("{key}");
+    })
 }
 
 struct Server {

@@ -15,12 +15,30 @@ use messages::{
 };
 use serde_json::{Value, json};
 use tempfile::TempDir;
-use tests::http::Site;
+use tests::http::{Site, token_file};
 use transport::testing::{Isolated, NodeProcess, wait_for, wait_until_ready};
 use transport::{Flow, Graph, Publisher, TransportError};
 use tungstenite::{Message, WebSocket, client};
 
 const TOKEN: &str = "0123456789abcdef";
+
+const CELLS: [u8; 6] = [0, 100, 255, 0, 0, 100];
+
+fn map_header() -> MapHeader {
+    let mut header = MapHeader {
+        width: 3,
+        height: 2,
+        resolution_m: 0.05,
+        ..MapHeader::zeroed()
+    };
+    header.map_id = header.id_of(&CELLS);
+    header
+}
+
+/// As the API says it.
+fn map_name() -> String {
+    format!("{:016x}", map_header().map_id)
+}
 
 /// The node in a graph of its own, and what it may be asked.
 struct World {
@@ -40,8 +58,7 @@ impl World {
         let isolated = Isolated::new(test);
         let graph = isolated.join("test");
         let folder = tempfile::tempdir().unwrap();
-        let token = folder.path().join("token");
-        std::fs::write(&token, TOKEN).unwrap();
+        let token = token_file(folder.path(), TOKEN);
         let site = Site::free();
         let mut world = World {
             node: None,
@@ -61,15 +78,9 @@ impl World {
     }
 
     fn serve_map(&self) {
-        let mut loan = self.maps.loan(6).unwrap();
-        *loan.header_mut() = MapHeader {
-            map_id: 0xabc,
-            width: 3,
-            height: 2,
-            resolution_m: 0.05,
-            ..MapHeader::zeroed()
-        };
-        loan.items_mut().copy_from_slice(&[0, 100, 255, 0, 0, 100]);
+        let mut loan = self.maps.loan(CELLS.len()).unwrap();
+        *loan.header_mut() = map_header();
+        loan.items_mut().copy_from_slice(&CELLS);
         loan.send().unwrap();
     }
 
@@ -77,7 +88,7 @@ impl World {
         let mut loan = self.hypotheses.loan(1).unwrap();
         let header = loan.header_mut();
         *header = HypothesesHeader {
-            map_id: 0xabc,
+            map_id: map_header().map_id,
             verdict: Verdict::Unique as u32,
             ..HypothesesHeader::zeroed()
         };
@@ -99,7 +110,7 @@ impl World {
         let mut loan = self.poses.loan(words.len()).unwrap();
         let header = loan.header_mut();
         *header = PoseHeader {
-            map_id: 0xabc,
+            map_id: map_header().map_id,
             sent_ns: transport::monotonic_ns(),
             map_from_laser: Pose2 {
                 x,
@@ -184,7 +195,7 @@ fn what_flows_in_the_graph_is_told() {
     let robots = world.site.get("/api/v1/robots");
     assert_eq!(robots["robots"], json!(["r"]));
     let known = world.wait_for_state(|known| !known["map"].is_null());
-    assert_eq!(known["map"]["id"], "0000000000000abc");
+    assert_eq!(known["map"]["id"], map_name());
     let mut socket = world.stream();
     assert_eq!(next(&mut socket)["type"], "snapshot");
     world.answer(7, 1.5);
@@ -245,7 +256,7 @@ fn the_map_is_a_byte_a_cell() {
     assert_eq!((status, cells), (200, vec![0, 100, 255, 0, 0, 100]));
     let (status, _, cells) = world
         .site
-        .raw(request("If-None-Match: \"0000000000000abc\"\r\n").as_bytes());
+        .raw(request(&format!("If-None-Match: \"{}\"\r\n", map_name())).as_bytes());
     assert_eq!((status, cells.len()), (304, 0), "the reader has it");
     let (_, head, packed) = world
         .site
@@ -256,6 +267,25 @@ fn the_map_is_a_byte_a_cell() {
         .read_to_end(&mut cells)
         .unwrap();
     assert_eq!(cells, [0, 100, 255, 0, 0, 100]);
+}
+
+#[test]
+fn silent_connections_lock_nobody_out() {
+    let world = World::new("silent");
+    let mut watcher = world.stream();
+    assert_eq!(next(&mut watcher)["type"], "snapshot");
+    // More than are allowed at the same time; none says a word.
+    let mut silent: Vec<_> = (0..300)
+        .map(|_| TcpStream::connect(world.site.0).unwrap())
+        .collect();
+    assert_eq!(world.site.get("/api/v1/robots")["robots"], json!(["r"]));
+    // The first one had to make room.
+    assert_eq!(silent[0].read(&mut [0]).unwrap_or(0), 0);
+    // Those that are left have some seconds for a request, and are closed then.
+    assert_eq!(silent[299].read(&mut [0]).unwrap_or(0), 0);
+    // Whoever watches is not silent: it was not its turn.
+    world.answer(1, 1.0);
+    while next(&mut watcher)["type"] != "answer" {}
 }
 
 #[test]

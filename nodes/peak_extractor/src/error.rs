@@ -34,6 +34,9 @@ pub enum PeakError {
     /// The engine refused the map or the scan.
     #[error(transparent)]
     Engine(#[from] EngineError),
+    /// The map is not the one that its id says.
+    #[error(transparent)]
+    MapId(#[from] messages::WrongMapId),
     /// No search ends like this.
     #[error(
         "outcome is {found}: allowed are 0 (found), 1 (no votes), 2 (refused) and 3 (not asked)"

@@ -100,7 +100,9 @@ impl Node {
     fn hear(&mut self, map: &Sample<topic::Map>) -> Result<(), TransportError> {
         self.health.count_received(1);
         self.health.state(NodeState::Busy)?;
-        match self.maps.hear(map.header(), map.items()) {
+        let (header, cells) = (map.header(), map.items());
+        let checked = header.check_id(cells).map_err(PeakError::from);
+        match checked.and_then(|()| Ok(self.maps.hear(header, cells)?)) {
             Ok(()) => self.health.state(NodeState::Ready),
             Err(error) => {
                 let map_id = map.header().map_id;

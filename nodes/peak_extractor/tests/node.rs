@@ -128,16 +128,9 @@ impl World {
         NodeProcess::start(env!("CARGO_BIN_EXE_peak_extractor"), &self.graph, arguments)
     }
 
-    fn publish_map(&self, map_id: u64, resolution_m: f64) {
+    fn publish_map(&self, resolution_m: f64) {
         let mut loan = self.maps.loan(16 * 9).unwrap();
-        *loan.header_mut() = MapHeader {
-            map_id,
-            width: 16,
-            height: 9,
-            resolution_m,
-            map_from_grid: FRAME.map_from_grid.into(),
-            ..Zeroable::zeroed()
-        };
+        *loan.header_mut() = map_header(resolution_m);
         loan.items_mut().copy_from_slice(&cells());
         loan.send().unwrap();
     }
@@ -186,6 +179,23 @@ impl World {
     }
 }
 
+fn map_header(resolution_m: f64) -> MapHeader {
+    let mut header = MapHeader {
+        width: 16,
+        height: 9,
+        resolution_m,
+        map_from_grid: FRAME.map_from_grid.into(),
+        ..Zeroable::zeroed()
+    };
+    header.map_id = header.id_of(&cells());
+    header
+}
+
+/// Of the map with the cells of the frame.
+fn id() -> u64 {
+    map_header(FRAME.resolution_m).map_id
+}
+
 fn header(map_id: u64, outcome: &Outcome) -> VotesHeader {
     VotesHeader {
         map_id,
@@ -211,17 +221,17 @@ fn particles_lie_around_the_places_of_the_base() {
     let isolated = Isolated::new("particles");
     let world = World::new(&isolated);
     let particles: Subscriber<topic::Particles> = world.graph.subscriber().unwrap();
-    world.publish_map(5, FRAME.resolution_m);
+    world.publish_map(FRAME.resolution_m);
     let node = world.start(&["--particles", "30"]);
     world.wait_until(NodeState::Ready);
     let Searched { ranges, outcome } = searched(3, 3, 40);
-    let (said, hypotheses) = world.ask(header(5, &outcome), &ranges, &outcome.found.votes);
+    let (said, hypotheses) = world.ask(header(id(), &outcome), &ranges, &outcome.found.votes);
     assert_eq!(said.verdict, Verdict::Unique as u32);
     let best = Pose::from(hypotheses[0].map_from_base);
     let (start, drawn) = wait_for(&world.graph, &particles, |header, items| {
         Some((*header, items.to_vec()))
     });
-    assert_eq!((start.stamp, start.map_id), (said.stamp, 5));
+    assert_eq!((start.stamp, start.map_id), (said.stamp, id()));
     assert_eq!((start.mount_known, drawn.len()), (1, 30));
     for particle in drawn {
         // Half a cell and a degree or a little more around the one place: five of those,
@@ -236,7 +246,7 @@ fn particles_lie_around_the_places_of_the_base() {
 fn hypotheses_are_those_of_the_engine() {
     let isolated = Isolated::new("equal");
     let world = World::new(&isolated);
-    world.publish_map(5, FRAME.resolution_m);
+    world.publish_map(FRAME.resolution_m);
     let node = world.start(&[]);
     world.wait_until(NodeState::Ready);
     for (x, y, heading) in [(3, 3, 40), (12, 6, 211)] {
@@ -244,12 +254,12 @@ fn hypotheses_are_those_of_the_engine() {
         // Nothing returned of the last three beams.
         searched.ranges[357..].fill(f32::INFINITY);
         let Searched { ranges, outcome } = &searched;
-        let (said, hypotheses) = world.ask(header(5, outcome), ranges, &outcome.found.votes);
+        let (said, hypotheses) = world.ask(header(id(), outcome), ranges, &outcome.found.votes);
 
         let expected = expected(&searched, FRAME);
         assert_eq!(said.verdict, expected.verdict as u32);
         assert_eq!(said.alternatives, expected.alternatives);
-        assert_eq!((said.map_id, said.search_ns), (5, 4321));
+        assert_eq!((said.map_id, said.search_ns), (id(), 4321));
         let inlier_share = expected.inlier_share as f32;
         assert_eq!(said.best, u32::from(outcome.found.best));
         assert_eq!(said.inlier_share, inlier_share);
@@ -269,7 +279,7 @@ fn hypotheses_are_those_of_the_engine() {
         let (header, beams) = wait_for(&world.graph, &world.beams, |header, beams| {
             Some((*header, beams.to_vec()))
         });
-        assert_eq!((header.stamp, header.map_id), (said.stamp, 5));
+        assert_eq!((header.stamp, header.map_id), (said.stamp, id()));
         assert_eq!(header.map_from_laser, hypotheses[0].map_from_laser);
         let count = |fate: BeamFate| beams.iter().filter(|beam| beam.fate == fate as u32).count();
         // A sector of two beams is one that votes.
@@ -295,7 +305,7 @@ fn votes_that_cannot_be_read_are_refused_and_the_next_ones_answered() {
     let node = world.start(&[]);
     world.wait_until(NodeState::Waiting);
     let Searched { ranges, outcome } = &searched(3, 3, 40);
-    let (votes, sound) = (&outcome.found.votes, header(5, outcome));
+    let (votes, sound) = (&outcome.found.votes, header(id(), outcome));
     let refused = |answer: (HypothesesHeader, Vec<Hypothesis>), count: u64| {
         assert_eq!(answer.0.verdict, Verdict::NoScan as u32);
         assert!(answer.1.is_empty());
@@ -306,10 +316,13 @@ fn votes_that_cannot_be_read_are_refused_and_the_next_ones_answered() {
     };
     let error = refused(world.ask(sound, ranges, votes), 1);
     assert!(
-        error.starts_with("the votes of scan 0 are refused: they are of map 0000000000000005"),
+        error.starts_with(&format!(
+            "the votes of scan 0 are refused: they are of map {:016x}",
+            id()
+        )),
         "{error}"
     );
-    world.publish_map(5, FRAME.resolution_m);
+    world.publish_map(FRAME.resolution_m);
     world.wait_until(NodeState::Ready);
     let broken = VotesHeader {
         headings: 0,
@@ -350,17 +363,18 @@ fn votes_on_their_way_when_the_map_changes_are_of_the_map_before() {
     let isolated = Isolated::new("swap");
     let world = World::new(&isolated);
     let node = world.start(&[]);
-    world.publish_map(5, FRAME.resolution_m);
+    world.publish_map(FRAME.resolution_m);
     world.wait_until(NodeState::Ready);
     // A map that is refused takes no place.
-    world.publish_map(9, -1.0);
+    world.publish_map(-1.0);
     world.wait_until(NodeState::Degraded);
-    world.publish_map(6, 2.0 * FRAME.resolution_m);
+    world.publish_map(2.0 * FRAME.resolution_m);
     world.wait_until(NodeState::Ready);
 
     let searched = searched(3, 3, 40);
     let Searched { ranges, outcome } = &searched;
-    for (map_id, scale) in [(5, 1.0), (6, 2.0)] {
+    for scale in [1.0, 2.0] {
+        let map_id = map_header(scale * FRAME.resolution_m).map_id;
         let header = header(map_id, outcome);
         let (_, hypotheses) = world.ask(header, ranges, &outcome.found.votes);
         let frame = GridFrame {
@@ -368,7 +382,10 @@ fn votes_on_their_way_when_the_map_changes_are_of_the_map_before() {
             ..FRAME
         };
         let expected = Pose2::from(expected(&searched, frame).places[0].map_from_laser);
-        assert_eq!(hypotheses[0].map_from_laser, expected, "map {map_id}");
+        assert_eq!(
+            hypotheses[0].map_from_laser, expected,
+            "cells times {scale}"
+        );
     }
     node.stop();
 }

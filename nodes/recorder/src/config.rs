@@ -48,6 +48,11 @@ pub struct Config {
     )]
     pub save_on: Vec<Event>,
 
+    /// How often what is written is synced to the disk, so that a loss of power takes no
+    /// more, as 1s; or never, which leaves it to the system (some 30 s)
+    #[arg(long, value_name = "TIME|never", default_value = "5s", value_parser = SyncPeriod::parse)]
+    pub sync: SyncPeriod,
+
     /// A file to put into the recording; may be given again
     #[arg(long, value_name = "FILE")]
     pub attach: Vec<PathBuf>,
@@ -67,6 +72,21 @@ pub struct Config {
     pub queue_size: u64,
 }
 
+/// How often a recording is synced to the disk.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub struct SyncPeriod(pub Option<Duration>);
+
+impl SyncPeriod {
+    fn parse(text: &str) -> Result<Self, String> {
+        match text {
+            "never" => Ok(SyncPeriod(None)),
+            _ => duration::parse(text)
+                .map(|period| SyncPeriod(Some(period)))
+                .map_err(|error| format!("{error}; or never")),
+        }
+    }
+}
+
 #[cfg(test)]
 mod tests {
     use clap::CommandFactory;
@@ -83,6 +103,9 @@ mod tests {
         Config::command().debug_assert();
         let config = parse("--output r.mcap").unwrap();
         assert_eq!((config.keep, config.split_size), (None, None));
+        assert_eq!(config.sync, SyncPeriod(Some(Duration::from_secs(5))));
+        let config = parse("--output r.mcap --sync never").unwrap();
+        assert_eq!(config.sync, SyncPeriod(None));
         assert_eq!(config.transcript.base_frame, "base_link");
         let config = parse("--output r --keep 10m --save-on lost-pose,degraded").unwrap();
         assert_eq!(config.keep, Some(Duration::from_secs(600)));
@@ -105,6 +128,7 @@ mod tests {
         refuse("", "--output");
         refuse("--output r --split-size 0", "0 is not in 1..");
         refuse("--output r --split-time soon", "as 90s, 10m");
+        refuse("--output r --sync often", "or never");
         refuse(
             "--output r --keep 1m --split-time 1m",
             "cannot be used with",

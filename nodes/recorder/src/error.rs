@@ -24,6 +24,14 @@ pub enum RecorderError {
         /// What the system says.
         source: io::Error,
     },
+    /// What was written may not be on the disk yet.
+    #[error("cannot sync the recording {} to the disk", path.display())]
+    Sync {
+        /// The file.
+        path: PathBuf,
+        /// What the system says.
+        source: io::Error,
+    },
     /// A saved black box could not be written.
     #[error("cannot write {}", path.display())]
     Save {

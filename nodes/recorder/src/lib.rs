@@ -19,7 +19,7 @@ mod events;
 mod run;
 mod writing;
 
-pub use config::Config;
+pub use config::{Config, SyncPeriod};
 pub use error::RecorderError;
 pub use events::Event;
 pub use run::{Summary, run};

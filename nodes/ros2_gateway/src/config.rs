@@ -73,6 +73,10 @@ pub struct Config {
     #[arg(long, value_name = "SECONDS", default_value = "1", value_parser = ahead)]
     pub tf_ahead: f64,
 
+    /// What the graph may use.
+    #[command(flatten)]
+    pub memory: map::MemoryOptions,
+
     /// What the robot's topics and services are called.
     #[command(flatten)]
     pub names: Names,

@@ -24,6 +24,9 @@ pub enum GatewayError {
         /// The line.
         line: String,
     },
+    /// A map that the graph could not hold.
+    #[error(transparent)]
+    Map(#[from] map::MapError),
     /// The session cannot be opened.
     #[error(transparent)]
     Network(#[from] NetworkError),

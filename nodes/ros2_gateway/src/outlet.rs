@@ -1,6 +1,7 @@
 //! The graph's side of what comes from the robot.
 
 use conversion::measurements;
+use map::MemoryLimit;
 use messages::{MapHeader, Name, Odometry, ScanHeader, Stamp, topic};
 use network::Report;
 use recording::ros::{LaserScan, OccupancyGridMsg};
@@ -17,6 +18,8 @@ pub(crate) struct Outlet {
     scans: Option<Publisher<topic::Scan>>,
     odometry: Option<Publisher<topic::OdometryTopic>>,
     maps: Option<Publisher<topic::Map>>,
+    /// What the graph may take for a map.
+    memory_limit: MemoryLimit,
     /// Of each laser its name, and how many of its scans were sent.
     lasers: Vec<(Name, u64)>,
     odometry_sent: u64,
@@ -38,6 +41,7 @@ impl Outlet {
             odometry: brings(Brought::Odometry)
                 .map(|()| graph.publisher())
                 .transpose()?,
+            memory_limit: config.memory.limit(),
             maps: brings(Brought::Map)
                 .map(|()| graph.publisher())
                 .transpose()?,
@@ -104,6 +108,10 @@ impl Outlet {
         let Some(publisher) = &self.maps else {
             return Ok(());
         };
+        let info = &message.info;
+        if let Err(error) = self.memory_limit.check((info.width, info.height)) {
+            return Ok(report.map_refused(&error)?);
+        }
         let measured_ns = measured_ns("the map", message.header.stamp)?;
         let grid = message.to_grid()?;
         let map_id = grid.id();
@@ -128,6 +136,8 @@ impl Outlet {
         self.map_id = Some(map_id);
         self.maps_sent += 1;
         report.sent();
+        // One that was refused before is no more what is wanted.
+        report.ready()?;
         let (width, height, resolution_m) = (grid.width, grid.height, grid.resolution_m);
         let map_id = format!("{map_id:016x}");
         tracing::info!(width, height, resolution_m, map_id, "the robot's map");

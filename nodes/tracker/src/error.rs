@@ -9,6 +9,9 @@ pub enum TrackerError {
     /// The engine refused the map or the scan.
     #[error(transparent)]
     Engine(#[from] EngineError),
+    /// The map is not the one that its id says.
+    #[error(transparent)]
+    MapId(#[from] messages::WrongMapId),
     /// The file of the last pose cannot be used.
     #[error("the last pose in {file} cannot be used: {reason}")]
     Memory {

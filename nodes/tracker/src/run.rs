@@ -58,6 +58,7 @@ pub fn run(graph: &Graph, config: &Config) -> Result<(), TrackerError> {
         turn: Turn::Idle,
         ends: Ends::default(),
         asked: None,
+        gave_up_ns: i64::MIN,
         before: None,
         initial: config.initial_pose.map(|pose| {
             let (metres, radians) = INITIAL_ERROR;
@@ -95,6 +96,8 @@ struct Node {
     ends: Ends,
     /// The scan whose search counts later.
     asked: Option<Stamp>,
+    /// When a search was waited for in vain last.
+    gave_up_ns: i64,
     /// Where the sought frame was by the odometry at the scan before.
     before: Option<Pose>,
     /// Where the robot is said to be, of the base.
@@ -168,7 +171,8 @@ impl Node {
             return self.health.state(NodeState::Ready);
         }
         self.health.state(NodeState::Busy)?;
-        match World::new(header, occupancy, self.config.cells) {
+        let checked = header.check_id(occupancy).map_err(TrackerError::from);
+        match checked.and_then(|()| Ok(World::new(header, occupancy, self.config.cells)?)) {
             Ok(world) => {
                 self.start_on(&world);
                 self.world = Some(world);
@@ -232,10 +236,16 @@ impl Node {
             }
             Turn::Search { scan, of, since } => {
                 let has_come = self.answers.of(of).is_some();
-                if !has_come && since.elapsed() < SEARCH_WAIT {
+                // Whoever lost one answer lost those that were due meanwhile: waiting for
+                // each of them in turn would keep poses back for a multiple of the time.
+                let is_overdue = of.entered_ns < self.gave_up_ns;
+                if !has_come && !is_overdue && since.elapsed() < SEARCH_WAIT {
                     return Ok(false);
                 }
                 if !has_come {
+                    if !is_overdue {
+                        self.gave_up_ns = transport::monotonic_ns();
+                    }
                     self.refuse(&format!("no hypotheses came for scan {}", of.counter))?;
                 }
                 self.finish(&scan, has_come.then_some(of), Instant::now())?;

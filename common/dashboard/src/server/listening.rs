@@ -1,23 +1,26 @@
-//! The port, and how many may be connected to it.
+//! The port, and the course of each connection to it.
 
 use std::io;
 use std::net::{SocketAddr, TcpListener as StdListener};
-use std::pin::Pin;
-use std::sync::Arc;
-use std::task::{Context, Poll};
+use std::time::Duration;
 
-use axum::serve::Listener;
-use tokio::io::{AsyncRead, AsyncWrite, ReadBuf};
-use tokio::net::{TcpListener, TcpStream};
-use tokio::sync::{OwnedSemaphorePermit, Semaphore};
+use axum::Router;
+use hyper::server::conn::http1;
+use hyper_util::rt::{TokioIo, TokioTimer};
+use hyper_util::service::TowerToHyperService;
+use tokio::net::TcpListener;
 
+use super::connections::Connections;
 use crate::DashboardError;
 
 /// Ports that are tried beyond the one that was asked for.
 const NEXT_PORTS: u16 = 100;
 
-/// Most connections at the same time; the next ones wait.
-const MAX_CONNECTIONS: usize = 256;
+/// How long the head of a request may take, from the end of the one before.
+const HEAD_TIMEOUT: Duration = Duration::from_secs(15);
+
+/// How long to wait where a connection cannot be taken: descriptors are short.
+const SHORTAGE: Duration = Duration::from_millis(500);
 
 /// Listens there or, where the port is taken, on the next free one.
 ///
@@ -45,76 +48,37 @@ pub(super) fn bind(wanted: SocketAddr) -> Result<StdListener, DashboardError> {
     }
 }
 
-/// A listener that keeps the number of connections bounded.
-pub(super) struct Guarded {
-    listener: TcpListener,
-    free: Arc<Semaphore>,
+/// Takes a listener into the runtime, inside of which this is to be called.
+///
+/// # Errors
+/// The system refuses.
+pub(super) fn in_runtime(listener: StdListener) -> io::Result<TcpListener> {
+    listener.set_nonblocking(true)?;
+    TcpListener::from_std(listener)
 }
 
-impl Guarded {
-    /// To be called inside the runtime.
-    pub(super) fn new(listener: StdListener) -> io::Result<Self> {
-        listener.set_nonblocking(true)?;
-        Ok(Guarded {
-            listener: TcpListener::from_std(listener)?,
-            free: Arc::new(Semaphore::new(MAX_CONNECTIONS)),
-        })
-    }
-}
-
-impl Listener for Guarded {
-    type Io = Connection;
-    type Addr = SocketAddr;
-
-    async fn accept(&mut self) -> (Connection, SocketAddr) {
-        // It is never closed, so there always is one in the end.
-        let permit = Arc::clone(&self.free).acquire_owned().await.ok();
-        let (stream, address) = Listener::accept(&mut self.listener).await;
+/// Answers with `app` whoever connects; never ends.
+pub(super) async fn serve(listener: TcpListener, app: Router) {
+    let connections = Connections::default();
+    loop {
+        let (stream, peer) = match listener.accept().await {
+            Ok(accepted) => accepted,
+            Err(error) => {
+                tracing::warn!("a connection is not taken: {error}");
+                tokio::time::sleep(SHORTAGE).await;
+                continue;
+            }
+        };
         // Messages are small and must not wait for each other.
         let _ = stream.set_nodelay(true);
-        let connection = Connection {
-            stream,
-            _permit: permit,
-        };
-        (connection, address)
-    }
-
-    fn local_addr(&self) -> io::Result<SocketAddr> {
-        self.listener.local_addr()
-    }
-}
-
-/// A connection that counts as long as it is there.
-pub(super) struct Connection {
-    stream: TcpStream,
-    _permit: Option<OwnedSemaphorePermit>,
-}
-
-impl AsyncRead for Connection {
-    fn poll_read(
-        mut self: Pin<&mut Self>,
-        context: &mut Context<'_>,
-        buffer: &mut ReadBuf<'_>,
-    ) -> Poll<io::Result<()>> {
-        Pin::new(&mut self.stream).poll_read(context, buffer)
-    }
-}
-
-impl AsyncWrite for Connection {
-    fn poll_write(
-        mut self: Pin<&mut Self>,
-        context: &mut Context<'_>,
-        bytes: &[u8],
-    ) -> Poll<io::Result<usize>> {
-        Pin::new(&mut self.stream).poll_write(context, bytes)
-    }
-
-    fn poll_flush(mut self: Pin<&mut Self>, context: &mut Context<'_>) -> Poll<io::Result<()>> {
-        Pin::new(&mut self.stream).poll_flush(context)
-    }
-
-    fn poll_shutdown(mut self: Pin<&mut Self>, context: &mut Context<'_>) -> Poll<io::Result<()>> {
-        Pin::new(&mut self.stream).poll_shutdown(context)
+        let stream = TokioIo::new(connections.admit(stream, peer.ip()));
+        let answered = http1::Builder::new()
+            .timer(TokioTimer::new())
+            .header_read_timeout(HEAD_TIMEOUT)
+            .serve_connection(stream, TowerToHyperService::new(app.clone()))
+            .with_upgrades();
+        // Whoever goes, or is sent away, is nobody's loss but its own.
+        tokio::spawn(async { answered.await.ok() });
     }
 }
 

@@ -41,7 +41,8 @@ impl Map {
             && !cells.is_empty()
             && header.resolution_m > 0.0
             && header.resolution_m.is_finite()
-            && geometry::Pose::from(header.map_from_grid).is_finite();
+            && geometry::Pose::from(header.map_from_grid).is_finite()
+            && header.check_id(cells).is_ok();
         is_sound.then(|| Map {
             info: MapInfo {
                 id: format!("{:016x}", header.map_id),
@@ -81,21 +82,23 @@ mod tests {
 
     use super::*;
 
-    fn header(width: u32, height: u32, resolution_m: f64) -> MapHeader {
-        MapHeader {
-            map_id: 0xab,
+    fn header(width: u32, height: u32, resolution_m: f64, cells: &[u8]) -> MapHeader {
+        let mut header = MapHeader {
             width,
             height,
             resolution_m,
             ..MapHeader::zeroed()
-        }
+        };
+        header.map_id = header.id_of(cells);
+        header
     }
 
     #[test]
     fn cells_unpack_to_what_they_were() {
         let cells: Vec<u8> = (0..200).collect();
-        let map = Map::new(&header(20, 10, 0.05), &cells).unwrap();
-        assert_eq!(map.info.id, "00000000000000ab");
+        let header = header(20, 10, 0.05, &cells);
+        let map = Map::new(&header, &cells).unwrap();
+        assert_eq!(map.info.id, format!("{:016x}", header.map_id));
         let mut unpacked = Vec::new();
         let mut reader = flate2::read::GzDecoder::new(map.packed());
         reader.read_to_end(&mut unpacked).unwrap();
@@ -105,10 +108,16 @@ mod tests {
 
     #[test]
     fn contradictions_are_refused() {
-        assert!(Map::new(&header(3, 2, 0.05), &[0; 5]).is_none());
-        assert!(Map::new(&header(0, 0, 0.05), &[]).is_none());
-        assert!(Map::new(&header(1, 1, f64::NAN), &[0]).is_none());
-        assert!(Map::new(&header(1, 1, 0.0), &[0]).is_none());
-        assert!(Map::new(&header(u32::MAX, u32::MAX, 0.05), &[0]).is_none());
+        let refused = |width, height, resolution_m, cells: &[u8]| {
+            Map::new(&header(width, height, resolution_m, cells), cells).is_none()
+        };
+        assert!(!refused(3, 2, 0.05, &[0; 6]));
+        assert!(refused(3, 2, 0.05, &[0; 5]));
+        assert!(refused(0, 0, 0.05, &[]));
+        assert!(refused(1, 1, f64::NAN, &[0]));
+        assert!(refused(1, 1, 0.0, &[0]));
+        assert!(refused(u32::MAX, u32::MAX, 0.05, &[0]));
+        let other = header(1, 1, 0.05, &[100]);
+        assert!(Map::new(&other, &[0]).is_none(), "the id is another map's");
     }
 }

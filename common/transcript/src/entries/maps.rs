@@ -14,6 +14,7 @@ pub(super) fn occupancy_grid(
     cells: &[u8],
 ) -> Result<OccupancyGridMsg, TranscriptError> {
     check_size(topic::Map::NAME, map.width, map.height, cells.len())?;
+    map.check_id(cells)?;
     Ok(OccupancyGridMsg {
         header: Header::default(),
         info: MapMetaData {
@@ -97,7 +98,12 @@ mod tests {
 
     #[test]
     fn a_map_comes_back_from_its_message() {
-        let message = occupancy_grid(&map(), &[0, 100, 255, 7]).unwrap();
+        let cells = [0, 100, 255, 7];
+        let mut header = map();
+        let error = occupancy_grid(&header, &cells).unwrap_err();
+        assert!(matches!(error, TranscriptError::MapId(_)), "{error}");
+        header.map_id = header.id_of(&cells);
+        let message = occupancy_grid(&header, &cells).unwrap();
         let grid = message.to_grid().unwrap();
         assert_eq!(
             (grid.cells, grid.resolution_m),

@@ -411,14 +411,15 @@ mod tests {
         }
     }
 
-    fn map(id: u64) -> MapHeader {
-        MapHeader {
-            map_id: id,
+    fn map(cells: &[u8]) -> MapHeader {
+        let mut header = MapHeader {
             width: 2,
             height: 1,
             resolution_m: 0.05,
             ..MapHeader::zeroed()
-        }
+        };
+        header.map_id = header.id_of(cells);
+        header
     }
 
     /// Topics and times of what was made, metadata by its name at time 0.
@@ -436,7 +437,7 @@ mod tests {
     #[test]
     fn what_has_no_measurement_waits_for_the_first_one() {
         let mut entries = entries();
-        entries.map(&map(1), &[0, 100], 5).unwrap();
+        entries.map(&map(&[0, 100]), &[0, 100], 5).unwrap();
         entries.health(&HealthHeader::zeroed(), b"", 6).unwrap();
         entries.log(&LogHeader::zeroed(), b"hello").unwrap();
         assert_eq!(made(&mut entries), []);
@@ -451,8 +452,8 @@ mod tests {
         assert_eq!(made(&mut entries), expected);
         // From then on the host's clock tells how much later it is.
         entries.health(&HealthHeader::zeroed(), b"", 40).unwrap();
-        entries.map(&map(1), &[0, 100], 50).unwrap();
-        entries.map(&map(2), &[0, 0], 60).unwrap();
+        entries.map(&map(&[0, 100]), &[0, 100], 50).unwrap();
+        entries.map(&map(&[0, 0]), &[0, 0], 60).unwrap();
         let expected = [("/diagnostics", 1030), ("backcast/map", 0), ("/map", 1050)];
         assert_eq!(made(&mut entries), expected);
         let line = LogHeader {
@@ -466,7 +467,7 @@ mod tests {
     #[test]
     fn without_any_measurement_the_wall_clock_counts() {
         let mut entries = entries();
-        entries.map(&map(1), &[0, 100], 5).unwrap();
+        entries.map(&map(&[0, 100]), &[0, 100], 5).unwrap();
         entries.finish(77).unwrap();
         assert_eq!(made(&mut entries), [("backcast/map", 0), ("/map", 77)]);
     }
@@ -482,7 +483,7 @@ mod tests {
             );
         }
         assert_eq!(made(&mut entries), []);
-        let error = entries.map(&map(1), &[0], 5).unwrap_err().to_string();
+        let error = entries.map(&map(&[0]), &[0], 5).unwrap_err().to_string();
         assert_eq!(error, "topic map: 2 x 1 cells are claimed, 1 are there");
     }
 

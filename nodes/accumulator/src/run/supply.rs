@@ -93,7 +93,14 @@ impl Supply {
         let (map, boundary) = (maps.newest()?, boundaries.newest()?);
         let came = u64::from(map.is_some()) + u64::from(boundary.is_some());
         health.count_received(came);
-        self.map = map.or(self.map.take());
+        match map.as_ref().map(|map| map.header().check_id(map.items())) {
+            Some(Err(error)) => {
+                let map_id = error.found;
+                refuse(map_id, &error.into(), health)?;
+            }
+            Some(Ok(())) => self.map = map,
+            None => {}
+        }
         self.boundary = boundary.or(self.boundary.take());
         Ok(came > 0)
     }

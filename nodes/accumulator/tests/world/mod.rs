@@ -54,6 +54,23 @@ pub(crate) fn occupancy(rows: &[&str]) -> Vec<u8> {
     cells.map(|cell| 100 * u8::from(cell == b'#')).collect()
 }
 
+/// The map that is drawn so.
+pub(crate) fn map_header(rows: &[&str]) -> MapHeader {
+    let mut header = MapHeader {
+        width: rows[0].len() as u32,
+        height: rows.len() as u32,
+        resolution_m: FRAME.resolution_m,
+        map_from_grid: FRAME.map_from_grid.into(),
+        ..Zeroable::zeroed()
+    };
+    header.map_id = header.id_of(&occupancy(rows));
+    header
+}
+
+pub(crate) fn id(rows: &[&str]) -> u64 {
+    map_header(rows).map_id
+}
+
 pub(crate) fn grid(rows: &[&str]) -> Grid {
     let cells = occupancy(rows);
     Grid::new(rows[0].len(), rows.len(), &cells, CellRules::default()).unwrap()
@@ -120,17 +137,10 @@ impl World {
         NodeProcess::start(env!("CARGO_BIN_EXE_accumulator"), &self.graph, arguments)
     }
 
-    pub(crate) fn publish_map(&self, map_id: u64, rows: &[&str]) {
+    pub(crate) fn publish_map(&self, rows: &[&str]) {
         let cells = occupancy(rows);
         let mut loan = self.maps.loan(cells.len()).unwrap();
-        *loan.header_mut() = MapHeader {
-            stamp: Stamp::default(),
-            map_id,
-            width: rows[0].len() as u32,
-            height: rows.len() as u32,
-            resolution_m: FRAME.resolution_m,
-            map_from_grid: FRAME.map_from_grid.into(),
-        };
+        *loan.header_mut() = map_header(rows);
         loan.items_mut().copy_from_slice(&cells);
         loan.send().unwrap();
     }

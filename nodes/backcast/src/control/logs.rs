@@ -45,11 +45,11 @@ pub(crate) fn logs(config: &LogsConfig) -> Result<ExitCode, BackcastError> {
     let graph = Graph::join_named("logs", &name)?;
     let lines = graph.subscriber::<topic::Log>()?;
     let begin = Instant::now();
-    let mut kept: Vec<Line> = Vec::new();
+    let mut kept: Vec<LogLine> = Vec::new();
     let mut all_kept = false;
     graph.run(&[&lines], TICK, |_| {
         while let Some(line) = lines.receive()? {
-            let line = Line::of(line.header(), line.items());
+            let line = LogLine::of(line.header(), line.items());
             if config.node.as_ref().is_none_or(|node| *node == line.node) {
                 kept.push(line);
             }
@@ -59,7 +59,10 @@ pub(crate) fn logs(config: &LogsConfig) -> Result<ExitCode, BackcastError> {
         if all_kept {
             kept.sort_by_key(|line| line.wall_ns);
             for line in kept.drain(..) {
-                print(&line.text(config.json))?;
+                print(&match config.json {
+                    true => line.json(),
+                    false => line.text(),
+                })?;
             }
         }
         let goes_on = config.follow || !all_kept;
@@ -70,16 +73,17 @@ pub(crate) fn logs(config: &LogsConfig) -> Result<ExitCode, BackcastError> {
 
 /// A line of a node's log.
 #[derive(Debug, Clone, PartialEq, Serialize)]
-struct Line {
-    wall_ns: i64,
-    node: String,
-    pid: u32,
-    level: &'static str,
-    text: String,
+pub(crate) struct LogLine {
+    pub(crate) wall_ns: i64,
+    pub(crate) node: String,
+    pub(crate) pid: u32,
+    pub(crate) level: &'static str,
+    pub(crate) text: String,
 }
 
-impl Line {
-    fn of(header: &LogHeader, text: &[u8]) -> Self {
+impl LogLine {
+    /// Reads one message of topic `log`.
+    pub(crate) fn of(header: &LogHeader, text: &[u8]) -> Self {
         let level = match LogLevel::from_code(header.level) {
             Some(LogLevel::Debug) => "DEBUG",
             Some(LogLevel::Info) => "INFO",
@@ -87,7 +91,7 @@ impl Line {
             Some(LogLevel::Error) => "ERROR",
             None => "?",
         };
-        Line {
+        LogLine {
             wall_ns: header.wall_ns,
             node: header.node.as_str().to_owned(),
             pid: header.pid,
@@ -96,14 +100,16 @@ impl Line {
         }
     }
 
-    fn text(&self, json: bool) -> String {
-        if json {
-            // Plain texts and numbers do not fail to serialize.
-            return serde_json::to_string(self).unwrap_or_default() + "\n";
-        }
+    /// As an object on a line of its own.
+    pub(crate) fn json(&self) -> String {
+        // Plain texts and numbers do not fail to serialize.
+        serde_json::to_string(self).unwrap_or_default() + "\n"
+    }
+
+    fn text(&self) -> String {
         let since = Duration::from_nanos(self.wall_ns.max(0).cast_unsigned());
         let when = humantime::format_rfc3339_millis(SystemTime::UNIX_EPOCH + since);
-        let Line {
+        let LogLine {
             node, level, text, ..
         } = self;
         format!("{when} {level:>5} {node:>18} | {text}\n")
@@ -122,9 +128,9 @@ mod tests {
             level: LogLevel::Warn as u32,
             ..bytemuck::Zeroable::zeroed()
         };
-        let line = Line::of(&header, b"no map");
+        let line = LogLine::of(&header, b"no map");
         let expected = "1970-01-01T00:00:01.500Z  WARN            tracker | no map\n";
-        assert_eq!(line.text(false), expected);
-        assert!(line.text(true).contains("\"level\":\"WARN\""));
+        assert_eq!(line.text(), expected);
+        assert!(line.json().contains("\"level\":\"WARN\""));
     }
 }

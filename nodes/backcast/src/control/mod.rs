@@ -5,4 +5,4 @@ mod logs;
 mod text;
 
 pub(crate) use command::{RestartConfig, StatusConfig, StopConfig, restart, status, stop};
-pub(crate) use logs::{LogsConfig, logs};
+pub(crate) use logs::{LogLine, LogsConfig, logs};

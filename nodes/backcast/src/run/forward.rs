@@ -8,7 +8,9 @@ use dataflow::{Dataflow, Node};
 use engine::heading::{HeadingConfig, HeadingFrom, HeadingSource};
 use messages::{Topic, topic};
 
-use super::arguments::{ACCUMULATOR, PLAYERS, find, leave_out_monitors, set, unset, value};
+use super::arguments::{
+    ACCUMULATOR, MAP_SERVER, PLAYERS, find, leave_out_monitors, set, unset, value,
+};
 use super::options::{Options, Rate};
 use super::{lasers, replay};
 use crate::BackcastError;
@@ -28,6 +30,11 @@ pub(crate) fn apply(
     if !options.replay.is_empty() {
         forward_replay(options, dataflow)?;
     }
+    if let Some(map) = &options.map {
+        let map = std::path::absolute(map).map_err(BackcastError::Folder)?;
+        let node = find(dataflow, &[MAP_SERVER], "--map", file)?;
+        set(node, "--map", Some(&map.to_string_lossy()));
+    }
     if let Some(rate) = options.rate {
         let node = find(dataflow, &PLAYERS, "--rate", file)?;
         set(node, "--rate", Some(&rate.to_string()));
@@ -46,7 +53,7 @@ pub(crate) fn apply(
 fn forward_replay(options: &Options, dataflow: &mut Dataflow) -> Result<(), BackcastError> {
     if let Some(topic) = &options.map_topic {
         return Err(BackcastError::Usage(format!(
-            "--map-topic {topic}: a graph takes its map from the map_server, as the descriptor says; \
+            "--map-topic {topic}: a graph takes its map from the map_server, as the descriptor or --map says; \
              `locate`, `evaluate` and `plot` take the one in the recording"
         )));
     }
@@ -265,6 +272,24 @@ mod tests {
         let said = error.to_string();
         assert!(said.contains("--loop is for the replayer"), "{said}");
         assert!(said.contains("its executables are accumulator"), "{said}");
+    }
+
+    #[test]
+    fn a_map_goes_to_its_server() {
+        let text = "nodes: [{id: m, path: bin/map_server, args: --map a.yaml}]";
+        let topics = dataflow::Topics {
+            names: messages::topic::NAMES,
+            shared: &[],
+            several: &[],
+        };
+        let options = Options {
+            map: Some("/maps/b.yaml".into()),
+            ..Options::default()
+        };
+        let args = applied(&options, dataflow::parse(text, &topics).unwrap()).unwrap();
+        assert_eq!(args, [["--map=/maps/b.yaml"]]);
+        let error = applied(&options, graph("", "")).unwrap_err().to_string();
+        assert!(error.contains("--map is for the map_server"), "{error}");
     }
 
     #[test]

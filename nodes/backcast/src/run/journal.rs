@@ -3,19 +3,20 @@
 
 use std::time::Duration;
 
-use messages::{HypothesesHeader, Hypothesis, PoseHeader};
+use messages::{HypothesesHeader, Hypothesis, LogHeader, PoseHeader};
 use serde::Serialize;
 
 use super::{
     console::{LAUNCHER, say},
     line::Line,
+    log_files::LogFiles,
     output::{Output, Reader},
     pose_line::Row,
     report::Report,
     rows::Rows,
     summary::Summary,
 };
-use crate::BackcastError;
+use crate::{BackcastError, control::LogLine};
 
 /// The lines and the figures behind them.
 pub(crate) struct Journal {
@@ -25,6 +26,8 @@ pub(crate) struct Journal {
     output: Output,
     json: bool,
     begun: bool,
+    /// Where the nodes' log goes, if it is wanted.
+    logs: Option<LogFiles>,
 }
 
 impl Journal {
@@ -37,6 +40,25 @@ impl Journal {
             output,
             json,
             begun: false,
+            logs: None,
+        }
+    }
+
+    /// Also writes what the nodes log to files.
+    pub(crate) fn with_logs(mut self, logs: Option<LogFiles>) -> Self {
+        self.logs = logs;
+        self
+    }
+
+    /// Whether it takes what the nodes log.
+    pub(crate) fn has_logs(&self) -> bool {
+        self.logs.is_some()
+    }
+
+    /// Enters a line of a node's log.
+    pub(crate) fn log(&mut self, header: &LogHeader, text: &[u8]) {
+        if let Some(logs) = &mut self.logs {
+            logs.write(&LogLine::of(header, text));
         }
     }
 

@@ -31,6 +31,7 @@ use super::{
     forward, foxglove,
     journal::Journal,
     lasers,
+    log_files::LogFiles,
     options::Config,
     output::{Output, Reader},
     record::{self, RECORDER},
@@ -105,7 +106,9 @@ pub(crate) fn run(config: &Config) -> Result<ExitCode, BackcastError> {
     let lossless = forward::plays_at_max(&descriptor.dataflow);
     let output = Output::start(io::stdout())?;
     let is_tracked = tracker::has_tracker(&descriptor.dataflow);
-    let mut journal = Journal::new(output, config.options.json, is_tracked);
+    let folder = config.options.log_folder.as_deref();
+    let logs = folder.map(LogFiles::create).transpose()?;
+    let mut journal = Journal::new(output, config.options.json, is_tracked).with_logs(logs);
     let outcome = loop {
         let outcome = launch(&descriptor, &graph, &mut journal);
         let Err(BackcastError::Transport(TransportError::Vanished { .. })) = &outcome else {
@@ -150,7 +153,7 @@ fn launch(
 ) -> Result<Course, BackcastError> {
     let graph = Graph::join_named(LAUNCHER, name)?;
     let first_laser = lasers::first(&descriptor.dataflow);
-    let watch = Watch::new(&graph, first_laser)?;
+    let watch = Watch::new(&graph, first_laser, journal.has_logs())?;
     note(&format!("graph {name} is starting; Ctrl-C stops it"));
     journal.begin();
     let nodes = descriptor.dataflow.nodes.clone();

@@ -17,6 +17,7 @@ mod journal;
 mod lasers;
 mod launch;
 mod line;
+mod log_files;
 mod options;
 mod output;
 mod pairs;

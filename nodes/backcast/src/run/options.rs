@@ -56,7 +56,11 @@ pub(crate) struct Options {
     #[arg(long = "loop")]
     pub(crate) repeat: bool,
 
-    /// Not for a graph, whose map is map_server's: say there which one
+    /// Serve this map in place of the one that the descriptor names
+    #[arg(long, value_name = "FILE")]
+    pub(crate) map: Option<PathBuf>,
+
+    /// Not for a graph, whose map is map_server's: --map says which one
     #[arg(long, value_name = "TOPIC", requires = "replay", hide = true)]
     pub(crate) map_topic: Option<String>,
 
@@ -78,6 +82,11 @@ pub(crate) struct Options {
     /// [default: $BACKCAST_GRAPH, or a name of its own]
     #[arg(long, value_name = "NAME", value_parser = GraphName::new)]
     pub(crate) graph: Option<GraphName>,
+
+    /// Also write what each node logs to NODE.jsonl in this folder, as JSON lines; of
+    /// each node the last 50 MB stay
+    #[arg(long, value_name = "FOLDER")]
+    pub(crate) log_folder: Option<PathBuf>,
 
     /// Print JSON, an object a line; the last one holds the summary
     #[arg(long)]

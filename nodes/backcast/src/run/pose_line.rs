@@ -32,6 +32,8 @@ pub(crate) struct PoseLine {
     pub(crate) says: String,
     /// From the scan's entry into the graph to the pose, milliseconds.
     pub(crate) latency_ms: f64,
+    /// When the pose was sent, nanoseconds of the machine's monotonic clock.
+    pub(crate) sent_ns: i64,
 }
 
 /// The pose of a scan, and the answer to the scan alone; either may be missing.
@@ -67,6 +69,7 @@ impl PoseLine {
             places: header.places,
             says: String::from_utf8_lossy(words).into_owned(),
             latency_ms: latency_ns as f64 / NS_PER_MS,
+            sent_ns: header.sent_ns,
         }
     }
 }

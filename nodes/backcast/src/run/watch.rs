@@ -13,6 +13,8 @@ pub(crate) struct Watch {
     hypotheses: Subscriber<topic::Hypotheses>,
     poses: Subscriber<topic::Tracked>,
     health: Subscriber<topic::Health>,
+    /// Where what the nodes log is wanted.
+    logs: Option<Subscriber<topic::Log>>,
 }
 
 /// What came of one look at the topics.
@@ -30,8 +32,13 @@ impl Watch {
     /// # Errors
     /// The graph refuses.
     ///
-    /// `first_laser` is the one whose scans are answered, where there are several.
-    pub(crate) fn new(graph: &Graph, first_laser: Option<String>) -> Result<Self, TransportError> {
+    /// `first_laser` is the one whose scans are answered, where there are several; what the
+    /// nodes log is heard where `logs` says so.
+    pub(crate) fn new(
+        graph: &Graph,
+        first_laser: Option<String>,
+        logs: bool,
+    ) -> Result<Self, TransportError> {
         Ok(Watch {
             first_laser,
             scans: graph.subscriber()?,
@@ -39,6 +46,7 @@ impl Watch {
             hypotheses: graph.subscriber()?,
             poses: graph.subscriber()?,
             health: graph.subscriber()?,
+            logs: logs.then(|| graph.subscriber()).transpose()?,
         })
     }
 
@@ -92,6 +100,11 @@ impl Watch {
         while let Some(health) = self.health.receive()? {
             journal.report.health(health.header());
             on_health(health.header());
+        }
+        if let Some(logs) = &self.logs {
+            while let Some(line) = logs.receive()? {
+                journal.log(line.header(), line.items());
+            }
         }
         Ok(heard)
     }

@@ -72,6 +72,7 @@ impl Writer {
             queued_bytes: Arc::clone(&queued_bytes),
             status: Arc::clone(&status),
             problem: None,
+            sync: config.sync.0,
         };
         let thread = std::thread::Builder::new()
             .name("writer".into())
@@ -139,12 +140,15 @@ struct Desk {
     queued_bytes: Arc<AtomicUsize>,
     status: Arc<Mutex<Status>>,
     problem: Option<String>,
+    /// How often what is written is synced to the disk.
+    sync: Option<Duration>,
 }
 
 impl Desk {
     /// Writes until nobody sends any more.
     fn work(&mut self) -> Status {
         let mut flush_at = Instant::now() + FLUSH_PERIOD;
+        let mut synced = Instant::now();
         loop {
             let patience = flush_at.saturating_duration_since(Instant::now());
             match self.waiting.recv_timeout(patience) {
@@ -153,12 +157,19 @@ impl Desk {
                 Err(RecvTimeoutError::Disconnected) => break,
             }
             if Instant::now() >= flush_at {
-                let flushed = self.store.flush();
+                let mut flushed = self.store.flush();
+                if flushed.is_ok() && self.sync.is_some_and(|every| synced.elapsed() >= every) {
+                    flushed = self.store.sync();
+                    synced = Instant::now();
+                }
                 self.note(flushed);
                 flush_at = Instant::now() + FLUSH_PERIOD;
             }
         }
-        let finished = self.store.finish();
+        let mut finished = self.store.finish();
+        if finished.is_ok() && self.sync.is_some() {
+            finished = self.store.sync();
+        }
         self.note(finished);
         self.current()
     }

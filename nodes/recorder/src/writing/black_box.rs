@@ -80,9 +80,10 @@ impl BlackBox {
                 Entry::Metadata(name, entries) => writer.write_metadata(name, entries)?,
             }
         }
-        writer
-            .finish()?
-            .flush()
+        let mut file = writer.finish()?;
+        // It is saved when a loss of power does not take it.
+        file.flush()
+            .and_then(|()| file.get_ref().sync_data())
             .map_err(|source| RecorderError::Save {
                 path: path.clone(),
                 source,

@@ -1,5 +1,6 @@
 //! A recording in one file, or in parts by size and time.
 
+use std::fs::File;
 use std::io::Write;
 use std::path::PathBuf;
 use std::time::Duration;
@@ -28,6 +29,8 @@ pub(crate) struct Parts {
     limits: Limits,
     preamble: Preamble,
     part: Option<Part>,
+    /// The newest file, and those that were ended since the last time that all was synced.
+    unsynced: Vec<(PathBuf, File)>,
     tally: Tally,
 }
 
@@ -56,6 +59,7 @@ impl Parts {
             limits,
             preamble,
             part: None,
+            unsynced: Vec::new(),
             tally: Tally::default(),
         };
         parts.begin(None)?;
@@ -114,6 +118,22 @@ impl Parts {
             .map_err(|source| RecorderError::Finish { path, source })
     }
 
+    pub(super) fn sync(&mut self) -> Result<(), RecorderError> {
+        for (path, file) in &self.unsynced {
+            file.sync_data().map_err(|source| RecorderError::Sync {
+                path: path.clone(),
+                source,
+            })?;
+        }
+        // What was ended changes no more.
+        let ended = match self.part {
+            Some(_) => self.unsynced.len().saturating_sub(1),
+            None => self.unsynced.len(),
+        };
+        self.unsynced.drain(..ended);
+        Ok(())
+    }
+
     pub(super) fn tally(&self) -> Tally {
         self.tally
     }
@@ -143,6 +163,11 @@ impl Parts {
         let numbered = self.limits.split_bytes.is_some() || self.limits.split_time.is_some();
         let (path, file) = name::create(&self.path, numbered)?;
         tracing::info!("recording to {}", path.display());
+        let again = file.try_clone().map_err(|source| RecorderError::Sync {
+            path: path.clone(),
+            source,
+        })?;
+        self.unsynced.push((path.clone(), again));
         let progress = Progress::default();
         let sink = Staged::new(file, progress.clone());
         let mut writer = RecordingWriter::new(sink, Packing::Zstd)?;
@@ -273,6 +298,22 @@ mod tests {
         assert_eq!(recording.messages(), 1);
         parts.finish().unwrap();
         assert_eq!(opened(&folder, "r.mcap").messages(), 2);
+    }
+
+    #[test]
+    fn all_parts_are_synced_and_only_the_last_one_again() {
+        let folder = TempDir::new().unwrap();
+        let mut parts = parts(&folder, None, Some(10));
+        for second in [0, 11, 22] {
+            parts.put(&message("/n", second, false)).unwrap();
+        }
+        assert_eq!(parts.unsynced.len(), 3);
+        parts.sync().unwrap();
+        let names: Vec<_> = parts.unsynced.iter().map(|(path, _)| path).collect();
+        assert_eq!(names, [&folder.path().join("r_2.mcap")]);
+        parts.finish().unwrap();
+        parts.sync().unwrap();
+        assert!(parts.unsynced.is_empty());
     }
 
     #[test]

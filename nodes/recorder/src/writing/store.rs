@@ -49,6 +49,18 @@ impl Store {
         }
     }
 
+    /// Waits until the disk has what was flushed, so that a loss of power does not take it.
+    /// A black box is on the disk once it is saved.
+    ///
+    /// # Errors
+    /// If the disk does not take it.
+    pub(crate) fn sync(&mut self) -> Result<(), RecorderError> {
+        match self {
+            Store::Parts(parts) => parts.sync(),
+            Store::BlackBox(_) => Ok(()),
+        }
+    }
+
     /// Saves a black box; nothing for files, which are saved already.
     ///
     /// # Errors

@@ -1,0 +1,26 @@
+//! Any payload from the network, as each topic that crosses it: nothing panics, and what is
+//! accepted can be sent on.
+#![no_main]
+
+use libfuzzer_sys::fuzz_target;
+use messages::topic;
+use wire::{Visit, Wire, decode, encode, encoding};
+
+struct Check<'a>(&'a [u8]);
+
+impl Visit for Check<'_> {
+    type Output = ();
+
+    fn visit<T: Wire>(self) {
+        if let Ok(received) = decode::<T>(&encoding::<T>(), self.0) {
+            encode::<T>(&received.preamble, &received.header, &received.items).unwrap();
+        }
+    }
+}
+
+fuzz_target!(|bytes: &[u8]| {
+    if let Some((&which, payload)) = bytes.split_first() {
+        let names = topic::NAMES;
+        wire::by_name(names[usize::from(which) % names.len()], Check(payload));
+    }
+});

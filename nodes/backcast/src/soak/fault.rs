@@ -1,0 +1,141 @@
+//! What is done to a graph, and in which order. Pure.
+
+use std::time::Duration;
+
+use rand::SeedableRng;
+use rand::rngs::Xoshiro256PlusPlus;
+use rand::seq::{IndexedRandom, SliceRandom};
+use serde::Serialize;
+
+/// Something that is done to a running graph.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Serialize, clap::ValueEnum)]
+#[serde(rename_all = "snake_case")]
+pub(crate) enum Fault {
+    /// A node is killed
+    Kill,
+    /// Two nodes are killed at once
+    Pair,
+    /// A node is stopped for ten seconds
+    Stop,
+    /// The map is replaced by one of another size, which shows the same place
+    Map,
+    /// The launcher is killed and, once its nodes have ended, started again
+    Launcher,
+    /// The graph's files in the temporary folder are removed
+    Tmp,
+    /// /dev/shm is full for a second: only where it is small
+    Shm,
+    /// The disk of --record is full for three seconds: only where it is small
+    Disk,
+}
+
+impl Fault {
+    /// How it is called on the command line and in the report.
+    pub(crate) fn name(self) -> &'static str {
+        match self {
+            Fault::Kill => "kill",
+            Fault::Pair => "pair",
+            Fault::Stop => "stop",
+            Fault::Map => "map",
+            Fault::Launcher => "launcher",
+            Fault::Tmp => "tmp",
+            Fault::Shm => "shm",
+            Fault::Disk => "disk",
+        }
+    }
+
+    /// How long it lasts; time to the next pose counts from its end.
+    pub(crate) fn lasts(self) -> Duration {
+        Duration::from_secs(match self {
+            Fault::Stop => 10,
+            Fault::Shm => 1,
+            Fault::Disk => 3,
+            _ => 0,
+        })
+    }
+
+    /// How many nodes it meets.
+    pub(crate) fn nodes(self) -> usize {
+        match self {
+            Fault::Kill | Fault::Stop => 1,
+            Fault::Pair => 2,
+            _ => 0,
+        }
+    }
+
+    /// How often it comes in a round: what is quickly over comes most often.
+    fn share(self) -> usize {
+        match self {
+            Fault::Kill => 8,
+            Fault::Pair => 4,
+            _ => 1,
+        }
+    }
+}
+
+/// Draws faults: round by round, each in its share, in an order of chance.
+#[derive(Debug)]
+pub(crate) struct Draw {
+    faults: Vec<Fault>,
+    round: Vec<Fault>,
+    random: Xoshiro256PlusPlus,
+}
+
+impl Draw {
+    /// Of these, with randomness from `seed`.
+    pub(crate) fn new(faults: &[Fault], seed: u64) -> Self {
+        Draw {
+            faults: faults.to_owned(),
+            round: Vec::new(),
+            random: Xoshiro256PlusPlus::seed_from_u64(seed),
+        }
+    }
+
+    /// The next one; none where there are none at all.
+    pub(crate) fn fault(&mut self) -> Option<Fault> {
+        if self.round.is_empty() {
+            let shares = self.faults.iter();
+            self.round = shares
+                .flat_map(|fault| std::iter::repeat_n(*fault, fault.share()))
+                .collect();
+            self.round.shuffle(&mut self.random);
+        }
+        self.round.pop()
+    }
+
+    /// `count` different ones of `all`, or all where there are no more.
+    pub(crate) fn some_of<'n, T>(&mut self, all: &'n [T], count: usize) -> Vec<&'n T> {
+        all.sample(&mut self.random, count).collect()
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_round_has_each_fault_in_its_share_and_a_seed_repeats_it() {
+        let faults = [Fault::Kill, Fault::Pair, Fault::Map];
+        let drawn = |seed| {
+            let mut draw = Draw::new(&faults, seed);
+            let round = (0..13).filter_map(|_| draw.fault());
+            round.collect::<Vec<_>>()
+        };
+        let one = drawn(1);
+        assert_eq!(one, drawn(1));
+        assert_ne!(one, drawn(2));
+        let times = |fault| one.iter().filter(|drawn| **drawn == fault).count();
+        assert_eq!(faults.map(times), [8, 4, 1]);
+        assert_eq!(Draw::new(&[], 1).fault(), None);
+    }
+
+    #[test]
+    fn two_that_are_drawn_are_different() {
+        let mut draw = Draw::new(&[], 1);
+        for _ in 0..20 {
+            let two = draw.some_of(&[1, 2, 3], 2);
+            assert!(two.len() == 2 && two[0] != two[1], "{two:?}");
+        }
+        assert_eq!(draw.some_of(&[1], 2), [&1]);
+    }
+}
