@@ -18,6 +18,16 @@ pub fn path(name: &str) -> PathBuf {
     folder.join(name)
 }
 
+/// The command, whose graphs keep prepared maps beside the executables and not in the
+/// user's own folder.
+#[must_use]
+pub fn backcast() -> Command {
+    let executable = path("backcast");
+    let mut command = Command::new(&executable);
+    command.env("XDG_CACHE_HOME", executable.with_file_name("test-cache"));
+    command
+}
+
 /// All of them at once, as `cargo run` and the descriptor build them: cargo would
 /// build what they depend on anew for each one.
 fn build(folder: &Path) {

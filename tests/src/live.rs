@@ -3,7 +3,7 @@
 
 use std::io::{BufRead, BufReader, Lines};
 use std::path::PathBuf;
-use std::process::{Child, ChildStdout, Command, ExitStatus, Stdio};
+use std::process::{Child, ChildStdout, ExitStatus, Stdio};
 use std::thread::JoinHandle;
 
 use nix::sys::signal::{Signal, kill};
@@ -55,7 +55,7 @@ impl Live {
         let file = folder.path().join("dataflow.yaml");
         std::fs::write(&file, descriptor(more)).unwrap();
         let recording = crate::root().join("recordings/malaga_corridor/recording.mcap");
-        let mut launcher = Command::new(executables::path("backcast"));
+        let mut launcher = executables::backcast();
         launcher.arg("run").arg(&file).args(["--graph", name]);
         launcher.args(["--json", "--loop", "--no-monitor", "--replay"]);
         let mut launcher = launcher

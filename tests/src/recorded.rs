@@ -2,7 +2,6 @@
 
 use std::collections::BTreeMap;
 use std::path::Path;
-use std::process::Command;
 
 use recording::Recording;
 
@@ -13,7 +12,7 @@ use crate::executables;
 pub fn record(recording: &Path, map: &Path, output: &Path) {
     let descriptor = output.with_extension("yaml");
     std::fs::write(&descriptor, tracking_graph(recording, map)).unwrap();
-    let outcome = Command::new(executables::path("backcast"))
+    let outcome = executables::backcast()
         .arg("run")
         .arg(&descriptor)
         .args(["--rate", "max", "--record"])

@@ -4,8 +4,6 @@
     reason = "the lint spares test functions but not what they share"
 )]
 
-use std::process::Command;
-
 use engine::localizer::Prior;
 use geometry::Pose;
 use tests::world::{World, as_engine_takes_it};
@@ -16,7 +14,7 @@ use tests::{answers, executables};
 #[test]
 fn the_graph_answers_as_expected() {
     let world = World::of("malaga_corridor");
-    let outcome = Command::new(executables::path("backcast"))
+    let outcome = executables::backcast()
         .current_dir(tests::root())
         .arg("regress")
         .arg(&world.folder)

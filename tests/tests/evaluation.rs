@@ -52,7 +52,7 @@ fn of_graph(recording: &Path, folder: &TempDir) -> Value {
     map::save(&map, &yaml).unwrap();
     let descriptor = folder.path().join("graph.yaml");
     std::fs::write(&descriptor, graph(recording, &yaml)).unwrap();
-    let mut command = Command::new(executables::path("backcast"));
+    let mut command = executables::backcast();
     let line = last_line(
         command
             .args(["run", "--json", "--rate", "max"])
@@ -71,7 +71,7 @@ fn the_graph_finds_what_evaluate_finds() {
         let recording = data.join(file);
         let folder = TempDir::new().unwrap();
         let by_graph = of_graph(&recording, &folder);
-        let mut command = Command::new(executables::path("backcast"));
+        let mut command = executables::backcast();
         let by_engine = last_line(command.args(["evaluate", "--json"]).arg(&recording));
         for count in COUNTS {
             assert!(by_engine[count].is_number(), "{file}: {count}");

@@ -5,7 +5,7 @@
 )]
 
 use std::io::{BufRead, BufReader};
-use std::process::{Child, Command, Stdio};
+use std::process::{Child, Stdio};
 use std::thread::JoinHandle;
 
 use nix::sys::signal::{Signal, kill};
@@ -33,7 +33,7 @@ impl Graph {
         let token = token_file(folder.path(), TOKEN);
         let descriptor = folder.path().join("g.yaml");
         std::fs::write(&descriptor, nodes(world, &token.display().to_string())).unwrap();
-        let mut launcher = Command::new(executables::path("backcast"))
+        let mut launcher = executables::backcast()
             .args(["run", "--loop"])
             .arg(&descriptor)
             .env_remove("BACKCAST_GRAPH")
@@ -190,7 +190,7 @@ fn a_terminal_sees_the_same() {
     let graph = Graph::start(&world);
     let address = graph.url.strip_prefix("http://").unwrap();
     let top = |arguments: &[&str]| {
-        let outcome = Command::new(executables::path("backcast"))
+        let outcome = executables::backcast()
             .arg("top")
             .args(arguments)
             .output()

@@ -6,7 +6,6 @@
 )]
 
 use std::path::Path;
-use std::process::Command;
 
 use messages::Verdict;
 use tempfile::TempDir;
@@ -17,7 +16,7 @@ use tests::{answers, executables};
 const PATH: &str = "9,-10.9 10.5,-10.6 9,-10.9";
 
 fn backcast(arguments: &[&str]) -> String {
-    let mut command = Command::new(executables::path("backcast"));
+    let mut command = executables::backcast();
     let output = command.args(arguments).output().unwrap();
     let said = String::from_utf8_lossy(&output.stderr);
     assert!(output.status.success(), "{arguments:?}: {said}");

@@ -7,7 +7,6 @@
 use std::io::Write;
 use std::net::{TcpListener, TcpStream};
 use std::path::Path;
-use std::process::Command;
 
 use messages::topic;
 use tests::executables;
@@ -16,7 +15,7 @@ use transport::testing::{Isolated, NodeProcess, wait_for_health};
 
 /// Exit code, standard output and standard error.
 fn probe(device: &str) -> (Option<i32>, String, String) {
-    let outcome = Command::new(executables::path("backcast"))
+    let outcome = executables::backcast()
         .args(["probe", device, "--width", "60"])
         .output()
         .unwrap();

@@ -222,7 +222,7 @@ fn bags_of_others_in_sqlite_read_as_the_recording() {
     assert_eq!(messages(&bag), messages(&original));
 
     let converted = folder.path().join("converted.mcap");
-    let outcome = Command::new(executables::path("backcast"))
+    let outcome = executables::backcast()
         .arg("convert")
         .args([&bag, &converted])
         .output()

@@ -7,7 +7,7 @@
 
 use std::io::{BufRead, BufReader};
 use std::path::{Path, PathBuf};
-use std::process::{Command, Stdio};
+use std::process::Stdio;
 
 use nix::sys::signal::{Signal, kill};
 use nix::unistd::Pid;
@@ -81,7 +81,7 @@ fn a_launcher_that_is_asked_to_save_asks_the_recorder() {
     let descriptor = folder.path().join("graph.yaml");
     std::fs::write(&descriptor, graph(&world.recording(), &world.map())).unwrap();
     let output = folder.path().join("box.mcap");
-    let mut launcher = Command::new(executables::path("backcast"))
+    let mut launcher = executables::backcast()
         .arg("run")
         .arg(&descriptor)
         .args([
@@ -151,7 +151,7 @@ fn what_a_recording_has_lost_is_told_and_drawn() {
     let recording = case.join("recording.mcap");
     std::fs::write(&descriptor, graph(&recording, &case.join("map.yaml"))).unwrap();
 
-    let played = Command::new(executables::path("backcast"))
+    let played = executables::backcast()
         .args(["run", "--rate", "max"])
         .arg(&descriptor)
         .output()
@@ -165,7 +165,7 @@ fn what_a_recording_has_lost_is_told_and_drawn() {
     assert!(printed.contains(&all), "{printed}");
 
     let pictures = folder.path().join("pictures");
-    let compared = Command::new(executables::path("backcast"))
+    let compared = executables::backcast()
         .arg("regress")
         .arg(&case)
         .arg("--dataflow")

@@ -142,7 +142,7 @@ fn a_graph_that_is_done_harm_for_a_while_keeps_its_promises() {
     let folder = tempfile::tempdir().unwrap();
     let descriptor = folder.path().join("dataflow.yaml");
     std::fs::write(&descriptor, tests::live::descriptor("")).unwrap();
-    let output = Command::new(tests::executables::path("backcast"))
+    let output = tests::executables::backcast()
         .arg("soak")
         .arg(&descriptor)
         .args(["--minutes", "1.5", "--seed", "7", "--json"])

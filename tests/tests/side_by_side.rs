@@ -5,7 +5,7 @@
 )]
 
 use std::path::Path;
-use std::process::{Child, Command, Stdio};
+use std::process::{Child, Stdio};
 
 use serde_json::Value;
 use tests::executables;
@@ -13,8 +13,7 @@ use tests::executables;
 fn start(name: &str) -> Child {
     // Built first, so that the runs below find nothing to build.
     let _ = executables::path("replayer");
-    let backcast = executables::path("backcast");
-    Command::new(backcast)
+    executables::backcast()
         .args(["run", "--rate", "max", "--json", "--graph", name])
         .current_dir(tests::root())
         .stdout(Stdio::piped())

@@ -6,7 +6,6 @@
 )]
 
 use std::path::Path;
-use std::process::Command;
 use std::time::Duration;
 
 use messages::{PoseHeader, TrackState, topic};
@@ -22,7 +21,7 @@ type Track = Vec<(String, f64, f64, f64, f64)>;
 
 fn by_tools(recording: &Path, map: &Path) -> Track {
     let folder = TempDir::new().unwrap();
-    let mut command = Command::new(executables::path("backcast"));
+    let mut command = executables::backcast();
     command.args([
         "evaluate",
         "--sequence",
@@ -132,7 +131,7 @@ fn the_graph_and_the_tools_track_alike() {
 }
 
 fn figures(recording: &Path, options: &[&str]) -> Value {
-    let mut command = Command::new(executables::path("backcast"));
+    let mut command = executables::backcast();
     command.args(["evaluate", "--sequence", "--json"]);
     tests::json_of(command.args(options).arg(recording))
 }
