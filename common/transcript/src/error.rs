@@ -29,7 +29,7 @@ pub enum TranscriptError {
         found: usize,
     },
     /// A map that is not the one that its id says.
-    #[error("topic map: {0}")]
+    #[error("topic map")]
     MapId(#[from] messages::WrongMapId),
     /// It cannot be said in CDR.
     #[error(transparent)]

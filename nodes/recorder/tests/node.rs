@@ -77,13 +77,14 @@ impl World {
 
     fn send_map(&self) {
         let mut loan = self.maps.loan(2).unwrap();
-        *loan.header_mut() = MapHeader {
-            map_id: 7,
+        let mut header = MapHeader {
             width: 2,
             height: 1,
             resolution_m: 0.05,
             ..MapHeader::zeroed()
         };
+        header.map_id = header.id_of(&[0, 100]);
+        *loan.header_mut() = header;
         loan.items_mut().copy_from_slice(&[0, 100]);
         loan.send().unwrap();
     }
@@ -194,7 +195,7 @@ fn what_is_sent_is_recorded() {
     assert_eq!(recording.map().unwrap().unwrap().cells, [0, 100]);
     assert_eq!(
         recording.metadata()[1].entries["map_id"],
-        "0000000000000007"
+        "967ce54b1de3971a"
     );
     for (number, record) in (0..).zip(recording.records_of(&[Kind::Scan])) {
         let record = record.unwrap();
