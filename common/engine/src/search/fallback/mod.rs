@@ -308,6 +308,11 @@ impl<'a> Sifting<'a> {
         } = &mut *self.share;
         let (view, intervals) = (task.view(), &task.index.intervals);
         let block = y / SIDE * intervals.columns + x / SIDE;
+        // Of an index that was read from a file nobody knows that blocks hold all cells in
+        // which poses are sought.
+        if !intervals.ids.holds(block) {
+            return 0;
+        }
         if *entered != Some(block) {
             outlook.enter((&view, &task.index.within.limits), intervals, block);
             *entered = Some(block);
