@@ -20,8 +20,8 @@ mod x86 {
     use crate::simd::{Avx2, avx2};
 
     avx2! {
-        fn shuffle(_set: Avx2, piece: [u8; PIECE], index: __m256i) -> __m256i {
-            let piece = _mm256_broadcastsi128_si256(must_cast(piece));
+        fn shuffle(_set: Avx2, piece: &[u8; PIECE], index: __m256i) -> __m256i {
+            let piece = _mm256_broadcastsi128_si256(must_cast(*piece));
             _mm256_shuffle_epi8(piece, _mm256_adds_epu8(index, _mm256_set1_epi8(BEYOND)))
         }
     }
@@ -37,8 +37,8 @@ mod x86 {
         ) -> __m256i {
             let pieces: &[[u8; PIECE]; TABLE / PIECE] = must_cast_ref(table);
             let [first, others @ ..] = pieces;
-            let mut found = shuffle(set, *first, index);
-            for (&piece, number) in others.iter().zip(1..used.div_ceil(PIECE)) {
+            let mut found = shuffle(set, first, index);
+            for (piece, number) in others.iter().zip(1..used.div_ceil(PIECE)) {
                 // What goes below 0 lies beyond 16, too.
                 let index = _mm256_sub_epi8(index, _mm256_set1_epi8((PIECE * number) as i8));
                 found = _mm256_or_si256(found, shuffle(set, piece, index));

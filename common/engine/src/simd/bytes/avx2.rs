@@ -164,7 +164,7 @@ avx2! {
                 lookup: &Lookup,
             ) {
                 let mut parts = lookup.bytes.as_chunks().0.iter();
-                let mut part = || Some(part(set, *parts.next()?));
+                let mut part = || Some(part(set, parts.next()?));
                 let Some(first) = part() else { return };
                 match lookup.kind {
                     SHORT => {
@@ -201,8 +201,8 @@ avx2! {
 
 avx2! {
     /// Sixteen bytes of a look-up, twice.
-    fn part(_set: Avx2, bytes: [u8; 16]) -> Avx2Bytes {
-        Avx2Bytes(_mm256_broadcastsi128_si256(must_cast(bytes)))
+    fn part(_set: Avx2, bytes: &[u8; 16]) -> Avx2Bytes {
+        Avx2Bytes(_mm256_broadcastsi128_si256(must_cast(*bytes)))
     }
 }
 

@@ -17,9 +17,9 @@ pub(crate) struct Avx2Headings([__m256i; 2]);
 
 avx2! {
     /// The votes in the bin of each interval that is nearest to the centre.
-    fn look_up(set: Avx2, votes: &BinVotes, first: [u8; HALF], last: [u8; HALF]) -> __m256i {
+    fn look_up(set: Avx2, votes: &BinVotes, first: &[u8; HALF], last: &[u8; HALF]) -> __m256i {
         let centre = _mm256_set1_epi8(votes.centre.cast_signed());
-        let bin = _mm256_max_epu8(_mm256_min_epu8(centre, must_cast(last)), must_cast(first));
+        let bin = _mm256_max_epu8(_mm256_min_epu8(centre, must_cast(*last)), must_cast(*first));
         let mut index = _mm256_subs_epu8(bin, _mm256_set1_epi8(votes.base.cast_signed()));
         // Only then is the last entry, which stands for those beyond, anything but 0.
         if usize::from(votes.used) == TABLE {
@@ -29,8 +29,9 @@ avx2! {
     }
 }
 
-fn half_of(row: &[u8; HEADINGS], half: usize) -> [u8; HALF] {
-    row.as_chunks().0[half]
+#[inline(always)]
+fn half_of(row: &[u8; HEADINGS], half: usize) -> &[u8; HALF] {
+    &row.as_chunks().0[half]
 }
 
 avx2! {

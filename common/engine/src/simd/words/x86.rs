@@ -116,12 +116,12 @@ const fn places() -> [u64; 256] {
 avx2! {
     /// Eight times four bytes: those that the mask tells, one after the other, and
     /// others without bits.
-    fn expand(_set: Avx2, mask: u8, bytes: [u8; BYTES / 2]) -> __m256i {
+    fn expand(_set: Avx2, mask: u8, bytes: &[u8; BYTES / 2]) -> __m256i {
         let places = _mm_cvtsi64_si128(PLACES[usize::from(mask)].cast_signed());
-        let spread = _mm256_permutevar8x32_epi32(must_cast(bytes), _mm256_cvtepu8_epi32(places));
+        let spread = _mm256_permutevar8x32_epi32(must_cast(*bytes), _mm256_cvtepu8_epi32(places));
         let bits = _mm256_setr_epi32(1, 2, 4, 8, 16, 32, 64, 128);
-        let told = _mm256_and_si256(_mm256_set1_epi32(i32::from(mask)), bits);
-        _mm256_and_si256(spread, _mm256_cmpeq_epi32(told, bits))
+        let set = _mm256_and_si256(_mm256_set1_epi32(i32::from(mask)), bits);
+        _mm256_and_si256(spread, _mm256_cmpeq_epi32(set, bits))
     }
 }
 
@@ -145,7 +145,7 @@ avx2! {
 
         fn expand(set: Avx2, mask: u16, bytes: &[u8; BYTES]) -> Avx2Words {
             let [low, high] = mask.to_le_bytes();
-            let half = |from: usize| bytes[from..].first_chunk().copied().expect("half of them");
+            let half = |from: usize| bytes[from..].first_chunk().expect("half of them");
             let rest = 4 * low.count_ones() as usize;
             Avx2Words([expand(set, low, half(0)), expand(set, high, half(rest))])
         }
