@@ -33,10 +33,10 @@ pub(crate) const SIDE: usize = 4;
 /// Cells of such a block, row by row.
 pub(crate) const CELLS: usize = SIDE * SIDE;
 
-/// Compiles functions for a set of instructions, those of an implementation of a trait or
-/// one by itself.
+/// Compiles functions for a set of instructions: those of an implementation of a trait, one
+/// by itself, or kernels.
 ///
-/// The first argument of each is a token of the set, or a value that is only made where
+/// The first argument of each function is a token of the set, or a value that is only made where
 /// there is one. What stands behind `plain` is not compiled for the set by itself: it
 /// calls what is, and is too large to be inlined unless it must be.
 macro_rules! compiled {
@@ -77,6 +77,19 @@ macro_rules! compiled {
                 }
             )*
             $($($plain)*)?
+        }
+    };
+    ([$features:literal] kernels for $token:ident) => {
+        impl $token {
+            #[inline(always)]
+            fn run<K: Kernel>(self, kernel: K) -> K::Result {
+                #[target_feature(enable = $features)]
+                fn compiled<K: Kernel>(set: $token, kernel: K) -> K::Result {
+                    kernel.run(set)
+                }
+                // SAFETY: the token proves that the processor has the instructions.
+                unsafe { compiled(self, kernel) }
+            }
         }
     };
     (
@@ -257,29 +270,7 @@ impl Simd {
 }
 
 #[cfg(target_arch = "x86_64")]
-impl Avx2 {
-    #[inline(always)]
-    fn run<K: Kernel>(self, kernel: K) -> K::Result {
-        #[target_feature(enable = "avx2,bmi1,bmi2,lzcnt,popcnt")]
-        fn compiled<K: Kernel>(set: Avx2, kernel: K) -> K::Result {
-            kernel.run(set)
-        }
-        // SAFETY: the token proves that the processor has the instructions.
-        unsafe { compiled(self, kernel) }
-    }
-}
+avx2! { kernels for Avx2 }
 
 #[cfg(target_arch = "x86_64")]
-impl Avx512 {
-    #[inline(always)]
-    fn run<K: Kernel>(self, kernel: K) -> K::Result {
-        #[target_feature(
-            enable = "avx512f,avx512bw,avx512cd,avx512dq,avx512vl,avx512vbmi,bmi1,bmi2,lzcnt,popcnt"
-        )]
-        fn compiled<K: Kernel>(set: Avx512, kernel: K) -> K::Result {
-            kernel.run(set)
-        }
-        // SAFETY: the token proves that the processor has the instructions.
-        unsafe { compiled(self, kernel) }
-    }
-}
+avx512! { kernels for Avx512 }
