@@ -143,7 +143,7 @@ mod x86 {
                 // The high byte of each number lies beyond all entries.
                 let high = _mm256_set1_epi16(0xff00_u16.cast_signed());
                 let index = _mm256_or_si256(places(set, table, ranges), high);
-                let found = look_up_avx2(set, entries, table.used.into(), index);
+                let [found] = look_up_avx2(set, entries, table.used.into(), [index]);
                 Avx2Cells(set, _mm256_add_epi16(votes, found))
             }
 

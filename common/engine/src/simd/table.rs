@@ -20,31 +20,42 @@ mod x86 {
     use crate::simd::{Avx2, avx2};
 
     avx2! {
-        fn shuffle(_set: Avx2, piece: &[u8; PIECE], index: __m256i) -> __m256i {
+        /// Adds what 32 numbers find in the piece of this number to what they found before.
+        fn look_up_piece(
+            _set: Avx2,
+            piece: &[u8; PIECE],
+            number: usize,
+            index: __m256i,
+            found: __m256i,
+        ) -> __m256i {
+            // What goes below 0 lies beyond 16, too.
+            let index = _mm256_sub_epi8(index, _mm256_set1_epi8((PIECE * number) as i8));
+            let index = _mm256_adds_epu8(index, _mm256_set1_epi8(BEYOND));
             let piece = _mm256_broadcastsi128_si256(must_cast(*piece));
-            _mm256_shuffle_epi8(piece, _mm256_adds_epu8(index, _mm256_set1_epi8(BEYOND)))
+            _mm256_or_si256(found, _mm256_shuffle_epi8(piece, index))
         }
     }
 
-    avx2! {
-        /// Looks 32 numbers up in a table of which `used` entries are not 0; what lies
-        /// beyond those is 0.
-        pub(in crate::simd) fn look_up_avx2(
-            set: Avx2,
-            table: &[u8; TABLE],
-            used: usize,
-            index: __m256i,
-        ) -> __m256i {
-            let pieces: &[[u8; PIECE]; TABLE / PIECE] = must_cast_ref(table);
-            let [first, others @ ..] = pieces;
-            let mut found = shuffle(set, first, index);
-            for (piece, number) in others.iter().zip(1..used.div_ceil(PIECE)) {
-                // What goes below 0 lies beyond 16, too.
-                let index = _mm256_sub_epi8(index, _mm256_set1_epi8((PIECE * number) as i8));
-                found = _mm256_or_si256(found, shuffle(set, piece, index));
+    /// Looks 32 numbers in each register up in a table of which `used` entries are not 0;
+    /// what lies beyond those is 0.
+    #[inline(always)]
+    pub(in crate::simd) fn look_up_avx2<const N: usize>(
+        set: Avx2,
+        table: &[u8; TABLE],
+        used: usize,
+        index: [__m256i; N],
+    ) -> [__m256i; N] {
+        let pieces: &[[u8; PIECE]; TABLE / PIECE] = must_cast_ref(table);
+        let [first, others @ ..] = pieces;
+        let mut found =
+            index.map(|index| look_up_piece(set, first, 0, index, must_cast([0u8; 32])));
+        // How many pieces there are is asked once for all registers.
+        for (piece, number) in others.iter().zip(1..used.div_ceil(PIECE)) {
+            for (found, index) in found.iter_mut().zip(index) {
+                *found = look_up_piece(set, piece, number, index, *found);
             }
-            found
         }
+        found
     }
 }
 

@@ -16,16 +16,12 @@ const HALF: usize = HEADINGS / 2;
 pub(crate) struct Avx2Headings([__m256i; 2]);
 
 avx2! {
-    /// The votes in the bin of each interval that is nearest to the centre.
-    fn look_up(set: Avx2, votes: &BinVotes, first: &[u8; HALF], last: &[u8; HALF]) -> __m256i {
+    /// Where the table has the votes for the bin of each interval that is nearest to the
+    /// centre.
+    fn place(_set: Avx2, votes: &BinVotes, first: &[u8; HALF], last: &[u8; HALF]) -> __m256i {
         let centre = _mm256_set1_epi8(votes.centre.cast_signed());
         let bin = _mm256_max_epu8(_mm256_min_epu8(centre, must_cast(*last)), must_cast(*first));
-        let mut index = _mm256_subs_epu8(bin, _mm256_set1_epi8(votes.base.cast_signed()));
-        // Only then is the last entry, which stands for those beyond, anything but 0.
-        if usize::from(votes.used) == TABLE {
-            index = _mm256_min_epu8(index, _mm256_set1_epi8(TABLE as i8 - 1));
-        }
-        look_up_avx2(set, &votes.table, votes.used.into(), index)
+        _mm256_subs_epu8(bin, _mm256_set1_epi8(votes.base.cast_signed()))
     }
 }
 
@@ -46,13 +42,19 @@ avx2! {
 
         fn of_beam(set: Avx2, votes: &BinVotes, rows: IntervalRows<'_>) -> Avx2Headings {
             let [near_first, near_last, far_first, far_last] = rows;
-            let mut most = [_mm256_setzero_si256(); 2];
-            for (half, most) in most.iter_mut().enumerate() {
-                let near = look_up(set, votes, half_of(near_first, half), half_of(near_last, half));
-                let far = look_up(set, votes, half_of(far_first, half), half_of(far_last, half));
-                *most = _mm256_max_epu8(near, far);
+            let near = |half| place(set, votes, half_of(near_first, half), half_of(near_last, half));
+            let far = |half| place(set, votes, half_of(far_first, half), half_of(far_last, half));
+            let mut places = [near(0), far(0), near(1), far(1)];
+            // Only then is the last entry, which stands for those beyond, anything but 0.
+            if usize::from(votes.used) == TABLE {
+                let last = _mm256_set1_epi8(TABLE as i8 - 1);
+                places = places.map(|place| _mm256_min_epu8(place, last));
             }
-            Avx2Headings(most)
+            let found = look_up_avx2(set, &votes.table, votes.used.into(), places);
+            Avx2Headings([
+                _mm256_max_epu8(found[0], found[1]),
+                _mm256_max_epu8(found[2], found[3]),
+            ])
         }
 
         fn add(self, other: Avx2Headings) -> Avx2Headings {
