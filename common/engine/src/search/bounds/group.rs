@@ -247,3 +247,118 @@ impl<'a, W: BitWords, const N: usize> Column<'a, W, N> {
         self.made += 1;
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use std::ops::Range;
+
+    use proptest::collection::vec;
+    use proptest::prelude::*;
+
+    use super::*;
+    use crate::instruction_set::InstructionSet;
+    use crate::search::bounds::quad_rows::{QuadRows, RowLayout};
+    use crate::search::index::bits::{CHUNK, PLANES};
+    use crate::search::index::sets::{Byte, SetRows};
+    use crate::simd::words::{EMPTY, QUAD};
+    use crate::simd::{Kernel, Set, Simd};
+
+    /// Rows of a quad from one on; a byte has a bit for each of 8 directions, for each block.
+    #[derive(Debug, Clone)]
+    struct Rows(usize, Vec<Vec<Byte>>);
+
+    /// Whether a block sees anything in some rows in a direction.
+    fn sees(
+        Rows(first, plain): &Rows,
+        rows: &Range<usize>,
+        direction: usize,
+        block: usize,
+    ) -> bool {
+        plain.iter().zip(*first..).any(|(row, number)| {
+            rows.contains(&number) && row[direction / 8][block] >> (direction % 8) & 1 == 1
+        })
+    }
+
+    /// Adding a group's windows in some quads one after the other; the sums of the last one
+    /// in some chunks.
+    struct Adding<'a, const N: usize> {
+        group: &'a Group,
+        layout: &'a RowLayout,
+        quads: &'a [Rows],
+        chunks: [usize; N],
+    }
+
+    impl<const N: usize> Kernel for Adding<'_, N> {
+        /// For each chunk, plane by plane.
+        type Result = [[Words; PLANES]; N];
+
+        #[inline(always)]
+        fn run<S: Set>(self, set: S) -> Self::Result {
+            let mut rows = QuadRows::default();
+            rows.fit(self.layout);
+            for Rows(first, plain) in self.quads {
+                SetRows::of(*first, plain, |packed| {
+                    rows.take::<S::Words>(set, self.layout, packed)
+                });
+            }
+            let carries = vec![Aligned(EMPTY); N * self.group.carries()];
+            let mut carries = [carries.clone(), carries.clone(), carries];
+            let mut total = [Several::<S::Words, N>::empty(set); PLANES];
+            let reader = Reader::new(self.layout, &rows, self.chunks);
+            self.group.add(set, reader, &mut carries, &mut total);
+            std::array::from_fn(|chunk| total.map(|plane| plane.0[chunk].to_words()))
+        }
+    }
+
+    fn any_rows(stride: usize) -> impl Strategy<Value = Rows> {
+        // Most bytes have no bits.
+        let byte = prop_oneof![3 => Just([0; QUAD]), 1 => any::<Byte>()];
+        let rows = (0usize..58, vec(vec(byte, stride), 0..6));
+        rows.prop_map(|(first, plain)| Rows(first, plain))
+    }
+
+    prop_compose! {
+        fn any_window(stride: usize)(
+            start in 0usize..60, length in 1usize..5, byte in 0..stride, plane in 0usize..4,
+        ) -> (usize, Range<usize>, usize) {
+            (plane, start..start + length, byte)
+        }
+    }
+
+    proptest! {
+        #[test]
+        fn sums_are_those_of_the_windows_that_see_anything(
+            (stride, quads, windows) in (1usize..50).prop_flat_map(|stride| {
+                (Just(stride), vec(any_rows(stride), 1..4), vec(any_window(stride), 0..20))
+            }),
+            shift in 0u32..8, place in any::<prop::sample::Index>(),
+        ) {
+            let directions = 8 * stride;
+            let mut layout = RowLayout::default();
+            layout.start(directions);
+            let mut group = Group::new(shift);
+            for (plane, rows, byte) in &windows {
+                group.push(*plane, layout.window(rows.clone(), *byte));
+            }
+            group.lay_out(layout.nothing());
+            let last = place.index(directions.div_ceil(CHUNK));
+            for set in InstructionSet::available() {
+                let (group, layout, quads) = (&group, &layout, &quads[..]);
+                let adding = Adding { group, layout, quads, chunks: [0, last] };
+                let found = Simd::new(set).run(adding);
+                for (chunk, planes) in [0, last].into_iter().zip(found) {
+                    for (lane, block) in (0..CHUNK).flat_map(|lane| (0..QUAD).map(move |block| (lane, block))) {
+                        let sees = |(plane, rows, byte): &(usize, Range<usize>, usize)| {
+                            let direction = chunk * CHUNK + lane + 8 * byte + shift as usize;
+                            u32::from(sees(&quads[quads.len() - 1], rows, direction % directions, block)) << plane
+                        };
+                        let expected: u32 = windows.iter().map(sees).sum();
+                        let bit = |words: &Words| (words[lane / 64][block] >> (lane % 64) & 1) as u32;
+                        let sum: u32 = planes.iter().enumerate().map(|(i, words)| bit(words) << i).sum();
+                        prop_assert_eq!(sum, expected, "{} chunk {} lane {} block {}", set, chunk, lane, block);
+                    }
+                }
+            }
+        }
+    }
+}

@@ -209,5 +209,51 @@ mod tests {
                 prop_assert_eq!(&left, &waiting);
             }
         }
+
+        #[test]
+        fn leaves_come_first_where_it_dives_and_nothing_below_the_floor(
+            steps in vec(
+                prop_oneof![
+                    3 => (0u16..50, any::<bool>()).prop_map(Ok),
+                    2 => (any::<bool>(), 0u16..60).prop_map(Err),
+                ],
+                0..100,
+            ),
+        ) {
+            let mut queue = Queue::default();
+            let mut waiting: Vec<(bool, u16, u32)> = Vec::new();
+            for (index, step) in (0..).zip(steps) {
+                match step {
+                    Ok((bound, is_leaf)) => {
+                        let leaf = Level::Leaf { start: 0, end: 0 };
+                        let level = if is_leaf { leaf } else { Level::Coarse };
+                        queue.push(Block { bound, index, level });
+                        waiting.push((is_leaf, bound, index));
+                    }
+                    Err((dives, floor)) => {
+                        let popped = queue.pop(dives, floor).map(|block| block.index);
+                        // Those below the floor are given up as soon as one is met.
+                        let next = |waiting: &[(bool, u16, u32)]| {
+                            let key = |&(leaf, bound, index): &(bool, u16, u32)| {
+                                (dives && leaf, bound, !leaf, index)
+                            };
+                            waiting.iter().copied().max_by_key(key)
+                        };
+                        let mut expected = None;
+                        while let Some(first) = next(&waiting) {
+                            let (leaf, bound, index) = first;
+                            if bound >= floor {
+                                expected = Some(index);
+                                waiting.retain(|&other| other != first);
+                                break;
+                            }
+                            waiting.retain(|&(other, ..)| other != leaf);
+                        }
+                        prop_assert_eq!(popped, expected);
+                    }
+                }
+            }
+            prop_assert_eq!(queue.iter().count(), waiting.len());
+        }
     }
 }

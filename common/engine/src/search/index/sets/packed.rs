@@ -119,6 +119,19 @@ impl<'a> SetRows<'a> {
 }
 
 #[cfg(test)]
+impl SetRows<'_> {
+    /// Packs rows of as many bytes each, of which the first has this number.
+    pub(crate) fn of(first: usize, plain: &[Vec<Byte>], then: impl FnOnce(&SetRows<'_>)) {
+        let stride = plain.first().map_or(1, Vec::len);
+        let mut packed = PackedRows::default();
+        plain.iter().for_each(|row| packed.push(row));
+        packed.finish();
+        let rows = first..first + plain.len();
+        then(&SetRows::new(rows, stride, (&packed.masks, &packed.bytes)));
+    }
+}
+
+#[cfg(test)]
 mod tests {
     use proptest::collection::vec;
     use proptest::prelude::*;
