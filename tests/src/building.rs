@@ -3,12 +3,11 @@
 
 use std::f64::consts::TAU;
 
-use engine::fit::{Ends, Terrain};
 use engine::grid::{CellRules, GridFrame};
-use engine::localizer::{Localizer, LocalizerConfig, Prior};
-use engine::peaks::{PeakConfig, PeakInput, Places, by_fit};
+use engine::localizer::{LocalizerConfig, Prior};
+use engine::locator::{Locator, LocatorConfig, OccupancyView};
+use engine::peaks::PeakConfig;
 use engine::scan::Scan;
-use engine::space::Space;
 use geometry::Pose;
 
 /// Left, bottom, right and top, metres.
@@ -154,42 +153,21 @@ pub struct BuildingMap {
     pub occupancy: Vec<u8>,
 }
 
-/// A map that is ready to be asked, as in the graph.
-#[derive(Debug)]
-pub struct Locator {
-    localizer: Localizer,
-    terrain: Terrain,
-    space: Space,
-}
-
 impl BuildingMap {
     /// Prepares the map.
     #[must_use]
     pub fn locator(&self, config: LocalizerConfig) -> Locator {
-        let (frame, sides, rules) = (self.frame, self.sides, CellRules::default());
-        Locator {
-            terrain: Terrain::new(frame, sides, &self.occupancy, rules).unwrap(),
-            space: Space::new(config.headings, frame.resolution_m, sides.0, sides.1).unwrap(),
-            localizer: Localizer::of_map(frame, sides, &self.occupancy, rules, config, Prior::None)
-                .unwrap(),
-        }
-    }
-}
-
-impl Locator {
-    /// The places at which a scan may have been taken.
-    #[must_use]
-    pub fn locate(&self, scan: &Scan<'_>) -> Places {
-        let outcome = self.localizer.search(scan, &|| false).unwrap().unwrap();
-        let beams = self.localizer.config().votes.beams;
-        let ends = Ends::new(scan, &self.space, &beams).unwrap();
-        let input = PeakInput::of(&outcome, self.localizer.frame());
-        by_fit(&input, (&self.terrain, &ends), &PeakConfig::default())
-    }
-
-    /// The localizer alone.
-    #[must_use]
-    pub fn localizer(&self) -> &Localizer {
-        &self.localizer
+        let view = OccupancyView {
+            frame: self.frame,
+            sides: self.sides,
+            occupancy: &self.occupancy,
+            rules: CellRules::default(),
+        };
+        let peaks = PeakConfig::default();
+        let config = LocatorConfig {
+            localizer: config,
+            peaks,
+        };
+        Locator::new(view, config, Prior::None).unwrap()
     }
 }

@@ -21,6 +21,7 @@
 //! odometry (`motion`), and what is searched is an `observation` of carried scans.
 //! Where the robot goes from the places that were found, `particles` follow it.
 //!
+//! A [`locator::Locator`] is all of it in one call: start there, its example compiles.
 //! `docs/engine.md` explains the method with drawings.
 //!
 //! The crate knows no process, socket, clock or file.
@@ -40,6 +41,7 @@ pub mod instruction_set;
 pub mod joined;
 pub mod limits;
 pub mod localizer;
+pub mod locator;
 pub mod motion;
 pub mod observation;
 pub mod particles;

@@ -1,18 +1,14 @@
-//! The node's heart: from a scan to its places on one map. Pure: no socket, no
-//! clock, no file.
-//!
-//! It does what the graph's accumulator and peak extractor do, with the same
-//! engine and the same settings, and answers as they would.
+//! The node's heart: from a scan to the message that the graph's peak extractor would
+//! send. Pure: no socket, no clock, no file.
 
 use bytemuck::Zeroable;
 use engine::EngineError;
-use engine::beams::BeamConfig;
-use engine::fit::{Ends, Terrain};
 use engine::grid::{CellRules, GridFrame};
-use engine::localizer::{self, Localizer, LocalizerConfig, Prior};
-use engine::peaks::{self, PeakConfig, PeakInput, Places, Score, Sought};
+use engine::localizer::Prior;
+use engine::locator::{LocatorConfig, OccupancyView};
+pub use engine::locator::Workspace;
+use engine::peaks::{Places, Sought};
 use engine::scan::Scan;
-use engine::space::Space;
 use map::OccupancyGrid;
 use messages::{HypothesesHeader, Hypothesis, ScanHeader};
 
@@ -20,19 +16,7 @@ use messages::{HypothesesHeader, Hypothesis, ScanHeader};
 #[derive(Debug)]
 pub struct Locator {
     map_id: u64,
-    localizer: Localizer,
-    terrain: Terrain,
-    space: Space,
-    beams: BeamConfig,
-    peaks: PeakConfig,
-}
-
-/// What locating takes, kept from scan to scan by each thread.
-#[derive(Debug, Default)]
-pub struct Workspace {
-    localizer: localizer::Workspace,
-    ends: Ends,
-    peaks: peaks::Workspace,
+    engine: engine::locator::Locator,
 }
 
 /// Header and items of `hypotheses`, all but the times of computing.
@@ -46,22 +30,20 @@ impl Locator {
     pub fn new(
         map: &OccupancyGrid,
         rules: CellRules,
-        config: &LocalizerConfig,
-        peaks: PeakConfig,
+        config: LocatorConfig,
     ) -> Result<Self, EngineError> {
-        let frame = GridFrame {
-            resolution_m: map.resolution_m,
-            map_from_grid: map.map_from_grid,
+        let view = OccupancyView {
+            frame: GridFrame {
+                resolution_m: map.resolution_m,
+                map_from_grid: map.map_from_grid,
+            },
+            sides: (map.width as usize, map.height as usize),
+            occupancy: &map.cells,
+            rules,
         };
-        let sides = (map.width as usize, map.height as usize);
-        let (cells, headings) = (&map.cells, config.headings);
         Ok(Locator {
             map_id: map.id(),
-            terrain: Terrain::new(frame, sides, cells, rules)?,
-            space: Space::new(headings, frame.resolution_m, sides.0, sides.1)?,
-            beams: config.votes.beams,
-            localizer: Localizer::of_map(frame, sides, cells, rules, config.clone(), Prior::None)?,
-            peaks,
+            engine: engine::locator::Locator::new(view, config, Prior::None)?,
         })
     }
 
@@ -81,30 +63,13 @@ impl Locator {
         (header, ranges): (&ScanHeader, &[f32]),
         stop: &dyn Fn() -> bool,
     ) -> Result<Option<Answer>, EngineError> {
-        let Workspace {
-            localizer,
-            ends,
-            peaks,
-        } = workspace;
         let scan = Scan::of(header, ranges);
-        let Some(outcome) = self.localizer.search_in(localizer, &scan, stop)? else {
-            return Ok(None);
-        };
-        let input = PeakInput::of(outcome, self.localizer.frame());
-        let places = match self.peaks.score {
-            Score::Votes => peaks.by_votes(&input, &self.peaks),
-            Score::Fit => {
-                ends.find(&scan, &self.space, &self.beams)?;
-                peaks.by_fit(&input, (&self.terrain, ends), &self.peaks)
-            }
-        };
-        let (best, highest) = (outcome.found.best.into(), outcome.highest_possible);
-        Ok(Some(described(
-            header,
-            self.map_id,
-            (best, highest),
-            places,
-        )))
+        let found = self.engine.locate_unless(workspace, &scan, None, stop)?;
+        Ok(found.map(|found| {
+            let outcome = found.outcome;
+            let votes = (outcome.found.best.into(), outcome.highest_possible);
+            described(header, self.map_id, votes, found.places)
+        }))
     }
 }
 

@@ -19,7 +19,7 @@ use geometry::{Covariance, Pose, wrap_angle};
 use messages::{Hypothesis, Verdict, Vote};
 use nalgebra::Matrix3;
 
-use crate::fit::BeamClass;
+use crate::fit::{BeamClass, Ends, Terrain};
 use crate::grid::GridFrame;
 use crate::localizer::Outcome;
 pub use by_fit::by_fit;
@@ -262,6 +262,48 @@ pub struct Workspace {
     /// Of the best place over each.
     leads: Vec<f64>,
     places: Places,
+    /// The beams of the last scan that was compared with a map.
+    ends: Ends,
+}
+
+/// What votes and the scan say about the pose.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Judged<'w> {
+    /// Distinct places, and the verdict.
+    pub places: &'w Places,
+    /// The beams that were compared with the map; none where the votes alone decide.
+    pub ends: Option<&'w Ends>,
+}
+
+impl Workspace {
+    /// Reads the places as the settings want it: from the votes alone, or from how well the
+    /// scan fits the map, which is then asked for. The map must be that of the votes; its
+    /// cells may be finer, with the same origin.
+    ///
+    /// # Errors
+    /// What `scan` says.
+    pub fn judge<E>(
+        &mut self,
+        input: &PeakInput<'_>,
+        terrain: &Terrain,
+        config: &PeakConfig,
+        scan: impl FnOnce(&mut Ends) -> Result<(), E>,
+    ) -> Result<Judged<'_>, E> {
+        if config.score == Score::Votes {
+            let places = self.by_votes(input, config);
+            return Ok(Judged { places, ends: None });
+        }
+        // Out of the workspace while that is at work.
+        let mut ends = std::mem::take(&mut self.ends);
+        let found = scan(&mut ends).map(|()| {
+            self.by_fit(input, (terrain, &ends), config);
+        });
+        self.ends = ends;
+        found.map(|()| Judged {
+            places: &self.places,
+            ends: Some(&self.ends),
+        })
+    }
 }
 
 #[cfg(test)]

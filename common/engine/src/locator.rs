@@ -1,0 +1,241 @@
+//! From a scan to the places where it may have been taken, in one call.
+//!
+//! ```text
+//! scan ── Localizer: votes ── peaks::Workspace::judge: places, verdict
+//! ```
+//!
+//! The graph runs the two halves in two processes, the accumulator and the peak
+//! extractor; a [`Locator`] runs them one after the other, with the same code.
+
+use crate::EngineError;
+use crate::beams::BeamConfig;
+use crate::fit::{Ends, Terrain};
+use crate::grid::{CellRules, GridFrame};
+use crate::localizer::{self, Localizer, LocalizerConfig, Outcome, Prior};
+use crate::observation::Observation;
+use crate::peaks::{self, Judged, PeakConfig, PeakInput};
+use crate::space::Space;
+
+/// A map of occupancies.
+#[derive(Debug, Clone, Copy)]
+pub struct OccupancyView<'a> {
+    /// Where the cells lie in the map frame.
+    pub frame: GridFrame,
+    /// Cells along x and y.
+    pub sides: (usize, usize),
+    /// Per cent, or [`messages::UNKNOWN`], row by row from the lowest y.
+    pub occupancy: &'a [u8],
+    /// Which of them are occupied, free or unknown.
+    pub rules: CellRules,
+}
+
+/// How scans are located.
+#[derive(Debug, Clone, PartialEq, Default)]
+pub struct LocatorConfig {
+    /// The first stage: which poses have the most votes.
+    pub localizer: LocalizerConfig,
+    /// The second stage: which places these are, and whether one stands alone.
+    pub peaks: PeakConfig,
+}
+
+/// A map that is ready to be asked, by any number of threads.
+///
+/// ```
+/// use engine::grid::{CellRules, GridFrame};
+/// use engine::localizer::Prior;
+/// use engine::locator::{Locator, LocatorConfig, OccupancyView, Workspace};
+/// use engine::scan::Scan;
+/// use geometry::Pose;
+/// use messages::Verdict;
+///
+/// // A hall of 12 m × 8 m with a store room in a corner, cells of 0.1 m.
+/// let (width, height) = (120, 80);
+/// let is_wall = |x: usize, y: usize| {
+///     x < 2 || y < 2 || x >= width - 2 || y >= height - 2 || (x > 75 && y > 50)
+/// };
+/// let occupancy: Vec<u8> = (0..width * height)
+///     .map(|i| if is_wall(i % width, i / width) { 100 } else { 0 })
+///     .collect();
+/// let map = OccupancyView {
+///     frame: GridFrame { resolution_m: 0.1, map_from_grid: Pose::IDENTITY },
+///     sides: (width, height),
+///     occupancy: &occupancy,
+///     rules: CellRules::default(),
+/// };
+/// let locator = Locator::new(map, LocatorConfig::default(), Prior::None)?;
+///
+/// // What a laser with a beam a degree reads at 3 m, 2.5 m, turned by a radian.
+/// let truth = Pose::new(3.0, 2.5, 1.0);
+/// let ranges: Vec<f32> = (0..360)
+///     .map(|beam| {
+///         let (sin, cos) = (truth.yaw + f64::from(beam).to_radians()).sin_cos();
+///         let (x, y) = (10.0 * truth.x, 10.0 * truth.y);
+///         let is_free = |r: &f64| !is_wall((x + r * cos) as usize, (y + r * sin) as usize);
+///         let cells = (0..).map(|step| 0.1 * f64::from(step)).take_while(is_free).last();
+///         0.1 * cells.unwrap_or_default() as f32
+///     })
+///     .collect();
+/// let scan = Scan {
+///     angle_min: 0.0,
+///     angle_increment: 1f64.to_radians(),
+///     range_min_m: 0.1,
+///     range_max_m: 30.0,
+///     ranges: &ranges,
+/// };
+///
+/// let mut workspace = Workspace::default();
+/// let found = locator.locate(&mut workspace, &scan)?;
+/// assert_eq!(found.places.verdict, Verdict::Unique);
+/// assert!(found.places.places[0].map_from_laser.is_within(truth, 0.1, 0.02));
+/// # Ok::<(), engine::EngineError>(())
+/// ```
+#[derive(Debug, Clone)]
+pub struct Locator {
+    localizer: Localizer,
+    terrain: Terrain,
+    /// That of the map as it is, where the localizer may search a coarser one.
+    space: Space,
+    peaks: PeakConfig,
+}
+
+/// What locating takes, kept from scan to scan: once there is room for all, nothing is
+/// allocated any more. It may serve any locator.
+#[derive(Debug, Default)]
+pub struct Workspace {
+    localizer: localizer::Workspace,
+    peaks: peaks::Workspace,
+}
+
+/// What a scan says about the pose.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Located<'w> {
+    /// The votes, and how they were come by.
+    pub outcome: &'w Outcome,
+    /// What they say, the verdict included.
+    pub places: &'w peaks::Places,
+    /// The scan's beams as they were compared with the map; none where the votes alone
+    /// decide.
+    pub ends: Option<&'w Ends>,
+}
+
+impl Locator {
+    /// Prepares a map, which takes from milliseconds to seconds.
+    ///
+    /// # Errors
+    /// If the map has no occupied or no free cell, or a setting is out of range.
+    pub fn new(
+        map: OccupancyView<'_>,
+        config: LocatorConfig,
+        prior: Prior,
+    ) -> Result<Self, EngineError> {
+        let LocatorConfig { localizer, peaks } = config;
+        let OccupancyView {
+            frame,
+            sides,
+            occupancy,
+            rules,
+        } = map;
+        let localizer = Localizer::of_map(frame, sides, occupancy, rules, localizer, prior)?;
+        Self::with(localizer, map, peaks)
+    }
+
+    /// The same with a localizer that was prepared for the map before.
+    ///
+    /// # Errors
+    /// See [`Locator::new`].
+    pub fn with(
+        localizer: Localizer,
+        map: OccupancyView<'_>,
+        peaks: PeakConfig,
+    ) -> Result<Self, EngineError> {
+        let ((width, height), headings) = (map.sides, localizer.config().headings);
+        Ok(Locator {
+            terrain: Terrain::new(map.frame, map.sides, map.occupancy, map.rules)?,
+            space: Space::new(headings, map.frame.resolution_m, width, height)?,
+            localizer,
+            peaks,
+        })
+    }
+
+    /// The places at which a scan may have been taken; the locator must be prepared for
+    /// unknown headings.
+    ///
+    /// # Errors
+    /// If the scan is refused, see [`Observation::check`].
+    ///
+    /// # Panics
+    /// If the locator was prepared for known headings.
+    pub fn locate<'w, 's>(
+        &self,
+        workspace: &'w mut Workspace,
+        scan: impl Into<Observation<'s>>,
+    ) -> Result<Located<'w>, EngineError> {
+        let found = self.locate_unless(workspace, scan, None, &|| false)?;
+        Ok(found.expect("a search that nothing stops ends with an outcome"))
+    }
+
+    /// The same, among all positions at a heading in the map frame, radians, where one is
+    /// given; `None` if `stop` said so before the end.
+    ///
+    /// # Errors
+    /// If the scan is refused, see [`Observation::check`], or the heading not finite.
+    ///
+    /// # Panics
+    /// If the locator was prepared for unknown headings and one is given, or the other way
+    /// round.
+    pub fn locate_unless<'w, 's>(
+        &self,
+        workspace: &'w mut Workspace,
+        scan: impl Into<Observation<'s>>,
+        heading: Option<f64>,
+        stop: &dyn Fn() -> bool,
+    ) -> Result<Option<Located<'w>>, EngineError> {
+        let (scan, localizer) = (scan.into(), &mut workspace.localizer);
+        let found = match heading {
+            Some(heading) => self.localizer.search_at_in(localizer, scan, heading, stop)?,
+            None => self.localizer.search_in(localizer, scan, stop)?,
+        };
+        let Some(outcome) = found else {
+            return Ok(None);
+        };
+        let input = PeakInput::of(outcome, self.localizer.frame());
+        let find = |ends: &mut Ends| ends.find(scan, &self.space, self.beams());
+        let peaks = &mut workspace.peaks;
+        let Judged { places, ends } = peaks.judge(&input, &self.terrain, &self.peaks, find)?;
+        Ok(Some(Located {
+            outcome,
+            places,
+            ends,
+        }))
+    }
+
+    /// The beams of a scan, as the second stage compares them with the map.
+    ///
+    /// # Errors
+    /// If the scan is refused, see [`Observation::check`].
+    pub fn ends<'s>(&self, scan: impl Into<Observation<'s>>) -> Result<Ends, EngineError> {
+        Ends::new(scan, &self.space, self.beams())
+    }
+
+    fn beams(&self) -> &BeamConfig {
+        &self.localizer.config().votes.beams
+    }
+
+    /// The first stage.
+    #[must_use]
+    pub fn localizer(&self) -> &Localizer {
+        &self.localizer
+    }
+
+    /// The map as the second stage reads it.
+    #[must_use]
+    pub fn terrain(&self) -> &Terrain {
+        &self.terrain
+    }
+
+    /// How the second stage judges places.
+    #[must_use]
+    pub fn peaks(&self) -> &PeakConfig {
+        &self.peaks
+    }
+}
