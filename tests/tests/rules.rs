@@ -194,14 +194,40 @@ fn the_first_command_builds_every_node_but_those_that_take_long() {
         .into_iter()
         .filter(|node| !takes_long(&dependencies[node]))
         .collect();
-    assert_eq!(built, expected);
+    let nodes = built.into_iter().filter(|name| name != "shared_features");
+    assert_eq!(nodes.collect::<BTreeSet<_>>(), expected);
+}
+
+/// Each dependency with its features, as a line, in the build that the options choose.
+fn features(options: &[&str]) -> BTreeSet<String> {
+    let mut command = Command::new(env!("CARGO"));
+    command.args(["tree", "--locked", "--prefix", "none", "--no-dedupe"]);
+    command.args(["--format", "{p} {f}"]).args(options);
+    let output = command.current_dir(tests::root()).output().unwrap();
+    assert!(output.status.success(), "{output:?}");
+    let text = String::from_utf8(output.stdout).unwrap();
+    text.lines().map(str::to_owned).collect()
+}
+
+/// Otherwise each of the two compiles its own iceoryx2 and tokio, which takes minutes.
+#[test]
+fn a_run_and_the_tests_use_the_same_dependencies() {
+    let run = features(&["--edges", "no-dev"]);
+    let tests = features(&["--workspace"]);
+    assert!(run.len() > 200, "{run:?}");
+    let differs: Vec<_> = run.difference(&tests).collect();
+    assert!(
+        differs.is_empty(),
+        "in a build of the workspace these have other features, \
+         to be listed in common/shared_features/Cargo.toml: {differs:#?}"
+    );
 }
 
 #[test]
 fn only_what_is_asked_over_a_network_has_a_runtime_for_it() {
     for (name, dependencies) in dependencies() {
-        let may =
-            ZENOH_NODES.contains(&name.as_str()) || ["dashboard", "tests"].contains(&name.as_str());
+        let may = ZENOH_NODES.contains(&name.as_str())
+            || ["dashboard", "shared_features", "tests"].contains(&name.as_str());
         for library in ["tokio", "axum"] {
             assert!(
                 may || !dependencies.contains(library),
