@@ -5,8 +5,8 @@ use std::f64::consts::TAU;
 
 use engine::grid::{CellRules, GridFrame};
 use engine::localizer::{LocalizerConfig, Prior};
-use engine::locator::{Locator, LocatorConfig, OccupancyView};
-use engine::peaks::PeakConfig;
+use engine::locator::{Locator, LocatorConfig, OccupancyView, Workspace};
+use engine::peaks::{PeakConfig, Places};
 use engine::scan::Scan;
 use geometry::Pose;
 
@@ -170,4 +170,11 @@ impl BuildingMap {
         };
         Locator::new(view, config, Prior::None).unwrap()
     }
+}
+
+/// The places at which a scan may have been taken.
+#[must_use]
+pub fn places(locator: &Locator, scan: &Scan<'_>) -> Places {
+    let mut workspace = Workspace::default();
+    locator.locate(&mut workspace, scan).unwrap().places.clone()
 }

@@ -9,6 +9,7 @@ pub mod executables;
 pub mod http;
 pub mod live;
 pub mod machine;
+pub mod needs;
 pub mod network;
 pub mod python;
 pub mod recorded;

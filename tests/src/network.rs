@@ -10,6 +10,8 @@ use std::process::{Child, Command, Stdio};
 use transport::Graph;
 use transport::testing::NodeProcess;
 
+use crate::needs::Need;
+
 /// Set for a test that runs in a user namespace of its own.
 const INSIDE: &str = "BACKCAST_TEST_INSIDE";
 
@@ -39,7 +41,7 @@ pub fn is_allowed(test: &str) -> bool {
         "true",
     ];
     if std::env::var_os(INSIDE).is_some() || !succeeds("unshare", &alone) {
-        eprintln!("SKIPPED: {test}: this kernel lets this user make no network namespaces");
+        Need::Namespaces.is_missing(test, "this kernel lets this user make none for networks");
         return false;
     }
     let status = Command::new("unshare")

@@ -6,6 +6,7 @@ use std::process::{Child, ChildStdin, ChildStdout, Command, Stdio};
 
 use serde_json::{Value, json};
 
+use crate::needs::Need;
 use crate::python;
 
 /// What it is made of, and their versions.
@@ -32,7 +33,8 @@ impl Robot {
     #[must_use]
     pub fn start(endpoint: &str, recording: &Path, namespace: &str) -> Option<Self> {
         let Some(python) = python::with("robot", &LIBRARIES, "zenoh_ros2_sdk, rosbags") else {
-            eprintln!("SKIPPED: no Python with {LIBRARIES:?}: no python3, or no network");
+            let why = format!("none with {LIBRARIES:?}: no python3, or no network");
+            Need::Python.is_missing("a robot with ROS 2", &why);
             return None;
         };
         let mut process = Command::new(python)

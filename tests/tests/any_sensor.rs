@@ -9,10 +9,11 @@ use std::f64::consts::TAU;
 
 use engine::grid::{CellRules, Grid, Pooled};
 use engine::localizer::{Localizer, LocalizerConfig, Prior};
+use engine::locator::Locator;
 use engine::peaks::{Place, Places};
 use geometry::{Pose, angle_between};
 use messages::Verdict;
-use tests::building::{Building, Laser, Locator};
+use tests::building::{Building, Laser, places};
 
 /// An office: a corridor, rooms of different sizes with a door each, and
 /// furniture.
@@ -57,7 +58,7 @@ fn error(places: &Places, truth: Pose) -> (f64, f64) {
 
 fn locate(locator: &Locator, truth: Pose, laser: Laser) -> Places {
     let ranges = office().ranges(truth, laser);
-    locator.locate(&laser.scan(&ranges))
+    places(locator, &laser.scan(&ranges))
 }
 
 #[test]
@@ -150,7 +151,7 @@ fn a_ring_of_eight_sonars_is_never_sure_of_a_wrong_place() {
         for beam in [1, 2, 9, 10] {
             ranges[beam] = f32::NAN;
         }
-        let places = locator.locate(&laser.scan(&ranges));
+        let places = places(&locator, &laser.scan(&ranges));
         let (metres, degrees) = error(&places, truth);
         let is_right = metres < 0.5 && degrees < 10.0;
         assert!(places.verdict != Verdict::Unique || is_right, "{truth:?}");

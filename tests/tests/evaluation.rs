@@ -12,7 +12,10 @@ use recording::Recording;
 use serde_json::Value;
 use tempfile::TempDir;
 use tests::executables;
+use tests::needs::Need;
 use tests::recorded::graph;
+
+const NOT_THERE: &str = "no folder shared/data/evaluation beside the project";
 
 /// Independent scans of two buildings.
 const FILES: [&str; 2] = ["fr079_queries.mcap", "seattle_queries.mcap"];
@@ -64,7 +67,7 @@ fn of_graph(recording: &Path, folder: &TempDir) -> Value {
 #[test]
 fn the_graph_finds_what_evaluate_finds() {
     let Some(data) = tests::evaluation_data() else {
-        eprintln!("SKIPPED: there is no folder shared/data/evaluation beside the project");
+        Need::Data.is_missing("the_graph_finds_what_evaluate_finds", NOT_THERE);
         return;
     };
     for file in FILES {
@@ -88,4 +91,18 @@ fn the_graph_finds_what_evaluate_finds() {
         assert_eq!(by_graph["answered"], by_engine["scans"], "{file}");
         assert_eq!(by_graph["dropped"], 0, "{file}");
     }
+}
+
+#[test]
+fn a_public_building_is_found() {
+    let Some(data) = tests::evaluation_data() else {
+        Need::Data.is_missing("a_public_building_is_found", NOT_THERE);
+        return;
+    };
+    let mut command = executables::backcast();
+    command.args(["evaluate", "--every", "4", "--json"]);
+    let found = last_line(command.arg(data.join("intel_queries.mcap")));
+    assert_eq!(found["truths"], 50);
+    let success = found["success_50cm_10deg"].as_f64().unwrap();
+    assert!(success >= 0.90, "{found}");
 }

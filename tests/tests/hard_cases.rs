@@ -9,12 +9,12 @@ use engine::localizer::LocalizerConfig;
 use engine::peaks::Places;
 use geometry::Pose;
 use messages::Verdict;
-use tests::building::{Building, Laser, Rectangle};
+use tests::building::{Building, Laser, Rectangle, places};
 
 /// A scan of what a laser reads all around, on the building's map.
 fn locate(building: &Building, ranges: &[f32]) -> Places {
     let locator = building.map(0.05).locator(LocalizerConfig::default());
-    locator.locate(&Laser::AROUND.scan(ranges))
+    places(&locator, &Laser::AROUND.scan(ranges))
 }
 
 fn seen(building: &Building, pose: Pose) -> Vec<f32> {

@@ -14,6 +14,7 @@ use tempfile::TempDir;
 use tests::browser::Browser;
 use tests::executables;
 use tests::http::token_file;
+use tests::needs::Need;
 use tests::recorded::graph_with;
 use tests::world::World;
 
@@ -116,7 +117,8 @@ const POSE: &str = "document.getElementById('pose-x').textContent";
 #[test]
 fn an_operator_sees_the_graph_and_what_befalls_it() {
     let Some(browser) = Browser::open(1280, 800) else {
-        eprintln!("SKIPPED: the page is not looked at: there is no chromium or no chromedriver");
+        let test = "an_operator_sees_the_graph_and_what_befalls_it";
+        Need::Browser.is_missing(test, "there is no chromium or no chromedriver");
         return;
     };
     let world = World::of("malaga_corridor");

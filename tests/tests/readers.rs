@@ -11,6 +11,7 @@ use std::process::Command;
 use recording::{Message, Recording};
 use serde_json::{Value, json};
 use tempfile::TempDir;
+use tests::needs::Need;
 use tests::recorded::{messages, record};
 use tests::world::World;
 use tests::{executables, python};
@@ -117,7 +118,8 @@ print(json.dumps({"read": out, "own": own}))
 fn python() -> Option<PathBuf> {
     let python = python::with("readers", &READERS, "mcap_ros2, rosbags");
     if python.is_none() {
-        eprintln!("SKIPPED: no Python with {READERS:?}: there is no python3, or no network");
+        let why = format!("none with {READERS:?}: no python3, or no network");
+        Need::Python.is_missing("a reader of recordings", &why);
     }
     python
 }

@@ -13,6 +13,7 @@ use messages::topic;
 use nix::sys::signal::{Signal, kill};
 use serde_json::{Value, json};
 use tests::live::{Live, files_of};
+use tests::needs::Need;
 use transport::testing::wait_for_health;
 use transport::{Graph, GraphName};
 
@@ -190,7 +191,7 @@ fn has_own_shared_memory(test: &str, size: &str) -> bool {
         .stderr(Stdio::null())
         .status();
     if !probe.is_ok_and(|status| status.success()) {
-        eprintln!("SKIPPED: {test}: this kernel lets this user mount nothing");
+        Need::Namespaces.is_missing(test, "this kernel lets this user mount nothing");
         return false;
     }
     let inner = format!("{mount} && exec \"$0\" {test} --exact --nocapture");

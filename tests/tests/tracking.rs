@@ -12,6 +12,7 @@ use messages::{PoseHeader, TrackState, topic};
 use serde_json::Value;
 use tempfile::TempDir;
 use tests::executables;
+use tests::needs::Need;
 use tests::world::World;
 use transport::testing::{Isolated, NodeProcess};
 use transport::{Flow, TransportError};
@@ -139,7 +140,8 @@ fn figures(recording: &Path, options: &[&str]) -> Value {
 #[test]
 fn drives_of_other_robots_are_tracked() {
     let Some(folder) = tests::evaluation_data() else {
-        eprintln!("left out: the recordings of other robots are not here");
+        let test = "drives_of_other_robots_are_tracked";
+        Need::Data.is_missing(test, "no folder shared/data/evaluation beside the project");
         return;
     };
     for (file, right) in [

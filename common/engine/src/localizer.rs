@@ -1,6 +1,7 @@
 //! A map and its settings, ready to be asked where scans were taken.
 
 mod config;
+mod field;
 mod preparation;
 
 use std::sync::Arc;
@@ -13,11 +14,11 @@ use crate::limits::Limits;
 use crate::observation::Observation;
 use crate::program::ScanProgram;
 use crate::search::{self, BlockBounds, SearchIndex};
-use crate::simd::Simd;
 use crate::space::Space;
-use crate::sweep::{self, FieldSweep};
+use crate::sweep;
 use crate::votes::{FieldVotes, VoteSet};
-pub use config::LocalizerConfig;
+pub use config::{FieldMethod, LocalizerConfig};
+use field::Fields;
 pub use preparation::Preparation;
 
 /// What the localizer knows of the heading beforehand.
@@ -43,7 +44,7 @@ pub struct Localizer {
 #[derive(Debug, Clone)]
 enum Method {
     Search(Arc<SearchIndex>),
-    Sweep(FieldSweep, Limits),
+    Field(Box<Fields>, Limits),
 }
 
 /// What answering scans takes beside the map, and the last answer. Kept from
@@ -123,7 +124,7 @@ impl Localizer {
     pub fn search_index(&self) -> Option<Arc<SearchIndex>> {
         match &self.method {
             Method::Search(index) => Some(Arc::clone(index)),
-            Method::Sweep(..) => None,
+            Method::Field(..) => None,
         }
     }
 
@@ -162,14 +163,14 @@ impl Localizer {
     pub fn index_bytes(&self) -> usize {
         match &self.method {
             Method::Search(index) => index.bytes(),
-            Method::Sweep(sweeps, _) => sweeps.bytes(),
+            Method::Field(fields, _) => fields.bytes(),
         }
     }
 
     fn limits(&self) -> &Limits {
         match &self.method {
             Method::Search(index) => index.limits(),
-            Method::Sweep(_, limits) => limits,
+            Method::Field(_, limits) => limits,
         }
     }
 
@@ -294,7 +295,7 @@ impl Localizer {
         heading: f64,
         stop: &dyn Fn() -> bool,
     ) -> Result<Option<&'w Outcome>, EngineError> {
-        let Method::Sweep(sweeps, limits) = &self.method else {
+        let Method::Field(fields, limits) = &self.method else {
             panic!("this localizer was prepared for unknown headings");
         };
         if !heading.is_finite() {
@@ -319,8 +320,8 @@ impl Localizer {
             space: &self.space,
             heading: index,
         };
-        let best = Simd::new(InstructionSet::best());
-        if sweeps.fill(best, query, sweep, field, stop).is_none() {
+        let how = (&self.grid, self.config.method);
+        if fields.fill(how, query, (sweep, field), stop).is_none() {
             return Ok(None);
         }
         limits.clear(field, index);

@@ -192,7 +192,9 @@ impl Locator {
     ) -> Result<Option<Located<'w>>, EngineError> {
         let (scan, localizer) = (scan.into(), &mut workspace.localizer);
         let found = match heading {
-            Some(heading) => self.localizer.search_at_in(localizer, scan, heading, stop)?,
+            Some(heading) => self
+                .localizer
+                .search_at_in(localizer, scan, heading, stop)?,
             None => self.localizer.search_in(localizer, scan, stop)?,
         };
         let Some(outcome) = found else {

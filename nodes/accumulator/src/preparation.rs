@@ -96,10 +96,11 @@ impl Job {
         let (cells, rules) = (&self.occupancy, self.rules);
         let preparation = Preparation::of_map(frame, (width, height), cells, rules, config, prior)?;
         self.check_boundary()?;
+        let preparation = preparation.with_boundary(self.boundary);
         let Prepared { localizer, kept } = Prepared::new(cache, preparation)?;
         let map = PreparedMap {
             map_id: self.map.map_id,
-            rules,
+            rules: self.rules,
             localizer,
             space,
         };

@@ -258,16 +258,3 @@ fn the_courtyard_is_found() {
     assert_eq!(object["scans"], 57);
     assert!(share(&object, "success_50cm_10deg") >= 0.90, "{object}");
 }
-
-#[test]
-fn a_public_building_is_found() {
-    let data = "../../../shared/data/evaluation/intel_queries.mcap";
-    let bag = Path::new(env!("CARGO_MANIFEST_DIR")).join(data);
-    if !bag.exists() {
-        println!("SKIPPED: there is no {}", bag.display());
-        return;
-    }
-    let object = real(&bag, "--every 4");
-    assert_eq!(object["truths"], 50);
-    assert!(share(&object, "success_50cm_10deg") >= 0.90, "{object}");
-}

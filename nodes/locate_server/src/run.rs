@@ -3,6 +3,7 @@
 use std::sync::Arc;
 use std::time::{Duration, Instant};
 
+use engine::locator::LocatorConfig;
 use messages::NodeState;
 use network::KeyError;
 use transport::{Flow, Graph, Waker, wall_ns};
@@ -57,7 +58,11 @@ fn prepare(config: &Config) -> Result<Locator, LocateError> {
             source: Box::new(source),
         }
     })?;
-    let locator = Locator::new(&grid, config.cells, &config.localizer, config.peaks);
+    let how = LocatorConfig {
+        localizer: config.localizer.clone(),
+        peaks: config.peaks,
+    };
+    let locator = Locator::new(&grid, config.cells, how);
     locator.map_err(|source| LocateError::UnusableMap {
         path: path.clone(),
         source,

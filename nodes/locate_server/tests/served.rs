@@ -133,8 +133,7 @@ fn answers_are_those_of_the_engine() {
     let server = Server::start("answers", &[]);
     let session = caller(&[&server]);
     let map = map::load(world().map()).unwrap();
-    let config = Default::default();
-    let locator = Locator::new(&map, Default::default(), &config, Default::default()).unwrap();
+    let locator = Locator::new(&map, Default::default(), Default::default()).unwrap();
     let mut workspace = Workspace::default();
     for scan in scans() {
         let asked = (&scan.0, scan.1.as_slice());

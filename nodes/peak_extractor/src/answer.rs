@@ -4,7 +4,7 @@ use bytemuck::Zeroable;
 use engine::EngineError;
 use engine::fit::{BeamClass, Ends};
 use engine::grid::GridFrame;
-use engine::peaks::{self, PeakConfig, Place, Places, Score, Sought};
+use engine::peaks::{self, Judged, PeakConfig, Place, Places, Sought};
 use engine::space::Space;
 use geometry::Pose;
 use messages::{
@@ -19,7 +19,6 @@ use crate::scans::Scans;
 /// What answering takes, kept from scan to scan. It may serve any map.
 #[derive(Debug, Default)]
 pub struct Workspace {
-    ends: Ends,
     peaks: peaks::Workspace,
     beams: Vec<Beam>,
     space: Option<(Extent, Space)>,
@@ -66,29 +65,25 @@ pub fn answer<'w>(
     let frame = map.frame;
     let sought = Sought::of(base_from_laser, header.lasers_used > 0);
     let Workspace {
-        ends,
         peaks,
         beams: beams_seen,
         space,
     } = workspace;
-    beams_seen.clear();
-    let places = match config.score {
-        Score::Votes => peaks.by_votes(&input, config),
-        Score::Fit => {
-            let resolution_m = map.frame.resolution_m;
-            if header.has_readings == 1 {
-                ends.take(scans.readings(header.stamp)?, resolution_m)?;
-            } else {
-                let scan = scans.get(header.stamp)?;
-                let sides = (map.width as usize, map.height as usize);
-                let extent = (header.headings, resolution_m, sides.0, sides.1);
-                ends.find(&scan, kept_or_made(space, extent)?, &beams)?;
-            }
-            let places = peaks.by_fit(&input, (&map.terrain, ends), config);
-            beams_seen.extend(judged(ends, places));
-            places
+    let take = |ends: &mut Ends| -> Result<(), PeakError> {
+        let resolution_m = map.frame.resolution_m;
+        if header.has_readings == 1 {
+            return Ok(ends.take(scans.readings(header.stamp)?, resolution_m)?);
         }
+        let scan = scans.get(header.stamp)?;
+        let sides = (map.width as usize, map.height as usize);
+        let extent = (header.headings, resolution_m, sides.0, sides.1);
+        Ok(ends.find(&scan, kept_or_made(space, extent)?, &beams)?)
     };
+    let Judged { places, ends } = peaks.judge(&input, &map.terrain, config, take)?;
+    beams_seen.clear();
+    if let Some(ends) = ends {
+        beams_seen.extend(judged(ends, places));
+    }
     Ok(Answer {
         header: described(header, places, base_from_laser.is_some()),
         beams_header: BeamsHeader {
@@ -195,6 +190,7 @@ fn fate(class: BeamClass) -> BeamFate {
 mod tests {
     use std::f64::consts::FRAC_PI_2;
 
+    use engine::peaks::Score;
     use messages::{MapHeader, Pose2, ScanHeader, SearchOutcome, Stamp};
 
     use super::*;

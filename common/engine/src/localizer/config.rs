@@ -4,6 +4,18 @@ use crate::limits::LimitsConfig;
 use crate::program::VoteConfig;
 use crate::votes::CollectConfig;
 
+/// How votes are counted where the heading is known. The votes are the same.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default, clap::ValueEnum)]
+pub enum FieldMethod {
+    /// The one that takes fewer steps, scan by scan.
+    #[default]
+    Auto,
+    /// Line sweeps over all cells, beam by beam.
+    Sweep,
+    /// Out from the boundary cells of the obstacles, as the paper does it.
+    Scatter,
+}
+
 /// How scans are matched with the map.
 #[derive(Debug, Clone, PartialEq, clap::Args)]
 pub struct LocalizerConfig {
@@ -22,6 +34,9 @@ pub struct LocalizerConfig {
     /// Where poses are sought.
     #[command(flatten)]
     pub limits: LimitsConfig,
+    /// How votes are counted where the heading is known; the answer is the same.
+    #[arg(long, value_name = "METHOD", value_enum, default_value_t)]
+    pub method: FieldMethod,
     /// Finer maps are searched in cells of at most this side, and what is found
     /// is refined on the map as it is, metres, 0..=1; 0 searches each map as it
     /// is.
@@ -46,6 +61,7 @@ impl Default for LocalizerConfig {
             votes: VoteConfig::default(),
             collect: CollectConfig::default(),
             limits: LimitsConfig::default(),
+            method: FieldMethod::Auto,
             search_cell: 0.05,
             memory_limit: None,
         }

@@ -2,13 +2,15 @@
 
 use std::sync::Arc;
 
+use messages::BoundaryCell;
+
+use super::field::Fields;
 use super::{Localizer, LocalizerConfig, Method, Prior};
 use crate::EngineError;
 use crate::grid::{self, CellRules, Grid, GridFrame, Pooled};
 use crate::limits::Limits;
 use crate::search::{IndexKey, SECTIONS, SearchIndex, SectionError, UncheckedIndex};
 use crate::space::Space;
-use crate::sweep::FieldSweep;
 
 const MEGABYTE: u64 = 1_000_000;
 
@@ -21,6 +23,7 @@ pub struct Preparation {
     space: Space,
     config: LocalizerConfig,
     prior: Prior,
+    boundary: Option<Vec<BoundaryCell>>,
 }
 
 impl Preparation {
@@ -81,7 +84,17 @@ impl Preparation {
             space,
             config,
             prior,
+            boundary: None,
         })
+    }
+
+    /// Takes the boundary of the map's obstacles along, all cells of
+    /// [`crate::boundary::extract`]; otherwise it is extracted where it is needed. A map that
+    /// is searched in larger cells has another one.
+    #[must_use]
+    pub fn with_boundary(mut self, boundary: Vec<BoundaryCell>) -> Self {
+        self.boundary = (self.pooling == 1).then_some(boundary);
+        self
     }
 
     /// The key of the index that would be made; `None` where headings are known, for which
@@ -126,7 +139,8 @@ impl Preparation {
     ///
     /// # Errors
     /// If the limits leave no pose, or more memory would be needed than is allowed.
-    pub fn finish(self) -> Result<Localizer, EngineError> {
+    pub fn finish(mut self) -> Result<Localizer, EngineError> {
+        let boundary = self.boundary.take();
         let Preparation {
             frame,
             grid,
@@ -140,7 +154,7 @@ impl Preparation {
                 self.check_memory(&limits)?;
                 Method::Search(Arc::new(SearchIndex::within(grid, space, limits)))
             }
-            Prior::Heading => Method::Sweep(FieldSweep::new(grid), limits),
+            Prior::Heading => Method::Field(Box::new(Fields::new(grid, boundary)), limits),
         };
         Ok(self.localizer(method))
     }

@@ -2,14 +2,13 @@
 //! file, no clock.
 
 use engine::EngineError;
-use engine::beams::BeamConfig;
 use engine::fit::{BeamClass, Ends, GridPose, JudgedBeam, Terrain};
 use engine::grid::GridFrame;
-use engine::localizer::{self, Localizer, Outcome, Preparation, Prior};
+use engine::localizer::{Outcome, Preparation, Prior};
+use engine::locator::{self, Located, Locator, OccupancyView};
 use engine::observation::Observation;
-use engine::peaks::{self, PeakConfig, PeakInput, Places, Score, Sought};
+use engine::peaks::{PeakConfig, Places, Sought};
 use engine::scan::Scan;
-use engine::space::Space;
 use geometry::Pose;
 use index_cache::{IndexCache, Kept, Prepared};
 use map::OccupancyGrid;
@@ -22,22 +21,9 @@ use super::options::EngineOptions;
 pub(crate) struct World {
     /// The map's id, as the graph's messages have it.
     pub(crate) map_id: u64,
-    localizer: Localizer,
-    terrain: Terrain,
-    /// That of the map as it is.
-    space: Space,
+    locator: Locator,
     cells: u64,
-    beams: BeamConfig,
-    peaks: PeakConfig,
-    workspace: Workspace,
-}
-
-/// What locating takes, kept from scan to scan.
-#[derive(Debug, Default)]
-struct Workspace {
-    localizer: localizer::Workspace,
-    ends: Ends,
-    peaks: peaks::Workspace,
+    workspace: locator::Workspace,
     /// The last places, of the first laser.
     of_laser: Places,
 }
@@ -125,26 +111,28 @@ impl World {
         prior: Prior,
         cache: Option<&IndexCache>,
     ) -> Result<(Self, Kept), EngineError> {
-        let (frame, sides) = (frame_of(map), sides_of(map));
-        let (cells, rules) = (&map.cells, options.cells);
+        let view = OccupancyView {
+            frame: frame_of(map),
+            sides: sides_of(map),
+            occupancy: &map.cells,
+            rules: options.cells,
+        };
         let config = options.localizer.clone();
-        let terrain = Terrain::new(frame, sides, cells, rules)?;
-        let preparation = Preparation::of_map(frame, sides, cells, rules, config, prior)?;
+        let preparation = Preparation::of_map(
+            view.frame,
+            view.sides,
+            view.occupancy,
+            view.rules,
+            config,
+            prior,
+        )?;
         let Prepared { localizer, kept } = Prepared::new(cache, preparation)?;
         let world = World {
             map_id: map.id(),
-            terrain,
-            space: Space::new(
-                options.localizer.headings,
-                frame.resolution_m,
-                sides.0,
-                sides.1,
-            )?,
-            beams: options.localizer.votes.beams,
-            localizer,
+            locator: Locator::with(localizer, view, options.peaks)?,
             cells: u64::from(map.width) * u64::from(map.height),
-            peaks: options.peaks,
-            workspace: Workspace::default(),
+            workspace: locator::Workspace::default(),
+            of_laser: Places::default(),
         };
         Ok((world, kept))
     }
@@ -156,22 +144,22 @@ impl World {
 
     /// Cells in which poses are sought, as large as they are searched.
     pub(crate) fn searchable_cells(&self) -> u64 {
-        self.localizer.searchable_cells() as u64
+        self.locator.localizer().searchable_cells() as u64
     }
 
     /// Bytes of what a search keeps of the map.
     pub(crate) fn index_bytes(&self) -> u64 {
-        self.localizer.index_bytes() as u64
+        self.locator.localizer().index_bytes() as u64
     }
 
     /// The map as the second stage reads it.
     pub(crate) fn terrain(&self) -> &Terrain {
-        &self.terrain
+        self.locator.terrain()
     }
 
     /// How the second stage judges places.
     pub(crate) fn peaks(&self) -> &PeakConfig {
-        &self.peaks
+        self.locator.peaks()
     }
 
     /// The beams of a scan, as the second stage judges them.
@@ -179,7 +167,7 @@ impl World {
     /// # Errors
     /// The scan is refused.
     pub(crate) fn ends(&self, scan: Observation<'_>) -> Result<Ends, EngineError> {
-        Ends::new(scan, &self.space, &self.beams)
+        self.locator.ends(scan)
     }
 
     /// Searches all poses or, where the heading in the map is given in radians,
@@ -195,34 +183,21 @@ impl World {
         heading: Option<f64>,
         sought: Sought,
     ) -> Result<Answer<'_>, EngineError> {
-        let Workspace {
-            localizer: workspace,
-            ends,
-            peaks,
-            of_laser,
-        } = &mut self.workspace;
-        let localizer = &self.localizer;
-        let found = match heading {
-            Some(heading) => localizer.search_at_in(workspace, scan, heading, &|| false)?,
-            None => localizer.search_in(workspace, scan, &|| false)?,
-        };
-        let outcome = found.expect("a search that nothing stops ends with an outcome");
-        let input = PeakInput::of(outcome, localizer.frame());
-        let places = match self.peaks.score {
-            Score::Votes => peaks.by_votes(&input, &self.peaks),
-            Score::Fit => {
-                ends.find(scan, &self.space, &self.beams)?;
-                peaks.by_fit(&input, (&self.terrain, ends), &self.peaks)
-            }
-        };
-        of_laser.clone_from(places);
-        for place in &mut of_laser.places {
+        let workspace = &mut self.workspace;
+        let found = self
+            .locator
+            .locate_unless(workspace, scan, heading, &|| false)?;
+        let Located {
+            outcome, places, ..
+        } = found.expect("a search that nothing stops ends with an outcome");
+        self.of_laser.clone_from(places);
+        for place in &mut self.of_laser.places {
             *place = place.of_laser(sought);
         }
         Ok(Answer {
             outcome,
-            places: of_laser,
-            frame: self.terrain.frame,
+            places: &self.of_laser,
+            frame: self.locator.terrain().frame,
         })
     }
 
@@ -236,16 +211,16 @@ impl World {
         map_from_laser: Pose,
     ) -> Result<ScanAt, EngineError> {
         let ends = self.ends(scan.into())?;
-        let frame = self.terrain.frame;
+        let frame = self.terrain().frame;
         let (x, y, heading) = frame.cells_from_map(map_from_laser);
         let pose = GridPose { x, y, heading };
-        let classes = self.terrain.classes(&ends, pose, &self.peaks.fit);
+        let classes = self.terrain().classes(&ends, pose, &self.peaks().fit);
         let beams = ends.judged(&classes).map(|beam| BeamEnd {
             at: end_of(map_from_laser, beam),
             class: beam.class,
         });
         Ok(ScanAt {
-            score: self.terrain.score(&ends, pose, &self.peaks.fit),
+            score: self.terrain().score(&ends, pose, &self.peaks().fit),
             ends: beams.collect(),
         })
     }
@@ -256,11 +231,14 @@ impl World {
     /// # Errors
     /// The scan is refused.
     pub(crate) fn field_at(&self, scan: &Scan<'_>, heading: f64) -> Result<Field, EngineError> {
-        let found = self.localizer.search_at(scan, heading, &|| false)?;
+        let found = self
+            .locator
+            .localizer()
+            .search_at(scan, heading, &|| false)?;
         let (outcome, intensities) = found.expect("a search that nothing stops ends");
-        let grid = self.localizer.grid();
+        let grid = self.locator.localizer().grid();
         Ok(Field {
-            frame: self.localizer.frame(),
+            frame: self.locator.localizer().frame(),
             sides: (grid.width(), grid.height()),
             intensities,
             outcome,

@@ -298,7 +298,7 @@ mod tests {
             rows.fit(self.layout);
             for Rows(first, plain) in self.quads {
                 SetRows::of(*first, plain, |packed| {
-                    rows.take::<S::Words>(set, self.layout, packed)
+                    rows.take::<S::Words>(set, self.layout, packed);
                 });
             }
             let carries = vec![Aligned(EMPTY); N * self.group.carries()];

@@ -1,0 +1,139 @@
+//! Counting votes at a known heading: by sweeps over all cells, or out from the boundary.
+
+use messages::BoundaryCell;
+
+use super::config::FieldMethod;
+use crate::accumulator::{Accumulator, Query};
+use crate::boundary;
+use crate::grid::Grid;
+use crate::instruction_set::InstructionSet;
+use crate::scatter::Scatter;
+use crate::simd::Simd;
+use crate::sweep::{self, FieldSweep};
+
+/// Cells that a sweep passes in the time of a step of a projection, which goes to memory
+/// wherever it leads: `field_time` of both on maps of rooms, halls and corridors.
+const CELLS_A_STEP: u64 = 16;
+
+/// A grid that is ready for votes at known headings.
+#[derive(Debug, Clone)]
+pub(super) struct Fields {
+    sweeps: FieldSweep,
+    boundary: Vec<BoundaryCell>,
+}
+
+impl Fields {
+    /// Prepares a grid, whose boundary may be known.
+    pub(super) fn new(grid: &Grid, boundary: Option<Vec<BoundaryCell>>) -> Self {
+        Fields {
+            sweeps: FieldSweep::new(grid),
+            boundary: boundary.unwrap_or_else(|| boundary::extract(grid)),
+        }
+    }
+
+    /// Bytes of what is kept.
+    pub(super) fn bytes(&self) -> usize {
+        self.sweeps.bytes() + size_of_val(&self.boundary[..])
+    }
+
+    /// Fills in the intensities of all cells, row by row from the lowest y; `None` if
+    /// `stop` said so before the end.
+    pub(super) fn fill(
+        &self,
+        (grid, method): (&Grid, FieldMethod),
+        query: Query<'_>,
+        (workspace, field): (&mut sweep::Workspace, &mut Vec<u16>),
+        stop: &dyn Fn() -> bool,
+    ) -> Option<()> {
+        let scatters = match method {
+            FieldMethod::Auto => self.scatter_is_cheaper(grid, query),
+            FieldMethod::Sweep => false,
+            FieldMethod::Scatter => true,
+        };
+        if scatters {
+            return Scatter::new(grid, &self.boundary).fill(query, field, stop);
+        }
+        let best = Simd::new(InstructionSet::best());
+        self.sweeps.fill(best, query, workspace, field, stop)
+    }
+
+    /// Whether projections, even if nothing ends them, take fewer steps than the sweeps
+    /// pass cells.
+    fn scatter_is_cheaper(&self, grid: &Grid, query: Query<'_>) -> bool {
+        let beams = 0..query.program.beams();
+        let swept = (grid.cells().len() * beams.len()) as u64;
+        let steps = beams.map(|beam| u64::from(query.beam(beam).1.end()));
+        let projected = steps.sum::<u64>() * self.boundary.len() as u64;
+        projected * CELLS_A_STEP < swept
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use proptest::prelude::*;
+
+    use super::*;
+    use crate::grid::drawn::grid;
+    use crate::program::{ScanProgram, VoteConfig};
+    use crate::scan::Scan;
+    use crate::testing::{any_grid, any_scan, space_of};
+
+    proptest! {
+    #[test]
+    fn every_method_counts_the_same_votes(
+        grid in any_grid(), scan in any_scan(), heading in 0usize..72,
+    ) {
+        let space = &space_of(&grid, 72);
+        let query = Query { program: &scan.program(space), space, heading };
+        let fields = Fields::new(&grid, None);
+        let votes = |method| {
+            let (mut workspace, mut field) = (sweep::Workspace::default(), Vec::new());
+            let room = (&mut workspace, &mut field);
+            fields.fill((&grid, method), query, room, &|| false).map(|()| field)
+        };
+        let swept = votes(FieldMethod::Sweep);
+        prop_assert!(swept.is_some());
+        prop_assert_eq!(&votes(FieldMethod::Scatter), &swept);
+        prop_assert_eq!(&votes(FieldMethod::Auto), &swept);
+    }
+    }
+
+    #[test]
+    fn few_obstacles_are_cheaper_to_project_from_than_all_cells_to_sweep() {
+        let with_walls = |walls: usize| {
+            let row = |y: usize| {
+                if y.is_multiple_of(64) && y / 64 < walls {
+                    "#"
+                } else {
+                    "."
+                }
+            };
+            let rows: Vec<String> = (0..512).map(|y| row(y).repeat(512)).collect();
+            grid(&rows.iter().map(String::as_str).collect::<Vec<_>>())
+        };
+        let mut rows = vec![".".repeat(512); 512];
+        rows[256].replace_range(256..257, "#");
+        let post = grid(&rows.iter().map(String::as_str).collect::<Vec<_>>());
+        let ranges = [2.0; 8];
+        let scan = Scan {
+            angle_min: 0.0,
+            angle_increment: 0.7,
+            range_min_m: 0.0,
+            range_max_m: 10.0,
+            ranges: &ranges,
+        };
+        for (grid, expected) in [(&post, true), (&with_walls(8), false)] {
+            let space = &space_of(grid, 72);
+            let program = &ScanProgram::new(&scan, 0.0, space, &VoteConfig::default()).unwrap();
+            let query = Query {
+                program,
+                space,
+                heading: 3,
+            };
+            assert_eq!(
+                Fields::new(grid, None).scatter_is_cheaper(grid, query),
+                expected
+            );
+        }
+    }
+}

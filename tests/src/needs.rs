@@ -1,0 +1,88 @@
+//! What some tests need beside a Rust toolchain. Where it is missing a test is left out,
+//! and says so; it fails where all that it needs was promised.
+//!
+//! `BACKCAST_REQUIRE` names what must be there: a list of [`Need::name`], `all` or `none`.
+//! Where it is not set, all but the data must be there if `CI` is set. Each test that was
+//! left out adds a line to `target/left-out.txt`, which `.ci/run` counts at its end.
+
+use std::fs::OpenOptions;
+use std::io::Write;
+
+/// Something that a test needs.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Need {
+    /// Chromium and its driver.
+    Browser,
+    /// Python 3 and the package registry.
+    Python,
+    /// A kernel that lets this user make namespaces, for networks or mounts.
+    Namespaces,
+    /// The recordings of other robots, beside the project.
+    Data,
+}
+
+impl Need {
+    /// Its name in `BACKCAST_REQUIRE`.
+    #[must_use]
+    pub fn name(self) -> &'static str {
+        match self {
+            Need::Browser => "browser",
+            Need::Python => "python",
+            Need::Namespaces => "namespaces",
+            Need::Data => "data",
+        }
+    }
+
+    fn is_required(self, list: Option<&str>, in_ci: bool) -> bool {
+        match list {
+            Some(list) => list
+                .split(',')
+                .any(|name| [self.name(), "all"].contains(&name.trim())),
+            None => in_ci && self != Need::Data,
+        }
+    }
+
+    /// Says that a test is left out, as this is missing.
+    ///
+    /// # Panics
+    /// If it must be there.
+    pub fn is_missing(self, test: &str, why: &str) {
+        let list = std::env::var("BACKCAST_REQUIRE").ok();
+        let in_ci = std::env::var_os("CI").is_some_and(|value| !value.is_empty());
+        let name = self.name();
+        assert!(
+            !self.is_required(list.as_deref(), in_ci),
+            "{test} needs {name}, which must be there (BACKCAST_REQUIRE={}): {why}",
+            list.as_deref().unwrap_or("not set, in CI")
+        );
+        eprintln!("left out: {test} needs {name}: {why}");
+        // The tests lie in `<target>/<profile>/deps`.
+        let test_binary = std::env::current_exe().unwrap();
+        let target = test_binary.ancestors().nth(3).unwrap();
+        let mut file = OpenOptions::new()
+            .create(true)
+            .append(true)
+            .open(target.join("left-out.txt"))
+            .unwrap();
+        writeln!(file, "{test}: {name}: {why}").unwrap();
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn in_ci_only_the_data_may_be_missing_unless_the_list_says_otherwise() {
+        let required = |list, in_ci| {
+            [Need::Browser, Need::Python, Need::Namespaces, Need::Data]
+                .map(|need| need.is_required(list, in_ci))
+        };
+        assert_eq!(required(None, false), [false; 4]);
+        assert_eq!(required(None, true), [true, true, true, false]);
+        assert_eq!(required(Some("all"), false), [true; 4]);
+        assert_eq!(required(Some("none"), true), [false; 4]);
+        let some = Some("python, data");
+        assert_eq!(required(some, true), [false, true, false, true]);
+    }
+}
