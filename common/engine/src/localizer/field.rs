@@ -12,7 +12,8 @@ use crate::simd::Simd;
 use crate::sweep::{self, FieldSweep};
 
 /// Cells that a sweep passes in the time of a step of a projection, which goes to memory
-/// wherever it leads: `field_time` of both on maps of rooms, halls and corridors.
+/// wherever it leads: 0.1 to 0.25 ns a cell with AVX2 against some 2.5 ns a step
+/// (`field_time boxes 1200 1 5 --beams 8`).
 const CELLS_A_STEP: u64 = 16;
 
 /// A grid that is ready for votes at known headings.
