@@ -223,6 +223,44 @@ fn a_run_and_the_tests_use_the_same_dependencies() {
     );
 }
 
+/// A robot that runs a graph needs none of the tools, nor what they link.
+#[test]
+fn the_launcher_alone_links_nothing_of_the_tools() {
+    let names = |options: &[&str]| -> BTreeSet<String> {
+        let lines = features(&[&["-p", "backcast", "--edges", "no-dev"], options].concat());
+        let names = lines.iter().filter_map(|line| line.split(' ').next());
+        names.map(str::to_owned).collect()
+    };
+    let of_tools = [
+        "bench",
+        "benchmarks",
+        "drawing",
+        "evaluation",
+        "indicatif",
+        "offline",
+        "plots",
+        "probe",
+        "quick-junit",
+        "ratatui",
+        "recording_tools",
+        "regression",
+        "rusqlite",
+        "serialport",
+        "simulation",
+        "soak",
+        "tiny-skia",
+        "top",
+        "tungstenite",
+    ];
+    let of_tools = BTreeSet::from(of_tools.map(str::to_owned));
+    let (alone, with_tools) = (names(&["--no-default-features"]), names(&[]));
+    assert!(alone.contains("launcher"), "{alone:?}");
+    let missing: Vec<_> = of_tools.difference(&with_tools).collect();
+    assert!(missing.is_empty(), "the tools do not link {missing:?}");
+    let linked: Vec<_> = alone.intersection(&of_tools).collect();
+    assert!(linked.is_empty(), "the launcher links {linked:?}");
+}
+
 #[test]
 fn only_what_is_asked_over_a_network_has_a_runtime_for_it() {
     for (name, dependencies) in dependencies() {

@@ -3,11 +3,11 @@
 use std::process::ExitCode;
 
 use clap::{Parser, Subcommand};
+use command_line::CommandError;
+use launcher::{check, control, run};
 
-use crate::{
-    bench, check, control, convert, doctor, evaluate, info, locate, plot, probe, regress, run,
-    simulate, soak, top,
-};
+#[cfg(feature = "tools")]
+use crate::tools::{OnRecordings, OnTheSide};
 
 /// Finds where a robot is from its laser and a map, with no initial guess.
 ///
@@ -22,9 +22,10 @@ struct Cli {
     run: run::Options,
 }
 
-const EXIT_CODES: &str = "Exit codes: 0 done, 1 failed, 2 wrong use, 3 done but data was lost";
+pub(crate) const EXIT_CODES: &str =
+    "Exit codes: 0 done, 1 failed, 2 wrong use, 3 done but data was lost";
 
-/// One variant a command.
+/// One variant a command. The tools stand where they do in the help.
 #[derive(Debug, Subcommand)]
 enum Command {
     /// Builds and starts the graph, and prints a pose for each scan
@@ -33,27 +34,9 @@ enum Command {
     /// Says what is wrong with a graph's descriptor, or draws the graph
     #[command(after_help = "Exit codes: 0 sound, 1 something is wrong, 2 wrong use")]
     Check(check::Config),
-    /// Finds the place of each scan of a recording, in one process
-    #[command(after_help = EXIT_CODES)]
-    Locate(locate::Config),
-    /// Judges the places that are found against the truth in recordings
-    #[command(after_help = evaluate::NOTES)]
-    Evaluate(Box<evaluate::Config>),
-    /// Draws a map, a scan at its places, votes or errors, as PNG or SVG
-    #[command(after_help = plot::NOTES)]
-    Plot(plot::Config),
-    /// Lists what a recording holds
-    #[command(after_help = EXIT_CODES)]
-    Info(info::Config),
-    /// Says what is wrong with a recording
-    #[command(after_help = doctor::NOTES)]
-    Doctor(doctor::Config),
-    /// Converts laser logs of CARMEN and bags in SQLite to recordings, and back to logs
-    #[command(after_help = convert::NOTES)]
-    Convert(convert::Config),
-    /// Replays recordings through the graph and compares with what is expected
-    #[command(after_help = regress::NOTES)]
-    Regress(regress::Config),
+    #[cfg(feature = "tools")]
+    #[command(flatten)]
+    OnRecordings(OnRecordings),
     /// Lists the graphs that run, with the state of their nodes
     #[command(after_help = EXIT_CODES)]
     Status(control::StatusConfig),
@@ -66,62 +49,45 @@ enum Command {
     /// Shows what the nodes of a running graph log
     #[command(after_help = EXIT_CODES)]
     Logs(control::LogsConfig),
-    /// Runs a graph for long, does it harm, and says whether it kept its promises
-    #[command(after_help = soak::NOTES)]
-    Soak(soak::Config),
-    /// Shows a running graph in the terminal
-    #[command(after_help = EXIT_CODES)]
-    Top(top::Config),
-    /// Says which laser is there, how it is set and what it sees
-    #[command(after_help = probe::NOTES)]
-    Probe(probe::Config),
-    /// Measures the methods of global localization on generated worlds
-    #[command(after_help = bench::NOTES)]
-    Bench(bench::Config),
-    /// Records a drive through a map as a laser or a ring of sonars would see it
-    #[command(after_help = "Exit codes: 0 recorded, 1 failed, 2 wrong use")]
-    Simulate(Box<simulate::Config>),
+    #[cfg(feature = "tools")]
+    #[command(flatten)]
+    OnTheSide(OnTheSide),
 }
 
 /// Runs the command that the process was started with.
 #[must_use]
 pub fn main() -> ExitCode {
     let cli = Cli::parse();
-    let outcome = match cli.command {
-        None => run::run(&run::Config::with(cli.run)),
-        Some(Command::Run(config)) => run::run(&config),
-        Some(Command::Check(config)) => check::run(&config),
-        Some(Command::Locate(config)) => locate::run(&config),
-        Some(Command::Evaluate(config)) => evaluate::run(&config),
-        Some(Command::Plot(config)) => plot::run(&config),
-        Some(Command::Info(config)) => info::run(&config),
-        Some(Command::Doctor(config)) => doctor::run(&config),
-        Some(Command::Convert(config)) => convert::run(&config),
-        Some(Command::Regress(config)) => regress::run(&config),
-        Some(Command::Status(config)) => control::status(&config),
-        Some(Command::Stop(config)) => control::stop(&config),
-        Some(Command::Restart(config)) => control::restart(&config),
-        Some(Command::Logs(config)) => control::logs(&config),
-        Some(Command::Soak(config)) => soak::run(&config),
-        Some(Command::Top(config)) => top::run(&config),
-        Some(Command::Probe(config)) => probe::run(&config),
-        Some(Command::Bench(config)) => bench::run(&config),
-        Some(Command::Simulate(config)) => simulate::run(&config),
-    };
+    match cli.command {
+        None => end(run::run(&run::Config::with(cli.run))),
+        Some(Command::Run(config)) => end(run::run(&config)),
+        Some(Command::Check(config)) => end(check::run(&config)),
+        #[cfg(feature = "tools")]
+        Some(Command::OnRecordings(tool)) => tool.run(),
+        Some(Command::Status(config)) => end(control::status(&config)),
+        Some(Command::Stop(config)) => end(control::stop(&config)),
+        Some(Command::Restart(config)) => end(control::restart(&config)),
+        Some(Command::Logs(config)) => end(control::logs(&config)),
+        #[cfg(feature = "tools")]
+        Some(Command::OnTheSide(tool)) => tool.run(),
+    }
+}
+
+/// Says on standard error why a command failed; its exit code.
+pub(crate) fn end<E: CommandError + 'static>(outcome: Result<ExitCode, E>) -> ExitCode {
     outcome.unwrap_or_else(|error| {
         eprintln!("backcast: {}", transport::with_causes(&error));
         ExitCode::from(error.exit_code())
     })
 }
 
-/// The exit code of what was started with the wrong options or settings.
-pub(crate) const WRONG_USE: u8 = 2;
-/// The exit code of a run that finished but lost data on the way.
-pub(crate) const LOST_DATA: u8 = 3;
-
 #[cfg(test)]
 mod tests {
+    use std::io;
+
     use clap::CommandFactory;
+    use command_line::OutputError;
+    use launcher::LauncherError;
 
     use super::*;
 
@@ -147,7 +113,7 @@ mod tests {
 
     #[test]
     fn nonsense_is_refused() {
-        for line in [
+        check_refused(&[
             "backcast chekc",
             "backcast --rate 0",
             "backcast --rate -1",
@@ -161,6 +127,13 @@ mod tests {
             "backcast --heading-from compass",
             "backcast --graph Big",
             "backcast --rate 2 check",
+        ]);
+    }
+
+    #[cfg(feature = "tools")]
+    #[test]
+    fn nonsense_for_tools_is_refused() {
+        check_refused(&[
             "backcast plot",
             "backcast plot --bag r.mcap",
             "backcast plot histogram --out p.png",
@@ -180,9 +153,22 @@ mod tests {
             "backcast soak --faults kill,quake",
             "backcast simulate --map m.yaml --path 0,0 --out r.mcap",
             "backcast simulate --map m.yaml --path 0,0,1,1 --out r.mcap --beams 1",
-        ] {
+        ]);
+    }
+
+    fn check_refused(lines: &[&str]) {
+        for line in lines {
             let error = parse(line).expect_err(line);
             assert_eq!(error.exit_code(), 2, "{line}");
         }
+    }
+
+    #[test]
+    fn causes_are_told_once() {
+        let output = LauncherError::from(OutputError(io::Error::other("the disk is full")));
+        assert_eq!(
+            transport::with_causes(&output),
+            "cannot write to standard output: the disk is full"
+        );
     }
 }

@@ -1,0 +1,185 @@
+//! What `backcast bench` does: sets up the cases of a table, measures, prints.
+
+use std::process::ExitCode;
+
+use clap::builder::PossibleValue;
+use engine::instruction_set::InstructionSet;
+use offline::OfflineError;
+
+use super::contest::{Contest, Effort};
+use super::paper;
+use super::progress::Progress;
+use super::row::Row;
+use super::scope::{Cases, Filter, Place, Table, cases};
+use super::text;
+use crate::BenchError;
+
+/// What stands below the options.
+pub const NOTES: &str = "\
+Worlds are generated: buildings, corridors or scattered boxes with the wanted p/n, boundary
+cells over free cells. Noise q % adds a normal error of q/100 of the range to each reading,
+and the votes expect the same. The full tables take an hour or so: --quick takes a minute,
+and the options above pick single cases. The table `paper` is not printed but written
+into a folder; in full it takes below an hour, with --quick two minutes.
+
+Exit codes: 0 measured, 1 failed, 2 wrong use";
+
+/// What is measured.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+enum Measured {
+    Table(Table),
+    Paper,
+}
+
+impl clap::ValueEnum for Measured {
+    fn value_variants<'a>() -> &'a [Self] {
+        &[
+            Measured::Table(Table::Table1),
+            Measured::Table(Table::Table2),
+            Measured::Table(Table::Search),
+            Measured::Paper,
+        ]
+    }
+
+    fn to_possible_value(&self) -> Option<PossibleValue> {
+        match self {
+            Measured::Table(table) => table.to_possible_value(),
+            Measured::Paper => Some(PossibleValue::new("paper").help(
+                "All claims of the paper's sections II to V, into a folder of tables and pictures",
+            )),
+        }
+    }
+}
+
+/// What `backcast bench` takes.
+#[derive(Debug, clap::Args)]
+pub struct Config {
+    /// What is measured
+    #[arg(value_enum, value_name = "TABLE")]
+    table: Measured,
+
+    /// Print JSON, an object for each method and case
+    #[arg(long)]
+    json: bool,
+
+    /// Measure fewer cases, less often: about a minute
+    #[arg(long)]
+    quick: bool,
+
+    /// Where the random worlds and scans begin
+    #[arg(long, value_name = "NUMBER", default_value_t = 1)]
+    seed: u64,
+
+    /// Most scans of a case, 1..=1000; methods that take long are measured on
+    /// fewer [default: 10, or 5 with --quick]
+    #[arg(long, value_name = "COUNT", value_parser = clap::value_parser!(u32).range(1..=1000))]
+    scans: Option<u32>,
+
+    #[command(flatten)]
+    filter: Filter,
+
+    #[command(flatten)]
+    paper: paper::Config,
+}
+
+impl Config {
+    fn effort(&self) -> Effort {
+        let (scans, budget_ms, patience_s) = match self.quick {
+            true => (5, 300.0, 2.0),
+            false => (10, 2000.0, 60.0),
+        };
+        Effort {
+            scans: self.scans.map_or(scans, |scans| scans as usize),
+            budget_ms,
+            patience_s,
+            seed: self.seed,
+        }
+    }
+
+    /// # Errors
+    /// If beams do not fall on the heading grid.
+    fn check(&self, cases: &Cases) -> Result<(), BenchError> {
+        for (place, sights) in cases {
+            for sight in sights {
+                if !place.headings.is_multiple_of(sight.beams) {
+                    return Err(OfflineError::Usage(format!(
+                        "{} beams do not fall on a grid of {} headings: use --beams and --headings \
+                         of which the second is a multiple of the first",
+                        sight.beams, place.headings
+                    ))
+                    .into());
+                }
+            }
+        }
+        Ok(())
+    }
+}
+
+/// Measures a table, or the paper.
+///
+/// # Errors
+/// Options contradict each other, a case cannot be set up, or output cannot be written.
+pub fn run(config: &Config) -> Result<ExitCode, BenchError> {
+    match config.table {
+        Measured::Table(table) if config.paper.is_empty() => run_table(config, table),
+        Measured::Table(table) => Err(OfflineError::Usage(format!(
+            "--out, --part and --recording are for `bench paper`, not for {}",
+            table.name()
+        ))
+        .into()),
+        Measured::Paper => {
+            let has_others =
+                config.json || config.scans.is_some() || config.filter != Filter::default();
+            if has_others {
+                return Err(OfflineError::Usage(
+                    "`bench paper` takes --quick, --seed, --out, --part and --recording".into(),
+                )
+                .into());
+            }
+            paper::run(&config.paper, config.quick, config.seed)
+        }
+    }
+}
+
+/// Measures case by case, and prints each as soon as it is done.
+fn run_table(config: &Config, table: Table) -> Result<ExitCode, BenchError> {
+    let cases = cases(table, config.quick, &config.filter);
+    config.check(&cases)?;
+    let sights: usize = cases.iter().map(|(_, sights)| sights.len()).sum();
+    let progress = Progress::new(sights * Contest::rows(table));
+    if !config.json {
+        let instructions = InstructionSet::best().to_string();
+        progress.print(&text::title(table, &instructions))?;
+    }
+    for (place, sights) in cases {
+        progress.say(format!("{} is prepared", name(&place)));
+        let mut contest = Contest::new(table, place, config.seed)?;
+        for sight in sights {
+            progress.say(format!("{}, {} beams", name(&place), sight.beams));
+            let rows = contest.run(&sight, config.effort(), || progress.step())?;
+            progress.print(&printed(&rows, config.json))?;
+        }
+    }
+    if !config.json {
+        progress.print(text::LEGEND)?;
+    }
+    Ok(ExitCode::SUCCESS)
+}
+
+fn name(place: &Place) -> String {
+    let Place {
+        kind,
+        size,
+        p_over_n,
+        ..
+    } = place;
+    format!("{} {size} x {size}, p/n {p_over_n} %", kind.name())
+}
+
+fn printed(rows: &[Row], as_json: bool) -> String {
+    if as_json {
+        rows.iter().map(|row| row.json() + "\n").collect()
+    } else {
+        text::block(rows)
+    }
+}

@@ -1,0 +1,227 @@
+//! One case: every method that takes part is measured on the same scans.
+
+use benchmarks::baselines::Readings;
+use benchmarks::scans::{ScanConfig, SimulatedScan, simulate};
+use benchmarks::timing::median;
+use engine::instruction_set::InstructionSet;
+use engine::program::ScanProgram;
+use engine::space::Space;
+use engine::taper::TaperShape;
+use offline::OfflineError;
+
+use super::line_up::{Contestant, LineUp};
+use super::measure::{Task, measure};
+use super::method::{Method, Sizes};
+use super::row::Row;
+use super::scope::{Place, Sight, Table};
+use crate::BenchError;
+
+/// How much is measured.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(super) struct Effort {
+    /// Most scans of a case.
+    pub(super) scans: usize,
+    /// Time for a method in a case, after which no other scan is begun.
+    pub(super) budget_ms: f64,
+    /// After so long a single search is given up.
+    pub(super) patience_s: f64,
+    pub(super) seed: u64,
+}
+
+/// A place where the methods of a table meet.
+pub(super) struct Contest {
+    table: Table,
+    place: Place,
+    line_up: LineUp,
+}
+
+impl Contest {
+    /// How many rows each case of a table has.
+    pub(super) fn rows(table: Table) -> usize {
+        match table {
+            Table::Table1 => 7,
+            Table::Table2 => 8,
+            Table::Search => 4,
+        }
+    }
+
+    /// Generates the place and prepares it.
+    ///
+    /// # Errors
+    /// If there is no such place.
+    pub(super) fn new(table: Table, place: Place, seed: u64) -> Result<Self, BenchError> {
+        Ok(Contest {
+            table,
+            place,
+            line_up: LineUp::new(table, place, seed)?,
+        })
+    }
+
+    /// Measures every method on the same scans; `step` is told of each.
+    ///
+    /// # Errors
+    /// If the beams do not divide the headings, or a scan is refused.
+    pub(super) fn run(
+        &mut self,
+        sight: &Sight,
+        effort: Effort,
+        mut step: impl FnMut(),
+    ) -> Result<Vec<Row>, BenchError> {
+        let config = ScanConfig {
+            beams: sight.beams as usize,
+            noise_percent: sight.noise_percent,
+        };
+        let space = self.line_up.space.clone();
+        let scans = simulate(
+            &self.line_up.world,
+            &space,
+            &config,
+            effort.scans,
+            effort.seed,
+        )?;
+        let tasks = tasks(self.table, &scans, &space, sight, &config)?;
+        let template = self.template(sight, &tasks)?;
+        let sizes = Sizes {
+            n: self.line_up.world.grid.free_cells() as f64,
+            p: self.line_up.world.boundary.len() as f64,
+            m: f64::from(sight.beams),
+            k: template.k,
+            headings: template.headings as f64,
+        };
+        let sigmas = tasks.iter().map(|task| task.readings.median_sigma_cells());
+        let sigma_cells = median(sigmas.collect());
+        let mut rows = Vec::new();
+        for mut contestant in self.line_up.contestants(sigma_cells, effort.patience_s) {
+            let Contestant { method, .. } = contestant;
+            let least = method.least_headings();
+            let measured = measure(&mut contestant.locate, &tasks, effort.budget_ms, least)?;
+            let counts = method.counts(&sizes);
+            let row = Row {
+                method: method.name(),
+                label: method.label(),
+                operations: counts.map(|counts| counts.operations),
+                additions: counts.map(|counts| counts.additions),
+                prepare_cpu_ms: contestant.prepare_cpu_ms,
+                map_bytes: contestant.map_bytes,
+                ..template.clone()
+            };
+            rows.push(match measured {
+                Some(measured) => row.with(&measured),
+                None => row.without(format!(
+                    "not done within {} s and a million poses",
+                    effort.patience_s
+                )),
+            });
+            step();
+        }
+        if let Some(skipped) = self.left_out_table(&template) {
+            rows.insert(1, skipped);
+            step();
+        }
+        compare(&mut rows);
+        Ok(rows)
+    }
+
+    /// What all rows of a case share.
+    fn template(&self, sight: &Sight, tasks: &[Task<'_>]) -> Result<Row, BenchError> {
+        Ok(Row {
+            table: self.table.name(),
+            method: "",
+            label: "",
+            kind: self.place.kind.name(),
+            size: self.place.size,
+            beams: sight.beams,
+            headings: tasks.first().map_or(0, |task| task.headings.len()),
+            p_over_n: self.line_up.world.p_over_n(),
+            noise_percent: sight.noise_percent,
+            taper: taper_name(sight),
+            k: taper_cells(tasks)?,
+            cpu_ms: None,
+            ratio_to_reverse_projection: None,
+            scans: 0,
+            found: None,
+            scaled_from_headings: None,
+            operations: None,
+            additions: None,
+            prepare_cpu_ms: 0.0,
+            map_bytes: 0,
+            instruction_set: InstructionSet::best().to_string(),
+            skipped: None,
+        })
+    }
+
+    /// A row in place of a range table that would take too much memory.
+    fn left_out_table(&self, template: &Row) -> Option<Row> {
+        let bytes = self.line_up.left_out_table_bytes()?;
+        let row = Row {
+            method: Method::RangeTable.name(),
+            label: Method::RangeTable.label(),
+            map_bytes: bytes,
+            ..template.clone()
+        };
+        Some(row.without(format!("its table would take {:.1} GB", bytes as f64 / 1e9)))
+    }
+}
+
+/// The scans of a case, with the headings that are searched.
+fn tasks<'a>(
+    table: Table,
+    scans: &'a [SimulatedScan],
+    space: &'a Space,
+    sight: &Sight,
+    config: &ScanConfig,
+) -> Result<Vec<Task<'a>>, BenchError> {
+    let votes = config.votes(sight.taper);
+    let task = |scan: &'a SimulatedScan| {
+        Ok(Task {
+            scan,
+            votes,
+            space,
+            readings: Readings::new(&scan.scan(), space, &votes)?,
+            headings: match table {
+                Table::Table1 => vec![scan.heading],
+                _ => (0..space.directions.count()).collect(),
+            },
+        })
+    };
+    scans.iter().map(task).collect()
+}
+
+/// The paper's k: cells that a taper covers along an axis, on average.
+fn taper_cells(tasks: &[Task<'_>]) -> Result<f64, BenchError> {
+    let (mut cells, mut beams) = (0, 0);
+    for task in tasks {
+        let program = ScanProgram::new(&task.scan.scan(), 0.0, task.space, &task.votes)
+            .map_err(OfflineError::Refused)?;
+        beams += program.beams();
+        let width = |beam| 2 * program.taper(beam, 0).profile.len() - 1;
+        cells += (0..program.beams()).map(width).sum::<usize>();
+    }
+    Ok(cells as f64 / beams.max(1) as f64)
+}
+
+fn taper_name(sight: &Sight) -> &'static str {
+    match sight.taper {
+        TaperShape::Gaussian => "gaussian",
+        TaperShape::Linear => "linear",
+        TaperShape::Trapezoid => "trapezoid",
+        TaperShape::Box => "box",
+    }
+}
+
+/// Fills in the ratios to the fastest reverse projection that finds the best
+/// pose and nothing more.
+fn compare(rows: &mut [Row]) {
+    let plain = [
+        Method::Scatter,
+        Method::Sweep,
+        Method::Exhaustive,
+        Method::Search,
+    ]
+    .map(Method::name);
+    let times = rows.iter().filter(|row| plain.contains(&row.method));
+    let fastest = times.filter_map(|row| row.cpu_ms).min_by(f64::total_cmp);
+    for row in rows {
+        row.ratio_to_reverse_projection = row.cpu_ms.zip(fastest).map(|(ms, least)| ms / least);
+    }
+}

@@ -1,0 +1,134 @@
+//! The engine's methods, as the bench calls them.
+
+use std::time::Instant;
+
+use benchmarks::worlds::World;
+use engine::accumulator::{Accumulator, Query};
+use engine::exhaustive;
+use engine::instruction_set::InstructionSet;
+use engine::limits::Limits;
+use engine::program::ScanProgram;
+use engine::scatter::Scatter;
+use engine::search::{SearchIndex, Workspace};
+use engine::sweep::FieldSweep;
+use engine::votes::{CollectConfig, VoteSet, distinct, of_field};
+use messages::Vote;
+use offline::OfflineError;
+
+use super::measure::{Answer, Locate, Pose, Task};
+use crate::BenchError;
+
+/// Only the best pose.
+const ARGMAX: CollectConfig = CollectConfig {
+    floor_share: 1.0,
+    max_votes: 1,
+    candidates: 0,
+    work_limit: None,
+};
+
+fn program(task: &Task<'_>) -> Result<ScanProgram, BenchError> {
+    let program = ScanProgram::new(&task.scan.scan(), 0.0, task.space, &task.votes);
+    Ok(program.map_err(OfflineError::Refused)?)
+}
+
+fn best(found: &VoteSet) -> Option<Pose> {
+    found.votes.first().map(pose)
+}
+
+fn pose(vote: &Vote) -> Pose {
+    Pose {
+        x: usize::from(vote.x),
+        y: usize::from(vote.y),
+        heading: usize::from(vote.heading),
+    }
+}
+
+/// By the fields of an accumulator at some headings.
+fn fields<'a, A: Accumulator + 'a>(world: &'a World, accumulator: A) -> Locate<'a> {
+    let (mut accumulator, mut field) = (accumulator, Vec::new());
+    Box::new(move |task, headings| {
+        let program = program(task)?;
+        let sets = headings.iter().filter_map(|&heading| {
+            let query = Query {
+                program: &program,
+                space: task.space,
+                heading,
+            };
+            accumulator.fill(query, &mut field, &|| false)?;
+            Some(of_field(&field, world.grid.width(), heading as u16, ARGMAX))
+        });
+        // Of equal ones the first, as the search has it.
+        let better = |a: VoteSet, b: VoteSet| if b.best > a.best { b } else { a };
+        let found = sets.reduce(better);
+        Ok(Answer::Best(found.and_then(|found| best(&found))))
+    })
+}
+
+/// The paper's own way: from boundary cells.
+pub(super) fn scatter(world: &World) -> Locate<'_> {
+    fields(world, Scatter::new(&world.grid, &world.boundary))
+}
+
+/// By sweeps along the lines of each beam.
+pub(super) fn sweep<'a>(world: &'a World, sweeps: &'a FieldSweep) -> Locate<'a> {
+    fields(world, sweeps.accumulator())
+}
+
+/// By bounds, only the best pose.
+pub(super) fn search<'a>(world: &'a World, index: &'a SearchIndex) -> Locate<'a> {
+    collecting(world, index, ARGMAX)
+}
+
+/// By bounds, with candidates as the graph has them by default.
+pub(super) fn candidates<'a>(world: &'a World, index: &'a SearchIndex) -> Locate<'a> {
+    collecting(world, index, CollectConfig::default())
+}
+
+/// In a workspace that is kept from scan to scan, as the graph does it.
+fn collecting<'a>(world: &'a World, index: &'a SearchIndex, collect: CollectConfig) -> Locate<'a> {
+    let (mut workspace, mut found) = (Workspace::default(), VoteSet::default());
+    Box::new(move |task, _| {
+        let (how, program) = ((InstructionSet::best(), 1), program(task)?);
+        let (scan, collect) = ((&program, task.space), (collect, &mut found));
+        let grid = &world.grid;
+        let searched = index.search_in(&mut workspace, how, grid, scan, collect, &|| false);
+        Ok(Answer::Best(searched.and_then(|()| best(&found))))
+    })
+}
+
+/// The sixteen best distinct poses, exactly, with every pose counted: down to half of the
+/// best one's votes at first, and lower where fewer are distinct. Gives up after so many
+/// seconds, or where a million poses are not enough.
+pub(super) fn top_sixteen<'a>(
+    world: &'a World,
+    sweeps: &'a FieldSweep,
+    patience_s: f64,
+) -> Locate<'a> {
+    const COUNT: usize = 16;
+    Box::new(move |task, _| {
+        let program = program(task)?;
+        let start = Instant::now();
+        let is_late = || start.elapsed().as_secs_f64() > patience_s;
+        let (limits, scan) = (Limits::none(world.grid.width()), (&program, task.space));
+        let mut accumulators = [sweeps.accumulator()];
+        let mut floor_share = 0.5;
+        loop {
+            let collect = CollectConfig {
+                floor_share,
+                max_votes: 1_000_000,
+                candidates: 0,
+                work_limit: None,
+            };
+            let found = exhaustive::search(&mut accumulators, &limits, scan, collect, &is_late);
+            let Some(found) = found.filter(|found| !found.truncated) else {
+                return Ok(Answer::GaveUp);
+            };
+            let poses = distinct(&found.votes, task.space, COUNT);
+            // At 1 or below, all poses that have votes were collected.
+            if poses.len() == COUNT || found.certified_floor <= 1 {
+                return Ok(Answer::Best(poses.first().map(pose)));
+            }
+            floor_share /= 2.0;
+        }
+    })
+}

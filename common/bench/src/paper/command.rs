@@ -1,0 +1,245 @@
+//! What `backcast bench paper` does: measures part by part, and writes tables, pictures
+//! and what became of the claims.
+
+use std::path::PathBuf;
+use std::process::ExitCode;
+
+use super::super::contest::Effort;
+use super::super::progress::Progress;
+use super::super::scope::Table;
+use super::claims::Claim;
+use super::folder::Folder;
+use super::{aid, claims, corridor, counts, method, sonar, tables};
+use crate::BenchError;
+
+/// A part of the paper.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, clap::ValueEnum)]
+pub(in super::super) enum Part {
+    /// Figures 1 to 3: the method step by step
+    Method,
+    /// Sections II B and III: operations against the formulas
+    Counts,
+    /// Section IV: eight sonars
+    Sonar,
+    /// The paper's Table 1: the heading is known
+    Table1,
+    /// The paper's Table 2: the heading is searched too
+    Table2,
+    /// Section V: three places in a corridor
+    Corridor,
+    /// Sections I and VI: the votes as an aid to Markov localization and particles
+    Aid,
+}
+
+const ALL: [Part; 7] = [
+    Part::Method,
+    Part::Counts,
+    Part::Sonar,
+    Part::Table1,
+    Part::Table2,
+    Part::Corridor,
+    Part::Aid,
+];
+
+/// What `backcast bench paper` takes beside the options of every table.
+#[derive(Debug, Clone, Default, clap::Args)]
+#[command(next_help_heading = "Table paper")]
+pub(in super::super) struct Config {
+    /// Where tables and pictures are written [default: docs/paper]
+    #[arg(long, value_name = "FOLDER")]
+    out: Option<PathBuf>,
+
+    /// Parts of the paper, separated by commas; claims.csv holds the claims of
+    /// these [default: all]
+    #[arg(long, value_enum, value_delimiter = ',', value_name = "PART")]
+    part: Vec<Part>,
+
+    /// The recording of section V [default: that of the Málaga corridor, in
+    /// recordings/]
+    #[arg(long, value_name = "FILE")]
+    recording: Option<PathBuf>,
+}
+
+impl Config {
+    /// Whether nothing was asked for.
+    pub(in super::super) fn is_empty(&self) -> bool {
+        self.out.is_none() && self.part.is_empty() && self.recording.is_none()
+    }
+}
+
+/// How much is measured.
+#[derive(Debug, Clone, Copy)]
+struct Scope {
+    is_quick: bool,
+    seed: u64,
+}
+
+impl Scope {
+    /// Sides of the worlds, and scans in each.
+    fn counts(self) -> (usize, usize) {
+        if self.is_quick { (150, 5) } else { (400, 10) }
+    }
+
+    /// For each map and variant.
+    fn sonar_poses(self) -> usize {
+        if self.is_quick { 200 } else { 1000 }
+    }
+
+    /// All scans are measured, for their successes are compared, too.
+    fn table_1(self) -> tables::Extent {
+        let (size, worlds) = if self.is_quick { (200, 6) } else { (1200, 5) };
+        self.table((size, worlds), f64::INFINITY)
+    }
+
+    /// The paper's size in both. Methods that take long are measured at some headings.
+    fn table_2(self) -> tables::Extent {
+        let (worlds, budget_ms) = if self.is_quick {
+            (6, 150.0)
+        } else {
+            (10, 1500.0)
+        };
+        self.table((100, worlds), budget_ms)
+    }
+
+    fn table(self, (size, worlds): (u32, u64), budget_ms: f64) -> tables::Extent {
+        tables::Extent {
+            size,
+            worlds,
+            effort: Effort {
+                scans: if self.is_quick { 5 } else { 10 },
+                budget_ms,
+                patience_s: 60.0,
+                seed: self.seed,
+            },
+        }
+    }
+
+    fn aid(self) -> aid::Extent {
+        let (size, worlds, scans) = if self.is_quick {
+            (80, 3, 4)
+        } else {
+            (150, 5, 10)
+        };
+        aid::Extent {
+            size,
+            beams: 24,
+            worlds,
+            scans,
+        }
+    }
+}
+
+/// Measures all parts, or those that were asked for, and says what was written.
+///
+/// # Errors
+/// The folder cannot be written, or a part not be measured.
+pub(in super::super) fn run(
+    config: &Config,
+    is_quick: bool,
+    seed: u64,
+) -> Result<ExitCode, BenchError> {
+    let out = config.out.clone().unwrap_or_else(|| "docs/paper".into());
+    let folder = Folder::open(&out)?;
+    let parts = match &config.part[..] {
+        [] => &ALL,
+        asked => asked,
+    };
+    let scope = Scope { is_quick, seed };
+    let progress = Progress::new(parts.len());
+    let mut all = Vec::new();
+    for part in ALL.iter().filter(|part| parts.contains(part)) {
+        let say = |what: String| progress.say(what);
+        let claims = match part {
+            Part::Method => method_part(&folder)?,
+            Part::Counts => counts_part(&folder, scope)?,
+            Part::Sonar => sonar_part(&folder, scope, say)?,
+            Part::Table1 => table_part(&folder, Table::Table1, scope.table_1(), say)?,
+            Part::Table2 => table_part(&folder, Table::Table2, scope.table_2(), say)?,
+            Part::Corridor => corridor_part(&folder, config)?,
+            Part::Aid => aid_part(&folder, scope, say)?,
+        };
+        all.extend(claims);
+        progress.step();
+    }
+    folder.table("claims.csv", &claims::csv(&all))?;
+    progress.print(&format!("{}: {} claims judged\n", out.display(), all.len()))?;
+    Ok(ExitCode::SUCCESS)
+}
+
+fn method_part(folder: &Folder) -> Result<Vec<Claim>, BenchError> {
+    folder.picture("figure1.png", &method::draw_figure_1()?)?;
+    folder.picture("figure2.png", &method::draw_figure_2()?)?;
+    folder.picture("figure3.png", &method::draw_figure_3()?)?;
+    Ok(Vec::new())
+}
+
+fn counts_part(folder: &Folder, scope: Scope) -> Result<Vec<Claim>, BenchError> {
+    let (side, scans) = scope.counts();
+    let counted = counts::count(side, scans, scope.seed)?;
+    folder.table("counts.csv", &counts::csv(&counted))?;
+    folder.picture("counts.png", &counts::draw(&counted)?)?;
+    Ok(claims::of_counts(&counted))
+}
+
+fn sonar_part(
+    folder: &Folder,
+    scope: Scope,
+    say: impl Fn(String),
+) -> Result<Vec<Claim>, BenchError> {
+    let mut done = 0;
+    let judged = sonar::judge(scope.sonar_poses(), scope.seed, || {
+        done += 1;
+        say(format!("eight sonars, {done} cases done"));
+    })?;
+    folder.table("sonar.csv", &sonar::csv(&judged))?;
+    folder.picture("sonar_errors.png", &sonar::draw_errors(&judged)?)?;
+    for place in sonar::PLACES {
+        let [flat, surface] = sonar::draw_field(place, scope.seed)?;
+        let figure = place.figure;
+        folder.picture(&format!("figure{figure}_field.png"), &flat)?;
+        folder.picture(&format!("figure{figure}_surface.png"), &surface)?;
+    }
+    Ok(claims::of_sonar(&judged))
+}
+
+fn table_part(
+    folder: &Folder,
+    table: Table,
+    extent: tables::Extent,
+    say: impl Fn(String),
+) -> Result<Vec<Claim>, BenchError> {
+    let measured = tables::measure(table, extent, say)?;
+    let name = table.name();
+    folder.table(&format!("{name}.csv"), &tables::csv(&measured))?;
+    let picture = tables::draw(table, extent, &measured)?;
+    folder.picture(&format!("{name}.png"), &picture)?;
+    Ok(match table {
+        Table::Table1 => claims::of_table_1(&measured),
+        _ => claims::of_table_2(&measured),
+    })
+}
+
+fn corridor_part(folder: &Folder, config: &Config) -> Result<Vec<Claim>, BenchError> {
+    let file = config.recording.clone();
+    let file = file.unwrap_or_else(|| "recordings/malaga_corridor/recording.mcap".into());
+    let corridor = corridor::localize(&file)?;
+    folder.table("corridor.csv", &corridor::csv(&corridor))?;
+    folder.picture("figure6.png", &corridor::draw_places(&corridor)?)?;
+    for (number, place) in (1..).zip(&corridor.places) {
+        let picture = corridor::draw_field(&corridor, number, place)?;
+        folder.picture(&format!("figure6_place{number}.png"), &picture)?;
+    }
+    Ok(claims::of_corridor(&corridor))
+}
+
+fn aid_part(
+    folder: &Folder,
+    scope: Scope,
+    say: impl FnMut(String),
+) -> Result<Vec<Claim>, BenchError> {
+    let extent = scope.aid();
+    let saved = aid::measure(extent, scope.seed, say)?;
+    folder.table("aid.csv", &aid::csv(&saved))?;
+    folder.picture("aid.png", &aid::draw(extent, &saved)?)?;
+    Ok(claims::of_aid(&saved))
+}

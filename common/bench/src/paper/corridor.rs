@@ -1,0 +1,214 @@
+//! Section V: a robot with a laser in a corridor localizes at three places: the corridor
+//! of the University of Málaga in place of the paper's, whose recording is not public.
+
+use std::path::{Path, PathBuf};
+
+use clap::Parser;
+use drawing::Scene;
+use engine::grid::CellRules;
+use engine::localizer::Prior;
+use engine::peaks::Score;
+use geometry::Pose;
+use offline::{Field, OfflineError, Options, Session, TakenScan, World};
+use plots::{PlotError, Votes};
+use recording::Recording;
+
+use super::folder::{Csv, digits};
+use crate::BenchError;
+
+/// Where in the recording the places lie, as shares of its scans.
+const PLACES: [f64; 3] = [0.1, 0.5, 0.9];
+
+/// The settings of `locate` without any option.
+#[derive(Debug, Parser)]
+struct Defaults {
+    #[command(flatten)]
+    options: Options,
+}
+
+/// A scan at one of the places, localized.
+#[derive(Debug)]
+pub(super) struct Localized {
+    /// Which scan of the recording, from 1.
+    pub(super) scan: usize,
+    truth: Pose,
+    /// By the votes alone, as the paper does it, and after the second stage.
+    by_votes: Pose,
+    by_fit: Pose,
+    field: Field,
+}
+
+/// All places, and the path between them.
+#[derive(Debug)]
+pub(super) struct Corridor {
+    map: map::OccupancyGrid,
+    rules: CellRules,
+    path: Vec<Pose>,
+    pub(super) places: Vec<Localized>,
+}
+
+impl Localized {
+    /// Metres from the truth by the votes alone.
+    pub(super) fn votes_off_m(&self) -> f64 {
+        self.by_votes.distance_to(self.truth)
+    }
+
+    /// The same after the second stage.
+    pub(super) fn fit_off_m(&self) -> f64 {
+        self.by_fit.distance_to(self.truth)
+    }
+}
+
+/// Localizes at the three places of a recording with `/map` and `/ground_truth`.
+///
+/// # Errors
+/// It cannot be read, has no truth, or a scan has no place.
+pub(super) fn localize(file: &Path) -> Result<Corridor, BenchError> {
+    let defaults = Defaults::try_parse_from(["paper"]);
+    let options = defaults.map_err(|error| OfflineError::Usage(error.to_string()))?;
+    let options = options.options;
+    let recording = options.open(&[file.to_owned()])?;
+    let truths = recording.ground_truths()?;
+    if truths.is_empty() {
+        let file = file.to_owned();
+        return Err(OfflineError::NoTruths { file }.into());
+    }
+    let mut taken = Vec::new();
+    let session = Session::open(&recording, &options, None)?;
+    for scan in session.scans {
+        let scan = scan?;
+        if let Some(truth) = truths.get(&scan.stamp_ns) {
+            taken.push((scan, truth.pose));
+        }
+    }
+    let chosen = PLACES.map(|share| (share * taken.len() as f64) as usize);
+    let mut places = Vec::new();
+    for index in chosen {
+        let Some((scan, truth)) = taken.get(index) else {
+            continue;
+        };
+        places.push(locate((&recording, &options), (index + 1, scan), *truth)?);
+    }
+    let mut session = Session::open(&recording, &options, None)?;
+    if let Some(scan) = taken.first() {
+        session.ask(&scan.0)?;
+    }
+    Ok(Corridor {
+        map: session.map()?.clone(),
+        rules: options.engine.cells,
+        path: taken.into_iter().map(|(_, truth)| truth).collect(),
+        places,
+    })
+}
+
+fn locate(
+    (recording, options): (&Recording, &Options),
+    (number, scan): (usize, &TakenScan),
+    truth: Pose,
+) -> Result<Localized, BenchError> {
+    let [by_votes, by_fit] = [Score::Votes, Score::Fit].map(|score| {
+        let mut options = options.clone();
+        options.engine.peaks.score = score;
+        best_place((recording, &options), (number, scan))
+    });
+    let by_votes = by_votes?;
+    let mut session = Session::open(recording, options, None)?;
+    session.ask(scan)?;
+    let world = World::prepare(session.map()?, &options.engine, Prior::Heading);
+    let field = world
+        .and_then(|world| world.field_at(&scan.borrowed(), by_votes.yaw))
+        .map_err(OfflineError::Refused)?;
+    Ok(Localized {
+        scan: number,
+        truth,
+        by_votes,
+        by_fit: by_fit?,
+        field,
+    })
+}
+
+fn best_place(
+    (recording, options): (&Recording, &Options),
+    (number, scan): (usize, &TakenScan),
+) -> Result<Pose, BenchError> {
+    let mut session = Session::open(recording, options, None)?;
+    let places = session.ask(scan)?.answer?.places;
+    let best = places.places.first().map(|place| place.map_from_laser);
+    let best = best.ok_or_else(|| PlotError::NoPlace {
+        file: PathBuf::from(recording.path()),
+        number: number as u64,
+        says: places.sentence(),
+    })?;
+    Ok(best)
+}
+
+/// A row for each place.
+pub(super) fn csv(corridor: &Corridor) -> Csv {
+    let mut csv = Csv::new(&[
+        "place",
+        "scan",
+        "truth_x_m",
+        "truth_y_m",
+        "truth_heading_deg",
+        "votes_error_m",
+        "votes_error_deg",
+        "fit_error_m",
+        "fit_error_deg",
+    ]);
+    for (number, place) in (1..).zip(&corridor.places) {
+        let truth = place.truth;
+        let degrees = |pose: Pose| pose.angle_to(truth).to_degrees();
+        let figures = [
+            truth.x,
+            truth.y,
+            truth.yaw.to_degrees(),
+            place.votes_off_m(),
+            degrees(place.by_votes),
+            place.fit_off_m(),
+            degrees(place.by_fit),
+        ];
+        let first = [i32::to_string(&number), place.scan.to_string()];
+        csv.push(first.into_iter().chain(figures.map(digits)));
+    }
+    csv
+}
+
+/// The map with path and places, as figure 6a.
+///
+/// # Errors
+/// The picture would be too large.
+pub(super) fn draw_places(corridor: &Corridor) -> Result<Scene, PlotError> {
+    let places: Vec<(Pose, Pose)> = corridor
+        .places
+        .iter()
+        .map(|place| (place.by_votes, place.truth))
+        .collect();
+    let text = (
+        "Section V: a corridor, and three places where the robot localizes".to_owned(),
+        "each from one scan alone, at any heading, by the votes".to_owned(),
+    );
+    let map = (&corridor.map, corridor.rules);
+    plots::draw_places(map, &corridor.path, &places, text)
+}
+
+/// The intensity field at a place, as figures 6e to 6g.
+///
+/// # Errors
+/// The picture would be too large.
+pub(super) fn draw_field(
+    corridor: &Corridor,
+    number: usize,
+    place: &Localized,
+) -> Result<Scene, PlotError> {
+    let text = (
+        format!("Place {number}: intensity at the heading that was found"),
+        format!(
+            "scan {} of the recording; the votes are {:.1} cm from the truth, after the second stage {:.1} cm",
+            place.scan,
+            100.0 * place.votes_off_m(),
+            100.0 * place.fit_off_m()
+        ),
+    );
+    let map = (&corridor.map, corridor.rules);
+    plots::draw_votes(&Votes::whole(map, &place.field, Some(place.truth), text))
+}

@@ -1,0 +1,120 @@
+//! The folder that tables and pictures are written into.
+
+use std::fs;
+use std::path::{Path, PathBuf};
+
+use drawing::Scene;
+use plots::PlotError;
+
+use crate::BenchError;
+
+/// A folder that can be written into.
+#[derive(Debug)]
+pub(super) struct Folder {
+    path: PathBuf,
+}
+
+/// A table with a header, ready to be written.
+#[derive(Debug, Clone, PartialEq)]
+pub(super) struct Csv {
+    columns: usize,
+    text: String,
+}
+
+impl Folder {
+    /// Makes the folder where it is missing, and the ones above it.
+    ///
+    /// # Errors
+    /// It cannot be made, or no file can be written into it.
+    pub(super) fn open(path: &Path) -> Result<Self, BenchError> {
+        let error = |source| BenchError::OutFolder {
+            folder: path.to_owned(),
+            source,
+        };
+        fs::create_dir_all(path).map_err(error)?;
+        // An hour of measuring must not end with a file that cannot be written.
+        let trial = path.join(".backcast-trial");
+        fs::write(&trial, []).map_err(error)?;
+        fs::remove_file(&trial).map_err(error)?;
+        Ok(Folder {
+            path: path.to_owned(),
+        })
+    }
+
+    /// Writes a table.
+    ///
+    /// # Errors
+    /// The file cannot be written.
+    pub(super) fn table(&self, name: &str, csv: &Csv) -> Result<(), BenchError> {
+        let file = self.path.join(name);
+        fs::write(&file, &csv.text).map_err(|source| BenchError::Table { file, source })
+    }
+
+    /// Writes a picture as PNG.
+    ///
+    /// # Errors
+    /// The picture cannot be encoded, or the file not be written.
+    pub(super) fn picture(&self, name: &str, scene: &Scene) -> Result<(), BenchError> {
+        let file = self.path.join(name);
+        let png = drawing::to_png(scene)?;
+        Ok(fs::write(&file, png).map_err(|source| PlotError::Picture { file, source })?)
+    }
+}
+
+impl Csv {
+    /// A table with these columns.
+    pub(super) fn new(columns: &[&str]) -> Self {
+        let mut csv = Csv {
+            columns: columns.len(),
+            text: String::new(),
+        };
+        csv.push(columns.iter().map(|&name| name.to_owned()));
+        csv
+    }
+
+    /// Adds a row; a field with a comma, a quote or a line's end is quoted (RFC 4180).
+    pub(super) fn push(&mut self, fields: impl IntoIterator<Item = String>) {
+        let fields: Vec<String> = fields.into_iter().map(quoted).collect();
+        debug_assert_eq!(fields.len(), self.columns);
+        self.text.push_str(&fields.join(","));
+        self.text.push('\n');
+    }
+}
+
+fn quoted(field: String) -> String {
+    match field.contains(['"', ',', '\n', '\r']) {
+        true => format!("\"{}\"", field.replace('"', "\"\"")),
+        false => field,
+    }
+}
+
+/// A number with four digits; empty where there is none.
+pub(super) fn digits(value: f64) -> String {
+    if !value.is_finite() {
+        return String::new();
+    }
+    if value == 0.0 {
+        return "0".to_owned();
+    }
+    let before = value.abs().log10().floor() as i32 + 1;
+    let decimals = usize::try_from(4 - before).unwrap_or(0);
+    format!("{value:.decimals$}")
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn fields_with_commas_are_quoted() {
+        let mut csv = Csv::new(&["a", "b"]);
+        csv.push(["1, 2".to_owned(), "say \"x\"".to_owned()]);
+        assert_eq!(csv.text, "a,b\n\"1, 2\",\"say \"\"x\"\"\"\n");
+    }
+
+    #[test]
+    fn numbers_have_four_digits() {
+        let texts = [0.012_345_6, 1.0, 29.096, 12_345.6, 0.0, f64::NAN].map(digits);
+        assert_eq!(texts, ["0.01235", "1.000", "29.10", "12346", "0", ""]);
+    }
+}

@@ -1,0 +1,246 @@
+//! Tables 1 and 2: the times of all methods as ratios to the paper's method as written,
+//! beside the ratios that the paper prints.
+
+use std::collections::BTreeMap;
+
+use benchmarks::worlds::Kind;
+use drawing::Scene;
+use engine::taper::TaperShape;
+use plots::{Curve, CurvePoint, Curves, PlotError};
+
+use super::super::contest::{Contest, Effort};
+use super::super::method::Method;
+use super::super::row::Row;
+use super::super::scope::{Place, Sight, Table};
+use super::folder::{Csv, digits};
+use super::interval::{self, Interval};
+use super::printed::{self, NOISE, P_OVER_N, Printed};
+use crate::BenchError;
+
+/// As many beams as the robot of the section has sonars.
+const BEAMS: u32 = 8;
+/// The noise of table 2, and that at which table 1 is drawn, per cent.
+pub(super) const COMMON_NOISE: u32 = 10;
+
+/// How a table is measured.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(super) struct Extent {
+    /// Cells a side.
+    pub(super) size: u32,
+    /// Worlds for each p/n, over which the intervals run.
+    pub(super) worlds: u64,
+    pub(super) effort: Effort,
+}
+
+/// A method in one case, over all worlds.
+#[derive(Debug, Clone, PartialEq)]
+pub(super) struct Measured {
+    pub(super) method: &'static str,
+    pub(super) p_over_n: u32,
+    pub(super) noise: u32,
+    /// Cells of a taper, on average.
+    pub(super) k: f64,
+    /// Milliseconds for one scan, the geometric mean of the worlds' medians.
+    pub(super) cpu_ms: Interval,
+    /// Its time over that of the paper's method as written.
+    pub(super) ratio: Interval,
+    /// Share of scans that were found; NaN where only some headings were searched.
+    pub(super) found: f64,
+    /// The paper's ratio; `None` where it has none.
+    pub(super) paper_ratio: Option<f64>,
+}
+
+/// Measures a table, world by world.
+///
+/// # Errors
+/// A case cannot be set up.
+pub(super) fn measure(
+    table: Table,
+    extent: Extent,
+    mut step: impl FnMut(String),
+) -> Result<Vec<Measured>, BenchError> {
+    let mut rows: BTreeMap<(u32, u32), Vec<Vec<Row>>> = BTreeMap::new();
+    for p_over_n in P_OVER_N {
+        for world in 0..extent.worlds {
+            step(format!(
+                "{}, p/n {p_over_n} %, map {}",
+                table.name(),
+                world + 1
+            ));
+            let place = Place {
+                kind: Kind::Rooms,
+                size: extent.size,
+                p_over_n: f64::from(p_over_n),
+                headings: 360,
+            };
+            let effort = Effort {
+                seed: extent.effort.seed + world,
+                ..extent.effort
+            };
+            let mut contest = Contest::new(table, place, effort.seed)?;
+            for &noise in noises(table) {
+                let sight = Sight {
+                    beams: BEAMS,
+                    noise_percent: f64::from(noise),
+                    taper: TaperShape::Trapezoid,
+                };
+                let case = rows.entry((p_over_n, noise)).or_default();
+                case.push(contest.run(&sight, effort, || {})?);
+            }
+        }
+    }
+    let cases = rows.iter();
+    Ok(cases
+        .flat_map(|(&case, worlds)| summarized(table, case, worlds))
+        .collect())
+}
+
+fn noises(table: Table) -> &'static [u32] {
+    match table {
+        Table::Table1 => &NOISE,
+        _ => &[COMMON_NOISE],
+    }
+}
+
+/// All methods of a case.
+fn summarized(table: Table, (p_over_n, noise): (u32, u32), worlds: &[Vec<Row>]) -> Vec<Measured> {
+    let Some(first) = worlds.first() else {
+        return Vec::new();
+    };
+    let printed = match table {
+        Table::Table1 => printed::table_1(p_over_n, noise),
+        _ => printed::table_2(p_over_n),
+    };
+    let of = |method: &'static str| {
+        let times: Vec<(f64, f64)> = worlds
+            .iter()
+            .filter_map(|rows| {
+                let time = |name| rows.iter().find(|row| row.method == name)?.cpu_ms;
+                Some((time(method)?, time(Method::Scatter.name())?))
+            })
+            .collect();
+        let found = worlds.iter().flatten().filter(|row| row.method == method);
+        let found: Vec<f64> = found.filter_map(|row| row.found).collect();
+        let own: Vec<f64> = times.iter().map(|time| time.0).collect();
+        let ratios: Vec<f64> = times.iter().map(|(own, scatter)| own / scatter).collect();
+        Measured {
+            method,
+            p_over_n,
+            noise,
+            k: first.first().map_or(f64::NAN, |row| row.k),
+            cpu_ms: interval::of_ratio(&own),
+            ratio: interval::of_ratio(&ratios),
+            found: interval::of_mean(&found).value,
+            paper_ratio: printed.and_then(|printed| paper_ratio(method, printed)),
+        }
+    };
+    first.iter().map(|row| of(row.method)).collect()
+}
+
+/// What the paper has for a method, as a ratio to its own.
+fn paper_ratio(method: &str, printed: Printed) -> Option<f64> {
+    let is = |other: Method| method == other.name();
+    if is(Method::RayCasting) {
+        return Some(printed.markov / printed.current);
+    }
+    if is(Method::Patch) {
+        return Some(printed.correlation / printed.current);
+    }
+    is(Method::Scatter).then_some(1.0)
+}
+
+/// A row for each case and method.
+pub(super) fn csv(all: &[Measured]) -> Csv {
+    let mut csv = Csv::new(&[
+        "p_over_n_percent",
+        "noise_percent",
+        "k",
+        "method",
+        "cpu_ms",
+        "cpu_ms_low_95",
+        "cpu_ms_high_95",
+        "ratio",
+        "ratio_low_95",
+        "ratio_high_95",
+        "paper_ratio",
+        "found",
+    ]);
+    for row in all {
+        let mut fields = vec![
+            row.p_over_n.to_string(),
+            row.noise.to_string(),
+            digits(row.k),
+            row.method.to_owned(),
+        ];
+        for Interval { value, low, high } in [row.cpu_ms, row.ratio] {
+            fields.extend([value, low, high].map(digits));
+        }
+        fields.push(row.paper_ratio.map_or_else(String::new, digits));
+        fields.push(digits(row.found));
+        csv.push(fields);
+    }
+    csv
+}
+
+/// The ratios over p/n at the common noise, and the paper's, dashed.
+///
+/// # Errors
+/// The picture would be too large.
+pub(super) fn draw(table: Table, extent: Extent, all: &[Measured]) -> Result<Scene, PlotError> {
+    let ours = match table {
+        Table::Table1 => Method::Sweep,
+        _ => Method::Search,
+    };
+    let shown = [
+        (Method::RayCasting, "Markov, ray casting"),
+        (Method::Patch, "Correlation, patch"),
+        (Method::MonteCarlo, "Monte Carlo"),
+        (ours, ours.label()),
+    ];
+    let mut curves = Vec::new();
+    for (color, (method, name)) in shown.into_iter().enumerate() {
+        let here = || {
+            let rows = all.iter().filter(move |row| row.noise == COMMON_NOISE);
+            rows.filter(move |row| row.method == method.name())
+        };
+        let curve = |name: String, is_dashed, points| Curve {
+            name,
+            color,
+            is_dashed,
+            points,
+        };
+        let measured = here().map(|row| CurvePoint {
+            x: f64::from(row.p_over_n),
+            y: row.ratio.value,
+            interval: Some((row.ratio.low, row.ratio.high)),
+        });
+        curves.push(curve(name.to_owned(), false, measured.collect()));
+        let printed = here().filter_map(|row| {
+            Some(CurvePoint {
+                x: f64::from(row.p_over_n),
+                y: row.paper_ratio?,
+                interval: None,
+            })
+        });
+        let printed: Vec<CurvePoint> = printed.collect();
+        if !printed.is_empty() {
+            curves.push(curve(format!("{name}, the paper's"), true, printed));
+        }
+    }
+    let (number, heading) = match table {
+        Table::Table1 => (1, "heading known"),
+        _ => (2, "heading unknown, 360 headings"),
+    };
+    plots::draw_curves(&Curves {
+        title: format!("Table {number}: time over that of the paper's method as written"),
+        says: format!(
+            "{size} × {size} cells, {BEAMS} beams, noise {COMMON_NOISE} %, {heading}; bars hold 95 %, over {worlds} maps a point",
+            size = extent.size,
+            worlds = extent.worlds,
+        ),
+        x: "p/n: boundary cells over free cells, %".into(),
+        y: "time, ratio".into(),
+        by_decades: true,
+        curves,
+    })
+}

@@ -1,0 +1,185 @@
+//! What `backcast evaluate` does: reads, asks scan by scan, and prints.
+
+use std::collections::BTreeMap;
+use std::path::{Path, PathBuf};
+use std::process::ExitCode;
+
+use command_line::stdout;
+use map::OccupancyGrid;
+use offline::{Accepted, OfflineError, Options, Session, World, damage_of};
+use progress::{Progress, say};
+use recording::GroundTruth;
+
+use super::judge::{Effort, Evaluation, Judge};
+use super::memory;
+use super::table::{self, Table};
+use super::trust::Trust;
+use crate::EvaluationError;
+use crate::sequence::{self, SequenceOptions};
+
+/// What stands below the options.
+pub const NOTES: &str = "\
+Shares are of the truths: the scans taken that have a true pose. Only those are searched.
+cpu is of one thread from the scan to the verdict, decoding excluded; prepare is of the map.
+Errors are of the answers within 0.5 m and 10 degrees, which are the right ones.
+ellipse is of the unique ones: the true position lies in the ellipse of 95 %.
+Below, the probabilities of the best places of all files, and how many of those were right.
+
+Exit codes: 0 all evaluated, 1 a file could not be, 2 wrong use";
+
+/// What `backcast evaluate` takes.
+#[derive(Debug, clap::Args)]
+pub struct Config {
+    /// Recordings with true poses on /ground_truth, each by itself: MCAP files, or
+    /// bags of rosbag2 (their folders, or .db3)
+    #[arg(required = true, value_name = "FILE")]
+    bags: Vec<PathBuf>,
+
+    /// Print JSON, an object a file
+    #[arg(long)]
+    json: bool,
+
+    /// Erase the map around each true pose: cells within so many metres become
+    /// unknown, 0..=1000. unique_wrong then tells how often a place that is not
+    /// on the map is taken for another
+    #[arg(long, value_name = "METRES", value_parser = radius)]
+    erase_place: Option<f64>,
+
+    #[command(flatten)]
+    options: Options,
+
+    #[command(flatten)]
+    sequence: SequenceOptions,
+}
+
+fn radius(text: &str) -> Result<f64, String> {
+    let allowed = |metres: &f64| (0.0..=1000.0).contains(metres);
+    let metres = text.parse().ok().filter(allowed);
+    metres.ok_or_else(|| "allowed are 0 to 1000 metres".into())
+}
+
+/// Evaluates one file after another. A file that cannot be evaluated is told on
+/// standard error, and the next one follows.
+///
+/// # Errors
+/// The options or the map that is named cannot be used, or output cannot be
+/// written.
+pub fn run(config: &Config) -> Result<ExitCode, EvaluationError> {
+    config.options.check()?;
+    let map = config.options.load_map(&config.bags)?;
+    if config.sequence.sequence {
+        let how = (&config.options, &config.sequence);
+        return sequence::evaluate(&config.bags, config.json, map.as_ref(), how);
+    }
+    let table = Table::of(&config.bags);
+    let mut code = ExitCode::SUCCESS;
+    let mut trust = Trust::default();
+    let mut header = (!config.json).then(|| table.header());
+    for (index, bag) in config.bags.iter().enumerate() {
+        if let Err(error) = memory::forget_peak()
+            && index > 0
+        {
+            let bag = bag.display();
+            say(&format!(
+                "{bag}: peak_rss_mb is that of all files so far: {error}"
+            ));
+        }
+        let evaluation = match evaluate(bag, config, map.as_ref(), &mut trust) {
+            Ok(evaluation) => evaluation,
+            Err(error) => {
+                say(&transport::with_causes(&error));
+                code = ExitCode::FAILURE;
+                continue;
+            }
+        };
+        let line = match config.json {
+            true => evaluation.json(),
+            false => table.row(&evaluation),
+        };
+        for line in header.take().into_iter().chain([line]) {
+            stdout::print(&format!("{line}\n"))?;
+        }
+    }
+    if !config.json && header.is_none() {
+        stdout::print(&format!("\n{}", table::probabilities(&trust)))?;
+    }
+    Ok(code)
+}
+
+/// Evaluates one file; a damaged one not at all. Adds to what is known of the
+/// trust in all.
+fn evaluate(
+    bag: &Path,
+    config: &Config,
+    map: Option<&OccupancyGrid>,
+    trust: &mut Trust,
+) -> Result<Evaluation, EvaluationError> {
+    let recording = config.options.open(&[bag.to_owned()])?;
+    if let Some(damage) = damage_of(&recording) {
+        return Err(damage.into());
+    }
+    let truths = recording.ground_truths()?;
+    if truths.is_empty() {
+        return Err(OfflineError::NoTruths { file: bag.into() }.into());
+    }
+    let mut session = Session::open(&recording, &config.options, map)?;
+    let name = bag.display().to_string();
+    let progress = Progress::new(&name, session.scans.total());
+    let (judge, accepted, scans) = judge_all(&mut session, &truths, config.erase_place, &progress)?;
+    accepted.check(bag)?;
+    if let Some(complaint) = judge.complaint() {
+        progress.say(&format!("{name}: {complaint}"));
+    }
+    trust.merge(judge.trust());
+    let evaluation = judge.conclude(Effort {
+        bag: name,
+        map_cells: session.world().map_or(0, World::cells),
+        scans,
+        prepare_cpu_ms: session.prepare_cpu_ms,
+        peak_rss_mb: memory::peak_mb().map_err(EvaluationError::Memory)?,
+        searchable_cells: session.world().map_or(0, World::searchable_cells),
+        index_bytes: session.world().map_or(0, World::index_bytes),
+    });
+    match evaluation.truths {
+        0 => Err(OfflineError::NoTruthTaken {
+            file: bag.into(),
+            scans,
+            truths: truths.len(),
+        }
+        .into()),
+        _ => Ok(evaluation),
+    }
+}
+
+/// Searches and judges the scans whose truth is known; returns with that which
+/// were accepted, and how many were taken.
+fn judge_all(
+    session: &mut Session<'_>,
+    truths: &BTreeMap<i64, GroundTruth>,
+    erase_place: Option<f64>,
+    progress: &Progress,
+) -> Result<(Judge, Accepted, u64), EvaluationError> {
+    let mut judge = Judge::new();
+    let mut accepted = Accepted::default();
+    let mut scans = 0;
+    while let Some(scan) = session.scans.next() {
+        let scan = scan?;
+        scans += 1;
+        if let Some(truth) = truths.get(&scan.stamp_ns) {
+            if let Some(radius_m) = erase_place {
+                session.erase(&scan, truth.pose, radius_m)?;
+            }
+            let reply = session.ask(&scan)?;
+            accepted.count(&reply);
+            match reply.answer {
+                Ok(answer) => judge.answer(truth.pose, answer.places, reply.cpu_ms),
+                Err(refusal) => judge.refusal(truth.pose, transport::with_causes(&refusal)),
+            }
+        }
+        for note in session.take_notes() {
+            progress.say(&note);
+        }
+        progress.step();
+    }
+    Ok((judge, accepted, scans))
+}

@@ -1,0 +1,292 @@
+//! From answers and true poses to the figures of one file. Pure.
+
+use engine::peaks::Places;
+use geometry::Pose;
+use messages::Verdict;
+use serde::Serialize;
+use statistics::{Accuracy, Distribution, SUCCESS, Spread};
+
+use super::trust::{self, Said, Trust};
+
+/// Collects what is known about one file.
+pub(super) struct Judge {
+    accuracy: Accuracy,
+    cpu_ms: Distribution,
+    error_m: Distribution,
+    error_deg: Distribution,
+    trust: Trust,
+    /// Truths in the ellipse of an answer with the verdict Unique.
+    in_ellipse: u64,
+    refused: u64,
+    first_refusal: Option<String>,
+}
+
+/// What was evaluated, and at what cost.
+#[derive(Debug, Clone, PartialEq)]
+pub(super) struct Effort {
+    pub(super) bag: String,
+    pub(super) map_cells: u64,
+    pub(super) scans: u64,
+    pub(super) prepare_cpu_ms: f64,
+    pub(super) peak_rss_mb: f64,
+    pub(super) searchable_cells: u64,
+    pub(super) index_bytes: u64,
+}
+
+/// The figures of one file; shares are 0..=1 of `truths`.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+pub(super) struct Evaluation {
+    /// The file, as it was named.
+    pub(super) bag: String,
+    /// Width times height of the map.
+    pub(super) map_cells: u64,
+    /// Scans that were taken.
+    pub(super) scans: u64,
+    /// Those of them that have a true pose. Only they are searched and judged.
+    pub(super) truths: u64,
+    /// Best pose within 0.5 m and 10°.
+    pub(super) success_50cm_10deg: Option<f64>,
+    /// Best pose within 0.2 m and 3°.
+    pub(super) success_20cm_3deg: Option<f64>,
+    /// Any of the best 16 poses within 0.5 m and 10°.
+    pub(super) top16_recall: Option<f64>,
+    /// Answers with the verdict Unique.
+    pub(super) unique: u64,
+    /// Those of them beyond 0.5 m or 10°.
+    pub(super) unique_wrong: u64,
+    /// Milliseconds of this thread from scan to verdict, refused scans left out.
+    pub(super) cpu_ms: Times,
+    /// Milliseconds of this thread to prepare the map.
+    pub(super) prepare_cpu_ms: f64,
+    /// The most memory that the process held, megabytes of 10⁶ bytes.
+    pub(super) peak_rss_mb: f64,
+    /// Cells in which poses are sought, as large as they are searched.
+    pub(super) searchable_cells: u64,
+    /// Bytes of what a search keeps of the map.
+    pub(super) index_bytes: u64,
+    /// Distance of the best pose, metres, of the answers within 0.5 m and 10°:
+    /// how well a place is met once it is found.
+    pub(super) error_m: Spread,
+    /// Angle to the best pose, degrees, of the same answers.
+    pub(super) error_deg: Spread,
+    /// Of the answers with the verdict Unique, those in whose ellipse of 95 % the
+    /// true position lies.
+    pub(super) unique_in_ellipse: u64,
+    /// The probabilities of the best places, and how many of them were right.
+    pub(super) probabilities: Vec<Said>,
+}
+
+/// Percentiles of a time.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize)]
+pub(super) struct Times {
+    pub(super) median: Option<f64>,
+    pub(super) p90: Option<f64>,
+    pub(super) max: Option<f64>,
+}
+
+impl Judge {
+    /// Nothing yet.
+    pub(super) fn new() -> Self {
+        // A file is finite, and so is what is kept of it.
+        let all = || Distribution::new(usize::MAX);
+        Judge {
+            accuracy: Accuracy::new(usize::MAX),
+            cpu_ms: all(),
+            error_m: all(),
+            error_deg: all(),
+            trust: Trust::default(),
+            in_ellipse: 0,
+            refused: 0,
+            first_refusal: None,
+        }
+    }
+
+    /// Judges the answer to a scan.
+    pub(super) fn answer(&mut self, truth: Pose, found: &Places, cpu_ms: f64) {
+        let poses = found.places.iter().map(|place| place.map_from_laser);
+        let judged = statistics::Answer {
+            poses: poses.collect(),
+            verdict: Some(found.verdict),
+        };
+        self.accuracy.add(truth, &judged);
+        self.cpu_ms.add(cpu_ms);
+        let Some(place) = found.places.first() else {
+            return;
+        };
+        let (metres, degrees) = SUCCESS;
+        let best = place.map_from_laser;
+        let is_right = best.is_within(truth, metres, degrees.to_radians());
+        if is_right {
+            self.error_m.add(best.distance_to(truth));
+            self.error_deg.add(best.angle_to(truth).to_degrees());
+        }
+        self.trust.add(place.probability, is_right);
+        if found.verdict == Verdict::Unique {
+            self.in_ellipse += u64::from(trust::is_in_ellipse(place, truth));
+        }
+    }
+
+    /// Judges a scan that was refused: a failure.
+    pub(super) fn refusal(&mut self, truth: Pose, reason: String) {
+        self.refused += 1;
+        self.first_refusal.get_or_insert(reason);
+        let nothing = statistics::Answer {
+            poses: Vec::new(),
+            verdict: None,
+        };
+        self.accuracy.add(truth, &nothing);
+    }
+
+    /// What the answers said of themselves.
+    pub(super) fn trust(&self) -> &Trust {
+        &self.trust
+    }
+
+    /// What to say about refused scans, if there were any.
+    pub(super) fn complaint(&self) -> Option<String> {
+        let reason = self.first_refusal.as_ref()?;
+        let refused = self.refused;
+        Some(format!("scans refused: {refused}; the first: {reason}"))
+    }
+
+    /// The figures.
+    pub(super) fn conclude(&self, effort: Effort) -> Evaluation {
+        let figures = self.accuracy.figures();
+        let [median, p90, max] = self.cpu_ms.percentiles([50.0, 90.0, 100.0]);
+        Evaluation {
+            bag: effort.bag,
+            map_cells: effort.map_cells,
+            scans: effort.scans,
+            truths: figures.truths,
+            success_50cm_10deg: figures.success_50cm_10deg,
+            success_20cm_3deg: figures.success_20cm_3deg,
+            top16_recall: figures.top16_recall,
+            unique: figures.unique,
+            unique_wrong: figures.unique_wrong,
+            cpu_ms: Times { median, p90, max },
+            prepare_cpu_ms: effort.prepare_cpu_ms,
+            peak_rss_mb: effort.peak_rss_mb,
+            searchable_cells: effort.searchable_cells,
+            index_bytes: effort.index_bytes,
+            error_m: self.error_m.spread(),
+            error_deg: self.error_deg.spread(),
+            unique_in_ellipse: self.in_ellipse,
+            probabilities: self.trust.said().to_vec(),
+        }
+    }
+}
+
+impl Evaluation {
+    /// One line, without its end. Plain values under fixed keys cannot fail to
+    /// serialize; a fault there would show as the line's content.
+    pub(super) fn json(&self) -> String {
+        serde_json::to_string(self).unwrap_or_else(|error| format!("{{\"error\":\"{error}\"}}"))
+    }
+}
+
+#[cfg(test)]
+pub(super) mod tests {
+    use engine::peaks::Place;
+    use geometry::Covariance;
+    use messages::Verdict;
+
+    use super::*;
+
+    fn found(verdict: Verdict, poses: &[Pose]) -> Places {
+        let place = |&map_from_laser: &Pose| Place {
+            map_from_laser,
+            covariance: Covariance::from_deviations(0.1, 0.1, 0.01),
+            score: 0.75,
+            probability: 0.5,
+            intensity: 100,
+            support: 1,
+        };
+        Places {
+            places: poses.iter().map(place).collect(),
+            verdict,
+            alternatives: 0,
+            confidence: 0.5,
+            inlier_share: 0.75,
+            classes: Vec::new(),
+        }
+    }
+
+    /// Five scans: found to 0.1 and to 0.3 m, found at another place twice, and
+    /// refused.
+    pub(crate) fn evaluation() -> Evaluation {
+        let truth = Pose::new(1.0, 2.0, 0.0);
+        let beside = |x: f64| Pose::new(1.0 + x, 2.0, x.to_radians());
+        let mut judge = Judge::new();
+        judge.answer(truth, &found(Verdict::Unique, &[beside(0.1)]), 4.0);
+        judge.answer(truth, &found(Verdict::Unique, &[beside(0.3)]), 1.0);
+        judge.answer(truth, &found(Verdict::Unique, &[beside(5.0)]), 2.0);
+        let second = found(Verdict::Ambiguous, &[beside(5.0), beside(0.0)]);
+        judge.answer(truth, &second, 3.0);
+        judge.refusal(truth, "empty".to_owned());
+        judge.conclude(Effort {
+            bag: "r.mcap".to_owned(),
+            map_cells: 720,
+            scans: 9,
+            prepare_cpu_ms: 12.5,
+            peak_rss_mb: 34.5,
+            searchable_cells: 300,
+            index_bytes: 9000,
+        })
+    }
+
+    #[test]
+    fn figures_are_of_the_truths_and_errors_of_the_successes() {
+        let evaluation = evaluation();
+        assert_eq!((evaluation.scans, evaluation.truths), (9, 5));
+        assert_eq!(evaluation.success_50cm_10deg, Some(0.4));
+        assert_eq!(evaluation.success_20cm_3deg, Some(0.2));
+        assert_eq!(evaluation.top16_recall, Some(0.6));
+        assert_eq!((evaluation.unique, evaluation.unique_wrong), (3, 1));
+        // 0.1 m off is one deviation, 0.3 m three: 2.4 are 95 %.
+        assert_eq!(evaluation.unique_in_ellipse, 1);
+        let Times { median, p90, max } = evaluation.cpu_ms;
+        assert_eq!(
+            (median, p90, max),
+            (Some(2.0), Some(4.0), Some(4.0)),
+            "of four: the refused scan has none"
+        );
+        // Differences of numbers near 1: a few units in the last place.
+        assert!((evaluation.error_m.median.unwrap() - 0.1).abs() < 1e-12);
+        assert!((evaluation.error_m.p90.unwrap() - 0.3).abs() < 1e-12);
+        assert!((evaluation.error_deg.p90.unwrap() - 0.3).abs() < 1e-12);
+    }
+
+    #[test]
+    fn what_was_said_is_kept_beside_what_was_right() {
+        let said = evaluation().probabilities;
+        assert_eq!((said[2].from, said[2].to), (0.4, 0.6));
+        let half = (said[2].answers, said[2].right, said[2].mean);
+        assert_eq!(half, (4, 2, Some(0.5)));
+        let others = said.iter().map(|said| said.answers).sum::<u64>() - 4;
+        assert_eq!(others, 0);
+    }
+
+    #[test]
+    fn refused_scans_are_counted_and_the_first_reason_kept() {
+        let mut judge = Judge::new();
+        assert_eq!(judge.complaint(), None);
+        judge.refusal(Pose::IDENTITY, "empty".to_owned());
+        judge.refusal(Pose::IDENTITY, "too long".to_owned());
+        let complaint = judge.complaint().unwrap();
+        assert_eq!(complaint, "scans refused: 2; the first: empty");
+    }
+
+    #[test]
+    fn json_has_the_keys_of_the_contract_in_their_order() {
+        let mut evaluation = evaluation();
+        // The sums above are rounded; these are not.
+        for spread in [&mut evaluation.error_m, &mut evaluation.error_deg] {
+            (spread.median, spread.p90) = (Some(0.125), None);
+        }
+        evaluation.probabilities.truncate(1);
+        assert_eq!(
+            evaluation.json(),
+            r#"{"bag":"r.mcap","map_cells":720,"scans":9,"truths":5,"success_50cm_10deg":0.4,"success_20cm_3deg":0.2,"top16_recall":0.6,"unique":3,"unique_wrong":1,"cpu_ms":{"median":2.0,"p90":4.0,"max":4.0},"prepare_cpu_ms":12.5,"peak_rss_mb":34.5,"searchable_cells":300,"index_bytes":9000,"error_m":{"median":0.125,"p90":null},"error_deg":{"median":0.125,"p90":null},"unique_in_ellipse":1,"probabilities":[{"from":0.0,"to":0.2,"answers":0,"right":0,"mean":null}]}"#
+        );
+    }
+}

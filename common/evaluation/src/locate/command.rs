@@ -1,0 +1,88 @@
+//! What `backcast locate` does: reads, asks scan by scan, and prints.
+
+use std::path::PathBuf;
+use std::process::ExitCode;
+
+use command_line::{LOST_DATA, stdout};
+use offline::{Accepted, Options, Session};
+use pose_table::Line;
+use progress::Progress;
+use recording::RecordingError;
+
+use super::object::Object;
+use super::particles::{Particles, ParticlesOptions};
+use super::row;
+use crate::EvaluationError;
+
+/// What `backcast locate` takes.
+#[derive(Debug, clap::Args)]
+pub struct Config {
+    /// The recording: an MCAP file, or a bag of rosbag2 (its folder, or .db3);
+    /// several files are read as one
+    #[arg(value_name = "FILE", required_unless_present = "bag")]
+    recordings: Vec<PathBuf>,
+
+    /// The same, as an option
+    #[arg(long, value_name = "FILE")]
+    bag: Vec<PathBuf>,
+
+    /// Print JSON, an object a line
+    #[arg(long)]
+    json: bool,
+
+    #[command(flatten)]
+    particles: ParticlesOptions,
+
+    #[command(flatten)]
+    options: Options,
+}
+
+/// Prints a line for each scan. A scan that is refused has one too, with the
+/// reason; one that does not decode is lost, and told on standard error.
+///
+/// # Errors
+/// Map or recording cannot be used, every scan was refused, or the recording is
+/// damaged: that is told after what lies before the damage.
+pub fn run(config: &Config) -> Result<ExitCode, EvaluationError> {
+    config.options.check()?;
+    let files = [&config.recordings[..], &config.bag].concat();
+    let map = config.options.load_map(&files)?;
+    let recording = config.options.open(&files)?;
+    let mut session = Session::open(&recording, &config.options, map.as_ref())?;
+    if !config.json {
+        stdout::print(&format!("{}\n", Line::header()))?;
+    }
+    let progress = Progress::new("locating", session.scans.total());
+    let mut code = ExitCode::SUCCESS;
+    let mut accepted = Accepted::default();
+    while let Some(scan) = session.scans.next() {
+        match scan {
+            Ok(scan) => {
+                let reply = session.ask(&scan)?;
+                accepted.count(&reply);
+                let particles = Particles::draw(&config.particles, &scan, &reply)?;
+                let line = match config.json {
+                    true => Object::new(&scan, &reply).with(particles).json(),
+                    false => match particles {
+                        Some(particles) => row::text(scan.stamp_ns, &reply) + &particles.text(),
+                        None => row::text(scan.stamp_ns, &reply),
+                    },
+                };
+                for note in session.take_notes() {
+                    progress.say(&note);
+                }
+                if progress.print(&line)?.is_break() {
+                    break;
+                }
+            }
+            Err(error @ RecordingError::Message { .. }) => {
+                progress.say(&error.to_string());
+                code = ExitCode::from(LOST_DATA);
+            }
+            Err(error) => return Err(error.into()),
+        }
+        progress.step();
+    }
+    accepted.check(recording.path())?;
+    Ok(code)
+}

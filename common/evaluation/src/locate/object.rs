@@ -1,0 +1,182 @@
+//! A scan and its places as JSON. Pure.
+//!
+//! Every line has the same keys; what a refused scan does not have is null, and
+//! what only it has, the reason, is null elsewhere.
+
+use engine::fit::BeamClass;
+use engine::localizer::Outcome;
+use engine::peaks::Place;
+use geometry::Pose;
+use messages::Verdict;
+use offline::{Answer, Reply, TakenScan};
+use serde::Serialize;
+
+use super::particles::Particles;
+
+/// One line.
+#[derive(Debug, Serialize)]
+pub(super) struct Object {
+    /// When the scan was measured, nanoseconds since 1970.
+    stamp_ns: i64,
+    /// The map's id in hexadecimal, as logs show it: a number of 64 bits is not
+    /// safe in JSON.
+    map_id: String,
+    verdict: &'static str,
+    /// Other places that fit about as well.
+    alternatives: u32,
+    /// The verdict in words; why a scan was refused stands in `refused`.
+    says: Option<String>,
+    /// The best place's probability, 0..=1; by votes alone, its lead.
+    confidence: f64,
+    /// Milliseconds of computing from the scan to the verdict.
+    cpu_ms: f64,
+    /// Why the scan was refused.
+    refused: Option<String>,
+    votes: Option<Votes>,
+    /// What became of the beams at the best place; null by votes alone.
+    beams: Option<Beams>,
+    /// Best first.
+    hypotheses: Vec<Hypothesis>,
+    /// A start for a particle filter; null where none is asked for.
+    particles: Option<Particles>,
+}
+
+/// What the header of topic `votes` says.
+#[derive(Debug, Serialize)]
+struct Votes {
+    best: u16,
+    floor: u16,
+    certified_floor: u16,
+    highest_possible: u32,
+    total: u64,
+    truncated: bool,
+    beams_used: u32,
+    beams_silent: u32,
+    poses_evaluated: u64,
+    headings: u32,
+    /// In the map, radians, where it was given.
+    known_heading: Option<f64>,
+    /// Radians.
+    bearing_rounding: f64,
+}
+
+/// How many beams that voted ended where.
+#[derive(Debug, Serialize)]
+struct Beams {
+    /// At an obstacle.
+    hit: usize,
+    /// In the open.
+    short: usize,
+    /// Behind an obstacle.
+    through: usize,
+    /// Behind unknown space.
+    unknown: usize,
+}
+
+/// `map_from_laser` in metres and radians, and how sure it is.
+#[derive(Debug, Serialize)]
+struct Hypothesis {
+    x: f64,
+    y: f64,
+    yaw: f64,
+    /// Row by row over x, y and yaw.
+    covariance: [f64; 9],
+    score: f64,
+    /// 0..=1; what they leave of 1 is that the robot is at none.
+    probability: f64,
+    intensity: u16,
+    support: u64,
+    /// Where the laser's mount is known.
+    map_from_base: Option<Pose>,
+}
+
+impl Object {
+    pub(super) fn new(scan: &TakenScan, reply: &Reply<'_>) -> Self {
+        let mut object = Object {
+            stamp_ns: scan.stamp_ns,
+            map_id: format!("{:016x}", reply.map_id),
+            verdict: Verdict::NoScan.as_str(),
+            alternatives: 0,
+            says: None,
+            confidence: 0.0,
+            cpu_ms: reply.cpu_ms,
+            refused: None,
+            votes: None,
+            beams: None,
+            hypotheses: Vec::new(),
+            particles: None,
+        };
+        match &reply.answer {
+            Ok(answer) => object.fill(answer, scan.base_from_laser),
+            Err(refusal) => object.refused = Some(transport::with_causes(&refusal)),
+        }
+        object
+    }
+
+    /// The same with a start for a particle filter.
+    pub(super) fn with(self, particles: Option<Particles>) -> Self {
+        Object { particles, ..self }
+    }
+
+    fn fill(
+        &mut self,
+        Answer {
+            outcome, places, ..
+        }: &Answer<'_>,
+        base_from_laser: Option<Pose>,
+    ) {
+        self.verdict = places.verdict.as_str();
+        self.alternatives = places.alternatives;
+        self.says = Some(places.sentence());
+        self.confidence = places.confidence;
+        self.votes = Some(votes(outcome));
+        self.beams = beams(&places.classes);
+        let laser_from_base = base_from_laser.map(Pose::inverse);
+        let hypothesis = |place: &Place| Hypothesis {
+            x: place.map_from_laser.x,
+            y: place.map_from_laser.y,
+            yaw: place.map_from_laser.yaw,
+            covariance: place.covariance.to_rows(),
+            score: place.score,
+            probability: place.probability,
+            intensity: place.intensity,
+            support: place.support,
+            map_from_base: laser_from_base.map(|base| place.map_from_laser.then(base)),
+        };
+        self.hypotheses = places.places.iter().map(hypothesis).collect();
+    }
+
+    /// One line, without its end. Plain values under fixed keys cannot fail to
+    /// serialize; a fault there would show as the line's content.
+    pub(super) fn json(&self) -> String {
+        serde_json::to_string(self).unwrap_or_else(|error| format!("{{\"error\":\"{error}\"}}"))
+    }
+}
+
+fn beams(classes: &[BeamClass]) -> Option<Beams> {
+    let count = |class| classes.iter().filter(|&&other| other == class).count();
+    (!classes.is_empty()).then(|| Beams {
+        hit: count(BeamClass::Hit),
+        short: count(BeamClass::Short),
+        through: count(BeamClass::Through),
+        unknown: count(BeamClass::Unknown),
+    })
+}
+
+fn votes(outcome: &Outcome) -> Votes {
+    let found = &outcome.found;
+    Votes {
+        best: found.best,
+        floor: found.floor,
+        certified_floor: found.certified_floor,
+        highest_possible: outcome.highest_possible,
+        total: found.votes.len() as u64,
+        truncated: found.truncated || found.cut,
+        beams_used: outcome.beams_used,
+        beams_silent: outcome.beams_silent,
+        poses_evaluated: found.poses_evaluated,
+        headings: outcome.headings,
+        known_heading: outcome.known_heading,
+        bearing_rounding: outcome.bearing_rounding,
+    }
+}

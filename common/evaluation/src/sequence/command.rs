@@ -1,0 +1,166 @@
+//! Reads drives, evaluates them one by one, and prints.
+
+use std::path::{Path, PathBuf};
+use std::process::ExitCode;
+
+use command_line::stdout;
+use engine::tracking::FollowConfig;
+use map::OccupancyGrid;
+use offline::{Accepted, OfflineError, Options, Session, damage_of};
+use plots::{PlotError, draw_drive};
+use progress::{Progress, say};
+
+use super::drive::Moment;
+use super::figures::Figures;
+use super::{course, drive, follow, jumps, starts};
+use crate::EvaluationError;
+
+/// What `backcast evaluate --sequence` takes in addition.
+#[derive(Debug, Clone, clap::Args)]
+#[command(next_help_heading = "Sequences")]
+pub(crate) struct SequenceOptions {
+    /// Follow the pose over each recording with the tracker, started at many scans, put
+    /// elsewhere, and over the whole
+    #[arg(long)]
+    pub sequence: bool,
+
+    /// Starts, spread over the recording, 1..=1000
+    #[arg(long, value_name = "COUNT", default_value_t = 80, value_parser = clap::value_parser!(u32).range(1..=1000))]
+    pub starts: u32,
+
+    /// Times that the robot is put elsewhere, 0..=1000
+    #[arg(long, value_name = "COUNT", default_value_t = 20, value_parser = clap::value_parser!(u32).range(0..=1000))]
+    pub kidnaps: u32,
+
+    /// Leave the odometry out
+    #[arg(long)]
+    pub without_odometry: bool,
+
+    /// Make the errors of odometry, against the truth, so many times as large, 0..=100
+    #[arg(long, value_name = "FACTOR", default_value_t = 1.0, value_parser = parse_factor)]
+    pub odometry_noise: f64,
+
+    /// Truths that are known to be wrong, by the numbers of their scans from 0
+    #[arg(long, value_name = "N,N", value_delimiter = ',')]
+    pub ignore_truth: Vec<u64>,
+
+    /// Write the drive from its first scan, with no guess, as trajectories to this
+    /// folder, and the true ones beside them (TUM format, which evo reads)
+    #[arg(long, value_name = "FOLDER")]
+    pub trajectories: Option<PathBuf>,
+
+    /// Draw it to this folder: the map, the way, and where it was not unique
+    #[arg(long, value_name = "FOLDER")]
+    pub pictures: Option<PathBuf>,
+
+    #[command(flatten)]
+    pub follow: FollowConfig,
+}
+
+fn parse_factor(text: &str) -> Result<f64, String> {
+    let allowed = 0.0..=100.0;
+    match text.parse() {
+        Ok(factor) if allowed.contains(&factor) => Ok(factor),
+        _ => Err("0 to 100 are allowed".to_owned()),
+    }
+}
+
+/// Evaluates one file after another. A file that cannot be evaluated is told on
+/// standard error, and the next one follows.
+///
+/// # Errors
+/// Output cannot be written.
+pub(crate) fn evaluate(
+    bags: &[PathBuf],
+    json: bool,
+    map: Option<&OccupancyGrid>,
+    (options, sequence): (&Options, &SequenceOptions),
+) -> Result<ExitCode, EvaluationError> {
+    let mut code = ExitCode::SUCCESS;
+    for bag in bags {
+        match one(bag, map, options, sequence) {
+            Ok(figures) if json => stdout::print(&format!("{}\n", figures.json()))?,
+            Ok(figures) => stdout::print(&figures.text())?,
+            Err(error) => {
+                say(&transport::with_causes(&error));
+                code = ExitCode::FAILURE;
+            }
+        }
+    }
+    Ok(code)
+}
+
+fn one(
+    bag: &Path,
+    map: Option<&OccupancyGrid>,
+    options: &Options,
+    sequence: &SequenceOptions,
+) -> Result<Figures, EvaluationError> {
+    let recording = options.open(&[bag.to_owned()])?;
+    if let Some(damage) = damage_of(&recording) {
+        return Err(damage.into());
+    }
+    let truths = recording.ground_truths()?;
+    if truths.is_empty() {
+        return Err(OfflineError::NoTruths { file: bag.into() }.into());
+    }
+    let mut session = Session::open(&recording, options, map)?;
+    let name = bag.display().to_string();
+    let progress = Progress::new(&name, session.scans.total());
+    let mut accepted = Accepted::default();
+    let moments = drive::read(&mut session, &truths, sequence, (&progress, &mut accepted))?;
+    accepted.check(bag)?;
+    let (world, config) = (session.world()?, sequence.follow);
+    show(&session, &moments, (options, sequence), bag)?;
+    let chosen = starts::choose(&moments, sequence.starts);
+    let starts = starts::evaluate(world, &moments, &chosen, config)?;
+    let followed = follow::evaluate(world, &moments, config)?;
+    let chosen = jumps::choose(&moments, sequence.kidnaps);
+    let jumps = jumps::evaluate(world, &moments, &chosen, config)?;
+    for (start, scan, off_m) in &starts.wrong {
+        progress.say(&format!(
+            "{name}: started at scan {start}, Unique and {off_m:.1} m off at scan {scan}"
+        ));
+    }
+    let lost: Vec<String> = followed.losses.iter().map(ToString::to_string).collect();
+    if !lost.is_empty() {
+        progress.say(&format!("{name}: lost at scans {}", lost.join(", ")));
+    }
+    for (from, to) in &jumps.wrong {
+        progress.say(&format!(
+            "{name}: put from scan {from} to {to}, Unique and wrong"
+        ));
+    }
+    let searching_ms = moments.iter().map(|moment| moment.search_ms);
+    Ok(Figures::new(
+        name,
+        (&starts, &followed, &jumps),
+        searching_ms,
+    ))
+}
+
+/// Writes what is asked for of the drive from its first scan.
+fn show(
+    session: &Session<'_>,
+    moments: &[Moment],
+    (options, sequence): (&Options, &SequenceOptions),
+    bag: &Path,
+) -> Result<(), EvaluationError> {
+    if sequence.trajectories.is_none() && sequence.pictures.is_none() {
+        return Ok(());
+    }
+    let name = bag.file_stem().unwrap_or_default().to_string_lossy();
+    let said = course::of(session.world()?, moments, sequence.follow)?;
+    if let Some(folder) = &sequence.trajectories {
+        course::write(folder, &name, (moments, &said))?;
+    }
+    if let Some(folder) = &sequence.pictures {
+        let words = (name.to_string(), course::doubts(&said));
+        let stops = course::stops(moments, &said);
+        let scene = draw_drive(session.map()?, options.engine.cells, &stops, words)?;
+        let file = folder.join(format!("{name}.png"));
+        let picture = drawing::to_png(&scene).map_err(PlotError::from)?;
+        std::fs::write(&file, picture).map_err(|source| PlotError::Picture { file, source })?;
+    }
+    Ok(())
+}

@@ -1,0 +1,114 @@
+//! The whole drive from its first scan, with no guess: what the graph's tracker says of
+//! it, as trajectories and as a picture.
+
+use std::fmt::Write as _;
+use std::path::Path;
+
+use engine::tracking::FollowConfig;
+use geometry::Pose;
+use offline::World;
+use plots::Stop;
+
+use super::drive::Moment;
+use super::run::{Run, Said};
+use crate::EvaluationError;
+
+/// What the tracker says of each moment.
+///
+/// # Errors
+/// The clock fails.
+pub(super) fn of(
+    world: &World,
+    moments: &[Moment],
+    config: FollowConfig,
+) -> Result<Vec<Said>, EvaluationError> {
+    let mut run = Run::new(world, moments, config);
+    let indices = 0..moments.len();
+    indices.map(|i| run.take(i, moments[i].moved)).collect()
+}
+
+/// Writes two trajectories of the first laser: that of the tracker, of scans where it was
+/// Unique or Doubtful, and the true one. A line a scan: seconds, x, y, z and a
+/// quaternion, as the TUM RGB-D benchmark defines it and evo reads it.
+///
+/// # Errors
+/// A file cannot be written.
+pub(super) fn write(
+    folder: &Path,
+    name: &str,
+    (moments, said): (&[Moment], &[Said]),
+) -> Result<(), EvaluationError> {
+    let both = || moments.iter().zip(said);
+    let tracked = both().filter(|(_, said)| said.report.state.is_believed());
+    let tracked = tracked.filter_map(|(moment, said)| Some((moment.stamp_ns, said.pose?)));
+    let truths = both().filter_map(|(moment, _)| Some((moment.stamp_ns, moment.truth?)));
+    let save = |file: String, lines: String| {
+        let file = folder.join(file);
+        std::fs::write(&file, lines).map_err(|source| EvaluationError::Trajectory { file, source })
+    };
+    save(format!("{name}.tum"), trajectory(tracked))?;
+    save(format!("{name}_truth.tum"), trajectory(truths))
+}
+
+fn trajectory(poses: impl Iterator<Item = (i64, Pose)>) -> String {
+    let mut lines = String::new();
+    for (stamp_ns, Pose { x, y, yaw }) in poses {
+        let (seconds, rest) = (
+            stamp_ns.div_euclid(1_000_000_000),
+            stamp_ns.rem_euclid(1_000_000_000),
+        );
+        let (sin, cos) = (0.5 * yaw).sin_cos();
+        // Writing to a text cannot fail.
+        let _ = writeln!(lines, "{seconds}.{rest:09} {x} {y} 0 0 0 {sin} {cos}");
+    }
+    lines
+}
+
+/// As a picture has it.
+pub(super) fn stops(moments: &[Moment], said: &[Said]) -> Vec<Stop> {
+    let both = moments.iter().zip(said);
+    both.map(|(moment, said)| Stop {
+        state: said.report.state,
+        pose: said.pose,
+        truth: moment.truth,
+    })
+    .collect()
+}
+
+/// Why it was not Unique, by how many scans, the most first.
+pub(super) fn doubts(said: &[Said]) -> String {
+    let mut counts: Vec<(String, u32)> = Vec::new();
+    for said in said.iter().filter(|said| !said.is_unique()) {
+        let reason = format!("{} ({:?})", said.report.state, said.report.reason);
+        match counts.iter_mut().find(|(other, _)| *other == reason) {
+            Some((_, count)) => *count += 1,
+            None => counts.push((reason, 1)),
+        }
+    }
+    counts.sort_by_key(|(_, count)| std::cmp::Reverse(*count));
+    let words = counts
+        .iter()
+        .map(|(reason, count)| format!("{reason} {count}"));
+    let words: Vec<String> = words.collect();
+    match words.is_empty() {
+        true => "Unique at every scan".into(),
+        false => format!("scans that were not Unique: {}", words.join(", ")),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_trajectory_has_a_line_a_scan() {
+        let quarter = Pose::new(1.5, -2.0, std::f64::consts::PI);
+        let lines = trajectory([(1_500_000_000, quarter)].into_iter());
+        let words: Vec<f64> = lines
+            .split_whitespace()
+            .map(|w| w.parse().unwrap())
+            .collect();
+        assert_eq!(words[..7], [1.5, 1.5, -2.0, 0.0, 0.0, 0.0, 1.0]);
+        assert!(words[7].abs() < 1e-15 && lines.ends_with('\n'));
+    }
+}

@@ -1,0 +1,162 @@
+//! The figures of one drive.
+
+use serde::Serialize;
+use statistics::Distribution;
+
+use super::follow::Followed;
+use super::jumps::Jumps;
+use super::starts::Starts;
+
+/// Shares are 0..=1; docs/tracking.md tells what each is.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+pub(super) struct Figures {
+    pub(super) bag: String,
+    pub(super) starts: u64,
+    pub(super) right: After,
+    pub(super) not_yet: After,
+    pub(super) wrong_starts: u64,
+    pub(super) losses: usize,
+    pub(super) rms_m: Option<f64>,
+    pub(super) rms_deg: Option<f64>,
+    pub(super) max_m: Option<f64>,
+    pub(super) in_ellipse: Option<f64>,
+    pub(super) unique_share: Option<f64>,
+    pub(super) false_alarms_per_hour: Option<f64>,
+    pub(super) kidnaps: u64,
+    pub(super) kidnaps_noticed_within_2: Option<f64>,
+    pub(super) kidnaps_right_after_5_m: Option<f64>,
+    pub(super) kidnaps_wrong: u64,
+    pub(super) searched_share: Option<f64>,
+    pub(super) cpu_ms_tracking: Times,
+    pub(super) cpu_ms_searching: Times,
+}
+
+/// Shares of the starts after so many metres.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize)]
+pub(super) struct After {
+    #[serde(rename = "1")]
+    pub(super) one: Option<f64>,
+    #[serde(rename = "2")]
+    pub(super) two: Option<f64>,
+    #[serde(rename = "5")]
+    pub(super) five: Option<f64>,
+    #[serde(rename = "10")]
+    pub(super) ten: Option<f64>,
+    #[serde(rename = "20")]
+    pub(super) twenty: Option<f64>,
+}
+
+/// Milliseconds of one thread a scan.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize)]
+pub(super) struct Times {
+    pub(super) median: Option<f64>,
+    pub(super) p90: Option<f64>,
+}
+
+impl Times {
+    fn of(times_ms: impl IntoIterator<Item = f64>) -> Self {
+        let mut all = Distribution::new(usize::MAX);
+        times_ms.into_iter().for_each(|ms| all.add(ms));
+        let [median, p90] = all.percentiles([50.0, 90.0]);
+        Times { median, p90 }
+    }
+}
+
+fn share(part: u64, of: u64) -> Option<f64> {
+    (of > 0).then(|| part as f64 / of as f64)
+}
+
+fn after(parts: [u64; 5], of: [u64; 5]) -> After {
+    let [one, two, five, ten, twenty] = std::array::from_fn(|i| share(parts[i], of[i]));
+    After {
+        one,
+        two,
+        five,
+        ten,
+        twenty,
+    }
+}
+
+impl Figures {
+    pub(super) fn new(
+        bag: String,
+        (starts, followed, jumps): (&Starts, &Followed, &Jumps),
+        searching_ms: impl IntoIterator<Item = f64>,
+    ) -> Self {
+        let hourly = |count: u64| count as f64 / followed.hours;
+        Figures {
+            bag,
+            starts: starts.starts,
+            right: after(starts.right, starts.judged),
+            not_yet: after(starts.not_yet, starts.judged),
+            wrong_starts: starts.wrong.len() as u64,
+            losses: followed.losses.len(),
+            rms_m: followed.rms_m,
+            rms_deg: followed.rms_deg,
+            max_m: followed.max_m,
+            in_ellipse: followed.in_ellipse,
+            unique_share: followed.unique_share,
+            false_alarms_per_hour: (followed.hours > 0.0).then(|| hourly(followed.false_alarms)),
+            kidnaps: jumps.jumps,
+            kidnaps_noticed_within_2: share(jumps.noticed, jumps.jumps),
+            kidnaps_right_after_5_m: share(jumps.right, jumps.jumps),
+            kidnaps_wrong: jumps.wrong.len() as u64,
+            searched_share: share(starts.searches, starts.scans),
+            cpu_ms_tracking: Times::of(followed.tracking_ms.iter().copied()),
+            cpu_ms_searching: Times::of(searching_ms),
+        }
+    }
+
+    /// As a line of JSON.
+    pub(super) fn json(&self) -> String {
+        serde_json::to_string(self).expect("plain numbers and text become JSON")
+    }
+
+    /// As lines to read.
+    pub(super) fn text(&self) -> String {
+        let percent =
+            |share: Option<f64>| share.map_or("–".into(), |s| format!("{:.1}", 100.0 * s));
+        let number =
+            |n: Option<f64>, digits: usize| n.map_or("–".into(), |n| format!("{n:.digits$}"));
+        let row = |after: &After| {
+            let After {
+                one,
+                two,
+                five,
+                ten,
+                twenty,
+            } = *after;
+            [one, two, five, ten, twenty]
+                .map(percent)
+                .map(|p| format!("{p:>6}"))
+                .concat()
+        };
+        format!(
+            "{}\n  starts {:>4}   after     1     2     5    10    20 m\n    right, %       {}\n    not yet, %     {}\n    wrong at any time  {}\n  \
+             followed: losses {}, RMS {} m {}°, farthest {} m; in the ellipse {} %; Unique {} %; false alarms {} an hour\n  \
+             put elsewhere {} times: noticed within 2 scans {} %, right after 5 m {} %, wrong {}\n  \
+             CPU a scan, median / p90: tracking {} / {} ms, searching {} / {} ms; searched {} % of the scans after a start\n",
+            self.bag,
+            self.starts,
+            row(&self.right),
+            row(&self.not_yet),
+            self.wrong_starts,
+            self.losses,
+            number(self.rms_m, 3),
+            number(self.rms_deg, 2),
+            number(self.max_m, 2),
+            percent(self.in_ellipse),
+            percent(self.unique_share),
+            number(self.false_alarms_per_hour, 1),
+            self.kidnaps,
+            percent(self.kidnaps_noticed_within_2),
+            percent(self.kidnaps_right_after_5_m),
+            self.kidnaps_wrong,
+            number(self.cpu_ms_tracking.median, 2),
+            number(self.cpu_ms_tracking.p90, 2),
+            number(self.cpu_ms_searching.median, 1),
+            number(self.cpu_ms_searching.p90, 1),
+            percent(self.searched_share),
+        )
+    }
+}

@@ -1,0 +1,107 @@
+//! Kidnapping: a robot that is followed finds itself elsewhere, with odometry that
+//! says that it stood still.
+
+use engine::tracking::FollowConfig;
+use geometry::Pose;
+use offline::World;
+
+use super::drive::Moment;
+use super::run::Run;
+use crate::EvaluationError;
+
+/// The robot is put at least so far away, metres.
+const LEAST_M: f64 = 3.0;
+
+/// It is followed for so many metres before, and for so many after.
+const BEFORE_M: f64 = 5.0;
+const AFTER_M: f64 = 10.0;
+const RIGHT_AFTER_M: f64 = 5.0;
+
+/// How robots fared that were put elsewhere.
+#[derive(Debug, Default)]
+pub(super) struct Jumps {
+    pub(super) jumps: u64,
+    /// Not Unique any more at one of the first two scans.
+    pub(super) noticed: u64,
+    /// Right after 5 m.
+    pub(super) right: u64,
+    /// Unique and wrong from the third scan on.
+    pub(super) wrong: Vec<(usize, usize)>,
+}
+
+/// From where and to where: spread over the drive, so that each jump is a different one.
+pub(super) fn choose(moments: &[Moment], count: u32) -> Vec<(usize, usize)> {
+    let truths: Vec<usize> = (0..moments.len())
+        .filter(|&i| moments[i].truth.is_some())
+        .collect();
+    let total = moments.last().map_or(0.0, |last| last.gone_m);
+    let at = |share: f64| truths.get((share * truths.len() as f64) as usize).copied();
+    // Multiples of the golden ratio are spread evenly, however many there are.
+    let golden = 0.618_033_988_749_895;
+    (0..count * 4)
+        .filter_map(|i| {
+            let from = at((f64::from(i) + 0.5) / f64::from(count * 4))?;
+            let to = at((f64::from(i) * golden + 0.25).fract())?;
+            let (a, b) = (moments[from].truth?, moments[to].truth?);
+            let is_fit = moments[from].gone_m >= BEFORE_M
+                && total - moments[to].gone_m >= RIGHT_AFTER_M
+                && a.distance_to(b) >= LEAST_M;
+            is_fit.then_some((from, to))
+        })
+        .step_by(2)
+        .take(count as usize)
+        .collect()
+}
+
+/// Puts the robot elsewhere so many times.
+pub(super) fn evaluate(
+    world: &World,
+    moments: &[Moment],
+    chosen: &[(usize, usize)],
+    config: FollowConfig,
+) -> Result<Jumps, EvaluationError> {
+    let mut all = Jumps::default();
+    for &(from, to) in chosen {
+        let begin = moments.partition_point(|m| m.gone_m < moments[from].gone_m - BEFORE_M);
+        let Some(begin) = (begin..from).find(|&i| moments[i].truth.is_some()) else {
+            continue;
+        };
+        let Some(truth) = moments[begin].truth else {
+            continue;
+        };
+        let mut run = Run::new(world, moments, config);
+        run.start_at(begin, truth);
+        let mut was_right = false;
+        for (index, moment) in moments.iter().enumerate().take(from + 1).skip(begin + 1) {
+            was_right = run.take(index, moment.moved)?.is_right();
+        }
+        if !was_right {
+            continue;
+        }
+        all.jumps += 1;
+        let (mut is_noticed, mut is_wrong, mut is_right) = (false, false, false);
+        for index in to..moments.len() {
+            let gone = moments[index].gone_m - moments[to].gone_m;
+            if gone > AFTER_M {
+                break;
+            }
+            let moved = if index == to {
+                Some(Pose::IDENTITY)
+            } else {
+                moments[index].moved
+            };
+            let said = run.take(index, moved)?;
+            is_noticed |= index < to + 2 && !said.is_wrong();
+            is_wrong |= index >= to + 2 && said.is_wrong();
+            if gone <= RIGHT_AFTER_M && said.off.is_some() {
+                is_right = said.is_right();
+            }
+        }
+        all.noticed += u64::from(is_noticed);
+        all.right += u64::from(is_right);
+        if is_wrong {
+            all.wrong.push((from, to));
+        }
+    }
+    Ok(all)
+}

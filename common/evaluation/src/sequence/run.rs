@@ -1,0 +1,126 @@
+//! The tracker on moments of a drive, one after the other.
+
+use engine::tracking::{Candidate, FollowConfig, Follower, Need, Report, Seen};
+use geometry::{Covariance, Pose};
+use messages::TrackState;
+use offline::{World, cpu};
+
+use super::drive::Moment;
+use crate::EvaluationError;
+
+/// A tracker on the way.
+pub(super) struct Run<'a> {
+    world: &'a World,
+    moments: &'a [Moment],
+    tracker: Follower,
+    /// Of the moment whose search counts later.
+    asked: Option<usize>,
+    /// Milliseconds of computing for each scan that was tracked without a search.
+    pub(super) tracking_ms: Vec<f64>,
+    pub(super) searches: u64,
+}
+
+/// What the tracker said of a moment.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(super) struct Said {
+    pub(super) report: Report,
+    /// Of the first laser, where one is known.
+    pub(super) pose: Option<Pose>,
+    /// Metres and degrees from the truth, where both are known.
+    pub(super) off: Option<(f64, f64)>,
+}
+
+/// Off by more than this, metres and degrees, is wrong; off by less than the other is
+/// right.
+pub(super) const WRONG: (f64, f64) = (1.0, 25.0);
+pub(super) const RIGHT: (f64, f64) = statistics::SUCCESS;
+
+impl Said {
+    pub(super) fn is_unique(&self) -> bool {
+        self.report.state == TrackState::Unique
+    }
+
+    /// Unique, and right.
+    pub(super) fn is_right(&self) -> bool {
+        self.is_unique()
+            && self
+                .off
+                .is_some_and(|(m, deg)| m <= RIGHT.0 && deg <= RIGHT.1)
+    }
+
+    /// Unique, and wrong.
+    pub(super) fn is_wrong(&self) -> bool {
+        self.is_unique() && self.is_off()
+    }
+
+    pub(super) fn is_off(&self) -> bool {
+        self.off
+            .is_some_and(|(m, deg)| m > WRONG.0 || deg > WRONG.1)
+    }
+}
+
+impl<'a> Run<'a> {
+    pub(super) fn new(world: &'a World, moments: &'a [Moment], config: FollowConfig) -> Self {
+        Run {
+            world,
+            moments,
+            tracker: Follower::new(&config),
+            asked: None,
+            tracking_ms: Vec::new(),
+            searches: 0,
+        }
+    }
+
+    fn seen(&self, moment: &'a Moment) -> Seen<'a> {
+        Seen {
+            terrain: self.world.terrain(),
+            ends: moment.ends(),
+            fit: &self.world.peaks().fit,
+        }
+    }
+
+    /// Puts the tracker at the truth of a moment.
+    pub(super) fn start_at(&mut self, index: usize, truth: Pose) {
+        let moment = &self.moments[index];
+        let seen = self.seen(moment);
+        // What the truths at hand err by.
+        let covariance = Covariance::from_deviations(0.05, 0.05, 1f64.to_radians());
+        let pose = moment.view.sought.from_laser(truth);
+        self.asked = None;
+        self.tracker.start_at(&seen, pose, covariance);
+    }
+
+    /// Gives the tracker a moment, to which it moved so.
+    pub(super) fn take(
+        &mut self,
+        index: usize,
+        moved: Option<Pose>,
+    ) -> Result<Said, EvaluationError> {
+        let moment = &self.moments[index];
+        let seen = self.seen(moment);
+        let (tracker, asked, moments) = (&mut self.tracker, &mut self.asked, self.moments);
+        let (need, cost_ms) = cpu::timed(|| {
+            let need = tracker.begin(&seen, moment.stamp_ns, moved);
+            let found: Option<&[Candidate]> = match need {
+                Need::Nothing => None,
+                Need::ThisScan => Some(&moment.found),
+                Need::EarlierScan => asked.take().map(|asked| &moments[asked].found[..]),
+            };
+            tracker.finish(&seen, found);
+            need
+        })?;
+        if tracker.asks_ahead() {
+            *asked = Some(index);
+        }
+        match need {
+            Need::Nothing => self.tracking_ms.push(cost_ms),
+            Need::ThisScan | Need::EarlierScan => self.searches += 1,
+        }
+        let report = self.tracker.report();
+        let pose = report.pose.map(|pose| moment.laser(pose));
+        let off = pose
+            .zip(moment.truth)
+            .map(|(pose, truth)| (pose.distance_to(truth), pose.angle_to(truth).to_degrees()));
+        Ok(Said { report, pose, off })
+    }
+}

@@ -1,0 +1,99 @@
+//! The tracker started at many scans of a drive, with no guess.
+
+use engine::tracking::{FollowConfig, LEAST_BEAMS};
+use offline::World;
+
+use super::drive::Moment;
+use super::run::{Run, Said};
+use crate::EvaluationError;
+
+/// Metres after which a start is judged.
+pub(super) const AFTER_M: [f64; 5] = [1.0, 2.0, 5.0, 10.0, 20.0];
+
+/// A start that ends this much before a distance is not judged there: the last scan
+/// may lie a step before it.
+const STEP_M: f64 = 1.2;
+
+/// No start lies so near the end of the drive, metres and as a share of the drive.
+const LEFT: (f64, f64) = (5.0, 0.3);
+
+/// How the starts of a drive went.
+#[derive(Debug, Default)]
+pub(super) struct Starts {
+    pub(super) starts: u64,
+    /// By distance: judged, and of those right.
+    pub(super) judged: [u64; 5],
+    pub(super) right: [u64; 5],
+    pub(super) not_yet: [u64; 5],
+    /// Starts with a pose that was Unique and wrong at any time: the scan of the start,
+    /// that of the first such pose, and how far it was off, metres.
+    pub(super) wrong: Vec<(usize, usize, f64)>,
+    pub(super) scans: u64,
+    pub(super) searches: u64,
+}
+
+/// Indices of so many starts, evenly along the drive, at scans with a truth.
+pub(super) fn choose(moments: &[Moment], count: u32) -> Vec<usize> {
+    let total = moments.last().map_or(0.0, |last| last.gone_m);
+    let end = total - LEFT.0.min(LEFT.1 * total);
+    let is_fit = |moment: &Moment| moment.truth.is_some() && moment.ends().beams() >= LEAST_BEAMS;
+    let mut chosen: Vec<usize> = (0..count)
+        .filter_map(|i| {
+            let at = end * f64::from(i) / f64::from(count.max(2) - 1);
+            let from = moments.partition_point(|moment| moment.gone_m < at - 1e-9);
+            (from..moments.len()).find(|&index| is_fit(&moments[index]))
+        })
+        .collect();
+    chosen.dedup();
+    chosen
+}
+
+/// Starts the tracker at these scans.
+pub(super) fn evaluate(
+    world: &World,
+    moments: &[Moment],
+    chosen: &[usize],
+    config: FollowConfig,
+) -> Result<Starts, EvaluationError> {
+    let mut all = Starts::default();
+    for &start in chosen {
+        all.starts += 1;
+        let mut run = Run::new(world, moments, config);
+        let farthest = AFTER_M[AFTER_M.len() - 1];
+        let mut last: [Option<Said>; 5] = [None; 5];
+        let (mut gone, mut is_wrong) = (0.0, false);
+        for index in start..moments.len() {
+            gone = moments[index].gone_m - moments[start].gone_m;
+            if gone > farthest + 1e-9 {
+                break;
+            }
+            let moved = moments[index].moved.filter(|_| index > start);
+            let said = run.take(index, moved)?;
+            if said.is_wrong() && !is_wrong {
+                is_wrong = true;
+                all.wrong
+                    .push((start, index, said.off.map_or(0.0, |(m, _)| m)));
+            }
+            if said.off.is_none() {
+                continue;
+            }
+            for (after, last) in AFTER_M.iter().zip(&mut last) {
+                if gone <= after + 1e-9 {
+                    *last = Some(said);
+                }
+            }
+        }
+        for (i, after) in AFTER_M.iter().enumerate() {
+            if gone < after - STEP_M {
+                continue;
+            }
+            all.judged[i] += 1;
+            let said = last[i];
+            all.right[i] += u64::from(said.is_some_and(|said| said.is_right()));
+            all.not_yet[i] += u64::from(said.is_none_or(|said| !said.is_unique()));
+        }
+        all.scans += run.tracking_ms.len() as u64 + run.searches;
+        all.searches += run.searches;
+    }
+    Ok(all)
+}

@@ -1,0 +1,133 @@
+//! Finds the graph that is meant, asks its launcher and prints the answer.
+
+use std::{path::PathBuf, process::ExitCode};
+
+use clap::Args;
+use command_line::OutputError;
+use command_line::stdout::print;
+use transport::{GraphName, control_socket, running_graphs};
+
+use super::text;
+use crate::LauncherError;
+use crate::run::control::{Answer, Question, Status, ask};
+
+/// What `backcast status` takes.
+#[derive(Debug, Args)]
+pub struct StatusConfig {
+    /// Of this graph alone [default: of all that this user runs]
+    #[arg(long, value_name = "NAME", value_parser = GraphName::new)]
+    graph: Option<GraphName>,
+
+    /// Print JSON, an object a line for each graph
+    #[arg(long)]
+    json: bool,
+}
+
+/// What `backcast stop` takes.
+#[derive(Debug, Args)]
+pub struct StopConfig {
+    /// The graph [default: the only one that this user runs]
+    #[arg(long, value_name = "NAME", value_parser = GraphName::new)]
+    graph: Option<GraphName>,
+}
+
+/// What `backcast restart` takes.
+#[derive(Debug, Args)]
+pub struct RestartConfig {
+    /// The node's id in the descriptor
+    node: String,
+
+    /// The graph [default: the only one that this user runs]
+    #[arg(long, value_name = "NAME", value_parser = GraphName::new)]
+    graph: Option<GraphName>,
+}
+
+/// Prints the state of graphs and of their nodes.
+///
+/// # Errors
+/// None runs, or the one that is meant does not answer.
+pub fn status(config: &StatusConfig) -> Result<ExitCode, LauncherError> {
+    let graphs = match &config.graph {
+        Some(graph) => vec![graph.clone()],
+        None => running_graphs(),
+    };
+    if graphs.is_empty() {
+        return Err(no_graph());
+    }
+    for graph in &graphs {
+        let status = status_of(graph)?;
+        print(&match config.json {
+            true => serde_json::to_string(&status).map_err(unreadable)? + "\n",
+            false => text::status(&status),
+        })?;
+    }
+    Ok(ExitCode::SUCCESS)
+}
+
+/// Stops a graph in order.
+///
+/// # Errors
+/// It does not run, or does not answer.
+pub fn stop(config: &StopConfig) -> Result<ExitCode, LauncherError> {
+    let graph = the_graph(config.graph.as_ref())?;
+    done(&graph, &Question::Stop)
+}
+
+/// Restarts a node.
+///
+/// # Errors
+/// The graph does not run, or has no such node.
+pub fn restart(config: &RestartConfig) -> Result<ExitCode, LauncherError> {
+    let graph = the_graph(config.graph.as_ref())?;
+    let node = config.node.clone();
+    done(&graph, &Question::Restart { node })
+}
+
+/// The graph that is meant: the one that is named, or the only one that runs.
+pub(super) fn the_graph(named: Option<&GraphName>) -> Result<GraphName, LauncherError> {
+    if let Some(graph) = named {
+        return Ok(graph.clone());
+    }
+    match &running_graphs()[..] {
+        [] => Err(no_graph()),
+        [graph] => Ok(graph.clone()),
+        several => {
+            let names: Vec<_> = several.iter().map(ToString::to_string).collect();
+            let names = names.join(", ");
+            Err(LauncherError::Usage(format!(
+                "several graphs run: say which one with --graph; there are {names}"
+            )))
+        }
+    }
+}
+
+fn no_graph() -> LauncherError {
+    LauncherError::Usage("no graph of this user runs".to_owned())
+}
+
+fn done(graph: &GraphName, question: &Question) -> Result<ExitCode, LauncherError> {
+    match asked(graph, question)? {
+        Answer::Refused(why) => Err(LauncherError::Usage(why)),
+        _ => Ok(ExitCode::SUCCESS),
+    }
+}
+
+fn status_of(graph: &GraphName) -> Result<Status, LauncherError> {
+    match asked(graph, &Question::Status)? {
+        Answer::Status(status) => Ok(status),
+        Answer::Refused(why) => Err(LauncherError::Usage(why)),
+        Answer::Done => Err(LauncherError::Usage("it gave another answer".to_owned())),
+    }
+}
+
+fn asked(graph: &GraphName, question: &Question) -> Result<Answer, LauncherError> {
+    let file: PathBuf = control_socket(graph);
+    ask(&file, question).map_err(|source| LauncherError::NoLauncher {
+        graph: graph.to_string(),
+        source,
+    })
+}
+
+fn unreadable(error: serde_json::Error) -> LauncherError {
+    OutputError(error.into()).into()
+}

@@ -1,0 +1,142 @@
+//! `backcast logs`: what the nodes of a running graph log, from topic `log`.
+
+use std::{
+    process::ExitCode,
+    time::{Duration, Instant, SystemTime},
+};
+
+use clap::Args;
+use command_line::stdout::print;
+use messages::{LogHeader, LogLevel, topic};
+use serde::Serialize;
+use transport::{Flow, Graph, GraphName};
+
+use super::command::the_graph;
+use crate::LauncherError;
+
+/// How long the lines that nodes keep for late joiners take to come.
+const KEPT_LINES: Duration = Duration::from_millis(700);
+const TICK: Duration = Duration::from_millis(100);
+
+/// What `backcast logs` takes.
+#[derive(Debug, Args)]
+pub struct LogsConfig {
+    /// Of this node alone
+    node: Option<String>,
+
+    /// Go on with what comes, until Ctrl-C
+    #[arg(long, short)]
+    follow: bool,
+
+    /// Print JSON, an object a line
+    #[arg(long)]
+    json: bool,
+
+    /// The graph [default: the only one that this user runs]
+    #[arg(long, value_name = "NAME", value_parser = GraphName::new)]
+    graph: Option<GraphName>,
+}
+
+/// Prints the last lines of each node, and with `--follow` those that come.
+///
+/// # Errors
+/// No graph runs, or it cannot be joined.
+pub fn logs(config: &LogsConfig) -> Result<ExitCode, LauncherError> {
+    let name = the_graph(config.graph.as_ref())?;
+    let graph = Graph::join_named("logs", &name)?;
+    let lines = graph.subscriber::<topic::Log>()?;
+    let begin = Instant::now();
+    let mut kept: Vec<LogLine> = Vec::new();
+    let mut all_kept = false;
+    graph.run(&[&lines], TICK, |_| {
+        while let Some(line) = lines.receive()? {
+            let line = LogLine::of(line.header(), line.items());
+            if config.node.as_ref().is_none_or(|node| *node == line.node) {
+                kept.push(line);
+            }
+        }
+        // Those of several nodes come node by node at first.
+        all_kept = all_kept || begin.elapsed() >= KEPT_LINES;
+        if all_kept {
+            kept.sort_by_key(|line| line.wall_ns);
+            for line in kept.drain(..) {
+                print(&match config.json {
+                    true => line.json(),
+                    false => line.text(),
+                })?;
+            }
+        }
+        let goes_on = config.follow || !all_kept;
+        Ok::<_, LauncherError>(if goes_on { Flow::Continue } else { Flow::Stop })
+    })?;
+    Ok(ExitCode::SUCCESS)
+}
+
+/// A line of a node's log.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+pub struct LogLine {
+    /// When it was logged, nanoseconds since 1970.
+    pub wall_ns: i64,
+    /// The node that logged it.
+    pub node: String,
+    /// The node's process.
+    pub pid: u32,
+    /// How serious it is.
+    pub level: &'static str,
+    /// What it says.
+    pub text: String,
+}
+
+impl LogLine {
+    /// Reads one message of topic `log`.
+    pub fn of(header: &LogHeader, text: &[u8]) -> Self {
+        let level = match LogLevel::from_code(header.level) {
+            Some(LogLevel::Debug) => "DEBUG",
+            Some(LogLevel::Info) => "INFO",
+            Some(LogLevel::Warn) => "WARN",
+            Some(LogLevel::Error) => "ERROR",
+            None => "?",
+        };
+        LogLine {
+            wall_ns: header.wall_ns,
+            node: header.node.as_str().to_owned(),
+            pid: header.pid,
+            level,
+            text: String::from_utf8_lossy(text).into_owned(),
+        }
+    }
+
+    /// As an object on a line of its own.
+    pub fn json(&self) -> String {
+        // Plain texts and numbers do not fail to serialize.
+        serde_json::to_string(self).unwrap_or_default() + "\n"
+    }
+
+    fn text(&self) -> String {
+        let since = Duration::from_nanos(self.wall_ns.max(0).cast_unsigned());
+        let when = humantime::format_rfc3339_millis(SystemTime::UNIX_EPOCH + since);
+        let LogLine {
+            node, level, text, ..
+        } = self;
+        format!("{when} {level:>5} {node:>18} | {text}\n")
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_line_says_when_who_and_what() {
+        let header = LogHeader {
+            node: messages::Name::new("tracker"),
+            wall_ns: 1_500_000_000,
+            level: LogLevel::Warn as u32,
+            ..bytemuck::Zeroable::zeroed()
+        };
+        let line = LogLine::of(&header, b"no map");
+        let expected = "1970-01-01T00:00:01.500Z  WARN            tracker | no map\n";
+        assert_eq!(line.text(), expected);
+        assert!(line.json().contains("\"level\":\"WARN\""));
+    }
+}

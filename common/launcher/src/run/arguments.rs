@@ -1,0 +1,141 @@
+//! Arguments of a node in a descriptor: found, read, replaced.
+
+use std::path::Path;
+
+use dataflow::{Dataflow, Node};
+
+use crate::LauncherError;
+
+/// Plays recordings.
+pub const REPLAYER: &str = "replayer";
+/// Plays them as a laser.
+pub const EMULATOR: &str = "emulator";
+/// Those that take --recording, --rate, --loop and --wait-for.
+pub const PLAYERS: [&str; 2] = [REPLAYER, EMULATOR];
+/// Searches each scan.
+pub const ACCUMULATOR: &str = "accumulator";
+/// Serves the map.
+pub const MAP_SERVER: &str = "map_server";
+
+const MONITOR: &str = "monitor";
+
+/// Takes away what only shows the graph.
+pub fn leave_out_monitors(dataflow: &mut Dataflow) {
+    dataflow.nodes.retain(|node| node.executable() != MONITOR);
+}
+
+/// The first node with one of these executables, for which an option is meant.
+/// `file` is named in errors.
+///
+/// # Errors
+/// The graph has none.
+pub fn find<'d>(
+    dataflow: &'d mut Dataflow,
+    executables: &[&'static str],
+    option: &'static str,
+    file: &Path,
+) -> Result<&'d mut Node, LauncherError> {
+    let found: Vec<_> = dataflow
+        .nodes
+        .iter()
+        .map(|n| n.executable().to_owned())
+        .collect();
+    dataflow
+        .nodes
+        .iter_mut()
+        .find(|n| executables.contains(&n.executable()))
+        .ok_or_else(|| LauncherError::NoNodeForOption {
+            option,
+            executable: executables.join(" or "),
+            file: file.to_owned(),
+            found: found.join(", "),
+        })
+}
+
+/// Gives a node an option, in place of what it has.
+pub fn set(node: &mut Node, option: &str, value: Option<&str>) {
+    unset(node, option, value.is_some());
+    // With `=`, a negative number is not taken for an option.
+    let argument = value.map_or(option.to_owned(), |value| format!("{option}={value}"));
+    node.args.push(argument);
+}
+
+/// Removes `--option`, `--option value` and `--option=value`.
+pub fn unset(node: &mut Node, option: &str, takes_value: bool) {
+    let mut kept = Vec::with_capacity(node.args.len());
+    let mut args = std::mem::take(&mut node.args).into_iter();
+    while let Some(arg) = args.next() {
+        let joined = arg
+            .strip_prefix(option)
+            .is_some_and(|rest| rest.starts_with('='));
+        if arg == option && takes_value {
+            args.next();
+        } else if arg != option && !joined {
+            kept.push(arg);
+        }
+    }
+    node.args = kept;
+}
+
+/// The value of an option, as `--option value` or `--option=value`; the last one
+/// where there are several.
+pub fn value<'n>(node: &'n Node, option: &str) -> Option<&'n str> {
+    let after = |words: &'n [String]| (words[0] == option).then_some(words.get(1)).flatten();
+    let joined = |word: &'n String| word.strip_prefix(option)?.strip_prefix('=');
+    let mut found = (0..node.args.len()).filter_map(|at| {
+        let words = node.args.get(at..)?;
+        joined(words.first()?).or_else(|| after(words).map(String::as_str))
+    });
+    found.next_back()
+}
+
+/// Adds a word to an option that takes a list with commas, unless it is there.
+pub fn add_to_list(node: &mut Node, option: &str, word: &str) {
+    let list = match value(node, option) {
+        Some(list) if list.split(',').any(|other| other == word) => return,
+        Some(list) if !list.is_empty() => format!("{list},{word}"),
+        _ => word.to_owned(),
+    };
+    set(node, option, Some(&list));
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn node(args: &str) -> Node {
+        let text = format!("nodes:\n  - {{id: r, path: bin/replayer, args: \"{args}\"}}\n");
+        let topics = dataflow::Topics {
+            names: &[],
+            shared: &[],
+            several: &[],
+        };
+        dataflow::parse(&text, &topics).unwrap().nodes.remove(0)
+    }
+
+    #[test]
+    fn values_stand_behind_a_space_or_an_equals_sign() {
+        for (args, expected) in [
+            ("--rate max", Some("max")),
+            ("x --rate=2 y", Some("2")),
+            ("--rate 1 --rate=3", Some("3")),
+            ("--rated=1 rate 2", None),
+            ("--rate", None),
+            ("", None),
+        ] {
+            assert_eq!(value(&node(args), "--rate"), expected, "{args}");
+        }
+    }
+
+    #[test]
+    fn lists_grow_by_what_they_lack() {
+        let grown = |args: &str| {
+            let mut node = node(args);
+            add_to_list(&mut node, "--wait-for", "b");
+            node.args
+        };
+        assert_eq!(grown(""), ["--wait-for=b"]);
+        assert_eq!(grown("--wait-for a"), ["--wait-for=a,b"]);
+        assert_eq!(grown("--wait-for a,b x"), ["--wait-for", "a,b", "x"]);
+    }
+}

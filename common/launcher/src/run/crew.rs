@@ -1,0 +1,429 @@
+//! The processes of the graph: started, watched, started again, stopped.
+//!
+//! A node that fails for good ends the run if the graph needs it; else the rest goes on
+//! without it, and [`Crew::given_up`] says so.
+
+use std::{
+    io,
+    path::{Path, PathBuf},
+    process::ExitStatus,
+    sync::mpsc::{Receiver, Sender, channel},
+    thread,
+    time::{Duration, Instant},
+};
+
+use command_line::{LOST_DATA, WRONG_USE};
+use dataflow::Node;
+use messages::{HealthHeader, LogLevel, NodeState};
+use nix::sys::signal::Signal;
+use transport::{GraphName, log_in_graph, with_causes};
+
+use super::{
+    console::warn,
+    control::NodeStatus,
+    process::{Process, executable},
+    supervision::{AfterEnd, Ended, Pulse, Restarts, is_essential, is_over, is_source},
+};
+use crate::LauncherError;
+
+/// What a process has to end in order once it is asked to. Those that send
+/// nothing and then all others have as long; each of the two stays below a
+/// second.
+const GRACE: Duration = Duration::from_millis(700);
+/// What the last lines of ended processes may take to reach the console: only a
+/// process that left its group still holds a pipe open then.
+const LAST_LINES: Duration = Duration::from_millis(100);
+/// Between two looks at processes that are ending.
+const STOP_POLL: Duration = Duration::from_millis(5);
+
+/// All processes of a graph.
+pub struct Crew {
+    members: Vec<Member>,
+    folder: PathBuf,
+    graph: GraphName,
+    /// Every thread that forwards output holds a copy.
+    output_open: Option<Sender<()>>,
+    output_closed: Receiver<()>,
+    /// A sentence on each node that the graph goes on without.
+    given_up: Vec<String>,
+}
+
+struct Member {
+    node: Node,
+    essential: bool,
+    restarts: Restarts,
+    pulse: Pulse,
+    state: State,
+    /// When its process was started last.
+    started: Option<Instant>,
+    /// How often it was started again, and how its last process ended.
+    restarted: u64,
+    last_end: Option<ExitStatus>,
+    /// Somebody wants its process to end and another one to follow.
+    wanted_anew: bool,
+    /// Whether it said so with its exit code.
+    lost_data: bool,
+}
+
+enum State {
+    /// To be started at this time.
+    Due(Instant),
+    Running(Process),
+    Done,
+}
+
+impl Crew {
+    /// The crew of `nodes`, in `folder`; nothing runs before the first
+    /// [`Crew::tick`].
+    ///
+    /// # Errors
+    /// A node does not say as it should whether the graph needs it.
+    pub fn new(nodes: Vec<Node>, folder: &Path, graph: &GraphName) -> Result<Self, LauncherError> {
+        let now = Instant::now();
+        let (output_open, output_closed) = channel();
+        let member = |node: Node| {
+            Ok(Member {
+                essential: is_essential(&node)?,
+                restarts: Restarts::new(node.restart),
+                pulse: Pulse::new(node.restart.health_timeout),
+                state: State::Due(now),
+                started: None,
+                restarted: 0,
+                last_end: None,
+                wanted_anew: false,
+                lost_data: false,
+                node,
+            })
+        };
+        let members = nodes.into_iter().map(member);
+        Ok(Crew {
+            members: members.collect::<Result<_, LauncherError>>()?,
+            folder: folder.to_owned(),
+            graph: graph.clone(),
+            output_open: Some(output_open),
+            output_closed,
+            given_up: Vec::new(),
+        })
+    }
+
+    /// Starts what is due and looks after what has ended. Says whether any
+    /// process has ended since the last time.
+    ///
+    /// # Errors
+    /// A node that the graph needs cannot be started at first, or failed for good.
+    pub fn tick(&mut self, now: Instant) -> Result<bool, LauncherError> {
+        let Some(open) = &self.output_open else {
+            return Ok(false);
+        };
+        let mut any_ended = false;
+        for member in &mut self.members {
+            let started = member.start_if_due(now, &self.folder, &self.graph, open);
+            let ended = started.and_then(|()| member.look_after(now));
+            match ended {
+                Ok(ended) => any_ended |= ended,
+                Err(error) if !member.essential => {
+                    any_ended = true;
+                    let goes_on = format!("the graph goes on without {}", member.node.id);
+                    let sentence = format!("{}; {goes_on}", with_causes(&error));
+                    warn(&sentence);
+                    self.given_up.push(sentence);
+                }
+                Err(error) => return Err(error),
+            }
+        }
+        Ok(any_ended)
+    }
+
+    /// A process reported on itself.
+    pub fn heard(&mut self, report: &HealthHeader, now: Instant) {
+        let is_it = |member: &&mut Member| match &member.state {
+            State::Running(process) => process.pid().cast_unsigned() == report.pid,
+            _ => false,
+        };
+        if let Some(member) = self.members.iter_mut().find(is_it) {
+            let busy = NodeState::from_code(report.state) == Some(NodeState::Busy);
+            member.pulse.heard(busy, now);
+        }
+    }
+
+    /// The state of each node at `now`.
+    pub fn status(&self, now: Instant) -> Vec<NodeStatus> {
+        self.members
+            .iter()
+            .map(|member| member.status(now))
+            .collect()
+    }
+
+    /// Ends a node in order, as its process is asked to, and starts it again: now, whatever
+    /// its policy says. One that has ended is started. Says whether there is such a node.
+    ///
+    /// # Errors
+    /// Its process cannot be signalled.
+    pub fn restart(&mut self, id: &str, now: Instant) -> Result<bool, LauncherError> {
+        let Some(member) = self.members.iter_mut().find(|member| member.node.id == id) else {
+            return Ok(false);
+        };
+        match &member.state {
+            State::Running(process) => {
+                member.wanted_anew = true;
+                let asked = process.signal(Signal::SIGTERM);
+                asked.map_err(|error| not_supervised(&member.node, process.pid(), error))?;
+            }
+            State::Due(_) | State::Done => member.state = State::Due(now),
+        }
+        Ok(true)
+    }
+
+    /// No process could report.
+    pub fn excuse(&mut self, now: Instant) {
+        for member in &mut self.members {
+            member.pulse.excuse(now);
+        }
+    }
+
+    /// A sentence on each node that failed for good and that the graph goes on without.
+    pub fn given_up(&self) -> &[String] {
+        &self.given_up
+    }
+
+    /// Whether nothing more can come of it.
+    pub fn is_over(&self) -> bool {
+        is_over(self.members.iter().map(|member| {
+            let done = matches!(member.state, State::Done);
+            (is_source(&member.node), done)
+        }))
+    }
+
+    /// Ends every process: in order if it does so within the grace, else at
+    /// once. What it said last has reached the console then.
+    ///
+    /// Those that send nothing go first: a sender takes along what nobody has
+    /// taken yet.
+    ///
+    /// # Errors
+    /// A process cannot be signalled or waited for.
+    pub fn stop(&mut self) -> Result<(), LauncherError> {
+        self.stop_those(|node| node.outputs.is_empty())?;
+        self.stop_those(|_| true)?;
+        self.output_open = None;
+        // Nothing is ever sent: this waits for the last sender to be dropped.
+        let _ = self.output_closed.recv_timeout(LAST_LINES);
+        Ok(())
+    }
+
+    /// The nodes that said with their exit code that they lost data, by themselves
+    /// or when they were ended.
+    pub fn losers(&self) -> Vec<String> {
+        let losers = self.members.iter().filter(|member| member.lost_data);
+        losers.map(|member| member.node.id.clone()).collect()
+    }
+
+    /// Sends `signal` to the processes of one executable; returns how many there
+    /// are.
+    ///
+    /// # Errors
+    /// One cannot be signalled.
+    pub fn signal(&mut self, executable: &str, signal: Signal) -> Result<usize, LauncherError> {
+        let mut signalled = 0;
+        let meant = |node: &Node| node.executable() == executable;
+        self.for_each_running(meant, |process| {
+            signalled += 1;
+            process.signal(signal)
+        })?;
+        Ok(signalled)
+    }
+
+    fn stop_those(&mut self, meant: impl Fn(&Node) -> bool) -> Result<(), LauncherError> {
+        self.for_each_running(&meant, |process| process.signal(Signal::SIGTERM))?;
+        let deadline = Instant::now() + GRACE;
+        while self.collect_ended(&meant)? > 0 && Instant::now() < deadline {
+            thread::sleep(STOP_POLL);
+        }
+        self.for_each_running(&meant, Process::kill)?;
+        for member in self.members.iter_mut().filter(|member| meant(&member.node)) {
+            member.state = State::Done;
+        }
+        Ok(())
+    }
+
+    /// The number of processes that have not ended.
+    fn collect_ended(&mut self, meant: impl Fn(&Node) -> bool) -> Result<usize, LauncherError> {
+        let mut running = 0;
+        for member in self.members.iter_mut().filter(|member| meant(&member.node)) {
+            match member.poll()? {
+                Some(status) => {
+                    member.state = State::Done;
+                    member.lost_data = lost_data(status);
+                }
+                None => running += usize::from(matches!(member.state, State::Running(_))),
+            }
+        }
+        Ok(running)
+    }
+
+    fn for_each_running(
+        &mut self,
+        meant: impl Fn(&Node) -> bool,
+        mut act: impl FnMut(&mut Process) -> io::Result<()>,
+    ) -> Result<(), LauncherError> {
+        for member in self.members.iter_mut().filter(|member| meant(&member.node)) {
+            if let State::Running(process) = &mut member.state {
+                act(process).map_err(|e| not_supervised(&member.node, process.pid(), e))?;
+            }
+        }
+        Ok(())
+    }
+}
+
+impl Member {
+    fn start_if_due(
+        &mut self,
+        now: Instant,
+        folder: &Path,
+        graph: &GraphName,
+        open: &Sender<()>,
+    ) -> Result<(), LauncherError> {
+        if !matches!(self.state, State::Due(at) if at <= now) {
+            return Ok(());
+        }
+        let process = match Process::start(&self.node, folder, graph, open) {
+            Ok(process) => process,
+            Err(source) => return self.not_started(source, folder, now),
+        };
+        // The console need not have it.
+        let started = format!("{} runs as process {}", self.node.id, process.pid());
+        log_in_graph(LogLevel::Info, &started);
+        self.restarted += u64::from(self.started.is_some());
+        self.started = Some(now);
+        self.pulse.started(now);
+        self.state = State::Running(process);
+        Ok(())
+    }
+
+    /// What ran before can be started another time: memory or processes were short.
+    fn not_started(
+        &mut self,
+        source: io::Error,
+        folder: &Path,
+        now: Instant,
+    ) -> Result<(), LauncherError> {
+        let after = match self.started {
+            Some(_) => self.restarts.after_end(Ended::Badly, Duration::ZERO, now),
+            None => AfterEnd::Failed,
+        };
+        if let AfterEnd::Restart(delay) = after {
+            let id = &self.node.id;
+            warn(&format!(
+                "{id} cannot be started, and is tried again: {source}"
+            ));
+            self.state = State::Due(now + delay);
+            return Ok(());
+        }
+        self.state = State::Done;
+        Err(LauncherError::NotStarted {
+            node: self.node.id.clone(),
+            path: executable(&self.node, folder),
+            folder: folder.to_owned(),
+            source,
+        })
+    }
+
+    /// Says whether the process has ended, after deciding what follows.
+    fn look_after(&mut self, now: Instant) -> Result<bool, LauncherError> {
+        let Some(status) = self.poll()? else {
+            self.end_if_hung(now)?;
+            return Ok(false);
+        };
+        self.lost_data = lost_data(status);
+        self.last_end = Some(status);
+        if std::mem::take(&mut self.wanted_anew) {
+            self.state = State::Due(now);
+            return Ok(true);
+        }
+        let worked = self.started.map_or(Duration::ZERO, |started| now - started);
+        self.state = match self.restarts.after_end(how_ended(status), worked, now) {
+            AfterEnd::Done => State::Done,
+            AfterEnd::Restart(delay) => {
+                let id = &self.node.id;
+                warn(&format!("{id} ended with {status} and is started again"));
+                State::Due(now + delay)
+            }
+            AfterEnd::Failed => {
+                self.state = State::Done;
+                return Err(LauncherError::NodeFailed {
+                    node: self.node.id.clone(),
+                    status,
+                    restarts: self.restarts.recent(),
+                });
+            }
+        };
+        Ok(true)
+    }
+
+    fn status(&self, now: Instant) -> NodeStatus {
+        let (state, pid) = match &self.state {
+            State::Due(_) => ("waiting to start", None),
+            State::Running(process) => ("running", Some(process.pid())),
+            State::Done => ("ended", None),
+        };
+        let up = self.started.filter(|_| pid.is_some());
+        NodeStatus {
+            id: self.node.id.clone(),
+            state: state.to_owned(),
+            pid,
+            uptime_s: up.map(|started| (now - started).as_secs()),
+            restarts: self.restarted,
+            last_end: self.last_end.map(|status| status.to_string()),
+        }
+    }
+
+    /// What does not report any more does not work any more, or is stopped.
+    fn end_if_hung(&mut self, now: Instant) -> Result<(), LauncherError> {
+        let (Some(silent), State::Running(process)) = (self.pulse.missed_for(now), &self.state)
+        else {
+            return Ok(());
+        };
+        let (id, seconds) = (&self.node.id, silent.as_secs());
+        warn(&format!(
+            "{id} gave no sign of life for {seconds} s and is ended"
+        ));
+        // Its end is seen later; until then it is not ended again.
+        self.pulse.excuse(now);
+        let killed = process.signal(Signal::SIGKILL);
+        killed.map_err(|error| not_supervised(&self.node, process.pid(), error))
+    }
+
+    fn poll(&mut self) -> Result<Option<ExitStatus>, LauncherError> {
+        let State::Running(process) = &mut self.state else {
+            return Ok(None);
+        };
+        let pid = process.pid();
+        process
+            .poll()
+            .map_err(|e| not_supervised(&self.node, pid, e))
+    }
+}
+
+/// Who did all that could be done, and lost data, would not do better anew.
+fn how_ended(status: ExitStatus) -> Ended {
+    if status.success() || lost_data(status) {
+        Ended::Well
+    } else if status.code() == Some(WRONG_USE.into()) {
+        Ended::Misused
+    } else {
+        Ended::Badly
+    }
+}
+
+/// Whether a process said so.
+fn lost_data(status: ExitStatus) -> bool {
+    status.code() == Some(LOST_DATA.into())
+}
+
+fn not_supervised(node: &Node, pid: i32, source: io::Error) -> LauncherError {
+    LauncherError::NotSupervised {
+        node: node.id.clone(),
+        pid,
+        source,
+    }
+}

@@ -1,0 +1,345 @@
+//! The course of a run: check, build, start, watch, stop, sum up.
+
+use std::{
+    io,
+    os::unix::fs::MetadataExt,
+    path::PathBuf,
+    process::ExitCode,
+    sync::{
+        Arc,
+        atomic::{AtomicBool, Ordering},
+        mpsc::Receiver,
+    },
+    thread,
+    time::{Duration, Instant},
+};
+
+use command_line::LOST_DATA;
+use messages::{LogLevel, NodeState};
+use nix::sys::signal::Signal;
+use sd_notify::NotifyState;
+use signal_hook::consts::SIGUSR1;
+use transport::{
+    Claim, Flow, Graph, GraphName, Health, TransportError, control_socket, log_in_graph,
+    remove_dead_graphs, remove_leftovers, shared_memory_has_room, with_causes,
+};
+
+use super::{
+    build,
+    console::{LAUNCHER, note, say, warn},
+    control::{self, Answer, Asked, Question, Status},
+    crew::Crew,
+    forward, foxglove,
+    journal::Journal,
+    lasers,
+    log_files::LogFiles,
+    options::Config,
+    output::{Output, Reader},
+    record::{self, RECORDER},
+    tracker,
+    watch::Watch,
+};
+use crate::{
+    LauncherError,
+    descriptor::{self, Descriptor},
+};
+
+/// Between two looks at the processes.
+const TICK: Duration = Duration::from_millis(20);
+/// Between two looks for what dead processes have left.
+const CLEANUP_PERIOD: Duration = Duration::from_secs(1);
+/// How long the last scans may go without an answer once the sources are done.
+/// A scan takes seconds on a large map and a busy machine.
+const LAST_ANSWERS: Duration = Duration::from_secs(20);
+/// How long nodes of an earlier launcher may take to end.
+const LAST_OF_BEFORE: Duration = Duration::from_secs(3);
+/// What a slow reader of our output has left, unless the run ended by itself.
+const LAST_OUTPUT: Duration = Duration::from_millis(100);
+
+/// How a run ended in order.
+#[derive(Debug)]
+struct Course {
+    end: End,
+    /// Nodes that lost data, by their own account.
+    losers: Vec<String>,
+}
+
+/// Why a run has ended in order.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+enum End {
+    /// The sources are done, and so are the answers.
+    Finished,
+    /// A signal came, or nobody reads the poses any more.
+    Interrupted,
+}
+
+/// Runs the graph until it ends, or is ended by a signal.
+///
+/// The exit code is 0, or 3 where the graph played as fast as it answers and
+/// something was lost all the same, or a node said so when it was ended. At the
+/// pace of the recording a slow machine may drop scans; the summary counts them.
+///
+/// # Errors
+/// Anything that keeps the graph from running as described. Every process has
+/// ended then.
+pub fn run(config: &Config) -> Result<ExitCode, LauncherError> {
+    transport::node::start_logging().map_err(LauncherError::Logging)?;
+    let graph = config.options.graph_name()?;
+    let mut descriptor = descriptor::load(&config.dataflow)?;
+    forward::apply(&config.options, &mut descriptor.dataflow, &descriptor.file)?;
+    lasers::name(&mut descriptor.dataflow);
+    tracker::settle(&mut descriptor.dataflow);
+    record::add(
+        &config.options.record,
+        &mut descriptor.dataflow,
+        &descriptor.file,
+        &descriptor.folder,
+    )?;
+    if config.options.foxglove {
+        foxglove::add(&mut descriptor.dataflow)?;
+    }
+    build::build_all(&descriptor.dataflow, &descriptor.folder)?;
+    let _claim = Claim::take(&graph)?;
+    remove_dead_graphs();
+    make_way(&graph)?;
+
+    let lossless = forward::plays_at_max(&descriptor.dataflow);
+    let output = Output::start(io::stdout())?;
+    let is_tracked = tracker::has_tracker(&descriptor.dataflow);
+    let folder = config.options.log_folder.as_deref();
+    let logs = folder.map(LogFiles::create).transpose()?;
+    let mut journal = Journal::new(output, config.options.json, is_tracked).with_logs(logs);
+    let outcome = loop {
+        let outcome = launch(&descriptor, &graph, &mut journal);
+        let Err(LauncherError::Transport(TransportError::Vanished { .. })) = &outcome else {
+            break outcome;
+        };
+        // Nobody of the graph runs any more: all of it can begin anew.
+        if let Err(error) = clear(&graph) {
+            break Err(error.into());
+        }
+        say(LAUNCHER, "the whole graph is started again");
+    };
+    let cleared = clear(&graph);
+    let finished = outcome
+        .as_ref()
+        .is_ok_and(|course| course.end == End::Finished);
+    let summary_wanted = outcome.is_ok() || journal.report.any_answer();
+    let summary = journal.finish(summary_wanted, (!finished).then_some(LAST_OUTPUT));
+    // What came first says most.
+    let losers = outcome?.losers;
+    cleared?;
+    let summary = summary?;
+    if !losers.is_empty() {
+        say(LAUNCHER, &format!("{} lost data", losers.join(", ")));
+        return Ok(ExitCode::from(LOST_DATA));
+    }
+    if finished && lossless && summary.lost_data() {
+        say(
+            LAUNCHER,
+            "data was lost, though nothing may be at `--rate max`",
+        );
+        return Ok(ExitCode::from(LOST_DATA));
+    }
+    Ok(ExitCode::SUCCESS)
+}
+
+/// Joins the graph, starts its processes and stays until the end; all of them
+/// have ended when it returns.
+fn launch(
+    descriptor: &Descriptor,
+    name: &GraphName,
+    journal: &mut Journal,
+) -> Result<Course, LauncherError> {
+    let graph = Graph::join_named(LAUNCHER, name)?;
+    let first_laser = lasers::first(&descriptor.dataflow);
+    let watch = Watch::new(&graph, first_laser, journal.has_logs())?;
+    note(&format!("graph {name} is starting; Ctrl-C stops it"));
+    journal.begin();
+    let nodes = descriptor.dataflow.nodes.clone();
+    let mut crew = Crew::new(nodes, &descriptor.folder, name)?;
+    let mut health = graph.health()?;
+    health.state(NodeState::Ready)?;
+    let save = Arc::new(AtomicBool::new(false));
+    signal_hook::flag::register(SIGUSR1, Arc::clone(&save)).map_err(LauncherError::Signal)?;
+    let desk = Desk {
+        questions: control::listen(&control_socket(name), graph.waker()?)?,
+        graph: name.clone(),
+        descriptor: descriptor.file.clone(),
+        started: Instant::now(),
+    };
+    let end = stay(
+        &graph,
+        (&watch, &save, &desk),
+        &mut crew,
+        &mut health,
+        journal,
+    );
+    if let Err(error) = &end {
+        // The console hears of it when all have ended, a recorder has to before.
+        log_in_graph(LogLevel::Error, &with_causes(error));
+        graph.send_log();
+    }
+    // That we stop is seen all the same where it cannot be told.
+    let _ = sd_notify::notify(&[NotifyState::Stopping]);
+    let stopped = crew.stop();
+    // Nodes that are stopped send a last report on their health.
+    let heard = watch.take(journal, |_| {});
+    let end = end?;
+    stopped?;
+    heard?;
+    let losers = crew.losers();
+    Ok(Course { end, losers })
+}
+
+/// Supervises the crew and enters what is heard, until the end. Recorders are asked
+/// to save where `save` is set.
+fn stay(
+    graph: &Graph,
+    (watch, save, desk): (&Watch, &AtomicBool, &Desk),
+    crew: &mut Crew,
+    health: &mut Health,
+    journal: &mut Journal,
+) -> Result<End, LauncherError> {
+    let mut end = End::Interrupted;
+    let mut last_progress = Instant::now();
+    let mut last_cleanup = last_progress;
+    let mut told = 0;
+    graph.run(&watch.inputs(), TICK, |_| {
+        let now = Instant::now();
+        // What a source has sent is heard after its end has been seen.
+        let over = crew.is_over();
+        let heard = watch.take(journal, |health| crew.heard(health, now))?;
+        if heard.reader == Reader::Gone {
+            return Ok(Flow::Stop);
+        }
+        if heard.answers || !over {
+            last_progress = now;
+        }
+        let patient = now - last_progress < LAST_ANSWERS;
+        if over && (journal.report.all_answered() || !patient) {
+            end = End::Finished;
+            return Ok(Flow::Stop);
+        }
+        if desk.answer(crew, now)? == Flow::Stop {
+            return Ok(Flow::Stop);
+        }
+        if save.swap(false, Ordering::Relaxed) && crew.signal(RECORDER, Signal::SIGUSR1)? == 0 {
+            warn("SIGUSR1 saves what a recorder keeps, but none runs");
+        }
+        if !shared_memory_has_room() {
+            // Nobody can give a sign of life.
+            crew.excuse(now);
+        }
+        if crew.tick(now)? || now - last_cleanup >= CLEANUP_PERIOD {
+            graph.ensure_intact()?;
+            graph.cleanup_dead_nodes();
+            last_cleanup = now;
+            // Where a service manager has started us, it hears that we are at work.
+            let at_work = [NotifyState::Ready, NotifyState::Watchdog];
+            sd_notify::notify(&at_work).map_err(LauncherError::Notify)?;
+        }
+        if crew.given_up().len() > told {
+            told = crew.given_up().len();
+            health.error(&crew.given_up().join("; "))?;
+            health.state(NodeState::Degraded)?;
+        }
+        health.tick()?;
+        Ok::<_, LauncherError>(Flow::Continue)
+    })?;
+    Ok(end)
+}
+
+/// Where other terminals ask the launcher.
+struct Desk {
+    questions: Receiver<Asked>,
+    graph: GraphName,
+    descriptor: PathBuf,
+    started: Instant,
+}
+
+impl Desk {
+    /// Answers what was asked; says to stop where that was wanted.
+    fn answer(&self, crew: &mut Crew, now: Instant) -> Result<Flow, LauncherError> {
+        let mut flow = Flow::Continue;
+        while let Ok(asked) = self.questions.try_recv() {
+            let answer = match asked.question {
+                Question::Status => Answer::Status(Status {
+                    graph: self.graph.to_string(),
+                    pid: std::process::id(),
+                    descriptor: self.descriptor.display().to_string(),
+                    uptime_s: (now - self.started).as_secs(),
+                    given_up: crew.given_up().to_vec(),
+                    nodes: crew.status(now),
+                }),
+                Question::Stop => {
+                    note("stopped from another terminal");
+                    flow = Flow::Stop;
+                    Answer::Done
+                }
+                Question::Restart { node } => {
+                    if crew.restart(&node, now)? {
+                        note(&format!("{node} is restarted from another terminal"));
+                        Answer::Done
+                    } else {
+                        let nodes = crew.status(now);
+                        let ids: Vec<_> = nodes.iter().map(|node| node.id.as_str()).collect();
+                        let ids = ids.join(", ");
+                        Answer::Refused(format!("there is no node {node}: allowed are {ids}"))
+                    }
+                }
+            };
+            // Who asked may have gone.
+            let _ = asked.answer.send(answer);
+        }
+        Ok(flow)
+    }
+}
+
+/// Removes what a graph of this name has left. Nodes of a launcher that was killed just
+/// now are ending, and are waited for.
+fn make_way(graph: &GraphName) -> Result<(), TransportError> {
+    let begin = Instant::now();
+    loop {
+        match remove_leftovers(graph) {
+            Err(TransportError::StillRunning { .. }) if begin.elapsed() < LAST_OF_BEFORE => {
+                thread::sleep(TICK);
+            }
+            Err(TransportError::File { path, source, .. })
+                if source.kind() == io::ErrorKind::PermissionDenied =>
+            {
+                return Err(foreign(path, source));
+            }
+            other => return other,
+        }
+    }
+}
+
+/// Names the user whose file is in the way.
+fn foreign(path: PathBuf, source: io::Error) -> TransportError {
+    let user = nix::unistd::geteuid().as_raw();
+    match path.symlink_metadata() {
+        Ok(found) if found.uid() != user => TransportError::ForeignFile {
+            owner: found.uid(),
+            path,
+            user,
+        },
+        _ => TransportError::File {
+            action: "remove",
+            path,
+            source,
+        },
+    }
+}
+
+/// Removes what the graph has left in shared memory. Tools that joined it by
+/// its name may still be there; it is theirs then.
+fn clear(graph: &GraphName) -> Result<(), TransportError> {
+    match remove_leftovers(graph) {
+        Err(error @ TransportError::StillRunning { .. }) => {
+            say(LAUNCHER, &format!("shared memory is kept: {error}"));
+            Ok(())
+        }
+        other => other,
+    }
+}

@@ -1,0 +1,34 @@
+//! `backcast run`: builds the graph's nodes, starts and supervises their
+//! processes, and prints a pose for each scan.
+//!
+//! Joined to the graph, it only listens: it localizes nothing, and the graph
+//! runs without it. What is decided (restarts, the end of the run, figures and
+//! lines) is decided in pure files; `launch` does the work.
+
+mod added;
+pub mod arguments;
+pub mod build;
+pub mod console;
+pub mod control;
+pub mod crew;
+mod forward;
+mod foxglove;
+mod journal;
+mod lasers;
+mod launch;
+mod log_files;
+mod options;
+mod output;
+mod pairs;
+mod process;
+mod record;
+pub mod replay;
+mod report;
+mod summary;
+pub mod supervision;
+pub mod tracker;
+mod tracking;
+mod watch;
+
+pub use launch::run;
+pub use options::{Config, Options};

@@ -1,0 +1,206 @@
+//! What `backcast run` takes on the command line.
+
+use std::{
+    hash::{BuildHasher, Hasher, RandomState},
+    path::PathBuf,
+    str::FromStr,
+};
+
+use clap::Args;
+use engine::heading::HeadingConfig;
+use transport::{GRAPH_VARIABLE, GraphName, TransportError};
+
+use crate::descriptor::DEFAULT_FILE;
+
+/// What `backcast run` takes.
+#[derive(Debug, Args)]
+pub struct Config {
+    /// The graph's descriptor
+    #[arg(default_value = DEFAULT_FILE, value_name = "FILE")]
+    pub dataflow: PathBuf,
+    /// All other options.
+    #[command(flatten)]
+    pub options: Options,
+}
+
+impl Config {
+    /// These options with the descriptor of the current directory.
+    pub fn with(options: Options) -> Self {
+        let dataflow = DEFAULT_FILE.into();
+        Config { dataflow, options }
+    }
+}
+
+/// The options of `run`, which may also stand without the command.
+#[derive(Debug, Clone, Default, Args)]
+pub struct Options {
+    /// Replay this recording in place of whatever feeds the graph, a laser say;
+    /// several files are replayed as one
+    #[arg(long, value_name = "FILE")]
+    pub replay: Vec<PathBuf>,
+
+    /// With --replay: the topic of the scans [default: the only one, or /scan];
+    /// several lasers, named one by one, are joined
+    #[arg(long, value_name = "TOPIC", requires = "replay")]
+    pub scan_topic: Vec<String>,
+
+    /// With --replay: the topic of the odometry [default: the only one, or /odom]
+    #[arg(long, value_name = "TOPIC", requires = "replay")]
+    pub odom_topic: Option<String>,
+
+    /// Play so many times as fast as it was recorded, or `max`: wait for each
+    /// answer and lose nothing
+    #[arg(long, value_name = "FACTOR|max")]
+    pub rate: Option<Rate>,
+
+    /// Play the recording again and again, until Ctrl-C
+    #[arg(long = "loop")]
+    pub repeat: bool,
+
+    /// Serve this map in place of the one that the descriptor names
+    #[arg(long, value_name = "FILE")]
+    pub map: Option<PathBuf>,
+
+    /// Not for a graph, whose map is map_server's: --map says which one
+    #[arg(long, value_name = "TOPIC", requires = "replay", hide = true)]
+    pub map_topic: Option<String>,
+
+    /// Where the heading comes from.
+    #[command(flatten)]
+    pub heading: HeadingConfig,
+
+    /// What is recorded.
+    #[command(flatten)]
+    pub record: RecordOptions,
+
+    /// Leave out the web page to watch the graph
+    #[arg(long)]
+    pub no_monitor: bool,
+
+    /// Also show the graph live to Foxglove and Lichtblick, on ws://127.0.0.1:8765
+    #[arg(long)]
+    pub foxglove: bool,
+
+    /// The graph's name, by which other tools join it: 1 to 20 of a-z 0-9 - _
+    /// [default: $BACKCAST_GRAPH, or a name of its own]
+    #[arg(long, value_name = "NAME", value_parser = GraphName::new)]
+    pub graph: Option<GraphName>,
+
+    /// Also write what each node logs to NODE.jsonl in this folder, as JSON lines; of
+    /// each node the last 50 MB stay
+    #[arg(long, value_name = "FOLDER")]
+    pub log_folder: Option<PathBuf>,
+
+    /// Print JSON, an object a line; the last one holds the summary
+    #[arg(long)]
+    pub json: bool,
+}
+
+/// What is recorded, and how.
+#[derive(Debug, Clone, Default, Args)]
+pub struct RecordOptions {
+    /// Record the graph to this MCAP file
+    #[arg(long, value_name = "FILE")]
+    pub record: Option<PathBuf>,
+
+    /// With --record: keep the last so much time in memory, as 10m, and save it
+    /// when a pose is lost or the recorder gets SIGUSR1
+    #[arg(long, value_name = "TIME", requires = "record")]
+    pub keep: Option<String>,
+
+    /// With --record: begin another file after so much time, as 10m
+    #[arg(
+        long,
+        value_name = "TIME",
+        requires = "record",
+        conflicts_with = "keep"
+    )]
+    pub split_time: Option<String>,
+
+    /// With --record: begin another file after so many megabytes
+    #[arg(long, value_name = "MB", requires = "record", conflicts_with = "keep")]
+    pub split_size: Option<String>,
+
+    /// With --record: also the intensity image, which is then computed
+    #[arg(long, requires = "record")]
+    pub record_field: bool,
+}
+
+impl Options {
+    /// The graph to start: as the option says, or the environment, or one that no other
+    /// launcher has, also none in another container that shares this machine's memory.
+    ///
+    /// # Errors
+    /// The environment holds no valid name.
+    pub fn graph_name(&self) -> Result<GraphName, TransportError> {
+        match &self.graph {
+            Some(name) => Ok(name.clone()),
+            None if std::env::var_os(GRAPH_VARIABLE).is_some() => GraphName::from_environment(),
+            None => GraphName::new(&format!("bc{:08x}", random())),
+        }
+    }
+}
+
+/// Numbers of processes repeat from container to container; this does not.
+fn random() -> u32 {
+    let hasher = RandomState::new().build_hasher();
+    // The upper half is as random as the lower one.
+    (hasher.finish() >> 32) as u32
+}
+
+/// How fast a recording is played.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub enum Rate {
+    /// So many times as fast as it was recorded.
+    Times(f64),
+    /// As fast as answers come.
+    Max,
+}
+
+impl FromStr for Rate {
+    type Err = String;
+
+    fn from_str(text: &str) -> Result<Self, Self::Err> {
+        if text == "max" {
+            return Ok(Rate::Max);
+        }
+        text.parse()
+            .ok()
+            .filter(|factor: &f64| factor.is_finite() && *factor > 0.0)
+            .map(Rate::Times)
+            .ok_or_else(|| "allowed are a number above 0, as 0.5 or 10, and `max`".to_owned())
+    }
+}
+
+impl std::fmt::Display for Rate {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        match self {
+            Rate::Times(factor) => write!(f, "{factor}"),
+            Rate::Max => f.write_str("max"),
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn rates_read_back_as_written() {
+        for text in ["max", "0.5", "10"] {
+            assert_eq!(text.parse::<Rate>().unwrap().to_string(), text);
+        }
+    }
+
+    #[test]
+    fn a_graph_that_nobody_names_has_a_name_of_its_own() {
+        let named = Options {
+            graph: GraphName::new("robot7").ok(),
+            ..Options::default()
+        };
+        assert_eq!(named.graph_name().unwrap().as_str(), "robot7");
+        let own = || Options::default().graph_name().unwrap();
+        assert!(own().as_str().starts_with("bc"));
+        assert_ne!(own(), own(), "two of one process");
+    }
+}

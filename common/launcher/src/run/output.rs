@@ -1,0 +1,150 @@
+//! Standard output. A reader that does not read, as a pager, must not keep the
+//! launcher from supervising, so lines go through a thread of their own.
+
+use std::{
+    io::{self, ErrorKind, Write},
+    sync::mpsc::{Receiver, RecvTimeoutError, SyncSender, TrySendError, channel, sync_channel},
+    thread,
+    time::Duration,
+};
+
+use command_line::OutputError;
+
+use crate::LauncherError;
+
+/// Lines that wait for a slow reader; the next ones are lost to it, and counted.
+const CAPACITY: usize = 4096;
+
+/// Lines on their way to standard output.
+pub(crate) struct Output {
+    lines: SyncSender<String>,
+    ended: Receiver<io::Result<()>>,
+    lost: u64,
+}
+
+/// Whether somebody still reads.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(crate) enum Reader {
+    Reads,
+    Gone,
+}
+
+impl Output {
+    /// Opens it on `writer`.
+    ///
+    /// # Errors
+    /// The thread cannot be started.
+    pub(crate) fn start(mut writer: impl Write + Send + 'static) -> Result<Self, LauncherError> {
+        let (lines, waiting) = sync_channel::<String>(CAPACITY);
+        let (end, ended) = channel();
+        let body = move || {
+            let written = waiting.iter().try_for_each(|line| {
+                writer.write_all(line.as_bytes())?;
+                writer.flush()
+            });
+            // Nobody may wait for it any more.
+            let _ = end.send(written);
+        };
+        thread::Builder::new()
+            .name("stdout".into())
+            .spawn(body)
+            .map_err(OutputError)?;
+        Ok(Output {
+            lines,
+            ended,
+            lost: 0,
+        })
+    }
+
+    /// Hands over a line.
+    pub(crate) fn line(&mut self, mut line: String) -> Reader {
+        line.push('\n');
+        match self.lines.try_send(line) {
+            Ok(()) => Reader::Reads,
+            Err(TrySendError::Full(_)) => {
+                self.lost += 1;
+                Reader::Reads
+            }
+            Err(TrySendError::Disconnected(_)) => Reader::Gone,
+        }
+    }
+
+    /// Waits until all is written, at most for `patience` where there is one;
+    /// returns the number of lines that the reader was too slow for.
+    ///
+    /// # Errors
+    /// Writing failed, other than by a reader that went away.
+    pub(crate) fn finish(self, patience: Option<Duration>) -> Result<u64, LauncherError> {
+        drop(self.lines);
+        let ended = match patience {
+            None => self.ended.recv().map_err(RecvTimeoutError::from),
+            Some(patience) => self.ended.recv_timeout(patience),
+        };
+        match ended {
+            Ok(Err(error)) if error.kind() != ErrorKind::BrokenPipe => {
+                Err(OutputError(error).into())
+            }
+            // Written, read no more, or not in time: that is the reader's choice.
+            _ => Ok(self.lost),
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use std::io::Read;
+
+    use super::*;
+
+    #[test]
+    fn all_lines_arrive_in_order() {
+        let (mut reader, writer) = io::pipe().unwrap();
+        let mut output = Output::start(writer).unwrap();
+        for i in 0..100 {
+            assert_eq!(output.line(i.to_string()), Reader::Reads);
+        }
+        // Lines that came before the thread did may have been too many.
+        assert!(output.finish(None).is_ok());
+        let mut text = String::new();
+        reader.read_to_string(&mut text).unwrap();
+        let expected: String = (0..100).map(|i| format!("{i}\n")).collect();
+        assert_eq!(text, expected);
+    }
+
+    #[test]
+    fn a_reader_that_stops_reading_blocks_nobody() {
+        let (reader, writer) = io::pipe().unwrap();
+        let mut output = Output::start(writer).unwrap();
+        // More than the pipe, the queue and the line under way hold together.
+        for _ in 0..3 * CAPACITY {
+            assert_eq!(output.line("x".repeat(1000)), Reader::Reads);
+        }
+        let lost = output.finish(Some(Duration::ZERO)).unwrap();
+        assert!(lost > 0, "{lost}");
+        drop(reader);
+    }
+
+    #[test]
+    fn a_reader_that_went_away_is_noticed_and_no_failure() {
+        let (reader, writer) = io::pipe().unwrap();
+        drop(reader);
+        let mut output = Output::start(writer).unwrap();
+        while output.line("x".into()) == Reader::Reads {
+            thread::yield_now();
+        }
+        // Lines that came before the thread did may have been too many.
+        assert!(output.finish(None).is_ok());
+    }
+
+    #[test]
+    fn a_full_disk_is_a_failure() {
+        let full = std::fs::OpenOptions::new()
+            .write(true)
+            .open("/dev/full")
+            .unwrap();
+        let mut output = Output::start(full).unwrap();
+        output.line("x".into());
+        let error = output.finish(None).unwrap_err();
+        assert!(matches!(error, LauncherError::Output(_)), "{error}");
+    }
+}

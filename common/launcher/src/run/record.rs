@@ -1,0 +1,182 @@
+//! `--record`: adds a recorder to a graph.
+//!
+//! The recorder lies where the graph's other executables do and is built with
+//! them. It takes every topic by itself and needs no wires; sources wait for it,
+//! so that nothing is missed.
+
+use std::path::{Path, PathBuf};
+
+use dataflow::{Dataflow, Node, Place, Restart};
+
+use super::added;
+use super::arguments::{MAP_SERVER, PLAYERS, add_to_list, value};
+use super::options::RecordOptions;
+use crate::LauncherError;
+
+pub(super) const RECORDER: &str = "recorder";
+
+/// Adds a recorder where the options want one, to the graph of the descriptor
+/// `file` in `folder`.
+///
+/// # Errors
+/// The file exists already, or the graph has a recorder.
+pub(crate) fn add(
+    options: &RecordOptions,
+    dataflow: &mut Dataflow,
+    file: &Path,
+    folder: &Path,
+) -> Result<(), LauncherError> {
+    let Some(output) = &options.record else {
+        return Ok(());
+    };
+    let output = std::path::absolute(output).map_err(LauncherError::Folder)?;
+    check(&output, options, dataflow)?;
+    let mut args = vec![argument("--output", &output.to_string_lossy())];
+    let passed_on = [
+        ("--keep", options.keep.as_ref()),
+        ("--split-time", options.split_time.as_ref()),
+        ("--split-size", options.split_size.as_ref()),
+    ];
+    let passed_on = passed_on
+        .into_iter()
+        .filter_map(|(name, value)| Some((name, value?)));
+    args.extend(passed_on.map(|(name, value)| argument(name, value)));
+    if options.record_field {
+        args.push("--field".to_owned());
+    }
+    let attached = attached(dataflow, file, folder);
+    args.extend(
+        attached
+            .iter()
+            .map(|file| argument("--attach", &file.to_string_lossy())),
+    );
+    let node = Node {
+        id: RECORDER.to_owned(),
+        path: added::path(dataflow, RECORDER),
+        path_place: Place::START,
+        args,
+        env: Vec::new(),
+        build: added::build(dataflow, RECORDER),
+        inputs: Vec::new(),
+        outputs: Vec::new(),
+        streams: Vec::new(),
+        // It goes on in another file.
+        restart: Restart::ON_FAILURE,
+    };
+    for source in &mut dataflow.nodes {
+        if PLAYERS.contains(&source.executable()) {
+            add_to_list(source, "--wait-for", RECORDER);
+        }
+    }
+    dataflow.nodes.push(node);
+    Ok(())
+}
+
+fn check(output: &Path, options: &RecordOptions, dataflow: &Dataflow) -> Result<(), LauncherError> {
+    let is_recorder = |node: &Node| node.id == RECORDER || node.executable() == RECORDER;
+    if dataflow.nodes.iter().any(is_recorder) {
+        let problem = "--record adds a node `recorder`, but the graph has one already";
+        return Err(LauncherError::Usage(problem.to_owned()));
+    }
+    let is_whole =
+        options.keep.is_none() && options.split_time.is_none() && options.split_size.is_none();
+    if is_whole && output.exists() {
+        let output = output.display();
+        return Err(LauncherError::Usage(format!(
+            "--record: {output} exists already; remove it or name another file"
+        )));
+    }
+    Ok(())
+}
+
+/// The descriptor, and the map that is served with its image, as far as they are
+/// there: the map server itself complains of a map that is not.
+fn attached(dataflow: &Dataflow, file: &Path, folder: &Path) -> Vec<PathBuf> {
+    let server = dataflow
+        .nodes
+        .iter()
+        .find(|node| node.executable() == MAP_SERVER);
+    let yaml = server
+        .and_then(|server| value(server, "--map"))
+        .map(|map| folder.join(map));
+    let image = yaml.as_ref().and_then(|yaml| map::image_of(yaml).ok());
+    let descriptor = std::path::absolute(file).ok();
+    let all = [descriptor, yaml, image].into_iter().flatten();
+    all.filter(|file| file.is_file()).collect()
+}
+
+fn argument(option: &str, value: &str) -> String {
+    format!("{option}={value}")
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    const GRAPH: &str = "nodes:
+  - {id: r, path: bin/replayer, outputs: [scan], args: --wait-for a, build: cargo build --package replayer}
+  - {id: a, path: bin/accumulator, build: cargo build --package replayer}
+  - {id: o, path: bin/other, build: make}
+";
+
+    fn graph(text: &str) -> Dataflow {
+        let topics = dataflow::Topics {
+            names: messages::topic::NAMES,
+            shared: &[],
+            several: &[],
+        };
+        dataflow::parse(text, &topics).unwrap()
+    }
+
+    fn options(record: &Path) -> RecordOptions {
+        RecordOptions {
+            record: Some(record.to_owned()),
+            ..RecordOptions::default()
+        }
+    }
+
+    #[test]
+    fn the_recorder_joins_the_others_and_sources_wait_for_it() {
+        let mut dataflow = graph(GRAPH);
+        let folder = tempfile::TempDir::new().unwrap();
+        let options = RecordOptions {
+            split_time: Some("10m".to_owned()),
+            ..options(Path::new("/tmp/no_such_folder/r.mcap"))
+        };
+        add(&options, &mut dataflow, Path::new("g.yaml"), folder.path()).unwrap();
+        let [replayer, accumulator, other, recorder] = &dataflow.nodes[..] else {
+            panic!("{dataflow:?}");
+        };
+        assert_eq!(replayer.args, ["--wait-for=a,recorder"]);
+        assert_eq!(
+            (&*recorder.path, &*recorder.id),
+            ("bin/recorder", "recorder")
+        );
+        assert_eq!(
+            recorder.args,
+            ["--output=/tmp/no_such_folder/r.mcap", "--split-time=10m"]
+        );
+        let build = "cargo build --package replayer --package recorder";
+        for node in [replayer, accumulator, recorder] {
+            assert_eq!(node.build[0].to_string(), build);
+        }
+        assert_eq!(other.build[0].to_string(), "make");
+    }
+
+    #[test]
+    fn files_and_recorders_that_exist_are_kept() {
+        let folder = tempfile::TempDir::new().unwrap();
+        let existing = folder.path().join("r.mcap");
+        std::fs::write(&existing, "").unwrap();
+        let refused = |options: &RecordOptions, text: &str| {
+            let mut dataflow = graph(text);
+            let outcome = add(options, &mut dataflow, Path::new("g.yaml"), folder.path());
+            outcome.unwrap_err().to_string()
+        };
+        let exists = refused(&options(&existing), GRAPH);
+        assert!(exists.contains("r.mcap exists already"), "{exists}");
+        let other = options(&folder.path().join("s.mcap"));
+        let twice = refused(&other, "nodes: [{id: x, path: bin/recorder}]");
+        assert!(twice.contains("has one already"), "{twice}");
+    }
+}

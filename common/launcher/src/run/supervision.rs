@@ -1,0 +1,350 @@
+//! What happens when a process ends, and when the run is over. Pure: no clock,
+//! no process.
+
+use std::{
+    collections::VecDeque,
+    time::{Duration, Instant},
+};
+
+use dataflow::{Node, Restart, RestartPolicy};
+use messages::{Topic, topic};
+
+use crate::LauncherError;
+
+/// The variable of a node's `env` that says whether the graph ends with it.
+const ESSENTIAL: &str = "BACKCAST_ESSENTIAL";
+/// Those without which a robot is localized just as well.
+const ONLY_SHOW: [&str; 3] = ["foxglove_server", "monitor", "recorder"];
+
+/// Whether the graph ends when this node has failed for good: the descriptor says so
+/// with [`ESSENTIAL`] in the node's `env`, or else its executable tells.
+///
+/// # Errors
+/// The variable is neither `true` nor `false`.
+pub fn is_essential(node: &Node) -> Result<bool, LauncherError> {
+    match node.env.iter().find(|(name, _)| name == ESSENTIAL) {
+        None => Ok(!ONLY_SHOW.contains(&node.executable())),
+        Some((_, value)) => value.parse().map_err(|_| {
+            let id = &node.id;
+            let allowed = "allowed are true (the graph ends with it) and false";
+            LauncherError::Usage(format!("node {id}: {ESSENTIAL} is `{value}`; {allowed}"))
+        }),
+    }
+}
+
+/// How a process ended.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Ended {
+    /// It has done all that it could.
+    Well,
+    /// It failed, which may go better another time.
+    Badly,
+    /// It was started wrongly, which goes no better another time.
+    Misused,
+}
+
+/// What follows when a process has ended by itself.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum AfterEnd {
+    /// It is started again, so much later.
+    Restart(Duration),
+    /// It has done its work.
+    Done,
+    /// It failed for good.
+    Failed,
+}
+
+/// Counts the restarts of one node and decides on the next.
+#[derive(Debug, Clone)]
+pub struct Restarts {
+    rules: Restart,
+    /// When they were decided on, within the window.
+    recent: VecDeque<Instant>,
+    /// Since it last worked for a while.
+    in_a_row: u32,
+}
+
+impl Restarts {
+    /// A process that worked for so long has recovered: the next failure is a new one.
+    pub const RECOVERED_AFTER: Duration = Duration::from_secs(2);
+    /// Doublings of the delay after which it stays, whatever the longest one is.
+    const MAX_DOUBLINGS: u32 = 16;
+
+    /// None used yet.
+    pub fn new(rules: Restart) -> Self {
+        Restarts {
+            rules,
+            recent: VecDeque::new(),
+            in_a_row: 0,
+        }
+    }
+
+    /// How often the node was started again within the window.
+    pub fn recent(&self) -> u32 {
+        u32::try_from(self.recent.len()).unwrap_or(u32::MAX)
+    }
+
+    /// Decides at `now`, after an end of a process that ran for `worked`, and counts
+    /// the restart.
+    pub fn after_end(&mut self, ended: Ended, worked: Duration, now: Instant) -> AfterEnd {
+        let wanted = match (self.rules.policy, ended) {
+            (RestartPolicy::Never, _) | (_, Ended::Misused) => false,
+            (RestartPolicy::OnFailure, ended) => ended == Ended::Badly,
+            (RestartPolicy::Always, _) => true,
+        };
+        let old = |at: &Instant| now.saturating_duration_since(*at) > self.rules.window;
+        while self.recent.front().is_some_and(old) {
+            self.recent.pop_front();
+        }
+        if worked >= Self::RECOVERED_AFTER {
+            self.in_a_row = 0;
+        }
+        let limit = self.rules.max_restarts;
+        if wanted && (limit == 0 || self.recent() < limit) {
+            let doublings = self.in_a_row.min(Self::MAX_DOUBLINGS);
+            self.in_a_row = self.in_a_row.saturating_add(1);
+            // Without a limit nobody asks how many there were.
+            if limit > 0 {
+                self.recent.push_back(now);
+            }
+            let delay = self.rules.delay.saturating_mul(1 << doublings);
+            return AfterEnd::Restart(delay.min(self.rules.max_delay));
+        }
+        match ended {
+            Ended::Well => AfterEnd::Done,
+            Ended::Badly | Ended::Misused => AfterEnd::Failed,
+        }
+    }
+}
+
+/// When a node gave its last sign of life, and whether it is missed.
+#[derive(Debug, Clone, Copy)]
+pub struct Pulse {
+    timeout: Duration,
+    /// Nothing before the first report: programs that send none are not expected to.
+    last: Option<Instant>,
+    /// It said that it is at work on something long.
+    busy: bool,
+}
+
+impl Pulse {
+    /// Nothing heard yet.
+    pub fn new(timeout: Duration) -> Self {
+        Pulse {
+            timeout,
+            last: None,
+            busy: false,
+        }
+    }
+
+    /// Its process was started: who has reported before is expected to report again.
+    pub fn started(&mut self, now: Instant) {
+        self.busy = false;
+        self.excuse(now);
+    }
+
+    /// It reported.
+    pub fn heard(&mut self, busy: bool, now: Instant) {
+        self.last = Some(now);
+        self.busy = busy;
+    }
+
+    /// It could not have reported.
+    pub fn excuse(&mut self, now: Instant) {
+        if self.last.is_some() {
+            self.last = Some(now);
+        }
+    }
+
+    /// For how long nothing was heard, if that is too long.
+    pub fn missed_for(&self, now: Instant) -> Option<Duration> {
+        let silent = now.saturating_duration_since(self.last?);
+        (!self.busy && silent > self.timeout).then_some(silent)
+    }
+}
+
+/// What is measured enters the graph with these; all else follows from them.
+pub const MEASUREMENTS: [&str; 3] = [
+    topic::Scan::NAME,
+    topic::OdometryTopic::NAME,
+    topic::GroundTruthTopic::NAME,
+];
+
+/// Whether a node feeds the graph.
+pub fn is_source(node: &Node) -> bool {
+    node.outputs
+        .iter()
+        .any(|o| MEASUREMENTS.contains(&o.as_str()))
+}
+
+/// Whether nothing more can come: every source is done, or every node is.
+/// Takes for each node whether it is a source and whether it is done.
+pub fn is_over(nodes: impl Iterator<Item = (bool, bool)>) -> bool {
+    let (mut sources, mut sources_done, mut all_done) = (0, 0, true);
+    for (source, done) in nodes {
+        sources += u32::from(source);
+        sources_done += u32::from(source && done);
+        all_done &= done;
+    }
+    all_done || (sources > 0 && sources == sources_done)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// The restarts of a node, and a clock.
+    struct Course {
+        restarts: Restarts,
+        now: Instant,
+    }
+
+    impl Course {
+        fn new(policy: RestartPolicy, max_restarts: u32, delay_ms: u64) -> Self {
+            let rules = Restart {
+                policy,
+                max_restarts,
+                delay: Duration::from_millis(delay_ms),
+                ..Restart::DEFAULT
+            };
+            Course {
+                restarts: Restarts::new(rules),
+                now: Instant::now(),
+            }
+        }
+
+        /// The process ends after so many seconds.
+        fn end_after(&mut self, seconds: u64, ended: Ended) -> AfterEnd {
+            let worked = Duration::from_secs(seconds);
+            self.now += worked;
+            self.restarts.after_end(ended, worked, self.now)
+        }
+
+        fn end(&mut self, ended: Ended) -> AfterEnd {
+            self.end_after(0, ended)
+        }
+    }
+
+    const AT_ONCE: AfterEnd = AfterEnd::Restart(Duration::ZERO);
+
+    #[test]
+    fn policies_look_at_how_it_ended() {
+        use RestartPolicy::{Always, Never, OnFailure};
+        for (policy, well, badly) in [
+            (Never, AfterEnd::Done, AfterEnd::Failed),
+            (OnFailure, AfterEnd::Done, AT_ONCE),
+            (Always, AT_ONCE, AT_ONCE),
+        ] {
+            let end = |ended| Course::new(policy, 0, 0).end(ended);
+            assert_eq!(end(Ended::Well), well);
+            assert_eq!(end(Ended::Badly), badly);
+            assert_eq!(end(Ended::Misused), AfterEnd::Failed);
+        }
+    }
+
+    #[test]
+    fn restarts_run_out_within_the_window() {
+        let mut two = Course::new(RestartPolicy::Always, 2, 0);
+        let ends = [Ended::Badly, Ended::Well, Ended::Badly].map(|ended| two.end(ended));
+        assert_eq!(ends, [AT_ONCE, AT_ONCE, AfterEnd::Failed]);
+        assert_eq!(two.restarts.recent(), 2);
+        assert_eq!(two.end(Ended::Well), AfterEnd::Done);
+    }
+
+    #[test]
+    fn restarts_of_long_ago_do_not_count() {
+        let mut rare = Course::new(RestartPolicy::OnFailure, 2, 0);
+        for _ in 0..100 {
+            assert_eq!(rare.end_after(31, Ended::Badly), AT_ONCE);
+        }
+        assert_eq!(rare.restarts.recent(), 2);
+        assert_eq!(rare.end_after(1, Ended::Badly), AfterEnd::Failed);
+    }
+
+    #[test]
+    fn without_a_limit_they_do_not_run_out() {
+        let mut endless = Course::new(RestartPolicy::OnFailure, 0, 0);
+        assert!((0..1000).all(|_| endless.end(Ended::Badly) == AT_ONCE));
+        assert_eq!(endless.restarts.recent(), 0, "nothing is kept of them");
+    }
+
+    #[test]
+    fn the_delay_doubles_up_to_the_longest_and_begins_anew_after_good_work() {
+        let mut delayed = Course::new(RestartPolicy::OnFailure, 0, 200);
+        let mut delays = |seconds, times| -> Vec<u64> {
+            let delay = |_| match delayed.end_after(seconds, Ended::Badly) {
+                AfterEnd::Restart(delay) => u64::try_from(delay.as_millis()).unwrap(),
+                other => panic!("{other:?}"),
+            };
+            (0..times).map(delay).collect()
+        };
+        assert_eq!(delays(0, 7), [200, 400, 800, 1600, 3200, 5000, 5000]);
+        assert_eq!(delays(1, 20), [5000; 20]);
+        assert_eq!(delays(2, 3), [200, 200, 200]);
+    }
+
+    #[test]
+    fn a_node_is_missed_when_it_stops_reporting_and_is_not_busy() {
+        let start = Instant::now();
+        let at = |seconds| start + Duration::from_secs(seconds);
+        let mut pulse = Pulse::new(Duration::from_secs(15));
+        pulse.started(at(0));
+        assert_eq!(pulse.missed_for(at(100)), None, "it never reported");
+        pulse.heard(false, at(100));
+        assert_eq!(pulse.missed_for(at(115)), None);
+        assert_eq!(pulse.missed_for(at(116)), Some(Duration::from_secs(16)));
+        pulse.heard(true, at(116));
+        assert_eq!(pulse.missed_for(at(1000)), None, "it is busy");
+        pulse.started(at(1000));
+        assert_eq!(pulse.missed_for(at(1014)), None);
+        assert!(pulse.missed_for(at(1016)).is_some(), "anew, and silent");
+        pulse.excuse(at(1016));
+        assert_eq!(pulse.missed_for(at(1020)), None);
+    }
+
+    #[test]
+    fn what_only_shows_is_not_essential_unless_the_descriptor_says_so() {
+        let essential = |node: &str| {
+            let text = format!("nodes: [{{id: n, {node}}}]");
+            let nodes = dataflow::parse(&text, &dataflow::Topics::default())
+                .unwrap()
+                .nodes;
+            is_essential(&nodes[0]).map_err(|error| error.to_string())
+        };
+        assert_eq!(essential("path: bin/accumulator"), Ok(true));
+        assert_eq!(essential("path: bin/monitor"), Ok(false));
+        let said = |value| format!("path: bin/monitor, env: {{BACKCAST_ESSENTIAL: {value}}}");
+        assert_eq!(essential(&said("true")), Ok(true));
+        assert_eq!(essential(&said("false")), Ok(false));
+        let error = essential(&said("maybe")).unwrap_err();
+        assert!(
+            error.contains("node n: BACKCAST_ESSENTIAL is `maybe`"),
+            "{error}"
+        );
+    }
+
+    #[test]
+    fn a_run_is_over_when_its_sources_are() {
+        let over = |nodes: &[(bool, bool)]| is_over(nodes.iter().copied());
+        assert!(over(&[(true, true), (false, false)]));
+        assert!(!over(&[(true, true), (true, false), (false, true)]));
+        assert!(!over(&[(false, true), (false, false)]));
+        assert!(over(&[(false, true), (false, true)]));
+    }
+
+    #[test]
+    fn sources_are_told_by_what_they_send() {
+        let topics = dataflow::Topics {
+            names: messages::topic::NAMES,
+            shared: &[],
+            several: &[],
+        };
+        let text = "nodes:
+  - {id: a, path: x, outputs: [odometry]}
+  - {id: b, path: x, outputs: [map]}
+";
+        let nodes = dataflow::parse(text, &topics).unwrap().nodes;
+        assert!(is_source(&nodes[0]));
+        assert!(!is_source(&nodes[1]));
+    }
+}

@@ -1,0 +1,132 @@
+//! What the tracker takes over from the nodes before it: it judges scans as they do, and where
+//! it is wired to ask for searches, the accumulator waits to be asked.
+
+use dataflow::{Dataflow, Node};
+use messages::{Topic, topic};
+
+use super::arguments::{ACCUMULATOR, set, value};
+use super::forward::plays_at_max;
+
+const TRACKER: &str = "tracker";
+const SEARCH: &str = "--search";
+
+/// Options that a tracker shares with other nodes, and with which.
+const SHARED: [(&str, &[&str]); 3] = [
+    (
+        ACCUMULATOR,
+        &[
+            "--scans",
+            "--odometry-delay-s",
+            "--scan-stamp",
+            "--deskew",
+            "--max-beams",
+            "--beam-arc-m",
+        ],
+    ),
+    ("boundary_extractor", &["--occupied-from", "--free-to"]),
+    (
+        "peak_extractor",
+        &[
+            "--fit-sigma-m",
+            "--fit-sigma-cells",
+            "--through-penalty",
+            "--unknown-score",
+            "--drawn-doubt",
+        ],
+    ),
+];
+const UNKNOWN_BLOCKS: &str = "--unknown-blocks";
+
+/// Whether anybody sends where the robot is, from scan to scan.
+pub fn has_tracker(dataflow: &Dataflow) -> bool {
+    let mut outputs = dataflow.nodes.iter().flat_map(|node| &node.outputs);
+    outputs.any(|output| output == topic::Tracked::NAME)
+}
+
+/// Gives trackers the settings of others that they do not have, and has accumulators search
+/// what is asked for alone, unless nothing is to be lost.
+pub fn settle(dataflow: &mut Dataflow) {
+    for (executable, options) in SHARED {
+        for option in options {
+            if let Some(found) = setting(dataflow, executable, option) {
+                for tracker in trackers(dataflow) {
+                    if value(tracker, option).is_none() {
+                        set(tracker, option, Some(&found));
+                    }
+                }
+            }
+        }
+    }
+    let blocks = |node: &Node| node.args.iter().any(|arg| arg == UNKNOWN_BLOCKS);
+    let reads = |node: &&Node| node.executable() == "boundary_extractor";
+    if dataflow.nodes.iter().filter(reads).any(blocks) {
+        trackers(dataflow).for_each(|tracker| set(tracker, UNKNOWN_BLOCKS, None));
+    }
+    if plays_at_max(dataflow) {
+        return;
+    }
+    let asked = |node: &&mut Node| {
+        let mut inputs = node.inputs.iter();
+        node.executable() == ACCUMULATOR
+            && inputs.any(|input| input.topic == topic::Attention::NAME)
+            && value(node, SEARCH).is_none()
+    };
+    for node in dataflow.nodes.iter_mut().filter(asked) {
+        set(node, SEARCH, Some("asked"));
+    }
+}
+
+/// What the first node with an executable has for an option.
+fn setting(dataflow: &Dataflow, executable: &str, option: &str) -> Option<String> {
+    let mut nodes = dataflow.nodes.iter();
+    let node = nodes.find(|node| node.executable() == executable)?;
+    value(node, option).map(str::to_owned)
+}
+
+fn trackers(dataflow: &mut Dataflow) -> impl Iterator<Item = &mut Node> {
+    let nodes = dataflow.nodes.iter_mut();
+    nodes.filter(|node| node.executable() == TRACKER)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn settled(player: &str) -> Vec<Vec<String>> {
+        let text = format!(
+            "nodes:
+  - {{id: r, path: bin/replayer, args: {player}, outputs: [scan]}}
+  - {{id: b, path: bin/boundary_extractor, args: --occupied-from 50 --unknown-blocks}}
+  - {{id: a, path: bin/accumulator, args: --max-beams=90, inputs: {{scan: r/scan, attention: t/attention}}, outputs: [votes]}}
+  - {{id: t, path: bin/tracker, args: --rate 10 --max-beams 60, inputs: {{scan: r/scan}}, outputs: [attention]}}
+"
+        );
+        let topics = dataflow::Topics {
+            names: topic::NAMES,
+            ..dataflow::Topics::default()
+        };
+        let mut dataflow = dataflow::parse(&text, &topics).unwrap();
+        settle(&mut dataflow);
+        dataflow.nodes.into_iter().map(|node| node.args).collect()
+    }
+
+    #[test]
+    fn a_tracker_takes_over_the_settings_of_others() {
+        let args = settled("--rate=1");
+        let expected = [
+            "--rate",
+            "10",
+            "--max-beams",
+            "60",
+            "--occupied-from=50",
+            "--unknown-blocks",
+        ];
+        assert_eq!(args[3], expected);
+    }
+
+    #[test]
+    fn scans_are_searched_as_they_are_asked_for_unless_nothing_may_be_lost() {
+        assert_eq!(settled("--rate=1")[2], ["--max-beams=90", "--search=asked"]);
+        assert_eq!(settled("--rate=max")[2], ["--max-beams=90"]);
+    }
+}

@@ -1,0 +1,118 @@
+//! What the tracker said of the scans of a run, and how near the truth it was. Pure.
+
+use std::collections::BTreeMap;
+
+use geometry::Pose;
+use messages::{PoseHeader, TrackState, Verdict};
+use serde::Serialize;
+use statistics::{Accuracy, Answer, Distribution, Figures, Tail};
+
+use super::pairs::Pairs;
+
+/// Counts the poses of scans.
+#[derive(Debug)]
+pub(crate) struct Tracking {
+    states: BTreeMap<&'static str, u64>,
+    scans: u64,
+    pairs: Pairs<Answer, Pose>,
+    accuracy: Accuracy,
+    latency_ms: Distribution,
+}
+
+/// The tracker's figures of a run.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+pub(crate) struct TrackingFigures {
+    /// Scans of which the tracker said where the robot is, or that it does not know.
+    pub scans: u64,
+    /// Of those, the share of each state, 0..=1.
+    pub states: BTreeMap<&'static str, f64>,
+    /// Poses against the truth, where the recording holds it.
+    #[serde(flatten)]
+    pub accuracy: Figures,
+    /// From the scan's entry into the graph to the tracker's pose.
+    pub latency_ms: Tail,
+}
+
+impl Tracking {
+    /// Nothing heard. Errors and times keep the newest `window` values.
+    pub(crate) fn new(window: usize) -> Self {
+        Tracking {
+            states: BTreeMap::new(),
+            scans: 0,
+            pairs: Pairs::new(),
+            accuracy: Accuracy::new(window),
+            latency_ms: Distribution::new(window),
+        }
+    }
+
+    /// Takes the pose of a scan, sent so many milliseconds after it.
+    pub(crate) fn pose(&mut self, header: &PoseHeader, latency_ms: f64) {
+        let state = TrackState::from_code(header.state);
+        self.scans += 1;
+        *self.states.entry(word(state)).or_default() += 1;
+        self.latency_ms.add(latency_ms);
+        let pose = (header.pose_known == 1).then(|| header.map_from_laser.into());
+        let answer = Answer {
+            poses: pose.into_iter().collect(),
+            // The statistics count who claims to be sure, and is wrong.
+            verdict: (state == Some(TrackState::Unique)).then_some(Verdict::Unique),
+        };
+        if let Some((answer, truth)) = self.pairs.answer(header.stamp.measured_ns, answer) {
+            self.accuracy.add(truth, &answer);
+        }
+    }
+
+    /// Takes the true pose of a scan.
+    pub(crate) fn truth(&mut self, measured_ns: i64, truth: Pose) {
+        if let Some((answer, truth)) = self.pairs.truth(measured_ns, truth) {
+            self.accuracy.add(truth, &answer);
+        }
+    }
+
+    /// The figures so far; none where no tracker was heard.
+    pub(crate) fn figures(&self) -> Option<TrackingFigures> {
+        let share = |count: u64| count as f64 / self.scans as f64;
+        let states = self.states.iter();
+        (self.scans > 0).then(|| TrackingFigures {
+            scans: self.scans,
+            states: states
+                .map(|(state, count)| (*state, share(*count)))
+                .collect(),
+            accuracy: self.accuracy.figures(),
+            latency_ms: self.latency_ms.tail(),
+        })
+    }
+}
+
+fn word(state: Option<TrackState>) -> &'static str {
+    state.map_or("?", TrackState::as_str)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use pose_table::testing::pose;
+
+    #[test]
+    fn states_are_counted_and_poses_meet_their_truths() {
+        let mut tracking = Tracking::new(10);
+        assert_eq!(tracking.figures(), None);
+        let truth = Pose::new(1.0, -2.1, std::f64::consts::PI);
+        tracking.truth(1, truth);
+        tracking.pose(&pose(1, 1, TrackState::Searching), 30.0);
+        tracking.pose(&pose(2, 2, TrackState::Unique), 20.0);
+        tracking.truth(2, truth);
+        tracking.pose(&pose(3, 3, TrackState::Unique), 10.0);
+        tracking.truth(3, Pose::new(9.0, 0.0, 0.0));
+        tracking.pose(&pose(4, 4, TrackState::Doubtful), 10.0);
+        let figures = tracking.figures().unwrap();
+        assert_eq!(figures.scans, 4);
+        let shares = BTreeMap::from([("Doubtful", 0.25), ("Searching", 0.25), ("Unique", 0.5)]);
+        assert_eq!(figures.states, shares);
+        assert_eq!((figures.accuracy.truths, figures.accuracy.unique), (3, 2));
+        assert_eq!(figures.accuracy.unique_wrong, 1);
+        // A difference of two coordinates.
+        assert!((figures.accuracy.error_m.median.unwrap() - 0.1).abs() < 1e-12);
+        assert_eq!(figures.latency_ms.p50, Some(10.0));
+    }
+}

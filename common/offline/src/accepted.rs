@@ -1,0 +1,77 @@
+//! Whether anything came of the scans of a recording.
+
+use std::path::Path;
+
+use transport::with_causes;
+
+use super::Reply;
+use crate::OfflineError;
+
+/// Scans that were asked for, and why the first was refused.
+#[derive(Debug, Clone, PartialEq, Eq, Default)]
+pub struct Accepted {
+    scans: u64,
+    refused: u64,
+    first_refusal: Option<String>,
+}
+
+impl Accepted {
+    /// Counts what came of a scan.
+    pub fn count(&mut self, reply: &Reply<'_>) {
+        self.scans += 1;
+        if let Err(refusal) = &reply.answer {
+            self.refused += 1;
+            self.first_refusal
+                .get_or_insert_with(|| with_causes(refusal));
+        }
+    }
+
+    /// Checks that not every scan was refused.
+    ///
+    /// # Errors
+    /// Says why the first was.
+    pub fn check(self, file: &Path) -> Result<(), OfflineError> {
+        match self.first_refusal {
+            Some(reason) if self.refused == self.scans => Err(OfflineError::AllRefused {
+                file: file.to_owned(),
+                scans: self.scans,
+                reason,
+            }),
+            _ => Ok(()),
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use engine::EngineError;
+
+    use super::*;
+
+    fn refusal() -> Reply<'static> {
+        Reply {
+            map_id: 1,
+            cpu_ms: 0.0,
+            answer: Err(OfflineError::Refused(EngineError::EmptyScan)),
+        }
+    }
+
+    #[test]
+    fn only_where_every_scan_was_refused_there_is_an_error() {
+        let file = Path::new("r.mcap");
+        assert!(Accepted::default().check(file).is_ok());
+        let mut all = Accepted::default();
+        all.count(&refusal());
+        all.count(&refusal());
+        let mixed = Accepted {
+            scans: all.scans + 1,
+            ..all.clone()
+        };
+        assert!(mixed.check(file).is_ok());
+        assert_eq!(
+            all.check(file).unwrap_err().to_string(),
+            "r.mcap: every scan was refused, 2 in all; the first: the scan is empty: it has no \
+             ranges"
+        );
+    }
+}

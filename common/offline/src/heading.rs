@@ -1,0 +1,269 @@
+//! What a recording says about the headings of its scans.
+
+use std::sync::Arc;
+
+use bytemuck::Zeroable;
+use engine::heading::{HeadingConfig, HeadingError, HeadingSource, History};
+use messages::{FrameName, GroundTruth, Odometry, ScanHeader, Stamp};
+use recording::{Kind, Message, Record, Recording, RecordingError};
+use transport::with_causes;
+
+use super::TakenScan;
+
+/// All that a recording says about headings, and what of it is asked for.
+#[derive(Debug, Clone)]
+pub(crate) struct Headings {
+    source: HeadingSource,
+    history: History,
+    /// What of the recording is left out.
+    notes: Vec<String>,
+}
+
+impl Headings {
+    /// Reads from the recording what the options ask for.
+    ///
+    /// # Errors
+    /// It is not there, or one of its messages cannot be used.
+    pub(crate) fn of(
+        config: &HeadingConfig,
+        recording: &Recording,
+    ) -> Result<Self, RecordingError> {
+        let source = config.source();
+        let mut history = History::keeping(usize::MAX);
+        let mut notes = Vec::new();
+        match source {
+            HeadingSource::Searched | HeadingSource::Fixed(_) => {}
+            HeadingSource::Odometry { .. } => notes = hear_odometry(recording, &mut history)?,
+            HeadingSource::Truth => hear_truths(recording, &mut history)?,
+        }
+        Ok(Headings {
+            source,
+            history,
+            notes,
+        })
+    }
+
+    /// What of the recording is left out.
+    pub(crate) fn notes(&self) -> &[String] {
+        &self.notes
+    }
+
+    /// Where the headings come from.
+    pub(crate) fn source(&self) -> HeadingSource {
+        self.source
+    }
+
+    /// The laser's heading when it measured `scan`; `None` where it is to be
+    /// searched.
+    ///
+    /// # Errors
+    /// Nothing that is known belongs to the scan.
+    pub(crate) fn of_scan(&self, scan: &TakenScan) -> Result<Option<f64>, HeadingError> {
+        let header = ScanHeader {
+            stamp: measured(scan.stamp_ns),
+            base_from_laser: scan.base_from_laser.unwrap_or_default().into(),
+            mount_known: scan.base_from_laser.is_some().into(),
+            frame: FrameName::new(scan.frame()),
+            ..ScanHeader::zeroed()
+        };
+        self.source.heading_of(&header, &self.history)
+    }
+}
+
+fn measured(measured_ns: i64) -> Stamp {
+    Stamp {
+        measured_ns,
+        ..Stamp::default()
+    }
+}
+
+fn hear_truths(recording: &Recording, history: &mut History) -> Result<(), RecordingError> {
+    recording.required_topic(Kind::PoseStamped)?;
+    for (ns, truth) in recording.ground_truths()? {
+        history.hear_truth(&GroundTruth {
+            stamp: measured(ns),
+            map_from_laser: truth.pose.into(),
+            frame: FrameName::new(&truth.frame),
+        });
+    }
+    Ok(())
+}
+
+fn hear_odometry(
+    recording: &Recording,
+    history: &mut History,
+) -> Result<Vec<String>, RecordingError> {
+    let topic = recording.required_topic(Kind::Odometry)?;
+    each_odometry(recording, &topic, |odometry| {
+        history.hear_odometry(odometry);
+    })
+}
+
+/// Goes through the odometry of a channel; returns what is left out: how many
+/// messages cannot be used, and why the first.
+///
+/// # Errors
+/// The file cannot be read.
+pub fn each_odometry(
+    recording: &Recording,
+    topic: &Arc<str>,
+    mut take: impl FnMut(&Odometry),
+) -> Result<Vec<String>, RecordingError> {
+    let (mut left_out, mut first) = (0, None);
+    for record in recording.records_of(&[Kind::Odometry]) {
+        let heard = match record {
+            Ok(record) if record.topic != *topic => continue,
+            Ok(record) => odometry_of(recording, &record),
+            // It lies behind all that can be read, and the scans come to it too.
+            Err(RecordingError::Damaged { .. }) => break,
+            Err(error) if concerns_other(&error, topic) => continue,
+            Err(error @ RecordingError::Message { .. }) => Err(error),
+            Err(error) => return Err(error),
+        };
+        match heard {
+            Ok(Some(odometry)) => take(&odometry),
+            Ok(None) => {}
+            Err(error) => {
+                left_out += 1;
+                first.get_or_insert_with(|| with_causes(&error));
+            }
+        }
+    }
+    let note = |first| format!("{left_out} messages of {topic} are left out; the first: {first}");
+    Ok(first.map(note).into_iter().collect())
+}
+
+fn odometry_of(recording: &Recording, record: &Record) -> Result<Option<Odometry>, RecordingError> {
+    let Message::Odometry(message) = &record.message else {
+        return Ok(None);
+    };
+    let pose = message.pose.pose.planar();
+    let pose = pose.map_err(|source| RecordingError::Unusable {
+        path: recording.path().to_owned(),
+        topic: record.topic.to_string(),
+        log_time_ns: record.log_time_ns,
+        source,
+    })?;
+    Ok(Some(Odometry {
+        stamp: measured(message.header.stamp.as_ns()),
+        odom_from_child: pose.into(),
+        child_frame: FrameName::new(&message.child_frame_id),
+        ..Odometry::zeroed()
+    }))
+}
+
+/// Whether an error is about a message of a channel other than `topic`.
+pub(super) fn concerns_other(error: &RecordingError, topic: &str) -> bool {
+    match error {
+        RecordingError::Message { topic: of, .. } | RecordingError::NotCdr { topic: of, .. } => {
+            of != topic
+        }
+        _ => false,
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use clap::Parser;
+    use geometry::Pose;
+    use recording::ros::{self, Header, Time};
+    use recording::write::{Packing, RecordingWriter};
+
+    use super::*;
+
+    #[derive(Debug, clap::Parser)]
+    struct Line {
+        #[command(flatten)]
+        heading: HeadingConfig,
+    }
+
+    fn header(nanosec: u32, frame_id: &str) -> Header {
+        Header {
+            stamp: Time { sec: 0, nanosec },
+            frame_id: frame_id.into(),
+        }
+    }
+
+    /// A recording with a scan, odometry of a frame, and a true pose.
+    fn recording(child_frame: &str) -> Recording {
+        let pose = ros::Pose::from_planar(Pose::new(1.0, 2.0, 0.25));
+        let mut odometry = ros::Odometry {
+            header: header(10, "odom"),
+            child_frame_id: child_frame.into(),
+            ..ros::Odometry::default()
+        };
+        odometry.pose.pose = pose;
+        let truth = ros::PoseStamped {
+            header: header(20, "map"),
+            pose,
+        };
+        let messages = [
+            ("/odom", Message::Odometry(Box::new(odometry))),
+            ("/ground_truth", Message::PoseStamped(truth)),
+        ];
+        let mut writer = RecordingWriter::in_memory(Packing::Zstd).unwrap();
+        for (time, (topic, message)) in (0..).zip(&messages) {
+            writer.write(topic, time, message).unwrap();
+        }
+        let bytes = writer.finish().unwrap().into_inner();
+        Recording::from_bytes("drawn", bytes).unwrap()
+    }
+
+    fn scan(stamp_ns: i64, mount_yaw: Option<f64>) -> TakenScan {
+        TakenScan {
+            stamp_ns,
+            log_time_ns: stamp_ns,
+            upside_down: false,
+            base_from_laser: mount_yaw.map(|yaw| Pose::new(0.78, 0.0, yaw)),
+            message: ros::LaserScan {
+                header: header(0, "laser"),
+                ..ros::LaserScan::default()
+            },
+            laser: String::new(),
+            others: Vec::new(),
+        }
+    }
+
+    fn headings(line: &str, child_frame: &str) -> Headings {
+        let words = ["x"].into_iter().chain(line.split_whitespace());
+        Headings::of(&Line::parse_from(words).heading, &recording(child_frame)).unwrap()
+    }
+
+    #[track_caller]
+    fn check(found: Result<Option<f64>, HeadingError>, expected: f64) {
+        // A yaw goes through a quaternion and back.
+        assert!((found.unwrap().unwrap() - expected).abs() < 1e-12);
+    }
+
+    #[test]
+    fn odometry_of_the_base_is_turned_by_the_mount() {
+        let line = "--heading-from odometry --heading-offset 90";
+        let quarter = std::f64::consts::FRAC_PI_2;
+        let base = headings(line, "base_link");
+        check(base.of_scan(&scan(15, Some(1.0))), 0.25 + 1.0 + quarter);
+        check(base.of_scan(&scan(15, None)), 0.25 + quarter);
+        check(
+            headings(line, "laser").of_scan(&scan(15, Some(1.0))),
+            0.25 + quarter,
+        );
+        assert_eq!(
+            base.of_scan(&scan(9, None)),
+            Err(HeadingError::NoOdometry { scan_ns: 9 })
+        );
+    }
+
+    #[test]
+    fn the_truth_has_the_time_of_the_scan() {
+        let headings = headings("--heading-from truth", "laser");
+        check(headings.of_scan(&scan(20, Some(1.0))), 0.25);
+        assert_eq!(
+            headings.of_scan(&scan(21, None)),
+            Err(HeadingError::NoTruth { scan_ns: 21 })
+        );
+    }
+
+    #[test]
+    fn with_nothing_known_the_heading_is_searched() {
+        assert_eq!(headings("", "laser").of_scan(&scan(20, None)), Ok(None));
+    }
+}

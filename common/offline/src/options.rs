@@ -1,0 +1,126 @@
+//! What all of them take on the command line.
+
+use std::path::{Path, PathBuf};
+
+use engine::directions::Directions;
+use engine::grid::CellRules;
+use engine::heading::HeadingConfig;
+use engine::joined::MotionConfig;
+use engine::localizer::LocalizerConfig;
+use engine::peaks::PeakConfig;
+use index_cache::IndexCacheConfig;
+use map::OccupancyGrid;
+use progress::say;
+use recording::{Kind, Recording};
+
+use super::session::map_in;
+use super::topics::TopicOptions;
+use crate::OfflineError;
+
+/// The map, the scans that are taken, and how they are searched.
+#[derive(Debug, Clone, clap::Args)]
+pub struct Options {
+    /// The map, a YAML file as map_server reads it, or another recording that
+    /// holds one [default: in the recording, the newest before each scan]
+    #[arg(long, value_name = "FILE")]
+    pub map: Option<PathBuf>,
+
+    /// Which channels are meant.
+    #[command(flatten)]
+    pub topics: TopicOptions,
+
+    /// Take each N-th scan, beginning with the first; 1 takes all
+    #[arg(long, value_name = "N", default_value_t = 1, value_parser = clap::value_parser!(u64).range(1..))]
+    pub every: u64,
+
+    /// Where the heading comes from.
+    #[command(flatten)]
+    pub heading: HeadingConfig,
+
+    /// How motion within a scan is taken out.
+    #[command(flatten)]
+    pub motion: MotionConfig,
+
+    /// The engine's settings.
+    #[command(flatten)]
+    pub engine: EngineOptions,
+
+    /// Where prepared maps are kept.
+    #[command(flatten, next_help_heading = "Kept maps")]
+    pub index_cache: IndexCacheConfig,
+}
+
+/// All settings of the engine, as the nodes of the graph take them.
+#[derive(Debug, Clone, clap::Args)]
+#[command(next_help_heading = "Engine")]
+pub struct EngineOptions {
+    /// What the values of cells mean.
+    #[command(flatten)]
+    pub cells: CellRules,
+    /// How the best poses are searched.
+    #[command(flatten)]
+    pub localizer: LocalizerConfig,
+    /// How the poses found are judged.
+    #[command(flatten)]
+    pub peaks: PeakConfig,
+}
+
+impl Options {
+    /// Checks what no option can check alone; opens nothing.
+    ///
+    /// # Errors
+    /// Names the option and what is allowed.
+    pub fn check(&self) -> Result<(), OfflineError> {
+        Directions::new(self.engine.localizer.headings).map_err(OfflineError::Setting)?;
+        self.heading.check().map_err(OfflineError::Usage)
+    }
+
+    /// The map that is named, if one is; recordings to be searched are named, too,
+    /// for the case that the two were swapped.
+    ///
+    /// # Errors
+    /// It cannot be read.
+    pub fn load_map(&self, recordings: &[PathBuf]) -> Result<Option<OccupancyGrid>, OfflineError> {
+        let Some(file) = &self.map else {
+            return Ok(None);
+        };
+        if !recording::is_recording(file) {
+            let grid = map::load_noting(file, |key| say(&key.to_string()))?;
+            return Ok(Some(grid));
+        }
+        if let Some(other) = recordings.iter().find(|path| is_map(path)) {
+            let (other, file) = (other.display(), file.display());
+            return Err(OfflineError::Usage(format!(
+                "{other} is a map, and --map {file} a recording: the two look swapped"
+            )));
+        }
+        let mut recording = Recording::open(file)?;
+        if let Some(topic) = &self.topics.map_topic {
+            recording.prefer(Kind::Map, topic)?;
+        }
+        map_in(&recording).map(Some)
+    }
+
+    /// Opens a recording, or several files of one.
+    ///
+    /// # Errors
+    /// It cannot be read, or has no channel that is named.
+    pub fn open(&self, paths: &[PathBuf]) -> Result<Recording, OfflineError> {
+        let mut recording = Recording::open_all(paths)?;
+        // Where the map is another's, so is its channel.
+        let map_topic = self.topics.map_topic.clone().filter(|_| self.map.is_none());
+        let topics = TopicOptions {
+            map_topic,
+            ..self.topics.clone()
+        };
+        topics.apply(&mut recording)?;
+        Ok(recording)
+    }
+}
+
+/// Whether it is named as a map is, and is no recording.
+fn is_map(path: &Path) -> bool {
+    let endings = ["yaml", "yml", "pgm", "png", "bmp"];
+    let ending = path.extension().and_then(|ending| ending.to_str());
+    ending.is_some_and(|ending| endings.contains(&ending)) && !recording::is_recording(path)
+}

@@ -1,0 +1,311 @@
+//! The scans of a recording, by log time, each N-th of them.
+
+use std::collections::BTreeMap;
+use std::sync::Arc;
+
+use conversion::{Unsayable, lasers, measurements};
+use engine::scan::Scan;
+use geometry::{Mount, Pose};
+use messages::{Name, ScanHeader};
+use recording::ros::LaserScan;
+use recording::{Kind, Message, Mounted, Recording, RecordingError, Records};
+
+use super::heading::concerns_other;
+
+/// A scan and what the recording says about it.
+#[derive(Debug, Clone, PartialEq)]
+pub struct TakenScan {
+    /// When it was measured, nanoseconds since 1970.
+    pub stamp_ns: i64,
+    /// When it was recorded, nanoseconds since 1970.
+    pub log_time_ns: i64,
+    /// Where the laser sits on the robot, if that is known.
+    pub base_from_laser: Option<Pose>,
+    /// Whether it hangs there upside down, so that its beams, seen from above, turn
+    /// the other way.
+    pub upside_down: bool,
+    /// As the recording has it.
+    pub message: LaserScan,
+    /// Which of several lasers it is; empty where there is one.
+    pub laser: String,
+    /// Of the other lasers, what was recorded since the scan before.
+    pub others: Vec<TakenScan>,
+}
+
+impl TakenScan {
+    /// The laser's frame.
+    pub fn frame(&self) -> &str {
+        &self.message.header.frame_id
+    }
+
+    /// As the graph has it.
+    ///
+    /// # Errors
+    /// The frame's name is longer than a message of the graph can hold.
+    pub fn header(&self) -> Result<ScanHeader, Unsayable> {
+        let frame = measurements::frame(self.frame())?;
+        let mount = self.base_from_laser.map(|base_from_laser| Mount {
+            base_from_laser,
+            is_upside_down: self.upside_down,
+        });
+        Ok(ScanHeader {
+            laser: Name::new(&self.laser),
+            ..measurements::scan_header(&self.message, frame, mount)
+        })
+    }
+
+    /// As the engine takes it: seen from above.
+    pub fn borrowed(&self) -> Scan<'_> {
+        let message = &self.message;
+        let as_measured = Scan {
+            angle_min: message.angle_min.into(),
+            angle_increment: message.angle_increment.into(),
+            range_min_m: message.range_min,
+            range_max_m: message.range_max,
+            ranges: &message.ranges,
+        };
+        as_measured.seen_from_above(self.upside_down)
+    }
+}
+
+/// Iterates over the scans. One that does not decode is an error in its place;
+/// damage of the file is the last item.
+pub struct Scans<'a> {
+    recording: &'a Recording,
+    records: Records<'a>,
+    /// The first is that of the scans that are answered.
+    topics: Vec<Arc<str>>,
+    /// Of the other lasers, since the last scan that was taken.
+    others: Vec<TakenScan>,
+    every: u64,
+    seen: u64,
+    mounts: BTreeMap<String, Option<Mount>>,
+    notes: Vec<String>,
+}
+
+impl<'a> Scans<'a> {
+    /// Each `every`-th scan of the first of these channels, with those of the others
+    /// that came since; `every` is at least 1.
+    pub fn of(recording: &'a Recording, topics: Vec<Arc<str>>, every: u64) -> Self {
+        Scans {
+            recording,
+            records: recording.records_of(&[Kind::Scan]),
+            topics,
+            others: Vec::new(),
+            every,
+            seen: 0,
+            mounts: BTreeMap::new(),
+            notes: Vec::new(),
+        }
+    }
+
+    /// How many there are, those that do not decode included.
+    pub fn total(&self) -> u64 {
+        let channels = self.recording.channels();
+        let first = channels.filter(|channel| self.topics.first() == Some(&channel.topic));
+        let scans: u64 = first.map(|channel| channel.messages).sum();
+        scans.div_ceil(self.every)
+    }
+
+    /// What is worth knowing about the mounts, and has not been said yet.
+    pub(super) fn take_notes(&mut self) -> Vec<String> {
+        std::mem::take(&mut self.notes)
+    }
+
+    /// Counts a scan of the channel; whether it is taken.
+    fn take_next(&mut self) -> bool {
+        let is_taken = self.seen.is_multiple_of(self.every);
+        self.seen += 1;
+        is_taken
+    }
+
+    /// Keeps a scan of another laser: the newest two, which also tell its period.
+    fn keep(&mut self, scan: TakenScan) {
+        let of_laser = |other: &TakenScan| other.laser == scan.laser;
+        if self.others.iter().filter(|other| of_laser(other)).count() == 2
+            && let Some(oldest) = self.others.iter().position(of_laser)
+        {
+            self.others.remove(oldest);
+        }
+        self.others.push(scan);
+    }
+
+    fn with_mount(
+        &mut self,
+        topic: &str,
+        log_time_ns: i64,
+        message: LaserScan,
+    ) -> Result<TakenScan, RecordingError> {
+        let mount = self.mount(&message.header.frame_id)?;
+        Ok(TakenScan {
+            stamp_ns: message.header.stamp.as_ns(),
+            log_time_ns,
+            base_from_laser: mount.map(|mount| mount.base_from_laser),
+            upside_down: mount.is_some_and(|mount| mount.is_upside_down),
+            message,
+            laser: match self.topics.len() {
+                1 => String::new(),
+                _ => lasers::name_of(topic),
+            },
+            others: Vec::new(),
+        })
+    }
+
+    fn mount(&mut self, frame: &str) -> Result<Option<Mount>, RecordingError> {
+        if let Some(known) = self.mounts.get(frame) {
+            return Ok(*known);
+        }
+        let Mounted { mount, notes } = self.recording.mounted(frame)?;
+        self.notes.extend(notes);
+        let mount = mount.as_ref().map(Mount::from);
+        self.mounts.insert(frame.to_owned(), mount);
+        Ok(mount)
+    }
+}
+
+impl Iterator for Scans<'_> {
+    type Item = Result<TakenScan, RecordingError>;
+
+    fn next(&mut self) -> Option<Self::Item> {
+        loop {
+            let record = match self.records.next()? {
+                Ok(record) if !self.topics.contains(&record.topic) => continue,
+                Err(error) if self.topics.iter().all(|t| concerns_other(&error, t)) => continue,
+                other => other,
+            };
+            let record = match record {
+                Ok(record) => record,
+                // Also where it would not be taken: the file is not sound.
+                Err(error) => {
+                    self.take_next();
+                    return Some(Err(error));
+                }
+            };
+            let Message::Scan(message) = record.message else {
+                continue;
+            };
+            let is_first = self.topics.first() == Some(&record.topic);
+            if is_first && !self.take_next() {
+                continue;
+            }
+            let scan = self.with_mount(&record.topic, record.log_time_ns, message);
+            match scan {
+                Ok(scan) if !is_first => self.keep(scan),
+                Ok(scan) => {
+                    return Some(Ok(TakenScan {
+                        others: std::mem::take(&mut self.others),
+                        ..scan
+                    }));
+                }
+                Err(error) => return Some(Err(error)),
+            }
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use recording::ros::{Header, Time};
+    use recording::write::{Packing, RecordingWriter};
+
+    use super::*;
+
+    fn recording(topics: &[&str]) -> Recording {
+        let mut writer = RecordingWriter::in_memory(Packing::Zstd).unwrap();
+        for (second, topic) in (0..).zip(topics) {
+            let message = LaserScan {
+                header: Header {
+                    stamp: Time {
+                        sec: second,
+                        nanosec: 7,
+                    },
+                    frame_id: "laser".into(),
+                },
+                ranges: vec![1.5],
+                ..LaserScan::default()
+            };
+            let log_time_ns = i64::from(second) * 1000;
+            writer
+                .write(topic, log_time_ns, &Message::Scan(message))
+                .unwrap();
+        }
+        let bytes = writer.finish().unwrap().into_inner();
+        Recording::from_bytes("r.mcap", bytes).unwrap()
+    }
+
+    fn seconds(recording: &Recording, every: u64) -> Vec<i64> {
+        let scans = Scans::of(recording, vec!["/scan".into()], every);
+        let total = scans.total();
+        let seconds: Vec<i64> = scans
+            .map(|scan| scan.unwrap().stamp_ns / 1_000_000_000)
+            .collect();
+        assert_eq!(seconds.len() as u64, total);
+        seconds
+    }
+
+    #[test]
+    fn each_nth_scan_of_the_channel_is_taken() {
+        let recording = recording(&["/scan", "/scan", "/rear", "/scan", "/scan", "/scan"]);
+        assert_eq!(seconds(&recording, 1), [0, 1, 3, 4, 5]);
+        assert_eq!(seconds(&recording, 2), [0, 3, 5]);
+        assert_eq!(seconds(&recording, 9), [0]);
+    }
+
+    #[test]
+    fn a_scan_that_does_not_decode_is_told_and_not_the_end() {
+        let mut writer = RecordingWriter::in_memory(Packing::Plain).unwrap();
+        let sound = Message::Scan(LaserScan::default());
+        writer.write("/scan", 0, &sound).unwrap();
+        let (schema, text) = ("sensor_msgs/msg/LaserScan", "float32[] ranges");
+        for topic in ["/scan", "/rear"] {
+            writer
+                .write_bytes(topic, schema, text, "cdr", 1, &[0, 1, 0, 0, 9])
+                .unwrap();
+        }
+        writer.write("/scan", 2, &sound).unwrap();
+        let bytes = writer.finish().unwrap().into_inner();
+        let recording = Recording::from_bytes("r.mcap", bytes).unwrap();
+        let scans = Scans::of(&recording, vec!["/scan".into()], 1);
+        let sound: Vec<bool> = scans.map(|scan| scan.is_ok()).collect();
+        assert_eq!(sound, [true, false, true]);
+    }
+
+    #[test]
+    fn the_scans_of_other_lasers_come_with_the_next_of_the_first() {
+        let recording = recording(&["/front", "/rear", "/front", "/scan"]);
+        let topics = vec!["/front".into(), "/rear".into()];
+        let scans = Scans::of(&recording, topics, 1);
+        assert_eq!(scans.total(), 2);
+        let scans: Vec<TakenScan> = scans.map(Result::unwrap).collect();
+        let times: Vec<i64> = scans.iter().map(|scan| scan.log_time_ns).collect();
+        assert_eq!(times, [0, 2000]);
+        let others: Vec<_> = scans.iter().map(|scan| scan.others.len()).collect();
+        assert_eq!(others, [0, 1]);
+        let rear = &scans[1].others[0];
+        assert_eq!((rear.log_time_ns, &*rear.laser), (1000, "rear"));
+    }
+
+    #[test]
+    fn a_laser_upside_down_is_seen_from_above() {
+        let mut scan = TakenScan {
+            stamp_ns: 0,
+            log_time_ns: 0,
+            base_from_laser: None,
+            upside_down: false,
+            message: LaserScan {
+                angle_min: -1.0,
+                angle_increment: 0.5,
+                ranges: vec![1.0, 2.0],
+                range_max: 30.0,
+                ..LaserScan::default()
+            },
+            laser: String::new(),
+            others: Vec::new(),
+        };
+        assert_eq!(scan.borrowed().bearing(1), -0.5);
+        scan.upside_down = true;
+        let above = scan.borrowed();
+        assert_eq!((above.angle_min, above.angle_increment), (1.0, -0.5));
+        assert_eq!((above.bearing(0), above.reading(0)), (0.5, Some(2.0)));
+    }
+}

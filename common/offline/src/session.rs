@@ -1,0 +1,346 @@
+//! One recording on one map: everything read and prepared, ready to be asked
+//! scan by scan.
+
+use std::borrow::Cow;
+use std::collections::BTreeSet;
+use std::path::{Path, PathBuf};
+
+use engine::fit::Ends;
+use engine::localizer::Prior;
+use engine::peaks::Sought;
+use geometry::Pose;
+use index_cache::{CachePlace, IndexCache, Kept, Unsaved};
+use map::OccupancyGrid;
+use messages::UNKNOWN;
+use recording::{Recording, RecordingError};
+use transport::with_causes;
+
+use super::heading::Headings;
+use super::layout::{check_map, frame_of, sides_of};
+use super::maps::{Arrived, Maps};
+use super::motion::Motion;
+use super::options::EngineOptions;
+use super::scans::Scans;
+use super::world::{Answer, World};
+use super::{Options, TakenScan, cpu};
+use crate::OfflineError;
+
+/// A recording that is being gone through.
+pub struct Session<'a> {
+    /// The scans, in order.
+    pub scans: Scans<'a>,
+    /// Milliseconds of computing that preparing maps has cost.
+    pub prepare_cpu_ms: f64,
+    maps: Maps<'a>,
+    /// The map that counts for the last scan that was asked for.
+    prepared: Option<Prepared<'a>>,
+    /// Why the newest map cannot be used.
+    refusal: String,
+    notes: Vec<String>,
+    said: BTreeSet<String>,
+    map_file: PathBuf,
+    engine: EngineOptions,
+    /// Where prepared maps are kept.
+    cache: Option<IndexCache>,
+    headings: Headings,
+    motion: Motion<'a>,
+}
+
+/// A map that is ready to be searched.
+struct Prepared<'a> {
+    map: Cow<'a, OccupancyGrid>,
+    /// Of the map as it is, whatever has been erased since.
+    map_id: u64,
+    world: World,
+}
+
+/// A scan as the tracker takes it.
+pub struct View {
+    /// Where the beams end, seen from the laser.
+    pub ends: Ends,
+    /// Where the sought frame was by the odometry.
+    pub odom_from_sought: Option<Pose>,
+    /// Whose pose is sought.
+    pub sought: Sought,
+}
+
+/// What came of one scan.
+pub struct Reply<'a> {
+    /// The map's id, as the graph's messages have it; 0 without one.
+    pub map_id: u64,
+    /// Milliseconds of computing from the scan to the verdict or the refusal;
+    /// decoding is not in it.
+    pub cpu_ms: f64,
+    /// The places, or why the scan is refused.
+    pub answer: Result<Answer<'a>, OfflineError>,
+}
+
+impl<'a> Session<'a> {
+    /// Looks at the map that is given, else at those in the recording.
+    ///
+    /// # Errors
+    /// Something that is needed is not there, or the map that is given cannot be
+    /// used. Where something is missing in a damaged file, the damage is the error.
+    pub fn open(
+        recording: &'a Recording,
+        options: &Options,
+        given: Option<&'a OccupancyGrid>,
+    ) -> Result<Self, OfflineError> {
+        let damage = |error| match error {
+            RecordingError::NoTopic { .. } => damage_of(recording).unwrap_or(error),
+            other => other,
+        };
+        let topics = options.topics.scans(recording).map_err(damage)?;
+        let headings = Headings::of(&options.heading, recording).map_err(damage)?;
+        let mut maps = match given {
+            Some(map) => Maps::given(map),
+            None => Maps::recorded(recording)?,
+        };
+        if maps.is_empty() {
+            return Err(no_map(recording));
+        }
+        let mut session = Session {
+            motion: Motion::of(recording, &topics, &options.motion),
+            scans: Scans::of(recording, topics, options.every),
+            prepare_cpu_ms: 0.0,
+            maps,
+            prepared: None,
+            refusal: String::new(),
+            notes: headings.notes().to_vec(),
+            said: BTreeSet::new(),
+            map_file: map_file(options, recording.path()),
+            engine: options.engine.clone(),
+            cache: options.index_cache.open(CachePlace::Off)?,
+            headings,
+        };
+        if let Some(map) = given {
+            // Without it there is nothing to be done for any scan.
+            session.maps.since(i64::MIN, |_| Ok(()));
+            session.prepare(Cow::Borrowed(map))?.map_err(|source| {
+                let file = session.map_file.clone();
+                OfflineError::UnusableMap { file, source }
+            })?;
+        }
+        Ok(session)
+    }
+
+    /// The map that counts for the last scan that was asked for.
+    ///
+    /// # Errors
+    /// There is none that can be used.
+    pub fn map(&self) -> Result<&OccupancyGrid, OfflineError> {
+        Ok(&self.prepared()?.map)
+    }
+
+    /// The same map, ready to be searched.
+    ///
+    /// # Errors
+    /// As [`Session::map`].
+    pub fn world(&self) -> Result<&World, OfflineError> {
+        Ok(&self.prepared()?.world)
+    }
+
+    /// What is worth knowing, and has not been said yet.
+    pub fn take_notes(&mut self) -> Vec<String> {
+        self.notes.extend(self.scans.take_notes());
+        self.notes.extend(self.motion.take_notes());
+        let mut notes = std::mem::take(&mut self.notes);
+        notes.retain(|note| self.said.insert(note.clone()));
+        notes
+    }
+
+    fn prepared(&self) -> Result<&Prepared<'a>, OfflineError> {
+        let none = || no_usable_map(&self.map_file, &self.refusal);
+        self.prepared.as_ref().ok_or_else(none)
+    }
+
+    /// Makes the map that counts for a scan the one that is searched. A map that
+    /// cannot be used is left out, as the graph does.
+    fn turn_to(&mut self, scan: &TakenScan) -> Result<(), OfflineError> {
+        let rules = self.engine.cells;
+        let check =
+            |map: &OccupancyGrid| check_map(map, rules).map_err(|error| with_causes(&error));
+        let Arrived { map, mut refusals } = self.maps.since(scan.log_time_ns, check);
+        if let Some(map) = map
+            && let Err(error) = self.prepare(map)?
+        {
+            refusals.push(with_causes(&error));
+        }
+        for refusal in refusals {
+            let file = self.map_file.display();
+            self.notes
+                .push(format!("{file}: a map is left out: {refusal}"));
+            self.refusal = refusal;
+        }
+        Ok(())
+    }
+
+    fn prepare(
+        &mut self,
+        map: Cow<'a, OccupancyGrid>,
+    ) -> Result<Result<(), engine::EngineError>, OfflineError> {
+        let map_id = map.id();
+        if self.prepared.as_ref().is_some_and(|p| p.map_id == map_id) {
+            return Ok(Ok(()));
+        }
+        let prior = self.headings.source().prior();
+        let cache = self.cache.as_ref();
+        let prepare = || World::prepare_with(&map, &self.engine, prior, cache);
+        let (prepared, cpu_ms) = cpu::timed(prepare)?;
+        self.prepare_cpu_ms += cpu_ms;
+        Ok(prepared.map(|(world, kept)| {
+            self.keep(kept);
+            self.prepared = Some(Prepared { map, map_id, world });
+        }))
+    }
+
+    /// Notes what is to be said of the file of an index, and writes one that is to be
+    /// written.
+    fn keep(&mut self, kept: Kept) {
+        let saved = kept.unsaved.map(Unsaved::save);
+        let problems = kept.problem.into_iter().chain(saved.and_then(Result::err));
+        let notes = problems.map(|problem| format!("kept index: {}", with_causes(&problem)));
+        self.notes.extend(notes);
+    }
+
+    /// Prepares the map of a scan anew, unknown within a radius, metres, of a
+    /// point.
+    ///
+    /// # Errors
+    /// Nothing is left that could be used.
+    pub fn erase(
+        &mut self,
+        scan: &TakenScan,
+        centre: Pose,
+        radius_m: f64,
+    ) -> Result<(), OfflineError> {
+        self.turn_to(scan)?;
+        let prior = self.headings.source().prior();
+        let Some(prepared) = &mut self.prepared else {
+            return Ok(());
+        };
+        let mut map = prepared.map.clone().into_owned();
+        let (frame, (width, _)) = (frame_of(&map), sides_of(&map));
+        for (i, cell) in map.cells.iter_mut().enumerate() {
+            let (x, y) = ((i % width) as f64 + 0.5, (i / width) as f64 + 0.5);
+            if frame.map_from_cells(x, y, 0.0).distance_to(centre) <= radius_m {
+                *cell = UNKNOWN;
+            }
+        }
+        prepared.world = erased(&map, &self.map_file, &self.engine, prior)?;
+        Ok(())
+    }
+
+    /// Has odometry read, which is else left alone where nothing needs it.
+    ///
+    /// # Errors
+    /// The recording cannot be read.
+    pub fn read_odometry(&mut self) -> Result<(), OfflineError> {
+        Ok(self.motion.read_odometry()?)
+    }
+
+    /// What the tracker takes of the scan that was asked for last.
+    ///
+    /// # Errors
+    /// The scan is refused.
+    pub fn view(&self, scan: &TakenScan) -> Result<View, OfflineError> {
+        let seen = self.motion.seen();
+        let ends = self.world()?.ends(seen.observation());
+        Ok(View {
+            ends: ends.map_err(OfflineError::Refused)?,
+            odom_from_sought: self.motion.odom_from_sought(),
+            sought: Sought::of(scan.base_from_laser, self.motion.seeks_base()),
+        })
+    }
+
+    /// Finds the place of a scan.
+    ///
+    /// # Errors
+    /// The clock fails. A scan that is refused is a reply.
+    pub fn ask(&mut self, scan: &TakenScan) -> Result<Reply<'_>, OfflineError> {
+        self.turn_to(scan)?;
+        let Some(prepared) = &mut self.prepared else {
+            return Ok(Reply {
+                map_id: 0,
+                cpu_ms: 0.0,
+                answer: Err(no_usable_map(&self.map_file, &self.refusal)),
+            });
+        };
+        let map_id = prepared.world.map_id;
+        let heading = match self.headings.of_scan(scan) {
+            Ok(heading) => heading,
+            Err(refusal) => {
+                return Ok(Reply {
+                    map_id,
+                    cpu_ms: 0.0,
+                    answer: Err(refusal.into()),
+                });
+            }
+        };
+        let motion = &mut self.motion;
+        if let Err(refusal) = motion.take(scan) {
+            return Ok(Reply {
+                map_id,
+                cpu_ms: 0.0,
+                answer: Err(refusal),
+            });
+        }
+        let sought = Sought::of(scan.base_from_laser, motion.seeks_base());
+        let (found, cpu_ms) = cpu::timed(|| {
+            motion.bring()?;
+            let heading = heading.map(|heading| motion.sought_heading(heading));
+            let seen = motion.seen();
+            prepared.world.locate(seen.observation(), heading, sought)
+        })?;
+        Ok(Reply {
+            map_id,
+            cpu_ms,
+            answer: found.map_err(OfflineError::Refused),
+        })
+    }
+}
+
+fn erased(
+    map: &OccupancyGrid,
+    file: &Path,
+    options: &EngineOptions,
+    prior: Prior,
+) -> Result<World, OfflineError> {
+    World::prepare(map, options, prior).map_err(|source| OfflineError::UnusableMap {
+        file: file.into(),
+        source,
+    })
+}
+
+fn no_usable_map(file: &Path, reason: &str) -> OfflineError {
+    OfflineError::NoUsableMap {
+        file: file.into(),
+        reason: reason.to_owned(),
+    }
+}
+
+/// The damage of a recording, as an error.
+pub fn damage_of(recording: &Recording) -> Option<RecordingError> {
+    recording.damage_error()
+}
+
+/// The newest map that a recording holds.
+///
+/// # Errors
+/// It holds none, or one that cannot be used.
+pub fn map_in(recording: &Recording) -> Result<OccupancyGrid, OfflineError> {
+    recording.map()?.ok_or_else(|| no_map(recording))
+}
+
+fn no_map(recording: &Recording) -> OfflineError {
+    match damage_of(recording) {
+        Some(damage) => damage.into(),
+        None => OfflineError::NoMap {
+            recording: recording.path().to_owned(),
+        },
+    }
+}
+
+fn map_file(options: &Options, bag: &Path) -> PathBuf {
+    options.map.as_deref().unwrap_or(bag).to_owned()
+}

@@ -1,0 +1,251 @@
+//! A map that is ready to be searched, and what a search answers. Pure: no
+//! file, no clock.
+
+use engine::EngineError;
+use engine::fit::{BeamClass, Ends, GridPose, JudgedBeam, Terrain};
+use engine::grid::GridFrame;
+use engine::localizer::{Outcome, Preparation, Prior};
+use engine::locator::{self, Located, Locator, OccupancyView};
+use engine::observation::Observation;
+use engine::peaks::{PeakConfig, Places, Sought};
+use engine::scan::Scan;
+use geometry::Pose;
+use index_cache::{IndexCache, Kept, Prepared};
+use map::OccupancyGrid;
+
+use super::layout::{frame_of, sides_of};
+use super::options::EngineOptions;
+
+/// A map and all settings.
+#[derive(Debug)]
+pub struct World {
+    /// The map's id, as the graph's messages have it.
+    pub map_id: u64,
+    locator: Locator,
+    cells: u64,
+    workspace: locator::Workspace,
+    /// The last places, of the first laser.
+    of_laser: Places,
+}
+
+/// What a scan says about the place.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Answer<'a> {
+    /// The votes, and how they were come by.
+    pub outcome: &'a Outcome,
+    /// What they say, the verdict included.
+    pub places: &'a Places,
+    /// Where the map's cells lie.
+    pub frame: GridFrame,
+}
+
+/// A scan at a pose.
+#[derive(Debug, Clone, PartialEq)]
+pub struct ScanAt {
+    /// How well it fits the map there, at most 1.
+    pub score: f64,
+    /// In the order of their bearings.
+    pub ends: Vec<BeamEnd>,
+}
+
+/// Where a beam that votes ends, and what became of it.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct BeamEnd {
+    /// In the map, metres.
+    pub at: (f64, f64),
+    /// Whether the beam fits the map.
+    pub class: BeamClass,
+}
+
+impl BeamEnd {
+    /// How far it lies from a pose, metres.
+    pub fn distance_to(&self, pose: Pose) -> f64 {
+        (self.at.0 - pose.x).hypot(self.at.1 - pose.y)
+    }
+}
+
+impl ScanAt {
+    /// How far a share of the beams, 0..=1, ends from a pose at most, metres; 0
+    /// without beams.
+    pub fn reach_m(&self, pose: Pose, share: f64) -> f64 {
+        let ends = self.ends.iter();
+        let mut distances: Vec<f64> = ends.map(|end| end.distance_to(pose)).collect();
+        distances.sort_by(f64::total_cmp);
+        let last = (share * distances.len() as f64).ceil() as usize;
+        let farthest = distances.get(last.saturating_sub(1));
+        farthest.copied().unwrap_or_default()
+    }
+}
+
+/// How many votes each position has at one heading.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Field {
+    /// Where its cells lie; they can be larger than the map's.
+    pub frame: GridFrame,
+    /// Cells along x and y.
+    pub sides: (usize, usize),
+    /// Row by row from the lowest y.
+    pub intensities: Vec<u16>,
+    /// What the engine found.
+    pub outcome: Outcome,
+}
+
+impl World {
+    /// Does what the graph's accumulator and peak extractor do with a map.
+    ///
+    /// # Errors
+    /// The map has no occupied or no free cell, or a setting is out of range.
+    pub fn prepare(
+        map: &OccupancyGrid,
+        options: &EngineOptions,
+        prior: Prior,
+    ) -> Result<Self, EngineError> {
+        Self::prepare_with(map, options, prior, None).map(|(world, _)| world)
+    }
+
+    /// The same by way of kept indexes.
+    ///
+    /// # Errors
+    /// See [`World::prepare`].
+    pub fn prepare_with(
+        map: &OccupancyGrid,
+        options: &EngineOptions,
+        prior: Prior,
+        cache: Option<&IndexCache>,
+    ) -> Result<(Self, Kept), EngineError> {
+        let view = OccupancyView {
+            frame: frame_of(map),
+            sides: sides_of(map),
+            occupancy: &map.cells,
+            rules: options.cells,
+        };
+        let config = options.localizer.clone();
+        let preparation = Preparation::of_map(
+            view.frame,
+            view.sides,
+            view.occupancy,
+            view.rules,
+            config,
+            prior,
+        )?;
+        let Prepared { localizer, kept } = Prepared::new(cache, preparation)?;
+        let world = World {
+            map_id: map.id(),
+            locator: Locator::with(localizer, view, options.peaks)?,
+            cells: u64::from(map.width) * u64::from(map.height),
+            workspace: locator::Workspace::default(),
+            of_laser: Places::default(),
+        };
+        Ok((world, kept))
+    }
+
+    /// Cells of the map.
+    pub fn cells(&self) -> u64 {
+        self.cells
+    }
+
+    /// Cells in which poses are sought, as large as they are searched.
+    pub fn searchable_cells(&self) -> u64 {
+        self.locator.localizer().searchable_cells() as u64
+    }
+
+    /// Bytes of what a search keeps of the map.
+    pub fn index_bytes(&self) -> u64 {
+        self.locator.localizer().index_bytes() as u64
+    }
+
+    /// The map as the second stage reads it.
+    pub fn terrain(&self) -> &Terrain {
+        self.locator.terrain()
+    }
+
+    /// How the second stage judges places.
+    pub fn peaks(&self) -> &PeakConfig {
+        self.locator.peaks()
+    }
+
+    /// The beams of a scan, as the second stage judges them.
+    ///
+    /// # Errors
+    /// The scan is refused.
+    pub fn ends(&self, scan: Observation<'_>) -> Result<Ends, EngineError> {
+        self.locator.ends(scan)
+    }
+
+    /// Searches all poses or, where the heading in the map is given in radians,
+    /// all positions; the world must be prepared for the one or the other.
+    ///
+    /// The places are those of the first laser, also where the base is sought.
+    ///
+    /// # Errors
+    /// The scan is refused.
+    pub fn locate(
+        &mut self,
+        scan: Observation<'_>,
+        heading: Option<f64>,
+        sought: Sought,
+    ) -> Result<Answer<'_>, EngineError> {
+        let workspace = &mut self.workspace;
+        let found = self
+            .locator
+            .locate_unless(workspace, scan, heading, &|| false)?;
+        let Located {
+            outcome, places, ..
+        } = found.expect("a search that nothing stops ends with an outcome");
+        self.of_laser.clone_from(places);
+        for place in &mut self.of_laser.places {
+            *place = place.of_laser(sought);
+        }
+        Ok(Answer {
+            outcome,
+            places: &self.of_laser,
+            frame: self.locator.terrain().frame,
+        })
+    }
+
+    /// How a scan fits if it was taken at a pose of the map.
+    ///
+    /// # Errors
+    /// The scan is refused.
+    pub fn scan_at(&self, scan: &Scan<'_>, map_from_laser: Pose) -> Result<ScanAt, EngineError> {
+        let ends = self.ends(scan.into())?;
+        let frame = self.terrain().frame;
+        let (x, y, heading) = frame.cells_from_map(map_from_laser);
+        let pose = GridPose { x, y, heading };
+        let classes = self.terrain().classes(&ends, pose, &self.peaks().fit);
+        let beams = ends.judged(&classes).map(|beam| BeamEnd {
+            at: end_of(map_from_laser, beam),
+            class: beam.class,
+        });
+        Ok(ScanAt {
+            score: self.terrain().score(&ends, pose, &self.peaks().fit),
+            ends: beams.collect(),
+        })
+    }
+
+    /// The votes of all positions at a heading in the map, radians; the world
+    /// must be prepared for known headings.
+    ///
+    /// # Errors
+    /// The scan is refused.
+    pub fn field_at(&self, scan: &Scan<'_>, heading: f64) -> Result<Field, EngineError> {
+        let found = self
+            .locator
+            .localizer()
+            .search_at(scan, heading, &|| false)?;
+        let (outcome, intensities) = found.expect("a search that nothing stops ends");
+        let grid = self.locator.localizer().grid();
+        Ok(Field {
+            frame: self.locator.localizer().frame(),
+            sides: (grid.width(), grid.height()),
+            intensities,
+            outcome,
+        })
+    }
+}
+
+/// Where a beam ends in the map if the scan was taken at a pose, metres.
+fn end_of(map_from_laser: Pose, beam: JudgedBeam) -> (f64, f64) {
+    let (sin, cos) = beam.bearing.sin_cos();
+    map_from_laser.transform(beam.reading_m * cos, beam.reading_m * sin)
+}

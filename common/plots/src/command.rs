@@ -1,0 +1,285 @@
+//! What `backcast plot` does: reads, asks, has a scene drawn, and writes it.
+
+use std::collections::BTreeMap;
+use std::fs;
+use std::path::Path;
+use std::process::ExitCode;
+
+use command_line::stdout;
+use drawing::Scene;
+use engine::grid::Grid;
+use engine::localizer::Prior;
+use geometry::Pose;
+use map::OccupancyGrid;
+use messages::Verdict;
+use offline::{Field, OfflineError, Session, TakenScan, World, damage_of, map_in};
+use progress::{Progress, say};
+use recording::{GroundTruth, Recording, RecordingError};
+
+use super::config::{Config, Format, Kind};
+use super::errors::Judged;
+use super::field::Votes;
+use super::sheet::Panel;
+use super::subject::Subject;
+use super::{errors, field, outline, scan, sheet, surface};
+use crate::PlotError;
+
+/// Draws one picture and says how large it is.
+///
+/// # Errors
+/// Options contradict each other, map or recording cannot be used, the scan is
+/// refused, or the picture cannot be written.
+pub fn run(config: &Config) -> Result<ExitCode, PlotError> {
+    let format = config.check()?;
+    let given = config.options.load_map(&config.bag)?;
+    let scene = match &config.bag[..] {
+        [] => draw_map(config, given, None)?,
+        bag => {
+            let recording = config.options.open(bag)?;
+            match config.kind {
+                Kind::Map => draw_map(config, given, Some(&recording))?,
+                _ => Plot::open(config, &recording, given.as_ref())?.draw()?,
+            }
+        }
+    };
+    let bytes = match format {
+        Format::Png => drawing::to_png(&scene)?,
+        Format::Svg => drawing::to_svg(&scene)?.into_bytes(),
+    };
+    fs::write(&config.out, bytes).map_err(|source| PlotError::Picture {
+        file: config.out.clone(),
+        source,
+    })?;
+    let (width, height) = (scene.width(), scene.height());
+    let file = config.out.display();
+    stdout::print(&format!("{file}: {width} x {height} pixels\n"))?;
+    Ok(ExitCode::SUCCESS)
+}
+
+/// The map that is given, else the one in the recording.
+fn draw_map(
+    config: &Config,
+    given: Option<OccupancyGrid>,
+    recording: Option<&Recording>,
+) -> Result<Scene, PlotError> {
+    let (map, file) = match (given, recording, &config.options.map) {
+        (None, Some(recording), _) => (map_in(recording)?, recording.path()),
+        (Some(map), _, Some(file)) => (map, file.as_path()),
+        // `Config::check` asks for the one or the other.
+        _ => return Err(OfflineError::Usage("--map or --bag is missing".into()).into()),
+    };
+    let (width, height) = (map.width as usize, map.height as usize);
+    let rules = config.options.engine.cells;
+    let grid = Grid::new(width, height, &map.cells, rules);
+    let grid = grid.map_err(|source| OfflineError::UnusableMap {
+        file: file.to_owned(),
+        source,
+    })?;
+    let name = file.display().to_string();
+    outline::draw(&config.ground(&map), &grid, &name, config.size())
+}
+
+/// A recording and a map, ready to be drawn.
+struct Plot<'a> {
+    config: &'a Config,
+    bag: &'a Path,
+    recording: &'a Recording,
+    session: Session<'a>,
+    truths: BTreeMap<i64, GroundTruth>,
+}
+
+impl<'a> Plot<'a> {
+    fn open(
+        config: &'a Config,
+        recording: &'a Recording,
+        given: Option<&'a OccupancyGrid>,
+    ) -> Result<Self, PlotError> {
+        let truths = match config.no_truth {
+            true => BTreeMap::new(),
+            false => recording.ground_truths()?,
+        };
+        Ok(Plot {
+            config,
+            bag: recording.path(),
+            session: Session::open(recording, &config.options, given)?,
+            recording,
+            truths,
+        })
+    }
+
+    fn draw(&mut self) -> Result<Scene, PlotError> {
+        match self.config.kind {
+            Kind::Errors => self.draw_errors(),
+            Kind::Sheet => self.draw_sheet(),
+            _ => self.draw_scan(),
+        }
+    }
+
+    fn name(&self) -> String {
+        self.bag.display().to_string()
+    }
+
+    fn draw_scan(&mut self) -> Result<Scene, PlotError> {
+        let number = self.config.scan.unwrap_or(1);
+        let scan = self.nth_scan(number)?;
+        let subject = self.subject(number, &scan)?;
+        let (ground, name) = (self.config.ground(self.session.map()?), self.name());
+        let size = self.config.size();
+        if self.config.kind == Kind::Scan {
+            return scan::draw(&ground, &subject, &name, size);
+        }
+        let field = self.field(&scan, &subject)?;
+        let votes = Votes::of(ground, (&subject, &field), &name, size);
+        match self.config.kind {
+            Kind::Surface => surface::draw(&votes),
+            _ => field::draw(&votes),
+        }
+    }
+
+    /// The scan with a number from 1.
+    fn nth_scan(&mut self, number: u64) -> Result<TakenScan, PlotError> {
+        let mut seen = 0;
+        for scan in self.session.scans.by_ref() {
+            seen += 1;
+            match scan {
+                Ok(scan) if seen == number => return Ok(scan),
+                // One that does not decode is in nobody's way but its own.
+                Ok(_) => {}
+                Err(RecordingError::Message { .. }) if seen < number => {}
+                Err(error) => return Err(error.into()),
+            }
+        }
+        Err(OfflineError::NoSuchScan {
+            file: self.bag.to_owned(),
+            wanted: number,
+            found: seen,
+        }
+        .into())
+    }
+
+    fn subject(&mut self, number: u64, scan: &TakenScan) -> Result<Subject, PlotError> {
+        let answer = self.session.ask(scan)?.answer;
+        let places = answer.map(|answer| answer.places.clone());
+        for note in self.session.take_notes() {
+            say(&note);
+        }
+        let truth = self.truths.get(&scan.stamp_ns).map(|truth| truth.pose);
+        let world = self.session.world()?;
+        let subject = Subject::new((number, scan), places?, truth, world);
+        Ok(subject.map_err(OfflineError::Refused)?)
+    }
+
+    /// The votes at the heading of the best place.
+    fn field(&self, scan: &TakenScan, subject: &Subject) -> Result<Field, PlotError> {
+        let Some(best) = subject.shown.first() else {
+            return Err(PlotError::NoPlace {
+                file: self.bag.to_owned(),
+                number: subject.number,
+                says: subject.places.sentence(),
+            });
+        };
+        let engine = &self.config.options.engine;
+        let world = World::prepare(self.session.map()?, engine, Prior::Heading);
+        let heading = best.place.map_from_laser.yaw;
+        let field = world.and_then(|world| world.field_at(&scan.borrowed(), heading));
+        Ok(field.map_err(OfflineError::Refused)?)
+    }
+
+    fn draw_errors(&mut self) -> Result<Scene, PlotError> {
+        if let Some(damage) = damage_of(self.recording) {
+            return Err(damage.into());
+        }
+        if self.truths.is_empty() {
+            let file = self.bag.to_owned();
+            return Err(OfflineError::NoTruths { file }.into());
+        }
+        let progress = Progress::new("locating", self.session.scans.total());
+        let (mut judged, mut scans) = (Vec::new(), 0);
+        while let Some(scan) = self.session.scans.next() {
+            let scan = scan?;
+            scans += 1;
+            if let Some(truth) = self.truths.get(&scan.stamp_ns).map(|truth| truth.pose) {
+                judged.push(self.judge(&scan, truth)?);
+            }
+            progress.step();
+        }
+        if judged.is_empty() {
+            return Err(OfflineError::NoTruthTaken {
+                file: self.bag.to_owned(),
+                scans,
+                truths: self.truths.len(),
+            }
+            .into());
+        }
+        errors::draw(&judged, &self.name(), self.config.width)
+    }
+
+    fn judge(&mut self, scan: &TakenScan, truth: Pose) -> Result<Judged, PlotError> {
+        let places = self.session.ask(scan)?.answer.ok();
+        let places = places.map(|answer| answer.places);
+        let best = places.and_then(|places| places.places.first());
+        let off = best.map(|best| {
+            let best = best.map_from_laser;
+            (best.distance_to(truth), best.angle_to(truth).to_degrees())
+        });
+        Ok(Judged {
+            stamp_ns: scan.stamp_ns,
+            verdict: places.map_or(Verdict::NoScan, |places| places.verdict),
+            off,
+        })
+    }
+
+    fn draw_sheet(&mut self) -> Result<Scene, PlotError> {
+        let total = self.session.scans.total();
+        let wanted = u64::from(self.config.panels.unwrap_or(12)).min(total);
+        let progress = Progress::new("locating", wanted);
+        let mut panels = Vec::new();
+        let mut number = 0;
+        while let Some(scan) = self.session.scans.next() {
+            number += 1;
+            if !is_in_sheet(number, total, wanted) {
+                continue;
+            }
+            let scan = scan?;
+            panels.push(match self.subject(number, &scan) {
+                Ok(subject) => Panel::Scan(Box::new(subject)),
+                Err(
+                    refusal @ PlotError::Offline(
+                        OfflineError::Refused(_)
+                        | OfflineError::Heading(_)
+                        | OfflineError::NoUsableMap { .. },
+                    ),
+                ) => Panel::Refused(number, refusal.to_string()),
+                Err(error) => return Err(error),
+            });
+            progress.step();
+        }
+        let ground = self.config.ground(self.session.map()?);
+        sheet::draw(&ground, &panels, &self.name(), self.config.size())
+    }
+}
+
+/// Whether the scan of a number from 1 is one of `wanted` evenly spread ones,
+/// of which the first scan is the first.
+fn is_in_sheet(number: u64, total: u64, wanted: u64) -> bool {
+    let before = |number: u64| (number * wanted).div_ceil(total.max(1));
+    before(number) > before(number.saturating_sub(1))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn scans_of_a_sheet_are_evenly_spread() {
+        let taken = |total, wanted| -> Vec<u64> {
+            let all = 1..=total;
+            all.filter(|&number| is_in_sheet(number, total, wanted))
+                .collect()
+        };
+        assert_eq!(taken(9, 3), [1, 4, 7]);
+        assert_eq!(taken(10, 4), [1, 3, 6, 8]);
+        assert_eq!(taken(3, 3), [1, 2, 3]);
+        assert_eq!(taken(37, 12).len(), 12);
+    }
+}

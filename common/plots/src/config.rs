@@ -1,0 +1,139 @@
+//! What `backcast plot` takes on the command line, and which options belong to
+//! which picture.
+
+use std::path::PathBuf;
+
+use clap::ValueEnum;
+use map::OccupancyGrid;
+use offline::{OfflineError, Options};
+
+use super::scan::Size;
+use super::subject::Ground;
+use crate::PlotError;
+
+/// What stands below the options.
+pub const NOTES: &str = "\
+Colours of beams: green ends at an obstacle, orange before one, red behind one, violet behind
+unknown space. Places that fit about as well are fainter, and shown from near below the map.
+
+Exit codes: 0 drawn, 1 failed, 2 wrong use";
+
+/// What a picture shows.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]
+pub(super) enum Kind {
+    /// The map with its boundary cells
+    Map,
+    /// A scan at each of its places, and what became of its beams
+    Scan,
+    /// The votes of each position at the best heading
+    Field,
+    /// The same as a surface, from above and from behind
+    Surface,
+    /// The errors of all scans against /ground_truth, by their verdicts
+    Errors,
+    /// Some scans at their places, side by side
+    Sheet,
+}
+
+/// What `backcast plot` takes.
+#[derive(Debug, clap::Args)]
+pub struct Config {
+    /// What the picture shows
+    #[arg(value_enum, default_value_t = Kind::Scan, value_name = "KIND")]
+    pub(super) kind: Kind,
+
+    /// The recording: an MCAP file, or a bag of rosbag2 (its folder, or .db3);
+    /// several files are read as one
+    #[arg(long, value_name = "FILE")]
+    pub(super) bag: Vec<PathBuf>,
+
+    /// The picture: a file whose name ends with .png or .svg
+    #[arg(long, value_name = "FILE")]
+    pub(super) out: PathBuf,
+
+    /// The scan: the N-th of those taken, as `locate` prints it in its N-th
+    /// line [default: 1]
+    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u64).range(1..))]
+    pub(super) scan: Option<u64>,
+
+    /// Panels of a sheet, 1..=64: so many scans, evenly spread [default: 12]
+    #[arg(long, value_name = "COUNT", value_parser = clap::value_parser!(u8).range(1..=64))]
+    pub(super) panels: Option<u8>,
+
+    /// Leave out /ground_truth, which may be of another map than --map
+    #[arg(long)]
+    pub(super) no_truth: bool,
+
+    /// Width of the picture, pixels, 200..=8000; its height follows
+    #[arg(long, value_name = "PIXELS", default_value_t = 1200, value_parser = clap::value_parser!(u32).range(200..=8000))]
+    pub(super) width: u32,
+
+    /// Show the whole map, not only the places and what the scan reaches
+    #[arg(long)]
+    pub(super) whole: bool,
+
+    #[command(flatten)]
+    pub(super) options: Options,
+}
+
+/// In what a picture is written.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(super) enum Format {
+    Png,
+    Svg,
+}
+
+impl Config {
+    /// Checks what no option can check alone; opens nothing.
+    ///
+    /// # Errors
+    /// Names the option and what is allowed.
+    pub(super) fn check(&self) -> Result<Format, PlotError> {
+        self.options.check()?;
+        let usage = |text: String| Err(OfflineError::Usage(text).into());
+        if self.bag.is_empty() && (self.kind != Kind::Map || self.options.map.is_none()) {
+            return usage(
+                "--bag is missing: only the picture `map` does without, and then needs --map"
+                    .into(),
+            );
+        }
+        let is_of_scan = matches!(self.kind, Kind::Scan | Kind::Field | Kind::Surface);
+        if self.scan.is_some() && !is_of_scan {
+            return usage("--scan is for the pictures `scan`, `field` and `surface`".into());
+        }
+        if self.panels.is_some() && self.kind != Kind::Sheet {
+            return usage("--panels is for the picture `sheet`".into());
+        }
+        if self.no_truth && matches!(self.kind, Kind::Map | Kind::Errors) {
+            return usage("--no-truth is for the pictures of scans".into());
+        }
+        if self.whole && matches!(self.kind, Kind::Map | Kind::Errors) {
+            return usage("--whole is for the pictures of scans".into());
+        }
+        let extension = self.out.extension().and_then(|name| name.to_str());
+        match extension.map(str::to_ascii_lowercase).as_deref() {
+            Some("png") => Ok(Format::Png),
+            Some("svg") => Ok(Format::Svg),
+            _ => usage(format!(
+                "--out {}: the name must end with .png or .svg",
+                self.out.display()
+            )),
+        }
+    }
+
+    /// How the picture is made.
+    pub(super) fn size(&self) -> Size {
+        Size {
+            width: self.width,
+            whole: self.whole,
+        }
+    }
+
+    /// A map as it is drawn.
+    pub(super) fn ground<'a>(&self, map: &'a OccupancyGrid) -> Ground<'a> {
+        Ground {
+            map,
+            rules: self.options.engine.cells,
+        }
+    }
+}

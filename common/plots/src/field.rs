@@ -1,0 +1,210 @@
+//! The picture of the votes: how many each position has at the best heading,
+//! over the map, as in figures 4b, 5b and 6e to 6g of the paper.
+
+use drawing::{Color, Path, Scene, Stroke};
+use engine::grid::CellRules;
+use geometry::Pose;
+use map::{OccupancyGrid, UNKNOWN};
+use offline::{Field, frame_of, sides_of};
+
+use super::axes::{self, Axis};
+use super::extent::Extent;
+use super::ground::{self, Sampler};
+use super::marks;
+use super::page::{self, Heading, Page, Sample};
+use super::scale::Scale;
+use super::scan::Size;
+use super::subject::{Ground, Subject};
+use super::theme;
+use super::view::View;
+use crate::PlotError;
+
+const HEIGHTS: (f64, f64) = (0.25, 0.8);
+
+/// The colour of a share of the most votes, 0..=1: from nothing to dark.
+pub(super) fn heat(share: f64) -> Color {
+    // The palest tenth of the scale is not told from paper.
+    let colorous::Color { r, g, b } =
+        colorous::YELLOW_ORANGE_RED.eval_continuous(share.clamp(0.0, 1.0));
+    let color = Color {
+        red: r,
+        green: g,
+        blue: b,
+        opacity: 1.0,
+    };
+    Color::WHITE.towards(color, 5.0 * share)
+}
+
+/// What a picture of votes is made of.
+#[derive(Debug)]
+pub struct Votes<'a> {
+    pub(super) ground: Ground<'a>,
+    pub(super) field: &'a Field,
+    pub(super) heading: Heading,
+    /// What is shown of the map.
+    pub(super) extent: Extent,
+    pub(super) truth: Option<Pose>,
+    /// Pixels.
+    pub(super) width: u32,
+}
+
+impl<'a> Votes<'a> {
+    /// Those of a scan at the heading of its best place.
+    pub(super) fn of(
+        ground: Ground<'a>,
+        (subject, field): (&Subject, &'a Field),
+        bag: &str,
+        size: Size,
+    ) -> Self {
+        Votes {
+            ground,
+            field,
+            heading: heading(subject, field, bag),
+            extent: subject.extent(&ground, size.whole),
+            truth: subject.truth.as_ref().map(|truth| truth.pose),
+            width: size.width,
+        }
+    }
+
+    /// Those on a whole map.
+    pub fn whole(
+        (map, rules): (&'a OccupancyGrid, CellRules),
+        field: &'a Field,
+        truth: Option<Pose>,
+        (title, says): (String, String),
+    ) -> Self {
+        Votes {
+            ground: Ground { map, rules },
+            field,
+            heading: Heading {
+                title,
+                verdict: None,
+                says,
+            },
+            extent: Extent::of_map(map),
+            truth,
+            width: page::COMMON_WIDTH,
+        }
+    }
+
+    /// What the bar of colours says.
+    pub(super) fn scale(&self) -> Axis<'static> {
+        let most = f64::from(self.field.outcome.found.best.max(1));
+        Axis {
+            scale: Scale::Even(0.0, most),
+            name: "votes",
+        }
+    }
+}
+
+/// The lines above a picture of a field.
+fn heading(subject: &Subject, field: &Field, bag: &str) -> Heading {
+    let best = field.outcome.found.best;
+    let degrees = field.outcome.known_heading.unwrap_or_default().to_degrees();
+    Heading {
+        title: format!(
+            "{bag} · scan {}: votes at heading {degrees:.1}°",
+            subject.number
+        ),
+        verdict: Some(subject.places.verdict),
+        says: format!(
+            "the best position has {best} of {} votes possible, from {} beams; {}",
+            field.outcome.highest_possible,
+            field.outcome.beams_used,
+            subject.places.sentence()
+        ),
+    }
+}
+
+/// Draws the picture.
+///
+/// # Errors
+/// The picture would be too large.
+pub fn draw(votes: &Votes<'_>) -> Result<Scene, PlotError> {
+    let extent = votes.extent;
+    let ratio = (extent.height() / extent.width()).clamp(HEIGHTS.0, HEIGHTS.1);
+    let height = (page::body_width(votes.width) * ratio).round();
+    let mut legend = vec![
+        (Sample::Square(WALL), "obstacle".to_owned()),
+        (Sample::Ellipse(theme::BEST), "most votes".to_owned()),
+    ];
+    if votes.truth.is_some() {
+        legend.push((Sample::Truth, "truth".to_owned()));
+    }
+    let mut page = Page::new(votes.width, height, &votes.heading, &legend)?;
+    let unit = page.unit;
+    let (rest, bar) = axes::beside_bar(page.body, unit);
+    let view = View::fitting(extent, axes::inside(rest, unit));
+    fill(&mut page.scene, votes, &view)?;
+    page.scene.clipped(view.area(), |scene| {
+        if let Some(truth) = votes.truth {
+            marks::truth(scene, marks::stand(&view, truth), 7.0 * unit);
+        }
+        if let Some(best) = best_position(votes.field) {
+            let ring = Path::circle(view.at(best), 16.0 * unit);
+            scene.stroke(ring, Stroke::new(theme::BEST, 2.4 * unit));
+        }
+    });
+    axes::draw_metres(&mut page.scene, &view, unit);
+    axes::draw_bar(&mut page.scene, bar, votes.scale(), heat, unit);
+    Ok(page.scene)
+}
+
+/// Where most votes meet, in the map, metres.
+pub(super) fn best_position(field: &Field) -> Option<(f64, f64)> {
+    let best = field.outcome.found.votes.first()?;
+    let (x, y) = (f64::from(best.x) + 0.5, f64::from(best.y) + 0.5);
+    let pose = field.frame.map_from_cells(x, y, 0.0);
+    Some((pose.x, pose.y))
+}
+
+fn fill(scene: &mut Scene, votes: &Votes<'_>, view: &View) -> Result<(), PlotError> {
+    let (ground, field) = (&votes.ground, votes.field);
+    let map = ground.map;
+    let cells = Sampler::new(view, frame_of(map), sides_of(map));
+    let under = Sampler::new(view, field.frame, field.sides);
+    let most = f64::from(field.outcome.found.best.max(1));
+    ground::fill(scene, view, |column, row| {
+        let mut highest = 0;
+        under.each(column, row, |index| {
+            let intensity = index.and_then(|index| field.intensities.get(index));
+            highest = highest.max(intensity.copied().unwrap_or_default());
+        });
+        let (mut met, mut walls) = (0.0_f64, 0.0);
+        cells.each(column, row, |index| {
+            met += 1.0;
+            if index.is_some_and(|index| is_wall(map, ground.rules, index)) {
+                walls += 1.0;
+            }
+        });
+        let color = heat(f64::from(highest) / most);
+        color.towards(WALL, (walls / met.max(1.0)).sqrt())
+    })?;
+    Ok(())
+}
+
+/// Walls stand back behind the votes.
+pub(super) const WALL: Color = Color::rgb(0x7C_8896);
+
+pub(super) fn is_wall(map: &OccupancyGrid, rules: CellRules, index: usize) -> bool {
+    let value = map.cells.get(index).copied().unwrap_or(UNKNOWN);
+    value >= rules.occupied_from && value != UNKNOWN
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn more_votes_are_darker() {
+        let brightness = |share| {
+            let Color {
+                red, green, blue, ..
+            } = heat(share);
+            [red, green, blue].map(u32::from).iter().sum::<u32>()
+        };
+        assert_eq!(heat(0.0), Color::WHITE);
+        let steps: Vec<u32> = (0..=10).map(|i| brightness(f64::from(i) / 10.0)).collect();
+        assert!(steps.windows(2).all(|pair| pair[1] < pair[0]), "{steps:?}");
+    }
+}

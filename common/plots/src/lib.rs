@@ -1,0 +1,54 @@
+//! `backcast plot`: pictures of a map, of a scan at its places, of its votes,
+//! and of how far off the places are. PNG or SVG, by the name of the file.
+//!
+//! It asks the same engine as `locate` and judges nothing anew. One file a
+//! picture; those that are pure compute a scene from what they are given:
+//!
+//! ```text
+//! command ─ subject ─┬─ scan ─────┐
+//!                    ├─ field ────┤
+//!                    ├─ surface ──┼─ drawing
+//!                    ├─ sheet ────┤
+//!                    └─ errors ───┘
+//! map ───────────────── outline ──┘
+//! ```
+//!
+//! `difference` is drawn by `backcast regress`, `drive` by `backcast evaluate --sequence`,
+//! `curves`, `diagram` and `places_on_map` by `backcast bench paper`.
+
+mod axes;
+mod chart;
+mod command;
+mod config;
+mod curves;
+mod diagram;
+mod difference;
+mod drive;
+mod error;
+mod errors;
+mod extent;
+mod field;
+mod ground;
+mod marks;
+mod outline;
+mod page;
+mod places;
+mod places_on_map;
+mod scale;
+mod scan;
+mod sheet;
+mod subject;
+mod surface;
+mod theme;
+mod view;
+
+pub use command::run;
+pub use config::{Config, NOTES};
+pub use curves::{Curve, CurvePoint, Curves, draw as draw_curves};
+pub use diagram::{Arrow, Cell, Diagram, Panel, Role, draw as draw_diagram};
+pub use difference::{Contrast, draw as draw_contrast};
+pub use drive::{Stop, draw as draw_drive};
+pub use error::PlotError;
+pub use field::{Votes, draw as draw_votes};
+pub use places_on_map::draw as draw_places;
+pub use surface::draw as draw_surface;

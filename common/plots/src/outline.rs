@@ -1,0 +1,88 @@
+//! The picture of a map: its boundary cells, from which readings are projected
+//! back, and how many there are.
+
+use drawing::Scene;
+use engine::boundary;
+use engine::grid::Grid;
+
+use super::ground;
+use super::marks;
+use super::page::{self, Heading, Page, Sample};
+use super::scan::Size;
+use super::subject::Ground;
+use super::theme;
+use super::view::View;
+use crate::PlotError;
+
+/// The body's height as a share of its width at most.
+const HIGHEST: f64 = 1.3;
+
+/// Draws the whole map; `grid` is the same map as rays see it.
+///
+/// # Errors
+/// The picture would be too large.
+pub(super) fn draw(
+    ground: &Ground<'_>,
+    grid: &Grid,
+    name: &str,
+    size: Size,
+) -> Result<Scene, PlotError> {
+    let mut is_boundary = vec![false; ground.map.cells.len()];
+    let boundary = boundary::extract(grid);
+    for cell in &boundary {
+        let index = usize::from(cell.y) * grid.width() + usize::from(cell.x);
+        if let Some(mark) = is_boundary.get_mut(index) {
+            *mark = true;
+        }
+    }
+    let extent = ground.extent();
+    let ratio = (extent.height() / extent.width()).clamp(0.2, HIGHEST);
+    let height = (page::body_width(size.width) * ratio).round();
+    let legend = [
+        (
+            Sample::Square(theme::BOUNDARY),
+            format!("boundary {}", boundary.len()),
+        ),
+        (
+            Sample::Square(theme::OCCUPIED),
+            "occupied behind it".to_owned(),
+        ),
+        (Sample::Square(theme::UNKNOWN), "unknown".to_owned()),
+    ];
+    let mut page = Page::new(size.width, height, &heading(ground, grid, name), &legend)?;
+    let view = View::fitting(extent, page.body);
+    let occupied = ground::occupied(ground.map, ground.rules);
+    ground::draw(
+        &mut page.scene,
+        ground.map,
+        ground.rules,
+        &view,
+        |index| match is_boundary.get(index) {
+            Some(true) => Some(theme::BOUNDARY),
+            _ => occupied(index),
+        },
+    )?;
+    marks::scale_bar(&mut page.scene, &view, page.unit);
+    page.frame(view.area());
+    Ok(page.scene)
+}
+
+fn heading(ground: &Ground<'_>, grid: &Grid, name: &str) -> Heading {
+    let map = ground.map;
+    let boundary = boundary::extract(grid).len();
+    let share = 100.0 * boundary as f64 / grid.free_cells().max(1) as f64;
+    let metres = |cells: u32| f64::from(cells) * map.resolution_m;
+    Heading {
+        title: name.to_owned(),
+        verdict: None,
+        says: format!(
+            "{} × {} cells of {} m, {:.1} × {:.1} m; {} free cells, {boundary} boundary cells ({share:.1} %)",
+            map.width,
+            map.height,
+            map.resolution_m,
+            metres(map.width),
+            metres(map.height),
+            grid.free_cells(),
+        ),
+    }
+}

@@ -1,0 +1,237 @@
+//! The picture of one scan: the map with the scan at its places, and where they
+//! are worth comparing, each of them from near.
+
+use drawing::{Color, Rect, Scene, TextStyle};
+use geometry::Pose;
+use offline::ScanAt;
+
+use super::extent::Extent;
+use super::marks;
+use super::page::{self, Page};
+use super::places;
+use super::subject::{Ground, Subject};
+use super::theme;
+use super::view::View;
+use crate::PlotError;
+
+/// Most places that are shown from near.
+const MOST_NEAR: usize = 3;
+/// The body of the picture is as high as the part of the map asks for, within
+/// these shares of its width.
+const HEIGHTS: (f64, f64) = (0.25, 0.75);
+/// From here on the places from near stand beside the map.
+const HIGH: f64 = 0.65;
+const HIGHEST_ABOVE_NEAR: f64 = 0.5;
+const HIGHEST_BESIDE_NEAR: f64 = 1.35;
+/// The map's share of the width there.
+const BESIDE_NEAR: f64 = 0.6;
+/// The height of a place from near, as a share of its width.
+const NEAR_HEIGHT: f64 = 0.72;
+/// From near, so many of the beams are seen from end to end.
+const NEAR_SHARE: f64 = 0.85;
+const GAP: f64 = 10.0;
+
+/// How a picture is made.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(super) struct Size {
+    /// Pixels.
+    pub(super) width: u32,
+    /// Shows the whole map and not only what matters.
+    pub(super) whole: bool,
+}
+
+/// A place that is shown from near.
+struct Near<'a> {
+    name: String,
+    /// `None` at the truth.
+    rank: Option<usize>,
+    pose: Pose,
+    scan: &'a ScanAt,
+}
+
+/// Draws the picture.
+///
+/// # Errors
+/// The picture would be too large.
+pub(super) fn draw(
+    ground: &Ground<'_>,
+    subject: &Subject,
+    bag: &str,
+    size: Size,
+) -> Result<Scene, PlotError> {
+    let extent = subject.extent(ground, size.whole);
+    let near = worth_comparing(subject);
+    let (unit, width) = (page::unit(size.width), page::body_width(size.width));
+    let ratio = extent.height() / extent.width();
+    let layout = Layout::new(ratio, near.len(), width, GAP * unit);
+    let heading = subject.heading(bag);
+    let mut page = Page::new(
+        size.width,
+        layout.height,
+        &heading,
+        &places::legend(subject),
+    )?;
+    let corner = (page.body.x, page.body.y);
+    let view = View::fitting(extent, moved(layout.map, corner));
+    ground.draw(&mut page.scene, &view)?;
+    places::draw(&mut page.scene, &view, subject, unit);
+    marks::scale_bar(&mut page.scene, &view, unit);
+    page.frame(view.area());
+    let reach = reach_m(subject);
+    for (near, area) in near.iter().zip(&layout.near) {
+        draw_near(&mut page, ground, (near, reach), moved(*area, corner))?;
+    }
+    Ok(page.scene)
+}
+
+/// Where everything lies in the body of the picture.
+#[derive(Debug, Clone, PartialEq)]
+struct Layout {
+    height: f64,
+    map: Rect,
+    near: Vec<Rect>,
+}
+
+impl Layout {
+    /// For a part of the map that is `ratio` times as high as it is wide. The
+    /// places from near stand in a row below it, or beside it where it is high.
+    fn new(ratio: f64, near: usize, width: f64, gap: f64) -> Self {
+        if near == 0 {
+            return Layout::below(ratio.clamp(HEIGHTS.0, HEIGHTS.1), 0, width, gap);
+        }
+        if ratio < HIGH {
+            let ratio = ratio.clamp(HEIGHTS.0, HIGHEST_ABOVE_NEAR);
+            return Layout::below(ratio, near, width, gap);
+        }
+        Layout::beside(ratio.min(HIGHEST_BESIDE_NEAR), near, width, gap)
+    }
+
+    fn below(ratio: f64, near: usize, width: f64, gap: f64) -> Self {
+        let map = Rect::new(0.0, 0.0, width, (width * ratio).round());
+        let columns = near.max(1) as f64;
+        let column = (width - gap * (columns - 1.0)) / columns;
+        let row = (column * NEAR_HEIGHT).min(0.36 * width);
+        let at = |i: usize| Rect::new(i as f64 * (column + gap), map.height + gap, column, row);
+        Layout {
+            height: map.height + if near > 0 { gap + row } else { 0.0 },
+            map,
+            near: (0..near).map(at).collect(),
+        }
+    }
+
+    fn beside(ratio: f64, near: usize, width: f64, gap: f64) -> Self {
+        let map_width = (width - gap) * BESIDE_NEAR;
+        let map = Rect::new(0.0, 0.0, map_width, (map_width * ratio).round());
+        let rows = near as f64;
+        let row = (map.height - gap * (rows - 1.0)) / rows;
+        let left = map_width + gap;
+        let at = |i: usize| Rect::new(left, i as f64 * (row + gap), width - left, row);
+        Layout {
+            height: map.height,
+            map,
+            near: (0..near).map(at).collect(),
+        }
+    }
+}
+
+fn moved(area: Rect, (x, y): (f64, f64)) -> Rect {
+    Rect::new(area.x + x, area.y + y, area.width, area.height)
+}
+
+/// The best place beside those that come near it, and beside the truth where
+/// that is another; nothing where there is nothing to compare.
+fn worth_comparing(subject: &Subject) -> Vec<Near<'_>> {
+    let truth = subject.missed_truth();
+    let rivals = 1 + subject.places.alternatives as usize;
+    let places = match truth {
+        Some(_) => (MOST_NEAR - 1).min(rivals),
+        None => MOST_NEAR.min(rivals),
+    };
+    let shown = subject.shown.iter().take(places);
+    let mut near: Vec<Near<'_>> = shown
+        .map(|shown| Near {
+            name: format!("{}: score {:.2}", shown.rank, shown.scan.score),
+            rank: Some(shown.rank),
+            pose: shown.place.map_from_laser,
+            scan: &shown.scan,
+        })
+        .collect();
+    near.extend(truth.map(|truth| Near {
+        name: format!("truth: score {:.2}", truth.scan.score),
+        rank: None,
+        pose: truth.pose,
+        scan: &truth.scan,
+    }));
+    if near.len() < 2 {
+        near.clear();
+    }
+    near
+}
+
+/// How far most beams of the best place reach, metres.
+fn reach_m(subject: &Subject) -> f64 {
+    let reach = subject.shown.first().map(|best| {
+        let pose = best.place.map_from_laser;
+        best.scan.reach_m(pose, NEAR_SHARE)
+    });
+    reach.unwrap_or_default().max(3.0)
+}
+
+fn draw_near(
+    page: &mut Page,
+    ground: &Ground<'_>,
+    (near, reach): (&Near<'_>, f64),
+    area: Rect,
+) -> Result<(), PlotError> {
+    let unit = page.unit;
+    let view = View::fitting(Extent::around(near.pose, reach), area);
+    ground.draw(&mut page.scene, &view)?;
+    let area = view.area();
+    page.scene.clipped(area, |scene| {
+        places::by_class(scene, &view, (near.pose, near.scan), unit);
+        let stand = marks::stand(&view, near.pose);
+        let size = places::ROBOT * unit;
+        match near.rank {
+            None => marks::truth(scene, stand, places::TRUTH * unit),
+            Some(1) => marks::robot(scene, stand, size, theme::BEST),
+            Some(_) => marks::robot(scene, stand, size, theme::OTHER),
+        }
+    });
+    marks::scale_bar(&mut page.scene, &view, unit);
+    let style = TextStyle::new(16.0 * unit, theme::INK)
+        .bold()
+        .with_halo(Color::WHITE, 5.0 * unit);
+    let at = (area.x + 10.0 * unit, area.y + 23.0 * unit);
+    page.scene.text(&near.name, at, &style);
+    page.frame(area);
+    Ok(())
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn places_from_near_stand_below_a_wide_map_and_beside_a_high_one() {
+        let wide = Layout::new(0.4, 3, 1000.0, 10.0);
+        assert_eq!(wide.map, Rect::new(0.0, 0.0, 1000.0, 400.0));
+        assert!(wide.near.iter().all(|area| area.y == 410.0));
+        let high = Layout::new(1.0, 2, 1000.0, 10.0);
+        assert_eq!(high.map, Rect::new(0.0, 0.0, 594.0, 594.0));
+        assert!(high.near.iter().all(|area| area.x == 604.0));
+        for layout in [wide, high, Layout::new(9.0, 3, 800.0, 4.0)] {
+            let lowest = layout.near.iter().map(Rect::bottom).fold(0.0, f64::max);
+            let right = layout.near.iter().map(Rect::right).fold(0.0, f64::max);
+            // Sums of a few parts of the width.
+            assert!((lowest - layout.height).abs() < 1e-9, "{layout:?}");
+            assert!(right > 799.999 && right < 1000.001, "{layout:?}");
+        }
+    }
+
+    #[test]
+    fn a_single_place_has_the_whole_picture() {
+        let alone = Layout::new(9.0, 0, 1000.0, 10.0);
+        assert_eq!(alone.map, Rect::new(0.0, 0.0, 1000.0, 750.0));
+        assert_eq!((alone.height, alone.near.len()), (750.0, 0));
+    }
+}

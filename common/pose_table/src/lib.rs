@@ -1,0 +1,12 @@
+//! What is printed for a scan, as a row of a table or as JSON: `line` is the answer to
+//! the scan alone, `pose_line` the tracker's pose beside it, and `rows` brings both
+//! together, whichever comes first. All pure.
+
+mod line;
+mod pose_line;
+mod rows;
+pub mod testing;
+
+pub use line::{Line, number};
+pub use pose_line::{PoseLine, Row};
+pub use rows::Rows;

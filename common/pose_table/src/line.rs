@@ -1,0 +1,185 @@
+//! What is printed for one scan, as a row of the table or as JSON. Pure.
+
+use engine::peaks::sentence::{Stand, sentence};
+use geometry::{Covariance, Pose};
+use messages::{HypothesesHeader, Hypothesis, Verdict};
+use serde::Serialize;
+
+pub(super) const NS_PER_MS: f64 = 1e6;
+
+/// One scan and its answer. What has no pose has none of its figures.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+pub struct Line {
+    /// When the scan was measured, nanoseconds since 1970.
+    pub stamp_ns: i64,
+    /// Of the laser in the map, metres.
+    pub x: Option<f64>,
+    /// Of the laser in the map, metres.
+    pub y: Option<f64>,
+    /// Of the laser in the map, degrees counter-clockwise.
+    pub heading_deg: Option<f64>,
+    /// How well the scan fits the map there, at most 1.
+    pub score: Option<f32>,
+    /// The verdict, or `?` for one that this version does not know.
+    pub verdict: &'static str,
+    /// Other places that fit about as well.
+    pub alternatives: u32,
+    /// The verdict in words.
+    pub says: String,
+    /// From the scan's entry into the graph to the pose, milliseconds.
+    pub latency_ms: f64,
+    /// Of that, computing.
+    pub engine_ms: f64,
+}
+
+impl Line {
+    /// Reads one message of topic `hypotheses`.
+    pub fn new(header: &HypothesesHeader, hypotheses: &[Hypothesis]) -> Self {
+        let verdict = Verdict::from_code(header.verdict);
+        let best = hypotheses
+            .first()
+            .filter(|_| verdict != Some(Verdict::NoScan));
+        let pose = best.map(|h| h.map_from_laser);
+        let engine_ns = header.search_ns.saturating_add(header.extract_ns);
+        let latency_ns = header.sent_ns.saturating_sub(header.stamp.entered_ns);
+        Line {
+            stamp_ns: header.stamp.measured_ns,
+            x: pose.map(|p| p.x),
+            y: pose.map(|p| p.y),
+            heading_deg: pose.map(|p| p.yaw.to_degrees()),
+            score: best.map(|h| h.score),
+            verdict: verdict.map_or("?", Verdict::as_str),
+            alternatives: header.alternatives,
+            says: verdict.map_or_else(String::new, |verdict| {
+                sentence(verdict, &stands(header, hypotheses))
+            }),
+            latency_ms: latency_ns as f64 / NS_PER_MS,
+            engine_ms: engine_ns as f64 / NS_PER_MS,
+        }
+    }
+
+    /// The names of the columns.
+    pub fn header() -> String {
+        row([
+            "stamp s",
+            "x m",
+            "y m",
+            "heading deg",
+            "score",
+            "verdict",
+            "alternatives",
+            "ms",
+        ])
+    }
+
+    /// A row of the table, without the end of the line.
+    pub fn text(&self) -> String {
+        let row = row([
+            &seconds(self.stamp_ns),
+            &number(self.x, 3),
+            &number(self.y, 3),
+            &number(self.heading_deg, 2),
+            &number(self.score.map(f64::from), 2),
+            self.verdict,
+            &self.alternatives.to_string(),
+            &format!("{:.2}", self.latency_ms),
+        ]);
+        // What all scans should say needs no words.
+        if self.verdict == Verdict::Unique.as_str() || self.says.is_empty() {
+            return row;
+        }
+        format!("{row}  {}", self.says)
+    }
+}
+
+/// The best place and those that fit about as well, as far as they are numbers:
+/// they come from another process.
+fn stands(header: &HypothesesHeader, hypotheses: &[Hypothesis]) -> Vec<Stand> {
+    let is_finite = |h: &&Hypothesis| {
+        Pose::from(h.map_from_laser).is_finite() && h.covariance.iter().all(|c| c.is_finite())
+    };
+    let told = hypotheses.iter().take(1 + header.alternatives as usize);
+    told.filter(is_finite)
+        .map(|h| Stand {
+            map_from_laser: h.map_from_laser.into(),
+            covariance: Covariance::from_rows(h.covariance),
+            score: h.score.into(),
+        })
+        .collect()
+}
+
+fn row([stamp, x, y, heading, score, verdict, alternatives, ms]: [&str; 8]) -> String {
+    format!(
+        "{stamp:>14}  {x:>9}  {y:>9}  {heading:>11}  {score:>5}  {verdict:<9}  {alternatives:>12}  {ms:>8}"
+    )
+}
+
+/// A figure, or a dash where there is none.
+pub fn number(value: Option<f64>, decimals: usize) -> String {
+    value.map_or("-".to_owned(), |v| format!("{v:.decimals$}"))
+}
+
+/// Seconds with milliseconds, cut; exact where a float would round.
+pub(super) fn seconds(ns: i64) -> String {
+    let (sign, ns) = (if ns < 0 { "-" } else { "" }, ns.unsigned_abs());
+    format!("{sign}{}.{:03}", ns / 1_000_000_000, ns / 1_000_000 % 1000)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::testing::message;
+
+    #[test]
+    fn columns_stand_under_their_names() {
+        let (header, found) = message(1_117_803_432_123_999_999, 0, Verdict::Ambiguous as u32);
+        let expected = "
+       stamp s        x m        y m  heading deg  score  verdict    alternatives        ms
+1117803432.123      1.000     -2.000       180.00   0.88  Ambiguous             2     25.00  several places fit about as well
+             -          -          -            -      -  NoScan                2     25.00  no beam says anything about this map: is the laser covered?
+";
+        let mut none = Line::new(
+            &HypothesesHeader {
+                verdict: 0,
+                ..header
+            },
+            &found,
+        );
+        assert_eq!(none.stamp_ns, header.stamp.measured_ns);
+        none.stamp_ns = -1_500_000_000;
+        let text = format!(
+            "\n{}\n{}\n{}\n",
+            Line::header(),
+            Line::new(&header, &found).text(),
+            none.text().replace("        -1.500", "             -"),
+        );
+        assert_eq!(text, expected);
+    }
+
+    #[test]
+    fn json_keeps_every_figure() {
+        let (header, found) = message(7, 0, Verdict::Unique as u32);
+        let json = serde_json::to_string(&Line::new(&header, &found)).unwrap();
+        assert_eq!(
+            json,
+            r#"{"stamp_ns":7,"x":1.0,"y":-2.0,"heading_deg":180.0,"score":0.875,"verdict":"Unique","alternatives":2,"says":"one place fits, 88 % of the scan agrees","latency_ms":25.0,"engine_ms":24.0}"#
+        );
+        let none = serde_json::to_value(Line::new(&header, &[])).unwrap();
+        assert!(none["x"].is_null() && none["score"].is_null());
+    }
+
+    #[test]
+    fn foreign_values_do_not_panic() {
+        let (mut header, found) = message(i64::MIN, 0, 99);
+        header.sent_ns = i64::MAX;
+        header.stamp.entered_ns = i64::MIN;
+        header.search_ns = u64::MAX;
+        let line = Line::new(&header, &found);
+        assert_eq!(line.verdict, "?");
+        assert!(
+            line.text().starts_with("-9223372036.854"),
+            "{}",
+            line.text()
+        );
+    }
+}

@@ -1,0 +1,228 @@
+//! What is printed for one scan where the graph has a tracker: its pose first, the
+//! answer to the scan alone beside it. Pure.
+
+use geometry::{Covariance, Pose};
+use messages::{PoseHeader, TrackState};
+use serde::Serialize;
+
+use super::line::{Line, NS_PER_MS, number, seconds};
+
+/// Where the tracker has the robot at one scan. What has no pose has none of its figures.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+pub struct PoseLine {
+    /// When the scan was measured, nanoseconds since 1970.
+    pub stamp_ns: i64,
+    /// The state, or `?` for one that this version does not know.
+    pub state: &'static str,
+    /// Of the laser in the map, metres.
+    pub x: Option<f64>,
+    /// Of the laser in the map, metres.
+    pub y: Option<f64>,
+    /// Of the laser in the map, degrees counter-clockwise.
+    pub heading_deg: Option<f64>,
+    /// Standard deviation of the position along the long axis of its ellipse, metres.
+    pub deviation_m: Option<f64>,
+    /// Standard deviation of the heading, degrees.
+    pub deviation_deg: Option<f64>,
+    /// How likely the robot is there, 0..=1.
+    pub probability: Option<f64>,
+    /// Places that are kept as possible.
+    pub places: u32,
+    /// The reason in words, and what to do.
+    pub says: String,
+    /// From the scan's entry into the graph to the pose, milliseconds.
+    pub latency_ms: f64,
+    /// When the pose was sent, nanoseconds of the machine's monotonic clock.
+    pub sent_ns: i64,
+}
+
+/// The pose of a scan, and the answer to the scan alone; either may be missing.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+pub struct Row {
+    /// What the scan says by itself; none where it was not searched.
+    #[serde(flatten)]
+    pub single: Option<Line>,
+    /// Where the tracker has the robot; none where it said nothing of the scan.
+    pub pose: Option<PoseLine>,
+}
+
+impl PoseLine {
+    /// Reads one message of topic `pose`.
+    pub fn new(header: &PoseHeader, words: &[u8]) -> Self {
+        let state = TrackState::from_code(header.state);
+        let pose = (header.pose_known == 1).then_some(header.map_from_laser);
+        let pose = pose.filter(|pose| Pose::from(*pose).is_finite());
+        let covariance = pose.and_then(|_| covariance(header));
+        let latency_ns = header.sent_ns.saturating_sub(header.stamp.entered_ns);
+        PoseLine {
+            stamp_ns: header.stamp.measured_ns,
+            state: state.map_or("?", TrackState::as_str),
+            x: pose.map(|pose| pose.x),
+            y: pose.map(|pose| pose.y),
+            heading_deg: pose.map(|pose| pose.yaw.to_degrees()),
+            deviation_m: covariance.map(|covariance| covariance.ellipse().major_m),
+            deviation_deg: covariance.map(|_| {
+                let [.., yaw_variance] = header.laser_covariance;
+                yaw_variance.max(0.0).sqrt().to_degrees()
+            }),
+            probability: pose.map(|_| header.probability),
+            places: header.places,
+            says: String::from_utf8_lossy(words).into_owned(),
+            latency_ms: latency_ns as f64 / NS_PER_MS,
+            sent_ns: header.sent_ns,
+        }
+    }
+}
+
+impl Row {
+    /// The names of the columns.
+    pub fn header() -> String {
+        row([
+            "stamp s",
+            "x m",
+            "y m",
+            "heading deg",
+            "+- m",
+            "state",
+            "prob %",
+            "single scan",
+            "ms",
+        ])
+    }
+
+    /// A row of the table, without the end of the line.
+    pub fn text(&self) -> String {
+        let single = self.single.as_ref();
+        let single = single.map_or("-".to_owned(), |line| match line.alternatives {
+            0 => line.verdict.to_owned(),
+            others => format!("{} +{others}", line.verdict),
+        });
+        let Some(pose) = &self.pose else {
+            return self.text_without_pose(&single);
+        };
+        let row = row([
+            &seconds(pose.stamp_ns),
+            &number(pose.x, 3),
+            &number(pose.y, 3),
+            &number(pose.heading_deg, 2),
+            &number(pose.deviation_m, 3),
+            pose.state,
+            &number(pose.probability.map(|share| 100.0 * share), 1),
+            &single,
+            &format!("{:.2}", pose.latency_ms),
+        ]);
+        // What all scans should say needs no words.
+        if pose.state == TrackState::Unique.as_str() || pose.says.is_empty() {
+            return row.trim_end().to_owned();
+        }
+        format!("{row}  {}", pose.says)
+    }
+
+    /// The tracker said nothing of the scan, so no pose is shown: that of the scan
+    /// alone may be another place.
+    fn text_without_pose(&self, single: &str) -> String {
+        let Some(line) = &self.single else {
+            return String::new();
+        };
+        let ms = format!("{:.2}", line.latency_ms);
+        let none = "-";
+        row([
+            &seconds(line.stamp_ns),
+            none,
+            none,
+            none,
+            none,
+            none,
+            none,
+            single,
+            &ms,
+        ])
+    }
+}
+
+fn covariance(header: &PoseHeader) -> Option<Covariance> {
+    let is_finite = header.laser_covariance.iter().all(|c| c.is_finite());
+    is_finite.then(|| Covariance::from_rows(header.laser_covariance))
+}
+
+fn row(
+    [
+        stamp,
+        x,
+        y,
+        heading,
+        deviation,
+        state,
+        probability,
+        single,
+        ms,
+    ]: [&str; 9],
+) -> String {
+    format!(
+        "{stamp:>14}  {x:>9}  {y:>9}  {heading:>11}  {deviation:>6}  {state:<9}  {probability:>6}  {single:<12}  {ms:>8}"
+    )
+}
+
+#[cfg(test)]
+mod tests {
+    use messages::Verdict;
+
+    use super::*;
+    use crate::testing::{message, pose};
+
+    fn shown(state: TrackState, words: &str, with_single: bool) -> Row {
+        let (header, found) = message(1_117_803_432_123_999_999, 0, Verdict::Ambiguous as u32);
+        let pose = pose(1_117_803_432_123_999_999, 0, state);
+        Row {
+            single: with_single.then(|| Line::new(&header, &found)),
+            pose: Some(PoseLine::new(&pose, words.as_bytes())),
+        }
+    }
+
+    #[test]
+    fn columns_stand_under_their_names() {
+        let expected = "
+       stamp s        x m        y m  heading deg    +- m  state      prob %  single scan         ms
+1117803432.123      1.000     -2.000       180.00   0.020  Unique       97.5  Ambiguous +2     26.00
+1117803432.123      1.000     -2.000       180.00   0.020  Doubtful     97.5  -                26.00  the scans do not fit
+1117803432.123          -          -            -       -  Searching       -  Ambiguous +2     26.00  2 places fit, 25 m apart
+1117803432.123          -          -            -       -  -               -  Ambiguous +2     25.00
+";
+        let mut without = shown(TrackState::Unique, "", true);
+        without.pose = None;
+        let text = format!(
+            "\n{}\n{}\n{}\n{}\n{}\n",
+            Row::header(),
+            shown(TrackState::Unique, "one place is left", true).text(),
+            shown(TrackState::Doubtful, "the scans do not fit", false).text(),
+            shown(TrackState::Searching, "2 places fit, 25 m apart", true).text(),
+            without.text(),
+        );
+        assert_eq!(text, expected);
+    }
+
+    #[test]
+    fn json_keeps_the_keys_of_the_single_answer_and_adds_the_pose() {
+        let json = serde_json::to_value(shown(TrackState::Doubtful, "words", true)).unwrap();
+        assert_eq!(json["verdict"], "Ambiguous");
+        assert_eq!(json["pose"]["state"], "Doubtful");
+        assert_eq!(json["pose"]["says"], "words");
+        assert_eq!(json["pose"]["probability"], 0.975);
+        assert!((json["pose"]["deviation_m"].as_f64().unwrap() - 0.02).abs() < 1e-12);
+        let alone = serde_json::to_value(shown(TrackState::Doubtful, "", false)).unwrap();
+        assert_eq!(alone["pose"]["stamp_ns"], 1_117_803_432_123_999_999_i64);
+        assert!(alone.get("verdict").is_none());
+    }
+
+    #[test]
+    fn foreign_values_do_not_panic() {
+        let mut header = pose(i64::MIN, 0, TrackState::Unique);
+        header.state = 99;
+        header.map_from_laser.x = f64::NAN;
+        header.laser_covariance[0] = f64::NAN;
+        header.sent_ns = i64::MAX;
+        header.stamp.entered_ns = i64::MIN;
+        let line = PoseLine::new(&header, &[0xff; 3]);
+        assert_eq!((line.state, line.x, line.deviation_m), ("?", None, None));
+    }
+}

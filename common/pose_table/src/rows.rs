@@ -1,0 +1,168 @@
+//! Joins the two halves of a row, where the graph has a tracker: the answer to a scan
+//! alone and the tracker's pose of it, whichever comes first. Pure.
+//!
+//! A row is printed once both are there. The pose of a later scan ends the wait: a scan
+//! may not have been searched, or be answered later than the next one is tracked.
+
+use std::collections::VecDeque;
+
+use messages::Stamp;
+
+use super::line::Line;
+use super::pose_line::{PoseLine, Row};
+
+/// Answers that wait for their poses at most: a tracker that ended must not keep the
+/// answers back.
+const CAPACITY: usize = 16;
+
+/// Answers and poses that wait for the other half.
+#[derive(Debug, Default)]
+pub struct Rows {
+    waiting: VecDeque<(Stamp, Row)>,
+    /// The scan whose row was printed last.
+    printed: Option<Stamp>,
+}
+
+impl Rows {
+    /// Takes the answer to a scan alone; gives the rows that are to be printed.
+    pub fn answer(&mut self, scan: Stamp, single: Line) -> Vec<Row> {
+        if let Some(at) = self.find(scan) {
+            if let Some((_, row)) = self.waiting.get_mut(at) {
+                row.single = Some(single);
+            }
+            return self.release(at + 1);
+        }
+        // Its row was printed when the pose of a later scan came.
+        let is_printed = |printed: Stamp| printed.is_of(scan) || is_before(scan, printed);
+        if self.printed.is_some_and(is_printed) {
+            return Vec::new();
+        }
+        let row = Row {
+            single: Some(single),
+            pose: None,
+        };
+        self.waiting.push_back((scan, row));
+        self.release(self.waiting.len().saturating_sub(CAPACITY))
+    }
+
+    /// Takes the tracker's pose of a scan; gives the rows that are to be printed.
+    pub fn pose(&mut self, scan: Stamp, pose: PoseLine) -> Vec<Row> {
+        if let Some(at) = self.find(scan) {
+            if let Some((_, row)) = self.waiting.get_mut(at) {
+                row.pose = Some(pose);
+            }
+            return self.release(at + 1);
+        }
+        let earlier = |(waiting, _): &(Stamp, Row)| is_before(*waiting, scan);
+        let due = self.waiting.iter().take_while(|entry| earlier(entry));
+        let released = self.release(due.count());
+        let row = Row {
+            single: None,
+            pose: Some(pose),
+        };
+        self.waiting.push_front((scan, row));
+        released
+    }
+
+    /// Gives all that still wait.
+    pub fn finish(&mut self) -> Vec<Row> {
+        self.release(self.waiting.len())
+    }
+
+    fn find(&self, scan: Stamp) -> Option<usize> {
+        let mut waiting = self.waiting.iter();
+        waiting.position(|(waiting, _)| waiting.is_of(scan))
+    }
+
+    fn release(&mut self, rows: usize) -> Vec<Row> {
+        let released: Vec<_> = self.waiting.drain(..rows).collect();
+        if let Some((scan, _)) = released.last() {
+            self.printed = Some(*scan);
+        }
+        released.into_iter().map(|(_, row)| row).collect()
+    }
+}
+
+/// Whether a scan came before another of the same sender. One that was started again
+/// counts anew, at a later time.
+fn is_before(scan: Stamp, other: Stamp) -> bool {
+    scan.counter < other.counter && scan.entered_ns <= other.entered_ns
+}
+
+#[cfg(test)]
+mod tests {
+    use messages::{TrackState, Verdict};
+
+    use super::*;
+    use crate::testing::{message, pose};
+
+    /// What is printed: counters of the answer and of the pose, by their stamps.
+    fn printed(rows: &[Row]) -> Vec<(Option<i64>, Option<i64>)> {
+        let show = |row: &Row| {
+            let single = row.single.as_ref().map(|line| line.stamp_ns);
+            (single, row.pose.as_ref().map(|pose| pose.stamp_ns))
+        };
+        rows.iter().map(show).collect()
+    }
+
+    fn answer(rows: &mut Rows, counter: u64) -> Vec<(Option<i64>, Option<i64>)> {
+        let (header, found) = message(counter as i64, counter, Verdict::Unique as u32);
+        printed(&rows.answer(header.stamp, Line::new(&header, &found)))
+    }
+
+    fn track(rows: &mut Rows, counter: u64) -> Vec<(Option<i64>, Option<i64>)> {
+        let header = pose(counter as i64, counter, TrackState::Unique);
+        printed(&rows.pose(header.stamp, PoseLine::new(&header, b"")))
+    }
+
+    #[test]
+    fn a_row_is_printed_once_both_are_there() {
+        let mut rows = Rows::default();
+        assert_eq!(answer(&mut rows, 1), []);
+        assert_eq!(track(&mut rows, 1), [(Some(1), Some(1))]);
+        assert_eq!(track(&mut rows, 2), []);
+        assert_eq!(answer(&mut rows, 2), [(Some(2), Some(2))]);
+        // The tracker is behind the search.
+        assert_eq!(answer(&mut rows, 3), []);
+        assert_eq!(answer(&mut rows, 4), []);
+        assert_eq!(track(&mut rows, 3), [(Some(3), Some(3))]);
+        assert_eq!(track(&mut rows, 4), [(Some(4), Some(4))]);
+        assert_eq!(printed(&rows.finish()), []);
+    }
+
+    #[test]
+    fn a_scan_that_is_not_searched_waits_for_the_next_pose_alone() {
+        let mut rows = Rows::default();
+        assert_eq!(track(&mut rows, 1), []);
+        assert_eq!(track(&mut rows, 2), [(None, Some(1))]);
+        // The answer to the first comes late: its row was printed.
+        assert_eq!(answer(&mut rows, 1), []);
+        assert_eq!(answer(&mut rows, 2), [(Some(2), Some(2))]);
+        assert_eq!(track(&mut rows, 3), []);
+        assert_eq!(printed(&rows.finish()), [(None, Some(3))]);
+    }
+
+    #[test]
+    fn a_tracker_that_ended_does_not_keep_answers_back() {
+        let mut rows = Rows::default();
+        for counter in 0..CAPACITY as u64 {
+            assert_eq!(answer(&mut rows, counter), []);
+        }
+        assert_eq!(answer(&mut rows, 99), [(Some(0), None)]);
+        assert_eq!(rows.finish().len(), CAPACITY);
+    }
+
+    #[test]
+    fn a_source_that_was_started_again_counts_anew() {
+        let mut rows = Rows::default();
+        assert_eq!(answer(&mut rows, 7), []);
+        assert_eq!(track(&mut rows, 7), [(Some(7), Some(7))]);
+        let (mut header, found) = message(9, 0, Verdict::Unique as u32);
+        header.stamp.entered_ns += 1;
+        rows.answer(header.stamp, Line::new(&header, &found));
+        let mut again = pose(9, 0, TrackState::Unique);
+        again.stamp = header.stamp;
+        let rows = rows.pose(again.stamp, PoseLine::new(&again, b""));
+        assert_eq!(printed(&rows), [(Some(9), Some(9))]);
+    }
+}

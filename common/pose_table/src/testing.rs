@@ -1,0 +1,63 @@
+//! Messages of one scan, for tests of what is made of them.
+
+use bytemuck::Zeroable;
+use messages::{HypothesesHeader, Hypothesis, Pose2, PoseHeader, Stamp, TrackState};
+
+/// A message about the scan measured at `measured_ns`, found at (1, -2),
+/// half a turn from the x axis, after 25 ms of which 24 ms were computing.
+#[must_use]
+pub fn message(
+    measured_ns: i64,
+    counter: u64,
+    verdict: u32,
+) -> (HypothesesHeader, [Hypothesis; 1]) {
+    let header = HypothesesHeader {
+        stamp: Stamp {
+            measured_ns,
+            entered_ns: 5_000_000,
+            counter,
+        },
+        sent_ns: 30_000_000,
+        search_ns: 20_000_000,
+        extract_ns: 4_000_000,
+        verdict,
+        alternatives: 2,
+        ..HypothesesHeader::zeroed()
+    };
+    let hypothesis = Hypothesis {
+        map_from_laser: Pose2 {
+            x: 1.0,
+            y: -2.0,
+            yaw: std::f64::consts::PI,
+        },
+        score: 0.875,
+        ..Hypothesis::zeroed()
+    };
+    (header, [hypothesis])
+}
+
+/// The pose of the scan measured at `measured_ns`: the laser at (1, -2), half a turn
+/// from the x axis, 26 ms after the scan.
+#[must_use]
+pub fn pose(measured_ns: i64, counter: u64, state: TrackState) -> PoseHeader {
+    PoseHeader {
+        stamp: Stamp {
+            measured_ns,
+            entered_ns: 5_000_000,
+            counter,
+        },
+        sent_ns: 31_000_000,
+        map_from_laser: Pose2 {
+            x: 1.0,
+            y: -2.0,
+            yaw: std::f64::consts::PI,
+        },
+        laser_covariance: [4e-4, 0.0, 0.0, 0.0, 1e-4, 0.0, 0.0, 0.0, 1e-6],
+        probability: 0.975,
+        state: state as u32,
+        places: 2,
+        from_scan: 1,
+        pose_known: (state != TrackState::Searching).into(),
+        ..PoseHeader::zeroed()
+    }
+}

@@ -1,0 +1,324 @@
+//! A device that speaks CoLa, in either encoding, on one of its ports.
+
+use std::net::Ipv6Addr;
+use std::time::{Duration, Instant};
+
+use sick::cola::{
+    AngleConvention, Answer, Channel, Command, DeviceAngles, Encoding, Field, Framer, Telegram,
+    Value, Variable,
+};
+
+use super::line::Line;
+use super::picture::Seen;
+use crate::ProbeError;
+
+/// Where devices listen.
+const PORTS: [u16; 2] = [2112, 2111];
+/// How long an answer may take.
+const PATIENCE: Duration = Duration::from_secs(1);
+/// A scan at 5 Hz, and some more.
+const SCAN_PATIENCE: Duration = Duration::from_secs(3);
+/// Distances below are codes.
+const FIRST_DISTANCE: u16 = 16;
+
+/// A connection on which the device has answered.
+struct Device {
+    address: String,
+    line: Line,
+    encoding: Encoding,
+    framer: Framer,
+    /// Bytes that came.
+    heard: usize,
+    /// Which way it looks, by its name.
+    angles: DeviceAngles,
+}
+
+/// What is found at HOST or HOST:PORT, in lines for people, and a scan.
+///
+/// # Errors
+/// Nothing is there, it refuses, is silent or says something else.
+pub(super) fn probe(target: &str) -> Result<(Vec<String>, Seen), ProbeError> {
+    let mut device = find(target)?;
+    let mut said = vec![format!(
+        "{}: answers {}",
+        device.address,
+        match device.encoding {
+            Encoding::Binary => "CoLa B (--protocol cola-b)",
+            Encoding::Text => "CoLa A (--protocol cola-a)",
+        }
+    )];
+    for variable in [
+        Variable::DeviceIdent,
+        Variable::DeviceState,
+        Variable::ScanConfig,
+        Variable::OutputRange,
+        Variable::ScanDataConfig,
+    ] {
+        said.push(device.describe(variable)?);
+    }
+    let (about, seen) = device.scan()?;
+    said.extend(about);
+    Ok((said, seen))
+}
+
+/// Tries each port in each encoding; what went wrong last says most.
+fn find(target: &str) -> Result<Device, ProbeError> {
+    let addresses = addresses(target);
+    let mut failure = None;
+    let mut heard = 0;
+    let mut reached = None;
+    for address in &addresses {
+        for encoding in [Encoding::Binary, Encoding::Text] {
+            let mut device = match Line::connect(address) {
+                Ok(line) => Device {
+                    address: address.clone(),
+                    line,
+                    encoding,
+                    framer: Framer::new(encoding),
+                    heard: 0,
+                    angles: DeviceAngles::Unnamed,
+                },
+                Err(error) => {
+                    failure = Some((address, error));
+                    break;
+                }
+            };
+            reached = Some(address);
+            if device.ask_answers()? {
+                return Ok(device);
+            }
+            heard += device.heard;
+        }
+    }
+    Err(match (reached, failure) {
+        (None, Some((address, source))) => ProbeError::DeviceNotReached {
+            address: address.clone(),
+            source,
+        },
+        (reached, _) => ProbeError::DeviceNotUnderstood {
+            address: reached.map_or(target, String::as_str).to_owned(),
+            heard,
+            tried: "CoLa B and CoLa A".to_owned(),
+        },
+    })
+}
+
+/// Where to look for it: at its port, or at those that devices have.
+fn addresses(target: &str) -> Vec<String> {
+    let bare = target.parse::<Ipv6Addr>().map(|ip| format!("[{ip}]"));
+    let host = bare.as_deref().unwrap_or(target);
+    let port = host.rsplit_once(':').map(|(_, port)| port.parse::<u16>());
+    match port {
+        Some(Ok(_)) => vec![host.to_owned()],
+        _ => PORTS.map(|port| format!("{host}:{port}")).into(),
+    }
+}
+
+impl Device {
+    /// Whether it says what it is; a device in the other encoding may hang up.
+    fn ask_answers(&mut self) -> Result<bool, ProbeError> {
+        let outcome = self.ask(Command::Read(Variable::DeviceIdent), PATIENCE, |telegram| {
+            matches!(telegram, Telegram::Answer(_) | Telegram::ScanData(_)).then_some(())
+        });
+        match outcome {
+            Ok(answer) => Ok(answer.is_some()),
+            Err(ProbeError::DeviceNotReached { .. }) => Ok(false),
+            Err(error) => Err(error),
+        }
+    }
+
+    /// Says a command and waits for what `pick` takes.
+    fn ask<R>(
+        &mut self,
+        command: Command<'_>,
+        patience: Duration,
+        mut pick: impl FnMut(&Telegram<'_>) -> Option<R>,
+    ) -> Result<Option<R>, ProbeError> {
+        let failed = |address: &str, source| ProbeError::DeviceNotReached {
+            address: address.to_owned(),
+            source,
+        };
+        let mut bytes = Vec::new();
+        self.encoding.frame(&Telegram::Command(command), &mut bytes);
+        let said = self.line.say(&bytes);
+        said.map_err(|source| failed(&self.address, source))?;
+        let deadline = Instant::now() + patience;
+        let mut buffer = [0; 1 << 14];
+        loop {
+            while let Some(next) = self.framer.next_frame() {
+                if let Ok(frame) = next
+                    && let Some(found) = pick(&frame.telegram)
+                {
+                    return Ok(Some(found));
+                }
+            }
+            let heard = self.line.hear(&mut buffer, deadline);
+            match heard.map_err(|source| failed(&self.address, source))? {
+                Some(piece) => {
+                    self.heard += piece.len();
+                    self.framer.push(piece);
+                }
+                None => return Ok(None),
+            }
+        }
+    }
+
+    /// A variable in words, or why the device does not say it.
+    fn describe(&mut self, variable: Variable) -> Result<String, ProbeError> {
+        let command = Command::Read(variable);
+        let mut angles = None;
+        let found = self.ask(command, PATIENCE, |telegram| match telegram {
+            Telegram::Answer(Answer::Value(value)) if value.variable() == variable => {
+                if let Value::DeviceIdent { name, .. } = value {
+                    angles = Some(DeviceAngles::of_name(name));
+                }
+                Some(in_words(value))
+            }
+            Telegram::Answer(Answer::Fault(fault)) => {
+                Some(format!("{variable:?}: the device refuses: {fault}"))
+            }
+            _ => None,
+        })?;
+        if let Some(angles) = angles {
+            self.angles = angles;
+        }
+        Ok(found.unwrap_or_else(|| format!("{variable:?}: no answer")))
+    }
+
+    /// One scan, in words and to be drawn.
+    fn scan(&mut self) -> Result<(Vec<String>, Seen), ProbeError> {
+        let angles = std::mem::take(&mut self.angles);
+        let found = self.ask(Command::SubscribeScans(true), SCAN_PATIENCE, |telegram| {
+            let Telegram::ScanData(scan) = telegram else {
+                return None;
+            };
+            let channel = scan.channels_16_bit.named(b"DIST1")?;
+            let (looks, convention, up) = in_which_way(&angles, Field::of(&channel));
+            let (count, seen) = (channel.len(), seen(&channel, convention, up));
+            let returns = seen.points.len();
+            let about = format!("a scan of {count} readings, {returns} with a return");
+            Some((vec![looks, about], seen))
+        })?;
+        self.ask(Command::SubscribeScans(false), PATIENCE, |telegram| {
+            matches!(telegram, Telegram::Answer(_)).then_some(())
+        })?;
+        let none = || {
+            (
+                vec!["no scan came: does it measure?".to_owned()],
+                Seen::default(),
+            )
+        };
+        Ok(found.unwrap_or_else(none))
+    }
+}
+
+/// What `lms_reader` makes of the angles, how a picture of them is laid out and what is
+/// up in it.
+fn in_which_way(angles: &DeviceAngles, field: Field) -> (String, AngleConvention, String) {
+    match angles.convention(field) {
+        Ok(convention) => {
+            let why = match angles {
+                DeviceAngles::Known(row) => format!("as a {}: {}", row.name, row.source),
+                _ => "its name is not in the table, its field is centred there".to_owned(),
+            };
+            let looks = format!("looks       {convention} ({why})");
+            (looks, convention, "ahead is up".to_owned())
+        }
+        Err(error) => {
+            let usual = AngleConvention::USUAL;
+            let up = format!("the device's {}° is up", usual.ahead_deg);
+            (format!("looks       {error}"), usual, up)
+        }
+    }
+}
+
+fn seen(channel: &Channel<'_>, convention: AngleConvention, up: String) -> Seen {
+    let scale = f64::from(channel.scale_factor);
+    let offset = f64::from(channel.scale_offset);
+    let points = channel.values.enumerate().filter_map(|(beam, raw)| {
+        let step_deg = f64::from(channel.step_raw_1e4_deg) * 1e-4;
+        let deg = f64::from(channel.start_angle_raw_1e4_deg) * 1e-4 + beam as f64 * step_deg;
+        let range = (f64::from(raw) * scale + offset) * 1e-3;
+        (raw >= FIRST_DISTANCE).then_some((convention.bearing_deg(deg).to_radians(), range))
+    });
+    Seen {
+        points: points.collect(),
+        up,
+    }
+}
+
+fn in_words(value: &Value<'_>) -> String {
+    let deg = |raw: i32| f64::from(raw) * 1e-4;
+    match value {
+        Value::DeviceIdent { name, version } => {
+            let (name, version) = (name.escape_ascii(), version.escape_ascii());
+            format!("device      {name}, version {version}")
+        }
+        Value::DeviceState(state) => {
+            let words = ["busy", "ready", "error", "standby"];
+            let word = words.get(usize::from(*state)).unwrap_or(&"unknown");
+            format!("state       {word}")
+        }
+        Value::ScanConfig(config) => format!(
+            "measures    {} Hz, every {}°, from {}° to {}°",
+            f64::from(config.frequency_raw_1e2_hz) * 1e-2,
+            f64::from(config.resolution_raw_1e4_deg) * 1e-4,
+            deg(config.start_angle_raw_1e4_deg),
+            deg(config.stop_angle_raw_1e4_deg)
+        ),
+        Value::OutputRange(range) => format!(
+            "sends       every {}°, from {}° to {}°",
+            f64::from(range.resolution_raw_1e4_deg) * 1e-4,
+            deg(range.start_angle_raw_1e4_deg),
+            deg(range.stop_angle_raw_1e4_deg)
+        ),
+        Value::ScanDataConfig(config) => format!(
+            "contents    every scan in {}; remission {}, name {}, time {}",
+            config.interval,
+            yes(config.remission),
+            yes(config.name),
+            yes(config.time)
+        ),
+        Value::HostEncoding(binary) => {
+            format!("encoding    CoLa {}", if *binary { "B" } else { "A" })
+        }
+    }
+}
+
+fn yes(is: bool) -> &'static str {
+    if is { "yes" } else { "no" }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_host_alone_has_two_ports() {
+        let both = ["192.168.0.1:2112", "192.168.0.1:2111"];
+        assert_eq!(addresses("192.168.0.1"), both);
+        assert_eq!(addresses("laser:2111"), ["laser:2111"]);
+        assert_eq!(addresses("fe80::1"), ["[fe80::1]:2112", "[fe80::1]:2111"]);
+        assert_eq!(addresses("[fe80::1]:7"), ["[fe80::1]:7"]);
+    }
+
+    #[test]
+    fn what_is_to_be_stated_is_told() {
+        let around_zero = Field {
+            first_deg: -120.0,
+            last_deg: 120.0,
+        };
+        let (looks, _, up) = in_which_way(&DeviceAngles::of_name(b"XY7"), around_zero);
+        assert!(
+            looks.contains("--device NAME") && looks.contains("--zero-deg"),
+            "{looks}"
+        );
+        assert_eq!(up, "the device's 90° is up");
+        let (looks, convention, up) = in_which_way(&DeviceAngles::of_name(b"TiM240"), around_zero);
+        assert!(
+            looks.contains("0° is ahead") && looks.contains("TiM2xx"),
+            "{looks}"
+        );
+        assert_eq!((convention.ahead_deg, up.as_str()), (0.0, "ahead is up"));
+    }
+}

@@ -1,0 +1,90 @@
+//! What `backcast probe` does.
+
+use std::path::Path;
+use std::process::ExitCode;
+
+use command_line::stdout;
+
+use super::{cola, lms2xx};
+use crate::ProbeError;
+
+/// What stands below the options.
+pub const NOTES: &str = "\
+Without a port, 2112 and 2111 are tried; on a serial line, 38400, 9600, 500000 and 19200 baud.
+
+Exit codes: 0 a device answered, 1 none did, 2 wrong use";
+
+/// Columns where nobody says how many there are.
+const COLUMNS: usize = 80;
+
+/// What `backcast probe` takes.
+#[derive(Debug, clap::Args)]
+pub struct Config {
+    /// The device: an address such as 192.168.0.1, HOST or HOST:PORT (also after
+    /// tcp://), or a serial line such as /dev/ttyUSB0
+    #[arg(value_name = "DEVICE")]
+    device: String,
+
+    /// Characters that the picture is wide [default: as the terminal, $COLUMNS or 80]
+    #[arg(long, value_name = "CHARACTERS", value_parser = clap::value_parser!(u16).range(10..=500))]
+    width: Option<u16>,
+}
+
+/// Asks the device and prints what it says.
+///
+/// # Errors
+/// No device answers, or standard output cannot be written.
+pub fn run(config: &Config) -> Result<ExitCode, ProbeError> {
+    let (said, seen) = match address(&config.device) {
+        Some(address) => cola::probe(address)?,
+        None => lms2xx::probe(Path::new(&config.device))?,
+    };
+    let columns = config.width.map_or_else(columns, usize::from);
+    stdout::print(&format!("{}\n\n{}", said.join("\n"), seen.draw(columns)))?;
+    Ok(ExitCode::SUCCESS)
+}
+
+/// The address of a device on the network; `None` where a serial line is meant, which is
+/// a path or the name of a file that is there.
+fn address(device: &str) -> Option<&str> {
+    if let Some(address) = device.strip_prefix("tcp://") {
+        return Some(address.trim_end_matches('/'));
+    }
+    let is_path = device.contains('/') || device.is_empty() || Path::new(device).exists();
+    (!is_path).then_some(device)
+}
+
+/// As wide as the terminal.
+fn columns() -> usize {
+    let (_, columns) = console::Term::stdout().size();
+    let told = std::env::var("COLUMNS").ok();
+    let told = told.and_then(|columns| columns.parse().ok());
+    match console::Term::stdout().is_term() {
+        true => usize::from(columns),
+        false => told.unwrap_or(COLUMNS),
+    }
+    .clamp(10, 500)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn addresses_and_serial_lines_are_told_apart() {
+        for (device, expected) in [
+            ("192.168.0.1", Some("192.168.0.1")),
+            ("192.168.0.1:2111", Some("192.168.0.1:2111")),
+            ("laser", Some("laser")),
+            ("front.local:2112", Some("front.local:2112")),
+            ("fe80::1", Some("fe80::1")),
+            ("tcp://laser:1/", Some("laser:1")),
+            ("/dev/ttyUSB0", None),
+            ("./laser", None),
+            // Tests run where the crate is.
+            ("Cargo.toml", None),
+        ] {
+            assert_eq!(address(device), expected, "{device}");
+        }
+    }
+}

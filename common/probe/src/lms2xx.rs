@@ -1,0 +1,164 @@
+//! An LMS2xx, at whichever baud rate it speaks.
+
+use std::path::Path;
+use std::time::{Duration, Instant};
+
+use sick::lms2xx::{Answer, Baud, Command, DeviceStatus, Mode, Reply, ReplyFramer, Scan};
+
+use super::line::Line;
+use super::picture::Seen;
+use crate::ProbeError;
+
+/// In the order of how likely they are.
+const RATES: [Baud; 4] = [Baud::B38400, Baud::B9600, Baud::B500000, Baud::B19200];
+/// How often a rate is tried: the first command may meet a scan under way.
+const TRIES: usize = 2;
+/// How long an answer may take: two scans may be under way at 38400 baud.
+const PATIENCE: Duration = Duration::from_millis(700);
+
+struct Device<'a> {
+    path: &'a Path,
+    line: Line,
+    framer: ReplyFramer,
+    /// Bytes that came.
+    heard: usize,
+}
+
+/// What is found on the line, in lines for people, and a scan.
+///
+/// # Errors
+/// The line cannot be opened, or nothing on it answers at any rate.
+pub(super) fn probe(path: &Path) -> Result<(Vec<String>, Seen), ProbeError> {
+    let line = Line::open(path).map_err(|source| ProbeError::DeviceNotReached {
+        address: path.display().to_string(),
+        source,
+    })?;
+    let mut device = Device {
+        path,
+        line,
+        framer: ReplyFramer::default(),
+        heard: 0,
+    };
+    let baud = device.find_rate()?;
+    let name = path.display();
+    let mut said = vec![format!("{name}: an LMS2xx at {} baud", baud.rate())];
+    let named = device.ask(&Command::RequestType, |answer| match answer {
+        Answer::Type(text) => Some(format!("device      {}", text.escape_ascii())),
+        _ => None,
+    })?;
+    said.extend(named);
+    let status = device.ask(&Command::RequestStatus, |answer| match answer {
+        Answer::Status(status) => Some(*status),
+        _ => None,
+    })?;
+    said.push(
+        status
+            .as_ref()
+            .map_or("status      no answer".to_owned(), in_words),
+    );
+    let seen = status.and_then(|status| device.scan(&status).transpose());
+    let seen = seen.transpose()?.unwrap_or_default();
+    said.push(format!("a scan with {} returns", seen.points.len()));
+    Ok((said, seen))
+}
+
+impl Device<'_> {
+    /// It answers this command in every mode, and sends no more scans by itself.
+    fn find_rate(&mut self) -> Result<Baud, ProbeError> {
+        for baud in RATES {
+            let switched = self.line.switch(baud);
+            switched.map_err(|source| self.failed(source))?;
+            self.framer = ReplyFramer::default();
+            for _ in 0..TRIES {
+                let answer = self.ask(&Command::SetMode(Mode::OnRequest), |answer| {
+                    matches!(answer, Answer::ModeSet(_)).then_some(())
+                })?;
+                if answer.is_some() {
+                    return Ok(baud);
+                }
+            }
+        }
+        let rates = RATES.map(|baud| baud.rate().to_string());
+        Err(ProbeError::DeviceNotUnderstood {
+            address: self.path.display().to_string(),
+            heard: self.heard,
+            tried: format!("an LMS2xx at {} baud", rates.join(", ")),
+        })
+    }
+
+    fn ask<R>(
+        &mut self,
+        command: &Command<'_>,
+        mut pick: impl FnMut(&Answer<'_>) -> Option<R>,
+    ) -> Result<Option<R>, ProbeError> {
+        let mut bytes = Vec::new();
+        command.frame(&mut bytes);
+        let said = self.line.say(&bytes);
+        said.map_err(|source| self.failed(source))?;
+        let deadline = Instant::now() + PATIENCE;
+        let mut buffer = [0; 1 << 12];
+        loop {
+            while let Some(next) = self.framer.next_frame() {
+                if let Ok(frame) = next
+                    && let Reply::Answer(answer, _) = frame.telegram
+                    && let Some(found) = pick(&answer)
+                {
+                    return Ok(Some(found));
+                }
+            }
+            let heard = self.line.hear(&mut buffer, deadline);
+            match heard.map_err(|source| self.failed(source))? {
+                Some(piece) => {
+                    self.heard += piece.len();
+                    self.framer.push(piece);
+                }
+                None => return Ok(None),
+            }
+        }
+    }
+
+    fn scan(&mut self, status: &DeviceStatus) -> Result<Option<Seen>, ProbeError> {
+        self.ask(&Command::RequestScan, |answer| match answer {
+            Answer::Scan(scan) => Some(seen(scan, status)),
+            _ => None,
+        })
+    }
+
+    fn failed(&self, source: std::io::Error) -> ProbeError {
+        ProbeError::DeviceNotReached {
+            address: self.path.display().to_string(),
+            source,
+        }
+    }
+}
+
+fn seen(scan: &Scan<'_>, status: &DeviceStatus) -> Seen {
+    let step_deg = f64::from(status.resolution_raw_1e2_deg) * 0.01;
+    let start_deg = -0.5 * f64::from(status.width_deg);
+    let points = scan.readings.enumerate().filter_map(|(beam, reading)| {
+        let distance = status.range_mode.distance(reading)?;
+        let bearing = (start_deg + beam as f64 * step_deg).to_radians();
+        Some((bearing, f64::from(distance) * scan.unit.metres()))
+    });
+    Seen {
+        points: points.collect(),
+        up: "ahead is up".to_owned(),
+    }
+}
+
+fn in_words(status: &DeviceStatus) -> String {
+    format!(
+        "state       {}, version {}\nmeasures    {}° at {}°, {} turns a minute, unit {} m, {:?}",
+        if status.has_error {
+            "error"
+        } else {
+            "in order"
+        },
+        status.version.escape_ascii(),
+        status.width_deg,
+        f64::from(status.resolution_raw_1e2_deg) * 0.01,
+        status.turns,
+        status.unit.metres(),
+        status.range_mode,
+    )
+}

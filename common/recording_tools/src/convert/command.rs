@@ -1,0 +1,285 @@
+//! What `backcast convert` does.
+
+use std::fs::File;
+use std::io::{BufWriter, Write};
+use std::path::{Path, PathBuf};
+use std::process::ExitCode;
+
+use command_line::LOST_DATA;
+use progress::say;
+use recording::write::{Packing, RecordingWriter};
+use recording::{Kind, Recording, is_bag};
+
+use super::file::{self, ending};
+use super::tally::Tally;
+use super::{to_carmen, to_recording};
+use crate::RecordingToolsError;
+
+/// What stands below the options.
+pub const NOTES: &str = "\
+.log, .clf and .txt are CARMEN's laser logs, which may be packed with gzip (.log.gz); .mcap is a
+recording with ROS 2 messages, .db3 (or a folder of such) a bag of rosbag2 in SQLite, of which all
+topics are converted. What a file holds decides where its name does not tell.
+
+Exit codes: 0 done, 1 failed or nothing to convert, which leaves no file, 2 wrong use, 3 done but
+something could not be read";
+
+/// What `backcast convert` takes.
+#[derive(Debug, clap::Args)]
+pub struct Config {
+    /// The file to read: .log, .clf, .txt, .mcap or .db3, or the folder of a bag
+    #[arg(value_name = "FROM")]
+    from: PathBuf,
+
+    /// The file to write: .mcap, or .log
+    #[arg(value_name = "TO")]
+    to: PathBuf,
+
+    /// The log's laser poses were corrected: make them /ground_truth
+    #[arg(long)]
+    truth: bool,
+
+    /// Readings of so much and more are no returns, metres, where the log does not say
+    #[arg(long, value_name = "METRES", default_value_t = 80.0, value_parser = range)]
+    range_max: f32,
+}
+
+fn range(text: &str) -> Result<f32, String> {
+    match text.parse() {
+        Ok(range) if (0.1..=10_000.0).contains(&range) => Ok(range),
+        _ => Err("allowed are 0.1 to 10000 m".to_owned()),
+    }
+}
+
+/// How a log is understood.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(super) struct Rules {
+    /// Whether laser poses are true ones.
+    pub(super) truth: bool,
+    pub(super) range_max_m: f32,
+}
+
+/// What was converted.
+#[derive(Debug, Clone, PartialEq, Eq, Default)]
+pub(super) struct Report {
+    pub(super) scans: u64,
+    pub(super) odometry: u64,
+    /// Messages of a bag, whatever they are.
+    pub(super) messages: u64,
+    /// How lasers were understood, a line each.
+    pub(super) remarks: Vec<String>,
+    /// Lines of a log that were left out.
+    pub(super) tally: Tally,
+    /// Messages that could not be read, and why the first could not.
+    pub(super) refused: u64,
+    pub(super) first_refusal: Option<String>,
+    /// Why the file could not be read to its end.
+    pub(super) damage: Option<String>,
+    /// Scans whose laser sits elsewhere than that of the first one.
+    pub(super) moved_mounts: u64,
+}
+
+impl Report {
+    /// What could not be read, a line each.
+    fn losses(&self) -> Vec<String> {
+        let mut losses = Vec::new();
+        if let Some(first) = &self.tally.first_broken {
+            losses.push(format!(
+                "{} could not be read; {first}",
+                self.tally.broken_lines()
+            ));
+        }
+        if let Some(first) = &self.first_refusal {
+            losses.push(format!("{} could not be read; {first}", self.refused));
+        }
+        if let Some(damage) = &self.damage {
+            losses.push(format!(
+                "it is damaged, and was read only to there: {damage}"
+            ));
+        }
+        losses
+    }
+
+    /// Why there is nothing, in words.
+    fn why_nothing(&self) -> String {
+        let mut reasons = Vec::new();
+        if self.odometry > 0 {
+            reasons.push(format!("{} poses of the odometry", self.odometry));
+        }
+        reasons.extend(self.tally.text());
+        reasons.extend(self.losses());
+        match reasons.is_empty() {
+            true => "it is empty".to_owned(),
+            false => format!("it holds {}", reasons.join("; ")),
+        }
+    }
+}
+
+/// Converts one file.
+///
+/// # Errors
+/// The files' kinds do not go together, one cannot be read or written, the one to
+/// write exists, or nothing could be converted.
+pub fn run(config: &Config) -> Result<ExitCode, RecordingToolsError> {
+    let to = ending(&config.to);
+    let is_written = matches!(to.as_str(), "mcap" | "log" | "clf" | "txt");
+    if !is_written || ends_packed(&config.to) {
+        return Err(no_conversion(&ending(&config.from), &config.to));
+    }
+    let from = file::kind(&config.from).map_err(failed("read", &config.from))?;
+    let convert = match (from, to == "mcap") {
+        (file::Kind::Log, true) => log_to_recording,
+        (file::Kind::Recording, false) => recording_to_log,
+        (file::Kind::Recording, true) if is_bag(&config.from) => bag_to_recording,
+        (file::Kind::Log, false) => return Err(no_conversion("log", &config.to)),
+        (file::Kind::Recording, true) => {
+            // What cannot be read at all is told by what reads recordings.
+            Recording::open(&config.from)?;
+            return Err(no_conversion(&ending(&config.from), &config.to));
+        }
+        (file::Kind::Unknown, _) => {
+            return Err(no_conversion(&ending(&config.from), &config.to));
+        }
+    };
+    let (file, unfinished) = create(&config.to)?;
+    let report = convert(config, file)?;
+    if report.scans == 0 && report.messages == 0 {
+        return Err(RecordingToolsError::NothingConverted {
+            file: config.from.clone(),
+            reason: report.why_nothing(),
+        });
+    }
+    unfinished.keep();
+    Ok(tell(&report, &config.to))
+}
+
+fn no_conversion(from: &str, to: &Path) -> RecordingToolsError {
+    let to = to.extension().unwrap_or_default().to_string_lossy();
+    RecordingToolsError::Usage(format!(
+        "from .{from} to .{to} is no conversion; allowed are .log, .clf, .txt and .db3 to .mcap, \
+         and .mcap and .db3 to .log"
+    ))
+}
+
+fn ends_packed(path: &Path) -> bool {
+    path.extension()
+        .is_some_and(|e| e.eq_ignore_ascii_case("gz"))
+}
+
+fn tell(report: &Report, to: &Path) -> ExitCode {
+    let Report {
+        scans, odometry, ..
+    } = report;
+    let to = to.display();
+    if report.messages > 0 {
+        say(&format!("{} messages of all topics", report.messages));
+    }
+    say(&format!(
+        "{to}: {scans} scans, {odometry} poses of the odometry"
+    ));
+    report.remarks.iter().for_each(|remark| say(remark));
+    if report.moved_mounts > 0 {
+        say(&format!(
+            "{} scans were taken where the laser sat elsewhere than at first; poses that were \
+             corrected need --truth",
+            report.moved_mounts
+        ));
+    }
+    if report.tally.missing_readings > 0 {
+        say(&format!(
+            "{} readings are no numbers, and so many beams are missing",
+            report.tally.missing_readings
+        ));
+    }
+    if let Some(left_out) = report.tally.text() {
+        say(&format!("left out: {left_out}"));
+    }
+    let losses = report.losses();
+    losses.iter().for_each(|loss| say(loss));
+    match losses.is_empty() {
+        true => ExitCode::SUCCESS,
+        false => ExitCode::from(LOST_DATA),
+    }
+}
+
+fn log_to_recording(config: &Config, to: BufWriter<File>) -> Result<Report, RecordingToolsError> {
+    let rules = Rules {
+        truth: config.truth,
+        range_max_m: config.range_max,
+    };
+    let open = || file::open(&config.from).map_err(failed("read", &config.from));
+    let mut writer = RecordingWriter::new(to, Packing::Zstd)?;
+    let report = to_recording::convert(open, &rules, &mut writer)?;
+    finish(writer, config)?;
+    Ok(report)
+}
+
+fn recording_to_log(
+    config: &Config,
+    mut log: BufWriter<File>,
+) -> Result<Report, RecordingToolsError> {
+    let recording = Recording::open(&config.from)?;
+    let report = to_carmen::convert(&recording, &mut log)?;
+    log.flush().map_err(failed("write", &config.to))?;
+    Ok(report)
+}
+
+fn bag_to_recording(config: &Config, to: BufWriter<File>) -> Result<Report, RecordingToolsError> {
+    let mut writer = RecordingWriter::new(to, Packing::Zstd)?;
+    let messages = recording::write_bag(&config.from, &mut writer)?;
+    finish(writer, config)?;
+    // Read again, which also tells whether it can be.
+    let recording = Recording::open(&config.to)?;
+    let of = |kind| {
+        let channels = recording.channels().filter(|c| c.kind == Some(kind));
+        channels.map(|channel| channel.messages).sum()
+    };
+    Ok(Report {
+        scans: of(Kind::Scan),
+        odometry: of(Kind::Odometry),
+        messages,
+        ..Report::default()
+    })
+}
+
+fn finish(
+    writer: RecordingWriter<BufWriter<File>>,
+    config: &Config,
+) -> Result<(), RecordingToolsError> {
+    let flushed = writer.finish()?.flush();
+    flushed.map_err(failed("write", &config.to))
+}
+
+/// A file that goes again unless it is kept.
+struct Unfinished(Option<PathBuf>);
+
+impl Unfinished {
+    fn keep(mut self) {
+        self.0 = None;
+    }
+}
+
+impl Drop for Unfinished {
+    fn drop(&mut self) {
+        if let Some(path) = &self.0 {
+            // What made the conversion fail is told; this may fail for the same reason.
+            let _ = std::fs::remove_file(path);
+        }
+    }
+}
+
+fn create(path: &Path) -> Result<(BufWriter<File>, Unfinished), RecordingToolsError> {
+    let file = File::create_new(path).map_err(failed("create", path))?;
+    Ok((BufWriter::new(file), Unfinished(Some(path.to_owned()))))
+}
+
+fn failed<'p>(
+    action: &'static str,
+    path: &'p Path,
+) -> impl FnOnce(std::io::Error) -> RecordingToolsError + 'p {
+    move |source| RecordingToolsError::File {
+        action,
+        file: path.to_owned(),
+        source,
+    }
+}

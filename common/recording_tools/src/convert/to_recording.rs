@@ -1,0 +1,323 @@
+//! From a log to a recording.
+
+use std::collections::BTreeSet;
+use std::io::{BufRead, Seek, Write};
+
+use recording::ros::{
+    self, Header, PoseStamped, Quaternion, TfMessage, Time, Transform, TransformStamped, Twist,
+    TwistWithCovariance, Vector3,
+};
+use recording::write::RecordingWriter;
+use recording::{GROUND_TRUTH, Message, ODOM, SCAN, TF_STATIC};
+use transport::with_causes;
+
+use super::angles;
+use super::carmen::{Broken, Fault, Laser, Line, Odometry};
+use super::command::{Report, Rules};
+use super::file::for_each_line;
+use super::read;
+use super::source::Source;
+use super::survey::Survey;
+use crate::RecordingToolsError;
+
+/// Two mounts are the same if they differ by less: logs have six digits.
+const SAME_MOUNT: f64 = 1e-3;
+
+/// Writes what the lines say. `open` opens the log, which is read twice. What cannot
+/// be read is counted.
+///
+/// # Errors
+/// The log cannot be opened, or the recording not written.
+pub(super) fn convert<W: Write + Seek, L: BufRead>(
+    open: impl Fn() -> Result<L, RecordingToolsError>,
+    rules: &Rules,
+    writer: &mut RecordingWriter<W>,
+) -> Result<Report, RecordingToolsError> {
+    let survey = Survey::of(open()?);
+    let mut conversion = Conversion {
+        rules,
+        writer,
+        sources: Source::all(&survey),
+        survey: &survey,
+        mounts: Vec::new(),
+        odometry_ns: BTreeSet::new(),
+        report: Report::default(),
+    };
+    let read = for_each_line(open()?, |number, line| conversion.line(number, line))?;
+    conversion.report.damage = read.err().map(|error| with_causes(&error));
+    conversion.report.remarks = conversion.sources.iter().map(Source::text).collect();
+    Ok(conversion.report)
+}
+
+struct Conversion<'a, W: Write + Seek> {
+    rules: &'a Rules,
+    writer: &'a mut RecordingWriter<W>,
+    survey: &'a Survey,
+    sources: Vec<Source>,
+    /// Where each laser sits on the robot, by its frame.
+    mounts: Vec<(String, geometry::Pose)>,
+    /// Stamps of odometry that stands in the recording.
+    odometry_ns: BTreeSet<i64>,
+    report: Report,
+}
+
+impl<W: Write + Seek> Conversion<'_, W> {
+    fn line(&mut self, number: u64, line: &str) -> Result<(), RecordingToolsError> {
+        match read::parse(line) {
+            Ok(Line::Laser(laser)) => self.laser(&laser, number)?,
+            Ok(Line::Odometry(odometry)) => self.odometry(&odometry, number)?,
+            Ok(Line::Parameter(_) | Line::Nothing) => {}
+            Ok(Line::Other(name)) => self.report.tally.other(&name),
+            Err(broken) => self.report.tally.broken(number, &broken),
+        }
+        Ok(())
+    }
+
+    fn laser(&mut self, laser: &Laser, number: u64) -> Result<(), RecordingToolsError> {
+        let is_source = |source: &&mut Source| source.is_of(laser);
+        let Some(source) = self.sources.iter_mut().find(is_source) else {
+            self.report.tally.repeated(laser.name());
+            return Ok(());
+        };
+        let Some((ns, stamp)) = moment(laser.time_ns) else {
+            let broken = late(laser.name(), laser.time_ns);
+            self.report.tally.broken(number, &broken);
+            return Ok(());
+        };
+        let mounting = self.survey.parameters.of(laser.number);
+        let angles = match angles::of(laser, mounting) {
+            Ok(angles) => angles,
+            Err(reason) => {
+                let broken = Broken {
+                    name: laser.name(),
+                    fault: Fault::Angles,
+                    reason,
+                };
+                self.report.tally.broken(number, &broken);
+                return Ok(());
+            }
+        };
+        let message = source.scan(laser, angles, stamp, self.rules.range_max_m);
+        let (topic, frame) = (source.topic.clone(), source.frame.clone());
+        let missing = laser.ranges.iter().filter(|range| range.is_nan()).count();
+        self.report.tally.missing_readings += missing as u64;
+        self.place(laser, (ns, stamp), &topic, &frame)?;
+        if let Some(poses) = laser.poses {
+            self.odometry_at(ns, stamp, poses.robot, (0.0, 0.0))?;
+        }
+        self.report.scans += 1;
+        self.write(&topic, ns, &Message::Scan(message))
+    }
+
+    /// Notes where the laser was, or where it sits on the robot.
+    fn place(
+        &mut self,
+        laser: &Laser,
+        (ns, stamp): (i64, Time),
+        topic: &str,
+        frame: &str,
+    ) -> Result<(), RecordingToolsError> {
+        let mount = match laser.poses {
+            Some(poses) if self.rules.truth && topic == SCAN => {
+                return self.truth(ns, stamp, poses.laser);
+            }
+            Some(_) if self.rules.truth => None,
+            Some(poses) => Some(poses.robot.inverse().then(poses.laser)),
+            None => {
+                let mounting = self.survey.parameters.of(laser.number);
+                mounting.base_from_laser(laser.number)
+            }
+        };
+        match mount {
+            Some(mount) => self.mount(ns, frame, mount, stamp),
+            None => Ok(()),
+        }
+    }
+
+    fn truth(
+        &mut self,
+        ns: i64,
+        stamp: Time,
+        laser: geometry::Pose,
+    ) -> Result<(), RecordingToolsError> {
+        let truth = PoseStamped {
+            header: header(stamp, "map"),
+            pose: ros::Pose::from_planar(laser),
+        };
+        self.write(GROUND_TRUTH, ns, &Message::PoseStamped(truth))
+    }
+
+    fn odometry(&mut self, odometry: &Odometry, number: u64) -> Result<(), RecordingToolsError> {
+        match moment(odometry.time_ns) {
+            Some((ns, stamp)) => self.odometry_at(ns, stamp, odometry.robot, odometry.velocities),
+            None => {
+                let broken = late("ODOM".to_owned(), odometry.time_ns);
+                self.report.tally.broken(number, &broken);
+                Ok(())
+            }
+        }
+    }
+
+    fn odometry_at(
+        &mut self,
+        ns: i64,
+        stamp: Time,
+        robot: geometry::Pose,
+        (forward, turn): (f64, f64),
+    ) -> Result<(), RecordingToolsError> {
+        if !self.odometry_ns.insert(ns) {
+            return Ok(());
+        }
+        let motion = geometry::Pose::new(forward, 0.0, turn);
+        let message = ros::Odometry {
+            header: header(stamp, "odom"),
+            child_frame_id: "base_link".to_owned(),
+            pose: ros::PoseWithCovariance::from_planar(robot, [0.0; 9]),
+            twist: TwistWithCovariance {
+                twist: Twist::from_planar(motion),
+                ..TwistWithCovariance::default()
+            },
+        };
+        self.report.odometry += 1;
+        self.write(ODOM, ns, &Message::Odometry(Box::new(message)))
+    }
+
+    /// Notes where a laser sits, by the first line that tells.
+    fn mount(
+        &mut self,
+        ns: i64,
+        frame: &str,
+        base_from_laser: geometry::Pose,
+        stamp: Time,
+    ) -> Result<(), RecordingToolsError> {
+        let known = self.mounts.iter().find(|(other, _)| other == frame);
+        if let Some((_, known)) = known {
+            if !known.is_within(base_from_laser, SAME_MOUNT, SAME_MOUNT) {
+                self.report.moved_mounts += 1;
+            }
+            return Ok(());
+        }
+        self.mounts.push((frame.to_owned(), base_from_laser));
+        let transform = |(frame, pose): &(String, geometry::Pose)| TransformStamped {
+            header: header(stamp, "base_link"),
+            child_frame_id: frame.clone(),
+            transform: Transform {
+                translation: Vector3 {
+                    x: pose.x,
+                    y: pose.y,
+                    z: 0.0,
+                },
+                rotation: Quaternion::from_yaw(pose.yaw),
+            },
+        };
+        let transforms = self.mounts.iter().map(transform).collect();
+        self.write(
+            TF_STATIC,
+            ns,
+            &Message::StaticTransforms(TfMessage { transforms }),
+        )
+    }
+
+    fn write(
+        &mut self,
+        topic: &str,
+        ns: i64,
+        message: &Message,
+    ) -> Result<(), RecordingToolsError> {
+        Ok(self.writer.write(topic, ns, message)?)
+    }
+}
+
+fn late(name: String, time_ns: i64) -> Broken {
+    Broken {
+        name,
+        fault: Fault::Time,
+        reason: format!("a recording cannot say a time of {time_ns} ns"),
+    }
+}
+
+pub(super) fn header(stamp: Time, frame: &str) -> Header {
+    Header {
+        stamp,
+        frame_id: frame.to_owned(),
+    }
+}
+
+/// A time, if a recording can say it.
+fn moment(ns: i64) -> Option<(i64, Time)> {
+    Some((ns, Time::from_ns(ns)?))
+}
+
+#[cfg(test)]
+mod tests {
+    use recording::write::Packing;
+    use recording::{Kind, Recording};
+
+    use super::*;
+
+    const LOG: &str = "# a log
+PARAM laser_front_laser_resolution 0.5 ipc 0 h 0
+ODOM 0 0 0 0.25 0 0 0.5 h 0.5
+FLASER 3 1.0 81.83 2.5 0.5 0 0 0 0 0 1.0 h 1.0
+FLASER 3 1.0 broken
+FLASER 3 2.0 81.83 2.5 1.5 0 0 1 0 0 2.0 h 2.0
+";
+
+    fn converted(log: &str, rules: &Rules) -> (Recording, Report) {
+        let mut writer = RecordingWriter::in_memory(Packing::Zstd).unwrap();
+        let report = convert(|| Ok(log.as_bytes()), rules, &mut writer).unwrap();
+        let bytes = writer.finish().unwrap().into_inner();
+        (Recording::from_bytes("r.mcap", bytes).unwrap(), report)
+    }
+
+    #[test]
+    fn scans_odometry_and_the_mount_are_found() {
+        let rules = Rules {
+            truth: false,
+            range_max_m: 80.0,
+        };
+        let (recording, report) = converted(LOG, &rules);
+        assert_eq!((report.scans, report.odometry), (2, 3));
+        assert_eq!((report.tally.broken_lines(), report.moved_mounts), (1, 0));
+        assert_eq!(
+            report.tally.first_broken.as_deref(),
+            Some("line 5, FLASER: of 3 readings 2 are there")
+        );
+        assert_eq!(
+            report.tally.text().as_deref(),
+            Some("1 FLASER line cut short")
+        );
+        assert_eq!(
+            report.remarks,
+            ["/scan holds FLASER: 2 scans, at first of 3 beams from -90.0 to 90.0°"]
+        );
+        let mount = recording.base_from_laser("laser").unwrap().unwrap();
+        assert_eq!(mount.base_from_laser, geometry::Pose::new(0.5, 0.0, 0.0));
+        let Message::Scan(scan) = recording
+            .records_of(&[Kind::Scan])
+            .next()
+            .unwrap()
+            .unwrap()
+            .message
+        else {
+            panic!("asked for scans");
+        };
+        assert_eq!(
+            (scan.ranges[1], scan.range_max, scan.header.stamp.sec),
+            (81.83, 80.0, 1)
+        );
+    }
+
+    #[test]
+    fn corrected_poses_become_the_truth() {
+        let rules = Rules {
+            truth: true,
+            range_max_m: 80.0,
+        };
+        let (recording, _) = converted(LOG, &rules);
+        let truths = recording.ground_truths().unwrap();
+        assert_eq!(truths.len(), 2);
+        assert_eq!(truths[&2_000_000_000].pose.x, 1.5);
+        assert_eq!(recording.base_from_laser("laser").unwrap(), None);
+    }
+}

@@ -1,0 +1,66 @@
+//! All that can end a command of this crate early, and the exit code that it means.
+
+use std::{io, path::PathBuf};
+
+use command_line::{CommandError, FAILED, OutputError, WRONG_USE};
+use map::MapError;
+use offline::OfflineError;
+use recording::RecordingError;
+use simulation::SimulationError;
+
+/// Why a recording cannot be looked at, converted or made.
+#[derive(Debug, thiserror::Error)]
+pub enum RecordingToolsError {
+    /// A scan cannot be searched.
+    #[error(transparent)]
+    Offline(#[from] OfflineError),
+    /// A recording cannot be used.
+    #[error(transparent)]
+    Recording(#[from] RecordingError),
+    /// A map file cannot be used.
+    #[error(transparent)]
+    Map(#[from] MapError),
+    /// A message cannot be one of the graph.
+    #[error(transparent)]
+    Conversion(#[from] conversion::Unsayable),
+    /// A drive cannot be simulated.
+    #[error(transparent)]
+    Simulation(#[from] SimulationError),
+    /// A file cannot be read or written.
+    #[error("cannot {action} {}", file.display())]
+    File {
+        /// What was tried, as a verb.
+        action: &'static str,
+        /// With what.
+        file: PathBuf,
+        /// Why it failed.
+        source: io::Error,
+    },
+    /// A laser log cannot be read or written on.
+    #[error("the log cannot be read or written to its end")]
+    Log(#[source] io::Error),
+    /// A file to convert holds nothing that can be.
+    #[error("nothing in {} could be converted, and no file was written: {reason}", file.display())]
+    NothingConverted {
+        /// The file.
+        file: PathBuf,
+        /// What it holds instead.
+        reason: String,
+    },
+    /// Options that do not go together.
+    #[error("{0}")]
+    Usage(String),
+    /// Standard output takes no more.
+    #[error(transparent)]
+    Output(#[from] OutputError),
+}
+
+impl CommandError for RecordingToolsError {
+    fn exit_code(&self) -> u8 {
+        match self {
+            Self::Offline(error) => error.exit_code(),
+            Self::Usage(_) => WRONG_USE,
+            _ => FAILED,
+        }
+    }
+}

@@ -1,0 +1,49 @@
+//! What `backcast info` does.
+
+use std::path::PathBuf;
+use std::process::ExitCode;
+
+use command_line::{LOST_DATA, stdout};
+use offline::TopicOptions;
+use recording::Recording;
+
+use super::contents::Contents;
+use super::text;
+use crate::RecordingToolsError;
+
+/// What `backcast info` takes.
+#[derive(Debug, clap::Args)]
+pub struct Config {
+    /// The recordings, each by itself: MCAP files, or bags of rosbag2 (their
+    /// folders, or .db3)
+    #[arg(required = true, value_name = "FILE")]
+    recordings: Vec<PathBuf>,
+
+    #[command(flatten)]
+    topics: TopicOptions,
+
+    /// Print JSON, an object a file
+    #[arg(long)]
+    json: bool,
+}
+
+/// Describes one file after another, a damaged one as far as it is sound.
+///
+/// # Errors
+/// A file cannot be read, or is no recording.
+pub fn run(config: &Config) -> Result<ExitCode, RecordingToolsError> {
+    let mut code = ExitCode::SUCCESS;
+    for path in &config.recordings {
+        let mut recording = Recording::open(path)?;
+        config.topics.apply(&mut recording)?;
+        let contents = Contents::of(&recording);
+        if contents.damage.is_some() {
+            code = ExitCode::from(LOST_DATA);
+        }
+        stdout::print(&match config.json {
+            true => contents.json(),
+            false => text::of(&contents),
+        })?;
+    }
+    Ok(code)
+}

@@ -1,0 +1,133 @@
+//! What there is to say about a recording.
+
+use std::collections::BTreeMap;
+
+use recording::{Kind, Recording};
+use serde::Serialize;
+
+/// A recording in figures. Stamps are nanoseconds since 1970.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+pub(crate) struct Contents {
+    pub recording: String,
+    pub bytes: u64,
+    pub messages: u64,
+    pub first_ns: Option<i64>,
+    pub last_ns: Option<i64>,
+    pub chunks: usize,
+    pub channels: Vec<Channel>,
+    /// Which of them the commands take, by what they hold.
+    pub taken: BTreeMap<&'static str, String>,
+    /// Why it is not clear which one is taken.
+    pub unclear: Vec<String>,
+    pub metadata: Vec<Metadata>,
+    pub attachments: Vec<Attachment>,
+    /// What is wrong with the file; all else is of what lies before.
+    pub damage: Option<String>,
+}
+
+#[derive(Debug, Clone, PartialEq, Serialize)]
+pub(crate) struct Channel {
+    pub topic: String,
+    pub schema: String,
+    pub encoding: String,
+    pub messages: u64,
+    /// Messages a second over the whole recording; none below two messages.
+    pub hz: Option<f64>,
+}
+
+#[derive(Debug, Clone, PartialEq, Serialize)]
+pub(crate) struct Metadata {
+    pub name: String,
+    pub entries: BTreeMap<String, String>,
+}
+
+#[derive(Debug, Clone, PartialEq, Serialize)]
+pub(crate) struct Attachment {
+    pub name: String,
+    pub media_type: String,
+    pub bytes: usize,
+}
+
+impl Contents {
+    pub(crate) fn of(recording: &Recording) -> Self {
+        let range = recording.time_range_ns();
+        let seconds = range.map_or(0.0, |(first, last)| {
+            last.saturating_sub(first) as f64 * 1e-9
+        });
+        Contents {
+            recording: recording.path().display().to_string(),
+            bytes: recording.size(),
+            messages: recording.messages(),
+            first_ns: range.map(|(first, _)| first),
+            last_ns: range.map(|(_, last)| last),
+            chunks: recording.parts().filter(|part| part.is_chunk).count(),
+            channels: channels(recording, seconds),
+            taken: taken(recording),
+            unclear: unclear(recording),
+            metadata: recording.metadata().iter().map(metadata).collect(),
+            attachments: recording.attachments().iter().map(attachment).collect(),
+            damage: damage(recording),
+        }
+    }
+
+    /// As an object on one line.
+    pub(crate) fn json(&self) -> String {
+        // Texts and numbers always serialize.
+        serde_json::to_string(self).unwrap_or_default() + "\n"
+    }
+}
+
+const TAKEN: [(&str, Kind); 3] = [
+    ("scans", Kind::Scan),
+    ("map", Kind::Map),
+    ("odometry", Kind::Odometry),
+];
+
+fn taken(recording: &Recording) -> BTreeMap<&'static str, String> {
+    let topic = |(what, kind)| Some((what, recording.topic(kind).ok()??.to_string()));
+    TAKEN.into_iter().filter_map(topic).collect()
+}
+
+fn unclear(recording: &Recording) -> Vec<String> {
+    let error = |(_, kind)| recording.topic(kind).err();
+    let errors = TAKEN.into_iter().filter_map(error);
+    errors.map(|error| error.to_string()).collect()
+}
+
+/// What is wrong; of several files, with the name of the one.
+fn damage(recording: &Recording) -> Option<String> {
+    match recording.file_count() {
+        1 => recording.damage().map(ToString::to_string),
+        _ => recording.damage_error().map(|error| error.to_string()),
+    }
+}
+
+/// By topic; one that is defined several times is listed once for each.
+fn channels(recording: &Recording, seconds: f64) -> Vec<Channel> {
+    let channel = |channel: &recording::Channel| Channel {
+        topic: channel.topic.to_string(),
+        schema: channel.schema.clone(),
+        encoding: channel.encoding.clone(),
+        messages: channel.messages,
+        hz: (channel.messages > 1 && seconds > 0.0)
+            .then(|| (channel.messages - 1) as f64 / seconds),
+    };
+    let mut channels: Vec<Channel> = recording.channels().map(channel).collect();
+    channels.sort_by(|a, b| a.topic.cmp(&b.topic));
+    channels
+}
+
+fn metadata(record: &recording::MetadataRecord) -> Metadata {
+    Metadata {
+        name: record.name.clone(),
+        entries: record.entries.clone(),
+    }
+}
+
+fn attachment(file: &recording::AttachedFile) -> Attachment {
+    Attachment {
+        name: file.name.clone(),
+        media_type: file.media_type.clone(),
+        bytes: file.len(),
+    }
+}

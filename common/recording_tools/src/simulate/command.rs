@@ -1,0 +1,90 @@
+//! What `backcast simulate` does: reads the map, drives, and records.
+
+use std::path::PathBuf;
+use std::process::ExitCode;
+
+use command_line::stdout;
+use progress::{Progress, say};
+use recording::ros::Time;
+use recording::write::{Packing, RecordingWriter};
+use recording::{GROUND_TRUTH, MAP, ODOM, TF_STATIC};
+use simulation::{Drive, DriveConfig, Path, Wheels};
+
+use super::messages::Messages;
+use crate::RecordingToolsError;
+
+const SECOND_NS: i64 = 1_000_000_000;
+
+/// What `backcast simulate` takes.
+#[derive(Debug, clap::Args)]
+pub struct Config {
+    /// The map, a YAML file as map_server reads it
+    #[arg(long, value_name = "FILE")]
+    map: PathBuf,
+
+    /// The way of the robot's base, corners in metres in the map: "X,Y X,Y …"
+    #[arg(long, value_name = "CORNERS", allow_hyphen_values = true)]
+    path: Path,
+
+    /// The recording that is written, an MCAP file; one that is there is replaced
+    #[arg(long, value_name = "FILE")]
+    out: PathBuf,
+
+    /// When the drive starts, whole seconds since 1970
+    #[arg(long, value_name = "SECONDS", default_value_t = 1_700_000_000, value_parser = clap::value_parser!(i64).range(0..=2_000_000_000))]
+    start_time: i64,
+
+    #[command(flatten)]
+    drive: DriveConfig,
+}
+
+/// Writes the recording, and says what is in it.
+///
+/// # Errors
+/// The map cannot be used, the path cannot be driven, or the file cannot be
+/// written. What cannot be driven is refused before the file is touched.
+pub fn run(config: &Config) -> Result<ExitCode, RecordingToolsError> {
+    let map = map::load_noting(&config.map, |key| say(&key.to_string()))?;
+    let drive = Drive::new(&map, &config.path, &config.drive)?;
+    let messages = Messages::new(&config.drive, drive.bearings());
+    let start_ns = config.start_time * SECOND_NS;
+    let scans = drive.scans();
+    let progress = Progress::new("simulating", scans);
+    let mut writer = RecordingWriter::create(&config.out, Packing::Zstd)?;
+    let start = time(start_ns);
+    writer.write(MAP, start_ns, &messages.map(&map, start))?;
+    writer.write(TF_STATIC, start_ns, &messages.mounts(start))?;
+    for snapshot in drive {
+        let stamp_ns = start_ns + snapshot.time_ns;
+        let stamp = time(stamp_ns);
+        let wheels = Wheels {
+            time_ns: snapshot.time_ns,
+            odom_from_base: snapshot.odom_from_base,
+            twist: snapshot.twist,
+        };
+        writer.write(ODOM, stamp_ns, &messages.odometry(&wheels, stamp))?;
+        writer.write(GROUND_TRUTH, stamp_ns, &messages.truth(&snapshot, stamp))?;
+        // A scan is there once its last beam is.
+        let mut end_ns = stamp_ns;
+        if let Some(wheels) = &snapshot.after {
+            end_ns = start_ns + wheels.time_ns;
+            writer.write(ODOM, end_ns, &messages.odometry(wheels, time(end_ns)))?;
+        }
+        for (topic, scan) in messages.scans(snapshot, stamp) {
+            writer.write(&topic, end_ns, &scan)?;
+        }
+        progress.step();
+    }
+    writer.finish()?;
+    drop(progress);
+    stdout::print(&format!(
+        "{}: {scans} scans with their true poses\n",
+        config.out.display()
+    ))?;
+    Ok(ExitCode::SUCCESS)
+}
+
+/// A stamp; the latest start and the longest drive fit its 32 bits.
+fn time(ns: i64) -> Time {
+    Time::from_ns(ns).unwrap_or_default()
+}

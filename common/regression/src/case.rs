@@ -1,0 +1,155 @@
+//! The recordings that are replayed.
+
+use std::io;
+use std::path::{Path, PathBuf};
+
+use launcher::LauncherError;
+
+use super::answer::Answer;
+use crate::RegressionError;
+
+/// A folder with a recording, its map and what is expected.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub(super) struct Case {
+    /// The folder's name.
+    pub(super) name: String,
+    /// Absolute.
+    folder: PathBuf,
+}
+
+impl Case {
+    /// The folder itself if it is a case, else all cases in it by name.
+    ///
+    /// # Errors
+    /// It cannot be read, or there is none.
+    pub(super) fn all_in(folder: &Path) -> Result<Vec<Self>, RegressionError> {
+        let folder = std::path::absolute(folder).map_err(LauncherError::Folder)?;
+        if let Some(case) = Case::of(&folder) {
+            return Ok(vec![case]);
+        }
+        let unreadable = |source| failed("read", &folder, source);
+        let entries = std::fs::read_dir(&folder).map_err(unreadable)?;
+        let paths: Vec<PathBuf> = entries
+            .map(|entry| Ok(entry.map_err(unreadable)?.path()))
+            .collect::<Result<_, RegressionError>>()?;
+        let mut cases: Vec<Case> = paths.iter().filter_map(|path| Case::of(path)).collect();
+        cases.sort_by(|a, b| a.name.cmp(&b.name));
+        match cases.is_empty() {
+            true => Err(RegressionError::NoCases { folder }),
+            false => Ok(cases),
+        }
+    }
+
+    fn of(folder: &Path) -> Option<Self> {
+        let case = Case {
+            name: folder.file_name()?.to_string_lossy().into_owned(),
+            folder: folder.to_owned(),
+        };
+        (case.recording().exists() && case.map().is_file()).then_some(case)
+    }
+
+    /// Its recording: a file, or the folder of a bag.
+    pub(super) fn recording(&self) -> PathBuf {
+        let names = ["recording.mcap", "recording", "recording.db3"];
+        let mut paths = names.map(|name| self.folder.join(name)).into_iter();
+        let found = paths.find(|path| path.exists());
+        found.unwrap_or_else(|| self.folder.join("recording.mcap"))
+    }
+
+    pub(super) fn map(&self) -> PathBuf {
+        self.folder.join("map.yaml")
+    }
+
+    fn expectation(&self) -> PathBuf {
+        self.folder.join("expected.json")
+    }
+
+    /// What is expected; `None` where nobody has said.
+    ///
+    /// # Errors
+    /// The file cannot be read, or says something else.
+    pub(super) fn expected(&self) -> Result<Option<Vec<Answer>>, RegressionError> {
+        let file = self.expectation();
+        let text = match std::fs::read_to_string(&file) {
+            Ok(text) => text,
+            Err(error) if error.kind() == io::ErrorKind::NotFound => return Ok(None),
+            Err(source) => return Err(failed("read", &file, source)),
+        };
+        let answers = serde_json::from_str(&text);
+        answers
+            .map(Some)
+            .map_err(|source| RegressionError::Expectation { file, source })
+    }
+
+    /// Expects this from now on.
+    ///
+    /// # Errors
+    /// The file cannot be written.
+    pub(super) fn accept(&self, answers: &[Answer]) -> Result<(), RegressionError> {
+        let file = self.expectation();
+        // Texts and finite numbers always serialize.
+        let text = serde_json::to_string_pretty(answers).unwrap_or_default() + "\n";
+        std::fs::write(&file, text).map_err(|source| failed("write", &file, source))
+    }
+}
+
+pub(super) fn failed(action: &'static str, file: &Path, source: io::Error) -> RegressionError {
+    LauncherError::File {
+        action,
+        file: file.to_owned(),
+        source,
+    }
+    .into()
+}
+
+#[cfg(test)]
+mod tests {
+    use tempfile::TempDir;
+
+    use super::*;
+
+    #[test]
+    fn a_case_has_a_recording_and_a_map() {
+        let folder = TempDir::new().unwrap();
+        let none = Case::all_in(folder.path()).unwrap_err();
+        assert!(
+            none.to_string().contains("no folder with recording.mcap"),
+            "{none}"
+        );
+        for (name, files) in [
+            ("b", &["recording.mcap", "map.yaml"][..]),
+            ("a", &["recording.mcap", "map.yaml"]),
+            ("c", &["recording.mcap"]),
+        ] {
+            let inner = folder.path().join(name);
+            std::fs::create_dir(&inner).unwrap();
+            for file in files {
+                std::fs::write(inner.join(file), "").unwrap();
+            }
+        }
+        let names = |folder: &Path| -> Vec<String> {
+            let cases = Case::all_in(folder).unwrap();
+            cases.into_iter().map(|case| case.name).collect()
+        };
+        assert_eq!(names(folder.path()), ["a", "b"]);
+        assert_eq!(names(&folder.path().join("b")), ["b"]);
+    }
+
+    #[test]
+    fn expectations_are_written_and_read_back() {
+        let folder = TempDir::new().unwrap();
+        for file in ["recording.mcap", "map.yaml"] {
+            std::fs::write(folder.path().join(file), "").unwrap();
+        }
+        let case = Case::all_in(folder.path()).unwrap().remove(0);
+        assert_eq!(case.expected().unwrap(), None);
+        case.accept(&[Answer::default()]).unwrap();
+        assert_eq!(case.expected().unwrap(), Some(vec![Answer::default()]));
+        std::fs::write(folder.path().join("expected.json"), "[{}]").unwrap();
+        let wrong = case.expected().unwrap_err();
+        assert!(
+            wrong.to_string().contains("--accept writes it anew"),
+            "{wrong}"
+        );
+    }
+}

@@ -1,0 +1,185 @@
+//! What `backcast regress` does.
+
+use std::path::{Path, PathBuf};
+use std::process::ExitCode;
+use std::time::Instant;
+
+use command_line::stdout;
+use launcher::LauncherError;
+use launcher::descriptor::{self, DEFAULT_FILE};
+use launcher::run::build;
+use progress::say;
+use transport::{GraphName, with_causes};
+
+use super::case::{self, Case};
+use super::compare::{differences, table};
+use super::junit::{self, Outcome};
+use super::pictures::{self, Drawn};
+use super::play::{self, Played};
+use crate::RegressionError;
+
+/// What stands below the options.
+pub const NOTES: &str = "\
+A case is a folder with recording.mcap (or the folder recording, of a bag), map.yaml and
+expected.json. Votes, verdicts, the tracker's states and counts must come out exactly;
+positions within 1 mm, headings within 0.01 degrees, scores within 0.001.
+
+Exit codes: 0 all as expected or accepted, 1 differences, a graph that fails or a recording that is
+damaged, 2 wrong use";
+
+/// What `backcast regress` takes.
+#[derive(Debug, clap::Args)]
+pub struct Config {
+    /// Folders that are cases, or hold some
+    #[arg(default_value = "recordings", value_name = "FOLDER")]
+    folders: Vec<PathBuf>,
+
+    /// The graph; it plays each recording on its map, at --rate max
+    #[arg(long, default_value = DEFAULT_FILE, value_name = "FILE")]
+    dataflow: PathBuf,
+
+    /// Expect from now on what was found
+    #[arg(long)]
+    accept: bool,
+
+    /// Draw each scan that differs, at most 20 a recording, where it is expected
+    /// and where it was found
+    #[arg(long, value_name = "FOLDER")]
+    pictures: Option<PathBuf>,
+
+    /// Write the outcome for a build server
+    #[arg(long, value_name = "FILE")]
+    junit: Option<PathBuf>,
+}
+
+/// Replays one recording after another; one whose graph fails is told, and the
+/// next one follows.
+///
+/// # Errors
+/// There is nothing to replay, the graph cannot be built, or a file cannot be
+/// written.
+pub fn run(config: &Config) -> Result<ExitCode, RegressionError> {
+    transport::node::start_logging().map_err(LauncherError::Logging)?;
+    let mut cases = Vec::new();
+    for folder in &config.folders {
+        cases.extend(Case::all_in(folder)?);
+    }
+    let mut descriptor = descriptor::load(&config.dataflow)?;
+    // What replays is the same for all cases, and is built with the others.
+    if let Some(case) = cases.first() {
+        play::direct(&mut descriptor, case)?;
+    }
+    build::build_all(&descriptor.dataflow, &descriptor.folder)?;
+    let mut outcomes = Vec::new();
+    for case in &cases {
+        let outcome = replay(config, case);
+        stdout::print(&text(&outcome, config.accept))?;
+        outcomes.push(outcome);
+    }
+    if let Some(file) = &config.junit {
+        let report = junit::report(&outcomes).map_err(std::io::Error::other);
+        report
+            .and_then(|text| std::fs::write(file, text))
+            .map_err(|source| case::failed("write", file, source))?;
+    }
+    let is_good = |outcome: &Outcome| match config.accept {
+        true => outcome.result.is_ok(),
+        false => outcome.is_as_expected(),
+    };
+    match outcomes.iter().all(is_good) {
+        true => Ok(ExitCode::SUCCESS),
+        false => Ok(ExitCode::FAILURE),
+    }
+}
+
+fn replay(config: &Config, case: &Case) -> Outcome {
+    let start = Instant::now();
+    let mut outcome = Outcome {
+        name: case.name.clone(),
+        scans: 0,
+        took: start.elapsed(),
+        result: Ok(Vec::new()),
+    };
+    match judge(config, case, &mut outcome) {
+        Ok(()) => {}
+        Err(error) => {
+            say(&format!("{}: {}", case.name, with_causes(&error)));
+            outcome.result = Err(with_causes(&error));
+        }
+    }
+    outcome.took = start.elapsed();
+    outcome
+}
+
+fn judge(config: &Config, case: &Case, outcome: &mut Outcome) -> Result<(), RegressionError> {
+    let expected = case.expected();
+    let mut descriptor = descriptor::load(&config.dataflow)?;
+    play::direct(&mut descriptor, case)?;
+    let name = GraphName::new(&format!("rg{}", std::process::id()))?;
+    let Played {
+        answers: found,
+        is_tracked,
+        damage,
+    } = play::play(descriptor, &name, &case.recording())?;
+    outcome.scans = found.len();
+    // What is not written as it should be can be written anew.
+    let expected = match config.accept {
+        true => Some(expected.ok().flatten().unwrap_or_default()),
+        false => expected?,
+    };
+    let Some(mut expected) = expected else {
+        outcome.result = Err("there is no expected.json: --accept writes it".to_owned());
+        return Ok(());
+    };
+    if !is_tracked {
+        // A graph without a tracker has no poses to compare.
+        expected.iter_mut().for_each(|answer| answer.pose = None);
+    }
+    let all = differences(&expected, &found);
+    if let Some(folder) = &config.pictures {
+        let drawn = pictures::write(folder, case, (&expected, &found), &all)?;
+        tell(&case.name, folder, drawn);
+    }
+    if let Some(damage) = damage {
+        // What is cut off would be missed for ever.
+        outcome.result = Err(format!(
+            "{damage}; only what lies before was played and compared, with {} differences",
+            all.len()
+        ));
+        return Ok(());
+    }
+    outcome.result = Ok(all);
+    match config.accept {
+        true => case.accept(&found),
+        false => Ok(()),
+    }
+}
+
+fn tell(case: &str, folder: &Path, drawn: Drawn) {
+    let Drawn { pictures, scans } = drawn;
+    if scans > 0 {
+        let folder = folder.display();
+        say(&format!(
+            "{case}: {pictures} pictures in {folder}, of {scans} scans that differ"
+        ));
+    }
+}
+
+fn text(outcome: &Outcome, accepted: bool) -> String {
+    let Outcome {
+        name, scans, took, ..
+    } = outcome;
+    let seconds = took.as_secs_f64();
+    let word = match (&outcome.result, accepted) {
+        (Ok(_), true) => "accepted: ",
+        _ => "",
+    };
+    let verdict = outcome
+        .complaint()
+        .unwrap_or_else(|| "as expected".to_owned());
+    let line = format!("{name}: {scans} scans in {seconds:.1} s, {word}{verdict}\n");
+    match &outcome.result {
+        Ok(differences) if !differences.is_empty() => line + &table(differences),
+        _ => line,
+    }
+}

@@ -1,0 +1,75 @@
+//! All that can end a command of this crate early, and the exit code that it means.
+
+use std::path::PathBuf;
+
+use command_line::{CommandError, FAILED, OutputError, WRONG_USE};
+use drawing::DrawingError;
+use launcher::LauncherError;
+use map::MapError;
+use plots::PlotError;
+use recording::RecordingError;
+use transport::TransportError;
+
+/// Why recordings cannot be replayed and compared.
+#[derive(Debug, thiserror::Error)]
+pub enum RegressionError {
+    /// The graph cannot be run.
+    #[error(transparent)]
+    Launcher(#[from] LauncherError),
+    /// A picture cannot be made.
+    #[error(transparent)]
+    Plot(#[from] PlotError),
+    /// A picture cannot be made.
+    #[error(transparent)]
+    Drawing(#[from] DrawingError),
+    /// A map file cannot be used.
+    #[error(transparent)]
+    Map(#[from] MapError),
+    /// A recording cannot be used.
+    #[error(transparent)]
+    Recording(#[from] RecordingError),
+    /// The graph cannot be joined, heard or cleaned up.
+    #[error(transparent)]
+    Transport(#[from] TransportError),
+    /// There is no recording to replay.
+    #[error(
+        "{} holds no folder with recording.mcap and map.yaml, and is none",
+        folder.display()
+    )]
+    NoCases {
+        /// Where they were looked for.
+        folder: PathBuf,
+    },
+    /// What is expected of a recording is not written as it should be.
+    #[error("{} does not say what is expected: --accept writes it anew", file.display())]
+    Expectation {
+        /// The file.
+        file: PathBuf,
+        /// Where and why.
+        source: serde_json::Error,
+    },
+    /// A graph did not answer every scan.
+    #[error("{}: {answered} of {scans} scans were answered; the graph's own lines say why", recording.display())]
+    Unanswered {
+        /// The recording.
+        recording: PathBuf,
+        /// Its scans.
+        scans: usize,
+        /// Scans with votes and hypotheses.
+        answered: usize,
+    },
+    /// Standard output takes no more.
+    #[error(transparent)]
+    Output(#[from] OutputError),
+}
+
+impl CommandError for RegressionError {
+    fn exit_code(&self) -> u8 {
+        match self {
+            Self::Launcher(error) => error.exit_code(),
+            Self::Plot(error) => error.exit_code(),
+            Self::NoCases { .. } => WRONG_USE,
+            _ => FAILED,
+        }
+    }
+}

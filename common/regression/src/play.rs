@@ -1,0 +1,192 @@
+//! Plays a recording through a graph of its own and collects the answers.
+
+use std::path::Path;
+use std::time::{Duration, Instant};
+
+use launcher::descriptor::Descriptor;
+use launcher::run::arguments::{MAP_SERVER, find, leave_out_monitors, set, unset};
+use launcher::run::crew::Crew;
+use launcher::run::{replay, tracker};
+use messages::{HypothesesHeader, Hypothesis, PoseHeader, VotesHeader, topic};
+use recording::{Kind, Recording};
+use transport::{Flow, Graph, GraphName, Subscriber, TransportError, remove_leftovers};
+
+use super::answer::Answer;
+use super::case::Case;
+use crate::RegressionError;
+
+/// The name under which the graph is joined.
+const NAME: &str = "regress";
+/// Between two looks at the processes.
+const TICK: Duration = Duration::from_millis(20);
+/// How long the last answers may take once the source is done.
+const PATIENCE: Duration = Duration::from_secs(20);
+
+/// Lets the graph replay this recording, on its map, as fast as it answers.
+///
+/// # Errors
+/// The graph has no map server.
+pub(super) fn direct(descriptor: &mut Descriptor, case: &Case) -> Result<(), RegressionError> {
+    let Descriptor { dataflow, file, .. } = descriptor;
+    leave_out_monitors(dataflow);
+    let replayer = replay::play(dataflow, &[case.recording()]);
+    set(replayer, "--rate", Some("max"));
+    unset(replayer, "--loop", false);
+    let server = find(dataflow, &[MAP_SERVER], "the map", file)?;
+    set(server, "--map", Some(&case.map().to_string_lossy()));
+    tracker::settle(dataflow);
+    for node in &mut dataflow.nodes {
+        // What goes wrong is told; what goes well is in the table.
+        node.env
+            .insert(0, ("RUST_LOG".to_owned(), "warn".to_owned()));
+    }
+    Ok(())
+}
+
+/// What came of a recording.
+#[derive(Debug, Clone, PartialEq)]
+pub(super) struct Played {
+    /// The answers to all scans, by their coming.
+    pub(super) answers: Vec<Answer>,
+    /// Whether the graph tracks the pose.
+    pub(super) is_tracked: bool,
+    /// Why the recording was not played to its end, if it was not.
+    pub(super) damage: Option<String>,
+}
+
+/// Plays what is readable of a recording.
+///
+/// # Errors
+/// The graph does not run, or leaves scans without an answer.
+pub(super) fn play(
+    descriptor: Descriptor,
+    name: &GraphName,
+    recording: &Path,
+) -> Result<Played, RegressionError> {
+    let (scans, damage) = look_at(recording)?;
+    let is_tracked = tracker::has_tracker(&descriptor.dataflow);
+    remove_leftovers(name)?;
+    let outcome = collect(descriptor, name, (scans, is_tracked));
+    let cleared = remove_leftovers(name);
+    let answers = outcome?;
+    cleared?;
+    match answers.len() == scans {
+        true => Ok(Played {
+            answers,
+            is_tracked,
+            damage,
+        }),
+        false => Err(RegressionError::Unanswered {
+            recording: recording.to_owned(),
+            scans,
+            answered: answers.len(),
+        }),
+    }
+}
+
+/// How many scans it has, and how it is damaged.
+fn look_at(path: &Path) -> Result<(usize, Option<String>), RegressionError> {
+    let recording = Recording::open(path)?;
+    let topic = recording.required_topic(Kind::Scan)?;
+    let of_topic = recording
+        .channels()
+        .filter(|channel| channel.topic == topic);
+    let scans = of_topic.map(|channel| channel.messages as usize).sum();
+    Ok((
+        scans,
+        recording.damage_error().map(|error| error.to_string()),
+    ))
+}
+
+fn collect(
+    descriptor: Descriptor,
+    name: &GraphName,
+    (scans, is_tracked): (usize, bool),
+) -> Result<Vec<Answer>, RegressionError> {
+    let graph = Graph::join_named(NAME, name)?;
+    let votes = graph.subscriber::<topic::Votes>()?;
+    let hypotheses = graph.subscriber::<topic::Hypotheses>()?;
+    let poses = graph.subscriber::<topic::Tracked>()?;
+    let mut heard = Heard {
+        is_tracked,
+        ..Heard::default()
+    };
+    let mut crew = Crew::new(descriptor.dataflow.nodes, &descriptor.folder, name)?;
+    let mut last_progress = Instant::now();
+    let outcome = graph.run(&[&votes, &hypotheses, &poses], TICK, |_| {
+        let now = Instant::now();
+        let over = crew.is_over();
+        if heard.take(&votes, &hypotheses, &poses)? || !over {
+            last_progress = now;
+        }
+        if heard.is_complete(scans) || over && now - last_progress >= PATIENCE {
+            return Ok(Flow::Stop);
+        }
+        crew.tick(now)?;
+        Ok::<_, RegressionError>(Flow::Continue)
+    });
+    let stopped = crew.stop();
+    outcome?;
+    stopped?;
+    Ok(heard.answers())
+}
+
+/// What came until now.
+#[derive(Default)]
+struct Heard {
+    is_tracked: bool,
+    /// The tracker's poses of scans.
+    poses: Vec<PoseHeader>,
+    votes: Vec<VotesHeader>,
+    hypotheses: Vec<(HypothesesHeader, Vec<Hypothesis>)>,
+}
+
+impl Heard {
+    /// Says whether anything came.
+    fn take(
+        &mut self,
+        votes: &Subscriber<topic::Votes>,
+        hypotheses: &Subscriber<topic::Hypotheses>,
+        poses: &Subscriber<topic::Tracked>,
+    ) -> Result<bool, TransportError> {
+        let before = self.messages();
+        while let Some(sample) = votes.receive()? {
+            self.votes.push(*sample.header());
+        }
+        while let Some(sample) = hypotheses.receive()? {
+            let answer = (*sample.header(), sample.items().to_vec());
+            self.hypotheses.push(answer);
+        }
+        while let Some(sample) = poses.receive()? {
+            if sample.header().from_scan == 1 {
+                self.poses.push(*sample.header());
+            }
+        }
+        Ok(self.messages() > before)
+    }
+
+    fn messages(&self) -> usize {
+        self.votes.len() + self.hypotheses.len() + self.poses.len()
+    }
+
+    fn is_complete(&self, scans: usize) -> bool {
+        let is_tracked = !self.is_tracked || self.poses.len() >= scans;
+        self.votes.len() >= scans && self.hypotheses.len() >= scans && is_tracked
+    }
+
+    /// Votes, hypotheses and the tracker's pose that belong to one scan.
+    fn answers(&self) -> Vec<Answer> {
+        let of = |(header, items): &(HypothesesHeader, Vec<Hypothesis>)| {
+            let votes = self
+                .votes
+                .iter()
+                .find(|votes| votes.stamp.is_of(header.stamp))?;
+            let pose = self
+                .poses
+                .iter()
+                .find(|pose| pose.stamp.is_of(header.stamp));
+            Some(Answer::of(votes, header, items, pose))
+        };
+        self.hypotheses.iter().filter_map(of).collect()
+    }
+}

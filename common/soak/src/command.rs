@@ -1,0 +1,232 @@
+//! What `backcast soak` takes, and what it does.
+
+use std::collections::BTreeMap;
+use std::path::{Path, PathBuf};
+use std::process::ExitCode;
+use std::time::Duration;
+
+use command_line::OutputError;
+use command_line::stdout::print;
+use dataflow::RestartPolicy;
+use geometry::Pose;
+use launcher::LauncherError;
+use launcher::descriptor::{self, DEFAULT_FILE, Descriptor};
+use launcher::run::Options;
+use launcher::run::arguments::{MAP_SERVER, PLAYERS, value};
+use recording::Recording;
+use transport::GraphName;
+
+use super::course::{Course, Plan};
+use super::fault::Fault;
+use super::filler;
+use super::maps::Maps;
+use crate::SoakError;
+
+/// What stands below the options.
+pub const NOTES: &str = "\
+A recording is played again and again, and every pose that the tracker is sure of is
+compared with the recording's /ground_truth. What the graph itself says goes to standard
+error, the report to standard output.
+
+shm and disk fill a file system, and are refused where more than 1 GiB is free: give the
+graph its own, as root, or with --user --map-root-user:
+
+    unshare --mount sh -c 'mount -t tmpfs -o size=256m tmpfs /dev/shm && backcast soak …'
+
+Exit codes: 0 all promises were kept, 1 a pose was wrong, something did not recover or was left
+behind, 2 wrong use";
+
+const DEFAULT_FAULTS: [Fault; 4] = [Fault::Kill, Fault::Pair, Fault::Stop, Fault::Map];
+const DEFAULT_MINUTES: f64 = 60.0;
+
+/// What `backcast soak` takes.
+#[derive(Debug, clap::Args)]
+pub struct Config {
+    /// The graph's descriptor
+    #[arg(default_value = DEFAULT_FILE, value_name = "FILE")]
+    dataflow: PathBuf,
+
+    /// How long it runs, hours [default: 1]
+    #[arg(long, value_name = "H", value_parser = positive, conflicts_with = "minutes")]
+    hours: Option<f64>,
+
+    /// How long it runs, minutes
+    #[arg(long, value_name = "M", value_parser = positive)]
+    minutes: Option<f64>,
+
+    /// Replay this recording, which must hold the truth [default: what the descriptor plays]
+    #[arg(long, value_name = "FILE")]
+    replay: Option<PathBuf>,
+
+    /// Serve this map [default: the one that the descriptor names]
+    #[arg(long, value_name = "FILE")]
+    map: Option<PathBuf>,
+
+    /// Record the graph to this MCAP file
+    #[arg(long, value_name = "FILE")]
+    record: Option<PathBuf>,
+
+    /// What is done to the graph, with commas between
+    #[arg(long, value_enum, value_name = "FAULTS", value_delimiter = ',', default_values_t = DEFAULT_FAULTS)]
+    faults: Vec<Fault>,
+
+    /// Seconds from one fault to the next, at least; the next one waits until the one
+    /// before is overcome
+    #[arg(long, value_name = "SECONDS", value_parser = positive, default_value_t = 3.0)]
+    pause: f64,
+
+    /// Where the randomness begins
+    #[arg(long, value_name = "NUMBER", default_value_t = 1)]
+    seed: u64,
+
+    /// The graph's name [default: one of its own]
+    #[arg(long, value_name = "NAME", value_parser = GraphName::new)]
+    graph: Option<GraphName>,
+
+    /// Print JSON
+    #[arg(long)]
+    json: bool,
+}
+
+/// Runs a graph and does it harm; says how it fared.
+///
+/// # Errors
+/// The graph cannot be set up, or something cannot be done to it.
+pub fn run(config: &Config) -> Result<ExitCode, SoakError> {
+    transport::node::start_logging().map_err(LauncherError::Logging)?;
+    let descriptor = descriptor::load(&config.dataflow)?;
+    let recording = config.recording(&descriptor)?;
+    let truths = truths(&recording)?;
+    check_room(config)?;
+    let folder = tempfile::tempdir().map_err(|source| LauncherError::File {
+        action: "create a folder in",
+        file: std::env::temp_dir(),
+        source,
+    })?;
+    let maps = Maps::new(&config.map(&descriptor)?, folder.path())?;
+    let graph = match &config.graph {
+        Some(graph) => graph.clone(),
+        None => Options::default().graph_name()?,
+    };
+    let plan = Plan {
+        arguments: config.arguments(&graph, &maps),
+        victims: victims(&descriptor),
+        graph,
+        lasts: config.lasts(),
+        pause: Duration::from_secs_f64(config.pause),
+        faults: config.faults.clone(),
+        seed: config.seed,
+        disk: config.record.as_deref().map(folder_of),
+    };
+    let report = Course::start(plan, maps, truths)?.run()?;
+    print(&match config.json {
+        true => report.json().map_err(|error| OutputError(error.into()))?,
+        false => report.text(),
+    })?;
+    Ok(match report.is_good() {
+        true => ExitCode::SUCCESS,
+        false => ExitCode::FAILURE,
+    })
+}
+
+impl Config {
+    fn lasts(&self) -> Duration {
+        let minutes = self.hours.map(|hours| 60.0 * hours).or(self.minutes);
+        Duration::from_secs_f64(60.0 * minutes.unwrap_or(DEFAULT_MINUTES))
+    }
+
+    /// What the graph is started with, after `run`.
+    fn arguments(&self, graph: &GraphName, maps: &Maps) -> Vec<String> {
+        let text = |path: &Path| path.display().to_string();
+        let mut arguments = vec![text(&self.dataflow), "--json".into(), "--loop".into()];
+        arguments.extend(["--graph".into(), graph.to_string()]);
+        arguments.extend(["--map".into(), text(maps.served())]);
+        for (option, file) in [("--replay", &self.replay), ("--record", &self.record)] {
+            if let Some(file) = file {
+                arguments.extend([option.into(), text(file)]);
+            }
+        }
+        arguments
+    }
+
+    fn recording(&self, descriptor: &Descriptor) -> Result<PathBuf, SoakError> {
+        match &self.replay {
+            Some(file) => Ok(file.clone()),
+            None => named(descriptor, &PLAYERS, "--recording", "--replay"),
+        }
+    }
+
+    fn map(&self, descriptor: &Descriptor) -> Result<PathBuf, SoakError> {
+        match &self.map {
+            Some(file) => Ok(file.clone()),
+            None => named(descriptor, &[MAP_SERVER], "--map", "--map"),
+        }
+    }
+}
+
+/// The file that the descriptor gives one of these nodes; else `instead` has to name it.
+fn named(
+    descriptor: &Descriptor,
+    executables: &[&str],
+    option: &str,
+    instead: &str,
+) -> Result<PathBuf, SoakError> {
+    let mut nodes = descriptor.dataflow.nodes.iter();
+    let node = nodes.find(|node| executables.contains(&node.executable()));
+    match node.and_then(|node| value(node, option)) {
+        Some(file) => Ok(descriptor.folder.join(file)),
+        None => Err(LauncherError::Usage(format!(
+            "{} has no {} with {option}: say which one with {instead}",
+            descriptor.file.display(),
+            executables.join(" or "),
+        ))
+        .into()),
+    }
+}
+
+/// The nodes that are killed and stopped: those that are started again.
+fn victims(descriptor: &Descriptor) -> Vec<String> {
+    let nodes = descriptor.dataflow.nodes.iter();
+    let again = nodes.filter(|node| node.restart.policy != RestartPolicy::Never);
+    again.map(|node| node.id.clone()).collect()
+}
+
+fn truths(recording: &Path) -> Result<BTreeMap<i64, Pose>, SoakError> {
+    let truths = Recording::open(recording)?.ground_truths()?;
+    if truths.is_empty() {
+        let file = recording.to_owned();
+        return Err(SoakError::NoTruths { file });
+    }
+    let pose = |(stamp_ns, truth): (i64, recording::GroundTruth)| (stamp_ns, truth.pose);
+    Ok(truths.into_iter().map(pose).collect())
+}
+
+/// Whether what is to be filled may be.
+fn check_room(config: &Config) -> Result<(), SoakError> {
+    if config.faults.contains(&Fault::Shm) {
+        filler::check(Path::new("/dev/shm"))?;
+    }
+    if config.faults.contains(&Fault::Disk) {
+        let Some(record) = &config.record else {
+            let needed = "--faults disk fills the disk of --record, which is not given";
+            return Err(LauncherError::Usage(needed.to_owned()).into());
+        };
+        filler::check(&folder_of(record))?;
+    }
+    Ok(())
+}
+
+fn folder_of(file: &Path) -> PathBuf {
+    match file.parent() {
+        Some(folder) if folder != Path::new("") => folder.to_owned(),
+        _ => PathBuf::from("."),
+    }
+}
+
+fn positive(text: &str) -> Result<f64, String> {
+    match text.parse() {
+        // A year, which no clock overflows with.
+        Ok(value) if value > 0.0 && value <= 1e4 => Ok(value),
+        _ => Err("allowed is a number above 0, up to 10000".to_owned()),
+    }
+}

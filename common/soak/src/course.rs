@@ -1,0 +1,363 @@
+//! The course of a run: start, do harm and see what comes, stop, sum up.
+
+use std::collections::BTreeMap;
+use std::fs::remove_file;
+use std::path::{Path, PathBuf};
+use std::sync::Arc;
+use std::sync::atomic::{AtomicBool, Ordering};
+use std::sync::mpsc::RecvTimeoutError;
+use std::time::{Duration, Instant};
+
+use geometry::Pose;
+use launcher::LauncherError;
+use launcher::run::console::{LAUNCHER, say};
+use launcher::run::control::{Answer, NodeStatus, Question, Status, ask};
+use nix::sys::signal::Signal;
+use signal_hook::consts::{SIGHUP, SIGINT, SIGTERM};
+use statistics::Distribution;
+use transport::{GraphName, control_socket, files_of, monotonic_ns};
+
+use super::fault::{Draw, Fault};
+use super::filler::Filler;
+use super::launched::{Launched, Losses, Printed, signal};
+use super::maps::Maps;
+use super::report::Report;
+use super::tally::{Gap, Tally};
+use super::usage::Usage;
+use crate::SoakError;
+
+/// How long the first sure pose may take, and any pose after a fault, before the graph is
+/// given up: everything that it does by itself takes less.
+const PATIENCE: Duration = Duration::from_secs(60);
+/// Between two looks at the processes.
+const LOOK: Duration = Duration::from_secs(1);
+/// Between two looks at whether something is over.
+const TICK: Duration = Duration::from_millis(50);
+/// As which node the launcher is listed.
+const LAUNCHED: &str = LAUNCHER;
+
+/// What is to be done.
+#[derive(Debug)]
+pub(super) struct Plan {
+    /// Of the launcher, after `run`.
+    pub(super) arguments: Vec<String>,
+    /// The nodes that are killed and stopped.
+    pub(super) victims: Vec<String>,
+    pub(super) graph: GraphName,
+    pub(super) lasts: Duration,
+    pub(super) pause: Duration,
+    pub(super) faults: Vec<Fault>,
+    pub(super) seed: u64,
+    /// The folder whose disk is filled.
+    pub(super) disk: Option<PathBuf>,
+}
+
+/// A run that has begun.
+pub(super) struct Course {
+    plan: Plan,
+    maps: Maps,
+    draw: Draw,
+    launched: Launched,
+    begin: Instant,
+    tally: Tally,
+    usage: Usage,
+    losses: Losses,
+    nodes: Vec<NodeStatus>,
+    next_look: Instant,
+    /// Restarts that launchers which have ended have counted.
+    earlier_restarts: u64,
+    nodes_ended_s: Distribution,
+    failures: Vec<String>,
+    stop: Arc<AtomicBool>,
+}
+
+/// Why watching has ended.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+enum Watched {
+    /// What was waited for has come.
+    Enough,
+    /// The time is over.
+    Late,
+    /// The graph has ended, or we are to.
+    Over,
+}
+
+impl Course {
+    /// Starts the graph.
+    ///
+    /// # Errors
+    /// It cannot be started.
+    pub(super) fn start(
+        plan: Plan,
+        maps: Maps,
+        truths: BTreeMap<i64, Pose>,
+    ) -> Result<Self, SoakError> {
+        let stop = Arc::new(AtomicBool::new(false));
+        for number in [SIGINT, SIGTERM, SIGHUP] {
+            signal_hook::flag::register(number, Arc::clone(&stop))
+                .map_err(LauncherError::Signal)?;
+        }
+        let now = Instant::now();
+        Ok(Course {
+            launched: Launched::start(&plan.arguments)?,
+            draw: Draw::new(&plan.faults, plan.seed),
+            begin: now,
+            tally: Tally::new(truths, monotonic_ns(), plan.lasts),
+            usage: Usage::default(),
+            losses: Losses::default(),
+            nodes: Vec::new(),
+            next_look: now,
+            earlier_restarts: 0,
+            nodes_ended_s: Distribution::new(1000),
+            failures: Vec::new(),
+            plan,
+            maps,
+            stop,
+        })
+    }
+
+    /// Does harm until the time is over, then stops the graph.
+    ///
+    /// # Errors
+    /// Something cannot be done to it.
+    pub(super) fn run(mut self) -> Result<Report, SoakError> {
+        // A build may come first, which takes as long as it takes.
+        while self.watch(PATIENCE, Tally::is_sure) == Watched::Late {
+            if self.status().is_some() {
+                self.failures
+                    .push(format!("no Unique pose within {PATIENCE:?}"));
+                break;
+            }
+        }
+        let end = Instant::now() + self.plan.lasts;
+        while Instant::now() < end && self.failures.is_empty() {
+            let pause = self.plan.pause;
+            if self.watch(pause, |_| false) == Watched::Over {
+                break;
+            }
+            let Some(fault) = self.draw.fault() else {
+                continue;
+            };
+            self.suffer(fault)?;
+            if self.watch(PATIENCE, Tally::has_recovered) == Watched::Late {
+                let name = fault.name();
+                self.failures
+                    .push(format!("no pose within {PATIENCE:?} after {name}"));
+            }
+        }
+        if self.failures.is_empty() && self.watch(PATIENCE, Tally::is_sure) == Watched::Late {
+            let open = self.tally.not_overcome();
+            self.failures
+                .push(format!("no Unique pose within {PATIENCE:?} after {open:?}"));
+        }
+        self.finish()
+    }
+
+    /// Takes what comes for so long, or until it is enough.
+    fn watch(&mut self, patience: Duration, enough: impl Fn(&Tally) -> bool) -> Watched {
+        let deadline = Instant::now() + patience;
+        loop {
+            if self.stop.load(Ordering::Relaxed) {
+                return Watched::Over;
+            }
+            if enough(&self.tally) {
+                return Watched::Enough;
+            }
+            let now = Instant::now();
+            if now >= deadline {
+                return Watched::Late;
+            }
+            if now >= self.next_look {
+                self.look();
+            }
+            match self.launched.lines().recv_timeout(TICK.min(deadline - now)) {
+                Ok(printed) => self.take(&printed),
+                Err(RecvTimeoutError::Timeout) => {}
+                Err(RecvTimeoutError::Disconnected) => {
+                    self.failures.push("the graph ended by itself".to_owned());
+                    return Watched::Over;
+                }
+            }
+        }
+    }
+
+    fn take(&mut self, printed: &Printed) {
+        if let Some(pose) = &printed.pose {
+            self.tally.pose(pose);
+        }
+        if let Some(losses) = printed.summary {
+            self.losses.scans += losses.scans;
+            self.losses.answered += losses.answered;
+            self.losses.dropped += losses.dropped;
+            self.losses.refused += losses.refused;
+        }
+    }
+
+    /// Looks at what the processes take.
+    fn look(&mut self) {
+        self.next_look = Instant::now() + LOOK;
+        let Some(status) = self.status() else {
+            return;
+        };
+        self.nodes = status.nodes;
+        // What it takes before it works says nothing of what grows.
+        if !self.tally.is_sure() && self.usage.nodes.is_empty() {
+            return;
+        }
+        self.usage.look_at(LAUNCHED, self.launched.pid());
+        for node in &self.nodes {
+            if let Some(pid) = node.pid {
+                self.usage.look_at(&node.id, pid);
+            }
+        }
+        self.usage.look_at_files(&files_of(&self.plan.graph));
+    }
+
+    /// What the launcher says of its nodes; nothing while it does not answer.
+    fn status(&self) -> Option<Status> {
+        match ask(&control_socket(&self.plan.graph), &Question::Status) {
+            Ok(Answer::Status(status)) => Some(status),
+            _ => None,
+        }
+    }
+
+    fn suffer(&mut self, fault: Fault) -> Result<(), SoakError> {
+        let pids = self.choose(fault.nodes());
+        let words: Vec<_> = pids.iter().map(|(id, _)| id.as_str()).collect();
+        let seconds = self.begin.elapsed().as_secs();
+        say(
+            "soak",
+            &format!("{seconds} s: {} {}", fault.name(), words.join(" ")),
+        );
+        let mut over_ns = monotonic_ns();
+        let mut killed = 0;
+        match fault {
+            Fault::Kill | Fault::Pair => {
+                for (_, pid) in &pids {
+                    signal(*pid, Signal::SIGKILL)?;
+                }
+                killed = pids.len();
+            }
+            Fault::Stop => {
+                for (_, pid) in &pids {
+                    signal(*pid, Signal::SIGSTOP)?;
+                }
+                self.watch(fault.lasts(), |_| false);
+                over_ns = monotonic_ns();
+                for (_, pid) in &pids {
+                    signal(*pid, Signal::SIGCONT)?;
+                }
+            }
+            Fault::Map => self.maps.swap()?,
+            Fault::Tmp => self.remove_files(),
+            Fault::Launcher => over_ns = self.kill_launcher()?,
+            Fault::Shm => over_ns = self.fill(Path::new("/dev/shm"), fault)?,
+            Fault::Disk => {
+                if let Some(folder) = self.plan.disk.clone() {
+                    over_ns = self.fill(&folder, fault)?;
+                }
+            }
+        }
+        self.tally.suffered(fault, killed, over_ns);
+        Ok(())
+    }
+
+    /// Running nodes that are started again, by chance.
+    fn choose(&mut self, count: usize) -> Vec<(String, i32)> {
+        if count == 0 {
+            return Vec::new();
+        }
+        if let Some(status) = self.status() {
+            self.nodes = status.nodes;
+        }
+        let victims = self
+            .nodes
+            .iter()
+            .filter(|n| self.plan.victims.contains(&n.id));
+        let running: Vec<_> = victims
+            .filter_map(|node| Some((node.id.clone(), node.pid?)))
+            .collect();
+        let chosen = self.draw.some_of(&running, count);
+        chosen.into_iter().cloned().collect()
+    }
+
+    /// What a cleaning of the temporary folder does.
+    fn remove_files(&self) {
+        let files = files_of(&self.plan.graph).into_iter();
+        for file in files.filter(|file| !file.starts_with("/dev/shm")) {
+            // What is gone meanwhile is gone.
+            let _ = remove_file(file);
+        }
+    }
+
+    /// When room was made again.
+    fn fill(&mut self, folder: &Path, fault: Fault) -> Result<i64, SoakError> {
+        let filler = Filler::fill(folder)?;
+        self.watch(fault.lasts(), |_| false);
+        drop(filler);
+        Ok(monotonic_ns())
+    }
+
+    /// When the next one was started.
+    fn kill_launcher(&mut self) -> Result<i64, SoakError> {
+        if let Some(status) = self.status() {
+            self.nodes = status.nodes;
+        }
+        self.earlier_restarts += restarts(&self.nodes);
+        let killed = Instant::now();
+        self.launched.kill()?;
+        while let Ok(printed) = self.launched.lines().recv() {
+            self.take(&printed);
+        }
+        let lives = |node: &NodeStatus| {
+            let process = |pid| PathBuf::from(format!("/proc/{pid}"));
+            node.pid.is_some_and(|pid| process(pid).exists())
+        };
+        while self.nodes.iter().any(lives) {
+            if killed.elapsed() > PATIENCE {
+                self.failures
+                    .push("nodes went on without their launcher".to_owned());
+                break;
+            }
+            std::thread::sleep(TICK / 10);
+        }
+        self.nodes_ended_s.add(killed.elapsed().as_secs_f64());
+        self.nodes.clear();
+        let started_ns = monotonic_ns();
+        self.launched = Launched::start(&self.plan.arguments)?;
+        Ok(started_ns)
+    }
+
+    fn finish(mut self) -> Result<Report, SoakError> {
+        self.look();
+        let seconds = self.begin.elapsed().as_secs_f64();
+        let restarts = self.earlier_restarts + restarts(&self.nodes);
+        self.launched.ask_to_stop()?;
+        while let Ok(printed) = self.launched.lines().recv() {
+            self.take(&printed);
+        }
+        let status = self.launched.wait()?;
+        if !status.success() {
+            self.failures
+                .push(format!("the launcher ended with {status}"));
+        }
+        let left = files_of(&self.plan.graph).into_iter();
+        let (poses, faults) = self.tally.figures();
+        Ok(Report {
+            seconds,
+            seed: self.plan.seed,
+            poses,
+            losses: self.losses,
+            faults,
+            nodes_ended_s: Gap::of(&self.nodes_ended_s),
+            restarts,
+            usage: self.usage,
+            leftovers: left.map(|file| file.display().to_string()).collect(),
+            failures: self.failures,
+        })
+    }
+}
+
+fn restarts(nodes: &[NodeStatus]) -> u64 {
+    nodes.iter().map(|node| node.restarts).sum()
+}

@@ -1,0 +1,117 @@
+//! Two maps of the same place, to be swapped.
+//!
+//! The second one has more cells at its lower left, all unknown, and its origin there. A
+//! pose is the same on both; a node that mixed the cells of one with the other would be
+//! two metres off.
+
+use std::fs;
+use std::path::{Path, PathBuf};
+
+use geometry::Pose;
+use launcher::LauncherError;
+use map::{MapError, OccupancyGrid, UNKNOWN};
+
+use crate::SoakError;
+
+/// How far the second map goes beyond the first, metres.
+const MARGIN_M: f64 = 2.0;
+
+/// A map file in a folder of its own, which has one map or the other.
+#[derive(Debug)]
+pub(super) struct Maps {
+    served: PathBuf,
+    variants: [PathBuf; 2],
+    current: usize,
+}
+
+impl Maps {
+    /// Of the map at `yaml`; `folder` keeps what is made.
+    ///
+    /// # Errors
+    /// The map cannot be read, or the others not be written.
+    pub(super) fn new(yaml: &Path, folder: &Path) -> Result<Self, SoakError> {
+        let grid = map::load(yaml)?;
+        let variants = ["as_given.yaml", "larger.yaml"].map(|name| folder.join(name));
+        map::save(&grid, &variants[0])?;
+        map::save(&larger(&grid)?, &variants[1])?;
+        let mut maps = Maps {
+            served: folder.join("map.yaml"),
+            variants,
+            current: 1,
+        };
+        maps.swap()?;
+        Ok(maps)
+    }
+
+    /// What a map server is to serve.
+    pub(super) fn served(&self) -> &Path {
+        &self.served
+    }
+
+    /// Puts the other map in its place, in one step.
+    ///
+    /// # Errors
+    /// A file cannot be written.
+    pub(super) fn swap(&mut self) -> Result<(), SoakError> {
+        self.current = 1 - self.current;
+        let next = self.served.with_extension("next");
+        let copied = fs::copy(&self.variants[self.current], &next)
+            .and_then(|_| fs::rename(&next, &self.served));
+        Ok(copied.map_err(|source| LauncherError::File {
+            action: "write",
+            file: self.served.clone(),
+            source,
+        })?)
+    }
+}
+
+fn larger(grid: &OccupancyGrid) -> Result<OccupancyGrid, MapError> {
+    let margin = (MARGIN_M / grid.resolution_m).ceil().max(1.0) as u32;
+    let (width, height) = (
+        grid.width.saturating_add(margin),
+        grid.height.saturating_add(margin),
+    );
+    let mut cells = vec![UNKNOWN; margin as usize * width as usize];
+    for row in grid.cells.chunks_exact(grid.width as usize) {
+        cells.extend(std::iter::repeat_n(UNKNOWN, margin as usize));
+        cells.extend_from_slice(row);
+    }
+    let back = -f64::from(margin) * grid.resolution_m;
+    let origin = grid.map_from_grid.then(Pose::new(back, back, 0.0));
+    OccupancyGrid::from_parts(width, height, grid.resolution_m, origin, cells)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn both_maps_show_the_same_place() {
+        let folder = tempfile::tempdir().unwrap();
+        let yaml = folder.path().join("given.yaml");
+        let grid = OccupancyGrid::from_parts(
+            3,
+            2,
+            0.5,
+            Pose::new(10.0, -3.0, std::f64::consts::FRAC_PI_2),
+            vec![0, 100, 0, UNKNOWN, 0, 100],
+        )
+        .unwrap();
+        map::save(&grid, &yaml).unwrap();
+        let mut maps = Maps::new(&yaml, folder.path()).unwrap();
+        assert_eq!(map::load(maps.served()).unwrap(), grid);
+        maps.swap().unwrap();
+        let other = map::load(maps.served()).unwrap();
+        assert_ne!(other.id(), grid.id());
+        for (x, y) in [(0, 0), (1, 0), (2, 1)] {
+            let (x_m, y_m) = grid.cell_center(x, y);
+            let at = |grid: &OccupancyGrid| {
+                let (x, y) = grid.cell_at(x_m, y_m).unwrap();
+                grid.cells[(y * grid.width + x) as usize]
+            };
+            assert_eq!(at(&other), at(&grid));
+        }
+        maps.swap().unwrap();
+        assert_eq!(map::load(maps.served()).unwrap(), grid);
+    }
+}

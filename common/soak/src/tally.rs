@@ -1,0 +1,327 @@
+//! Counts the poses of a run, and how long each fault kept them away. Pure.
+
+use std::collections::BTreeMap;
+use std::time::Duration;
+
+use geometry::Pose;
+use messages::TrackState;
+use serde::Serialize;
+use statistics::{Distribution, SUCCESS, Tail};
+
+use super::fault::Fault;
+use super::launched::SentPose;
+
+/// Parts of a run of which latencies are told one by one.
+const PARTS: usize = 10;
+/// Wrong poses that are told one by one.
+const MAX_TOLD: usize = 20;
+/// Values of a figure that are kept: more than a run of days has in a part.
+const WINDOW: usize = 1_000_000;
+const NS_PER_S: f64 = 1e9;
+
+/// What was heard so far.
+#[derive(Debug)]
+pub(super) struct Tally {
+    truths: BTreeMap<i64, Pose>,
+    begin_ns: i64,
+    planned: Duration,
+    poses: u64,
+    judged: u64,
+    unique: u64,
+    wrong: u64,
+    told: Vec<Wrong>,
+    latency_ms: Vec<Distribution>,
+    /// Faults after which a pose is missing still.
+    open: Vec<Open>,
+    faults: BTreeMap<Fault, Felt>,
+}
+
+/// A pose that the tracker was sure of, and that is not true.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+pub(super) struct Wrong {
+    /// Of its scan, nanoseconds since 1970.
+    pub(super) stamp_ns: i64,
+    /// When it was sent, seconds after the start.
+    pub(super) after_s: f64,
+    pub(super) off_m: f64,
+    pub(super) off_deg: f64,
+}
+
+#[derive(Debug, Clone, Copy)]
+struct Open {
+    fault: Fault,
+    over_ns: i64,
+    /// Whether any pose came since; one that is `Unique` has not.
+    any: bool,
+}
+
+#[derive(Debug)]
+struct Felt {
+    times: u64,
+    killed: u64,
+    to_pose_s: Distribution,
+    to_unique_s: Distribution,
+}
+
+/// How one kind of fault was felt.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+pub(super) struct FaultFigures {
+    pub(super) fault: Fault,
+    pub(super) times: u64,
+    /// Processes of nodes that were killed by it.
+    pub(super) killed: u64,
+    /// From the end of the fault to a pose of a scan that came after it, seconds.
+    pub(super) to_pose_s: Gap,
+    /// The same, to a pose that the tracker was sure of.
+    pub(super) to_unique_s: Gap,
+}
+
+/// How long something took, seconds.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize)]
+pub(super) struct Gap {
+    pub(super) median: Option<f64>,
+    pub(super) max: Option<f64>,
+}
+
+/// The figures of poses.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+pub(super) struct PoseFigures {
+    /// Poses of scans, in whatever state.
+    pub(super) poses: u64,
+    /// Those of them with a position, and with known truth.
+    pub(super) judged: u64,
+    /// Those of them that the tracker was sure of.
+    pub(super) unique: u64,
+    /// Those of them beyond 0.5 m or 10°.
+    pub(super) wrong: u64,
+    /// The first of those.
+    pub(super) first_wrong: Vec<Wrong>,
+    /// From the scan's entry into the graph to its pose, for each tenth of the run.
+    pub(super) latency_ms: Vec<Tail>,
+}
+
+impl Tally {
+    /// Of a recording with these truths; the run begins at `now_ns` of the monotonic clock,
+    /// and is to last for `planned`.
+    pub(super) fn new(truths: BTreeMap<i64, Pose>, now_ns: i64, planned: Duration) -> Self {
+        Tally {
+            truths,
+            begin_ns: now_ns,
+            planned,
+            poses: 0,
+            judged: 0,
+            unique: 0,
+            wrong: 0,
+            told: Vec::new(),
+            latency_ms: vec![Distribution::new(WINDOW); PARTS],
+            open: Vec::new(),
+            faults: BTreeMap::new(),
+        }
+    }
+
+    /// A fault was over at `over_ns`, after it had killed so many processes of nodes.
+    pub(super) fn suffered(&mut self, fault: Fault, killed: usize, over_ns: i64) {
+        let felt = self.faults.entry(fault).or_insert_with(|| Felt {
+            times: 0,
+            killed: 0,
+            to_pose_s: Distribution::new(WINDOW),
+            to_unique_s: Distribution::new(WINDOW),
+        });
+        felt.times += 1;
+        felt.killed += killed as u64;
+        self.open.push(Open {
+            fault,
+            over_ns,
+            any: false,
+        });
+    }
+
+    /// The tracker's pose of a scan.
+    pub(super) fn pose(&mut self, pose: &SentPose) {
+        self.poses += 1;
+        let since_s = self.since_s(pose.sent_ns);
+        let part = since_s / self.planned.as_secs_f64() * PARTS as f64;
+        // What comes after the planned end belongs to the last part.
+        let part = (part.max(0.0) as usize).min(PARTS - 1);
+        self.latency_ms[part].add(pose.latency_ms);
+        let is_unique = pose.state == TrackState::Unique.as_str();
+        self.judge(pose, is_unique);
+        self.close(pose, is_unique);
+    }
+
+    fn judge(&mut self, pose: &SentPose, is_unique: bool) {
+        let truth = self.truths.get(&pose.stamp_ns);
+        let (Some(truth), Some(found)) = (truth, pose.pose()) else {
+            return;
+        };
+        self.judged += 1;
+        if !is_unique {
+            return;
+        }
+        self.unique += 1;
+        let (metres, degrees) = SUCCESS;
+        if truth.is_within(found, metres, degrees.to_radians()) {
+            return;
+        }
+        self.wrong += 1;
+        if self.told.len() < MAX_TOLD {
+            self.told.push(Wrong {
+                stamp_ns: pose.stamp_ns,
+                after_s: self.since_s(pose.sent_ns),
+                off_m: truth.distance_to(found),
+                off_deg: truth.angle_to(found).to_degrees(),
+            });
+        }
+    }
+
+    /// Faults before the pose's scan are overcome.
+    fn close(&mut self, pose: &SentPose, is_unique: bool) {
+        let (faults, entered_ns) = (&mut self.faults, pose.entered_ns());
+        self.open.retain_mut(|open| {
+            let felt = faults.get_mut(&open.fault);
+            let (true, Some(felt)) = (open.over_ns <= entered_ns, felt) else {
+                return true;
+            };
+            let seconds = (pose.sent_ns - open.over_ns) as f64 / NS_PER_S;
+            if !std::mem::replace(&mut open.any, true) {
+                felt.to_pose_s.add(seconds);
+            }
+            if is_unique {
+                felt.to_unique_s.add(seconds);
+            }
+            !is_unique
+        });
+    }
+
+    /// Whether a pose came since every fault.
+    pub(super) fn has_recovered(&self) -> bool {
+        self.open.iter().all(|open| open.any)
+    }
+
+    /// Whether the tracker has been sure of a pose since every fault.
+    pub(super) fn is_sure(&self) -> bool {
+        self.unique > 0 && self.open.is_empty()
+    }
+
+    /// Faults after which the tracker has not been sure of a pose.
+    pub(super) fn not_overcome(&self) -> Vec<Fault> {
+        self.open.iter().map(|open| open.fault).collect()
+    }
+
+    /// The figures so far.
+    pub(super) fn figures(&self) -> (PoseFigures, Vec<FaultFigures>) {
+        let poses = PoseFigures {
+            poses: self.poses,
+            judged: self.judged,
+            unique: self.unique,
+            wrong: self.wrong,
+            first_wrong: self.told.clone(),
+            latency_ms: self.latency_ms.iter().map(Distribution::tail).collect(),
+        };
+        let faults = self.faults.iter().map(|(fault, felt)| FaultFigures {
+            fault: *fault,
+            times: felt.times,
+            killed: felt.killed,
+            to_pose_s: Gap::of(&felt.to_pose_s),
+            to_unique_s: Gap::of(&felt.to_unique_s),
+        });
+        (poses, faults.collect())
+    }
+
+    fn since_s(&self, at_ns: i64) -> f64 {
+        (at_ns - self.begin_ns) as f64 / NS_PER_S
+    }
+}
+
+impl Gap {
+    /// Of these times.
+    pub(super) fn of(seconds: &Distribution) -> Self {
+        let [median, max] = seconds.percentiles([50.0, 100.0]);
+        Gap { median, max }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    const SECOND: i64 = 1_000_000_000;
+
+    /// A pose at `(x, 0)`, of the scan `stamp_ns` that came at `entered_s` seconds.
+    fn pose(stamp_ns: i64, entered_s: i64, x: f64, state: TrackState) -> SentPose {
+        SentPose {
+            stamp_ns,
+            state: state.as_str().to_owned(),
+            x: Some(x),
+            y: Some(0.0),
+            heading_deg: Some(0.0),
+            latency_ms: 500.0,
+            sent_ns: entered_s * SECOND + SECOND / 2,
+        }
+    }
+
+    fn tally() -> Tally {
+        let truths = [(1, Pose::IDENTITY), (2, Pose::IDENTITY)];
+        Tally::new(truths.into(), 0, Duration::from_secs(100))
+    }
+
+    #[test]
+    fn only_poses_that_are_sure_and_off_the_truth_are_wrong() {
+        let mut tally = tally();
+        tally.pose(&pose(1, 1, 0.4, TrackState::Unique));
+        tally.pose(&pose(1, 2, 3.0, TrackState::Unique));
+        tally.pose(&pose(2, 3, 3.0, TrackState::Doubtful));
+        tally.pose(&pose(3, 4, 9.0, TrackState::Unique));
+        let (poses, _) = tally.figures();
+        let counts = (poses.poses, poses.judged, poses.unique, poses.wrong);
+        assert_eq!(counts, (4, 3, 2, 1));
+        let expected = Wrong {
+            stamp_ns: 1,
+            after_s: 2.5,
+            off_m: 3.0,
+            off_deg: 0.0,
+        };
+        assert_eq!(poses.first_wrong, [expected]);
+    }
+
+    #[test]
+    fn a_fault_is_overcome_by_a_pose_of_a_later_scan() {
+        let mut tally = tally();
+        tally.suffered(Fault::Kill, 1, 10 * SECOND);
+        // Its scan came before, so nothing had to work for it again.
+        tally.pose(&pose(1, 9, 0.0, TrackState::Unique));
+        assert!(!tally.has_recovered());
+        tally.pose(&pose(1, 11, 0.0, TrackState::Searching));
+        assert!(tally.has_recovered() && !tally.is_sure());
+        assert_eq!(tally.not_overcome(), [Fault::Kill]);
+        tally.suffered(Fault::Kill, 1, 12 * SECOND);
+        tally.pose(&pose(1, 13, 0.0, TrackState::Unique));
+        assert!(tally.is_sure());
+        let (_, faults) = tally.figures();
+        let gap = |median, max| Gap {
+            median: Some(median),
+            max: Some(max),
+        };
+        let expected = FaultFigures {
+            fault: Fault::Kill,
+            times: 2,
+            killed: 2,
+            to_pose_s: gap(1.5, 1.5),
+            to_unique_s: gap(1.5, 3.5),
+        };
+        assert_eq!(faults, [expected]);
+    }
+
+    #[test]
+    fn latencies_are_told_for_each_tenth_of_the_run() {
+        let mut tally = tally();
+        tally.pose(&pose(1, 5, 0.0, TrackState::Unique));
+        let mut late = pose(1, 200, 0.0, TrackState::Unique);
+        late.latency_ms = 7.0;
+        tally.pose(&late);
+        let (poses, _) = tally.figures();
+        let medians: Vec<_> = poses.latency_ms.iter().map(|part| part.p50).collect();
+        assert_eq!((medians[0], medians[1]), (Some(500.0), None));
+        assert_eq!(medians[PARTS - 1], Some(7.0), "after the planned end");
+    }
+}

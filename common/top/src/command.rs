@@ -1,0 +1,41 @@
+//! What `backcast top` does.
+
+use std::io::{IsTerminal, stdout};
+use std::process::ExitCode;
+use std::time::Instant;
+
+use command_line::stdout as output;
+
+use super::{lines, screen, source};
+use crate::TopError;
+
+/// What `backcast top` takes.
+#[derive(Debug, clap::Args)]
+pub struct Config {
+    /// Where the monitor listens
+    #[arg(default_value = "127.0.0.1:7440", value_name = "HOST:PORT")]
+    address: String,
+
+    /// The robot [default: the first that the monitor knows]
+    #[arg(long, value_name = "NAME")]
+    robot: Option<String>,
+
+    /// Print how it is now, and end; so does an output that is no terminal
+    #[arg(long)]
+    once: bool,
+}
+
+/// Shows the graph until `q` or Ctrl-C.
+///
+/// # Errors
+/// There is no monitor at first, or the terminal fails.
+pub fn run(config: &Config) -> Result<ExitCode, TopError> {
+    let robot = source::find(&config.address, config.robot.as_deref())?;
+    let known = source::snapshot(&config.address, &robot)?;
+    if config.once || !stdout().is_terminal() {
+        output::print(&lines::plain(&known, Instant::now()))?;
+    } else {
+        screen::show(known, &source::follow(&config.address, &robot)?)?;
+    }
+    Ok(ExitCode::SUCCESS)
+}

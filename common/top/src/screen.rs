@@ -1,0 +1,68 @@
+//! The terminal: drawn when something is new, restored in the end.
+
+use std::sync::mpsc::Receiver;
+use std::time::{Duration, Instant};
+
+use ratatui::DefaultTerminal;
+use ratatui::crossterm::event::{self, Event, KeyCode, KeyModifiers};
+use ratatui::widgets::Paragraph;
+
+use super::known::Known;
+use super::lines;
+use super::source::Told;
+use crate::TopError;
+
+/// Between two looks at what was told and at the keys.
+const FRAME: Duration = Duration::from_millis(50);
+
+/// Ages are shown anew as often, where nothing comes.
+const AGES: Duration = Duration::from_millis(500);
+
+/// Shows what is known and what is told, until somebody wants no more.
+///
+/// # Errors
+/// The terminal fails.
+pub(super) fn show(mut known: Known, told: &Receiver<Told>) -> Result<(), TopError> {
+    let mut terminal = ratatui::try_init().map_err(TopError::Terminal)?;
+    let shown = follow(&mut terminal, &mut known, told);
+    ratatui::try_restore().map_err(TopError::Terminal)?;
+    shown
+}
+
+fn follow(
+    terminal: &mut DefaultTerminal,
+    known: &mut Known,
+    told: &Receiver<Told>,
+) -> Result<(), TopError> {
+    let mut is_new = true;
+    let mut drawn = Instant::now();
+    loop {
+        for message in told.try_iter() {
+            is_new = true;
+            match message {
+                Ok(message) => known.hear(message, Instant::now()),
+                Err(problem) => known.lost = Some(problem),
+            }
+        }
+        let now = Instant::now();
+        if std::mem::take(&mut is_new) || now - drawn >= AGES {
+            drawn = now;
+            let draw = |frame: &mut ratatui::Frame<'_>| {
+                frame.render_widget(Paragraph::new(lines::text(known, now)), frame.area());
+            };
+            terminal.draw(draw).map_err(TopError::Terminal)?;
+        }
+        if event::poll(FRAME).map_err(TopError::Terminal)? {
+            match event::read().map_err(TopError::Terminal)? {
+                Event::Key(key) if ends(key.code, key.modifiers) => return Ok(()),
+                // The window may have another size.
+                _ => is_new = true,
+            }
+        }
+    }
+}
+
+fn ends(code: KeyCode, modifiers: KeyModifiers) -> bool {
+    matches!(code, KeyCode::Char('q') | KeyCode::Esc)
+        || code == KeyCode::Char('c') && modifiers.contains(KeyModifiers::CONTROL)
+}

@@ -1,0 +1,116 @@
+//! Asks the monitor, and listens to it.
+
+use std::net::TcpStream;
+use std::sync::mpsc::{Receiver, SyncSender, sync_channel};
+use std::thread;
+use std::time::{Duration, Instant};
+
+use serde::Deserialize;
+use tungstenite::client;
+
+use super::known::{Known, Message};
+use crate::TopError;
+
+/// Messages that wait for the screen; more wait at the monitor.
+const WAITING: usize = 256;
+
+/// Until the next try to connect.
+const PAUSE: Duration = Duration::from_secs(1);
+
+/// A monitor that says nothing for so long is gone: its nodes report each second.
+const PATIENCE: Duration = Duration::from_secs(5);
+
+/// A message, or why there is none.
+pub(super) type Told = Result<Message, String>;
+
+/// The robot to watch.
+///
+/// # Errors
+/// No monitor answers, or it does not know the robot.
+pub(super) fn find(address: &str, robot: Option<&str>) -> Result<String, TopError> {
+    #[derive(Deserialize)]
+    struct Robots {
+        robots: Vec<String>,
+    }
+    let Robots { robots } = ask(address, "/api/v1/robots")?;
+    let found = match robot {
+        None => robots.first(),
+        Some(wanted) => robots.iter().find(|robot| *robot == wanted),
+    };
+    found.cloned().ok_or_else(|| TopError::NoRobot {
+        address: address.to_owned(),
+        robot: robot.unwrap_or_default().to_owned(),
+        known: robots.clone(),
+    })
+}
+
+/// All that is known now.
+///
+/// # Errors
+/// No monitor answers.
+pub(super) fn snapshot(address: &str, robot: &str) -> Result<Known, TopError> {
+    let mut known = Known::default();
+    let told = ask(address, &format!("/api/v1/robots/{robot}"))?;
+    known.hear(told, Instant::now());
+    Ok(known)
+}
+
+fn ask<A: serde::de::DeserializeOwned>(address: &str, path: &str) -> Result<A, TopError> {
+    let no_monitor = |error: ureq::Error| TopError::NoMonitor {
+        address: address.to_owned(),
+        reason: error.to_string(),
+    };
+    let agent: ureq::Agent = ureq::Agent::config_builder()
+        .timeout_global(Some(PATIENCE))
+        .build()
+        .into();
+    let mut response = agent
+        .get(format!("http://{address}{path}"))
+        .call()
+        .map_err(no_monitor)?;
+    response.body_mut().read_json().map_err(no_monitor)
+}
+
+/// What happens from now on, from a thread of its own that comes back to a
+/// monitor that was gone.
+///
+/// # Errors
+/// The thread cannot be started.
+pub(super) fn follow(address: &str, robot: &str) -> Result<Receiver<Told>, TopError> {
+    let (tell, told) = sync_channel(WAITING);
+    let (address, robot) = (address.to_owned(), robot.to_owned());
+    let body = move || {
+        while let Err(problem) = listen(&address, &robot, &tell) {
+            if tell.send(Err(problem)).is_err() {
+                return;
+            }
+            thread::sleep(PAUSE);
+        }
+    };
+    thread::Builder::new()
+        .name("monitor".into())
+        .spawn(body)
+        .map_err(TopError::Terminal)?;
+    Ok(told)
+}
+
+/// Passes on all messages; returns when nobody wants them any more.
+fn listen(address: &str, robot: &str, tell: &SyncSender<Told>) -> Result<(), String> {
+    let stream = TcpStream::connect(address).map_err(|error| error.to_string())?;
+    let patience = stream.set_read_timeout(Some(PATIENCE));
+    patience.map_err(|error| error.to_string())?;
+    let url = format!("ws://{address}/api/v1/robots/{robot}/stream");
+    let (mut socket, _) = client(url, stream).map_err(|error| error.to_string())?;
+    loop {
+        match socket.read().map_err(|error| error.to_string())? {
+            tungstenite::Message::Text(text) => {
+                let message = serde_json::from_str(&text).map_err(|error| error.to_string())?;
+                if tell.send(Ok(message)).is_err() {
+                    return Ok(());
+                }
+            }
+            tungstenite::Message::Close(_) => return Err("the monitor has ended".to_owned()),
+            _ => {}
+        }
+    }
+}

@@ -1,8 +1,0 @@
-//! `backcast status`, `stop`, `restart` and `logs`: a running graph from another terminal.
-
-mod command;
-mod logs;
-mod text;
-
-pub(crate) use command::{RestartConfig, StatusConfig, StopConfig, restart, status, stop};
-pub(crate) use logs::{LogLine, LogsConfig, logs};

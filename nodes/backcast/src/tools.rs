@@ -1,0 +1,104 @@
+//! The commands that a graph does not need: they are left out without the feature
+//! `tools`, and with them what they link.
+
+use std::process::ExitCode;
+
+use clap::Subcommand;
+use evaluation::{evaluate, locate};
+use recording_tools::{convert, doctor, info, simulate};
+
+use crate::cli::{EXIT_CODES, end};
+
+/// What is done with recordings.
+#[derive(Debug, Subcommand)]
+pub(crate) enum OnRecordings {
+    /// Finds the place of each scan of a recording, in one process
+    #[command(after_help = EXIT_CODES)]
+    Locate(locate::Config),
+    /// Judges the places that are found against the truth in recordings
+    #[command(after_help = evaluate::NOTES)]
+    Evaluate(Box<evaluate::Config>),
+    /// Draws a map, a scan at its places, votes or errors, as PNG or SVG
+    #[command(after_help = plots::NOTES)]
+    Plot(plots::Config),
+    /// Lists what a recording holds
+    #[command(after_help = EXIT_CODES)]
+    Info(info::Config),
+    /// Says what is wrong with a recording
+    #[command(after_help = doctor::NOTES)]
+    Doctor(doctor::Config),
+    /// Converts laser logs of CARMEN and bags in SQLite to recordings, and back to logs
+    #[command(after_help = convert::NOTES)]
+    Convert(convert::Config),
+    /// Replays recordings through the graph and compares with what is expected
+    #[command(after_help = regression::NOTES)]
+    Regress(regression::Config),
+}
+
+/// What is done beside a graph, with a laser or on generated worlds.
+#[derive(Debug, Subcommand)]
+pub(crate) enum OnTheSide {
+    /// Runs a graph for long, does it harm, and says whether it kept its promises
+    #[command(after_help = soak::NOTES)]
+    Soak(soak::Config),
+    /// Shows a running graph in the terminal
+    #[command(after_help = EXIT_CODES)]
+    Top(top::Config),
+    /// Says which laser is there, how it is set and what it sees
+    #[command(after_help = probe::NOTES)]
+    Probe(probe::Config),
+    /// Measures the methods of global localization on generated worlds
+    #[command(after_help = bench::NOTES)]
+    Bench(bench::Config),
+    /// Records a drive through a map as a laser or a ring of sonars would see it
+    #[command(after_help = "Exit codes: 0 recorded, 1 failed, 2 wrong use")]
+    Simulate(Box<simulate::Config>),
+}
+
+impl OnRecordings {
+    /// Does it.
+    pub(crate) fn run(&self) -> ExitCode {
+        match self {
+            Self::Locate(config) => end(locate::run(config)),
+            Self::Evaluate(config) => end(evaluate::run(config)),
+            Self::Plot(config) => end(plots::run(config)),
+            Self::Info(config) => end(info::run(config)),
+            Self::Doctor(config) => end(doctor::run(config)),
+            Self::Convert(config) => end(convert::run(config)),
+            Self::Regress(config) => end(regression::run(config)),
+        }
+    }
+}
+
+impl OnTheSide {
+    /// Does it.
+    pub(crate) fn run(&self) -> ExitCode {
+        match self {
+            Self::Soak(config) => end(soak::run(config)),
+            Self::Top(config) => end(top::run(config)),
+            Self::Probe(config) => end(probe::run(config)),
+            Self::Bench(config) => end(bench::run(config)),
+            Self::Simulate(config) => end(simulate::run(config)),
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use std::io;
+
+    use evaluation::EvaluationError;
+    use recording::RecordingError;
+
+    #[test]
+    fn causes_are_told_once() {
+        let recording = EvaluationError::from(RecordingError::Open {
+            path: "r.mcap".into(),
+            source: io::Error::other("gone"),
+        });
+        assert_eq!(
+            transport::with_causes(&recording),
+            "cannot read the recording r.mcap: gone"
+        );
+    }
+}
