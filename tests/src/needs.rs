@@ -2,7 +2,7 @@
 //! and says so; it fails where all that it needs was promised.
 //!
 //! `BACKCAST_REQUIRE` names what must be there: a list of [`Need::name`], `all` or `none`.
-//! Where it is not set, all but the data must be there if `CI` is set. Each test that was
+//! Where it is not set, and `CI` is, all but root and data must be there. Each test that was
 //! left out adds a line to `target/left-out.txt`, which `.ci/run` counts at its end.
 
 use std::fs::OpenOptions;
@@ -17,6 +17,8 @@ pub enum Need {
     Python,
     /// A kernel that lets this user make namespaces, for networks or mounts.
     Namespaces,
+    /// A superuser, who can act as other users.
+    Root,
     /// The recordings of other robots, beside the project.
     Data,
 }
@@ -29,6 +31,7 @@ impl Need {
             Need::Browser => "browser",
             Need::Python => "python",
             Need::Namespaces => "namespaces",
+            Need::Root => "root",
             Need::Data => "data",
         }
     }
@@ -38,7 +41,7 @@ impl Need {
             Some(list) => list
                 .split(',')
                 .any(|name| [self.name(), "all"].contains(&name.trim())),
-            None => in_ci && self != Need::Data,
+            None => in_ci && ![Need::Root, Need::Data].contains(&self),
         }
     }
 
@@ -73,16 +76,22 @@ mod tests {
     use super::*;
 
     #[test]
-    fn in_ci_only_the_data_may_be_missing_unless_the_list_says_otherwise() {
+    fn in_ci_tools_must_be_there_unless_the_list_says_otherwise() {
         let required = |list, in_ci| {
-            [Need::Browser, Need::Python, Need::Namespaces, Need::Data]
-                .map(|need| need.is_required(list, in_ci))
+            [
+                Need::Browser,
+                Need::Python,
+                Need::Namespaces,
+                Need::Root,
+                Need::Data,
+            ]
+            .map(|need| need.is_required(list, in_ci))
         };
-        assert_eq!(required(None, false), [false; 4]);
-        assert_eq!(required(None, true), [true, true, true, false]);
-        assert_eq!(required(Some("all"), false), [true; 4]);
-        assert_eq!(required(Some("none"), true), [false; 4]);
+        assert_eq!(required(None, false), [false; 5]);
+        assert_eq!(required(None, true), [true, true, true, false, false]);
+        assert_eq!(required(Some("all"), false), [true; 5]);
+        assert_eq!(required(Some("none"), true), [false; 5]);
         let some = Some("python, data");
-        assert_eq!(required(some, true), [false, true, false, true]);
+        assert_eq!(required(some, true), [false, true, false, false, true]);
     }
 }

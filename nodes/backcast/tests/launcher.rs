@@ -22,6 +22,7 @@ use nix::{
     unistd::{Pid, mkfifo},
 };
 use tempfile::TempDir;
+use tests::needs::Need;
 use transport::testing::wait_for_health;
 use transport::{Graph, GraphName};
 
@@ -239,7 +240,8 @@ fn a_name_that_is_alive_is_refused_and_goes_on() {
 #[test]
 fn a_name_that_another_user_has_taken_is_refused_and_the_user_named() {
     if !nix::unistd::geteuid().is_root() {
-        eprintln!("SKIPPED: only root can act as two users");
+        let test = "a_name_that_another_user_has_taken_is_refused_and_the_user_named";
+        Need::Root.is_missing(test, "nobody else can act as two users");
         return;
     }
     let file = Path::new("/dev/shm/bc12345_test-foreign.in_the_way");
