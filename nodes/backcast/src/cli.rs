@@ -36,7 +36,7 @@ enum Command {
     Check(check::Config),
     #[cfg(feature = "tools")]
     #[command(flatten)]
-    OnRecordings(OnRecordings),
+    OnRecordings(Box<OnRecordings>),
     /// Lists the graphs that run, with the state of their nodes
     #[command(after_help = EXIT_CODES)]
     Status(control::StatusConfig),
