@@ -29,6 +29,8 @@ use crate::SoakError;
 /// How long the first sure pose may take, and any pose after a fault, before the graph is
 /// given up: everything that it does by itself takes less.
 const PATIENCE: Duration = Duration::from_secs(60);
+/// A longer time without a pose is told at once, so that it can be looked for in the log.
+const LONG_GAP_S: f64 = 0.5;
 /// Between two looks at the processes.
 const LOOK: Duration = Duration::from_secs(1);
 /// Between two looks at whether something is over.
@@ -143,6 +145,10 @@ impl Course {
                 let name = fault.name();
                 self.failures
                     .push(format!("no pose within {PATIENCE:?} after {name}"));
+            }
+            let gap_s = self.tally.last_gap_s();
+            if gap_s > LONG_GAP_S {
+                say("soak", &format!("the next pose came after {gap_s:.2} s"));
             }
         }
         if self.failures.is_empty() && self.watch(PATIENCE, Tally::is_sure) == Watched::Late {

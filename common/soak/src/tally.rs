@@ -34,6 +34,8 @@ pub(super) struct Tally {
     /// Faults after which a pose is missing still.
     open: Vec<Open>,
     faults: BTreeMap<Fault, Felt>,
+    /// From the end of the last fault to the next pose, seconds.
+    last_gap_s: f64,
 }
 
 /// A pose that the tracker was sure of, and that is not true.
@@ -116,6 +118,7 @@ impl Tally {
             latency_ms: vec![Distribution::new(WINDOW); PARTS],
             open: Vec::new(),
             faults: BTreeMap::new(),
+            last_gap_s: 0.0,
         }
     }
 
@@ -177,6 +180,7 @@ impl Tally {
     /// Faults before the pose's scan are overcome.
     fn close(&mut self, pose: &SentPose, is_unique: bool) {
         let (faults, entered_ns) = (&mut self.faults, pose.entered_ns());
+        let last_gap_s = &mut self.last_gap_s;
         self.open.retain_mut(|open| {
             let felt = faults.get_mut(&open.fault);
             let (true, Some(felt)) = (open.over_ns <= entered_ns, felt) else {
@@ -185,6 +189,7 @@ impl Tally {
             let seconds = (pose.sent_ns - open.over_ns) as f64 / NS_PER_S;
             if !std::mem::replace(&mut open.any, true) {
                 felt.to_pose_s.add(seconds);
+                *last_gap_s = seconds;
             }
             if is_unique {
                 felt.to_unique_s.add(seconds);
@@ -196,6 +201,11 @@ impl Tally {
     /// Whether a pose came since every fault.
     pub(super) fn has_recovered(&self) -> bool {
         self.open.iter().all(|open| open.any)
+    }
+
+    /// How long the last fault from which it has recovered kept poses away, seconds.
+    pub(super) fn last_gap_s(&self) -> f64 {
+        self.last_gap_s
     }
 
     /// Whether the tracker has been sure of a pose since every fault.

@@ -41,6 +41,7 @@
 //! | `service`, `header` | a topic in terms of iceoryx2: quality of service, types |
 //! | `publisher`, `loan`, `idle` | sending; filling in place; late joiners |
 //! | `subscriber`, `gaps` | receiving; counting what was lost |
+//! | `peers` | who is at the other end of a topic |
 //! | `event_loop`, `signals`, `waker` | waiting for inputs, ticks, SIGINT, SIGTERM and SIGHUP, other threads |
 //! | `health`, `clock` | a node's report on itself; the clocks |
 //! | `node`, `log` | `main` of a node: logging, exit code |
@@ -115,6 +116,7 @@ mod log_sender;
 mod losses;
 mod membership;
 pub mod node;
+mod peers;
 mod publisher;
 mod root;
 mod service;
@@ -137,6 +139,7 @@ pub use leftovers::{files_of, remove_dead_graphs, remove_leftovers};
 pub use loan::Loan;
 pub use log_lines::{CONSOLE_ONLY, log_in_graph};
 pub use membership::{control_socket, running_graphs};
+pub use peers::Peers;
 pub use publisher::Publisher;
 pub use space::shared_memory_has_room;
 pub use subscriber::{Input, Sample, Subscriber};

@@ -19,7 +19,7 @@ use crate::header::Header;
 use crate::idle::Connects;
 use crate::losses::Losses;
 use crate::service::{self, Samples};
-use crate::{Loan, TransportError, space};
+use crate::{Loan, Peers, TransportError, space};
 
 pub(crate) type Port<T> =
     IoxPublisher<ipc::Service, [<T as Topic>::Item], Header<<T as Topic>::Header>>;
@@ -111,6 +111,12 @@ impl<T: Topic> Publisher<T> {
     #[must_use]
     pub fn has_subscribers(&self) -> bool {
         self.inner.samples.dynamic_config().number_of_subscribers() > 0
+    }
+
+    /// Those who get what is sent from now on.
+    #[must_use]
+    pub fn subscribers(&self) -> Peers {
+        Peers::of(self.inner.subscribers())
     }
 
     /// Whether every subscriber is done with the sample that was sent last, and

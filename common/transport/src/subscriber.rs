@@ -6,19 +6,20 @@
 use iceoryx2::node::Node;
 use iceoryx2::port::listener::Listener;
 use iceoryx2::port::subscriber::{Subscriber as IoxSubscriber, SubscriberCreateError};
-use iceoryx2::prelude::ipc;
+use iceoryx2::prelude::{CallbackProgression, PortFactory, ipc};
 use iceoryx2::sample::Sample as IoxSample;
 use messages::Topic;
 
 use crate::header::Header;
-use crate::service;
-use crate::{TransportError, space};
+use crate::service::{self, Samples};
+use crate::{Peers, TransportError, space};
 
 /// Receives samples of topic `T`.
 #[derive(Debug)]
 pub struct Subscriber<T: Topic> {
     listener: Listener<ipc::Service>,
     port: IoxSubscriber<ipc::Service, [T::Item], Header<T::Header>>,
+    samples: Samples<T>,
 }
 
 impl<T: Topic> Subscriber<T> {
@@ -41,7 +42,11 @@ impl<T: Topic> Subscriber<T> {
                 }
                 other => service::port_failed::<T>("subscriber", &other),
             })?;
-        Ok(Subscriber { listener, port })
+        Ok(Subscriber {
+            listener,
+            port,
+            samples,
+        })
     }
 
     /// The oldest sample that has not been taken, if there is one. Where several
@@ -58,6 +63,17 @@ impl<T: Topic> Subscriber<T> {
                 reason: format!("{error:?}"),
             }),
         }
+    }
+
+    /// Those whose samples come from now on.
+    #[must_use]
+    pub fn publishers(&self) -> Peers {
+        let mut ids = Vec::new();
+        self.samples.dynamic_config().list_publishers(|details| {
+            ids.push(details.publisher_id.value());
+            CallbackProgression::Continue
+        });
+        Peers::of(ids)
     }
 
     /// Takes everything that has come and keeps the newest: for topics with one

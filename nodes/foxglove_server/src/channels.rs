@@ -11,6 +11,7 @@ use recording::write::Encoded;
 use transcript::topics;
 
 use crate::ServerError;
+use crate::serving::Serving;
 
 /// How messages and their definitions are written.
 const ENCODING: &str = "cdr";
@@ -36,6 +37,7 @@ impl Channels {
     /// None but that of the image.
     pub(crate) fn new(context: &Arc<Context>) -> Result<Self, ServerError> {
         let image = (OccupancyGridMsg::SCHEMA, OccupancyGridMsg::DEFINITION);
+        // There are no viewers yet.
         let field = offer(context, topics::FIELD, image)?;
         let open = Open {
             channel: Arc::clone(&field),
@@ -54,21 +56,29 @@ impl Channels {
     }
 
     /// Shows a message to all who look at its topic.
-    pub(crate) fn show(&self, message: Encoded) -> Result<(), ServerError> {
-        let mut open = self.open();
-        if !open.contains_key(&message.topic) {
-            let schema = (message.schema, message.definition);
-            let channel = offer(&self.context, &message.topic, schema)?;
+    pub(crate) fn show(&self, serving: &Serving, message: Encoded) -> Result<(), ServerError> {
+        if !self.open().contains_key(&message.topic) {
+            let channel = self.offer(serving, &message)?;
             let newest = None;
-            open.insert(message.topic.clone(), Open { channel, newest });
+            let opened = Open { channel, newest };
+            self.open().insert(message.topic.clone(), opened);
         }
-        if let Some(Open { channel, newest }) = open.get_mut(&message.topic) {
+        if let Some(Open { channel, newest }) = self.open().get_mut(&message.topic) {
             channel.log_with_meta(&message.body, at(&message));
             if message.latched {
                 *newest = Some(message);
             }
         }
         Ok(())
+    }
+
+    /// Opens the channel of a message. Whoever is served before that may want `open`, so
+    /// that it must not be locked here.
+    fn offer(&self, serving: &Serving, message: &Encoded) -> Result<Arc<RawChannel>, ServerError> {
+        let (context, topic) = (Arc::clone(&self.context), message.topic.clone());
+        let schema = (message.schema, message.definition);
+        let offered = serving.between(move || offer(&context, &topic, schema));
+        offered.ok_or(ServerError::Thread)?
     }
 
     fn open(&self) -> MutexGuard<'_, BTreeMap<Cow<'static, str>, Open>> {

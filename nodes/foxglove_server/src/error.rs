@@ -15,6 +15,12 @@ pub enum ServerError {
         /// What the library says.
         source: FoxgloveError,
     },
+    /// There can be no thread for viewers.
+    #[error("no thread can be started for viewers")]
+    Start(#[source] std::io::Error),
+    /// The thread for viewers has failed.
+    #[error("the thread that serves viewers has failed; its panic stands above")]
+    Thread,
     /// A channel cannot be opened.
     #[error("cannot show {topic}")]
     Channel {

@@ -8,6 +8,7 @@ mod channels;
 mod config;
 mod error;
 mod run;
+mod serving;
 
 pub use config::Config;
 pub use error::ServerError;

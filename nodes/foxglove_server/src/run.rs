@@ -5,10 +5,12 @@ use std::time::Duration;
 
 use foxglove::{Context, WebSocketServerHandle};
 use messages::{NodeState, topic};
+use tokio::runtime::Handle;
 use transcript::{Entry, Inputs, Listener, Transcript};
 use transport::{Flow, Graph, Subscriber};
 
 use crate::channels::Channels;
+use crate::serving::Serving;
 use crate::{Config, ServerError};
 
 /// How long an image and a report of health may wait.
@@ -23,12 +25,14 @@ const BACKLOG: usize = 256;
 /// If it cannot listen, or the graph fails.
 pub fn run(graph: &Graph, config: &Config) -> Result<(), ServerError> {
     let context = Context::new();
+    let serving = Serving::start().map_err(ServerError::Start)?;
     let channels = Arc::new(Channels::new(&context)?);
-    let server = start(&context, &channels, config)?;
+    let server = start((&context, serving.handle()), &channels, config)?;
     let inputs = Inputs::open(graph, false)?;
     let mut node = Node {
         transcript: Transcript::new(graph, &config.transcript)?,
         channels,
+        serving,
         field: None,
     };
     node.transcript.health.state(NodeState::Ready)?;
@@ -41,7 +45,7 @@ pub fn run(graph: &Graph, config: &Config) -> Result<(), ServerError> {
 }
 
 fn start(
-    context: &Arc<Context>,
+    (context, handle): (&Arc<Context>, &Handle),
     channels: &Arc<Channels>,
     config: &Config,
 ) -> Result<WebSocketServerHandle, ServerError> {
@@ -52,6 +56,7 @@ fn start(
         .bind(listen.ip().to_string(), listen.port())
         .listener(Arc::clone(channels) as _)
         .message_backlog_size(BACKLOG)
+        .tokio_runtime(handle)
         .start_blocking();
     let server = server.map_err(|source| ServerError::Listen {
         address: listen,
@@ -66,6 +71,7 @@ fn start(
 struct Node {
     transcript: Transcript,
     channels: Arc<Channels>,
+    serving: Serving,
     /// There while somebody looks at it, for it is computed only then.
     field: Option<Subscriber<topic::Field>>,
 }
@@ -79,7 +85,7 @@ impl Node {
         let mut shown = 0;
         for entry in self.transcript.entries.take() {
             if let Entry::Message(message) = entry {
-                self.channels.show(message)?;
+                self.channels.show(&self.serving, message)?;
                 shown += 1;
             }
         }

@@ -45,8 +45,12 @@ pub(crate) struct Answers {
 }
 
 impl Answers {
-    /// Takes an answer.
+    /// Takes an answer. The first one to a scan counts: asked again, a searcher may say
+    /// that it does not keep that scan any more.
     pub(crate) fn push(&mut self, stamp: Stamp, hypotheses: &[Hypothesis]) {
+        if self.of(stamp).is_some_and(|found| !found.is_empty()) {
+            return;
+        }
         let mut room = match self.kept.len() {
             KEPT => self.kept.pop_front().map(|(_, room)| room),
             _ => None,
@@ -55,6 +59,13 @@ impl Answers {
         room.clear();
         room.extend_from_slice(hypotheses);
         self.kept.push_back((stamp, room));
+    }
+
+    /// Whether there is one to a scan that entered the graph after this one.
+    pub(crate) fn any_after(&self, stamp: Stamp) -> bool {
+        self.kept
+            .iter()
+            .any(|(of, _)| of.entered_ns > stamp.entered_ns)
     }
 
     /// That of a scan.
@@ -106,5 +117,27 @@ mod tests {
         assert_eq!(answers.of(stamp(0)), None);
         assert_eq!(answers.of(stamp(1)).map(<[_]>::len), Some(1));
         assert_eq!(answers.of(stamp(KEPT as u64)).map(<[_]>::len), Some(2));
+    }
+
+    #[test]
+    fn the_first_answer_to_a_scan_counts_unless_it_was_empty() {
+        let mut answers = Answers::default();
+        let some = [Zeroable::zeroed(); 2];
+        for found in [&[][..], &some, &[], &some[..1]] {
+            answers.push(stamp(3), found);
+        }
+        assert_eq!(answers.of(stamp(3)).map(<[_]>::len), Some(2));
+    }
+
+    #[test]
+    fn an_answer_to_a_later_scan_is_noticed() {
+        let entered = |entered_ns| Stamp {
+            entered_ns,
+            ..Stamp::default()
+        };
+        let mut answers = Answers::default();
+        assert!(!answers.any_after(entered(5)));
+        answers.push(entered(5), &[]);
+        assert!(answers.any_after(entered(4)) && !answers.any_after(entered(5)));
     }
 }

@@ -1,7 +1,9 @@
 //! Receives scans, odometry and what searches find, and sends poses.
 
 mod inputs;
+mod map;
 mod outputs;
+mod search;
 mod turn;
 
 use std::time::{Duration, Instant};
@@ -9,10 +11,9 @@ use std::time::{Duration, Instant};
 use engine::EngineError;
 use engine::fit::Ends;
 use engine::joined::{Joiner, Role};
-use engine::peaks::Sought;
 use engine::tracking::{Candidate, Follower, Need};
 use geometry::{Covariance, Pose};
-use messages::{NodeState, PoseHeader, ScanHeader, Stamp, TrackReason, TrackState};
+use messages::{PoseHeader, ScanHeader, Stamp, TrackReason, TrackState};
 use transport::{Flow, GapCounter, Graph, Health, TransportError, with_causes};
 
 use crate::memory::{Memory, Remembered};
@@ -22,7 +23,8 @@ use crate::world::World;
 use crate::{Config, TrackerError};
 use inputs::Inputs;
 use outputs::Outputs;
-use turn::{ODOMETRY_WAIT, SEARCH_WAIT, Turn};
+use search::Searchers;
+use turn::{ODOMETRY_WAIT, Turn};
 
 /// A scan that waits for odometry is looked at as often.
 const TICK: Duration = Duration::from_millis(25);
@@ -58,7 +60,8 @@ pub fn run(graph: &Graph, config: &Config) -> Result<(), TrackerError> {
         turn: Turn::Idle,
         ends: Ends::default(),
         asked: None,
-        gave_up_ns: i64::MIN,
+        searchers: Searchers::default(),
+        is_silent: false,
         before: None,
         initial: config.initial_pose.map(|pose| {
             let (metres, radians) = INITIAL_ERROR;
@@ -96,8 +99,11 @@ struct Node {
     ends: Ends,
     /// The scan whose search counts later.
     asked: Option<Stamp>,
-    /// When a search was waited for in vain last.
-    gave_up_ns: i64,
+    /// Who could answer when a search was asked for last.
+    searchers: Searchers,
+    /// Whether a search was waited for in vain, and no answer to any has come since: further
+    /// ones are asked for and not waited for, so that poses go on.
+    is_silent: bool,
     /// Where the sought frame was by the odometry at the scan before.
     before: Option<Pose>,
     /// Where the robot is said to be, of the base.
@@ -120,7 +126,7 @@ impl Node {
         loop {
             self.take(inputs)?;
             self.health.tick()?;
-            if !self.go_on()? {
+            if !self.go_on(inputs)? {
                 break;
             }
         }
@@ -142,6 +148,7 @@ impl Node {
         while let Some(found) = inputs.hypotheses.receive()? {
             self.health.count_received(1);
             self.answers.push(found.header().stamp, found.items());
+            self.is_silent = false;
         }
         while let Some(initial) = inputs.initial_poses.receive()? {
             self.health.count_received(1);
@@ -161,96 +168,19 @@ impl Node {
         Ok(())
     }
 
-    fn take_map(
-        &mut self,
-        header: &messages::MapHeader,
-        occupancy: &[u8],
-    ) -> Result<(), TransportError> {
-        let known = self.world.as_ref();
-        if known.is_some_and(|known| known.map_id == header.map_id) {
-            return self.health.state(NodeState::Ready);
-        }
-        self.health.state(NodeState::Busy)?;
-        let checked = header.check_id(occupancy).map_err(TrackerError::from);
-        match checked.and_then(|()| Ok(World::new(header, occupancy, self.config.cells)?)) {
-            Ok(world) => {
-                self.start_on(&world);
-                self.world = Some(world);
-                self.health.state(NodeState::Ready)
-            }
-            Err(error) => {
-                self.refuse(&format!(
-                    "map {:016x} is refused: {}",
-                    header.map_id,
-                    with_causes(&error)
-                ))?;
-                self.health.state(NodeState::Degraded)
-            }
-        }
-    }
-
-    /// Forgets what was known on another map, but for where the robot was: most new maps
-    /// are of the same building.
-    fn start_on(&mut self, world: &World) {
-        let on_map = |last: &Remembered| last.map_id == format!("{:016x}", world.map_id);
-        let believed = self
-            .last
-            .filter(|last| last.report.state == TrackState::Unique);
-        self.tracker = Follower::new(&self.config.follow);
-        self.asked = None;
-        if let Some(last) = believed
-            && let Some(pose) = last.report.pose
-        {
-            let covariance = Covariance(last.report.covariance);
-            self.tracker.expect(pose, covariance, REMEMBERED_LEAD);
-        } else if let Some(last) = self.remembered.take().filter(on_map)
-            && self.initial.is_none()
-        {
-            let covariance = Covariance::from_rows(last.covariance);
-            self.expect_base((last.map_from_base, covariance), REMEMBERED_LEAD);
-        }
-    }
-
-    fn expect_base(&mut self, (base, covariance): (Pose, Covariance), lead: f64) {
-        let sought = self.sought().from_base(base);
-        self.tracker
-            .expect(sought, covariance.carried(base, sought), lead);
-    }
-
-    fn sought(&self) -> Sought {
-        let mount = self.joiner.base_from_laser();
-        Sought::of(mount, self.joiner.seeks_base())
-    }
-
     /// Goes on with the scan whose turn it is, or with the next; whether there is more
     /// to do at once.
-    fn go_on(&mut self) -> Result<bool, TrackerError> {
+    fn go_on(&mut self, inputs: &Inputs) -> Result<bool, TrackerError> {
         match self.turn {
             Turn::Idle => self.next_scan(),
             Turn::Odometry { scan, since } => {
                 if self.joiner.lacks_odometry() && since.elapsed() < ODOMETRY_WAIT {
                     return Ok(false);
                 }
-                self.begin(&scan)?;
+                self.begin(inputs, &scan)?;
                 Ok(true)
             }
-            Turn::Search { scan, of, since } => {
-                let has_come = self.answers.of(of).is_some();
-                // Whoever lost one answer lost those that were due meanwhile: waiting for
-                // each of them in turn would keep poses back for a multiple of the time.
-                let is_overdue = of.entered_ns < self.gave_up_ns;
-                if !has_come && !is_overdue && since.elapsed() < SEARCH_WAIT {
-                    return Ok(false);
-                }
-                if !has_come {
-                    if !is_overdue {
-                        self.gave_up_ns = transport::monotonic_ns();
-                    }
-                    self.refuse(&format!("no hypotheses came for scan {}", of.counter))?;
-                }
-                self.finish(&scan, has_come.then_some(of), Instant::now())?;
-                Ok(true)
-            }
+            Turn::Search { scan, of, since } => self.wait_for_search(inputs, &scan, (of, since)),
         }
     }
 
@@ -274,7 +204,7 @@ impl Node {
     }
 
     /// Follows the robot to a scan, and asks for a search where one is needed.
-    fn begin(&mut self, scan: &ScanHeader) -> Result<(), TrackerError> {
+    fn begin(&mut self, inputs: &Inputs, scan: &ScanHeader) -> Result<(), TrackerError> {
         let start = Instant::now();
         self.turn = Turn::Idle;
         let Some(world) = &self.world else {
@@ -311,10 +241,10 @@ impl Node {
             Need::EarlierScan => self.asked.take(),
         };
         if need == Need::ThisScan {
-            self.outputs.ask(scan.stamp)?;
+            self.ask(inputs, scan.stamp)?;
         }
         match of {
-            None => self.finish(scan, None, start),
+            None => self.finish(inputs, scan, None, start),
             Some(of) => {
                 self.turn = Turn::Search {
                     scan: *scan,
@@ -329,6 +259,7 @@ impl Node {
     /// Is done with a scan, with what the search found for one.
     fn finish(
         &mut self,
+        inputs: &Inputs,
         scan: &ScanHeader,
         of: Option<Stamp>,
         start: Instant,
@@ -338,22 +269,20 @@ impl Node {
         let Some(world) = &self.world else {
             return self.send_nothing(scan, TrackReason::NoMap);
         };
+        let map_id = world.map_id;
         let seen = world.seen(&self.ends, &self.config.fit);
         let answer = of.and_then(|of| self.answers.of(of));
-        let of_map = answer
-            .into_iter()
-            .flatten()
-            .filter(|h| h.map_id == world.map_id);
+        let of_map = answer.into_iter().flatten().filter(|h| h.map_id == map_id);
         Candidate::fill(&mut self.candidates, of_map, sought);
         let found = answer.map(|_| &self.candidates[..]);
         self.tracker.finish(&seen, found);
         if self.tracker.asks_ahead() {
             self.asked = Some(scan.stamp);
-            self.outputs.ask(scan.stamp)?;
+            self.ask(inputs, scan.stamp)?;
         }
         let last = Tracked {
             stamp: scan.stamp,
-            map_id: world.map_id,
+            map_id,
             report: self.tracker.report(),
             sought,
             mount_known: scan.mount_known == 1,

@@ -45,13 +45,18 @@ impl NodeProcess {
         NodeProcess { child, log }
     }
 
+    /// Its process.
+    #[must_use]
+    pub fn pid(&self) -> Pid {
+        Pid::from_raw(self.child.id().cast_signed())
+    }
+
     /// Asks it to end, by SIGTERM.
     ///
     /// # Panics
     /// If the signal cannot be sent.
     pub fn interrupt(&self) {
-        let process = Pid::from_raw(self.child.id().cast_signed());
-        kill(process, Signal::SIGTERM).unwrap();
+        kill(self.pid(), Signal::SIGTERM).unwrap();
     }
 
     /// Waits until it ends, by itself or because it was asked to; returns how it

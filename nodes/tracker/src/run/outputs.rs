@@ -1,7 +1,7 @@
 //! What the node publishes.
 
 use messages::{AttentionHeader, PoseHeader, Stamp, topic};
-use transport::{Graph, Publisher, TransportError, monotonic_ns};
+use transport::{Graph, Peers, Publisher, TransportError, monotonic_ns};
 
 /// The node's publishers.
 pub(super) struct Outputs {
@@ -21,6 +21,11 @@ impl Outputs {
             rate,
             sent_ns: 0,
         })
+    }
+
+    /// Those who get what is asked for.
+    pub(super) fn asked(&self) -> Peers {
+        self.attention.subscribers()
     }
 
     /// Asks for a search of a scan.

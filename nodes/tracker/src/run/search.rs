@@ -1,0 +1,74 @@
+//! Asking for searches, and waiting for what they find.
+
+use std::time::Instant;
+
+use messages::{ScanHeader, Stamp};
+use transport::{Peers, TransportError};
+
+use super::inputs::Inputs;
+use super::outputs::Outputs;
+use super::turn::{SEARCH_WAIT, Turn};
+use super::{Node, TrackerError};
+
+/// Who takes part in a search: who takes requests, and who sends what was found. A search
+/// dies with either, and another process in its place knows nothing of it.
+#[derive(Debug, Default)]
+pub(super) struct Searchers {
+    asked: Peers,
+    answering: Peers,
+}
+
+impl Searchers {
+    fn now(inputs: &Inputs, outputs: &Outputs) -> Self {
+        Searchers {
+            asked: outputs.asked(),
+            answering: inputs.hypotheses.publishers(),
+        }
+    }
+
+    fn any_new_since(&self, before: &Searchers) -> bool {
+        self.asked.any_new_since(&before.asked) || self.answering.any_new_since(&before.answering)
+    }
+}
+
+impl Node {
+    /// Asks for a search of a scan.
+    pub(super) fn ask(&mut self, inputs: &Inputs, stamp: Stamp) -> Result<(), TransportError> {
+        // Whoever comes after this and does not get the request is seen to be new.
+        self.searchers = Searchers::now(inputs, &self.outputs);
+        self.outputs.ask(stamp)
+    }
+
+    /// Goes on with a scan as soon as the search for scan `of` has an answer, or will have
+    /// none; whether it did.
+    pub(super) fn wait_for_search(
+        &mut self,
+        inputs: &Inputs,
+        scan: &ScanHeader,
+        (of, since): (Stamp, Instant),
+    ) -> Result<bool, TrackerError> {
+        let has_come = self.answers.of(of).is_some();
+        if !has_come && Searchers::now(inputs, &self.outputs).any_new_since(&self.searchers) {
+            // The answer to this may be that the scan is not known any more: then the next
+            // one is searched.
+            self.ask(inputs, of)?;
+            self.is_silent = false;
+            let since = Instant::now();
+            let scan = *scan;
+            self.turn = Turn::Search { scan, of, since };
+            return Ok(false);
+        }
+        // Scans are searched in their order, by whoever searches all of them, too.
+        let is_lost = self.answers.any_after(of);
+        let is_over = is_lost || self.is_silent || since.elapsed() >= SEARCH_WAIT;
+        if !has_come && !is_over {
+            return Ok(false);
+        }
+        if !has_come {
+            self.is_silent |= !is_lost;
+            self.refuse(&format!("no hypotheses came for scan {}", of.counter))?;
+        }
+        self.finish(inputs, scan, has_come.then_some(of), Instant::now())?;
+        Ok(true)
+    }
+}

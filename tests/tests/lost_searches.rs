@@ -1,0 +1,136 @@
+//! A search that dies with one of those who take part in it: the tracker does not wait for
+//! its answer until it gives up, but goes on as soon as another process is in its place.
+#![allow(
+    clippy::unwrap_used,
+    reason = "the lint spares test functions but not what they share"
+)]
+
+use messages::{HealthHeader, ScanHeader, TrackState, topic};
+use nix::sys::signal::{Signal, kill};
+use tests::executables;
+use tests::world::{World, as_the_graph_has_it};
+use transport::testing::{Isolated, NodeProcess, wait_for, wait_for_health, wait_until_ready};
+use transport::{Graph, Publisher, Subscriber};
+
+/// The graph, with scans that the test sends.
+struct Robot {
+    world: World,
+    scans: Publisher<topic::Scan>,
+    poses: Subscriber<topic::Tracked>,
+    requests: Subscriber<topic::Attention>,
+    health: Subscriber<topic::Health>,
+    nodes: Vec<(&'static str, NodeProcess)>,
+    graph: Graph,
+}
+
+impl Robot {
+    fn start(isolated: &Isolated) -> Self {
+        let graph = isolated.join("test");
+        let mut robot = Robot {
+            world: World::of("malaga_corridor"),
+            scans: graph.publisher().unwrap(),
+            poses: graph.subscriber().unwrap(),
+            requests: graph.subscriber().unwrap(),
+            health: graph.subscriber().unwrap(),
+            nodes: Vec::new(),
+            graph,
+        };
+        for node in ["map_server", "boundary_extractor"] {
+            robot.start_node(node);
+        }
+        for node in ["accumulator", "peak_extractor", "tracker"] {
+            robot.start_node(node);
+            wait_until_ready(&robot.graph, node);
+        }
+        robot
+    }
+
+    fn start_node(&mut self, name: &'static str) {
+        let map = self.world.map();
+        let arguments: &[&str] = match name {
+            "map_server" => &["--map", map.to_str().unwrap()],
+            "accumulator" => &["--search", "asked"],
+            _ => &[],
+        };
+        let path = executables::path(name);
+        let node = NodeProcess::start(path.to_str().unwrap(), &self.graph, arguments);
+        self.nodes.push((name, node));
+    }
+
+    fn take(&mut self, name: &str) -> NodeProcess {
+        let at = self.nodes.iter().position(|(node, _)| *node == name);
+        self.nodes.remove(at.unwrap()).1
+    }
+
+    /// Sends one of the recording's scans, as the scan of this number.
+    fn send(&self, counter: u64) -> ScanHeader {
+        let scan = &self.world.scans()[counter as usize];
+        let header = as_the_graph_has_it(scan, counter);
+        let mut loan = self.scans.loan(scan.ranges.len()).unwrap();
+        *loan.header_mut() = header;
+        loan.items_mut().copy_from_slice(&scan.ranges);
+        loan.send().unwrap();
+        header
+    }
+
+    /// The state that the tracker is in after this scan.
+    fn state_after(&self, scan: &ScanHeader) -> u32 {
+        wait_for(&self.graph, &self.poses, |pose, _| {
+            (pose.from_scan == 1 && pose.stamp == scan.stamp).then_some(pose.state)
+        })
+    }
+
+    /// Waits until a search of this scan is asked for.
+    fn wait_for_request(&self, scan: &ScanHeader) {
+        wait_for(&self.graph, &self.requests, |request, _| {
+            (request.stamp == scan.stamp).then_some(())
+        });
+    }
+}
+
+/// A search is under way when the node with this name dies.
+fn check(victim: &'static str) {
+    let isolated = Isolated::new(victim.get(..8).unwrap());
+    let mut robot = Robot::start(&isolated);
+    let lost = robot.take(victim);
+    kill(lost.pid(), Signal::SIGSTOP).unwrap();
+    let first = robot.send(0);
+    robot.wait_for_request(&first);
+    lost.kill();
+    robot.start_node(victim);
+    // It is asked for again; the new process does not know the scan.
+    robot.wait_for_request(&first);
+    wait_until_ready(&robot.graph, victim);
+    let mut scan = robot.send(1);
+    assert_eq!(robot.state_after(&first), TrackState::Searching as u32);
+    // Until the new process has been sent a scan, it has none to search.
+    for counter in 2.. {
+        if robot.state_after(&scan) != TrackState::Searching as u32 {
+            break;
+        }
+        scan = robot.send(counter);
+    }
+    // What a node says last comes to those alone who have heard it before.
+    wait_for_health(&robot.graph, &robot.health, |report| {
+        report.node.as_str() == "tracker"
+    });
+    for (_, node) in robot.nodes.drain(..).rev() {
+        node.stop();
+    }
+    let is_last = |report: &HealthHeader| {
+        report.node.as_str() == "tracker" && report.state == messages::NodeState::Stopped as u32
+    };
+    let (report, error) = wait_for_health(&robot.graph, &robot.health, is_last);
+    // What gives up waiting says so.
+    assert_eq!((report.refused, error.as_str()), (0, ""));
+}
+
+#[test]
+fn a_search_that_died_with_its_accumulator_is_not_waited_for() {
+    check("accumulator");
+}
+
+#[test]
+fn a_search_that_died_with_its_peak_extractor_is_not_waited_for() {
+    check("peak_extractor");
+}
