@@ -3,13 +3,13 @@
 
 use std::path::{Path, PathBuf};
 
-use conversion::measurements::scan_header;
 use engine::grid::{CellRules, Grid, GridFrame};
 use engine::localizer::{Localizer, LocalizerConfig, Prior};
 use engine::scan::Scan;
 use messages::{FrameName, ScanHeader};
-use recording::ros::LaserScan;
 use recording::{Kind, Message, Recording};
+use ros::LaserScan;
+use ros::measurements::scan_header;
 
 /// One of the recordings in the repository.
 pub struct World {

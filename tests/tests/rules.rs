@@ -100,10 +100,10 @@ fn the_simulation_knows_no_engine_process_clock_or_file() {
 }
 
 #[test]
-fn conversions_know_no_process_socket_clock_or_file() {
-    let allowed = BTreeSet::from(["geometry", "messages", "recording"].map(str::to_owned));
-    assert_eq!(known("conversion"), allowed);
-    is_pure("common/conversion/src");
+fn messages_of_ros_know_no_process_socket_clock_or_file() {
+    let allowed = BTreeSet::from(["geometry", "map", "messages"].map(str::to_owned));
+    assert_eq!(known("ros"), allowed);
+    is_pure("common/ros/src");
 }
 
 #[test]
@@ -242,6 +242,7 @@ fn the_launcher_alone_links_nothing_of_the_tools() {
         "probe",
         "quick-junit",
         "ratatui",
+        "recording",
         "recording_tools",
         "regression",
         "rusqlite",

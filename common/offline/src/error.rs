@@ -2,8 +2,7 @@
 
 use std::path::PathBuf;
 
-use command_line::WRONG_USE;
-use command_line::{CommandError, FAILED};
+use command_line::{CommandError, FAILED, WRONG_USE};
 use engine::EngineError;
 use engine::heading::HeadingError;
 use map::MapError;
@@ -18,7 +17,7 @@ pub enum OfflineError {
     IndexCache(#[from] index_cache::CacheError),
     /// A message cannot be one of the graph.
     #[error(transparent)]
-    Conversion(#[from] conversion::Unsayable),
+    Conversion(#[from] ros::ConversionError),
     /// A map file cannot be used.
     #[error(transparent)]
     Map(#[from] MapError),

@@ -166,8 +166,8 @@ pub(super) fn concerns_other(error: &RecordingError, topic: &str) -> bool {
 mod tests {
     use clap::Parser;
     use geometry::Pose;
-    use recording::ros::{self, Header, Time};
     use recording::write::{Packing, RecordingWriter};
+    use ros::{Header, Time};
 
     use super::*;
 

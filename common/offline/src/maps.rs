@@ -5,8 +5,8 @@ use std::borrow::Cow;
 use std::iter::Peekable;
 
 use map::OccupancyGrid;
-use recording::ros::OccupancyGridMsg;
 use recording::{Recording, RecordingError};
+use ros::OccupancyGridMsg;
 use transport::with_causes;
 
 /// A map that was recorded, with its log time.

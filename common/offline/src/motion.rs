@@ -3,11 +3,11 @@
 
 use std::sync::Arc;
 
-use conversion::lasers;
 use engine::EngineError;
 use engine::joined::{JoinConfig, Joiner, MotionConfig, Seen};
 use geometry::Pose;
 use recording::{Kind, Recording, RecordingError};
+use ros::lasers;
 
 use super::TakenScan;
 use super::heading::each_odometry;

@@ -3,12 +3,11 @@
 use std::collections::BTreeMap;
 use std::sync::Arc;
 
-use conversion::{Unsayable, lasers, measurements};
 use engine::scan::Scan;
 use geometry::{Mount, Pose};
 use messages::{Name, ScanHeader};
-use recording::ros::LaserScan;
 use recording::{Kind, Message, Mounted, Recording, RecordingError, Records};
+use ros::{ConversionError, LaserScan, lasers, measurements};
 
 use super::heading::concerns_other;
 
@@ -42,7 +41,7 @@ impl TakenScan {
     ///
     /// # Errors
     /// The frame's name is longer than a message of the graph can hold.
-    pub fn header(&self) -> Result<ScanHeader, Unsayable> {
+    pub fn header(&self) -> Result<ScanHeader, ConversionError> {
         let frame = measurements::frame(self.frame())?;
         let mount = self.base_from_laser.map(|base_from_laser| Mount {
             base_from_laser,
@@ -205,8 +204,8 @@ impl Iterator for Scans<'_> {
 
 #[cfg(test)]
 mod tests {
-    use recording::ros::{Header, Time};
     use recording::write::{Packing, RecordingWriter};
+    use ros::{Header, Time};
 
     use super::*;
 

@@ -1,9 +1,8 @@
 //! From the messages of a recording to those of the graph; an error says where the
 //! message stands.
 
-use conversion::{Unsayable, measurements};
 use messages::{FrameName, GroundTruth, Odometry};
-use recording::ros::{self, PoseStamped};
+use ros::{ConversionError, PoseStamped, measurements};
 
 use crate::PlaybackError;
 
@@ -26,7 +25,7 @@ impl Place<'_> {
         measurements::ground_truth(message).map_err(|reason| self.unusable(reason))
     }
 
-    fn unusable(&self, reason: Unsayable) -> PlaybackError {
+    fn unusable(&self, reason: ConversionError) -> PlaybackError {
         PlaybackError::Message {
             topic: self.topic.into(),
             log_time_ns: self.log_time_ns,

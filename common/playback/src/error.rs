@@ -1,7 +1,7 @@
 //! What can go wrong with the messages of a recording.
 
-use conversion::Unsayable;
 use recording::RecordingError;
+use ros::ConversionError;
 
 /// What was tried, what was found and what is allowed.
 #[derive(Debug, thiserror::Error)]
@@ -17,7 +17,7 @@ pub enum PlaybackError {
         /// Nanoseconds since 1970.
         log_time_ns: i64,
         /// What is wrong.
-        reason: Unsayable,
+        reason: ConversionError,
     },
 }
 

@@ -6,11 +6,11 @@
 use std::collections::BTreeMap;
 use std::sync::Arc;
 
-use conversion::lasers;
-use conversion::measurements::scan_header;
 use geometry::Mount;
 use messages::{GroundTruth, Name, Odometry, ScanHeader};
 use recording::{Channel, Kind, Message, Mounted, Record, Recording, RecordingError, Records};
+use ros::lasers;
+use ros::measurements::scan_header;
 
 use crate::PlaybackError;
 use crate::convert::Place;
@@ -254,8 +254,8 @@ impl Iterator for Source<'_> {
 #[cfg(test)]
 mod tests {
     use geometry::Pose;
-    use recording::ros::{self, LaserScan, PoseStamped, Time};
     use recording::write::{Packing, RecordingWriter};
+    use ros::{LaserScan, PoseStamped, Time};
 
     use super::*;
 

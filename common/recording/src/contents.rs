@@ -5,12 +5,12 @@ use std::collections::BTreeMap;
 use std::collections::btree_map::Entry;
 
 use map::OccupancyGrid;
+use ros::{ConversionError, OccupancyGridMsg, RosMessage, TfMessage};
 
 use crate::moving::MovingFrames;
-use crate::ros::{ConversionError, OccupancyGridMsg, RosMessage, TfMessage};
 use crate::{
     Channel, GroundTruth, Kind, MAX_TILT_DEGREES, Message, Mount, RawRecords, Record, Recording,
-    RecordingError, Records, TF_STATIC, TransformTree, decode_cdr, unpack,
+    RecordingError, Records, TF_STATIC, TransformTree, unpack,
 };
 
 /// Where a laser sits, as far as a recording says it.
@@ -146,7 +146,7 @@ impl Recording {
             let record = record?;
             let body = unpack::message(&record.body);
             // Others than the laser's are in nobody's way.
-            if let Ok(message) = body.and_then(|body| decode_cdr::<TfMessage>(&body)) {
+            if let Ok(message) = body.and_then(|body| ros::cdr::decode::<TfMessage>(&body)) {
                 message.transforms.iter().for_each(|t| frames.see(t));
             }
         }
@@ -240,9 +240,9 @@ mod tests {
     use geometry::Pose;
 
     use super::*;
-    use crate::ros::{self, PoseStamped, TfMessage, TransformStamped};
     use crate::sample;
     use crate::write::{Packing, RecordingWriter};
+    use ros::{PoseStamped, TfMessage, TransformStamped};
 
     fn recording(messages: &[(&str, Message)]) -> Recording {
         let mut writer = RecordingWriter::in_memory(Packing::Zstd).unwrap();
@@ -419,7 +419,7 @@ mod tests {
             let message = TfMessage {
                 transforms: vec![odometry, laser.clone()],
             };
-            let body = crate::encode_cdr(&message).unwrap();
+            let body = ros::cdr::encode(&message).unwrap();
             writer
                 .write_bytes("/tf", TfMessage::SCHEMA, "", "cdr", time, &body)
                 .unwrap();

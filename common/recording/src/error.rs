@@ -3,7 +3,8 @@
 use std::io;
 use std::path::PathBuf;
 
-use crate::ros::ConversionError;
+use ros::ConversionError;
+
 use crate::{Damage, Kind, topics};
 
 /// What went wrong, and in which file.

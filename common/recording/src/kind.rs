@@ -2,8 +2,9 @@
 
 use std::fmt;
 
+use ros::{LaserScan, OccupancyGridMsg, Odometry, PoseStamped, RosMessage, TfMessage};
+
 use crate::TF_STATIC;
-use crate::ros::{LaserScan, OccupancyGridMsg, Odometry, PoseStamped, RosMessage, TfMessage};
 
 /// A kind of message, by its schema.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, PartialOrd, Ord)]

@@ -6,13 +6,12 @@
 //! gives its messages in the order of their log times, and [`mod@write`] writes
 //! recordings. Damage is never repaired and never passed over: what lies before
 //! it is given out, then the error that says where it is. The crate decodes the
-//! five message types of [`Kind`], gives out all others as bytes, and knows no
-//! graph.
+//! five message types of [`Kind`] by way of crate `ros`, gives out all others as
+//! bytes, and knows no graph.
 
 #[cfg(feature = "rosbag2")]
 mod bag;
 mod block;
-mod cdr;
 mod chunk;
 mod content;
 mod contents;
@@ -33,7 +32,6 @@ mod raw;
 mod reading;
 mod recording;
 mod registry;
-pub mod ros;
 #[cfg(test)]
 mod sample;
 #[cfg(test)]
@@ -45,7 +43,6 @@ mod unpack;
 pub mod write;
 
 pub use block::Part;
-pub use cdr::{decode as decode_cdr, encode as encode_cdr};
 pub use chunk::MAX_CHUNK_BYTES;
 pub use contents::Mounted;
 pub use copy::{is_bag, is_recording, write_bag};

@@ -2,8 +2,9 @@
 
 use std::sync::Arc;
 
-use crate::ros::{LaserScan, OccupancyGridMsg, Odometry, PoseStamped, TfMessage};
-use crate::{Kind, cdr};
+use ros::{LaserScan, OccupancyGridMsg, Odometry, PoseStamped, TfMessage, cdr};
+
+use crate::Kind;
 
 /// A message with its place in the recording.
 #[derive(Debug, Clone, PartialEq)]

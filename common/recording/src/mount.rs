@@ -4,8 +4,7 @@ use std::collections::{BTreeMap, BTreeSet, VecDeque};
 
 use geometry::Pose;
 use nalgebra::{Isometry3, Quaternion, Translation3, UnitQuaternion, Vector3};
-
-use crate::ros::{ConversionError, Mend, Transform, TransformStamped};
+use ros::{ConversionError, Mend, Transform, TransformStamped};
 
 /// The names of a robot's base, the one that is preferred first.
 const BASES: [&str; 3] = ["base_link", "base_footprint", "base"];
@@ -222,7 +221,6 @@ mod tests {
     use std::f64::consts::{FRAC_PI_2, PI};
 
     use super::*;
-    use crate::ros;
 
     fn transform(
         parent: &str,

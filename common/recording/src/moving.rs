@@ -9,9 +9,9 @@ use std::collections::BTreeMap;
 use std::collections::btree_map::Entry;
 
 use nalgebra::Isometry3;
+use ros::TransformStamped;
 
 use crate::mount::{TransformTree, isometry, plain};
-use crate::ros::TransformStamped;
 
 /// How far a transform that does not move may be from the first one, metres and
 /// radians: a calibration that is published anew, or a rounding.

@@ -3,11 +3,11 @@
 
 use geometry::Pose;
 use map::OccupancyGrid;
-
-use crate::ros::{
+use ros::{
     self, Header, LaserScan, OccupancyGridMsg, Odometry, PoseStamped, TfMessage, Time, Transform,
     TransformStamped, Vector3,
 };
+
 use crate::write::{Packing, RecordingWriter};
 use crate::{GROUND_TRUTH, MAP, Message, ODOM, Record, SCAN, TF_STATIC};
 

@@ -1,8 +1,7 @@
 //! True poses.
 
 use geometry::Pose;
-
-use crate::ros::{ConversionError, PoseStamped};
+use ros::{ConversionError, PoseStamped};
 
 /// Where the laser truly was.
 #[derive(Debug, Clone, PartialEq)]

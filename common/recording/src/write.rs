@@ -19,8 +19,8 @@ use mcap::{Attachment, McapError, WriteOptions};
 pub use encoded::Encoded;
 
 use crate::parse::reason;
-use crate::ros::{LaserScan, OccupancyGridMsg, Odometry, PoseStamped, RosMessage, TfMessage};
 use crate::{Kind, Message, RecordingError};
+use ros::{LaserScan, OccupancyGridMsg, Odometry, PoseStamped, RosMessage, TfMessage};
 
 /// How chunks are packed.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]

@@ -22,7 +22,7 @@ pub enum RecordingToolsError {
     Map(#[from] MapError),
     /// A message cannot be one of the graph.
     #[error(transparent)]
-    Conversion(#[from] conversion::Unsayable),
+    Conversion(#[from] ros::ConversionError),
     /// A drive cannot be simulated.
     #[error(transparent)]
     Simulation(#[from] SimulationError),

@@ -7,8 +7,8 @@ use std::path::{Path, PathBuf};
 use geometry::Pose;
 use map::OccupancyGrid;
 use plots::{Contrast, PlotError, draw_contrast};
-use recording::ros::LaserScan;
 use recording::{Kind, Message, Recording};
+use ros::LaserScan;
 
 use super::answer::Answer;
 use super::case::Case;

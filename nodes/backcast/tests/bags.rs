@@ -15,7 +15,7 @@ use drawn::{
     truth_at,
 };
 use recording::Message;
-use recording::ros::{LaserScan, OccupancyGridMsg};
+use ros::{LaserScan, OccupancyGridMsg};
 use serde_json::Value;
 
 /// The room as far as it is known: so many of its rows.

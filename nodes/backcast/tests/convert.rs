@@ -17,8 +17,8 @@ use drawn::{folder, recordings, run};
 use flate2::Compression;
 use flate2::write::GzEncoder;
 use geometry::Pose;
-use recording::ros::LaserScan;
 use recording::{Kind, Message, Recording};
+use ros::LaserScan;
 
 #[test]
 fn a_recording_becomes_a_log_and_a_recording_again() {

@@ -11,8 +11,8 @@ use std::fs;
 
 use drawn::{HERE, folder, lines, map_message, objects, room, run, scan, scan_at, truth_at, word};
 use recording::Message;
-use recording::ros::LaserScan;
 use recording::write::{Packing, RecordingWriter};
+use ros::LaserScan;
 use serde_json::Value;
 use tempfile::TempDir;
 

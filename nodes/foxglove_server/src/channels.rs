@@ -6,8 +6,8 @@ use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
 
 use foxglove::websocket::{ChannelView, Client, ServerListener};
 use foxglove::{Context, PartialMetadata, RawChannel, Schema};
-use recording::ros::{OccupancyGridMsg, RosMessage};
 use recording::write::Encoded;
+use ros::{OccupancyGridMsg, RosMessage};
 use transcript::topics;
 
 use crate::ServerError;

@@ -12,7 +12,7 @@ use messages::{
     FieldHeader, FrameName, HypothesesHeader, Hypothesis, MapHeader, Pose2, ScanHeader, Stamp,
     Verdict, topic,
 };
-use recording::ros::{LaserScan, OccupancyGridMsg, PoseWithCovarianceStamped};
+use ros::{LaserScan, OccupancyGridMsg, PoseWithCovarianceStamped};
 use serde::de::DeserializeOwned;
 use serde_json::{Value, json};
 use tests::http::Site;
@@ -264,7 +264,7 @@ impl Viewer {
 }
 
 fn decoded<M: DeserializeOwned>(shown: &Shown) -> M {
-    recording::decode_cdr(&shown.body).unwrap()
+    ros::cdr::decode(&shown.body).unwrap()
 }
 
 #[test]

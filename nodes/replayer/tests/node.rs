@@ -9,9 +9,9 @@ use std::process::ExitStatus;
 
 use geometry::Pose;
 use messages::{NodeState, Stamp, topic};
-use recording::ros::{self, LaserScan, PoseStamped, Time};
 use recording::write::{Packing, RecordingWriter};
 use recording::{Message, Recording};
+use ros::{LaserScan, PoseStamped, Time};
 use transport::testing::{Isolated, NodeProcess, wait_for, wait_until};
 use transport::{Graph, Publisher, Subscriber};
 

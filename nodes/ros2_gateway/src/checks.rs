@@ -1,7 +1,7 @@
 //! What of the robot's messages is refused.
 
 use messages::Odometry as GraphOdometry;
-use recording::ros::{LaserScan, Odometry, Time, TransformStamped};
+use ros::{LaserScan, Odometry, Time, TransformStamped};
 
 use crate::GatewayError;
 
@@ -23,7 +23,7 @@ pub(crate) fn check_scan(message: &LaserScan) -> Result<(), GatewayError> {
 /// Odometry as the graph has it, if its numbers and times are such.
 pub(crate) fn sound_odometry(message: &Odometry) -> Result<GraphOdometry, GatewayError> {
     measured_ns("the odometry", message.header.stamp)?;
-    let odometry = conversion::measurements::odometry(message)?;
+    let odometry = ros::measurements::odometry(message)?;
     let twist = odometry.twist;
     for (field, found) in [("twist", twist.x), ("twist", twist.y), ("twist", twist.yaw)] {
         finite("the odometry", field, found)?;

@@ -1,8 +1,7 @@
 //! What keeps the gateway from running, and why a message is refused.
 
-use conversion::Unsayable;
 use network::{KeyError, NetworkError};
-use recording::ros::ConversionError;
+use ros::ConversionError;
 use transport::TransportError;
 
 /// What was tried, what was found and what is allowed.
@@ -99,10 +98,7 @@ pub enum GatewayError {
         /// Nanoseconds since 1970.
         stamp_ns: i64,
     },
-    /// The graph cannot say it.
-    #[error(transparent)]
-    Unsayable(#[from] Unsayable),
-    /// A pose, a transform or a map is none.
+    /// A pose, a transform or a map is none, or the graph cannot say it.
     #[error(transparent)]
     Conversion(#[from] ConversionError),
     /// A topic that is taken is published as something else.

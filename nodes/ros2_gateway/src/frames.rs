@@ -8,8 +8,8 @@ use std::collections::{BTreeMap, BTreeSet, VecDeque};
 
 use geometry::{Mount, Pose};
 use messages::{HypothesesHeader, Hypothesis, Odometry};
-use recording::ros::{TfMessage, TransformStamped};
 use recording::{MAX_TILT_DEGREES, TransformTree};
+use ros::{TfMessage, TransformStamped};
 
 use crate::GatewayError;
 
@@ -179,7 +179,7 @@ impl Frames {
 mod tests {
     use bytemuck::Zeroable;
     use messages::{FrameName, Pose2};
-    use recording::ros::{Header, Quaternion, Transform, TransformStamped, Vector3};
+    use ros::{Header, Quaternion, Transform, TransformStamped, Vector3};
 
     use super::*;
 

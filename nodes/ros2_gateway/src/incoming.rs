@@ -3,7 +3,7 @@
 use std::collections::BTreeSet;
 
 use network::Report;
-use recording::ros::{
+use ros::{
     LaserScan, OccupancyGridMsg, Odometry, PoseWithCovarianceStamped, Quaternion, RosMessage,
     TfMessage,
 };
@@ -14,7 +14,7 @@ use crate::checks::{measured_ns, odometry_of, sound_odometry};
 use crate::config::{Brought, Config};
 use crate::frames::Frames;
 use crate::outlet::Outlet;
-use crate::ros::{Keeping, Member, Subscription, Watch};
+use crate::rmw_zenoh::{Keeping, Member, Subscription, Watch};
 use crate::seeding::{Belief, Seeding};
 use crate::topics::Topics;
 use crate::{GatewayError, Seed};

@@ -16,7 +16,7 @@ mod frames;
 mod incoming;
 mod outgoing;
 mod outlet;
-mod ros;
+mod rmw_zenoh;
 mod run;
 mod seeding;
 mod topics;

@@ -5,7 +5,7 @@ use messages::{
     HealthHeader, HypothesesHeader, Hypothesis, PoseHeader, Stamp, TrackState, Verdict,
 };
 use network::Report;
-use recording::ros::{
+use ros::{
     DiagnosticArray, Header, PoseArray, PoseWithCovarianceStamped, TfMessage, Time,
     TransformStamped,
 };
@@ -14,7 +14,7 @@ use transport::{TransportError, monotonic_ns, wall_ns};
 use crate::GatewayError;
 use crate::config::{Config, Reach};
 use crate::frames::Frames;
-use crate::ros::{Member, Publisher};
+use crate::rmw_zenoh::{Member, Publisher};
 use crate::seeding::{Answer, Reason, Seeding};
 use crate::topics::Topics;
 
@@ -91,12 +91,12 @@ impl Outgoing {
         report: &mut Report,
     ) -> Result<(), GatewayError> {
         let in_map = in_map(header.stamp, map_frame)?;
-        let best = conversion::poses::best(in_map.clone(), header, items);
+        let best = ros::poses::best(in_map.clone(), header, items);
         if let (Some(reason), Some(best), Some(pose)) = (reason, items.first(), best) {
-            let at = conversion::poses::robot(header, best);
+            let at = ros::poses::robot(header, best);
             self.seed(reason, (pose, at), report)?;
         }
-        let poses = conversion::poses::array(in_map.clone(), header, items);
+        let poses = ros::poses::array(in_map.clone(), header, items);
         self.hypotheses.send(&poses)?;
         report.sent();
         if self.is_tracked {
@@ -136,7 +136,7 @@ impl Outgoing {
         report: &mut Report,
     ) -> Result<(), GatewayError> {
         let in_map = in_map(header.stamp, map_frame)?;
-        let pose = conversion::poses::tracked(in_map.clone(), header);
+        let pose = ros::poses::tracked(in_map.clone(), header);
         if let (Some(reason), Some(pose)) = (reason, pose) {
             self.seed(reason, (pose, header.map_from_base.into()), report)?;
         }
@@ -179,7 +179,7 @@ impl Outgoing {
                 ..in_map
             },
             child_frame_id: odom.clone(),
-            transform: conversion::planar::transform(*pose),
+            transform: ros::planar::transform(*pose),
         };
         transforms.send(&TfMessage {
             transforms: vec![transform],
@@ -197,7 +197,7 @@ impl Outgoing {
     ) -> Result<(), TransportError> {
         let error = String::from_utf8_lossy(error);
         let outcome = stamp(self.clock_ns()).and_then(|now| {
-            let message = conversion::diagnostics::of(now, health, &error);
+            let message = ros::diagnostics::of(now, health, &error);
             self.diagnostics.send(&message)
         });
         match outcome {
@@ -223,7 +223,7 @@ fn is_unique(header: &HypothesesHeader) -> bool {
 fn answer(header: &HypothesesHeader, items: &[Hypothesis]) -> Answer {
     let likely = items.iter().enumerate();
     let likely = likely.filter(|(rank, item)| *rank == 0 || item.probability >= LIKELY);
-    let poses = likely.map(|(_, item)| conversion::poses::robot(header, item));
+    let poses = likely.map(|(_, item)| ros::poses::robot(header, item));
     Answer {
         measured_ns: header.stamp.measured_ns,
         // Where no mount is known, the pose is the laser's: the robot's could be a
@@ -254,7 +254,7 @@ fn spread(mut pose: PoseWithCovarianceStamped, least: Reach) -> PoseWithCovarian
     for (index, variance) in [(0, metres), (4, metres), (8, least.radians * least.radians)] {
         covariance[index] = f64::max(covariance[index], variance);
     }
-    let mut with = recording::ros::PoseWithCovariance::from_planar(Pose::IDENTITY, covariance);
+    let mut with = ros::PoseWithCovariance::from_planar(Pose::IDENTITY, covariance);
     with.pose = pose.pose.pose;
     pose.pose = with;
     pose

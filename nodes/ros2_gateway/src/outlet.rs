@@ -1,10 +1,9 @@
 //! The graph's side of what comes from the robot.
 
-use conversion::measurements;
 use map::MemoryLimit;
 use messages::{MapHeader, Name, Odometry, ScanHeader, Stamp, topic};
 use network::Report;
-use recording::ros::{LaserScan, OccupancyGridMsg};
+use ros::{LaserScan, OccupancyGridMsg, measurements};
 use transport::{Graph, Publisher, TransportError, monotonic_ns};
 
 use crate::GatewayError;

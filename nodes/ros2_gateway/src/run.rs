@@ -10,7 +10,7 @@ use transport::{Flow, Graph, Subscriber, TransportError};
 use crate::frames::Frames;
 use crate::incoming::Incoming;
 use crate::outgoing::Outgoing;
-use crate::ros::{Member, Seen, Service, Watch};
+use crate::rmw_zenoh::{Member, Seen, Service, Watch};
 use crate::seeding::Seeding;
 use crate::topics::Topics;
 use crate::{Config, GatewayError};

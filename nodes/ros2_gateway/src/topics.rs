@@ -1,10 +1,10 @@
 //! The robot's topics and services by their whole names.
 
-use conversion::lasers;
 use messages::Name;
+use ros::lasers;
 
 use crate::config::{Config, Names};
-use crate::{GatewayError, ros};
+use crate::{GatewayError, rmw_zenoh};
 
 /// As in [`Names`], resolved.
 #[derive(Debug, Clone)]
@@ -32,7 +32,7 @@ pub(crate) struct Scans {
 impl Topics {
     pub(crate) fn of(config: &Config) -> Result<Self, GatewayError> {
         let resolve = |option, name: &str| {
-            ros::resolve(&config.namespace, name)
+            rmw_zenoh::resolve(&config.namespace, name)
                 .map_err(|reason| GatewayError::Option { option, reason })
         };
         // Refused here, before anything is opened: it becomes a part of every token.

@@ -11,8 +11,8 @@ use messages::{
     FrameName, HypothesesHeader, Hypothesis, MapHeader, Odometry, Pose2, PoseHeader, ScanHeader,
     Stamp, TrackState, Verdict, topic,
 };
-use recording::ros::LaserScan;
 use recording::{Kind, Message, Recording};
+use ros::LaserScan;
 use serde_json::{Value, json};
 use tests::executables;
 use tests::robot::Robot;

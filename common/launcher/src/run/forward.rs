@@ -3,10 +3,10 @@
 
 use std::path::{Path, PathBuf};
 
-use conversion::lasers::name_of;
 use dataflow::{Dataflow, Node};
 use engine::heading::{HeadingConfig, HeadingFrom, HeadingSource};
 use messages::{Topic, topic};
+use ros::lasers::name_of;
 
 use super::arguments::{
     ACCUMULATOR, MAP_SERVER, PLAYERS, find, leave_out_monitors, set, unset, value,

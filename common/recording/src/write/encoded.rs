@@ -2,8 +2,9 @@
 
 use std::borrow::Cow;
 
-use crate::ros::RosMessage;
-use crate::{RecordingError, cdr};
+use ros::{RosMessage, cdr};
+
+use crate::RecordingError;
 
 /// A message that is encoded but not yet written.
 #[derive(Debug, Clone, PartialEq, Eq)]

@@ -1,7 +1,7 @@
 //! A laser of a log that becomes a topic of a recording.
 
 use recording::SCAN;
-use recording::ros::{LaserScan, Time};
+use ros::{LaserScan, Time};
 
 use super::carmen::{Kind, Laser, name_of};
 use super::survey::Survey;

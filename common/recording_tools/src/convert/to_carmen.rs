@@ -3,8 +3,8 @@
 use std::io::Write;
 
 use geometry::Pose;
-use recording::ros::LaserScan;
 use recording::{Kind, Message, Recording, RecordingError};
+use ros::LaserScan;
 use transport::with_causes;
 
 use super::carmen::{Odometry, Poses};

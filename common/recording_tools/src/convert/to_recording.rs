@@ -3,12 +3,12 @@
 use std::collections::BTreeSet;
 use std::io::{BufRead, Seek, Write};
 
-use recording::ros::{
+use recording::write::RecordingWriter;
+use recording::{GROUND_TRUTH, Message, ODOM, SCAN, TF_STATIC};
+use ros::{
     self, Header, PoseStamped, Quaternion, TfMessage, Time, Transform, TransformStamped, Twist,
     TwistWithCovariance, Vector3,
 };
-use recording::write::RecordingWriter;
-use recording::{GROUND_TRUTH, Message, ODOM, SCAN, TF_STATIC};
 use transport::with_causes;
 
 use super::angles;

@@ -5,8 +5,8 @@ use std::collections::BTreeSet;
 use engine::grid::CellRules;
 use map::OccupancyGrid;
 use offline::check_map;
-use recording::ros::OccupancyGridMsg;
 use recording::{GROUND_TRUTH, Kind, Mounted, Recording};
+use ros::OccupancyGridMsg;
 use transport::with_causes;
 
 use super::ailment::Ailment;

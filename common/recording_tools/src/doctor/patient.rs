@@ -3,8 +3,8 @@
 use std::collections::{BTreeMap, BTreeSet};
 
 use engine::scan::Scan;
-use recording::ros::{Header, LaserScan, Mend, Quaternion, TfMessage};
 use recording::{Kind, Message, Record, Recording, RecordingError};
+use ros::{Header, LaserScan, Mend, Quaternion, TfMessage};
 
 /// What was seen on one channel.
 #[derive(Debug, Clone, PartialEq, Default)]

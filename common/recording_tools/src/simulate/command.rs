@@ -5,9 +5,9 @@ use std::process::ExitCode;
 
 use command_line::stdout;
 use progress::{Progress, say};
-use recording::ros::Time;
 use recording::write::{Packing, RecordingWriter};
 use recording::{GROUND_TRUTH, MAP, ODOM, TF_STATIC};
+use ros::Time;
 use simulation::{Drive, DriveConfig, Path, Wheels};
 
 use super::messages::Messages;

@@ -1,14 +1,12 @@
 //! Snapshots of a drive as ROS 2 messages, with the frames that robots use:
 //! `map`, `odom`, `base_link` and `laser`, or `front_laser` of a laser called front.
 
-use conversion::lasers;
 use geometry::{Mount, Pose};
 use map::OccupancyGrid;
 use recording::Message;
-use recording::ros;
-use recording::ros::{
+use ros::{
     Header, LaserScan, OccupancyGridMsg, Odometry, PoseStamped, Quaternion, TfMessage, Time,
-    Transform, TransformStamped, Vector3,
+    Transform, TransformStamped, Vector3, lasers,
 };
 use simulation::{Bearings, DriveConfig, NamedMount, Snapshot, Wheels};
 

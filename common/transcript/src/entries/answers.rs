@@ -2,8 +2,8 @@
 
 use geometry::Pose;
 use messages::{Beam, BeamsHeader, HypothesesHeader, Hypothesis, PoseHeader, Vote, VotesHeader};
-use recording::ros::Header;
-use recording::ros::backcast_msgs as own;
+use ros::Header;
+use ros::backcast_msgs as own;
 
 pub(super) fn votes(header: Header, votes: &VotesHeader, items: &[Vote]) -> own::Votes {
     let vote = |vote: &Vote| own::Vote {

@@ -14,10 +14,9 @@
 
 use std::collections::VecDeque;
 
-use conversion::{planar, poses};
 use geometry::Pose;
 use messages::{HypothesesHeader, Hypothesis, Odometry, PoseHeader, ScanHeader, Verdict};
-use recording::ros::{Header, TfMessage, Time, TransformStamped};
+use ros::{Header, TfMessage, Time, TransformStamped, planar, poses};
 
 use super::transforms;
 

@@ -1,7 +1,7 @@
 //! A line of a node's log as ROS says it.
 
 use messages::LogHeader;
-use recording::ros::{Log, Time};
+use ros::{Log, Time};
 
 pub(super) fn of(stamp: Time, header: &LogHeader, text: &str) -> Log {
     Log {

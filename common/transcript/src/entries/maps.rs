@@ -2,9 +2,8 @@
 
 use std::collections::BTreeMap;
 
-use conversion::planar;
 use messages::{FieldHeader, MapHeader, Topic, topic};
-use recording::ros::{Header, MapMetaData, OccupancyGridMsg};
+use ros::{Header, MapMetaData, OccupancyGridMsg, planar};
 
 use crate::TranscriptError;
 

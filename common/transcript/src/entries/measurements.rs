@@ -1,8 +1,7 @@
 //! Scans, odometry and true poses as ROS says them.
 
-use conversion::planar;
 use messages::{GroundTruth, Odometry, ScanHeader};
-use recording::ros::{self, Header, LaserScan, PoseStamped, Time, Twist, TwistWithCovariance};
+use ros::{Header, LaserScan, PoseStamped, Time, Twist, TwistWithCovariance, planar};
 
 pub(super) fn scan(stamp: Time, scan: &ScanHeader, ranges: &[f32]) -> LaserScan {
     let steps = ranges.len().saturating_sub(1) as f64;

@@ -14,17 +14,16 @@ mod measurements;
 use std::borrow::Cow;
 use std::collections::{BTreeMap, VecDeque};
 
-use conversion::{diagnostics, lasers, poses};
+use frames::Frames;
 use messages::{
     Beam, BeamsHeader, FieldHeader, GroundTruth, HealthHeader, HypothesesHeader, Hypothesis,
     LogHeader, MapHeader, Odometry, Particle, ParticlesHeader, PoseHeader, ScanHeader, Stamp,
     Topic, Vote, VotesHeader, topic,
 };
-use recording::ros::{Header, OccupancyGridMsg, RosMessage, TfMessage, Time};
 use recording::write::Encoded;
+use ros::{Header, OccupancyGridMsg, RosMessage, TfMessage, Time, diagnostics, lasers, poses};
 
 use crate::{Options, TranscriptError, topics};
-use frames::Frames;
 
 /// Reports, and lines, that wait for the first measurement at most; the newest are
 /// kept.
@@ -377,7 +376,7 @@ impl Moment {
     }
 }
 
-fn transforms(transforms: Vec<recording::ros::TransformStamped>) -> TfMessage {
+fn transforms(transforms: Vec<ros::TransformStamped>) -> TfMessage {
     TfMessage { transforms }
 }
 

@@ -16,8 +16,8 @@ use engine::space::Space;
 use geometry::Pose;
 use map::OccupancyGrid;
 use recording::Message;
-use recording::ros::{self, LaserScan, OccupancyGridMsg};
 use recording::write::{Packing, RecordingWriter};
+use ros::{LaserScan, OccupancyGridMsg};
 use serde_json::Value;
 use tempfile::TempDir;
 

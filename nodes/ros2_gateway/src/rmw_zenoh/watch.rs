@@ -5,7 +5,7 @@ use std::sync::atomic::{AtomicU64, Ordering};
 
 use crossbeam::queue::ArrayQueue;
 use network::KeyError;
-use recording::ros::RosMessage;
+use ros::RosMessage;
 use transport::Graph;
 use zenoh::Wait;
 use zenoh::pubsub::Subscriber;
@@ -121,7 +121,7 @@ fn judge(token: &Token, subscribed: &str, published: &[(String, TypeInfo)]) -> O
 
 #[cfg(test)]
 mod tests {
-    use recording::ros::{LaserScan, PoseArray};
+    use ros::{LaserScan, PoseArray};
 
     use super::*;
 

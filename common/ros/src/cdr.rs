@@ -64,7 +64,7 @@ pub fn encode<T: Serialize>(message: &T) -> Result<Vec<u8>, cdr_encoding::Error>
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::ros::{Header, LaserScan, PoseStamped, TfMessage, Time};
+    use crate::{Header, LaserScan, PoseStamped, TfMessage, Time};
 
     fn scan() -> LaserScan {
         LaserScan {
@@ -178,8 +178,8 @@ mod tests {
                 let bytes = [&[0, order, 0, 0][..], &bytes].concat();
                 let _ = decode::<LaserScan>(&bytes);
                 let _ = decode::<TfMessage>(&bytes);
-                let _ = decode::<crate::ros::Odometry>(&bytes);
-                let _ = decode::<crate::ros::OccupancyGridMsg>(&bytes);
+                let _ = decode::<crate::Odometry>(&bytes);
+                let _ = decode::<crate::OccupancyGridMsg>(&bytes);
             }
         }
     }

@@ -6,7 +6,7 @@
 //! | calls of a service | queries of `<domain>/<service>/<type>/<type hash>` |
 //! | who is there | liveliness tokens `@ros2_lv/<domain>/<session>/<node>/<entity>/<kind>/…` |
 //!
-//! What a message is made of stands in `recording::ros`, hashes are made by
+//! What a message is made of stands in crate `ros`, hashes are made by
 //! `hiroz-schema`. Its sister `hiroz-protocol`, which writes the same keys and tokens,
 //! builds with all transports of Zenoh alone, of which most are not wanted here.
 

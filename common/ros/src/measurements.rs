@@ -5,19 +5,20 @@
 
 use geometry::Mount;
 use messages::{FrameName, GroundTruth, Name, Odometry, ScanHeader, Stamp};
-use recording::ros::{self, LaserScan, PoseStamped, Time};
 
-use crate::Unsayable;
+use crate as ros;
+use crate::ConversionError;
+use crate::{LaserScan, PoseStamped, Time};
 
 /// A frame's name.
 ///
 /// # Errors
 /// If it is longer than a message of the graph can hold.
-pub fn frame(frame: &str) -> Result<FrameName, Unsayable> {
+pub fn frame(frame: &str) -> Result<FrameName, ConversionError> {
     if frame.len() <= FrameName::CAPACITY {
         return Ok(FrameName::new(frame));
     }
-    Err(Unsayable::Frame {
+    Err(ConversionError::Frame {
         frame: frame.into(),
     })
 }
@@ -47,7 +48,7 @@ pub fn scan_header(scan: &LaserScan, frame: FrameName, mount: Option<Mount>) -> 
 ///
 /// # Errors
 /// If the pose is none, or a frame's name too long.
-pub fn odometry(message: &ros::Odometry) -> Result<Odometry, Unsayable> {
+pub fn odometry(message: &ros::Odometry) -> Result<Odometry, ConversionError> {
     Ok(Odometry {
         stamp: measured(message.header.stamp),
         odom_from_child: message.pose.pose.planar()?.into(),
@@ -62,7 +63,7 @@ pub fn odometry(message: &ros::Odometry) -> Result<Odometry, Unsayable> {
 ///
 /// # Errors
 /// As [`odometry`].
-pub fn ground_truth(message: &PoseStamped) -> Result<GroundTruth, Unsayable> {
+pub fn ground_truth(message: &PoseStamped) -> Result<GroundTruth, ConversionError> {
     Ok(GroundTruth {
         stamp: measured(message.header.stamp),
         map_from_laser: message.pose.planar()?.into(),

@@ -7,7 +7,7 @@ use std::collections::BTreeMap;
 use std::marker::PhantomData;
 
 use network::{Past, Queue, Room};
-use recording::ros::RosMessage;
+use ros::RosMessage;
 use serde::de::DeserializeOwned;
 use transport::Graph;
 use zenoh::liveliness::LivelinessToken;
@@ -116,7 +116,7 @@ impl<M: RosMessage + DeserializeOwned> Subscription<M> {
             *lost = self.lost_before(attachment);
         }
         let bytes = sample.payload().to_bytes();
-        recording::decode_cdr(&bytes).map_err(|reason| GatewayError::Message {
+        ros::cdr::decode(&bytes).map_err(|reason| GatewayError::Message {
             topic: self.topic.clone(),
             reason,
         })

@@ -3,8 +3,8 @@
 use serde::{Deserialize, Serialize};
 
 use super::Pose2D;
-use crate::ros::definition::definition;
-use crate::ros::{Header, RosMessage};
+use crate::definition::definition;
+use crate::{Header, RosMessage};
 
 /// Where the tracker has the robot at a scan, and how sure it is: topic `pose` of the
 /// graph.

@@ -3,8 +3,8 @@
 use serde::{Deserialize, Serialize};
 
 use super::Pose2D;
-use crate::ros::definition::definition;
-use crate::ros::{Header, RosMessage};
+use crate::definition::definition;
+use crate::{Header, RosMessage};
 
 /// What became of each beam of a scan: topic `beams` of the graph.
 #[derive(Debug, Clone, PartialEq, Default, Serialize, Deserialize)]

@@ -3,7 +3,7 @@
 use std::marker::PhantomData;
 
 use network::KeyError;
-use recording::ros::RosMessage;
+use ros::RosMessage;
 use transport::wall_ns;
 use zenoh::Wait;
 use zenoh::liveliness::LivelinessToken;
@@ -50,7 +50,7 @@ impl<M: RosMessage> Publisher<M> {
     }
 
     pub(crate) fn send(&mut self, message: &M) -> Result<(), GatewayError> {
-        let bytes = recording::encode_cdr(message).map_err(|error| GatewayError::Encode {
+        let bytes = ros::cdr::encode(message).map_err(|error| GatewayError::Encode {
             topic: self.endpoint.topic.clone(),
             reason: error.to_string(),
         })?;

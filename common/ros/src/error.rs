@@ -1,6 +1,7 @@
 //! Why a message's numbers are not what they should be.
 
 use map::MapError;
+use messages::FrameName;
 
 /// A message that decodes, but says something that cannot be.
 #[derive(Debug, thiserror::Error)]
@@ -33,6 +34,14 @@ pub enum ConversionError {
         index: usize,
         /// Its occupancy.
         found: i8,
+    },
+    /// A frame's name does not fit into a message of the graph.
+    #[error(
+        "the frame {frame:?} has {} bytes, at most {} are allowed", frame.len(), FrameName::CAPACITY
+    )]
+    Frame {
+        /// The name.
+        frame: String,
     },
     /// A map that is not within the limits.
     #[error(transparent)]

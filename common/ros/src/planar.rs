@@ -1,7 +1,9 @@
 //! Poses in the plane as ROS says them.
 
 use geometry::{Pose, wrap_angle};
-use recording::ros::{self, Quaternion, Vector3};
+
+use crate as ros;
+use crate::{Quaternion, Vector3};
 
 /// Steps of a yaw to the radian: 2⁴⁰, so a step is a millionth of a micrometre
 /// at a metre.

@@ -7,7 +7,7 @@
 /// itself, or as its name and fields.
 macro_rules! definition {
     ($fields:literal $(, $part:tt)+ $(,)?) => {
-        concat!($fields $(, $crate::ros::definition::part!($part))+)
+        concat!($fields $(, $crate::definition::part!($part))+)
     };
 }
 
@@ -25,7 +25,7 @@ string frame_id
         )
     };
     (Time) => {
-        $crate::ros::definition::part!(
+        $crate::definition::part!(
             "\
 builtin_interfaces/Time
 int32 sec
@@ -62,7 +62,7 @@ float64 z
         )
     };
     (Quaternion) => {
-        $crate::ros::definition::part!(
+        $crate::definition::part!(
             "\
 geometry_msgs/Quaternion
 float64 x 0
@@ -73,7 +73,7 @@ float64 w 1
         )
     };
     (Vector3) => {
-        $crate::ros::definition::part!(
+        $crate::definition::part!(
             "\
 geometry_msgs/Vector3
 float64 x
@@ -83,7 +83,7 @@ float64 z
         )
     };
     (Pose2D) => {
-        $crate::ros::definition::part!(
+        $crate::definition::part!(
             "\
 geometry_msgs/Pose2D
 float64 x

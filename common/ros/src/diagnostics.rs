@@ -1,7 +1,8 @@
 //! A node's health as ROS says it.
 
 use messages::{HealthHeader, NodeState};
-use recording::ros::{DiagnosticArray, DiagnosticStatus, Header, KeyValue, Time};
+
+use crate::{DiagnosticArray, DiagnosticStatus, Header, KeyValue, Time};
 
 /// A node's report, and its last error, with the time `stamp`.
 #[must_use]

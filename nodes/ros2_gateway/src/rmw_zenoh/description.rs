@@ -11,7 +11,7 @@ use hiroz_schema::{
     FieldDescription, FieldTypeDescription, TypeDescription, TypeDescriptionMsg, TypeId,
     calculate_hash, dds_from_canonical,
 };
-use recording::ros::RosMessage;
+use ros::RosMessage;
 
 use super::entity::TypeInfo;
 use crate::GatewayError;
@@ -207,7 +207,7 @@ fn primitive(kind: &str) -> Option<u8> {
 
 #[cfg(test)]
 mod tests {
-    use recording::ros::{
+    use ros::{
         DiagnosticArray, LaserScan, OccupancyGridMsg, Odometry, PoseArray,
         PoseWithCovarianceStamped, TfMessage,
     };

@@ -5,9 +5,9 @@ use std::f64::consts::PI;
 use geometry::{Covariance, Pose};
 use messages::{HypothesesHeader, Hypothesis, Particle, PoseHeader, Verdict};
 use nalgebra::Matrix3;
-use recording::ros::{Header, PoseArray, PoseWithCovarianceStamped};
 
 use crate::planar;
+use crate::{Header, PoseArray, PoseWithCovarianceStamped};
 
 /// All hypotheses, best first: of the base, or of the laser where no mount is
 /// known.

@@ -1,27 +1,46 @@
-//! The ROS 2 messages that recordings are read and written with, one file each.
+//! The messages of ROS 2 that recordings and robots are read and written with: their
+//! types, one file each, their bytes (`cdr`), and what becomes of them in the graph and
+//! back. Pure.
 //!
 //! A struct has the fields of its `.msg` in their order, because CDR names
 //! none: the definition stands beside it as a constant, in the form in which a
 //! recording carries it. Conversions to the plane refuse what is no number or
 //! no rotation.
+//!
+//! | file | between the graph and ROS |
+//! |---|---|
+//! | `measurements` | scans, odometry and true poses, to the graph |
+//! | `poses`, `planar` | poses and transforms, to ROS |
+//! | `diagnostics` | health, to ROS |
+//! | `lasers` | names of lasers and topics, both ways |
+//!
+//! The types are written by hand, although `hiroz-msgs` generates those of ROS: it
+//! depends on `hiroz`, and with it on all of Zenoh, which takes longer to build than
+//! everything that reads or writes a recording.
 
 pub mod backcast_msgs;
-mod conversion;
+pub mod cdr;
 mod definition;
 mod diagnostic_array;
+pub mod diagnostics;
+mod error;
 mod geometry_msgs;
 mod laser_scan;
+pub mod lasers;
 mod log;
+pub mod measurements;
 mod occupancy_grid;
 mod odometry;
+pub mod planar;
 mod pose_array;
 mod pose_stamped;
 mod pose_with_covariance_stamped;
+pub mod poses;
 mod std_msgs;
 mod tf_message;
 
-pub use conversion::ConversionError;
 pub use diagnostic_array::{DiagnosticArray, DiagnosticStatus, KeyValue};
+pub use error::ConversionError;
 pub use geometry_msgs::{
     Mend, Point, Pose, PoseWithCovariance, Quaternion, Transform, Twist, TwistWithCovariance,
     Vector3,
