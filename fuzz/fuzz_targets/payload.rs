@@ -4,7 +4,7 @@
 
 use libfuzzer_sys::fuzz_target;
 use messages::topic;
-use wire::{Visit, Wire, decode, encode, encoding};
+use network_payload::{Visit, Wire, decode, encode, encoding};
 
 struct Check<'a>(&'a [u8]);
 
@@ -21,6 +21,6 @@ impl Visit for Check<'_> {
 fuzz_target!(|bytes: &[u8]| {
     if let Some((&which, payload)) = bytes.split_first() {
         let names = topic::NAMES;
-        wire::by_name(names[usize::from(which) % names.len()], Check(payload));
+        network_payload::by_name(names[usize::from(which) % names.len()], Check(payload));
     }
 });

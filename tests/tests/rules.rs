@@ -10,7 +10,7 @@ use std::process::Command;
 
 use serde_json::Value;
 
-/// The only nodes that may link zenoh, by themselves or with `network`: the others
+/// The only nodes that may link zenoh, by themselves or with `zenoh_session`: the others
 /// must build in a minute.
 const ZENOH_NODES: [&str; 4] = ["bridge", "fleet_monitor", "locate_server", "ros2_gateway"];
 
@@ -46,7 +46,7 @@ fn folders(parent: &str) -> BTreeSet<String> {
 }
 
 fn links_zenoh(dependencies: &BTreeSet<String>) -> bool {
-    let is_zenoh = |name: &String| name.starts_with("zenoh") || name == "network";
+    let is_zenoh = |name: &String| name.starts_with("zenoh") || name == "zenoh_session";
     dependencies.iter().any(is_zenoh)
 }
 
@@ -116,8 +116,11 @@ fn foxglove_is_linked_by_its_server_alone() {
 
 #[test]
 fn what_crosses_a_network_is_read_without_one() {
-    assert_eq!(known("wire"), BTreeSet::from(["messages".to_owned()]));
-    is_pure("common/wire/src");
+    assert_eq!(
+        known("network_payload"),
+        BTreeSet::from(["messages".to_owned()])
+    );
+    is_pure("common/network_payload/src");
 }
 
 /// The crates under `common` that this one links.
@@ -173,7 +176,7 @@ fn each_crate_has_the_name_of_its_folder() {
 #[test]
 fn zenoh_is_linked_only_where_machines_are_joined() {
     for (name, dependencies) in dependencies() {
-        let may = ZENOH_NODES.contains(&name.as_str()) || name == "network";
+        let may = ZENOH_NODES.contains(&name.as_str()) || name == "zenoh_session";
         assert!(may || !links_zenoh(&dependencies), "{name}");
     }
 }

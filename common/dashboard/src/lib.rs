@@ -2,7 +2,7 @@
 //!
 //! | file | what it is about |
 //! |---|---|
-//! | `told` | what the page is told, from the messages of a graph; pure |
+//! | `view` | what the page is told, from the messages of a graph; pure |
 //! | `robot` | what is known of one robot, and whoever watches it |
 //! | `robots` | those that are known |
 //! | `server` | HTTP and WebSocket: the gate, the API, the page |
@@ -19,7 +19,7 @@ mod robot;
 mod robots;
 mod server;
 mod token;
-mod told;
+mod view;
 
 pub use error::DashboardError;
 pub use options::Options;

@@ -16,7 +16,7 @@ use messages::{
 use serde::Serialize;
 use tokio::sync::{broadcast, watch};
 
-use crate::told::{
+use crate::view::{
     Answer, Beams, Log, LogLine, Map, Message, Region, Roster, Snapshot, Times, Track, Tracked,
     field_frame,
 };

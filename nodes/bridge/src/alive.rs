@@ -7,10 +7,10 @@
 use std::collections::BTreeMap;
 
 use messages::{HealthHeader, NodeState, topic};
-use network::KeyError;
 use transport::{Graph, Subscriber, TransportError, monotonic_ns};
 use zenoh::liveliness::LivelinessToken;
 use zenoh::{Session, Wait};
+use zenoh_session::KeyError;
 
 use crate::BridgeError;
 
@@ -61,7 +61,7 @@ impl Alive {
             let name = report.node.as_str();
             if report.state == NodeState::Stopped as u32 {
                 self.nodes.remove(name);
-            } else if wire::name(name).is_ok() {
+            } else if network_payload::name(name).is_ok() {
                 self.hear(name, report.sent_ns)?;
             }
         }
@@ -97,7 +97,7 @@ fn declare(
     robot: &str,
     node: Option<&str>,
 ) -> Result<LivelinessToken, BridgeError> {
-    let key = wire::alive(robot, &session.zid().to_string(), node);
+    let key = network_payload::alive(robot, &session.zid().to_string(), node);
     let token = session.liveliness().declare_token(key.clone());
     Ok(token.wait().map_err(KeyError::when("be alive at", &key))?)
 }

@@ -16,7 +16,7 @@ use crate::Rate;
 pub struct Config {
     /// What the robot is called, a part of every key. All bridges of one robot
     /// have the same [default: the name of the machine]
-    #[arg(long, value_name = "NAME", value_parser = wire::robot)]
+    #[arg(long, value_name = "NAME", value_parser = network_payload::robot)]
     pub robot: Option<String>,
 
     /// The descriptor that says which topics go out and come in
@@ -38,7 +38,7 @@ pub struct Config {
 
     /// How it joins the network.
     #[command(flatten)]
-    pub network: network::Options,
+    pub network: zenoh_session::Options,
 }
 
 impl Config {
@@ -46,7 +46,7 @@ impl Config {
     #[must_use]
     pub fn robot(&self) -> String {
         let host = gethostname::gethostname();
-        wire::robot_or_host(self.robot.as_deref(), &host.to_string_lossy())
+        network_payload::robot_or_host(self.robot.as_deref(), &host.to_string_lossy())
     }
 }
 
@@ -70,6 +70,6 @@ mod tests {
     #[test]
     fn the_robot_has_a_name_that_can_stand_in_keys() {
         assert_eq!(parse(&["--robot", "r2"]).unwrap().robot(), "r2");
-        assert!(wire::robot(&parse(&[]).unwrap().robot()).is_ok());
+        assert!(network_payload::robot(&parse(&[]).unwrap().robot()).is_ok());
     }
 }

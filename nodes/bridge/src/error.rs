@@ -3,9 +3,9 @@
 use std::path::PathBuf;
 
 use dataflow::DataflowError;
-use network::{KeyError, NetworkError};
+use network_payload::WireError;
 use transport::TransportError;
-use wire::WireError;
+use zenoh_session::{KeyError, NetworkError};
 
 /// What was tried, what was found and what is allowed.
 #[derive(Debug, thiserror::Error)]

@@ -5,10 +5,10 @@
 
 use map::MemoryLimit;
 use messages::{MapHeader, Topic, topic};
-use network::{Past, Queue, Report, Room};
+use network_payload::{Arrival, Arrivals, Received, Wire, WireError};
 use transport::{Graph, Publisher, TransportError, monotonic_ns};
-use wire::{Arrival, Arrivals, Received, Wire, WireError};
 use zenoh::Session;
+use zenoh_session::{Past, Queue, Report, Room};
 
 use crate::BridgeError;
 
@@ -30,7 +30,7 @@ impl<T: Wire> Incoming<T> {
         robot: &str,
         memory_limit: MemoryLimit,
     ) -> Result<Self, BridgeError> {
-        let key = wire::key::<T>(robot);
+        let key = network_payload::key::<T>(robot);
         let past = if T::KEPT { Past::Last(1) } else { Past::Gone };
         let room = Room::for_any(T::DEPTH.max(4), T::MAX_BYTES);
         let publisher = graph.publisher()?;
@@ -60,7 +60,7 @@ impl<T: Wire> Incoming<T> {
             };
             report.received();
             let encoding = sample.encoding().to_string();
-            match wire::decode::<T>(&encoding, &sample.payload().to_bytes()) {
+            match network_payload::decode::<T>(&encoding, &sample.payload().to_bytes()) {
                 Ok(message) => match refuse_too_large(&message, self.memory_limit) {
                     Ok(()) => self.enter(message, report)?,
                     Err(error) => report.map_refused(&error)?,

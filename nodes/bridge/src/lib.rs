@@ -2,7 +2,7 @@
 //!
 //! Which topics leave this graph and which enter it is in `dataflow.yaml`: what
 //! the bridge takes as inputs goes out, what it lists as outputs comes in. A topic
-//! stands at `backcast/<robot>/<topic>`, as crate `wire` writes it, so that
+//! stands at `backcast/<robot>/<topic>`, as crate `network_payload` writes it, so that
 //! whoever speaks Zenoh can read it. Maps, boundaries and regions are kept for late
 //! joiners. What comes from the network is checked before it enters the graph,
 //! refused if it is wrong, and counted in `health`.

@@ -7,5 +7,7 @@ use clap::Parser;
 
 fn main() -> ExitCode {
     let config = Config::parse();
-    transport::node::main_hearing("bridge", network::LOG, |graph| bridge::run(graph, &config))
+    transport::node::main_hearing("bridge", zenoh_session::LOG, |graph| {
+        bridge::run(graph, &config)
+    })
 }

@@ -7,13 +7,13 @@
 use std::rc::Rc;
 use std::time::Duration;
 
-use network::{KeyError, Report};
+use network_payload::{Preamble, Wire};
 use transport::{Graph, Input, Sample, Subscriber, TransportError, monotonic_ns};
-use wire::{Preamble, Wire};
 use zenoh::bytes::Encoding;
 use zenoh::qos::{CongestionControl, Priority};
 use zenoh::{Session, Wait};
 use zenoh_ext::{AdvancedPublisher, AdvancedPublisherBuilderExt, CacheConfig, MissDetectionConfig};
+use zenoh_session::{KeyError, Report};
 
 use crate::exit::{Aside, Exit};
 use crate::rates::Limit;
@@ -45,7 +45,7 @@ impl<T: Wire> Outgoing<T> {
         } else {
             Some(Rc::new(graph.subscriber()?))
         };
-        let key = wire::key::<T>(robot);
+        let key = network_payload::key::<T>(robot);
         let publisher = declare::<T>(session, &key)?;
         let exit = if T::KEPT {
             Exit::Aside(Aside::new(publisher))
@@ -110,10 +110,11 @@ impl<T: Wire> Outgoing<T> {
             return Ok(());
         }
         self.next.clock_ns = now_ns;
-        let payload = match wire::encode::<T>(&self.next, sample.header(), sample.items()) {
-            Ok(payload) => payload,
-            Err(error) => return Ok(report.refused(&BridgeError::from(error))?),
-        };
+        let payload =
+            match network_payload::encode::<T>(&self.next, sample.header(), sample.items()) {
+                Ok(payload) => payload,
+                Err(error) => return Ok(report.refused(&BridgeError::from(error))?),
+            };
         self.next.sequence += 1;
         match self.exit.put(payload) {
             Some(outcome) => self.tell(outcome, report),
@@ -140,7 +141,7 @@ fn declare<T: Wire>(
     let failed = KeyError::when("publish", key);
     let publisher = session
         .declare_publisher(key.to_owned())
-        .encoding(Encoding::from(wire::encoding::<T>()));
+        .encoding(Encoding::from(network_payload::encoding::<T>()));
     let publisher = if T::KEPT {
         publisher
             .congestion_control(CongestionControl::Block)

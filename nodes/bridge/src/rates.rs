@@ -7,7 +7,7 @@
 use std::str::FromStr;
 
 use messages::{Topic, topic};
-use wire::{Visit, Wire};
+use network_payload::{Visit, Wire};
 
 /// Most messages a second of one topic.
 #[derive(Debug, Clone, PartialEq)]
@@ -23,9 +23,9 @@ impl FromStr for Rate {
 
     fn from_str(text: &str) -> Result<Self, String> {
         let (name, hz) = text.split_once('=').ok_or("allowed is TOPIC=HZ")?;
-        if wire::by_name(name, IsKept) != Some(false) {
+        if network_payload::by_name(name, IsKept) != Some(false) {
             let live = topic::NAMES.iter().copied();
-            let live = live.filter(|name| wire::by_name(name, IsKept) == Some(false));
+            let live = live.filter(|name| network_payload::by_name(name, IsKept) == Some(false));
             let allowed = live.collect::<Vec<_>>().join(", ");
             return Err(format!("{name:?} is no live topic: allowed are {allowed}"));
         }

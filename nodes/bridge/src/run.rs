@@ -4,16 +4,15 @@ use std::rc::Rc;
 use std::time::Duration;
 
 use messages::{Topic, topic};
-use network::Report;
+use network_payload::{Visit, Wire};
 use transport::{Flow, Graph, Input};
-use wire::{Visit, Wire};
 use zenoh::Session;
+use zenoh_session::Report;
 
 use crate::alive::Alive;
 use crate::incoming::Incoming;
 use crate::outgoing::Outgoing;
 use crate::ports::Ports;
-
 use crate::{BridgeError, Config};
 
 /// How long a late joiner of the graph, an image that somebody beyond the bridge
@@ -31,7 +30,7 @@ pub fn run(graph: &Graph, config: &Config) -> Result<(), BridgeError> {
     let robot = config.robot();
     tracing::info!(%robot, out = ports.out.join(","), into = ports.into.join(","), "ports");
     let mut report = Report::new(graph.health()?);
-    let Some(session) = network::open(graph, &config.network, || report.tick())? else {
+    let Some(session) = zenoh_session::open(graph, &config.network, || report.tick())? else {
         return Ok(());
     };
     let mut ways = ways(graph, &session, &robot, &ports, config)?;
@@ -77,7 +76,7 @@ impl<T: Wire> Way for Incoming<T> {
 }
 
 /// Everything that the ports name; the descriptor knows no other topics than
-/// `wire` does.
+/// `network_payload` does.
 fn ways(
     graph: &Graph,
     session: &Session,
@@ -95,7 +94,7 @@ fn ways(
             sender,
             rates,
         };
-        wire::by_name(name, open)
+        network_payload::by_name(name, open)
     });
     let memory_limit = config.memory.limit();
     let into = ports.into.iter().filter_map(|name| {
@@ -105,7 +104,7 @@ fn ways(
             robot,
             memory_limit,
         };
-        wire::by_name(name, open)
+        network_payload::by_name(name, open)
     });
     out.chain(into).collect()
 }

@@ -93,7 +93,7 @@ fn bridge(graph: &Graph, papers: &Papers, robot: &str, config: &Path) -> NodePro
     std::fs::write(&dataflow, descriptor).unwrap();
     let bridge = env!("CARGO_BIN_EXE_bridge");
     let (dataflow, config) = (dataflow.to_str().unwrap(), config.to_str().unwrap());
-    let log = format!("RUST_LOG={}{INTERCEPTOR}", network::LOG);
+    let log = format!("RUST_LOG={}{INTERCEPTOR}", zenoh_session::LOG);
     let arguments = [
         log.as_str(),
         bridge,
@@ -268,7 +268,8 @@ fn a_late_joiner_gets_the_map_through_the_router() {
     let sample = samples.recv().unwrap();
     assert_eq!(sample.key_expr().as_str(), "backcast/r1/map");
     let encoding = sample.encoding().to_string();
-    let map = wire::decode::<topic::Map>(&encoding, &sample.payload().to_bytes()).unwrap();
+    let map =
+        network_payload::decode::<topic::Map>(&encoding, &sample.payload().to_bytes()).unwrap();
     assert_eq!(map.header.map_id, header.map_id);
     bridge.stop();
 }

@@ -11,10 +11,10 @@ use std::sync::atomic::{AtomicBool, Ordering};
 use std::time::Duration;
 
 use messages::{FrameName, MapHeader, Name, Pose2, ScanHeader, Stamp, topic};
+use network_payload::{Preamble, Wire};
 use tests::machine::Machine;
 use transport::testing::{Isolated, NodeProcess, wait_for_health, wait_until};
 use transport::{Flow, Graph, Publisher, TransportError, monotonic_ns};
-use wire::{Preamble, Wire};
 use zenoh::bytes::Encoding;
 use zenoh::sample::SampleKind;
 use zenoh::{Session, Wait};
@@ -214,9 +214,9 @@ fn what_strangers_send_is_refused_and_counted() {
             sequence,
             clock_ns: monotonic_ns(),
         };
-        wire::encode::<topic::Scan>(&preamble, &scan(sequence), &[1.0, 2.0]).unwrap()
+        network_payload::encode::<topic::Scan>(&preamble, &scan(sequence), &[1.0, 2.0]).unwrap()
     };
-    let key = wire::key::<topic::Scan>("r1");
+    let key = network_payload::key::<topic::Scan>("r1");
     let put = |encoding: &str, payload: Vec<u8>| {
         let put = stranger
             .put(&key, payload)
@@ -225,7 +225,7 @@ fn what_strangers_send_is_refused_and_counted() {
             .wait()
             .unwrap();
     };
-    let sound = wire::encoding::<topic::Scan>();
+    let sound = network_payload::encoding::<topic::Scan>();
     let mut nan = good(1);
     let angle = (-1.5f64).to_le_bytes();
     let at = nan.windows(8).position(|bytes| bytes == angle).unwrap();
@@ -339,7 +339,8 @@ fn a_reader_of_zenoh_gets_the_map_and_knows_what_it_is() {
     let sample = samples.recv().unwrap();
     assert_eq!(sample.key_expr().as_str(), "backcast/r1/map");
     let encoding = sample.encoding().to_string();
-    let map = wire::decode::<topic::Map>(&encoding, &sample.payload().to_bytes()).unwrap();
+    let map =
+        network_payload::decode::<topic::Map>(&encoding, &sample.payload().to_bytes()).unwrap();
     assert_eq!((map.header.map_id, map.items), (sent.0.map_id, sent.1));
     bridge.stop();
 }

@@ -3,7 +3,7 @@
 use std::path::PathBuf;
 
 use clap::{ArgGroup, Parser};
-use playback::Rate;
+use replay::Rate;
 use sick::cola::{Encoding, KnownDevice};
 use sick::lms2xx::Baud;
 

@@ -6,8 +6,8 @@
 use std::path::Path;
 
 use messages::{GroundTruth, Odometry, Stamp};
-use playback::{Channels, Content, InOrder, PlaybackError, Selection, Source, Timed};
 use recording::{Kind, Recording};
+use replay::{Channels, Content, InOrder, PlaybackError, Selection, Source, Timed};
 
 use crate::EmulatorError;
 use crate::sweep::Sweep;

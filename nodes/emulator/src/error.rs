@@ -2,8 +2,8 @@
 
 use std::path::PathBuf;
 
-use playback::PlaybackError;
 use recording::RecordingError;
+use replay::PlaybackError;
 
 /// What was tried, what was found and what is allowed.
 #[derive(Debug, thiserror::Error)]

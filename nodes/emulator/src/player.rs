@@ -6,7 +6,7 @@
 //! scan if its scan came in after that was sent.
 
 use messages::Stamp;
-use playback::{Action, Rate, Schedule};
+use replay::{Action, Rate, Schedule};
 
 use crate::drive::Happening;
 

@@ -8,7 +8,7 @@ use std::sync::atomic::{AtomicBool, Ordering};
 use std::time::Duration;
 
 use messages::{NodeState, topic};
-use playback::{Awaited, Poses};
+use replay::{Awaited, Poses};
 use transport::{Graph, Health, Subscriber, TransportError, monotonic_ns, with_causes};
 
 use crate::cola_device::Model;

@@ -14,10 +14,10 @@ use messages::{
     Beam, BeamsHeader, HealthHeader, HypothesesHeader, Hypothesis, Name, NodeState, Pose2, Verdict,
     topic,
 };
+use network_payload::{Preamble, Wire};
 use tests::http::Site;
 use transport::testing::{Isolated, NodeProcess, wait_until_ready};
 use transport::{Flow, Graph, TransportError, monotonic_ns};
-use wire::{Preamble, Wire};
 use zenoh::bytes::Encoding;
 use zenoh::pubsub::Publisher;
 use zenoh::{Session, Wait};
@@ -199,8 +199,8 @@ impl FarRobot {
 }
 
 fn publisher<T: Wire>(session: &Session, robot: &str) -> Publisher<'static> {
-    let publisher = session.declare_publisher(wire::key::<T>(robot));
-    let publisher = publisher.encoding(Encoding::from(wire::encoding::<T>()));
+    let publisher = session.declare_publisher(network_payload::key::<T>(robot));
+    let publisher = publisher.encoding(Encoding::from(network_payload::encoding::<T>()));
     publisher.wait().unwrap()
 }
 
@@ -210,7 +210,7 @@ fn put<T: Wire>(to: &Publisher<'_>, sequence: u64, header: &T::Header, items: &[
         sequence,
         clock_ns: monotonic_ns(),
     };
-    let payload = wire::encode::<T>(&preamble, header, items).unwrap();
+    let payload = network_payload::encode::<T>(&preamble, header, items).unwrap();
     to.put(payload).wait().unwrap();
 }
 

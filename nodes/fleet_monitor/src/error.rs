@@ -1,9 +1,9 @@
 //! What keeps the fleet's monitor from running, and what it refuses.
 
 use dashboard::{DashboardError, Robots};
-use network::{KeyError, NetworkError};
+use network_payload::WireError;
 use transport::TransportError;
-use wire::WireError;
+use zenoh_session::{KeyError, NetworkError};
 
 /// What was tried, what was found and what is allowed.
 #[derive(Debug, thiserror::Error)]

@@ -3,11 +3,11 @@
 use std::marker::PhantomData;
 
 use messages::Topic;
-use network::{Past, Queue, Room};
+use network_payload::{Received, Wire, WireError};
 use transport::{Waker, monotonic_ns};
-use wire::{Received, Wire, WireError};
 use zenoh::Session;
 use zenoh::sample::Sample;
+use zenoh_session::{Past, Queue, Room};
 
 use crate::FleetError;
 
@@ -38,7 +38,7 @@ impl<T: Wire> Feed<T> {
 
     /// Subscribes to the topic of a robot, or of [`ALL`].
     pub(crate) fn open(session: &Session, robot: &str, waker: Waker) -> Result<Self, FleetError> {
-        let key = wire::key::<T>(robot);
+        let key = network_payload::key::<T>(robot);
         let past = if T::KEPT { Past::Last(1) } else { Past::Gone };
         let room = Room {
             messages: WAITING,
@@ -73,9 +73,9 @@ impl<T: Wire> Feed<T> {
 
 fn hear<T: Wire>(sample: &Sample) -> Result<Heard<T>, WireError> {
     let robot = sample.key_expr().as_str().split('/').nth(1);
-    let robot = wire::robot(robot.unwrap_or_default())?;
+    let robot = network_payload::robot(robot.unwrap_or_default())?;
     let encoding = sample.encoding().to_string();
-    let mut message = wire::decode::<T>(&encoding, &sample.payload().to_bytes())?;
+    let mut message = network_payload::decode::<T>(&encoding, &sample.payload().to_bytes())?;
     message.rebase(monotonic_ns());
     Ok(Heard { robot, message })
 }

@@ -6,8 +6,8 @@ use std::sync::mpsc::Receiver;
 
 use dashboard::{Abilities, Robot, Robots, Wish};
 use messages::topic;
+use network_payload::{Arrival, Arrivals, Preamble, Wire};
 use transport::{Graph, monotonic_ns};
-use wire::{Arrival, Arrivals, Preamble, Wire};
 use zenoh::Session;
 
 use crate::FleetError;

@@ -4,9 +4,9 @@ use std::time::Duration;
 
 use dashboard::{Robots, Server};
 use messages::topic;
-use network::Report;
 use transport::{Flow, Graph};
 use zenoh::Session;
+use zenoh_session::Report;
 
 use crate::feed::{ALL, Feed};
 use crate::fleet::{Fleet, Shown, Taken};
@@ -26,7 +26,7 @@ pub fn run(graph: &Graph, config: &Config) -> Result<(), FleetError> {
     let server = Server::start(config.page, &config.dashboard, robots.clone())?;
     server.announce("watch all robots", config.page);
     let mut report = Report::new(graph.health()?);
-    let Some(session) = network::open(graph, &config.network, || report.tick())? else {
+    let Some(session) = zenoh_session::open(graph, &config.network, || report.tick())? else {
         return Ok(());
     };
     let mut node = Node {

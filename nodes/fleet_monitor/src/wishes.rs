@@ -2,13 +2,13 @@
 //! `region` and `save` are among its outputs.
 
 use messages::{Corner, RegionHeader, SaveHeader, Stamp, topic};
-use network::KeyError;
+use network_payload::{Preamble, Wire};
 use transport::monotonic_ns;
-use wire::{Preamble, Wire};
 use zenoh::bytes::Encoding;
 use zenoh::qos::CongestionControl;
 use zenoh::{Session, Wait};
 use zenoh_ext::{AdvancedPublisher, AdvancedPublisherBuilderExt, CacheConfig, MissDetectionConfig};
+use zenoh_session::KeyError;
 
 use crate::FleetError;
 
@@ -47,13 +47,14 @@ impl Wishes {
         let corners: Vec<_> = corners.iter().map(|&[x, y]| Corner { x, y }).collect();
         let (preamble, stamp) = self.stamp();
         let header = RegionHeader { stamp };
-        let payload = wire::encode::<topic::Region>(&preamble, &header, &corners)?;
+        let payload = network_payload::encode::<topic::Region>(&preamble, &header, &corners)?;
         put(&self.regions, payload)
     }
 
     pub(crate) fn save(&mut self) -> Result<(), FleetError> {
         let (preamble, stamp) = self.stamp();
-        let payload = wire::encode::<topic::Save>(&preamble, &SaveHeader { stamp }, &[])?;
+        let payload =
+            network_payload::encode::<topic::Save>(&preamble, &SaveHeader { stamp }, &[])?;
         put(&self.saves, payload)
     }
 
@@ -75,10 +76,10 @@ fn declare<T: Wire>(
     session: &Session,
     robot: &str,
 ) -> Result<AdvancedPublisher<'static>, FleetError> {
-    let key = wire::key::<T>(robot);
+    let key = network_payload::key::<T>(robot);
     let publisher = session
         .declare_publisher(key.clone())
-        .encoding(Encoding::from(wire::encoding::<T>()))
+        .encoding(Encoding::from(network_payload::encoding::<T>()))
         // The page is not to wait for a robot that is cut off.
         .congestion_control(CongestionControl::Drop)
         .advanced();

@@ -13,12 +13,12 @@ use messages::{
     Corner, HypothesesHeader, Hypothesis, MapHeader, Pose2, PoseHeader, RegionHeader, TrackState,
     Verdict, topic,
 };
+use network_payload::{Preamble, Wire};
 use serde_json::{Value, json};
 use tempfile::TempDir;
 use tests::http::{Site, token_file};
 use transport::testing::{Isolated, NodeProcess, wait_for_health, wait_until_ready};
 use transport::{Flow, Graph, TransportError, monotonic_ns};
-use wire::{Preamble, Wire};
 use zenoh::bytes::Encoding;
 use zenoh::qos::CongestionControl;
 use zenoh::time::Timestamp;
@@ -123,7 +123,7 @@ impl FarRobot {
             sequence,
             clock_ns: monotonic_ns(),
         };
-        wire::encode::<T>(&preamble, header, items).unwrap()
+        network_payload::encode::<T>(&preamble, header, items).unwrap()
     }
 
     fn put(&self, key: &str, encoding: &str, payload: Vec<u8>) {
@@ -160,8 +160,13 @@ impl FarRobot {
             ..Hypothesis::zeroed()
         };
         let payload = Self::payload::<topic::Hypotheses>(sequence, &header, &[place]);
-        let key = wire::key::<topic::Hypotheses>(&self.name);
-        self.put_at(time, &key, &wire::encoding::<topic::Hypotheses>(), payload);
+        let key = network_payload::key::<topic::Hypotheses>(&self.name);
+        self.put_at(
+            time,
+            &key,
+            &network_payload::encoding::<topic::Hypotheses>(),
+            payload,
+        );
     }
 
     /// Where its tracker has it.
@@ -176,16 +181,20 @@ impl FarRobot {
         header.sent_ns = monotonic_ns();
         header.map_from_laser.x = x;
         let payload = Self::payload::<topic::Tracked>(sequence, &header, b"the scans do not fit");
-        let key = wire::key::<topic::Tracked>(&self.name);
-        self.put(&key, &wire::encoding::<topic::Tracked>(), payload);
+        let key = network_payload::key::<topic::Tracked>(&self.name);
+        self.put(
+            &key,
+            &network_payload::encoding::<topic::Tracked>(),
+            payload,
+        );
     }
 
     /// A map that stays for those who come later.
     fn serve_map(&self) -> AdvancedPublisher<'static> {
         let publisher = self
             .session
-            .declare_publisher(wire::key::<topic::Map>(&self.name))
-            .encoding(Encoding::from(wire::encoding::<topic::Map>()))
+            .declare_publisher(network_payload::key::<topic::Map>(&self.name))
+            .encoding(Encoding::from(network_payload::encoding::<topic::Map>()))
             .cache(CacheConfig::default().max_samples(1))
             // As bridges do: else each message would need a time by Zenoh's clock.
             .sample_miss_detection(MissDetectionConfig::default())
@@ -271,7 +280,7 @@ fn a_region_reaches_the_robot_that_it_was_set_for() {
         let history = HistoryConfig::default().detect_late_publishers();
         let subscriber = robot
             .session
-            .declare_subscriber(wire::key::<topic::Region>(&robot.name));
+            .declare_subscriber(network_payload::key::<topic::Region>(&robot.name));
         subscriber.history(history).wait().unwrap()
     };
     let (heard, others) = (listen(&a), listen(&b));
@@ -288,7 +297,8 @@ fn a_region_reaches_the_robot_that_it_was_set_for() {
     assert_eq!(world.site.ask("PUT", path, &headers, body).0, 202);
     let sample = heard.recv().unwrap();
     let encoding = sample.encoding().to_string();
-    let region = wire::decode::<topic::Region>(&encoding, &sample.payload().to_bytes()).unwrap();
+    let region =
+        network_payload::decode::<topic::Region>(&encoding, &sample.payload().to_bytes()).unwrap();
     let RegionHeader { stamp } = region.header;
     assert!(stamp.entered_ns > 0);
     assert_eq!(
@@ -307,8 +317,8 @@ fn what_strangers_send_is_refused_and_counted() {
     let health = world.graph.subscriber::<topic::Health>().unwrap();
     let stranger = world.robot("a");
     stranger.answer(0, 1.0);
-    let sound = wire::encoding::<topic::Hypotheses>();
-    let key = wire::key::<topic::Hypotheses>("a");
+    let sound = network_payload::encoding::<topic::Hypotheses>();
+    let key = network_payload::key::<topic::Hypotheses>("a");
     stranger.put(&key, &sound, vec![0xff; 100]);
     stranger.put(&key, "text/plain", b"hello".to_vec());
     stranger.put(&key, &sound, vec![0; 2 << 20]);

@@ -18,12 +18,12 @@ pub struct Config {
     pub listen: SocketAddr,
 
     /// What the robot of this graph is called [default: the name of the machine]
-    #[arg(long, value_name = "NAME", value_parser = wire::robot)]
+    #[arg(long, value_name = "NAME", value_parser = network_payload::robot)]
     pub robot: Option<String>,
 
     /// How frames are called.
     #[command(flatten)]
-    pub transcript: transcript::Options,
+    pub transcript: ros_export::Options,
 }
 
 impl Config {
@@ -31,7 +31,7 @@ impl Config {
     #[must_use]
     pub fn robot(&self) -> String {
         let host = gethostname::gethostname();
-        wire::robot_or_host(self.robot.as_deref(), &host.to_string_lossy())
+        network_payload::robot_or_host(self.robot.as_deref(), &host.to_string_lossy())
     }
 }
 

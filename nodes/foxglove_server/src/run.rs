@@ -5,8 +5,8 @@ use std::time::Duration;
 
 use foxglove::{Context, WebSocketServerHandle};
 use messages::{NodeState, topic};
+use ros_export::{Entry, Inputs, Listener, Transcript};
 use tokio::runtime::Handle;
-use transcript::{Entry, Inputs, Listener, Transcript};
 use transport::{Flow, Graph, Subscriber};
 
 use crate::channels::Channels;

@@ -49,7 +49,7 @@ struct Config {
     questions: usize,
 
     #[command(flatten)]
-    network: network::Options,
+    network: zenoh_session::Options,
 
     /// What cargo says to every benchmark
     #[arg(long, hide = true)]
@@ -135,7 +135,7 @@ fn load(config: &Config) {
         .into_iter()
         .map(|scan| (as_the_graph_has_it(&scan, 0), scan.ranges))
         .collect();
-    let settings = network::settings(&config.network).unwrap();
+    let settings = zenoh_session::settings(&config.network).unwrap();
     let session = zenoh::open(settings).wait().unwrap();
     let patience = Duration::from_secs(60);
     let ask = |i: usize| {

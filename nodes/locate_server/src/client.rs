@@ -4,13 +4,13 @@ use std::time::{Duration, Instant};
 
 use crossbeam::channel::{Sender, unbounded};
 use messages::{ScanHeader, topic};
-use network::KeyError;
+use network_payload::{Preamble, Received};
 use transport::monotonic_ns;
-use wire::{Preamble, Received};
 use zenoh::bytes::Encoding;
 use zenoh::query::ReplyError;
 use zenoh::sample::Sample;
 use zenoh::{Session, Wait};
+use zenoh_session::KeyError;
 
 use crate::LocateError;
 use crate::error::REFUSED;
@@ -43,7 +43,7 @@ pub fn ask(
         sequence: header.stamp.counter,
         clock_ns: monotonic_ns(),
     };
-    let question = wire::encode::<topic::Scan>(&preamble, header, ranges)?;
+    let question = network_payload::encode::<topic::Scan>(&preamble, header, ranges)?;
     let due = Instant::now() + deadline;
     let (events, heard) = unbounded();
     // How many attempts are under way, and when to make the next one.
@@ -76,7 +76,7 @@ pub fn ask(
 fn answer(sample: &Sample) -> Result<Received<topic::Hypotheses>, LocateError> {
     let encoding = sample.encoding().to_string();
     let payload = sample.payload().to_bytes();
-    let mut answer = wire::decode::<topic::Hypotheses>(&encoding, &payload)?;
+    let mut answer = network_payload::decode::<topic::Hypotheses>(&encoding, &payload)?;
     answer.rebase(monotonic_ns());
     Ok(answer)
 }
@@ -108,13 +108,13 @@ fn attempt(
     remaining: Duration,
     events: Sender<Event>,
 ) -> Result<(), LocateError> {
-    let key = wire::locate(map);
+    let key = network_payload::locate(map);
     let milliseconds = remaining.as_millis().clamp(1, 60_000);
     let attempt = Attempt(events);
     session
         .get(format!("{key}?deadline_ms={milliseconds}"))
         .payload(question)
-        .encoding(Encoding::from(wire::encoding::<topic::Scan>()))
+        .encoding(Encoding::from(network_payload::encoding::<topic::Scan>()))
         .timeout(remaining)
         .callback(move |reply| attempt.hears(Some(reply.into_result())))
         .wait()

@@ -23,7 +23,7 @@ pub struct Config {
 
     /// What the map is called, the last part of backcast/locate/NAME: 1 to 64 of
     /// a-z A-Z 0-9 - _ . [default: that of the folder in which the map lies]
-    #[arg(long, value_name = "NAME", value_parser = wire::name)]
+    #[arg(long, value_name = "NAME", value_parser = network_payload::name)]
     pub name: Option<String>,
 
     /// Scans that are searched at the same time, 1 to 256 [default: one a core]
@@ -41,7 +41,7 @@ pub struct Config {
     pub deadline: Duration,
 
     #[command(flatten)]
-    pub(crate) network: network::Options,
+    pub(crate) network: zenoh_session::Options,
 
     /// How the map's cells are read
     #[command(flatten)]
@@ -73,7 +73,7 @@ impl Config {
         let folder = || {
             let path = self.map.canonicalize().ok()?;
             let folder = path.parent()?.file_name()?.to_str()?.to_owned();
-            wire::name(&folder).ok()
+            network_payload::name(&folder).ok()
         };
         let given = self.name.clone().or_else(folder);
         given.unwrap_or_else(|| "map".to_owned())

@@ -4,9 +4,9 @@ use std::path::PathBuf;
 
 use engine::EngineError;
 use map::MapError;
-use network::{KeyError, NetworkError};
+use network_payload::WireError;
 use transport::TransportError;
-use wire::WireError;
+use zenoh_session::{KeyError, NetworkError};
 
 use crate::question::ENCODINGS;
 

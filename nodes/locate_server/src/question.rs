@@ -6,7 +6,7 @@
 //! brings along, and new fields of a message do not break it.
 
 use messages::{HypothesesHeader, Hypothesis, ScanHeader, topic};
-use wire::{Preamble, Wire};
+use network_payload::{Preamble, Wire};
 
 use crate::LocateError;
 use crate::json;
@@ -60,11 +60,11 @@ pub fn read(encoding: &str, payload: &[u8], now_ns: i64) -> Result<Question, Loc
             ranges,
         });
     }
-    if encoding != wire::encoding::<topic::Scan>() {
+    if encoding != network_payload::encoding::<topic::Scan>() {
         let found = encoding.chars().take(SHOWN).collect();
         return Err(LocateError::Encoding { found });
     }
-    let mut scan = wire::decode::<topic::Scan>(encoding, payload)?;
+    let mut scan = network_payload::decode::<topic::Scan>(encoding, payload)?;
     scan.rebase(now_ns);
     Ok(Question {
         form: Form::Postcard(scan.preamble),
@@ -91,8 +91,9 @@ pub fn write(
                 clock_ns: now_ns,
                 ..asked
             };
-            let payload = wire::encode::<topic::Hypotheses>(&preamble, header, hypotheses)?;
-            Ok((wire::encoding::<topic::Hypotheses>(), payload))
+            let payload =
+                network_payload::encode::<topic::Hypotheses>(&preamble, header, hypotheses)?;
+            Ok((network_payload::encoding::<topic::Hypotheses>(), payload))
         }
     }
 }
@@ -127,8 +128,8 @@ mod tests {
 
     #[test]
     fn the_forms_are_those_of_the_wire() {
-        assert_eq!(ENCODINGS[0], wire::encoding::<topic::Scan>());
-        let answer = wire::encoding::<topic::Hypotheses>();
+        assert_eq!(ENCODINGS[0], network_payload::encoding::<topic::Scan>());
+        let answer = network_payload::encoding::<topic::Hypotheses>();
         assert!(answer.ends_with("backcast.Hypotheses/v3"), "{answer}");
         // Its keys are those of version 2.
         assert!(JSON_ANSWER.ends_with("backcast.Hypotheses/v2"));
@@ -136,7 +137,8 @@ mod tests {
 
     #[test]
     fn a_question_in_postcard_is_answered_in_postcard() {
-        let payload = wire::encode::<topic::Scan>(&PREAMBLE, &scan(), &[1.0, 2.0]).unwrap();
+        let payload =
+            network_payload::encode::<topic::Scan>(&PREAMBLE, &scan(), &[1.0, 2.0]).unwrap();
         let asked = read(ENCODINGS[0], &payload, 50_000).unwrap();
         assert_eq!(asked.form, Form::Postcard(PREAMBLE));
         assert_eq!(asked.ranges, [1.0, 2.0]);
@@ -147,7 +149,7 @@ mod tests {
         );
         let header = HypothesesHeader::zeroed();
         let (encoding, payload) = write(asked.form, &header, &[], 60_000).unwrap();
-        let answer = wire::decode::<topic::Hypotheses>(&encoding, &payload).unwrap();
+        let answer = network_payload::decode::<topic::Hypotheses>(&encoding, &payload).unwrap();
         assert_eq!((answer.preamble.sender, answer.preamble.sequence), (7, 3));
         assert_eq!(answer.preamble.clock_ns, 60_000);
     }

@@ -5,13 +5,13 @@ use std::time::{Duration, Instant};
 
 use engine::locator::LocatorConfig;
 use messages::NodeState;
-use network::KeyError;
 use transport::{Flow, Graph, Waker, wall_ns};
 use zenoh::liveliness::LivelinessToken;
 use zenoh::pubsub::Subscriber;
 use zenoh::query::{Query, Queryable};
 use zenoh::sample::SampleKind;
 use zenoh::{Result as ZenohResult, Session, Wait};
+use zenoh_session::KeyError;
 
 use crate::counts::Counts;
 use crate::desk::Desk;
@@ -31,7 +31,7 @@ const ACQUAINTANCE: Duration = Duration::from_millis(500);
 pub fn run(graph: &Graph, config: &Config) -> Result<(), LocateError> {
     let mut health = graph.health()?;
     let locator = Arc::new(prepare(config)?);
-    let Some(session) = network::open(graph, &config.network, || health.tick())? else {
+    let Some(session) = zenoh_session::open(graph, &config.network, || health.tick())? else {
         return Ok(());
     };
     let counts = Arc::new(Counts::default());
@@ -91,7 +91,7 @@ impl Service {
         counts: &Arc<Counts>,
         waker: Waker,
     ) -> Result<Self, LocateError> {
-        let key = wire::locate(&config.name());
+        let key = network_payload::locate(&config.name());
         let workers = config.workers();
         let me = session.zid().to_string();
         let load = (workers, config.waiting.into());

@@ -11,10 +11,10 @@ use std::time::Duration;
 use crossbeam::channel::{Receiver, unbounded};
 use locate_server::{BUSY, JSON, JSON_ANSWER, LATE, LocateError, Locator, REFUSED, Workspace, ask};
 use messages::{ScanHeader, topic};
+use network_payload::Preamble;
 use tests::world::{World, as_the_graph_has_it};
 use transport::Graph;
 use transport::testing::{Isolated, NodeProcess, wait_for_health, wait_until_ready};
-use wire::Preamble;
 use zenoh::bytes::Encoding;
 use zenoh::query::{ConsolidationMode, Query, QueryTarget, Queryable, Reply};
 use zenoh::{Session, Wait};
@@ -165,8 +165,8 @@ fn what_is_no_question_is_refused_and_counted() {
         sequence: 1,
         clock_ns: 0,
     };
-    let sound = wire::encode::<topic::Scan>(&preamble, &scan.0, &scan.1).unwrap();
-    let postcard = wire::encoding::<topic::Scan>();
+    let sound = network_payload::encode::<topic::Scan>(&preamble, &scan.0, &scan.1).unwrap();
+    let postcard = network_payload::encoding::<topic::Scan>();
     let mut cut = sound.clone();
     cut.pop();
     let wrong = [

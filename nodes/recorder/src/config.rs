@@ -63,7 +63,7 @@ pub struct Config {
 
     /// How frames are called.
     #[command(flatten)]
-    pub transcript: transcript::Options,
+    pub transcript: ros_export::Options,
 
     /// Most megabytes (10^6 bytes) that may wait for a slow or full disk; what
     /// comes then is dropped and counted

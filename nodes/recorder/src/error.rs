@@ -58,7 +58,7 @@ pub enum RecorderError {
     },
     /// A sample that has no place in a recording.
     #[error(transparent)]
-    Sample(#[from] transcript::TranscriptError),
+    Sample(#[from] ros_export::TranscriptError),
     /// The recording cannot be written.
     #[error(transparent)]
     Recording(#[from] Box<RecordingError>),

@@ -1,7 +1,7 @@
 //! Node `recorder`: writes what flows in the graph to an MCAP recording that the
 //! tools of ROS 2 open.
 //!
-//! What it writes is a `transcript`.
+//! What it writes is made by `ros_export`.
 //!
 //! | file | what it is about |
 //! |---|---|

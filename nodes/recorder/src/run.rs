@@ -9,13 +9,13 @@ use std::time::Duration;
 
 use messages::{HealthHeader, NodeState, topic};
 use nix::time::{ClockId, clock_gettime};
+use ros_export::{Inputs, Listener, Transcript};
 use signal_hook::consts::SIGUSR1;
-use transcript::{Inputs, Listener, Transcript};
 use transport::{Flow, Graph, Input, Subscriber, wall_ns};
+use writer::{Status, Writer};
 
 use crate::events::Lookout;
 use crate::{Config, Event, RecorderError};
-use writer::{Status, Writer};
 
 /// How long a signal to save and a report of health may be overdue.
 const TICK: Duration = Duration::from_millis(100);

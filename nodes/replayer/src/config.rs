@@ -4,7 +4,7 @@ use std::path::PathBuf;
 
 use clap::Parser;
 use messages::Name;
-use playback::{Rate, Remap};
+use replay::{Rate, Remap};
 
 /// Plays a recording into the graph: scans, odometry and true poses.
 ///

@@ -1,6 +1,6 @@
 //! Node `replayer`: plays a recording as `scan`, `odometry` and `ground_truth`.
 //!
-//! `playback` says which message is due when; `pause`, which is pure, what is held
+//! `replay` says which message is due when; `pause`, which is pure, what is held
 //! up. `run` reads the clock, waits and sends. Readings are passed on as they were
 //! recorded, however odd.
 

@@ -7,18 +7,18 @@ use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, Ordering};
 use std::time::Duration;
 
+use keyboard::{Heard, Keyboard};
 use messages::{NodeState, topic};
-use playback::{
+use outlet::Outlet;
+use recording::{Kind, Recording};
+use replay::{
     Action, Channels, InOrder, PlaybackError, Rate, Schedule, Selection, Source, Timed,
     wait_for_nodes,
 };
-use recording::{Kind, Recording};
 use transport::{Flow, Graph, Subscriber, monotonic_ns, with_causes};
 
 use crate::pause::Pause;
 use crate::{Config, ReplayerError};
-use keyboard::{Heard, Keyboard};
-use outlet::Outlet;
 
 /// The longest time without a look at answers, signals and health.
 const TICK: Duration = Duration::from_millis(50);

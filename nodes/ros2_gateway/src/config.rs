@@ -83,7 +83,7 @@ pub struct Config {
 
     /// How it joins the network.
     #[command(flatten)]
-    pub network: network::Options,
+    pub network: zenoh_session::Options,
 }
 
 /// Names of topics and services.

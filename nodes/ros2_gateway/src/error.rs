@@ -1,8 +1,8 @@
 //! What keeps the gateway from running, and why a message is refused.
 
-use network::{KeyError, NetworkError};
 use ros::ConversionError;
 use transport::TransportError;
+use zenoh_session::{KeyError, NetworkError};
 
 /// What was tried, what was found and what is allowed.
 #[derive(Debug, thiserror::Error)]

@@ -2,13 +2,13 @@
 
 use std::collections::BTreeSet;
 
-use network::Report;
 use ros::{
     LaserScan, OccupancyGridMsg, Odometry, PoseWithCovarianceStamped, Quaternion, RosMessage,
     TfMessage,
 };
 use serde::de::DeserializeOwned;
 use transport::{Graph, TransportError, monotonic_ns};
+use zenoh_session::Report;
 
 use crate::checks::{measured_ns, odometry_of, sound_odometry};
 use crate::config::{Brought, Config};

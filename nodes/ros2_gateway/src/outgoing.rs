@@ -4,12 +4,12 @@ use geometry::Pose;
 use messages::{
     HealthHeader, HypothesesHeader, Hypothesis, PoseHeader, Stamp, TrackState, Verdict,
 };
-use network::Report;
 use ros::{
     DiagnosticArray, Header, PoseArray, PoseWithCovarianceStamped, TfMessage, Time,
     TransformStamped,
 };
 use transport::{TransportError, monotonic_ns, wall_ns};
+use zenoh_session::Report;
 
 use crate::GatewayError;
 use crate::config::{Config, Reach};

@@ -2,9 +2,9 @@
 
 use map::MemoryLimit;
 use messages::{MapHeader, Name, Odometry, ScanHeader, Stamp, topic};
-use network::Report;
 use ros::{LaserScan, OccupancyGridMsg, measurements};
 use transport::{Graph, Publisher, TransportError, monotonic_ns};
+use zenoh_session::Report;
 
 use crate::GatewayError;
 use crate::checks::{check_scan, measured_ns};

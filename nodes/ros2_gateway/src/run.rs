@@ -4,8 +4,8 @@ use std::time::Duration;
 
 use geometry::Mount;
 use messages::topic;
-use network::Report;
 use transport::{Flow, Graph, Subscriber, TransportError};
+use zenoh_session::Report;
 
 use crate::frames::Frames;
 use crate::incoming::Incoming;
@@ -31,7 +31,7 @@ pub fn run(graph: &Graph, config: &Config) -> Result<(), GatewayError> {
     // What is wrong with options is said before anything is opened.
     let (domain, mounts) = (config.domain()?, config.mounts()?);
     let mut report = Report::new(graph.health()?);
-    let Some(session) = network::open(graph, &config.network, || report.tick())? else {
+    let Some(session) = zenoh_session::open(graph, &config.network, || report.tick())? else {
         return Ok(());
     };
     let member = Member::join(&session, domain, &config.namespace, &config.node)?;

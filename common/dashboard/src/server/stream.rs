@@ -18,7 +18,7 @@ use tokio::sync::broadcast::error::RecvError;
 
 use super::{Refusal, Site};
 use crate::robot::{FieldView, Robot, Watching, text};
-use crate::told::Message;
+use crate::view::Message;
 
 /// Most bytes of a message to us.
 const MAX_MESSAGE: usize = 1024;

@@ -10,7 +10,7 @@ use std::path::PathBuf;
 use std::time::Duration;
 
 use recording::write::{Packing, RecordingWriter};
-use transcript::Entry;
+use ros_export::Entry;
 
 use super::{Preamble, Tally, name};
 use crate::RecorderError;

@@ -6,7 +6,7 @@ use std::path::PathBuf;
 use std::time::Duration;
 
 use recording::write::{Encoded, Packing, RecordingWriter};
-use transcript::Entry;
+use ros_export::Entry;
 
 use super::staged::{Progress, Staged};
 use super::{Preamble, Tally, name};

@@ -8,7 +8,7 @@ use std::path::Path;
 
 use recording::RecordingError;
 use recording::write::{Encoded, RecordingWriter};
-use transcript::Entry;
+use ros_export::Entry;
 use transport::wall_ns;
 
 use crate::{Config, RecorderError};

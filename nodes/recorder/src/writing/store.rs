@@ -1,6 +1,6 @@
 //! Where entries go: to files at once, or to a black box.
 
-use transcript::Entry;
+use ros_export::Entry;
 
 use super::{BlackBox, Parts};
 use crate::RecorderError;

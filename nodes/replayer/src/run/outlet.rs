@@ -3,7 +3,7 @@
 use std::collections::BTreeMap;
 
 use messages::{Name, NodeState, ScanHeader, Stamp, topic};
-use playback::{Content, PlaybackError, Poses, Timed};
+use replay::{Content, PlaybackError, Poses, Timed};
 use transport::{Graph, Health, Publisher, TransportError, monotonic_ns, with_causes};
 
 use super::Summary;

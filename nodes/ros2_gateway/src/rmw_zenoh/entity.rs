@@ -11,10 +11,10 @@
 use std::fmt;
 use std::sync::atomic::{AtomicUsize, Ordering};
 
-use network::KeyError;
 use twox_hash::XxHash3_128;
 use zenoh::liveliness::LivelinessToken;
 use zenoh::{Session, Wait};
+use zenoh_session::KeyError;
 
 use super::Keeping;
 use crate::GatewayError;

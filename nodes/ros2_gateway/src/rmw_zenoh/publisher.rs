@@ -2,13 +2,13 @@
 
 use std::marker::PhantomData;
 
-use network::KeyError;
 use ros::RosMessage;
 use transport::wall_ns;
 use zenoh::Wait;
 use zenoh::liveliness::LivelinessToken;
 use zenoh::pubsub::Publisher as ZenohPublisher;
 use zenoh::qos::CongestionControl;
+use zenoh_session::KeyError;
 
 use super::entity::{Endpoint, Kind};
 use super::{Attachment, Keeping, Member, description};

@@ -3,11 +3,11 @@
 use std::sync::Arc;
 
 use crossbeam::queue::ArrayQueue;
-use network::KeyError;
 use transport::{Graph, wall_ns};
 use zenoh::Wait;
 use zenoh::liveliness::LivelinessToken;
 use zenoh::query::{Query, Queryable};
+use zenoh_session::KeyError;
 
 use super::entity::Kind;
 use super::{Attachment, Keeping, Member, description};

@@ -6,12 +6,12 @@
 use std::collections::BTreeMap;
 use std::marker::PhantomData;
 
-use network::{Past, Queue, Room};
 use ros::RosMessage;
 use serde::de::DeserializeOwned;
 use transport::Graph;
 use zenoh::liveliness::LivelinessToken;
 use zenoh::sample::Sample;
+use zenoh_session::{Past, Queue, Room};
 
 use super::entity::Kind;
 use super::{Attachment, Member, description};

@@ -4,12 +4,12 @@ use std::sync::Arc;
 use std::sync::atomic::{AtomicU64, Ordering};
 
 use crossbeam::queue::ArrayQueue;
-use network::KeyError;
 use ros::RosMessage;
 use transport::Graph;
 use zenoh::Wait;
 use zenoh::pubsub::Subscriber;
 use zenoh::sample::{Sample, SampleKind};
+use zenoh_session::KeyError;
 
 use super::entity::{Kind, Token, TypeInfo};
 use super::{Member, description};

@@ -3,7 +3,7 @@
 use messages::{PoseHeader, TrackState};
 use serde::Serialize;
 
-use super::{Ellipse, PoseTold, ms};
+use super::{Ellipse, PoseJson, ms};
 
 /// The tracker's pose.
 #[derive(Debug, Clone, PartialEq, Serialize)]
@@ -21,9 +21,9 @@ pub(crate) struct Tracked {
     /// Why it is in this state, and what to do.
     pub(crate) says: String,
     /// Of the laser in the map, where it is known.
-    pub(crate) laser: Option<PoseTold>,
+    pub(crate) laser: Option<PoseJson>,
     /// Of the robot's base, where the laser's mount is known, too.
-    pub(crate) base: Option<PoseTold>,
+    pub(crate) base: Option<PoseJson>,
     /// The ellipse of one standard deviation of the laser's pose.
     pub(crate) ellipse: Option<Ellipse>,
     /// How likely the robot is there.

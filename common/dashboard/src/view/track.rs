@@ -4,7 +4,7 @@ use std::collections::VecDeque;
 
 use serde::Serialize;
 
-use super::{Answer, PoseTold, Tracked};
+use super::{Answer, PoseJson, Tracked};
 
 /// Poses that are kept: some minutes.
 const CAPACITY: usize = 3000;
@@ -45,7 +45,7 @@ impl Track {
     }
 
     /// In another map a new way begins.
-    fn add(&mut self, map_id: &str, word: &str, pose: Option<PoseTold>) {
+    fn add(&mut self, map_id: &str, word: &str, pose: Option<PoseJson>) {
         if map_id != self.map_id {
             map_id.clone_into(&mut self.map_id);
             self.points.clear();

@@ -5,7 +5,7 @@ use geometry::{Covariance, Pose};
 use messages::{HypothesesHeader, Hypothesis, Verdict};
 use serde::Serialize;
 
-use super::{Ellipse, PoseTold, ms};
+use super::{Ellipse, PoseJson, ms};
 
 /// Most places that are told; the engine keeps 64.
 const MAX_PLACES: usize = 64;
@@ -45,9 +45,9 @@ pub(crate) struct Answer {
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub(crate) struct Place {
     /// Of the laser in the map.
-    pub(crate) laser: PoseTold,
+    pub(crate) laser: PoseJson,
     /// Of the robot's base, where the laser's mount is known.
-    pub(crate) base: Option<PoseTold>,
+    pub(crate) base: Option<PoseJson>,
     /// How well the scan fits.
     pub(crate) score: f32,
     /// How likely the robot is there.

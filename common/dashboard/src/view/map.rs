@@ -8,7 +8,7 @@ use flate2::write::GzEncoder;
 use messages::MapHeader;
 use serde::Serialize;
 
-use super::PoseTold;
+use super::PoseJson;
 
 /// What a map is; its cells are asked for by its id.
 #[derive(Debug, Clone, PartialEq, Serialize)]
@@ -22,7 +22,7 @@ pub(crate) struct MapInfo {
     /// Side of a cell.
     pub(crate) resolution_m: f64,
     /// The lower left corner of the first cell, and the turn of the axes.
-    pub(crate) map_from_grid: PoseTold,
+    pub(crate) map_from_grid: PoseJson,
 }
 
 /// A map with its cells.

@@ -3,7 +3,7 @@
 use messages::{Beam, BeamFate, BeamsHeader};
 use serde::Serialize;
 
-use super::PoseTold;
+use super::PoseJson;
 
 /// Most beams that are told: as many as a picture can show.
 const MAX_BEAMS: usize = 1440;
@@ -14,7 +14,7 @@ pub(crate) struct Beams {
     /// Of the scan.
     pub(crate) counter: u64,
     /// Where they were compared with the map.
-    pub(crate) laser: PoseTold,
+    pub(crate) laser: PoseJson,
     /// In the laser's frame, to a tenth of a milliradian.
     pub(crate) bearing: Vec<f64>,
     /// To a millimetre.

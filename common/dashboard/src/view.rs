@@ -90,15 +90,15 @@ pub(crate) struct Snapshot<'a> {
 
 /// A pose: metres and radians in the map.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize)]
-pub(crate) struct PoseTold {
+pub(crate) struct PoseJson {
     pub(crate) x: f64,
     pub(crate) y: f64,
     pub(crate) yaw: f64,
 }
 
-impl From<Pose2> for PoseTold {
+impl From<Pose2> for PoseJson {
     fn from(Pose2 { x, y, yaw }: Pose2) -> Self {
-        PoseTold { x, y, yaw }
+        PoseJson { x, y, yaw }
     }
 }
 
