@@ -84,6 +84,7 @@ pub struct Tracker {
     keys_since_search: u32,
     is_key: bool,
     is_blank: bool,
+    needs_search: bool,
     /// Where the robot should be at the next scan, and by how much that leads.
     expected: Option<(Pose, Covariance, f64)>,
 }
@@ -104,6 +105,7 @@ impl Tracker {
             keys_since_search: 0,
             is_key: false,
             is_blank: false,
+            needs_search: false,
             expected: None,
         }
     }
@@ -129,6 +131,12 @@ impl Tracker {
     /// odometry tells; otherwise scans are matched. The scan is done with at
     /// [`Tracker::finish`].
     pub fn begin(&mut self, seen: &Seen<'_>, stamp_ns: i64, moved: Option<Pose>) -> Need {
+        let need = self.take_up(seen, stamp_ns, moved);
+        self.needs_search = need == Need::ThisScan;
+        need
+    }
+
+    fn take_up(&mut self, seen: &Seen<'_>, stamp_ns: i64, moved: Option<Pose>) -> Need {
         self.is_blank = seen.ends.beams() < LEAST_BEAMS;
         let moved = match self.is_blank {
             true => moved,
@@ -164,7 +172,7 @@ impl Tracker {
         self.is_key = self.is_far() || (is_suspicious && !was_doubtful) || is_due;
         match () {
             () if !self.is_key => Need::Nothing,
-            () if self.belief.place().is_none() || is_suspicious => {
+            () if self.belief.place().is_none() || self.belief.is_unchecked() || is_suspicious => {
                 self.ahead = None;
                 Need::ThisScan
             }
@@ -178,7 +186,9 @@ impl Tracker {
         self.places.is_empty() || self.since_key.is_far(&self.config)
     }
 
-    /// Is done with the scan, with what the search found that was needed, if any.
+    /// Is done with the scan, with what the search found that was needed; `None` where none
+    /// was, or where it had no answer: then no place is the only one before a later search
+    /// has one, for the robot may be where nobody looked.
     pub fn finish(&mut self, seen: &Seen<'_>, found: Option<&[Candidate]>) {
         if self.is_blank {
             return;
@@ -194,6 +204,7 @@ impl Tracker {
             if found.is_some() {
                 self.keys_since_search = 0;
             }
+            self.belief.search_ended(self.needs_search, found.is_some());
             self.places.weigh(seen, &way, &mut self.belief);
             self.keys_since_search += 1;
         }

@@ -194,6 +194,71 @@ fn one_scan_is_never_enough_and_a_few_metres_are() {
     assert!(report.covariance[(0, 0)].sqrt() < 0.1 && report.probability > 0.98);
 }
 
+/// The same without answers to searches.
+fn unanswered(
+    building: &Building,
+    tracker: &mut Tracker,
+    truth: Pose,
+    moved: Option<Pose>,
+) -> Need {
+    let (ends, fit) = (building.ends(truth), FitConfig::default());
+    let seen = building.seen(&ends, &fit);
+    let need = tracker.begin(&seen, 1, moved);
+    tracker.finish(&seen, None);
+    need
+}
+
+#[test]
+fn a_doubt_stays_until_a_search_has_an_answer() {
+    let building = building(&UNLIKE);
+    let mut tracker = Tracker::new(TrackingConfig::default());
+    building.step(&mut tracker, START, None);
+    let end = building.drive(&mut tracker, START, 5);
+    assert_eq!(tracker.report().state, TrackState::Unique);
+    // Carried off for a scan: a search is needed, and has no answer.
+    let elsewhere = Pose::new(end.x, end.y, end.yaw + PI / 2.0);
+    let still = Some(Pose::IDENTITY);
+    let need = unanswered(&building, &mut tracker, elsewhere, still);
+    assert_eq!(
+        (need, tracker.report().state),
+        (Need::ThisScan, TrackState::Doubtful)
+    );
+    // The scan fits again, but nobody has looked elsewhere.
+    let step = Pose::new(0.3, 0.0, 0.0);
+    let mut pose = end;
+    let mut asked = 0;
+    for _ in 0..4 {
+        pose = pose.then(step);
+        asked += u32::from(unanswered(&building, &mut tracker, pose, Some(step)) == Need::ThisScan);
+        let report = tracker.report();
+        assert_eq!(
+            (report.state, report.reason),
+            (TrackState::Doubtful, TrackReason::PoorFit)
+        );
+    }
+    assert!(asked >= 2, "{asked} searches were asked for");
+    assert!(is_at(&tracker, pose));
+    let end = building.drive(&mut tracker, pose, 3);
+    assert_eq!(tracker.report().state, TrackState::Unique);
+    assert!(is_at(&tracker, end));
+}
+
+#[test]
+fn nothing_becomes_the_only_place_without_a_search() {
+    let building = building(&UNLIKE);
+    let mut tracker = Tracker::new(TrackingConfig::default());
+    building.step(&mut tracker, START, None);
+    let step = Pose::new(0.3, 0.0, 0.0);
+    let mut pose = START;
+    for _ in 0..6 {
+        pose = pose.then(step);
+        unanswered(&building, &mut tracker, pose, Some(step));
+        assert_ne!(tracker.report().state, TrackState::Unique);
+    }
+    building.drive(&mut tracker, pose, 4);
+    assert_eq!(tracker.report().state, TrackState::Unique);
+}
+
 #[test]
 fn places_that_look_alike_are_never_told_apart() {
     let building = building(&ALIKE);

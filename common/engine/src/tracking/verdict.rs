@@ -37,6 +37,8 @@ pub(super) struct Belief {
     place: Option<u32>,
     was_unique: bool,
     fits_badly: bool,
+    /// The last search that was needed had no answer.
+    unchecked: bool,
     lead: f64,
     bad_keys: u32,
     /// Key scans since it was not known how the robot moved.
@@ -57,6 +59,7 @@ impl Belief {
             place: None,
             was_unique: false,
             fits_badly: false,
+            unchecked: false,
             lead: 0.0,
             bad_keys: 0,
             connected_keys: 0,
@@ -107,6 +110,16 @@ impl Belief {
         self.place.is_some() && self.fits_badly
     }
 
+    /// Whether a search was needed and had no answer, and none has come since.
+    pub(super) fn is_unchecked(&self) -> bool {
+        self.unchecked
+    }
+
+    /// Sees whether a search that was needed has an answer, or another one has.
+    pub(super) fn search_ended(&mut self, was_needed: bool, has_answer: bool) {
+        self.unchecked = !has_answer && (self.unchecked || was_needed);
+    }
+
     /// Whether a place is believed, and the last scan fits there.
     pub(super) fn is_sound(&self) -> bool {
         self.place.is_some() && !self.fits_badly
@@ -125,7 +138,9 @@ impl Belief {
         }
         self.look_at(places);
         let state = match self.place {
-            Some(_) if !self.fits_badly && self.lead >= LEAST_LEAD => TrackState::Unique,
+            Some(_) if !self.fits_badly && !self.unchecked && self.lead >= LEAST_LEAD => {
+                TrackState::Unique
+            }
             Some(_) => TrackState::Doubtful,
             None if self.was_unique => TrackState::Lost,
             None => TrackState::Searching,
@@ -143,7 +158,7 @@ impl Belief {
         match self.state {
             TrackState::Unique if self.slipped.is_some() => TrackReason::OdometryJump,
             TrackState::Unique => TrackReason::OnePlace,
-            TrackState::Doubtful if self.fits_badly => TrackReason::PoorFit,
+            TrackState::Doubtful if self.fits_badly || self.unchecked => TrackReason::PoorFit,
             TrackState::Doubtful => TrackReason::SeveralPlaces,
             TrackState::Lost => self.lost_by,
             TrackState::Searching if places.is_empty() => TrackReason::NoPlace,
@@ -194,7 +209,7 @@ impl Belief {
                 self.lose(TrackReason::PoorFit);
             }
         }
-        if self.place.is_none() && self.is_unique(best) {
+        if self.place.is_none() && !self.unchecked && self.is_unique(best) {
             self.place = Some(best.id);
             self.was_unique = true;
             self.bad_keys = 0;
