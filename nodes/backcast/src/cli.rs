@@ -30,7 +30,7 @@ pub(crate) const EXIT_CODES: &str =
 enum Command {
     /// Builds and starts the graph, and prints a pose for each scan
     #[command(after_help = EXIT_CODES)]
-    Run(run::Config),
+    Run(Box<run::Config>),
     /// Says what is wrong with a graph's descriptor, or draws the graph
     #[command(after_help = "Exit codes: 0 sound, 1 something is wrong, 2 wrong use")]
     Check(check::Config),
@@ -51,7 +51,7 @@ enum Command {
     Logs(control::LogsConfig),
     #[cfg(feature = "tools")]
     #[command(flatten)]
-    OnTheSide(OnTheSide),
+    OnTheSide(Box<OnTheSide>),
 }
 
 /// Runs the command that the process was started with.
