@@ -7,7 +7,6 @@ use engine::EngineError;
 use engine::heading::HeadingError;
 use map::MapError;
 use recording::RecordingError;
-use transport::TransportError;
 
 /// Why a scan of a recording cannot be searched.
 #[derive(Debug, thiserror::Error)]
@@ -106,9 +105,6 @@ pub enum OfflineError {
     /// The thread's processor time cannot be read.
     #[error("cannot read the processor time of a thread")]
     Clock(#[source] nix::Error),
-    /// The graph cannot be joined, heard or cleaned up.
-    #[error(transparent)]
-    Transport(#[from] TransportError),
 }
 
 impl CommandError for OfflineError {

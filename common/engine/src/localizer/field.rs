@@ -80,23 +80,23 @@ mod tests {
     use crate::testing::{any_grid, any_scan, space_of};
 
     proptest! {
-    #[test]
-    fn every_method_counts_the_same_votes(
-        grid in any_grid(), scan in any_scan(), heading in 0usize..72,
-    ) {
-        let space = &space_of(&grid, 72);
-        let query = Query { program: &scan.program(space), space, heading };
-        let fields = Fields::new(&grid, None);
-        let votes = |method| {
-            let (mut workspace, mut field) = (sweep::Workspace::default(), Vec::new());
-            let room = (&mut workspace, &mut field);
-            fields.fill((&grid, method), query, room, &|| false).map(|()| field)
-        };
-        let swept = votes(FieldMethod::Sweep);
-        prop_assert!(swept.is_some());
-        prop_assert_eq!(&votes(FieldMethod::Scatter), &swept);
-        prop_assert_eq!(&votes(FieldMethod::Auto), &swept);
-    }
+        #[test]
+        fn every_method_counts_the_same_votes(
+            grid in any_grid(), scan in any_scan(), heading in 0usize..72,
+        ) {
+            let space = &space_of(&grid, 72);
+            let query = Query { program: &scan.program(space), space, heading };
+            let fields = Fields::new(&grid, None);
+            let votes = |method| {
+                let (mut workspace, mut field) = (sweep::Workspace::default(), Vec::new());
+                let room = (&mut workspace, &mut field);
+                fields.fill((&grid, method), query, room, &|| false).map(|()| field)
+            };
+            let swept = votes(FieldMethod::Sweep);
+            prop_assert!(swept.is_some());
+            prop_assert_eq!(&votes(FieldMethod::Scatter), &swept);
+            prop_assert_eq!(&votes(FieldMethod::Auto), &swept);
+        }
     }
 
     #[test]
