@@ -67,6 +67,7 @@ impl Need {
             .append(true)
             .open(target.join("left-out.txt"))
             .unwrap();
+        let why = why.lines().next().unwrap_or_default();
         writeln!(file, "{test}: {name}: {why}").unwrap();
     }
 }

@@ -1,31 +1,40 @@
 //! Python with libraries of others, to compare with.
 
+use std::fs::File;
 use std::path::{Path, PathBuf};
 use std::process::Command;
 
 /// A Python with these packages in an environment called `name` in the target folder,
-/// where `imports` are there; `None` where it cannot be made, as without a network.
-#[must_use]
-pub fn with(name: &str, packages: &[&str], imports: &str) -> Option<PathBuf> {
+/// where `imports` are there. Tests that ask at once wait for the one that makes it.
+///
+/// # Errors
+/// What the first of the commands that failed said, as without a network.
+pub fn with(name: &str, packages: &[&str], imports: &str) -> Result<PathBuf, String> {
     let test = std::env::current_exe().unwrap();
     let target = test.ancestors().nth(3).unwrap();
     let folder = target.join(format!("python_{name}"));
+    let lock = File::create(folder.with_extension("lock")).unwrap();
+    lock.lock().unwrap();
     let python = folder.join("bin/python");
-    let run = |program: &Path, arguments: &[&str]| {
-        let outcome = Command::new(program).args(arguments).output();
-        outcome.is_ok_and(|outcome| outcome.status.success())
-    };
     let import = format!("import {imports}");
-    let is_there = || run(&python, &["-c", &import]);
-    if is_there() {
-        return Some(python);
+    if run(&python, &["-c", &import]).is_ok() {
+        return Ok(python);
     }
-    let made = run(
-        Path::new("python3"),
-        &["-m", "venv", folder.to_str().unwrap()],
-    ) && run(
-        &python,
-        &[&["-m", "pip", "install", "-q"], packages].concat(),
-    ) && is_there();
-    made.then_some(python)
+    let folder = folder.to_str().unwrap();
+    run(Path::new("python3"), &["-m", "venv", "--clear", folder])?;
+    let install = ["-m", "pip", "install", "--quiet"];
+    run(&python, &[&install, packages].concat())?;
+    run(&python, &["-c", &import])?;
+    Ok(python)
+}
+
+fn run(program: &Path, arguments: &[&str]) -> Result<(), String> {
+    let command = format!("{} {}", program.display(), arguments.join(" "));
+    let outcome = Command::new(program).args(arguments).output();
+    let outcome = outcome.map_err(|error| format!("{command}: {error}"))?;
+    if outcome.status.success() {
+        return Ok(());
+    }
+    let said = String::from_utf8_lossy(&outcome.stderr);
+    Err(format!("{command}: {}\n{said}", outcome.status))
 }

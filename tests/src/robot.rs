@@ -25,18 +25,15 @@ pub struct Robot {
 
 impl Robot {
     /// A robot that has what is in the recording, in `namespace`, and joins the router
-    /// at `endpoint`; none where there is no Python, or no network to fetch the
-    /// libraries, which is said.
+    /// at `endpoint`; none where the libraries cannot be had, which is said.
     ///
     /// # Panics
     /// If it does not start.
     #[must_use]
     pub fn start(endpoint: &str, recording: &Path, namespace: &str) -> Option<Self> {
-        let Some(python) = python::with("robot", &LIBRARIES, "zenoh_ros2_sdk, rosbags") else {
-            let why = format!("none with {LIBRARIES:?}: no python3, or no network");
-            Need::Python.is_missing("a robot with ROS 2", &why);
-            return None;
-        };
+        let python = python::with("robot", &LIBRARIES, "zenoh_ros2_sdk, rosbags")
+            .map_err(|why| Need::Python.is_missing("a robot with ROS 2", &why))
+            .ok()?;
         let mut process = Command::new(python)
             .args(["-c", include_str!("robot.py"), endpoint])
             .arg(recording)

@@ -116,12 +116,9 @@ print(json.dumps({"read": out, "own": own}))
 "#;
 
 fn python() -> Option<PathBuf> {
-    let python = python::with("readers", &READERS, "mcap_ros2, rosbags");
-    if python.is_none() {
-        let why = format!("none with {READERS:?}: no python3, or no network");
-        Need::Python.is_missing("a reader of recordings", &why);
-    }
-    python
+    python::with("readers", &READERS, "mcap_ros2, rosbags")
+        .map_err(|why| Need::Python.is_missing("a reader of recordings", &why))
+        .ok()
 }
 
 fn as_read_by(python: &Path, reader: &str, path: &Path) -> Value {
