@@ -51,12 +51,22 @@ impl Live {
     /// If it cannot be started.
     #[must_use]
     pub fn start(name: &str, more: &str) -> Self {
+        Self::start_with(name, more, &[])
+    }
+
+    /// Starts the graph `name` with further options of `backcast run`.
+    ///
+    /// # Panics
+    /// If it cannot be started.
+    #[must_use]
+    pub fn start_with(name: &str, more: &str, options: &[&str]) -> Self {
         let folder = tempfile::tempdir().unwrap();
         let file = folder.path().join("dataflow.yaml");
         std::fs::write(&file, descriptor(more)).unwrap();
         let recording = crate::root().join("recordings/malaga_corridor/recording.mcap");
         let mut launcher = executables::backcast();
         launcher.arg("run").arg(&file).args(["--graph", name]);
+        launcher.args(options);
         launcher.args(["--json", "--loop", "--no-monitor", "--replay"]);
         let mut launcher = launcher
             .arg(recording)
@@ -91,11 +101,13 @@ impl Live {
         }
     }
 
-    /// Waits for `count` of them.
-    pub fn poses(&mut self, count: usize) {
-        for _ in 0..count {
-            self.pose();
-        }
+    /// Waits for `count` of them: when their scans were measured, nanoseconds.
+    ///
+    /// # Panics
+    /// If the graph ends before.
+    pub fn poses(&mut self, count: usize) -> Vec<i64> {
+        let measured = |_| self.pose()["stamp_ns"].as_i64().unwrap();
+        (0..count).map(measured).collect()
     }
 
     /// The launcher's process.

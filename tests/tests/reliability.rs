@@ -5,17 +5,19 @@
     reason = "the lint spares test functions but not what they share"
 )]
 
+use std::collections::BTreeSet;
 use std::process::{Command, Stdio};
 use std::thread::sleep;
 use std::time::Duration;
 
-use messages::topic;
+use messages::{HealthHeader, NodeState, topic};
 use nix::sys::signal::{Signal, kill};
+use recording::{Message, Recording};
 use serde_json::{Value, json};
 use tests::live::{Live, files_of};
 use tests::needs::Need;
 use transport::testing::wait_for_health;
-use transport::{Graph, GraphName};
+use transport::{Graph, GraphName, monotonic_ns};
 
 fn name(tag: &str) -> String {
     format!("r{}-{tag}", std::process::id())
@@ -109,7 +111,7 @@ fn a_launcher_that_is_killed_is_started_again_under_the_same_name() {
 #[test]
 fn full_shared_memory_ends_nothing_and_is_told() {
     let test = "full_shared_memory_ends_nothing_and_is_told";
-    if !has_own_shared_memory(test, "96m") {
+    if !has_its_own(test, "/dev/shm", "96m") {
         return;
     }
     let name = name("full");
@@ -137,7 +139,7 @@ fn full_shared_memory_ends_nothing_and_is_told() {
 #[test]
 fn a_graph_that_is_done_harm_for_a_while_keeps_its_promises() {
     let test = "a_graph_that_is_done_harm_for_a_while_keeps_its_promises";
-    if !has_own_shared_memory(test, "256m") {
+    if !has_its_own(test, "/dev/shm", "256m") {
         return;
     }
     let folder = tempfile::tempdir().unwrap();
@@ -163,6 +165,68 @@ fn a_graph_that_is_done_harm_for_a_while_keeps_its_promises() {
     assert!(report["judged"].as_u64() > Some(50), "{report}");
 }
 
+#[test]
+fn a_disk_that_is_full_for_a_while_delays_no_pose_and_spoils_no_recording() {
+    let test = "a_disk_that_is_full_for_a_while_delays_no_pose_and_spoils_no_recording";
+    if !has_its_own(test, "/mnt", "16m") {
+        return;
+    }
+    let name = name("disk");
+    let mut live = Live::start_with(&name, "", &["--record", "/mnt/drive.mcap"]);
+    live.poses(5);
+    let before = live.nodes();
+    let graph = Graph::join_named("test", &GraphName::new(&name).unwrap()).unwrap();
+    let health = graph.subscriber::<topic::Health>().unwrap();
+    fill("/mnt/filler");
+    let is_recorder = |report: &HealthHeader| report.node.as_str() == "recorder";
+    let (_, error) = wait_for_health(&graph, &health, |report| {
+        is_recorder(report) && report.state == NodeState::Degraded as u32
+    });
+    assert!(error.contains("no storage space"), "{error}");
+    let missed = live.poses(20);
+    std::fs::remove_file("/mnt/filler").unwrap();
+    wait_for_health(&graph, &health, |report| {
+        is_recorder(report) && report.state == NodeState::Ready as u32
+    });
+    drop((health, graph));
+    let later = live.poses(20);
+    assert_eq!(live.nodes(), before, "no process was started anew");
+    let (status, summary, _) = live.stop();
+    assert!(status.success(), "{status}");
+    assert_eq!(summary["pose"]["unique_wrong"], 0, "{summary}");
+    // What came while the disk was full waited in memory.
+    let recording = Recording::open("/mnt/drive.mcap").unwrap();
+    assert!(recording.damage_error().is_none(), "it has been ended");
+    let scans = recording.records().map(Result::unwrap);
+    let stamps = scans.filter_map(|record| match record.message {
+        Message::Scan(scan) => Some(scan.header.stamp.as_ns()),
+        _ => None,
+    });
+    let recorded: BTreeSet<i64> = stamps.collect();
+    for stamp in [missed, later].concat() {
+        assert!(recorded.contains(&stamp), "{stamp} of {recorded:?}");
+    }
+}
+
+#[test]
+fn a_node_that_stands_still_for_ten_seconds_goes_on_where_the_others_are() {
+    let mut live = Live::start(&name("still"), "");
+    live.poses(3);
+    for executable in ["accumulator", "peak_extractor", "tracker"] {
+        let stopped = live.node(executable);
+        kill(stopped, Signal::SIGSTOP).unwrap();
+        sleep(Duration::from_secs(10));
+        kill(stopped, Signal::SIGCONT).unwrap();
+        let goes_on = monotonic_ns();
+        // Those that waited for it come first.
+        while live.pose()["sent_ns"].as_i64().unwrap() < goes_on {}
+        assert_eq!(live.node(executable), stopped, "it was not started anew");
+    }
+    let (status, summary, _) = live.stop();
+    assert!(status.success(), "{status}");
+    assert_eq!(summary["pose"]["unique_wrong"], 0, "{summary}");
+}
+
 /// Writes until nothing more fits.
 fn fill(path: &str) {
     let mut file = std::fs::File::create(path).unwrap();
@@ -171,16 +235,17 @@ fn fill(path: &str) {
     }
 }
 
-/// Whether the calling test, which is called `test`, runs where `/dev/shm` is its own, of
-/// so many bytes. If not, it has been run there, or the kernel forbids that, which is said.
-fn has_own_shared_memory(test: &str, size: &str) -> bool {
+/// Whether the calling test, which is called `test`, runs where the file system at `path` is
+/// its own, of so many bytes. If not, it has been run there, or the kernel forbids that,
+/// which is said.
+fn has_its_own(test: &str, path: &str, size: &str) -> bool {
     const INSIDE: &str = "BACKCAST_TEST_INSIDE";
     if std::env::var_os(INSIDE).is_some() {
         return true;
     }
     // The executables are built before, where there is room.
     let _ = tests::executables::path("backcast");
-    let mount = format!("mount -t tmpfs -o size={size} tmpfs /dev/shm");
+    let mount = format!("mount -t tmpfs -o size={size} tmpfs {path}");
     let user: &[&str] = match nix::unistd::geteuid().is_root() {
         true => &["--mount"],
         false => &["--mount", "--user", "--map-root-user"],

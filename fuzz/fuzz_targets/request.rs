@@ -1,0 +1,117 @@
+//! Any request to the monitor's page: method, address and body, with the token. Nothing
+//! panics, every request is answered, and what is asked of the graph is sound. After
+//! `WATCH`, the body is what a viewer sends on its WebSocket.
+#![no_main]
+
+use std::io::{ErrorKind, Read, Write};
+use std::net::{Shutdown, SocketAddr, TcpStream};
+use std::os::unix::fs::PermissionsExt;
+use std::sync::mpsc::Receiver;
+use std::sync::{LazyLock, Mutex};
+use std::time::Duration;
+
+use dashboard::{Abilities, Options, Robot, Robots, Server, Wish};
+use libfuzzer_sys::fuzz_target;
+
+const TOKEN: &str = "fuzzed-fuzzed-fuzzed";
+
+/// A page of one robot, `r`, that takes every wish.
+struct Page {
+    address: SocketAddr,
+    wishes: Mutex<Receiver<Wish>>,
+    _server: Server,
+}
+
+static PAGE: LazyLock<Page> = LazyLock::new(|| {
+    let folder = tempfile::tempdir().unwrap();
+    let token = folder.path().join("token");
+    std::fs::write(&token, TOKEN).unwrap();
+    std::fs::set_permissions(&token, std::fs::Permissions::from_mode(0o600)).unwrap();
+    let (robot, wishes) = Robot::new("r".into());
+    robot.hear_abilities(Abilities { region: true, save: true });
+    let options = Options { host: Vec::new(), token_file: Some(token) };
+    let address = std::net::TcpListener::bind("127.0.0.1:0").unwrap().local_addr().unwrap();
+    let server = Server::start(address, &options, [robot].into_iter().collect::<Robots>()).unwrap();
+    Page { address, wishes: Mutex::new(wishes), _server: server }
+});
+
+/// The answer, as far as it came; none where the connection is kept for too long.
+fn read_all(stream: &mut TcpStream) -> Option<Vec<u8>> {
+    let mut answer = Vec::new();
+    match stream.read_to_end(&mut answer) {
+        Err(error) if error.kind() == ErrorKind::WouldBlock => None,
+        // Reset, where the server has read less than was sent.
+        _ => Some(answer),
+    }
+}
+
+fn ask(method: &str, path: &[u8], body: &[u8]) {
+    let mut stream = TcpStream::connect(PAGE.address).unwrap();
+    stream.set_read_timeout(Some(Duration::from_secs(10))).unwrap();
+    let host = PAGE.address;
+    let mut request = [method.as_bytes(), b" ", path, b" HTTP/1.1\r\n"].concat();
+    let length = body.len();
+    request.extend_from_slice(
+        format!(
+            "host: {host}\r\nauthorization: Bearer {TOKEN}\r\nconnection: close\r\n\
+             content-type: application/json\r\ncontent-length: {length}\r\n\r\n"
+        )
+        .as_bytes(),
+    );
+    request.extend_from_slice(body);
+    // A server that refuses early closes while this is written.
+    let _ = stream.write_all(&request);
+    let answer = read_all(&mut stream).expect("a request without an answer");
+    let status = answer.get(9..12);
+    assert!(!matches!(status, Some(b"500" | b"501" | b"502")), "{}", answer.escape_ascii());
+}
+
+fn watch(path: &[u8], sent: &[u8]) {
+    let mut stream = TcpStream::connect(PAGE.address).unwrap();
+    stream.set_read_timeout(Some(Duration::from_secs(10))).unwrap();
+    let mut request = [b"GET ", path, b" HTTP/1.1\r\n"].concat();
+    let host = PAGE.address;
+    request.extend_from_slice(
+        format!(
+            "host: {host}\r\nconnection: Upgrade\r\nupgrade: websocket\r\n\
+             sec-websocket-version: 13\r\nsec-websocket-key: dGhlIHNhbXBsZSBub25jZQ==\r\n\r\n"
+        )
+        .as_bytes(),
+    );
+    let _ = stream.write_all(&request);
+    let mut first = [0; 12];
+    if stream.read_exact(&mut first).is_ok() && first.ends_with(b"101") {
+        let _ = stream.write_all(sent);
+        let _ = stream.shutdown(Shutdown::Write);
+        read_all(&mut stream).expect("a viewer that left is still served");
+    }
+}
+
+fuzz_target!(|bytes: &[u8]| {
+    let Some((line, body)) = bytes.iter().position(|&b| b == b'\n').map(|at| bytes.split_at(at))
+    else {
+        return;
+    };
+    let Some((method, path)) = line.iter().position(|&b| b == b' ').map(|at| line.split_at(at))
+    else {
+        return;
+    };
+    let (path, body) = (&path[1..], &body[1..]);
+    // Spaces and control characters end an address.
+    if path.is_empty() || path.iter().any(|&b| b <= b' ') {
+        return;
+    }
+    match method {
+        b"WATCH" => watch(path, body),
+        b"GET" => ask("GET", path, body),
+        b"PUT" => ask("PUT", path, body),
+        b"POST" => ask("POST", path, body),
+        b"DELETE" => ask("DELETE", path, body),
+        _ => return,
+    }
+    for wish in PAGE.wishes.lock().unwrap().try_iter() {
+        if let Wish::Region(corners) = wish {
+            assert!(corners.is_empty() || engine::limits::Region::new(&corners).is_ok());
+        }
+    }
+});
