@@ -73,6 +73,10 @@ pub struct Options {
     #[command(flatten)]
     pub record: RecordOptions,
 
+    /// Run no build command of the descriptor: start the executables that are there
+    #[arg(long)]
+    pub no_build: bool,
+
     /// Leave out the web page to watch the graph
     #[arg(long)]
     pub no_monitor: bool,
