@@ -131,7 +131,7 @@ pub enum Fault {
         why: &'static str,
     },
     /// No executable there, and nothing that would build it.
-    #[error("`{path}` {state}, and the node has no `build:` that would make it")]
+    #[error("`{path}` {state}, and nothing builds it")]
     NoExecutable {
         /// As in the descriptor.
         path: String,

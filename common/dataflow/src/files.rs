@@ -96,7 +96,7 @@ mod tests {
             .iter()
             .map(ToString::to_string)
             .collect();
-        let tail = ", and the node has no `build:` that would make it";
+        let tail = ", and nothing builds it";
         assert_eq!(
             said,
             [

@@ -1,12 +1,41 @@
-//! `backcast check`: all that is wrong with a descriptor, or a picture of the
-//! graph. It builds, starts and changes nothing.
+//! `backcast check`: all that is wrong with a descriptor and the arguments in it, or a
+//! picture of the graph. It builds and changes nothing; nodes are started as far as it takes
+//! them to read their arguments.
 
-use std::{fmt::Write as _, path::PathBuf, process::ExitCode};
+use std::{
+    fmt::Write as _,
+    path::{Path, PathBuf},
+    process::{Command as Process, ExitCode, Stdio},
+};
 
 use command_line::stdout;
 use dataflow::{Dataflow, Node, RestartPolicy};
+use transport::node::CHECK_ARGUMENTS_VARIABLE;
 
-use crate::{LauncherError, descriptor};
+use crate::{
+    LauncherError,
+    descriptor::{self, Builds},
+    run::executable,
+};
+
+/// The executables of our nodes.
+const NODES: [&str; 15] = [
+    "accumulator",
+    "boundary_extractor",
+    "bridge",
+    "emulator",
+    "fleet_monitor",
+    "foxglove_server",
+    "lms_reader",
+    "locate_server",
+    "map_server",
+    "monitor",
+    "peak_extractor",
+    "recorder",
+    "replayer",
+    "ros2_gateway",
+    "tracker",
+];
 
 /// What `backcast check` takes.
 #[derive(Debug, clap::Args)]
@@ -19,15 +48,63 @@ pub struct Config {
 /// Prints the picture.
 ///
 /// # Errors
-/// The descriptor is missing or wrong.
+/// The descriptor is missing or wrong, or a node does not take its arguments.
 pub fn run(config: &Config) -> Result<ExitCode, LauncherError> {
-    let descriptor = descriptor::load(&config.dataflow)?;
+    let descriptor = descriptor::load(&config.dataflow, Builds::Run)?;
+    let nodes = descriptor.dataflow.nodes.iter();
+    let own: Vec<_> = nodes.filter(|node| is_own(node)).collect();
+    let (built, unbuilt): (Vec<&Node>, Vec<&Node>) = own
+        .into_iter()
+        .partition(|node| executable(node, &descriptor.folder).is_file());
+    let refused: Vec<String> = built
+        .iter()
+        .filter_map(|node| refused_arguments(node, &descriptor.folder).transpose())
+        .collect::<Result<_, _>>()?;
+    if !refused.is_empty() {
+        return Err(LauncherError::Arguments {
+            file: descriptor.file,
+            refused: refused.join("\n"),
+        });
+    }
     let picture = picture(&descriptor.dataflow);
-    stdout::print(&format!(
-        "{} is sound\n\n{picture}",
-        descriptor.file.display()
-    ))?;
+    let mut text = format!("{} is sound\n", descriptor.file.display());
+    if !unbuilt.is_empty() {
+        let ids: Vec<&str> = unbuilt.iter().map(|node| node.id.as_str()).collect();
+        let ids = ids.join(", ");
+        // Writing to a string cannot fail.
+        let _ = writeln!(text, "not checked, as they are not built: arguments of {ids}");
+    }
+    stdout::print(&format!("{text}\n{picture}"))?;
     Ok(ExitCode::SUCCESS)
+}
+
+/// Whether it is one of ours, which end at once where only their arguments are checked.
+fn is_own(node: &Node) -> bool {
+    let name = Path::new(&node.path).file_name();
+    name.is_some_and(|name| NODES.iter().any(|own| name == *own))
+}
+
+/// What the node says of its arguments, if it does not take them.
+fn refused_arguments(node: &Node, folder: &Path) -> Result<Option<String>, LauncherError> {
+    let output = Process::new(executable(node, folder))
+        .args(&node.args)
+        .envs(node.env.iter().map(|(name, value)| (name, value)))
+        .env(CHECK_ARGUMENTS_VARIABLE, "1")
+        .current_dir(folder)
+        .stdin(Stdio::null())
+        .output()
+        .map_err(|source| LauncherError::NotStarted {
+            node: node.id.clone(),
+            path: executable(node, folder),
+            folder: folder.to_owned(),
+            source,
+        })?;
+    let said = String::from_utf8_lossy(&output.stderr);
+    // The first paragraph says what is wrong, those after it how the node is used.
+    let reason = said.split("\n\n").next().unwrap_or_default();
+    let reason = reason.trim().trim_start_matches("error: ");
+    let refused = (!output.status.success()).then(|| format!("node {}: {reason}", node.id));
+    Ok(refused)
 }
 
 /// A paragraph for each node: what it takes and sends, and to whom.
@@ -76,6 +153,16 @@ fn receivers(dataflow: &Dataflow, topic: &str) -> String {
 mod tests {
     use super::*;
     use dataflow::{Topics, parse};
+
+    #[test]
+    fn all_nodes_of_this_repository_are_known() {
+        let folder = concat!(env!("CARGO_MANIFEST_DIR"), "/../../nodes");
+        let nodes = std::fs::read_dir(folder).unwrap();
+        let mut names: Vec<_> = nodes.map(|node| node.unwrap().file_name()).collect();
+        names.retain(|name| name != "backcast");
+        names.sort();
+        assert_eq!(names, NODES);
+    }
 
     #[test]
     fn the_picture_shows_wires_from_both_ends() {

@@ -5,7 +5,7 @@ use std::path::{Path, PathBuf};
 use dataflow::{Dataflow, DataflowError, Topics};
 use messages::{Topic, topic};
 
-use crate::{LauncherError, run::supervision::is_essential};
+use crate::{LauncherError, installed, run::supervision::is_essential};
 
 /// Where the descriptor is looked for.
 pub const DEFAULT_FILE: &str = "dataflow.yaml";
@@ -28,12 +28,24 @@ pub struct Descriptor {
     pub folder: PathBuf,
 }
 
+/// What is done with the build commands of a descriptor.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Builds {
+    /// They are run.
+    Run,
+    /// They are left out: the executables must be there.
+    LeaveOut,
+}
+
 /// Reads and checks the descriptor `file`, and that its executables exist or
-/// are built.
+/// are built. Without a [`DEFAULT_FILE`] here, that of the installation is meant.
 ///
 /// # Errors
 /// It is not there, or wrong.
-pub fn load(file: &Path) -> Result<Descriptor, LauncherError> {
+pub fn load(file: &Path, builds: Builds) -> Result<Descriptor, LauncherError> {
+    let is_default = file == Path::new(DEFAULT_FILE) && !file.exists();
+    let installed = is_default.then(installed::demonstration).flatten();
+    let file = installed.as_deref().unwrap_or(file);
     let absolute = std::path::absolute(file).map_err(LauncherError::Folder)?;
     if !absolute.exists() {
         return Err(LauncherError::NoDescriptor {
@@ -41,12 +53,18 @@ pub fn load(file: &Path) -> Result<Descriptor, LauncherError> {
             folder: std::env::current_dir().map_err(LauncherError::Folder)?,
         });
     }
-    let dataflow = dataflow::load(file, &TOPICS)?;
-    for node in &dataflow.nodes {
-        is_essential(node)?;
-    }
+    let mut dataflow = dataflow::load(file, &TOPICS)?;
     // A file has a folder; the root of the file system is none.
     let folder = absolute.parent().unwrap_or(Path::new("/")).to_owned();
+    for node in &mut dataflow.nodes {
+        is_essential(node)?;
+        if builds == Builds::LeaveOut {
+            node.build.clear();
+        }
+        if let Some(path) = installed::find(&node.path, &folder) {
+            node.path = path;
+        }
+    }
     let problems = dataflow::check_executables(&dataflow, &folder);
     let file = file.to_owned();
     if !problems.is_empty() {
@@ -68,7 +86,7 @@ mod tests {
     #[test]
     fn the_descriptor_of_the_repository_is_sound() {
         let file = concat!(env!("CARGO_MANIFEST_DIR"), "/../../dataflow.yaml");
-        let descriptor = load(Path::new(file)).unwrap();
+        let descriptor = load(Path::new(file), Builds::Run).unwrap();
         let ids: Vec<_> = descriptor.dataflow.nodes.iter().map(|n| &*n.id).collect();
         assert!(ids.contains(&"accumulator"), "{ids:?}");
         assert!(descriptor.folder.join("Cargo.toml").exists());
@@ -76,7 +94,7 @@ mod tests {
 
     #[test]
     fn a_missing_descriptor_says_what_to_do() {
-        let error = load(Path::new("no/such.yaml")).unwrap_err();
+        let error = load(Path::new("no/such.yaml"), Builds::Run).unwrap_err();
         assert_eq!(error.exit_code(), 2);
         let said = error.to_string();
         assert!(
@@ -91,7 +109,7 @@ mod tests {
         let file = folder.path().join("g.yaml");
         let check = |text: &str, expected: &str| {
             std::fs::write(&file, text).unwrap();
-            let error = load(&file).unwrap_err();
+            let error = load(&file, Builds::LeaveOut).unwrap_err();
             assert_eq!(error.exit_code(), 1);
             let said = error.to_string();
             assert!(said.contains(expected), "{said}");
@@ -102,7 +120,11 @@ mod tests {
         );
         check(
             "nodes: [{id: a, path: nowhere}]",
-            "g.yaml:1:23: `nowhere` does not exist",
+            "g.yaml:1:23: `nowhere` does not exist, and nothing builds it",
+        );
+        check(
+            "nodes: [{id: a, path: nowhere, build: make}]",
+            "g.yaml:1:23: `nowhere` does not exist, and nothing builds it",
         );
     }
 }

@@ -63,7 +63,10 @@ pub enum LauncherError {
     #[error("{0}")]
     Usage(String),
     /// A build could not be started.
-    #[error("node {node}: the build `{command}` cannot be started")]
+    #[error(
+        "node {node}: the build `{command}` cannot be started; where all executables are there, \
+         --no-build runs them as they are"
+    )]
     BuildNotStarted {
         /// The node.
         node: String,
@@ -93,6 +96,14 @@ pub enum LauncherError {
         folder: PathBuf,
         /// Why not.
         source: io::Error,
+    },
+    /// Nodes do not take the arguments that the descriptor gives them.
+    #[error("{}: {refused}", file.display())]
+    Arguments {
+        /// The descriptor.
+        file: PathBuf,
+        /// What each of them said, a line each.
+        refused: String,
     },
     /// A process could not be waited for or signalled.
     #[error("node {node}: process {pid} cannot be supervised")]

@@ -6,6 +6,7 @@ pub mod check;
 pub mod control;
 pub mod descriptor;
 mod error;
+mod installed;
 pub mod run;
 
 pub use error::LauncherError;

@@ -62,6 +62,23 @@ pub(super) fn probe(target: &str) -> Result<(Vec<String>, Seen), ProbeError> {
 }
 
 /// Tries each port in each encoding; what went wrong last says most.
+/// The options of `lms_reader` for the device at HOST or HOST:PORT.
+///
+/// # Errors
+/// As [`probe`].
+pub(super) fn reader_options(target: &str) -> Result<String, ProbeError> {
+    let device = find(target)?;
+    Ok(reader_options_of(&device.address, device.encoding))
+}
+
+pub(super) fn reader_options_of(address: &str, encoding: Encoding) -> String {
+    let protocol = match encoding {
+        Encoding::Binary => "cola-b",
+        Encoding::Text => "cola-a",
+    };
+    format!("--tcp {address} --protocol {protocol}")
+}
+
 fn find(target: &str) -> Result<Device, ProbeError> {
     let addresses = addresses(target);
     let mut failure = None;
@@ -104,7 +121,7 @@ fn find(target: &str) -> Result<Device, ProbeError> {
 }
 
 /// Where to look for it: at its port, or at those that devices have.
-fn addresses(target: &str) -> Vec<String> {
+pub(super) fn addresses(target: &str) -> Vec<String> {
     let bare = target.parse::<Ipv6Addr>().map(|ip| format!("[{ip}]"));
     let host = bare.as_deref().unwrap_or(target);
     let port = host.rsplit_once(':').map(|(_, port)| port.parse::<u16>());

@@ -4,6 +4,7 @@ use std::path::Path;
 use std::process::ExitCode;
 
 use command_line::stdout;
+use sick::cola::Encoding;
 
 use super::{cola, lms2xx};
 use crate::ProbeError;
@@ -42,6 +43,28 @@ pub fn run(config: &Config) -> Result<ExitCode, ProbeError> {
     let columns = config.width.map_or_else(columns, usize::from);
     stdout::print(&format!("{}\n\n{}", said.join("\n"), seen.draw(columns)))?;
     Ok(ExitCode::SUCCESS)
+}
+
+/// The options by which `lms_reader` reads the device at an address, or on a serial line:
+/// which port and encoding it answers on.
+///
+/// # Errors
+/// No device answers.
+pub fn reader_options(device: &str, is_serial: bool) -> Result<String, ProbeError> {
+    match is_serial {
+        false => cola::reader_options(address(device).unwrap_or(device)),
+        true => lms2xx::ask(Path::new(device)).map(|()| default_reader_options(device, true)),
+    }
+}
+
+/// The same for a device that is not asked, and set as devices are delivered.
+#[must_use]
+pub fn default_reader_options(device: &str, is_serial: bool) -> String {
+    if is_serial {
+        return format!("--serial {device}");
+    }
+    let address = address(device).unwrap_or(device);
+    cola::reader_options_of(&cola::addresses(address)[0], Encoding::Binary)
 }
 
 /// The address of a device on the network; `None` where a serial line is meant, which is

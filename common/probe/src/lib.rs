@@ -11,5 +11,5 @@ mod line;
 mod lms2xx;
 mod picture;
 
-pub use command::{Config, NOTES, run};
+pub use command::{Config, NOTES, default_reader_options, reader_options, run};
 pub use error::ProbeError;

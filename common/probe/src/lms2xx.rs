@@ -24,21 +24,20 @@ struct Device<'a> {
     heard: usize,
 }
 
+/// Whether one answers, at whichever rate.
+///
+/// # Errors
+/// As [`probe`].
+pub(super) fn ask(path: &Path) -> Result<(), ProbeError> {
+    Device::open(path)?.find_rate().map(drop)
+}
+
 /// What is found on the line, in lines for people, and a scan.
 ///
 /// # Errors
 /// The line cannot be opened, or nothing on it answers at any rate.
 pub(super) fn probe(path: &Path) -> Result<(Vec<String>, Seen), ProbeError> {
-    let line = Line::open(path).map_err(|source| ProbeError::DeviceNotReached {
-        address: path.display().to_string(),
-        source,
-    })?;
-    let mut device = Device {
-        path,
-        line,
-        framer: ReplyFramer::default(),
-        heard: 0,
-    };
+    let mut device = Device::open(path)?;
     let baud = device.find_rate()?;
     let name = path.display();
     let mut said = vec![format!("{name}: an LMS2xx at {} baud", baud.rate())];
@@ -62,7 +61,20 @@ pub(super) fn probe(path: &Path) -> Result<(Vec<String>, Seen), ProbeError> {
     Ok((said, seen))
 }
 
-impl Device<'_> {
+impl<'a> Device<'a> {
+    fn open(path: &'a Path) -> Result<Self, ProbeError> {
+        let line = Line::open(path).map_err(|source| ProbeError::DeviceNotReached {
+            address: path.display().to_string(),
+            source,
+        })?;
+        Ok(Device {
+            path,
+            line,
+            framer: ReplyFramer::default(),
+            heard: 0,
+        })
+    }
+
     /// It answers this command in every mode, and sends no more scans by itself.
     fn find_rate(&mut self) -> Result<Baud, ProbeError> {
         for baud in RATES {

@@ -6,7 +6,7 @@ use std::time::Instant;
 
 use command_line::stdout;
 use launcher::LauncherError;
-use launcher::descriptor::{self, DEFAULT_FILE};
+use launcher::descriptor::{self, Builds, DEFAULT_FILE};
 use launcher::run::build;
 use progress::say;
 use transport::{GraphName, with_causes};
@@ -64,7 +64,7 @@ pub fn run(config: &Config) -> Result<ExitCode, RegressionError> {
     for folder in &config.folders {
         cases.extend(Case::all_in(folder)?);
     }
-    let mut descriptor = descriptor::load(&config.dataflow)?;
+    let mut descriptor = descriptor::load(&config.dataflow, Builds::Run)?;
     // What replays is the same for all cases, and is built with the others.
     if let Some(case) = cases.first() {
         play::direct(&mut descriptor, case)?;
@@ -113,7 +113,7 @@ fn replay(config: &Config, case: &Case) -> Outcome {
 
 fn judge(config: &Config, case: &Case, outcome: &mut Outcome) -> Result<(), RegressionError> {
     let expected = case.expected();
-    let mut descriptor = descriptor::load(&config.dataflow)?;
+    let mut descriptor = descriptor::load(&config.dataflow, Builds::Run)?;
     play::direct(&mut descriptor, case)?;
     let name = GraphName::new(&format!("rg{}", std::process::id()))?;
     let Played {

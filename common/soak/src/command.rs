@@ -10,7 +10,7 @@ use command_line::stdout::print;
 use dataflow::RestartPolicy;
 use geometry::Pose;
 use launcher::LauncherError;
-use launcher::descriptor::{self, DEFAULT_FILE, Descriptor};
+use launcher::descriptor::{self, Builds, DEFAULT_FILE, Descriptor};
 use launcher::run::Options;
 use launcher::run::arguments::{MAP_SERVER, PLAYERS, value};
 use recording::Recording;
@@ -94,7 +94,7 @@ pub struct Config {
 /// The graph cannot be set up, or something cannot be done to it.
 pub fn run(config: &Config) -> Result<ExitCode, SoakError> {
     transport::node::start_logging().map_err(LauncherError::Logging)?;
-    let descriptor = descriptor::load(&config.dataflow)?;
+    let descriptor = descriptor::load(&config.dataflow, Builds::Run)?;
     let recording = config.recording(&descriptor)?;
     let truths = truths(&recording)?;
     check_room(config)?;

@@ -6,4 +6,6 @@
 
 pub mod cli;
 #[cfg(feature = "tools")]
+mod shell;
+#[cfg(feature = "tools")]
 mod tools;

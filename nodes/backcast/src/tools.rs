@@ -8,6 +8,7 @@ use evaluation::{evaluate, locate};
 use recording_tools::{convert, doctor, info, simulate};
 
 use crate::cli::{EXIT_CODES, end};
+use crate::shell;
 
 /// What is done with recordings.
 #[derive(Debug, Subcommand)]
@@ -44,6 +45,9 @@ pub(crate) enum OnTheSide {
     /// Shows a running graph in the terminal
     #[command(after_help = EXIT_CODES)]
     Top(top::Config),
+    /// Writes the descriptor of a graph for a laser, a ROS 2 robot or a recording
+    #[command(after_help = init::NOTES)]
+    Init(init::Config),
     /// Says which laser is there, how it is set and what it sees
     #[command(after_help = probe::NOTES)]
     Probe(probe::Config),
@@ -53,6 +57,11 @@ pub(crate) enum OnTheSide {
     /// Records a drive through a map as a laser or a ring of sonars would see it
     #[command(after_help = "Exit codes: 0 recorded, 1 failed, 2 wrong use")]
     Simulate(Box<simulate::Config>),
+    /// Prints the completions of a shell
+    Completions(shell::CompletionsConfig),
+    /// Writes manual pages
+    #[command(hide = true)]
+    Man(shell::ManConfig),
 }
 
 impl OnRecordings {
@@ -79,6 +88,9 @@ impl OnTheSide {
             Self::Probe(config) => end(probe::run(config)),
             Self::Bench(config) => end(bench::run(config)),
             Self::Simulate(config) => end(simulate::run(config)),
+            Self::Init(config) => end(init::run(config)),
+            Self::Completions(config) => end(shell::completions(config)),
+            Self::Man(config) => end(shell::man(config)),
         }
     }
 }

@@ -13,6 +13,11 @@ pub struct Config {
     #[arg(long, value_name = "FILE")]
     pub map: PathBuf,
 
+    /// A recording whose last map is served in place of `--map`, if it holds one: what is
+    /// played from it was recorded on that map.
+    #[arg(long, value_name = "FILE")]
+    pub recorded: Option<PathBuf>,
+
     /// What the graph may use.
     #[command(flatten)]
     pub memory: map::MemoryOptions,

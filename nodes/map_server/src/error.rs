@@ -13,6 +13,14 @@ pub enum MapServerError {
         /// What is wrong, where, and what is allowed.
         source: Box<map::MapError>,
     },
+    /// The map in a recording cannot be used.
+    #[error("the map in the recording {}", path.display())]
+    Recorded {
+        /// As configured.
+        path: PathBuf,
+        /// What is wrong.
+        source: Box<dyn std::error::Error + Send + Sync>,
+    },
     /// The graph failed.
     #[error(transparent)]
     Transport(#[from] transport::TransportError),

@@ -5,6 +5,7 @@ use std::time::{Duration, SystemTime, UNIX_EPOCH};
 
 use map::OccupancyGrid;
 use messages::{MapHeader, NodeState, Stamp, topic};
+use recording::Recording;
 use transport::{Flow, Graph, Health, Publisher, TransportError, with_causes};
 
 use crate::files::Files;
@@ -31,6 +32,14 @@ pub fn run(graph: &Graph, config: &Config) -> Result<(), MapServerError> {
     // Looked at before loading: what changes in between is noticed.
     let mut watch = Watch::new(files.look());
     server.health.state(NodeState::Busy)?;
+    if let Some(grid) = recorded(config)? {
+        server.serve(&grid)?;
+        graph.run(&[], TICK, |_| {
+            server.health.tick()?;
+            Ok::<_, TransportError>(Flow::Continue)
+        })?;
+        return Ok(());
+    }
     match load(config) {
         Ok(grid) => server.serve(&grid)?,
         Err(error) if error.is_missing() => server.wait_for(&error)?,
@@ -59,6 +68,31 @@ fn load(config: &Config) -> Result<OccupancyGrid, map::MapError> {
     map::load_within(config.memory.limit(), &config.map, |key| {
         tracing::warn!("{key}");
     })
+}
+
+/// The last map of the recording, where one is named and holds one.
+fn recorded(config: &Config) -> Result<Option<OccupancyGrid>, MapServerError> {
+    let Some(path) = &config.recorded else {
+        return Ok(None);
+    };
+    let failed = |source: Box<dyn Error + Send + Sync>| MapServerError::Recorded {
+        path: path.clone(),
+        source,
+    };
+    let recording = Recording::open(path).map_err(|error| failed(error.into()))?;
+    let maps = recording.maps().map_err(|error| failed(error.into()))?;
+    let Some(last) = maps.last() else {
+        tracing::info!(recording = %path.display(), map = %config.map.display(),
+            "the recording holds no map");
+        return Ok(None);
+    };
+    let (_, map) = last.map_err(|error| failed(error.into()))?;
+    let size = (map.info.width, map.info.height);
+    let fits = config.memory.limit().check(size);
+    fits.map_err(|error| failed(error.into()))?;
+    let grid = map.to_grid().map_err(|error| failed(error.into()))?;
+    tracing::info!(recording = %path.display(), "the map is that of the recording");
+    Ok(Some(grid))
 }
 
 struct Server {

@@ -10,6 +10,9 @@ use std::path::PathBuf;
 use std::process::ExitStatus;
 
 use messages::{HealthHeader, NodeState, topic};
+use recording::Recording;
+use recording::write::{Packing, RecordingWriter};
+use ros::TfMessage;
 use tempfile::TempDir;
 use transport::testing::{Isolated, NodeProcess, wait_for_health, wait_until};
 use transport::{Graph, Subscriber};
@@ -56,11 +59,16 @@ impl World {
     }
 
     fn start(&mut self) {
+        self.start_with(&[]);
+    }
+
+    fn start_with(&mut self, options: &[&OsStr]) {
         let map = self.at("map.yaml");
+        let map = [OsStr::new("--map"), map.as_os_str()];
         self.node = Some(NodeProcess::start(
             env!("CARGO_BIN_EXE_map_server"),
             &self.graph,
-            [OsStr::new("--map"), map.as_os_str()],
+            map.iter().chain(options),
         ));
     }
 
@@ -127,6 +135,41 @@ fn the_map_is_served_also_to_those_who_join_late() {
     world.interrupt();
     let (status, log) = world.finish();
     assert!(status.success(), "{log}");
+}
+
+#[test]
+fn the_map_of_a_recording_is_preferred_where_it_holds_one() {
+    let file = concat!(
+        env!("CARGO_MANIFEST_DIR"),
+        "/../../recordings/malaga_corridor/recording.mcap"
+    );
+    let recording = Recording::open(file).unwrap();
+    let (_, recorded) = recording.maps().unwrap().last().unwrap().unwrap();
+    let recorded = recorded.to_grid().unwrap();
+    let mut world = World::new("recorded", &[0, 255]);
+    let maps = world.graph.subscriber::<topic::Map>().unwrap();
+    world.start_with(&[OsStr::new("--recorded"), OsStr::new(file)]);
+    world.wait(&maps, |header, cells| {
+        assert_eq!((header.map_id, cells), (recorded.id(), &recorded.cells[..]));
+        true
+    });
+    world.interrupt();
+    let (status, log) = world.finish();
+    assert!(status.success(), "{log}");
+
+    // One without a map, which has that of the file.
+    let empty = world.at("empty.mcap");
+    let mut writer = RecordingWriter::create(&empty, Packing::Zstd).unwrap();
+    let transforms = TfMessage::default();
+    writer.write("/tf_static", 0, &transforms).unwrap();
+    writer.finish().unwrap();
+    world.start_with(&[OsStr::new("--recorded"), empty.as_os_str()]);
+    let late = world.graph.subscriber::<topic::Map>().unwrap();
+    world.wait(&late, |_, cells| cells == [100, 0]);
+    world.interrupt();
+    let (status, log) = world.finish();
+    assert!(status.success(), "{log}");
+    assert!(log.contains("holds no map"), "{log}");
 }
 
 #[test]

@@ -10,12 +10,13 @@ use std::{
 
 use dataflow::{Dataflow, Node};
 
-use super::console::note;
+use super::{console::note, process::executable};
 use crate::LauncherError;
 
 /// Builds every node, in the order of the descriptor and in its `folder`. Two
 /// nodes with the same commands and environment are built once. What builds
-/// say goes to our standard error.
+/// say goes to our standard error. Where a program that builds is not installed, nodes
+/// that were built elsewhere are run as they are.
 ///
 /// # Errors
 /// A command cannot be started, or failed.
@@ -26,9 +27,22 @@ pub fn build_all(dataflow: &Dataflow, folder: &Path) -> Result<(), LauncherError
         note(&format!("building {}", ids.join(", ")));
     }
     let mut built = HashSet::new();
-    with_build()
-        .filter(|n| built.insert((&n.build, &n.env)))
-        .try_for_each(|node| build(node, folder))
+    for node in with_build().filter(|n| built.insert((&n.build, &n.env))) {
+        match build(node, folder) {
+            Err(LauncherError::BuildNotStarted { command, source, .. })
+                if source.kind() == io::ErrorKind::NotFound
+                    && are_there(with_build().filter(|n| n.build == node.build), folder) =>
+            {
+                note(&format!("`{command}` cannot be started: the nodes are run as they are"));
+            }
+            outcome => outcome?,
+        }
+    }
+    Ok(())
+}
+
+fn are_there<'a>(mut nodes: impl Iterator<Item = &'a Node>, folder: &Path) -> bool {
+    nodes.all(|node| executable(node, folder).is_file())
 }
 
 fn build(node: &Node, folder: &Path) -> Result<(), LauncherError> {
@@ -102,7 +116,20 @@ mod tests {
         let said = build_nodes(nodes, folder.path()).unwrap_err().to_string();
         assert_eq!(
             said,
-            "node a: the build `no-such-program x` cannot be started"
+            "node a: the build `no-such-program x` cannot be started; where all executables are \
+             there, --no-build runs them as they are"
         );
+    }
+
+    #[test]
+    fn what_was_built_elsewhere_needs_no_program_that_builds() {
+        let folder = tempfile::tempdir().unwrap();
+        std::fs::write(folder.path().join("x"), "").unwrap();
+        let node = |id, path| format!("  - {{id: {id}, path: {path}, build: no-such-program}}\n");
+        let built = node("a", "x") + "  - {id: b, path: y, build: touch built}\n";
+        build_nodes(&built, folder.path()).unwrap();
+        assert!(folder.path().join("built").exists());
+        let in_part = node("a", "x") + &node("b", "z");
+        build_nodes(&in_part, folder.path()).unwrap_err();
     }
 }

@@ -15,6 +15,8 @@ use super::options::{Options, Rate};
 use super::{lasers, replay};
 use crate::LauncherError;
 
+/// The recording whose own map `map_server` prefers.
+const RECORDED_MAP: &str = "--recorded";
 const MAX_AGE: &str = "--heading-max-age-s";
 
 /// Puts the options into the arguments of their nodes. `file` is named in
@@ -34,6 +36,7 @@ pub(crate) fn apply(
         let map = std::path::absolute(map).map_err(LauncherError::Folder)?;
         let node = find(dataflow, &[MAP_SERVER], "--map", file)?;
         set(node, "--map", Some(&map.to_string_lossy()));
+        unset(node, RECORDED_MAP, true);
     }
     if let Some(rate) = options.rate {
         let node = find(dataflow, &PLAYERS, "--rate", file)?;
@@ -61,6 +64,11 @@ fn forward_replay(options: &Options, dataflow: &mut Dataflow) -> Result<(), Laun
     let recordings: Vec<PathBuf> = absolute
         .collect::<Result<_, _>>()
         .map_err(LauncherError::Folder)?;
+    let is_map_server = |node: &&mut Node| node.executable() == MAP_SERVER;
+    if let (Some(node), [recording]) = (dataflow.nodes.iter_mut().find(is_map_server), &*recordings)
+    {
+        set(node, RECORDED_MAP, Some(&recording.to_string_lossy()));
+    }
     let replayer = replay::play(dataflow, &recordings);
     if !options.scan_topic.is_empty() {
         unset(replayer, "--scan-topic", true);
@@ -190,6 +198,26 @@ mod tests {
             assert_eq!(args[0], ["x", "y", "--rate=2", "--loop"], "{before}");
             assert_eq!(args[1], ["--beams", "9"]);
         }
+    }
+
+    #[test]
+    fn a_recording_is_played_on_its_own_map_unless_another_is_given() {
+        let map_args = |options: &Options| {
+            let mut dataflow = graph("", "");
+            dataflow.nodes[1].path = "bin/map_server".to_owned();
+            applied(options, dataflow).unwrap().swap_remove(1)
+        };
+        let mut options = Options {
+            replay: vec!["/drive.mcap".into()],
+            ..Options::default()
+        };
+        assert_eq!(map_args(&options), ["--beams", "9", "--recorded=/drive.mcap"]);
+        options.map = Some("/other.yaml".into());
+        assert_eq!(map_args(&options), ["--beams", "9", "--map=/other.yaml"]);
+        // Which of several recordings has the map of all is not known.
+        options.map = None;
+        options.replay.push("/rest.mcap".into());
+        assert_eq!(map_args(&options), ["--beams", "9"]);
     }
 
     fn with(heading: HeadingConfig) -> Options {

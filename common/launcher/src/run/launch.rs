@@ -41,7 +41,7 @@ use super::{
 };
 use crate::{
     LauncherError,
-    descriptor::{self, Descriptor},
+    descriptor::{self, Builds, Descriptor},
 };
 
 /// Between two looks at the processes.
@@ -85,7 +85,14 @@ enum End {
 pub fn run(config: &Config) -> Result<ExitCode, LauncherError> {
     transport::node::start_logging().map_err(LauncherError::Logging)?;
     let graph = config.options.graph_name()?;
-    let mut descriptor = descriptor::load(&config.dataflow)?;
+    let builds = match config.options.no_build {
+        true => Builds::LeaveOut,
+        false => Builds::Run,
+    };
+    let mut descriptor = descriptor::load(&config.dataflow, builds)?;
+    if descriptor.file != config.dataflow {
+        note(&format!("no graph is named: {} is run", descriptor.file.display()));
+    }
     forward::apply(&config.options, &mut descriptor.dataflow, &descriptor.file)?;
     lasers::name(&mut descriptor.dataflow);
     tracker::settle(&mut descriptor.dataflow);

@@ -32,3 +32,4 @@ mod watch;
 
 pub use launch::run;
 pub use options::{Config, Options};
+pub(crate) use process::executable;

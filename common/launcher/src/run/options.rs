@@ -34,8 +34,8 @@ impl Config {
 /// The options of `run`, which may also stand without the command.
 #[derive(Debug, Clone, Default, Args)]
 pub struct Options {
-    /// Replay this recording in place of whatever feeds the graph, a laser say;
-    /// several files are replayed as one
+    /// Replay this recording in place of whatever feeds the graph, a laser say, on its own
+    /// map if it holds one; several files are replayed as one
     #[arg(long, value_name = "FILE")]
     pub replay: Vec<PathBuf>,
 
@@ -72,6 +72,10 @@ pub struct Options {
     /// What is recorded.
     #[command(flatten)]
     pub record: RecordOptions,
+
+    /// Run no build command of the descriptor: start the executables that are there
+    #[arg(long)]
+    pub no_build: bool,
 
     /// Leave out the web page to watch the graph
     #[arg(long)]

@@ -26,9 +26,13 @@ pub struct Config {
     #[arg(long, value_name = "CORNERS", allow_hyphen_values = true)]
     path: Path,
 
-    /// The recording that is written, an MCAP file; one that is there is replaced
+    /// The recording that is written, an MCAP file
     #[arg(long, value_name = "FILE")]
     out: PathBuf,
+
+    /// Overwrite the file
+    #[arg(long)]
+    force: bool,
 
     /// When the drive starts, whole seconds since 1970
     #[arg(long, value_name = "SECONDS", default_value_t = 1_700_000_000, value_parser = clap::value_parser!(i64).range(0..=2_000_000_000))]
@@ -44,6 +48,11 @@ pub struct Config {
 /// The map cannot be used, the path cannot be driven, or the file cannot be
 /// written. What cannot be driven is refused before the file is touched.
 pub fn run(config: &Config) -> Result<ExitCode, RecordingToolsError> {
+    if config.out.exists() && !config.force {
+        let file = config.out.display();
+        let reason = format!("{file} is there already; --force overwrites it");
+        return Err(RecordingToolsError::Usage(reason));
+    }
     let map = map::load_noting(&config.map, |key| say(&key.to_string()))?;
     let drive = Drive::new(&map, &config.path, &config.drive)?;
     let messages = Messages::new(&config.drive, drive.bearings());

@@ -1,0 +1,205 @@
+//! What `backcast init` does.
+
+use std::ffi::OsStr;
+use std::fs;
+use std::io;
+use std::path::{Path, PathBuf};
+use std::process::ExitCode;
+
+use clap::ArgGroup;
+use command_line::stdout;
+use launcher::descriptor::{self, Builds};
+use progress::say;
+use recording::{Kind, Recording};
+
+use crate::InitError;
+use crate::descriptor::{Source, descriptor_of};
+
+/// What stands below the options.
+pub const NOTES: &str = "\
+Examples:
+  backcast init --laser 192.168.0.1 --map map.yaml --mount 0.2,0,0 --out graph.yaml
+  backcast init --serial /dev/ttyUSB0 --map map.yaml --out graph.yaml
+  backcast init --ros2 tcp/192.168.0.5:7447 --out graph.yaml
+  backcast init --replay drive.mcap --map map.yaml --out graph.yaml
+
+Exit codes: 0 written, 1 the laser, the map or the recording cannot be used, 2 wrong use";
+
+/// What `backcast init` takes.
+#[derive(Debug, clap::Args)]
+#[command(group = ArgGroup::new("source").required(true))]
+pub struct Config {
+    /// A SICK laser on the network, as 192.168.0.1, HOST:PORT or tcp://HOST:PORT; it is asked
+    /// how it speaks
+    #[arg(long, value_name = "ADDRESS", group = "source")]
+    laser: Option<String>,
+
+    /// A SICK LMS2xx on a serial line, as /dev/ttyUSB0
+    #[arg(long, value_name = "DEVICE", group = "source")]
+    serial: Option<String>,
+
+    /// A ROS 2 robot that speaks rmw_zenoh: its router, as tcp/192.168.0.5:7447; without an
+    /// address the graph is the robot's router
+    #[arg(long, value_name = "ROUTER", group = "source", num_args = 0..=1)]
+    ros2: Option<Option<String>>,
+
+    /// A recording, played in place of a laser
+    #[arg(long, value_name = "FILE", group = "source")]
+    replay: Option<PathBuf>,
+
+    /// The map of the building, as map_server of ROS 2 has it; a ROS 2 robot brings its own
+    #[arg(long, value_name = "FILE")]
+    map: Option<PathBuf>,
+
+    /// Where the laser sits on the robot: metres ahead, metres to the left, degrees
+    /// counter-clockwise
+    #[arg(long, value_name = "X,Y,YAW_DEG", allow_hyphen_values = true)]
+    mount: Option<String>,
+
+    /// Write without asking the laser
+    #[arg(long)]
+    no_probe: bool,
+
+    /// The file to write; paths in it begin at its folder
+    #[arg(long, value_name = "FILE", default_value = descriptor::DEFAULT_FILE)]
+    out: PathBuf,
+
+    /// Overwrite the file
+    #[arg(long)]
+    force: bool,
+}
+
+/// Writes the descriptor and checks it.
+///
+/// # Errors
+/// The laser does not answer, map or recording cannot be used, or the file is there already.
+pub fn run(config: &Config) -> Result<ExitCode, InitError> {
+    let source = source(config)?;
+    if config.out.exists() && !config.force {
+        let file = config.out.clone();
+        return Err(InitError::Exists { file });
+    }
+    let map = config.map.as_deref().map(used_map).transpose()?;
+    let text = descriptor_of(&source, map.as_deref());
+    let failed = |source| InitError::Write {
+        file: config.out.clone(),
+        source,
+    };
+    write(&config.out, &text).map_err(failed)?;
+    descriptor::load(&config.out, Builds::Run)?;
+    stdout::print(&format!(
+        "{file}: {source}\n\nbackcast check {file}\nbackcast run {file}\n",
+        file = config.out.display(),
+        source = source.title(),
+    ))?;
+    Ok(ExitCode::SUCCESS)
+}
+
+/// Whole or not at all.
+fn write(file: &Path, text: &str) -> io::Result<()> {
+    let folder = match file.parent() {
+        Some(folder) if folder != Path::new("") => folder,
+        _ => Path::new("."),
+    };
+    let mut written = tempfile::Builder::new()
+        .permissions(fs::Permissions::from(std::os::unix::fs::PermissionsExt::from_mode(0o644)))
+        .tempfile_in(folder)?;
+    io::Write::write_all(&mut written, text.as_bytes())?;
+    written.persist(file)?;
+    Ok(())
+}
+
+fn source(config: &Config) -> Result<Source, InitError> {
+    let mount = config.mount.as_deref().map(mount).transpose()?;
+    let is_robot = config.ros2.is_some();
+    if config.map.is_none() && !is_robot {
+        let needed = "--map is missing: the map of the building, a YAML file beside its image";
+        return Err(InitError::Usage(needed.to_owned()));
+    }
+    if let Some(device) = config.laser.as_ref().or(config.serial.as_ref()) {
+        let options = match config.no_probe {
+            false => {
+                say(&format!("asking the laser at {device}"));
+                probe::reader_options(device, config.serial.is_some())
+            }
+            true => Ok(probe::default_reader_options(device, config.serial.is_some())),
+        };
+        let options = options.map_err(|source| InitError::Laser {
+            device: device.clone(),
+            source,
+        })?;
+        if mount.is_none() {
+            say("where the laser sits on the robot is not known: poses are those of the laser \
+                 until --mount is given");
+        }
+        return Ok(Source::Laser { options, mount });
+    }
+    if let Some(router) = &config.ros2 {
+        return Ok(Source::Ros2 {
+            router: router.clone(),
+            mount,
+            brings_map: config.map.is_none(),
+        });
+    }
+    if mount.is_some() {
+        let reason = "--mount is not for a recording, whose /tf_static says where its laser sits";
+        return Err(InitError::Usage(reason.to_owned()));
+    }
+    let file = config.replay.clone().unwrap_or_default();
+    let recording = Recording::open(&file)?;
+    recording.topic(Kind::Scan)?;
+    let has_odometry = recording.topic(Kind::Odometry).is_ok_and(|topic| topic.is_some());
+    Ok(Source::Recording {
+        file: absolute(&file)?,
+        has_odometry,
+    })
+}
+
+/// The mount as it was given, if it is one.
+fn mount(text: &str) -> Result<String, InitError> {
+    let numbers = text.split(',').map(|number| number.trim().parse::<f64>());
+    let numbers: Vec<f64> = numbers.map_while(Result::ok).collect();
+    let is_mount = numbers.len() == 3 && text.split(',').count() == 3;
+    match is_mount && numbers.iter().all(|number| number.is_finite()) {
+        true => Ok(text.replace(' ', "")),
+        false => Err(InitError::Usage(format!(
+            "--mount {text:?} is no place; allowed: metres ahead, metres to the left, degrees, as \
+             0.2,0,90"
+        ))),
+    }
+}
+
+/// The map's file, absolute, if it can be used.
+fn used_map(file: &Path) -> Result<String, InitError> {
+    if file.extension() == Some(OsStr::new("mcap")) {
+        return Err(InitError::Usage(format!(
+            "--map {} is a recording; a map is a YAML file beside its image",
+            file.display()
+        )));
+    }
+    map::load(file)?;
+    absolute(file)
+}
+
+fn absolute(file: &Path) -> Result<String, InitError> {
+    let path = file.canonicalize().map_err(|source| InitError::Write {
+        file: file.to_owned(),
+        source,
+    })?;
+    let path = path.to_str().map(str::to_owned);
+    path.ok_or_else(|| InitError::Usage(format!("{} is no UTF-8", file.display())))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_mount_is_three_numbers() {
+        assert_eq!(mount("0.2, 0,-90").unwrap(), "0.2,0,-90");
+        for wrong in ["", "1,2", "1,2,3,4", "1,2,x", "1,2,inf"] {
+            let error = mount(wrong).unwrap_err().to_string();
+            assert!(error.contains("allowed"), "{wrong}: {error}");
+        }
+    }
+}

@@ -1,0 +1,294 @@
+//! The text of a descriptor.
+
+/// What feeds the graph.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub(crate) enum Source {
+    /// A laser of ours to read.
+    Laser {
+        /// Options of `lms_reader` that name it and say how it speaks.
+        options: String,
+        /// `X,Y,YAW_DEG`.
+        mount: Option<String>,
+    },
+    /// A ROS 2 robot.
+    Ros2 {
+        /// Its router's address; none where the gateway is the router.
+        router: Option<String>,
+        /// `X,Y,YAW_DEG`.
+        mount: Option<String>,
+        /// Whether the map comes from the robot.
+        brings_map: bool,
+    },
+    /// A recording.
+    Recording {
+        /// Its path.
+        file: String,
+        /// Whether it has what the wheels report.
+        has_odometry: bool,
+    },
+}
+
+/// How each node is supervised.
+const RESTARTS: &str = "    restart_policy: on-failure
+    restart_delay: 0.2
+";
+
+impl Source {
+    /// What it is, for people.
+    pub(crate) fn title(&self) -> String {
+        match self {
+            Source::Laser { options, .. } => format!("a laser (lms_reader {options})"),
+            Source::Ros2 { router, .. } => match router {
+                Some(router) => format!("a ROS 2 robot with the router {router}"),
+                None => "a ROS 2 robot that connects to this graph".to_owned(),
+            },
+            Source::Recording { file, .. } => format!("the recording {file}"),
+        }
+    }
+
+    /// The id of the node that sends scans.
+    fn node(&self) -> &'static str {
+        match self {
+            Source::Laser { .. } => "lms_reader",
+            Source::Ros2 { .. } => "ros2_gateway",
+            Source::Recording { .. } => "replayer",
+        }
+    }
+
+    /// The id of the node that sends the map.
+    fn map_node(&self) -> &'static str {
+        match self {
+            Source::Ros2 {
+                brings_map: true, ..
+            } => "ros2_gateway",
+            _ => "map_server",
+        }
+    }
+
+    fn has_odometry(&self) -> bool {
+        match self {
+            Source::Laser { .. } => false,
+            Source::Ros2 { .. } => true,
+            Source::Recording { has_odometry, .. } => *has_odometry,
+        }
+    }
+
+    fn yaml(&self) -> String {
+        let mount = |mount: &Option<String>| {
+            let mount = mount.as_ref();
+            mount.map_or_else(String::new, |mount| format!(" --mount {mount}"))
+        };
+        match self {
+            Source::Laser { options, mount: at } => format!(
+                "  # Reads the laser. `--mount X,Y,YAW_DEG` says where it sits on the robot: metres
+  # ahead, metres to the left, degrees counter-clockwise; without it, poses are the
+  # laser's own. `lms_reader --help` lists all options.
+  - id: lms_reader
+    path: lms_reader
+    args: {args}
+    outputs: [scan]
+{RESTARTS}",
+                args = quoted(&format!("{options}{}", mount(at)))
+            ),
+            Source::Ros2 {
+                router,
+                mount: at,
+                brings_map,
+            } => {
+                let router = router.as_deref().map(|r| format!(" --connect {}", word(r)));
+                let bring = match brings_map {
+                    true => ",map",
+                    false => "",
+                };
+                format!(
+                    "  # Takes scans, odometry and transforms from the robot, and gives it the pose.
+  # `ros2_gateway --help` lists topics and frames.
+  - id: ros2_gateway
+    path: ros2_gateway
+    args: {args}
+    inputs:
+      hypotheses: peak_extractor/hypotheses
+      pose: tracker/pose
+    outputs: [scan, odometry{map}]
+{RESTARTS}",
+                    args = quoted(&format!(
+                        "--bring scan,odometry{bring}{}{}",
+                        router.unwrap_or_default(),
+                        mount(at)
+                    )),
+                    map = if *brings_map { ", map" } else { "" },
+                )
+            }
+            Source::Recording { file, has_odometry } => format!(
+                "  # Plays the recording, and the run ends with it.
+  - id: replayer
+    path: replayer
+    args: {args}
+    inputs:
+      hypotheses: peak_extractor/hypotheses
+    outputs: [scan{odometry}, ground_truth]
+    restart_policy: never
+",
+                args = quoted(&format!(
+                    "--recording {} --wait-for accumulator,peak_extractor,tracker",
+                    word(file)
+                )),
+                odometry = if *has_odometry { ", odometry" } else { "" },
+            ),
+        }
+    }
+}
+
+/// The whole descriptor; `map` is the file that is served, where a file is.
+pub(crate) fn descriptor_of(source: &Source, map: Option<&str>) -> String {
+    let from = source.node();
+    let odometry = match source.has_odometry() {
+        true => format!("\n      odometry: {from}/odometry"),
+        false => String::new(),
+    };
+    let map_server = map.map_or_else(String::new, |file| {
+        format!(
+            "
+  # Serves the map, and serves it again when the file changes.
+  - id: map_server
+    path: map_server
+    args: {args}
+    outputs: [map]
+{RESTARTS}",
+            args = quoted(&format!("--map {}", word(file)))
+        )
+    });
+    let map_from = source.map_node();
+    format!(
+        "# A graph of Backcast: {title}. Written by `backcast init`.
+#
+# Each node is a process; an input is `topic: node/topic`. Nodes are looked for beside the
+# command `backcast`, in its installation and on the PATH. `backcast check` says what is
+# wrong with a changed file, `backcast run` starts it, `backcast status` looks at it.
+nodes:
+{source}{map_server}
+  # Finds the obstacle cells that a laser can hit.
+  - id: boundary_extractor
+    path: boundary_extractor
+    inputs:
+      map: {map_from}/map
+    outputs: [boundary]
+{RESTARTS}
+  # Searches the whole map for each scan that the tracker asks about. `--threads N` uses
+  # several processors, `--on`, `--within` and others limit where it searches.
+  - id: accumulator
+    path: accumulator
+    inputs:
+      scan: {from}/scan
+      map: {map_from}/map
+      boundary: boundary_extractor/boundary{odometry}
+      attention: tracker/attention
+    outputs: [votes, readings, field]
+{RESTARTS}
+  # Refines what was found and judges it: one place, several, or none that fits.
+  - id: peak_extractor
+    path: peak_extractor
+    inputs:
+      votes: accumulator/votes
+      readings: accumulator/readings
+      scan: {from}/scan
+      map: {map_from}/map
+    outputs: [hypotheses, beams]
+{RESTARTS}
+  # Keeps the pose from scan to scan, and says how sure it is.
+  - id: tracker
+    path: tracker
+    inputs:
+      scan: {from}/scan{odometry}
+      map: {map_from}/map
+      hypotheses: peak_extractor/hypotheses
+    outputs: [pose, attention]
+{RESTARTS}
+  # A page to watch all of it, on http://127.0.0.1:7440 or the next free port.
+  - id: monitor
+    path: monitor
+{RESTARTS}",
+        title = source.title().replace('\n', " "),
+        source = source.yaml(),
+    )
+}
+
+/// A word of `args`, quoted where it has to be.
+fn word(text: &str) -> String {
+    // What cannot be quoted, a zero byte, stands in no path.
+    shlex::try_quote(text).map_or_else(|_| text.to_owned(), |word| word.into_owned())
+}
+
+/// A text of YAML on one line.
+fn quoted(text: &str) -> String {
+    format!("\"{}\"", text.replace('\\', "\\\\").replace('"', "\\\""))
+}
+
+#[cfg(test)]
+mod tests {
+    use launcher::descriptor::{Builds, load};
+
+    use super::*;
+
+    const NODES: [&str; 9] = [
+        "lms_reader", "ros2_gateway", "replayer", "map_server", "boundary_extractor",
+        "accumulator", "peak_extractor", "tracker", "monitor",
+    ];
+
+    fn sources() -> Vec<Source> {
+        let mount = Some("0.2,0,-90".to_owned());
+        let router = Some("tcp/robot:7447".to_owned());
+        let laser = |mount| Source::Laser {
+            options: "--tcp 192.168.0.1:2112 --protocol cola-a".to_owned(),
+            mount,
+        };
+        let robot = |router, brings_map| Source::Ros2 {
+            router,
+            mount: mount.clone(),
+            brings_map,
+        };
+        let recording = |has_odometry| Source::Recording {
+            file: "/data/a \"good\" drive.mcap".to_owned(),
+            has_odometry,
+        };
+        vec![
+            laser(None),
+            laser(mount.clone()),
+            robot(None, true),
+            robot(router, false),
+            recording(true),
+            recording(false),
+        ]
+    }
+
+    #[test]
+    fn what_is_written_is_a_sound_descriptor_with_the_arguments_as_given() {
+        let folder = tempfile::tempdir().unwrap();
+        for source in sources() {
+            let map = (source.map_node() == "map_server").then_some("/maps/my house.yaml");
+            let text = descriptor_of(&source, map);
+            let file = folder.path().join("graph.yaml");
+            std::fs::write(&file, &text).unwrap();
+            for node in NODES {
+                std::fs::copy("/bin/true", folder.path().join(node)).unwrap();
+            }
+            let descriptor = load(&file, Builds::Run).unwrap_or_else(|e| panic!("{e}\n{text}"));
+            let args = |id: &str| {
+                let node = descriptor.dataflow.nodes.iter().find(|n| n.id == id);
+                node.unwrap().args.clone()
+            };
+            if map.is_some() {
+                assert_eq!(args("map_server"), ["--map", "/maps/my house.yaml"]);
+            }
+            let fed_by = args(source.node());
+            match &source {
+                Source::Recording { file, .. } => assert_eq!(fed_by[1], *file),
+                Source::Laser { mount, .. } | Source::Ros2 { mount, .. } => {
+                    let place = fed_by.iter().position(|word| word == "--mount");
+                    let given = place.map(|place| fed_by[place + 1].clone());
+                    assert_eq!(given, *mount);
+                }
+            }
+        }
+    }
+}

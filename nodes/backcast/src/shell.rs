@@ -1,0 +1,84 @@
+//! What a shell and `man` know of the command, made of its options.
+
+use std::path::PathBuf;
+use std::process::ExitCode;
+
+use clap::{Args, CommandFactory};
+use clap_complete::Shell;
+use command_line::{CommandError, OutputError, stdout};
+
+use crate::cli::Cli;
+
+/// What `backcast completions` takes.
+#[derive(Debug, Args)]
+pub(crate) struct CompletionsConfig {
+    /// The shell
+    shell: Shell,
+}
+
+/// What `backcast man` takes.
+#[derive(Debug, Args)]
+pub(crate) struct ManConfig {
+    /// The folder for the pages: backcast.1, and one of each command
+    folder: PathBuf,
+}
+
+/// Why nothing was written.
+#[derive(Debug, thiserror::Error)]
+pub(crate) enum ShellError {
+    #[error(transparent)]
+    Output(#[from] OutputError),
+    #[error("cannot write manual pages to {}", folder.display())]
+    Man {
+        folder: PathBuf,
+        source: std::io::Error,
+    },
+}
+
+impl CommandError for ShellError {}
+
+/// Prints the completions.
+///
+/// # Errors
+/// Standard output cannot be written.
+pub(crate) fn completions(config: &CompletionsConfig) -> Result<ExitCode, ShellError> {
+    let mut script = Vec::new();
+    clap_complete::generate(config.shell, &mut Cli::command(), "backcast", &mut script);
+    stdout::print(&String::from_utf8_lossy(&script))?;
+    Ok(ExitCode::SUCCESS)
+}
+
+/// Writes the pages.
+///
+/// # Errors
+/// The folder cannot be written to.
+pub(crate) fn man(config: &ManConfig) -> Result<ExitCode, ShellError> {
+    let failed = |source| ShellError::Man {
+        folder: config.folder.clone(),
+        source,
+    };
+    clap_mangen::generate_to(Cli::command(), &config.folder).map_err(failed)?;
+    Ok(ExitCode::SUCCESS)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn every_command_has_a_page() {
+        let folder = tempfile::tempdir().unwrap();
+        let config = ManConfig {
+            folder: folder.path().to_owned(),
+        };
+        man(&config).unwrap();
+        let mut command = Cli::command();
+        command.build();
+        let shown = command.get_subcommands().filter(|c| !c.is_hide_set());
+        for name in shown.map(clap::Command::get_name).filter(|name| *name != "help") {
+            let page = folder.path().join(format!("backcast-{name}.1"));
+            assert!(page.is_file(), "{}", page.display());
+        }
+        assert!(folder.path().join("backcast.1").is_file());
+    }
+}

@@ -1,0 +1,94 @@
+//! `backcast init` and `check`: what is written can be run, and what cannot be meant is
+//! refused with the reason.
+#![allow(
+    clippy::unwrap_used,
+    reason = "the lint spares test functions but not what they share"
+)]
+
+mod drawn;
+
+use std::fs;
+use std::path::Path;
+
+use drawn::{recordings, run};
+
+fn init(folder: &Path, options: &str) -> (i32, String, String) {
+    let corridor = recordings().join("malaga_corridor");
+    let options = options.replace("DRIVE", &corridor.join("recording.mcap").display().to_string());
+    let options = options.replace("MAP", &corridor.join("map.yaml").display().to_string());
+    run(folder, &format!("init {options}"))
+}
+
+#[test]
+fn a_descriptor_is_written_for_each_kind_of_source_and_is_sound() {
+    // Built by the test run, beside the command.
+    let _ = tests::executables::path("backcast");
+    let folder = tempfile::tempdir().unwrap();
+    for (file, options) in [
+        ("laser.yaml", "--laser 192.168.0.1 --no-probe --map MAP --mount 0.2,0,-90"),
+        ("serial.yaml", "--serial /dev/ttyUSB7 --no-probe --map MAP"),
+        ("replay.yaml", "--replay DRIVE --map MAP"),
+    ] {
+        let (code, stdout, stderr) = init(folder.path(), &format!("{options} --out {file}"));
+        assert_eq!(code, 0, "{stderr}");
+        assert!(stdout.contains(&format!("backcast run {file}")), "{stdout}");
+        let (code, stdout, stderr) = run(folder.path(), &format!("check {file}"));
+        assert_eq!(code, 0, "{stderr}");
+        assert!(stdout.starts_with(&format!("{file} is sound\n\n")), "{stdout}");
+    }
+    let text = fs::read_to_string(folder.path().join("laser.yaml")).unwrap();
+    let args = "--tcp 192.168.0.1:2112 --protocol cola-b --mount 0.2,0,-90";
+    assert!(text.contains(args), "{text}");
+
+    // The same name again.
+    let again = "--replay DRIVE --map MAP --out replay.yaml";
+    let (code, _, stderr) = init(folder.path(), again);
+    assert_eq!(code, 2);
+    assert!(stderr.contains("--force"), "{stderr}");
+    assert_eq!(init(folder.path(), &format!("{again} --force")).0, 0);
+}
+
+#[test]
+fn what_cannot_be_meant_leaves_no_file() {
+    let folder = tempfile::tempdir().unwrap();
+    for (options, code, said) in [
+        ("--map MAP", 2, "--laser"),
+        ("--laser a --ros2 --map MAP", 2, "cannot be used with"),
+        ("--laser 127.0.0.1:9 --map MAP", 1, "--no-probe"),
+        ("--serial /dev/no-such --map MAP", 1, "/dev/no-such"),
+        ("--replay MAP --map MAP", 1, "map.yaml"),
+        ("--replay DRIVE --map DRIVE", 2, "is a recording"),
+        ("--replay DRIVE --map nowhere.yaml", 1, "nowhere.yaml"),
+        ("--replay DRIVE", 2, "--map is missing"),
+        ("--replay DRIVE --map MAP --mount 1,2,3", 2, "/tf_static"),
+        ("--ros2 --mount 1,2", 2, "metres ahead"),
+    ] {
+        let (found, stdout, stderr) = init(folder.path(), options);
+        assert_eq!((found, stdout.as_str()), (code, ""), "{options}: {stderr}");
+        assert!(stderr.contains(said), "{options}: {stderr}");
+        assert!(!folder.path().join("dataflow.yaml").exists(), "{options}");
+    }
+}
+
+#[test]
+fn arguments_that_a_node_does_not_take_are_named() {
+    let _ = tests::executables::path("backcast");
+    let folder = tempfile::tempdir().unwrap();
+    let nodes = "nodes:
+  - {id: m, path: map_server, outputs: [map], args: --mapp x}
+  - {id: t, path: tracker}
+  - {id: w, path: tracker, args: --remember}
+  - {id: b, path: other/tracker, build: none}
+";
+    fs::write(folder.path().join("g.yaml"), nodes).unwrap();
+    let (code, stdout, stderr) = run(folder.path(), "check g.yaml");
+    assert_eq!((code, stdout.as_str()), (1, ""), "{stderr}");
+    assert!(stderr.contains("g.yaml: node m: unexpected argument '--mapp'"), "{stderr}");
+    assert!(stderr.contains("\nnode w: "), "{stderr}");
+    assert!(!stderr.contains("node t"), "{stderr}");
+    let fewer = nodes.replace("--mapp x", "--map x").replace(", args: --remember", "");
+    fs::write(folder.path().join("g.yaml"), fewer).unwrap();
+    let (code, stdout, stderr) = run(folder.path(), "check g.yaml");
+    assert_eq!(code, 0, "{stderr}");
+    assert!(stdout.contains("not built: arguments of b"), "{stdout}");
+}

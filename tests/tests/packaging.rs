@@ -1,0 +1,122 @@
+//! The Debian package, installed where there are neither sources nor cargo: in a copy of this
+//! machine's root that is gone with the test.
+#![allow(
+    clippy::unwrap_used,
+    reason = "the lint spares test functions but not what they share"
+)]
+
+use std::path::{Path, PathBuf};
+use std::process::{Command, Output, Stdio};
+
+use serde_json::Value;
+use tests::needs::Need;
+
+/// What a new user types, once the package is installed; `$1` is a folder of the repository's
+/// data. The first line that fails ends it.
+const SCRIPT: &str = r#"
+set -e
+cd /home
+dpkg --install "$2" >&2
+if command -v cargo >&2 || ls /work/* >&2 2>/dev/null; then
+    echo 'this root is not clean' >&2
+    exit 9
+fi
+# The demonstration, played as fast as it is answered.
+backcast --rate max --no-monitor --json | tail -1
+# Three commands of a stranger with a map and a recording.
+map=/usr/share/backcast/recordings/malaga_corridor/map.yaml
+drive=/usr/share/backcast/recordings/malaga_corridor/recording.mcap
+backcast locate --map $map $drive --json | tail -1
+backcast init --replay $drive --map $map --out graph.yaml >&2
+backcast check graph.yaml >&2
+backcast run graph.yaml --rate max --no-monitor --json | tail -1
+# A laser that is not there is written without asking it.
+backcast init --laser 192.168.0.1 --no-probe --map $map --mount 0.2,0,0 --out laser.yaml >&2
+backcast check laser.yaml >&2
+man=/usr/share/man/man1/backcast-init.1.gz
+gzip --decompress --stdout $man | grep --quiet 'serial'
+bash -n /usr/share/bash-completion/completions/backcast
+# Options that no node takes are told, and what is removed is gone.
+sed -i 's/--protocol/--protokoll/' laser.yaml
+if backcast check laser.yaml >&2; then exit 8; fi
+dpkg --remove backcast >&2
+if command -v backcast; then exit 7; fi
+"#;
+
+/// A root in which the file system is this machine's, but nothing that is written stays, and
+/// what is not part of the system is hidden.
+const CLEAN_ROOT: &str = r#"
+set -e
+script=$1 package=$2 hidden=$3
+mount --make-rprivate /
+mount -t tmpfs tmpfs /mnt
+mkdir /mnt/upper /mnt/work /mnt/root /mnt/package
+cp "$package" /mnt/package
+mount -t overlay -o lowerdir=/,upperdir=/mnt/upper,workdir=/mnt/work overlay /mnt/root
+mkdir -p /mnt/root/package
+for folder in /root /tmp "$hidden"; do
+    mkdir -p "/mnt/root$folder"
+    mount -t tmpfs tmpfs "/mnt/root$folder"
+done
+mount --bind /mnt/package /mnt/root/package
+mount --rbind /dev /mnt/root/dev
+mount -t proc proc /mnt/root/proc
+cd /
+exec env --ignore-environment PATH=/usr/sbin:/usr/bin:/sbin:/bin HOME=/home \
+    chroot /mnt/root sh -c "$script" sh - "/package/$(basename "$package")"
+"#;
+
+fn run(command: &mut Command) -> Output {
+    let output = command.stderr(Stdio::inherit()).output().unwrap();
+    assert!(output.status.success(), "{command:?}: {}", output.status);
+    output
+}
+
+/// The Debian package of what the tests have built.
+fn package(folder: &Path) -> PathBuf {
+    let built = tests::executables::path("backcast").with_file_name("");
+    let build = tests::root().join("packaging/build");
+    run(Command::new(build)
+        .arg("--no-compile")
+        .arg(built)
+        .env("CARGO_TARGET_DIR", folder));
+    let files = std::fs::read_dir(folder.join("package")).unwrap();
+    let mut files = files.map(|file| file.unwrap().path());
+    files
+        .find(|file| file.extension().is_some_and(|ending| ending == "deb"))
+        .unwrap()
+}
+
+#[test]
+fn the_package_does_its_work_where_nothing_else_is() {
+    let test = "the_package_does_its_work_where_nothing_else_is";
+    if !nix::unistd::geteuid().is_root() {
+        return Need::Root.is_missing(test, "only root installs packages");
+    }
+    let overlay = "mount -t tmpfs tmpfs /mnt && mkdir /mnt/u /mnt/w /mnt/r \
+                   && mount -t overlay -o lowerdir=/,upperdir=/mnt/u,workdir=/mnt/w overlay /mnt/r";
+    let probe = Command::new("unshare")
+        .args(["--mount", "sh", "-c", overlay])
+        .stderr(Stdio::null())
+        .status();
+    if !probe.is_ok_and(|status| status.success()) {
+        return Need::Namespaces.is_missing(test, "this kernel lets nobody mount an overlay here");
+    }
+    let folder = tempfile::tempdir().unwrap();
+    let package = package(folder.path());
+    let sources = tests::root().canonicalize().unwrap();
+    let output = run(Command::new("unshare")
+        .args(["--mount", "sh", "-c", CLEAN_ROOT, "sh", SCRIPT])
+        .arg(package)
+        .arg(sources.parent().unwrap()));
+    let said = String::from_utf8(output.stdout).unwrap();
+    let lines: Vec<Value> = said
+        .lines()
+        .map(|line| serde_json::from_str(line).unwrap_or_else(|_| panic!("{said}")))
+        .collect();
+    assert_eq!(lines.len(), 3, "{said}");
+    for summary in [&lines[0]["summary"], &lines[2]["summary"]] {
+        assert_eq!(summary["pose"]["unique_wrong"], 0, "{said}");
+        assert!(summary["pose"]["states"]["Unique"].as_f64() > Some(0.9), "{said}");
+    }
+}
