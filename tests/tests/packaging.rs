@@ -117,6 +117,9 @@ fn the_package_does_its_work_where_nothing_else_is() {
     assert_eq!(lines.len(), 3, "{said}");
     for summary in [&lines[0]["summary"], &lines[2]["summary"]] {
         assert_eq!(summary["pose"]["unique_wrong"], 0, "{said}");
-        assert!(summary["pose"]["states"]["Unique"].as_f64() > Some(0.9), "{said}");
+        assert!(
+            summary["pose"]["states"]["Unique"].as_f64() > Some(0.9),
+            "{said}"
+        );
     }
 }

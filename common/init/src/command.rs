@@ -1,8 +1,9 @@
 //! What `backcast init` does.
 
 use std::ffi::OsStr;
-use std::fs;
+use std::fs::Permissions;
 use std::io;
+use std::os::unix::fs::PermissionsExt;
 use std::path::{Path, PathBuf};
 use std::process::ExitCode;
 
@@ -102,7 +103,7 @@ fn write(file: &Path, text: &str) -> io::Result<()> {
         _ => Path::new("."),
     };
     let mut written = tempfile::Builder::new()
-        .permissions(fs::Permissions::from(std::os::unix::fs::PermissionsExt::from_mode(0o644)))
+        .permissions(Permissions::from_mode(0o644))
         .tempfile_in(folder)?;
     io::Write::write_all(&mut written, text.as_bytes())?;
     written.persist(file)?;
@@ -122,15 +123,20 @@ fn source(config: &Config) -> Result<Source, InitError> {
                 say(&format!("asking the laser at {device}"));
                 probe::reader_options(device, config.serial.is_some())
             }
-            true => Ok(probe::default_reader_options(device, config.serial.is_some())),
+            true => Ok(probe::default_reader_options(
+                device,
+                config.serial.is_some(),
+            )),
         };
         let options = options.map_err(|source| InitError::Laser {
             device: device.clone(),
             source,
         })?;
         if mount.is_none() {
-            say("where the laser sits on the robot is not known: poses are those of the laser \
-                 until --mount is given");
+            say(
+                "where the laser sits on the robot is not known: poses are those of the laser \
+                 until --mount is given",
+            );
         }
         return Ok(Source::Laser { options, mount });
     }
@@ -148,7 +154,9 @@ fn source(config: &Config) -> Result<Source, InitError> {
     let file = config.replay.clone().unwrap_or_default();
     let recording = Recording::open(&file)?;
     recording.topic(Kind::Scan)?;
-    let has_odometry = recording.topic(Kind::Odometry).is_ok_and(|topic| topic.is_some());
+    let has_odometry = recording
+        .topic(Kind::Odometry)
+        .is_ok_and(|topic| topic.is_some());
     Ok(Source::Recording {
         file: absolute(&file)?,
         has_odometry,

@@ -1,5 +1,7 @@
 //! The text of a descriptor.
 
+use std::borrow::Cow;
+
 /// What feeds the graph.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub(crate) enum Source {
@@ -216,7 +218,7 @@ nodes:
 /// A word of `args`, quoted where it has to be.
 fn word(text: &str) -> String {
     // What cannot be quoted, a zero byte, stands in no path.
-    shlex::try_quote(text).map_or_else(|_| text.to_owned(), |word| word.into_owned())
+    shlex::try_quote(text).map_or_else(|_| text.to_owned(), Cow::into_owned)
 }
 
 /// A text of YAML on one line.
@@ -231,8 +233,15 @@ mod tests {
     use super::*;
 
     const NODES: [&str; 9] = [
-        "lms_reader", "ros2_gateway", "replayer", "map_server", "boundary_extractor",
-        "accumulator", "peak_extractor", "tracker", "monitor",
+        "lms_reader",
+        "ros2_gateway",
+        "replayer",
+        "map_server",
+        "boundary_extractor",
+        "accumulator",
+        "peak_extractor",
+        "tracker",
+        "monitor",
     ];
 
     fn sources() -> Vec<Source> {

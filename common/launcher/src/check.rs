@@ -72,7 +72,10 @@ pub fn run(config: &Config) -> Result<ExitCode, LauncherError> {
         let ids: Vec<&str> = unbuilt.iter().map(|node| node.id.as_str()).collect();
         let ids = ids.join(", ");
         // Writing to a string cannot fail.
-        let _ = writeln!(text, "not checked, as they are not built: arguments of {ids}");
+        let _ = writeln!(
+            text,
+            "not checked, as they are not built: arguments of {ids}"
+        );
     }
     stdout::print(&format!("{text}\n{picture}"))?;
     Ok(ExitCode::SUCCESS)

@@ -51,7 +51,10 @@ mod tests {
         let folder = tempfile::tempdir().unwrap();
         let command = command().unwrap();
         let own = command.file_name().unwrap().to_str().unwrap();
-        assert_eq!(find(own, folder.path()), command.to_str().map(str::to_owned));
+        assert_eq!(
+            find(own, folder.path()),
+            command.to_str().map(str::to_owned)
+        );
         assert!(find("sh", folder.path()).unwrap().ends_with("/sh"));
         // What the descriptor's folder has, a path, and what is nowhere stay as they are.
         std::fs::write(folder.path().join("sh"), "").unwrap();

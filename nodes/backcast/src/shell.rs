@@ -75,7 +75,10 @@ mod tests {
         let mut command = Cli::command();
         command.build();
         let shown = command.get_subcommands().filter(|c| !c.is_hide_set());
-        for name in shown.map(clap::Command::get_name).filter(|name| *name != "help") {
+        for name in shown
+            .map(clap::Command::get_name)
+            .filter(|name| *name != "help")
+        {
             let page = folder.path().join(format!("backcast-{name}.1"));
             assert!(page.is_file(), "{}", page.display());
         }

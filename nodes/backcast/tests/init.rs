@@ -14,7 +14,10 @@ use drawn::{recordings, run};
 
 fn init(folder: &Path, options: &str) -> (i32, String, String) {
     let corridor = recordings().join("malaga_corridor");
-    let options = options.replace("DRIVE", &corridor.join("recording.mcap").display().to_string());
+    let options = options.replace(
+        "DRIVE",
+        &corridor.join("recording.mcap").display().to_string(),
+    );
     let options = options.replace("MAP", &corridor.join("map.yaml").display().to_string());
     run(folder, &format!("init {options}"))
 }
@@ -25,7 +28,10 @@ fn a_descriptor_is_written_for_each_kind_of_source_and_is_sound() {
     let _ = tests::executables::path("backcast");
     let folder = tempfile::tempdir().unwrap();
     for (file, options) in [
-        ("laser.yaml", "--laser 192.168.0.1 --no-probe --map MAP --mount 0.2,0,-90"),
+        (
+            "laser.yaml",
+            "--laser 192.168.0.1 --no-probe --map MAP --mount 0.2,0,-90",
+        ),
         ("serial.yaml", "--serial /dev/ttyUSB7 --no-probe --map MAP"),
         ("replay.yaml", "--replay DRIVE --map MAP"),
     ] {
@@ -34,7 +40,10 @@ fn a_descriptor_is_written_for_each_kind_of_source_and_is_sound() {
         assert!(stdout.contains(&format!("backcast run {file}")), "{stdout}");
         let (code, stdout, stderr) = run(folder.path(), &format!("check {file}"));
         assert_eq!(code, 0, "{stderr}");
-        assert!(stdout.starts_with(&format!("{file} is sound\n\n")), "{stdout}");
+        assert!(
+            stdout.starts_with(&format!("{file} is sound\n\n")),
+            "{stdout}"
+        );
     }
     let text = fs::read_to_string(folder.path().join("laser.yaml")).unwrap();
     let args = "--tcp 192.168.0.1:2112 --protocol cola-b --mount 0.2,0,-90";
@@ -83,10 +92,15 @@ fn arguments_that_a_node_does_not_take_are_named() {
     fs::write(folder.path().join("g.yaml"), nodes).unwrap();
     let (code, stdout, stderr) = run(folder.path(), "check g.yaml");
     assert_eq!((code, stdout.as_str()), (1, ""), "{stderr}");
-    assert!(stderr.contains("g.yaml: node m: unexpected argument '--mapp'"), "{stderr}");
+    assert!(
+        stderr.contains("g.yaml: node m: unexpected argument '--mapp'"),
+        "{stderr}"
+    );
     assert!(stderr.contains("\nnode w: "), "{stderr}");
     assert!(!stderr.contains("node t"), "{stderr}");
-    let fewer = nodes.replace("--mapp x", "--map x").replace(", args: --remember", "");
+    let fewer = nodes
+        .replace("--mapp x", "--map x")
+        .replace(", args: --remember", "");
     fs::write(folder.path().join("g.yaml"), fewer).unwrap();
     let (code, stdout, stderr) = run(folder.path(), "check g.yaml");
     assert_eq!(code, 0, "{stderr}");

@@ -10,7 +10,7 @@ use std::path::PathBuf;
 use std::process::ExitStatus;
 
 use messages::{HealthHeader, NodeState, topic};
-use recording::Recording;
+use recording::{Message, Recording};
 use recording::write::{Packing, RecordingWriter};
 use ros::TfMessage;
 use tempfile::TempDir;
@@ -160,7 +160,7 @@ fn the_map_of_a_recording_is_preferred_where_it_holds_one() {
     // One without a map, which has that of the file.
     let empty = world.at("empty.mcap");
     let mut writer = RecordingWriter::create(&empty, Packing::Zstd).unwrap();
-    let transforms = TfMessage::default();
+    let transforms = Message::StaticTransforms(TfMessage::default());
     writer.write("/tf_static", 0, &transforms).unwrap();
     writer.finish().unwrap();
     world.start_with(&[OsStr::new("--recorded"), empty.as_os_str()]);

@@ -29,11 +29,14 @@ pub fn build_all(dataflow: &Dataflow, folder: &Path) -> Result<(), LauncherError
     let mut built = HashSet::new();
     for node in with_build().filter(|n| built.insert((&n.build, &n.env))) {
         match build(node, folder) {
-            Err(LauncherError::BuildNotStarted { command, source, .. })
-                if source.kind() == io::ErrorKind::NotFound
-                    && are_there(with_build().filter(|n| n.build == node.build), folder) =>
+            Err(LauncherError::BuildNotStarted {
+                command, source, ..
+            }) if source.kind() == io::ErrorKind::NotFound
+                && are_there(with_build().filter(|n| n.build == node.build), folder) =>
             {
-                note(&format!("`{command}` cannot be started: the nodes are run as they are"));
+                note(&format!(
+                    "`{command}` cannot be started: the nodes are run as they are"
+                ));
             }
             outcome => outcome?,
         }

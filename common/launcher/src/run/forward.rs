@@ -211,7 +211,10 @@ mod tests {
             replay: vec!["/drive.mcap".into()],
             ..Options::default()
         };
-        assert_eq!(map_args(&options), ["--beams", "9", "--recorded=/drive.mcap"]);
+        assert_eq!(
+            map_args(&options),
+            ["--beams", "9", "--recorded=/drive.mcap"]
+        );
         options.map = Some("/other.yaml".into());
         assert_eq!(map_args(&options), ["--beams", "9", "--map=/other.yaml"]);
         // Which of several recordings has the map of all is not known.

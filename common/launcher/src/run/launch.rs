@@ -91,7 +91,10 @@ pub fn run(config: &Config) -> Result<ExitCode, LauncherError> {
     };
     let mut descriptor = descriptor::load(&config.dataflow, builds)?;
     if descriptor.file != config.dataflow {
-        note(&format!("no graph is named: {} is run", descriptor.file.display()));
+        note(&format!(
+            "no graph is named: {} is run",
+            descriptor.file.display()
+        ));
     }
     forward::apply(&config.options, &mut descriptor.dataflow, &descriptor.file)?;
     lasers::name(&mut descriptor.dataflow);
