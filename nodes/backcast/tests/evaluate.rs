@@ -199,6 +199,32 @@ fn a_file_that_cannot_be_evaluated_does_not_keep_the_others() {
 }
 
 #[test]
+fn a_file_that_misses_a_requirement_fails_with_the_figure() {
+    let folder = folder();
+    // Of four truths two are found; of one the scan is empty, one is that of another place.
+    let missed = "--min-success 75 --max-wrong 0 --max-p90-ms 0.000001 --max-error-cm 0.000001";
+    let (code, stdout, stderr) = run(folder.path(), &format!("evaluate --json {missed} r.mcap"));
+    assert_eq!(code, 1, "{stderr}");
+    let object = &objects(&stdout)[0];
+    assert_eq!((&object["success_50cm_10deg"], &object["unique_wrong"]), (&0.5.into(), &1.into()));
+    for said in [
+        "r.mcap: success is 50.0 %, --min-success 75",
+        "r.mcap: Unique and wrong are 1, --max-wrong 0",
+        "r.mcap: the 90th percentile is ",
+        "r.mcap: the median error is ",
+    ] {
+        assert!(stderr.contains(said), "{said}: {stderr}");
+    }
+    let reached = "--min-success 50 --max-wrong 1 --max-p90-ms 1e6 --max-error-cm 50";
+    let (code, _, stderr) = run(folder.path(), &format!("evaluate {reached} r.mcap"));
+    assert_eq!(code, 0, "{stderr}");
+    for wrong in ["--min-success 101", "--max-p90-ms 0", "--sequence --max-wrong 0"] {
+        let (code, _, stderr) = run(folder.path(), &format!("evaluate {wrong} r.mcap"));
+        assert_eq!(code, 2, "{stderr}");
+    }
+}
+
+#[test]
 fn wrong_use_is_told() {
     let folder = tempfile::tempdir().unwrap();
     for (options, expected) in [

@@ -11,6 +11,7 @@ use progress::{Progress, say};
 use recording::GroundTruth;
 
 use super::judge::{Effort, Evaluation, Judge};
+use super::limits::Limits;
 use super::memory;
 use super::table::{self, Table};
 use super::trust::Trust;
@@ -25,7 +26,7 @@ Errors are of the answers within 0.5 m and 10 degrees, which are the right ones.
 ellipse is of the unique ones: the true position lies in the ellipse of 95 %.
 Below, the probabilities of the best places of all files, and how many of those were right.
 
-Exit codes: 0 all evaluated, 1 a file could not be, 2 wrong use";
+Exit codes: 0 all evaluated, 1 a file could not be or misses a requirement, 2 wrong use";
 
 /// What `backcast evaluate` takes.
 #[derive(Debug, clap::Args)]
@@ -44,6 +45,9 @@ pub struct Config {
     /// on the map is taken for another
     #[arg(long, value_name = "METRES", value_parser = radius)]
     erase_place: Option<f64>,
+
+    #[command(flatten)]
+    limits: Limits,
 
     #[command(flatten)]
     options: Options,
@@ -68,6 +72,10 @@ pub fn run(config: &Config) -> Result<ExitCode, EvaluationError> {
     config.options.check()?;
     let map = config.options.load_map(&config.bags)?;
     if config.sequence.sequence {
+        if let [option, ..] = config.limits.names()[..] {
+            let reason = format!("{option} is about single scans, and not for --sequence");
+            return Err(EvaluationError::Usage(reason));
+        }
         let how = (&config.options, &config.sequence);
         return sequence::evaluate(&config.bags, config.json, map.as_ref(), how);
     }
@@ -92,6 +100,10 @@ pub fn run(config: &Config) -> Result<ExitCode, EvaluationError> {
                 continue;
             }
         };
+        for missed in config.limits.missed(&evaluation) {
+            say(&format!("{}: {missed}", bag.display()));
+            code = ExitCode::FAILURE;
+        }
         let line = match config.json {
             true => evaluation.json(),
             false => table.row(&evaluation),

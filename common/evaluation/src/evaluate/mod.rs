@@ -7,6 +7,7 @@
 
 mod command;
 mod judge;
+mod limits;
 mod memory;
 mod table;
 mod trust;

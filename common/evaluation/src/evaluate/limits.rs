@@ -1,0 +1,86 @@
+//! What the figures of a file must reach, for whoever lets a build fail by them. Pure.
+
+use super::judge::Evaluation;
+
+/// What each file must reach; nothing by default.
+#[derive(Debug, Clone, Default, clap::Args)]
+#[command(next_help_heading = "Requirements: exit code 1 if a file misses one")]
+pub(super) struct Limits {
+    /// Least share of the truths that are found within 0.5 m and 10 degrees, per cent
+    #[arg(long, value_name = "PERCENT", value_parser = percent)]
+    min_success: Option<f64>,
+
+    /// Most answers that are Unique and wrong
+    #[arg(long, value_name = "COUNT")]
+    max_wrong: Option<u64>,
+
+    /// Longest time of a scan, milliseconds of one thread, at the 90th percentile
+    #[arg(long, value_name = "MS", value_parser = above_zero)]
+    max_p90_ms: Option<f64>,
+
+    /// Largest median distance of the right answers from the truth, centimetres
+    #[arg(long, value_name = "CM", value_parser = above_zero)]
+    max_error_cm: Option<f64>,
+}
+
+fn percent(text: &str) -> Result<f64, String> {
+    let number = text.parse().ok().filter(|n| (0.0..=100.0).contains(n));
+    number.ok_or_else(|| "allowed are 0 to 100 per cent".to_owned())
+}
+
+fn above_zero(text: &str) -> Result<f64, String> {
+    let number = text.parse().ok().filter(|n: &f64| n.is_finite() && *n > 0.0);
+    number.ok_or_else(|| "allowed are numbers above 0".to_owned())
+}
+
+impl Limits {
+    /// The options that are set and speak of single scans alone.
+    pub(super) fn names(&self) -> Vec<&'static str> {
+        let set = [
+            ("--min-success", self.min_success.is_some()),
+            ("--max-wrong", self.max_wrong.is_some()),
+            ("--max-p90-ms", self.max_p90_ms.is_some()),
+            ("--max-error-cm", self.max_error_cm.is_some()),
+        ];
+        let set = set.into_iter().filter(|(_, is_set)| *is_set);
+        set.map(|(name, _)| name).collect()
+    }
+
+    /// What the file misses, a sentence each. A figure that there is none of, as no answer
+    /// was right, is missed too.
+    pub(super) fn missed(&self, found: &Evaluation) -> Vec<String> {
+        let success = found.success_50cm_10deg.map(|share| 100.0 * share);
+        let error_cm = found.error_m.median.map(|metres| 100.0 * metres);
+        let most = |found: Option<f64>, most| found.is_some_and(|found| found <= most);
+        let text = |found: Option<f64>, unit: &str| match found {
+            Some(found) => format!("{found:.1} {unit}"),
+            None => "not known, as no answer is right".to_owned(),
+        };
+        let mut missed = Vec::new();
+        if let Some(least) = self.min_success
+            && success.is_none_or(|found| found < least)
+        {
+            let found = text(success, "%");
+            missed.push(format!("success is {found}, --min-success {least}"));
+        }
+        if let Some(most) = self.max_wrong
+            && found.unique_wrong > most
+        {
+            let found = found.unique_wrong;
+            missed.push(format!("Unique and wrong are {found}, --max-wrong {most}"));
+        }
+        if let Some(limit) = self.max_p90_ms
+            && !most(found.cpu_ms.p90, limit)
+        {
+            let found = text(found.cpu_ms.p90, "ms");
+            missed.push(format!("the 90th percentile is {found}, --max-p90-ms {limit}"));
+        }
+        if let Some(limit) = self.max_error_cm
+            && !most(error_cm, limit)
+        {
+            let found = text(error_cm, "cm");
+            missed.push(format!("the median error is {found}, --max-error-cm {limit}"));
+        }
+        missed
+    }
+}
