@@ -67,7 +67,7 @@ impl Robot {
     ///
     /// # Panics
     /// If the robot ends, or a message of the gateway made it fail.
-    pub fn hear(&mut self) -> Value {
+    pub fn receive(&mut self) -> Value {
         let line = self.said.next().expect("the robot has ended").unwrap();
         let said: Value = serde_json::from_str(&line).unwrap();
         assert_ne!(said["event"], "failed", "{said}");
@@ -80,7 +80,7 @@ impl Robot {
     /// As [`Robot::hear`].
     pub fn wait_for(&mut self, event: &str) -> Value {
         loop {
-            let said = self.hear();
+            let said = self.receive();
             if said["event"] == event {
                 return said;
             }

@@ -51,7 +51,7 @@ const handlers = {
   },
   message(message) {
     if (frozen) return;
-    const part = store.hear(message);
+    const part = store.receive(message);
     if (part === "snapshot" || part === "map") loadMap();
     dirty = true;
     view.draw();

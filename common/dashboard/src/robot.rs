@@ -102,7 +102,7 @@ impl Robot {
     }
 
     /// Takes a map; says whether it could be used.
-    pub fn hear_map(&self, header: &MapHeader, cells: &[u8]) -> bool {
+    pub fn on_map(&self, header: &MapHeader, cells: &[u8]) -> bool {
         let Some(map) = Map::new(header, cells) else {
             return false;
         };
@@ -113,27 +113,27 @@ impl Robot {
     }
 
     /// Takes the answer to a scan, at a time of the host's clock.
-    pub fn hear_answer(&self, header: &HypothesesHeader, items: &[Hypothesis], now_ns: i64) {
+    pub fn on_answer(&self, header: &HypothesesHeader, items: &[Hypothesis], now_ns: i64) {
         let answer = Answer::new(header, items, now_ns);
         let mut known = self.known();
         self.tell(&Message::Answer(&answer));
-        known.times.hear_answer(header);
-        known.track.hear_answer(&answer);
+        known.times.on_answer(header);
+        known.track.on_answer(&answer);
         known.answer = Some(answer);
     }
 
     /// Takes where the tracker has the robot, at a time of the host's clock.
-    pub fn hear_pose(&self, header: &PoseHeader, words: &[u8], now_ns: i64) {
+    pub fn on_pose(&self, header: &PoseHeader, words: &[u8], now_ns: i64) {
         let pose = Tracked::new(header, words, now_ns);
         let mut known = self.known();
         self.tell(&Message::Pose(&pose));
-        known.times.hear_pose(header);
-        known.track.hear_pose(&pose);
+        known.times.on_pose(header);
+        known.track.on_pose(&pose);
         known.pose = Some(pose);
     }
 
     /// Takes what became of the beams of a scan.
-    pub fn hear_beams(&self, header: &BeamsHeader, items: &[Beam]) {
+    pub fn on_beams(&self, header: &BeamsHeader, items: &[Beam]) {
         let beams = Beams::new(header, items);
         let mut known = self.known();
         self.tell(&Message::Beams(&beams));
@@ -141,24 +141,24 @@ impl Robot {
     }
 
     /// Takes a report on a node; says whether there was room for it.
-    pub fn hear_health(&self, header: &HealthHeader, error: &[u8]) -> bool {
+    pub fn on_health(&self, header: &HealthHeader, error: &[u8]) -> bool {
         let mut known = self.known();
-        let report = known.roster.hear(header, error);
+        let report = known.roster.receive(header, error);
         report
             .inspect(|report| self.tell(&Message::Node(report)))
             .is_some()
     }
 
     /// Takes a line of a node's log.
-    pub fn hear_log(&self, header: &LogHeader, text: &[u8]) {
+    pub fn on_log(&self, header: &LogHeader, text: &[u8]) {
         let line = LogLine::new(header, text);
         let mut known = self.known();
         self.tell(&Message::Log(&line));
-        known.log.hear(line);
+        known.log.receive(line);
     }
 
     /// Takes an intensity image; says whether it could be used.
-    pub fn hear_field(&self, header: &FieldHeader, items: &[u16]) -> bool {
+    pub fn on_field(&self, header: &FieldHeader, items: &[u16]) -> bool {
         let frame = field_frame(header, items);
         let is_sound = frame.is_some();
         if let Some(frame) = frame {
@@ -168,14 +168,14 @@ impl Robot {
     }
 
     /// Takes the region in which poses are sought from now on.
-    pub fn hear_region(&self, corners: Vec<[f64; 2]>) {
+    pub fn on_region(&self, corners: Vec<[f64; 2]>) {
         let mut known = self.known();
         self.tell(&Message::Region(Region { corners: &corners }));
         known.region = corners;
     }
 
     /// Takes who listens to wishes.
-    pub fn hear_abilities(&self, abilities: Abilities) {
+    pub fn on_abilities(&self, abilities: Abilities) {
         let mut known = self.known();
         if known.abilities != abilities {
             known.abilities = abilities;
@@ -299,21 +299,21 @@ mod tests {
         serde_json::from_str(text).unwrap()
     }
 
-    fn hear(robot: &Robot, counter: u64) {
+    fn receive(robot: &Robot, counter: u64) {
         let mut header = HypothesesHeader {
             verdict: Verdict::Unique as u32,
             ..HypothesesHeader::zeroed()
         };
         header.stamp.counter = counter;
-        robot.hear_answer(&header, &[Hypothesis::zeroed()], 0);
+        robot.on_answer(&header, &[Hypothesis::zeroed()], 0);
     }
 
     #[test]
     fn who_comes_hears_what_is_known_and_then_all_that_follows() {
         let (robot, _wishes) = Robot::new("r".into());
-        hear(&robot, 1);
+        receive(&robot, 1);
         let mut watching = robot.watch(0);
-        hear(&robot, 2);
+        receive(&robot, 2);
         let snapshot = json(&watching.snapshot);
         assert_eq!(
             (&snapshot["type"], &snapshot["robot"]),
@@ -332,7 +332,7 @@ mod tests {
     #[test]
     fn a_pose_is_told_beside_the_answer_and_so_is_its_age() {
         let (robot, _wishes) = Robot::new("r".into());
-        hear(&robot, 1);
+        receive(&robot, 1);
         let mut watching = robot.watch(0);
         assert_eq!(json(&watching.snapshot)["pose"], Value::Null, "no tracker");
         let header = PoseHeader {
@@ -340,7 +340,7 @@ mod tests {
             state: TrackState::Lost as u32,
             ..PoseHeader::zeroed()
         };
-        robot.hear_pose(&header, b"no place fits", 0);
+        robot.on_pose(&header, b"no place fits", 0);
         let news = json(&watching.news.try_recv().unwrap());
         assert_eq!(
             (&news["type"], &news["state"]),
@@ -360,7 +360,7 @@ mod tests {
         let (robot, _wishes) = Robot::new("r".into());
         let mut watching = robot.watch(0);
         for counter in 0..QUEUE as u64 + 3 {
-            hear(&robot, counter);
+            receive(&robot, counter);
         }
         let lagged = watching.news.try_recv().unwrap_err();
         assert_eq!(lagged, broadcast::error::TryRecvError::Lagged(3));

@@ -7,7 +7,7 @@ use crate::scan::Scan;
 use crate::space::Space;
 
 /// Added to every weight, so that near beams keep a say.
-const LEAST_WEIGHT: f64 = 0.05;
+const MIN_WEIGHT: f64 = 0.05;
 
 /// Which beams vote, and with what weight.
 #[derive(Debug, Clone, Copy, PartialEq, clap::Args)]
@@ -210,7 +210,7 @@ fn thinned(scan: &Scan<'_>, config: &BeamConfig) -> (usize, f64) {
 /// `min(1, arc at the reading / full arc) + 0.05`; 1 where beams weigh the same.
 fn weight(arc_m: f64, full_arc_m: f64) -> f64 {
     if full_arc_m > 0.0 {
-        (arc_m / full_arc_m).min(1.0) + LEAST_WEIGHT
+        (arc_m / full_arc_m).min(1.0) + MIN_WEIGHT
     } else {
         1.0
     }

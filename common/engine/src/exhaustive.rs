@@ -86,7 +86,7 @@ impl<'a, A: Accumulator> Share<'a, A> {
             };
             if limits.hold_heading(heading) {
                 self.accumulator.fill(query, &mut self.field, stop)?;
-                self.collector.hear_of(best.load(Ordering::Relaxed));
+                self.collector.raise_best(best.load(Ordering::Relaxed));
                 self.collect(limits, heading);
                 best.fetch_max(self.collector.best(), Ordering::Relaxed);
             }

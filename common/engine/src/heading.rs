@@ -98,7 +98,7 @@ impl History {
     }
 
     /// Takes note of odometry.
-    pub fn hear_odometry(&mut self, odometry: &Odometry) {
+    pub fn on_odometry(&mut self, odometry: &Odometry) {
         self.odometry.push(Driven {
             measured_ns: odometry.stamp.measured_ns,
             odom_from_child: odometry.odom_from_child.into(),
@@ -107,7 +107,7 @@ impl History {
     }
 
     /// Takes note of a true pose.
-    pub fn hear_truth(&mut self, truth: &GroundTruth) {
+    pub fn on_truth(&mut self, truth: &GroundTruth) {
         self.truths.push(Truth {
             measured_ns: truth.stamp.measured_ns,
             yaw: truth.map_from_laser.yaw,
@@ -289,7 +289,7 @@ mod tests {
     fn history(readings: &[(i64, f64)]) -> History {
         let mut history = History::keeping(KEPT);
         for &(measured_ns, yaw) in readings {
-            history.hear_odometry(&odometry(measured_ns, yaw));
+            history.on_odometry(&odometry(measured_ns, yaw));
         }
         history
     }
@@ -358,7 +358,7 @@ mod tests {
             child_frame: FrameName::new("base_link"),
             ..odometry(10, 0.25)
         };
-        history.hear_odometry(&of_base);
+        history.on_odometry(&of_base);
         let unknown = ScanHeader {
             base_from_laser: turned(1.0),
             ..scan(10)
@@ -369,7 +369,7 @@ mod tests {
             ..unknown
         };
         assert_eq!(heading(BY_ODOMETRY, &known, &history), 1.75);
-        history.hear_odometry(&odometry(11, 0.25));
+        history.on_odometry(&odometry(11, 0.25));
         let later = ScanHeader {
             stamp: stamp(11),
             ..known
@@ -384,7 +384,7 @@ mod tests {
             child_frame: FrameName::new("base_link"),
             ..odometry(10, std::f64::consts::FRAC_PI_2)
         };
-        history.hear_odometry(&of_base);
+        history.on_odometry(&of_base);
         let mounted = ScanHeader {
             base_from_laser: Pose2 {
                 x: 0.5,
@@ -409,8 +409,8 @@ mod tests {
     #[test]
     fn the_truth_has_exactly_the_time_of_the_scan() {
         let mut history = History::keeping(KEPT);
-        history.hear_truth(&truth(10, 0.1));
-        history.hear_truth(&truth(20, 0.2));
+        history.on_truth(&truth(10, 0.1));
+        history.on_truth(&truth(20, 0.2));
         assert_eq!(heading(HeadingSource::Truth, &scan(10), &history), 0.1);
         let refused = HeadingSource::Truth.heading_of(&scan(11), &history);
         assert!(matches!(

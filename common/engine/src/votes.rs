@@ -144,7 +144,7 @@ impl Collector {
     }
 
     /// Raises the floor to what follows from a pose seen elsewhere.
-    pub(crate) fn hear_of(&mut self, best: u16) {
+    pub(crate) fn raise_best(&mut self, best: u16) {
         self.best = self.best.max(best);
     }
 
@@ -156,7 +156,7 @@ impl Collector {
     /// Becomes what one collector would be that had taken the poses of both.
     pub(crate) fn merge(&mut self, other: &Collector) {
         self.crowded_below = self.crowded_below.max(other.crowded_below);
-        self.hear_of(other.best);
+        self.raise_best(other.best);
         for &vote in &other.votes {
             self.take(vote);
         }

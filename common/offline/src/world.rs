@@ -2,7 +2,7 @@
 //! file, no clock.
 
 use engine::EngineError;
-use engine::fit::{BeamClass, Ends, GridPose, JudgedBeam, Terrain};
+use engine::fit::{BeamClass, DistanceField, Ends, GridPose, JudgedBeam};
 use engine::grid::GridFrame;
 use engine::localizer::{Outcome, Preparation, Prior};
 use engine::locator::{self, Located, Locator, OccupancyView};
@@ -155,8 +155,8 @@ impl World {
     }
 
     /// The map as the second stage reads it.
-    pub fn terrain(&self) -> &Terrain {
-        self.locator.terrain()
+    pub fn distance_field(&self) -> &DistanceField {
+        self.locator.distance_field()
     }
 
     /// How the second stage judges places.
@@ -199,7 +199,7 @@ impl World {
         Ok(Answer {
             outcome,
             places: &self.of_laser,
-            frame: self.locator.terrain().frame,
+            frame: self.locator.distance_field().frame,
         })
     }
 
@@ -209,16 +209,18 @@ impl World {
     /// The scan is refused.
     pub fn scan_at(&self, scan: &Scan<'_>, map_from_laser: Pose) -> Result<ScanAt, EngineError> {
         let ends = self.ends(scan.into())?;
-        let frame = self.terrain().frame;
+        let frame = self.distance_field().frame;
         let (x, y, heading) = frame.cells_from_map(map_from_laser);
         let pose = GridPose { x, y, heading };
-        let classes = self.terrain().classes(&ends, pose, &self.peaks().fit);
+        let classes = self
+            .distance_field()
+            .classes(&ends, pose, &self.peaks().fit);
         let beams = ends.judged(&classes).map(|beam| BeamEnd {
             at: end_of(map_from_laser, beam),
             class: beam.class,
         });
         Ok(ScanAt {
-            score: self.terrain().score(&ends, pose, &self.peaks().fit),
+            score: self.distance_field().score(&ends, pose, &self.peaks().fit),
             ends: beams.collect(),
         })
     }

@@ -15,7 +15,7 @@ use super::view::View;
 use crate::PlotError;
 
 /// Most places that are shown from near.
-const MOST_NEAR: usize = 3;
+const MAX_NEAR: usize = 3;
 /// The body of the picture is as high as the part of the map asks for, within
 /// these shares of its width.
 const HEIGHTS: (f64, f64) = (0.25, 0.75);
@@ -144,8 +144,8 @@ fn worth_comparing(subject: &Subject) -> Vec<Near<'_>> {
     let truth = subject.missed_truth();
     let rivals = 1 + subject.places.alternatives as usize;
     let places = match truth {
-        Some(_) => (MOST_NEAR - 1).min(rivals),
-        None => MOST_NEAR.min(rivals),
+        Some(_) => (MAX_NEAR - 1).min(rivals),
+        None => MAX_NEAR.min(rivals),
     };
     let shown = subject.shown.iter().take(places);
     let mut near: Vec<Near<'_>> = shown

@@ -28,7 +28,7 @@ struct Device {
     encoding: Encoding,
     framer: Framer,
     /// Bytes that came.
-    heard: usize,
+    received: usize,
     /// Which way it looks, by its name.
     angles: DeviceAngles,
 }
@@ -65,7 +65,7 @@ pub(super) fn probe(target: &str) -> Result<(Vec<String>, Seen), ProbeError> {
 fn find(target: &str) -> Result<Device, ProbeError> {
     let addresses = addresses(target);
     let mut failure = None;
-    let mut heard = 0;
+    let mut received = 0;
     let mut reached = None;
     for address in &addresses {
         for encoding in [Encoding::Binary, Encoding::Text] {
@@ -75,7 +75,7 @@ fn find(target: &str) -> Result<Device, ProbeError> {
                     line,
                     encoding,
                     framer: Framer::new(encoding),
-                    heard: 0,
+                    received: 0,
                     angles: DeviceAngles::Unnamed,
                 },
                 Err(error) => {
@@ -87,7 +87,7 @@ fn find(target: &str) -> Result<Device, ProbeError> {
             if device.ask_answers()? {
                 return Ok(device);
             }
-            heard += device.heard;
+            received += device.received;
         }
     }
     Err(match (reached, failure) {
@@ -97,7 +97,7 @@ fn find(target: &str) -> Result<Device, ProbeError> {
         },
         (reached, _) => ProbeError::DeviceNotUnderstood {
             address: reached.map_or(target, String::as_str).to_owned(),
-            heard,
+            received,
             tried: "CoLa B and CoLa A".to_owned(),
         },
     })
@@ -152,10 +152,10 @@ impl Device {
                     return Ok(Some(found));
                 }
             }
-            let heard = self.line.hear(&mut buffer, deadline);
-            match heard.map_err(|source| failed(&self.address, source))? {
+            let received = self.line.receive(&mut buffer, deadline);
+            match received.map_err(|source| failed(&self.address, source))? {
                 Some(piece) => {
-                    self.heard += piece.len();
+                    self.received += piece.len();
                     self.framer.push(piece);
                 }
                 None => return Ok(None),

@@ -18,7 +18,7 @@ pub enum ProbeError {
     /// Something is there, but no laser that we know.
     #[error(
         "{address}: no laser answers; tried {tried}; {}",
-        match heard {
+        match received {
             0 => "nothing came".to_owned(),
             n => format!("{n} bytes came that are no answer: is it another device, or in use?"),
         }
@@ -27,7 +27,7 @@ pub enum ProbeError {
         /// As it was given, with the port that was tried last.
         address: String,
         /// Bytes that came.
-        heard: usize,
+        received: usize,
         /// In which ways it was asked.
         tried: String,
     },

@@ -21,7 +21,7 @@ struct Device<'a> {
     line: Line,
     framer: ReplyFramer,
     /// Bytes that came.
-    heard: usize,
+    received: usize,
 }
 
 /// What is found on the line, in lines for people, and a scan.
@@ -37,7 +37,7 @@ pub(super) fn probe(path: &Path) -> Result<(Vec<String>, Seen), ProbeError> {
         path,
         line,
         framer: ReplyFramer::default(),
-        heard: 0,
+        received: 0,
     };
     let baud = device.find_rate()?;
     let name = path.display();
@@ -81,7 +81,7 @@ impl Device<'_> {
         let rates = RATES.map(|baud| baud.rate().to_string());
         Err(ProbeError::DeviceNotUnderstood {
             address: self.path.display().to_string(),
-            heard: self.heard,
+            received: self.received,
             tried: format!("an LMS2xx at {} baud", rates.join(", ")),
         })
     }
@@ -106,10 +106,10 @@ impl Device<'_> {
                     return Ok(Some(found));
                 }
             }
-            let heard = self.line.hear(&mut buffer, deadline);
-            match heard.map_err(|source| self.failed(source))? {
+            let received = self.line.receive(&mut buffer, deadline);
+            match received.map_err(|source| self.failed(source))? {
                 Some(piece) => {
-                    self.heard += piece.len();
+                    self.received += piece.len();
                     self.framer.push(piece);
                 }
                 None => return Ok(None),

@@ -107,19 +107,19 @@ fn collect(
     let votes = graph.subscriber::<topic::Votes>()?;
     let hypotheses = graph.subscriber::<topic::Hypotheses>()?;
     let poses = graph.subscriber::<topic::Tracked>()?;
-    let mut heard = Heard {
+    let mut received = Received {
         is_tracked,
-        ..Heard::default()
+        ..Received::default()
     };
     let mut crew = Crew::new(descriptor.dataflow.nodes, &descriptor.folder, name)?;
     let mut last_progress = Instant::now();
     let outcome = graph.run(&[&votes, &hypotheses, &poses], TICK, |_| {
         let now = Instant::now();
         let over = crew.is_over();
-        if heard.take(&votes, &hypotheses, &poses)? || !over {
+        if received.take(&votes, &hypotheses, &poses)? || !over {
             last_progress = now;
         }
-        if heard.is_complete(scans) || over && now - last_progress >= PATIENCE {
+        if received.is_complete(scans) || over && now - last_progress >= PATIENCE {
             return Ok(Flow::Stop);
         }
         crew.tick(now)?;
@@ -128,12 +128,12 @@ fn collect(
     let stopped = crew.stop();
     outcome?;
     stopped?;
-    Ok(heard.answers())
+    Ok(received.answers())
 }
 
 /// What came until now.
 #[derive(Default)]
-struct Heard {
+struct Received {
     is_tracked: bool,
     /// The tracker's poses of scans.
     poses: Vec<PoseHeader>,
@@ -141,7 +141,7 @@ struct Heard {
     hypotheses: Vec<(HypothesesHeader, Vec<Hypothesis>)>,
 }
 
-impl Heard {
+impl Received {
     /// Says whether anything came.
     fn take(
         &mut self,

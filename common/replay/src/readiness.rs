@@ -17,7 +17,7 @@ impl Readiness {
     }
 
     /// Takes a node's report.
-    pub(crate) fn hear(&mut self, report: &HealthHeader) {
+    pub(crate) fn receive(&mut self, report: &HealthHeader) {
         let name = report.node.as_str();
         for (_, state) in self.nodes.iter_mut().filter(|(node, _)| node == name) {
             *state = NodeState::from_code(report.state);
@@ -57,14 +57,14 @@ mod tests {
             readiness.missing(),
             ["a (not heard of)", "b (not heard of)"]
         );
-        readiness.hear(&report("a", NodeState::Ready as u32));
-        readiness.hear(&report("c", NodeState::Ready as u32));
-        readiness.hear(&report("b", NodeState::Waiting as u32));
+        readiness.receive(&report("a", NodeState::Ready as u32));
+        readiness.receive(&report("c", NodeState::Ready as u32));
+        readiness.receive(&report("b", NodeState::Waiting as u32));
         assert_eq!(readiness.missing(), ["b (Waiting)"]);
-        readiness.hear(&report("b", NodeState::Ready as u32));
-        readiness.hear(&report("a", 99));
+        readiness.receive(&report("b", NodeState::Ready as u32));
+        readiness.receive(&report("a", 99));
         assert_eq!(readiness.missing(), ["a (not heard of)"]);
-        readiness.hear(&report("a", NodeState::Ready as u32));
+        readiness.receive(&report("a", NodeState::Ready as u32));
         assert!(readiness.missing().is_empty());
         assert!(Readiness::of(&[]).missing().is_empty());
     }

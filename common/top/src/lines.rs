@@ -195,7 +195,7 @@ mod tests {
     fn known(messages: &[&str]) -> Known {
         let mut known = Known::default();
         for text in messages {
-            known.hear(
+            known.receive(
                 serde_json::from_str::<Message>(text).unwrap(),
                 Instant::now(),
             );
@@ -235,7 +235,7 @@ mod tests {
         let mut known = known(&[]);
         known.lost = Some("it is gone".to_owned());
         assert!(plain(&known, Instant::now()).contains("DISCONNECTED: it is gone"));
-        known.hear(Message::Other, Instant::now());
+        known.receive(Message::Other, Instant::now());
         assert!(!plain(&known, Instant::now()).contains("DISCONNECTED"));
     }
 

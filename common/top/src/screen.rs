@@ -40,7 +40,7 @@ fn follow(
         for message in told.try_iter() {
             is_new = true;
             match message {
-                Ok(message) => known.hear(message, Instant::now()),
+                Ok(message) => known.receive(message, Instant::now()),
                 Err(problem) => known.lost = Some(problem),
             }
         }

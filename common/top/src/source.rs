@@ -51,7 +51,7 @@ pub(super) fn find(address: &str, robot: Option<&str>) -> Result<String, TopErro
 pub(super) fn snapshot(address: &str, robot: &str) -> Result<Known, TopError> {
     let mut known = Known::default();
     let told = ask(address, &format!("/api/v1/robots/{robot}"))?;
-    known.hear(told, Instant::now());
+    known.receive(told, Instant::now());
     Ok(known)
 }
 

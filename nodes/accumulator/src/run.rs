@@ -222,7 +222,7 @@ impl Node {
         if let Some(sonar) = &mut self.sonar
             && let Seen::Still(ranges) = self.joiner.seen()
         {
-            sonar.hear(scan, &ranges, &self.history)?;
+            sonar.receive(scan, &ranges, &self.history)?;
         }
         let notes = brought.notes(self.joiner.flows()).join("; ");
         self.note(&notes)?;

@@ -34,7 +34,7 @@ impl Sonar {
     /// # Errors
     /// If no odometry tells where it was taken, or the engine refuses it; it is left
     /// out then.
-    pub fn hear(
+    pub fn receive(
         &mut self,
         header: &ScanHeader,
         scan: &Scan<'_>,

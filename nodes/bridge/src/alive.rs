@@ -30,7 +30,7 @@ pub(crate) struct Alive {
 
 struct Node {
     _token: LivelinessToken,
-    heard_ns: i64,
+    received_ns: i64,
 }
 
 impl Alive {
@@ -62,11 +62,11 @@ impl Alive {
             if report.state == NodeState::Stopped as u32 {
                 self.nodes.remove(name);
             } else if network_payload::name(name).is_ok() {
-                self.hear(name, report.sent_ns)?;
+                self.receive(name, report.sent_ns)?;
             }
         }
         self.nodes
-            .retain(|_, node| now_ns.saturating_sub(node.heard_ns) < SILENCE_NS);
+            .retain(|_, node| now_ns.saturating_sub(node.received_ns) < SILENCE_NS);
         Ok(())
     }
 
@@ -77,15 +77,15 @@ impl Alive {
         Ok(health.receive()?.map(|sample| *sample.header()))
     }
 
-    fn hear(&mut self, name: &str, heard_ns: i64) -> Result<(), BridgeError> {
+    fn receive(&mut self, name: &str, received_ns: i64) -> Result<(), BridgeError> {
         if let Some(node) = self.nodes.get_mut(name) {
-            node.heard_ns = heard_ns;
+            node.received_ns = received_ns;
             return Ok(());
         }
         let token = declare(&self.session, &self.robot, Some(name))?;
         let node = Node {
             _token: token,
-            heard_ns,
+            received_ns,
         };
         self.nodes.insert(name.to_owned(), node);
         Ok(())

@@ -31,7 +31,7 @@ pub(crate) struct Aside {
 impl Exit {
     /// Whether anybody would get it. Where Zenoh cannot tell, it is sent; so is what
     /// is kept, for those who come later.
-    pub(crate) fn is_heard(&self) -> bool {
+    pub(crate) fn has_subscribers(&self) -> bool {
         match self {
             Exit::Here(publisher) => {
                 let status = publisher.matching_status().wait();

@@ -96,7 +96,7 @@ impl<T: Wire> Outgoing<T> {
 
     /// Subscribes while somebody beyond the bridge does.
     fn follow(&mut self, graph: &Graph) -> Result<(), TransportError> {
-        match (self.exit.is_heard(), &self.subscriber) {
+        match (self.exit.has_subscribers(), &self.subscriber) {
             (true, None) => self.subscriber = Some(Rc::new(graph.subscriber()?)),
             (false, Some(_)) => self.subscriber = None,
             _ => {}
@@ -106,7 +106,7 @@ impl<T: Wire> Outgoing<T> {
 
     fn send(&mut self, sample: &Sample<T>, report: &mut Report) -> Result<(), BridgeError> {
         let now_ns = monotonic_ns();
-        if !T::KEPT && (!self.exit.is_heard() || !self.limit.admits(now_ns)) {
+        if !T::KEPT && (!self.exit.has_subscribers() || !self.limit.admits(now_ns)) {
             return Ok(());
         }
         self.next.clock_ns = now_ns;

@@ -200,32 +200,30 @@ fn a_robot_writes_its_own_keys_alone() {
     let other = connect(&fleet.papers.of("r2", "two")).unwrap();
     let desk = connect(&fleet.papers.of("desk", "three")).unwrap();
     let seen = subscribe(&desk, "backcast/*/odometry");
-    let overheard = subscribe(&other, "backcast/**");
+    let others = subscribe(&other, "backcast/**");
     let own = subscribe(&other, "backcast/r2/*");
     // What is written before a subscription is known at the router is lost, so it
     // is written until it is heard.
-    let until = |heard: &Subscriber<FifoChannelHandler<Sample>>, puts: &[(&Session, &str)]| loop {
+    let until = |received: &Subscriber<FifoChannelHandler<Sample>>, puts: &[(&Session, &str)]| loop {
         for (session, key) in puts {
             session.put(*key, "x").wait().unwrap();
         }
         // Writing without a pause would leave more behind than a session that closes
         // has time for.
         let pause = Duration::from_millis(5);
-        if let Some(sample) = heard.recv_timeout(pause).unwrap() {
+        if let Some(sample) = received.recv_timeout(pause).unwrap() {
             return sample.key_expr().to_string();
         }
     };
     let forged = (&robot, "backcast/r2/odometry");
-    let heard = until(&seen, &[forged, (&robot, "backcast/r1/odometry")]);
-    assert_eq!(heard, "backcast/r1/odometry");
+    let received = until(&seen, &[forged, (&robot, "backcast/r1/odometry")]);
+    assert_eq!(received, "backcast/r1/odometry");
     // The other robot hears what the desk may tell it, and nothing of the first.
-    let heard = until(&own, &[forged, (&desk, "backcast/r2/save")]);
-    assert_eq!(heard, "backcast/r2/save");
+    let received = until(&own, &[forged, (&desk, "backcast/r2/save")]);
+    assert_eq!(received, "backcast/r2/save");
     // A session tells all its subscribers what it hears for one of them.
-    let overheard = overheard
-        .drain()
-        .map(|sample| sample.key_expr().to_string());
-    let foreign: Vec<_> = overheard.filter(|key| key != "backcast/r2/save").collect();
+    let others = others.drain().map(|sample| sample.key_expr().to_string());
+    let foreign: Vec<_> = others.filter(|key| key != "backcast/r2/save").collect();
     assert!(foreign.is_empty(), "a robot reads or is told {foreign:?}");
     drop((seen, own));
     for session in [robot, other, desk] {

@@ -255,12 +255,12 @@ fn what_strangers_send_is_refused_and_counted() {
     for sequence in [5, 5, 6] {
         put(&sound, good(sequence));
     }
-    let mut heard = Vec::new();
+    let mut counters = Vec::new();
     wait_until(&engine.graph, &scans, |header, _| {
-        heard.push(header.stamp.counter);
+        counters.push(header.stamp.counter);
         header.stamp.counter == 6
     });
-    assert_eq!(heard, [5, 6]);
+    assert_eq!(counters, [5, 6]);
     bridge.stop();
 }
 

@@ -26,7 +26,7 @@ pub enum FleetError {
     /// There are as many robots already as may be.
     #[error(
         "there are {} robots, which is the most; {robot} is left out",
-        Robots::MOST
+        Robots::MAX
     )]
     TooMany {
         /// The one that is.

@@ -11,7 +11,7 @@ use transport::{Graph, monotonic_ns};
 use zenoh::Session;
 
 use crate::FleetError;
-use crate::feed::{Feed, Heard};
+use crate::feed::{Feed, FleetMessage};
 use crate::wishes::Wishes;
 
 /// All robots, as their bridges tell of them.
@@ -46,59 +46,59 @@ pub(crate) enum Taken {
 /// A message that can be shown.
 pub(crate) trait Shown: Wire + Sized {
     /// Tells it to the robot that it came from; else says what is wrong with it.
-    fn show(heard: &Heard<Self>, robot: &Robot) -> Result<(), &'static str>;
+    fn show(received: &FleetMessage<Self>, robot: &Robot) -> Result<(), &'static str>;
 }
 
 impl Shown for topic::Map {
-    fn show(heard: &Heard<Self>, robot: &Robot) -> Result<(), &'static str> {
-        let message = &heard.message;
-        let is_sound = robot.hear_map(&message.header, &message.items);
+    fn show(received: &FleetMessage<Self>, robot: &Robot) -> Result<(), &'static str> {
+        let message = &received.message;
+        let is_sound = robot.on_map(&message.header, &message.items);
         is_sound.then_some(()).ok_or("a map contradicts its header")
     }
 }
 
 impl Shown for topic::Hypotheses {
-    fn show(heard: &Heard<Self>, robot: &Robot) -> Result<(), &'static str> {
-        let message = &heard.message;
-        robot.hear_answer(&message.header, &message.items, monotonic_ns());
+    fn show(received: &FleetMessage<Self>, robot: &Robot) -> Result<(), &'static str> {
+        let message = &received.message;
+        robot.on_answer(&message.header, &message.items, monotonic_ns());
         Ok(())
     }
 }
 
 impl Shown for topic::Tracked {
-    fn show(heard: &Heard<Self>, robot: &Robot) -> Result<(), &'static str> {
-        let message = &heard.message;
-        robot.hear_pose(&message.header, &message.items, monotonic_ns());
+    fn show(received: &FleetMessage<Self>, robot: &Robot) -> Result<(), &'static str> {
+        let message = &received.message;
+        robot.on_pose(&message.header, &message.items, monotonic_ns());
         Ok(())
     }
 }
 
 impl Shown for topic::Beams {
-    fn show(heard: &Heard<Self>, robot: &Robot) -> Result<(), &'static str> {
-        robot.hear_beams(&heard.message.header, &heard.message.items);
+    fn show(received: &FleetMessage<Self>, robot: &Robot) -> Result<(), &'static str> {
+        robot.on_beams(&received.message.header, &received.message.items);
         Ok(())
     }
 }
 
 impl Shown for topic::Health {
-    fn show(heard: &Heard<Self>, robot: &Robot) -> Result<(), &'static str> {
-        let is_shown = robot.hear_health(&heard.message.header, &heard.message.items);
+    fn show(received: &FleetMessage<Self>, robot: &Robot) -> Result<(), &'static str> {
+        let is_shown = robot.on_health(&received.message.header, &received.message.items);
         let problem = "a report of more nodes than are shown";
         is_shown.then_some(()).ok_or(problem)
     }
 }
 
 impl Shown for topic::Log {
-    fn show(heard: &Heard<Self>, robot: &Robot) -> Result<(), &'static str> {
-        robot.hear_log(&heard.message.header, &heard.message.items);
+    fn show(received: &FleetMessage<Self>, robot: &Robot) -> Result<(), &'static str> {
+        robot.on_log(&received.message.header, &received.message.items);
         Ok(())
     }
 }
 
 impl Shown for topic::Field {
-    fn show(heard: &Heard<Self>, robot: &Robot) -> Result<(), &'static str> {
-        let message = &heard.message;
-        let is_sound = robot.hear_field(&message.header, &message.items);
+    fn show(received: &FleetMessage<Self>, robot: &Robot) -> Result<(), &'static str> {
+        let message = &received.message;
+        let is_sound = robot.on_field(&message.header, &message.items);
         is_sound
             .then_some(())
             .ok_or("an image contradicts its header")
@@ -117,17 +117,17 @@ impl Fleet {
     /// Shows a message; its robot is known from then on.
     pub(crate) fn take<T: Shown>(
         &mut self,
-        heard: &Heard<T>,
+        received: &FleetMessage<T>,
         join: impl FnOnce(&str) -> Result<Wishes, FleetError>,
     ) -> Result<Taken, FleetError> {
-        if !self.members.contains_key(&heard.robot) {
-            self.welcome(&heard.robot, join)?;
+        if !self.members.contains_key(&received.robot) {
+            self.welcome(&received.robot, join)?;
         }
-        let member = self.members.get_mut(&heard.robot);
+        let member = self.members.get_mut(&received.robot);
         let member = member.ok_or_else(|| FleetError::TooMany {
-            robot: heard.robot.clone(),
+            robot: received.robot.clone(),
         })?;
-        member.take(heard)
+        member.take(received)
     }
 
     fn welcome(
@@ -162,7 +162,7 @@ impl Fleet {
         let mut granted = Vec::new();
         for (name, member) in &mut self.members {
             member.robot.look_for_silence(monotonic_ns());
-            member.robot.hear_abilities(member.wishes.abilities());
+            member.robot.on_abilities(member.wishes.abilities());
             match (member.robot.is_field_viewed(), &member.field) {
                 (true, None) => member.field = Some(Feed::open(session, name, graph.waker()?)?),
                 (false, Some(_)) => member.field = None,
@@ -183,9 +183,9 @@ impl Fleet {
                 continue;
             };
             // A slow reader wants the newest, so what was pushed out is no loss.
-            for heard in field.waiting() {
-                let heard = heard.map_err(FleetError::from);
-                outcomes.push(heard.and_then(|heard| member.take(&heard)));
+            for received in field.waiting() {
+                let received = received.map_err(FleetError::from);
+                outcomes.push(received.and_then(|received| member.take(&received)));
             }
             member.field = Some(field);
         }
@@ -194,10 +194,10 @@ impl Fleet {
 }
 
 impl Member {
-    fn take<T: Shown>(&mut self, heard: &Heard<T>) -> Result<Taken, FleetError> {
+    fn take<T: Shown>(&mut self, received: &FleetMessage<T>) -> Result<Taken, FleetError> {
         let Preamble {
             sender, sequence, ..
-        } = heard.message.preamble;
+        } = received.message.preamble;
         let arrivals = self.arrivals.entry(Feed::<T>::NAME).or_default();
         let lost = match arrivals.note(sender, sequence) {
             Arrival::Repeated => return Ok(Taken::Repeated),
@@ -205,10 +205,10 @@ impl Member {
             Arrival::New { .. } if T::KEPT => 0,
             Arrival::New { lost } => lost,
         };
-        let shown = T::show(heard, &self.robot);
+        let shown = T::show(received, &self.robot);
         shown.map_err(|problem| FleetError::Unusable {
             problem,
-            robot: heard.robot.clone(),
+            robot: received.robot.clone(),
         })?;
         Ok(Taken::Shown { lost })
     }
@@ -223,7 +223,7 @@ impl Member {
                     "a region to search in was set"
                 );
                 self.wishes.region(&corners)?;
-                self.robot.hear_region(corners);
+                self.robot.on_region(corners);
                 Ok(())
             }
             Wish::Save => {
@@ -237,7 +237,7 @@ impl Member {
 impl Wishes {
     /// Who would hear them.
     fn abilities(&self) -> Abilities {
-        let (region, save) = self.heard();
+        let (region, save) = self.received();
         Abilities { region, save }
     }
 }

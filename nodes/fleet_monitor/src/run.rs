@@ -124,9 +124,9 @@ impl Desk<'_> {
         self.report.dropped(feed.dropped());
         let (session, sender) = (self.session, self.sender);
         let join = |robot: &str| Wishes::open(session, robot, sender);
-        for heard in feed.waiting() {
-            let heard = heard.map_err(FleetError::from);
-            let outcome = heard.and_then(|heard| self.fleet.take(&heard, join));
+        for message in feed.waiting() {
+            let message = message.map_err(FleetError::from);
+            let outcome = message.and_then(|message| self.fleet.take(&message, join));
             self.note(outcome)?;
         }
         Ok(())

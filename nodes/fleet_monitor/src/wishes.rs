@@ -34,12 +34,12 @@ impl Wishes {
     }
 
     /// Whether somebody hears of regions, and of saving.
-    pub(crate) fn heard(&self) -> (bool, bool) {
-        let is_heard = |publisher: &AdvancedPublisher<'_>| {
+    pub(crate) fn received(&self) -> (bool, bool) {
+        let has_subscribers = |publisher: &AdvancedPublisher<'_>| {
             let status = publisher.matching_status().wait();
             status.is_ok_and(|status| status.matching())
         };
-        (is_heard(&self.regions), is_heard(&self.saves))
+        (has_subscribers(&self.regions), has_subscribers(&self.saves))
     }
 
     /// Corners, metres in the map; none for everywhere.

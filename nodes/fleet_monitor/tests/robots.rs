@@ -283,7 +283,7 @@ fn a_region_reaches_the_robot_that_it_was_set_for() {
             .declare_subscriber(network_payload::key::<topic::Region>(&robot.name));
         subscriber.history(history).wait().unwrap()
     };
-    let (heard, others) = (listen(&a), listen(&b));
+    let (received, others) = (listen(&a), listen(&b));
     world.wait_for("/api/v1/robots/a", |known| {
         known["abilities"]["region"] == true
     });
@@ -295,7 +295,7 @@ fn a_region_reaches_the_robot_that_it_was_set_for() {
     let body = r#"{"corners":[[0,0],[2,1]]}"#;
     assert_eq!(world.site.ask("PUT", path, &headers[..1], body).0, 401);
     assert_eq!(world.site.ask("PUT", path, &headers, body).0, 202);
-    let sample = heard.recv().unwrap();
+    let sample = received.recv().unwrap();
     let encoding = sample.encoding().to_string();
     let region =
         network_payload::decode::<topic::Region>(&encoding, &sample.payload().to_bytes()).unwrap();

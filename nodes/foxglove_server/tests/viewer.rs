@@ -191,7 +191,7 @@ impl Viewer {
             subscribed: BTreeMap::new(),
         };
         while viewer.server.is_null() {
-            assert!(viewer.hear().is_none());
+            assert!(viewer.receive().is_none());
         }
         viewer
     }
@@ -210,7 +210,7 @@ impl Viewer {
     }
 
     /// Takes one message of the server: one of a channel, or a note that is kept.
-    fn hear(&mut self) -> Option<Shown> {
+    fn receive(&mut self) -> Option<Shown> {
         match self.socket.read().unwrap() {
             Message::Text(text) => {
                 let said: Value = serde_json::from_str(&text).unwrap();
@@ -242,7 +242,7 @@ impl Viewer {
     /// Subscribes to a topic, once it is offered.
     fn subscribe(&mut self, topic: &str) {
         while !self.channels.contains_key(topic) {
-            assert!(self.hear().is_none_or(|shown| shown.topic != topic));
+            assert!(self.receive().is_none_or(|shown| shown.topic != topic));
         }
         let number = self.subscribed.len() as u32 + 1;
         self.subscribed.insert(number, topic.to_owned());
@@ -256,7 +256,7 @@ impl Viewer {
     /// The next message of a topic.
     fn next(&mut self, topic: &str) -> Shown {
         loop {
-            if let Some(shown) = self.hear().filter(|shown| shown.topic == topic) {
+            if let Some(shown) = self.receive().filter(|shown| shown.topic == topic) {
                 return shown;
             }
         }

@@ -24,7 +24,7 @@ impl Angles {
     }
 
     /// The device says its name.
-    pub(crate) fn heard_name(&mut self, name: &[u8]) {
+    pub(crate) fn on_name(&mut self, name: &[u8]) {
         let read = DeviceAngles::of_name(name);
         if read != self.read {
             self.read = read;
@@ -91,7 +91,7 @@ mod tests {
     fn a_statement_counts_more_than_the_name_and_that_more_than_the_field() {
         let mut angles = Angles::default();
         assert_eq!(angles.of(USUAL), Ok((AngleConvention::USUAL, 80.0)));
-        angles.heard_name(b"NAV310");
+        angles.on_name(b"NAV310");
         let (nav, reach_m) = angles.of(USUAL).unwrap();
         assert_eq!(
             (nav.ahead_deg, nav.clockwise, reach_m),
@@ -100,7 +100,7 @@ mod tests {
         angles.forget_name();
         assert_eq!(angles.of(USUAL), Ok((AngleConvention::USUAL, 80.0)));
         let mut angles = Angles::new(Some(DeviceAngles::of_name(b"TiM240")));
-        angles.heard_name(b"NAV310");
+        angles.on_name(b"NAV310");
         assert_eq!(angles.of(USUAL).unwrap().0.ahead_deg, 0.0);
     }
 }

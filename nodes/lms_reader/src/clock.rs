@@ -15,7 +15,7 @@ const SLOT_US: i64 = 1_000_000;
 /// Slots that are looked back on.
 const SLOTS: usize = 32;
 /// The rates of clocks differ by at most this share: quartz by 1e-4, twice.
-const MOST_SKEW: f64 = 2e-4;
+const MAX_SKEW: f64 = 2e-4;
 /// By so much the two clocks may disagree from one telegram to the next before
 /// the device is taken to have started anew, µs: longer than any delay.
 const LONGEST_DELAY_US: i64 = 1_000_000;
@@ -112,7 +112,7 @@ impl DeviceClock {
         });
         match (edge, self.hull.first()) {
             (Some(&[from, to]), _) => {
-                let skew = slope(from, to).clamp(-MOST_SKEW, MOST_SKEW);
+                let skew = slope(from, to).clamp(-MAX_SKEW, MAX_SKEW);
                 from.offset_us + skew * (device_us - from.device_us) as f64
             }
             (_, Some(only)) => only.offset_us,

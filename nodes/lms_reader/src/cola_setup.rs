@@ -145,11 +145,11 @@ impl Setup {
     ///
     /// # Errors
     /// If the device refuses, or has other settings than it was told.
-    pub(crate) fn hear(&mut self, answer: &Answer<'_>) -> Result<(), LmsError> {
+    pub(crate) fn receive(&mut self, answer: &Answer<'_>) -> Result<(), LmsError> {
         let Some(&step) = self.steps.front() else {
             return Ok(());
         };
-        let heard = match (step, answer) {
+        let received = match (step, answer) {
             (_, Answer::Fault(fault)) if step.is_optional() => {
                 tracing::debug!(%fault, ?step, "the device does not say");
                 true
@@ -184,15 +184,15 @@ impl Setup {
             (Step::Login, Answer::AccessMode(success)) => done("log in", *success)?,
             (Step::Run, Answer::Running(success)) => done("run", *success)?,
             (Step::Subscribe, Answer::ScansSubscribed(on)) => done("send scans", *on)?,
-            _ => self.hear_settings(step, answer)?,
+            _ => self.on_settings(step, answer)?,
         };
-        if heard {
+        if received {
             self.advance();
         }
         Ok(())
     }
 
-    fn hear_settings(&mut self, step: Step, answer: &Answer<'_>) -> Result<bool, LmsError> {
+    fn on_settings(&mut self, step: Step, answer: &Answer<'_>) -> Result<bool, LmsError> {
         match (step, answer) {
             (Step::ReadScanConfig, Answer::Value(Value::ScanConfig(config))) => {
                 self.scan = Some(*config);
@@ -214,7 +214,7 @@ impl Setup {
                     config.start_angle_raw_1e4_deg,
                     config.stop_angle_raw_1e4_deg,
                 );
-                self.heard_field(Field::between(start, stop))?;
+                self.on_field(Field::between(start, stop))?;
                 Ok(true)
             }
             (Step::ReadRange, Answer::Value(Value::OutputRange(range))) => {
@@ -223,7 +223,7 @@ impl Setup {
             }
             (Step::SetRange, Answer::Written(Variable::OutputRange)) => Ok(true),
             (Step::ReadContents, Answer::Value(Value::ScanDataConfig(contents))) => {
-                self.heard_contents(*contents);
+                self.on_contents(*contents);
                 Ok(true)
             }
             (Step::AddTime, Answer::Written(Variable::ScanDataConfig)) => Ok(true),
@@ -251,13 +251,13 @@ impl Setup {
             }
             (None, None) => return Ok(()),
         };
-        self.heard_field(whole)?;
+        self.on_field(whole)?;
         self.advance();
         Ok(())
     }
 
     /// The whole field that the device measures.
-    fn heard_field(&mut self, whole: Field) -> Result<(), LmsError> {
+    fn on_field(&mut self, whole: Field) -> Result<(), LmsError> {
         let convention = self.angles.convention(whole)?;
         self.ahead_raw = Some((convention.ahead_deg * 1e4).round() as i32);
         Ok(())
@@ -269,7 +269,7 @@ impl Setup {
     }
 
     /// The time is asked for where the device leaves it out.
-    fn heard_contents(&mut self, contents: ScanDataConfig) {
+    fn on_contents(&mut self, contents: ScanDataConfig) {
         self.contents = Some(contents);
         if contents.time {
             return;

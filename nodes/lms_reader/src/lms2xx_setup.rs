@@ -149,7 +149,7 @@ impl Setup {
     ///
     /// # Errors
     /// If the device refuses, or has other settings than it was told.
-    pub(crate) fn hear(&mut self, answer: &Answer<'_>) -> Result<(), LmsError> {
+    pub(crate) fn receive(&mut self, answer: &Answer<'_>) -> Result<(), LmsError> {
         let Some(&step) = self.steps.front() else {
             return Ok(());
         };
@@ -165,10 +165,10 @@ impl Setup {
             (Step::AskType, Answer::Type(text)) => {
                 tracing::info!(device = %text.escape_ascii(), "the device says what it is");
             }
-            (Step::AskStatus, Answer::Status(status)) => self.heard_status(status),
-            (Step::SetVariant, Answer::VariantSet { .. }) => self.heard_variant(answer)?,
+            (Step::AskStatus, Answer::Status(status)) => self.on_status(status),
+            (Step::SetVariant, Answer::VariantSet { .. }) => self.on_variant(answer)?,
             (Step::AskConfiguration, Answer::Configuration(configuration)) => {
-                self.heard_configuration(*configuration);
+                self.on_configuration(*configuration);
             }
             (Step::Install, Answer::ModeSet(result)) => {
                 done("enter the installation mode", *result == 0, result)?;
@@ -209,7 +209,7 @@ impl Setup {
         };
     }
 
-    fn heard_status(&mut self, status: &DeviceStatus) {
+    fn on_status(&mut self, status: &DeviceStatus) {
         let width = self.wanted.width_deg.unwrap_or(status.width_deg);
         let resolution = self.wanted.resolution_raw_1e2_deg;
         let resolution = resolution.unwrap_or(status.resolution_raw_1e2_deg);
@@ -226,7 +226,7 @@ impl Setup {
         self.status = Some(*status);
     }
 
-    fn heard_variant(&mut self, answer: &Answer<'_>) -> Result<(), LmsError> {
+    fn on_variant(&mut self, answer: &Answer<'_>) -> Result<(), LmsError> {
         let wanted = self.wanted_variant();
         if let (
             Answer::VariantSet {
@@ -248,7 +248,7 @@ impl Setup {
         Ok(())
     }
 
-    fn heard_configuration(&mut self, configuration: Configuration) {
+    fn on_configuration(&mut self, configuration: Configuration) {
         self.configuration = Some(configuration);
         if self.wanted_configuration() != Some(configuration) {
             self.steps.insert(1, Step::Install);

@@ -45,7 +45,7 @@ pub fn ask(
     };
     let question = network_payload::encode::<topic::Scan>(&preamble, header, ranges)?;
     let due = Instant::now() + deadline;
-    let (events, heard) = unbounded();
+    let (events, received) = unbounded();
     // How many attempts are under way, and when to make the next one.
     let (mut open, mut next) = (0, Instant::now());
     loop {
@@ -59,7 +59,7 @@ pub fn ask(
             // No deadline is so far that this overflows.
             (open, next) = (open + 1, now + SILENCE * 2_u32.pow(open));
         }
-        let Ok(event) = heard.recv_deadline(next.min(due)) else {
+        let Ok(event) = received.recv_deadline(next.min(due)) else {
             continue;
         };
         match event {
@@ -88,7 +88,7 @@ type Event = Option<Result<Sample, ReplyError>>;
 struct Attempt(Sender<Event>);
 
 impl Attempt {
-    fn hears(&self, event: Event) {
+    fn deliver(&self, event: Event) {
         // Where nobody listens, the question has its answer.
         let _ = self.0.send(event);
     }
@@ -96,7 +96,7 @@ impl Attempt {
 
 impl Drop for Attempt {
     fn drop(&mut self) {
-        self.hears(None);
+        self.deliver(None);
     }
 }
 
@@ -116,7 +116,7 @@ fn attempt(
         .payload(question)
         .encoding(Encoding::from(network_payload::encoding::<topic::Scan>()))
         .timeout(remaining)
-        .callback(move |reply| attempt.hears(Some(reply.into_result())))
+        .callback(move |reply| attempt.deliver(Some(reply.into_result())))
         .wait()
         .map_err(KeyError::when("ask", &key))?;
     Ok(())

@@ -234,7 +234,7 @@ impl Desk {
             return;
         }
         // Where asking fails, what was handed on is dropped here, and so comes back.
-        let _ = asking.callback(move |reply| handed.hear(&reply)).wait();
+        let _ = asking.callback(move |reply| handed.on_reply(&reply)).wait();
     }
 }
 
@@ -247,7 +247,7 @@ struct Handed {
 }
 
 impl Handed {
-    fn hear(&self, reply: &Reply) {
+    fn on_reply(&self, reply: &Reply) {
         match reply.result() {
             Ok(sample) => {
                 let Some(job) = self.take() else { return };

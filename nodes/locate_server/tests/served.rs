@@ -271,30 +271,30 @@ fn a_question_is_brought_to_one_server() {
     let second = Server::start("once-b", &["--connect", &endpoint]);
     // Whichever is asked.
     for asked in [&first, &second] {
-        assert_one_hears_it(asked);
+        assert_one_receives_it(asked);
     }
     first.process.stop();
     second.process.stop();
 }
 
-fn assert_one_hears_it(server: &Server) {
+fn assert_one_receives_it(server: &Server) {
     let session = caller(&[server]);
     // An empty question is refused by each server that hears it.
-    let hearing = || {
+    let receivers = || {
         let get = session.get("backcast/locate/corridor");
         let get = get.target(QueryTarget::All);
         let get = get.consolidation(ConsolidationMode::None);
         get.timeout(PATIENCE).wait().unwrap().into_iter().count()
     };
     // Had they not met in time, both would hear it at first.
-    while hearing() != 1 {
+    while receivers() != 1 {
         std::thread::yield_now();
     }
     for scan in scans() {
         let asked = (&scan.0, scan.1.as_slice());
         ask(&session, "corridor", asked, PATIENCE).unwrap();
     }
-    assert_eq!(hearing(), 1);
+    assert_eq!(receivers(), 1);
 }
 
 #[test]

@@ -59,7 +59,7 @@ impl Node {
         if tick {
             self.follow_field(graph)?;
             self.grant_wishes()?;
-            self.robot.hear_abilities(self.outputs.abilities());
+            self.robot.on_abilities(self.outputs.abilities());
             self.robot.look_for_silence(monotonic_ns());
         }
         self.health.tick()
@@ -74,7 +74,7 @@ impl Node {
         let newest = self.field.as_ref().map_or(Ok(None), Subscriber::newest)?;
         if let Some(image) = newest {
             self.health.count_received(1);
-            if !self.robot.hear_field(image.header(), image.items()) {
+            if !self.robot.on_field(image.header(), image.items()) {
                 inputs::refuse(&mut self.health, "an image contradicts its header")?;
             }
         }
@@ -87,7 +87,7 @@ impl Node {
                 Wish::Region(corners) => {
                     tracing::info!(corners = corners.len(), "a region to search in was set");
                     self.outputs.region(&corners)?;
-                    self.robot.hear_region(corners);
+                    self.robot.on_region(corners);
                 }
                 Wish::Save => {
                     tracing::info!("the recorder is asked to save the last minutes");

@@ -79,7 +79,7 @@ pub fn answer<'w>(
         let extent = (header.headings, resolution_m, sides.0, sides.1);
         Ok(ends.find(&scan, kept_or_made(space, extent)?, &beams)?)
     };
-    let Judged { places, ends } = peaks.judge(&input, &map.terrain, config, take)?;
+    let Judged { places, ends } = peaks.judge(&input, &map.distance_field, config, take)?;
     beams_seen.clear();
     if let Some(ends) = ends {
         beams_seen.extend(judged(ends, places));
@@ -210,7 +210,7 @@ mod tests {
             },
             ..Zeroable::zeroed()
         };
-        maps.hear(&map, &[0; 30 * 20]).unwrap();
+        maps.receive(&map, &[0; 30 * 20]).unwrap();
         maps
     }
 
@@ -337,7 +337,7 @@ mod tests {
             range_max_m: 30.0,
             ..Zeroable::zeroed()
         };
-        scans.hear(&scan, &[1.0, 2.0]);
+        scans.receive(&scan, &[1.0, 2.0]);
         let known = (&mut maps(), &scans);
         let said = answer(&header(), &VOTES, known, &config, &mut workspace).unwrap();
         // The map is empty, so that nothing fits.

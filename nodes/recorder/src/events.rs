@@ -129,18 +129,18 @@ mod tests {
     #[test]
     fn a_node_is_reported_when_it_becomes_degraded() {
         let mut lookout = Lookout::default();
-        let mut hear = |node: &str, state: NodeState| {
+        let mut receive = |node: &str, state: NodeState| {
             lookout.health(&HealthHeader {
                 node: Name::new(node),
                 state: state as u32,
                 ..HealthHeader::zeroed()
             })
         };
-        assert_eq!(hear("a", NodeState::Ready), None);
-        assert_eq!(hear("a", NodeState::Degraded), Some(Event::Degraded));
-        assert_eq!(hear("a", NodeState::Degraded), None);
-        assert_eq!(hear("b", NodeState::Degraded), Some(Event::Degraded));
-        assert_eq!(hear("a", NodeState::Ready), None);
-        assert_eq!(hear("a", NodeState::Degraded), Some(Event::Degraded));
+        assert_eq!(receive("a", NodeState::Ready), None);
+        assert_eq!(receive("a", NodeState::Degraded), Some(Event::Degraded));
+        assert_eq!(receive("a", NodeState::Degraded), None);
+        assert_eq!(receive("b", NodeState::Degraded), Some(Event::Degraded));
+        assert_eq!(receive("a", NodeState::Ready), None);
+        assert_eq!(receive("a", NodeState::Degraded), Some(Event::Degraded));
     }
 }

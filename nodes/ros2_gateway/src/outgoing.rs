@@ -75,7 +75,7 @@ impl Outgoing {
         let answer = answer(header, items);
         let reason = match self.is_tracked {
             true => None,
-            false => seeding.hear_answer(answer),
+            false => seeding.on_answer(answer),
         };
         let outcome = self.tell(header, items, map_frame, frames, reason, report);
         outcome.or_else(|error| report.refused(&error))
@@ -123,7 +123,7 @@ impl Outgoing {
             return Ok(());
         }
         self.newest = Some(header.stamp);
-        let reason = seeding.hear_answer(tracked(header));
+        let reason = seeding.on_answer(tracked(header));
         let outcome = self.tell_tracked(header, map_frame, reason, report);
         outcome.or_else(|error| report.refused(&error))
     }

@@ -94,7 +94,7 @@ impl Seeding {
     }
 
     /// Takes the pose of the particle filter.
-    pub(crate) fn hear_belief(&mut self, belief: Belief) {
+    pub(crate) fn on_belief(&mut self, belief: Belief) {
         // What it thought before it was told does not count.
         if self.when != Seed::Lost || belief.measured_ns <= self.told_ns {
             return;
@@ -109,7 +109,7 @@ impl Seeding {
 
     /// Takes what a scan says; gives the reason if the particle filter is to be told
     /// the first pose of it.
-    pub(crate) fn hear_answer(&mut self, answer: Answer) -> Option<Reason> {
+    pub(crate) fn on_answer(&mut self, answer: Answer) -> Option<Reason> {
         let (now_ns, is_unique) = (answer.measured_ns, answer.is_unique);
         if self.answers.back().is_some_and(|a| a.measured_ns > now_ns) {
             // The clock was set back: a recording that begins anew.
@@ -187,24 +187,24 @@ mod tests {
         for when in [Seed::Once, Seed::Lost] {
             let mut seeding = seeding(when);
             assert_eq!(
-                seeding.hear_answer(answer(0, true, &[1.0])),
+                seeding.on_answer(answer(0, true, &[1.0])),
                 None,
                 "nobody there"
             );
             seeding.greet();
-            assert_eq!(seeding.hear_answer(answer(100, false, &[1.0, 9.0])), None);
+            assert_eq!(seeding.on_answer(answer(100, false, &[1.0, 9.0])), None);
             assert_eq!(
-                seeding.hear_answer(answer(200, true, &[1.0])),
+                seeding.on_answer(answer(200, true, &[1.0])),
                 Some(Reason::New)
             );
-            assert_eq!(seeding.hear_answer(answer(300, true, &[1.0])), None);
+            assert_eq!(seeding.on_answer(answer(300, true, &[1.0])), None);
         }
         let mut seeding = seeding(Seed::Never);
         seeding.greet();
-        assert_eq!(seeding.hear_answer(answer(200, true, &[1.0])), None);
+        assert_eq!(seeding.on_answer(answer(200, true, &[1.0])), None);
         seeding.ask();
         assert_eq!(
-            seeding.hear_answer(answer(300, true, &[1.0])),
+            seeding.on_answer(answer(300, true, &[1.0])),
             Some(Reason::Asked)
         );
     }
@@ -212,21 +212,21 @@ mod tests {
     #[test]
     fn who_is_lost_is_told_again_after_the_second_sign() {
         let mut seeding = seeding(Seed::Lost);
-        seeding.hear_answer(answer(0, true, &[1.0]));
-        seeding.hear_belief(belief(0, 1.5));
-        seeding.hear_belief(belief(0, 9.0));
-        assert_eq!(seeding.hear_answer(answer(100, true, &[1.0])), None);
+        seeding.on_answer(answer(0, true, &[1.0]));
+        seeding.on_belief(belief(0, 1.5));
+        seeding.on_belief(belief(0, 9.0));
+        assert_eq!(seeding.on_answer(answer(100, true, &[1.0])), None);
         // This one comes before its answer does.
-        seeding.hear_belief(belief(200, 9.0));
+        seeding.on_belief(belief(200, 9.0));
         assert!(!seeding.is_wanted());
         assert_eq!(
-            seeding.hear_answer(answer(200, true, &[1.0])),
+            seeding.on_answer(answer(200, true, &[1.0])),
             Some(Reason::Lost)
         );
         // What it thought before says nothing of what it was told.
-        seeding.hear_belief(belief(200, 9.0));
-        seeding.hear_belief(belief(150, 9.0));
-        assert_eq!(seeding.hear_answer(answer(300, true, &[1.0])), None);
+        seeding.on_belief(belief(200, 9.0));
+        seeding.on_belief(belief(150, 9.0));
+        assert_eq!(seeding.on_answer(answer(300, true, &[1.0])), None);
     }
 
     #[test]
@@ -234,40 +234,40 @@ mod tests {
         let mut seeding = seeding(Seed::Lost);
         for ms in (0..1000).step_by(100) {
             assert_eq!(
-                seeding.hear_answer(answer(ms, ms % 200 == 0, &[1.0, 20.0])),
+                seeding.on_answer(answer(ms, ms % 200 == 0, &[1.0, 20.0])),
                 None
             );
-            seeding.hear_belief(belief(ms, if ms % 200 == 0 { 20.0 } else { 9.0 }));
+            seeding.on_belief(belief(ms, if ms % 200 == 0 { 20.0 } else { 9.0 }));
         }
         assert!(!seeding.is_wanted());
         // Turned around at the right place.
-        seeding.hear_answer(answer(2000, true, &[1.0]));
+        seeding.on_answer(answer(2000, true, &[1.0]));
         for _ in 0..2 {
             let mut turned = belief(2000, 1.0);
             turned.map_from_base.yaw = 3.0;
-            seeding.hear_belief(turned);
+            seeding.on_belief(turned);
         }
         assert!(seeding.is_wanted());
         // It came back by itself, or somebody put it there.
-        seeding.hear_belief(belief(2000, 1.0));
+        seeding.on_belief(belief(2000, 1.0));
         assert!(!seeding.is_wanted());
     }
 
     #[test]
     fn only_what_is_of_one_time_is_compared() {
         let mut seeding = seeding(Seed::Lost);
-        seeding.hear_answer(answer(1000, true, &[1.0]));
-        seeding.hear_belief(belief(700, 9.0));
-        seeding.hear_belief(belief(600, 9.0));
+        seeding.on_answer(answer(1000, true, &[1.0]));
+        seeding.on_belief(belief(700, 9.0));
+        seeding.on_belief(belief(600, 9.0));
         assert!(!seeding.is_wanted());
     }
 
     #[test]
     fn once_means_once() {
         let mut seeding = seeding(Seed::Once);
-        seeding.hear_answer(answer(0, true, &[1.0]));
-        seeding.hear_belief(belief(0, 9.0));
-        seeding.hear_belief(belief(0, 9.0));
+        seeding.on_answer(answer(0, true, &[1.0]));
+        seeding.on_belief(belief(0, 9.0));
+        seeding.on_belief(belief(0, 9.0));
         assert!(!seeding.is_wanted());
     }
 
@@ -275,10 +275,10 @@ mod tests {
     fn a_clock_that_is_set_back_begins_anew() {
         let mut seeding = seeding(Seed::Lost);
         seeding.ask();
-        assert!(seeding.hear_answer(answer(5000, true, &[1.0])).is_some());
-        assert_eq!(seeding.hear_answer(answer(0, true, &[1.0])), None);
-        seeding.hear_belief(belief(0, 9.0));
-        seeding.hear_belief(belief(0, 9.0));
+        assert!(seeding.on_answer(answer(5000, true, &[1.0])).is_some());
+        assert_eq!(seeding.on_answer(answer(0, true, &[1.0])), None);
+        seeding.on_belief(belief(0, 9.0));
+        seeding.on_belief(belief(0, 9.0));
         assert!(seeding.is_wanted());
     }
 }

@@ -251,19 +251,19 @@ fn what_the_graph_says_reaches_the_robot_byte_for_byte() {
     {
         let sent = hypotheses(counter as u64, verdict);
         send(&publisher, &sent);
-        let mut heard = std::collections::BTreeMap::new();
+        let mut received = std::collections::BTreeMap::new();
         let wanted = if verdict == Verdict::Unique { 3 } else { 1 };
-        while heard.len() < wanted {
-            let said = joined.robot.hear();
+        while received.len() < wanted {
+            let said = joined.robot.receive();
             let event = said["event"].as_str().unwrap().to_owned();
             assert_eq!(said["same"], true, "the bytes of {event} differ");
             assert_eq!(said["attachment"], 33);
             if event != "/diagnostics" {
-                heard.insert(event, said);
+                received.insert(event, said);
             }
         }
         let stamp = sent.0.stamp.measured_ns;
-        let poses = &heard["hypotheses"];
+        let poses = &received["hypotheses"];
         assert_eq!(
             (&poses["stamp"], &poses["frame"]),
             (&json!(stamp), &json!("map"))
@@ -271,7 +271,7 @@ fn what_the_graph_says_reaches_the_robot_byte_for_byte() {
         assert_near(&poses["poses"][0], Pose::new(1.0, 2.0, 0.0));
         assert_near(&poses["poses"][1], Pose::new(-7.0, 2.0, 0.0));
         assert_eq!(poses["sequence"], counter + 1);
-        let Some(told) = heard.get("initialpose") else {
+        let Some(told) = received.get("initialpose") else {
             assert_eq!(verdict, Verdict::Ambiguous);
             continue;
         };
@@ -283,7 +283,7 @@ fn what_the_graph_says_reaches_the_robot_byte_for_byte() {
         // The laser's, and what its yaw does half a metre away, but for rounding.
         assert!((variances[1] - (0.01 + 0.25e-6)).abs() < 1e-12);
         assert!((variances[2].sqrt().to_degrees() - 3.0).abs() < 1e-9);
-        let tf = &heard["tf"];
+        let tf = &received["tf"];
         assert_eq!(
             (&tf["stamp"], &tf["child"]),
             (&json!(stamp + 1_000_000_000), &json!("odom"))
@@ -348,7 +348,7 @@ fn a_robot_whose_pose_is_tracked_is_told_that_pose_and_no_single_answer() {
     header.stamp.measured_ns += 1;
     send(&answers, &(header, items));
     loop {
-        let said = joined.robot.hear();
+        let said = joined.robot.receive();
         assert_ne!(said["event"], "initialpose", "{said}");
         if said["event"] == "hypotheses" {
             break;
@@ -432,7 +432,7 @@ fn a_particle_filter_is_told_where_it_is() {
     let until_answered = |robot: &mut Robot, index: usize| {
         let mut told = Vec::new();
         loop {
-            let said = robot.hear();
+            let said = robot.receive();
             match said["event"].as_str().unwrap() {
                 "initialpose" => told.push(said),
                 "hypotheses" if said["stamp"] == stamps[index] => return told,

@@ -103,12 +103,12 @@ impl Reader {
                 image = next_image(&mut self.field) => {
                     self.send(Frame::Binary(image?)).await?;
                 }
-                said = self.socket.recv() => self.hear(said?.ok()?).await?,
+                said = self.socket.recv() => self.receive(said?.ok()?).await?,
             }
         }
     }
 
-    async fn hear(&mut self, frame: Frame) -> Option<()> {
+    async fn receive(&mut self, frame: Frame) -> Option<()> {
         let Frame::Text(said) = frame else {
             // Pings are answered by the library; the end comes as none.
             return matches!(frame, Frame::Ping(_) | Frame::Pong(_)).then_some(());

@@ -156,7 +156,7 @@ pub struct JudgedBeam {
 
 impl Ends {
     /// The beams that voted, with their classes: those of
-    /// [`Terrain::classes`](super::Terrain::classes).
+    /// [`DistanceField::classes`](super::DistanceField::classes).
     pub fn judged(&self, classes: &[BeamClass]) -> impl Iterator<Item = JudgedBeam> {
         let both = self.ends.iter().zip(classes);
         both.map(|(end, &class)| {
@@ -202,7 +202,7 @@ impl Ends {
     }
 
     /// Share of the beams by weight that are of a class, 0..=1; `classes` are
-    /// those of [`Terrain::classes`](super::Terrain::classes).
+    /// those of [`DistanceField::classes`](super::DistanceField::classes).
     #[must_use]
     pub fn share(&self, classes: &[BeamClass], class: BeamClass) -> f64 {
         let both = self.ends.iter().zip(classes);

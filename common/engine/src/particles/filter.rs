@@ -14,7 +14,7 @@ use super::{
     resample,
 };
 use crate::EngineError;
-use crate::fit::{Ends, GridPose, Terrain};
+use crate::fit::{DistanceField, Ends, GridPose};
 use crate::grid::GridFrame;
 
 /// Particles are drawn anew where their effective number falls below this share of
@@ -46,12 +46,12 @@ impl ParticleFilter {
     /// # Errors
     /// If no cell is free, or no heading is given or one is not finite.
     pub fn uniform(
-        terrain: &Terrain,
+        distance_field: &DistanceField,
         headings: StartHeadings<'_>,
         config: ParticlesConfig,
     ) -> Result<Self, EngineError> {
-        let uniform = Uniform::new(terrain, headings)?;
-        let mut filter = Self::empty(terrain.frame, config);
+        let uniform = Uniform::new(distance_field, headings)?;
+        let mut filter = Self::empty(distance_field.frame, config);
         filter.start(|rng| uniform.draw(rng));
         Ok(filter)
     }
@@ -135,16 +135,16 @@ impl ParticleFilter {
         }
     }
 
-    /// Multiplies the weights by the likelihood of a scan. `terrain` is the map of the
+    /// Multiplies the weights by the likelihood of a scan. `distance_field` is the map of the
     /// start, and `ends` are in its cells; a scan without beams changes nothing.
-    pub fn weigh(&mut self, terrain: &Terrain, ends: &Ends) {
-        debug_assert_eq!(self.frame, terrain.frame);
+    pub fn weigh(&mut self, distance_field: &DistanceField, ends: &Ends) {
+        debug_assert_eq!(self.frame, distance_field.frame);
         self.beams.choose(ends, &self.config);
         let mut most = f64::NEG_INFINITY;
         for particle in &mut self.particles {
             let scan = self
                 .sensor
-                .log_likelihood(terrain, &self.beams, particle.pose);
+                .log_likelihood(distance_field, &self.beams, particle.pose);
             particle.weight = particle.weight.ln() + scan;
             most = most.max(particle.weight);
         }

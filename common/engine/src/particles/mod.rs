@@ -9,7 +9,7 @@
 //!
 //! ```text
 //! places of the votes ─┐               ┌── predict ◄── step of the odometry
-//!                      ├─ start ─ particles ─ weigh ◄── ends of a scan, terrain
+//!                      ├─ start ─ particles ─ weigh ◄── ends of a scan, distance field
 //! free cells ──────────┘               └── resample (KLD) ── estimate
 //! ```
 //!

@@ -54,8 +54,8 @@ pub fn draw(
 
 /// No candidate is surer than this, cells and degrees: it was refined by the scan that
 /// weighs the particles next, which must not count twice.
-const LEAST_CELLS: f64 = 0.5;
-const LEAST_DEG: f64 = 1.0;
+const MIN_CELLS: f64 = 0.5;
+const MIN_DEG: f64 = 1.0;
 
 /// Draws poses around candidates, as often around each as it is likely.
 pub(super) struct Seeds {
@@ -141,14 +141,14 @@ fn in_cells(frame: GridFrame, covariance: Matrix3<f64>) -> Matrix3<f64> {
 /// A root of the covariance, no narrower than the least one. It may be flat, where the
 /// heading was known.
 fn root(covariance: Matrix3<f64>) -> Option<Matrix3<f64>> {
-    const MOST_STEPS: usize = 100;
-    let least = LEAST_DEG.to_radians();
-    let least = Vector3::new(LEAST_CELLS, LEAST_CELLS, least).map(|d| d * d);
+    const MAX_STEPS: usize = 100;
+    let least = MIN_DEG.to_radians();
+    let least = Vector3::new(MIN_CELLS, MIN_CELLS, least).map(|d| d * d);
     let wide = covariance + Matrix3::from_diagonal(&least);
     let SymmetricEigen {
         eigenvalues,
         eigenvectors,
-    } = SymmetricEigen::try_new(wide, f64::EPSILON, MOST_STEPS)?;
+    } = SymmetricEigen::try_new(wide, f64::EPSILON, MAX_STEPS)?;
     let roots = eigenvalues.map(|value| value.max(0.0).sqrt());
     Some(eigenvectors * Matrix3::from_diagonal(&roots))
 }

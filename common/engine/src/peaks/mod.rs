@@ -19,7 +19,7 @@ use geometry::{Covariance, Pose, wrap_angle};
 use messages::{Hypothesis, Verdict, Vote};
 use nalgebra::Matrix3;
 
-use crate::fit::{BeamClass, Ends, Terrain};
+use crate::fit::{BeamClass, DistanceField, Ends};
 use crate::grid::GridFrame;
 use crate::localizer::Outcome;
 pub use by_fit::by_fit;
@@ -285,7 +285,7 @@ impl Workspace {
     pub fn judge<E>(
         &mut self,
         input: &PeakInput<'_>,
-        terrain: &Terrain,
+        distance_field: &DistanceField,
         config: &PeakConfig,
         scan: impl FnOnce(&mut Ends) -> Result<(), E>,
     ) -> Result<Judged<'_>, E> {
@@ -296,7 +296,7 @@ impl Workspace {
         // Out of the workspace while that is at work.
         let mut ends = std::mem::take(&mut self.ends);
         let found = scan(&mut ends).map(|()| {
-            self.by_fit(input, (terrain, &ends), config);
+            self.by_fit(input, (distance_field, &ends), config);
         });
         self.ends = ends;
         found.map(|()| Judged {

@@ -14,10 +14,10 @@ use crate::EngineError;
 use crate::scan::Scan;
 
 /// Scans of a window at most: those of the longest way, and of turns on the spot.
-const MOST_SCANS: usize = 128;
+const MAX_SCANS: usize = 128;
 
 /// Readings of a scan at most. No ring has as many sonars, a laser has more.
-const MOST_ECHOES: usize = 64;
+const MAX_ECHOES: usize = 64;
 
 /// Of scans that were taken nearer to each other than this, the last stands for
 /// all: metres, radians.
@@ -105,10 +105,10 @@ impl Window {
             return Err(EngineError::Odometry(odom_from_laser));
         }
         let echoes: Vec<Echo> = Echo::of(scan, Pose::IDENTITY)?.collect();
-        if echoes.len() > MOST_ECHOES {
+        if echoes.len() > MAX_ECHOES {
             return Err(EngineError::TooManyEchoes {
                 found: echoes.len(),
-                allowed: MOST_ECHOES,
+                allowed: MAX_ECHOES,
             });
         }
         if self.newest_ns().is_some_and(|newest| newest > measured_ns) {
@@ -159,7 +159,7 @@ impl Window {
 
     fn leave_behind(&mut self, newest_m: f64) {
         let is_behind = |taken: &Taken| newest_m - taken.way_m > self.way_m;
-        while self.taken.len() > MOST_SCANS || self.taken.front().is_some_and(is_behind) {
+        while self.taken.len() > MAX_SCANS || self.taken.front().is_some_and(is_behind) {
             self.taken.pop_front();
         }
     }
@@ -253,7 +253,7 @@ mod tests {
             };
             window.add(&scan, 2000 + i, turned).unwrap();
         }
-        assert_eq!(window.taken.len(), MOST_SCANS);
+        assert_eq!(window.taken.len(), MAX_SCANS);
     }
 
     #[test]
@@ -267,7 +267,7 @@ mod tests {
     #[test]
     fn what_is_no_ring_of_sonars_is_refused() {
         let mut window = window();
-        let many = [1.0; MOST_ECHOES + 1];
+        let many = [1.0; MAX_ECHOES + 1];
         let laser = Scan {
             angle_increment: 0.01,
             ..scan_of(&many)

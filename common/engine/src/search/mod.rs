@@ -11,7 +11,7 @@
 //!                  │         │
 //! scan program ────┼─────────┴─ set bounds ─ 16 × 16, 8 × 8 ─┐
 //!                  ├─ interval bounds ────── 4 × 4 ──────────┼─ descent ─ votes
-//!                  └─ outlook ─ leaf ─────── poses ──────────┘
+//!                  └─ block_ranges ─ leaf ─────── poses ──────────┘
 //! ```
 //!
 //! Alternatives below the floor come from the most promising blocks. Where bounds do

@@ -10,12 +10,12 @@ use super::TrackingConfig;
 use super::seen::Seen;
 use super::way::Way;
 use crate::EngineError;
-use crate::fit::{End, Ends, Terrain};
+use crate::fit::{DistanceField, End, Ends};
 use crate::grid::{CellRules, GridFrame};
 
 /// A match with a lower score says nothing: two fifths of the beams see what the scan
 /// before did not, or the robot was carried away.
-const LEAST_SCORE: f64 = 0.6;
+const MIN_SCORE: f64 = 0.6;
 
 /// A match with a lower score is tried again from other headings.
 const SURE_SCORE: f64 = 0.8;
@@ -28,7 +28,7 @@ const FARTHEST: f64 = 400.0;
 #[derive(Debug, Clone, Default)]
 pub(super) struct ScanMatcher {
     /// The scan that others are matched to, as a map in whose origin it was taken.
-    reference: Option<Terrain>,
+    reference: Option<DistanceField>,
     /// From there to the last scan.
     gone: Pose,
     /// How the robot moved to the last scan: it goes on as it went.
@@ -66,7 +66,7 @@ impl ScanMatcher {
 
     fn matched(&self, seen: &Seen<'_>) -> Option<Pose> {
         let before = Seen {
-            terrain: self.reference.as_ref()?,
+            distance_field: self.reference.as_ref()?,
             ..*seen
         };
         let unknown = Way {
@@ -82,14 +82,14 @@ impl ScanMatcher {
             fitted = before.settle_turned(predicted, fitted);
         }
         let step = self.gone.inverse().then(fitted.pose);
-        (fitted.score >= LEAST_SCORE * near).then_some(step)
+        (fitted.score >= MIN_SCORE * near).then_some(step)
     }
 }
 
 /// The ends of a scan as a map, with cells as large as those of the map on which the scan
 /// is looked for.
-fn around(seen: &Seen<'_>) -> Result<Terrain, EngineError> {
-    let resolution_m = seen.terrain.frame.resolution_m;
+fn around(seen: &Seen<'_>) -> Result<DistanceField, EngineError> {
+    let resolution_m = seen.distance_field.frame.resolution_m;
     let ends = || near_ends(seen.ends);
     let reach = ends().fold(1.0, |reach: f64, (x, y)| reach.max(x.abs()).max(y.abs()));
     let half = reach as usize + 2;
@@ -104,7 +104,7 @@ fn around(seen: &Seen<'_>) -> Result<Terrain, EngineError> {
         resolution_m,
         map_from_grid: Pose::new(corner, corner, 0.0),
     };
-    Terrain::new(frame, (side, side), &occupancy, CellRules::default())
+    DistanceField::new(frame, (side, side), &occupancy, CellRules::default())
 }
 
 /// Where beams end that end near, in cells about the frame that is sought.

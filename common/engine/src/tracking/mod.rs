@@ -64,7 +64,7 @@ const CHECKED_EVERY: u32 = 10;
 const COUNTS_AFTER: u32 = 2;
 
 /// Scans of fewer beams say nothing.
-pub const LEAST_BEAMS: usize = 10;
+pub const MIN_BEAMS: usize = 10;
 
 /// Finds the robot, and keeps its pose.
 #[derive(Debug, Clone)]
@@ -137,7 +137,7 @@ impl Tracker {
     }
 
     fn take_up(&mut self, seen: &Seen<'_>, stamp_ns: i64, moved: Option<Pose>) -> Need {
-        self.is_blank = seen.ends.beams() < LEAST_BEAMS;
+        self.is_blank = seen.ends.beams() < MIN_BEAMS;
         let moved = match self.is_blank {
             true => moved,
             false => self.matcher.moved(seen, moved, &self.config),

@@ -6,7 +6,7 @@ use geometry::{Covariance, Pose};
 use messages::Hypothesis;
 use nalgebra::{Matrix3, Rotation2, SymmetricEigen};
 
-use super::places::MOST;
+use super::places::MAX;
 use super::seen::{Fitted, with_map_error};
 use crate::peaks::Sought;
 
@@ -50,7 +50,7 @@ impl Candidate {
         candidates.clear();
         candidates.extend(found.map(|hypothesis| Candidate::of(hypothesis, sought)));
         candidates.sort_unstable_by_key(|candidate| Reverse(candidate.votes));
-        candidates.truncate(MOST);
+        candidates.truncate(MAX);
         let best = candidates.first().map_or(0, |best| best.votes);
         candidates.retain(|candidate| 2 * candidate.votes >= best);
     }

@@ -12,9 +12,9 @@ use crate::peaks::lead;
 
 /// Most places that are kept, and how many of them may be older than one key scan, and
 /// new: those that a place was told from do not give way to what each search finds anew.
-pub(super) const MOST: usize = MOST_OLD + MOST_NEW;
-const MOST_OLD: usize = 20;
-const MOST_NEW: usize = 12;
+pub(super) const MAX: usize = MAX_OLD + MAX_NEW;
+const MAX_OLD: usize = 20;
+const MAX_NEW: usize = 12;
 
 /// A difference of scores, against what the best lacks of a perfect one, is worth a
 /// factor of e, as for the single scan (`--lead-scale`).
@@ -197,7 +197,7 @@ impl Places {
         let score = self.best_score();
         let best = Best {
             score,
-            left_out: seen.terrain.left_out(score, seen.fit),
+            left_out: seen.distance_field.left_out(score, seen.fit),
         };
         let fits_badly = belief
             .place()
@@ -338,9 +338,9 @@ impl Places {
         for i in 0..self.kept.len() {
             let place = self.kept[i];
             let is_full = match place.age > 1 {
-                true => old == MOST_OLD,
+                true => old == MAX_OLD,
                 // At the first there are no others.
-                false => new == if self.key_scans > 1 { MOST_NEW } else { MOST },
+                false => new == if self.key_scans > 1 { MAX_NEW } else { MAX },
             };
             if place.bad >= JUNK_SCANS || is_full || place.log_weight < top - FARTHEST_BEHIND {
                 continue;

@@ -3,13 +3,13 @@
 use geometry::{Pose, wrap_angle};
 use nalgebra::{Matrix3, Vector3};
 
-use crate::fit::{Ends, Expected, FitConfig, GridPose, Terrain};
+use crate::fit::{DistanceField, Ends, Expected, FitConfig, GridPose};
 
 /// A scan, and the map on which it was taken.
 #[derive(Debug, Clone, Copy)]
 pub struct Seen<'a> {
     /// The map.
-    pub terrain: &'a Terrain,
+    pub distance_field: &'a DistanceField,
     /// The beams of the scan.
     pub ends: &'a Ends,
     /// How they are judged.
@@ -103,7 +103,7 @@ impl Seen<'_> {
         (mean, pull): (Pose, Matrix3<f64>),
         (reaches, known): ([f64; 2], Matrix3<f64>),
     ) -> Fitted {
-        let frame = self.terrain.frame;
+        let frame = self.distance_field.frame;
         let map_from_cells = frame.metres_from_cells();
         let cells_from_map = map_from_cells
             .try_inverse()
@@ -115,7 +115,7 @@ impl Seen<'_> {
         let start = GridPose::of(frame, start);
         let how = (&expected, reaches);
         let refined = self
-            .terrain
+            .distance_field
             .refine_expected(self.ends, start, how, self.fit);
         let told = cells_from_map.transpose() * refined.information() * cells_from_map;
         let at = refined.pose;
@@ -123,8 +123,8 @@ impl Seen<'_> {
         let covariance = information(&(told + known));
         Fitted {
             pose,
-            covariance: with_map_error(covariance, self.terrain.drawn_error_m()),
-            score: self.terrain.score(self.ends, at, self.fit),
+            covariance: with_map_error(covariance, self.distance_field.drawn_error_m()),
+            score: self.distance_field.score(self.ends, at, self.fit),
             off: squared_deviations(pose, mean, &known),
         }
     }

@@ -4,7 +4,7 @@ use messages::{TrackReason, TrackState};
 
 use super::*;
 use crate::beams::BeamConfig;
-use crate::fit::{Ends, FitConfig, Terrain};
+use crate::fit::{DistanceField, Ends, FitConfig};
 use crate::grid::{CellRules, Grid, GridFrame};
 use crate::localizer::{Localizer, LocalizerConfig, Prior};
 use crate::peaks::{PeakConfig, PeakInput, Sought, by_fit};
@@ -17,7 +17,7 @@ const RESOLUTION_M: f64 = 0.1;
 /// A building in which scans are simulated and searched.
 struct Building {
     grid: Grid,
-    terrain: Terrain,
+    distance_field: DistanceField,
     localizer: Localizer,
     space: Space,
 }
@@ -42,7 +42,7 @@ fn building(rows: &[&str]) -> Building {
         ..LocalizerConfig::default()
     };
     Building {
-        terrain: Terrain::new(frame, (width, height), &cells, rules).unwrap(),
+        distance_field: DistanceField::new(frame, (width, height), &cells, rules).unwrap(),
         localizer: Localizer::new(frame, grid.clone(), config, Prior::None).unwrap(),
         space: Space::new(360, RESOLUTION_M, width, height).unwrap(),
         grid,
@@ -90,7 +90,11 @@ impl Building {
         let outcome = outcome.unwrap().unwrap();
         let input = PeakInput::of(&outcome, self.localizer.frame());
         let ends = self.ends(pose);
-        let places = by_fit(&input, (&self.terrain, &ends), &PeakConfig::default());
+        let places = by_fit(
+            &input,
+            (&self.distance_field, &ends),
+            &PeakConfig::default(),
+        );
         let sought = Sought::of(None, false);
         let hypothesis = |place: &crate::peaks::Place| place.hypothesis(1, sought);
         let hypotheses: Vec<_> = places.places.iter().map(hypothesis).collect();
@@ -101,7 +105,7 @@ impl Building {
 
     fn seen<'a>(&'a self, ends: &'a Ends, fit: &'a FitConfig) -> Seen<'a> {
         Seen {
-            terrain: &self.terrain,
+            distance_field: &self.distance_field,
             ends,
             fit,
         }

@@ -12,14 +12,14 @@ use super::way::Way;
 
 /// Key scans since a step that is not known that have to agree before a place is the only
 /// one: nothing ties what was seen before to where the robot is now.
-pub(super) const LEAST_KEYS: u32 = 3;
+pub(super) const MIN_KEYS: u32 = 3;
 
 /// Places so near each other are not told apart by the verdict.
 const DISTINCT_M: f64 = 1.0;
 const DISTINCT_RADIANS: f64 = 15.0 * std::f64::consts::PI / 180.0;
 
 /// A lead below this makes the pose doubtful.
-const LEAST_LEAD: f64 = 3.0;
+const MIN_LEAD: f64 = 3.0;
 
 /// The last score may lie so much below `--least-mean` when a place becomes the only
 /// one.
@@ -138,7 +138,7 @@ impl Belief {
         }
         self.look_at(places);
         let state = match self.place {
-            Some(_) if !self.fits_badly && !self.unchecked && self.lead >= LEAST_LEAD => {
+            Some(_) if !self.fits_badly && !self.unchecked && self.lead >= MIN_LEAD => {
                 TrackState::Unique
             }
             Some(_) => TrackState::Doubtful,
@@ -224,7 +224,7 @@ impl Belief {
     fn is_unique(&self, best: &Place) -> bool {
         let config = &self.config;
         let lack = (config.sure_mean - best.mean).max(0.0);
-        self.connected_keys >= LEAST_KEYS
+        self.connected_keys >= MIN_KEYS
             && self.lead >= config.sure_lead + config.poor_fit_lead * lack
             && best.mean >= config.least_mean
             && best.last >= config.least_mean - LAST_BELOW

@@ -10,7 +10,7 @@ use super::run::Run;
 use crate::EvaluationError;
 
 /// The robot is put at least so far away, metres.
-const LEAST_M: f64 = 3.0;
+const MIN_M: f64 = 3.0;
 
 /// It is followed for so many metres before, and for so many after.
 const BEFORE_M: f64 = 5.0;
@@ -45,7 +45,7 @@ pub(super) fn choose(moments: &[Moment], count: u32) -> Vec<(usize, usize)> {
             let (a, b) = (moments[from].truth?, moments[to].truth?);
             let is_fit = moments[from].gone_m >= BEFORE_M
                 && total - moments[to].gone_m >= RIGHT_AFTER_M
-                && a.distance_to(b) >= LEAST_M;
+                && a.distance_to(b) >= MIN_M;
             is_fit.then_some((from, to))
         })
         .step_by(2)

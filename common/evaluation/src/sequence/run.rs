@@ -73,7 +73,7 @@ impl<'a> Run<'a> {
 
     fn seen(&self, moment: &'a Moment) -> Seen<'a> {
         Seen {
-            terrain: self.world.terrain(),
+            distance_field: self.world.distance_field(),
             ends: moment.ends(),
             fit: &self.world.peaks().fit,
         }

@@ -1,6 +1,6 @@
 //! The tracker started at many scans of a drive, with no guess.
 
-use engine::tracking::{FollowConfig, LEAST_BEAMS};
+use engine::tracking::{FollowConfig, MIN_BEAMS};
 use offline::World;
 
 use super::drive::Moment;
@@ -36,7 +36,7 @@ pub(super) struct Starts {
 pub(super) fn choose(moments: &[Moment], count: u32) -> Vec<usize> {
     let total = moments.last().map_or(0.0, |last| last.gone_m);
     let end = total - LEFT.0.min(LEFT.1 * total);
-    let is_fit = |moment: &Moment| moment.truth.is_some() && moment.ends().beams() >= LEAST_BEAMS;
+    let is_fit = |moment: &Moment| moment.truth.is_some() && moment.ends().beams() >= MIN_BEAMS;
     let mut chosen: Vec<usize> = (0..count)
         .filter_map(|i| {
             let at = end * f64::from(i) / f64::from(count.max(2) - 1);

@@ -135,14 +135,14 @@ impl Crew {
     }
 
     /// A process reported on itself.
-    pub fn heard(&mut self, report: &HealthHeader, now: Instant) {
+    pub fn received(&mut self, report: &HealthHeader, now: Instant) {
         let is_it = |member: &&mut Member| match &member.state {
             State::Running(process) => process.pid().cast_unsigned() == report.pid,
             _ => false,
         };
         if let Some(member) = self.members.iter_mut().find(is_it) {
             let busy = NodeState::from_code(report.state) == Some(NodeState::Busy);
-            member.pulse.heard(busy, now);
+            member.pulse.received(busy, now);
         }
     }
 

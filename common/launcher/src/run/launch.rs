@@ -184,10 +184,10 @@ fn launch(
     let _ = sd_notify::notify(&[NotifyState::Stopping]);
     let stopped = crew.stop();
     // Nodes that are stopped send a last report on their health.
-    let heard = watch.take(journal, |_| {});
+    let received = watch.take(journal, |_| {});
     let end = end?;
     stopped?;
-    heard?;
+    received?;
     let losers = crew.losers();
     Ok(Course { end, losers })
 }
@@ -209,11 +209,11 @@ fn stay(
         let now = Instant::now();
         // What a source has sent is heard after its end has been seen.
         let over = crew.is_over();
-        let heard = watch.take(journal, |health| crew.heard(health, now))?;
-        if heard.reader == Reader::Gone {
+        let received = watch.take(journal, |health| crew.received(health, now))?;
+        if received.reader == Reader::Gone {
             return Ok(Flow::Stop);
         }
-        if heard.answers || !over {
+        if received.answers || !over {
             last_progress = now;
         }
         let patient = now - last_progress < LAST_ANSWERS;

@@ -144,7 +144,7 @@ impl Pulse {
     }
 
     /// It reported.
-    pub fn heard(&mut self, busy: bool, now: Instant) {
+    pub fn received(&mut self, busy: bool, now: Instant) {
         self.last = Some(now);
         self.busy = busy;
     }
@@ -290,10 +290,10 @@ mod tests {
         let mut pulse = Pulse::new(Duration::from_secs(15));
         pulse.started(at(0));
         assert_eq!(pulse.missed_for(at(100)), None, "it never reported");
-        pulse.heard(false, at(100));
+        pulse.received(false, at(100));
         assert_eq!(pulse.missed_for(at(115)), None);
         assert_eq!(pulse.missed_for(at(116)), Some(Duration::from_secs(16)));
-        pulse.heard(true, at(116));
+        pulse.received(true, at(116));
         assert_eq!(pulse.missed_for(at(1000)), None, "it is busy");
         pulse.started(at(1000));
         assert_eq!(pulse.missed_for(at(1014)), None);

@@ -83,7 +83,7 @@ impl Entries {
     /// If its stamp is no time of ROS, or CDR cannot say it.
     pub fn scan(&mut self, scan: &ScanHeader, ranges: &[f32]) -> Result<(), TranscriptError> {
         let at = self.measured(scan.stamp, topic::Scan::NAME)?;
-        if let Some(mounts) = self.frames.hear_scan(scan, at.stamp) {
+        if let Some(mounts) = self.frames.on_scan(scan, at.stamp) {
             self.latched(topics::TF_STATIC, at.ns, &mounts)?;
         }
         let message = measurements::scan(at.stamp, scan, ranges);
@@ -99,7 +99,7 @@ impl Entries {
     /// If its stamp is no time of ROS, or CDR cannot say it.
     pub fn odometry(&mut self, odometry: &Odometry) -> Result<(), TranscriptError> {
         let at = self.measured(odometry.stamp, topic::OdometryTopic::NAME)?;
-        let transform = self.frames.hear_odometry(odometry, at.stamp);
+        let transform = self.frames.on_odometry(odometry, at.stamp);
         self.message(topics::TF, at.ns, &transform)?;
         let message = measurements::odometry(at.stamp, odometry);
         self.message(topics::ODOM, at.ns, &message)

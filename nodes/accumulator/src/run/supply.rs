@@ -75,7 +75,7 @@ impl Supply {
         inputs: &Inputs,
         health: &mut Health,
     ) -> Result<Option<PreparedMap>, AccumulatorError> {
-        let wished = self.hear_wish(&inputs.regions, health)?;
+        let wished = self.on_region(&inputs.regions, health)?;
         if self.receive(&inputs.maps, &inputs.boundaries, health)? || wished {
             self.consider(health)?;
         }
@@ -107,7 +107,7 @@ impl Supply {
 
     /// Takes a wish for a region: none is for what is configured. One that cannot
     /// be used is refused, and the one before holds.
-    fn hear_wish(
+    fn on_region(
         &mut self,
         regions: &Subscriber<topic::Region>,
         health: &mut Health,

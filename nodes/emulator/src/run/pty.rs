@@ -13,7 +13,7 @@ use crate::EmulatorError;
 use crate::lms2xx_device::Lms2xxDevice;
 
 /// What nobody reads is lost on a line; the terminal counts up to 4095.
-const MOST_UNREAD: u32 = 3300;
+const MAX_UNREAD: u32 = 3300;
 
 /// How long nothing must be unread before the terminal is closed, which takes
 /// along what it has not handed over, nanoseconds. It hands over in the
@@ -113,7 +113,7 @@ impl Terminal {
             match next {
                 Ok(frame) => {
                     tracing::debug!(command = ?frame.telegram, "heard");
-                    next_baud = self.device.hear(&frame.telegram, &mut self.unsent);
+                    next_baud = self.device.receive(&frame.telegram, &mut self.unsent);
                     self.common.health.count_received(1);
                 }
                 Err(SickError::Checksum { .. } | SickError::Unreadable { .. }) => {
@@ -163,7 +163,7 @@ impl Terminal {
         if !self.is_understood()? {
             self.unsent = self.common.faults.noise(self.unsent.len());
         }
-        if self.unread()? < MOST_UNREAD {
+        if self.unread()? < MAX_UNREAD {
             let mut rest = &self.unsent[..];
             while !rest.is_empty() {
                 let piece = self.common.faults.piece(rest.len());

@@ -17,7 +17,7 @@ use crate::cola_device::{ColaDevice, Model, Session};
 use crate::faults::Faults;
 
 /// A client that leaves so much unread is given up, bytes.
-const MOST_UNREAD: usize = 1 << 22;
+const MAX_UNREAD: usize = 1 << 22;
 
 pub(super) fn run(
     address: &str,
@@ -47,7 +47,7 @@ pub(super) fn run(
             clients.clear();
         }
         for client in &mut clients {
-            client.hear(&mut device, &mut common, now_ns)?;
+            client.receive(&mut device, &mut common, now_ns)?;
         }
         if clients.iter().any(|client| client.session.subscribed) {
             common.start()?;
@@ -161,7 +161,7 @@ impl Client {
     }
 
     /// Takes its commands and answers them.
-    fn hear(
+    fn receive(
         &mut self,
         device: &mut ColaDevice,
         common: &mut Common,
@@ -185,7 +185,7 @@ impl Client {
         }
         while let Some(next) = self.framer.next_frame() {
             let answer = match next {
-                Ok(frame) => device.hear(&mut self.session, &frame.telegram),
+                Ok(frame) => device.receive(&mut self.session, &frame.telegram),
                 Err(SickError::Unreadable { .. }) => Some(Answer::Fault(Fault::INVALID_DATA)),
                 Err(_) => None,
             };
@@ -225,7 +225,7 @@ impl Client {
             }
         }
         self.unsent.drain(..sent);
-        if self.unsent.len() > MOST_UNREAD {
+        if self.unsent.len() > MAX_UNREAD {
             tracing::warn!(client = %self.address, "too slow, disconnected");
             self.has_gone = true;
         }

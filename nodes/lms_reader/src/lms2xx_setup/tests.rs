@@ -33,7 +33,7 @@ fn device(baud: Baud) -> Device {
 }
 
 impl Device {
-    fn hear(&mut self, command: &Command<'_>) -> Option<Answer<'static>> {
+    fn receive(&mut self, command: &Command<'_>) -> Option<Answer<'static>> {
         if self.port != self.baud {
             return None;
         }
@@ -71,8 +71,8 @@ impl Device {
             match setup.next(now_ns)? {
                 Action::Baud(baud) => self.port = baud,
                 Action::Send(command) => {
-                    if let Some(answer) = self.hear(&command) {
-                        setup.hear(&answer)?;
+                    if let Some(answer) = self.receive(&command) {
+                        setup.receive(&answer)?;
                     }
                 }
                 Action::Wait => {}
@@ -153,15 +153,15 @@ fn a_device_that_refuses_is_an_error() {
         match setup.next(0).unwrap() {
             Action::Baud(baud) => device.port = baud,
             Action::Send(Command::SetVariant { .. }) => {
-                break setup.hear(&Answer::VariantSet {
+                break setup.receive(&Answer::VariantSet {
                     done: false,
                     width_deg: 180,
                     resolution_raw_1e2_deg: 100,
                 });
             }
             Action::Send(command) => {
-                let answer = device.hear(&command).unwrap();
-                setup.hear(&answer).unwrap();
+                let answer = device.receive(&command).unwrap();
+                setup.receive(&answer).unwrap();
             }
             Action::Wait => panic!("nothing to wait for"),
         }

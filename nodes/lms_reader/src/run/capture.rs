@@ -74,7 +74,7 @@ fn send_all(
         let data = match outlet.take(next)? {
             Some(Telegram::ScanData(data)) => data,
             Some(Telegram::Answer(Answer::Value(Value::DeviceIdent { name, .. }))) => {
-                outlet.angles.heard_name(name);
+                outlet.angles.on_name(name);
                 continue;
             }
             Some(other) => {

@@ -38,7 +38,7 @@ pub(crate) struct Subscription<M> {
     queue: Queue,
     /// The last sequence number of each sender.
     senders: BTreeMap<[u8; 16], i64>,
-    heard: bool,
+    received: bool,
     _token: LivelinessToken,
     message: PhantomData<M>,
 }
@@ -71,7 +71,7 @@ impl<M: RosMessage + DeserializeOwned> Subscription<M> {
             topic: topic.to_owned(),
             queue: queue?,
             senders: BTreeMap::new(),
-            heard: false,
+            received: false,
             _token: member.show(&endpoint)?,
             message: PhantomData,
         })
@@ -102,8 +102,8 @@ impl<M: RosMessage + DeserializeOwned> Subscription<M> {
         let sample = self.queue.next()?;
         let mut lost = 0;
         let message = self.decode(&sample, &mut lost);
-        if message.is_ok() && !self.heard {
-            self.heard = true;
+        if message.is_ok() && !self.received {
+            self.received = true;
             tracing::info!(topic = self.topic, "the first message came");
         }
         Some(Received { message, lost })

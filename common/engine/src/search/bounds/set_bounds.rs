@@ -19,7 +19,7 @@ use crate::simd::words::{BitWords, EMPTY, QUAD, Several};
 use crate::simd::{Kernel, Set};
 
 /// Most chunks that are bounded at a time by any instruction set.
-const MOST_AT_A_TIME: usize = 3;
+const MAX_AT_A_TIME: usize = 3;
 
 /// What the beams from each group on give at most, in votes: more for the first
 /// group than they can, and 0 behind the last.
@@ -53,7 +53,7 @@ impl SetBounds {
         self.rows.fit(&program.layout);
         let carries = program.groups().iter().map(Group::carries).max();
         for rows in &mut self.carries {
-            rows.resize(MOST_AT_A_TIME * (carries.unwrap_or(0)), Aligned(EMPTY));
+            rows.resize(MAX_AT_A_TIME * (carries.unwrap_or(0)), Aligned(EMPTY));
         }
     }
 }

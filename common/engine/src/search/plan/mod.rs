@@ -2,7 +2,7 @@
 //!
 //! When a search ends, every pose at or above its floor was counted: a block is dropped
 //! only where its bound lies below. Where bounds do not tell blocks apart, all poses are
-//! counted instead. Candidates below the floor come from the blocks that promise most.
+//! counted instead. Candidates below the floor come from the blocks with the highest bounds.
 
 mod alternatives;
 mod attempt;

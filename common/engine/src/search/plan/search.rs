@@ -6,23 +6,23 @@ use super::{alternatives, descent};
 use crate::grid::Grid;
 use crate::instruction_set::InstructionSet;
 use crate::program::ScanProgram;
-use crate::search::fallback::{self, Sift};
+use crate::search::fallback::{self, BeamSampling};
 use crate::search::index::SearchIndex;
 use crate::search::task::{Shared, Task};
 use crate::simd::Simd;
 use crate::space::Space;
 use crate::votes::{CollectConfig, VoteSet};
 
-/// What searches need beside the map, kept from scan to scan: once there is room
+/// What searches need beside the map, kept from scan to scan: once there is scratch
 /// for all, nothing is allocated any more. It may serve any map.
 #[derive(Debug, Default)]
 pub struct Workspace {
     shared: Shared,
     /// One for each thread.
-    rooms: Vec<descent::Room>,
-    alternatives: alternatives::Room,
+    scratches: Vec<descent::Scratch>,
+    alternatives: alternatives::Scratch,
     /// For counting every pose, the shares one for each thread.
-    sift: Sift,
+    sampling: BeamSampling,
     shares: Vec<fallback::Share>,
     pub(in crate::search) bounding: Bounding,
 }
@@ -99,21 +99,21 @@ impl SearchIndex {
     ) -> Attempt<'a> {
         let Workspace {
             shared,
-            rooms,
+            scratches,
             alternatives,
-            sift,
+            sampling,
             shares,
             ..
         } = workspace;
         let task = Task::new(shared, Simd::new(instruction_set), self, grid, scan, config);
-        rooms.resize_with(threads, descent::Room::default);
+        scratches.resize_with(threads, descent::Scratch::default);
         shares.resize_with(threads, fallback::Share::default);
         Attempt {
             task,
             program: scan.0,
-            rooms,
+            scratches,
             alternatives,
-            sift,
+            sampling,
             shares,
             stop,
         }
