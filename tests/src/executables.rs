@@ -5,7 +5,7 @@ use std::path::{Path, PathBuf};
 use std::process::Command;
 use std::sync::OnceLock;
 
-use transport::testing::patiently;
+use transport::testing::allow_long;
 
 /// The path of an executable, built in the profile of the tests.
 #[must_use]
@@ -14,7 +14,7 @@ pub fn path(name: &str) -> PathBuf {
     // The tests lie in `<target>/<profile>/deps`, executables one above.
     let test = std::env::current_exe().unwrap();
     let folder = test.ancestors().nth(2).unwrap();
-    BUILT.get_or_init(|| patiently(|| build(folder)));
+    BUILT.get_or_init(|| allow_long(|| build(folder)));
     folder.join(name)
 }
 

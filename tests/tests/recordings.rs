@@ -178,9 +178,9 @@ fn what_a_recording_has_lost_is_told_and_drawn() {
     let verdict = String::from_utf8_lossy(&compared.stdout);
     // What was played is as expected; the other scans are missing.
     let missing = 37 - scans;
-    let told = format!("was played and compared, with {missing} differences");
+    let expected = format!("was played and compared, with {missing} differences");
     assert!(verdict.contains("the file is cut short"), "{verdict}");
-    assert!(verdict.contains(&told), "{verdict}");
+    assert!(verdict.contains(&expected), "{verdict}");
     let drawn = std::fs::read_dir(&pictures).unwrap().count() as u64;
     assert_eq!(drawn, missing.min(20));
 }

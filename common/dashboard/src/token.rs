@@ -97,8 +97,8 @@ mod tests {
         for mode in [0o644, 0o602, 0o777] {
             set_mode(&path, mode);
             let error = Token::read(&path).err().unwrap().to_string();
-            let told = [format!("{mode:o}"), "chmod".to_owned()];
-            assert!(told.iter().all(|word| error.contains(word)), "{error}");
+            let expected = [format!("{mode:o}"), "chmod".to_owned()];
+            assert!(expected.iter().all(|word| error.contains(word)), "{error}");
         }
     }
 

@@ -50,7 +50,7 @@ pub(crate) enum Message<'a> {
     Log(&'a LogLine),
     /// Where poses are sought.
     Region(Region<'a>),
-    /// Who listens to wishes.
+    /// Who listens to requests.
     Abilities(Abilities),
     /// So many messages were not sent, because the reader was too slow.
     Missed {

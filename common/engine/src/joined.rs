@@ -80,19 +80,19 @@ pub enum MotionKnown {
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]
 pub enum LeftOut {
     /// It sent nothing yet.
-    #[error("no scan has come")]
+    #[error("no scan received")]
     NoScan,
     /// Its newest scan is too old.
-    #[error("its newest scan is {age_ms} ms older, more than one and a half of its periods")]
+    #[error("its newest scan is {age_ms} ms older, more than 1.5 scan periods")]
     Old {
         /// Milliseconds before the first laser's scan.
         age_ms: i64,
     },
     /// It is not known where it sits.
-    #[error("it is not known where it sits on the base")]
+    #[error("its mount on the base is not known")]
     NoMount,
     /// The robot moves, and odometry does not reach the scan.
-    #[error("no odometry tells how the robot moved since")]
+    #[error("no odometry for the robot's motion since")]
     NoOdometry,
     /// Its scan is refused.
     #[error(transparent)]
@@ -114,13 +114,13 @@ impl Brought {
     #[must_use]
     pub fn notes(&self, odometry_flows: bool) -> Vec<String> {
         let left_out = self.left_out.iter().map(|(laser, why)| match why {
-            LeftOut::Old { .. } => format!("laser {laser} is left out: its scans are too old"),
-            other => format!("laser {laser} is left out: {other}"),
+            LeftOut::Old { .. } => format!("laser {laser} is ignored: its scans are too old"),
+            other => format!("laser {laser} is ignored: {other}"),
         });
         let motion = match self.motion {
-            MotionKnown::LastTwist => Some("odometry comes late: its last twist is taken to go on"),
+            MotionKnown::LastTwist => Some("odometry is late: extrapolating with its last twist"),
             MotionKnown::Unknown if odometry_flows => {
-                Some("odometry does not reach the scans: their motion is not taken out")
+                Some("odometry does not cover the scans: motion is not compensated")
             }
             _ => None,
         };

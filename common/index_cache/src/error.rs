@@ -70,7 +70,7 @@ pub enum CacheError {
 #[derive(Debug, thiserror::Error)]
 pub enum FileError {
     /// It does not begin as these files do on this machine.
-    #[error("it is no file of an index")]
+    #[error("not an index file")]
     Foreign,
     /// Another release wrote it.
     #[error("it has version {found} and this is version {expected}")]
@@ -81,7 +81,7 @@ pub enum FileError {
         expected: u32,
     },
     /// Another name belongs to what it holds.
-    #[error("it holds the index of another map or of other settings")]
+    #[error("the index is of another map or other settings")]
     OtherKey,
     /// The checksum of its header is wrong.
     #[error("its header is damaged")]

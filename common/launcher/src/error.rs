@@ -105,7 +105,7 @@ pub enum LauncherError {
         source: io::Error,
     },
     /// A node failed, and is not started again.
-    #[error("node {node} ended with {status}{}; its own last lines say why", after(*restarts))]
+    #[error("node {node} ended with {status}{}; see its last log lines", after(*restarts))]
     NodeFailed {
         /// The node.
         node: String,
@@ -128,7 +128,7 @@ pub enum LauncherError {
         source: io::Error,
     },
     /// The service manager that started us cannot be told of it.
-    #[error("cannot tell the service manager: NOTIFY_SOCKET names no socket of one")]
+    #[error("cannot notify the service manager: NOTIFY_SOCKET is not one of its sockets")]
     Notify(#[source] io::Error),
     /// A signal cannot be caught.
     #[error("cannot catch signals")]
@@ -140,7 +140,7 @@ pub enum LauncherError {
     #[error(transparent)]
     Output(#[from] OutputError),
     /// The current directory cannot be told.
-    #[error("cannot tell the current directory")]
+    #[error("cannot find the current directory")]
     Folder(#[source] io::Error),
 }
 

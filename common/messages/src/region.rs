@@ -15,7 +15,7 @@ use crate::Stamp;
 #[type_name("RegionHeader/v1")]
 #[repr(C)]
 pub struct RegionHeader {
-    /// When it was wished for; the counter counts the wishes.
+    /// When it was requested; the counter counts the requests.
     pub stamp: Stamp,
 }
 

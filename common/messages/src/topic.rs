@@ -93,7 +93,7 @@ topics! {
     GroundTruthTopic = "ground_truth", GroundTruth, [u8] { depth: 16 };
     /// Where poses are to be sought from now on; no items where everywhere.
     Region = "region", RegionHeader, [Corner] { latched: true, depth: 1 };
-    /// A wish that the recorder save the last minutes; no items.
+    /// A request that the recorder save the last minutes; no items.
     Save = "save", SaveHeader, [u8];
     /// How each node fares; the items are its last error as UTF-8.
     Health = "health", HealthHeader, [u8] { latched: true, depth: 8, publishers: 24, subscribers: 8 };

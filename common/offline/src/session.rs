@@ -199,7 +199,7 @@ impl<'a> Session<'a> {
     fn keep(&mut self, kept: Kept) {
         let saved = kept.unsaved.map(Unsaved::save);
         let problems = kept.problem.into_iter().chain(saved.and_then(Result::err));
-        let notes = problems.map(|problem| format!("kept index: {}", with_causes(&problem)));
+        let notes = problems.map(|problem| format!("cached index: {}", with_causes(&problem)));
         self.notes.extend(notes);
     }
 

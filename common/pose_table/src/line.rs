@@ -98,8 +98,9 @@ fn stands(header: &HypothesesHeader, hypotheses: &[Hypothesis]) -> Vec<Stand> {
     let is_finite = |h: &&Hypothesis| {
         Pose::from(h.map_from_laser).is_finite() && h.covariance.iter().all(|c| c.is_finite())
     };
-    let told = hypotheses.iter().take(1 + header.alternatives as usize);
-    told.filter(is_finite)
+    let reported = hypotheses.iter().take(1 + header.alternatives as usize);
+    reported
+        .filter(is_finite)
         .map(|h| Stand {
             map_from_laser: h.map_from_laser.into(),
             covariance: Covariance::from_rows(h.covariance),
@@ -162,7 +163,7 @@ mod tests {
         let json = serde_json::to_string(&Line::new(&header, &found)).unwrap();
         assert_eq!(
             json,
-            r#"{"stamp_ns":7,"x":1.0,"y":-2.0,"heading_deg":180.0,"score":0.875,"verdict":"Unique","alternatives":2,"says":"one place fits, 88 % of the scan agrees","latency_ms":25.0,"engine_ms":24.0}"#
+            r#"{"stamp_ns":7,"x":1.0,"y":-2.0,"heading_deg":180.0,"score":0.875,"verdict":"Unique","alternatives":2,"says":"one place, fit 0.88","latency_ms":25.0,"engine_ms":24.0}"#
         );
         let none = serde_json::to_value(Line::new(&header, &[])).unwrap();
         assert!(none["x"].is_null() && none["score"].is_null());

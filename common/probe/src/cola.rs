@@ -5,7 +5,7 @@ use std::time::{Duration, Instant};
 
 use sick::cola::{
     AngleConvention, Answer, Channel, Command, DeviceAngles, Encoding, Field, Framer, Telegram,
-    Value, Variable,
+    Value, Variable, state_word,
 };
 
 use super::line::Line;
@@ -175,7 +175,7 @@ impl Device {
                 Some(in_words(value))
             }
             Telegram::Answer(Answer::Fault(fault)) => {
-                Some(format!("{variable:?}: the device refuses: {fault}"))
+                Some(format!("{variable:?}: rejected by the device: {fault}"))
             }
             _ => None,
         })?;
@@ -204,7 +204,7 @@ impl Device {
         })?;
         let none = || {
             (
-                vec!["no scan came: does it measure?".to_owned()],
+                vec!["no scan received: is the device measuring?".to_owned()],
                 Seen::default(),
             )
         };
@@ -254,11 +254,7 @@ fn in_words(value: &Value<'_>) -> String {
             let (name, version) = (name.escape_ascii(), version.escape_ascii());
             format!("device      {name}, version {version}")
         }
-        Value::DeviceState(state) => {
-            let words = ["busy", "ready", "error", "standby"];
-            let word = words.get(usize::from(*state)).unwrap_or(&"unknown");
-            format!("state       {word}")
-        }
+        Value::DeviceState(state) => format!("state       {}", state_word(*state)),
         Value::ScanConfig(config) => format!(
             "measures    {} Hz, every {}°, from {}° to {}°",
             f64::from(config.frequency_raw_1e2_hz) * 1e-2,

@@ -57,11 +57,11 @@ fn address(device: &str) -> Option<&str> {
 /// As wide as the terminal.
 fn columns() -> usize {
     let (_, columns) = console::Term::stdout().size();
-    let told = std::env::var("COLUMNS").ok();
-    let told = told.and_then(|columns| columns.parse().ok());
+    let stated = std::env::var("COLUMNS").ok();
+    let stated = stated.and_then(|columns| columns.parse().ok());
     match console::Term::stdout().is_term() {
         true => usize::from(columns),
-        false => told.unwrap_or(COLUMNS),
+        false => stated.unwrap_or(COLUMNS),
     }
     .clamp(10, 500)
 }

@@ -49,7 +49,7 @@ pub enum RegressionError {
         source: serde_json::Error,
     },
     /// A graph did not answer every scan.
-    #[error("{}: {answered} of {scans} scans were answered; the graph's own lines say why", recording.display())]
+    #[error("{}: {answered} of {scans} scans were answered; see the graph's log", recording.display())]
     Unanswered {
         /// The recording.
         recording: PathBuf,

@@ -74,10 +74,10 @@ impl<E, I: Iterator<Item = Result<Timed, E>>> InOrder<I, E> {
             .ok()
             .filter(|item| item.is_scan())?;
         let (stamp_ns, due_ns) = (scan.stamp_ns(), scan.log_time_ns);
-        let told_by_ns = scan
+        let needed_until_ns = scan
             .motion_until_ns()
             .map(|ns| ns.saturating_add(MARGIN_NS));
-        let lacks_odometry = told_by_ns.is_some_and(|until_ns| self.odometry_ns < until_ns);
+        let lacks_odometry = needed_until_ns.is_some_and(|until_ns| self.odometry_ns < until_ns);
         let belongs = |item: &Timed| {
             let delay_ns = item.log_time_ns.saturating_sub(due_ns);
             let by_then = item.stamp_ns() <= stamp_ns || (lacks_odometry && item.is_odometry());

@@ -29,7 +29,7 @@ impl Readiness {
         let missing = |(name, state): &(String, Option<NodeState>)| match state {
             Some(NodeState::Ready) => None,
             Some(state) => Some(format!("{name} ({state:?})")),
-            None => Some(format!("{name} (not heard of)")),
+            None => Some(format!("{name} (not started)")),
         };
         self.nodes.iter().filter_map(missing).collect()
     }
@@ -53,17 +53,14 @@ mod tests {
     #[test]
     fn all_must_be_ready_at_the_same_time() {
         let mut readiness = Readiness::of(&["a".into(), "b".into()]);
-        assert_eq!(
-            readiness.missing(),
-            ["a (not heard of)", "b (not heard of)"]
-        );
+        assert_eq!(readiness.missing(), ["a (not started)", "b (not started)"]);
         readiness.receive(&report("a", NodeState::Ready as u32));
         readiness.receive(&report("c", NodeState::Ready as u32));
         readiness.receive(&report("b", NodeState::Waiting as u32));
         assert_eq!(readiness.missing(), ["b (Waiting)"]);
         readiness.receive(&report("b", NodeState::Ready as u32));
         readiness.receive(&report("a", 99));
-        assert_eq!(readiness.missing(), ["a (not heard of)"]);
+        assert_eq!(readiness.missing(), ["a (not started)"]);
         readiness.receive(&report("a", NodeState::Ready as u32));
         assert!(readiness.missing().is_empty());
         assert!(Readiness::of(&[]).missing().is_empty());

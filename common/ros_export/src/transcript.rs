@@ -61,7 +61,7 @@ impl Transcript {
     ) -> Result<(), TransportError> {
         self.health.count_received(1);
         if lost > 0 {
-            tracing::warn!("{lost} samples were lost: they came faster than they were taken");
+            tracing::warn!("{lost} samples were lost: they arrived faster than they were read");
             self.count_dropped(lost);
         }
         let Err(error) = outcome else {

@@ -24,7 +24,7 @@ pub enum SoakError {
     #[error(transparent)]
     Transport(#[from] TransportError),
     /// A recording by which nothing can be judged.
-    #[error("{} has no true poses on /ground_truth: there is nothing to judge by", file.display())]
+    #[error("{} has no true poses on /ground_truth: nothing to compare with", file.display())]
     NoTruths {
         /// The recording.
         file: PathBuf,

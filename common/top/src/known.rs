@@ -1,5 +1,5 @@
-//! What the monitor has told, and how old it is. Fields that it does not tell are at
-//! rest. Pure: told the time, and knowing no clock.
+//! What the monitor has received, and how old it is. Fields that it does not tell are at
+//! rest. Pure: received the time, and knowing no clock.
 
 use std::collections::{BTreeMap, VecDeque};
 use std::time::{Duration, Instant};
@@ -119,24 +119,24 @@ pub(super) struct Node {
     pub(super) last_error: String,
 }
 
-/// How old something is: so old when it was told, and older since.
+/// How old something is: so old when it was received, and older since.
 #[derive(Debug, Clone, Copy)]
 struct Age {
-    told: Instant,
+    received: Instant,
     then: Duration,
 }
 
 impl Age {
-    fn of(seconds: f64, told: Instant) -> Self {
+    fn of(seconds: f64, received: Instant) -> Self {
         let then = Duration::try_from_secs_f64(seconds.max(0.0));
         Age {
-            told,
+            received,
             then: then.unwrap_or(Duration::MAX),
         }
     }
 
     fn at(self, now: Instant) -> Duration {
-        let since = now.saturating_duration_since(self.told);
+        let since = now.saturating_duration_since(self.received);
         self.then.saturating_add(since)
     }
 }
@@ -254,7 +254,7 @@ mod tests {
             None,
             "nothing came yet"
         );
-        // Whoever looks a minute after the laser died is told so at once.
+        // Whoever looks a minute after the laser died is received so at once.
         let old = r#"{"type":"snapshot","ages":{"scan_s":61.5},"answer":{"verdict":"Unique"}}"#;
         assert_eq!(receive(old, 0).unwrap(), "no data for 61 s");
         assert_eq!(receive(r#"{"type":"answer","age_ms":30.0}"#, 1), None);

@@ -20,7 +20,7 @@ pub(super) fn text(known: &Known, now: Instant) -> Text<'static> {
         lines.extend(pose_lines(pose));
     }
     match &known.answer {
-        None => lines.push(Line::from("no scan was answered yet")),
+        None => lines.push(Line::from("no scan has been answered yet")),
         Some(answer) => {
             let verdict = match known.pose {
                 Some(_) => format!("This scan alone, {}: ", answer.verdict),

@@ -78,7 +78,7 @@ impl<S: Subscriber> Layer<S> for Limit {
         match self.judge(hasher.finish(), Instant::now()) {
             Fate::Written => true,
             Fate::WrittenAfter(left_out) => {
-                tracing::warn!("{left_out} lines like the next one were left out");
+                tracing::warn!("{left_out} lines like the next one were omitted");
                 true
             }
             Fate::LeftOut => false,

@@ -32,10 +32,10 @@ fn lines_arrive_with_their_level_and_losses_are_told() {
             (0..FLOOD).for_each(|number| tracing::info!("line {number}"));
             flooded = true;
         }
-        let told = received
+        let reported = received
             .last()
             .is_some_and(|(_, text)| text.contains("lost"));
-        Ok::<_, TransportError>(if told { Flow::Stop } else { Flow::Continue })
+        Ok::<_, TransportError>(if reported { Flow::Stop } else { Flow::Continue })
     });
     outcome.unwrap();
 
@@ -59,7 +59,7 @@ fn lines_arrive_with_their_level_and_losses_are_told() {
     assert_eq!(arrived.count(), 63);
     assert_eq!(
         text,
-        "37 log lines were lost: they came faster than they could be sent"
+        "37 log lines were lost: they arrived faster than they could be sent"
     );
 
     // Who comes late gets the newest lines, within a tick.

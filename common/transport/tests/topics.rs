@@ -80,7 +80,7 @@ round_trips! {
     beams_arrive: topic::Beams,
     ground_truth_arrives: topic::GroundTruthTopic,
     regions_arrive: topic::Region,
-    wishes_to_save_arrive: topic::Save,
+    requests_to_save_arrive: topic::Save,
     health_arrives: topic::Health,
     log_arrives: topic::Log,
 }

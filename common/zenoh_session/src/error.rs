@@ -42,7 +42,7 @@ pub enum NetworkError {
         source: Cause,
     },
     /// The file is none that Zenoh's configuration is read from.
-    #[error("{} is no configuration: allowed are files in JSON5 that end in .json5 or .json", file.display())]
+    #[error("{} is not a configuration file: allowed are files in JSON5 that end in .json5 or .json", file.display())]
     Format {
         /// The file.
         file: PathBuf,

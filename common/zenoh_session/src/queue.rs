@@ -54,11 +54,11 @@ pub enum Past {
 /// What came and was not looked at yet. Receives as long as it lives.
 pub struct Queue {
     waiting: Arc<Waiting>,
-    _subscriber: Ear,
+    _subscriber: Subscription,
 }
 
 /// Listens until it is dropped.
-enum Ear {
+enum Subscription {
     /// To what comes. The advanced one would take a message for a repetition that has
     /// an earlier time than one before it by the same clock, and a router that gives
     /// the times has one for all who send through it.
@@ -111,7 +111,7 @@ impl Queue {
             }
         });
         let _subscriber = match past {
-            Past::Gone => Ear::Live {
+            Past::Gone => Subscription::Live {
                 _subscriber: subscriber.wait().map_err(KeyError::when(ACTION, key))?,
             },
             Past::Last(messages) => {
@@ -119,7 +119,7 @@ impl Queue {
                 let subscriber = subscriber
                     .history(history.detect_late_publishers())
                     .recovery(RecoveryConfig::default().heartbeat());
-                Ear::Kept {
+                Subscription::Kept {
                     _subscriber: subscriber.wait().map_err(KeyError::when(ACTION, key))?,
                 }
             }

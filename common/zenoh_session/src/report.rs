@@ -87,7 +87,7 @@ impl Report {
         // Strangers decide what stands in it, too.
         let mut problem = with_causes(error);
         problem.truncate(problem.floor_char_boundary(HealthHeader::ERROR_CAPACITY));
-        tracing::warn!(unsaid, "refused: {problem}");
+        tracing::warn!(unsaid, "rejected: {problem}");
         self.health.error(&problem)
     }
 }

@@ -40,7 +40,7 @@ fn words_of(panic: &(dyn Any + Send)) -> String {
     let formatted = || panic.downcast_ref::<String>().cloned();
     literal
         .or_else(formatted)
-        .unwrap_or_else(|| "it panicked without words".into())
+        .unwrap_or_else(|| "it panicked without a message".into())
 }
 
 #[cfg(test)]
@@ -66,7 +66,7 @@ mod tests {
         assert_eq!(dies(|| panic!("{} left", 0)), Err("0 left".into()));
         assert_eq!(
             dies(|| panic_any(7)),
-            Err("it panicked without words".into())
+            Err("it panicked without a message".into())
         );
     }
 }

@@ -328,10 +328,10 @@ impl Node {
         self.health.count_refused(1);
         let (counter, reason) = (scan.stamp.counter, with_causes(error));
         self.health
-            .error(&format!("scan {counter} is refused: {reason}"))?;
+            .error(&format!("scan {counter} rejected: {reason}"))?;
         // A source that is always wrong would fill the log.
         if reason != self.last_refusal {
-            tracing::warn!("scan {counter} is refused: {reason}");
+            tracing::warn!("scan {counter} rejected: {reason}");
             self.last_refusal = reason;
         }
         Ok(())

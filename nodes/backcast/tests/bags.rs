@@ -87,7 +87,7 @@ fn where_every_scan_is_refused_there_is_an_error() {
     let folder = folder(&[map_message(), still(1), truth_at(1, HERE), still(2)]);
     let said = |scans: u32| {
         format!(
-            "backcast: r.mcap: every scan was refused, {scans} in all; the first: angle_increment is 0"
+            "backcast: r.mcap: every scan was rejected, {scans} in all; the first: angle_increment is 0"
         )
     };
     let (code, found, stderr) = verdicts(folder.path(), "r.mcap");

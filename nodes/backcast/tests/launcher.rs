@@ -195,7 +195,7 @@ fn a_node_that_only_shows_fails_for_good_and_the_rest_goes_on() {
     let mut running = Running::start(&folder, &["--graph", name]);
     let lost = loop {
         let line = running.receive("backcast");
-        if line.contains("goes on without") {
+        if line.contains("continues without") {
             break line;
         }
     };
@@ -204,7 +204,7 @@ fn a_node_that_only_shows_fails_for_good_and_the_rest_goes_on() {
         "{lost}"
     );
 
-    // Who asks later is told, too.
+    // Who asks later is stdout, too.
     let member = Graph::join_named("tester", &GraphName::new(name).unwrap()).unwrap();
     let health = member.subscriber::<topic::Health>().unwrap();
     wait_for_health(&member, &health, |report| {
@@ -332,9 +332,9 @@ fn a_graph_is_asked_restarted_in_part_and_stopped_from_elsewhere() {
             text(output.stderr),
         )
     };
-    let (code, told, said) = ask(&["status", "--json"]);
+    let (code, stdout, said) = ask(&["status", "--json"]);
     assert_eq!(code, Some(0), "{said}");
-    let status: serde_json::Value = serde_json::from_str(&told).unwrap();
+    let status: serde_json::Value = serde_json::from_str(&stdout).unwrap();
     assert_eq!(
         (&status["graph"], &status["nodes"][0]["state"]),
         (&name.into(), &"running".into())
@@ -350,17 +350,17 @@ fn a_graph_is_asked_restarted_in_part_and_stopped_from_elsewhere() {
     let (code, _, said) = ask(&["restart", "source"]);
     assert_eq!(code, Some(0), "{said}");
     assert_eq!(running.receive("source"), "up", "a second time");
-    let (_, told, _) = ask(&["status", "--json"]);
-    let status: serde_json::Value = serde_json::from_str(&told).unwrap();
+    let (_, stdout, _) = ask(&["status", "--json"]);
+    let status: serde_json::Value = serde_json::from_str(&stdout).unwrap();
     assert_ne!(status["nodes"][0]["pid"], before);
     assert_eq!(status["nodes"][0]["restarts"], 1);
     assert!(ask(&["status"]).1.contains("source               running"));
 
-    let (code, told, said) = ask(&["logs", "backcast"]);
+    let (code, stdout, said) = ask(&["logs", "backcast"]);
     assert_eq!(code, Some(0), "{said}");
     assert!(
-        told.contains("source is restarted from another terminal"),
-        "{told}"
+        stdout.contains("source is restarted from another terminal"),
+        "{stdout}"
     );
 
     let (code, _, said) = ask(&["stop"]);

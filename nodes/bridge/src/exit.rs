@@ -69,12 +69,12 @@ impl Aside {
     /// The thread ends with this, or with the process where `send` holds it up.
     fn by(send: impl Fn(Vec<u8>) -> Outcome + Send + 'static) -> Self {
         let (to, from) = bounded(1);
-        let (told, outcomes) = unbounded();
+        let (done, outcomes) = unbounded();
         let waiting = from.clone();
         std::thread::spawn(move || {
             for payload in from {
                 // Where nobody wants to know, the process is about to end.
-                let _ = told.send(send(payload));
+                let _ = done.send(send(payload));
             }
         });
         Aside {

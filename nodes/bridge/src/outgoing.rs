@@ -82,7 +82,7 @@ impl<T: Wire> Outgoing<T> {
             self.follow(graph)?;
         }
         while let Some(outcome) = self.exit.outcome() {
-            self.tell(outcome, report)?;
+            self.report(outcome, report)?;
         }
         let Some(subscriber) = self.subscriber.clone() else {
             return Ok(());
@@ -117,12 +117,12 @@ impl<T: Wire> Outgoing<T> {
             };
         self.next.sequence += 1;
         match self.exit.put(payload) {
-            Some(outcome) => self.tell(outcome, report),
+            Some(outcome) => self.report(outcome, report),
             None => Ok(()),
         }
     }
 
-    fn tell(&self, outcome: zenoh::Result<()>, report: &mut Report) -> Result<(), BridgeError> {
+    fn report(&self, outcome: zenoh::Result<()>, report: &mut Report) -> Result<(), BridgeError> {
         match outcome {
             Ok(()) => report.sent(),
             Err(source) => {

@@ -18,7 +18,7 @@ pub enum FleetError {
     #[error(transparent)]
     Key(#[from] KeyError),
     /// The system gives no random number.
-    #[error("cannot draw a random number to be known by")]
+    #[error("cannot draw a random session id")]
     Random(#[source] getrandom::Error),
     /// A message is none, or a robot's name is none.
     #[error(transparent)]

@@ -4,7 +4,7 @@ use std::collections::BTreeMap;
 use std::sync::Arc;
 use std::sync::mpsc::Receiver;
 
-use dashboard::{Abilities, Robot, Robots, Wish};
+use dashboard::{Abilities, Request, Robot, Robots};
 use messages::topic;
 use network_payload::{Arrival, Arrivals, Preamble, Wire};
 use transport::{Graph, monotonic_ns};
@@ -12,7 +12,7 @@ use zenoh::Session;
 
 use crate::FleetError;
 use crate::feed::{Feed, FleetMessage};
-use crate::wishes::Wishes;
+use crate::requests::Requests;
 
 /// All robots, as their bridges tell of them.
 pub(crate) struct Fleet {
@@ -23,8 +23,8 @@ pub(crate) struct Fleet {
 /// One robot.
 struct Member {
     robot: Arc<Robot>,
-    wished: Receiver<Wish>,
-    wishes: Wishes,
+    requested: Receiver<Request>,
+    requests: Requests,
     /// What came of each topic, by its name.
     arrivals: BTreeMap<&'static str, Arrivals>,
     /// There while somebody looks at it, for it is computed only then.
@@ -53,7 +53,9 @@ impl Shown for topic::Map {
     fn show(received: &FleetMessage<Self>, robot: &Robot) -> Result<(), &'static str> {
         let message = &received.message;
         let is_sound = robot.on_map(&message.header, &message.items);
-        is_sound.then_some(()).ok_or("a map contradicts its header")
+        is_sound
+            .then_some(())
+            .ok_or("the map contradicts its header")
     }
 }
 
@@ -101,7 +103,7 @@ impl Shown for topic::Field {
         let is_sound = robot.on_field(&message.header, &message.items);
         is_sound
             .then_some(())
-            .ok_or("an image contradicts its header")
+            .ok_or("the image contradicts its header")
     }
 }
 
@@ -118,7 +120,7 @@ impl Fleet {
     pub(crate) fn take<T: Shown>(
         &mut self,
         received: &FleetMessage<T>,
-        join: impl FnOnce(&str) -> Result<Wishes, FleetError>,
+        join: impl FnOnce(&str) -> Result<Requests, FleetError>,
     ) -> Result<Taken, FleetError> {
         if !self.members.contains_key(&received.robot) {
             self.welcome(&received.robot, join)?;
@@ -133,18 +135,18 @@ impl Fleet {
     fn welcome(
         &mut self,
         name: &str,
-        join: impl FnOnce(&str) -> Result<Wishes, FleetError>,
+        join: impl FnOnce(&str) -> Result<Requests, FleetError>,
     ) -> Result<(), FleetError> {
-        let (robot, wished) = Robot::new(name.to_owned());
+        let (robot, requested) = Robot::new(name.to_owned());
         if !self.robots.add(Arc::clone(&robot)) {
             let robot = name.to_owned();
             return Err(FleetError::TooMany { robot });
         }
-        tracing::info!(robot = name, "a robot was heard");
+        tracing::info!(robot = name, "robot discovered");
         let member = Member {
             robot,
-            wished,
-            wishes: join(name)?,
+            requested,
+            requests: join(name)?,
             arrivals: BTreeMap::new(),
             field: None,
         };
@@ -152,8 +154,8 @@ impl Fleet {
         Ok(())
     }
 
-    /// Looks for silent nodes, opens and closes images, and passes wishes on: what
-    /// each wish came to.
+    /// Looks for silent nodes, opens and closes images, and passes requests on: what
+    /// each request came to.
     pub(crate) fn tick(
         &mut self,
         graph: &Graph,
@@ -162,14 +164,14 @@ impl Fleet {
         let mut granted = Vec::new();
         for (name, member) in &mut self.members {
             member.robot.look_for_silence(monotonic_ns());
-            member.robot.on_abilities(member.wishes.abilities());
+            member.robot.on_abilities(member.requests.abilities());
             match (member.robot.is_field_viewed(), &member.field) {
                 (true, None) => member.field = Some(Feed::open(session, name, graph.waker()?)?),
                 (false, Some(_)) => member.field = None,
                 _ => {}
             }
-            while let Ok(wish) = member.wished.try_recv() {
-                granted.push(member.grant(wish));
+            while let Ok(request) = member.requested.try_recv() {
+                granted.push(member.grant(request));
             }
         }
         Ok(granted)
@@ -213,31 +215,27 @@ impl Member {
         Ok(Taken::Shown { lost })
     }
 
-    fn grant(&mut self, wish: Wish) -> Result<(), FleetError> {
+    fn grant(&mut self, request: Request) -> Result<(), FleetError> {
         let robot = self.robot.name();
-        match wish {
-            Wish::Region(corners) => {
-                tracing::info!(
-                    robot,
-                    corners = corners.len(),
-                    "a region to search in was set"
-                );
-                self.wishes.region(&corners)?;
+        match request {
+            Request::Region(corners) => {
+                tracing::info!(robot, corners = corners.len(), "search region set");
+                self.requests.region(&corners)?;
                 self.robot.on_region(corners);
                 Ok(())
             }
-            Wish::Save => {
-                tracing::info!(robot, "the recorder is asked to save the last minutes");
-                self.wishes.save()
+            Request::Save => {
+                tracing::info!(robot, "asking the recorder to save the last minutes");
+                self.requests.save()
             }
         }
     }
 }
 
-impl Wishes {
+impl Requests {
     /// Who would hear them.
     fn abilities(&self) -> Abilities {
-        let (region, save) = self.received();
+        let (region, save) = self.subscribed();
         Abilities { region, save }
     }
 }

@@ -5,7 +5,7 @@
 //! |---|---|
 //! | `feed` | a topic of one robot or of all, from the network to our thread |
 //! | `fleet` | the robots that were heard, and what each is told |
-//! | `wishes` | what those with the token want, on its way to a robot |
+//! | `requests` | what those with the token want, on its way to a robot |
 //! | `run` | the event loop |
 //!
 //! The page and the API are `dashboard`'s, the messages those that bridges send. A
@@ -16,8 +16,8 @@ mod config;
 mod error;
 mod feed;
 mod fleet;
+mod requests;
 mod run;
-mod wishes;
 
 pub use config::Config;
 pub use error::FleetError;

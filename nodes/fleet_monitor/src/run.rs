@@ -10,10 +10,10 @@ use zenoh_session::Report;
 
 use crate::feed::{ALL, Feed};
 use crate::fleet::{Fleet, Shown, Taken};
-use crate::wishes::Wishes;
+use crate::requests::Requests;
 use crate::{Config, FleetError};
 
-/// How long a wish, an image and a silent node may wait.
+/// How long a request, an image and a silent node may wait.
 const TICK: Duration = Duration::from_millis(50);
 
 /// Serves the page until the stop flag is set.
@@ -123,7 +123,7 @@ impl Desk<'_> {
     fn take<T: Shown>(&mut self, feed: &Feed<T>) -> Result<(), FleetError> {
         self.report.dropped(feed.dropped());
         let (session, sender) = (self.session, self.sender);
-        let join = |robot: &str| Wishes::open(session, robot, sender);
+        let join = |robot: &str| Requests::open(session, robot, sender);
         for message in feed.waiting() {
             let message = message.map_err(FleetError::from);
             let outcome = message.and_then(|message| self.fleet.take(&message, join));

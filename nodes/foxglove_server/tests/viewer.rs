@@ -246,11 +246,13 @@ impl Viewer {
         }
         let number = self.subscribed.len() as u32 + 1;
         self.subscribed.insert(number, topic.to_owned());
-        let wish = json!({
+        let request = json!({
             "op": "subscribe",
             "subscriptions": [{"id": number, "channelId": self.channels[topic]["id"]}],
         });
-        self.socket.send(Message::text(wish.to_string())).unwrap();
+        self.socket
+            .send(Message::text(request.to_string()))
+            .unwrap();
     }
 
     /// The next message of a topic.
@@ -289,7 +291,7 @@ fn a_viewer_sees_scans_and_poses_at_their_times() {
     assert!(definition.contains("float32[] ranges"), "{definition}");
     world.answer(0, 1.5);
     viewer.subscribe("/pose");
-    // Wishes are granted one after the other, and what is latched comes at once.
+    // Requests are granted one after the other, and what is latched comes at once.
     viewer.subscribe("/tf_static");
     viewer.next("/tf_static");
     for counter in 1..=3 {

@@ -1,7 +1,7 @@
 //! Which way the device looks: as it is stated, or by the name that it says, or by the
 //! middle of its field.
 //!
-//! Pure but for the log, which tells once on what the answer rests.
+//! Pure but for the log, which says once what the answer is based on.
 
 use sick::cola::{AngleConvention, ConventionError, DeviceAngles, Field};
 
@@ -12,7 +12,7 @@ pub(crate) struct Angles {
     stated: Option<DeviceAngles>,
     read: DeviceAngles,
     /// What has been logged.
-    told: Option<AngleConvention>,
+    logged: Option<AngleConvention>,
 }
 
 impl Angles {
@@ -28,14 +28,14 @@ impl Angles {
         let read = DeviceAngles::of_name(name);
         if read != self.read {
             self.read = read;
-            self.told = None;
+            self.logged = None;
         }
     }
 
     /// Another device may come.
     pub(crate) fn forget_name(&mut self) {
         self.read = DeviceAngles::Unnamed;
-        self.told = None;
+        self.logged = None;
     }
 
     /// How the angles of a scan over `field` are to be read, and how far the device
@@ -47,13 +47,13 @@ impl Angles {
         let angles = self.stated.as_ref().unwrap_or(&self.read);
         let convention = angles.convention(field)?;
         let reach_m = angles.reach_m();
-        if self.told != Some(convention) {
-            self.tell(convention);
+        if self.logged != Some(convention) {
+            self.log(convention);
         }
         Ok((convention, reach_m))
     }
 
-    fn tell(&mut self, convention: AngleConvention) {
+    fn log(&mut self, convention: AngleConvention) {
         match self.stated.as_ref().unwrap_or(&self.read) {
             DeviceAngles::Known(row) => {
                 let stated = self.stated.is_some();
@@ -74,7 +74,7 @@ impl Angles {
                 );
             }
         }
-        self.told = Some(convention);
+        self.logged = Some(convention);
     }
 }
 

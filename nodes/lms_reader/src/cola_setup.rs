@@ -8,7 +8,7 @@ use std::collections::VecDeque;
 
 use sick::cola::{
     AUTHORIZED_CLIENT, Answer, Command, DeviceAngles, Field, Method, OutputRange,
-    PASSWORD_AUTHORIZED_CLIENT, ScanConfig, ScanDataConfig, Value, Variable,
+    PASSWORD_AUTHORIZED_CLIENT, ScanConfig, ScanDataConfig, Value, Variable, state_word,
 };
 
 use crate::LmsError;
@@ -151,7 +151,7 @@ impl Setup {
         };
         let received = match (step, answer) {
             (_, Answer::Fault(fault)) if step.is_optional() => {
-                tracing::debug!(%fault, ?step, "the device does not say");
+                tracing::debug!(%fault, ?step, "the device does not report it");
                 true
             }
             (_, Answer::Fault(fault)) => {
@@ -168,17 +168,14 @@ impl Setup {
                 }),
             ) => {
                 let (name, version) = (name_bytes.escape_ascii(), version.escape_ascii());
-                tracing::info!(%name, %version, "the device says what it is");
+                tracing::info!(%name, %version, "device identified");
                 if !self.is_stated {
                     self.angles = DeviceAngles::of_name(name_bytes);
                 }
                 true
             }
             (Step::AskState, Answer::Value(Value::DeviceState(state))) => {
-                tracing::info!(
-                    state,
-                    "the device says how it fares: 0 busy, 1 ready, 2 error, 3 standby"
-                );
+                tracing::info!("device state: {}", state_word(*state));
                 true
             }
             (Step::Login, Answer::AccessMode(success)) => done("log in", *success)?,

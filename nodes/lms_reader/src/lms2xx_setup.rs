@@ -163,7 +163,7 @@ impl Setup {
                 self.baud = None;
             }
             (Step::AskType, Answer::Type(text)) => {
-                tracing::info!(device = %text.escape_ascii(), "the device says what it is");
+                tracing::info!(device = %text.escape_ascii(), "device identified");
             }
             (Step::AskStatus, Answer::Status(status)) => self.on_status(status),
             (Step::SetVariant, Answer::VariantSet { .. }) => self.on_variant(answer)?,
@@ -194,7 +194,7 @@ impl Setup {
     fn hailed(&mut self) {
         let found = self.tried.last().copied().and_then(Baud::from_rate);
         self.baud = found;
-        tracing::info!(baud = found.map(Baud::rate), "the device answers");
+        tracing::info!(baud = found.map(Baud::rate), "the device answered");
         self.steps = match self.wanted.baud {
             Some(wanted) if found != Some(wanted) => {
                 VecDeque::from([Step::Hail, Step::SwitchBaud(wanted)])
@@ -221,7 +221,7 @@ impl Setup {
             field_deg = status.width_deg,
             resolution_deg = f64::from(status.resolution_raw_1e2_deg) * 0.01,
             error = status.has_error,
-            "the device says how it measures"
+            "device configuration"
         );
         self.status = Some(*status);
     }

@@ -58,8 +58,8 @@ struct Config {
 
 fn main() {
     let config = Config::parse();
-    let is_told_whom_to_ask = config.network.config.is_some() || !config.network.connect.is_empty();
-    if is_told_whom_to_ask {
+    let has_address = config.network.config.is_some() || !config.network.connect.is_empty();
+    if has_address {
         load(&config);
     } else {
         compare();

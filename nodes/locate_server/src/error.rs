@@ -65,22 +65,22 @@ pub enum LocateError {
         found: String,
     },
     /// The scan is none that the engine can use.
-    #[error("the scan is refused")]
+    #[error("the scan is rejected")]
     Scan(#[from] EngineError),
     /// All servers have as much to do as they take on.
-    #[error("busy: {waiting} scans are being searched or wait, and more are not taken on")]
+    #[error("busy: {waiting} scans are being searched or waiting, which is the limit")]
     Busy {
         /// At the server that was asked.
         waiting: usize,
     },
     /// The answer would have come after the deadline.
-    #[error("late: there was no answer within {deadline_ms} ms")]
+    #[error("late: no answer within {deadline_ms} ms")]
     Late {
         /// As asked, milliseconds.
         deadline_ms: u128,
     },
     /// A server says so.
-    #[error("the server refuses: {says}")]
+    #[error("the server rejects the request: {says}")]
     Refused {
         /// In its words.
         says: String,

@@ -137,9 +137,9 @@ impl Service {
             let desk = self.desk.clone();
             let ask = move |query| desk.ask(query);
             self.to_all = Some(answer(&self.session, &self.key, ask)?);
-            tracing::info!(key = self.key, "takes the questions to all servers");
+            tracing::info!(key = self.key, "answers the requests to all servers");
         } else if !is_first && self.to_all.take().is_some() {
-            tracing::info!(key = self.key, "another server takes the questions");
+            tracing::info!(key = self.key, "another server answers the requests to all");
         }
         Ok(())
     }
@@ -193,7 +193,7 @@ fn meet(
                     workers,
                     comes,
                     fits,
-                    "another server of this map's name"
+                    "another server has the same map name"
                 );
                 match (comes, fits) {
                     (true, true) => desk.team().join(session, since, workers),

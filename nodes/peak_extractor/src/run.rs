@@ -106,7 +106,7 @@ impl Node {
             Ok(()) => self.health.state(NodeState::Ready),
             Err(error) => {
                 let map_id = map.header().map_id;
-                let problem = format!("map {map_id:016x} is refused: {}", with_causes(&error));
+                let problem = format!("map {map_id:016x} rejected: {}", with_causes(&error));
                 tracing::warn!("{problem}");
                 self.health.count_refused(1);
                 self.health.error(&problem)?;
@@ -201,7 +201,7 @@ impl Node {
     fn refuse(&mut self, counter: u64, error: &PeakError) -> Result<(), TransportError> {
         self.health.count_refused(1);
         let reason = with_causes(error);
-        let problem = format!("the votes of scan {counter} are refused: {reason}");
+        let problem = format!("votes of scan {counter} rejected: {reason}");
         self.health.error(&problem)?;
         // A sender that is always wrong would fill the log.
         if reason != self.last_refusal {

@@ -266,8 +266,8 @@ fn a_black_box_is_saved_when_asked_and_when_the_pose_is_lost() {
 }
 
 #[test]
-fn a_black_box_is_saved_when_the_graph_wishes() {
-    let mut world = World::start("wish", &["--keep", "1s"]);
+fn a_black_box_is_saved_when_the_graph_asks() {
+    let mut world = World::start("save", &["--keep", "1s"]);
     let saves = world.graph.publisher::<topic::Save>().unwrap();
     world.send_map();
     world.send_scan();
@@ -312,8 +312,8 @@ fn a_full_disk_is_told_and_nothing_is_lost_once_there_is_room() {
     let is_degraded = |report: &messages::HealthHeader| {
         report.node.as_str() == "recorder" && report.state == NodeState::Degraded as u32
     };
-    let (_, told) = wait_for_health(&world.graph, &world.health, is_degraded);
-    assert!(told.contains("File too large"), "{told}");
+    let (_, said) = wait_for_health(&world.graph, &world.health, is_degraded);
+    assert!(said.contains("File too large"), "{said}");
     let before = Recording::open(world.path("r.mcap")).unwrap();
     assert!(before.messages() > 0 && before.size() <= ROOM as u64);
 

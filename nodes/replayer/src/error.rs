@@ -25,7 +25,7 @@ pub enum ReplayerError {
         found: Vec<String>,
     },
     /// Standard input cannot be read.
-    #[error("cannot read what is typed")]
+    #[error("cannot read the keyboard")]
     Keyboard(#[source] std::io::Error),
     /// The graph failed.
     #[error(transparent)]

@@ -282,7 +282,7 @@ impl Player<'_> {
         match self.failure {
             Some(error) if finished && error.is_damage() => {
                 let lost = with_causes(&error);
-                tracing::error!("what follows was lost: {lost}");
+                tracing::error!("the rest of the recording was lost: {lost}");
                 self.outlet.health.error(&lost)?;
                 summary.damaged = true;
                 Ok(summary)

@@ -61,7 +61,7 @@ impl Outgoing {
         })
     }
 
-    /// Tells the robot what a scan says.
+    /// Sends the robot the answer to a scan.
     pub(crate) fn answer(
         &mut self,
         header: &HypothesesHeader,
@@ -77,11 +77,11 @@ impl Outgoing {
             true => None,
             false => seeding.on_answer(answer),
         };
-        let outcome = self.tell(header, items, map_frame, frames, reason, report);
+        let outcome = self.send_answer(header, items, map_frame, frames, reason, report);
         outcome.or_else(|error| report.refused(&error))
     }
 
-    fn tell(
+    fn send_answer(
         &mut self,
         header: &HypothesesHeader,
         items: &[Hypothesis],
@@ -110,7 +110,7 @@ impl Outgoing {
         self.broadcast(header.stamp, in_map, report)
     }
 
-    /// Tells the robot where the tracker has it, by a scan.
+    /// Sends the robot the tracker's pose at a scan.
     pub(crate) fn tracked(
         &mut self,
         header: &PoseHeader,
@@ -157,7 +157,7 @@ impl Outgoing {
         self.initial_pose.send(&spread(pose, self.spread))?;
         report.sent();
         let (x, y, yaw_deg) = (at.x, at.y, at.yaw.to_degrees());
-        tracing::info!(?reason, x, y, yaw_deg, "told the robot where it is");
+        tracing::info!(?reason, x, y, yaw_deg, "sent the initial pose to the robot");
         Ok(())
     }
 
@@ -188,7 +188,7 @@ impl Outgoing {
         Ok(())
     }
 
-    /// Tells the robot how a node fares.
+    /// Sends the robot the state of a node.
     pub(crate) fn health(
         &mut self,
         health: &HealthHeader,

@@ -59,7 +59,7 @@ pub(crate) struct Seeding {
     waiting: Option<Belief>,
     apart: u32,
     /// The scan by which it was told last.
-    told_ns: i64,
+    seeded_ns: i64,
 }
 
 impl Seeding {
@@ -71,7 +71,7 @@ impl Seeding {
             answers: VecDeque::with_capacity(KEPT),
             waiting: None,
             apart: 0,
-            told_ns: i64::MIN,
+            seeded_ns: i64::MIN,
         }
     }
 
@@ -96,7 +96,7 @@ impl Seeding {
     /// Takes the pose of the particle filter.
     pub(crate) fn on_belief(&mut self, belief: Belief) {
         // What it thought before it was told does not count.
-        if self.when != Seed::Lost || belief.measured_ns <= self.told_ns {
+        if self.when != Seed::Lost || belief.measured_ns <= self.seeded_ns {
             return;
         }
         let newest = self.answers.back().map(|answer| answer.measured_ns);
@@ -115,7 +115,7 @@ impl Seeding {
             // The clock was set back: a recording that begins anew.
             self.answers.clear();
             self.waiting = None;
-            self.told_ns = i64::MIN;
+            self.seeded_ns = i64::MIN;
         }
         if self.answers.len() == KEPT {
             self.answers.pop_front();
@@ -129,7 +129,7 @@ impl Seeding {
         }
         let reason = self.wanted.take()?;
         self.apart = 0;
-        self.told_ns = now_ns;
+        self.seeded_ns = now_ns;
         Some(reason)
     }
 

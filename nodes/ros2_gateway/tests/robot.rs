@@ -271,14 +271,14 @@ fn what_the_graph_says_reaches_the_robot_byte_for_byte() {
         assert_near(&poses["poses"][0], Pose::new(1.0, 2.0, 0.0));
         assert_near(&poses["poses"][1], Pose::new(-7.0, 2.0, 0.0));
         assert_eq!(poses["sequence"], counter + 1);
-        let Some(told) = received.get("initialpose") else {
+        let Some(seed) = received.get("initialpose") else {
             assert_eq!(verdict, Verdict::Ambiguous);
             continue;
         };
-        assert_eq!(told["stamp"], stamp);
-        assert_near(&told["pose"], Pose::new(1.0, 2.0, 0.0));
+        assert_eq!(seed["stamp"], stamp);
+        assert_near(&seed["pose"], Pose::new(1.0, 2.0, 0.0));
         // At least the spread of 0.1 m and 3 degrees.
-        let variances: Vec<f64> = serde_json::from_value(told["variances"].clone()).unwrap();
+        let variances: Vec<f64> = serde_json::from_value(seed["variances"].clone()).unwrap();
         assert_eq!(variances[0], 0.1 * 0.1);
         // The laser's, and what its yaw does half a metre away, but for rounding.
         assert!((variances[1] - (0.01 + 0.25e-6)).abs() < 1e-12);
@@ -336,9 +336,9 @@ fn a_robot_whose_pose_is_tracked_is_told_that_pose_and_no_single_answer() {
         ..PoseHeader::zeroed()
     };
     loan.send().unwrap();
-    let told = joined.robot.wait_for("initialpose");
-    assert_eq!(told["same"], true, "the bytes differ");
-    assert_near(&told["pose"], Pose::new(3.0, 1.0, 0.25));
+    let seed = joined.robot.wait_for("initialpose");
+    assert_eq!(seed["same"], true, "the bytes differ");
+    assert_near(&seed["pose"], Pose::new(3.0, 1.0, 0.25));
     let tf = joined.robot.wait_for("tf");
     assert_eq!(tf["child"], "odom");
 
@@ -430,12 +430,12 @@ fn a_particle_filter_is_told_where_it_is() {
         .collect();
     // What was said up to the answer to scan `index`, which has an answer itself.
     let until_answered = |robot: &mut Robot, index: usize| {
-        let mut told = Vec::new();
+        let mut seed = Vec::new();
         loop {
             let said = robot.receive();
             match said["event"].as_str().unwrap() {
-                "initialpose" => told.push(said),
-                "hypotheses" if said["stamp"] == stamps[index] => return told,
+                "initialpose" => seed.push(said),
+                "hypotheses" if said["stamp"] == stamps[index] => return seed,
                 _ => {}
             }
         }
@@ -448,19 +448,19 @@ fn a_particle_filter_is_told_where_it_is() {
     assert_eq!(scan(robot, 0).len(), 0);
     robot.order("filter", json!({}));
     // It is told by a scan after it came, once.
-    let mut told = Vec::new();
+    let mut seed = Vec::new();
     let mut index = 0;
-    while told.is_empty() {
+    while seed.is_empty() {
         index += 1;
-        told = scan(robot, index);
+        seed = scan(robot, index);
     }
-    assert_eq!(told.len(), 1);
+    assert_eq!(seed.len(), 1);
     assert_eq!(
-        (&told[0]["stamp"], &told[0]["frame"]),
+        (&seed[0]["stamp"], &seed[0]["frame"]),
         (&json!(stamps[index]), &json!("map"))
     );
     let of = |value: &Value, i: usize| value[i].as_f64().unwrap();
-    let pose = &told[0]["pose"];
+    let pose = &seed[0]["pose"];
     let base = Pose::new(of(pose, 0), of(pose, 1), of(pose, 2));
     let laser = base.then(Pose::new(0.78, 0.0, 0.0));
     // As near as all answers on this recording are.
@@ -491,13 +491,13 @@ fn a_particle_filter_is_told_where_it_is() {
     index += 1;
     assert_eq!(scan(robot, index).len(), 1);
     // It is carried away.
-    let mut told = Vec::new();
-    while told.is_empty() {
+    let mut seed = Vec::new();
+    while seed.is_empty() {
         index += 1;
         believe(robot, index, base.x + 5.0);
-        told = scan(robot, index);
+        seed = scan(robot, index);
     }
-    assert_eq!(told.len(), 1);
+    assert_eq!(seed.len(), 1);
     assert_eq!(
         refused_by_gateway(&joined.graph),
         before,

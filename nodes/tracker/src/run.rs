@@ -157,7 +157,9 @@ impl Node {
             let pose = Pose::from(initial.map_from_base);
             match pose.is_finite() && covariance.0.cholesky().is_some() {
                 true => self.initial = Some((pose, covariance)),
-                false => self.refuse("an initial pose is refused: it or its covariance is none")?,
+                false => {
+                    self.refuse("initial pose rejected: the pose or its covariance is not valid")?
+                }
             }
         }
         while let Some(odometry) = inputs.odometry.receive()? {
@@ -215,7 +217,7 @@ impl Node {
         self.ends = ends;
         if let Err(error) = found {
             let (counter, reason) = (scan.stamp.counter, with_causes(&error));
-            self.refuse(&format!("scan {counter} is refused: {reason}"))?;
+            self.refuse(&format!("scan {counter} rejected: {reason}"))?;
             return self.send_nothing(scan, TrackReason::NoScan);
         }
         if let Some(initial) = self.initial.take() {

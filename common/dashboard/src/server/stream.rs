@@ -54,7 +54,7 @@ pub(super) async fn open(
     let robot = site.robot(&name)?;
     let permit = Arc::clone(&site.watchers).try_acquire_owned();
     let permit = permit.map_err(|_| {
-        let problem = "as many watch already as may";
+        let problem = "the maximum number of viewers is connected";
         Refusal::new(StatusCode::SERVICE_UNAVAILABLE, problem)
     })?;
     Ok(upgrade
@@ -90,8 +90,8 @@ impl Reader {
     ) -> Option<()> {
         loop {
             tokio::select! {
-                told = news.recv() => match told {
-                    Ok(told) => self.send(Frame::Text(told)).await?,
+                message = news.recv() => match message {
+                    Ok(text) => self.send(Frame::Text(text)).await?,
                     Err(RecvError::Lagged(messages)) => {
                         self.send(Frame::Text(text(&Message::Missed { messages }))).await?;
                         let Watching { snapshot, news: next } = self.robot.watch(transport::monotonic_ns());

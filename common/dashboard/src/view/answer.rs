@@ -7,7 +7,7 @@ use serde::Serialize;
 
 use super::{Ellipse, PoseJson, ms};
 
-/// Most places that are told; the engine keeps 64.
+/// Most places that are sent; the engine keeps 64.
 const MAX_PLACES: usize = 64;
 
 /// The answer to one scan.
@@ -63,9 +63,9 @@ impl Answer {
     pub(crate) fn new(header: &HypothesesHeader, items: &[Hypothesis], now_ns: i64) -> Self {
         let verdict = Verdict::from_code(header.verdict);
         let since_entry = |ns: i64| ms(ns.saturating_sub(header.stamp.entered_ns));
-        let told = items.iter().filter(is_pose).take(MAX_PLACES);
+        let shown = items.iter().filter(is_pose).take(MAX_PLACES);
         let mount_known = header.mount_known == 1;
-        let stands: Vec<Stand> = told.clone().filter_map(stand).collect();
+        let stands: Vec<Stand> = shown.clone().filter_map(stand).collect();
         let meant = stands.len().min(1 + header.alternatives as usize);
         Answer {
             counter: header.stamp.counter,
@@ -84,7 +84,7 @@ impl Answer {
             age_ms: since_entry(now_ns),
             hypotheses: match verdict {
                 Some(Verdict::NoScan) => Vec::new(),
-                _ => told.map(|h| place(h, mount_known)).collect(),
+                _ => shown.map(|h| place(h, mount_known)).collect(),
             },
         }
     }
@@ -156,7 +156,7 @@ mod tests {
         let answer = Answer::new(&header(Verdict::Unique), &[hypothesis(1.0)], 31_000_000);
         assert_eq!((answer.counter, answer.verdict), (7, "Unique"));
         assert_eq!((answer.latency_ms, answer.age_ms), (20.0, 30.0));
-        assert_eq!(answer.says, "one place fits, 90 % of the scan agrees");
+        assert_eq!(answer.says, "one place, fit 0.90");
         let ellipse = answer.hypotheses[0].ellipse.unwrap();
         assert!((ellipse.major_m - 0.2).abs() < 1e-12);
         assert!((ellipse.yaw - 0.03).abs() < 1e-12);

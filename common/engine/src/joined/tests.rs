@@ -171,7 +171,7 @@ fn a_laser_that_cannot_be_joined_is_left_out_and_named() {
     joiner.on_scan(&lost, &RANGES);
     assert_eq!(
         left_out(&mut joiner).unwrap(),
-        "rear: it is not known where it sits on the base"
+        "rear: its mount on the base is not known"
     );
     joiner.on_scan(&scan("rear", 226), &[]);
     assert!(left_out(&mut joiner).unwrap().contains("no ranges"));
@@ -182,7 +182,7 @@ fn a_laser_that_cannot_be_joined_is_left_out_and_named() {
     joiner.on_scan(&scan("front", 1000), &RANGES);
     assert_eq!(
         left_out(&mut joiner).unwrap(),
-        "rear: no odometry tells how the robot moved since"
+        "rear: no odometry for the robot's motion since"
     );
 }
 

@@ -216,8 +216,8 @@ impl Places {
     /// The verdict in words.
     #[must_use]
     pub fn sentence(&self) -> String {
-        let told = self.places.iter().take(1 + self.alternatives as usize);
-        let stands: Vec<Stand> = told
+        let reported = self.places.iter().take(1 + self.alternatives as usize);
+        let stands: Vec<Stand> = reported
             .map(|place| Stand {
                 map_from_laser: place.map_from_laser,
                 covariance: place.covariance,

@@ -35,11 +35,11 @@ pub fn sentence(verdict: Verdict, places: &[Stand]) -> String {
             "no beam says anything about this map: is the laser covered?".into()
         }
         (Verdict::Unique, [best, ..]) => {
-            format!("one place fits, {:.0} % of the scan agrees", percent(best))
+            format!("one place, fit {:.2}", fit(best))
         }
         (Verdict::PoorFit, [best, ..]) => format!(
-            "even at the best place only {:.0} % of the scan agrees: is it this map?",
-            percent(best)
+            "the best place has a fit of only {:.2}: is it this map?",
+            fit(best)
         ),
         (Verdict::Ambiguous, [_]) => "several places fit about as well".into(),
         (Verdict::Ambiguous, [best, others @ ..]) => {
@@ -48,8 +48,8 @@ pub fn sentence(verdict: Verdict, places: &[Stand]) -> String {
     }
 }
 
-fn percent(place: &Stand) -> f64 {
-    100.0 * place.score.clamp(0.0, 1.0)
+fn fit(place: &Stand) -> f64 {
+    place.score.clamp(0.0, 1.0)
 }
 
 /// How the others lie to the best place.
@@ -100,11 +100,11 @@ mod tests {
         let say = |verdict, places: &[Stand]| sentence(verdict, places);
         assert_eq!(
             say(Verdict::Unique, &[at(0.0, 0.0, 0.0)]),
-            "one place fits, 87 % of the scan agrees"
+            "one place, fit 0.87"
         );
         assert_eq!(
             say(Verdict::PoorFit, &[at(0.0, 0.0, 0.0)]),
-            "even at the best place only 87 % of the scan agrees: is it this map?"
+            "the best place has a fit of only 0.87: is it this map?"
         );
         assert_eq!(
             say(Verdict::NoScan, &[]),

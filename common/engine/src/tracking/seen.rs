@@ -117,10 +117,10 @@ impl Seen<'_> {
         let refined = self
             .distance_field
             .refine_expected(self.ends, start, how, self.fit);
-        let told = cells_from_map.transpose() * refined.information() * cells_from_map;
+        let measured = cells_from_map.transpose() * refined.information() * cells_from_map;
         let at = refined.pose;
         let pose = frame.map_from_cells(at.x, at.y, at.heading);
-        let covariance = information(&(told + known));
+        let covariance = information(&(measured + known));
         Fitted {
             pose,
             covariance: with_map_error(covariance, self.distance_field.drawn_error_m()),

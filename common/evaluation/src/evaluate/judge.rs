@@ -146,7 +146,7 @@ impl Judge {
     pub(super) fn complaint(&self) -> Option<String> {
         let reason = self.first_refusal.as_ref()?;
         let refused = self.refused;
-        Some(format!("scans refused: {refused}; the first: {reason}"))
+        Some(format!("scans rejected: {refused}; the first: {reason}"))
     }
 
     /// The figures.

@@ -41,7 +41,7 @@ pub struct Config {
 /// reason; one that does not decode is lost, and told on standard error.
 ///
 /// # Errors
-/// Map or recording cannot be used, every scan was refused, or the recording is
+/// Map or recording cannot be used, every scan was rejected, or the recording is
 /// damaged: that is told after what lies before the damage.
 pub fn run(config: &Config) -> Result<ExitCode, EvaluationError> {
     config.options.check()?;

@@ -95,14 +95,14 @@ pub(super) fn the_graph(named: Option<&GraphName>) -> Result<GraphName, Launcher
             let names: Vec<_> = several.iter().map(ToString::to_string).collect();
             let names = names.join(", ");
             Err(LauncherError::Usage(format!(
-                "several graphs run: say which one with --graph; there are {names}"
+                "several graphs are running: choose one with --graph; running are {names}"
             )))
         }
     }
 }
 
 fn no_graph() -> LauncherError {
-    LauncherError::Usage("no graph of this user runs".to_owned())
+    LauncherError::Usage("no graph of this user is running".to_owned())
 }
 
 fn done(graph: &GraphName, question: &Question) -> Result<ExitCode, LauncherError> {
@@ -116,7 +116,7 @@ fn status_of(graph: &GraphName) -> Result<Status, LauncherError> {
     match asked(graph, &Question::Status)? {
         Answer::Status(status) => Ok(status),
         Answer::Refused(why) => Err(LauncherError::Usage(why)),
-        Answer::Done => Err(LauncherError::Usage("it gave another answer".to_owned())),
+        Answer::Done => Err(LauncherError::Usage("unexpected answer".to_owned())),
     }
 }
 

@@ -124,7 +124,7 @@ fn serve(mut stream: &UnixStream, asked: &Sender<Asked>, waker: &Waker) -> std::
     let mut line = String::new();
     BufReader::new(stream.take(MAX_QUESTION)).read_line(&mut line)?;
     let answer = match serde_json::from_str(&line) {
-        Err(error) => Answer::Refused(format!("this version does not understand: {error}")),
+        Err(error) => Answer::Refused(format!("this version does not know the request: {error}")),
         Ok(question) => {
             let (answer, answered) = channel();
             let busy = || Answer::Refused("the launcher does not answer".to_owned());

@@ -123,7 +123,7 @@ impl Crew {
                 Ok(ended) => any_ended |= ended,
                 Err(error) if !member.essential => {
                     any_ended = true;
-                    let goes_on = format!("the graph goes on without {}", member.node.id);
+                    let goes_on = format!("the graph continues without {}", member.node.id);
                     let sentence = format!("{}; {goes_on}", with_causes(&error));
                     warn(&sentence);
                     self.given_up.push(sentence);
@@ -213,9 +213,11 @@ impl Crew {
 
     /// The nodes that said with their exit code that they lost data, by themselves
     /// or when they were ended.
-    pub fn losers(&self) -> Vec<String> {
-        let losers = self.members.iter().filter(|member| member.lost_data);
-        losers.map(|member| member.node.id.clone()).collect()
+    pub fn nodes_with_data_loss(&self) -> Vec<String> {
+        let nodes_with_data_loss = self.members.iter().filter(|member| member.lost_data);
+        nodes_with_data_loss
+            .map(|member| member.node.id.clone())
+            .collect()
     }
 
     /// Sends `signal` to the processes of one executable; returns how many there
@@ -314,7 +316,7 @@ impl Member {
         if let AfterEnd::Restart(delay) = after {
             let id = &self.node.id;
             warn(&format!(
-                "{id} cannot be started, and is tried again: {source}"
+                "{id} cannot be started and will be retried: {source}"
             ));
             self.state = State::Due(now + delay);
             return Ok(());
@@ -345,7 +347,7 @@ impl Member {
             AfterEnd::Done => State::Done,
             AfterEnd::Restart(delay) => {
                 let id = &self.node.id;
-                warn(&format!("{id} ended with {status} and is started again"));
+                warn(&format!("{id} ended with {status} and is restarted"));
                 State::Due(now + delay)
             }
             AfterEnd::Failed => {
@@ -385,7 +387,7 @@ impl Member {
         };
         let (id, seconds) = (&self.node.id, silent.as_secs());
         warn(&format!(
-            "{id} gave no sign of life for {seconds} s and is ended"
+            "{id} sent no heartbeat for {seconds} s and is killed"
         ));
         // Its end is seen later; until then it is not ended again.
         self.pulse.excuse(now);

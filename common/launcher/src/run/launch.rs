@@ -61,7 +61,7 @@ const LAST_OUTPUT: Duration = Duration::from_millis(100);
 struct Course {
     end: End,
     /// Nodes that lost data, by their own account.
-    losers: Vec<String>,
+    nodes_with_data_loss: Vec<String>,
 }
 
 /// Why a run has ended in order.
@@ -118,7 +118,7 @@ pub fn run(config: &Config) -> Result<ExitCode, LauncherError> {
         if let Err(error) = clear(&graph) {
             break Err(error.into());
         }
-        say(LAUNCHER, "the whole graph is started again");
+        say(LAUNCHER, "the whole graph is restarted");
     };
     let cleared = clear(&graph);
     let finished = outcome
@@ -127,18 +127,18 @@ pub fn run(config: &Config) -> Result<ExitCode, LauncherError> {
     let summary_wanted = outcome.is_ok() || journal.report.any_answer();
     let summary = journal.finish(summary_wanted, (!finished).then_some(LAST_OUTPUT));
     // What came first says most.
-    let losers = outcome?.losers;
+    let nodes_with_data_loss = outcome?.nodes_with_data_loss;
     cleared?;
     let summary = summary?;
-    if !losers.is_empty() {
-        say(LAUNCHER, &format!("{} lost data", losers.join(", ")));
+    if !nodes_with_data_loss.is_empty() {
+        say(
+            LAUNCHER,
+            &format!("{} lost data", nodes_with_data_loss.join(", ")),
+        );
         return Ok(ExitCode::from(LOST_DATA));
     }
     if finished && lossless && summary.lost_data() {
-        say(
-            LAUNCHER,
-            "data was lost, though nothing may be at `--rate max`",
-        );
+        say(LAUNCHER, "data was lost, which `--rate max` does not allow");
         return Ok(ExitCode::from(LOST_DATA));
     }
     Ok(ExitCode::SUCCESS)
@@ -188,8 +188,11 @@ fn launch(
     let end = end?;
     stopped?;
     received?;
-    let losers = crew.losers();
-    Ok(Course { end, losers })
+    let nodes_with_data_loss = crew.nodes_with_data_loss();
+    Ok(Course {
+        end,
+        nodes_with_data_loss,
+    })
 }
 
 /// Supervises the crew and enters what is heard, until the end. Recorders are asked
@@ -204,7 +207,7 @@ fn stay(
     let mut end = End::Interrupted;
     let mut last_progress = Instant::now();
     let mut last_cleanup = last_progress;
-    let mut told = 0;
+    let mut reported = 0;
     graph.run(&watch.inputs(), TICK, |_| {
         let now = Instant::now();
         // What a source has sent is heard after its end has been seen.
@@ -216,8 +219,8 @@ fn stay(
         if received.answers || !over {
             last_progress = now;
         }
-        let patient = now - last_progress < LAST_ANSWERS;
-        if over && (journal.report.all_answered() || !patient) {
+        let may_wait = now - last_progress < LAST_ANSWERS;
+        if over && (journal.report.all_answered() || !may_wait) {
             end = End::Finished;
             return Ok(Flow::Stop);
         }
@@ -239,8 +242,8 @@ fn stay(
             let at_work = [NotifyState::Ready, NotifyState::Watchdog];
             sd_notify::notify(&at_work).map_err(LauncherError::Notify)?;
         }
-        if crew.given_up().len() > told {
-            told = crew.given_up().len();
+        if crew.given_up().len() > reported {
+            reported = crew.given_up().len();
             health.error(&crew.given_up().join("; "))?;
             health.state(NodeState::Degraded)?;
         }

@@ -55,10 +55,7 @@ impl LogFiles {
         let failed = self.try_write(line).err();
         if let (Some(error), false) = (&failed, self.failed) {
             let folder = self.folder.display();
-            say(
-                LAUNCHER,
-                &format!("lines are not logged in {folder}: {error}"),
-            );
+            say(LAUNCHER, &format!("cannot write logs in {folder}: {error}"));
         }
         self.failed = failed.is_some();
     }

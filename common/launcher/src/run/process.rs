@@ -4,7 +4,7 @@
 //! launcher dies, in whatever way, the kernel tells the process to end.
 
 use std::{
-    io,
+    io::{self, IsTerminal},
     os::unix::process::CommandExt,
     path::{Path, PathBuf},
     process::{Child, Command, ExitStatus, Stdio},
@@ -21,7 +21,7 @@ use nix::{
     },
     unistd::{Pid, getpid, getppid},
 };
-use transport::{GRAPH_VARIABLE, GraphName};
+use transport::{GRAPH_VARIABLE, GraphName, node::LOG_FORMAT_VARIABLE};
 
 use super::console;
 
@@ -51,6 +51,10 @@ impl Process {
         open: &Sender<()>,
     ) -> io::Result<Self> {
         let mut command = Command::new(executable(node, folder));
+        // Lines on a terminal are short, of nodes too, whose standard error is a pipe.
+        if io::stderr().is_terminal() && std::env::var_os(LOG_FORMAT_VARIABLE).is_none() {
+            command.env(LOG_FORMAT_VARIABLE, "short");
+        }
         command
             .args(&node.args)
             .envs(node.env.iter().map(|(name, value)| (name, value)))

@@ -8,9 +8,9 @@ use offline::TopicOptions;
 use recording::Recording;
 use serde::Serialize;
 
-use super::ailment::{Ailment, Severity};
 use super::checks;
-use super::patient::Patient;
+use super::finding::{Finding, Severity};
+use super::survey::Survey;
 use crate::RecordingToolsError;
 
 /// What stands below the options.
@@ -37,7 +37,7 @@ pub struct Config {
 #[derive(Debug, Serialize)]
 struct Report {
     recording: String,
-    findings: Vec<Ailment>,
+    findings: Vec<Finding>,
 }
 
 /// Examines one file after another.
@@ -49,8 +49,8 @@ pub fn run(config: &Config) -> Result<ExitCode, RecordingToolsError> {
     for path in &config.recordings {
         let mut recording = Recording::open(path)?;
         config.topics.apply(&mut recording)?;
-        let findings = checks::all(&recording, &Patient::of(&recording));
-        let severity = findings.iter().map(|ailment| ailment.severity).max();
+        let findings = checks::all(&recording, &Survey::of(&recording));
+        let severity = findings.iter().map(|finding| finding.severity).max();
         worst = worst.max(severity.unwrap_or(Severity::Note));
         let report = Report {
             recording: path.display().to_string(),
@@ -76,6 +76,6 @@ fn text(report: &Report) -> String {
     if findings.is_empty() {
         return format!("{recording}: sound\n");
     }
-    let lines = findings.iter().map(|ailment| format!("{ailment}\n"));
+    let lines = findings.iter().map(|finding| format!("{finding}\n"));
     format!("{recording}:\n{}", lines.collect::<String>())
 }

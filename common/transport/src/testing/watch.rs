@@ -20,7 +20,7 @@ static LONG_WORK: AtomicUsize = AtomicUsize::new(0);
 
 /// Does what takes long without hanging, as compiling; one at a time. Tests have all
 /// their time again afterwards.
-pub fn patiently<R>(work: impl FnOnce() -> R) -> R {
+pub fn allow_long<R>(work: impl FnOnce() -> R) -> R {
     LONG_WORK.fetch_add(1, Ordering::Relaxed);
     let done = work();
     LONG_WORK.fetch_add(1, Ordering::Relaxed);

@@ -43,7 +43,7 @@ impl Member {
         }
     }
 
-    pub(crate) fn tell(&mut self, command: &str) {
+    pub(crate) fn command(&mut self, command: &str) {
         writeln!(self.commands.as_mut().unwrap(), "{command}").unwrap();
     }
 
@@ -60,7 +60,7 @@ impl Member {
     }
 
     pub(crate) fn ask(&mut self, command: &str) -> String {
-        self.tell(command);
+        self.command(command);
         self.answer()
     }
 

@@ -28,7 +28,7 @@ pub(super) fn run(link: &Path, baud: Baud, common: Common) -> Result<Summary, Em
         terminal.listen()?;
         let now_ns = monotonic_ns();
         if terminal.common.faults.resets(now_ns) {
-            tracing::info!("started anew");
+            tracing::info!("restarted");
             let reply = terminal.device.restart();
             terminal.say(now_ns, |_, out| reply.frame(out))?;
         }

@@ -42,7 +42,7 @@ pub(super) fn run(
         accept(&listener, encoding, &mut clients);
         let now_ns = monotonic_ns();
         if common.faults.resets(now_ns) {
-            tracing::info!("started anew: all clients are disconnected");
+            tracing::info!("restarted: all clients are disconnected");
             device = ColaDevice::new(*model, encoding, &common.sweep);
             clients.clear();
         }

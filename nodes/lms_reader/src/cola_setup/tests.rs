@@ -17,7 +17,7 @@ const RANGE: OutputRange = OutputRange {
 const CONTENTS: ScanDataConfig = ScanDataConfig::DISTANCES;
 
 #[test]
-fn without_wishes_nothing_is_changed() {
+fn without_requests_nothing_is_changed() {
     let mut setup = Setup::new(Wanted::default(), None);
     let ident = Command::Read(Variable::DeviceIdent);
     assert_eq!(setup.next(0).unwrap(), Some(ident));
@@ -87,7 +87,7 @@ fn play_as(
 }
 
 #[test]
-fn wishes_are_set_and_read_back() {
+fn requested_settings_are_set_and_read_back() {
     let mut setup = Setup::new(Wanted::of(Some(180.0), Some(0.5), false), None);
     let said = play(&mut setup, None).unwrap();
     assert_eq!(said.len(), 11, "{said:#?}");

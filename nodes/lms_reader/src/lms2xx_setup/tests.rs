@@ -100,7 +100,7 @@ fn the_baud_rate_is_found_and_nothing_changed() {
 }
 
 #[test]
-fn wishes_are_set_and_read_back() {
+fn requested_settings_are_set_and_read_back() {
     let reach = Reach {
         mode: RangeMode::Range32Field,
         unit: Unit::Millimetre,

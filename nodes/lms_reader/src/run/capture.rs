@@ -32,7 +32,7 @@ pub(super) fn run(path: &Path, config: &Config, outlet: &mut Outlet) -> Result<(
         }
     }
     let (sent, refused) = (outlet.sent, outlet.refused);
-    tracing::info!(sent, refused, "the capture has been played");
+    tracing::info!(sent, refused, "end of the capture");
     outlet.finish()
 }
 

@@ -94,7 +94,7 @@ impl Outlet {
     pub(super) fn finish(&mut self) -> Result<(), LmsError> {
         if !self.wait_until_taken(Instant::now() + PATIENCE)? && !self.stopped() {
             let seconds = PATIENCE.as_secs();
-            tracing::warn!("not all subscribers took the last scans within {seconds} s");
+            tracing::warn!("not all subscribers read the last scans within {seconds} s");
         }
         Ok(())
     }
@@ -204,7 +204,7 @@ impl Outlet {
         self.sent += 1;
         self.health.count_sent(1);
         if self.link != Link::Up {
-            tracing::info!(beams, "scans arrive");
+            tracing::info!(beams, "receiving scans");
             self.link = Link::Up;
         }
         Ok(())
@@ -218,8 +218,8 @@ impl Outlet {
         {
             match self.link {
                 // A device may come up after the node.
-                Link::Untried => tracing::info!("{reason}; trying again"),
-                _ => tracing::warn!("{reason}; trying again"),
+                Link::Untried => tracing::info!("waiting for the device: {reason}"),
+                _ => tracing::warn!("{reason}; reconnecting"),
             }
             self.health.error(reason)?;
         }
@@ -251,7 +251,7 @@ impl Outlet {
         if status != self.device_status {
             self.device_status = status;
             if status == 0 {
-                tracing::info!("the device is in order again");
+                tracing::info!("the device works again");
             } else {
                 let problem = problem().to_string();
                 tracing::warn!("{problem}");

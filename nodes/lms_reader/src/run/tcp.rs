@@ -21,7 +21,10 @@ pub(super) fn run(address: &str, config: &Config, outlet: &mut Outlet) -> Result
         let outcome = Connection::open(address, config).and_then(|mut c| c.listen(outlet));
         match outcome {
             Err(LmsError::Closed { .. }) if config.until_closed && outlet.sent > 0 => {
-                tracing::info!(sent = outlet.sent, "the device has sent everything");
+                tracing::info!(
+                    sent = outlet.sent,
+                    "the device closed the connection after its last scan"
+                );
                 outlet.finish()
             }
             other => other,
@@ -126,7 +129,7 @@ impl<'a> Connection<'a> {
                 .map_err(|source| failed(self.address, "send a command", source))?;
         }
         if setup.is_done() {
-            tracing::info!("the device sends scans");
+            tracing::info!("the device has started to send scans");
             self.setup = None;
         }
         Ok(())

@@ -43,7 +43,7 @@ impl Inputs {
         if let Some(map) = self.maps.newest()? {
             health.count_received(1);
             if !to.on_map(map.header(), map.items()) {
-                refuse(health, "a map contradicts its header")?;
+                refuse(health, "the map contradicts its header")?;
             }
         }
         while let Some(answer) = self.hypotheses.receive()? {

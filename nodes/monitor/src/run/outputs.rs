@@ -45,7 +45,7 @@ impl Outputs {
         loan.send()
     }
 
-    /// Nothing was measured: it is a wish of this moment.
+    /// Nothing was measured: it is a request of this moment.
     fn stamp(&mut self) -> Stamp {
         let counter = self.sent;
         self.sent += 1;

@@ -3,11 +3,11 @@
 use std::io::BufRead;
 use std::sync::mpsc::{Receiver, TryRecvError, channel};
 
-use crate::pause::{Pause, Wish};
+use crate::pause::{Command, Pause};
 
 /// The typed lines.
 pub(super) struct Keyboard {
-    wishes: Receiver<Wish>,
+    commands: Receiver<Command>,
 }
 
 /// What came of the lines.
@@ -23,11 +23,11 @@ impl Keyboard {
     /// Reads `input` to its end. The thread stays with it; it ends with the
     /// process.
     pub(super) fn read(input: impl BufRead + Send + 'static) -> std::io::Result<Self> {
-        let (send, wishes) = channel();
+        let (send, commands) = channel();
         let body = move || {
             for line in input.lines() {
                 let Ok(line) = line else { return };
-                if send.send(Wish::of(&line)).is_err() {
+                if send.send(Command::of(&line)).is_err() {
                     return;
                 }
             }
@@ -35,17 +35,17 @@ impl Keyboard {
         std::thread::Builder::new()
             .name("keyboard".into())
             .spawn(body)?;
-        Ok(Keyboard { wishes })
+        Ok(Keyboard { commands })
     }
 
     /// Takes what was typed. Where nobody can type any more, nothing is held up.
     pub(super) fn take(&self, pause: &mut Pause) -> KeyPress {
         let before = *pause;
         loop {
-            match self.wishes.try_recv() {
-                Ok(Wish::Step) => pause.step(),
-                Ok(Wish::Toggle) => pause.toggle(),
-                Ok(Wish::Quit) => return KeyPress::Quit,
+            match self.commands.try_recv() {
+                Ok(Command::Step) => pause.step(),
+                Ok(Command::Toggle) => pause.toggle(),
+                Ok(Command::Quit) => return KeyPress::Quit,
                 Err(TryRecvError::Empty) => break,
                 Err(TryRecvError::Disconnected) => {
                     if pause.is_paused() && !pause.may_step() {

@@ -104,7 +104,7 @@ impl<M: RosMessage + DeserializeOwned> Subscription<M> {
         let message = self.decode(&sample, &mut lost);
         if message.is_ok() && !self.received {
             self.received = true;
-            tracing::info!(topic = self.topic, "the first message came");
+            tracing::info!(topic = self.topic, "first message received");
         }
         Some(Received { message, lost })
     }

@@ -31,7 +31,7 @@ impl Node {
             }
             Err(error) => {
                 self.refuse(&format!(
-                    "map {:016x} is refused: {}",
+                    "map {:016x} rejected: {}",
                     header.map_id,
                     with_causes(&error)
                 ))?;

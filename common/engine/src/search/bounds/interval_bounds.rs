@@ -100,9 +100,9 @@ impl IntervalProgram {
         self.run::<false>(&sought, bounds)
     }
 
-    /// `TELLS` what sectors and beams have.
-    fn run<const TELLS: bool>(&self, sought: &Sought<'_>, bounds: &mut IntervalBounds) -> bool {
-        self.simd.run(Bounding::<TELLS> {
+    /// `DETAILED`: also the bounds of sectors and beams.
+    fn run<const DETAILED: bool>(&self, sought: &Sought<'_>, bounds: &mut IntervalBounds) -> bool {
+        self.simd.run(Bounding::<DETAILED> {
             program: self,
             sought,
             bounds,
@@ -110,7 +110,7 @@ impl IntervalProgram {
     }
 
     #[inline(always)]
-    fn run_on<S: Set, const TELLS: bool>(
+    fn run_on<S: Set, const DETAILED: bool>(
         &self,
         set: S,
         sought: &Sought<'_>,
@@ -127,11 +127,11 @@ impl IntervalProgram {
                 let direction = self.direction(beam, sought.heading);
                 let of_beam = S::Headings::of_beam(set, &beam.votes, rows.from(direction));
                 votes = votes.add(of_beam);
-                if TELLS {
+                if DETAILED {
                     bounds.voting.push(of_beam.present());
                 }
             }
-            if TELLS {
+            if DETAILED {
                 bounds.sectors.push(votes.to_bytes());
             }
             sums = votes.add_to(sums);
@@ -157,20 +157,20 @@ impl IntervalProgram {
     }
 }
 
-/// Bounding a block; `TELLS` what sectors and beams have.
-struct Bounding<'a, const TELLS: bool> {
+/// Bounding a block; `DETAILED`: also the bounds of sectors and beams.
+struct Bounding<'a, const DETAILED: bool> {
     program: &'a IntervalProgram,
     sought: &'a Sought<'a>,
     bounds: &'a mut IntervalBounds,
 }
 
-impl<const TELLS: bool> Kernel for Bounding<'_, TELLS> {
+impl<const DETAILED: bool> Kernel for Bounding<'_, DETAILED> {
     type Result = bool;
 
     #[inline(always)]
     fn run<S: Set>(self, set: S) -> bool {
         self.program
-            .run_on::<S, TELLS>(set, self.sought, self.bounds)
+            .run_on::<S, DETAILED>(set, self.sought, self.bounds)
     }
 }
 
