@@ -29,8 +29,8 @@ pub struct VoteConfig {
     /// How votes fall off in front of a reading and behind it.
     #[arg(long, value_enum, default_value_t = TaperShape::Trapezoid)]
     pub taper: TaperShape,
-    /// Standard deviation of a reading at no distance, metres, 0..=2; the
-    /// taper is never narrower than one cell.
+    /// Standard deviation of a reading at distance 0, metres, 0..=2; the taper is never
+    /// narrower than one cell.
     #[arg(long, value_name = "METRES", default_value_t = 0.10, value_parser = crate::config::parse_length)]
     pub sigma_m: f64,
     /// What is added to the standard deviation for each metre of range, 0..=0.25.

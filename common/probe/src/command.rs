@@ -25,7 +25,8 @@ pub struct Config {
     #[arg(value_name = "DEVICE")]
     device: String,
 
-    /// Characters that the picture is wide [default: as the terminal, $COLUMNS or 80]
+    /// Width of the picture in characters [default: that of the terminal, $COLUMNS or
+    /// 80]
     #[arg(long, value_name = "CHARACTERS", value_parser = clap::value_parser!(u16).range(10..=500))]
     width: Option<u16>,
 }

@@ -30,7 +30,7 @@ damaged, 2 wrong use";
 /// What `backcast regress` takes.
 #[derive(Debug, clap::Args)]
 pub struct Config {
-    /// Folders that are cases, or hold some
+    /// Folders that are cases, or contain cases
     #[arg(default_value = "recordings", value_name = "FOLDER")]
     folders: Vec<PathBuf>,
 
@@ -38,16 +38,16 @@ pub struct Config {
     #[arg(long, default_value = DEFAULT_FILE, value_name = "FILE")]
     dataflow: PathBuf,
 
-    /// Expect from now on what was found
+    /// Accept the results as the new expectation
     #[arg(long)]
     accept: bool,
 
-    /// Draw each scan that differs, at most 20 a recording, where it is expected
-    /// and where it was found
+    /// Draw each scan that differs, at most 20 per recording, with the expected and the
+    /// found pose
     #[arg(long, value_name = "FOLDER")]
     pictures: Option<PathBuf>,
 
-    /// Write the outcome for a build server
+    /// Write a JUnit report for a build server
     #[arg(long, value_name = "FILE")]
     junit: Option<PathBuf>,
 }

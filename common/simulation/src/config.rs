@@ -30,8 +30,8 @@ pub struct DriveConfig {
         allow_hyphen_values = true
     )]
     pub mount: Mount,
-    /// A laser by its name and its mount, as front=0.4,0,0; several are given one by
-    /// one, the first one first.
+    /// A laser with its name and mount, as front=0.4,0,0; repeat it for several lasers,
+    /// the main one first.
     #[arg(
         long = "laser",
         value_name = "NAME=X,Y,DEGREES[,180]",
@@ -39,15 +39,15 @@ pub struct DriveConfig {
         conflicts_with_all = ["mount", "sonar"]
     )]
     pub lasers: Vec<NamedMount>,
-    /// From the first beam of a scan to its last, seconds, 0..=1: the robot drives on
-    /// meanwhile. 0 measures all beams at once.
+    /// Time from the first beam of a scan to the last, seconds, 0..=1: the robot keeps
+    /// driving meanwhile. 0 measures all beams at once.
     #[arg(long, value_name = "SECONDS", default_value_t = 0.0, value_parser = parse_duration, conflicts_with = "sonar")]
     pub scan_duration: f64,
     /// Standard deviation of a reading: metres, and with a second number what is
     /// added for each metre of range.
     #[arg(long, value_name = "METRES[,SHARE]", default_value = "0.01,0.002")]
     pub noise: Noise,
-    /// Share of the readings that are anything from 0 to the longest range, 0..=1.
+    /// Share of random readings, from 0 to the longest range, 0..=1.
     #[arg(long, value_name = "SHARE", default_value_t = 0.0, value_parser = parse_share)]
     pub outliers: f64,
     /// People who walk about near the path, discs of 0.2 m radius, 0..=1000.
@@ -57,7 +57,7 @@ pub struct DriveConfig {
     /// --sonar].
     #[arg(long, value_name = "METRES", value_parser = parse_reach)]
     pub range_max: Option<f64>,
-    /// Where all random numbers begin.
+    /// Seed of all random numbers.
     #[arg(long, value_name = "NUMBER", default_value_t = 1)]
     pub seed: u64,
     /// Errors of the wheels.

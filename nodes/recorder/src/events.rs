@@ -8,10 +8,10 @@ const LOST_AFTER: u32 = 5;
 /// Something on which a black box is saved.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, clap::ValueEnum)]
 pub enum Event {
-    /// The tracker lost the pose; without a tracker, the place was known, and is not for
-    /// five scans in a row
+    /// The tracker lost the pose; without a tracker, five scans in a row without a
+    /// place after one was known
     LostPose,
-    /// A node works no more as it should
+    /// A node is degraded
     Degraded,
 }
 

@@ -45,7 +45,7 @@ const ALL: [Part; 7] = [
 #[derive(Debug, Clone, Default, clap::Args)]
 #[command(next_help_heading = "Table paper")]
 pub(in super::super) struct Config {
-    /// Where tables and pictures are written [default: docs/paper]
+    /// Folder for tables and pictures [default: docs/paper]
     #[arg(long, value_name = "FOLDER")]
     out: Option<PathBuf>,
 

@@ -27,9 +27,9 @@ const APART: (f64, f64) = (0.05, PI / 60.0);
 #[derive(Debug, Clone, Copy, PartialEq, clap::Args)]
 pub struct SonarConfig {
     /// For a ring of sonars: each scan is read as the regions of constant depth among
-    /// the echoes of so many metres of way, 0.1..=5, which is known by the odometry
-    /// (five times a second at least). Until that much is driven, nothing votes; 2 is
-    /// a good value.
+    /// the echoes of this distance driven, metres, 0.1..=5, measured by odometry (at
+    /// least five times a second). Until it is driven, nothing votes; 2 is a good
+    /// value.
     #[arg(long, value_name = "METRES", value_parser = way)]
     pub sonar_way: Option<f64>,
 

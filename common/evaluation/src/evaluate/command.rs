@@ -39,9 +39,9 @@ pub struct Config {
     #[arg(long)]
     json: bool,
 
-    /// Erase the map around each true pose: cells within so many metres become
-    /// unknown, 0..=1000. unique_wrong then tells how often a place that is not
-    /// on the map is taken for another
+    /// Erase the map around each true pose: cells within this distance become unknown,
+    /// metres, 0..=1000. unique_wrong then shows how often a place that is not on the
+    /// map is mistaken for another
     #[arg(long, value_name = "METRES", value_parser = radius)]
     erase_place: Option<f64>,
 

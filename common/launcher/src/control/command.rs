@@ -14,11 +14,11 @@ use crate::run::control::{Answer, Question, Status, ask};
 /// What `backcast status` takes.
 #[derive(Debug, Args)]
 pub struct StatusConfig {
-    /// Of this graph alone [default: of all that this user runs]
+    /// Only this graph [default: all that this user runs]
     #[arg(long, value_name = "NAME", value_parser = GraphName::new)]
     graph: Option<GraphName>,
 
-    /// Print JSON, an object a line for each graph
+    /// Print JSON, one object per line and graph
     #[arg(long)]
     json: bool,
 }

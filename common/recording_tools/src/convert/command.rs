@@ -39,7 +39,7 @@ pub struct Config {
     #[arg(long)]
     truth: bool,
 
-    /// Readings of so much and more are no returns, metres, where the log does not say
+    /// Readings from this range on are no returns, metres, if the log does not say
     #[arg(long, value_name = "METRES", default_value_t = 80.0, value_parser = range)]
     range_max: f32,
 }

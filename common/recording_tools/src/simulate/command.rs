@@ -22,11 +22,11 @@ pub struct Config {
     #[arg(long, value_name = "FILE")]
     map: PathBuf,
 
-    /// The way of the robot's base, corners in metres in the map: "X,Y X,Y …"
+    /// The path of the robot's base, corners in metres in the map: "X,Y X,Y …"
     #[arg(long, value_name = "CORNERS", allow_hyphen_values = true)]
     path: Path,
 
-    /// The recording that is written, an MCAP file; one that is there is replaced
+    /// The recording to write, an MCAP file; an existing one is replaced
     #[arg(long, value_name = "FILE")]
     out: PathBuf,
 
