@@ -9,7 +9,7 @@
     python3 docs/zenoh/locate.py corridor scan.json
 
 Prints the places as JSON. The question is JSON because any program can write it;
-docs/locate_server.md tells what may stand in it, and what comes back.
+docs/locate_server.md explains the request and the reply.
 """
 
 import argparse

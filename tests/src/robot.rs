@@ -16,7 +16,7 @@ pub const LIBRARIES: [&str; 3] = [
     "zenoh-ros2-sdk==0.1.8",
 ];
 
-/// A process that does as it is told, killed if the test fails.
+/// A process that executes commands, killed if the test fails.
 pub struct Robot {
     process: Child,
     orders: ChildStdin,
@@ -77,7 +77,7 @@ impl Robot {
     /// The next event of that name; others are passed over.
     ///
     /// # Panics
-    /// As [`Robot::hear`].
+    /// As [`Robot::receive`].
     pub fn wait_for(&mut self, event: &str) -> Value {
         loop {
             let said = self.receive();

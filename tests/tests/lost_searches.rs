@@ -110,7 +110,7 @@ fn check(victim: &'static str) {
         }
         scan = robot.send(counter);
     }
-    // What a node says last comes to those alone who have heard it before.
+    // The last message of a node reaches only those who have received from it before.
     wait_for_health(&robot.graph, &robot.health, |report| {
         report.node.as_str() == "tracker"
     });

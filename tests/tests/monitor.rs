@@ -86,7 +86,7 @@ fn nodes(world: &World, token: &str) -> String {
     )
 }
 
-/// The process of a node, as the API tells it.
+/// The process of a node, as the API reports it.
 fn process(browser: &Browser, node: &str) -> Pid {
     browser.wait_until(&format!(
         "(window.asked ??= fetch('/api/v1/robots/r7').then((r) => r.json()).then((known) => {{

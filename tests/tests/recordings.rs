@@ -1,5 +1,5 @@
 //! Recordings that the graph makes: the same when they are played and recorded
-//! again, and told of what they have lost.
+//! again, and report what they have lost.
 #![allow(
     clippy::unwrap_used,
     reason = "the lint spares test functions but not what they share"
@@ -18,7 +18,7 @@ use tests::executables;
 use tests::recorded::{graph, messages, record};
 use tests::world::World;
 
-/// Topics whose messages tell how long something took, or when it was sent.
+/// Topics whose messages hold how long something took, or when it was sent.
 const TIMED: [&str; 4] = [
     "/backcast/votes",
     "/backcast/hypotheses",

@@ -84,7 +84,7 @@ fn parse_headings(text: &str) -> Result<u32, String> {
     Err(format!("{value} is not a multiple of 8 from 8 to 3600"))
 }
 
-/// A world, and the headings that are told apart in it.
+/// A world, and the headings that are distinguished in it.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(super) struct Place {
     pub(super) kind: Kind,

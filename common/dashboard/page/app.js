@@ -1,4 +1,4 @@
-// Wires the parts: a connection tells the store, and the page shows it.
+// Wires the parts: a connection fills the store, and the page shows it.
 
 import { ask, savePicture, takeToken } from "./actions.js";
 import { Connection } from "./connection.js";

@@ -1,6 +1,6 @@
 //! One robot: what is known of it, and whoever watches it.
 //!
-//! It stands between the thread of a source, which tells it what happens, and
+//! It stands between the thread of a source, which passes it messages, and
 //! the server, which asks. Both hold the lock for as long as it takes to copy.
 
 use std::sync::atomic::{AtomicUsize, Ordering};
@@ -60,7 +60,7 @@ pub struct Robot {
 struct Known {
     map: Option<Arc<Map>>,
     answer: Option<Answer>,
-    /// None where no tracker was heard.
+    /// None if there is no tracker.
     pose: Option<Tracked>,
     times: Times,
     beams: Option<Beams>,
@@ -197,7 +197,7 @@ impl Robot {
     }
 
     /// Puts it into words once for all who watch, if there are any. The lock is
-    /// held meanwhile, so that who comes misses nothing and hears nothing twice.
+    /// held meanwhile, so that a new viewer misses nothing and receives nothing twice.
     fn broadcast(&self, message: &Message<'_>) {
         if self.news.receiver_count() > 0 {
             // Nobody may be left by now.

@@ -59,7 +59,7 @@ impl Token {
         &self.0
     }
 
-    /// Compares in a time that tells nothing but the length.
+    /// Compares in a time that depends only on the length.
     pub(crate) fn is(&self, given: &str) -> bool {
         self.0.as_bytes().ct_eq(given.as_bytes()).into()
     }

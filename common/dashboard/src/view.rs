@@ -1,5 +1,5 @@
-//! What those who watch are told: the messages of the graph as JSON, and images
-//! as bytes. Pure: told the time, and knowing no clock.
+//! What viewers are sent: the messages of the graph as JSON, and images
+//! as bytes. Pure: the time is an argument.
 //!
 //! Lengths are metres, angles radians counter-clockwise, times seconds or, where
 //! the name says so, milliseconds. What is no number is `null`.
@@ -44,7 +44,7 @@ pub(crate) enum Message<'a> {
     Pose(&'a Tracked),
     /// What became of its beams.
     Beams(&'a Beams),
-    /// How a node fares.
+    /// The state of a node.
     Node(&'a NodeReport),
     /// What a node logs.
     Log(&'a LogLine),

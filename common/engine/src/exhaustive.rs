@@ -67,7 +67,7 @@ impl<'a, A: Accumulator> Share<'a, A> {
         }
     }
 
-    /// Counts the poses at every `threads`-th heading; threads tell each other the most
+    /// Counts the poses at every `threads`-th heading; threads share the most
     /// votes of any pose.
     fn run(
         &mut self,

@@ -36,7 +36,7 @@ pub enum HeadingSource {
 /// Why a scan has no heading.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, thiserror::Error)]
 pub enum HeadingError {
-    /// No odometry tells it.
+    /// No odometry has it.
     #[error(
         "the scan needs odometry, but none is known that was measured at {scan_ns} ns or \
          before"
@@ -45,7 +45,7 @@ pub enum HeadingError {
         /// When the scan was measured, nanoseconds.
         scan_ns: i64,
     },
-    /// The odometry that there is tells an old one.
+    /// The newest odometry is too old.
     #[error(
         "the newest odometry was measured {age_ns} ns before the scan: at most \
          {allowed_ns} ns are allowed"
@@ -56,7 +56,7 @@ pub enum HeadingError {
         /// By the configuration, nanoseconds.
         allowed_ns: i64,
     },
-    /// No truth tells it.
+    /// No true pose has it.
     #[error(
         "the heading is to come from the ground truth, but none is known that was \
          measured at {scan_ns} ns"

@@ -212,7 +212,7 @@ impl Joiner {
         }
     }
 
-    /// Whether odometry is still to come that tells of the last beam.
+    /// Whether odometry is still to come that covers the last beam.
     #[must_use]
     pub fn lacks_odometry(&self) -> bool {
         let lasers = self.lasers.iter().filter(|_| self.config.motion.deskew);
@@ -296,7 +296,7 @@ impl Joiner {
     }
 
     /// Notes where a laser was at each of its beams, in the sought frame; where
-    /// odometry does not tell, where it sits.
+    /// odometry does not cover, where it sits.
     fn carry(&mut self, index: usize) -> MotionKnown {
         let sought_ns = self.lasers[0].middle_ns();
         let child_from_base = self.child_from_base();

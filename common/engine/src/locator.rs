@@ -109,7 +109,7 @@ pub struct Workspace {
 /// What a scan says about the pose.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Located<'w> {
-    /// The votes, and how they were come by.
+    /// The votes, and search statistics.
     pub outcome: &'w Outcome,
     /// What they say, the verdict included.
     pub places: &'w peaks::Places,

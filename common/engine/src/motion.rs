@@ -110,7 +110,7 @@ impl Motion {
 
     /// Where the frame was at a time: on the arc of constant twist between the two
     /// samples around it, or on that of the nearest two for at most a quarter of a
-    /// second beyond them. `None` where no samples tell.
+    /// second beyond them. `None` if no samples cover it.
     #[must_use]
     pub fn at(&self, stamp_ns: i64) -> Option<Located> {
         let after = self.samples.partition_point(|&(stamp, _)| stamp < stamp_ns);

@@ -287,7 +287,7 @@ mod tests {
         for (i, key) in keys.iter().enumerate() {
             assert!(!keys[..i].contains(key), "setting {i}");
         }
-        // What a search is told alone does not matter.
+        // The parameters of a search alone do not matter.
         assert_eq!(
             other(LocalizerConfig {
                 threads: 3,

@@ -9,7 +9,7 @@
 //! | 16 each | length and checksum of each section |
 //! | 8 | checksum of all before |
 //!
-//! Numbers and sections are in the byte order of the machine, which the magic tells.
+//! Numbers and sections are in the byte order of the machine, which the magic number shows.
 //! Checksums are XXH3 of 64 bits.
 
 use std::hash::Hasher;

@@ -114,7 +114,7 @@ pub enum LauncherError {
         /// How often it was started again before.
         restarts: u32,
     },
-    /// The graph cannot be joined, heard or cleaned up.
+    /// The graph cannot be joined, read or cleaned up.
     #[error(transparent)]
     Transport(#[from] TransportError),
     /// A file cannot be read or written.
@@ -127,7 +127,7 @@ pub enum LauncherError {
         /// Why it failed.
         source: io::Error,
     },
-    /// The service manager that started us cannot be told of it.
+    /// The service manager that started us cannot be notified.
     #[error("cannot notify the service manager: NOTIFY_SOCKET is not one of its sockets")]
     Notify(#[source] io::Error),
     /// A signal cannot be caught.
@@ -139,7 +139,7 @@ pub enum LauncherError {
     /// Standard output takes no more.
     #[error(transparent)]
     Output(#[from] OutputError),
-    /// The current directory cannot be told.
+    /// The current directory cannot be found.
     #[error("cannot find the current directory")]
     Folder(#[source] io::Error),
 }

@@ -95,7 +95,7 @@ topics! {
     Region = "region", RegionHeader, [Corner] { latched: true, depth: 1 };
     /// A request that the recorder save the last minutes; no items.
     Save = "save", SaveHeader, [u8];
-    /// How each node fares; the items are its last error as UTF-8.
+    /// The state of each node; the items are its last error as UTF-8.
     Health = "health", HealthHeader, [u8] { latched: true, depth: 8, publishers: 24, subscribers: 8 };
     /// What each node logs, a line at a time; the items are the line as UTF-8.
     Log = "log", LogHeader, [u8] { latched: true, history: 16, depth: 64, publishers: 24, subscribers: 8 };

@@ -89,7 +89,7 @@ pub enum SearchOutcome {
     /// The scan was refused; the sender's health says why.
     Refused = 2,
     /// The scan is kept, and searched once `attention` asks for it. No hypotheses
-    /// follow; the counters of these messages tell what was lost.
+    /// follow; the counters of these messages show what was lost.
     NotAsked = 3,
 }
 

@@ -8,7 +8,7 @@ use std::collections::VecDeque;
 /// Senders of one topic that are remembered at the same time.
 const MOST: usize = 32;
 
-/// What the number of a message tells.
+/// What the number of a message shows.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Arrival {
     /// It is new, and so many before it were lost.
@@ -23,7 +23,7 @@ pub enum Arrival {
 /// The numbers that came last on one topic, for each sender. Pure.
 #[derive(Debug, Default)]
 pub struct Arrivals {
-    /// Sender and its last number, the one that was heard last at the back.
+    /// Sender and its last number, the most recent one at the back.
     last: VecDeque<(u64, u64)>,
 }
 

@@ -118,7 +118,7 @@ impl<'a> Scans<'a> {
         is_taken
     }
 
-    /// Keeps a scan of another laser: the newest two, which also tell its period.
+    /// Keeps a scan of another laser: the newest two, which also give its period.
     fn keep(&mut self, scan: TakenScan) {
         let of_laser = |other: &TakenScan| other.laser == scan.laser;
         if self.others.iter().filter(|other| of_laser(other)).count() == 2

@@ -31,7 +31,7 @@ pub struct World {
 /// What a scan says about the place.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Answer<'a> {
-    /// The votes, and how they were come by.
+    /// The votes, and search statistics.
     pub outcome: &'a Outcome,
     /// What they say, the verdict included.
     pub places: &'a Places,

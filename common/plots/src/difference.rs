@@ -1,5 +1,5 @@
 //! The picture of a difference: a scan where it is expected, and where it was found.
-//! Pure, and asks no engine: it draws what it is told.
+//! Pure, and asks no engine: it draws its arguments.
 
 use drawing::{Color, Path, Scene};
 use engine::grid::CellRules;

@@ -23,7 +23,7 @@ const HEIGHTS: (f64, f64) = (0.25, 0.8);
 
 /// The colour of a share of the most votes, 0..=1: from nothing to dark.
 pub(super) fn heat(share: f64) -> Color {
-    // The palest tenth of the scale is not told from paper.
+    // The palest tenth of the scale is not distinguished from paper.
     let colorous::Color { r, g, b } =
         colorous::YELLOW_ORANGE_RED.eval_continuous(share.clamp(0.0, 1.0));
     let color = Color {

@@ -94,7 +94,7 @@ impl Truth {
 
 /// Places that lie behind the best by this score are not drawn.
 const FADES_OVER: f64 = 0.3;
-/// Most places that are drawn; more are not told apart.
+/// Most places that are drawn; more cannot be distinguished.
 const MAX_SHOWN: usize = 9;
 /// How clearly a place is drawn that fits as well as the best.
 const CLEAREST: f64 = 0.75;

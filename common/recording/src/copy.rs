@@ -47,7 +47,7 @@ pub fn write_bag<W: Write + Seek>(
         let own = Kind::ALL.into_iter().find(|kind| kind.schema() == schema);
         let text = definitions.get(schema).map(String::as_str);
         let text = text.or(own.map(definition)).unwrap_or_default();
-        // What does not unpack is kept as it is: whoever reads it is told.
+        // What does not unpack is kept as it is: whoever reads it gets the error.
         let body = unpack::message(&record.body).unwrap_or((&*record.body).into());
         writer.write_bytes(
             &channel.topic,

@@ -52,7 +52,7 @@ pub struct Config {
     junit: Option<PathBuf>,
 }
 
-/// Replays one recording after another; one whose graph fails is told, and the
+/// Replays one recording after another; one whose graph fails is reported, and the
 /// next one follows.
 ///
 /// # Errors

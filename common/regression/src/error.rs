@@ -28,7 +28,7 @@ pub enum RegressionError {
     /// A recording cannot be used.
     #[error(transparent)]
     Recording(#[from] RecordingError),
-    /// The graph cannot be joined, heard or cleaned up.
+    /// The graph cannot be joined, read or cleaned up.
     #[error(transparent)]
     Transport(#[from] TransportError),
     /// There is no recording to replay.

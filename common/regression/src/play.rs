@@ -36,7 +36,7 @@ pub(super) fn direct(descriptor: &mut Descriptor, case: &Case) -> Result<(), Reg
     set(server, "--map", Some(&case.map().to_string_lossy()));
     tracker::settle(dataflow);
     for node in &mut dataflow.nodes {
-        // What goes wrong is told; what goes well is in the table.
+        // What goes wrong is reported; what goes well is in the table.
         node.env
             .insert(0, ("RUST_LOG".to_owned(), "warn".to_owned()));
     }

@@ -13,7 +13,7 @@ use crate::source::Timed;
 /// before it, nanoseconds of log time.
 const WINDOW_NS: i64 = 500_000_000;
 
-/// Odometry may lag behind the scans by so much and still tell of the motion within
+/// Odometry may lag behind the scans by so much and still measure the motion within
 /// them, nanoseconds.
 const MARGIN_NS: i64 = 250_000_000;
 
@@ -65,7 +65,7 @@ impl<E, I: Iterator<Item = Result<Timed, E>>> InOrder<I, E> {
     }
 
     /// What was measured by the time of the scan in front, recorded after it; of the
-    /// odometry also what tells of the motion within the scan.
+    /// odometry also what measures the motion within the scan.
     fn take_overdue(&mut self) -> Option<Timed> {
         let scan = self
             .ahead

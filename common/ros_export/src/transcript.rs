@@ -4,12 +4,12 @@ use transport::{Graph, Health, TransportError, with_causes};
 
 use crate::{Entries, Options, TranscriptError};
 
-/// Makes entries of what comes, and tells the graph how it fares.
+/// Makes entries of received messages, and reports its health to the graph.
 #[derive(Debug)]
 pub struct Transcript {
     /// What was made.
     pub entries: Entries,
-    /// By which it tells.
+    /// Its health reports.
     pub health: Health,
     dropped: u64,
     refused: u64,

@@ -8,7 +8,7 @@
 
 use crate::SickError;
 
-/// How telegrams of one kind are told from other bytes.
+/// How telegrams of one kind are distinguished from other bytes.
 pub trait Protocol {
     /// What a content says.
     type Telegram<'a>;

@@ -29,7 +29,7 @@ use crate::SoakError;
 /// How long the first sure pose may take, and any pose after a fault, before the graph is
 /// given up: everything that it does by itself takes less.
 const PATIENCE: Duration = Duration::from_secs(60);
-/// A longer time without a pose is told at once, so that it can be looked for in the log.
+/// A longer time without a pose is reported at once, so that it can be found in the log.
 const LONG_GAP_S: f64 = 0.5;
 /// Between two looks at the processes.
 const LOOK: Duration = Duration::from_secs(1);

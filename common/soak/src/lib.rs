@@ -2,7 +2,7 @@
 //! kept its promises.
 //!
 //! `fault` says what can be done and draws what is done next, `tally` counts the poses and
-//! how long each fault was effect, `report` puts both into words: these are pure. `launched`
+//! how long each fault had an effect, `report` puts both into words: these are pure. `launched`
 //! is the launcher as a child process, `usage` what its processes take, `maps` and
 //! `filler` what some faults need, `course` does all of it.
 

@@ -11,15 +11,15 @@ use statistics::{Distribution, SUCCESS, Tail};
 use super::fault::Fault;
 use super::launched::SentPose;
 
-/// Parts of a run of which latencies are told one by one.
+/// Parts of a run whose latencies are listed one by one.
 const PARTS: usize = 10;
-/// Wrong poses that are told one by one.
+/// Wrong poses that are listed one by one.
 const MAX_WRONG_LISTED: usize = 20;
 /// Values of a figure that are kept: more than a run of days has in a part.
 const WINDOW: usize = 1_000_000;
 const NS_PER_S: f64 = 1e9;
 
-/// What was heard so far.
+/// What was received so far.
 #[derive(Debug)]
 pub(super) struct Tally {
     truths: BTreeMap<i64, Pose>,
@@ -65,7 +65,7 @@ struct FaultEffect {
     to_unique_s: Distribution,
 }
 
-/// How one kind of fault was effect.
+/// The effect of one kind of fault.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub(super) struct FaultFigures {
     pub(super) fault: Fault,

@@ -1,4 +1,4 @@
-//! What the monitor has received, and how old it is. Fields that it does not tell are at
+//! What the monitor has received, and how old it is. Fields that it does not send are at
 //! rest. Pure: received the time, and knowing no clock.
 
 use std::collections::{BTreeMap, VecDeque};
@@ -22,7 +22,7 @@ pub(super) enum Message {
     Answer(Answer),
     /// Where the tracker has the robot.
     Pose(Tracked),
-    /// How a node fares.
+    /// The state of a node.
     Node(Node),
     /// What is not shown here.
     #[serde(other)]
@@ -105,7 +105,7 @@ pub(super) struct Pose {
     pub(super) yaw: f64,
 }
 
-/// How a node fares.
+/// The state of a node.
 #[derive(Debug, Clone, Default, Deserialize)]
 #[serde(default)]
 pub(super) struct Node {
@@ -154,7 +154,7 @@ pub(super) struct Known {
     pose_age: Option<Age>,
     pub(super) nodes: BTreeMap<String, Node>,
     pub(super) latencies_ms: VecDeque<f64>,
-    /// Why nothing is heard at the moment.
+    /// Why nothing is received at the moment.
     pub(super) lost: Option<String>,
 }
 

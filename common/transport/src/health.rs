@@ -1,6 +1,6 @@
 //! A node's report on itself.
 //!
-//! It says what it is told; what makes a node ready or degraded, the node knows.
+//! It reports what the node sets; what makes a node ready or degraded, the node knows.
 
 use std::cell::RefCell;
 use std::rc::Rc;

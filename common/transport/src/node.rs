@@ -48,7 +48,7 @@ pub fn main_with_log<E: Error + 'static>(
         Ok(graph) => graph,
         Err(error) => return failed(&error),
     };
-    // The graph hears of an error before it is left.
+    // The graph receives the error before it is left.
     match run(&graph) {
         Ok(()) => ExitCode::SUCCESS,
         Err(error) => failed(&error),

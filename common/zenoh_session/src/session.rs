@@ -23,7 +23,7 @@ const SCOUTING: &str = "scouting/multicast/enabled";
 /// in, and who is not and why, of which Zenoh would be silent.
 pub const LOG: &str = "info,zenoh_transport::unicast::establishment::accept=debug";
 
-/// Where a node listens that nobody told: on this machine alone.
+/// Where a node listens by default: on this machine only.
 const LOOPBACK: &str = r#"["tcp/127.0.0.1:7447"]"#;
 
 /// What a file with Zenoh's configuration may end with.
@@ -31,7 +31,7 @@ const EXTENSIONS: [&str; 2] = ["json5", "json"];
 
 /// What holds where the user's file names nothing else.
 const DEFAULTS: [(&str, &str); 7] = [
-    // Those who connect to the same machine are to hear each other: peers hand
+    // Those who connect to the same machine are to reach each other: peers hand
     // nothing on.
     (MODE, "'router'"),
     // Nobody is called over the network that was not named.
@@ -99,7 +99,7 @@ fn start(
     Ok(opening)
 }
 
-/// What [`open`] tells Zenoh.
+/// What [`open`] passes to Zenoh.
 ///
 /// # Errors
 /// If the file or an option cannot be used.

@@ -164,7 +164,7 @@ fn a_recording_that_is_cut_short_gives_what_lies_before() {
     let (code, stdout, stderr) = run(folder.path(), "locate --json --bag r.mcap");
     assert_eq!((code, stdout.lines().count()), (1, 1), "{stderr}");
     assert!(stderr.contains("r.mcap: the file is cut short"), "{stderr}");
-    // Cut within the only chunk, it is damage that is told, not missing scans.
+    // Cut within the only chunk, it is damage that is reported, not missing scans.
     fs::write(&path, &bytes[..200]).unwrap();
     let (code, stdout, stderr) = run(folder.path(), "locate --json --bag r.mcap");
     assert_eq!((code, stdout.as_str()), (1, ""), "{stderr}");

@@ -1,5 +1,5 @@
 //! `backcast plot` as a process: pictures of a drawn room and of a real
-//! recording, and what wrong use is told.
+//! recording, and the messages for wrong use.
 
 #![allow(
     clippy::unwrap_used,

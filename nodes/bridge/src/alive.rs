@@ -1,8 +1,8 @@
 //! Signs of life: a liveliness token for the bridge, and one for each node whose
-//! health it hears.
+//! health it receives.
 //!
 //! Tokens go when the process that holds them is killed or cut off, without
-//! anybody asking: whoever watches hears of it from Zenoh.
+//! anybody asking: whoever watches is notified by Zenoh.
 
 use std::collections::BTreeMap;
 
@@ -23,7 +23,7 @@ pub(crate) struct Alive {
     session: Session,
     robot: String,
     _bridge: LivelinessToken,
-    /// None where health comes in: what is heard is then not of this machine.
+    /// None where health comes in: what is received is then not of this machine.
     health: Option<Subscriber<topic::Health>>,
     nodes: BTreeMap<String, Node>,
 }

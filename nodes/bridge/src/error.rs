@@ -23,7 +23,7 @@ pub enum BridgeError {
         /// The ids that are there.
         allowed: String,
     },
-    /// A topic would go round in circles.
+    /// A topic would loop.
     #[error(
         "topic {topic} goes out and comes in: it would come back for ever; \
          take it out of the inputs or the outputs of the bridge"

@@ -29,7 +29,7 @@ pub(crate) struct Aside {
 }
 
 impl Exit {
-    /// Whether anybody would get it. Where Zenoh cannot tell, it is sent; so is what
+    /// Whether anybody would get it. If Zenoh does not know, it is sent; so is what
     /// is kept, for those who come later.
     pub(crate) fn has_subscribers(&self) -> bool {
         match self {

@@ -50,7 +50,7 @@ impl Visit for IsKept {
     }
 }
 
-/// Says which messages of one topic may go. Pure: it is told the time.
+/// Decides which messages of one topic may go. Pure: the time is an argument.
 #[derive(Debug)]
 pub(crate) struct Limit {
     period_ns: i64,

@@ -98,7 +98,7 @@ fn send(maps: &Publisher<topic::Map>, (header, cells): &(MapHeader, Vec<u8>)) {
     loan.send().unwrap();
 }
 
-/// Sends scans until it is told to stop, from a thread of its own: a member of a
+/// Sends scans until it is asked to stop, from a thread of its own: a member of a
 /// graph stays on its thread.
 fn send_scans(isolated: &Isolated, stop: &Arc<AtomicBool>) -> std::thread::JoinHandle<()> {
     let name = isolated.name().clone();
@@ -184,7 +184,7 @@ fn a_late_joiner_gets_the_map_once() {
         });
     };
     expect(&sent);
-    // One that joins the graph later hears it from the bridge.
+    // One that joins the graph later receives it from the bridge.
     let later = engine.graph.subscriber::<topic::Map>().unwrap();
     wait_until(&engine.graph, &later, |header, _| {
         header.map_id == sent.0.map_id

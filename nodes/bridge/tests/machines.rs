@@ -167,7 +167,7 @@ fn three_machines_answer_as_one() {
     assert_same(&found);
 }
 
-/// What the machines that are not the laser's have heard.
+/// What the machines without the laser have received.
 struct Received<'a> {
     machine: &'a Machine<'a>,
     maps: Subscriber<topic::Map>,

@@ -1,7 +1,7 @@
 //! An LMS2xx: answers, refusals and scan telegrams.
 //!
 //! Pure: commands in, replies out. It sends scans of the field and resolution
-//! that it is told, as far as the recording has their beams.
+//! that it is set to, as far as the recording has their beams.
 
 use sick::lms2xx::{
     Answer, Baud, Command, Configuration, DEFAULT_PASSWORD, DeviceStatus, Mode, RangeMode, Reply,

@@ -1,4 +1,4 @@
-//! The robots that were heard.
+//! The robots from which something was received.
 
 use std::collections::BTreeMap;
 use std::sync::Arc;
@@ -14,7 +14,7 @@ use crate::FleetError;
 use crate::feed::{Feed, FleetMessage};
 use crate::requests::Requests;
 
-/// All robots, as their bridges tell of them.
+/// All robots, as their bridges report them.
 pub(crate) struct Fleet {
     robots: Robots,
     members: BTreeMap<String, Member>,
@@ -233,7 +233,7 @@ impl Member {
 }
 
 impl Requests {
-    /// Who would hear them.
+    /// Who subscribes to them.
     fn abilities(&self) -> Abilities {
         let (region, save) = self.subscribed();
         Abilities { region, save }

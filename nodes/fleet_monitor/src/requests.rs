@@ -33,7 +33,7 @@ impl Requests {
         })
     }
 
-    /// Whether somebody hears of regions, and of saving.
+    /// Whether somebody subscribes to regions, and to saving.
     pub(crate) fn subscribed(&self) -> (bool, bool) {
         let has_subscribers = |publisher: &AdvancedPublisher<'_>| {
             let status = publisher.matching_status().wait();

@@ -1,4 +1,4 @@
-//! Listens to the network, and lets the server tell.
+//! Subscribes on the network, and feeds the server.
 
 use std::time::Duration;
 
@@ -44,7 +44,7 @@ pub fn run(graph: &Graph, config: &Config) -> Result<(), FleetError> {
     })
 }
 
-/// The topics that are always heard.
+/// The topics that are always subscribed to.
 struct Inputs {
     maps: Feed<topic::Map>,
     hypotheses: Feed<topic::Hypotheses>,

@@ -1,4 +1,4 @@
-//! Several robots on one page, as they are heard over a network, and strangers who
+//! Several robots on one page, as they are received over a network, and strangers who
 //! send what they should not.
 #![allow(
     clippy::unwrap_used,

@@ -278,7 +278,7 @@ fn a_viewer_sees_scans_and_poses_at_their_times() {
     assert_eq!(
         viewer.server["capabilities"],
         json!([]),
-        "it is told nothing"
+        "it receives nothing"
     );
     viewer.subscribe("/scan");
     let channel = &viewer.channels["/scan"];

@@ -5,7 +5,7 @@
 //! switched on. What comes in is late by an unknown delay, never early: the line
 //! under all arrivals of the last half minute is the device's clock, and the
 //! arrivals that touch it had the least delay. A constant part of the delay
-//! cannot be told from the clock's offset; it stays in.
+//! cannot be distinguished from the clock's offset; it stays in.
 
 use std::collections::VecDeque;
 

@@ -47,7 +47,7 @@ enum Step {
     ReadScanConfig,
     SetResolution,
     CheckResolution,
-    /// Before the field is changed, for afterwards it tells no more.
+    /// Before the field is changed, for afterwards it no longer says so.
     CheckAhead,
     ReadRange,
     SetRange,
@@ -144,7 +144,7 @@ impl Setup {
     /// Takes an answer; what does not belong to the last command is let pass.
     ///
     /// # Errors
-    /// If the device refuses, or has other settings than it was told.
+    /// If the device refuses, or has other settings than requested.
     pub(crate) fn receive(&mut self, answer: &Answer<'_>) -> Result<(), LmsError> {
         let Some(&step) = self.steps.front() else {
             return Ok(());
@@ -234,7 +234,7 @@ impl Setup {
         }
     }
 
-    /// Where the name tells which way the device looks, nothing else is asked; where
+    /// If the name defines which way the device looks, nothing else is asked; where
     /// not even that helps, the setting stays as it is.
     fn skip_check(&mut self) -> Result<(), LmsError> {
         if self.steps.front() != Some(&Step::CheckAhead) {

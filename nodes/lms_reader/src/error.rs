@@ -56,7 +56,7 @@ pub enum LmsError {
         /// Its answer.
         fault: Fault,
     },
-    /// The device answered that it did not do what it was told.
+    /// The device answered that it did not execute the command.
     #[error("the device did not {what}: it answers {found}, expected is {expected}")]
     Refused {
         /// What was asked for.

@@ -3,7 +3,7 @@
 //! Pure: answers and the time in, the next action out. The device keeps its baud
 //! rate while it has power, so each is tried until it answers. Then it is asked
 //! what it is and how it measures, changed where the configuration asks for it,
-//! read back, and told to send every scan.
+//! read back, and set to send every scan.
 
 use std::collections::VecDeque;
 
@@ -148,7 +148,7 @@ impl Setup {
     /// Takes an answer; what does not belong to the last command is let pass.
     ///
     /// # Errors
-    /// If the device refuses, or has other settings than it was told.
+    /// If the device refuses, or has other settings than requested.
     pub(crate) fn receive(&mut self, answer: &Answer<'_>) -> Result<(), LmsError> {
         let Some(&step) = self.steps.front() else {
             return Ok(());

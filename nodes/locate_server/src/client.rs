@@ -81,7 +81,7 @@ fn answer(sample: &Sample) -> Result<Received<topic::Hypotheses>, LocateError> {
     Ok(answer)
 }
 
-/// What an attempt hears; None, at last, when nobody will say any more.
+/// What an attempt receives; None, at last, when nobody will answer any more.
 type Event = Option<Result<Sample, ReplyError>>;
 
 /// An attempt under way, until Zenoh drops it.

@@ -244,7 +244,7 @@ fn beyond_its_queue_a_server_is_busy() {
     server.process.stop();
 }
 
-/// Asks on several threads until told to stop, each question until it is answered;
+/// Asks on several threads until stopped, each question until it is answered;
 /// returns how many there were.
 fn keep_asking(session: &Session, stop: &AtomicBool, answered: &AtomicUsize) {
     let scans = scans();
@@ -279,14 +279,14 @@ fn a_question_is_brought_to_one_server() {
 
 fn assert_one_receives_it(server: &Server) {
     let session = caller(&[server]);
-    // An empty question is refused by each server that hears it.
+    // An empty request is rejected by each server that receives it.
     let receivers = || {
         let get = session.get("backcast/locate/corridor");
         let get = get.target(QueryTarget::All);
         let get = get.consolidation(ConsolidationMode::None);
         get.timeout(PATIENCE).wait().unwrap().into_iter().count()
     };
-    // Had they not met in time, both would hear it at first.
+    // Had they not met in time, both would receive it at first.
     while receivers() != 1 {
         std::thread::yield_now();
     }

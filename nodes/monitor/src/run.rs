@@ -1,4 +1,4 @@
-//! Listens to the graph, and lets the server tell.
+//! Subscribes to the graph, and feeds the server.
 
 mod inputs;
 mod outputs;

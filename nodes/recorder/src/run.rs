@@ -115,7 +115,7 @@ impl Recorder {
         self.report()
     }
 
-    /// Tells the graph how the writer fares.
+    /// Reports the writer's state to the graph.
     fn report(&mut self) -> Result<(), RecorderError> {
         let status = self.writer.status();
         let written = status.tally.recorded - self.status.tally.recorded;

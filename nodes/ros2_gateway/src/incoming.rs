@@ -95,7 +95,7 @@ impl Incoming {
         self.map_frame.as_deref()
     }
 
-    /// Takes what has come since the last call: first what tells how to take the rest.
+    /// Takes what has come since the last call: first what is needed to read the rest.
     pub(crate) fn step(
         &mut self,
         frames: &mut Frames,

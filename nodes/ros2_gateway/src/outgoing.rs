@@ -33,7 +33,7 @@ pub(crate) struct Outgoing {
     spread: Reach,
     /// Where the odometry's frame lies, by the last verdict that was Unique.
     map_from_odom: Option<(Pose, String)>,
-    /// Whether a tracker was heard: where the robot is, it says then.
+    /// Whether there is a tracker, which then provides the pose.
     is_tracked: bool,
     /// The newest scan: where the robot's clock meets the host's.
     newest: Option<Stamp>,

@@ -1,6 +1,6 @@
-//! When the robot's particle filter is told where the robot is. Pure.
+//! When the robot's particle filter gets an initial pose. Pure.
 //!
-//! It is told once it is there, when somebody asks for it, and when its pose lies
+//! It gets one once it starts, when somebody asks for it, and when its pose lies
 //! apart from every hypothesis of a scan that is Unique, twice in a row: always by a
 //! scan whose verdict is Unique, and never otherwise.
 
@@ -37,7 +37,7 @@ pub(crate) struct Belief {
     pub(crate) map_from_base: Pose,
 }
 
-/// Why it is to be told.
+/// Why it gets an initial pose.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(crate) enum Reason {
     /// It has just come.
@@ -58,7 +58,7 @@ pub(crate) struct Seeding {
     /// A pose that no answer was there for yet.
     waiting: Option<Belief>,
     apart: u32,
-    /// The scan by which it was told last.
+    /// The scan of the last initial pose.
     seeded_ns: i64,
 }
 
@@ -82,12 +82,12 @@ impl Seeding {
         }
     }
 
-    /// Somebody asks that it be told.
+    /// Somebody asks for an initial pose.
     pub(crate) fn ask(&mut self) {
         self.wanted = Some(Reason::Asked);
     }
 
-    /// Whether it is to be told something.
+    /// Whether an initial pose is due.
     #[cfg(test)]
     fn is_wanted(&self) -> bool {
         self.wanted.is_some()
@@ -95,7 +95,7 @@ impl Seeding {
 
     /// Takes the pose of the particle filter.
     pub(crate) fn on_belief(&mut self, belief: Belief) {
-        // What it thought before it was told does not count.
+        // Its poses from before the initial pose do not count.
         if self.when != Seed::Lost || belief.measured_ns <= self.seeded_ns {
             return;
         }
@@ -107,7 +107,7 @@ impl Seeding {
         }
     }
 
-    /// Takes what a scan says; gives the reason if the particle filter is to be told
+    /// Takes what a scan says; gives the reason if the particle filter is to be sent
     /// the first pose of it.
     pub(crate) fn on_answer(&mut self, answer: Answer) -> Option<Reason> {
         let (now_ns, is_unique) = (answer.measured_ns, answer.is_unique);
@@ -223,7 +223,7 @@ mod tests {
             seeding.on_answer(answer(200, true, &[1.0])),
             Some(Reason::Lost)
         );
-        // What it thought before says nothing of what it was told.
+        // Poses from before say nothing of the initial pose.
         seeding.on_belief(belief(200, 9.0));
         seeding.on_belief(belief(150, 9.0));
         assert_eq!(seeding.on_answer(answer(300, true, &[1.0])), None);

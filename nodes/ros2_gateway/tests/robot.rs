@@ -1,5 +1,5 @@
 //! A ROS 2 robot of other people's libraries, and the gateway between it and a graph:
-//! every message both ways, and a particle filter that is told where it is.
+//! every message both ways, and a particle filter that gets initial poses.
 #![allow(
     clippy::unwrap_used,
     reason = "the lint spares test functions but not what they share"
@@ -244,7 +244,7 @@ fn what_the_graph_says_reaches_the_robot_byte_for_byte() {
     let scans_in = joined.graph.subscriber::<topic::Scan>().unwrap();
     robot.order("scan", json!({ "index": 0 }));
     wait_for(&joined.graph, &scans_in, |_, _| Some(()));
-    // Which verdict it is decides whether the filter is told.
+    // The verdict decides whether the filter gets an initial pose.
     for (counter, verdict) in [Verdict::Ambiguous, Verdict::Unique]
         .into_iter()
         .enumerate()
@@ -289,7 +289,7 @@ fn what_the_graph_says_reaches_the_robot_byte_for_byte() {
             (&json!(stamp + 1_000_000_000), &json!("odom"))
         );
     }
-    // A node of the graph, as it fares; one report a second.
+    // The state of a node of the graph; one report a second.
     let report = loop {
         let said = joined.robot.wait_for("/diagnostics");
         assert_eq!(said["same"], true);
@@ -342,7 +342,7 @@ fn a_robot_whose_pose_is_tracked_is_told_that_pose_and_no_single_answer() {
     let tf = joined.robot.wait_for("tf");
     assert_eq!(tf["child"], "odom");
 
-    // The single answer says elsewhere, and is shown; nobody is told to be there.
+    // The single answer says elsewhere, and is shown; no initial pose is sent there.
     let mut header = answer;
     header.stamp.counter += 1;
     header.stamp.measured_ns += 1;
@@ -444,10 +444,10 @@ fn a_particle_filter_is_told_where_it_is() {
         robot.order("scan", json!({ "index": index }));
         until_answered(robot, index)
     };
-    // Nobody is there who could be told.
+    // No filter is there.
     assert_eq!(scan(robot, 0).len(), 0);
     robot.order("filter", json!({}));
-    // It is told by a scan after it came, once.
+    // It gets an initial pose by a scan after it started, once.
     let mut seed = Vec::new();
     let mut index = 0;
     while seed.is_empty() {

@@ -101,7 +101,7 @@ impl Open {
     fn close_one(&mut self, meant: impl Fn(&Entry) -> bool) {
         let meant = self.entries.iter().filter(|(_, entry)| meant(entry));
         if let Some((&number, _)) = meant.min_by_key(|(_, entry)| (entry.answered, entry.active)) {
-            // It hears of that when its sender is dropped.
+            // It notices when its sender is dropped.
             self.entries.remove(&number);
         }
     }

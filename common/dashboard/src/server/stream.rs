@@ -1,7 +1,7 @@
 //! A WebSocket: first all that is known, then what happens.
 //!
 //! The reader may ask for the field, and send its clock to get it back. Who does
-//! not read is disconnected; who reads slowly loses messages, is told so and gets
+//! not read is disconnected; who reads slowly loses messages, is notified and gets
 //! all that is known anew.
 
 use std::sync::Arc;
@@ -70,7 +70,7 @@ async fn serve(socket: WebSocket, robot: Arc<Robot>, _permit: OwnedSemaphorePerm
         robot,
         field: None,
     };
-    // The reader is gone: nobody is left to be told.
+    // The reader is gone: nobody is left to be notified.
     if reader.send(Frame::Text(snapshot)).await.is_some() {
         reader.follow(news).await;
     }

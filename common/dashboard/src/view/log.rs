@@ -12,7 +12,7 @@ const CAPACITY: usize = 200;
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub(crate) struct LogLine {
     node: String,
-    /// With the counter it tells one line from another.
+    /// With the counter it identifies a line.
     pid: u32,
     counter: u64,
     level: &'static str,

@@ -12,7 +12,7 @@ const SILENT_AFTER_NS: i64 = 2_500_000_000;
 /// Rates are taken over at least so long.
 const RATE_NS: i64 = 900_000_000;
 
-/// How a node fares.
+/// The state of a node.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub(crate) struct NodeReport {
     pub(crate) name: String,

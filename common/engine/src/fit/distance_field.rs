@@ -53,7 +53,7 @@ impl DistanceField {
         occupancy: &[u8],
         rules: CellRules,
     ) -> Result<Self, EngineError> {
-        // A grid in which unknown cells block tells them apart.
+        // A grid in which unknown cells block distinguishes them.
         let rules = CellRules {
             unknown_blocks: true,
             ..rules

@@ -41,7 +41,7 @@ struct Known<'a> {
 }
 
 /// Neighbouring beams end on the same piece of wall, and maps err by walls, not
-/// by points: so many beams tell as much as one with an error of its own.
+/// by points: this many beams are worth one with an independent error.
 const BEAMS_TOGETHER: f64 = 8.0;
 
 /// No end point is known better than the cell that it is compared with: the
@@ -88,13 +88,13 @@ impl Refined {
     }
 }
 
-/// Keeps steps short along what the scan does not tell, as a share of the
+/// Keeps steps short along what the scan does not constrain, as a share of the
 /// weight of all beams.
 const DAMPING: f64 = 1e-3;
 
 impl DistanceField {
     /// Moves a pose to where the scan fits best nearby; its heading only where
-    /// that is not known. It stays where it is along what no beam tells.
+    /// that is not known. It stays where it is along what no beam constrains.
     #[must_use]
     pub fn refine(
         &self,

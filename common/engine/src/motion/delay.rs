@@ -21,14 +21,14 @@ const STEP_S: f64 = 0.005;
 /// noise of the poses hides the motion; farther apart, odometry drifts.
 const GAP_NS: std::ops::RangeInclusive<i64> = 450_000_000..=1_000_000_000;
 
-/// Fewest pairs of sightings that can tell a delay from chance.
+/// Fewest pairs of sightings that can distinguish a delay from chance.
 const MIN_PAIRS: usize = 20;
 
 /// What a pair differs by at most, metres; a pose in another place must not decide.
 const MAX_DIFFERENCE_M: f64 = 0.2;
 
 /// A delay is reported only where it explains half of what the odometry at other delays
-/// leaves open: a robot that never speeds up or turns tells none.
+/// leaves open: a robot that never speeds up or turns shows none.
 const MAX_REST: f64 = 0.5;
 
 impl Motion {

@@ -199,7 +199,7 @@ impl ParticleFilter {
         self.clusters.heaviest(&self.particles, binning, frame)
     }
 
-    /// How many particles of equal weight would tell as much.
+    /// How many particles of equal weight are worth as much.
     #[must_use]
     pub fn effective_number(&self) -> f64 {
         resample::effective_number(self.particles.iter().map(|particle| particle.weight))

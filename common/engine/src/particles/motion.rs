@@ -1,10 +1,10 @@
 //! How particles move with the robot.
 //!
-//! Each takes the step that odometry tells, in its own frame, with an error of its own:
+//! Each takes the step that odometry measures, in its own frame, with an error of its own:
 //! sampling from a motion model as in Probabilistic Robotics (Thrun, Burgard and Fox,
 //! 2005), section 5.4. It differs from table 5.6 there. The errors are normal on the
 //! step itself, not on a turn, a way and another turn: whoever stands still, or drives
-//! sideways, has no first turn that could be told. And their variances grow with the
+//! sideways, has no first turn that could be determined. And their variances grow with the
 //! way, not with its square, as errors do that are independent from step to step, so
 //! that a step in two halves scatters as one does.
 

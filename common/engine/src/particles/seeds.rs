@@ -185,7 +185,7 @@ mod tests {
             let squares: f64 = first.iter().map(|pose| of(pose).powi(2)).sum();
             (squares / first.len() as f64).sqrt()
         };
-        // Half a cell and a degree are added; 2000 samples tell a deviation to 1.6 %,
+        // Half a cell and a degree are added; 2000 samples give a deviation to 1.6 %,
         // four of which are allowed.
         let check = |found: f64, asked: f64, least: f64| {
             let expected = asked.hypot(least);

@@ -130,7 +130,7 @@ fn a_start_at_the_places_of_the_votes_is_right_at_once() {
     let mut filter = ParticleFilter::seeded(distance_field.frame, candidates, config()).unwrap();
     assert!(filter.particles().len() < 2000);
     check_found(drive(&mut filter, &distance_field, 0));
-    // And told of another place, it starts there.
+    // And given another place, it starts there.
     filter.seed([candidate(wrong, 1.0)]).unwrap();
     let found = filter.estimate().unwrap();
     assert!(found.map_from_sought.is_within(wrong, 0.05, 0.05));

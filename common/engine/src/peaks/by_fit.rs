@@ -105,7 +105,7 @@ impl Places {
 }
 
 /// How far a score lies behind the best, against what that lacks of a perfect
-/// one: where the scan fits well, small differences tell much.
+/// one: where the scan fits well, small differences matter.
 pub(crate) fn lead(best: f64, other: f64) -> f64 {
     (best - other) / (1.1 - best).sqrt()
 }
@@ -163,7 +163,7 @@ fn place(
     }
 }
 
-/// How far a place may reach along what no beam tells: metres, and radians.
+/// How far a place may reach along what no beam constrains: metres, and radians.
 const LOOSE_M: f64 = 2.0;
 const LOOSE_RADIANS: f64 = 0.35;
 
@@ -226,7 +226,7 @@ mod tests {
             "{y} {known_y}"
         );
         assert!(yaw > 0.0 && known_yaw == 0.0);
-        // Eight beams tell as much as one: 0.5 · 8 / 50 squared cells.
+        // Eight beams are worth one: 0.5 · 8 / 50 squared cells.
         assert!((known_x - 0.1 * 0.08f64.sqrt()).abs() < 1e-4, "{known_x}");
     }
 

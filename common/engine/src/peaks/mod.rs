@@ -36,7 +36,7 @@ pub struct PeakInput<'a> {
     pub votes: &'a [Vote],
     /// All poses at or above this intensity are among the votes.
     pub certified_floor: u32,
-    /// Whether the search ended before it could tell that no other pose comes near the best.
+    /// Whether the search ended before it could prove that no other pose comes near the best.
     pub cut: bool,
     /// What a pose would have if every beam agreed fully.
     pub highest_possible: u32,

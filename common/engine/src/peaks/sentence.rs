@@ -5,7 +5,7 @@ use std::f64::consts::PI;
 use geometry::{Covariance, Pose};
 use messages::Verdict;
 
-/// What is told of a place.
+/// What is reported of a place.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Stand {
     /// Pose of the laser in the map.
@@ -74,7 +74,7 @@ fn apart(best: &Stand, others: &[Stand]) -> String {
     range
 }
 
-/// Whether the way to another place lies along what the scan does not tell.
+/// Whether the way to another place lies along what the scan does not constrain.
 fn is_along_corridor(best: &Stand, other: &Stand) -> bool {
     let ellipse = best.covariance.ellipse();
     let (from, to) = (best.map_from_laser, other.map_from_laser);

@@ -15,7 +15,7 @@
 //! ```
 //!
 //! Alternatives below the floor come from the most promising blocks. Where bounds do
-//! not tell blocks apart, every pose is counted instead (`fallback`).
+//! not distinguish blocks, every pose is counted instead (`fallback`).
 //!
 //! Each folder imports only those before it: `index`, what is known of a map; `bounds`,
 //! how many votes a block can have; `leaves`, how many a pose has; `task`, what threads

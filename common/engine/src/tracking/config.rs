@@ -2,7 +2,7 @@
 
 use crate::config::{parse, parse_degrees, parse_length, parse_share};
 
-/// What the tracker expects of odometry and of scans. docs/tracking.md tells what
+/// What the tracker expects of odometry and of scans. docs/tracking.md explains what
 /// each setting is for and what becomes of the figures without it.
 #[derive(Debug, Clone, Copy, PartialEq, clap::Args)]
 pub struct TrackingConfig {

@@ -1,4 +1,4 @@
-//! How the robot moved where no odometry tells: each scan is matched to one before, which
+//! How the robot moved without odometry: each scan is matched to one before, which
 //! stays the same until the robot is some way off, so that errors do not add up from
 //! scan to scan (Lu and Milios, "Robot pose estimation in unknown environments by
 //! matching 2D range scans", J. Intelligent and Robotic Systems 18, 1997).

@@ -1,5 +1,5 @@
-//! A pose that stays: scans and odometry over time, where one scan alone cannot tell,
-//! or tells wrong.
+//! A pose that stays: scans and odometry over time, where one scan alone is ambiguous,
+//! or wrong.
 //!
 //! The tracker keeps a few places where the robot may be. Every scan moves the place
 //! that is believed; at *key scans*, some decimetres apart, all places are predicted by

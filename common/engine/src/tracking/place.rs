@@ -23,7 +23,7 @@ pub struct Candidate {
     pub votes: u64,
 }
 
-/// Along what a scan does not tell, a candidate is taken to be known as well as this,
+/// Along what a scan does not constrain, a candidate is taken to be known as well as this,
 /// metres, or a search would confirm places that lie metres apart.
 const LOOSEST_M: f64 = 0.3;
 
@@ -41,7 +41,7 @@ impl Candidate {
 
     /// Fills in those of the places that a search found, as messages say them, for which
     /// the votes speak most: of many places, some fit a scan well by chance, and with
-    /// each there is one more to tell from the true one.
+    /// each there is one more to distinguish from the true one.
     pub fn fill<'a>(
         candidates: &mut Vec<Self>,
         found: impl Iterator<Item = &'a Hypothesis>,

@@ -11,7 +11,7 @@ use super::way::Way;
 use crate::peaks::lead;
 
 /// Most places that are kept, and how many of them may be older than one key scan, and
-/// new: those that a place was told from do not give way to what each search finds anew.
+/// new: those that a place was distinguished from do not give way to what each search finds anew.
 pub(super) const MAX: usize = MAX_OLD + MAX_NEW;
 const MAX_OLD: usize = 20;
 const MAX_NEW: usize = 12;
@@ -36,7 +36,7 @@ const GATE_RADIANS: f64 = 2.0 * std::f64::consts::PI / 180.0;
 const SNAP: f64 = 0.02;
 const SNAP_BY_DEVIATION: f64 = 0.01;
 
-/// Fits that come so close are of one place: as candidates of a search are told apart.
+/// Fits that come so close are of one place: as candidates of a search are distinguished.
 const SAME_M: f64 = 0.3;
 const SAME_RADIANS: f64 = 6.5 * std::f64::consts::PI / 180.0;
 

@@ -369,7 +369,7 @@ fn particles_that_a_search_starts_find_the_robot_and_notice_when_it_is_carried_a
     }
     let report = take(at, Some(Pose::IDENTITY));
     assert_eq!(report.state, TrackState::Unique, "{report:?}");
-    // Particles tell to about a cell and some degrees.
+    // Particles are good to about a cell and some degrees.
     let pose = report.pose.unwrap();
     assert!(pose.is_within(at, 0.2, 0.1), "{pose:?} at {at:?}");
     let mut at = Pose::new(4.0, 1.9, PI);

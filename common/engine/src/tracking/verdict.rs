@@ -14,7 +14,7 @@ use super::way::Way;
 /// one: nothing ties what was seen before to where the robot is now.
 pub(super) const MIN_KEYS: u32 = 3;
 
-/// Places so near each other are not told apart by the verdict.
+/// Places so near each other are not distinguished by the verdict.
 const DISTINCT_M: f64 = 1.0;
 const DISTINCT_RADIANS: f64 = 15.0 * std::f64::consts::PI / 180.0;
 

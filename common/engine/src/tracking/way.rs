@@ -1,4 +1,4 @@
-//! The way that odometry tells, and how far it may be wrong.
+//! The motion that odometry measures, and its error.
 
 use geometry::Pose;
 use nalgebra::{Matrix3, Vector3};

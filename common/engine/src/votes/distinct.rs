@@ -12,13 +12,13 @@ pub const DISTINCT_M: f64 = 0.3;
 /// candidates, degrees.
 pub const DISTINCT_DEG: f64 = 6.5;
 
-/// Where many poses have almost as many votes, votes do not tell which are the first:
+/// Where many poses have almost as many votes, votes do not decide which are the first:
 /// beyond those that are wanted, poses close to the best are candidates as well, up to
 /// so many times as many.
 const CLOSE_TIMES: usize = 4;
 
 /// Most candidates where so many are wanted: those and the ones that are close. Where
-/// cells are larger than what tells candidates apart, the close ones are the neighbours
+/// cells are larger than what distinguishes candidates, the close ones are the neighbours
 /// of one place, and are not counted.
 pub(crate) fn most_candidates(wanted: usize, resolution_m: f64) -> usize {
     match resolution_m <= DISTINCT_M {

@@ -58,7 +58,7 @@ fn radius(text: &str) -> Result<f64, String> {
     metres.ok_or_else(|| "allowed are 0 to 1000 metres".into())
 }
 
-/// Evaluates one file after another. A file that cannot be evaluated is told on
+/// Evaluates one file after another. A file that cannot be evaluated is reported on
 /// standard error, and the next one follows.
 ///
 /// # Errors

@@ -18,12 +18,12 @@ pub(super) fn forget_peak() -> io::Result<()> {
 /// The most that was resident since, in megabytes of 10⁶ bytes.
 ///
 /// # Errors
-/// The system does not tell.
+/// The system does not report it.
 pub(super) fn peak_mb() -> io::Result<f64> {
     let status = fs::read_to_string("/proc/self/status")?;
     let kib = match peak_in(&status) {
         Some(kib) => kib,
-        // Kernels without this line tell the process's peak here, in KiB too.
+        // Kernels without this line report the process's peak here, in KiB too.
         None => getrusage(UsageWho::RUSAGE_SELF)?.max_rss() as f64,
     };
     Ok(kib * 1024.0 / 1e6)

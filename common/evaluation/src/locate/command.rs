@@ -38,11 +38,11 @@ pub struct Config {
 }
 
 /// Prints a line for each scan. A scan that is refused has one too, with the
-/// reason; one that does not decode is lost, and told on standard error.
+/// reason; one that does not decode is lost, and reported on standard error.
 ///
 /// # Errors
 /// Map or recording cannot be used, every scan was rejected, or the recording is
-/// damaged: that is told after what lies before the damage.
+/// damaged: that is reported after what lies before the damage.
 pub fn run(config: &Config) -> Result<ExitCode, EvaluationError> {
     config.options.check()?;
     let files = [&config.recordings[..], &config.bag].concat();

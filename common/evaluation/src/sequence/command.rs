@@ -65,7 +65,7 @@ fn parse_factor(text: &str) -> Result<f64, String> {
     }
 }
 
-/// Evaluates one file after another. A file that cannot be evaluated is told on
+/// Evaluates one file after another. A file that cannot be evaluated is reported on
 /// standard error, and the next one follows.
 ///
 /// # Errors

@@ -1,6 +1,6 @@
 //! Several lasers in one graph: who sends which scans, and which the accumulator joins.
 //!
-//! Each `lms_reader` is told its name, and the accumulator in which order the lasers
+//! Each `lms_reader` gets its name, and the accumulator in which order the lasers
 //! are wired to it. What the descriptor says itself stays.
 
 use dataflow::{Dataflow, Input};

@@ -176,11 +176,11 @@ fn launch(
         journal,
     );
     if let Err(error) = &end {
-        // The console hears of it when all have ended, a recorder has to before.
+        // The console shows it when all have ended, a recorder has to before.
         log_in_graph(LogLevel::Error, &with_causes(error));
         graph.send_log();
     }
-    // That we stop is seen all the same where it cannot be told.
+    // That we stop is seen all the same where it cannot be notified.
     let _ = sd_notify::notify(&[NotifyState::Stopping]);
     let stopped = crew.stop();
     // Nodes that are stopped send a last report on their health.
@@ -195,7 +195,7 @@ fn launch(
     })
 }
 
-/// Supervises the crew and enters what is heard, until the end. Recorders are asked
+/// Supervises the crew and records what is received, until the end. Recorders are asked
 /// to save where `save` is set.
 fn stay(
     graph: &Graph,
@@ -210,7 +210,7 @@ fn stay(
     let mut reported = 0;
     graph.run(&watch.inputs(), TICK, |_| {
         let now = Instant::now();
-        // What a source has sent is heard after its end has been seen.
+        // What a source has sent may be received after its end has been seen.
         let over = crew.is_over();
         let received = watch.take(journal, |health| crew.received(health, now))?;
         if received.reader == Reader::Gone {
@@ -238,7 +238,7 @@ fn stay(
             graph.ensure_intact()?;
             graph.cleanup_dead_nodes();
             last_cleanup = now;
-            // Where a service manager has started us, it hears that we are at work.
+            // If a service manager has started us, it is notified that we run.
             let at_work = [NotifyState::Ready, NotifyState::Watchdog];
             sd_notify::notify(&at_work).map_err(LauncherError::Notify)?;
         }

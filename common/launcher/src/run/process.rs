@@ -1,7 +1,7 @@
 //! One process of a node, in a process group of its own.
 //!
 //! Signals go to the group, so that what a node starts ends with it. If the
-//! launcher dies, in whatever way, the kernel tells the process to end.
+//! launcher dies, in whatever way, the kernel ends the process.
 
 use std::{
     io::{self, IsTerminal},
@@ -143,7 +143,7 @@ fn prepare_signals(command: &mut Command) {
         prctl::set_pdeathsig(Signal::SIGTERM)?;
         // SAFETY: to ignore a signal calls nothing.
         unsafe { signal(Signal::SIGUSR1, SigHandler::SigIgn) }?;
-        // A parent that died before the question was asked is not told of.
+        // A parent that died before the request is not signalled.
         if getppid() != parent {
             return Err(Errno::ESRCH.into());
         }

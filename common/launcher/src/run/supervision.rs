@@ -128,7 +128,7 @@ pub struct Pulse {
 }
 
 impl Pulse {
-    /// Nothing heard yet.
+    /// Nothing received yet.
     pub fn new(timeout: Duration) -> Self {
         Pulse {
             timeout,
@@ -156,7 +156,7 @@ impl Pulse {
         }
     }
 
-    /// For how long nothing was heard, if that is too long.
+    /// For how long nothing was received, if that is too long.
     pub fn missed_for(&self, now: Instant) -> Option<Duration> {
         let silent = now.saturating_duration_since(self.last?);
         (!self.busy && silent > self.timeout).then_some(silent)

@@ -34,7 +34,7 @@ pub(crate) struct TrackingFigures {
 }
 
 impl Tracking {
-    /// Nothing heard. Errors and times keep the newest `window` values.
+    /// Nothing received. Errors and times keep the newest `window` values.
     pub(crate) fn new(window: usize) -> Self {
         Tracking {
             states: BTreeMap::new(),
@@ -69,7 +69,7 @@ impl Tracking {
         }
     }
 
-    /// The figures so far; none where no tracker was heard.
+    /// The figures so far; none if there is no tracker.
     pub(crate) fn figures(&self) -> Option<TrackingFigures> {
         let share = |count: u64| count as f64 / self.scans as f64;
         let states = self.states.iter();

@@ -5,7 +5,7 @@ use transport::{Graph, Input, Subscriber, TransportError};
 
 use super::{journal::Journal, output::Reader};
 
-/// The topics that the launcher hears.
+/// The topics that the launcher subscribes to.
 pub(crate) struct Watch {
     first_laser: Option<String>,
     scans: Subscriber<topic::Scan>,
@@ -33,7 +33,7 @@ impl Watch {
     /// The graph refuses.
     ///
     /// `first_laser` is the one whose scans are answered, where there are several; what the
-    /// nodes log is heard where `logs` says so.
+    /// nodes log is received where `logs` says so.
     pub(crate) fn new(
         graph: &Graph,
         first_laser: Option<String>,

@@ -158,7 +158,7 @@ mod tests {
         check(angles(200, Some(100.0), Some(0.5)), (-50.0, 0.5));
         check(angles(1081, Some(270.0), None), (-135.0, 0.25));
         check(angles(360, Some(360.0), None), (-180.0, 1.0));
-        // The step tells whether the last beam is missing.
+        // The step shows whether the last beam is missing.
         check(angles(360, Some(179.5), Some(0.5)), (-89.75, 0.5));
         check(angles(1, Some(100.0), None), (-50.0, 100.0));
         check(angles(0, Some(100.0), None), (-50.0, 100.0));

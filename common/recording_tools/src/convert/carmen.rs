@@ -34,19 +34,19 @@ pub(super) struct Laser {
     pub(super) kind: Kind,
     /// From 1, the front laser.
     pub(super) number: u8,
-    /// Where the line tells them.
+    /// If the line has them.
     pub(super) angles: Option<Angles>,
-    /// Readings of so much and more are no returns, where the line tells.
+    /// Readings of so much and more are no returns, if the line has it.
     pub(super) range_max_m: Option<f64>,
     /// One that is no number is NaN.
     pub(super) ranges: Vec<f32>,
-    /// Where the line tells them.
+    /// If the line has them.
     pub(super) poses: Option<Poses>,
     /// As the line says it, nanoseconds.
     pub(super) time_ns: i64,
 }
 
-/// What a line tells beside its readings; kinds that tell more are greater.
+/// What a line has besides its readings; kinds with more are greater.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
 pub(super) enum Kind {
     /// `RAWLASER1`: angles, and no poses.
@@ -109,7 +109,7 @@ pub(super) enum Fault {
 }
 
 impl Laser {
-    /// The name that its line has, as [`name_of`] tells it.
+    /// The name that its line has, as [`name_of`] finds it.
     pub(super) fn name(&self) -> String {
         name_of(self.kind, self.number)
     }

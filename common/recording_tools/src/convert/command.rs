@@ -19,7 +19,7 @@ use crate::RecordingToolsError;
 pub const NOTES: &str = "\
 .log, .clf and .txt are CARMEN's laser logs, which may be packed with gzip (.log.gz); .mcap is a
 recording with ROS 2 messages, .db3 (or a folder of such) a bag of rosbag2 in SQLite, of which all
-topics are converted. What a file holds decides where its name does not tell.
+topics are converted. The content decides if the name does not.
 
 Exit codes: 0 done, 1 failed or nothing to convert, which leaves no file, 2 wrong use, 3 done but
 something could not be read";
@@ -133,7 +133,7 @@ pub fn run(config: &Config) -> Result<ExitCode, RecordingToolsError> {
         (file::Kind::Recording, true) if is_bag(&config.from) => bag_to_recording,
         (file::Kind::Log, false) => return Err(no_conversion("log", &config.to)),
         (file::Kind::Recording, true) => {
-            // What cannot be read at all is told by what reads recordings.
+            // What cannot be read at all is reported by the code that reads recordings.
             Recording::open(&config.from)?;
             return Err(no_conversion(&ending(&config.from), &config.to));
         }
@@ -228,7 +228,7 @@ fn bag_to_recording(config: &Config, to: BufWriter<File>) -> Result<Report, Reco
     let mut writer = RecordingWriter::new(to, Packing::Zstd)?;
     let messages = recording::write_bag(&config.from, &mut writer)?;
     finish(writer, config)?;
-    // Read again, which also tells whether it can be.
+    // Read again, which also checks whether it can be.
     let recording = Recording::open(&config.to)?;
     let of = |kind| {
         let channels = recording.channels().filter(|c| c.kind == Some(kind));
@@ -262,7 +262,7 @@ impl Unfinished {
 impl Drop for Unfinished {
     fn drop(&mut self) {
         if let Some(path) = &self.0 {
-            // What made the conversion fail is told; this may fail for the same reason.
+            // What made the conversion fail is reported; this may fail for the same reason.
             let _ = std::fs::remove_file(path);
         }
     }

@@ -8,7 +8,7 @@ use super::carmen::{Broken, Fault};
 /// many as it has lines.
 const MAX_NAMES: usize = 100;
 
-/// Names of other kinds that are told, those with most lines first.
+/// Names of other kinds that are listed, those with most lines first.
 const SHOWN: usize = 6;
 
 /// Longest name that a kind may have.

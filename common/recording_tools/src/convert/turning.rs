@@ -2,7 +2,7 @@
 //! that its line says, or the other way.
 //!
 //! CARMEN's own driver reverses the readings of such a laser before anybody logs
-//! them (`laser/laser_ipc.c`); other programs log them as they come. The scans tell:
+//! them (`laser/laser_ipc.c`); other programs log them as they come. The scans show it:
 //! as the robot turns left, what it sees moves to the right.
 
 use super::carmen::Laser;
@@ -52,7 +52,7 @@ impl Turning {
         self.last = Some((yaw, laser.ranges.clone()));
     }
 
-    /// Whether the beams run the other way; `None` where the scans do not tell.
+    /// Whether the beams run the other way; `None` if the scans do not show it.
     pub(super) fn is_mirrored(&self) -> Option<bool> {
         if self.mirrored > 2 * self.as_logged {
             Some(true)

@@ -94,7 +94,7 @@ fn map(recording: &Recording) -> Vec<Finding> {
         Err(_) => return Vec::new(),
     };
     let (mut seen, mut refused, mut newest) = (0, Vec::new(), None);
-    // Those that do not decode are told with the other messages.
+    // Those that do not decode are reported with the other messages.
     for (_, map) in maps.flatten() {
         seen += 1;
         match usable(&map) {

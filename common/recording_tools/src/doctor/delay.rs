@@ -38,7 +38,7 @@ pub(super) fn odometry_delay(recording: &Recording) -> Vec<Finding> {
     note.into_iter().collect()
 }
 
-/// What is to be added to the odometry's stamps, seconds, if the scans tell.
+/// What is to be added to the odometry's stamps, seconds, if the scans show it.
 ///
 /// # Errors
 /// The recording has no map, or cannot be read: that is said elsewhere.

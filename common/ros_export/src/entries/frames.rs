@@ -104,7 +104,7 @@ impl Frames {
         let map_from_robot = poses::robot(header, best);
         let odometry = self.odometry_at(header.stamp.measured_ns);
         let transform = match odometry {
-            // Its frame is the laser's, or the mount tells how the two lie.
+            // Its frame is the laser's, or the mount relates the two.
             Some(odometry) if mount.is_some() || odometry.child_frame.as_str() == laser.frame => {
                 let (_, odom_from_robot) = self.robot_in(odometry);
                 let map_from_odom = map_from_robot.then(odom_from_robot.inverse());

@@ -50,7 +50,7 @@ pub struct Entries {
     waiting_map: Option<OccupancyGridMsg>,
     waiting_health: VecDeque<(HealthHeader, String)>,
     waiting_log: VecDeque<(LogHeader, String)>,
-    /// Whether a tracker was heard.
+    /// Whether there is a tracker.
     is_tracked: bool,
     made: Vec<Entry>,
 }
@@ -449,7 +449,7 @@ mod tests {
             ("/scan", 1000),
         ];
         assert_eq!(made(&mut entries), expected);
-        // From then on the host's clock tells how much later it is.
+        // From then on the host's clock measures how much later it is.
         entries.health(&HealthHeader::zeroed(), b"", 40).unwrap();
         entries.map(&map(&[0, 100]), &[0, 100], 50).unwrap();
         entries.map(&map(&[0, 0]), &[0, 0], 60).unwrap();

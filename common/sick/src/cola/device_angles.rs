@@ -58,7 +58,7 @@ impl DeviceAngles {
         }
     }
 
-    /// The convention where no field is needed to tell it.
+    /// The convention if no field is needed to find it.
     #[must_use]
     pub fn certain(&self) -> Option<AngleConvention> {
         match self {

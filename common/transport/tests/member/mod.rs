@@ -1,5 +1,5 @@
 //! Another process of a test's graph: the test's own executable, which does
-//! what it is told line by line. It can be killed.
+//! what it is commanded line by line. It can be killed.
 
 use std::io::{BufRead, BufReader, Write};
 use std::os::unix::fs::MetadataExt;
@@ -94,7 +94,7 @@ impl Drop for Member {
     }
 }
 
-/// In a process that [`Member::start`] started, does what it is told until its
+/// In a process that [`Member::start`] started, does what it is commanded until its
 /// input ends, and returns true; false in the test itself.
 pub(crate) fn serve_if_asked() -> bool {
     let Ok(node) = std::env::var(NODE_VARIABLE) else {

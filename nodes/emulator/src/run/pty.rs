@@ -112,7 +112,7 @@ impl Terminal {
             let start = self.unsent.len();
             match next {
                 Ok(frame) => {
-                    tracing::debug!(command = ?frame.telegram, "heard");
+                    tracing::debug!(command = ?frame.telegram, "received");
                     next_baud = self.device.receive(&frame.telegram, &mut self.unsent);
                     self.common.health.count_received(1);
                 }
@@ -220,7 +220,7 @@ impl Link {
 
 impl Drop for Link {
     fn drop(&mut self) {
-        // There is nobody left to tell.
+        // There is nobody left to notify.
         let _ = std::fs::remove_file(&self.0);
     }
 }

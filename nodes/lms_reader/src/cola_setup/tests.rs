@@ -40,7 +40,7 @@ fn without_requests_nothing_is_changed() {
     assert_eq!(setup.next(i64::MAX).unwrap(), None);
 }
 
-/// Answers as an LMS111 does that takes over what it is told, but for `range`.
+/// Answers as an LMS111 that applies all requested settings but `range`.
 fn play(setup: &mut Setup, range: Option<OutputRange>) -> Result<Vec<String>, LmsError> {
     play_as(b"LMS111", setup, range)
 }
@@ -104,7 +104,7 @@ fn requested_settings_are_set_and_read_back() {
 fn the_time_of_a_scan_is_asked_for_where_it_is_left_out() {
     let mut setup = Setup::new(Wanted::of(None, None, true), None);
     let said = play(&mut setup, None).unwrap();
-    // What it is and how it fares, its contents, login, change, check, run, scans.
+    // Its identity and state, its contents, login, change, check, run, scans.
     assert_eq!(said.len(), 8, "{said:#?}");
     assert!(said[3].contains("SetAccessMode"), "{said:#?}");
     assert!(said[4].contains("Write") && said[4].contains("time: true"));

@@ -1,10 +1,10 @@
-//! The dialogue against a device that does what it is told, or does not.
+//! The dialogue with a device that executes commands, or does not.
 
 use sick::lms2xx::Unit;
 
 use super::*;
 
-/// A device at this rate that does what it is told; what was said to it.
+/// A device at this rate that executes commands; the commands it received.
 struct Device {
     baud: Baud,
     port: Baud,

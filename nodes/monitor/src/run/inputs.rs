@@ -1,4 +1,4 @@
-//! The topics that are always heard.
+//! The topics that are always subscribed to.
 
 use dashboard::Robot;
 use messages::topic;

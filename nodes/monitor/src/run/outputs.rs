@@ -19,7 +19,7 @@ impl Outputs {
         })
     }
 
-    /// Who would hear it.
+    /// Who subscribes to it.
     pub(super) fn abilities(&self) -> Abilities {
         Abilities {
             region: self.regions.has_subscribers(),

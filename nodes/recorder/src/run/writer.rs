@@ -19,7 +19,7 @@ const FLUSH_PERIOD: Duration = Duration::from_millis(500);
 /// A million bytes.
 const MEGABYTE: u64 = 1_000_000;
 
-/// How the writer fares.
+/// The state of the writer.
 #[derive(Debug, Clone, PartialEq, Eq, Default)]
 pub(super) struct Status {
     pub(super) tally: Tally,
@@ -190,7 +190,7 @@ impl Desk {
         }
     }
 
-    /// Publishes how it fares, after an attempt to write.
+    /// Publishes its state, after an attempt to write.
     fn note(&mut self, outcome: Result<(), RecorderError>) {
         self.problem = outcome.err().map(|error| with_causes(&error));
         let current = self.current();

@@ -17,7 +17,7 @@ use super::entity::Kind;
 use super::{Attachment, Member, description};
 use crate::GatewayError;
 
-/// Senders of a topic whose sequence is followed; who has more is not told what it
+/// Senders of a topic whose sequence is followed; who has more is not informed what it
 /// lost.
 const MAX_SENDERS: usize = 64;
 

@@ -1,6 +1,6 @@
 //! The sets of a quad of blocks, laid out so that windows of bins are read quickly.
 //!
-//! Each row goes round once and a word further: a word can be read from any direction
+//! Each row holds a full turn and one word more: a word can be read from any direction
 //! on. Beside each row lies the same joined with the next one, so that a window takes
 //! half as many reads.
 

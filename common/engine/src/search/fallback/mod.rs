@@ -1,4 +1,4 @@
-//! Counting every pose, where bounds do not tell blocks apart: few beams tell most
+//! Counting every pose, where bounds do not distinguish blocks: few beams separate most
 //! poses from the best one.
 //!
 //! In clutter most poses have half of the votes that are possible, but hardly one has

@@ -55,7 +55,7 @@ impl LeafProgram {
 
     /// Adds the votes of a sector of beams to those of the block's cells, at headings from
     /// a first one on that bits tell, each with a count. What is added where a cell is not
-    /// open means nothing. Of each beam of all sectors bits tell at which headings it may
+    /// open means nothing. Of each beam of all sectors bits show at which headings it may
     /// vote.
     pub(crate) fn add(
         &self,

@@ -302,7 +302,7 @@ impl Greatest {
 }
 
 impl Spot {
-    /// The spot as a pose, by which spots are told apart; blocks lie in so many
+    /// The spot as a pose, by which spots are distinguished; blocks lie in so many
     /// columns.
     fn corner(&self, columns: usize) -> Vote {
         let (Reverse(block), Reverse(heading)) = (self.block, self.heading);

@@ -22,7 +22,7 @@ pub(in crate::search) struct Attempt<'a> {
 
 impl Attempt<'_> {
     /// Finds the poses above the floor and candidates below, one way or the other;
-    /// `None` if it was told to stop.
+    /// `None` if it was asked to stop.
     pub(in crate::search) fn find(&mut self, found: &mut VoteSet) -> Option<()> {
         let end = self.by_bounds(found);
         match end {
@@ -43,7 +43,7 @@ impl Attempt<'_> {
         end
     }
 
-    /// Finds them by counting every pose; `None` if it was told to stop.
+    /// Finds them by counting every pose; `None` if it was asked to stop.
     pub(in crate::search) fn by_counting(&mut self, found: &mut VoteSet) -> Option<()> {
         let what = (&self.task, self.program);
         self.sampling.count(what, self.shares, found, self.stop)

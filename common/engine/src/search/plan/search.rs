@@ -68,7 +68,7 @@ impl SearchIndex {
     /// served other scans and maps; `None` if `stop` said so before the end.
     ///
     /// The outcome is the same with any instruction set and number of threads,
-    /// but for the number of poses that were counted. Where bounds cannot tell
+    /// but for the number of poses that were counted. Where bounds cannot distinguish
     /// blocks apart, all poses are counted.
     ///
     /// # Panics

@@ -1,6 +1,6 @@
 //! When a search is worse than counting every pose.
 //!
-//! In uniform clutter no bound tells blocks apart. The search tallies what it
+//! In uniform clutter bounds do not distinguish blocks. The search tallies what it
 //! did, estimates what is left from what blocks of each level have cost so far,
 //! and gives up where counting every pose would be done sooner. Where that is seen at
 //! the first look, a tenth of what brute force costs is lost.

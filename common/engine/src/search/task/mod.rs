@@ -1,7 +1,7 @@
 //! What the threads of a search share, and what it may cost.
 //!
 //! A task does not change while it is searched but for bounds and the best pose so far,
-//! which only tell threads what they need not look at.
+//! which only let threads skip work.
 
 pub(in crate::search) mod budget;
 
@@ -42,7 +42,7 @@ pub(in crate::search) enum End {
     /// With the poses that matter, but for those in blocks that were left where it took
     /// more work than it may.
     Done,
-    /// It was told to stop.
+    /// It was asked to stop.
     Stopped,
     /// Counting every pose would take less than what is left.
     Hopeless,
