@@ -36,8 +36,8 @@ fn build(folder: &Path) {
     let mut command = Command::new("sh");
     command.args(["-c", "umask 022 && exec \"$0\" \"$@\"", env!("CARGO")]);
     command.current_dir(crate::root());
-    // Scripts that build what others use look at these, and what cargo tells a test
-    // differs from what it tells them: all of zenoh would be built anew each time.
+    // Scripts that build what others use look at these, and what cargo passes to a test
+    // differs from what it passes to them: all of zenoh would be built anew each time.
     for (name, _) in std::env::vars_os() {
         let text = name.to_string_lossy();
         if text.starts_with("CARGO_PKG_") || text.starts_with("CARGO_MANIFEST_") {

@@ -1,4 +1,4 @@
-//! Scans that cannot tell where they were taken, and scans that can in spite of
+//! Scans that are ambiguous, and scans that can in spite of
 //! everything: what the verdict says of them.
 #![allow(
     clippy::unwrap_used,

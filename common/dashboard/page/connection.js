@@ -5,7 +5,7 @@ const SILENT_MS = 3500; // a live stream answers each ping
 const FIRST_WAIT_MS = 250;
 const LONGEST_WAIT_MS = 4000;
 
-/** Tells `handlers`: state(word), message(object), image(buffer), delay(ms). */
+/** Calls `handlers`: state(word), message(object), image(buffer), delay(ms). */
 export class Connection {
   #socket = null;
   #wait = FIRST_WAIT_MS;

@@ -98,7 +98,7 @@ pub struct Locator {
     peaks: PeakConfig,
 }
 
-/// What locating takes, kept from scan to scan: once there is room for all, nothing is
+/// What locating takes, kept from scan to scan: once its buffers are large enough, nothing is
 /// allocated any more. It may serve any locator.
 #[derive(Debug, Default)]
 pub struct Workspace {

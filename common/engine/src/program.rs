@@ -77,7 +77,7 @@ impl Taper<'_> {
 }
 
 /// A scan, ready to vote on a grid; by default one of which nothing votes. It
-/// can be compiled anew for each scan, in the room of the one before.
+/// can be compiled again for each scan, in the buffers of the one before.
 #[derive(Debug, Clone, Default)]
 pub struct ScanProgram {
     chosen: Chosen,
@@ -116,7 +116,7 @@ impl ScanProgram {
         Ok(program)
     }
 
-    /// The same in the room of a scan before; where it is refused, that scan
+    /// The same in the buffers of a scan before; where it is refused, that scan
     /// stays.
     ///
     /// # Errors

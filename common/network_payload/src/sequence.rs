@@ -28,7 +28,7 @@ pub struct Arrivals {
 }
 
 impl Arrivals {
-    /// Notes number `sequence` of `sender`. The first of a sender tells of no
+    /// Notes number `sequence` of `sender`. The first of a sender shows no
     /// loss, for one may join late.
     pub fn note(&mut self, sender: u64, sequence: u64) -> Arrival {
         let known = self.last.iter().position(|&(id, _)| id == sender);

@@ -111,7 +111,7 @@ impl Ring {
         let answers: Vec<_> = (0..RAYS).map(|ray| self.answer(hits, ray)).collect();
         TRANSDUCERS_DEG.map(|degrees| {
             let axis = f64::from(degrees).to_radians();
-            // A thousandth of a degree is room for rounding.
+            // A thousandth of a degree is a margin for rounding.
             let half_width = (self.config.beam_width / 2.0 + 1e-3).to_radians();
             let in_cone = |&ray: &usize| angle_between(bearing(ray), axis) <= half_width;
             let received = (0..RAYS).filter(in_cone).filter_map(|ray| answers[ray]);

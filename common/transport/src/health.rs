@@ -97,7 +97,7 @@ impl Health {
         self.send()
     }
 
-    /// Forgets the last error, where it turned out to be none; told with the next
+    /// Forgets the last error, where it turned out to be none; reported with the next
     /// report.
     pub fn forget_error(&mut self) {
         self.last_error.clear();

@@ -1,5 +1,5 @@
 //! Keeps one message from filling a log: a device that toggles its state thousands of
-//! times a second, say. A message is what is written, with its numbers: one that tells
+//! times a second, say. A message is what is written, with its numbers: one with
 //! something new each time is never left out.
 
 use std::collections::HashMap;

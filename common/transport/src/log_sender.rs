@@ -11,7 +11,7 @@ pub(crate) struct LogSender {
     node: Name,
     publisher: Publisher<topic::Log>,
     sent: u64,
-    /// Lines that found no room in shared memory.
+    /// Lines that found no space in shared memory.
     unsent: u64,
     /// Losses that were reported already, of the first kind and the second.
     reported: (u64, u64),

@@ -56,7 +56,7 @@ const DEFAULTS: [(&str, &str); 7] = [
 /// to end before.
 ///
 /// # Errors
-/// If the file or an option cannot be used, Zenoh cannot listen where it was told
+/// If the file or an option cannot be used, Zenoh cannot listen where configured
 /// to, or `tick` fails.
 pub fn open(
     graph: &Graph,

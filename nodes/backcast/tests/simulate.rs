@@ -72,7 +72,7 @@ fn two_lasers_back_to_back_tell_what_one_may_not() {
     let unique = |judged: &Value| judged["unique"].as_u64().unwrap();
     assert!(
         unique(&joined) > unique(&alone),
-        "within 3 m one laser tells less: {joined} {alone}"
+        "within 3 m one laser sees less: {joined} {alone}"
     );
 }
 

@@ -54,7 +54,7 @@ impl Alive {
         })
     }
 
-    /// Hears who is there, and lets go of who is not.
+    /// Takes the nodes that are alive, and drops those that are not.
     pub(crate) fn step(&mut self) -> Result<(), BridgeError> {
         let now_ns = monotonic_ns();
         while let Some(report) = self.next()? {

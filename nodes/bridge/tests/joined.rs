@@ -323,7 +323,7 @@ fn a_reader_of_zenoh_gets_the_map_and_knows_what_it_is() {
     let sent = map(0, 30, 20);
     send(&maps, &sent);
     let bridge = laser.joined_bridge(&["--listen", &endpoint]);
-    // The bridge's own report that it sent something: the map, for nobody hears
+    // The bridge's own report that it sent something: the map, for nobody receives
     // its health.
     let health = laser.graph.subscriber::<topic::Health>().unwrap();
     let (report, _) = wait_for_health(&laser.graph, &health, |report| report.sent > 0);

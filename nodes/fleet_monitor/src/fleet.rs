@@ -45,7 +45,7 @@ pub(crate) enum Taken {
 
 /// A message that can be shown.
 pub(crate) trait Shown: Wire + Sized {
-    /// Tells it to the robot that it came from; else says what is wrong with it.
+    /// Passes it to the robot that it came from; else returns what is wrong with it.
     fn show(received: &FleetMessage<Self>, robot: &Robot) -> Result<(), &'static str>;
 }
 

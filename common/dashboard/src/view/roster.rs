@@ -198,7 +198,7 @@ mod tests {
             .map(|report| report.name.clone())
             .collect();
         assert_eq!(silent, ["a"], "who said that it ends is expected to");
-        assert!(roster.newly_silent(4 * SECOND).is_empty(), "told once");
+        assert!(roster.newly_silent(4 * SECOND).is_empty(), "reported once");
         let entry = roster.receive(&report("a", 1, 5 * SECOND, 0), b"").unwrap();
         assert_eq!(entry.state, "ready");
     }

@@ -10,7 +10,7 @@ use crate::observation::Observation;
 use crate::space::Space;
 
 /// The end points of a scan's beams, in cells; by default those of a scan
-/// without beams. They can be found anew for each scan, in the room of the one
+/// without beams. They can be found again for each scan, in the buffers of the one
 /// before.
 #[derive(Debug, Clone, Default, PartialEq)]
 pub struct Ends {
@@ -57,7 +57,7 @@ impl Ends {
         Ok(ends)
     }
 
-    /// The same in the room of a scan before; where it is refused, that scan
+    /// The same in the buffers of a scan before; where it is refused, that scan
     /// stays.
     ///
     /// # Errors
@@ -105,7 +105,7 @@ impl Ends {
         self.weight = 0.0;
     }
 
-    /// Takes the beams from a message, in the room of a scan before.
+    /// Takes the beams from a message, in the buffers of a scan before.
     ///
     /// # Errors
     /// If a number is not finite, or a beam has no length or a weight that none can

@@ -9,7 +9,7 @@ use crate::observation::{CarriedScan, Observation};
 use crate::space::Space;
 
 /// The beams of an observation, in the frame that is sought; found anew for each
-/// scan, in the room of the one before.
+/// scan, in the buffers of the one before.
 #[derive(Debug, Clone, Default, PartialEq)]
 pub struct Readings {
     chosen: Chosen,

@@ -23,7 +23,7 @@ pub struct Estimate {
     pub share: f64,
 }
 
-/// Finds clusters; kept from scan to scan, for its room.
+/// Finds clusters; kept from scan to scan, for its buffers.
 #[derive(Debug, Clone, Default)]
 pub(super) struct Clusters {
     /// The bin of each particle that weighs anything, sorted, with its number.
@@ -45,7 +45,7 @@ struct Occupied {
 }
 
 impl Clusters {
-    /// Makes room for so many particles, each in a bin of its own.
+    /// Allocates buffers for this many particles, each in a bin of its own.
     pub(super) fn reserve(&mut self, particles: usize) {
         self.keys.clear();
         self.keys.reserve(particles);

@@ -16,7 +16,7 @@
 //! Poses of the interface are those of the frame that is sought (laser, or base) in the
 //! map, metres and radians; particles are kept in cells of the grid. All is
 //! deterministic: the same calls with the same seed give the same particles to the last
-//! bit on one machine. Nothing is allocated from scan to scan once there is room
+//! bit on one machine. Nothing is allocated from scan to scan once the buffers are large enough
 //! for the most particles that there have been, and for their bins.
 //!
 //! It does not notice that it is lost: no random particles are added (as in table 8.3 of

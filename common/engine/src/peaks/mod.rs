@@ -253,7 +253,7 @@ impl Default for Places {
 }
 
 /// What reading places takes, and the last ones. Kept from scan to scan: once
-/// there is room for all, nothing is allocated any more. It may serve any map.
+/// the buffers are large enough, nothing is allocated any more. It may serve any map.
 #[derive(Debug, Default)]
 pub struct Workspace {
     summits: Vec<Summit>,

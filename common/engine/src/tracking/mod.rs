@@ -128,7 +128,7 @@ impl Tracker {
     }
 
     /// Takes the next scan and how the sought frame moved since the one before, if
-    /// odometry tells; otherwise scans are matched. The scan is done with at
+    /// odometry measures; otherwise scans are matched. The scan is done with at
     /// [`Tracker::finish`].
     pub fn begin(&mut self, seen: &Seen<'_>, stamp_ns: i64, moved: Option<Pose>) -> Need {
         let need = self.take_up(seen, stamp_ns, moved);

@@ -17,7 +17,7 @@ const ESSENTIAL: &str = "BACKCAST_ESSENTIAL";
 const ONLY_SHOW: [&str; 3] = ["foxglove_server", "monitor", "recorder"];
 
 /// Whether the graph ends when this node has failed for good: the descriptor says so
-/// with `BACKCAST_ESSENTIAL` in the node's `env`, or else its executable tells.
+/// with `BACKCAST_ESSENTIAL` in the node's `env`, or else its executable decides.
 ///
 /// # Errors
 /// The variable is neither `true` nor `false`.

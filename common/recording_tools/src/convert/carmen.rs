@@ -11,7 +11,7 @@
 //! | `PARAM` | name, value, and then no further words, or time, host, time in the log |
 //!
 //! Metres, radians and seconds; laser 1 is the front one, 2 the rear one. The old
-//! lines tell no angles. (CARMEN, `logger/readlog.c` and the notes that its logger
+//! lines have no angles. (CARMEN, `logger/readlog.c` and the notes that its logger
 //! writes at the head of each log.)
 
 use geometry::Pose;

@@ -13,7 +13,7 @@ use transport::{Flow, GRAPH_VARIABLE, Graph, GraphName, Publisher, Subscriber, T
 
 /// Set in such a process: the name under which it joins.
 const NODE_VARIABLE: &str = "TRANSPORT_TEST_NODE";
-/// Tells answers from what the test harness prints.
+/// Distinguishes answers from what the test harness prints.
 const ANSWER: &str = "answer:";
 
 /// The member, as the test sees it.

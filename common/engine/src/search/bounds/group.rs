@@ -74,7 +74,7 @@ impl Group {
         self.shift
     }
 
-    /// Lets go of all windows; their room stays.
+    /// Drops all windows; their buffer stays.
     pub(in crate::search) fn clear(&mut self) {
         self.planes.iter_mut().for_each(Plane::clear);
         self.possible = 0;

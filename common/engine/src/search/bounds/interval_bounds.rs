@@ -81,7 +81,7 @@ impl IntervalProgram {
 
     /// The same at the headings of a window that is known of a block around it, but
     /// for the bounds of sectors and beams. What is known of the beams that are missing
-    /// tells sooner whether any heading may have so many votes.
+    /// decides sooner whether any heading may have this many votes.
     pub(crate) fn bound_within(
         &self,
         block: &BlockIntervals,

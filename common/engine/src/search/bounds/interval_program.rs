@@ -43,7 +43,7 @@ pub(in crate::search) struct IntervalBeam {
 
 impl IntervalProgram {
     /// Lays out a program whose sectors are in this order, see [`sectors::order`];
-    /// `shifts` tell the groups of beams in theirs, see
+    /// `shifts` give the groups of beams in theirs, see
     /// [`SetProgram::shifts`](super::set_program::SetProgram::shifts).
     pub(crate) fn make(
         &mut self,

@@ -134,7 +134,7 @@ impl RowLayout {
 }
 
 impl QuadRows {
-    /// Makes room for a layout; nothing is left of what another one had.
+    /// Allocates buffers for a layout; nothing is left of what another one had.
     pub(crate) fn fit(&mut self, layout: &RowLayout) {
         self.bytes.clear();
         self.bytes.resize(layout.end(), [0; QUAD]);

@@ -32,7 +32,7 @@ pub(crate) type Known<'a> = (&'a [AtomicU16], u16);
 /// The bounds of a quad, and a place there.
 pub(crate) type Placed<'a> = (&'a HeadingBounds, usize);
 
-/// Bounds of the blocks of a quad, and room to find them.
+/// Bounds of the blocks of a quad, and scratch buffers to find them.
 #[derive(Debug, Clone, Default)]
 pub(crate) struct SetBounds {
     pub found: HeadingBounds,
@@ -45,7 +45,7 @@ pub(crate) struct SetBounds {
 }
 
 impl SetBounds {
-    /// Makes room for the bounds by a program of blocks at some headings, a word a
+    /// Allocates the bounds by a program of blocks at some headings, a word a
     /// chunk; nothing is left of what another program had.
     pub(crate) fn fit(&mut self, program: &SetProgram, headings: impl Iterator<Item = u128>) {
         self.found.fit(program.unit, headings);

@@ -54,7 +54,7 @@ impl LeafProgram {
     }
 
     /// Adds the votes of a sector of beams to those of the block's cells, at headings from
-    /// a first one on that bits tell, each with a count. What is added where a cell is not
+    /// a first one on that bits select, each with a count. What is added where a cell is not
     /// open means nothing. Of each beam of all sectors bits show at which headings it may
     /// vote.
     pub(crate) fn add(
@@ -96,7 +96,7 @@ impl LeafProgram {
         count.votes
     }
 
-    /// Adds the votes of beams from a first one on, at the headings at which bits tell that
+    /// Adds the votes of beams from a first one on, at the headings at which bits show that
     /// each may vote.
     fn add_beams(
         &self,

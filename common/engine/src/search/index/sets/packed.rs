@@ -59,7 +59,7 @@ impl PackedRows {
         self.bytes.append(&mut other.bytes);
     }
 
-    /// Lets words be read from any byte on, and gives back what room is left.
+    /// Lets words be read from any byte on, and gives back the capacity that is left.
     pub(super) fn finish(&mut self) {
         self.bytes.resize(self.bytes.len() + READ, NOTHING);
         self.bytes.shrink_to_fit();
