@@ -219,7 +219,7 @@ async function searchIn(corners) {
   const [[x0, y0], [x1, y1]] = corners;
   if (Math.abs(x1 - x0) < 0.1 || Math.abs(y1 - y0) < 0.1) return;
   const rounded = corners.map((corner) => corner.map((metres) => Math.round(metres * 1000) / 1000));
-  await ask(robot, "PUT", "region", { corners: rounded }, "Poses are sought in this region as soon as it is prepared.");
+  await ask(robot, "PUT", "region", { corners: rounded }, "Poses are searched in this region as soon as it is prepared.");
 }
 
 function picture() {
@@ -248,7 +248,7 @@ $("robot").onchange = () => {
   watch($("robot").value);
 };
 $("region").onclick = () => { setChoosing(!choosing); $("map").focus(); };
-$("everywhere").onclick = () => ask(robot, "DELETE", "region", null, "Poses are sought everywhere again.");
+$("everywhere").onclick = () => ask(robot, "DELETE", "region", null, "Poses are searched everywhere again.");
 $("save").onclick = () => ask(robot, "POST", "save", null, "The recorder saves the last minutes.");
 
 const STEP = 80; // pixels

@@ -30,7 +30,7 @@ const MAX_REQUESTS: usize = 8;
 /// What somebody with the token wants of the graph.
 #[derive(Debug, Clone, PartialEq)]
 pub enum Request {
-    /// Poses be sought between these corners; everywhere where there are none.
+    /// Poses be searched between these corners; everywhere where there are none.
     Region(Vec<[f64; 2]>),
     /// A black box be saved.
     Save,
@@ -167,7 +167,7 @@ impl Robot {
         is_sound
     }
 
-    /// Takes the region in which poses are sought from now on.
+    /// Takes the region in which poses are searched from now on.
     pub fn on_region(&self, corners: Vec<[f64; 2]>) {
         let mut known = self.known();
         self.broadcast(&Message::Region(Region { corners: &corners }));

@@ -48,7 +48,7 @@ pub(crate) enum Message<'a> {
     Node(&'a NodeReport),
     /// What a node logs.
     Log(&'a LogLine),
-    /// Where poses are sought.
+    /// Where poses are searched.
     Region(Region<'a>),
     /// Who listens to requests.
     Abilities(Abilities),
@@ -67,7 +67,7 @@ pub(crate) enum Message<'a> {
 /// A region of the map, or all of it.
 #[derive(Debug, Serialize)]
 pub(crate) struct Region<'a> {
-    /// The corners; none where poses are sought everywhere.
+    /// The corners; none where poses are searched everywhere.
     pub(crate) corners: &'a [[f64; 2]],
 }
 

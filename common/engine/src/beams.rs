@@ -38,7 +38,7 @@ pub(crate) struct Beam {
     pub bearing: usize,
     /// What rounding to the grid left over, radians.
     pub rounding: f64,
-    /// The bearing in the frame that is sought, radians, not rounded.
+    /// The bearing in the target frame, radians, not rounded.
     pub angle: f64,
     /// Metres.
     pub reading_m: f64,
@@ -97,7 +97,7 @@ impl Chosen {
     /// first. A sector is silent where nothing returned, or from farther than the
     /// map reaches: nothing in it explains such a reading.
     ///
-    /// `end_of` is where a beam ends, seen from the frame that is sought: its bearing
+    /// `end_of` is where a beam ends, seen from the target frame: its bearing
     /// and how far it is.
     fn thin(
         &mut self,
@@ -136,7 +136,7 @@ impl Chosen {
         }
     }
 
-    /// Divides the turn, seen from the origin of the sought frame, into `max_beams`
+    /// Divides the turn, seen from the origin of the target frame, into `max_beams`
     /// sectors and takes from each the reading that ends nearest, of equal ones the
     /// first. A reading counts by the arc that its own laser's beam covers.
     fn join(&mut self, scans: &[CarriedScan<'_>], turn: f64, space: &Space, config: &BeamConfig) {
@@ -181,7 +181,7 @@ impl Chosen {
 }
 
 impl Beam {
-    /// A beam that ends at `(angle, reading_m)` in the frame that is sought.
+    /// A beam that ends at `(angle, reading_m)` in the target frame.
     fn new(
         index: usize,
         (angle, reading_m): (f64, f64),
@@ -330,7 +330,7 @@ mod tests {
         let expected = choose(&still, 0.25, &space(), &config);
         let carried = [CarriedScan {
             scan: still,
-            sought_from_laser: &[Pose::IDENTITY; 361],
+            target_from_laser: &[Pose::IDENTITY; 361],
         }];
         let mut chosen = Chosen::default();
         chosen.choose(Observation::Carried(&carried), 0.25, &space(), &config);
@@ -356,11 +356,11 @@ mod tests {
         let scans = [
             CarriedScan {
                 scan: quarters(&front),
-                sought_from_laser: &ahead,
+                target_from_laser: &ahead,
             },
             CarriedScan {
                 scan: quarters(&rear),
-                sought_from_laser: &behind,
+                target_from_laser: &behind,
             },
         ];
         let mut chosen = Chosen::default();
@@ -385,7 +385,7 @@ mod tests {
         let left = [Pose::new(0.0, 1.0, 0.0); 3];
         let alone = [
             CarriedScan {
-                sought_from_laser: &left,
+                target_from_laser: &left,
                 ..scans[0]
             },
             CarriedScan {

@@ -15,7 +15,7 @@ use crate::votes::{CollectConfig, Collector, VoteSet};
 /// The poses with the most votes over all headings; `None` if `stop` said so
 /// before the end.
 ///
-/// Poses are sought within the limits, which are those of the grid. The outcome
+/// Poses are searched within the limits, which are those of the grid. The outcome
 /// does not depend on how many accumulators there are; the first one works on
 /// this thread.
 ///

@@ -152,7 +152,7 @@ impl Localizer {
         &self.grid
     }
 
-    /// Cells in which poses are sought.
+    /// Cells in which poses are searched.
     #[must_use]
     pub fn searchable_cells(&self) -> usize {
         self.limits().open_cells(&self.grid).count()

@@ -20,7 +20,7 @@ use crate::scan::Scan;
 
 pub use window::{SonarConfig, Window};
 
-/// Bearings of a turn at which regions are sought, and of the scans that are
+/// Bearings of a turn at which regions are searched, and of the scans that are
 /// made here, which begin behind: one a degree.
 pub const BEARINGS: usize = 360;
 

@@ -242,7 +242,7 @@ mod tests {
     fn a_sound_header_that_claims_too_much_is_refused_before_room_is_made() {
         assert!(claiming(|_| ()).is_ok());
         let moved = claiming(|header| {
-            // From the intervals to the sought cells: as many bytes together.
+            // From the intervals to the searched cells: as many bytes together.
             header.sections[5].bytes -= 48 * 3;
             header.sections[0].bytes += 48 * 3;
         });

@@ -91,7 +91,7 @@ topics! {
     Beams = "beams", BeamsHeader, [Beam];
     /// The true pose of a scan, where a recording holds it; no items.
     GroundTruthTopic = "ground_truth", GroundTruth, [u8] { depth: 16 };
-    /// Where poses are to be sought from now on; no items where everywhere.
+    /// Where poses are to be searched from now on; no items where everywhere.
     Region = "region", RegionHeader, [Corner] { latched: true, depth: 1 };
     /// A request that the recorder save the last minutes; no items.
     Save = "save", SaveHeader, [u8];

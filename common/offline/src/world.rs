@@ -7,7 +7,7 @@ use engine::grid::GridFrame;
 use engine::localizer::{Outcome, Preparation, Prior};
 use engine::locator::{self, Located, Locator, OccupancyView};
 use engine::observation::Observation;
-use engine::peaks::{PeakConfig, Places, Sought};
+use engine::peaks::{PeakConfig, Places, Target};
 use engine::scan::Scan;
 use geometry::Pose;
 use index_cache::{IndexCache, Kept, Prepared};
@@ -144,7 +144,7 @@ impl World {
         self.cells
     }
 
-    /// Cells in which poses are sought, as large as they are searched.
+    /// Cells in which poses are searched, as large as they are searched.
     pub fn searchable_cells(&self) -> u64 {
         self.locator.localizer().searchable_cells() as u64
     }
@@ -175,7 +175,7 @@ impl World {
     /// Searches all poses or, where the heading in the map is given in radians,
     /// all positions; the world must be prepared for the one or the other.
     ///
-    /// The places are those of the first laser, also where the base is sought.
+    /// The places are those of the first laser, also where the base is searched.
     ///
     /// # Errors
     /// The scan is refused.
@@ -183,7 +183,7 @@ impl World {
         &mut self,
         scan: Observation<'_>,
         heading: Option<f64>,
-        sought: Sought,
+        target: Target,
     ) -> Result<Answer<'_>, EngineError> {
         let workspace = &mut self.workspace;
         let found = self
@@ -194,7 +194,7 @@ impl World {
         } = found.expect("a search that nothing stops ends with an outcome");
         self.of_laser.clone_from(places);
         for place in &mut self.of_laser.places {
-            *place = place.of_laser(sought);
+            *place = place.of_laser(target);
         }
         Ok(Answer {
             outcome,

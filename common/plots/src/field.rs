@@ -138,7 +138,7 @@ pub fn draw(votes: &Votes<'_>) -> Result<Scene, PlotError> {
     fill(&mut page.scene, votes, &view)?;
     page.scene.clipped(view.area(), |scene| {
         if let Some(truth) = votes.truth {
-            marks::truth(scene, marks::stand(&view, truth), 7.0 * unit);
+            marks::truth(scene, marks::placement(&view, truth), 7.0 * unit);
         }
         if let Some(best) = best_position(votes.field) {
             let ring = Path::circle(view.at(best), 16.0 * unit);

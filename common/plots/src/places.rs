@@ -35,8 +35,8 @@ pub(super) fn draw(scene: &mut Scene, view: &View, subject: &Subject, unit: f64)
             mark(scene, view, shown, unit);
         }
         if let Some(truth) = &subject.truth {
-            let stand = marks::stand(view, truth.pose);
-            marks::truth(scene, stand, TRUTH * unit);
+            let stand = marks::placement(view, truth.pose);
+            marks::truth(scene, placement, TRUTH * unit);
         }
     });
 }
@@ -69,9 +69,9 @@ fn mark(scene: &mut Scene, view: &View, shown: &Shown, unit: f64) {
     };
     let stroke = Stroke::new(color, 1.4 * unit);
     marks::ellipse(scene, view, (pose, shown.place.covariance), stroke);
-    let stand = marks::stand(view, pose);
+    let stand = marks::placement(view, pose);
     let size = if is_best { ROBOT } else { 0.8 * ROBOT };
-    marks::robot(scene, stand, size * unit, color);
+    marks::robot(scene, placement, size * unit, color);
     if !is_best {
         let style = TextStyle::new(13.0 * unit, theme::INK)
             .anchored(Anchor::Start)

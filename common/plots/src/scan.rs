@@ -189,12 +189,12 @@ fn draw_near(
     let area = view.area();
     page.scene.clipped(area, |scene| {
         places::by_class(scene, &view, (near.pose, near.scan), unit);
-        let stand = marks::stand(&view, near.pose);
+        let stand = marks::placement(&view, near.pose);
         let size = places::ROBOT * unit;
         match near.rank {
-            None => marks::truth(scene, stand, places::TRUTH * unit),
-            Some(1) => marks::robot(scene, stand, size, theme::BEST),
-            Some(_) => marks::robot(scene, stand, size, theme::OTHER),
+            None => marks::truth(scene, placement, places::TRUTH * unit),
+            Some(1) => marks::robot(scene, placement, size, theme::BEST),
+            Some(_) => marks::robot(scene, placement, size, theme::OTHER),
         }
     });
     marks::scale_bar(&mut page.scene, &view, unit);

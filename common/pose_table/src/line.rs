@@ -1,6 +1,6 @@
 //! What is printed for one scan, as a row of the table or as JSON. Pure.
 
-use engine::peaks::sentence::{Stand, sentence};
+use engine::peaks::sentence::{PlaceSummary, sentence};
 use geometry::{Covariance, Pose};
 use messages::{HypothesesHeader, Hypothesis, Verdict};
 use serde::Serialize;
@@ -51,7 +51,7 @@ impl Line {
             verdict: verdict.map_or("?", Verdict::as_str),
             alternatives: header.alternatives,
             says: verdict.map_or_else(String::new, |verdict| {
-                sentence(verdict, &stands(header, hypotheses))
+                sentence(verdict, &summaries(header, hypotheses))
             }),
             latency_ms: latency_ns as f64 / NS_PER_MS,
             engine_ms: engine_ns as f64 / NS_PER_MS,
@@ -94,14 +94,14 @@ impl Line {
 
 /// The best place and those that fit about as well, as far as they are numbers:
 /// they come from another process.
-fn stands(header: &HypothesesHeader, hypotheses: &[Hypothesis]) -> Vec<Stand> {
+fn summaries(header: &HypothesesHeader, hypotheses: &[Hypothesis]) -> Vec<PlaceSummary> {
     let is_finite = |h: &&Hypothesis| {
         Pose::from(h.map_from_laser).is_finite() && h.covariance.iter().all(|c| c.is_finite())
     };
     let reported = hypotheses.iter().take(1 + header.alternatives as usize);
     reported
         .filter(is_finite)
-        .map(|h| Stand {
+        .map(|h| PlaceSummary {
             map_from_laser: h.map_from_laser.into(),
             covariance: Covariance::from_rows(h.covariance),
             score: h.score.into(),

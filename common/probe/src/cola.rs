@@ -15,9 +15,9 @@ use crate::ProbeError;
 /// Where devices listen.
 const PORTS: [u16; 2] = [2112, 2111];
 /// How long an answer may take.
-const PATIENCE: Duration = Duration::from_secs(1);
+const TIMEOUT: Duration = Duration::from_secs(1);
 /// A scan at 5 Hz, and some more.
-const SCAN_PATIENCE: Duration = Duration::from_secs(3);
+const SCAN_TIMEOUT: Duration = Duration::from_secs(3);
 /// Distances below are codes.
 const FIRST_DISTANCE: u16 = 16;
 
@@ -117,7 +117,7 @@ fn addresses(target: &str) -> Vec<String> {
 impl Device {
     /// Whether it says what it is; a device in the other encoding may hang up.
     fn ask_answers(&mut self) -> Result<bool, ProbeError> {
-        let outcome = self.ask(Command::Read(Variable::DeviceIdent), PATIENCE, |telegram| {
+        let outcome = self.ask(Command::Read(Variable::DeviceIdent), TIMEOUT, |telegram| {
             matches!(telegram, Telegram::Answer(_) | Telegram::ScanData(_)).then_some(())
         });
         match outcome {
@@ -167,7 +167,7 @@ impl Device {
     fn describe(&mut self, variable: Variable) -> Result<String, ProbeError> {
         let command = Command::Read(variable);
         let mut angles = None;
-        let found = self.ask(command, PATIENCE, |telegram| match telegram {
+        let found = self.ask(command, TIMEOUT, |telegram| match telegram {
             Telegram::Answer(Answer::Value(value)) if value.variable() == variable => {
                 if let Value::DeviceIdent { name, .. } = value {
                     angles = Some(DeviceAngles::of_name(name));
@@ -188,7 +188,7 @@ impl Device {
     /// One scan, in words and to be drawn.
     fn scan(&mut self) -> Result<(Vec<String>, Seen), ProbeError> {
         let angles = std::mem::take(&mut self.angles);
-        let found = self.ask(Command::SubscribeScans(true), SCAN_PATIENCE, |telegram| {
+        let found = self.ask(Command::SubscribeScans(true), SCAN_TIMEOUT, |telegram| {
             let Telegram::ScanData(scan) = telegram else {
                 return None;
             };
@@ -199,7 +199,7 @@ impl Device {
             let about = format!("a scan of {count} readings, {returns} with a return");
             Some((vec![looks, about], seen))
         })?;
-        self.ask(Command::SubscribeScans(false), PATIENCE, |telegram| {
+        self.ask(Command::SubscribeScans(false), TIMEOUT, |telegram| {
             matches!(telegram, Telegram::Answer(_)).then_some(())
         })?;
         let none = || {

@@ -14,7 +14,7 @@ const RATES: [Baud; 4] = [Baud::B38400, Baud::B9600, Baud::B500000, Baud::B19200
 /// How often a rate is tried: the first command may meet a scan under way.
 const TRIES: usize = 2;
 /// How long an answer may take: two scans may be under way at 38400 baud.
-const PATIENCE: Duration = Duration::from_millis(700);
+const TIMEOUT: Duration = Duration::from_millis(700);
 
 struct Device<'a> {
     path: &'a Path,
@@ -95,7 +95,7 @@ impl Device<'_> {
         command.frame(&mut bytes);
         let said = self.line.say(&bytes);
         said.map_err(|source| self.failed(source))?;
-        let deadline = Instant::now() + PATIENCE;
+        let deadline = Instant::now() + TIMEOUT;
         let mut buffer = [0; 1 << 12];
         loop {
             while let Some(next) = self.framer.next_frame() {

@@ -20,7 +20,7 @@ const NAME: &str = "regress";
 /// Between two looks at the processes.
 const TICK: Duration = Duration::from_millis(20);
 /// How long the last answers may take once the source is done.
-const PATIENCE: Duration = Duration::from_secs(20);
+const TIMEOUT: Duration = Duration::from_secs(20);
 
 /// Lets the graph replay this recording, on its map, as fast as it answers.
 ///
@@ -119,7 +119,7 @@ fn collect(
         if received.take(&votes, &hypotheses, &poses)? || !over {
             last_progress = now;
         }
-        if received.is_complete(scans) || over && now - last_progress >= PATIENCE {
+        if received.is_complete(scans) || over && now - last_progress >= TIMEOUT {
             return Ok(Flow::Stop);
         }
         crew.tick(now)?;

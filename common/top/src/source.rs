@@ -18,7 +18,7 @@ const WAITING: usize = 256;
 const PAUSE: Duration = Duration::from_secs(1);
 
 /// A monitor that says nothing for so long is gone: its nodes report each second.
-const PATIENCE: Duration = Duration::from_secs(5);
+const TIMEOUT: Duration = Duration::from_secs(5);
 
 /// A message, or why there is none.
 pub(super) type Update = Result<Message, String>;
@@ -61,7 +61,7 @@ fn ask<A: serde::de::DeserializeOwned>(address: &str, path: &str) -> Result<A, T
         reason: error.to_string(),
     };
     let agent: ureq::Agent = ureq::Agent::config_builder()
-        .timeout_global(Some(PATIENCE))
+        .timeout_global(Some(TIMEOUT))
         .build()
         .into();
     let mut response = agent
@@ -97,7 +97,7 @@ pub(super) fn follow(address: &str, robot: &str) -> Result<Receiver<Update>, Top
 /// Passes on all messages; returns when nobody wants them any more.
 fn listen(address: &str, robot: &str, updates: &SyncSender<Update>) -> Result<(), String> {
     let stream = TcpStream::connect(address).map_err(|error| error.to_string())?;
-    let patience = stream.set_read_timeout(Some(PATIENCE));
+    let patience = stream.set_read_timeout(Some(TIMEOUT));
     patience.map_err(|error| error.to_string())?;
     let url = format!("ws://{address}/api/v1/robots/{robot}/stream");
     let (mut socket, _) = client(url, stream).map_err(|error| error.to_string())?;

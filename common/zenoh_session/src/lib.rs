@@ -12,6 +12,6 @@ mod session;
 
 pub use error::{Cause, KeyError, NetworkError};
 pub use options::Options;
-pub use queue::{Past, Queue, Room};
+pub use queue::{Past, Queue, QueueLimits};
 pub use report::Report;
 pub use session::{LOG, open, settings};

@@ -21,7 +21,7 @@ const ACTION: &str = "subscribe to";
 
 /// How much may wait.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub struct Room {
+pub struct QueueLimits {
     /// Messages.
     pub messages: usize,
     /// Bytes of one message.
@@ -30,11 +30,11 @@ pub struct Room {
     pub bytes: usize,
 }
 
-impl Room {
+impl QueueLimits {
     /// For so many messages, each as long as it may be.
     #[must_use]
     pub fn for_any(messages: usize, message_bytes: usize) -> Self {
-        Room {
+        QueueLimits {
             messages,
             message_bytes,
             bytes: messages.saturating_mul(message_bytes),
@@ -69,10 +69,10 @@ enum Subscription {
 
 struct Waiting {
     samples: ArrayQueue<Sample>,
-    room: Room,
+    limits: QueueLimits,
     /// Of all payloads that wait.
     bytes: AtomicUsize,
-    /// Pushed out by later ones, or without room.
+    /// Pushed out by later ones, or too large.
     dropped: AtomicU64,
     /// Longer than a message can be; and the size of the last such.
     too_long: AtomicU64,
@@ -91,12 +91,12 @@ impl Queue {
         session: &Session,
         key: &str,
         past: Past,
-        room: Room,
+        limits: QueueLimits,
         waker: Waker,
     ) -> Result<Self, KeyError> {
         let waiting = Arc::new(Waiting {
-            samples: ArrayQueue::new(room.messages),
-            room,
+            samples: ArrayQueue::new(limits.messages),
+            limits,
             bytes: AtomicUsize::new(0),
             dropped: AtomicU64::new(0),
             too_long: AtomicU64::new(0),
@@ -139,11 +139,11 @@ impl Queue {
     /// Most messages that can wait: who takes no more at once keeps nobody else
     /// waiting, however fast they come.
     #[must_use]
-    pub fn room(&self) -> Room {
-        self.waiting.room
+    pub fn limits(&self) -> QueueLimits {
+        self.waiting.limits
     }
 
-    /// How many were lost for want of room since the last call.
+    /// How many were lost since the last call because the queue was full.
     #[must_use]
     pub fn dropped(&self) -> u64 {
         self.waiting.dropped.swap(0, Ordering::Relaxed)
@@ -163,12 +163,12 @@ impl Queue {
 impl Waiting {
     fn put(&self, sample: Sample) {
         let bytes = sample.payload().len();
-        if bytes > self.room.message_bytes {
+        if bytes > self.limits.message_bytes {
             self.too_long_bytes.store(bytes, Ordering::Relaxed);
             self.too_long.fetch_add(1, Ordering::Relaxed);
             return;
         }
-        if self.bytes.load(Ordering::Relaxed).saturating_add(bytes) > self.room.bytes {
+        if self.bytes.load(Ordering::Relaxed).saturating_add(bytes) > self.limits.bytes {
             self.dropped.fetch_add(1, Ordering::Relaxed);
             return;
         }

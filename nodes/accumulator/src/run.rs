@@ -226,7 +226,7 @@ impl Node {
         }
         let notes = brought.notes(self.joiner.flows()).join("; ");
         self.note(&notes)?;
-        Ok(match self.joiner.seeks_base() {
+        Ok(match self.joiner.targets_base() {
             true => brought.lasers,
             false => 0,
         })
@@ -252,7 +252,7 @@ impl Node {
     ) -> Result<Option<Answer<'w>>, AccumulatorError> {
         let map = self.map.as_ref().ok_or(AccumulatorError::NoMap)?;
         let heading = self.source.heading_of(scan, &self.history)?;
-        let heading = heading.map(|heading| self.joiner.sought_heading(heading));
+        let heading = heading.map(|heading| self.joiner.target_heading(heading));
         let seen = self.seen();
         let observation = seen.observation();
         let start = Instant::now();

@@ -53,7 +53,7 @@ fn a_row_for_each_scan_under_the_columns_of_run() {
 }
 
 #[test]
-fn poses_are_sought_within_limits() {
+fn poses_are_searched_within_limits() {
     let folder = folder(&[map_message(), scan_at(7, HERE)]);
     let here = map_from_laser(HERE);
     let (x, y, degrees) = (here.x, here.y, here.yaw.to_degrees());

@@ -87,7 +87,7 @@ impl Aside {
     fn put(&self, payload: Vec<u8>) {
         if let Err(TrySendError::Full(payload)) = self.to.try_send(payload) {
             let _ = self.waiting.try_recv();
-            // There is room, for nobody else sends.
+            // There is limits, for nobody else sends.
             let _ = self.to.try_send(payload);
         }
     }

@@ -7,7 +7,7 @@ use network_payload::{Received, Wire, WireError};
 use transport::{Waker, monotonic_ns};
 use zenoh::Session;
 use zenoh::sample::Sample;
-use zenoh_session::{Past, Queue, Room};
+use zenoh_session::{Past, Queue, QueueLimits};
 
 use crate::FleetError;
 
@@ -40,18 +40,18 @@ impl<T: Wire> Feed<T> {
     pub(crate) fn open(session: &Session, robot: &str, waker: Waker) -> Result<Self, FleetError> {
         let key = network_payload::key::<T>(robot);
         let past = if T::KEPT { Past::Last(1) } else { Past::Gone };
-        let room = Room {
+        let limits = QueueLimits {
             messages: WAITING,
             message_bytes: T::MAX_BYTES,
             bytes: WAITING_BYTES,
         };
         Ok(Feed {
-            queue: Queue::open(session, &key, past, room, waker)?,
+            queue: Queue::open(session, &key, past, limits, waker)?,
             topic: PhantomData,
         })
     }
 
-    /// How many were lost for want of room since the last call.
+    /// How many were lost since the last call because the queue was full.
     pub(crate) fn dropped(&self) -> u64 {
         self.queue.dropped()
     }

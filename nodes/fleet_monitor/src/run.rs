@@ -86,19 +86,19 @@ impl Node {
             sender,
             report,
         } = self;
-        let mut desk = Desk {
+        let mut intake = Intake {
             session,
             fleet,
             sender: *sender,
             report,
         };
-        desk.take(&inputs.maps)?;
-        desk.take(&inputs.hypotheses)?;
-        desk.take(&inputs.poses)?;
-        desk.take(&inputs.beams)?;
-        desk.take(&inputs.health)?;
-        desk.take(&inputs.log)?;
-        desk.take_fields()?;
+        intake.take(&inputs.maps)?;
+        intake.take(&inputs.hypotheses)?;
+        intake.take(&inputs.poses)?;
+        intake.take(&inputs.beams)?;
+        intake.take(&inputs.health)?;
+        intake.take(&inputs.log)?;
+        intake.take_fields()?;
         if tick {
             for granted in fleet.tick(graph, session)? {
                 match granted {
@@ -112,14 +112,14 @@ impl Node {
 }
 
 /// What taking a message needs.
-struct Desk<'a> {
+struct Intake<'a> {
     session: &'a Session,
     fleet: &'a mut Fleet,
     sender: u64,
     report: &'a mut Report,
 }
 
-impl Desk<'_> {
+impl Intake<'_> {
     fn take<T: Shown>(&mut self, feed: &Feed<T>) -> Result<(), FleetError> {
         self.report.dropped(feed.dropped());
         let (session, sender) = (self.session, self.sender);

@@ -15,7 +15,7 @@ use crate::LmsError;
 use crate::attempts::{Attempt, Attempts, TRIES};
 
 /// How long most answers may take.
-const PATIENCE_NS: i64 = 1_000_000_000;
+const TIMEOUT_NS: i64 = 1_000_000_000;
 /// The mirror may have to change its speed.
 const SLOW_NS: i64 = 10_000_000_000;
 
@@ -124,7 +124,7 @@ impl Setup {
             let patience_ns = if step == Step::SetResolution {
                 SLOW_NS
             } else {
-                PATIENCE_NS
+                TIMEOUT_NS
             };
             match self.attempts.next(now_ns, patience_ns) {
                 Attempt::Send => return Ok(Some(command)),

@@ -15,7 +15,7 @@ use crate::attempts::{Attempt, Attempts, TRIES};
 use crate::{LmsError, Reach};
 
 /// How long most answers may take: two scans may be under way at 38400 baud.
-const PATIENCE_NS: i64 = 700_000_000;
+const TIMEOUT_NS: i64 = 700_000_000;
 /// The device writes its memory.
 const SLOW_NS: i64 = 15_000_000_000;
 
@@ -115,7 +115,7 @@ impl Setup {
         }
         let patience_ns = match step {
             Step::SetConfiguration => SLOW_NS,
-            _ => PATIENCE_NS,
+            _ => TIMEOUT_NS,
         };
         let command = self.command(step);
         match self.attempts.next(now_ns, patience_ns) {

@@ -10,7 +10,7 @@
 mod client;
 mod config;
 mod counts;
-mod desk;
+mod dispatcher;
 mod error;
 mod json;
 mod locator;

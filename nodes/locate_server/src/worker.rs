@@ -8,14 +8,14 @@ use transport::monotonic_ns;
 use zenoh::Wait;
 
 use crate::counts::Counts;
-use crate::desk::{Bench, Job};
+use crate::dispatcher::{Job, WorkQueue};
 use crate::locator::{Locator, Workspace};
 use crate::{LocateError, question};
 
 /// Answers until nobody takes questions any more.
-pub(crate) fn work(bench: &Bench, locator: &Locator, counts: &Arc<Counts>) {
+pub(crate) fn work(work_queue: &WorkQueue, locator: &Locator, counts: &Arc<Counts>) {
     let mut workspace = Workspace::default();
-    while let Some(job) = bench.next() {
+    while let Some(job) = work_queue.next() {
         match answer(&job, locator, &mut workspace) {
             Ok((encoding, payload)) => {
                 let reply = job.query.reply(&*job.key, payload).encoding(encoding);
@@ -23,7 +23,7 @@ pub(crate) fn work(bench: &Bench, locator: &Locator, counts: &Arc<Counts>) {
             }
             Err(error) => counts.refuse(&job.query, &error),
         }
-        bench.busy.fetch_sub(1, Ordering::Relaxed);
+        work_queue.busy.fetch_sub(1, Ordering::Relaxed);
     }
 }
 

@@ -20,7 +20,7 @@ use zenoh::query::{ConsolidationMode, Query, QueryTarget, Queryable, Reply};
 use zenoh::{Session, Wait};
 
 /// Longer than any answer takes on any machine.
-const PATIENCE: Duration = Duration::from_secs(60);
+const TIMEOUT: Duration = Duration::from_secs(60);
 
 /// A server with a graph of its own.
 struct Server {
@@ -108,7 +108,7 @@ fn ask_raw(session: &Session, parameters: &str, encoding: &str, payload: Vec<u8>
         .get(format!("backcast/locate/corridor{parameters}"))
         .payload(payload)
         .encoding(Encoding::from(encoding))
-        .timeout(PATIENCE)
+        .timeout(TIMEOUT)
         .wait()
         .unwrap();
     let mut replies: Vec<_> = replies.into_iter().collect();
@@ -137,7 +137,7 @@ fn answers_are_those_of_the_engine() {
     let mut workspace = Workspace::default();
     for scan in scans() {
         let asked = (&scan.0, scan.1.as_slice());
-        let found = ask(&session, "corridor", asked, PATIENCE).unwrap();
+        let found = ask(&session, "corridor", asked, TIMEOUT).unwrap();
         let expected = locator.locate(&mut workspace, asked, &|| false).unwrap();
         let (header, hypotheses) = expected.unwrap();
         assert_eq!(found.items, hypotheses);
@@ -191,7 +191,7 @@ fn what_is_no_question_is_refused_and_counted() {
     let health = server.graph.subscriber::<topic::Health>().unwrap();
     wait_for_health(&server.graph, &health, |report| report.refused == count);
     // Through the client, too: asking again would not help, so it does not.
-    let empty = ask(&session, "corridor", (&scan.0, &[]), PATIENCE);
+    let empty = ask(&session, "corridor", (&scan.0, &[]), TIMEOUT);
     assert!(
         matches!(empty, Err(LocateError::Refused { .. })),
         "{empty:?}"
@@ -226,7 +226,7 @@ fn beyond_its_queue_a_server_is_busy() {
                 .get("backcast/locate/corridor")
                 .payload(payload.clone());
             get.encoding(Encoding::from(JSON))
-                .timeout(PATIENCE)
+                .timeout(TIMEOUT)
                 .wait()
                 .unwrap()
         });
@@ -255,7 +255,7 @@ fn keep_asking(session: &Session, stop: &AtomicBool, answered: &AtomicUsize) {
                     if stop.load(Ordering::Relaxed) {
                         return;
                     }
-                    let answer = ask(session, "corridor", (header, ranges), PATIENCE).unwrap();
+                    let answer = ask(session, "corridor", (header, ranges), TIMEOUT).unwrap();
                     assert_eq!(answer.header.stamp.counter, header.stamp.counter);
                     answered.fetch_add(1, Ordering::Relaxed);
                 }
@@ -284,7 +284,7 @@ fn assert_one_receives_it(server: &Server) {
         let get = session.get("backcast/locate/corridor");
         let get = get.target(QueryTarget::All);
         let get = get.consolidation(ConsolidationMode::None);
-        get.timeout(PATIENCE).wait().unwrap().into_iter().count()
+        get.timeout(TIMEOUT).wait().unwrap().into_iter().count()
     };
     // Had they not met in time, both would receive it at first.
     while receivers() != 1 {
@@ -292,7 +292,7 @@ fn assert_one_receives_it(server: &Server) {
     }
     for scan in scans() {
         let asked = (&scan.0, scan.1.as_slice());
-        ask(&session, "corridor", asked, PATIENCE).unwrap();
+        ask(&session, "corridor", asked, TIMEOUT).unwrap();
     }
     assert_eq!(receivers(), 1);
 }
@@ -345,7 +345,7 @@ fn a_question_that_nobody_ends_is_asked_again() {
     let caller = session(&[], &[endpoint]);
     let (header, ranges) = &scans()[0];
     std::thread::scope(|scope| {
-        let asking = scope.spawn(|| ask(&caller, "attic", (header, ranges), PATIENCE));
+        let asking = scope.spawn(|| ask(&caller, "attic", (header, ranges), TIMEOUT));
         let _unanswered = kept.recv().unwrap();
         let again = kept.recv().unwrap();
         let refusal = again.reply_err("no such room").encoding(REFUSED);

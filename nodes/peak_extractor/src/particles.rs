@@ -38,8 +38,8 @@ pub fn draw(
     };
     let candidates = answer.places.iter().map(Candidate::from);
     let poses = particles::draw(frame, candidates, count as usize, seed)?;
-    let particle = |map_from_sought| Particle {
-        map_from_base: answer.sought.base(map_from_sought).into(),
+    let particle = |map_from_target| Particle {
+        map_from_base: answer.target.base(map_from_target).into(),
     };
     Ok((header, poses.into_iter().map(particle).collect()))
 }

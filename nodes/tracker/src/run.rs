@@ -104,7 +104,7 @@ struct Node {
     /// Whether a search was waited for in vain, and no answer to any has come since: further
     /// ones are asked for and not waited for, so that poses go on.
     is_silent: bool,
-    /// Where the sought frame was by the odometry at the scan before.
+    /// Where the target frame was by the odometry at the scan before.
     before: Option<Pose>,
     /// Where the robot is said to be, of the base.
     initial: Option<(Pose, Covariance)>,
@@ -223,7 +223,7 @@ impl Node {
         if let Some(initial) = self.initial.take() {
             self.expect_base(initial, INITIAL_LEAD);
         }
-        let now = self.joiner.odom_from_sought();
+        let now = self.joiner.odom_from_target();
         let moved = self
             .before
             .zip(now)
@@ -267,7 +267,7 @@ impl Node {
         start: Instant,
     ) -> Result<(), TrackerError> {
         self.turn = Turn::Idle;
-        let sought = self.sought();
+        let target = self.target();
         let Some(world) = &self.world else {
             return self.send_nothing(scan, TrackReason::NoMap);
         };
@@ -275,7 +275,7 @@ impl Node {
         let seen = world.seen(&self.ends, &self.config.fit);
         let answer = of.and_then(|of| self.answers.of(of));
         let of_map = answer.into_iter().flatten().filter(|h| h.map_id == map_id);
-        Candidate::fill(&mut self.candidates, of_map, sought);
+        Candidate::fill(&mut self.candidates, of_map, target);
         let found = answer.map(|_| &self.candidates[..]);
         self.tracker.finish(&seen, found);
         if self.tracker.asks_ahead() {
@@ -286,9 +286,9 @@ impl Node {
             stamp: scan.stamp,
             map_id,
             report: self.tracker.report(),
-            sought,
+            target,
             mount_known: scan.mount_known == 1,
-            odom_from_sought: self.before.map(|pose| (pose, self.joiner.odom_frame())),
+            odom_from_target: self.before.map(|pose| (pose, self.joiner.odom_frame())),
             tracking_ns: start.elapsed().as_nanos() as u64,
         };
         self.last = Some(last);
@@ -315,7 +315,7 @@ impl Node {
         else {
             return Ok(());
         };
-        let newest = self.joiner.newest_odom_from_sought();
+        let newest = self.joiner.newest_odom_from_target();
         let Some(header) = newest.and_then(|pose| last.carried(pose, stamp)) else {
             return Ok(());
         };

@@ -151,7 +151,7 @@ impl MonteCarlo {
         let (x, y, heading) = self
             .distance_field
             .frame
-            .cells_from_map(found.map_from_sought);
+            .cells_from_map(found.map_from_target);
         Estimate {
             x: (x as usize).min(self.sides.0 - 1),
             y: (y as usize).min(self.sides.1 - 1),

@@ -21,7 +21,7 @@ pub(super) struct Wanted {
     corners: Vec<[f64; 2]>,
 }
 
-/// Lets poses be sought in a region alone.
+/// Lets poses be searched in a region alone.
 pub(super) async fn search_in(
     State(site): State<Arc<Site>>,
     Path(name): Path<String>,
@@ -36,7 +36,7 @@ pub(super) async fn search_in(
     request(&site, &name, Request::Region(corners))
 }
 
-/// Lets poses be sought everywhere.
+/// Lets poses be searched everywhere.
 pub(super) async fn search_everywhere(
     State(site): State<Arc<Site>>,
     Path(name): Path<String>,

@@ -24,7 +24,7 @@ use crate::view::Message;
 const MAX_MESSAGE: usize = 1024;
 
 /// How long a reader may take for one message.
-const PATIENCE: Duration = Duration::from_secs(10);
+const TIMEOUT: Duration = Duration::from_secs(10);
 
 /// The reader spoke what we do not understand.
 const POLICY_VIOLATION: u16 = 1008;
@@ -134,7 +134,7 @@ impl Reader {
     }
 
     async fn send(&mut self, frame: Frame) -> Option<()> {
-        let sent = tokio::time::timeout(PATIENCE, self.socket.send(frame)).await;
+        let sent = tokio::time::timeout(TIMEOUT, self.socket.send(frame)).await;
         sent.ok()?.ok()
     }
 }

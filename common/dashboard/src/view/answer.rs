@@ -1,6 +1,6 @@
 //! What a scan says of the pose.
 
-use engine::peaks::sentence::{Stand, sentence};
+use engine::peaks::sentence::{PlaceSummary, sentence};
 use geometry::{Covariance, Pose};
 use messages::{HypothesesHeader, Hypothesis, Verdict};
 use serde::Serialize;
@@ -65,7 +65,7 @@ impl Answer {
         let since_entry = |ns: i64| ms(ns.saturating_sub(header.stamp.entered_ns));
         let shown = items.iter().filter(is_pose).take(MAX_PLACES);
         let mount_known = header.mount_known == 1;
-        let stands: Vec<Stand> = shown.clone().filter_map(stand).collect();
+        let summaries: Vec<PlaceSummary> = shown.clone().filter_map(summary).collect();
         let meant = stands.len().min(1 + header.alternatives as usize);
         Answer {
             counter: header.stamp.counter,
@@ -99,8 +99,8 @@ fn covariance(hypothesis: &Hypothesis) -> Option<Covariance> {
     is_finite.then(|| Covariance::from_rows(hypothesis.covariance))
 }
 
-fn stand(hypothesis: &Hypothesis) -> Option<Stand> {
-    Some(Stand {
+fn summary(hypothesis: &Hypothesis) -> Option<PlaceSummary> {
+    Some(PlaceSummary {
         map_from_laser: hypothesis.map_from_laser.into(),
         covariance: covariance(hypothesis)?,
         score: hypothesis.score.into(),

@@ -1,4 +1,4 @@
-//! Where the beams of a scan end, seen from the frame whose pose is sought.
+//! Where the beams of a scan end, seen from the target frame.
 
 use messages::Reading;
 
@@ -25,14 +25,14 @@ pub struct Ends {
 /// Where a beam ends.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(crate) struct End {
-    /// Where the laser was, cells in the frame that is sought; its origin where the
+    /// Where the laser was, cells in the target frame; its origin where the
     /// laser stood still.
     pub from: (f64, f64),
-    /// In the frame that is sought, radians.
+    /// In the target frame, radians.
     pub bearing: f64,
     /// Metres from the laser.
     pub reading_m: f64,
-    /// The unit vector along the beam, in the frame that is sought.
+    /// The unit vector along the beam, in the target frame.
     pub towards: (f64, f64),
     /// Cells.
     pub reading: f64,
@@ -143,7 +143,7 @@ impl Ends {
 /// A beam, and what became of it.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct JudgedBeam {
-    /// Where it ends, seen from the origin of the frame that is sought (the laser's
+    /// Where it ends, seen from the origin of the target frame (the laser's
     /// where it stood still): counter-clockwise from ahead, radians.
     pub bearing: f64,
     /// Metres from there.
@@ -195,7 +195,7 @@ impl Ends {
         self.weight * self.weight / squares.max(f64::MIN_POSITIVE)
     }
 
-    /// Bearings of the beams that say nothing, in the frame that is sought, radians.
+    /// Bearings of the beams that say nothing, in the target frame, radians.
     #[must_use]
     pub fn silent(&self) -> &[f64] {
         &self.silent
@@ -231,19 +231,19 @@ impl End {
         }
     }
 
-    /// The direction of the beam where the sought frame is turned.
+    /// The direction of the beam where the target frame is turned.
     #[inline]
     pub(super) fn direction(&self, turn: (f64, f64)) -> (f64, f64) {
         turned(self.towards, turn)
     }
 
-    /// Where the laser was from the sought frame's origin, where that is turned.
+    /// Where the laser was from the target frame's origin, where that is turned.
     #[inline]
     pub(super) fn start(&self, turn: (f64, f64)) -> (f64, f64) {
         turned(self.from, turn)
     }
 
-    /// Where the beam ends, seen from the origin of the sought frame: bearing and
+    /// Where the beam ends, seen from the origin of the target frame: bearing and
     /// metres.
     fn seen_from_origin(&self) -> (f64, f64) {
         if self.from == (0.0, 0.0) {

@@ -52,12 +52,12 @@ fn pair() -> Joiner {
     })
 }
 
-/// x of the laser in the sought frame at each beam, by laser.
+/// x of the laser in the target frame at each beam, by laser.
 fn places(joiner: &Joiner) -> Vec<Vec<f64>> {
     match joiner.seen() {
         Seen::Still(_) => Vec::new(),
         Seen::Carried(scans) => {
-            let xs = |scan: &CarriedScan<'_>| scan.sought_from_laser.iter().map(|p| p.x).collect();
+            let xs = |scan: &CarriedScan<'_>| scan.target_from_laser.iter().map(|p| p.x).collect();
             scans.iter().map(xs).collect()
         }
     }
@@ -97,7 +97,7 @@ fn the_motion_within_a_scan_is_taken_out() {
     assert!(!joiner.lacks_odometry());
     assert_eq!(joiner.bring().unwrap().motion, MotionKnown::ByOdometry);
     check_places(&joiner, &[&[-0.02, 0.0, 0.02]]);
-    assert!(!joiner.seeks_base());
+    assert!(!joiner.targets_base());
 }
 
 #[test]
@@ -141,7 +141,7 @@ fn several_lasers_are_seen_from_the_base_at_the_time_of_the_first() {
     let brought = joiner.bring().unwrap();
     assert_eq!((brought.lasers, brought.left_out.len()), (2, 0));
     check_places(&joiner, &[&[0.5; 3], &[-0.56; 3]]);
-    assert!(joiner.seeks_base());
+    assert!(joiner.targets_base());
 }
 
 #[test]

@@ -31,7 +31,7 @@ pub struct LocalizerConfig {
     /// Which poses a search collects.
     #[command(flatten)]
     pub collect: CollectConfig,
-    /// Where poses are sought.
+    /// Where poses are searched.
     #[command(flatten)]
     pub limits: LimitsConfig,
     /// How votes are counted if the heading is known; the answer is the same.

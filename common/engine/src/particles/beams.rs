@@ -3,7 +3,7 @@
 use super::ParticlesConfig;
 use crate::fit::Ends;
 
-/// A beam in cells of the frame that is sought.
+/// A beam in cells of the target frame.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(super) struct Beam {
     /// Where it ends.

@@ -120,7 +120,7 @@ impl ParticleFilter {
             .sort_by_cached_key(|particle| binning.bin(particle.pose));
     }
 
-    /// Moves the particles by a step of the odometry, given in the sought frame before
+    /// Moves the particles by a step of the odometry, given in the target frame before
     /// it: `before.inverse().then(after)`. A step that is not finite moves nothing.
     pub fn predict(&mut self, step: Pose, noise: &OdometryNoise) {
         if step.is_finite() {

@@ -13,7 +13,7 @@
 //! free cells ──────────┘               └── resample (KLD) ── estimate
 //! ```
 //!
-//! Poses of the interface are those of the frame that is sought (laser, or base) in the
+//! Poses of the interface are those of the target frame (laser, or base) in the
 //! map, metres and radians; particles are kept in cells of the grid. All is
 //! deterministic: the same calls with the same seed give the same particles to the last
 //! bit on one machine. Nothing is allocated from scan to scan once the buffers are large enough

@@ -14,8 +14,8 @@ use crate::peaks::Place;
 /// A place where the robot may be.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Candidate {
-    /// Pose of the frame that is sought, in the map.
-    pub map_from_sought: Pose,
+    /// Pose of the target frame, in the map.
+    pub map_from_target: Pose,
     /// Its spread, in the map.
     pub covariance: Covariance,
     /// How likely the robot is there, against the other candidates.
@@ -25,7 +25,7 @@ pub struct Candidate {
 impl From<&Place> for Candidate {
     fn from(place: &Place) -> Self {
         Candidate {
-            map_from_sought: place.map_from_laser,
+            map_from_target: place.map_from_laser,
             covariance: place.covariance,
             weight: place.probability,
         }
@@ -112,11 +112,11 @@ impl Seeds {
 impl Seed {
     fn new(frame: GridFrame, candidate: &Candidate) -> Option<Self> {
         let Candidate {
-            map_from_sought,
+            map_from_target,
             covariance: Covariance(covariance),
             weight,
         } = *candidate;
-        let (x, y, heading) = frame.cells_from_map(map_from_sought);
+        let (x, y, heading) = frame.cells_from_map(map_from_target);
         let mut numbers = covariance.iter().chain([&x, &y, &heading, &weight]);
         if !(numbers.all(|number| number.is_finite()) && weight >= 0.0) {
             return None;
@@ -164,7 +164,7 @@ mod tests {
 
     fn candidate(x: f64, weight: f64) -> Candidate {
         Candidate {
-            map_from_sought: Pose::new(x, 2.0, 1.0),
+            map_from_target: Pose::new(x, 2.0, 1.0),
             covariance: Covariance::from_deviations(0.3, 0.1, 0.05),
             weight,
         }

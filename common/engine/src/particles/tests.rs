@@ -88,7 +88,7 @@ fn drive(
 
 fn candidate(pose: Pose, weight: f64) -> Candidate {
     Candidate {
-        map_from_sought: pose,
+        map_from_target: pose,
         covariance: Covariance::from_deviations(0.05, 0.05, 0.02),
         weight,
     }
@@ -96,7 +96,7 @@ fn candidate(pose: Pose, weight: f64) -> Candidate {
 
 #[track_caller]
 fn check_found((found, truth): (Estimate, Pose)) {
-    let pose = found.map_from_sought;
+    let pose = found.map_from_target;
     // A cell, and what an end point a cell off turns at 1 m.
     assert!(pose.is_within(truth, 0.1, 0.1), "{pose:?} is not {truth:?}");
     assert!(found.share > 0.95, "{}", found.share);
@@ -133,7 +133,7 @@ fn a_start_at_the_places_of_the_votes_is_right_at_once() {
     // And given another place, it starts there.
     filter.seed([candidate(wrong, 1.0)]).unwrap();
     let found = filter.estimate().unwrap();
-    assert!(found.map_from_sought.is_within(wrong, 0.05, 0.05));
+    assert!(found.map_from_target.is_within(wrong, 0.05, 0.05));
     assert_eq!(filter.seed([]), Err(EngineError::NoStart));
 }
 

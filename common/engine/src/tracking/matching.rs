@@ -7,8 +7,8 @@ use geometry::Pose;
 use nalgebra::Matrix3;
 
 use super::TrackingConfig;
+use super::driven_path::DrivenPath;
 use super::seen::Seen;
-use super::way::Way;
 use crate::EngineError;
 use crate::fit::{DistanceField, End, Ends};
 use crate::grid::{CellRules, GridFrame};
@@ -36,7 +36,7 @@ pub(super) struct ScanMatcher {
 }
 
 impl ScanMatcher {
-    /// How the sought frame moved since the scan before: as odometry says, or where that
+    /// How the target frame moved since the scan before: as odometry says, or where that
     /// says nothing, as the two match; `None` where they do not, or there was none.
     pub(super) fn moved(
         &mut self,
@@ -69,10 +69,10 @@ impl ScanMatcher {
             distance_field: self.reference.as_ref()?,
             ..*seen
         };
-        let unknown = Way {
+        let unknown = DrivenPath {
             has_hole: true,
             step: self.step,
-            ..Way::default()
+            ..DrivenPath::default()
         };
         let predicted = unknown.predict((self.gone, Matrix3::zeros()), 1.0);
         // The others end off the map.
@@ -107,7 +107,7 @@ fn around(seen: &Seen<'_>) -> Result<DistanceField, EngineError> {
     DistanceField::new(frame, (side, side), &occupancy, CellRules::default())
 }
 
-/// Where beams end that end near, in cells about the frame that is sought.
+/// Where beams end that end near, in cells about the target frame.
 fn near_ends(ends: &Ends) -> impl Iterator<Item = (f64, f64)> {
     ends.ends.iter().map(point).filter(is_near)
 }

@@ -23,6 +23,7 @@
 //! evidence that is capped.
 
 mod config;
+mod driven_path;
 mod matching;
 mod method;
 mod particles;
@@ -31,7 +32,6 @@ mod places;
 mod report;
 mod seen;
 mod verdict;
-mod way;
 
 pub use config::TrackingConfig;
 pub use method::{FollowConfig, Follower};
@@ -40,11 +40,11 @@ pub use place::Candidate;
 pub use report::Report;
 pub use seen::Seen;
 
+use driven_path::DrivenPath;
 use geometry::{Covariance, Pose};
 use matching::ScanMatcher;
 use places::Places;
 use verdict::Belief;
-use way::Way;
 
 /// What is needed of a search before a scan is done with.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -75,11 +75,11 @@ pub struct Tracker {
     /// Where odometry is missing.
     matcher: ScanMatcher,
     /// Since the last key scan.
-    since_key: Way,
+    since_key: DrivenPath,
     /// Since the last scan that was looked at.
-    since_scan: Way,
+    since_scan: DrivenPath,
     /// Since the scan that was asked for ahead, and how many scans are left.
-    ahead: Option<(Way, u32)>,
+    ahead: Option<(DrivenPath, u32)>,
     asks_ahead: bool,
     keys_since_search: u32,
     is_key: bool,
@@ -98,8 +98,8 @@ impl Tracker {
             places: Places::new(config),
             belief: Belief::new(config),
             matcher: ScanMatcher::default(),
-            since_key: Way::default(),
-            since_scan: Way::default(),
+            since_key: DrivenPath::default(),
+            since_scan: DrivenPath::default(),
             ahead: None,
             asks_ahead: false,
             keys_since_search: 0,
@@ -127,7 +127,7 @@ impl Tracker {
         self.belief.believe(id);
     }
 
-    /// Takes the next scan and how the sought frame moved since the one before, if
+    /// Takes the next scan and how the target frame moved since the one before, if
     /// odometry measures; otherwise scans are matched. The scan is done with at
     /// [`Tracker::finish`].
     pub fn begin(&mut self, seen: &Seen<'_>, stamp_ns: i64, moved: Option<Pose>) -> Need {
@@ -144,12 +144,12 @@ impl Tracker {
         };
         self.belief.go_on(stamp_ns, moved);
         self.asks_ahead = false;
-        for way in [&mut self.since_key, &mut self.since_scan] {
-            way.add(moved);
+        for path in [&mut self.since_key, &mut self.since_scan] {
+            path.add(moved);
         }
         let mut is_due = false;
-        if let Some((way, left)) = &mut self.ahead {
-            way.add(moved);
+        if let Some((path, left)) = &mut self.ahead {
+            path.add(moved);
             *left = left.saturating_sub(1);
             is_due = *left == 0;
         }
@@ -158,14 +158,14 @@ impl Tracker {
         }
         if let Some((pose, covariance, lead)) = self.expected.take() {
             self.places.expect(seen, (pose, covariance.0), lead);
-            self.since_key = Way::default();
+            self.since_key = DrivenPath::default();
             self.is_key = true;
             return Need::ThisScan;
         }
-        let way = std::mem::take(&mut self.since_scan);
+        let path = std::mem::take(&mut self.since_scan);
         let was_doubtful = self.belief.is_doubtful();
         if let Some(id) = self.belief.place() {
-            self.places.follow(id, seen, &way);
+            self.places.follow(id, seen, &path);
         }
         self.belief.look_at(&self.places);
         let is_suspicious = self.belief.is_doubtful();
@@ -194,7 +194,7 @@ impl Tracker {
             return;
         }
         if self.is_key {
-            let way = std::mem::take(&mut self.since_key);
+            let path = std::mem::take(&mut self.since_key);
             let due = self.ahead.take_if(|(_, left)| *left == 0);
             match (due, found) {
                 (_, None) => {}
@@ -205,7 +205,7 @@ impl Tracker {
                 self.keys_since_search = 0;
             }
             self.belief.search_ended(self.needs_search, found.is_some());
-            self.places.weigh(seen, &way, &mut self.belief);
+            self.places.weigh(seen, &path, &mut self.belief);
             self.keys_since_search += 1;
         }
         self.belief.conclude(&self.places, self.is_key);
@@ -214,7 +214,7 @@ impl Tracker {
             && self.belief.is_sound()
             && self.keys_since_search >= CHECKED_EVERY;
         if self.asks_ahead {
-            self.ahead = Some((Way::default(), COUNTS_AFTER));
+            self.ahead = Some((DrivenPath::default(), COUNTS_AFTER));
         }
     }
 

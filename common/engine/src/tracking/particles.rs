@@ -6,11 +6,11 @@ use geometry::{Covariance, Pose};
 use messages::{TrackReason, TrackState};
 use nalgebra::Matrix3;
 
+use super::driven_path::DrivenPath;
 use super::matching::ScanMatcher;
 use super::report::Report;
 use super::seen::Seen;
 use super::verdict::MIN_KEYS;
-use super::way::Way;
 use super::{Candidate, MIN_BEAMS, Need, TrackingConfig};
 use crate::fit::GridPose;
 use crate::particles::{self, ParticleFilter, ParticlesConfig};
@@ -31,7 +31,7 @@ pub struct ParticleTracker {
     filter: Option<ParticleFilter>,
     matcher: ScanMatcher,
     /// Since the last key scan.
-    since_key: Way,
+    since_key: DrivenPath,
     is_key: bool,
     is_blank: bool,
     /// Key scans in a row at which there was one cluster, and at which the scan hardly
@@ -54,7 +54,7 @@ impl ParticleTracker {
             particles,
             filter: None,
             matcher: ScanMatcher::default(),
-            since_key: Way::default(),
+            since_key: DrivenPath::default(),
             is_key: false,
             is_blank: false,
             agreeing: 0,
@@ -112,7 +112,7 @@ impl ParticleTracker {
     }
 
     fn start(&mut self, seen: &Seen<'_>, seeds: impl IntoIterator<Item = particles::Candidate>) {
-        self.since_key = Way::default();
+        self.since_key = DrivenPath::default();
         self.agreeing = 0;
         self.bad = 0;
         // Without a place to start at there are none: the next scan is searched.
@@ -123,15 +123,15 @@ impl ParticleTracker {
         let Some(filter) = &mut self.filter else {
             return;
         };
-        let way = std::mem::take(&mut self.since_key);
-        filter.predict(way.step, &self.particles.noise);
+        let path = std::mem::take(&mut self.since_key);
+        filter.predict(path.step, &self.particles.noise);
         filter.weigh(seen.distance_field, seen.ends);
         let estimate = filter.estimate();
         filter.resample();
         let Some(estimate) = estimate else {
             return;
         };
-        let (pose, covariance) = (estimate.map_from_sought, estimate.covariance);
+        let (pose, covariance) = (estimate.map_from_target, estimate.covariance);
         let spread = covariance.0[(0, 0)].max(covariance.0[(1, 1)]).sqrt();
         let is_one = estimate.share >= ONE_CLUSTER && spread <= MAX_SPREAD_M;
         self.agreeing = if is_one { self.agreeing + 1 } else { 0 };
@@ -184,9 +184,9 @@ impl ParticleTracker {
     }
 }
 
-fn seed(map_from_sought: Pose, covariance: Covariance) -> particles::Candidate {
+fn seed(map_from_target: Pose, covariance: Covariance) -> particles::Candidate {
     particles::Candidate {
-        map_from_sought,
+        map_from_target,
         covariance,
         weight: 1.0,
     }

@@ -8,12 +8,12 @@ use nalgebra::{Matrix3, Rotation2, SymmetricEigen};
 
 use super::places::MAX;
 use super::seen::{Fitted, with_map_error};
-use crate::peaks::Sought;
+use crate::peaks::Target;
 
 /// A place that a search found for one scan.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Candidate {
-    /// Of the frame that is sought.
+    /// Of the target frame.
     pub pose: Pose,
     /// Of that pose.
     pub covariance: Covariance,
@@ -28,9 +28,9 @@ pub struct Candidate {
 const LOOSEST_M: f64 = 0.3;
 
 impl Candidate {
-    fn of(hypothesis: &Hypothesis, sought: Sought) -> Self {
+    fn of(hypothesis: &Hypothesis, target: Target) -> Self {
         let laser = hypothesis.map_from_laser.into();
-        let pose = sought.from_laser(laser);
+        let pose = target.from_laser(laser);
         Candidate {
             pose,
             covariance: Covariance::from_rows(hypothesis.covariance).carried(laser, pose),
@@ -45,10 +45,10 @@ impl Candidate {
     pub fn fill<'a>(
         candidates: &mut Vec<Self>,
         found: impl Iterator<Item = &'a Hypothesis>,
-        sought: Sought,
+        target: Target,
     ) {
         candidates.clear();
-        candidates.extend(found.map(|hypothesis| Candidate::of(hypothesis, sought)));
+        candidates.extend(found.map(|hypothesis| Candidate::of(hypothesis, target)));
         candidates.sort_unstable_by_key(|candidate| Reverse(candidate.votes));
         candidates.truncate(MAX);
         let best = candidates.first().map_or(0, |best| best.votes);

@@ -4,10 +4,10 @@ use geometry::Pose;
 use nalgebra::{Matrix3, Vector3};
 
 use super::TrackingConfig;
+use super::driven_path::DrivenPath;
 use super::place::{Candidate, Place};
 use super::seen::{Fitted, Seen, information, squared_deviations};
 use super::verdict::Belief;
-use super::way::Way;
 use crate::peaks::lead;
 
 /// Most places that are kept, and how many of them may be older than one key scan, and
@@ -146,7 +146,7 @@ impl Places {
     }
 
     /// Moves one place by a way, and fits the scan there.
-    pub(super) fn follow(&mut self, id: u32, seen: &Seen<'_>, way: &Way) {
+    pub(super) fn follow(&mut self, id: u32, seen: &Seen<'_>, path: &DrivenPath) {
         let TrackingConfig {
             odometry_error,
             restart_fall,
@@ -155,7 +155,7 @@ impl Places {
         let Some(place) = self.kept.iter_mut().find(|place| place.id == id) else {
             return;
         };
-        let predicted = way.predict((place.pose, place.covariance), odometry_error);
+        let predicted = path.predict((place.pose, place.covariance), odometry_error);
         let mut fitted = seen.settle(predicted);
         if fitted.score < place.mean - restart_fall {
             fitted = seen.settle_turned(predicted, fitted);
@@ -172,24 +172,24 @@ impl Places {
 
     /// Takes what a search found for an earlier scan, from where the robot has gone a
     /// way since.
-    pub(super) fn take_ahead(&mut self, seen: &Seen<'_>, way: &Way, found: &[Candidate]) {
+    pub(super) fn take_ahead(&mut self, seen: &Seen<'_>, path: &DrivenPath, found: &[Candidate]) {
         let noise = self.config.odometry_error;
         self.candidates.clear();
         self.candidates.extend(found.iter().map(|candidate| {
             let Fitted {
                 pose, covariance, ..
             } = candidate.fitted();
-            seen.settle(way.predict((pose, covariance), noise))
+            seen.settle(path.predict((pose, covariance), noise))
         }));
     }
 
     /// Weighs all places by a key scan, and those that were taken with them; those
     /// that are not believed have gone `way` since the last one.
-    pub(super) fn weigh(&mut self, seen: &Seen<'_>, way: &Way, belief: &mut Belief) {
+    pub(super) fn weigh(&mut self, seen: &Seen<'_>, path: &DrivenPath, belief: &mut Belief) {
         let noise = self.config.odometry_error;
         for place in &mut self.kept {
             if belief.place() != Some(place.id) {
-                place.predicted = way.predict((place.pose, place.covariance), noise);
+                place.predicted = path.predict((place.pose, place.covariance), noise);
                 place.set(&seen.settle(place.predicted));
             }
         }

@@ -11,7 +11,7 @@ pub struct Report {
     pub state: TrackState,
     /// Why.
     pub reason: TrackReason,
-    /// Of the frame that is sought, in the map: the place that is believed, else the
+    /// Of the target frame, in the map: the place that is believed, else the
     /// one that leads.
     pub pose: Option<Pose>,
     /// Of that pose. Where no place is believed, it spans all that are kept.

@@ -7,7 +7,7 @@ use crate::beams::BeamConfig;
 use crate::fit::{DistanceField, Ends, FitConfig};
 use crate::grid::{CellRules, Grid, GridFrame};
 use crate::localizer::{Localizer, LocalizerConfig, Prior};
-use crate::peaks::{PeakConfig, PeakInput, Sought, by_fit};
+use crate::peaks::{PeakConfig, PeakInput, Target, by_fit};
 use crate::scan::Scan;
 use crate::space::Space;
 
@@ -95,11 +95,11 @@ impl Building {
             (&self.distance_field, &ends),
             &PeakConfig::default(),
         );
-        let sought = Sought::of(None, false);
-        let hypothesis = |place: &crate::peaks::Place| place.hypothesis(1, sought);
+        let target = Target::of(None, false);
+        let hypothesis = |place: &crate::peaks::Place| place.hypothesis(1, target);
         let hypotheses: Vec<_> = places.places.iter().map(hypothesis).collect();
         let mut found = Vec::new();
-        Candidate::fill(&mut found, hypotheses.iter(), sought);
+        Candidate::fill(&mut found, hypotheses.iter(), target);
         found
     }
 

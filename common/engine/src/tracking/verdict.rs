@@ -5,10 +5,10 @@ use messages::{TrackReason, TrackState};
 use nalgebra::Matrix3;
 
 use super::TrackingConfig;
+use super::driven_path::DrivenPath;
 use super::place::Place;
 use super::places::{FARTHEST_BEHIND, NEAR_M, Places};
 use super::report::Report;
-use super::way::Way;
 
 /// Key scans since a step that is not known that have to agree before a place is the only
 /// one: nothing ties what was seen before to where the robot is now.
@@ -232,7 +232,7 @@ impl Belief {
 
     /// What is to be said; places that are not believed have gone `since_key` since the
     /// last key scan.
-    pub(super) fn report(&self, places: &Places, since_key: &Way) -> Report {
+    pub(super) fn report(&self, places: &Places, since_key: &DrivenPath) -> Report {
         let believed = self.place.and_then(|id| places.get(id));
         let place = believed.or(places.all().first());
         let pose = place.map(|place| match believed {

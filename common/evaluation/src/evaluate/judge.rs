@@ -60,7 +60,7 @@ pub(super) struct Evaluation {
     pub(super) prepare_cpu_ms: f64,
     /// The most memory that the process held, megabytes of 10⁶ bytes.
     pub(super) peak_rss_mb: f64,
-    /// Cells in which poses are sought, as large as they are searched.
+    /// Cells in which poses are searched, as large as they are searched.
     pub(super) searchable_cells: u64,
     /// Bytes of what a search keeps of the map.
     pub(super) index_bytes: u64,

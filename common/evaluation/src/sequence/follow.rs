@@ -104,10 +104,10 @@ fn sum_up(all: &mut Followed, moments: &[Moment]) {
 
 /// Whether the true position lies in the ellipse that is to hold 95 % of them.
 fn is_in_ellipse(moment: &Moment, said: &Said) -> bool {
-    let Some(((sought, laser), truth)) = said.report.pose.zip(said.pose).zip(moment.truth) else {
+    let Some(((target, laser), truth)) = said.report.pose.zip(said.pose).zip(moment.truth) else {
         return false;
     };
-    let covariance = Covariance(said.report.covariance).carried(sought, laser);
+    let covariance = Covariance(said.report.covariance).carried(target, laser);
     let off = (truth.x - laser.x, truth.y - laser.y);
     statistics::holds(covariance, off)
 }

@@ -22,7 +22,7 @@ use crate::LauncherError;
 /// The longest question, bytes.
 const MAX_QUESTION: u64 = 4096;
 /// How long a question may take to come, and its answer to be given and taken.
-const PATIENCE: Duration = Duration::from_secs(5);
+const TIMEOUT: Duration = Duration::from_secs(5);
 
 /// What can be asked.
 #[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize)]
@@ -119,8 +119,8 @@ pub fn listen(path: &Path, waker: Waker) -> Result<Receiver<Asked>, LauncherErro
 }
 
 fn serve(mut stream: &UnixStream, asked: &Sender<Asked>, waker: &Waker) -> std::io::Result<()> {
-    stream.set_read_timeout(Some(PATIENCE))?;
-    stream.set_write_timeout(Some(PATIENCE))?;
+    stream.set_read_timeout(Some(TIMEOUT))?;
+    stream.set_write_timeout(Some(TIMEOUT))?;
     let mut line = String::new();
     BufReader::new(stream.take(MAX_QUESTION)).read_line(&mut line)?;
     let answer = match serde_json::from_str(&line) {
@@ -131,7 +131,7 @@ fn serve(mut stream: &UnixStream, asked: &Sender<Asked>, waker: &Waker) -> std::
             match asked.send(Asked { question, answer }) {
                 Ok(()) => {
                     waker.wake();
-                    answered.recv_timeout(PATIENCE).unwrap_or_else(|_| busy())
+                    answered.recv_timeout(TIMEOUT).unwrap_or_else(|_| busy())
                 }
                 Err(_) => busy(),
             }
@@ -148,7 +148,7 @@ fn serve(mut stream: &UnixStream, asked: &Sender<Asked>, waker: &Waker) -> std::
 /// Nobody listens, or the answer is none.
 pub fn ask(path: &Path, question: &Question) -> std::io::Result<Answer> {
     let stream = UnixStream::connect(path)?;
-    stream.set_read_timeout(Some(2 * PATIENCE))?;
+    stream.set_read_timeout(Some(2 * TIMEOUT))?;
     let mut text = serde_json::to_string(question)?;
     text.push('\n');
     (&stream).write_all(text.as_bytes())?;

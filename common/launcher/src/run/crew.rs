@@ -175,9 +175,9 @@ impl Crew {
     }
 
     /// No process could report.
-    pub fn excuse(&mut self, now: Instant) {
+    pub fn restart_timeout(&mut self, now: Instant) {
         for member in &mut self.members {
-            member.pulse.excuse(now);
+            member.pulse.restart_timeout(now);
         }
     }
 
@@ -390,7 +390,7 @@ impl Member {
             "{id} sent no heartbeat for {seconds} s and is killed"
         ));
         // Its end is seen later; until then it is not ended again.
-        self.pulse.excuse(now);
+        self.pulse.restart_timeout(now);
         let killed = process.signal(Signal::SIGKILL);
         killed.map_err(|error| not_supervised(&self.node, process.pid(), error))
     }

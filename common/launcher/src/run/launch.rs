@@ -162,7 +162,7 @@ fn launch(
     health.state(NodeState::Ready)?;
     let save = Arc::new(AtomicBool::new(false));
     signal_hook::flag::register(SIGUSR1, Arc::clone(&save)).map_err(LauncherError::Signal)?;
-    let desk = Desk {
+    let control_port = ControlPort {
         questions: control::listen(&control_socket(name), graph.waker()?)?,
         graph: name.clone(),
         descriptor: descriptor.file.clone(),
@@ -170,7 +170,7 @@ fn launch(
     };
     let end = stay(
         &graph,
-        (&watch, &save, &desk),
+        (&watch, &save, &control_port),
         &mut crew,
         &mut health,
         journal,
@@ -199,7 +199,7 @@ fn launch(
 /// to save where `save` is set.
 fn stay(
     graph: &Graph,
-    (watch, save, desk): (&Watch, &AtomicBool, &Desk),
+    (watch, save, control_port): (&Watch, &AtomicBool, &ControlPort),
     crew: &mut Crew,
     health: &mut Health,
     journal: &mut Journal,
@@ -224,7 +224,7 @@ fn stay(
             end = End::Finished;
             return Ok(Flow::Stop);
         }
-        if desk.answer(crew, now)? == Flow::Stop {
+        if control_port.answer(crew, now)? == Flow::Stop {
             return Ok(Flow::Stop);
         }
         if save.swap(false, Ordering::Relaxed) && crew.signal(RECORDER, Signal::SIGUSR1)? == 0 {
@@ -232,7 +232,7 @@ fn stay(
         }
         if !shared_memory_has_room() {
             // Nobody can give a sign of life.
-            crew.excuse(now);
+            crew.restart_timeout(now);
         }
         if crew.tick(now)? || now - last_cleanup >= CLEANUP_PERIOD {
             graph.ensure_intact()?;
@@ -254,14 +254,14 @@ fn stay(
 }
 
 /// Where other terminals ask the launcher.
-struct Desk {
+struct ControlPort {
     questions: Receiver<Asked>,
     graph: GraphName,
     descriptor: PathBuf,
     started: Instant,
 }
 
-impl Desk {
+impl ControlPort {
     /// Answers what was asked; says to stop where that was wanted.
     fn answer(&self, crew: &mut Crew, now: Instant) -> Result<Flow, LauncherError> {
         let mut flow = Flow::Continue;

@@ -140,7 +140,7 @@ impl Pulse {
     /// Its process was started: who has reported before is expected to report again.
     pub fn started(&mut self, now: Instant) {
         self.busy = false;
-        self.excuse(now);
+        self.restart_timeout(now);
     }
 
     /// It reported.
@@ -150,7 +150,7 @@ impl Pulse {
     }
 
     /// It could not have reported.
-    pub fn excuse(&mut self, now: Instant) {
+    pub fn restart_timeout(&mut self, now: Instant) {
         if self.last.is_some() {
             self.last = Some(now);
         }
@@ -298,7 +298,7 @@ mod tests {
         pulse.started(at(1000));
         assert_eq!(pulse.missed_for(at(1014)), None);
         assert!(pulse.missed_for(at(1016)).is_some(), "anew, and silent");
-        pulse.excuse(at(1016));
+        pulse.restart_timeout(at(1016));
         assert_eq!(pulse.missed_for(at(1020)), None);
     }
 

@@ -18,7 +18,7 @@ use crate::{AccumulatorError, Config};
 /// localizer at a time, always for what came last.
 pub(super) struct Supply {
     config: LocalizerConfig,
-    /// Where poses are sought unless somebody requests otherwise.
+    /// Where poses are searched unless somebody requests otherwise.
     configured: Option<Region>,
     /// Counts the regions that were region_changed for.
     requests: u64,

@@ -8,7 +8,7 @@ use sick::SickError;
 use sick::lms2xx::{Baud, CommandFramer, Reply};
 use transport::monotonic_ns;
 
-use super::{Common, PATIENCE_NS, SLICE, Summary};
+use super::{Common, SLICE, Summary, TIMEOUT_NS};
 use crate::EmulatorError;
 use crate::lms2xx_device::Lms2xxDevice;
 
@@ -46,7 +46,7 @@ pub(super) fn run(link: &Path, baud: Baud, common: Common) -> Result<Summary, Em
         if is_over {
             let over_ns = *over_ns.get_or_insert(now_ns);
             let rested_ns = now_ns - over_ns;
-            if rested_ns > PATIENCE_NS || rested_ns > REST_NS && terminal.unread()? == 0 {
+            if rested_ns > TIMEOUT_NS || rested_ns > REST_NS && terminal.unread()? == 0 {
                 return Ok(terminal.common.conclude(true));
             }
         }

@@ -11,7 +11,7 @@ use sick::SickError;
 use sick::cola::{Answer, Encoding, Fault, Framer, Telegram};
 use transport::{TransportError, monotonic_ns};
 
-use super::{Common, PATIENCE_NS, Summary};
+use super::{Common, Summary, TIMEOUT_NS};
 use crate::EmulatorError;
 use crate::cola_device::{ColaDevice, Model, Session};
 use crate::faults::Faults;
@@ -63,7 +63,7 @@ pub(super) fn run(
         if is_over {
             let over_ns = *over_ns.get_or_insert(now_ns);
             let unread = clients.iter().any(|client| !client.unsent.is_empty());
-            if !unread || now_ns - over_ns > PATIENCE_NS {
+            if !unread || now_ns - over_ns > TIMEOUT_NS {
                 return Ok(common.conclude(true));
             }
         }

@@ -67,7 +67,7 @@ impl Device {
     fn speak(&mut self, setup: &mut Setup) -> Result<(), LmsError> {
         let mut now_ns = 0;
         while setup.format().is_none() {
-            now_ns += PATIENCE_NS;
+            now_ns += TIMEOUT_NS;
             match setup.next(now_ns)? {
                 Action::Baud(baud) => self.port = baud,
                 Action::Send(command) => {
@@ -133,7 +133,7 @@ fn nobody_there_names_the_rates_that_were_tried() {
     let mut setup = Setup::new(Wanted::default(), Some(Baud::B500000));
     let mut now_ns = 0;
     let error = loop {
-        now_ns += PATIENCE_NS;
+        now_ns += TIMEOUT_NS;
         if let Err(error) = setup.next(now_ns) {
             break error.to_string();
         }

@@ -12,7 +12,7 @@ use transport::{Graph, Health, Publisher, TransportError, with_causes};
 
 use crate::angles::Angles;
 use crate::clock::DeviceClock;
-use crate::complaints::Complaints;
+use crate::error_limit::ErrorLimit;
 use crate::lms2xx_scan::WholeScan;
 use crate::scan::{self, Received, ScanSettings};
 use crate::{Config, LmsError};
@@ -22,7 +22,7 @@ pub(super) const SLICE: Duration = Duration::from_millis(20);
 
 /// How long the end waits for subscribers that are busy with what was sent: a
 /// search takes seconds at most, and each may have a few scans before it.
-const PATIENCE: Duration = Duration::from_secs(30);
+const TIMEOUT: Duration = Duration::from_secs(30);
 
 /// What was last said about the source.
 #[derive(PartialEq)]
@@ -39,7 +39,7 @@ pub(super) struct Outlet {
     settings: ScanSettings,
     /// Which way the device looks.
     pub(super) angles: Angles,
-    complaints: Complaints,
+    error_limit: ErrorLimit,
     /// Of the device that sends now.
     clock: DeviceClock,
     link: Link,
@@ -61,7 +61,7 @@ impl Outlet {
             stop: graph.stop_flag(),
             settings: config.scan_settings(),
             angles: Angles::new(config.stated_angles()),
-            complaints: Complaints::default(),
+            error_limit: ErrorLimit::default(),
             clock: DeviceClock::default(),
             link: Link::Untried,
             device_status: 0,
@@ -92,8 +92,8 @@ impl Outlet {
     /// The end of all scans: waits until subscribers have taken the last ones, for
     /// a publisher takes along what nobody has looked at.
     pub(super) fn finish(&mut self) -> Result<(), LmsError> {
-        if !self.wait_until_taken(Instant::now() + PATIENCE)? && !self.stopped() {
-            let seconds = PATIENCE.as_secs();
+        if !self.wait_until_taken(Instant::now() + TIMEOUT)? && !self.stopped() {
+            let seconds = TIMEOUT.as_secs();
             tracing::warn!("not all subscribers read the last scans within {seconds} s");
         }
         Ok(())
@@ -233,7 +233,7 @@ impl Outlet {
     pub(super) fn refuse(&mut self, error: &LmsError) -> Result<(), LmsError> {
         self.refused += 1;
         self.health.count_refused(1);
-        if let Some(held_back) = self.complaints.note(transport::monotonic_ns()) {
+        if let Some(held_back) = self.error_limit.note(transport::monotonic_ns()) {
             let problem = with_causes(error);
             tracing::warn!(held_back, "{problem}");
             self.health.error(&problem)?;

@@ -66,7 +66,7 @@ impl Writer {
         let (commands, waiting) = channel();
         let status = Arc::new(Mutex::default());
         let queued_bytes = Arc::new(AtomicUsize::new(0));
-        let mut desk = Desk {
+        let mut thread = WriterThread {
             store,
             waiting,
             queued_bytes: Arc::clone(&queued_bytes),
@@ -76,7 +76,7 @@ impl Writer {
         };
         let thread = std::thread::Builder::new()
             .name("writer".into())
-            .spawn(move || desk.work())
+            .spawn(move || thread.work())
             .map_err(RecorderError::Thread)?;
         Ok(Writer {
             commands,
@@ -134,7 +134,7 @@ impl Writer {
 }
 
 /// What the thread works with.
-struct Desk {
+struct WriterThread {
     store: Store,
     waiting: Receiver<Command>,
     queued_bytes: Arc<AtomicUsize>,
@@ -144,7 +144,7 @@ struct Desk {
     sync: Option<Duration>,
 }
 
-impl Desk {
+impl WriterThread {
     /// Writes until nobody sends any more.
     fn work(&mut self) -> Status {
         let mut flush_at = Instant::now() + FLUSH_PERIOD;

@@ -1,6 +1,6 @@
 //! A topic from the robot.
 //!
-//! What is lost is counted: here for want of room, and before by the sender's own
+//! What is lost is counted: here for want of limits, and before by the sender's own
 //! numbers.
 
 use std::collections::BTreeMap;
@@ -11,7 +11,7 @@ use serde::de::DeserializeOwned;
 use transport::Graph;
 use zenoh::liveliness::LivelinessToken;
 use zenoh::sample::Sample;
-use zenoh_session::{Past, Queue, Room};
+use zenoh_session::{Past, Queue, QueueLimits};
 
 use super::entity::Kind;
 use super::{Attachment, Member, description};
@@ -65,8 +65,14 @@ impl<M: RosMessage + DeserializeOwned> Subscription<M> {
             Keeping::Fresh | Keeping::Reliable => Past::Gone,
             Keeping::Kept => Past::Last(depth),
         };
-        let room = Room::for_any(depth, max_bytes);
-        let queue = Queue::open(member.session(), &endpoint.key, past, room, graph.waker()?);
+        let limits = QueueLimits::for_any(depth, max_bytes);
+        let queue = Queue::open(
+            member.session(),
+            &endpoint.key,
+            past,
+            limits,
+            graph.waker()?,
+        );
         Ok(Subscription {
             topic: topic.to_owned(),
             queue: queue?,
@@ -77,7 +83,7 @@ impl<M: RosMessage + DeserializeOwned> Subscription<M> {
         })
     }
 
-    /// Messages that were lost for want of room since the last call.
+    /// Messages that were lost because the queue was full since the last call.
     pub(crate) fn dropped(&self) -> u64 {
         self.queue.dropped()
     }
@@ -85,7 +91,7 @@ impl<M: RosMessage + DeserializeOwned> Subscription<M> {
     /// Most messages that can wait: who takes no more at once keeps no other topic
     /// waiting, however fast they come.
     pub(crate) fn depth(&self) -> usize {
-        self.queue.room().messages
+        self.queue.limits().messages
     }
 
     /// Why a message was not let in at all, for each such.
@@ -94,7 +100,7 @@ impl<M: RosMessage + DeserializeOwned> Subscription<M> {
         Some(GatewayError::TooLong {
             topic: self.topic.clone(),
             found,
-            most: self.queue.room().message_bytes,
+            most: self.queue.limits().message_bytes,
         })
     }
 

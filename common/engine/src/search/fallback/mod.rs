@@ -88,7 +88,7 @@ impl BeamSampling {
         let sampled = threads::run(shares, stop, |thread, share, stop| {
             share.start(task, sampling);
             let mut sampler = SamplingThread::new(what, share, stop);
-            let mut own = task.sought().skip(thread).step_by(threads);
+            let mut own = task.searched().skip(thread).step_by(threads);
             own.try_for_each(|heading| sampler.sample(heading))
                 .ok_or(())
         });
@@ -267,7 +267,7 @@ impl<'a> SamplingThread<'a> {
         }
     }
 
-    /// Fills in the votes of some beams for all poses that are sought at a heading.
+    /// Fills in the votes of some beams for all poses that are searched at a heading.
     fn sweep(&mut self, program: &ScanProgram, heading: usize) -> Option<()> {
         let Task {
             index,
@@ -312,7 +312,7 @@ impl<'a> SamplingThread<'a> {
         let (view, intervals) = (task.view(), &task.index.intervals);
         let block = y / SIDE * intervals.columns + x / SIDE;
         // Of an index that was read from a file nobody knows that blocks hold all cells in
-        // which poses are sought.
+        // which poses are searched.
         if !intervals.ids.holds(block) {
             return 0;
         }

@@ -1,4 +1,4 @@
-//! The blocks of a grid in which poses are sought, numbered without gaps.
+//! The blocks of a grid in which poses are searched, numbered without gaps.
 //!
 //! What is kept of blocks is kept of these alone, so that it grows with where a robot can
 //! be and not with the rectangle that the map fills.

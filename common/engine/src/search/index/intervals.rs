@@ -38,7 +38,7 @@ const ALL: u8 = 15;
 /// than before; up to the first a nibble is a width itself.
 const STRETCHES: [(u8, u8); 3] = [(4, 1), (8, 6), (12, 8)];
 
-/// The two intervals in all directions of the blocks in which poses are sought.
+/// The two intervals in all directions of the blocks in which poses are searched.
 #[derive(Debug, Clone)]
 pub(crate) struct RangeIntervals {
     /// Blocks along x.

@@ -237,7 +237,7 @@ impl RangeSets {
     }
 
     /// A quad, for those of its blocks that are wanted.
-    pub(crate) fn sought(&self, quad: usize, wanted: impl Fn(usize) -> bool) -> Quad {
+    pub(crate) fn searched(&self, quad: usize, wanted: impl Fn(usize) -> bool) -> Quad {
         let blocks = quad_of(quad, (self.columns, self.rows));
         Quad {
             index: quad,
@@ -385,7 +385,7 @@ mod tests {
                         let rows = plain.get(block?)?.get(row * sets.stride..)?;
                         rows.get(..sets.stride)
                     };
-                    let blocks = sets.sought(quad, |_| true).blocks.map(of_block);
+                    let blocks = sets.searched(quad, |_| true).blocks.map(of_block);
                     let turn = (0..sets.stride).map(|byte| blocks.map(|row| row.map_or(0, |row| row[byte])));
                     let turn: Vec<Byte> = turn.collect();
                     if turn.as_flattened().iter().any(|&byte| byte != 0) {

@@ -102,8 +102,8 @@ impl BlockRanges {
         }
         self.open = std::array::from_fn(|i| {
             let (x, y) = self.cell(i);
-            let is_sought = self.cells[i] == Cell::Open && limits.hold_cell(x, y);
-            if is_sought { u16::MAX } else { 0 }
+            let is_searched = self.cells[i] == Cell::Open && limits.hold_cell(x, y);
+            if is_searched { u16::MAX } else { 0 }
         });
     }
 
@@ -117,7 +117,7 @@ impl BlockRanges {
         &self.intervals
     }
 
-    /// For each cell, all ones where the robot may stand and is sought.
+    /// For each cell, all ones where the robot may stand and is searched.
     pub(crate) fn open(&self) -> &[u16; CELLS] {
         &self.open
     }

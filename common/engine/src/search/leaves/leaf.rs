@@ -31,7 +31,7 @@ pub(crate) struct LeafProgram {
 #[repr(align(64))]
 pub(crate) struct Count {
     pub votes: [u16; CELLS],
-    /// The most where poses are sought.
+    /// The most where poses are searched.
     pub most: u16,
 }
 

@@ -193,7 +193,7 @@ impl<'a> Alternatives<'a> {
             ..
         } = &mut *self.scratch;
         let (quad, place) = index.fine.place_of(block);
-        let quad = index.fine.sought(quad, |other| other == block);
+        let quad = index.fine.searched(quad, |other| other == block);
         let least = (u32::from(bound) * MIN_BOUND_RATIO / 32) as u16;
         let bounds = bound_fine(self.task, &quad, least.max(1), bounds);
         let program = &self.task.programs.interval;

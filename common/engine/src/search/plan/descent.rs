@@ -260,11 +260,11 @@ impl<'a> Descent<'a> {
     fn split_fine(&mut self, index: usize, windows: &Range<usize>) {
         let (fine, intervals) = (&self.task.index.fine, &self.task.index.intervals);
         let quarters = quarters(index, fine.columns, (intervals.columns, intervals.rows));
-        let mut sought = quarters
+        let mut searched = quarters
             .filter(|&block| intervals.ids.holds(block))
             .peekable();
-        while let Some(block) = sought.next() {
-            if let Some(&next) = sought.peek() {
+        while let Some(block) = searched.next() {
+            if let Some(&next) = searched.peek() {
                 intervals.prefetch(next);
             }
             self.queue_leaf(block, windows.clone());

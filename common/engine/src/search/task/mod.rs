@@ -26,7 +26,7 @@ pub(in crate::search) struct Task<'a> {
     pub space: &'a Space,
     pub config: CollectConfig,
     pub programs: &'a Programs,
-    /// The bound of each coarse block in which poses are sought.
+    /// The bound of each coarse block in which poses are searched.
     pub coarse_bounds: &'a [AtomicU16],
     /// The same, chunk by chunk of headings.
     by_chunk: &'a [AtomicU16],
@@ -125,13 +125,13 @@ impl<'a> Task<'a> {
         &self.by_chunk[block * chunks..][..chunks]
     }
 
-    /// The headings that are sought.
-    pub(in crate::search) fn sought(&self) -> impl Iterator<Item = usize> + Clone {
+    /// The headings that are searched.
+    pub(in crate::search) fn searched(&self) -> impl Iterator<Item = usize> + Clone {
         let limits = &self.index.within.limits;
         (0..self.space.directions.count()).filter(|&heading| limits.hold_heading(heading))
     }
 
-    /// The headings that are sought, a word a chunk.
+    /// The headings that are searched, a word a chunk.
     pub(in crate::search) fn headings(&self) -> impl Iterator<Item = u128> {
         self.index.within.headings(self.space.directions.count())
     }

@@ -59,7 +59,7 @@ impl Deadline {
 }
 
 /// Takes questions, from whichever thread.
-pub(crate) struct Desk {
+pub(crate) struct Dispatcher {
     session: Session,
     /// `backcast/locate/<map>`.
     key: Arc<str>,
@@ -76,16 +76,16 @@ pub(crate) struct Desk {
 }
 
 /// What workers need of it.
-pub(crate) struct Bench {
+pub(crate) struct WorkQueue {
     jobs: Receiver<Job>,
     /// What was handed on and came back: as much as was handed on, and no more.
     returned: Receiver<Job>,
     pub(crate) busy: Arc<AtomicUsize>,
 }
 
-impl Bench {
+impl WorkQueue {
     /// The next question, once there is one: first those that have waited elsewhere.
-    /// None when the desk is closed.
+    /// None when the dispatcher is closed.
     pub(crate) fn next(&self) -> Option<Job> {
         let job = crossbeam::channel::select_biased! {
             recv(self.returned) -> job => job,
@@ -95,20 +95,20 @@ impl Bench {
     }
 }
 
-impl Desk {
-    /// A desk with `workers`, for each of which `waiting` questions may wait.
+impl Dispatcher {
+    /// A dispatcher with `workers`, for each of which `waiting` questions may wait.
     pub(crate) fn new(
         session: &Session,
         key: &str,
         (workers, waiting): (usize, usize),
         default_deadline: Duration,
         counts: &Arc<Counts>,
-    ) -> (Arc<Self>, Bench) {
+    ) -> (Arc<Self>, WorkQueue) {
         // Each worker holds one more, which it has taken out.
         let (jobs, taken) = bounded(workers * (waiting + 1));
         let (returned, again) = unbounded();
         let busy = Arc::new(AtomicUsize::new(0));
-        let desk = Desk {
+        let dispatcher = Dispatcher {
             session: session.clone(),
             key: key.into(),
             jobs,
@@ -120,12 +120,12 @@ impl Desk {
             default_deadline,
             counts: Arc::clone(counts),
         };
-        let bench = Bench {
+        let work_queue = WorkQueue {
             jobs: taken,
             returned: again,
             busy,
         };
-        (Arc::new(desk), bench)
+        (Arc::new(dispatcher), work_queue)
     }
 
     /// The others, and what they were given.
@@ -206,7 +206,7 @@ impl Desk {
     /// server goes, Zenoh drops what waits for it with a lock held that sending takes.
     fn take_back(&self, job: Job) {
         self.busy.fetch_add(1, Ordering::Relaxed);
-        // It has room, and workers are there as long as the desk is.
+        // It has room, and workers are there as long as the dispatcher is.
         let _ = self.returned.send(job);
     }
 
@@ -224,7 +224,7 @@ impl Desk {
             .payload(job.query.payload().cloned().unwrap_or_default())
             .timeout(remaining);
         let handed = Arc::new(Handed {
-            desk: Arc::clone(self),
+            dispatcher: Arc::clone(self),
             other,
             job: Mutex::new(Some(job)),
         });
@@ -241,7 +241,7 @@ impl Desk {
 /// A question that another server has. Zenoh drops it when no answer can come any
 /// more: it was answered, the other is gone, or the time is over.
 struct Handed {
-    desk: Arc<Desk>,
+    dispatcher: Arc<Dispatcher>,
     other: String,
     job: Mutex<Option<Job>>,
 }
@@ -253,14 +253,14 @@ impl Handed {
                 let Some(job) = self.take() else { return };
                 let answer = (sample.encoding().clone(), sample.payload().clone());
                 let reply = job.query.reply(&*job.key, answer.1).encoding(answer.0);
-                self.desk.counts.sent(&reply.wait());
+                self.dispatcher.counts.sent(&reply.wait());
             }
             // What is wrong with a scan is wrong everywhere.
             Err(error) if is_about_the_question(error.encoding()) => {
                 let Some(job) = self.take() else { return };
                 let answer = (error.encoding().clone(), error.payload().clone());
                 let reply = job.query.reply_err(answer.1).encoding(answer.0);
-                self.desk.counts.sent(&reply.wait());
+                self.dispatcher.counts.sent(&reply.wait());
             }
             Err(_) => {}
         }
@@ -274,12 +274,12 @@ impl Handed {
 
 impl Drop for Handed {
     fn drop(&mut self) {
-        self.desk.team().done(&self.other);
+        self.dispatcher.team().done(&self.other);
         // Among them this one: nobody can reach it any more.
         let is_open = |handed: &Weak<Handed>| handed.strong_count() > 0;
-        self.desk.handed_on().retain(is_open);
+        self.dispatcher.handed_on().retain(is_open);
         if let Some(job) = self.take() {
-            self.desk.take_back(job);
+            self.dispatcher.take_back(job);
         }
     }
 }
