@@ -29,7 +29,7 @@ pub fn backcast() -> Command {
 }
 
 /// All of them at once, as `cargo run` and the descriptor build them: cargo would
-/// build what they depend on anew for each one.
+/// build what they depend on again for each one.
 fn build(folder: &Path) {
     // While a graph is joined, iceoryx2 changes the mask of the whole process;
     // what cargo makes would not be executable.
@@ -37,7 +37,7 @@ fn build(folder: &Path) {
     command.args(["-c", "umask 022 && exec \"$0\" \"$@\"", env!("CARGO")]);
     command.current_dir(crate::root());
     // Scripts that build what others use look at these, and what cargo passes to a test
-    // differs from what it passes to them: all of zenoh would be built anew each time.
+    // differs from what it passes to them: all of zenoh would be built again each time.
     for (name, _) in std::env::vars_os() {
         let text = name.to_string_lossy();
         if text.starts_with("CARGO_PKG_") || text.starts_with("CARGO_MANIFEST_") {

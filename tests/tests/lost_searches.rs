@@ -1,5 +1,5 @@
 //! A search that dies with one of those who take part in it: the tracker does not wait for
-//! its answer until it gives up, but goes on as soon as another process is in its place.
+//! its answer until it gives up, but continues as soon as another process is in its place.
 #![allow(
     clippy::unwrap_used,
     reason = "the lint spares test functions but not what they share"

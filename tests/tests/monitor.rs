@@ -174,7 +174,7 @@ fn an_operator_sees_the_graph_and_what_befalls_it() {
     );
     browser.wait_until("document.getElementById('verdict').textContent === 'No data'");
 
-    // A monitor that hangs is a lost connection, until it goes on.
+    // A monitor that hangs is a lost connection, until it continues.
     let monitor = process(&browser, "monitor");
     kill(monitor, Signal::SIGSTOP).unwrap();
     browser.wait_until(

@@ -172,7 +172,7 @@ fn fill(path: &str) {
 }
 
 /// Whether the calling test, which is called `test`, runs where `/dev/shm` is its own, of
-/// so many bytes. If not, it has been run there, or the kernel forbids that, which is said.
+/// this many bytes. If not, it has been run there, or the kernel forbids that, which is said.
 fn has_own_shared_memory(test: &str, size: &str) -> bool {
     const INSIDE: &str = "BACKCAST_TEST_INSIDE";
     if std::env::var_os(INSIDE).is_some() {

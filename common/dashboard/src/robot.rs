@@ -101,7 +101,7 @@ impl Robot {
         (Arc::new(robot), requested)
     }
 
-    /// Takes a map; says whether it could be used.
+    /// Takes a map; returns whether it could be used.
     pub fn on_map(&self, header: &MapHeader, cells: &[u8]) -> bool {
         let Some(map) = Map::new(header, cells) else {
             return false;
@@ -140,7 +140,7 @@ impl Robot {
         known.beams = Some(beams);
     }
 
-    /// Takes a report on a node; says whether there was room for it.
+    /// Takes a report on a node; returns whether there was room for it.
     pub fn on_health(&self, header: &HealthHeader, error: &[u8]) -> bool {
         let mut known = self.known();
         let report = known.roster.receive(header, error);
@@ -157,7 +157,7 @@ impl Robot {
         known.log.receive(line);
     }
 
-    /// Takes an intensity image; says whether it could be used.
+    /// Takes an intensity image; returns whether it could be used.
     pub fn on_field(&self, header: &FieldHeader, items: &[u16]) -> bool {
         let frame = field_frame(header, items);
         let is_sound = frame.is_some();
@@ -237,7 +237,7 @@ impl Robot {
         self.known().abilities
     }
 
-    /// Hands a request to the source; says whether it has room for one.
+    /// Hands a request to the source; returns whether it has room for one.
     pub(crate) fn request(&self, request: Request) -> bool {
         self.requests.try_send(request).is_ok()
     }

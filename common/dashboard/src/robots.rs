@@ -15,7 +15,7 @@ impl Robots {
     /// Robots that are known at once at most.
     pub const MAX: usize = 256;
 
-    /// Adds a robot; says whether it could: there may be one of the name, or
+    /// Adds a robot; returns whether it could: there may be one of the name, or
     /// [`Robots::MAX`] others.
     pub fn add(&self, robot: Arc<Robot>) -> bool {
         let mut all = self.all.write().unwrap_or_else(PoisonError::into_inner);

@@ -52,7 +52,7 @@ pub(crate) enum Message<'a> {
     Region(Region<'a>),
     /// Who listens to requests.
     Abilities(Abilities),
-    /// So many messages were not sent, because the reader was too slow.
+    /// This many messages were not sent, because the reader was too slow.
     Missed {
         /// Their number.
         messages: u64,

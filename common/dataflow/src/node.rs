@@ -37,7 +37,7 @@ pub(crate) fn read_all(
 }
 
 /// Reads one key after the other and notes what is wrong. Where something is,
-/// it goes on with what an absent key means: the result is not used then.
+/// it continues with what an absent key means: the result is not used then.
 struct Reader<'a> {
     source: &'a str,
     topics: &'a Topics<'a>,

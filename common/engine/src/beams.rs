@@ -48,7 +48,7 @@ pub(crate) struct Beam {
     pub index: usize,
 }
 
-/// The beams that vote, by bearing, and those that say nothing; filled anew for
+/// The beams that vote, by bearing, and those that say nothing; filled again for
 /// each scan.
 #[derive(Debug, Clone, Default, PartialEq)]
 pub(crate) struct Chosen {

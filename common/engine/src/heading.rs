@@ -88,7 +88,7 @@ struct Truth {
 }
 
 impl History {
-    /// Keeps the last readings of each kind, so many at most.
+    /// Keeps the last readings of each kind, this many at most.
     #[must_use]
     pub fn keeping(readings: usize) -> Self {
         History {
@@ -189,7 +189,7 @@ fn truth_of(scan: &ScanHeader, history: &History) -> Result<f64, HeadingError> {
 }
 
 /// Looks by the time of measuring and not of arrival, for a recording that is
-/// played over and over starts anew.
+/// played over and over starts again.
 fn odometry_of(
     scan: &ScanHeader,
     history: &History,

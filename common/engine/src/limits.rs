@@ -27,7 +27,7 @@ pub struct Limits {
 }
 
 impl Limits {
-    /// No limits on a grid so many cells wide.
+    /// No limits on a grid this many cells wide.
     #[must_use]
     pub fn none(width: usize) -> Self {
         Limits {
@@ -136,7 +136,7 @@ impl Limits {
         self.width
     }
 
-    /// For blocks of so many cells a side, row by row, whether poses are searched in any
+    /// For blocks of this many cells a side, row by row, whether poses are searched in any
     /// cell: the blocks of which an index has to know.
     pub(crate) fn blocks(&self, side: usize, grid: &Grid) -> Vec<bool> {
         let columns = grid.width().div_ceil(side);

@@ -17,7 +17,7 @@ const MAX_GAP_NS: i64 = 500_000_000;
 const MAX_BEYOND_NS: i64 = 250_000_000;
 
 /// Samples that come this much earlier than the last are of a recording that was
-/// begun anew; others that are late are left out.
+/// begun again; others that are late are left out.
 const BEGUN_ANEW_NS: i64 = 1_000_000_000;
 
 /// The poses of a moving frame over time, by increasing stamps.
@@ -37,7 +37,7 @@ pub struct Located {
 }
 
 impl Motion {
-    /// Keeps the newest samples, so many at most.
+    /// Keeps the newest samples, this many at most.
     #[must_use]
     pub fn keeping(samples: usize) -> Self {
         Motion {

@@ -285,7 +285,7 @@ mod tests {
 
     use super::*;
 
-    /// A transducer that looks so many degrees from ahead, and reads a wall whose
+    /// A transducer that looks this many degrees from ahead, and reads a wall whose
     /// normal is at `normal` degrees and `depth_m` from the frame's origin.
     fn echo(x: f64, y: f64, axis: f64, (normal, depth_m): (f64, f64)) -> Echo {
         let (sin, cos) = normal.to_radians().sin_cos();

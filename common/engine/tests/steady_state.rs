@@ -1,4 +1,4 @@
-//! Nothing is allocated from scan to scan: once workspaces have room for all
+//! Nothing is allocated from scan to scan: once the buffers of workspaces are large enough for all
 //! scans, searching them again, and fitting them, asks for no memory.
 //!
 //! Allocations are counted for each thread by itself, so tests may run side by

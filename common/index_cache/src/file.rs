@@ -116,7 +116,7 @@ pub(crate) fn write(to: &mut impl Write, key: IndexKey, index: &SearchIndex) -> 
         .try_for_each(|section| to.write_all(section))
 }
 
-/// Reads the index of a map from a file of so many bytes.
+/// Reads the index of a map from a file of this many bytes.
 pub(crate) fn read(
     from: &mut impl Read,
     file_bytes: u64,

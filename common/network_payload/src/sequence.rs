@@ -11,7 +11,7 @@ const MOST: usize = 32;
 /// What the number of a message shows.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Arrival {
-    /// It is new, and so many before it were lost.
+    /// It is new, and this many before it were lost.
     New {
         /// Messages between the last one of this sender and this one.
         lost: u64,

@@ -203,7 +203,7 @@ impl<'a> Session<'a> {
         self.notes.extend(notes);
     }
 
-    /// Prepares the map of a scan anew, unknown within a radius, metres, of a
+    /// Prepares the map of a scan again, unknown within a radius, metres, of a
     /// point.
     ///
     /// # Errors

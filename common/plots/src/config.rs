@@ -56,7 +56,7 @@ pub struct Config {
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u64).range(1..))]
     pub(super) scan: Option<u64>,
 
-    /// Panels of a sheet, 1..=64: so many scans, evenly spread [default: 12]
+    /// Panels of a sheet, 1..=64: this many scans, evenly spread [default: 12]
     #[arg(long, value_name = "COUNT", value_parser = clap::value_parser!(u8).range(1..=64))]
     pub(super) panels: Option<u8>,
 

@@ -68,7 +68,7 @@ impl Sampler {
     }
 }
 
-/// Fills a view with an image of so many pixels.
+/// Fills a view with an image of this many pixels.
 pub(super) fn fill(
     scene: &mut Scene,
     view: &View,

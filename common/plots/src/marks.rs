@@ -9,7 +9,7 @@ use super::view::View;
 /// The share of the probability that an ellipse holds, per cent, as in all pictures.
 pub(super) const HELD_PERCENT: f64 = 95.0;
 
-/// So many standard deviations it reaches: χ² with two degrees of freedom is exponential.
+/// This many standard deviations it reaches: χ² with two degrees of freedom is exponential.
 fn deviations() -> f64 {
     (-2.0 * (1.0 - HELD_PERCENT / 100.0).ln()).sqrt()
 }
@@ -33,7 +33,7 @@ pub(super) fn robot(scene: &mut Scene, placement: Placement, size: f64, color: C
 
 /// The true pose as a ring with its heading, in which a robot fits.
 pub(super) fn truth(scene: &mut Scene, placement: Placement, size: f64) {
-    let mut path = Path::circle(stand.0, size);
+    let mut path = Path::circle(placement.0, size);
     path.add_line(
         placed(placement, size, 0.0),
         placed(placement, 1.9 * size, 0.0),
@@ -125,7 +125,7 @@ mod tests {
 
     #[test]
     fn ahead_of_a_robot_that_faces_up_is_up() {
-        let stand = ((10.0, 20.0), FRAC_PI_2);
+        let placement = ((10.0, 20.0), FRAC_PI_2);
         let near = |(x, y): (f64, f64), ex: f64, ey: f64| (x - ex).hypot(y - ey) < 1e-12;
         assert!(near(placed(placement, 5.0, 0.0), 10.0, 15.0));
         assert!(near(placed(placement, 0.0, 5.0), 5.0, 20.0));

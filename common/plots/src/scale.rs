@@ -13,10 +13,10 @@ pub(super) enum Scale {
 /// Most numbers beside an axis with an even scale.
 const MAX_TICKS: f64 = 7.0;
 
-/// An even scale ends at a multiple of a round step, of which there are at most so many.
+/// An even scale ends at a multiple of a round step, of which there are at most this many.
 const STEPS: f64 = 12.0;
 
-/// Up to so many decades 2 and 5 are written, too.
+/// Up to this many decades 2 and 5 are written, too.
 const FEW_DECADES: f64 = 2.8;
 
 impl Scale {

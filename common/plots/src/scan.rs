@@ -27,7 +27,7 @@ const HIGHEST_BESIDE_NEAR: f64 = 1.35;
 const BESIDE_NEAR: f64 = 0.6;
 /// The height of a place from near, as a share of its width.
 const NEAR_HEIGHT: f64 = 0.72;
-/// From near, so many of the beams are seen from end to end.
+/// From near, this many of the beams are seen from end to end.
 const NEAR_SHARE: f64 = 0.85;
 const GAP: f64 = 10.0;
 
@@ -189,7 +189,7 @@ fn draw_near(
     let area = view.area();
     page.scene.clipped(area, |scene| {
         places::by_class(scene, &view, (near.pose, near.scan), unit);
-        let stand = marks::placement(&view, near.pose);
+        let placement = marks::placement(&view, near.pose);
         let size = places::ROBOT * unit;
         match near.rank {
             None => marks::truth(scene, placement, places::TRUTH * unit),

@@ -84,7 +84,7 @@ impl Rows {
 }
 
 /// Whether a scan came before another of the same sender. One that was started again
-/// counts anew, at a later time.
+/// counts again, at a later time.
 fn is_before(scan: Stamp, other: Stamp) -> bool {
     scan.counter < other.counter && scan.entered_ns <= other.entered_ns
 }

@@ -1,4 +1,4 @@
-//! A bag, whatever it is made of, written anew as one recording.
+//! A bag, whatever it is made of, written again as one recording.
 
 use std::io::{Seek, Write};
 use std::path::Path;

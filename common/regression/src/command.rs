@@ -122,7 +122,7 @@ fn judge(config: &Config, case: &Case, outcome: &mut Outcome) -> Result<(), Regr
         damage,
     } = play::play(descriptor, &name, &case.recording())?;
     outcome.scans = found.len();
-    // What is not written as it should be can be written anew.
+    // What is not written as it should be can be written again.
     let expected = match config.accept {
         true => Some(expected.ok().flatten().unwrap_or_default()),
         false => expected?,

@@ -142,7 +142,7 @@ struct Received {
 }
 
 impl Received {
-    /// Says whether anything came.
+    /// Returns whether anything came.
     fn take(
         &mut self,
         votes: &Subscriber<topic::Votes>,

@@ -13,7 +13,7 @@ use crate::source::Timed;
 /// before it, nanoseconds of log time.
 const WINDOW_NS: i64 = 500_000_000;
 
-/// Odometry may lag behind the scans by so much and still measure the motion within
+/// Odometry may lag behind the scans by this much and still measure the motion within
 /// them, nanoseconds.
 const MARGIN_NS: i64 = 250_000_000;
 

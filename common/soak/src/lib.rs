@@ -1,4 +1,4 @@
-//! `backcast soak`: runs a graph for hours, does it harm at random, and says whether it
+//! `backcast soak`: runs a graph for hours, does it harm at random, and returns whether it
 //! kept its promises.
 //!
 //! `fault` says what can be done and draws what is done next, `tally` counts the poses and

@@ -122,7 +122,7 @@ impl Tally {
         }
     }
 
-    /// A fault was over at `over_ns`, after it had killed so many processes of nodes.
+    /// A fault was over at `over_ns`, after it had killed this many processes of nodes.
     pub(super) fn suffered(&mut self, fault: Fault, killed: usize, over_ns: i64) {
         let effect = self.faults.entry(fault).or_insert_with(|| FaultEffect {
             times: 0,

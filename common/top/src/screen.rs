@@ -15,7 +15,7 @@ use crate::TopError;
 /// Between two looks at what was updates and at the keys.
 const FRAME: Duration = Duration::from_millis(50);
 
-/// Ages are shown anew as often, where nothing comes.
+/// Ages are shown again as often, where nothing comes.
 const AGES: Duration = Duration::from_millis(500);
 
 /// Shows what is known and what is updates, until somebody wants no more.

@@ -135,7 +135,7 @@ pub enum TransportError {
         /// Where shared memory is mounted.
         path: PathBuf,
     },
-    /// A sample of so many items has no size that a machine could hold.
+    /// A sample of this many items has no size that a machine could hold.
     #[error("topic {topic} cannot carry a sample of {items} items of {item_bytes} bytes")]
     TooLarge {
         /// The topic.

@@ -19,7 +19,7 @@ impl GapCounter {
     /// The number of samples lost just before the one with `counter`.
     ///
     /// The first sample shows nothing, for one may join late; a counter at or
-    /// below the last one belongs to a publisher that has started anew.
+    /// below the last one belongs to a publisher that has started again.
     pub fn lost_before(&mut self, counter: u64) -> u64 {
         let lost = self.next.map_or(0, |next| counter.saturating_sub(next));
         self.next = Some(counter.saturating_add(1));

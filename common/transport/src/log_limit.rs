@@ -17,7 +17,7 @@ use crate::log_lines::text_of;
 /// Lines of one message within [`PERIOD`]; the next ones are left out and counted.
 const LINES: u32 = 20;
 const PERIOD: Duration = Duration::from_secs(10);
-/// Messages that are remembered at most. Where there are more, counting begins anew.
+/// Messages that are remembered at most. Where there are more, counting begins again.
 const MESSAGES: usize = 256;
 
 /// Leaves out what repeats too fast. Whoever asks for `debug` gets all of that.
@@ -36,7 +36,7 @@ struct Recent {
 #[derive(Debug, PartialEq, Eq)]
 enum Fate {
     Written,
-    /// So many like it were not.
+    /// This many like it were not.
     WrittenAfter(u32),
     LeftOut,
 }

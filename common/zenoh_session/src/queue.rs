@@ -31,7 +31,7 @@ pub struct QueueLimits {
 }
 
 impl QueueLimits {
-    /// For so many messages, each as long as it may be.
+    /// For this many messages, each as long as it may be.
     #[must_use]
     pub fn for_any(messages: usize, message_bytes: usize) -> Self {
         QueueLimits {
@@ -47,7 +47,7 @@ impl QueueLimits {
 pub enum Past {
     /// None.
     Gone,
-    /// So many of each sender, who keeps them by Zenoh's advanced publisher.
+    /// This many of each sender, who keeps them by Zenoh's advanced publisher.
     Last(usize),
 }
 

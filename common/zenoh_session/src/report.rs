@@ -57,7 +57,7 @@ impl Report {
         self.health.count_sent(1);
     }
 
-    /// So many messages were lost.
+    /// This many messages were lost.
     pub fn dropped(&mut self, messages: u64) {
         self.health.count_dropped(messages);
     }

@@ -43,7 +43,7 @@ const DEFAULTS: [(&str, &str); 7] = [
         "connect/retry",
         "{ period_init_ms: 500, period_max_ms: 1000, period_increase_factor: 2 }",
     ),
-    // A cable that was pulled is noticed after so many milliseconds. Zenoh waits for
+    // A cable that was pulled is noticed after this many milliseconds. Zenoh waits for
     // ten seconds; TCP alone would then try again as late as that.
     ("transport/link/tx/lease", "4000"),
     // The largest message that is put together, bytes: a map and its frame. Zenoh's

@@ -335,7 +335,7 @@ fn a_requested_region_holds_until_it_is_taken_back() {
     let ranges = ranges(&ROOM, 12, 6, 211);
     let found = || world.ask(&ranges).1[0].x;
     assert_eq!(found(), 12);
-    // Scans are answered by the map as it was until it is prepared anew.
+    // Scans are answered by the map as it was until it is prepared again.
     request(&regions, &[(0.0, 0.0), (6.0, 0.0), (6.0, 9.0), (0.0, 9.0)]);
     while found() >= 6 {}
     // What is no region changes nothing.

@@ -18,7 +18,7 @@ use recording::Message;
 use ros::{LaserScan, OccupancyGridMsg};
 use serde_json::Value;
 
-/// The room as far as it is known: so many of its rows.
+/// The room as far as it is known: this many of its rows.
 fn known_rows(rows: usize) -> (&'static str, Message) {
     let mut room = room();
     let width = room.width as usize;

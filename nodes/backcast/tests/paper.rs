@@ -18,7 +18,7 @@ use tempfile::TempDir;
 /// times is compared only where all its ratios are farther from their bounds than this
 /// factor, and figures may differ by as much and more.
 const CLEAR_MARGIN: f64 = 2.0;
-/// By so much figures of times may differ from those on the page.
+/// By this much figures of times may differ from those on the page.
 const TIMES_DIFFER: f64 = 10.0;
 /// Counts, shares and errors are seeded; another processor may round some poses
 /// otherwise.

@@ -100,7 +100,7 @@ impl<T: Wire> Incoming<T> {
         Ok(())
     }
 
-    /// Whether it is in the graph already: its sender was started anew, and
+    /// Whether it is in the graph already: its sender was started again, and
     /// nothing else is.
     fn is_last(&self, header: &T::Header) -> bool {
         let last = self.last.as_ref();

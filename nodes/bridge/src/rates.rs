@@ -2,7 +2,7 @@
 //!
 //! What comes faster is left out, not kept for later: a reader at a slow link
 //! wants the present. What is kept for late joiners has no rate: it holds until it is
-//! said anew, so none of it may be left out.
+//! said again, so none of it may be left out.
 
 use std::str::FromStr;
 

@@ -189,7 +189,7 @@ fn a_late_joiner_gets_the_map_once() {
     wait_until(&engine.graph, &later, |header, _| {
         header.map_id == sent.0.map_id
     });
-    // A bridge that is started anew brings nothing twice, and what is new arrives.
+    // A bridge that is started again brings nothing twice, and what is new arrives.
     first.kill();
     laser.graph.cleanup_dead_nodes();
     let first = laser.joined_bridge(&["--listen", &endpoint]);
@@ -251,7 +251,7 @@ fn what_strangers_send_is_refused_and_counted() {
         assert_eq!(report.refused, count, "{error}");
         assert!(!error.is_empty());
     }
-    // The bridge goes on, and lets in what is sound, once.
+    // The bridge continues, and lets in what is sound, once.
     for sequence in [5, 5, 6] {
         put(&sound, good(sequence));
     }

@@ -219,7 +219,7 @@ fn served(machine: &Machine<'_>, maps: &Subscriber<topic::Map>, not: u64) -> u64
     })
 }
 
-/// The number of the scan that comes after so many more.
+/// The number of the scan that comes after this many more.
 fn scan_after(machine: &Machine<'_>, scans: u64) -> u64 {
     let played = machine.graph.subscriber::<topic::Scan>().unwrap();
     let mut seen = 0;

@@ -69,7 +69,7 @@ impl Lms2xxDevice {
         })
     }
 
-    /// Starts anew, and says so; the configuration is kept.
+    /// Starts again, and says so; the configuration is kept.
     pub(crate) fn restart(&mut self) -> Reply<'static> {
         self.baud = self.power_on_baud;
         self.mode = Mode::OnRequest;

@@ -34,7 +34,7 @@ struct Member {
 /// What a message came to.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(crate) enum Taken {
-    /// It is shown; so many before it were lost on the way.
+    /// It is shown; this many before it were lost on the way.
     Shown {
         /// Messages of its sender.
         lost: u64,

@@ -9,15 +9,15 @@
 
 use std::collections::VecDeque;
 
-/// Arrivals are gathered over so much time of the device, of which the one with
+/// Arrivals are gathered over this much time of the device, of which the one with
 /// the least delay counts, µs.
 const SLOT_US: i64 = 1_000_000;
 /// Slots that are looked back on.
 const SLOTS: usize = 32;
 /// The rates of clocks differ by at most this share: quartz by 1e-4, twice.
 const MAX_SKEW: f64 = 2e-4;
-/// By so much the two clocks may disagree from one telegram to the next before
-/// the device is taken to have started anew, µs: longer than any delay.
+/// By this much the two clocks may disagree from one telegram to the next before
+/// the device is taken to have started again, µs: longer than any delay.
 const LONGEST_DELAY_US: i64 = 1_000_000;
 
 /// An arrival: what the device counted, and how much later the host did.
@@ -64,7 +64,7 @@ impl DeviceClock {
         received_ns - (delay_us * 1e3) as i64
     }
 
-    /// Counts on beyond 32 bits; begins anew where the device did.
+    /// Counts on beyond 32 bits; begins again where the device did.
     fn unroll(&mut self, device_us: u32, received_ns: i64) -> i64 {
         let unrolled_us = match self.newest {
             Some((last, last_us, last_ns)) => {

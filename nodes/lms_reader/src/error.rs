@@ -80,7 +80,7 @@ pub enum LmsError {
         /// Those that were tried.
         rates: Vec<u32>,
     },
-    /// The device was started anew and has to be set up again.
+    /// The device was started again and has to be set up again.
     #[error("the device was restarted")]
     Restarted,
     /// The device is not in order; its scans are sent all the same.

@@ -1,4 +1,4 @@
-//! Prepares the map, opens the dispatcher, and reports what goes on there.
+//! Prepares the map, opens the dispatcher, and reports its state.
 
 use std::sync::Arc;
 use std::time::{Duration, Instant};

@@ -62,7 +62,7 @@ impl Server {
         endpoint(&self.isolated)
     }
 
-    /// Waits until the server has sent so many answers, to those who ask.
+    /// Waits until the server has sent this many answers, to those who ask.
     fn wait_until_sent(&self, answers: u64, asking: &ScopedJoinHandle<'_, ()>) {
         let health = self.graph.subscriber::<topic::Health>().unwrap();
         wait_for_health(&self.graph, &health, |report| {
@@ -196,7 +196,7 @@ fn what_is_no_question_is_refused_and_counted() {
         matches!(empty, Err(LocateError::Refused { .. })),
         "{empty:?}"
     );
-    // And it goes on.
+    // And it continues.
     assert!(ask_raw(&session, "", &postcard, sound).result().is_ok());
     server.process.stop();
 }

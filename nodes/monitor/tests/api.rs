@@ -128,7 +128,7 @@ impl World {
         loan.send().unwrap();
     }
 
-    /// Asks until the answer is as it should be; the graph goes on meanwhile.
+    /// Asks until the answer is as it should be; the graph continues meanwhile.
     fn wait_for_state(&self, is_awaited: impl Fn(&Value) -> bool) -> Value {
         let mut found = None;
         let tick = std::time::Duration::from_millis(20);

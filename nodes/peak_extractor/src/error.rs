@@ -45,7 +45,7 @@ pub enum PeakError {
         /// By the header.
         found: u32,
     },
-    /// No turn has so many headings.
+    /// No turn has this many headings.
     #[error("headings is {found}: allowed are 1 to 65536")]
     Headings {
         /// By the header.

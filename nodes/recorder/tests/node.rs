@@ -153,7 +153,7 @@ impl World {
         }
     }
 
-    /// Waits until the node says that it has written so many messages.
+    /// Waits until the node says that it has written this many messages.
     fn wait_for_written(&self, messages: u64) {
         let awaited = |report: &messages::HealthHeader| {
             report.node.as_str() == "recorder" && report.sent >= messages
@@ -287,7 +287,7 @@ fn wait_for_file(world: &World, name: &str) {
     }
 }
 
-/// The file may grow to so many bytes, as on a disk that fills up; more than the
+/// The file may grow to this many bytes, as on a disk that fills up; more than the
 /// segments of shared memory that the node makes.
 const ROOM: usize = 8 << 20;
 /// Beams of a scan, most of it noise that does not pack.

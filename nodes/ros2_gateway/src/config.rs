@@ -211,7 +211,7 @@ impl Config {
     }
 }
 
-/// So many finite numbers, as `1,2,3`.
+/// This many finite numbers, as `1,2,3`.
 fn numbers<const N: usize>(text: &str) -> Option<[f64; N]> {
     let numbers: Option<Vec<f64>> = text
         .split(',')

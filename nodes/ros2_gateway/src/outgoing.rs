@@ -161,8 +161,8 @@ impl Outgoing {
         Ok(())
     }
 
-    /// The odometry goes on from where the map was last known to lie, so the
-    /// transform is dated anew with each scan.
+    /// The odometry continues from where the map was last known to lie, so the
+    /// transform is dated again with each scan.
     fn broadcast(
         &mut self,
         of: Stamp,

@@ -17,7 +17,7 @@ const KEPT: usize = 128;
 /// nanoseconds: a robot at 2 m/s gets as far as half the distance that makes it lost.
 const SAME_TIME_NS: i64 = 250_000_000;
 
-/// So many poses in a row have to lie apart.
+/// This many poses in a row have to lie apart.
 const ENOUGH: u32 = 2;
 
 /// Where the robot may be, by one scan.
@@ -112,7 +112,7 @@ impl Seeding {
     pub(crate) fn on_answer(&mut self, answer: Answer) -> Option<Reason> {
         let (now_ns, is_unique) = (answer.measured_ns, answer.is_unique);
         if self.answers.back().is_some_and(|a| a.measured_ns > now_ns) {
-            // The clock was set back: a recording that begins anew.
+            // The clock was set back: a recording that begins again.
             self.answers.clear();
             self.waiting = None;
             self.seeded_ns = i64::MIN;

@@ -394,7 +394,7 @@ fn bytes_of_no_meaning_are_refused_and_counted() {
         None,
         "at most",
     );
-    // It goes on, and takes what is sound.
+    // It continues, and takes what is sound.
     let scans_in = joined.graph.subscriber::<topic::Scan>().unwrap();
     joined.robot.order("scan", json!({ "index": 0 }));
     wait_for(&joined.graph, &scans_in, |_, _| Some(()));

@@ -32,7 +32,7 @@ const TICK: Duration = Duration::from_millis(25);
 /// The last pose is kept on disk as often.
 const REMEMBERED_EVERY: Duration = Duration::from_secs(1);
 
-/// What is expected beforehand leads by so much over what a search finds: what an
+/// What is expected beforehand leads by this much over what a search finds: what an
 /// operator says, as much as a place that was known before; what was true when the
 /// robot was last on, as much as one key scan says.
 const INITIAL_LEAD: f64 = 10.0;

@@ -1,5 +1,5 @@
 //! Monte Carlo localization (the paper's [2]): the engine's particles all over the map,
-//! weighed by the scan, drawn anew by their weights and scattered a little, until they
+//! weighed by the scan, drawn again by their weights and scattered a little, until they
 //! have gathered. The robot stands, so that the one scan is taken again and again.
 
 use engine::EngineError;

@@ -106,7 +106,7 @@ impl World {
         self.boundary.len() as f64 / self.grid.free_cells() as f64
     }
 
-    /// The space of a search with so many headings.
+    /// The space of a search with this many headings.
     ///
     /// # Errors
     /// If the number of headings is not supported.

@@ -2,7 +2,7 @@
 //!
 //! The reader may ask for the field, and send its clock to get it back. Who does
 //! not read is disconnected; who reads slowly loses messages, is notified and gets
-//! all that is known anew.
+//! all that is known again.
 
 use std::sync::Arc;
 use std::time::Duration;

@@ -66,14 +66,14 @@ impl Answer {
         let shown = items.iter().filter(is_pose).take(MAX_PLACES);
         let mount_known = header.mount_known == 1;
         let summaries: Vec<PlaceSummary> = shown.clone().filter_map(summary).collect();
-        let meant = stands.len().min(1 + header.alternatives as usize);
+        let meant = summaries.len().min(1 + header.alternatives as usize);
         Answer {
             counter: header.stamp.counter,
             stamp_s: header.stamp.measured_ns as f64 / 1e9,
             map_id: format!("{:016x}", header.map_id),
             verdict: verdict.map_or("?", Verdict::as_str),
             says: verdict.map_or_else(String::new, |verdict| {
-                sentence(verdict, stands.get(..meant).unwrap_or_default())
+                sentence(verdict, summaries.get(..meant).unwrap_or_default())
             }),
             alternatives: header.alternatives,
             confidence: header.confidence,

@@ -178,7 +178,7 @@ impl Ends {
     }
 
     /// How many pieces of equal weight the scan sees, where neighbouring readings
-    /// that differ by more than so many metres lie on different pieces: Kish's
+    /// that differ by more than this many metres lie on different pieces: Kish's
     /// effective sample size, as for [`Ends::effective_beams`]. The beams of one
     /// piece fit, or do not fit, together.
     #[must_use]

@@ -8,7 +8,7 @@ use crate::beams::{BeamConfig, Chosen};
 use crate::observation::{CarriedScan, Observation};
 use crate::space::Space;
 
-/// The beams of an observation, in the target frame; found anew for each
+/// The beams of an observation, in the target frame; found again for each
 /// scan, in the buffers of the one before.
 #[derive(Debug, Clone, Default, PartialEq)]
 pub struct Readings {

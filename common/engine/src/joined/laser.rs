@@ -12,7 +12,7 @@ use crate::scan::Scan;
 /// No laser takes longer than this for a scan; increments that say so are wrong.
 const MAX_SCAN_TIME_NS: f64 = 1e9;
 
-/// A scan is of its time if it is at most so many periods of its laser older.
+/// A scan is of its time if it is at most this many periods of its laser older.
 const MAX_AGE_PERIODS: f64 = 1.5;
 
 #[derive(Debug, Clone)]

@@ -51,7 +51,7 @@ pub struct ParticlesConfig {
     /// one that fits, 0.001..=0.5. AMCL's defaults come to 0.03 at 30 m of range.
     #[arg(long, value_name = "SHARE", default_value_t = 0.05, value_parser = parse_random)]
     pub particles_random: f64,
-    /// The beams weigh a particle as so many independent ones, 1..=65536: neighbours
+    /// The beams weigh a particle as this many independent ones, 1..=65536: neighbours
     /// end on the same wall and err together.
     #[arg(long, value_name = "COUNT", default_value_t = 16, value_parser = clap::value_parser!(u32).range(1..=65_536))]
     pub particles_independent: u32,

@@ -17,7 +17,7 @@ use crate::EngineError;
 use crate::fit::{DistanceField, Ends, GridPose};
 use crate::grid::GridFrame;
 
-/// Particles are drawn anew where their effective number falls below this share of
+/// Particles are drawn again where their effective number falls below this share of
 /// them: each drawing loses some of what they say. Half is usual (for instance
 /// Grisetti, Stachniss and Burgard, "Improved Techniques for Grid Mapping", IEEE
 /// Transactions on Robotics 23, 2007, section III).
@@ -71,7 +71,7 @@ impl ParticleFilter {
         Ok(filter)
     }
 
-    /// Starts anew around candidates, see [`ParticleFilter::seeded`]; the random numbers
+    /// Starts again around candidates, see [`ParticleFilter::seeded`]; the random numbers
     /// go on.
     ///
     /// # Errors
@@ -153,8 +153,8 @@ impl ParticleFilter {
         }
     }
 
-    /// Draws the particles anew, if their weights differ so much that less than half of
-    /// them count; says whether.
+    /// Draws the particles again, if their weights differ so much that less than half of
+    /// them count; returns whether.
     pub fn resample(&mut self) -> bool {
         if self.effective_number() >= RESAMPLE_BELOW * self.particles.len() as f64 {
             return false;
@@ -174,7 +174,7 @@ impl ParticleFilter {
         true
     }
 
-    /// How many are to be drawn: as many as are enough for the bins of so many. It
+    /// How many are to be drawn: as many as are enough for the bins of this many. It
     /// differs from KLD-sampling in that drawing is systematic, so that the number must
     /// be known before: it begins with the fewest and grows as their bins ask for, by a
     /// quarter at least, which keeps the passes few and the number at most that much too

@@ -1,5 +1,5 @@
 //! Monte Carlo localization: the pose as a set of weighted particles, which move with
-//! the robot, are weighed by its scans and drawn anew by their weights.
+//! the robot, are weighed by its scans and drawn again by their weights.
 //!
 //! Dellaert, Fox, Burgard and Thrun, "Monte Carlo Localization for Mobile Robots" (ICRA
 //! 1999); Thrun, Burgard and Fox, "Probabilistic Robotics" (2005), chapter 8. A search
@@ -20,7 +20,7 @@
 //! for the most particles that there have been, and for their bins.
 //!
 //! It does not notice that it is lost: no random particles are added (as in table 8.3 of
-//! the book). A search of the whole map does that better, and its places start it anew
+//! the book). A search of the whole map does that better, and its places start it again
 //! ([`ParticleFilter::seed`]).
 
 mod beams;

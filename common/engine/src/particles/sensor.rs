@@ -20,7 +20,7 @@ use crate::fit::{DistanceField, GridPose};
 /// likelihood differs by less than 2 %.
 const STEPS: f64 = 32.0;
 
-/// Beyond so many standard deviations a reading does not fit at all: 3 · 10⁻⁴ of the
+/// Beyond this many standard deviations a reading does not fit at all: 3 · 10⁻⁴ of the
 /// greatest likelihood, which is less than any random share.
 const REACH: f64 = 4.0;
 

@@ -101,13 +101,13 @@ fn parse_scale(text: &str) -> Result<f64, String> {
     crate::config::parse(text, 0.001..=1.0, "as a share")
 }
 
-/// The sure score is that of scans that see so many pieces.
+/// The sure score is that of scans that see this many pieces.
 const SURE_PIECES: f64 = 6.0;
 
 impl PeakConfig {
     /// The lead at which a best place stands alone that has such a score, and where
-    /// such a share of the beams passes through obstacles; by so many beams that see
-    /// so many pieces.
+    /// such a share of the beams passes through obstacles; by this many beams that see
+    /// this many pieces.
     pub(super) fn needed_lead(
         &self,
         (score, through): (f64, f64),

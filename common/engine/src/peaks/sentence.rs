@@ -16,7 +16,7 @@ pub struct PlaceSummary {
     pub score: f64,
 }
 
-/// An ellipse that is so many times as long as it is wide lies along a
+/// An ellipse that is this many times as long as it is wide lies along a
 /// corridor.
 const CORRIDOR: f64 = 5.0;
 

@@ -79,7 +79,7 @@ struct Taken {
 }
 
 impl Window {
-    /// A window of so many metres, with nothing in it.
+    /// A window of this many metres, with nothing in it.
     #[must_use]
     pub fn new(way_m: f64, config: RegionConfig) -> Self {
         Window {
@@ -90,7 +90,7 @@ impl Window {
     }
 
     /// Takes in a scan, and leaves out what is behind the window then. One that was
-    /// measured before the last begins anew, as a recording does that is played again.
+    /// measured before the last begins again, as a recording does that is played again.
     ///
     /// # Errors
     /// If [`Scan::check`] refuses the scan, it has more readings than any ring of

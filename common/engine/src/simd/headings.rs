@@ -50,7 +50,7 @@ pub(crate) trait HeadingLanes: Copy {
 
     fn add_to(self, sums: Self::Sums) -> Self::Sums;
 
-    /// The headings with a sum of at least so much.
+    /// The headings with a sum of at least this much.
     fn at_least(set: Self::Set, sums: Self::Sums, least: u16) -> u64;
 
     /// The sums, heading by heading.

@@ -57,7 +57,7 @@ pub(super) fn group(direction: &Direction) -> usize {
 }
 
 impl Plan {
-    /// Plans a scan at a heading on a grid of so many cells.
+    /// Plans a scan at a heading on a grid of this many cells.
     pub(super) fn make<S: Set>(
         &mut self,
         set: S,

@@ -5,7 +5,7 @@ use nalgebra::{Matrix3, Vector3};
 
 use super::TrackingConfig;
 
-/// A robot that turns to and fro takes a key scan after so many times the distance.
+/// A robot that turns to and fro takes a key scan after this many times the distance.
 const KEY_PATHS: f64 = 2.0;
 
 /// A way of several steps.

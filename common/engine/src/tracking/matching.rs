@@ -31,7 +31,7 @@ pub(super) struct ScanMatcher {
     reference: Option<DistanceField>,
     /// From there to the last scan.
     gone: Pose,
-    /// How the robot moved to the last scan: it goes on as it went.
+    /// How the robot moved to the last scan: it continues as it went.
     step: Pose,
 }
 

@@ -57,10 +57,10 @@ pub enum Need {
     EarlierScan,
 }
 
-/// A pose that is believed is checked by a search at each so many key scans.
+/// A pose that is believed is checked by a search at each this many key scans.
 const CHECKED_EVERY: u32 = 10;
 
-/// What such a search finds counts so many scans later: nobody waits for it.
+/// What such a search finds counts this many scans later: nobody waits for it.
 const COUNTS_AFTER: u32 = 2;
 
 /// Scans of fewer beams say nothing.
@@ -111,7 +111,7 @@ impl Tracker {
     }
 
     /// Forgets all but where the robot should be at the next scan: that place is tried
-    /// first and leads by so much, natural logarithm of odds, over what a search finds.
+    /// first and leads by this much, natural logarithm of odds, over what a search finds.
     /// It is not believed before scans confirm it.
     pub fn expect(&mut self, pose: Pose, covariance: Covariance, lead: f64) {
         *self = Tracker {

@@ -1,6 +1,6 @@
 //! The tracker by particles in place of a few places: Monte Carlo localization that a
 //! search starts, "those places where particles need to be initialized" (the paper,
-//! conclusions), and starts anew where it is lost. It is here to be compared with.
+//! conclusions), and starts again where it is lost. It is here to be compared with.
 
 use geometry::{Covariance, Pose};
 use messages::{TrackReason, TrackState};
@@ -20,7 +20,7 @@ use crate::particles::{self, ParticleFilter, ParticlesConfig};
 const ONE_CLUSTER: f64 = 0.95;
 const MAX_SPREAD_M: f64 = 0.5;
 
-/// Key scans in a row that hardly fit before it starts anew.
+/// Key scans in a row that hardly fit before it starts again.
 const LOST_SCANS: u32 = 3;
 
 /// Follows the robot by particles.

@@ -104,7 +104,7 @@ pub(super) struct Place {
     pub off: f64,
 }
 
-/// A mean is over so many key scans.
+/// A mean is over this many key scans.
 const MEAN_OVER: u32 = 8;
 
 impl Place {

@@ -11,7 +11,7 @@ use super::verdict::Belief;
 use crate::peaks::lead;
 
 /// Most places that are kept, and how many of them may be older than one key scan, and
-/// new: those that a place was distinguished from do not give way to what each search finds anew.
+/// new: those that a place was distinguished from do not give way to what each search finds again.
 pub(super) const MAX: usize = MAX_OLD + MAX_NEW;
 const MAX_OLD: usize = 20;
 const MAX_NEW: usize = 12;
@@ -31,7 +31,7 @@ const GATE: f64 = 16.0;
 const GATE_M: f64 = 0.1;
 const GATE_RADIANS: f64 = 2.0 * std::f64::consts::PI / 180.0;
 
-/// A candidate in the gate that scores better by so much, and by so much a squared
+/// A candidate in the gate that scores better by this much, and by this much a squared
 /// deviation, is where the place is.
 const SNAP: f64 = 0.02;
 const SNAP_BY_DEVIATION: f64 = 0.01;

@@ -46,7 +46,7 @@ const SCORE_BY_DEVIATION: f64 = 0.004;
 const MAP_ERROR_M: f64 = 0.03;
 const MAP_ERROR: f64 = 0.4 * std::f64::consts::PI / 180.0;
 
-/// A covariance with what a map errs by in addition, one that was drawn by so many
+/// A covariance with what a map errs by in addition, one that was drawn by this many
 /// metres more.
 pub(super) fn with_map_error(covariance: Matrix3<f64>, drawn_m: f64) -> Matrix3<f64> {
     let position = MAP_ERROR_M.hypot(drawn_m);

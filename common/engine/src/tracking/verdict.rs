@@ -21,7 +21,7 @@ const DISTINCT_RADIANS: f64 = 15.0 * std::f64::consts::PI / 180.0;
 /// A lead below this makes the pose doubtful.
 const MIN_LEAD: f64 = 3.0;
 
-/// The last score may lie so much below `--least-mean` when a place becomes the only
+/// The last score may lie this much below `--least-mean` when a place becomes the only
 /// one.
 const LAST_BELOW: f64 = 0.1;
 
@@ -282,7 +282,7 @@ fn spread(places: &[Place], about: Pose) -> Matrix3<f64> {
     parts.sum()
 }
 
-/// How likely the place is that leads by so much: a logistic regression over 2191 key
+/// How likely the place is that leads by this much: a logistic regression over 2191 key
 /// scans of seven drives, which docs/tracking.md has as a table. The lead by itself
 /// promises too much, for scans of one place err together.
 fn probability(lead: f64) -> f64 {

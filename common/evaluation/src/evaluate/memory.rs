@@ -7,7 +7,7 @@ use nix::sys::resource::{UsageWho, getrusage};
 /// The number that makes the kernel forget the peak, see proc_pid_clear_refs(5).
 const FORGET_PEAK: &str = "5";
 
-/// The peak counts anew from what is held now.
+/// The peak counts again from what is held now.
 ///
 /// # Errors
 /// The system does not allow it: the peak stays that of the whole process.

@@ -117,7 +117,7 @@ fn connect(moments: &mut [Moment], options: &SequenceOptions) {
     }
 }
 
-/// A step whose error is so many times as large.
+/// A step whose error is this many times as large.
 fn worsened(step: Pose, truly: Option<Pose>, factor: f64) -> Pose {
     let Some(truly) = truly else { return step };
     if factor == 1.0 {

@@ -31,7 +31,7 @@ pub(super) struct Figures {
     pub(super) cpu_ms_searching: Times,
 }
 
-/// Shares of the starts after so many metres.
+/// Shares of the starts after this many metres.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize)]
 pub(super) struct After {
     #[serde(rename = "1")]

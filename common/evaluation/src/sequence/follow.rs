@@ -8,7 +8,7 @@ use super::drive::Moment;
 use super::run::{Run, Said};
 use crate::EvaluationError;
 
-/// Off by more than this for so many truths in a row, metres and degrees, the robot is
+/// Off by more than this for this many truths in a row, metres and degrees, the robot is
 /// lost, and put back to the truth.
 const LOSS: (f64, f64) = (1.0, 20.0);
 const LOSS_TRUTHS: u32 = 3;

@@ -12,7 +12,7 @@ use crate::EvaluationError;
 /// The robot is put at least so far away, metres.
 const MIN_M: f64 = 3.0;
 
-/// It is followed for so many metres before, and for so many after.
+/// It is followed for this many metres before, and for this many after.
 const BEFORE_M: f64 = 5.0;
 const AFTER_M: f64 = 10.0;
 const RIGHT_AFTER_M: f64 = 5.0;
@@ -53,7 +53,7 @@ pub(super) fn choose(moments: &[Moment], count: u32) -> Vec<(usize, usize)> {
         .collect()
 }
 
-/// Puts the robot elsewhere so many times.
+/// Puts the robot elsewhere this many times.
 pub(super) fn evaluate(
     world: &World,
     moments: &[Moment],

@@ -32,7 +32,7 @@ pub(super) struct Starts {
     pub(super) searches: u64,
 }
 
-/// Indices of so many starts, evenly along the drive, at scans with a truth.
+/// Indices of this many starts, evenly along the drive, at scans with a truth.
 pub(super) fn choose(moments: &[Moment], count: u32) -> Vec<usize> {
     let total = moments.last().map_or(0.0, |last| last.gone_m);
     let end = total - LEFT.0.min(LEFT.1 * total);

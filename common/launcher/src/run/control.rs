@@ -62,7 +62,7 @@ pub struct Status {
     pub descriptor: String,
     /// How long it runs, seconds.
     pub uptime_s: u64,
-    /// A sentence on each node that the graph goes on without.
+    /// A sentence on each node that the graph continues without.
     pub given_up: Vec<String>,
     /// Its nodes, as the descriptor has them.
     pub nodes: Vec<NodeStatus>,

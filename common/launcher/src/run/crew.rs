@@ -1,6 +1,6 @@
 //! The processes of the graph: started, watched, started again, stopped.
 //!
-//! A node that fails for good ends the run if the graph needs it; else the rest goes on
+//! A node that fails for good ends the run if the graph needs it; else the rest continues
 //! without it, and [`Crew::given_up`] says so.
 
 use std::{
@@ -44,7 +44,7 @@ pub struct Crew {
     /// Every thread that forwards output holds a copy.
     output_open: Option<Sender<()>>,
     output_closed: Receiver<()>,
-    /// A sentence on each node that the graph goes on without.
+    /// A sentence on each node that the graph continues without.
     given_up: Vec<String>,
 }
 
@@ -106,7 +106,7 @@ impl Crew {
         })
     }
 
-    /// Starts what is due and looks after what has ended. Says whether any
+    /// Starts what is due and looks after what has ended. Returns whether any
     /// process has ended since the last time.
     ///
     /// # Errors
@@ -155,7 +155,7 @@ impl Crew {
     }
 
     /// Ends a node in order, as its process is asked to, and starts it again: now, whatever
-    /// its policy says. One that has ended is started. Says whether there is such a node.
+    /// its policy says. One that has ended is started. Returns whether there is such a node.
     ///
     /// # Errors
     /// Its process cannot be signalled.
@@ -181,7 +181,7 @@ impl Crew {
         }
     }
 
-    /// A sentence on each node that failed for good and that the graph goes on without.
+    /// A sentence on each node that failed for good and that the graph continues without.
     pub fn given_up(&self) -> &[String] {
         &self.given_up
     }
@@ -330,7 +330,7 @@ impl Member {
         })
     }
 
-    /// Says whether the process has ended, after deciding what follows.
+    /// Returns whether the process has ended, after deciding what follows.
     fn look_after(&mut self, now: Instant) -> Result<bool, LauncherError> {
         let Some(status) = self.poll()? else {
             self.end_if_hung(now)?;
@@ -406,7 +406,7 @@ impl Member {
     }
 }
 
-/// Who did all that could be done, and lost data, would not do better anew.
+/// Who did all that could be done, and lost data, would not do better again.
 fn how_ended(status: ExitStatus) -> Ended {
     if status.success() || lost_data(status) {
         Ended::Well

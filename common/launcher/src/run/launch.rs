@@ -114,7 +114,7 @@ pub fn run(config: &Config) -> Result<ExitCode, LauncherError> {
         let Err(LauncherError::Transport(TransportError::Vanished { .. })) = &outcome else {
             break outcome;
         };
-        // Nobody of the graph runs any more: all of it can begin anew.
+        // Nobody of the graph runs any more: all of it can begin again.
         if let Err(error) = clear(&graph) {
             break Err(error.into());
         }

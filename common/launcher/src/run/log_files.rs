@@ -1,4 +1,4 @@
-//! What the nodes log, as files: JSON lines, a file for each node, begun anew when one is
+//! What the nodes log, as files: JSON lines, a file for each node, begun again when one is
 //! full. A disk that takes no more costs lines, never the graph.
 
 use std::collections::BTreeMap;

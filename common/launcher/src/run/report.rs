@@ -63,7 +63,7 @@ impl Report {
             && stamp.counter <= last.counter
             && stamp != last
         {
-            // The sender was started again and counts anew.
+            // The sender was started again and counts again.
             let sent = last.counter.saturating_add(1);
             self.earlier_scans = self.earlier_scans.saturating_add(sent);
         }

@@ -11,7 +11,7 @@ use messages::{Topic, topic};
 
 use crate::LauncherError;
 
-/// The variable of a node's `env` that says whether the graph ends with it.
+/// The variable of a node's `env` that returns whether the graph ends with it.
 const ESSENTIAL: &str = "BACKCAST_ESSENTIAL";
 /// Those without which a robot is localized just as well.
 const ONLY_SHOW: [&str; 3] = ["foxglove_server", "monitor", "recorder"];
@@ -46,7 +46,7 @@ pub enum Ended {
 /// What follows when a process has ended by itself.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum AfterEnd {
-    /// It is started again, so much later.
+    /// It is started again, this much later.
     Restart(Duration),
     /// It has done its work.
     Done,
@@ -213,7 +213,7 @@ mod tests {
             }
         }
 
-        /// The process ends after so many seconds.
+        /// The process ends after this many seconds.
         fn end_after(&mut self, seconds: u64, ended: Ended) -> AfterEnd {
             let worked = Duration::from_secs(seconds);
             self.now += worked;

@@ -45,7 +45,7 @@ impl Tracking {
         }
     }
 
-    /// Takes the pose of a scan, sent so many milliseconds after it.
+    /// Takes the pose of a scan, sent this many milliseconds after it.
     pub(crate) fn pose(&mut self, header: &PoseHeader, latency_ms: f64) {
         let state = TrackState::from_code(header.state);
         self.scans += 1;

@@ -55,7 +55,7 @@ pub(super) fn of(laser: &Laser, mounting: &Mounting) -> Result<(f64, f64), Strin
     Ok((start + turned, step))
 }
 
-/// The step of so many beams over a field of view: an odd number of them has one at
+/// The step of this many beams over a field of view: an odd number of them has one at
 /// either end, of an even number the last one is missing.
 pub(super) fn step_over(view: f64, beams: usize) -> f64 {
     match beams {

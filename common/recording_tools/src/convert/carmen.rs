@@ -36,7 +36,7 @@ pub(super) struct Laser {
     pub(super) number: u8,
     /// If the line has them.
     pub(super) angles: Option<Angles>,
-    /// Readings of so much and more are no returns, if the line has it.
+    /// Readings of this much and more are no returns, if the line has it.
     pub(super) range_max_m: Option<f64>,
     /// One that is no number is NaN.
     pub(super) ranges: Vec<f32>,

@@ -13,7 +13,7 @@ use super::delay::odometry_delay;
 use super::finding::Finding;
 use super::survey::{Farthest, Seen, Survey};
 
-/// A gap is worth a note from so many usual distances on.
+/// A gap is worth a note from this many usual distances on.
 const GAP_FACTOR: i64 = 5;
 
 /// Share of readings at exactly one value from which it is no distance.

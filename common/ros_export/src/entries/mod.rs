@@ -283,7 +283,7 @@ impl Entries {
         Some(newest.measured_ns.saturating_add(since_ns))
     }
 
-    /// Checks a measurement's stamp, and lets go of what waited for it.
+    /// Checks a measurement's stamp, and drops what waited for it.
     fn measured(&mut self, stamp: Stamp, topic: &'static str) -> Result<Moment, TranscriptError> {
         let at = Moment::of(stamp.measured_ns, topic)?;
         let first = self.newest.is_none();

@@ -36,7 +36,7 @@ pub(super) fn watch(graph: GraphName) -> Sender<()> {
         let mut before = LONG_WORK.load(Ordering::Relaxed);
         while lasts(TIMEOUT) {
             let now = LONG_WORK.load(Ordering::Relaxed);
-            // Where a start has no end yet, that goes on.
+            // Where a start has no end yet, that continues.
             if now == before && now.is_multiple_of(2) {
                 eprintln!("the test in graph {graph} takes more than {TIMEOUT:?}: it is ended");
                 let _ = raise(Signal::SIGTERM);

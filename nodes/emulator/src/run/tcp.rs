@@ -16,7 +16,7 @@ use crate::EmulatorError;
 use crate::cola_device::{ColaDevice, Model, Session};
 use crate::faults::Faults;
 
-/// A client that leaves so much unread is given up, bytes.
+/// A client that leaves this much unread is given up, bytes.
 const MAX_UNREAD: usize = 1 << 22;
 
 pub(super) fn run(

@@ -100,7 +100,7 @@ impl Outlet {
     }
 
     /// Waits until every subscriber is done with what was sent, until `deadline`
-    /// or the stop flag; says whether they are.
+    /// or the stop flag; returns whether they are.
     fn wait_until_taken(&mut self, deadline: Instant) -> Result<bool, TransportError> {
         loop {
             if self.publisher.is_settled()? {

@@ -24,7 +24,7 @@ pub(crate) enum Store {
 }
 
 impl Store {
-    /// Takes an entry; says whether there was room.
+    /// Takes an entry; returns whether there was room.
     ///
     /// # Errors
     /// If it cannot be written for another reason than a full disk.

@@ -14,7 +14,7 @@ pub(super) struct Keyboard {
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(super) enum KeyPress {
     Nothing,
-    /// Playing goes on after a pause.
+    /// Playing continues after a pause.
     Resumed,
     Quit,
 }

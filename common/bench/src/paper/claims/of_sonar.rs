@@ -5,10 +5,10 @@ use engine::taper::TaperShape;
 use super::super::sonar::Judged;
 use super::{Basis, Case, Claim, least, most};
 
-/// A share that is no worse than another is at least so much of it: what a hundred poses
+/// A share that is no worse than another is at least this much of it: what a hundred poses
 /// tell apart.
 const AS_GOOD: f64 = 0.95;
-/// The peak is taken for the robot if it is in so many of the poses.
+/// The peak is taken for the robot if it is in this many of the poses.
 const RELIABLE: f64 = 0.95;
 /// The paper's error of a position, per cent.
 const MAX_PERCENT: f64 = 5.0;

@@ -51,7 +51,7 @@ struct BoundQuery<'a> {
     among: u64,
     /// Votes that any of them must reach.
     least: u16,
-    /// What the beams give at most that are missing when so many sectors or groups are
+    /// What the beams give at most that are missing when this many sectors or groups are
     /// complete.
     rests: &'a [u16],
 }

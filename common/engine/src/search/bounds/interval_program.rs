@@ -11,7 +11,7 @@ use crate::tables::TABLE;
 /// As many votes of at most 16 as fit into a byte.
 const BEAMS_OF_A_BYTE: usize = 15;
 
-/// A scan program laid out for bounds from intervals; made anew for each scan.
+/// A scan program laid out for bounds from intervals; made again for each scan.
 #[derive(Debug, Clone, Default)]
 pub(crate) struct IntervalProgram {
     pub(in crate::search) directions: usize,

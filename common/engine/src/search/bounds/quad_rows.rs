@@ -75,7 +75,7 @@ pub(crate) struct Reader<'a, const N: usize> {
 }
 
 impl RowLayout {
-    /// Starts anew, with nothing that is read.
+    /// Starts again, with nothing that is read.
     pub(crate) fn start(&mut self, directions: usize) {
         self.stride = directions / 8;
         let turns = (READ - 1).div_ceil(self.stride);

@@ -163,7 +163,7 @@ impl SetProgram {
         }
     }
 
-    /// Bounds blocks at the headings of some chunks, if so many units matter as long as
+    /// Bounds blocks at the headings of some chunks, if this many units matter as long as
     /// any may have them.
     #[inline(always)]
     fn run_chunks<S: Set, const N: usize>(

@@ -45,7 +45,7 @@ const EXPECTED_BEST: f64 = 0.98;
 /// What sweeping no beam at all would take, as a share of sweeping all.
 const SHARE_OF_NONE: f64 = 0.15;
 
-/// Of so many cells one pose is kept at a heading, and not less than so many poses.
+/// Of this many cells one pose is kept at a heading, and not less than this many poses.
 const CELLS_A_KEPT: usize = 1024;
 const MIN_KEPT: usize = 64;
 
@@ -53,7 +53,7 @@ const MIN_KEPT: usize = 64;
 /// is more, and fall where it is less than an eighth.
 const STEP: u32 = 64;
 
-/// Sweeping all beams over so many cells takes no longer than counting one pose by
+/// Sweeping all beams over this many cells takes no longer than counting one pose by
 /// itself. A few poses are counted on any map.
 const CELLS_A_COUNT: usize = 2048;
 const FEW_COUNTS: usize = 4;
@@ -252,7 +252,7 @@ impl<'a> SamplingThread<'a> {
         Some(())
     }
 
-    /// Takes the poses that reach the floor of those kept, which have so many votes of
+    /// Takes the poses that reach the floor of those kept, which have this many votes of
     /// a sample.
     fn take_kept(&mut self, kept: Range<usize>, least: u16, heading: usize) {
         for i in kept {

@@ -22,7 +22,7 @@ pub(in crate::search) struct Share {
     pub(super) sampled: Vec<SampledHeading>,
     /// Poses that have most votes of the sample, heading by heading.
     pub(super) kept: Vec<Pose>,
-    /// They have so many or more.
+    /// They have this many or more.
     pub(super) least: u16,
     pub(super) collector: Collector,
     pub(super) poses_evaluated: u64,
@@ -50,7 +50,7 @@ impl Share {
     }
 
     /// Keeps the poses of the field that have the least votes or more; none if that
-    /// would be more than so many.
+    /// would be more than this many.
     pub(super) fn keep(&mut self, most: usize) -> bool {
         let start = self.kept.len();
         for (first, cells) in (0..).step_by(STRETCH).zip(self.field.chunks(STRETCH)) {

@@ -14,7 +14,7 @@ use crate::simd::cells::{self, CellLanes};
 use crate::simd::{Kernel, Set, Simd};
 use crate::tables::{VoteTable, VoteTables};
 
-/// A scan program laid out for counting in blocks; made anew for each scan.
+/// A scan program laid out for counting in blocks; made again for each scan.
 #[derive(Debug, Clone, Default)]
 pub(crate) struct LeafProgram {
     simd: Simd,

@@ -31,7 +31,7 @@ use crate::votes::Distinct;
 /// Coarse blocks that are split for each candidate that is wanted.
 const COARSE_SHARE: usize = 6;
 
-/// On large maps, one of so many coarse blocks is split.
+/// On large maps, one of this many coarse blocks is split.
 const COARSE_PART: usize = 16;
 
 /// Blocks of 8 × 8 cells that are searched for each candidate.
@@ -86,7 +86,7 @@ impl<'a> Alternatives<'a> {
     }
 
     /// Leaves in its scratch buffer poses of the blocks with the highest bounds, in no order,
-    /// at most so many. The search ended with a floor; its scratch buffers are given if it
+    /// at most this many. The search ended with a floor; its scratch buffers are given if it
     /// bounded all blocks that the floor leaves.
     pub(in crate::search) fn find(
         &mut self,
@@ -130,7 +130,7 @@ impl<'a> Alternatives<'a> {
         }
     }
 
-    /// Chooses so many 8 × 8 blocks in the coarse ones with the highest bounds.
+    /// Chooses this many 8 × 8 blocks in the coarse ones with the highest bounds.
     fn split_highest(&mut self, wanted: usize, count: usize) {
         let part = self.task.coarse_bounds.len() / COARSE_PART;
         self.take_highest(part.max(COARSE_SHARE * wanted));
@@ -258,7 +258,7 @@ fn bounded(task: &Task<'_>, block: usize) -> BoundedBlock {
     (bound, Reverse(block as u32))
 }
 
-/// The greatest so many of what was offered.
+/// The greatest this many of what was offered.
 #[derive(Debug, Default)]
 struct Greatest {
     count: usize,
@@ -267,7 +267,7 @@ struct Greatest {
 }
 
 impl Greatest {
-    /// Starts with nothing; so many will be kept, of which there is at least one.
+    /// Starts with nothing; this many will be kept, of which there is at least one.
     fn start(&mut self, count: usize) {
         self.count = count;
         self.kept.clear();
@@ -302,7 +302,7 @@ impl Greatest {
 }
 
 impl Spot {
-    /// The spot as a pose, by which spots are distinguished; blocks lie in so many
+    /// The spot as a pose, by which spots are distinguished; blocks lie in this many
     /// columns.
     fn corner(&self, columns: usize) -> Vote {
         let (Reverse(block), Reverse(heading)) = (self.block, self.heading);
@@ -315,7 +315,7 @@ impl Spot {
     }
 }
 
-/// Keeps the greatest so many, in falling order.
+/// Keeps the greatest this many, in falling order.
 fn keep_greatest<T: Ord>(all: &mut Vec<T>, count: usize) {
     if count < all.len() {
         all.select_nth_unstable_by(count, |a, b| b.cmp(a));

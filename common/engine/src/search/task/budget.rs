@@ -90,7 +90,7 @@ impl Rates {
 /// Share of the work that goes into the smallest blocks before their turn.
 const LEAF_SHARE: f64 = 0.4;
 
-/// The first look, as a share of what brute force costs: so much is lost where a
+/// The first look, as a share of what brute force costs: this much is lost where a
 /// search is given up then.
 const FIRST_LOOK: f64 = 0.1;
 
@@ -116,7 +116,7 @@ impl Cost {
 }
 
 impl Tally {
-    /// What was done since the last time, with so many beams.
+    /// What was done since the last time, with this many beams.
     pub(in crate::search) fn take(
         &mut self,
         instruction_set: InstructionSet,
@@ -139,7 +139,7 @@ impl Tally {
 }
 
 impl Budget {
-    /// For one of so many parts of a search, which takes so many steps at most. Counting
+    /// For one of this many parts of a search, which takes this many steps at most. Counting
     /// every pose costs such a share of brute force.
     pub(in crate::search) fn new(
         brute_force: Cost,

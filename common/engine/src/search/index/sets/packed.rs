@@ -32,7 +32,7 @@ pub(crate) struct SetRows<'a> {
     pub bytes: &'a [Byte],
 }
 
-/// How many words a row of so many bytes has.
+/// How many words a row of this many bytes has.
 pub(super) fn words(stride: usize) -> usize {
     stride.div_ceil(READ)
 }
@@ -73,7 +73,7 @@ impl PackedRows {
 }
 
 impl<'a> SetRows<'a> {
-    /// Rows of so many bytes each, with their masks and the bytes that were kept.
+    /// Rows of this many bytes each, with their masks and the bytes that were kept.
     #[inline(always)]
     pub(super) fn new(
         rows: Range<usize>,
