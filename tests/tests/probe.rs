@@ -112,7 +112,7 @@ fn an_lms2xx_at_its_baud_rate() {
 }
 
 #[test]
-fn what_is_no_laser_is_told_apart() {
+fn what_is_no_laser_is_distinguished() {
     let fails = |device: &str, expected: &str| {
         let (code, said, complained) = probe(device);
         assert_eq!((code, said.as_str()), (Some(1), ""), "{complained}");

@@ -143,7 +143,7 @@ fn cut_short(folder: &TempDir) -> (PathBuf, u64) {
 }
 
 #[test]
-fn what_a_recording_has_lost_is_told_and_drawn() {
+fn what_a_recording_has_lost_is_reported_and_drawn() {
     let folder = TempDir::new().unwrap();
     let (case, scans) = cut_short(&folder);
     assert!((1..37).contains(&scans), "{scans}");

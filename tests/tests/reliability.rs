@@ -107,8 +107,8 @@ fn a_launcher_that_is_killed_is_started_again_under_the_same_name() {
 }
 
 #[test]
-fn full_shared_memory_ends_nothing_and_is_told() {
-    let test = "full_shared_memory_ends_nothing_and_is_told";
+fn full_shared_memory_ends_nothing_and_is_reported() {
+    let test = "full_shared_memory_ends_nothing_and_is_reported";
     if !has_own_shared_memory(test, "96m") {
         return;
     }

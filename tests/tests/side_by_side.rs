@@ -31,7 +31,7 @@ fn lines(graph: Child) -> Vec<Value> {
 }
 
 #[test]
-fn two_graphs_do_not_hear_each_other() {
+fn two_graphs_do_not_receive_each_other() {
     let names = ["a", "b"].map(|tag| format!("s{}{tag}", std::process::id()));
     let [first, second] = [start(&names[0]), start(&names[1])];
     for lines in [lines(first), lines(second)] {

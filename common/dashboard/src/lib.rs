@@ -9,7 +9,7 @@
 //!
 //! Where the messages come from is up to whoever uses it: a source gives a
 //! [`Robot`] what happens, and takes the requests that it is given. Nobody waits for
-//! those who watch: a message is put into words once and handed to all of them, and
+//! those who watch: a message is written as text once and handed to all of them, and
 //! who is too slow loses some and is sent their number. The crate localizes nothing, and
 //! shows nothing that no node said.
 

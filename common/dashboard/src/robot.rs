@@ -283,7 +283,7 @@ impl Drop for FieldView {
 
 /// A message as JSON.
 pub(crate) fn text(message: &Message<'_>) -> Utf8Bytes {
-    // All keys are strings and numbers that are none become null: nothing fails.
+    // All keys are strings and invalid numbers become null: nothing fails.
     serde_json::to_string(message).unwrap_or_default().into()
 }
 
@@ -309,7 +309,7 @@ mod tests {
     }
 
     #[test]
-    fn who_comes_hears_what_is_known_and_then_all_that_follows() {
+    fn who_comes_receives_what_is_known_and_then_all_that_follows() {
         let (robot, _requests) = Robot::new("r".into());
         receive(&robot, 1);
         let mut watching = robot.watch(0);
@@ -330,7 +330,7 @@ mod tests {
     }
 
     #[test]
-    fn a_pose_is_told_beside_the_answer_and_so_is_its_age() {
+    fn a_pose_is_reported_beside_the_answer_and_so_is_its_age() {
         let (robot, _requests) = Robot::new("r".into());
         receive(&robot, 1);
         let mut watching = robot.watch(0);
@@ -356,7 +356,7 @@ mod tests {
     }
 
     #[test]
-    fn who_is_slow_loses_the_oldest_and_hears_how_many() {
+    fn who_is_slow_loses_the_oldest_and_receives_how_many() {
         let (robot, _requests) = Robot::new("r".into());
         let mut watching = robot.watch(0);
         for counter in 0..QUEUE as u64 + 3 {

@@ -277,7 +277,7 @@ mod tests {
     }
 
     #[test]
-    fn what_is_not_yaml_is_told_in_the_words_of_the_parser() {
+    fn what_is_not_yaml_is_reported_in_the_words_of_the_parser() {
         check("nodes: [{id: \"a", "1:14: not a descriptor: unclosed quote");
         check(
             "nodes:\n\t- id: a\n",

@@ -317,7 +317,7 @@ mod tests {
     }
 
     #[test]
-    fn a_recording_that_starts_anew_finds_its_early_odometry() {
+    fn a_recording_that_starts_again_finds_its_early_odometry() {
         let history = history(&[(100, 0.1), (200, 0.2), (10, 0.7)]);
         assert_eq!(heading(BY_ODOMETRY, &scan(15), &history), 0.7 + 0.5);
     }

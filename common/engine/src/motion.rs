@@ -181,7 +181,7 @@ mod tests {
     }
 
     #[test]
-    fn late_samples_are_left_out_and_a_recording_may_begin_anew() {
+    fn late_samples_are_left_out_and_a_recording_may_begin_again() {
         let east = |x| Pose::new(x, 0.0, 0.0);
         let mut motion = motion(&[(20, east(0.0)), (22, east(2.0)), (21, east(9.0))]);
         let middle = motion.at(21 * TENTH).unwrap().odom_from_child;

@@ -53,7 +53,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn losses_and_repetitions_are_told_for_each_sender() {
+    fn losses_and_repetitions_are_reported_for_each_sender() {
         let mut arrivals = Arrivals::default();
         let mut note = |sender, sequence| arrivals.note(sender, sequence);
         assert_eq!(note(1, 5), Arrival::New { lost: 0 });

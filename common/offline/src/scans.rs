@@ -251,7 +251,7 @@ mod tests {
     }
 
     #[test]
-    fn a_scan_that_does_not_decode_is_told_and_not_the_end() {
+    fn a_scan_that_does_not_decode_is_reported_and_not_the_end() {
         let mut writer = RecordingWriter::in_memory(Packing::Plain).unwrap();
         let sound = Message::Scan(LaserScan::default());
         writer.write("/scan", 0, &sound).unwrap();

@@ -212,7 +212,7 @@ mod tests {
     }
 
     #[test]
-    fn small_errors_are_told_in_centimetres() {
+    fn small_errors_are_reported_in_centimetres() {
         let near = truth(Some((0.0123, 0.5f64.to_radians())));
         assert!(near.is_met());
         assert_eq!(near.says(), "1.2 cm and 0.50° from the truth");

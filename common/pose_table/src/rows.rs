@@ -153,7 +153,7 @@ mod tests {
     }
 
     #[test]
-    fn a_source_that_was_started_again_counts_anew() {
+    fn a_source_that_was_started_again_counts_again() {
         let mut rows = Rows::default();
         assert_eq!(answer(&mut rows, 7), []);
         assert_eq!(track(&mut rows, 7), [(Some(7), Some(7))]);

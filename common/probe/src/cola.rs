@@ -299,7 +299,7 @@ mod tests {
     }
 
     #[test]
-    fn what_is_to_be_stated_is_told() {
+    fn what_is_to_be_stated_is_reported() {
         let around_zero = Field {
             first_deg: -120.0,
             last_deg: 120.0,

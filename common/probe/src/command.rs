@@ -72,7 +72,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn addresses_and_serial_lines_are_told_apart() {
+    fn addresses_and_serial_lines_are_distinguished() {
         for (device, expected) in [
             ("192.168.0.1", Some("192.168.0.1")),
             ("192.168.0.1:2111", Some("192.168.0.1:2111")),

@@ -133,7 +133,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn content_is_told_by_its_start() {
+    fn content_is_detected_by_its_start() {
         for (start, expected) in [
             (&b"\x89MCAP0\r\n..."[..], Content::Mcap),
             (b"SQLite format 3\0...", Content::Sqlite),

@@ -84,7 +84,7 @@ impl Recording {
     /// sound is a note, unless the laser's place depends on it.
     ///
     /// # Errors
-    /// If the laser's place depends on a transform that is none, or the laser is
+    /// If the laser's place depends on a transform that is invalid, or the laser is
     /// neither level nor upside down.
     pub fn mounted(&self, laser: &str) -> Result<Mounted, RecordingError> {
         let (mut tree, mut notes) = self.fixed_transforms()?;

@@ -127,7 +127,7 @@ pub enum RecordingError {
         /// The channels.
         found: Vec<String>,
     },
-    /// A laser whose place depends on a transform that is none.
+    /// A laser whose place depends on a transform that is invalid.
     #[error("{}: where {laser} sits is not known, for the transform {transform} is none: {reason}", path.display())]
     BrokenMount {
         /// The file.

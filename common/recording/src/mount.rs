@@ -46,14 +46,14 @@ impl From<&Mount> for geometry::Mount {
 pub struct TransformTree {
     /// By child: its parent, and `parent_from_child`.
     parents: BTreeMap<String, (String, Isometry3<f64>)>,
-    /// By child: the parent of a transform that is none, and why.
+    /// By child: the parent of a transform that is invalid, and why.
     broken: BTreeMap<String, (String, ConversionError)>,
     /// By child: what was wrong with the transform that it has.
     mended: BTreeMap<String, Mend>,
 }
 
 impl TransformTree {
-    /// Adds a transform, or replaces the one that its child had. One that is none
+    /// Adds a transform, or replaces the one that its child had. An invalid one
     /// is kept in mind only as far as [`TransformTree::broken_below`] asks.
     ///
     /// # Errors
@@ -71,7 +71,7 @@ impl TransformTree {
         Ok(())
     }
 
-    /// As [`TransformTree::add`], but one that is none is noted, and ends nothing.
+    /// As [`TransformTree::add`], but an invalid one is noted, and ends nothing.
     pub fn take(&mut self, stamped: &TransformStamped) {
         if let Err(error) = self.add(stamped) {
             let parent = plain(&stamped.header.frame_id).to_owned();
@@ -93,7 +93,7 @@ impl TransformTree {
         broken.chain(mended)
     }
 
-    /// A transform that is none, if only that keeps the laser from a base: its
+    /// A transform that is invalid, if only that keeps the laser from a base: its
     /// parent and child, and what is wrong.
     #[must_use]
     pub fn broken_below(&self, laser: &str) -> Option<(&str, &str, &ConversionError)> {

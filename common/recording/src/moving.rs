@@ -42,7 +42,7 @@ pub(crate) struct MovingFrames {
 }
 
 impl MovingFrames {
-    /// Looks at a transform; one that is none says nothing.
+    /// Looks at a transform; an invalid one says nothing.
     pub(crate) fn see(&mut self, stamped: &TransformStamped) {
         let Ok((isometry, _)) = isometry(&stamped.transform) else {
             return;

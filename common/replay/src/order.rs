@@ -156,7 +156,7 @@ mod tests {
     }
 
     #[test]
-    fn odometry_comes_before_the_scan_whose_motion_it_tells() {
+    fn odometry_comes_before_the_scan_whose_motion_it_shows() {
         let odometry = |log_ms: i64| {
             let mut odometry = Odometry::zeroed();
             odometry.stamp.measured_ns = log_ms * MS;

@@ -47,7 +47,7 @@ pub fn scan_header(scan: &LaserScan, frame: FrameName, mount: Option<Mount>) -> 
 /// Odometry.
 ///
 /// # Errors
-/// If the pose is none, or a frame's name too long.
+/// If the pose is invalid, or a frame's name too long.
 pub fn odometry(message: &ros::Odometry) -> Result<Odometry, ConversionError> {
     Ok(Odometry {
         stamp: measured(message.header.stamp),

@@ -323,7 +323,7 @@ mod tests {
     }
 
     #[test]
-    fn latencies_are_told_for_each_tenth_of_the_run() {
+    fn latencies_are_reported_for_each_tenth_of_the_run() {
         let mut tally = tally();
         tally.pose(&pose(1, 5, 0.0, TrackState::Unique));
         let mut late = pose(1, 200, 0.0, TrackState::Unique);

@@ -11,7 +11,7 @@ use transport::{Flow, TransportError};
 const FLOOD: usize = 100;
 
 #[test]
-fn lines_arrive_with_their_level_and_losses_are_told() {
+fn lines_arrive_with_their_level_and_losses_are_reported() {
     let isolated = Isolated::new("log");
     transport::node::start_logging().unwrap();
     let graph = isolated.join("talker");

@@ -86,7 +86,7 @@ round_trips! {
 }
 
 #[test]
-fn graphs_side_by_side_do_not_hear_each_other() {
+fn graphs_side_by_side_do_not_receive_each_other() {
     let (here, there) = (Isolated::new("here"), Isolated::new("there"));
     let one = here.join("one");
     let other = there.join("other");

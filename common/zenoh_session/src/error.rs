@@ -41,7 +41,7 @@ pub enum NetworkError {
         /// What Zenoh says.
         source: Cause,
     },
-    /// The file is none that Zenoh's configuration is read from.
+    /// The file is invalid that Zenoh's configuration is read from.
     #[error("{} is not a configuration file: allowed are files in JSON5 that end in .json5 or .json", file.display())]
     Format {
         /// The file.

@@ -1,6 +1,6 @@
 //! The Zenoh session of a node, as a user sets it: a file in Zenoh's own words,
 //! options on top, and below both what keeps a machine to itself. What comes from
-//! strangers is taken, counted and refused in the same way everywhere.
+//! unknown senders is taken, counted and refused in the same way everywhere.
 //!
 //! For the nodes that join machines; nothing else links Zenoh.
 

@@ -8,7 +8,7 @@ use std::error::Error;
 use messages::{HealthHeader, NodeState};
 use transport::{Health, TransportError, monotonic_ns, with_causes};
 
-/// Between two refusals that are put into words, nanoseconds.
+/// Between two refusals that are reported, nanoseconds.
 const QUIET_NS: i64 = 1_000_000_000;
 
 /// Counts, and says what is wrong.
@@ -16,7 +16,7 @@ const QUIET_NS: i64 = 1_000_000_000;
 pub struct Report {
     health: Health,
     said_ns: i64,
-    /// Refusals that were counted and not put into words.
+    /// Refusals that were counted and not reported.
     unsaid: u64,
 }
 

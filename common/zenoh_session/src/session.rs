@@ -191,7 +191,7 @@ mod tests {
     const ROUTER: &str = r#""router""#;
 
     #[test]
-    fn nothing_listens_beyond_this_machine_unless_told() {
+    fn nothing_listens_beyond_this_machine_by_default() {
         let here = r#"["tcp/127.0.0.1:7447"]"#;
         check(NONE, None, [ROUTER, here, "[]", "false"]);
         let peer = Some("{ mode: 'peer' }");

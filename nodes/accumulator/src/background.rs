@@ -60,7 +60,7 @@ mod tests {
     }
 
     #[test]
-    fn work_that_panics_is_told_and_not_waited_for() {
+    fn work_that_panics_is_reported_and_not_waited_for() {
         let dies = |work: fn()| Background::start("test", work).unwrap().finish();
         assert_eq!(dies(|| panic!("no memory")), Err("no memory".into()));
         assert_eq!(dies(|| panic!("{} left", 0)), Err("0 left".into()));

@@ -164,7 +164,7 @@ mod tests {
     }
 
     #[test]
-    fn causes_are_told_once() {
+    fn causes_are_reported_once() {
         let output = LauncherError::from(OutputError(io::Error::other("the disk is full")));
         assert_eq!(
             transport::with_causes(&output),

@@ -91,7 +91,7 @@ mod tests {
     use recording::RecordingError;
 
     #[test]
-    fn causes_are_told_once() {
+    fn causes_are_reported_once() {
         let recording = EvaluationError::from(RecordingError::Open {
             path: "r.mcap".into(),
             source: io::Error::other("gone"),

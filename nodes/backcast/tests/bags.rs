@@ -1,5 +1,5 @@
 //! Recordings as others make them: in folders, with maps that grow, with several
-//! topics of a kind, with transforms that are none.
+//! topics of a kind, with transforms that are invalid.
 
 #![allow(
     clippy::unwrap_used,
@@ -163,7 +163,7 @@ fn the_topic_is_named_where_several_could_be_meant() {
 }
 
 #[test]
-fn a_map_and_a_recording_that_are_swapped_are_told() {
+fn a_map_and_a_recording_that_are_swapped_are_reported() {
     let folder = folder(&[map_message(), scan_at(1, HERE)]);
     map::save(&room(), folder.path().join("room.yaml")).unwrap();
     for bag in ["--bag room.yaml", "room.yaml"] {

@@ -199,7 +199,7 @@ fn a_file_that_cannot_be_evaluated_does_not_keep_the_others() {
 }
 
 #[test]
-fn wrong_use_is_told() {
+fn wrong_use_is_reported() {
     let folder = tempfile::tempdir().unwrap();
     for (options, expected) in [
         ("", "<FILE>..."),

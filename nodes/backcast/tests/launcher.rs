@@ -376,7 +376,7 @@ fn a_graph_is_asked_restarted_in_part_and_stopped_from_elsewhere() {
 }
 
 #[test]
-fn a_service_manager_is_told_that_the_graph_runs_and_stops() {
+fn a_service_manager_is_notified_that_the_graph_runs_and_stops() {
     let folder = graph(&["id: source, outputs: [scan], args: \"-c 'exec sleep 1000'\""]);
     let path = folder.path().join("notify");
     let socket = UnixDatagram::bind(&path).unwrap();

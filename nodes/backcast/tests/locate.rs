@@ -112,7 +112,7 @@ fn limits_that_leave_no_pose_are_refused() {
 }
 
 #[test]
-fn an_object_tells_votes_and_hypotheses() {
+fn an_object_shows_votes_and_hypotheses() {
     let folder = folder(&[map_message(), mount_message(), scan_at(7, HERE)]);
     let object = &objects(folder.path(), "")[0];
     assert_eq!(

@@ -172,7 +172,7 @@ fn a_recording_that_is_cut_short_gives_what_lies_before() {
 }
 
 #[test]
-fn wrong_use_is_told_before_anything_is_opened() {
+fn wrong_use_is_reported_before_anything_is_opened() {
     let folder = tempfile::tempdir().unwrap();
     for (options, expected) in [
         ("", "<FILE>..."),

@@ -243,7 +243,7 @@ fn a_page_that_disagrees_is_noticed() {
 }
 
 #[test]
-fn a_folder_that_cannot_be_written_is_told_before_anything_is_measured() {
+fn a_folder_that_cannot_be_written_is_reported_before_anything_is_measured() {
     let folder = TempDir::new().unwrap();
     let file = folder.path().join("file");
     fs::write(&file, "no folder").unwrap();

@@ -221,7 +221,7 @@ fn what_is_missing_or_broken_is_named() {
 }
 
 #[test]
-fn wrong_use_is_told_before_anything_is_opened() {
+fn wrong_use_is_reported_before_anything_is_opened() {
     let folder = tempfile::tempdir().unwrap();
     for (options, expected) in [
         ("--bag r.mcap", "--out <FILE>"),

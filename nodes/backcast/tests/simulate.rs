@@ -59,7 +59,7 @@ fn each_scan_of_a_laser_is_found_where_it_was_taken() {
 }
 
 #[test]
-fn two_lasers_back_to_back_tell_what_one_may_not() {
+fn two_lasers_back_to_back_show_what_one_may_not() {
     // The rear one upside down, which its place on /tf_static says.
     let folder = simulated(&format!(
         "--path '{CORRIDOR}' --rate 1 --laser front=0.49,0,0 --laser rear=-0.43,0,180,180 --range-max 3"

@@ -114,7 +114,7 @@ mod tests {
     }
 
     #[test]
-    fn the_image_is_slow_unless_told_otherwise() {
+    fn the_image_is_slow_by_default() {
         assert_eq!(Limit::of::<topic::Field>(&[]).period_ns, 500 * MS);
         let fast = ["field=10".parse().unwrap()];
         assert_eq!(Limit::of::<topic::Field>(&fast).period_ns, 100 * MS);

@@ -1,4 +1,4 @@
-//! Two graphs joined by two bridges over a loopback connection, and strangers who
+//! Two graphs joined by two bridges over a loopback connection, and unknown senders that
 //! send what they should not.
 #![allow(
     clippy::unwrap_used,
@@ -123,7 +123,7 @@ fn send_scans(isolated: &Isolated, stop: &Arc<AtomicBool>) -> std::thread::JoinH
 }
 
 #[test]
-fn scans_cross_as_they_are_and_nobody_else_hears_them() {
+fn scans_cross_as_they_are_and_nobody_else_receives_them() {
     let laser = machine("live-a", LASER);
     let engine = machine("live-b", ENGINE);
     let other = machine("live-c", ENGINE).of_robot("r2");

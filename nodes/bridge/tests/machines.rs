@@ -99,7 +99,7 @@ fn poses_are_those_of_one_machine() {
 }
 
 #[test]
-fn without_bridges_nothing_is_heard() {
+fn without_bridges_nothing_is_received() {
     let laser = machine("laser0", LASER, None);
     let engine = machine("engine0", ENGINE, None);
     let scans = engine.graph.subscriber::<topic::Scan>().unwrap();

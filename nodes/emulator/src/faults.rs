@@ -235,7 +235,7 @@ mod tests {
     }
 
     #[test]
-    fn the_device_starts_anew_each_time() {
+    fn the_device_starts_again_each_time() {
         let mut faults = faults("reset=1s");
         let times = [0, 999, 1000, 1001, 1999, 2000].map(|ms| ms * 1_000_000);
         let resets = times.map(|now_ns| faults.resets(now_ns));

@@ -20,7 +20,7 @@ pub enum FleetError {
     /// The system gives no random number.
     #[error("cannot draw a random session id")]
     Random(#[source] getrandom::Error),
-    /// A message is none, or a robot's name is none.
+    /// A message is invalid, or a robot's name is invalid.
     #[error(transparent)]
     Wire(#[from] WireError),
     /// There are as many robots already as may be.

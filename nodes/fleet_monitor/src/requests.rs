@@ -20,7 +20,7 @@ pub(crate) struct Requests {
 }
 
 impl Requests {
-    /// To a robot, from the process that is known by `sender`.
+    /// To a robot, from the process with the session id `sender`.
     pub(crate) fn open(session: &Session, robot: &str, sender: u64) -> Result<Self, FleetError> {
         Ok(Requests {
             regions: declare::<topic::Region>(session, robot)?,

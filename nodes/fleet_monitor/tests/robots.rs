@@ -1,4 +1,4 @@
-//! Several robots on one page, as they are received over a network, and strangers who
+//! Several robots on one page, as they are received over a network, and unknown senders that
 //! send what they should not.
 #![allow(
     clippy::unwrap_used,
@@ -257,7 +257,7 @@ fn the_pose_of_a_robots_tracker_is_shown() {
 /// Times are given by the router through which robots send, one after the other, but
 /// their messages may overtake each other there.
 #[test]
-fn a_robot_is_heard_whose_message_was_overtaken_by_anothers() {
+fn a_robot_is_received_whose_message_was_overtaken_by_anothers() {
     let world = World::new("fleet-times");
     let (a, b) = (world.robot("a"), world.robot("b"));
     let (earlier, later) = (a.session.new_timestamp(), a.session.new_timestamp());

@@ -228,7 +228,7 @@ mod tests {
     }
 
     #[test]
-    fn a_device_that_starts_anew_is_not_held_to_its_past() {
+    fn a_device_that_starts_again_is_not_held_to_its_past() {
         let (mut world, mut clock) = (World::new(0.0, 0), DeviceClock::default());
         assert!(world.error_us(&mut clock, 0, 500) < 2);
         world.on_ns += 60_000_000 * US;

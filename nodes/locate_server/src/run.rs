@@ -248,7 +248,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn tokens_tell_of_map_and_workers() {
+    fn tokens_show_map_and_workers() {
         let expected = Other {
             session: "a1",
             map_id: 0xff,

@@ -190,7 +190,7 @@ fn next_of(socket: &mut WebSocket<TcpStream>, kind: &str) -> Value {
 }
 
 #[test]
-fn what_flows_in_the_graph_is_told() {
+fn what_flows_in_the_graph_is_reported() {
     let world = World::new("flow");
     let robots = world.site.get("/api/v1/robots");
     assert_eq!(robots["robots"], json!(["r"]));
@@ -219,7 +219,7 @@ fn what_flows_in_the_graph_is_told() {
 }
 
 #[test]
-fn the_trackers_pose_is_told_with_its_age() {
+fn the_trackers_pose_is_reported_with_its_age() {
     let world = World::new("tracked");
     world.wait_for_state(|known| !known["map"].is_null());
     let mut socket = world.stream();

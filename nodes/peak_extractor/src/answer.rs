@@ -269,7 +269,7 @@ mod tests {
     }
 
     #[test]
-    fn the_header_tells_of_the_best_place() {
+    fn the_header_shows_the_best_place() {
         let expected = HypothesesHeader {
             stamp: header().stamp,
             map_id: 7,

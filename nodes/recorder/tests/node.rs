@@ -294,7 +294,7 @@ const ROOM: usize = 8 << 20;
 const LARGE: usize = 100_000;
 
 #[test]
-fn a_full_disk_is_told_and_nothing_is_lost_once_there_is_room() {
+fn a_full_disk_is_reported_and_nothing_is_lost_once_there_is_room() {
     // The limit is asked for in blocks, of 512 bytes or of 1024.
     let script = format!(
         "trap '' XFSZ; ulimit -S -f {}; exec \"$0\" \"$@\"",

@@ -98,7 +98,7 @@ pub enum GatewayError {
         /// Nanoseconds since 1970.
         stamp_ns: i64,
     },
-    /// A pose, a transform or a map is none, or the graph cannot say it.
+    /// A pose, a transform or a map is invalid, or the graph cannot say it.
     #[error(transparent)]
     Conversion(#[from] ConversionError),
     /// A topic that is taken is published as something else.
@@ -137,7 +137,7 @@ pub enum GatewayError {
         /// Angle between their z axes.
         tilt_degrees: f64,
     },
-    /// A frame's name that is none.
+    /// A frame's name that is invalid.
     #[error("a frame's name has {found} bytes: allowed are at most {most}")]
     FrameName {
         /// Its bytes.

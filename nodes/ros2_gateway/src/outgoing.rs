@@ -124,11 +124,11 @@ impl Outgoing {
         }
         self.newest = Some(header.stamp);
         let reason = seeding.on_answer(tracked(header));
-        let outcome = self.tell_tracked(header, map_frame, reason, report);
+        let outcome = self.show_tracked(header, map_frame, reason, report);
         outcome.or_else(|error| report.refused(&error))
     }
 
-    fn tell_tracked(
+    fn show_tracked(
         &mut self,
         header: &PoseHeader,
         map_frame: &str,

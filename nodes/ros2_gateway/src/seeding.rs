@@ -183,7 +183,7 @@ mod tests {
     }
 
     #[test]
-    fn who_comes_is_told_once_and_by_a_unique_verdict() {
+    fn a_new_filter_gets_one_pose_by_a_unique_verdict() {
         for when in [Seed::Once, Seed::Lost] {
             let mut seeding = seeding(when);
             assert_eq!(
@@ -210,7 +210,7 @@ mod tests {
     }
 
     #[test]
-    fn who_is_lost_is_told_again_after_the_second_sign() {
+    fn a_lost_filter_gets_another_after_the_second_sign() {
         let mut seeding = seeding(Seed::Lost);
         seeding.on_answer(answer(0, true, &[1.0]));
         seeding.on_belief(belief(0, 1.5));
@@ -272,7 +272,7 @@ mod tests {
     }
 
     #[test]
-    fn a_clock_that_is_set_back_begins_anew() {
+    fn a_clock_that_is_set_back_begins_again() {
         let mut seeding = seeding(Seed::Lost);
         seeding.ask();
         assert!(seeding.on_answer(answer(5000, true, &[1.0])).is_some());

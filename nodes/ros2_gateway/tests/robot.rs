@@ -305,7 +305,7 @@ fn what_the_graph_says_reaches_the_robot_byte_for_byte() {
 }
 
 #[test]
-fn a_robot_whose_pose_is_tracked_is_told_that_pose_and_no_single_answer() {
+fn a_robot_whose_pose_is_tracked_is_sent_that_pose_and_no_single_answer() {
     let options = ["--broadcast-tf", "--odom-frame", "odom"];
     let Some(mut joined) = Joined::new("ros-pose", "/", &options) else {
         return;
@@ -373,7 +373,7 @@ fn bytes_of_no_meaning_are_refused_and_counted() {
             report.node.as_str() == "ros2_gateway" && report.refused >= refused
         });
         assert_eq!(report.refused, refused, "{error}");
-        // Of several in a second, the first is put into words.
+        // Of several in a second, the first is written as text.
         if refused == 1 {
             assert!(error.contains(expected), "{error}");
         }
@@ -412,7 +412,7 @@ fn engine(graph: &Graph) -> Vec<NodeProcess> {
 }
 
 #[test]
-fn a_particle_filter_is_told_where_it_is() {
+fn a_particle_filter_gets_its_initial_pose() {
     let Some(mut joined) = Joined::new("ros-amcl", "/", &["--lost-beyond", "1,30"]) else {
         return;
     };

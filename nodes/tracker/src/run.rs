@@ -158,7 +158,7 @@ impl Node {
             match pose.is_finite() && covariance.0.cholesky().is_some() {
                 true => self.initial = Some((pose, covariance)),
                 false => {
-                    self.refuse("initial pose rejected: the pose or its covariance is not valid")?
+                    self.refuse("initial pose rejected: the pose or its covariance is not valid")?;
                 }
             }
         }

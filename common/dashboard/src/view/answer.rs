@@ -152,7 +152,7 @@ mod tests {
     }
 
     #[test]
-    fn an_answer_is_told_in_numbers_and_words() {
+    fn an_answer_is_reported_in_numbers_and_words() {
         let answer = Answer::new(&header(Verdict::Unique), &[hypothesis(1.0)], 31_000_000);
         assert_eq!((answer.counter, answer.verdict), (7, "Unique"));
         assert_eq!((answer.latency_ms, answer.age_ms), (20.0, 30.0));

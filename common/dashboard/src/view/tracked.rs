@@ -110,7 +110,7 @@ pub(crate) mod tests {
     }
 
     #[test]
-    fn a_pose_is_told_in_numbers_and_words() {
+    fn a_pose_is_reported_in_numbers_and_words() {
         let words = b"2 places fit, 25 m apart";
         let tracked = Tracked::new(&header(TrackState::Doubtful, 1.5), words, 33_000_000);
         assert_eq!((tracked.counter, tracked.state), (7, "Doubtful"));
@@ -123,7 +123,7 @@ pub(crate) mod tests {
     }
 
     #[test]
-    fn what_is_not_known_is_not_told() {
+    fn what_is_not_known_is_not_reported() {
         let mut searching = header(TrackState::Searching, 1.5);
         searching.pose_known = 0;
         let tracked = Tracked::new(&searching, b"", 0);

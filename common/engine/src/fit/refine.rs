@@ -362,7 +362,7 @@ mod tests {
     }
 
     #[test]
-    fn what_no_beam_tells_stays_as_it_was() {
+    fn what_no_beam_shows_stays_as_it_was() {
         const CORRIDOR: [&str; 5] = [
             "##############################",
             "..............................",

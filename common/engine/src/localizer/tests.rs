@@ -93,7 +93,7 @@ fn a_known_heading_is_taken_in_the_map_frame() {
 }
 
 #[test]
-fn a_search_at_a_heading_ends_when_it_is_told_to() {
+fn a_search_at_a_heading_ends_when_it_is_asked_to() {
     let (ranges, localizer) = (ranges(5, 3, 40), localizer(Prior::Heading));
     let asked = Cell::new(0);
     let search_until = |last| {

@@ -148,7 +148,7 @@ mod tests {
     }
 
     #[test]
-    fn a_lead_and_a_lag_are_told() {
+    fn a_lead_and_a_lag_are_reported() {
         for lead_s in [0.13, 0.0, -0.2] {
             let found = delay_s(at, lead_s).unwrap();
             // A parabola through steps of 5 ms, on a curve that is one nearby.
@@ -157,7 +157,7 @@ mod tests {
     }
 
     #[test]
-    fn a_robot_that_never_turns_tells_nothing() {
+    fn a_robot_that_never_turns_shows_nothing() {
         assert_eq!(
             delay_s(|seconds| Pose::new(0.5 * seconds, 0.0, 0.0), 0.1),
             None

@@ -155,7 +155,7 @@ fn the_same_seed_gives_the_same_particles() {
 }
 
 #[test]
-fn even_weights_are_not_drawn_anew() {
+fn even_weights_are_not_drawn_again() {
     let distance_field = distance_field(&WORLD);
     let mut filter =
         ParticleFilter::seeded(distance_field.frame, [candidate(TRUTH, 1.0)], config()).unwrap();

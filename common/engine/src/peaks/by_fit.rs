@@ -231,7 +231,7 @@ mod tests {
     }
 
     #[test]
-    fn along_what_no_beam_tells_a_place_is_two_metres_long() {
+    fn along_what_no_beam_shows_a_place_is_two_metres_long() {
         let corridor = Matrix3::from_diagonal(&Vector3::new(0.0, 90.0, 5_000.0));
         let [x, y, _] = deviations(false, corridor);
         assert!((x - LOOSE_M).abs() < 1e-9 && y < 0.03, "{x} {y}");

@@ -117,7 +117,7 @@ mod tests {
     }
 
     #[test]
-    fn rivals_are_told_by_how_they_lie_to_the_best() {
+    fn rivals_are_reported_by_how_they_lie_to_the_best() {
         let say = |others: &[PlaceSummary]| {
             let places = [&[at(0.0, 0.0, 0.0)], others].concat();
             sentence(Verdict::Ambiguous, &places)

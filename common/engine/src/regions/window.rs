@@ -257,7 +257,7 @@ mod tests {
     }
 
     #[test]
-    fn a_recording_that_starts_anew_has_its_way_before_it() {
+    fn a_recording_that_starts_again_has_its_way_before_it() {
         let mut window = window();
         driven(&mut window);
         assert_eq!(readings(&read(&mut window, 3, 0.0)), 0);

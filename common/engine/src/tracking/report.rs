@@ -160,7 +160,7 @@ mod tests {
     }
 
     #[test]
-    fn one_spot_in_two_headings_is_told_apart_by_turning() {
+    fn one_spot_in_two_headings_is_distinguished_by_turning() {
         let spot = Report {
             apart_m: (0.1, 0.3),
             ..report(TrackState::Searching, TrackReason::SeveralPlaces)

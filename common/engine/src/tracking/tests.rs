@@ -264,7 +264,7 @@ fn nothing_becomes_the_only_place_without_a_search() {
 }
 
 #[test]
-fn places_that_look_alike_are_never_told_apart() {
+fn places_that_look_alike_are_never_distinguished() {
     let building = building(&ALIKE);
     let mut tracker = Tracker::new(TrackingConfig::default());
     building.step(&mut tracker, START, None);
@@ -319,7 +319,7 @@ fn what_odometry_misses_is_followed() {
 }
 
 #[test]
-fn without_odometry_scans_tell_how_the_robot_moved() {
+fn without_odometry_scans_show_how_the_robot_moved() {
     let building = building(&UNLIKE);
     let mut matcher = matching::ScanMatcher::default();
     let config = TrackingConfig::default();

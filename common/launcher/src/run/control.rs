@@ -145,7 +145,7 @@ fn serve(mut stream: &UnixStream, asked: &Sender<Asked>, waker: &Waker) -> std::
 /// Asks the launcher that listens at `path`.
 ///
 /// # Errors
-/// Nobody listens, or the answer is none.
+/// Nobody listens, or the answer is invalid.
 pub fn ask(path: &Path, question: &Question) -> std::io::Result<Answer> {
     let stream = UnixStream::connect(path)?;
     stream.set_read_timeout(Some(2 * TIMEOUT))?;

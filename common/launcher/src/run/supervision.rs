@@ -269,7 +269,7 @@ mod tests {
     }
 
     #[test]
-    fn the_delay_doubles_up_to_the_longest_and_begins_anew_after_good_work() {
+    fn the_delay_doubles_up_to_the_longest_and_begins_again_after_good_work() {
         let mut delayed = Course::new(RestartPolicy::OnFailure, 0, 200);
         let mut delays = |seconds, times| -> Vec<u64> {
             let delay = |_| match delayed.end_after(seconds, Ended::Badly) {
@@ -333,7 +333,7 @@ mod tests {
     }
 
     #[test]
-    fn sources_are_told_by_what_they_send() {
+    fn sources_are_recognized_by_what_they_send() {
         let topics = dataflow::Topics {
             names: messages::topic::NAMES,
             shared: &[],

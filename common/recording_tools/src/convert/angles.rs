@@ -153,7 +153,7 @@ mod tests {
     }
 
     #[test]
-    fn parameters_tell_the_field_of_view() {
+    fn parameters_show_the_field_of_view() {
         check(angles(201, Some(100.0), Some(0.5)), (-50.0, 0.5));
         check(angles(200, Some(100.0), Some(0.5)), (-50.0, 0.5));
         check(angles(1081, Some(270.0), None), (-135.0, 0.25));

@@ -146,7 +146,7 @@ mod tests {
     }
 
     #[test]
-    fn endings_and_contents_tell_the_kind() {
+    fn endings_and_contents_show_the_kind() {
         let folder = tempfile::tempdir().unwrap();
         let kind_of = |name: &str, content: &[u8]| {
             let path = folder.path().join(name);

@@ -84,7 +84,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn the_lines_that_tell_more_are_taken() {
+    fn the_lines_that_show_more_are_taken() {
         let raw = "RAWLASER1 0 -1 2 1 80 0 0 1 5 0 1.0 h 1\n";
         let robot = "ROBOTLASER1 0 -1 2 1 80 0 0 1 5 0 0 0 0 0 0 0 0 0 0 0 0 1.0 h 1\n";
         let old = "FLASER 1 5 0 0 0 0 0 0 1.0 h 1\n";

@@ -122,7 +122,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn what_is_left_out_is_told_by_kind() {
+    fn what_is_left_out_is_reported_by_kind() {
         let mut tally = Tally::default();
         assert_eq!(tally.text(), None);
         let broken = |name: &str, fault| Broken {

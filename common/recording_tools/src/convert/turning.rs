@@ -111,7 +111,7 @@ mod tests {
     }
 
     #[test]
-    fn a_turning_robot_tells_which_way_beams_run() {
+    fn a_turning_robot_shows_which_way_beams_run() {
         for yaws in [[0.3, 0.4, 0.5], [0.5, 0.4, 0.3], [3.1, -3.1, -3.0]] {
             assert_eq!(is_turned(&yaws, true), Some(true), "{yaws:?}");
             assert_eq!(is_turned(&yaws, false), Some(false), "{yaws:?}");
@@ -123,7 +123,7 @@ mod tests {
     }
 
     #[test]
-    fn a_robot_that_stands_tells_nothing() {
+    fn a_robot_that_stands_shows_nothing() {
         assert_eq!(is_turned(&[0.3, 0.3, 0.3], true), None);
         assert_eq!(is_turned(&[], true), None);
         assert_eq!(is_turned(&[0.0, 2.0], true), None);

@@ -241,7 +241,7 @@ impl Entries {
     /// Takes a node's report, at the host's time `now_ns`.
     ///
     /// # Errors
-    /// If the time of the measurements is none of ROS, or CDR cannot say it.
+    /// If the time of the measurements is not one of ROS, or CDR cannot say it.
     pub fn health(
         &mut self,
         report: &HealthHeader,
@@ -258,7 +258,7 @@ impl Entries {
     /// Takes a line of a node's log, which stands at the time when it was written.
     ///
     /// # Errors
-    /// If the time of the measurements is none of ROS, or CDR cannot say it.
+    /// If the time of the measurements is not one of ROS, or CDR cannot say it.
     pub fn log(&mut self, line: &LogHeader, text: &[u8]) -> Result<(), TranscriptError> {
         wait(&mut self.waiting_log, *line, text);
         match self.clock_ns(line.written_ns) {
@@ -271,7 +271,7 @@ impl Entries {
     /// `wall_ns`, nanoseconds since 1970.
     ///
     /// # Errors
-    /// If the time of the measurements is none of ROS, or CDR cannot say it.
+    /// If the time of the measurements is not one of ROS, or CDR cannot say it.
     pub fn finish(&mut self, wall_ns: i64) -> Result<(), TranscriptError> {
         self.release(wall_ns)
     }

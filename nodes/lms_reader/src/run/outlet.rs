@@ -118,7 +118,7 @@ impl Outlet {
         self.health.tick()
     }
 
-    /// The telegram in a frame; what is none is reported.
+    /// The telegram in a frame; anything else is reported.
     pub(super) fn take<T>(
         &mut self,
         next: Result<Frame<'_, T>, SickError>,

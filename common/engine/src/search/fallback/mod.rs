@@ -447,7 +447,7 @@ mod tests {
     }
 
     #[test]
-    fn few_poses_are_counted_where_a_sample_of_the_beams_tells_the_best_one() {
+    fn few_poses_are_counted_where_a_sample_of_the_beams_shows_the_best_one() {
         let (grid, beams) = (clutter(), 120);
         let space = space_of(&grid, beams);
         let pose = grid

@@ -314,7 +314,7 @@ mod tests {
     }
 
     #[test]
-    fn a_search_that_is_told_to_stop_has_no_outcome() {
+    fn a_search_that_is_asked_to_stop_has_no_outcome() {
         let grid = crate::grid::drawn::grid(&["####", "#..#", "####"]);
         let space = space_of(&grid, 8);
         let scan = crate::scan::Scan {
