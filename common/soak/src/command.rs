@@ -33,7 +33,7 @@ graph its own, as root, or with --user --map-root-user:
 
     unshare --mount sh -c 'mount -t tmpfs -o size=256m tmpfs /dev/shm && backcast soak …'
 
-Exit codes: 0 all promises were kept, 1 a pose was wrong, something did not recover or was left
+Exit codes: 0 all guarantees were met, 1 a pose was wrong, something did not recover or was left
 behind, 2 wrong use";
 
 const DEFAULT_FAULTS: [Fault; 4] = [Fault::Kill, Fault::Pair, Fault::Stop, Fault::Map];

@@ -1,5 +1,5 @@
 //! `backcast soak`: runs a graph for hours, does it harm at random, and returns whether it
-//! kept its promises.
+//! met its guarantees.
 //!
 //! `fault` says what can be done and draws what is done next, `tally` counts the poses and
 //! how long each fault had an effect, `report` puts both into words: these are pure. `launched`

@@ -33,7 +33,7 @@ pub(super) struct Report {
 }
 
 impl Report {
-    /// Whether the graph kept its promises.
+    /// Whether the graph met its guarantees.
     pub(super) fn is_good(&self) -> bool {
         self.poses.wrong == 0 && self.leftovers.is_empty() && self.failures.is_empty()
     }

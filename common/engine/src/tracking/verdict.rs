@@ -284,7 +284,7 @@ fn spread(places: &[Place], about: Pose) -> Matrix3<f64> {
 
 /// How likely the place is that leads by this much: a logistic regression over 2191 key
 /// scans of seven drives, which docs/tracking.md has as a table. The lead by itself
-/// promises too much, for scans of one place err together.
+/// is overconfident, for scans of one place err together.
 fn probability(lead: f64) -> f64 {
     1.0 / (1.0 + (-(0.2 + 0.4 * lead)).exp())
 }

@@ -13,7 +13,7 @@ use crate::writing::{BlackBox, Limits, Parts, Preamble, Store, Tally};
 use crate::{Config, RecorderError};
 
 /// How long something may lie in memory before it is on its way to the disk;
-/// well below the promised second.
+/// well below the guaranteed second.
 const FLUSH_PERIOD: Duration = Duration::from_millis(500);
 
 /// A million bytes.

@@ -4,7 +4,7 @@ use super::alternatives::{self, Alternatives};
 use super::descent;
 use super::parts;
 use crate::program::ScanProgram;
-use crate::search::fallback::{self, BeamSampling};
+use crate::search::beam_sampling::{self, BeamSampling};
 use crate::search::task::{End, Task};
 use crate::votes::{Distinct, VoteSet, is_close, most_candidates};
 
@@ -16,7 +16,7 @@ pub(in crate::search) struct Attempt<'a> {
     pub scratches: &'a mut [descent::Scratch],
     pub alternatives: &'a mut alternatives::Scratch,
     pub sampling: &'a mut BeamSampling,
-    pub shares: &'a mut [fallback::Share],
+    pub shares: &'a mut [beam_sampling::Share],
     pub stop: &'a dyn Fn() -> bool,
 }
 

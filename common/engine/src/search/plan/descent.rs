@@ -8,9 +8,9 @@ use std::sync::atomic::Ordering;
 use messages::Vote;
 
 use super::queue::{Block, BoundedBlock, Level, Queue};
+use crate::search::beam_sampling;
 use crate::search::bounds::interval_bounds::{IntervalBounds, Window};
 use crate::search::bounds::set_bounds::SetBounds;
-use crate::search::fallback;
 use crate::search::index::SearchIndex;
 use crate::search::index::bits;
 use crate::search::index::intervals::BlockIntervals;
@@ -95,7 +95,7 @@ impl<'a> Descent<'a> {
     ) -> End {
         self.bound_coarse(part, parts);
         let task = self.task;
-        let (counting, most_steps) = (fallback::likely_cost(task), task.config.most_steps());
+        let (counting, most_steps) = (beam_sampling::likely_cost(task), task.config.most_steps());
         let mut budget = Budget::new(task.brute_force, counting, most_steps, parts);
         while let Some(block) = self.next(budget.prefers_leaves()) {
             if stop() {

@@ -6,7 +6,7 @@ use super::{alternatives, descent};
 use crate::grid::Grid;
 use crate::instruction_set::InstructionSet;
 use crate::program::ScanProgram;
-use crate::search::fallback::{self, BeamSampling};
+use crate::search::beam_sampling::{self, BeamSampling};
 use crate::search::index::SearchIndex;
 use crate::search::task::{Shared, Task};
 use crate::simd::Simd;
@@ -23,7 +23,7 @@ pub struct Workspace {
     alternatives: alternatives::Scratch,
     /// For counting every pose, the shares one for each thread.
     sampling: BeamSampling,
-    shares: Vec<fallback::Share>,
+    shares: Vec<beam_sampling::Share>,
     pub(in crate::search) bounding: Bounding,
 }
 
@@ -107,7 +107,7 @@ impl SearchIndex {
         } = workspace;
         let task = Task::new(shared, Simd::new(instruction_set), self, grid, scan, config);
         scratches.resize_with(threads, descent::Scratch::default);
-        shares.resize_with(threads, fallback::Share::default);
+        shares.resize_with(threads, beam_sampling::Share::default);
         Attempt {
             task,
             program: scan.0,
