@@ -226,11 +226,11 @@ mod tests {
         );
         check(
             "nodes:\n  - id: a\n    id: b\n",
-            "3:5: the key `id` stands here a second time; each may stand once",
+            "3:5: the key `id` appears a second time here; each may appear once",
         );
         check(
             "nodes: [{env: {A: 1, A: 2}}]",
-            "1:22: the key `A` stands here a second time; each may stand once",
+            "1:22: the key `A` appears a second time here; each may appear once",
         );
         check("{}", "1:1: `nodes` is missing");
         check(

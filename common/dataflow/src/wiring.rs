@@ -232,7 +232,7 @@ mod tests {
             &["id: a, outputs: [scam, scan, scan]"],
             &[
                 "2:32: there is no topic `scam`; allowed are scan, votes, health",
-                "2:44: the output `scan` is listed a second time; each may stand once",
+                "2:44: the output `scan` is listed a second time; each may be listed once",
             ],
         );
         check(

@@ -49,7 +49,7 @@ pub enum CacheError {
         source: io::Error,
     },
     /// A file is not what it should be.
-    #[error("{path} cannot be used, and the map is prepared anew")]
+    #[error("{path} cannot be used, and the map is prepared again")]
     Unusable {
         /// The file.
         path: PathBuf,

@@ -129,7 +129,7 @@ pub fn each_odometry(
             }
         }
     }
-    let note = |first| format!("{left_out} messages of {topic} are left out; the first: {first}");
+    let note = |first| format!("{left_out} messages of {topic} are ignored; the first: {first}");
     Ok(first.map(note).into_iter().collect())
 }
 

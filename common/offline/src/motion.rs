@@ -77,7 +77,7 @@ impl<'a> Motion<'a> {
             }
             Ok(None) => {}
             Err(error) => self.notes.push(format!(
-                "the motion within scans is not taken out: {error}; --odom-topic names one"
+                "the motion within scans is not compensated: {error}; --odom-topic names one"
             )),
         }
         Ok(())

@@ -169,7 +169,7 @@ impl<'a> Session<'a> {
         for refusal in refusals {
             let file = self.map_file.display();
             self.notes
-                .push(format!("{file}: a map is left out: {refusal}"));
+                .push(format!("{file}: a map is ignored: {refusal}"));
             self.refusal = refusal;
         }
         Ok(())

@@ -237,7 +237,7 @@ mod tests {
         let heading = Heading {
             title: "a map".into(),
             verdict: Some(Verdict::Unique),
-            says: "one place fits".into(),
+            says: "one place, fit 0.90".into(),
         };
         let legend = [(Sample::Truth, "truth".into())];
         let page = Page::new(600, 321.0, &heading, &legend).unwrap();

@@ -137,7 +137,7 @@ mod tests {
         let expected = "
        stamp s        x m        y m  heading deg  score  verdict    alternatives        ms
 1117803432.123      1.000     -2.000       180.00   0.88  Ambiguous             2     25.00  several places fit about as well
-             -          -          -            -      -  NoScan                2     25.00  no beam says anything about this map: is the laser covered?
+             -          -          -            -      -  NoScan                2     25.00  no usable beams: is the laser covered?
 ";
         let mut none = Line::new(
             &HypothesesHeader {

@@ -20,7 +20,7 @@ pub enum ProbeError {
         "{address}: no laser answers; tried {tried}; {}",
         match received {
             0 => "nothing came".to_owned(),
-            n => format!("{n} bytes came that are no answer: is it another device, or in use?"),
+            n => format!("{n} bytes received that are not an answer: is it another device, or in use?"),
         }
     )]
     DeviceNotUnderstood {

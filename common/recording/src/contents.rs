@@ -401,12 +401,12 @@ mod tests {
         assert_eq!(
             mounted.notes,
             [
-                "the transform from base_link to camera is left out: the position (NaN, 0) is not finite"
+                "the transform from base_link to camera is ignored: the position (NaN, 0) is not finite"
             ]
         );
         assert_eq!(
             recording.mounted("camera").unwrap_err().to_string(),
-            "r.mcap: where camera sits is not known, for the transform from base_link to camera is \
+            "r.mcap: the mount of camera is not known, for the transform from base_link to camera is \
              none: the position (NaN, 0) is not finite"
         );
     }

@@ -84,7 +84,7 @@ impl TransformTree {
     /// those that had to be mended.
     pub fn notes(&self) -> impl Iterator<Item = String> {
         let broken = self.broken.iter().map(|(child, (parent, error))| {
-            format!("the transform from {parent} to {child} is left out: {error}")
+            format!("the transform from {parent} to {child} is ignored: {error}")
         });
         let mended = self.mended.iter().map(|(child, mend)| {
             let parent = self.parents.get(child).map_or("", |(parent, _)| parent);
@@ -393,7 +393,7 @@ mod tests {
         let notes: Vec<String> = tree.notes().collect();
         assert_eq!(
             notes[0],
-            "the transform from laser to camera is left out: the position (NaN, 0) is not finite"
+            "the transform from laser to camera is ignored: the position (NaN, 0) is not finite"
         );
         tree.take(&transform("base_link", "rear", nan, 0.0));
         let (parent, child, _) = tree.broken_below("rear").unwrap();

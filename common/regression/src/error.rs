@@ -33,7 +33,7 @@ pub enum RegressionError {
     Transport(#[from] TransportError),
     /// There is no recording to replay.
     #[error(
-        "{} holds no folder with recording.mcap and map.yaml, and is none",
+        "{} is not a folder with recording.mcap and map.yaml and contains none",
         folder.display()
     )]
     NoCases {
@@ -41,7 +41,7 @@ pub enum RegressionError {
         folder: PathBuf,
     },
     /// What is expected of a recording is not written as it should be.
-    #[error("{} does not say what is expected: --accept writes it anew", file.display())]
+    #[error("{} does not say what is expected: --accept writes it again", file.display())]
     Expectation {
         /// The file.
         file: PathBuf,

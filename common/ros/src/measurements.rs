@@ -119,6 +119,6 @@ mod tests {
         let mut turned = PoseStamped::default();
         turned.pose.orientation.w = f64::NAN;
         let error = ground_truth(&turned).unwrap_err().to_string();
-        assert!(error.contains("no rotation"), "{error}");
+        assert!(error.contains("not a rotation"), "{error}");
     }
 }

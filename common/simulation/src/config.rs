@@ -113,7 +113,7 @@ const MAX_NAME: usize = 32;
 fn parse_mount(text: &str) -> Result<Mount, String> {
     let level = numbers(text).map(|[x, y, degrees]| [x, y, degrees, 0.0]);
     let Some([x, y, degrees, roll]) = level.or_else(|| numbers(text)) else {
-        return Err(format!("{text:?} is no mount; needed are X,Y,DEGREES"));
+        return Err(format!("{text:?} is not a mount; needed are X,Y,DEGREES"));
     };
     if roll != 0.0 && roll != 180.0 {
         return Err(format!("a roll of {roll} degrees; allowed are 0 and 180"));
@@ -129,12 +129,12 @@ fn parse_mount(text: &str) -> Result<Mount, String> {
 fn parse_laser(text: &str) -> Result<NamedMount, String> {
     let (name, mount) = text
         .split_once('=')
-        .ok_or_else(|| format!("{text:?} is no laser; needed are NAME=X,Y,DEGREES"))?;
+        .ok_or_else(|| format!("{text:?} is not a laser; needed are NAME=X,Y,DEGREES"))?;
     let is_word = name.bytes().all(|b| b.is_ascii_alphanumeric() || b == b'_');
     let begins = name.bytes().next().is_some_and(|b| b.is_ascii_alphabetic());
     if !is_word || !begins || name.len() > MAX_NAME {
         return Err(format!(
-            "{name:?} is no name of a laser; allowed are 1 to {MAX_NAME} letters, digits and _, \
+            "{name:?} is not a name of a laser; allowed are 1 to {MAX_NAME} letters, digits and _, \
              a letter first"
         ));
     }
@@ -217,7 +217,7 @@ mod tests {
         );
         assert_eq!(
             refused("1,2"),
-            "\"1,2\" is no mount; needed are X,Y,DEGREES"
+            "\"1,2\" is not a mount; needed are X,Y,DEGREES"
         );
         assert_eq!(refused("9,0,0"), "9 is not within -5 to 5 metres");
         assert_eq!(refused("0,NaN,0"), "NaN is not within -5 to 5 metres");
@@ -232,12 +232,12 @@ mod tests {
         let refused = |text: &str| parse_laser(text).unwrap_err();
         assert_eq!(
             refused("0,0,0"),
-            "\"0,0,0\" is no laser; needed are NAME=X,Y,DEGREES"
+            "\"0,0,0\" is not a laser; needed are NAME=X,Y,DEGREES"
         );
         for name in ["", "a b", "2", "a/b"] {
             let error = refused(&format!("{name}=0,0,0"));
-            assert!(error.contains("is no name of a laser"), "{error}");
+            assert!(error.contains("is not a name of a laser"), "{error}");
         }
-        assert!(refused("a=0,0").contains("is no mount"));
+        assert!(refused("a=0,0").contains("is not a mount"));
     }
 }

@@ -148,7 +148,10 @@ impl Course {
             }
             let gap_s = self.tally.last_gap_s();
             if gap_s > LONG_GAP_S {
-                say("soak", &format!("the next pose came after {gap_s:.2} s"));
+                say(
+                    "soak",
+                    &format!("the next pose was received after {gap_s:.2} s"),
+                );
             }
         }
         if self.failures.is_empty() && self.watch(TIMEOUT, Tally::is_sure) == Watched::Late {

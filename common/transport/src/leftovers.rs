@@ -138,7 +138,7 @@ fn refuse_living(
 fn describe(details: Option<&NodeDetails>) -> String {
     match details {
         Some(node) => format!("{} (process {})", node.name(), node.process_id().value()),
-        None => "a node that does not say its name".into(),
+        None => "a node without a name".into(),
     }
 }
 

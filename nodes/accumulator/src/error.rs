@@ -43,7 +43,7 @@ pub enum AccumulatorError {
         found: usize,
     },
     /// A cell of the boundary is none of the map's obstacles.
-    #[error("cell {}, {} of the boundary is no occupied cell of the map", cell.x, cell.y)]
+    #[error("cell {}, {} of the boundary is not an occupied cell of the map", cell.x, cell.y)]
     BoundaryCell {
         /// As the boundary has it.
         cell: BoundaryCell,

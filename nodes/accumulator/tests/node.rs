@@ -276,7 +276,7 @@ fn a_map_that_is_refused_leaves_the_one_before_in_use() {
     let degraded = |report: &HealthHeader| report.refused == 2;
     let (_, error) = wait_for_health(&world.graph, &world.health, degraded);
     let expected = format!(
-        "map {:016x} rejected: cell 999, 0 of the boundary is no occupied cell of the map",
+        "map {:016x} rejected: cell 999, 0 of the boundary is not an occupied cell of the map",
         id(&CHANGED)
     );
     assert_eq!(error, expected);

@@ -53,7 +53,7 @@ fn the_newest_map_before_a_scan_counts() {
     assert_eq!(found, ["NoScan", "Unique", "Unique"], "{stderr}");
     assert_eq!(code, 0);
     // The two maps without a cell are the same, and said once.
-    let note = "backcast: r.mcap: a map is left out: the map has no occupied cell: there is nothing \
+    let note = "backcast: r.mcap: a map is ignored: the map has no occupied cell: there is nothing \
                 that a laser could see\n";
     assert_eq!(stderr, note);
     let (_, stdout, _) = run(folder.path(), "locate r.mcap");
@@ -240,7 +240,7 @@ fn a_transform_that_is_none_is_a_note_where_the_laser_does_not_need_it() {
         (topic, message)
     };
     let camera = folder(&[framed_map(), broken("camera"), scan_at(1, HERE)]);
-    let note = "the transform from base_link to camera is left out: the position (NaN, 0) is not \
+    let note = "the transform from base_link to camera is ignored: the position (NaN, 0) is not \
                 finite\n";
     let (code, found, stderr) = verdicts(camera.path(), "r.mcap");
     assert_eq!((code, found), (0, vec!["Unique".to_owned()]));

@@ -104,7 +104,7 @@ fn the_object_has_the_keys_of_the_contract() {
     assert!(object["cpu_ms"]["median"].as_f64() <= object["cpu_ms"]["max"].as_f64());
     assert_eq!(
         stderr,
-        "backcast: r.mcap: scans refused: 1; the first: the scan is empty: it has no ranges\n"
+        "backcast: r.mcap: scans rejected: 1; the first: the scan is empty: it has no ranges\n"
     );
 }
 

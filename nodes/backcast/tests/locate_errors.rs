@@ -70,10 +70,7 @@ fn a_refused_scan_has_a_line_with_the_reason() {
     assert_eq!(word(columns, 5), "NoScan");
     assert_eq!(reason, "  the scan is empty: it has no ranges");
     let (_, says) = rows[2].split_at(rows[0].len());
-    assert_eq!(
-        says,
-        "  no beam says anything about this map: is the laser covered?"
-    );
+    assert_eq!(says, "  no usable beams: is the laser covered?");
 }
 
 #[test]

@@ -153,7 +153,7 @@ fn a_scan_in_which_nothing_returned_is_drawn_without_a_robot() {
     assert!(picture.pixels().all(|pixel| *pixel != BEST));
     let (code, stdout, stderr) = run(folder.path(), "plot field --bag r.mcap --out p.png");
     assert_eq!((code, stdout.as_str()), (1, ""));
-    let expected = "r.mcap: scan 1 has no place on this map: no beam says anything";
+    let expected = "r.mcap: scan 1 has no place on this map: no usable beams";
     assert!(stderr.contains(expected), "{stderr}");
 }
 

@@ -144,7 +144,11 @@ fn what_cannot_be_driven_is_refused_and_nothing_is_written() {
             "from corner 1 to corner 2 meets an obstacle at 4.00,",
         ),
         ("--path '4,-10.5'", 2, "1 corners; allowed are 2 to 10000"),
-        ("--path '4,-10.5 5,-10.5' --noise x", 2, "\"x\" is no noise"),
+        (
+            "--path '4,-10.5 5,-10.5' --noise x",
+            2,
+            "\"x\" is not a noise",
+        ),
         (
             "--path '4,-10.5 5,-10.5' --sonar --beams 9",
             2,

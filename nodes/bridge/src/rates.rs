@@ -27,7 +27,9 @@ impl FromStr for Rate {
             let live = topic::NAMES.iter().copied();
             let live = live.filter(|name| network_payload::by_name(name, IsKept) == Some(false));
             let allowed = live.collect::<Vec<_>>().join(", ");
-            return Err(format!("{name:?} is no live topic: allowed are {allowed}"));
+            return Err(format!(
+                "{name:?} is not a live topic: allowed are {allowed}"
+            ));
         }
         let hz: f64 = hz
             .parse()

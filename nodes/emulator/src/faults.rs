@@ -49,7 +49,7 @@ impl FromStr for FaultPlan {
                 None if fault == "merge" => plan.merge = true,
                 _ => {
                     return Err(format!(
-                        "{fault:?} is no fault: allowed are crc=, drop=, garbage=, stall=, \
+                        "{fault:?} is not a fault: allowed are crc=, drop=, garbage=, stall=, \
                          reset=, split and merge"
                     ));
                 }

@@ -25,7 +25,7 @@ pub enum FleetError {
     Wire(#[from] WireError),
     /// There are as many robots already as may be.
     #[error(
-        "there are {} robots, which is the most; {robot} is left out",
+        "there are {} robots, which is the maximum; {robot} is ignored",
         Robots::MAX
     )]
     TooMany {

@@ -39,13 +39,13 @@ pub enum LocateError {
     #[error(transparent)]
     Transport(#[from] TransportError),
     /// The question is in no form that is known.
-    #[error("the question is {found:?}: allowed are {}", ENCODINGS.join(" and "))]
+    #[error("the request is {found:?}: allowed are {}", ENCODINGS.join(" and "))]
     Encoding {
         /// What it says of itself, cut to a few words.
         found: String,
     },
     /// The question is longer than a scan can be.
-    #[error("a question of {found} bytes: allowed are at most {most}")]
+    #[error("a request of {found} bytes: allowed are at most {most}")]
     TooLong {
         /// Bytes.
         found: usize,
@@ -56,7 +56,7 @@ pub enum LocateError {
     #[error(transparent)]
     Wire(#[from] WireError),
     /// A question in JSON that is not sound.
-    #[error("the question is no scan in JSON")]
+    #[error("the request is not a scan in JSON")]
     Json(#[from] serde_json::Error),
     /// `deadline_ms` of the question is not a time.
     #[error("deadline_ms={found:?}: allowed are 1 to 60000")]

@@ -162,8 +162,8 @@ mod tests {
         };
         check("zenoh/bytes", b"", "allowed are application/postcard");
         check("application/postcard;backcast.Scan/v9", b"", JSON);
-        check(ENCODINGS[0], b"\xff", "no postcard of its schema");
-        check(JSON, b"{", "no scan in JSON");
+        check(ENCODINGS[0], b"\xff", "does not match its postcard schema");
+        check(JSON, b"{", "not a scan in JSON");
         check(JSON, &vec![b' '; (1 << 20) + 1], "at most 1048576");
     }
 }

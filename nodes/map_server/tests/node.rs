@@ -161,7 +161,7 @@ fn a_map_that_is_missing_at_the_start_is_waited_for() {
     world.interrupt();
     let (status, log) = world.finish();
     assert!(status.success(), "{log}");
-    assert!(log.contains("the map is waited for"), "{log}");
+    assert!(log.contains("waiting for the map"), "{log}");
 }
 
 #[test]

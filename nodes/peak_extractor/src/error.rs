@@ -19,7 +19,7 @@ pub enum PeakError {
         known: String,
     },
     /// The scan of the votes never came, or came too long ago.
-    #[error("their scan is not known: it did not come here, or too long ago")]
+    #[error("their scan is not known: it was not received, or too long ago")]
     UnknownScan,
     /// How a map's cells or a scan's beams were read cannot be.
     #[error("{field} is {found}: allowed are {allowed}")]

@@ -318,7 +318,7 @@ fn votes_that_cannot_be_read_are_refused_and_the_next_ones_answered() {
     let error = refused(world.ask(sound, ranges, votes), 1);
     assert!(
         error.starts_with(&format!(
-            "the votes of scan 0 are refused: they are of map {:016x}",
+            "votes of scan 0 rejected: they are of map {:016x}",
             id()
         )),
         "{error}"

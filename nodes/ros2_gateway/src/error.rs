@@ -16,7 +16,7 @@ pub enum GatewayError {
         reason: String,
     },
     /// A definition has a line that is no field.
-    #[error("the definition of {name}: {line:?} is no field")]
+    #[error("the definition of {name}: {line:?} is not a field")]
     Definition {
         /// The type.
         name: String,
@@ -102,7 +102,7 @@ pub enum GatewayError {
     #[error(transparent)]
     Conversion(#[from] ConversionError),
     /// A topic that is taken is published as something else.
-    #[error("{node} publishes {topic} as {found}, which cannot be taken: expected is {expected}")]
+    #[error("{node} publishes {topic} as {found}, which is not supported: expected is {expected}")]
     Stranger {
         /// The robot's node.
         node: String,
@@ -114,7 +114,7 @@ pub enum GatewayError {
         expected: String,
     },
     /// A transform of `/tf_static` is none; the others of its message are taken.
-    #[error("the transform from {parent} to {child} is left out")]
+    #[error("the transform from {parent} to {child} is ignored")]
     Transform {
         /// The parent frame.
         parent: String,
@@ -146,7 +146,7 @@ pub enum GatewayError {
         most: usize,
     },
     /// More frames than a robot has.
-    #[error("there is no room for frame {frame:?}: allowed are {most} frames")]
+    #[error("too many frames, {frame:?} is ignored: allowed are {most}")]
     Frames {
         /// The frame that was to come.
         frame: String,

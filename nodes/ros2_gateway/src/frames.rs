@@ -296,7 +296,7 @@ mod tests {
             .on_static_transforms(&TfMessage { transforms })
             .unwrap_err();
         let text = transport::with_causes(&error);
-        let expected = "the transform from base_link to camera is left out: the position (NaN, 0)";
+        let expected = "the transform from base_link to camera is ignored: the position (NaN, 0)";
         assert!(text.starts_with(expected), "{text}");
         for (index, laser, x) in [(0, "front", 0.5), (1, "rear", -0.4)] {
             let found = frames.base_from_laser(index, laser).unwrap();

@@ -154,7 +154,7 @@ fn a_laser_that_cannot_be_joined_is_left_out_and_named() {
         reasons.map(|(laser, why)| format!("{laser}: {why}")).next()
     };
     joiner.on_scan(&scan("front", 100), &RANGES);
-    assert_eq!(left_out(&mut joiner).unwrap(), "rear: no scan has come");
+    assert_eq!(left_out(&mut joiner).unwrap(), "rear: no scan received");
     joiner.on_scan(&scan("rear", 100), &RANGES);
     assert_eq!(left_out(&mut joiner), None, "no odometry, nothing moves");
     // Every 50 ms from now on.
@@ -162,7 +162,7 @@ fn a_laser_that_cannot_be_joined_is_left_out_and_named() {
     joiner.on_scan(&scan("front", 225), &RANGES);
     assert_eq!(left_out(&mut joiner), None);
     joiner.on_scan(&scan("front", 226), &RANGES);
-    let old = "rear: its newest scan is 76 ms older, more than one and a half of its periods";
+    let old = "rear: its newest scan is 76 ms older, more than 1.5 scan periods";
     assert_eq!(left_out(&mut joiner).unwrap(), old);
     let lost = ScanHeader {
         mount_known: 0,

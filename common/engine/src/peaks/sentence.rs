@@ -31,9 +31,7 @@ const SAME_SPOT_M: f64 = 0.5;
 #[must_use]
 pub fn sentence(verdict: Verdict, places: &[PlaceSummary]) -> String {
     match (verdict, places) {
-        (Verdict::NoScan, _) | (_, []) => {
-            "no beam says anything about this map: is the laser covered?".into()
-        }
+        (Verdict::NoScan, _) | (_, []) => "no usable beams: is the laser covered?".into(),
         (Verdict::Unique, [best, ..]) => {
             format!("one place, fit {:.2}", fit(best))
         }
@@ -108,7 +106,7 @@ mod tests {
         );
         assert_eq!(
             say(Verdict::NoScan, &[]),
-            "no beam says anything about this map: is the laser covered?"
+            "no usable beams: is the laser covered?"
         );
         assert_eq!(
             say(Verdict::Ambiguous, &[at(0.0, 0.0, 0.0)]),

@@ -273,7 +273,7 @@ pub(super) mod tests {
         judge.refusal(Pose::IDENTITY, "empty".to_owned());
         judge.refusal(Pose::IDENTITY, "too long".to_owned());
         let complaint = judge.complaint().unwrap();
-        assert_eq!(complaint, "scans refused: 2; the first: empty");
+        assert_eq!(complaint, "scans rejected: 2; the first: empty");
     }
 
     #[test]

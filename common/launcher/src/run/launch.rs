@@ -228,7 +228,7 @@ fn stay(
             return Ok(Flow::Stop);
         }
         if save.swap(false, Ordering::Relaxed) && crew.signal(RECORDER, Signal::SIGUSR1)? == 0 {
-            warn("SIGUSR1 saves what a recorder keeps, but none runs");
+            warn("SIGUSR1 is for a recorder with --keep, but none is running");
         }
         if !shared_memory_has_room() {
             // Nobody can give a sign of life.
@@ -340,7 +340,7 @@ fn foreign(path: PathBuf, source: io::Error) -> TransportError {
 fn clear(graph: &GraphName) -> Result<(), TransportError> {
     match remove_leftovers(graph) {
         Err(error @ TransportError::StillRunning { .. }) => {
-            say(LAUNCHER, &format!("shared memory is kept: {error}"));
+            say(LAUNCHER, &format!("cannot remove shared memory: {error}"));
             Ok(())
         }
         other => other,

@@ -156,7 +156,7 @@ pub fn run(config: &Config) -> Result<ExitCode, RecordingToolsError> {
 fn no_conversion(from: &str, to: &Path) -> RecordingToolsError {
     let to = to.extension().unwrap_or_default().to_string_lossy();
     RecordingToolsError::Usage(format!(
-        "from .{from} to .{to} is no conversion; allowed are .log, .clf, .txt and .db3 to .mcap, \
+        "from .{from} to .{to} is not a conversion; allowed are .log, .clf, .txt and .db3 to .mcap, \
          and .mcap and .db3 to .log"
     ))
 }
@@ -187,7 +187,7 @@ fn tell(report: &Report, to: &Path) -> ExitCode {
     }
     if report.tally.missing_readings > 0 {
         say(&format!(
-            "{} readings are no numbers, and so many beams are missing",
+            "{} readings are not numbers, and their beams are missing",
             report.tally.missing_readings
         ));
     }

@@ -107,7 +107,7 @@ fn map(recording: &Recording) -> Vec<Finding> {
         let count = refused.len();
         found.push(match newest {
             Some(_) => Finding::note(format!(
-                "{count} of {seen} maps cannot be searched and are left out; of the first: {first}"
+                "{count} of {seen} maps cannot be searched and are ignored; of the first: {first}"
             )),
             None => Finding::problem(format!("no map can be searched: {first}")),
         });
