@@ -14,7 +14,7 @@
 //!                  └─ block_ranges ─ leaf ─────── poses ──────────┘
 //! ```
 //!
-//! Alternatives below the floor come from the most promising blocks. Where bounds do
+//! Alternatives below the floor come from the blocks with the highest bounds. Where bounds do
 //! not distinguish blocks, every pose is counted instead (`beam_sampling`).
 //!
 //! Each folder imports only those before it: `index`, what is known of a map; `bounds`,

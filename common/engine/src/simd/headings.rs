@@ -57,7 +57,7 @@ pub(crate) trait HeadingLanes: Copy {
     fn votes(set: Self::Set, sums: Self::Sums) -> [u16; HEADINGS];
 }
 
-/// What every processor has; on ARM, which always has NEON, tables are looked up by
+/// The baseline CPU; on ARM, which always has NEON, tables are looked up by
 /// its instructions.
 #[derive(Clone, Copy)]
 pub(crate) struct Portable([u8; HEADINGS]);

@@ -81,7 +81,7 @@ pub(crate) struct BitRows<'a> {
     pub slope: i64,
 }
 
-/// What every processor has.
+/// The baseline CPU.
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct Portable([u16; RAYS]);
 

@@ -1,4 +1,4 @@
-//! How a map is searched: from large blocks down to poses, the most promising first.
+//! How a map is searched: from large blocks down to poses, the highest bound first.
 //!
 //! When a search ends, every pose at or above its floor was counted: a block is dropped
 //! only where its bound lies below. Where bounds do not distinguish blocks, all poses are

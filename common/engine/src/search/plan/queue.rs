@@ -1,4 +1,4 @@
-//! Blocks that wait to be searched, the most promising first.
+//! Blocks that wait to be searched, the highest bound first.
 
 use std::cmp::Reverse;
 use std::num::NonZeroU32;
@@ -29,8 +29,8 @@ impl Queue {
         }
     }
 
-    /// The next block with a bound that is not below the floor: the most promising
-    /// one, or if `prefers_leaves` that of the smallest.
+    /// The next block with a bound that is not below the floor: the one with
+    /// the highest bound, or if `prefers_leaves` the best of the smallest.
     pub(in crate::search) fn pop(&mut self, prefers_leaves: bool, floor: u16) -> Option<Block> {
         loop {
             let blocks = self.next_of(prefers_leaves);
