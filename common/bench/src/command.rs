@@ -1,4 +1,4 @@
-//! What `backcast bench` does: sets up the cases of a table, measures, prints.
+//! The command `backcast bench`: sets up the cases of a table, measures, prints.
 
 use std::process::ExitCode;
 
@@ -51,7 +51,7 @@ impl clap::ValueEnum for Measured {
     }
 }
 
-/// What `backcast bench` takes.
+/// Options of `backcast bench`.
 #[derive(Debug, clap::Args)]
 pub struct Config {
     /// What is measured

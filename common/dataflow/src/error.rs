@@ -1,4 +1,4 @@
-//! All that can be wrong with a descriptor.
+//! Errors in a descriptor.
 
 use std::{fmt::Write as _, io, path::PathBuf};
 

@@ -1,4 +1,4 @@
-//! What is looked for on the map: a scan as it came, or one that was brought to one
+//! The input of a search: a scan as it came, or one that was brought to one
 //! time and place.
 //!
 //! A laser that moves while it turns measures each beam from another place, and

@@ -1,4 +1,4 @@
-//! What can be wrong with kept indexes.
+//! Errors of cached indexes.
 
 use std::io;
 use std::path::PathBuf;

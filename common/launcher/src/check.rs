@@ -8,7 +8,7 @@ use dataflow::{Dataflow, Node, RestartPolicy};
 
 use crate::{LauncherError, descriptor};
 
-/// What `backcast check` takes.
+/// Options of `backcast check`.
 #[derive(Debug, clap::Args)]
 pub struct Config {
     /// The graph's descriptor

@@ -1,4 +1,4 @@
-//! What can be wrong with a map: the value found, where, and what is allowed.
+//! Errors in a map: the value found, where, and what is allowed.
 
 use std::io;
 use std::path::PathBuf;

@@ -1,4 +1,4 @@
-//! Why a payload is refused.
+//! Reasons to reject a payload.
 //!
 //! Each variant says what was found and what is allowed.
 

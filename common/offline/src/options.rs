@@ -1,4 +1,4 @@
-//! What all of them take on the command line.
+//! Options of all of them.
 
 use std::path::{Path, PathBuf};
 

@@ -1,4 +1,4 @@
-//! What `backcast plot` takes on the command line, and which options belong to
+//! Options of `backcast plot`, and which options belong to
 //! which picture.
 
 use std::path::PathBuf;
@@ -35,7 +35,7 @@ pub(super) enum Kind {
     Sheet,
 }
 
-/// What `backcast plot` takes.
+/// Options of `backcast plot`.
 #[derive(Debug, clap::Args)]
 pub struct Config {
     /// What the picture shows

@@ -1,4 +1,4 @@
-//! What `backcast probe` does.
+//! The command `backcast probe`.
 
 use std::path::Path;
 use std::process::ExitCode;
@@ -17,7 +17,7 @@ Exit codes: 0 a device answered, 1 none did, 2 wrong use";
 /// Columns where nobody says how many there are.
 const COLUMNS: usize = 80;
 
-/// What `backcast probe` takes.
+/// Options of `backcast probe`.
 #[derive(Debug, clap::Args)]
 pub struct Config {
     /// The device: an address such as 192.168.0.1, HOST or HOST:PORT (also after

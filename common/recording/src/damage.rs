@@ -1,4 +1,4 @@
-//! What can be wrong with the bytes of a recording.
+//! Damage in the bytes of a recording.
 
 use crate::MAX_CHUNK_BYTES;
 

@@ -1,4 +1,4 @@
-//! Why a recording could not be read, used or written.
+//! Errors of reading, using and writing a recording.
 
 use std::io;
 use std::path::PathBuf;

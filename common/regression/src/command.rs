@@ -1,4 +1,4 @@
-//! What `backcast regress` does.
+//! The command `backcast regress`.
 
 use std::path::{Path, PathBuf};
 use std::process::ExitCode;
@@ -27,7 +27,7 @@ positions within 1 mm, headings within 0.01 degrees, scores within 0.001.
 Exit codes: 0 all as expected or accepted, 1 differences, a graph that fails or a recording that is
 damaged, 2 wrong use";
 
-/// What `backcast regress` takes.
+/// Options of `backcast regress`.
 #[derive(Debug, clap::Args)]
 pub struct Config {
     /// Folders that are cases, or contain cases
@@ -138,7 +138,7 @@ fn judge(config: &Config, case: &Case, outcome: &mut Outcome) -> Result<(), Regr
     let all = differences(&expected, &found);
     if let Some(folder) = &config.pictures {
         let drawn = pictures::write(folder, case, (&expected, &found), &all)?;
-        tell(&case.name, folder, drawn);
+        print_pictures(&case.name, folder, drawn);
     }
     if let Some(damage) = damage {
         // What is cut off would be missed for ever.
@@ -155,7 +155,7 @@ fn judge(config: &Config, case: &Case, outcome: &mut Outcome) -> Result<(), Regr
     }
 }
 
-fn tell(case: &str, folder: &Path, drawn: Drawn) {
+fn print_pictures(case: &str, folder: &Path, drawn: Drawn) {
     let Drawn { pictures, scans } = drawn;
     if scans > 0 {
         let folder = folder.display();

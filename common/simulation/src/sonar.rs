@@ -4,7 +4,7 @@
 //! A transducer answers with the nearest surface in its cone that is met nearly
 //! head on; a wall that is met at a flat angle sends the sound away (Leonard and
 //! Durrant-Whyte, Directed Sonar Sensing for Mobile Robot Navigation, 1992). Echoes
-//! that come by way of two walls are left out, and all transducers sit at one
+//! that are reflected by two walls are left out, and all transducers sit at one
 //! point.
 
 use std::f32::consts::PI;

@@ -39,7 +39,7 @@ behind, 2 wrong use";
 const DEFAULT_FAULTS: [Fault; 4] = [Fault::Kill, Fault::Pair, Fault::Stop, Fault::Map];
 const DEFAULT_MINUTES: f64 = 60.0;
 
-/// What `backcast soak` takes.
+/// Options of `backcast soak`.
 #[derive(Debug, clap::Args)]
 pub struct Config {
     /// The graph's descriptor

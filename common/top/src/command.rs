@@ -9,7 +9,7 @@ use command_line::stdout as output;
 use super::{lines, screen, source};
 use crate::TopError;
 
-/// What `backcast top` takes.
+/// Options of `backcast top`.
 #[derive(Debug, clap::Args)]
 pub struct Config {
     /// Address of the monitor

@@ -1,4 +1,4 @@
-//! What came from the network, on its way to the thread that owns the graph.
+//! Messages from the network, on their way to the thread that owns the graph.
 //!
 //! Zenoh calls on threads of its own; they only put what came into a queue that
 //! never grows, and wake the event loop. A flood pushes out the oldest, which is

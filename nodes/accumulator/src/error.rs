@@ -1,4 +1,4 @@
-//! What keeps a scan from being answered, a map from being used, and the node
+//! Errors that reject a scan or a map, and the node
 //! from running.
 
 use engine::EngineError;

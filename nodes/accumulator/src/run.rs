@@ -114,7 +114,7 @@ impl Node {
             self.map = prepared.or(self.map.take());
             self.health.tick()?;
             while self.pending.is_none() && self.take_scan(inputs)? {}
-            // What was sent before the scan has come by now.
+            // What was sent before the scan has arrived by now.
             inputs.take_poses(&mut self.joiner, &mut self.history, &mut self.health)?;
             let Some((scan, since)) = self.pending.take() else {
                 if self.answer_asked(inputs)? {

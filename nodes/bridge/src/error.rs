@@ -1,4 +1,4 @@
-//! What keeps the bridge from running.
+//! Errors that end the bridge.
 
 use std::path::PathBuf;
 

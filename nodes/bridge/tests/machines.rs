@@ -189,7 +189,7 @@ impl<'a> Received<'a> {
     }
 
     /// Listens until the map of this id is there, and an answer about it to a scan
-    /// after `counter`: they come by ways of their own, in either order.
+    /// after `counter`: they arrive on separate connections, in either order.
     fn until(&mut self, map_id: u64, counter: u64) {
         let graph = &self.machine.graph;
         let tick = Duration::from_millis(100);

@@ -9,7 +9,7 @@ use std::time::Duration;
 use rand::rngs::Xoshiro256PlusPlus;
 use rand::{RngExt, SeedableRng};
 
-/// One telegram in this many is followed by a stall, where stalls are wanted.
+/// One telegram in this number is followed by a stall, if stalls are wanted.
 const STALL_EVERY: f64 = 100.0;
 /// The longest garbage before a telegram, bytes.
 const GARBAGE: usize = 64;

@@ -1,4 +1,4 @@
-//! What keeps the fleet's monitor from running, and what it refuses.
+//! Errors that end the fleet monitor, and reasons to reject a message.
 
 use dashboard::{DashboardError, Robots};
 use network_payload::WireError;

@@ -1,4 +1,4 @@
-//! What keeps the server from running.
+//! Errors that end the server.
 
 use std::net::SocketAddr;
 

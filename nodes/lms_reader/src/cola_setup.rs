@@ -1,4 +1,4 @@
-//! What is said to a CoLa device before its scans come.
+//! Setting up a CoLa device before it sends scans.
 //!
 //! Pure: answers and the time in, the next command out. It asks what the device
 //! is, changes what the configuration asks for and nothing else, reads it back,

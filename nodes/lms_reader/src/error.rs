@@ -1,4 +1,4 @@
-//! Everything that can go wrong between a device and `scan`.
+//! Errors between a device and topic `scan`.
 //!
 //! An error names the place: bytes of the stream count from its start, bytes of
 //! a telegram from the first one of its content.

@@ -1,4 +1,4 @@
-//! What is said to an LMS2xx before its scans come.
+//! Setting up an LMS2xx before it sends scans.
 //!
 //! Pure: answers and the time in, the next action out. The device keeps its baud
 //! rate while it has power, so each is tried until it answers. Then it is asked

@@ -43,7 +43,7 @@ pub fn ask(
         sequence: header.stamp.counter,
         clock_ns: monotonic_ns(),
     };
-    let question = network_payload::encode::<topic::Scan>(&preamble, header, ranges)?;
+    let request = network_payload::encode::<topic::Scan>(&preamble, header, ranges)?;
     let due = Instant::now() + deadline;
     let (events, received) = unbounded();
     // How many attempts are under way, and when to make the next one.
@@ -55,7 +55,7 @@ pub fn ask(
             return Err(LocateError::Late { deadline_ms });
         }
         if now >= next {
-            attempt(session, map, &question, due - now, events.clone())?;
+            attempt(session, map, &request, due - now, events.clone())?;
             // No deadline is so far that this overflows.
             (open, next) = (open + 1, now + SILENCE * 2_u32.pow(open));
         }
@@ -89,7 +89,7 @@ struct Attempt(Sender<Event>);
 
 impl Attempt {
     fn deliver(&self, event: Event) {
-        // Where nobody listens, the question has its answer.
+        // Where nobody listens, the request has its answer.
         let _ = self.0.send(event);
     }
 }
@@ -104,7 +104,7 @@ impl Drop for Attempt {
 fn attempt(
     session: &Session,
     map: &str,
-    question: &[u8],
+    request: &[u8],
     remaining: Duration,
     events: Sender<Event>,
 ) -> Result<(), LocateError> {
@@ -113,7 +113,7 @@ fn attempt(
     let attempt = Attempt(events);
     session
         .get(format!("{key}?deadline_ms={milliseconds}"))
-        .payload(question)
+        .payload(request)
         .encoding(Encoding::from(network_payload::encoding::<topic::Scan>()))
         .timeout(remaining)
         .callback(move |reply| attempt.deliver(Some(reply.into_result())))

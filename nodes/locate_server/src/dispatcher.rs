@@ -1,6 +1,6 @@
-//! Where questions come in: takes them on, hands them on, or says why not.
+//! Where requests arrive: accepts them, passes them on, or rejects them.
 //!
-//! Zenoh calls on threads of its own, which wait for nothing here: a question that
+//! Zenoh calls on threads of its own, which wait for nothing here: a request that
 //! is taken on lies in a queue with an end, for the workers. What each of them
 //! costs is bounded before it is looked at.
 
@@ -18,12 +18,12 @@ use crate::counts::Counts;
 use crate::error::REFUSED;
 use crate::team::Team;
 
-/// The name of the question's own deadline.
+/// The name of the request's own deadline.
 const DEADLINE: &str = "deadline_ms";
-/// Longest deadline that a question may name, milliseconds.
+/// Longest deadline that a request may name, milliseconds.
 const LONGEST_MS: u64 = 60_000;
 
-/// A question that is taken on.
+/// A request that is taken on.
 pub(crate) struct Job {
     pub(crate) query: Query,
     /// Under which the answer goes.
@@ -58,7 +58,7 @@ impl Deadline {
     }
 }
 
-/// Takes questions, from whichever thread.
+/// Takes requests, from whichever thread.
 pub(crate) struct Dispatcher {
     session: Session,
     /// `backcast/locate/<map>`.
@@ -66,7 +66,7 @@ pub(crate) struct Dispatcher {
     jobs: Sender<Job>,
     returned: Sender<Job>,
     workers: usize,
-    /// Questions that wait or are being searched.
+    /// Requests that wait or are being searched.
     busy: Arc<AtomicUsize>,
     team: Mutex<Team>,
     /// What others have.
@@ -84,7 +84,7 @@ pub(crate) struct WorkQueue {
 }
 
 impl WorkQueue {
-    /// The next question, once there is one: first those that have waited elsewhere.
+    /// The next request, once there is one: first those that have waited elsewhere.
     /// None when the dispatcher is closed.
     pub(crate) fn next(&self) -> Option<Job> {
         let job = crossbeam::channel::select_biased! {
@@ -96,7 +96,7 @@ impl WorkQueue {
 }
 
 impl Dispatcher {
-    /// A dispatcher with `workers`, for each of which `waiting` questions may wait.
+    /// A dispatcher with `workers`, for each of which `waiting` requests may wait.
     pub(crate) fn new(
         session: &Session,
         key: &str,
@@ -140,7 +140,7 @@ impl Dispatcher {
         handed_on.unwrap_or_else(PoisonError::into_inner)
     }
 
-    /// Another server is gone, and what it has comes back: a question that is sent while
+    /// Another server is gone, and what it has comes back: a request that is sent while
     /// Zenoh forgets that server would be answered, or ended, by nobody.
     pub(crate) fn leave(&self, other: &str) {
         self.team().leave(other);
@@ -152,7 +152,7 @@ impl Dispatcher {
         }
     }
 
-    /// A question to all servers: it may be handed on.
+    /// A request to all servers: it may be handed on.
     pub(crate) fn ask(self: &Arc<Self>, query: Query) {
         let key = Arc::clone(&self.key);
         if let Some(job) = self.open(query, key) {
@@ -165,14 +165,14 @@ impl Dispatcher {
         }
     }
 
-    /// A question that another server hands on, under this one's own `key`.
+    /// A request that another server hands on, under this one's own `key`.
     pub(crate) fn ask_me(&self, query: Query, key: &Arc<str>) {
         if let Some(job) = self.open(query, Arc::clone(key)) {
             self.take_on(job);
         }
     }
 
-    /// Reads what the question says of its time; refuses it if that is nothing.
+    /// Reads what the request says of its time; refuses it if that is nothing.
     fn open(&self, query: Query, key: Arc<str>) -> Option<Job> {
         self.counts.received();
         let said = query.parameters().get(DEADLINE).map(str::to_owned);
@@ -238,7 +238,7 @@ impl Dispatcher {
     }
 }
 
-/// A question that another server has. Zenoh drops it when no answer can come any
+/// A request that another server has. Zenoh drops it when no answer can come any
 /// more: it was answered, the other is gone, or the time is over.
 struct Handed {
     dispatcher: Arc<Dispatcher>,
@@ -256,7 +256,7 @@ impl Handed {
                 self.dispatcher.counts.sent(&reply.wait());
             }
             // What is wrong with a scan is wrong everywhere.
-            Err(error) if is_about_the_question(error.encoding()) => {
+            Err(error) if is_about_the_request(error.encoding()) => {
                 let Some(job) = self.take() else { return };
                 let answer = (error.encoding().clone(), error.payload().clone());
                 let reply = job.query.reply_err(answer.1).encoding(answer.0);
@@ -285,7 +285,7 @@ impl Drop for Handed {
 }
 
 /// Unlike that the server is busy, or what Zenoh itself says.
-fn is_about_the_question(encoding: &Encoding) -> bool {
+fn is_about_the_request(encoding: &Encoding) -> bool {
     encoding.to_string() == REFUSED
 }
 
@@ -307,7 +307,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn a_question_may_say_until_when() {
+    fn a_request_may_say_until_when() {
         let default = Duration::from_secs(2);
         let check = |said, expected: u64| {
             let found = deadline(said, default).unwrap();

@@ -21,7 +21,7 @@ use crate::{Config, LocateError, worker};
 /// Between two looks at the counters, and at who else is there.
 const TICK: Duration = Duration::from_millis(200);
 
-/// How long a server looks who else is there before it takes questions.
+/// How long a server looks who else is there before it takes requests.
 const ACQUAINTANCE: Duration = Duration::from_millis(500);
 
 /// Answers until the stop flag is set.
@@ -76,7 +76,7 @@ struct Service {
     key: String,
     since: u64,
     dispatcher: Arc<Dispatcher>,
-    /// Questions to all servers, while they are this one's to take.
+    /// Requests to all servers, while they are this one's to take.
     to_all: Option<Queryable<()>>,
     _handed_on: Queryable<()>,
     _team: Subscriber<()>,
@@ -128,9 +128,9 @@ impl Service {
         Ok(service)
     }
 
-    /// Takes the questions to all servers where that is its turn. Were several to take
-    /// them, Zenoh would bring each question to the server that routes it and to another
-    /// one as well. Where one gives them up, a question on its way is lost until its
+    /// Takes the requests to all servers where that is its turn. Were several to take
+    /// them, Zenoh would bring each request to the server that routes it and to another
+    /// one as well. Where one gives them up, a request on its way is lost until its
     /// deadline, so that happens only where two did not know each other.
     fn follow_team(&mut self) -> Result<(), LocateError> {
         let me = self.session.zid().to_string();

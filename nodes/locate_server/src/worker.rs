@@ -1,4 +1,4 @@
-//! Searches what is taken on, one question after the other.
+//! Searches what is taken on, one request after the other.
 
 use std::sync::Arc;
 use std::sync::atomic::Ordering;
@@ -10,9 +10,9 @@ use zenoh::Wait;
 use crate::counts::Counts;
 use crate::dispatcher::{Job, WorkQueue};
 use crate::locator::{Locator, Workspace};
-use crate::{LocateError, question};
+use crate::{LocateError, request};
 
-/// Answers until nobody takes questions any more.
+/// Answers until nobody takes requests any more.
 pub(crate) fn work(work_queue: &WorkQueue, locator: &Locator, counts: &Arc<Counts>) {
     let mut workspace = Workspace::default();
     while let Some(job) = work_queue.next() {
@@ -39,7 +39,7 @@ fn answer(
     let start = Instant::now();
     let encoding = job.query.encoding().map(ToString::to_string);
     let payload = job.query.payload().map(|payload| payload.to_bytes());
-    let asked = question::read(
+    let asked = request::read(
         &encoding.unwrap_or_default(),
         &payload.unwrap_or_default(),
         monotonic_ns(),
@@ -51,5 +51,5 @@ fn answer(
     };
     header.search_ns = start.elapsed().as_nanos() as u64;
     header.sent_ns = monotonic_ns();
-    question::write(asked.form, &header, &hypotheses, header.sent_ns)
+    request::write(asked.form, &header, &hypotheses, header.sent_ns)
 }

@@ -66,7 +66,7 @@ impl Server {
     fn wait_until_sent(&self, answers: u64, asking: &ScopedJoinHandle<'_, ()>) {
         let health = self.graph.subscriber::<topic::Health>().unwrap();
         wait_for_health(&self.graph, &health, |report| {
-            assert!(!asking.is_finished(), "a question has no answer");
+            assert!(!asking.is_finished(), "a request has no answer");
             report.sent >= answers
         });
     }
@@ -156,7 +156,7 @@ fn answers_are_those_of_the_engine() {
 }
 
 #[test]
-fn what_is_no_question_is_refused_and_counted() {
+fn what_is_no_request_is_refused_and_counted() {
     let server = Server::start("refused", &[]);
     let session = caller(&[&server]);
     let scan = &scans()[0];
@@ -244,7 +244,7 @@ fn beyond_its_queue_a_server_is_busy() {
     server.process.stop();
 }
 
-/// Asks on several threads until stopped, each question until it is answered;
+/// Asks on several threads until stopped, each request until it is answered;
 /// returns how many there were.
 fn keep_asking(session: &Session, stop: &AtomicBool, answered: &AtomicUsize) {
     let scans = scans();
@@ -265,7 +265,7 @@ fn keep_asking(session: &Session, stop: &AtomicBool, answered: &AtomicUsize) {
 }
 
 #[test]
-fn a_question_is_brought_to_one_server() {
+fn a_request_is_brought_to_one_server() {
     let first = Server::start("once-a", &[]);
     let endpoint = first.endpoint();
     let second = Server::start("once-b", &["--connect", &endpoint]);
@@ -313,7 +313,7 @@ fn several_servers_share_the_work_and_a_dead_one_costs_no_answer() {
         for server in [&first, &second, &third] {
             server.wait_until_sent(5, &asking);
         }
-        // One that questions are handed on to, and one that is asked.
+        // One that requests are handed on to, and one that is asked.
         let before = answered.load(Ordering::Relaxed);
         third.process.kill();
         second.wait_until_sent(20, &asking);
@@ -337,7 +337,7 @@ fn stand_silent(session: &Session, key: &str) -> (Queryable<()>, Receiver<Query>
 }
 
 #[test]
-fn a_question_that_nobody_ends_is_asked_again() {
+fn a_request_that_nobody_ends_is_asked_again() {
     let isolated = Isolated::new("silent");
     let endpoint = endpoint(&isolated);
     let there = session(std::slice::from_ref(&endpoint), &[]);

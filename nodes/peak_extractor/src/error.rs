@@ -1,4 +1,4 @@
-//! What keeps votes from being read, and the node from running.
+//! Errors that reject votes, and those that end the node.
 
 use engine::EngineError;
 use messages::{Pose2, Vote};

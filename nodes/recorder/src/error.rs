@@ -1,4 +1,4 @@
-//! What can go wrong between the graph and the file.
+//! Errors between the graph and the file.
 
 use std::io;
 use std::path::PathBuf;

@@ -1,4 +1,4 @@
-//! What happened that is worth a look at the minutes before it.
+//! Events on which the last minutes are saved.
 
 use messages::{HealthHeader, NodeState, TrackState, Verdict};
 

@@ -1,4 +1,4 @@
-//! What can go wrong with a recording and on the way into the graph.
+//! Errors of reading a recording and of sending it into the graph.
 
 use std::path::PathBuf;
 

@@ -1,4 +1,4 @@
-//! What keeps the gateway from running, and why a message is refused.
+//! Errors that end the gateway, and reasons to reject a message.
 
 use ros::ConversionError;
 use transport::TransportError;

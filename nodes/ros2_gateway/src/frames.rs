@@ -1,4 +1,4 @@
-//! How the robot's frames lie to each other: the laser on the base, and the base in the
+//! The transforms between the robot's frames: the laser on the base, and the base in the
 //! odometry's frame. Pure.
 //!
 //! Refuses lasers that look neither level nor upside down, and more frames than a robot

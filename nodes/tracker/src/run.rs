@@ -135,7 +135,7 @@ impl Node {
 
     /// Takes all that has come.
     fn take(&mut self, inputs: &Inputs) -> Result<(), TrackerError> {
-        // What was sent before a scan has come by the time that the scan has.
+        // What was sent before a scan has arrived when the scan has.
         while let Some(scan) = inputs.scans.receive()? {
             self.health.count_received(1);
             let dropped = self.scans.push(scan.header(), scan.items());

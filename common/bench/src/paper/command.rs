@@ -1,4 +1,4 @@
-//! What `backcast bench paper` does: measures part by part, and writes tables, pictures
+//! The command `backcast bench paper`: measures part by part, and writes tables, pictures
 //! and what became of the claims.
 
 use std::path::PathBuf;

@@ -1,4 +1,4 @@
-//! How many are connected, and which of them makes room for the next one.
+//! The number of connections, and which one is closed for the next.
 //!
 //! Nobody can lock others out by staying: where one peer has as many connections as one
 //! may, or all have, the one that has been silent for longest is closed; those that were

@@ -1,4 +1,4 @@
-//! Who gets in. Browsers state for whom they ask; what they ask for another site
+//! Access control. Browsers state for whom they ask; what they ask for another site
 //! is refused.
 //!
 //! A foreign page cannot read answers of ours, but it could open a WebSocket, and

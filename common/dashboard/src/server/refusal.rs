@@ -1,4 +1,4 @@
-//! Answers that say no, as JSON with the reason.
+//! Error responses, as JSON with the reason.
 
 use axum::Json;
 use axum::http::{StatusCode, Uri};

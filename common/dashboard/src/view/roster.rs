@@ -1,4 +1,4 @@
-//! The nodes of a graph and how they fare.
+//! The nodes of a graph and their states.
 
 use messages::{HealthHeader, NodeState};
 use serde::Serialize;

@@ -1,4 +1,4 @@
-//! The way that the robot has come.
+//! The path of the robot.
 
 use std::collections::VecDeque;
 

@@ -83,7 +83,7 @@ impl CellSet {
         &mut self.words
     }
 
-    /// Whether no cell is among them but of the first this many.
+    /// Whether all cells in the set are among the first `cells`.
     pub(crate) fn are_below(&self, cells: usize) -> bool {
         let (full, rest) = (cells / WORD, cells % WORD);
         let mut beyond = self.words.iter().skip(full);

@@ -1,4 +1,4 @@
-//! What a user can set of the limits.
+//! Options of the limits.
 
 use super::Region;
 use crate::config;

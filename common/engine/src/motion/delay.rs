@@ -33,8 +33,8 @@ const MAX_REST: f64 = 0.5;
 
 impl Motion {
     /// What is to be added to the stamps of the odometry, seconds, so that it moves as
-    /// the sightings do: above zero where it leads the laser. `None` where they do not
-    /// tell.
+    /// the sightings do: above zero where it leads the laser. `None` if they do not
+    /// show it.
     ///
     /// The motion between sightings half a second apart is compared with that of the
     /// odometry at the same times, shifted; a radian counts as a metre.

@@ -1,4 +1,4 @@
-//! By what the robot is followed.
+//! How the robot is tracked: by places or by particles.
 
 use geometry::{Covariance, Pose};
 

@@ -57,7 +57,7 @@ pub enum Need {
     EarlierScan,
 }
 
-/// A pose that is believed is checked by a search at each this many key scans.
+/// A pose that is believed is checked by a search every this many key scans.
 const CHECKED_EVERY: u32 = 10;
 
 /// What such a search finds counts this many scans later: nobody waits for it.

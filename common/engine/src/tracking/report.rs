@@ -1,4 +1,4 @@
-//! What the tracker says.
+//! The tracker's report.
 
 use geometry::Pose;
 use messages::{TrackReason, TrackState};

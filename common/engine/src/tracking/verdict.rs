@@ -1,4 +1,4 @@
-//! Which place is believed, and how far.
+//! Which place is accepted, and with what probability.
 
 use geometry::{Covariance, Pose};
 use messages::{TrackReason, TrackState};

@@ -1,4 +1,4 @@
-//! What a user can set of what is collected.
+//! Options of what is collected.
 
 /// What is collected of a search.
 #[derive(Debug, Clone, Copy, PartialEq, clap::Args)]

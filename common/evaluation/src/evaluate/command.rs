@@ -1,4 +1,4 @@
-//! What `backcast evaluate` does: reads, asks scan by scan, and prints.
+//! The command `backcast evaluate`: reads, asks scan by scan, and prints.
 
 use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
@@ -27,7 +27,7 @@ Below, the probabilities of the best places of all files, and how many of those 
 
 Exit codes: 0 all evaluated, 1 a file could not be, 2 wrong use";
 
-/// What `backcast evaluate` takes.
+/// Options of `backcast evaluate`.
 #[derive(Debug, clap::Args)]
 pub struct Config {
     /// Recordings with true poses on /ground_truth, each by itself: MCAP files, or

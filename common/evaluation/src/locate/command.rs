@@ -1,4 +1,4 @@
-//! What `backcast locate` does: reads, asks scan by scan, and prints.
+//! The command `backcast locate`: reads, asks scan by scan, and prints.
 
 use std::path::PathBuf;
 use std::process::ExitCode;
@@ -14,7 +14,7 @@ use super::particles::{Particles, ParticlesOptions};
 use super::row;
 use crate::EvaluationError;
 
-/// What `backcast locate` takes.
+/// Options of `backcast locate`.
 #[derive(Debug, clap::Args)]
 pub struct Config {
     /// The recording: an MCAP file, or a bag of rosbag2 (its folder, or .db3);

@@ -15,7 +15,7 @@ use super::figures::Figures;
 use super::{course, drive, follow, jumps, starts};
 use crate::EvaluationError;
 
-/// What `backcast evaluate --sequence` takes in addition.
+/// Further options of `backcast evaluate --sequence`.
 #[derive(Debug, Clone, clap::Args)]
 #[command(next_help_heading = "Sequences")]
 pub(crate) struct SequenceOptions {

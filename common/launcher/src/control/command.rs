@@ -11,7 +11,7 @@ use super::text;
 use crate::LauncherError;
 use crate::run::control::{Answer, Question, Status, ask};
 
-/// What `backcast status` takes.
+/// Options of `backcast status`.
 #[derive(Debug, Args)]
 pub struct StatusConfig {
     /// Only this graph [default: all that this user runs]
@@ -23,7 +23,7 @@ pub struct StatusConfig {
     json: bool,
 }
 
-/// What `backcast stop` takes.
+/// Options of `backcast stop`.
 #[derive(Debug, Args)]
 pub struct StopConfig {
     /// The graph [default: the only one that this user runs]
@@ -31,7 +31,7 @@ pub struct StopConfig {
     graph: Option<GraphName>,
 }
 
-/// What `backcast restart` takes.
+/// Options of `backcast restart`.
 #[derive(Debug, Args)]
 pub struct RestartConfig {
     /// The node's id in the descriptor

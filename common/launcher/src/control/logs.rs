@@ -18,7 +18,7 @@ use crate::LauncherError;
 const KEPT_LINES: Duration = Duration::from_millis(700);
 const TICK: Duration = Duration::from_millis(100);
 
-/// What `backcast logs` takes.
+/// Options of `backcast logs`.
 #[derive(Debug, Args)]
 pub struct LogsConfig {
     /// Only this node

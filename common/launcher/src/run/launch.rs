@@ -1,4 +1,4 @@
-//! The course of a run: check, build, start, watch, stop, sum up.
+//! The stages of a run: check, build, start, watch, stop, sum up.
 
 use std::{
     io,

@@ -1,4 +1,4 @@
-//! What `backcast run` takes on the command line.
+//! Options of `backcast run`.
 
 use std::{
     hash::{BuildHasher, Hasher, RandomState},
@@ -12,7 +12,7 @@ use transport::{GRAPH_VARIABLE, GraphName, TransportError};
 
 use crate::descriptor::DEFAULT_FILE;
 
-/// What `backcast run` takes.
+/// Options of `backcast run`.
 #[derive(Debug, Args)]
 pub struct Config {
     /// The graph's descriptor

@@ -126,7 +126,7 @@ pub(super) fn name_of(kind: Kind, number: u8) -> String {
     }
 }
 
-/// Whether a line of this name is of a kind that logs of CARMEN have; used to tell
+/// Whether a line of this name is of a kind that logs of CARMEN have; used to distinguish
 /// such a log from other text.
 pub(super) fn is_known(name: &str) -> bool {
     matches!(name, "ODOM" | "PARAM" | "SYNC" | "TRUEPOS") || laser_named(name).is_some()

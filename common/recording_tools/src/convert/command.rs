@@ -1,4 +1,4 @@
-//! What `backcast convert` does.
+//! The command `backcast convert`.
 
 use std::fs::File;
 use std::io::{BufWriter, Write};
@@ -24,7 +24,7 @@ topics are converted. The content decides if the name does not.
 Exit codes: 0 done, 1 failed or nothing to convert, which leaves no file, 2 wrong use, 3 done but
 something could not be read";
 
-/// What `backcast convert` takes.
+/// Options of `backcast convert`.
 #[derive(Debug, clap::Args)]
 pub struct Config {
     /// The file to read: .log, .clf, .txt, .mcap or .db3, or the folder of a bag
@@ -150,7 +150,7 @@ pub fn run(config: &Config) -> Result<ExitCode, RecordingToolsError> {
         });
     }
     unfinished.keep();
-    Ok(tell(&report, &config.to))
+    Ok(print_report(&report, &config.to))
 }
 
 fn no_conversion(from: &str, to: &Path) -> RecordingToolsError {
@@ -166,7 +166,7 @@ fn ends_packed(path: &Path) -> bool {
         .is_some_and(|e| e.eq_ignore_ascii_case("gz"))
 }
 
-fn tell(report: &Report, to: &Path) -> ExitCode {
+fn print_report(report: &Report, to: &Path) -> ExitCode {
     let Report {
         scans, odometry, ..
     } = report;

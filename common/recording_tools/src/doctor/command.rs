@@ -1,4 +1,4 @@
-//! What `backcast doctor` does.
+//! The command `backcast doctor`.
 
 use std::path::PathBuf;
 use std::process::ExitCode;
@@ -17,7 +17,7 @@ use crate::RecordingToolsError;
 pub const NOTES: &str = "\
 Exit codes: 0 nothing but notes, 1 there are problems, 2 wrong use, 3 data was lost";
 
-/// What `backcast doctor` takes.
+/// Options of `backcast doctor`.
 #[derive(Debug, clap::Args)]
 pub struct Config {
     /// The recordings, each by itself: MCAP files, or bags of rosbag2 (their

@@ -1,4 +1,4 @@
-//! What can be wrong with a recording.
+//! A finding about a recording, with its severity.
 
 use serde::Serialize;
 

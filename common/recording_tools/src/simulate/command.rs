@@ -1,4 +1,4 @@
-//! What `backcast simulate` does: reads the map, drives, and records.
+//! The command `backcast simulate`: reads the map, drives, and records.
 
 use std::path::PathBuf;
 use std::process::ExitCode;
@@ -15,7 +15,7 @@ use crate::RecordingToolsError;
 
 const SECOND_NS: i64 = 1_000_000_000;
 
-/// What `backcast simulate` takes.
+/// Options of `backcast simulate`.
 #[derive(Debug, clap::Args)]
 pub struct Config {
     /// The map, a YAML file as map_server reads it

@@ -1,4 +1,4 @@
-//! Where scans leave the node and troubles are reported.
+//! Where scans are published and errors are reported.
 
 use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, Ordering};

@@ -1,4 +1,4 @@
-//! What somebody types, read on a thread of its own.
+//! Keyboard input, read on a thread of its own.
 
 use std::io::BufRead;
 use std::sync::mpsc::{Receiver, TryRecvError, channel};

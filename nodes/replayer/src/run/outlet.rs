@@ -1,4 +1,4 @@
-//! Where messages leave the node and troubles are reported.
+//! Where messages are published and errors are reported.
 
 use std::collections::BTreeMap;
 

@@ -6,7 +6,7 @@ use super::super::sonar::Judged;
 use super::{Basis, Case, Claim, least, most};
 
 /// A share that is no worse than another is at least this much of it: what a hundred poses
-/// tell apart.
+/// can distinguish.
 const AS_GOOD: f64 = 0.95;
 /// The peak is taken for the robot if it is in this many of the poses.
 const RELIABLE: f64 = 0.95;

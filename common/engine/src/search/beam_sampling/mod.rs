@@ -45,7 +45,7 @@ const EXPECTED_BEST: f64 = 0.98;
 /// What sweeping no beam at all would take, as a share of sweeping all.
 const SHARE_OF_NONE: f64 = 0.15;
 
-/// Of this many cells one pose is kept at a heading, and not less than this many poses.
+/// One pose is kept for this number of cells at a heading, and at least this many poses.
 const CELLS_A_KEPT: usize = 1024;
 const MIN_KEPT: usize = 64;
 

@@ -31,7 +31,7 @@ use crate::votes::Distinct;
 /// Coarse blocks that are split for each candidate that is wanted.
 const COARSE_SHARE: usize = 6;
 
-/// On large maps, one of this many coarse blocks is split.
+/// On large maps, one in this number of coarse blocks is split.
 const COARSE_PART: usize = 16;
 
 /// Blocks of 8 × 8 cells that are searched for each candidate.
@@ -258,7 +258,7 @@ fn bounded(task: &Task<'_>, block: usize) -> BoundedBlock {
     (bound, Reverse(block as u32))
 }
 
-/// The greatest this many of what was offered.
+/// The `count` greatest blocks of those offered.
 #[derive(Debug, Default)]
 struct Greatest {
     count: usize,
@@ -315,7 +315,7 @@ impl Spot {
     }
 }
 
-/// Keeps the greatest this many, in falling order.
+/// Keeps the `count` greatest, in falling order.
 fn keep_greatest<T: Ord>(all: &mut Vec<T>, count: usize) {
     if count < all.len() {
         all.select_nth_unstable_by(count, |a, b| b.cmp(a));

@@ -139,7 +139,7 @@ impl Tally {
 }
 
 impl Budget {
-    /// For one of this many parts of a search, which takes this many steps at most. Counting
+    /// For one of `parts` of a search, which takes `most_steps` at most. Counting
     /// every pose costs such a share of brute force.
     pub(in crate::search) fn new(
         brute_force: Cost,
