@@ -8,8 +8,8 @@
          "ranges": [1.2, null, 1.3, ...]}          metres; null: nothing came back
     python3 docs/zenoh/locate.py corridor scan.json
 
-Prints the places as JSON. The question is JSON because any program can write it;
-docs/locate_server.md tells what may stand in it, and what comes back.
+Prints the places as JSON. The request is JSON because any program can write it;
+docs/locate_server.md explains the request and the reply.
 """
 
 import argparse

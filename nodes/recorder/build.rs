@@ -1,4 +1,4 @@
-//! Tells the recorder which commit it was built from, for the metadata of its
+//! Passes to the recorder the commit it was built from, for the metadata of its
 //! recordings; "unknown" where there is no repository.
 
 use std::process::Command;

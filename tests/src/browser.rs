@@ -17,7 +17,7 @@ pub struct Browser {
 }
 
 impl Browser {
-    /// Opens a window of so many pixels; below 500 it is that of a telephone.
+    /// Opens a window of this many pixels; below 500 it is that of a telephone.
     /// `None` where Chromium or its driver is not installed.
     #[must_use]
     pub fn open(width: u32, height: u32) -> Option<Self> {

@@ -5,7 +5,7 @@ use std::path::{Path, PathBuf};
 use std::process::Command;
 use std::sync::OnceLock;
 
-use transport::testing::patiently;
+use transport::testing::allow_long;
 
 /// The path of an executable, built in the profile of the tests.
 #[must_use]
@@ -14,7 +14,7 @@ pub fn path(name: &str) -> PathBuf {
     // The tests lie in `<target>/<profile>/deps`, executables one above.
     let test = std::env::current_exe().unwrap();
     let folder = test.ancestors().nth(2).unwrap();
-    BUILT.get_or_init(|| patiently(|| build(folder)));
+    BUILT.get_or_init(|| allow_long(|| build(folder)));
     folder.join(name)
 }
 
@@ -29,15 +29,15 @@ pub fn backcast() -> Command {
 }
 
 /// All of them at once, as `cargo run` and the descriptor build them: cargo would
-/// build what they depend on anew for each one.
+/// build what they depend on again for each one.
 fn build(folder: &Path) {
     // While a graph is joined, iceoryx2 changes the mask of the whole process;
     // what cargo makes would not be executable.
     let mut command = Command::new("sh");
     command.args(["-c", "umask 022 && exec \"$0\" \"$@\"", env!("CARGO")]);
     command.current_dir(crate::root());
-    // Scripts that build what others use look at these, and what cargo tells a test
-    // differs from what it tells them: all of zenoh would be built anew each time.
+    // Scripts that build what others use look at these, and what cargo passes to a test
+    // differs from what it passes to them: all of zenoh would be built again each time.
     for (name, _) in std::env::vars_os() {
         let text = name.to_string_lossy();
         if text.starts_with("CARGO_PKG_") || text.starts_with("CARGO_MANIFEST_") {

@@ -119,7 +119,7 @@ impl Live {
     /// The processes that it has started, by their executables.
     ///
     /// # Panics
-    /// If the system does not tell.
+    /// If the system does not report it.
     #[must_use]
     pub fn nodes(&self) -> Vec<(String, Pid)> {
         let pid = self.launcher();

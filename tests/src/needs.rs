@@ -1,5 +1,5 @@
 //! What some tests need beside a Rust toolchain. Where it is missing a test is left out,
-//! and says so; it fails where all that it needs was promised.
+//! and says so; it fails where all that it needs was required.
 //!
 //! `BACKCAST_REQUIRE` names what must be there: a list of [`Need::name`], `all` or `none`.
 //! Where it is not set, and `CI` is, all but root and data must be there. Each test that was

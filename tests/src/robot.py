@@ -171,7 +171,7 @@ class Robot:
             except Exception as error:
                 say(event="failed", topic=topic, error=repr(error))
 
-        # Called where it comes in: threads of their own would tell topics out of order.
+        # Called where it comes in: threads of their own would report topics out of order.
         handler = zenoh.handlers.Callback(take, indirect=False)
         self.alive.append(self.session.declare_subscriber(key, handler))
         self.token(token)

@@ -16,7 +16,7 @@ pub const LIBRARIES: [&str; 3] = [
     "zenoh-ros2-sdk==0.1.8",
 ];
 
-/// A process that does as it is told, killed if the test fails.
+/// A process that executes commands, killed if the test fails.
 pub struct Robot {
     process: Child,
     orders: ChildStdin,
@@ -67,7 +67,7 @@ impl Robot {
     ///
     /// # Panics
     /// If the robot ends, or a message of the gateway made it fail.
-    pub fn hear(&mut self) -> Value {
+    pub fn receive(&mut self) -> Value {
         let line = self.said.next().expect("the robot has ended").unwrap();
         let said: Value = serde_json::from_str(&line).unwrap();
         assert_ne!(said["event"], "failed", "{said}");
@@ -77,10 +77,10 @@ impl Robot {
     /// The next event of that name; others are passed over.
     ///
     /// # Panics
-    /// As [`Robot::hear`].
+    /// As [`Robot::receive`].
     pub fn wait_for(&mut self, event: &str) -> Value {
         loop {
-            let said = self.hear();
+            let said = self.receive();
             if said["event"] == event {
                 return said;
             }

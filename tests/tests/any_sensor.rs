@@ -118,7 +118,7 @@ fn any_field_of_view_and_number_of_beams_will_do() {
                     );
                 }
                 // What is seen over a quarter or half of a turn is not always enough
-                // to tell which room it is.
+                // to find which room it is.
                 if field_of_view >= 270.0 {
                     assert!(
                         metres < 0.1 && degrees < 3.0,

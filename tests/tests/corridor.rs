@@ -10,7 +10,7 @@ use tests::world::{World, as_engine_takes_it};
 use tests::{answers, executables};
 
 /// After a change that is meant to change answers, `backcast regress --accept`
-/// writes them anew; the difference is looked at before it is committed.
+/// writes them again; the difference is looked at before it is committed.
 #[test]
 fn the_graph_answers_as_expected() {
     let world = World::of("malaga_corridor");

@@ -1,4 +1,4 @@
-//! Scans that cannot tell where they were taken, and scans that can in spite of
+//! Scans that are ambiguous, and scans that can in spite of
 //! everything: what the verdict says of them.
 #![allow(
     clippy::unwrap_used,
@@ -51,7 +51,7 @@ fn a_room_that_a_half_turn_takes_to_itself_is_ambiguous() {
 }
 
 #[test]
-fn mirror_images_of_a_room_are_told_apart() {
+fn mirror_images_of_a_room_are_distinguished() {
     let both = l_shaped(l_shaped(Building::new(16.0, 6.0), 0.0, false), 8.0, true);
     for pose in [Pose::new(2.0, 4.0, 0.5), Pose::new(13.5, 4.0, -2.0)] {
         let found = locate(&both, &seen(&both, pose));

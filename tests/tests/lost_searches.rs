@@ -1,5 +1,5 @@
 //! A search that dies with one of those who take part in it: the tracker does not wait for
-//! its answer until it gives up, but goes on as soon as another process is in its place.
+//! its answer until it gives up, but continues as soon as another process is in its place.
 #![allow(
     clippy::unwrap_used,
     reason = "the lint spares test functions but not what they share"
@@ -110,7 +110,7 @@ fn check(victim: &'static str) {
         }
         scan = robot.send(counter);
     }
-    // What a node says last comes to those alone who have heard it before.
+    // The last message of a node reaches only those who have received from it before.
     wait_for_health(&robot.graph, &robot.health, |report| {
         report.node.as_str() == "tracker"
     });

@@ -86,7 +86,7 @@ fn nodes(world: &World, token: &str) -> String {
     )
 }
 
-/// The process of a node, as the API tells it.
+/// The process of a node, as the API reports it.
 fn process(browser: &Browser, node: &str) -> Pid {
     browser.wait_until(&format!(
         "(window.asked ??= fetch('/api/v1/robots/r7').then((r) => r.json()).then((known) => {{
@@ -174,7 +174,7 @@ fn an_operator_sees_the_graph_and_what_befalls_it() {
     );
     browser.wait_until("document.getElementById('verdict').textContent === 'No data'");
 
-    // A monitor that hangs is a lost connection, until it goes on.
+    // A monitor that hangs is a lost connection, until it continues.
     let monitor = process(&browser, "monitor");
     kill(monitor, Signal::SIGSTOP).unwrap();
     browser.wait_until(

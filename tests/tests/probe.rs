@@ -40,7 +40,7 @@ fn emulated(tag: &str, arguments: &[&str], device: impl Fn(&str) -> String) -> S
     let emulator = [&source, arguments].concat();
     let emulator = NodeProcess::start(path.to_str().unwrap(), &graph, &emulator);
     let device = device(&graph.name().loopback().to_string());
-    // It may tell how it fares before it listens.
+    // It may report its health before it listens.
     wait_for_health(&graph, &health, |report| {
         report.node.as_str() == "emulator" && is_there(&device)
     });
@@ -112,7 +112,7 @@ fn an_lms2xx_at_its_baud_rate() {
 }
 
 #[test]
-fn what_is_no_laser_is_told_apart() {
+fn what_is_no_laser_is_distinguished() {
     let fails = |device: &str, expected: &str| {
         let (code, said, complained) = probe(device);
         assert_eq!((code, said.as_str()), (Some(1), ""), "{complained}");

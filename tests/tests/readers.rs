@@ -184,7 +184,7 @@ fn the_readers_of_others_agree() {
     );
 }
 
-/// Writes a recording anew as a bag in SQLite.
+/// Writes a recording again as a bag in SQLite.
 const BAG_SCRIPT: &str = r#"
 import sys
 from pathlib import Path

@@ -1,5 +1,5 @@
 //! Recordings that the graph makes: the same when they are played and recorded
-//! again, and told of what they have lost.
+//! again, and report what they have lost.
 #![allow(
     clippy::unwrap_used,
     reason = "the lint spares test functions but not what they share"
@@ -18,7 +18,7 @@ use tests::executables;
 use tests::recorded::{graph, messages, record};
 use tests::world::World;
 
-/// Topics whose messages tell how long something took, or when it was sent.
+/// Topics whose messages hold how long something took, or when it was sent.
 const TIMED: [&str; 4] = [
     "/backcast/votes",
     "/backcast/hypotheses",
@@ -143,7 +143,7 @@ fn cut_short(folder: &TempDir) -> (PathBuf, u64) {
 }
 
 #[test]
-fn what_a_recording_has_lost_is_told_and_drawn() {
+fn what_a_recording_has_lost_is_reported_and_drawn() {
     let folder = TempDir::new().unwrap();
     let (case, scans) = cut_short(&folder);
     assert!((1..37).contains(&scans), "{scans}");
@@ -178,9 +178,9 @@ fn what_a_recording_has_lost_is_told_and_drawn() {
     let verdict = String::from_utf8_lossy(&compared.stdout);
     // What was played is as expected; the other scans are missing.
     let missing = 37 - scans;
-    let told = format!("was played and compared, with {missing} differences");
+    let expected = format!("was played and compared, with {missing} differences");
     assert!(verdict.contains("the file is cut short"), "{verdict}");
-    assert!(verdict.contains(&told), "{verdict}");
+    assert!(verdict.contains(&expected), "{verdict}");
     let drawn = std::fs::read_dir(&pictures).unwrap().count() as u64;
     assert_eq!(drawn, missing.min(20));
 }

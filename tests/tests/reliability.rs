@@ -41,7 +41,7 @@ fn a_node_that_hangs_is_ended_and_started_again() {
     assert_eq!(summary["pose"]["unique_wrong"], 0, "{summary}");
     let said = said.join("\n");
     for executable in ["accumulator", "tracker"] {
-        let expected = format!("{executable} gave no sign of life for");
+        let expected = format!("{executable} sent no heartbeat for");
         assert!(said.contains(&expected), "{said}");
     }
 }
@@ -109,8 +109,8 @@ fn a_launcher_that_is_killed_is_started_again_under_the_same_name() {
 }
 
 #[test]
-fn full_shared_memory_ends_nothing_and_is_told() {
-    let test = "full_shared_memory_ends_nothing_and_is_told";
+fn full_shared_memory_ends_nothing_and_is_reported() {
+    let test = "full_shared_memory_ends_nothing_and_is_reported";
     if !has_its_own(test, "/dev/shm", "96m") {
         return;
     }
@@ -137,8 +137,8 @@ fn full_shared_memory_ends_nothing_and_is_told() {
 }
 
 #[test]
-fn a_graph_that_is_done_harm_for_a_while_keeps_its_promises() {
-    let test = "a_graph_that_is_done_harm_for_a_while_keeps_its_promises";
+fn a_graph_under_faults_meets_its_guarantees() {
+    let test = "a_graph_under_faults_meets_its_guarantees";
     if !has_its_own(test, "/dev/shm", "256m") {
         return;
     }
@@ -160,7 +160,7 @@ fn a_graph_that_is_done_harm_for_a_while_keeps_its_promises() {
     assert!(output.status.success(), "{report}");
     // A round holds seventeen, of which twelve kill nodes.
     let faults = report["faults"].as_array().unwrap();
-    let killed = faults.iter().filter_map(|felt| felt["killed"].as_u64());
+    let killed = faults.iter().filter_map(|effect| effect["killed"].as_u64());
     assert!(killed.sum::<u64>() > 5, "{report}");
     assert!(report["judged"].as_u64() > Some(50), "{report}");
 }

@@ -31,11 +31,11 @@ fn lines(graph: Child) -> Vec<Value> {
 }
 
 #[test]
-fn two_graphs_do_not_hear_each_other() {
+fn two_graphs_do_not_receive_each_other() {
     let names = ["a", "b"].map(|tag| format!("s{}{tag}", std::process::id()));
     let [first, second] = [start(&names[0]), start(&names[1])];
     for lines in [lines(first), lines(second)] {
-        // A pose for each of the 37 scans, each heard once, and the summary.
+        // A pose for each of the 37 scans, each received once, and the summary.
         assert_eq!(lines.len(), 38);
         let stamps: Vec<i64> = lines[..37]
             .iter()

@@ -1,4 +1,4 @@
-//! What `backcast bench` does: sets up the cases of a table, measures, prints.
+//! The command `backcast bench`: sets up the cases of a table, measures, prints.
 
 use std::process::ExitCode;
 
@@ -51,7 +51,7 @@ impl clap::ValueEnum for Measured {
     }
 }
 
-/// What `backcast bench` takes.
+/// Options of `backcast bench`.
 #[derive(Debug, clap::Args)]
 pub struct Config {
     /// What is measured
@@ -66,12 +66,12 @@ pub struct Config {
     #[arg(long)]
     quick: bool,
 
-    /// Where the random worlds and scans begin
+    /// Seed of the random worlds and scans
     #[arg(long, value_name = "NUMBER", default_value_t = 1)]
     seed: u64,
 
-    /// Most scans of a case, 1..=1000; methods that take long are measured on
-    /// fewer [default: 10, or 5 with --quick]
+    /// Maximum number of scans per case, 1..=1000; methods that take long are measured
+    /// on fewer [default: 10, or 5 with --quick]
     #[arg(long, value_name = "COUNT", value_parser = clap::value_parser!(u32).range(1..=1000))]
     scans: Option<u32>,
 

@@ -57,7 +57,7 @@ impl Contest {
         })
     }
 
-    /// Measures every method on the same scans; `step` is told of each.
+    /// Measures every method on the same scans; `step` is called for each.
     ///
     /// # Errors
     /// If the beams do not divide the headings, or a scan is refused.

@@ -97,7 +97,7 @@ fn collecting<'a>(world: &'a World, index: &'a SearchIndex, collect: CollectConf
 }
 
 /// The sixteen best distinct poses, exactly, with every pose counted: down to half of the
-/// best one's votes at first, and lower where fewer are distinct. Gives up after so many
+/// best one's votes at first, and lower where fewer are distinct. Gives up after this many
 /// seconds, or where a million poses are not enough.
 pub(super) fn top_sixteen<'a>(
     world: &'a World,

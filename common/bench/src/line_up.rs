@@ -17,7 +17,7 @@ use super::scope::{Place, Table};
 use crate::BenchError;
 
 /// Range tables are left out where they would take more, bytes.
-const MOST_TABLE_BYTES: usize = 4 << 30;
+const MAX_TABLE_BYTES: usize = 4 << 30;
 
 /// A place, prepared for every method of a table.
 pub(super) struct LineUp {
@@ -62,7 +62,7 @@ impl LineUp {
         let world = World::generate(place.kind, (side, side), place.p_over_n / 100.0, seed)?;
         let space = world.space(place.headings)?;
         let with_baselines = table != Table::Search;
-        let has_table = with_baselines && table_bytes(&world, &space) <= MOST_TABLE_BYTES;
+        let has_table = with_baselines && table_bytes(&world, &space) <= MAX_TABLE_BYTES;
         let all = 0..space.directions.count();
         Ok(LineUp {
             table,

@@ -10,7 +10,7 @@ use crate::BenchError;
 pub(super) struct Progress(ProgressBar);
 
 impl Progress {
-    /// A bar for so many measurements.
+    /// A bar for this many measurements.
     pub(super) fn new(measurements: usize) -> Self {
         let template = "[{bar:30}] {pos}/{len} measurements, {eta} left: {msg}";
         let style = ProgressStyle::with_template(template)

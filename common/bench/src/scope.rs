@@ -5,7 +5,7 @@ use benchmarks::worlds::Kind;
 use engine::taper::TaperShape;
 
 /// Longest side of a world, cells.
-const MOST_SIDE: u32 = 5000;
+const MAX_SIDE: u32 = 5000;
 
 /// The tables that can be printed.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, clap::ValueEnum)]
@@ -36,7 +36,7 @@ pub(super) struct Filter {
     #[arg(long, value_enum, value_delimiter = ',', value_name = "KIND")]
     pub(super) kind: Vec<Kind>,
     /// Sides of the square worlds in cells of 0.05 m, 32..=5000
-    #[arg(long, value_delimiter = ',', value_name = "CELLS", value_parser = clap::value_parser!(u32).range(32..=i64::from(MOST_SIDE)))]
+    #[arg(long, value_delimiter = ',', value_name = "CELLS", value_parser = clap::value_parser!(u32).range(32..=i64::from(MAX_SIDE)))]
     pub(super) size: Vec<u32>,
     /// Boundary cells over free cells, per cent, 1..=150
     #[arg(long, value_delimiter = ',', value_name = "PERCENT", value_parser = parse_ratio)]
@@ -84,7 +84,7 @@ fn parse_headings(text: &str) -> Result<u32, String> {
     Err(format!("{value} is not a multiple of 8 from 8 to 3600"))
 }
 
-/// A world, and the headings that are told apart in it.
+/// A world, and the headings that are distinguished in it.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(super) struct Place {
     pub(super) kind: Kind,

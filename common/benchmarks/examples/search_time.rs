@@ -42,7 +42,7 @@ struct Options {
     seed: u64,
     #[arg(long, default_value_t = 1)]
     threads: usize,
-    /// From the plainest, 0, to what this processor has at best
+    /// From the baseline CPU, 0, to the best of this processor
     #[arg(long)]
     instruction_set: Option<usize>,
     /// Print a line for each scan
@@ -114,7 +114,7 @@ fn main() -> Result<(), BenchmarksError> {
     let mean = costs.iter().sum::<f64>() / count as f64;
     let most = costs.iter().copied().fold(0.0, f64::max);
     println!(
-        "median {:.2} ms, mean {mean:.2}, most {most:.2}; best/possible {:.1} %, poses a scan {}, found {hits} of {count}",
+        "median {:.2} ms, mean {mean:.2}, max {most:.2}; best/possible {:.1} %, poses a scan {}, found {hits} of {count}",
         median(costs),
         100.0 * share / count as f64,
         poses / count as u64,

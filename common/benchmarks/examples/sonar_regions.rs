@@ -86,7 +86,7 @@ impl Reading {
 
 /// A scan of the drive.
 struct Taken {
-    /// How far the robot had come by its odometry, metres.
+    /// How far the robot had driven by its odometry, metres.
     way_m: f64,
     odom_from_laser: Pose,
     map_from_laser: Pose,

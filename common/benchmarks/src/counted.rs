@@ -128,7 +128,7 @@ pub fn most_beams(world: &World, query: Query<'_>) -> u16 {
     beams.into_iter().max().unwrap_or(0)
 }
 
-/// Projects all readings back from all boundary cells; `add` is told of each cell that a
+/// Projects all readings back from all boundary cells; `add` is called for each cell that a
 /// taper reaches, and its votes.
 fn project(world: &World, query: Query<'_>, mut add: impl FnMut(usize, u8)) -> ReverseCounts {
     let mut counts = ReverseCounts::default();

@@ -1,4 +1,4 @@
-//! What can go wrong when a case is set up.
+//! Errors when a case is set up.
 
 use engine::EngineError;
 

@@ -16,7 +16,7 @@ use crate::BenchmarksError;
 use crate::worlds::World;
 
 /// Share of the beams that must return.
-const LEAST_RETURNS: f64 = 0.9;
+const MIN_RETURNS: f64 = 0.9;
 
 /// Random poses that are tried before a scan is given up.
 const TRIES: usize = 10_000;
@@ -190,7 +190,7 @@ fn simulate_one(
         }
         let ranges = look_out(world, space, config, (x, y, heading), rng);
         let returns = ranges.iter().filter(|range| range.is_finite()).count();
-        if returns as f64 >= LEAST_RETURNS * config.beams as f64 {
+        if returns as f64 >= MIN_RETURNS * config.beams as f64 {
             return Ok(SimulatedScan {
                 x,
                 y,

@@ -1,4 +1,4 @@
-// Wires the parts: a connection tells the store, and the page shows it.
+// Wires the parts: a connection fills the store, and the page shows it.
 
 import { ask, savePicture, takeToken } from "./actions.js";
 import { Connection } from "./connection.js";
@@ -11,7 +11,7 @@ const store = new Store();
 const view = new MapView($("map"), store);
 let connection = null;
 let robot = "";
-let frozen = false;
+let paused = false;
 let choosing = false;
 let link = "connecting";
 let lostAt = 0;
@@ -50,14 +50,14 @@ const handlers = {
     dirty = true;
   },
   message(message) {
-    if (frozen) return;
-    const part = store.hear(message);
+    if (paused) return;
+    const part = store.receive(message);
     if (part === "snapshot" || part === "map") loadMap();
     dirty = true;
     view.draw();
   },
   image(buffer) {
-    if (frozen) return;
+    if (paused) return;
     store.image(buffer);
     view.paintField();
   },
@@ -91,12 +91,12 @@ function showLink() {
   const live = age === null ? "live" : `live · ${age} ms`;
   const nothing = silence === null ? "no data yet" : `no data for ${Math.floor(silence)} s`;
   const words = { live: silent ? nothing : live, lost: "disconnected", connecting: "connecting", alone: "no robot yet" };
-  $("link-text").textContent = frozen && link === "live" ? "frozen" : words[link];
+  $("link-text").textContent = paused && link === "live" ? "paused" : words[link];
   $("lost").hidden = link !== "lost";
   if (link === "lost") {
     const seconds = Math.floor((Date.now() - lostAt) / 1000);
-    const since = wasLive ? `What you see is ${seconds} s old.` : "Nothing was heard yet.";
-    $("lost-text").textContent = `${since} Trying again by itself.`;
+    const since = wasLive ? `What you see is ${seconds} s old.` : "No data was received yet.";
+    $("lost-text").textContent = `${since} Reconnecting.`;
   }
 }
 
@@ -191,12 +191,12 @@ function setFollow(on) {
   view.draw();
 }
 
-/** A frozen page shows what it had; then it begins anew. */
-function setFrozen(on) {
-  frozen = on;
-  document.body.toggleAttribute("data-frozen", on);
-  $("freeze").setAttribute("aria-pressed", on);
-  $("freeze").setAttribute("aria-label", on ? "Go on" : "Freeze");
+/** A paused page keeps what it shows; then it starts again. */
+function setPaused(on) {
+  paused = on;
+  document.body.toggleAttribute("data-paused", on);
+  $("pause").setAttribute("aria-pressed", on);
+  $("pause").setAttribute("aria-label", on ? "Resume" : "Pause");
   showLink();
   if (!on) {
     connection?.close();
@@ -219,7 +219,7 @@ async function searchIn(corners) {
   const [[x0, y0], [x1, y1]] = corners;
   if (Math.abs(x1 - x0) < 0.1 || Math.abs(y1 - y0) < 0.1) return;
   const rounded = corners.map((corner) => corner.map((metres) => Math.round(metres * 1000) / 1000));
-  await ask(robot, "PUT", "region", { corners: rounded }, "Poses are sought in this region as soon as it is prepared.");
+  await ask(robot, "PUT", "region", { corners: rounded }, "Poses are searched in this region as soon as it is prepared.");
 }
 
 function picture() {
@@ -239,7 +239,7 @@ $("zoom-in").onclick = () => zoom(1.5);
 $("zoom-out").onclick = () => zoom(1 / 1.5);
 $("fit").onclick = fit;
 $("follow").onclick = () => setFollow(!view.follow);
-$("freeze").onclick = () => setFrozen(!frozen);
+$("pause").onclick = () => setPaused(!paused);
 $("picture").onclick = picture;
 $("theme").onclick = switchTheme;
 $("help").onclick = () => $("keys-dialog").showModal();
@@ -248,7 +248,7 @@ $("robot").onchange = () => {
   watch($("robot").value);
 };
 $("region").onclick = () => { setChoosing(!choosing); $("map").focus(); };
-$("everywhere").onclick = () => ask(robot, "DELETE", "region", null, "Poses are sought everywhere again.");
+$("everywhere").onclick = () => ask(robot, "DELETE", "region", null, "Poses are searched everywhere again.");
 $("save").onclick = () => ask(robot, "POST", "save", null, "The recorder saves the last minutes.");
 
 const STEP = 80; // pixels
@@ -256,7 +256,7 @@ const KEYS = {
   ArrowLeft: () => view.camera.pan(STEP, 0), ArrowRight: () => view.camera.pan(-STEP, 0),
   ArrowUp: () => view.camera.pan(0, STEP), ArrowDown: () => view.camera.pan(0, -STEP),
   "+": () => zoom(1.25), "=": () => zoom(1.25), "-": () => zoom(0.8), 0: fit,
-  f: () => setFollow(!view.follow), p: picture, t: switchTheme, " ": () => setFrozen(!frozen),
+  f: () => setFollow(!view.follow), p: picture, t: switchTheme, " ": () => setPaused(!paused),
   1: () => setLayer("beams"), 2: () => setLayer("hypotheses"), 3: () => setLayer("track"), 4: () => setLayer("field"),
   "?": () => $("keys-dialog").showModal(), Escape: () => setChoosing(false),
 };

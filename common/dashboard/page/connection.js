@@ -5,11 +5,11 @@ const SILENT_MS = 3500; // a live stream answers each ping
 const FIRST_WAIT_MS = 250;
 const LONGEST_WAIT_MS = 4000;
 
-/** Tells `handlers`: state(word), message(object), image(buffer), delay(ms). */
+/** Calls `handlers`: state(word), message(object), image(buffer), delay(ms). */
 export class Connection {
   #socket = null;
   #wait = FIRST_WAIT_MS;
-  #heardAt = 0;
+  #lastMessageAt = 0;
   #timer = 0;
   #wantsField = false;
 
@@ -27,14 +27,14 @@ export class Connection {
     const socket = new WebSocket(`${scheme}//${location.host}${path}`);
     socket.binaryType = "arraybuffer";
     this.#socket = socket;
-    this.#heardAt = performance.now();
+    this.#lastMessageAt = performance.now();
     socket.onopen = () => this.#wantsField && this.#send({ type: "field", on: true });
-    socket.onmessage = ({ data }) => socket === this.#socket && this.#hear(data);
+    socket.onmessage = ({ data }) => socket === this.#socket && this.#receive(data);
     socket.onclose = () => socket === this.#socket && this.#lose();
   }
 
-  #hear(data) {
-    this.#heardAt = performance.now();
+  #receive(data) {
+    this.#lastMessageAt = performance.now();
     if (typeof data !== "string") return this.handlers.image(data);
     const message = JSON.parse(data);
     if (message.type === "pong") return this.handlers.delay((performance.now() - message.t) / 2);
@@ -55,7 +55,7 @@ export class Connection {
 
   #check() {
     if (!this.#socket) return;
-    if (performance.now() - this.#heardAt > SILENT_MS) {
+    if (performance.now() - this.#lastMessageAt > SILENT_MS) {
       const socket = this.#socket;
       this.#lose();
       socket.close();

@@ -29,7 +29,7 @@ function fixed(value, digits) {
   return Number(text) === 0 ? text.replace("-", "") : text.replace("-", "−");
 }
 
-/** A share in words that tell almost none from none. */
+/** A share in words that distinguish almost none from none. */
 const percent = (share) => (share > 0 && share < 0.005 ? "<1 %" : `${Math.round(share * 100)} %`);
 const degrees = (radians) => (radians * 180) / Math.PI;
 
@@ -40,12 +40,11 @@ function clock(seconds) {
   return `${date.toLocaleDateString("en-CA")} ${date.toLocaleTimeString("en-GB")}.${tenths}`;
 }
 
-const WORDS = { Unique: "Located", Ambiguous: "Ambiguous", PoorFit: "Poor fit", NoScan: "No scan" };
-const STATES = { Unique: "Located", Searching: "Searching", Doubtful: "Doubtful", Lost: "Lost" };
+const WORDS = { PoorFit: "Poor fit", NoScan: "No scan" };
 
 /** What is said of the pose: by the tracker or, without one, of the last scan. */
-function told({ pose, answer }) {
-  if (pose) return { word: STATES[pose.state] ?? pose.state, kind: pose.state, says: pose.says };
+function verdict({ pose, answer }) {
+  if (pose) return { word: pose.state, kind: pose.state, says: pose.says };
   if (answer) return { word: WORDS[answer.verdict] ?? answer.verdict, kind: answer.verdict, says: answer.says };
   return null;
 }
@@ -54,7 +53,7 @@ export function showAnswer(store) {
   const { answer, pose } = store;
   const silence = store.silence();
   const stale = silence === null || silence > STALE_S;
-  const is = told(store);
+  const is = verdict(store);
   $("verdict-card").classList.toggle("stale", stale);
   if (!is) {
     write("verdict", "Waiting");
@@ -63,7 +62,7 @@ export function showAnswer(store) {
   } else {
     write("verdict", stale ? "No data" : is.word);
     $("verdict").dataset.verdict = stale ? "" : is.kind;
-    write("says", stale ? `No scan came for ${Math.floor(silence ?? 0)} s. The last word was: ${sentence(is.says)}` : sentence(is.says));
+    write("says", stale ? `No scan for ${Math.floor(silence ?? 0)} s. Last: ${sentence(is.says)}` : sentence(is.says));
   }
   write("stamp", pose ? clock(pose.stamp_s) : answer ? clock(answer.stamp_s) : "");
   const best = store.best();
@@ -97,7 +96,7 @@ export function showTiming({ answer, latencies }, theme) {
   const sorted = [...latencies].sort((a, b) => a - b);
   const at = (share) => sorted[Math.min(sorted.length - 1, Math.floor(sorted.length * share))];
   $("timing").textContent = sorted.length && answer
-    ? `median ${fixed(at(0.5), 1)}, most ${fixed(at(1), 1)} · search ${fixed(answer.search_ms, 1)}, fit ${fixed(answer.extract_ms, 1)}` : "";
+    ? `median ${fixed(at(0.5), 1)}, max ${fixed(at(1), 1)} · search ${fixed(answer.search_ms, 1)}, fit ${fixed(answer.extract_ms, 1)}` : "";
   drawSpark($("spark"), latencies, palette(theme));
 }
 

@@ -19,7 +19,7 @@ export class Store {
   }
 
   /** Takes a message; returns which part it changed. */
-  hear(message) {
+  receive(message) {
     switch (message.type) {
       case "snapshot": return this.#snapshot(message);
       case "map": this.map = message; this.field = null; return "map";

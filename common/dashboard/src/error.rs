@@ -1,4 +1,4 @@
-//! What keeps the page from being served.
+//! Errors of serving the page.
 
 use std::io;
 use std::net::SocketAddr;

@@ -2,15 +2,15 @@
 //!
 //! | file | what it is about |
 //! |---|---|
-//! | `view` | what the page is told, from the messages of a graph; pure |
+//! | `view` | what the page is sent, from the messages of a graph; pure |
 //! | `robot` | what is known of one robot, and whoever watches it |
 //! | `robots` | those that are known |
 //! | `server` | HTTP and WebSocket: the gate, the API, the page |
 //!
-//! Where the messages come from is up to whoever uses it: a source tells a
-//! [`Robot`] what happens, and takes the wishes that it is given. Nobody waits for
-//! those who watch: a message is put into words once and handed to all of them, and
-//! who is too slow loses some and is told how many. The crate localizes nothing, and
+//! Where the messages come from is up to whoever uses it: a source gives a
+//! [`Robot`] what happens, and takes the requests that it is given. Nobody waits for
+//! those who watch: a message is written as text once and handed to all of them, and
+//! who is too slow loses some and is sent their number. The crate localizes nothing, and
 //! shows nothing that no node said.
 
 mod error;
@@ -23,6 +23,6 @@ mod view;
 
 pub use error::DashboardError;
 pub use options::Options;
-pub use robot::{Abilities, Robot, Wish};
+pub use robot::{Abilities, Request, Robot};
 pub use robots::Robots;
 pub use server::Server;

@@ -1,17 +1,17 @@
-//! What a user can set of it.
+//! Command-line options.
 
 use std::path::PathBuf;
 
 /// Who may reach the page, and change something there.
 #[derive(Debug, Clone, Default, clap::Args)]
 pub struct Options {
-    /// Another name under which browsers may reach the page; addresses and
-    /// localhost are allowed as they are. May be given again
+    /// Another host name under which browsers may reach the page; addresses and
+    /// localhost are always allowed. May be repeated
     #[arg(long, value_name = "NAME", value_parser = host)]
     pub host: Vec<String>,
 
-    /// A file with the token that write actions need, at least 16 characters
-    /// [default: a new one, shown on the console]
+    /// File with the token that write actions need, at least 16 characters [default: a
+    /// new token, shown in the log]
     #[arg(long, value_name = "FILE")]
     pub token_file: Option<PathBuf>,
 }

@@ -1,6 +1,6 @@
 //! One robot: what is known of it, and whoever watches it.
 //!
-//! It stands between the thread of a source, which tells it what happens, and
+//! It stands between the thread of a source, which passes it messages, and
 //! the server, which asks. Both hold the lock for as long as it takes to copy.
 
 use std::sync::atomic::{AtomicUsize, Ordering};
@@ -24,19 +24,19 @@ use crate::view::{
 /// Messages that may wait for a slow reader; beyond, it loses the oldest.
 const QUEUE: usize = 64;
 
-/// Wishes that may wait for the graph.
-const WISHES: usize = 8;
+/// Requests that may wait for the graph.
+const MAX_REQUESTS: usize = 8;
 
 /// What somebody with the token wants of the graph.
 #[derive(Debug, Clone, PartialEq)]
-pub enum Wish {
-    /// Poses be sought between these corners; everywhere where there are none.
+pub enum Request {
+    /// Poses be searched between these corners; everywhere where there are none.
     Region(Vec<[f64; 2]>),
     /// A black box be saved.
     Save,
 }
 
-/// Whether a node listens to wishes.
+/// Whether a node listens to requests.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize)]
 pub struct Abilities {
     /// An accumulator takes regions.
@@ -53,14 +53,14 @@ pub struct Robot {
     news: broadcast::Sender<Utf8Bytes>,
     field: watch::Sender<Option<Bytes>>,
     field_viewers: AtomicUsize,
-    wishes: SyncSender<Wish>,
+    requests: SyncSender<Request>,
 }
 
 #[derive(Debug, Default)]
 struct Known {
     map: Option<Arc<Map>>,
     answer: Option<Answer>,
-    /// None where no tracker was heard.
+    /// None if there is no tracker.
     pose: Option<Tracked>,
     times: Times,
     beams: Option<Beams>,
@@ -83,82 +83,82 @@ pub(crate) struct FieldView {
     pub(crate) images: watch::Receiver<Option<Bytes>>,
 }
 
-/// What a source tells.
+/// Calls of a source.
 impl Robot {
-    /// A robot of which nothing is known yet, and the wishes for it. The name stands in
+    /// A robot of which nothing is known yet, and the requests for it. The name stands in
     /// addresses.
     #[must_use]
-    pub fn new(name: String) -> (Arc<Self>, Receiver<Wish>) {
-        let (wishes, wished) = sync_channel(WISHES);
+    pub fn new(name: String) -> (Arc<Self>, Receiver<Request>) {
+        let (requests, requested) = sync_channel(MAX_REQUESTS);
         let robot = Robot {
             name,
             known: Mutex::default(),
             news: broadcast::Sender::new(QUEUE),
             field: watch::Sender::new(None),
             field_viewers: AtomicUsize::new(0),
-            wishes,
+            requests,
         };
-        (Arc::new(robot), wished)
+        (Arc::new(robot), requested)
     }
 
-    /// Takes a map; says whether it could be used.
-    pub fn hear_map(&self, header: &MapHeader, cells: &[u8]) -> bool {
+    /// Takes a map; returns whether it could be used.
+    pub fn on_map(&self, header: &MapHeader, cells: &[u8]) -> bool {
         let Some(map) = Map::new(header, cells) else {
             return false;
         };
         let mut known = self.known();
-        self.tell(&Message::Map(&map.info));
+        self.broadcast(&Message::Map(&map.info));
         known.map = Some(Arc::new(map));
         true
     }
 
     /// Takes the answer to a scan, at a time of the host's clock.
-    pub fn hear_answer(&self, header: &HypothesesHeader, items: &[Hypothesis], now_ns: i64) {
+    pub fn on_answer(&self, header: &HypothesesHeader, items: &[Hypothesis], now_ns: i64) {
         let answer = Answer::new(header, items, now_ns);
         let mut known = self.known();
-        self.tell(&Message::Answer(&answer));
-        known.times.hear_answer(header);
-        known.track.hear_answer(&answer);
+        self.broadcast(&Message::Answer(&answer));
+        known.times.on_answer(header);
+        known.track.on_answer(&answer);
         known.answer = Some(answer);
     }
 
     /// Takes where the tracker has the robot, at a time of the host's clock.
-    pub fn hear_pose(&self, header: &PoseHeader, words: &[u8], now_ns: i64) {
+    pub fn on_pose(&self, header: &PoseHeader, words: &[u8], now_ns: i64) {
         let pose = Tracked::new(header, words, now_ns);
         let mut known = self.known();
-        self.tell(&Message::Pose(&pose));
-        known.times.hear_pose(header);
-        known.track.hear_pose(&pose);
+        self.broadcast(&Message::Pose(&pose));
+        known.times.on_pose(header);
+        known.track.on_pose(&pose);
         known.pose = Some(pose);
     }
 
     /// Takes what became of the beams of a scan.
-    pub fn hear_beams(&self, header: &BeamsHeader, items: &[Beam]) {
+    pub fn on_beams(&self, header: &BeamsHeader, items: &[Beam]) {
         let beams = Beams::new(header, items);
         let mut known = self.known();
-        self.tell(&Message::Beams(&beams));
+        self.broadcast(&Message::Beams(&beams));
         known.beams = Some(beams);
     }
 
-    /// Takes a report on a node; says whether there was room for it.
-    pub fn hear_health(&self, header: &HealthHeader, error: &[u8]) -> bool {
+    /// Takes a report on a node; returns whether there was room for it.
+    pub fn on_health(&self, header: &HealthHeader, error: &[u8]) -> bool {
         let mut known = self.known();
-        let report = known.roster.hear(header, error);
+        let report = known.roster.receive(header, error);
         report
-            .inspect(|report| self.tell(&Message::Node(report)))
+            .inspect(|report| self.broadcast(&Message::Node(report)))
             .is_some()
     }
 
     /// Takes a line of a node's log.
-    pub fn hear_log(&self, header: &LogHeader, text: &[u8]) {
+    pub fn on_log(&self, header: &LogHeader, text: &[u8]) {
         let line = LogLine::new(header, text);
         let mut known = self.known();
-        self.tell(&Message::Log(&line));
-        known.log.hear(line);
+        self.broadcast(&Message::Log(&line));
+        known.log.receive(line);
     }
 
-    /// Takes an intensity image; says whether it could be used.
-    pub fn hear_field(&self, header: &FieldHeader, items: &[u16]) -> bool {
+    /// Takes an intensity image; returns whether it could be used.
+    pub fn on_field(&self, header: &FieldHeader, items: &[u16]) -> bool {
         let frame = field_frame(header, items);
         let is_sound = frame.is_some();
         if let Some(frame) = frame {
@@ -167,26 +167,26 @@ impl Robot {
         is_sound
     }
 
-    /// Takes the region in which poses are sought from now on.
-    pub fn hear_region(&self, corners: Vec<[f64; 2]>) {
+    /// Takes the region in which poses are searched from now on.
+    pub fn on_region(&self, corners: Vec<[f64; 2]>) {
         let mut known = self.known();
-        self.tell(&Message::Region(Region { corners: &corners }));
+        self.broadcast(&Message::Region(Region { corners: &corners }));
         known.region = corners;
     }
 
-    /// Takes who listens to wishes.
-    pub fn hear_abilities(&self, abilities: Abilities) {
+    /// Takes who listens to requests.
+    pub fn on_abilities(&self, abilities: Abilities) {
         let mut known = self.known();
         if known.abilities != abilities {
             known.abilities = abilities;
-            self.tell(&Message::Abilities(abilities));
+            self.broadcast(&Message::Abilities(abilities));
         }
     }
 
     /// Looks for nodes that have become silent.
     pub fn look_for_silence(&self, now_ns: i64) {
         for report in self.known().roster.newly_silent(now_ns) {
-            self.tell(&Message::Node(report));
+            self.broadcast(&Message::Node(report));
         }
     }
 
@@ -197,8 +197,8 @@ impl Robot {
     }
 
     /// Puts it into words once for all who watch, if there are any. The lock is
-    /// held meanwhile, so that who comes misses nothing and hears nothing twice.
-    fn tell(&self, message: &Message<'_>) {
+    /// held meanwhile, so that a new viewer misses nothing and receives nothing twice.
+    fn broadcast(&self, message: &Message<'_>) {
         if self.news.receiver_count() > 0 {
             // Nobody may be left by now.
             let _ = self.news.send(text(message));
@@ -237,9 +237,9 @@ impl Robot {
         self.known().abilities
     }
 
-    /// Hands a wish to the source; says whether it has room for one.
-    pub(crate) fn wish(&self, wish: Wish) -> bool {
-        self.wishes.try_send(wish).is_ok()
+    /// Hands a request to the source; returns whether it has room for one.
+    pub(crate) fn request(&self, request: Request) -> bool {
+        self.requests.try_send(request).is_ok()
     }
 
     /// Looks at the field from now on.
@@ -283,7 +283,7 @@ impl Drop for FieldView {
 
 /// A message as JSON.
 pub(crate) fn text(message: &Message<'_>) -> Utf8Bytes {
-    // All keys are strings and numbers that are none become null: nothing fails.
+    // All keys are strings and invalid numbers become null: nothing fails.
     serde_json::to_string(message).unwrap_or_default().into()
 }
 
@@ -299,21 +299,21 @@ mod tests {
         serde_json::from_str(text).unwrap()
     }
 
-    fn hear(robot: &Robot, counter: u64) {
+    fn receive(robot: &Robot, counter: u64) {
         let mut header = HypothesesHeader {
             verdict: Verdict::Unique as u32,
             ..HypothesesHeader::zeroed()
         };
         header.stamp.counter = counter;
-        robot.hear_answer(&header, &[Hypothesis::zeroed()], 0);
+        robot.on_answer(&header, &[Hypothesis::zeroed()], 0);
     }
 
     #[test]
-    fn who_comes_hears_what_is_known_and_then_all_that_follows() {
-        let (robot, _wishes) = Robot::new("r".into());
-        hear(&robot, 1);
+    fn who_comes_receives_what_is_known_and_then_all_that_follows() {
+        let (robot, _requests) = Robot::new("r".into());
+        receive(&robot, 1);
         let mut watching = robot.watch(0);
-        hear(&robot, 2);
+        receive(&robot, 2);
         let snapshot = json(&watching.snapshot);
         assert_eq!(
             (&snapshot["type"], &snapshot["robot"]),
@@ -330,9 +330,9 @@ mod tests {
     }
 
     #[test]
-    fn a_pose_is_told_beside_the_answer_and_so_is_its_age() {
-        let (robot, _wishes) = Robot::new("r".into());
-        hear(&robot, 1);
+    fn a_pose_is_reported_beside_the_answer_and_so_is_its_age() {
+        let (robot, _requests) = Robot::new("r".into());
+        receive(&robot, 1);
         let mut watching = robot.watch(0);
         assert_eq!(json(&watching.snapshot)["pose"], Value::Null, "no tracker");
         let header = PoseHeader {
@@ -340,7 +340,7 @@ mod tests {
             state: TrackState::Lost as u32,
             ..PoseHeader::zeroed()
         };
-        robot.hear_pose(&header, b"no place fits", 0);
+        robot.on_pose(&header, b"no place fits", 0);
         let news = json(&watching.news.try_recv().unwrap());
         assert_eq!(
             (&news["type"], &news["state"]),
@@ -356,11 +356,11 @@ mod tests {
     }
 
     #[test]
-    fn who_is_slow_loses_the_oldest_and_hears_how_many() {
-        let (robot, _wishes) = Robot::new("r".into());
+    fn who_is_slow_loses_the_oldest_and_receives_how_many() {
+        let (robot, _requests) = Robot::new("r".into());
         let mut watching = robot.watch(0);
         for counter in 0..QUEUE as u64 + 3 {
-            hear(&robot, counter);
+            receive(&robot, counter);
         }
         let lagged = watching.news.try_recv().unwrap_err();
         assert_eq!(lagged, broadcast::error::TryRecvError::Lagged(3));
@@ -369,7 +369,7 @@ mod tests {
 
     #[test]
     fn the_field_is_wanted_as_long_as_somebody_looks() {
-        let (robot, _wishes) = Robot::new("r".into());
+        let (robot, _requests) = Robot::new("r".into());
         assert!(!robot.is_field_viewed());
         let view = robot.view_field();
         assert!(robot.is_field_viewed());
@@ -378,10 +378,10 @@ mod tests {
     }
 
     #[test]
-    fn wishes_are_bounded() {
-        let (robot, wishes) = Robot::new("r".into());
-        assert!((0..WISHES).all(|_| robot.wish(Wish::Save)));
-        assert!(!robot.wish(Wish::Save));
-        assert_eq!(wishes.try_iter().count(), WISHES);
+    fn requests_are_bounded() {
+        let (robot, requests) = Robot::new("r".into());
+        assert!((0..MAX_REQUESTS).all(|_| robot.request(Request::Save)));
+        assert!(!robot.request(Request::Save));
+        assert_eq!(requests.try_iter().count(), MAX_REQUESTS);
     }
 }

@@ -13,15 +13,15 @@ pub struct Robots {
 
 impl Robots {
     /// Robots that are known at once at most.
-    pub const MOST: usize = 256;
+    pub const MAX: usize = 256;
 
-    /// Adds a robot; says whether it could: there may be one of the name, or
-    /// [`Robots::MOST`] others.
+    /// Adds a robot; returns whether it could: there may be one of the name, or
+    /// [`Robots::MAX`] others.
     pub fn add(&self, robot: Arc<Robot>) -> bool {
         let mut all = self.all.write().unwrap_or_else(PoisonError::into_inner);
         let place = all.binary_search_by(|other| other.name().cmp(robot.name()));
         match place {
-            Err(place) if all.len() < Self::MOST => {
+            Err(place) if all.len() < Self::MAX => {
                 all.insert(place, robot);
                 true
             }
@@ -76,7 +76,7 @@ mod tests {
     fn made_up_names_do_not_fill_the_memory() {
         let robots = Robots::default();
         let added = (0..1000).filter(|i| robots.add(robot(&i.to_string())));
-        assert_eq!(added.count(), Robots::MOST);
-        assert_eq!(robots.names().len(), Robots::MOST);
+        assert_eq!(added.count(), Robots::MAX);
+        assert_eq!(robots.names().len(), Robots::MAX);
     }
 }

@@ -59,7 +59,7 @@ impl Token {
         &self.0
     }
 
-    /// Compares in a time that tells nothing but the length.
+    /// Compares in a time that depends only on the length.
     pub(crate) fn is(&self, given: &str) -> bool {
         self.0.as_bytes().ct_eq(given.as_bytes()).into()
     }
@@ -97,8 +97,8 @@ mod tests {
         for mode in [0o644, 0o602, 0o777] {
             set_mode(&path, mode);
             let error = Token::read(&path).err().unwrap().to_string();
-            let told = [format!("{mode:o}"), "chmod".to_owned()];
-            assert!(told.iter().all(|word| error.contains(word)), "{error}");
+            let expected = [format!("{mode:o}"), "chmod".to_owned()];
+            assert!(expected.iter().all(|word| error.contains(word)), "{error}");
         }
     }
 

@@ -1,5 +1,5 @@
-//! What those who watch are told: the messages of the graph as JSON, and images
-//! as bytes. Pure: told the time, and knowing no clock.
+//! What viewers are sent: the messages of the graph as JSON, and images
+//! as bytes. Pure: the time is an argument.
 //!
 //! Lengths are metres, angles radians counter-clockwise, times seconds or, where
 //! the name says so, milliseconds. What is no number is `null`.
@@ -44,15 +44,15 @@ pub(crate) enum Message<'a> {
     Pose(&'a Tracked),
     /// What became of its beams.
     Beams(&'a Beams),
-    /// How a node fares.
+    /// The state of a node.
     Node(&'a NodeReport),
     /// What a node logs.
     Log(&'a LogLine),
-    /// Where poses are sought.
+    /// Where poses are searched.
     Region(Region<'a>),
-    /// Who listens to wishes.
+    /// Who listens to requests.
     Abilities(Abilities),
-    /// So many messages were not sent, because the reader was too slow.
+    /// This many messages were not sent, because the reader was too slow.
     Missed {
         /// Their number.
         messages: u64,
@@ -67,7 +67,7 @@ pub(crate) enum Message<'a> {
 /// A region of the map, or all of it.
 #[derive(Debug, Serialize)]
 pub(crate) struct Region<'a> {
-    /// The corners; none where poses are sought everywhere.
+    /// The corners; none where poses are searched everywhere.
     pub(crate) corners: &'a [[f64; 2]],
 }
 

@@ -30,7 +30,7 @@ pub struct Node {
     pub inputs: Vec<Input>,
     /// The topics that it sends, each once.
     pub outputs: Vec<String>,
-    /// What tells its outputs apart where it sends several of a topic: `front` and
+    /// What distinguishes its outputs if it sends several of a topic: `front` and
     /// `rear` for `scan_front` and `scan_rear`.
     pub streams: Vec<String>,
     /// What happens when it ends.

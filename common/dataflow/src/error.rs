@@ -1,4 +1,4 @@
-//! All that can be wrong with a descriptor.
+//! Errors in a descriptor.
 
 use std::{fmt::Write as _, io, path::PathBuf};
 
@@ -60,7 +60,7 @@ pub enum Fault {
         allowed: String,
     },
     /// A key that stands twice in one map.
-    #[error("the key `{key}` stands here a second time; each may stand once")]
+    #[error("the key `{key}` appears a second time here; each may appear once")]
     DuplicateKey {
         /// As found.
         key: String,
@@ -177,7 +177,7 @@ pub enum Fault {
         allowed: String,
     },
     /// A node that lists an output twice.
-    #[error("the output `{topic}` is listed a second time; each may stand once")]
+    #[error("the output `{topic}` is listed a second time; each may be listed once")]
     DuplicateOutput {
         /// The topic.
         topic: String,

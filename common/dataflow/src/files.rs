@@ -12,7 +12,7 @@ pub(crate) fn read(path: &Path) -> Result<String, DataflowError> {
         source,
     };
     let mut text = String::new();
-    // One byte more than allowed tells a file that is too large, also where
+    // One byte more than allowed detects a file that is too large, also where
     // the file has no size, as a pipe has none.
     File::open(path)
         .and_then(|file| file.take(MAX_FILE_BYTES + 1).read_to_string(&mut text))

@@ -4,7 +4,7 @@
 //! It is a strict subset of dora's descriptor: whatever is accepted here,
 //! `dora validate` and `dora run` accept with the same meaning. Where dora
 //! guesses, replaces or ignores, this crate refuses. Every problem names its
-//! line and column, and all that can be told at once is told at once. The crate
+//! line and column, and all problems that can be found at once are reported at once. The crate
 //! starts no process and knows no topic: the caller says which there are.
 //!
 //! | key | value | without it |

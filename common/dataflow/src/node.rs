@@ -37,7 +37,7 @@ pub(crate) fn read_all(
 }
 
 /// Reads one key after the other and notes what is wrong. Where something is,
-/// it goes on with what an absent key means: the result is not used then.
+/// it continues with what an absent key means: the result is not used then.
 struct Reader<'a> {
     source: &'a str,
     topics: &'a Topics<'a>,
@@ -302,7 +302,7 @@ nodes:
     }
 
     #[test]
-    fn all_problems_are_told_in_the_order_of_the_file() {
+    fn all_problems_are_reported_in_the_order_of_the_file() {
         let said = faults(
             "nodes:\n  - path: ''\n    args: \"it's\"\n  - id: a b\n    restart_policy: on_failure\n\
              \x20   build: echo 'x'\n    env: {A=B: 1}\n",

@@ -226,11 +226,11 @@ mod tests {
         );
         check(
             "nodes:\n  - id: a\n    id: b\n",
-            "3:5: the key `id` stands here a second time; each may stand once",
+            "3:5: the key `id` appears a second time here; each may appear once",
         );
         check(
             "nodes: [{env: {A: 1, A: 2}}]",
-            "1:22: the key `A` stands here a second time; each may stand once",
+            "1:22: the key `A` appears a second time here; each may appear once",
         );
         check("{}", "1:1: `nodes` is missing");
         check(
@@ -277,7 +277,7 @@ mod tests {
     }
 
     #[test]
-    fn what_is_not_yaml_is_told_in_the_words_of_the_parser() {
+    fn what_is_not_yaml_is_reported_in_the_words_of_the_parser() {
         check("nodes: [{id: \"a", "1:14: not a descriptor: unclosed quote");
         check(
             "nodes:\n\t- id: a\n",

@@ -21,7 +21,7 @@ pub struct Topics<'a> {
 }
 
 impl Topics<'_> {
-    /// The topic that an output stands for, and what tells it apart from others of
+    /// The topic that an output stands for, and what distinguishes it from others of
     /// that topic: `scan` and `front` for `scan_front`.
     pub(crate) fn split<'n>(&self, output: &'n str) -> (&'n str, &'n str) {
         let split = self.several.iter().find_map(|topic| {
@@ -232,7 +232,7 @@ mod tests {
             &["id: a, outputs: [scam, scan, scan]"],
             &[
                 "2:32: there is no topic `scam`; allowed are scan, votes, health",
-                "2:44: the output `scan` is listed a second time; each may stand once",
+                "2:44: the output `scan` is listed a second time; each may be listed once",
             ],
         );
         check(

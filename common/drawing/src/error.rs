@@ -1,4 +1,4 @@
-//! What can be wrong with a picture.
+//! Errors of a picture.
 
 use crate::MAX_SIDE;
 

@@ -7,16 +7,17 @@ use crate::scan::Scan;
 use crate::space::Space;
 
 /// Added to every weight, so that near beams keep a say.
-const LEAST_WEIGHT: f64 = 0.05;
+const MIN_WEIGHT: f64 = 0.05;
 
 /// Which beams vote, and with what weight.
 #[derive(Debug, Clone, Copy, PartialEq, clap::Args)]
 pub struct BeamConfig {
-    /// Most beams that vote, 1..=65536; longer scans are thinned by arc.
+    /// Maximum number of beams that vote, 1..=65536; longer scans are thinned by arc.
     #[arg(long, value_name = "COUNT", default_value_t = 180, value_parser = clap::value_parser!(u32).range(1..=65_536))]
     pub max_beams: u32,
-    /// Arc at the reading from which a beam counts fully, metres, 0..=2;
-    /// nearer ones count by the arc that they cover. 0 weighs all the same.
+    /// Arc covered at the reading from which a beam has full weight, metres, 0..=2;
+    /// nearer readings weigh by the arc that they cover. 0 gives all beams the same
+    /// weight.
     #[arg(long, value_name = "METRES", default_value_t = 0.20, value_parser = crate::config::parse_length)]
     pub beam_arc_m: f64,
 }
@@ -37,7 +38,7 @@ pub(crate) struct Beam {
     pub bearing: usize,
     /// What rounding to the grid left over, radians.
     pub rounding: f64,
-    /// The bearing in the frame that is sought, radians, not rounded.
+    /// The bearing in the target frame, radians, not rounded.
     pub angle: f64,
     /// Metres.
     pub reading_m: f64,
@@ -47,7 +48,7 @@ pub(crate) struct Beam {
     pub index: usize,
 }
 
-/// The beams that vote, by bearing, and those that say nothing; filled anew for
+/// The beams that vote, by bearing, and those that say nothing; filled again for
 /// each scan.
 #[derive(Debug, Clone, Default, PartialEq)]
 pub(crate) struct Chosen {
@@ -96,7 +97,7 @@ impl Chosen {
     /// first. A sector is silent where nothing returned, or from farther than the
     /// map reaches: nothing in it explains such a reading.
     ///
-    /// `end_of` is where a beam ends, seen from the frame that is sought: its bearing
+    /// `end_of` is where a beam ends, seen from the target frame: its bearing
     /// and how far it is.
     fn thin(
         &mut self,
@@ -135,7 +136,7 @@ impl Chosen {
         }
     }
 
-    /// Divides the turn, seen from the origin of the sought frame, into `max_beams`
+    /// Divides the turn, seen from the origin of the target frame, into `max_beams`
     /// sectors and takes from each the reading that ends nearest, of equal ones the
     /// first. A reading counts by the arc that its own laser's beam covers.
     fn join(&mut self, scans: &[CarriedScan<'_>], turn: f64, space: &Space, config: &BeamConfig) {
@@ -180,7 +181,7 @@ impl Chosen {
 }
 
 impl Beam {
-    /// A beam that ends at `(angle, reading_m)` in the frame that is sought.
+    /// A beam that ends at `(angle, reading_m)` in the target frame.
     fn new(
         index: usize,
         (angle, reading_m): (f64, f64),
@@ -210,7 +211,7 @@ fn thinned(scan: &Scan<'_>, config: &BeamConfig) -> (usize, f64) {
 /// `min(1, arc at the reading / full arc) + 0.05`; 1 where beams weigh the same.
 fn weight(arc_m: f64, full_arc_m: f64) -> f64 {
     if full_arc_m > 0.0 {
-        (arc_m / full_arc_m).min(1.0) + LEAST_WEIGHT
+        (arc_m / full_arc_m).min(1.0) + MIN_WEIGHT
     } else {
         1.0
     }
@@ -329,7 +330,7 @@ mod tests {
         let expected = choose(&still, 0.25, &space(), &config);
         let carried = [CarriedScan {
             scan: still,
-            sought_from_laser: &[Pose::IDENTITY; 361],
+            target_from_laser: &[Pose::IDENTITY; 361],
         }];
         let mut chosen = Chosen::default();
         chosen.choose(Observation::Carried(&carried), 0.25, &space(), &config);
@@ -355,11 +356,11 @@ mod tests {
         let scans = [
             CarriedScan {
                 scan: quarters(&front),
-                sought_from_laser: &ahead,
+                target_from_laser: &ahead,
             },
             CarriedScan {
                 scan: quarters(&rear),
-                sought_from_laser: &behind,
+                target_from_laser: &behind,
             },
         ];
         let mut chosen = Chosen::default();
@@ -384,7 +385,7 @@ mod tests {
         let left = [Pose::new(0.0, 1.0, 0.0); 3];
         let alone = [
             CarriedScan {
-                sought_from_laser: &left,
+                target_from_laser: &left,
                 ..scans[0]
             },
             CarriedScan {

@@ -1,4 +1,4 @@
-//! What the engine refuses.
+//! Errors of the engine: inputs that it rejects.
 
 use geometry::Pose;
 

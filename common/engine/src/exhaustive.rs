@@ -15,7 +15,7 @@ use crate::votes::{CollectConfig, Collector, VoteSet};
 /// The poses with the most votes over all headings; `None` if `stop` said so
 /// before the end.
 ///
-/// Poses are sought within the limits, which are those of the grid. The outcome
+/// Poses are searched within the limits, which are those of the grid. The outcome
 /// does not depend on how many accumulators there are; the first one works on
 /// this thread.
 ///
@@ -67,7 +67,7 @@ impl<'a, A: Accumulator> Share<'a, A> {
         }
     }
 
-    /// Counts the poses at every `threads`-th heading; threads tell each other the most
+    /// Counts the poses at every `threads`-th heading; threads share the most
     /// votes of any pose.
     fn run(
         &mut self,
@@ -86,7 +86,7 @@ impl<'a, A: Accumulator> Share<'a, A> {
             };
             if limits.hold_heading(heading) {
                 self.accumulator.fill(query, &mut self.field, stop)?;
-                self.collector.hear_of(best.load(Ordering::Relaxed));
+                self.collector.raise_best(best.load(Ordering::Relaxed));
                 self.collect(limits, heading);
                 best.fetch_max(self.collector.best(), Ordering::Relaxed);
             }

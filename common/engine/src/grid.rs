@@ -81,7 +81,7 @@ pub enum Cell {
     Open,
     /// An obstacle: a ray ends here.
     Occupied,
-    /// Rays are lost here without a hit, and the robot cannot stand here.
+    /// Unknown cells block rays without a hit, and the robot cannot stand here.
     Blocked,
 }
 
@@ -182,7 +182,7 @@ impl Grid {
         self.occupied
     }
 
-    /// Whether rays can be lost in a cell.
+    /// Whether any cell blocks rays without a hit.
     #[must_use]
     pub fn has_blocked(&self) -> bool {
         self.has_blocked

@@ -36,7 +36,7 @@ pub enum HeadingSource {
 /// Why a scan has no heading.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, thiserror::Error)]
 pub enum HeadingError {
-    /// No odometry tells it.
+    /// No odometry has it.
     #[error(
         "the scan needs odometry, but none is known that was measured at {scan_ns} ns or \
          before"
@@ -45,7 +45,7 @@ pub enum HeadingError {
         /// When the scan was measured, nanoseconds.
         scan_ns: i64,
     },
-    /// The odometry that there is tells an old one.
+    /// The newest odometry is too old.
     #[error(
         "the newest odometry was measured {age_ns} ns before the scan: at most \
          {allowed_ns} ns are allowed"
@@ -56,7 +56,7 @@ pub enum HeadingError {
         /// By the configuration, nanoseconds.
         allowed_ns: i64,
     },
-    /// No truth tells it.
+    /// No true pose has it.
     #[error(
         "the heading is to come from the ground truth, but none is known that was \
          measured at {scan_ns} ns"
@@ -88,7 +88,7 @@ struct Truth {
 }
 
 impl History {
-    /// Keeps the last readings of each kind, so many at most.
+    /// Keeps the last readings of each kind, this many at most.
     #[must_use]
     pub fn keeping(readings: usize) -> Self {
         History {
@@ -98,7 +98,7 @@ impl History {
     }
 
     /// Takes note of odometry.
-    pub fn hear_odometry(&mut self, odometry: &Odometry) {
+    pub fn on_odometry(&mut self, odometry: &Odometry) {
         self.odometry.push(Driven {
             measured_ns: odometry.stamp.measured_ns,
             odom_from_child: odometry.odom_from_child.into(),
@@ -107,7 +107,7 @@ impl History {
     }
 
     /// Takes note of a true pose.
-    pub fn hear_truth(&mut self, truth: &GroundTruth) {
+    pub fn on_truth(&mut self, truth: &GroundTruth) {
         self.truths.push(Truth {
             measured_ns: truth.stamp.measured_ns,
             yaw: truth.map_from_laser.yaw,
@@ -189,7 +189,7 @@ fn truth_of(scan: &ScanHeader, history: &History) -> Result<f64, HeadingError> {
 }
 
 /// Looks by the time of measuring and not of arrival, for a recording that is
-/// played over and over starts anew.
+/// played over and over starts again.
 fn odometry_of(
     scan: &ScanHeader,
     history: &History,
@@ -289,7 +289,7 @@ mod tests {
     fn history(readings: &[(i64, f64)]) -> History {
         let mut history = History::keeping(KEPT);
         for &(measured_ns, yaw) in readings {
-            history.hear_odometry(&odometry(measured_ns, yaw));
+            history.on_odometry(&odometry(measured_ns, yaw));
         }
         history
     }
@@ -317,7 +317,7 @@ mod tests {
     }
 
     #[test]
-    fn a_recording_that_starts_anew_finds_its_early_odometry() {
+    fn a_recording_that_starts_again_finds_its_early_odometry() {
         let history = history(&[(100, 0.1), (200, 0.2), (10, 0.7)]);
         assert_eq!(heading(BY_ODOMETRY, &scan(15), &history), 0.7 + 0.5);
     }
@@ -358,7 +358,7 @@ mod tests {
             child_frame: FrameName::new("base_link"),
             ..odometry(10, 0.25)
         };
-        history.hear_odometry(&of_base);
+        history.on_odometry(&of_base);
         let unknown = ScanHeader {
             base_from_laser: turned(1.0),
             ..scan(10)
@@ -369,7 +369,7 @@ mod tests {
             ..unknown
         };
         assert_eq!(heading(BY_ODOMETRY, &known, &history), 1.75);
-        history.hear_odometry(&odometry(11, 0.25));
+        history.on_odometry(&odometry(11, 0.25));
         let later = ScanHeader {
             stamp: stamp(11),
             ..known
@@ -384,7 +384,7 @@ mod tests {
             child_frame: FrameName::new("base_link"),
             ..odometry(10, std::f64::consts::FRAC_PI_2)
         };
-        history.hear_odometry(&of_base);
+        history.on_odometry(&of_base);
         let mounted = ScanHeader {
             base_from_laser: Pose2 {
                 x: 0.5,
@@ -409,8 +409,8 @@ mod tests {
     #[test]
     fn the_truth_has_exactly_the_time_of_the_scan() {
         let mut history = History::keeping(KEPT);
-        history.hear_truth(&truth(10, 0.1));
-        history.hear_truth(&truth(20, 0.2));
+        history.on_truth(&truth(10, 0.1));
+        history.on_truth(&truth(20, 0.2));
         assert_eq!(heading(HeadingSource::Truth, &scan(10), &history), 0.1);
         let refused = HeadingSource::Truth.heading_of(&scan(11), &history);
         assert!(matches!(

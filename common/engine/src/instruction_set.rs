@@ -1,11 +1,11 @@
 //! The instruction sets that hot loops are written for, chosen at run time.
 //!
-//! A released binary is built for the plainest processor of its architecture
+//! A released binary is built for the baseline CPU of its architecture
 //! and yet uses what it finds. Every instruction set gives the same numbers.
 
 use std::fmt;
 
-/// A set of instructions, from the plainest on.
+/// A set of instructions, from the baseline on.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Eq, PartialOrd, Ord)]
 pub enum InstructionSet {
     /// What every processor of the architecture has; on aarch64 with NEON, as
@@ -31,7 +31,7 @@ impl InstructionSet {
         }
     }
 
-    /// All that this processor has, from the plainest on.
+    /// All that this processor has, from the baseline on.
     pub fn available() -> impl Iterator<Item = Self> {
         let all = [Self::Portable, Self::Avx2, Self::Avx512];
         all.into_iter().filter(|set| set.is_available())

@@ -2,7 +2,7 @@
 //! motion within a scan is taken out.
 //!
 //! Each beam is carried by the odometry from where its laser was when it measured to
-//! where the sought frame was in the middle of the first laser's scan: there they are
+//! where the target frame was in the middle of the first laser's scan: there they are
 //! carried least far, and the pose is that which the scan gives without odometry, too.
 //! That frame is the laser's own where the graph has one, the base where several are
 //! joined. Pure: when a scan comes and for how long odometry is waited for, others decide.
@@ -80,19 +80,19 @@ pub enum MotionKnown {
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]
 pub enum LeftOut {
     /// It sent nothing yet.
-    #[error("no scan has come")]
+    #[error("no scan received")]
     NoScan,
     /// Its newest scan is too old.
-    #[error("its newest scan is {age_ms} ms older, more than one and a half of its periods")]
+    #[error("its newest scan is {age_ms} ms older, more than 1.5 scan periods")]
     Old {
         /// Milliseconds before the first laser's scan.
         age_ms: i64,
     },
     /// It is not known where it sits.
-    #[error("it is not known where it sits on the base")]
+    #[error("its mount on the base is not known")]
     NoMount,
     /// The robot moves, and odometry does not reach the scan.
-    #[error("no odometry tells how the robot moved since")]
+    #[error("no odometry for the robot's motion since")]
     NoOdometry,
     /// Its scan is refused.
     #[error(transparent)]
@@ -104,7 +104,7 @@ pub enum LeftOut {
 pub enum Seen<'a> {
     /// One, as it came.
     Still(crate::scan::Scan<'a>),
-    /// Some, carried into the sought frame.
+    /// Some, carried into the target frame.
     Carried(Vec<CarriedScan<'a>>),
 }
 
@@ -114,13 +114,13 @@ impl Brought {
     #[must_use]
     pub fn notes(&self, odometry_flows: bool) -> Vec<String> {
         let left_out = self.left_out.iter().map(|(laser, why)| match why {
-            LeftOut::Old { .. } => format!("laser {laser} is left out: its scans are too old"),
-            other => format!("laser {laser} is left out: {other}"),
+            LeftOut::Old { .. } => format!("laser {laser} is ignored: its scans are too old"),
+            other => format!("laser {laser} is ignored: {other}"),
         });
         let motion = match self.motion {
-            MotionKnown::LastTwist => Some("odometry comes late: its last twist is taken to go on"),
+            MotionKnown::LastTwist => Some("odometry is late: extrapolating with its last twist"),
             MotionKnown::Unknown if odometry_flows => {
-                Some("odometry does not reach the scans: their motion is not taken out")
+                Some("odometry does not cover the scans: motion is not compensated")
             }
             _ => None,
         };
@@ -172,14 +172,14 @@ impl Joiner {
 
     /// Whether poses are the base's, and not the laser's.
     #[must_use]
-    pub fn seeks_base(&self) -> bool {
+    pub fn targets_base(&self) -> bool {
         self.lasers.len() > 1
     }
 
-    /// A heading of the first laser in the map, radians, as that of the sought frame.
+    /// A heading of the first laser in the map, radians, as that of the target frame.
     #[must_use]
-    pub fn sought_heading(&self, laser_heading: f64) -> f64 {
-        match self.seeks_base() {
+    pub fn target_heading(&self, laser_heading: f64) -> f64 {
+        match self.targets_base() {
             true => laser_heading - self.lasers[0].base_from_laser().yaw,
             false => laser_heading,
         }
@@ -212,11 +212,11 @@ impl Joiner {
         }
     }
 
-    /// Whether odometry is still to come that tells of the last beam.
+    /// Whether odometry is still to come that covers the last beam.
     #[must_use]
     pub fn lacks_odometry(&self) -> bool {
         let lasers = self.lasers.iter().filter(|_| self.config.motion.deskew);
-        let moving = lasers.filter(|laser| self.seeks_base() || laser.takes_time());
+        let moving = lasers.filter(|laser| self.targets_base() || laser.takes_time());
         let last_ns = moving.filter_map(Laser::last_beam_ns).max();
         last_ns.is_some_and(|last_ns| {
             self.motion.may_reach(last_ns)
@@ -242,7 +242,7 @@ impl Joiner {
         self.used.clear();
         self.is_carried = false;
         self.lasers[0].check()?;
-        if self.seeks_base() {
+        if self.targets_base() {
             return self.bring_all();
         }
         let mut brought = Brought {
@@ -295,31 +295,31 @@ impl Joiner {
         }
     }
 
-    /// Notes where a laser was at each of its beams, in the sought frame; where
-    /// odometry does not tell, where it sits.
+    /// Notes where a laser was at each of its beams, in the target frame; where
+    /// odometry does not cover, where it sits.
     fn carry(&mut self, index: usize) -> MotionKnown {
-        let sought_ns = self.lasers[0].middle_ns();
+        let target_ns = self.lasers[0].middle_ns();
         let child_from_base = self.child_from_base();
-        let child_from_sought = self.child_from_sought();
+        let child_from_target = self.child_from_target();
         let child_from_laser = child_from_base.then(self.lasers[index].base_from_laser());
-        let still = child_from_sought.inverse().then(child_from_laser);
+        let still = child_from_target.inverse().then(child_from_laser);
         let laser = &mut self.lasers[index];
-        let Some(sought) = self
+        let Some(target) = self
             .motion
-            .at(sought_ns)
+            .at(target_ns)
             .filter(|_| self.config.motion.deskew)
         else {
             laser.stand(still);
             return MotionKnown::Unknown;
         };
-        let sought_from_odom = sought.odom_from_child.then(child_from_sought).inverse();
-        let mut is_between = sought.is_between;
+        let target_from_odom = target.odom_from_child.then(child_from_target).inverse();
+        let mut is_between = target.is_between;
         let motion = &self.motion;
         let moved = laser.carry(|at_ns| {
             let located = motion.at(at_ns)?;
             is_between &= located.is_between;
             Some(
-                sought_from_odom
+                target_from_odom
                     .then(located.odom_from_child)
                     .then(child_from_laser),
             )
@@ -341,19 +341,19 @@ impl Joiner {
         of_laser.map_or(Pose::IDENTITY, |laser| laser.base_from_laser().inverse())
     }
 
-    /// Where the sought frame was by the odometry when the newest scan of the first laser
+    /// Where the target frame was by the odometry when the newest scan of the first laser
     /// was half measured, see [`Motion::until`].
     #[must_use]
-    pub fn odom_from_sought(&self) -> Option<Pose> {
+    pub fn odom_from_target(&self) -> Option<Pose> {
         let odom_from_child = self.motion.until(self.lasers[0].middle_ns())?;
-        Some(odom_from_child.then(self.child_from_sought()))
+        Some(odom_from_child.then(self.child_from_target()))
     }
 
-    /// Where the sought frame was by the newest odometry.
+    /// Where the target frame was by the newest odometry.
     #[must_use]
-    pub fn newest_odom_from_sought(&self) -> Option<Pose> {
+    pub fn newest_odom_from_target(&self) -> Option<Pose> {
         let odom_from_child = self.motion.until(self.motion.newest_ns()?)?;
-        Some(odom_from_child.then(self.child_from_sought()))
+        Some(odom_from_child.then(self.child_from_target()))
     }
 
     /// The frame of the odometry; empty before the first.
@@ -369,9 +369,9 @@ impl Joiner {
         first.is_mounted().then(|| first.base_from_laser())
     }
 
-    fn child_from_sought(&self) -> Pose {
+    fn child_from_target(&self) -> Pose {
         let child_from_base = self.child_from_base();
-        match self.seeks_base() {
+        match self.targets_base() {
             true => child_from_base,
             false => child_from_base.then(self.lasers[0].base_from_laser()),
         }

@@ -1,4 +1,4 @@
-//! Where poses are sought: not far from free cells, in a region, at some headings, away
+//! Where poses are searched: not far from free cells, in a region, at some headings, away
 //! from obstacles.
 //!
 //! Rays are not limited: they pass wherever they would. Poses outside the
@@ -15,19 +15,19 @@ use crate::directions::Directions;
 use crate::fit::distance;
 use crate::grid::{Cell, CellSet, Grid, GridFrame};
 
-/// The poses of a grid that are sought.
+/// The poses of a grid that are searched.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct Limits {
     /// Cells along x.
     width: usize,
-    /// The cells in which poses are sought; `None` where they are in all.
+    /// The cells in which poses are searched; `None` where they are in all.
     cells: Option<CellSet>,
     /// The same for each heading.
     headings: Option<CellSet>,
 }
 
 impl Limits {
-    /// No limits on a grid so many cells wide.
+    /// No limits on a grid this many cells wide.
     #[must_use]
     pub fn none(width: usize) -> Self {
         Limits {
@@ -99,21 +99,21 @@ impl Limits {
         all
     }
 
-    /// Whether poses in the cell at column `x` of row `y` are sought.
+    /// Whether poses in the cell at column `x` of row `y` are searched.
     #[must_use]
     pub fn hold_cell(&self, x: usize, y: usize) -> bool {
         let cells = self.cells.as_ref();
         cells.is_none_or(|cells| cells.holds(y * self.width + x))
     }
 
-    /// The open cells of the grid in which poses are sought, in ascending order.
+    /// The open cells of the grid in which poses are searched, in ascending order.
     pub(crate) fn open_cells(&self, grid: &Grid) -> impl Iterator<Item = usize> {
         let is_open = |&i: &usize| grid.cells()[i] == Cell::Open;
         let all = (0..grid.cells().len()).filter(is_open);
         all.filter(|&i| self.cells.as_ref().is_none_or(|cells| cells.holds(i)))
     }
 
-    /// Whether a heading is sought.
+    /// Whether a heading is searched.
     #[must_use]
     pub fn hold_heading(&self, heading: usize) -> bool {
         let headings = self.headings.as_ref();
@@ -121,7 +121,7 @@ impl Limits {
     }
 
     /// Takes the votes off the cells of an image at a heading, row by row,
-    /// where none are sought.
+    /// where none are searched.
     pub(crate) fn clear(&self, field: &mut [u16], heading: usize) {
         if !self.hold_heading(heading) {
             field.fill(0);
@@ -136,7 +136,7 @@ impl Limits {
         self.width
     }
 
-    /// For blocks of so many cells a side, row by row, whether poses are sought in any
+    /// For blocks of this many cells a side, row by row, whether poses are searched in any
     /// cell: the blocks of which an index has to know.
     pub(crate) fn blocks(&self, side: usize, grid: &Grid) -> Vec<bool> {
         let columns = grid.width().div_ceil(side);
@@ -165,7 +165,7 @@ impl Limits {
         }
     }
 
-    /// The cells and the headings in which poses are sought, where not in all.
+    /// The cells and the headings in which poses are searched, where not in all.
     pub(crate) fn sets(&self) -> [Option<&CellSet>; 2] {
         [self.cells.as_ref(), self.headings.as_ref()]
     }
@@ -241,7 +241,7 @@ mod tests {
     }
 
     #[test]
-    fn where_nothing_is_free_nothing_is_sought() {
+    fn where_nothing_is_free_nothing_is_searched() {
         let unknown = limits_on(&["??#", "???"], &LimitsConfig::default());
         assert_eq!(unknown.unwrap_err(), EngineError::NoCellWithin);
     }

@@ -48,7 +48,7 @@ enum Method {
 }
 
 /// What answering scans takes beside the map, and the last answer. Kept from
-/// scan to scan: once there is room for all, nothing is allocated any more. It
+/// scan to scan: once its buffers are large enough, nothing is allocated any more. It
 /// may serve any localizer, one after the other.
 #[derive(Debug, Default)]
 pub struct Workspace {
@@ -152,7 +152,7 @@ impl Localizer {
         &self.grid
     }
 
-    /// Cells in which poses are sought.
+    /// Cells in which poses are searched.
     #[must_use]
     pub fn searchable_cells(&self) -> usize {
         self.limits().open_cells(&self.grid).count()

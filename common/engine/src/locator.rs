@@ -9,7 +9,7 @@
 
 use crate::EngineError;
 use crate::beams::BeamConfig;
-use crate::fit::{Ends, Terrain};
+use crate::fit::{DistanceField, Ends};
 use crate::grid::{CellRules, GridFrame};
 use crate::localizer::{self, Localizer, LocalizerConfig, Outcome, Prior};
 use crate::observation::Observation;
@@ -92,13 +92,13 @@ pub struct LocatorConfig {
 #[derive(Debug, Clone)]
 pub struct Locator {
     localizer: Localizer,
-    terrain: Terrain,
+    distance_field: DistanceField,
     /// That of the map as it is, where the localizer may search a coarser one.
     space: Space,
     peaks: PeakConfig,
 }
 
-/// What locating takes, kept from scan to scan: once there is room for all, nothing is
+/// What locating takes, kept from scan to scan: once its buffers are large enough, nothing is
 /// allocated any more. It may serve any locator.
 #[derive(Debug, Default)]
 pub struct Workspace {
@@ -109,7 +109,7 @@ pub struct Workspace {
 /// What a scan says about the pose.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Located<'w> {
-    /// The votes, and how they were come by.
+    /// The votes, and search statistics.
     pub outcome: &'w Outcome,
     /// What they say, the verdict included.
     pub places: &'w peaks::Places,
@@ -150,7 +150,7 @@ impl Locator {
     ) -> Result<Self, EngineError> {
         let ((width, height), headings) = (map.sides, localizer.config().headings);
         Ok(Locator {
-            terrain: Terrain::new(map.frame, map.sides, map.occupancy, map.rules)?,
+            distance_field: DistanceField::new(map.frame, map.sides, map.occupancy, map.rules)?,
             space: Space::new(headings, map.frame.resolution_m, width, height)?,
             localizer,
             peaks,
@@ -203,7 +203,8 @@ impl Locator {
         let input = PeakInput::of(outcome, self.localizer.frame());
         let find = |ends: &mut Ends| ends.find(scan, &self.space, self.beams());
         let peaks = &mut workspace.peaks;
-        let Judged { places, ends } = peaks.judge(&input, &self.terrain, &self.peaks, find)?;
+        let Judged { places, ends } =
+            peaks.judge(&input, &self.distance_field, &self.peaks, find)?;
         Ok(Some(Located {
             outcome,
             places,
@@ -231,8 +232,8 @@ impl Locator {
 
     /// The map as the second stage reads it.
     #[must_use]
-    pub fn terrain(&self) -> &Terrain {
-        &self.terrain
+    pub fn distance_field(&self) -> &DistanceField {
+        &self.distance_field
     }
 
     /// How the second stage judges places.

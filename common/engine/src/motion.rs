@@ -17,7 +17,7 @@ const MAX_GAP_NS: i64 = 500_000_000;
 const MAX_BEYOND_NS: i64 = 250_000_000;
 
 /// Samples that come this much earlier than the last are of a recording that was
-/// begun anew; others that are late are left out.
+/// begun again; others that are late are left out.
 const BEGUN_ANEW_NS: i64 = 1_000_000_000;
 
 /// The poses of a moving frame over time, by increasing stamps.
@@ -37,7 +37,7 @@ pub struct Located {
 }
 
 impl Motion {
-    /// Keeps the newest samples, so many at most.
+    /// Keeps the newest samples, this many at most.
     #[must_use]
     pub fn keeping(samples: usize) -> Self {
         Motion {
@@ -110,7 +110,7 @@ impl Motion {
 
     /// Where the frame was at a time: on the arc of constant twist between the two
     /// samples around it, or on that of the nearest two for at most a quarter of a
-    /// second beyond them. `None` where no samples tell.
+    /// second beyond them. `None` if no samples cover it.
     #[must_use]
     pub fn at(&self, stamp_ns: i64) -> Option<Located> {
         let after = self.samples.partition_point(|&(stamp, _)| stamp < stamp_ns);
@@ -181,7 +181,7 @@ mod tests {
     }
 
     #[test]
-    fn late_samples_are_left_out_and_a_recording_may_begin_anew() {
+    fn late_samples_are_left_out_and_a_recording_may_begin_again() {
         let east = |x| Pose::new(x, 0.0, 0.0);
         let mut motion = motion(&[(20, east(0.0)), (22, east(2.0)), (21, east(9.0))]);
         let middle = motion.at(21 * TENTH).unwrap().odom_from_child;

@@ -1,21 +1,21 @@
-//! What is looked for on the map: a scan as it came, or one that was brought to one
+//! The input of a search: a scan as it came, or one that was brought to one
 //! time and place.
 //!
 //! A laser that moves while it turns measures each beam from another place, and
 //! several lasers measure from several. What they saw is then carried, reading by
-//! reading, into the frame whose pose is sought.
+//! reading, into the target frame.
 
 use geometry::Pose;
 
 use crate::EngineError;
 use crate::scan::Scan;
 
-/// What a pose is sought for.
+/// What a pose is searched for.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub enum Observation<'a> {
-    /// A scan whose laser stood still; the laser's pose is sought.
+    /// A scan whose laser stood still; the laser's pose is searched.
     Still(Scan<'a>),
-    /// Scans carried into one frame, whose pose is sought. One alone is thinned by
+    /// Scans carried into one frame, whose pose is searched. One alone is thinned by
     /// its own beams, as if it stood still; several are joined: seen from the
     /// frame's origin, of the readings in a sector the nearest votes.
     Carried(&'a [CarriedScan<'a>]),
@@ -26,9 +26,9 @@ pub enum Observation<'a> {
 pub struct CarriedScan<'a> {
     /// The readings.
     pub scan: Scan<'a>,
-    /// The laser's pose in the frame that is sought, when it measured each of the
+    /// The laser's pose in the target frame, when it measured each of the
     /// ranges; as many as there are ranges.
-    pub sought_from_laser: &'a [Pose],
+    pub target_from_laser: &'a [Pose],
 }
 
 impl Observation<'_> {
@@ -54,11 +54,11 @@ impl<'a> From<&Scan<'a>> for Observation<'a> {
 impl CarriedScan<'_> {
     fn check(&self) -> Result<(), EngineError> {
         self.scan.check()?;
-        let (places, ranges) = (self.sought_from_laser.len(), self.scan.ranges.len());
+        let (places, ranges) = (self.target_from_laser.len(), self.scan.ranges.len());
         if places != ranges {
             return Err(EngineError::Places { places, ranges });
         }
-        match self.sought_from_laser.iter().find(|pose| !pose.is_finite()) {
+        match self.target_from_laser.iter().find(|pose| !pose.is_finite()) {
             Some(&pose) => Err(EngineError::Odometry(pose)),
             None => Ok(()),
         }
@@ -66,11 +66,11 @@ impl CarriedScan<'_> {
 
     /// Where the laser was when it measured beam `i`.
     pub(crate) fn laser(&self, i: usize) -> Pose {
-        let pose = self.sought_from_laser.get(self.scan.index(i));
+        let pose = self.target_from_laser.get(self.scan.index(i));
         pose.copied().unwrap_or_default()
     }
 
-    /// Where beam `i` ends, seen from the origin of the sought frame: bearing in
+    /// Where beam `i` ends, seen from the origin of the target frame: bearing in
     /// radians and distance in metres.
     pub(crate) fn end(&self, i: usize) -> Option<(f64, f64)> {
         let reading_m = self.scan.reading(i)?;

@@ -29,8 +29,8 @@ pub struct VoteConfig {
     /// How votes fall off in front of a reading and behind it.
     #[arg(long, value_enum, default_value_t = TaperShape::Trapezoid)]
     pub taper: TaperShape,
-    /// Standard deviation of a reading at no distance, metres, 0..=2; the
-    /// taper is never narrower than one cell.
+    /// Standard deviation of a reading at distance 0, metres, 0..=2; the taper is never
+    /// narrower than one cell.
     #[arg(long, value_name = "METRES", default_value_t = 0.10, value_parser = crate::config::parse_length)]
     pub sigma_m: f64,
     /// What is added to the standard deviation for each metre of range, 0..=0.25.
@@ -77,7 +77,7 @@ impl Taper<'_> {
 }
 
 /// A scan, ready to vote on a grid; by default one of which nothing votes. It
-/// can be compiled anew for each scan, in the room of the one before.
+/// can be compiled again for each scan, in the buffers of the one before.
 #[derive(Debug, Clone, Default)]
 pub struct ScanProgram {
     chosen: Chosen,
@@ -116,7 +116,7 @@ impl ScanProgram {
         Ok(program)
     }
 
-    /// The same in the room of a scan before; where it is refused, that scan
+    /// The same in the buffers of a scan before; where it is refused, that scan
     /// stays.
     ///
     /// # Errors

@@ -56,7 +56,7 @@ pub fn field(grid: &Grid, program: &ScanProgram, space: &Space, heading: usize) 
         .collect()
 }
 
-/// The same within limits: 0 where no pose is sought.
+/// The same within limits: 0 where no pose is searched.
 #[must_use]
 pub fn field_within(
     limits: &Limits,

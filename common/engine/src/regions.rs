@@ -20,7 +20,7 @@ use crate::scan::Scan;
 
 pub use window::{SonarConfig, Window};
 
-/// Bearings of a turn at which regions are sought, and of the scans that are
+/// Bearings of a turn at which regions are searched, and of the scans that are
 /// made here, which begin behind: one a degree.
 pub const BEARINGS: usize = 360;
 
@@ -84,7 +84,7 @@ impl Echo {
     }
 
     fn has_in_cone(&self, bearing: f64, half_width: f64) -> bool {
-        // A billionth of a radian is room for rounding.
+        // A billionth of a radian is a margin for rounding.
         angle_between(bearing, self.scan_from_transducer.yaw) <= half_width + 1e-9
     }
 }
@@ -285,7 +285,7 @@ mod tests {
 
     use super::*;
 
-    /// A transducer that looks so many degrees from ahead, and reads a wall whose
+    /// A transducer that looks this many degrees from ahead, and reads a wall whose
     /// normal is at `normal` degrees and `depth_m` from the frame's origin.
     fn echo(x: f64, y: f64, axis: f64, (normal, depth_m): (f64, f64)) -> Echo {
         let (sin, cos) = normal.to_radians().sin_cos();
@@ -320,7 +320,7 @@ mod tests {
             let [(bearing, depth_cm, echoes)] = &found[..] else {
                 panic!("{found:?}");
             };
-            // A metre of way tells bearings that differ by 6 cm / 1 m, 3 degrees, and
+            // A metre of way distinguishes bearings that differ by 6 cm / 1 m, 3 degrees, and
             // the depth at one of those is off by that share of half the way.
             assert!((bearing - normal as i64).abs() <= 2, "{found:?}");
             assert!((depth_cm - 200.0).abs() <= 3.0, "{found:?}");

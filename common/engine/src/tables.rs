@@ -6,7 +6,7 @@ use crate::program::ScanProgram;
 /// The most entries of a short table: what one instruction can look up.
 pub(crate) const TABLE: usize = 64;
 
-/// The tables of all beams, for each class of directions; made anew for each
+/// The tables of all beams, for each class of directions; made again for each
 /// program. They lie one behind the other, as a search reads them all over again and
 /// little else then fits the processor's nearer caches.
 #[derive(Debug, Clone, Default)]

@@ -149,7 +149,7 @@ pub(crate) struct AnyScan {
 }
 
 impl AnyScan {
-    /// The scan with all readings so many times as long.
+    /// The scan with all readings this many times as long.
     pub(crate) fn stretched(mut self, by: f32) -> Self {
         self.ranges.iter_mut().for_each(|range| *range *= by);
         self
@@ -177,7 +177,7 @@ impl AnyScan {
     }
 }
 
-/// Test grids with limits and a number of headings, up to so many eights.
+/// Test grids with limits and a number of headings, up to this many eights.
 pub(crate) fn any_limited_grid(eights: u32) -> impl Strategy<Value = (Grid, Limits, u32)> {
     (any_grid(), 1..eights).prop_flat_map(|(grid, eights)| {
         let limits = any_limits(&grid, 8 * eights);

@@ -6,7 +6,7 @@ use std::sync::atomic::{AtomicBool, Ordering};
 /// Runs each share on a thread of its own, the first one on this, with its number;
 /// what the first of them failed with, if one did.
 ///
-/// Where the first one fails, the others are told to stop; only it hears of `stop`
+/// Where the first one fails, the others are asked to stop; only it checks `stop`
 /// from outside.
 ///
 /// # Panics

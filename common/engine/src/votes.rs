@@ -38,7 +38,7 @@ pub struct VoteSet {
 }
 
 impl VoteSet {
-    /// Adds poses below the certified floor until there are so many distinct
+    /// Adds poses below the certified floor until there are this many distinct
     /// ones, best first; none of `others` is left.
     pub(crate) fn add_candidates(&mut self, others: &mut Vec<Vote>, mut distinct: Distinct<'_>) {
         self.votes.iter().for_each(|vote| {
@@ -93,7 +93,7 @@ impl Collector {
         collector
     }
 
-    /// Starts anew, in the room of what was collected before.
+    /// Starts again, in the buffers of before.
     pub(crate) fn start(&mut self, config: CollectConfig) {
         self.config = config;
         self.votes.clear();
@@ -144,7 +144,7 @@ impl Collector {
     }
 
     /// Raises the floor to what follows from a pose seen elsewhere.
-    pub(crate) fn hear_of(&mut self, best: u16) {
+    pub(crate) fn raise_best(&mut self, best: u16) {
         self.best = self.best.max(best);
     }
 
@@ -156,7 +156,7 @@ impl Collector {
     /// Becomes what one collector would be that had taken the poses of both.
     pub(crate) fn merge(&mut self, other: &Collector) {
         self.crowded_below = self.crowded_below.max(other.crowded_below);
-        self.hear_of(other.best);
+        self.raise_best(other.best);
         for &vote in &other.votes {
             self.take(vote);
         }
@@ -185,7 +185,7 @@ impl Collector {
     }
 
     /// The outcome, in order. Its votes are not copied: what the outcome had
-    /// before is room for those to come.
+    /// before is buffer for those to come.
     pub(crate) fn finish(&mut self, poses_evaluated: u64, outcome: &mut VoteSet) {
         self.make_room();
         self.votes.sort_unstable_by_key(order);

@@ -1,4 +1,4 @@
-//! Nothing is allocated from scan to scan: once workspaces have room for all
+//! Nothing is allocated from scan to scan: once the buffers of workspaces are large enough for all
 //! scans, searching them again, and fitting them, asks for no memory.
 //!
 //! Allocations are counted for each thread by itself, so tests may run side by
@@ -12,7 +12,7 @@
 use std::f64::consts::{FRAC_PI_2, TAU};
 
 use allocation_counter::measure;
-use engine::fit::{Ends, Terrain};
+use engine::fit::{DistanceField, Ends};
 use engine::grid::{CellRules, GridFrame};
 use engine::instruction_set::InstructionSet;
 use engine::localizer::{Localizer, LocalizerConfig, Outcome, Prior, Workspace};
@@ -112,8 +112,8 @@ impl World {
         Localizer::of_map(FRAME, self.sides, &self.occupancy, rules, config, prior).unwrap()
     }
 
-    fn terrain(&self) -> Terrain {
-        Terrain::new(FRAME, self.sides, &self.occupancy, CellRules::default()).unwrap()
+    fn distance_field(&self) -> DistanceField {
+        DistanceField::new(FRAME, self.sides, &self.occupancy, CellRules::default()).unwrap()
     }
 
     /// What a laser with half a turn of view reads at a pose of the grid, within
@@ -225,7 +225,7 @@ fn a_search_at_a_heading_allocates_nothing() {
 #[test]
 fn the_second_stage_allocates_nothing() {
     let world = World::rooms();
-    let (localizer, terrain) = (world.localizer(1, Prior::None), world.terrain());
+    let (localizer, distance_field) = (world.localizer(1, Prior::None), world.distance_field());
     let space = localizer.space();
     let search = |scan: Scan<'_>| localizer.search(&scan, &|| false).unwrap().unwrap();
     let outcomes: Vec<Outcome> = world.scans().map(search).collect();
@@ -237,7 +237,7 @@ fn the_second_stage_allocates_nothing() {
         let input = PeakInput::of(outcome, FRAME);
         let beams = &localizer.config().votes.beams;
         ends.find(scan, space, beams).unwrap();
-        let places = workspace.by_fit(&input, (&terrain, &ends), &config);
+        let places = workspace.by_fit(&input, (&distance_field, &ends), &config);
         assert_ne!(places.verdict, Verdict::NoScan);
         candidates = candidates.max(places.places.len());
         workspace.by_votes(&input, &config);
@@ -249,16 +249,16 @@ fn the_second_stage_allocates_nothing() {
 #[test]
 fn particles_allocate_nothing() {
     let world = World::rooms();
-    let (localizer, terrain) = (world.localizer(1, Prior::None), world.terrain());
+    let (localizer, distance_field) = (world.localizer(1, Prior::None), world.distance_field());
     let config = ParticlesConfig::default();
-    let mut filter = ParticleFilter::uniform(&terrain, StartHeadings::Any, config).unwrap();
+    let mut filter = ParticleFilter::uniform(&distance_field, StartHeadings::Any, config).unwrap();
     let (mut ends, mut drawn) = (Ends::default(), 0);
     let beams = &localizer.config().votes.beams;
     let step = Pose::new(0.1, 0.0, 0.1);
     let mut update = |scan: &Scan<'_>| {
         ends.find(scan, localizer.space(), beams).unwrap();
         filter.predict(step, &OdometryNoise::default());
-        filter.weigh(&terrain, &ends);
+        filter.weigh(&distance_field, &ends);
         drawn += usize::from(filter.resample());
         assert!(filter.estimate().is_some());
     };

@@ -51,7 +51,7 @@ pub struct Unsaved {
 }
 
 impl Prepared {
-    /// Prepares a map: with the index that is kept of it, else anew.
+    /// Prepares a map: with the index that is kept of it, else again.
     ///
     /// # Errors
     /// If the map cannot be searched, see [`Preparation::finish`].
@@ -110,7 +110,7 @@ impl Unsaved {
 }
 
 impl IndexCache {
-    /// In a folder, which is made with the first file, of at most so many bytes.
+    /// In a folder, which is made with the first file, of at most this many bytes.
     #[must_use]
     pub fn new(folder: PathBuf, limit: u64) -> Self {
         IndexCache { folder, limit }
@@ -287,7 +287,7 @@ mod tests {
         for (i, key) in keys.iter().enumerate() {
             assert!(!keys[..i].contains(key), "setting {i}");
         }
-        // What a search is told alone does not matter.
+        // The parameters of a search alone do not matter.
         assert_eq!(
             other(LocalizerConfig {
                 threads: 3,

@@ -1,4 +1,4 @@
-//! What a user can set.
+//! Command-line options.
 
 use std::convert::Infallible;
 use std::path::PathBuf;
@@ -9,15 +9,15 @@ use crate::{CacheError, IndexCache, folder};
 /// Where prepared maps are kept.
 #[derive(Debug, Clone, PartialEq, Eq, clap::Args)]
 pub struct IndexCacheConfig {
-    /// Folder in which prepared maps are kept, so that the same map with the same settings
-    /// is read the next time and not prepared: a folder that nobody else can use, which is
-    /// made if it is missing; "user" for $XDG_CACHE_HOME/backcast or ~/.cache/backcast;
-    /// "off" to keep none. Its files can be removed at any time.
+    /// Folder that caches prepared maps, so that the same map with the same settings is
+    /// read the next time instead of prepared: a folder that nobody else can use,
+    /// created if it is missing; "user" for $XDG_CACHE_HOME/backcast or
+    /// ~/.cache/backcast; "off" for no cache. Its files can be removed at any time.
     /// [default: user in the accumulator, off in the tools]
     #[arg(long, value_name = "FOLDER")]
     pub index_cache: Option<CachePlace>,
-    /// Most that all prepared maps in the folder take, megabytes of 10⁶ bytes,
-    /// 1..=1000000: those that were not used for longest are removed.
+    /// Maximum size of the cache, megabytes of 10⁶ bytes, 1..=1000000: the least
+    /// recently used maps are removed.
     #[arg(long, value_name = "MEGABYTES", default_value_t = 2000, value_parser = clap::value_parser!(u32).range(1..=1_000_000))]
     pub index_cache_limit: u32,
 }

@@ -1,4 +1,4 @@
-//! What can be wrong with kept indexes.
+//! Errors of cached indexes.
 
 use std::io;
 use std::path::PathBuf;
@@ -49,7 +49,7 @@ pub enum CacheError {
         source: io::Error,
     },
     /// A file is not what it should be.
-    #[error("{path} cannot be used, and the map is prepared anew")]
+    #[error("{path} cannot be used, and the map is prepared again")]
     Unusable {
         /// The file.
         path: PathBuf,
@@ -70,7 +70,7 @@ pub enum CacheError {
 #[derive(Debug, thiserror::Error)]
 pub enum FileError {
     /// It does not begin as these files do on this machine.
-    #[error("it is no file of an index")]
+    #[error("not an index file")]
     Foreign,
     /// Another release wrote it.
     #[error("it has version {found} and this is version {expected}")]
@@ -81,7 +81,7 @@ pub enum FileError {
         expected: u32,
     },
     /// Another name belongs to what it holds.
-    #[error("it holds the index of another map or of other settings")]
+    #[error("the index is of another map or other settings")]
     OtherKey,
     /// The checksum of its header is wrong.
     #[error("its header is damaged")]

@@ -9,7 +9,7 @@
 //! | 16 each | length and checksum of each section |
 //! | 8 | checksum of all before |
 //!
-//! Numbers and sections are in the byte order of the machine, which the magic tells.
+//! Numbers and sections are in the byte order of the machine, which the magic number shows.
 //! Checksums are XXH3 of 64 bits.
 
 use std::hash::Hasher;
@@ -116,7 +116,7 @@ pub(crate) fn write(to: &mut impl Write, key: IndexKey, index: &SearchIndex) -> 
         .try_for_each(|section| to.write_all(section))
 }
 
-/// Reads the index of a map from a file of so many bytes.
+/// Reads the index of a map from a file of this many bytes.
 pub(crate) fn read(
     from: &mut impl Read,
     file_bytes: u64,
@@ -242,7 +242,7 @@ mod tests {
     fn a_sound_header_that_claims_too_much_is_refused_before_room_is_made() {
         assert!(claiming(|_| ()).is_ok());
         let moved = claiming(|header| {
-            // From the intervals to the sought cells: as many bytes together.
+            // From the intervals to the searched cells: as many bytes together.
             header.sections[5].bytes -= 48 * 3;
             header.sections[0].bytes += 48 * 3;
         });

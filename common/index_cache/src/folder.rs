@@ -67,7 +67,7 @@ pub(crate) fn new_file(folder: &Path) -> io::Result<NamedTempFile> {
 }
 
 /// Removes the files that were not used for longest, what is left of interrupted writes
-/// among them, until all together take at most so many bytes; `spared` is not removed.
+/// among them, until all together take at most this many bytes; `spared` is not removed.
 pub(crate) fn trim(folder: &Path, spared: &Path, limit: u64) -> Result<(), CacheError> {
     let listed = read_dir(folder).map_err(failed("list", folder))?;
     let mut files: Vec<(SystemTime, u64, PathBuf)> = Vec::new();

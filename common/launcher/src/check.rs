@@ -37,7 +37,7 @@ const NODES: [&str; 15] = [
     "tracker",
 ];
 
-/// What `backcast check` takes.
+/// Options of `backcast check`.
 #[derive(Debug, clap::Args)]
 pub struct Config {
     /// The graph's descriptor

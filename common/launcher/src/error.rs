@@ -1,4 +1,4 @@
-//! All that can end a command of this crate early, and the exit code that it means.
+//! Errors of this crate's commands, and their exit codes.
 
 use std::{io, path::PathBuf, process::ExitStatus};
 
@@ -116,7 +116,7 @@ pub enum LauncherError {
         source: io::Error,
     },
     /// A node failed, and is not started again.
-    #[error("node {node} ended with {status}{}; its own last lines say why", after(*restarts))]
+    #[error("node {node} ended with {status}{}; see its last log lines", after(*restarts))]
     NodeFailed {
         /// The node.
         node: String,
@@ -125,7 +125,7 @@ pub enum LauncherError {
         /// How often it was started again before.
         restarts: u32,
     },
-    /// The graph cannot be joined, heard or cleaned up.
+    /// The graph cannot be joined, read or cleaned up.
     #[error(transparent)]
     Transport(#[from] TransportError),
     /// A file cannot be read or written.
@@ -138,8 +138,8 @@ pub enum LauncherError {
         /// Why it failed.
         source: io::Error,
     },
-    /// The service manager that started us cannot be told of it.
-    #[error("cannot tell the service manager: NOTIFY_SOCKET names no socket of one")]
+    /// The service manager that started us cannot be notified.
+    #[error("cannot notify the service manager: NOTIFY_SOCKET is not one of its sockets")]
     Notify(#[source] io::Error),
     /// A signal cannot be caught.
     #[error("cannot catch signals")]
@@ -150,8 +150,8 @@ pub enum LauncherError {
     /// Standard output takes no more.
     #[error(transparent)]
     Output(#[from] OutputError),
-    /// The current directory cannot be told.
-    #[error("cannot tell the current directory")]
+    /// The current directory cannot be found.
+    #[error("cannot find the current directory")]
     Folder(#[source] io::Error),
 }
 

@@ -1,4 +1,4 @@
-//! What can be wrong with a map: the value found, where, and what is allowed.
+//! Errors in a map: the value found, where, and what is allowed.
 
 use std::io;
 use std::path::PathBuf;
@@ -117,7 +117,7 @@ pub enum MapError {
         /// Bytes that follow its header.
         found: u64,
     },
-    /// The image goes on after its pixels: its header is most likely damaged.
+    /// The image continues after its pixels: its header is most likely damaged.
     #[error("{} goes on for {surplus} bytes after the last of {width} x {height} cells; allowed: white space", path.display())]
     ImageSurplus {
         /// The image file.

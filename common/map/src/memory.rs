@@ -12,9 +12,9 @@ const BYTES_A_CELL: u64 = 150;
 /// The option by which a user says what a graph may use.
 #[derive(Debug, Clone, Default, clap::Args)]
 pub struct MemoryOptions {
-    /// Memory of this machine that the graph may use, megabytes; a map that needs more is
-    /// refused, and the one before stays [default: the limit of the control group, or
-    /// all that the machine has]
+    /// Memory limit of the graph, megabytes; a map that needs more is rejected, and the
+    /// previous one stays [default: the limit of the control group, or all memory of
+    /// the machine]
     #[arg(long, value_name = "MB", value_parser = clap::value_parser!(u64).range(1..))]
     pub memory_limit: Option<u64>,
 }

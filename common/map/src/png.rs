@@ -47,7 +47,7 @@ pub(crate) fn claim(head: &[u8], path: &Path) -> Result<Claim, MapError> {
             height,
         });
     }
-    // Four samples of two bytes each, and what tells how a row is filtered.
+    // Four samples of two bytes each, and a byte for how a row is filtered.
     let pixels = (u64::from(width) * 8 + 1) * u64::from(height);
     Ok(Claim {
         sides: (width, height),

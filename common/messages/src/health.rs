@@ -1,4 +1,4 @@
-//! How a node fares.
+//! The state of a node.
 
 use bytemuck::{Pod, Zeroable};
 use iceoryx2_bb_derive_macros::ZeroCopySend;

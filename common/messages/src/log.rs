@@ -45,7 +45,7 @@ pub enum LogLevel {
     Debug = 10,
     /// As it should be.
     Info = 20,
-    /// Not as it should be, but the node goes on.
+    /// Not as it should be, but the node continues.
     Warn = 30,
     /// The node cannot do what it is there for.
     Error = 40,

@@ -16,7 +16,7 @@ pub struct ReadingsHeader {
     pub stamp: Stamp,
 }
 
-/// One beam, in the frame whose pose is sought: that of the laser at the scan's
+/// One beam, in the target frame: that of the laser at the scan's
 /// stamp or, where several lasers are joined, that of the base.
 #[derive(
     Debug, Clone, Copy, PartialEq, Default, Pod, Zeroable, ZeroCopySend, Serialize, Deserialize,

@@ -1,4 +1,4 @@
-//! Where poses are to be sought.
+//! Where poses are to be searched.
 
 use bytemuck::{Pod, Zeroable};
 use iceoryx2_bb_derive_macros::ZeroCopySend;
@@ -8,14 +8,14 @@ use serde::{Deserialize, Serialize};
 use crate::Stamp;
 
 /// Header of topic `region`; the items are the corners of a polygon in turn, two
-/// of an upright rectangle, or none where poses are sought everywhere.
+/// of an upright rectangle, or none where poses are searched everywhere.
 #[derive(
     Debug, Clone, Copy, PartialEq, Eq, Pod, Zeroable, ZeroCopySend, Serialize, Deserialize,
 )]
 #[type_name("RegionHeader/v1")]
 #[repr(C)]
 pub struct RegionHeader {
-    /// When it was wished for; the counter counts the wishes.
+    /// When it was requested; the counter counts the requests.
     pub stamp: Stamp,
 }
 

@@ -1,4 +1,4 @@
-//! A wish that the last minutes be saved.
+//! A request that the last minutes be saved.
 
 use bytemuck::{Pod, Zeroable};
 use iceoryx2_bb_derive_macros::ZeroCopySend;
@@ -14,7 +14,7 @@ use crate::Stamp;
 #[type_name("SaveHeader/v1")]
 #[repr(C)]
 pub struct SaveHeader {
-    /// When it was wished for; the counter counts the wishes.
+    /// When it was requested; the counter counts the requests.
     pub stamp: Stamp,
 }
 

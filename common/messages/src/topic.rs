@@ -91,11 +91,11 @@ topics! {
     Beams = "beams", BeamsHeader, [Beam];
     /// The true pose of a scan, where a recording holds it; no items.
     GroundTruthTopic = "ground_truth", GroundTruth, [u8] { depth: 16 };
-    /// Where poses are to be sought from now on; no items where everywhere.
+    /// Where poses are to be searched from now on; no items where everywhere.
     Region = "region", RegionHeader, [Corner] { latched: true, depth: 1 };
-    /// A wish that the recorder save the last minutes; no items.
+    /// A request that the recorder save the last minutes; no items.
     Save = "save", SaveHeader, [u8];
-    /// How each node fares; the items are its last error as UTF-8.
+    /// The state of each node; the items are its last error as UTF-8.
     Health = "health", HealthHeader, [u8] { latched: true, depth: 8, publishers: 24, subscribers: 8 };
     /// What each node logs, a line at a time; the items are the line as UTF-8.
     Log = "log", LogHeader, [u8] { latched: true, history: 16, depth: 64, publishers: 24, subscribers: 8 };

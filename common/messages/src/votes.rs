@@ -60,7 +60,7 @@ pub struct VotesHeader {
     pub free_to: u32,
     /// Most beams of a scan that vote; longer scans are thinned by arc.
     pub max_beams: u32,
-    /// Cells of the map along the side of a cell that was searched: of so many
+    /// Cells of the map along the side of a cell that was searched: of this many
     /// are the items' cells.
     pub pooling: u32,
     /// Arc at the reading from which a beam counts fully, metres.
@@ -89,7 +89,7 @@ pub enum SearchOutcome {
     /// The scan was refused; the sender's health says why.
     Refused = 2,
     /// The scan is kept, and searched once `attention` asks for it. No hypotheses
-    /// follow; the counters of these messages tell what was lost.
+    /// follow; the counters of these messages show what was lost.
     NotAsked = 3,
 }
 

@@ -1,7 +1,7 @@
 //! What a message from outside must hold before it enters a graph.
 //!
 //! Nodes check again what they rely on. Here is refused what no sound sender
-//! sends: numbers that are none, sizes that contradict each other, text that is
+//! sends: invalid numbers, sizes that contradict each other, text that is
 //! none. Readings of a scan may be anything, for lasers say "nothing came back"
 //! in all ways there are, and the engine knows them.
 

@@ -1,4 +1,4 @@
-//! Why a payload is refused.
+//! Reasons to reject a payload.
 //!
 //! Each variant says what was found and what is allowed.
 
@@ -36,7 +36,7 @@ pub enum WireError {
         source: Box<dyn std::error::Error + Send + Sync>,
     },
     /// Not what the encoding says.
-    #[error("topic {topic} is no postcard of its schema")]
+    #[error("topic {topic} does not match its postcard schema")]
     Postcard {
         /// The topic.
         topic: &'static str,
@@ -64,7 +64,7 @@ pub enum WireError {
         allowed: String,
     },
     /// No name for a robot or a map.
-    #[error("{found:?} is no name: allowed are 1 to {most} of a-z A-Z 0-9 - _ .", most = crate::MAX_NAME_BYTES)]
+    #[error("{found:?} is not a name: allowed are 1 to {most} of a-z A-Z 0-9 - _ .", most = crate::MAX_NAME_BYTES)]
     Name {
         /// What was given.
         found: String,

@@ -13,7 +13,7 @@
 //! | `application/postcard+zstd;backcast.Map/v1` | one zstd frame of it |
 //!
 //! What is sent is not trusted: another schema, a payload or an item too many, a
-//! number that is none and a header that contradicts its items are refused, and
+//! invalid number and a header that contradicts its items are refused, and
 //! nothing is reserved that the bytes do not bring along. The crate opens no
 //! socket and reads no clock.
 

@@ -2,7 +2,7 @@
 //!
 //! | field | postcard | meaning |
 //! |---|---|---|
-//! | `sender` | varint(u64) | a random number that the sending process keeps |
+//! | `sender` | varint(u64) | the session id of the sending process, a random number |
 //! | `sequence` | varint(u64) | counts up by one from 0 for each topic of a sender |
 //! | `clock_ns` | varint(i64) | the sender's `CLOCK_MONOTONIC` when it was sent |
 //! | header | its fields in order | see `messages` |
@@ -21,7 +21,7 @@ const SHOWN: usize = 80;
 /// What stands in front of each message.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
 pub struct Preamble {
-    /// A random number that the sending process keeps while it lives.
+    /// The session id: a random number that the sending process keeps while it lives.
     pub sender: u64,
     /// Counts up by one from 0 for each topic of a sender: a gap is a loss, and a
     /// number at or below the last one a repetition.

@@ -8,10 +8,10 @@ use std::collections::VecDeque;
 /// Senders of one topic that are remembered at the same time.
 const MOST: usize = 32;
 
-/// What the number of a message tells.
+/// What the number of a message shows.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Arrival {
-    /// It is new, and so many before it were lost.
+    /// It is new, and this many before it were lost.
     New {
         /// Messages between the last one of this sender and this one.
         lost: u64,
@@ -23,12 +23,12 @@ pub enum Arrival {
 /// The numbers that came last on one topic, for each sender. Pure.
 #[derive(Debug, Default)]
 pub struct Arrivals {
-    /// Sender and its last number, the one that was heard last at the back.
+    /// Sender and its last number, the most recent one at the back.
     last: VecDeque<(u64, u64)>,
 }
 
 impl Arrivals {
-    /// Notes number `sequence` of `sender`. The first of a sender tells of no
+    /// Notes number `sequence` of `sender`. The first of a sender shows no
     /// loss, for one may join late.
     pub fn note(&mut self, sender: u64, sequence: u64) -> Arrival {
         let known = self.last.iter().position(|&(id, _)| id == sender);
@@ -53,7 +53,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn losses_and_repetitions_are_told_for_each_sender() {
+    fn losses_and_repetitions_are_reported_for_each_sender() {
         let mut arrivals = Arrivals::default();
         let mut note = |sender, sequence| arrivals.note(sender, sequence);
         assert_eq!(note(1, 5), Arrival::New { lost: 0 });

@@ -19,7 +19,7 @@ pub trait Wire:
     /// Whether payloads are compressed.
     const COMPRESSED: bool;
     /// Whether a late joiner on another machine is to get the newest sample: of
-    /// what is said once and holds until it is said anew.
+    /// what is said once and holds until it is said again.
     const KEPT: bool;
     /// Whether its publisher computes it only while somebody subscribes, so that
     /// nobody is to subscribe on behalf of nobody.

@@ -70,7 +70,7 @@ mod tests {
         assert!(mixed.check(file).is_ok());
         assert_eq!(
             all.check(file).unwrap_err().to_string(),
-            "r.mcap: every scan was refused, 2 in all; the first: the scan is empty: it has no \
+            "r.mcap: every scan was rejected, 2 in all; the first: the scan is empty: it has no \
              ranges"
         );
     }

@@ -1,4 +1,4 @@
-//! All that can end a command of this crate early, and the exit code that it means.
+//! Errors of this crate's commands, and their exit codes.
 
 use std::path::PathBuf;
 
@@ -52,7 +52,7 @@ pub enum OfflineError {
         reason: String,
     },
     /// No scan was accepted.
-    #[error("{}: every scan was refused, {scans} in all; the first: {reason}", file.display())]
+    #[error("{}: every scan was rejected, {scans} in all; the first: {reason}", file.display())]
     AllRefused {
         /// The recording.
         file: PathBuf,
@@ -62,7 +62,7 @@ pub enum OfflineError {
         reason: String,
     },
     /// A recording by which nothing can be judged.
-    #[error("{} has no true poses on /ground_truth: there is nothing to judge by", file.display())]
+    #[error("{} has no true poses on /ground_truth: nothing to compare with", file.display())]
     NoTruths {
         /// The recording.
         file: PathBuf,

@@ -33,8 +33,8 @@ impl Headings {
         let mut notes = Vec::new();
         match source {
             HeadingSource::Searched | HeadingSource::Fixed(_) => {}
-            HeadingSource::Odometry { .. } => notes = hear_odometry(recording, &mut history)?,
-            HeadingSource::Truth => hear_truths(recording, &mut history)?,
+            HeadingSource::Odometry { .. } => notes = read_odometry(recording, &mut history)?,
+            HeadingSource::Truth => read_truths(recording, &mut history)?,
         }
         Ok(Headings {
             source,
@@ -77,10 +77,10 @@ fn measured(measured_ns: i64) -> Stamp {
     }
 }
 
-fn hear_truths(recording: &Recording, history: &mut History) -> Result<(), RecordingError> {
+fn read_truths(recording: &Recording, history: &mut History) -> Result<(), RecordingError> {
     recording.required_topic(Kind::PoseStamped)?;
     for (ns, truth) in recording.ground_truths()? {
-        history.hear_truth(&GroundTruth {
+        history.on_truth(&GroundTruth {
             stamp: measured(ns),
             map_from_laser: truth.pose.into(),
             frame: FrameName::new(&truth.frame),
@@ -89,13 +89,13 @@ fn hear_truths(recording: &Recording, history: &mut History) -> Result<(), Recor
     Ok(())
 }
 
-fn hear_odometry(
+fn read_odometry(
     recording: &Recording,
     history: &mut History,
 ) -> Result<Vec<String>, RecordingError> {
     let topic = recording.required_topic(Kind::Odometry)?;
     each_odometry(recording, &topic, |odometry| {
-        history.hear_odometry(odometry);
+        history.on_odometry(odometry);
     })
 }
 
@@ -111,7 +111,7 @@ pub fn each_odometry(
 ) -> Result<Vec<String>, RecordingError> {
     let (mut left_out, mut first) = (0, None);
     for record in recording.records_of(&[Kind::Odometry]) {
-        let heard = match record {
+        let received = match record {
             Ok(record) if record.topic != *topic => continue,
             Ok(record) => odometry_of(recording, &record),
             // It lies behind all that can be read, and the scans come to it too.
@@ -120,7 +120,7 @@ pub fn each_odometry(
             Err(error @ RecordingError::Message { .. }) => Err(error),
             Err(error) => return Err(error),
         };
-        match heard {
+        match received {
             Ok(Some(odometry)) => take(&odometry),
             Ok(None) => {}
             Err(error) => {
@@ -129,7 +129,7 @@ pub fn each_odometry(
             }
         }
     }
-    let note = |first| format!("{left_out} messages of {topic} are left out; the first: {first}");
+    let note = |first| format!("{left_out} messages of {topic} are ignored; the first: {first}");
     Ok(first.map(note).into_iter().collect())
 }
 

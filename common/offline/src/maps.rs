@@ -154,7 +154,7 @@ mod tests {
     }
 
     #[test]
-    fn what_cannot_be_used_is_left_out_and_told() {
+    fn what_cannot_be_used_is_left_out_and_reported() {
         let recording = recording(&[7, 8, 7, 7, 9]);
         let mut maps = Maps::recorded(&recording).unwrap();
         assert_eq!(width(&mut maps, 1), (None, 1), "the first after it");

@@ -48,7 +48,7 @@ impl<'a> Motion<'a> {
     /// # Errors
     /// The scan cannot be one of the graph, or the recording cannot be read.
     pub(crate) fn take(&mut self, scan: &TakenScan) -> Result<(), OfflineError> {
-        let takes_time = self.joiner.seeks_base() || scan.message.time_increment != 0.0;
+        let takes_time = self.joiner.targets_base() || scan.message.time_increment != 0.0;
         if takes_time && self.deskews {
             self.read_odometry()?;
         }
@@ -77,7 +77,7 @@ impl<'a> Motion<'a> {
             }
             Ok(None) => {}
             Err(error) => self.notes.push(format!(
-                "the motion within scans is not taken out: {error}; --odom-topic names one"
+                "the motion within scans is not compensated: {error}; --odom-topic names one"
             )),
         }
         Ok(())
@@ -93,9 +93,9 @@ impl<'a> Motion<'a> {
         Ok(())
     }
 
-    /// Where the sought frame was by the odometry when the scan was taken.
-    pub(crate) fn odom_from_sought(&self) -> Option<Pose> {
-        self.joiner.odom_from_sought()
+    /// Where the target frame was by the odometry when the scan was taken.
+    pub(crate) fn odom_from_target(&self) -> Option<Pose> {
+        self.joiner.odom_from_target()
     }
 
     /// What was brought.
@@ -103,14 +103,14 @@ impl<'a> Motion<'a> {
         self.joiner.seen()
     }
 
-    /// Whether places are sought for the base, of several lasers.
-    pub(crate) fn seeks_base(&self) -> bool {
-        self.joiner.seeks_base()
+    /// Whether places are searched for the base, of several lasers.
+    pub(crate) fn targets_base(&self) -> bool {
+        self.joiner.targets_base()
     }
 
-    /// The heading of the laser, radians, as that of what is sought.
-    pub(crate) fn sought_heading(&self, laser_heading: f64) -> f64 {
-        self.joiner.sought_heading(laser_heading)
+    /// The heading of the laser, radians, as that of what is searched.
+    pub(crate) fn target_heading(&self, laser_heading: f64) -> f64 {
+        self.joiner.target_heading(laser_heading)
     }
 
     /// What is worth knowing, and has not been said yet.

@@ -1,4 +1,4 @@
-//! What all of them take on the command line.
+//! Options of all of them.
 
 use std::path::{Path, PathBuf};
 
@@ -29,7 +29,7 @@ pub struct Options {
     #[command(flatten)]
     pub topics: TopicOptions,
 
-    /// Take each N-th scan, beginning with the first; 1 takes all
+    /// Take every N-th scan, starting with the first; 1 takes all
     #[arg(long, value_name = "N", default_value_t = 1, value_parser = clap::value_parser!(u64).range(1..))]
     pub every: u64,
 

@@ -118,7 +118,7 @@ impl<'a> Scans<'a> {
         is_taken
     }
 
-    /// Keeps a scan of another laser: the newest two, which also tell its period.
+    /// Keeps a scan of another laser: the newest two, which also give its period.
     fn keep(&mut self, scan: TakenScan) {
         let of_laser = |other: &TakenScan| other.laser == scan.laser;
         if self.others.iter().filter(|other| of_laser(other)).count() == 2
@@ -251,7 +251,7 @@ mod tests {
     }
 
     #[test]
-    fn a_scan_that_does_not_decode_is_told_and_not_the_end() {
+    fn a_scan_that_does_not_decode_is_reported_and_not_the_end() {
         let mut writer = RecordingWriter::in_memory(Packing::Plain).unwrap();
         let sound = Message::Scan(LaserScan::default());
         writer.write("/scan", 0, &sound).unwrap();

@@ -7,7 +7,7 @@ use std::path::{Path, PathBuf};
 
 use engine::fit::Ends;
 use engine::localizer::Prior;
-use engine::peaks::Sought;
+use engine::peaks::Target;
 use geometry::Pose;
 use index_cache::{CachePlace, IndexCache, Kept, Unsaved};
 use map::OccupancyGrid;
@@ -58,10 +58,10 @@ struct Prepared<'a> {
 pub struct View {
     /// Where the beams end, seen from the laser.
     pub ends: Ends,
-    /// Where the sought frame was by the odometry.
-    pub odom_from_sought: Option<Pose>,
-    /// Whose pose is sought.
-    pub sought: Sought,
+    /// Where the target frame was by the odometry.
+    pub odom_from_target: Option<Pose>,
+    /// Whose pose is searched.
+    pub target: Target,
 }
 
 /// What came of one scan.
@@ -169,7 +169,7 @@ impl<'a> Session<'a> {
         for refusal in refusals {
             let file = self.map_file.display();
             self.notes
-                .push(format!("{file}: a map is left out: {refusal}"));
+                .push(format!("{file}: a map is ignored: {refusal}"));
             self.refusal = refusal;
         }
         Ok(())
@@ -199,11 +199,11 @@ impl<'a> Session<'a> {
     fn keep(&mut self, kept: Kept) {
         let saved = kept.unsaved.map(Unsaved::save);
         let problems = kept.problem.into_iter().chain(saved.and_then(Result::err));
-        let notes = problems.map(|problem| format!("kept index: {}", with_causes(&problem)));
+        let notes = problems.map(|problem| format!("cached index: {}", with_causes(&problem)));
         self.notes.extend(notes);
     }
 
-    /// Prepares the map of a scan anew, unknown within a radius, metres, of a
+    /// Prepares the map of a scan again, unknown within a radius, metres, of a
     /// point.
     ///
     /// # Errors
@@ -248,8 +248,8 @@ impl<'a> Session<'a> {
         let ends = self.world()?.ends(seen.observation());
         Ok(View {
             ends: ends.map_err(OfflineError::Refused)?,
-            odom_from_sought: self.motion.odom_from_sought(),
-            sought: Sought::of(scan.base_from_laser, self.motion.seeks_base()),
+            odom_from_target: self.motion.odom_from_target(),
+            target: Target::of(scan.base_from_laser, self.motion.targets_base()),
         })
     }
 
@@ -285,12 +285,12 @@ impl<'a> Session<'a> {
                 answer: Err(refusal),
             });
         }
-        let sought = Sought::of(scan.base_from_laser, motion.seeks_base());
+        let target = Target::of(scan.base_from_laser, motion.targets_base());
         let (found, cpu_ms) = cpu::timed(|| {
             motion.bring()?;
-            let heading = heading.map(|heading| motion.sought_heading(heading));
+            let heading = heading.map(|heading| motion.target_heading(heading));
             let seen = motion.seen();
-            prepared.world.locate(seen.observation(), heading, sought)
+            prepared.world.locate(seen.observation(), heading, target)
         })?;
         Ok(Reply {
             map_id,

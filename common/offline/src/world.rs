@@ -2,12 +2,12 @@
 //! file, no clock.
 
 use engine::EngineError;
-use engine::fit::{BeamClass, Ends, GridPose, JudgedBeam, Terrain};
+use engine::fit::{BeamClass, DistanceField, Ends, GridPose, JudgedBeam};
 use engine::grid::GridFrame;
 use engine::localizer::{Outcome, Preparation, Prior};
 use engine::locator::{self, Located, Locator, OccupancyView};
 use engine::observation::Observation;
-use engine::peaks::{PeakConfig, Places, Sought};
+use engine::peaks::{PeakConfig, Places, Target};
 use engine::scan::Scan;
 use geometry::Pose;
 use index_cache::{IndexCache, Kept, Prepared};
@@ -31,7 +31,7 @@ pub struct World {
 /// What a scan says about the place.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Answer<'a> {
-    /// The votes, and how they were come by.
+    /// The votes, and search statistics.
     pub outcome: &'a Outcome,
     /// What they say, the verdict included.
     pub places: &'a Places,
@@ -144,7 +144,7 @@ impl World {
         self.cells
     }
 
-    /// Cells in which poses are sought, as large as they are searched.
+    /// Cells in which poses are searched, as large as they are searched.
     pub fn searchable_cells(&self) -> u64 {
         self.locator.localizer().searchable_cells() as u64
     }
@@ -155,8 +155,8 @@ impl World {
     }
 
     /// The map as the second stage reads it.
-    pub fn terrain(&self) -> &Terrain {
-        self.locator.terrain()
+    pub fn distance_field(&self) -> &DistanceField {
+        self.locator.distance_field()
     }
 
     /// How the second stage judges places.
@@ -175,7 +175,7 @@ impl World {
     /// Searches all poses or, where the heading in the map is given in radians,
     /// all positions; the world must be prepared for the one or the other.
     ///
-    /// The places are those of the first laser, also where the base is sought.
+    /// The places are those of the first laser, also where the base is searched.
     ///
     /// # Errors
     /// The scan is refused.
@@ -183,7 +183,7 @@ impl World {
         &mut self,
         scan: Observation<'_>,
         heading: Option<f64>,
-        sought: Sought,
+        target: Target,
     ) -> Result<Answer<'_>, EngineError> {
         let workspace = &mut self.workspace;
         let found = self
@@ -194,12 +194,12 @@ impl World {
         } = found.expect("a search that nothing stops ends with an outcome");
         self.of_laser.clone_from(places);
         for place in &mut self.of_laser.places {
-            *place = place.of_laser(sought);
+            *place = place.of_laser(target);
         }
         Ok(Answer {
             outcome,
             places: &self.of_laser,
-            frame: self.locator.terrain().frame,
+            frame: self.locator.distance_field().frame,
         })
     }
 
@@ -209,16 +209,18 @@ impl World {
     /// The scan is refused.
     pub fn scan_at(&self, scan: &Scan<'_>, map_from_laser: Pose) -> Result<ScanAt, EngineError> {
         let ends = self.ends(scan.into())?;
-        let frame = self.terrain().frame;
+        let frame = self.distance_field().frame;
         let (x, y, heading) = frame.cells_from_map(map_from_laser);
         let pose = GridPose { x, y, heading };
-        let classes = self.terrain().classes(&ends, pose, &self.peaks().fit);
+        let classes = self
+            .distance_field()
+            .classes(&ends, pose, &self.peaks().fit);
         let beams = ends.judged(&classes).map(|beam| BeamEnd {
             at: end_of(map_from_laser, beam),
             class: beam.class,
         });
         Ok(ScanAt {
-            score: self.terrain().score(&ends, pose, &self.peaks().fit),
+            score: self.distance_field().score(&ends, pose, &self.peaks().fit),
             ends: beams.collect(),
         })
     }

@@ -55,7 +55,7 @@ impl Chart {
             let text = format!("{}{unit_of_values}", plain(value, decade));
             scene.text(&text, at, &style.anchored(Anchor::End));
         }
-        // A whole second at least: scans are seldom told apart by less.
+        // A whole second at least: scans seldom differ by less.
         let step = round_step(self.seconds.1 / 9.0).max(1.0);
         let mut second = 0.0;
         while second <= self.seconds.1 {

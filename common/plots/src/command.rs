@@ -1,4 +1,4 @@
-//! What `backcast plot` does: reads, asks, has a scene drawn, and writes it.
+//! The command `backcast plot`: reads, asks, has a scene drawn, and writes it.
 
 use std::collections::BTreeMap;
 use std::fs;

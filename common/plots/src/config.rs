@@ -1,4 +1,4 @@
-//! What `backcast plot` takes on the command line, and which options belong to
+//! Options of `backcast plot`, and which options belong to
 //! which picture.
 
 use std::path::PathBuf;
@@ -35,7 +35,7 @@ pub(super) enum Kind {
     Sheet,
 }
 
-/// What `backcast plot` takes.
+/// Options of `backcast plot`.
 #[derive(Debug, clap::Args)]
 pub struct Config {
     /// What the picture shows
@@ -56,7 +56,7 @@ pub struct Config {
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u64).range(1..))]
     pub(super) scan: Option<u64>,
 
-    /// Panels of a sheet, 1..=64: so many scans, evenly spread [default: 12]
+    /// Panels of a sheet, 1..=64: this many scans, evenly spread [default: 12]
     #[arg(long, value_name = "COUNT", value_parser = clap::value_parser!(u8).range(1..=64))]
     pub(super) panels: Option<u8>,
 

@@ -160,7 +160,7 @@ fn draw_cells(scene: &mut Scene, panel: &Panel, grid: Rect, side: f64) {
     }
 }
 
-/// Purple, blue and orange, which the colour-blind tell apart; what is rejected is dashed.
+/// Purple, blue and orange, which the colour-blind can distinguish; what is rejected is dashed.
 fn stroke(role: Role, unit: f64) -> Stroke {
     match role {
         Role::Reading => Stroke::new(theme::TRUTH, 2.2 * unit),

@@ -1,5 +1,5 @@
 //! The picture of a difference: a scan where it is expected, and where it was found.
-//! Pure, and asks no engine: it draws what it is told.
+//! Pure, and asks no engine: it draws its arguments.
 
 use drawing::{Color, Path, Scene};
 use engine::grid::CellRules;
@@ -70,10 +70,15 @@ pub fn draw(map: &OccupancyGrid, contrast: &Contrast) -> Result<Scene, PlotError
             dots(scene, &view, &ends, DOT * unit, color.with_opacity(0.6));
         }
         if let Some(pose) = contrast.found {
-            marks::robot(scene, marks::stand(&view, pose), ROBOT * unit, theme::BEST);
+            marks::robot(
+                scene,
+                marks::placement(&view, pose),
+                ROBOT * unit,
+                theme::BEST,
+            );
         }
         if let Some(pose) = contrast.expected {
-            marks::truth(scene, marks::stand(&view, pose), TRUTH * unit);
+            marks::truth(scene, marks::placement(&view, pose), TRUTH * unit);
         }
     });
     marks::scale_bar(&mut page.scene, &view, unit);

@@ -1,4 +1,4 @@
-//! All that can end a command of this crate early, and the exit code that it means.
+//! Errors of this crate's commands, and their exit codes.
 
 use std::{io, path::PathBuf};
 

@@ -32,7 +32,7 @@ impl Extent {
         Extent::of(corners.map(|(x, y)| map.map_from_grid.transform(x, y)))
     }
 
-    /// What lies within so many metres of a pose, along each axis.
+    /// What lies within this many metres of a pose, along each axis.
     pub(super) fn around(pose: Pose, reach_m: f64) -> Self {
         Extent {
             min: (pose.x - reach_m, pose.y - reach_m),

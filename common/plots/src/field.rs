@@ -23,7 +23,7 @@ const HEIGHTS: (f64, f64) = (0.25, 0.8);
 
 /// The colour of a share of the most votes, 0..=1: from nothing to dark.
 pub(super) fn heat(share: f64) -> Color {
-    // The palest tenth of the scale is not told from paper.
+    // The palest tenth of the scale is not distinguished from paper.
     let colorous::Color { r, g, b } =
         colorous::YELLOW_ORANGE_RED.eval_continuous(share.clamp(0.0, 1.0));
     let color = Color {
@@ -138,7 +138,7 @@ pub fn draw(votes: &Votes<'_>) -> Result<Scene, PlotError> {
     fill(&mut page.scene, votes, &view)?;
     page.scene.clipped(view.area(), |scene| {
         if let Some(truth) = votes.truth {
-            marks::truth(scene, marks::stand(&view, truth), 7.0 * unit);
+            marks::truth(scene, marks::placement(&view, truth), 7.0 * unit);
         }
         if let Some(best) = best_position(votes.field) {
             let ring = Path::circle(view.at(best), 16.0 * unit);

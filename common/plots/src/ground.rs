@@ -12,7 +12,7 @@ use super::theme;
 use super::view::View;
 
 /// Looks at most that often along each axis of a pixel.
-const MOST_LOOKS: f64 = 12.0;
+const MAX_LOOKS: f64 = 12.0;
 
 /// Which cells of a raster lie under each pixel of a view.
 pub(super) struct Sampler {
@@ -29,7 +29,7 @@ impl Sampler {
     /// For a raster of `sides` cells.
     pub(super) fn new(view: &View, frame: GridFrame, sides: (usize, usize)) -> Self {
         let cells_per_pixel = 1.0 / (view.pixels_per_m() * frame.resolution_m);
-        let looks = (1.5 * cells_per_pixel).ceil().clamp(1.0, MOST_LOOKS);
+        let looks = (1.5 * cells_per_pixel).ceil().clamp(1.0, MAX_LOOKS);
         let step = cells_per_pixel / looks;
         let (x, y, turn) = frame.cells_from_map(view.map_from_corner());
         let (sin, cos) = turn.sin_cos();
@@ -68,7 +68,7 @@ impl Sampler {
     }
 }
 
-/// Fills a view with an image of so many pixels.
+/// Fills a view with an image of this many pixels.
 pub(super) fn fill(
     scene: &mut Scene,
     view: &View,

@@ -1,7 +1,7 @@
 //! `backcast plot`: pictures of a map, of a scan at its places, of its votes,
 //! and of how far off the places are. PNG or SVG, by the name of the file.
 //!
-//! It asks the same engine as `locate` and judges nothing anew. One file a
+//! It asks the same engine as `locate` and judges nothing again. One file a
 //! picture; those that are pure compute a scene from what they are given:
 //!
 //! ```text

@@ -9,32 +9,35 @@ use super::view::View;
 /// The share of the probability that an ellipse holds, per cent, as in all pictures.
 pub(super) const HELD_PERCENT: f64 = 95.0;
 
-/// So many standard deviations it reaches: χ² with two degrees of freedom is exponential.
+/// This many standard deviations it reaches: χ² with two degrees of freedom is exponential.
 fn deviations() -> f64 {
     (-2.0 * (1.0 - HELD_PERCENT / 100.0).ln()).sqrt()
 }
 
 /// A point of the picture, and a heading in the map, radians.
-pub(super) type Stand = ((f64, f64), f64);
+pub(super) type Placement = ((f64, f64), f64);
 
 /// Where a pose of the map stands in the picture.
-pub(super) fn stand(view: &View, pose: Pose) -> Stand {
+pub(super) fn placement(view: &View, pose: Pose) -> Placement {
     (view.at((pose.x, pose.y)), pose.yaw)
 }
 
 /// A robot as a dart that points where it is headed, `size` pixels from its
 /// middle to its tip.
-pub(super) fn robot(scene: &mut Scene, stand: Stand, size: f64, color: Color) {
+pub(super) fn robot(scene: &mut Scene, placement: Placement, size: f64, color: Color) {
     let corners = [(1.25, 0.0), (-0.85, 0.8), (-0.45, 0.0), (-0.85, -0.8)];
-    let path = Path::polygon(corners.map(|(x, y)| placed(stand, x * size, y * size)));
+    let path = Path::polygon(corners.map(|(x, y)| placed(placement, x * size, y * size)));
     scene.stroke(path.clone(), Stroke::new(Color::WHITE, 0.45 * size));
     scene.fill(path, color);
 }
 
 /// The true pose as a ring with its heading, in which a robot fits.
-pub(super) fn truth(scene: &mut Scene, stand: Stand, size: f64) {
-    let mut path = Path::circle(stand.0, size);
-    path.add_line(placed(stand, size, 0.0), placed(stand, 1.9 * size, 0.0));
+pub(super) fn truth(scene: &mut Scene, placement: Placement, size: f64) {
+    let mut path = Path::circle(placement.0, size);
+    path.add_line(
+        placed(placement, size, 0.0),
+        placed(placement, 1.9 * size, 0.0),
+    );
     scene.stroke(path.clone(), Stroke::new(Color::WHITE, 0.5 * size));
     scene.stroke(path, Stroke::new(theme::TRUTH, 0.22 * size));
 }
@@ -75,8 +78,8 @@ pub(super) fn scale_bar(scene: &mut Scene, view: &View, unit: f64) {
     scene.text(&length_text(metres), at, &style);
 }
 
-/// A point in front of a stand, and to its left, pixels.
-fn placed((at, yaw): Stand, ahead: f64, left: f64) -> (f64, f64) {
+/// A point in front of a placement, and to its left, pixels.
+fn placed((at, yaw): Placement, ahead: f64, left: f64) -> (f64, f64) {
     let (sin, cos) = yaw.sin_cos();
     // y runs down in the picture.
     (
@@ -122,9 +125,9 @@ mod tests {
 
     #[test]
     fn ahead_of_a_robot_that_faces_up_is_up() {
-        let stand = ((10.0, 20.0), FRAC_PI_2);
+        let placement = ((10.0, 20.0), FRAC_PI_2);
         let near = |(x, y): (f64, f64), ex: f64, ey: f64| (x - ex).hypot(y - ey) < 1e-12;
-        assert!(near(placed(stand, 5.0, 0.0), 10.0, 15.0));
-        assert!(near(placed(stand, 0.0, 5.0), 5.0, 20.0));
+        assert!(near(placed(placement, 5.0, 0.0), 10.0, 15.0));
+        assert!(near(placed(placement, 0.0, 5.0), 5.0, 20.0));
     }
 }

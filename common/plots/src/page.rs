@@ -72,7 +72,7 @@ const ENTRY_GAP: f64 = 26.0;
 const SAMPLE: f64 = 30.0;
 
 impl Page {
-    /// A picture of so many pixels along x, whose body takes so many along y.
+    /// A picture of this many pixels along x, whose body takes this many along y.
     pub(super) fn new(
         width: u32,
         body_height: f64,
@@ -237,7 +237,7 @@ mod tests {
         let heading = Heading {
             title: "a map".into(),
             verdict: Some(Verdict::Unique),
-            says: "one place fits".into(),
+            says: "one place, fit 0.90".into(),
         };
         let legend = [(Sample::Truth, "truth".into())];
         let page = Page::new(600, 321.0, &heading, &legend).unwrap();

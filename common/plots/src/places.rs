@@ -35,8 +35,8 @@ pub(super) fn draw(scene: &mut Scene, view: &View, subject: &Subject, unit: f64)
             mark(scene, view, shown, unit);
         }
         if let Some(truth) = &subject.truth {
-            let stand = marks::stand(view, truth.pose);
-            marks::truth(scene, stand, TRUTH * unit);
+            let placement = marks::placement(view, truth.pose);
+            marks::truth(scene, placement, TRUTH * unit);
         }
     });
 }
@@ -69,14 +69,14 @@ fn mark(scene: &mut Scene, view: &View, shown: &Shown, unit: f64) {
     };
     let stroke = Stroke::new(color, 1.4 * unit);
     marks::ellipse(scene, view, (pose, shown.place.covariance), stroke);
-    let stand = marks::stand(view, pose);
+    let placement = marks::placement(view, pose);
     let size = if is_best { ROBOT } else { 0.8 * ROBOT };
-    marks::robot(scene, stand, size * unit, color);
+    marks::robot(scene, placement, size * unit, color);
     if !is_best {
         let style = TextStyle::new(13.0 * unit, theme::INK)
             .anchored(Anchor::Start)
             .with_halo(Color::WHITE, 3.5 * unit);
-        let at = (stand.0.0 + 11.0 * unit, stand.0.1 - 7.0 * unit);
+        let at = (placement.0.0 + 11.0 * unit, placement.0.1 - 7.0 * unit);
         scene.text(&shown.rank.to_string(), at, &style);
     }
 }

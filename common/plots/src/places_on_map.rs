@@ -46,8 +46,13 @@ pub fn draw(
     page.scene.clipped(view.area(), |scene| {
         scene.stroke(Path::polyline(path.iter().map(at)), way(unit));
         for (number, (found, truth)) in (1..).zip(places) {
-            marks::truth(scene, marks::stand(&view, *truth), 10.0 * unit);
-            marks::robot(scene, marks::stand(&view, *found), 9.0 * unit, theme::BEST);
+            marks::truth(scene, marks::placement(&view, *truth), 10.0 * unit);
+            marks::robot(
+                scene,
+                marks::placement(&view, *found),
+                9.0 * unit,
+                theme::BEST,
+            );
             let style = TextStyle::new(20.0 * unit, theme::INK)
                 .bold()
                 .anchored(Anchor::Middle)

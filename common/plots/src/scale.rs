@@ -11,12 +11,12 @@ pub(super) enum Scale {
 }
 
 /// Most numbers beside an axis with an even scale.
-const MOST_TICKS: f64 = 7.0;
+const MAX_TICKS: f64 = 7.0;
 
-/// An even scale ends at a multiple of a round step, of which there are at most so many.
+/// An even scale ends at a multiple of a round step, of which there are at most this many.
 const STEPS: f64 = 12.0;
 
-/// Up to so many decades 2 and 5 are written, too.
+/// Up to this many decades 2 and 5 are written, too.
 const FEW_DECADES: f64 = 2.8;
 
 impl Scale {
@@ -57,7 +57,7 @@ impl Scale {
     pub(super) fn ticks(self) -> Vec<(f64, String)> {
         let values: Vec<f64> = match self {
             Scale::Even(low, high) => {
-                let step = round_step((high - low) / MOST_TICKS);
+                let step = round_step((high - low) / MAX_TICKS);
                 // Ends that are round are met but for their rounding.
                 let first = (low / step - 1e-9).ceil() as i64;
                 let last = (high / step + 1e-9).floor() as i64;

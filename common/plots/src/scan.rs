@@ -15,7 +15,7 @@ use super::view::View;
 use crate::PlotError;
 
 /// Most places that are shown from near.
-const MOST_NEAR: usize = 3;
+const MAX_NEAR: usize = 3;
 /// The body of the picture is as high as the part of the map asks for, within
 /// these shares of its width.
 const HEIGHTS: (f64, f64) = (0.25, 0.75);
@@ -27,7 +27,7 @@ const HIGHEST_BESIDE_NEAR: f64 = 1.35;
 const BESIDE_NEAR: f64 = 0.6;
 /// The height of a place from near, as a share of its width.
 const NEAR_HEIGHT: f64 = 0.72;
-/// From near, so many of the beams are seen from end to end.
+/// From near, this many of the beams are seen from end to end.
 const NEAR_SHARE: f64 = 0.85;
 const GAP: f64 = 10.0;
 
@@ -144,8 +144,8 @@ fn worth_comparing(subject: &Subject) -> Vec<Near<'_>> {
     let truth = subject.missed_truth();
     let rivals = 1 + subject.places.alternatives as usize;
     let places = match truth {
-        Some(_) => (MOST_NEAR - 1).min(rivals),
-        None => MOST_NEAR.min(rivals),
+        Some(_) => (MAX_NEAR - 1).min(rivals),
+        None => MAX_NEAR.min(rivals),
     };
     let shown = subject.shown.iter().take(places);
     let mut near: Vec<Near<'_>> = shown
@@ -189,12 +189,12 @@ fn draw_near(
     let area = view.area();
     page.scene.clipped(area, |scene| {
         places::by_class(scene, &view, (near.pose, near.scan), unit);
-        let stand = marks::stand(&view, near.pose);
+        let placement = marks::placement(&view, near.pose);
         let size = places::ROBOT * unit;
         match near.rank {
-            None => marks::truth(scene, stand, places::TRUTH * unit),
-            Some(1) => marks::robot(scene, stand, size, theme::BEST),
-            Some(_) => marks::robot(scene, stand, size, theme::OTHER),
+            None => marks::truth(scene, placement, places::TRUTH * unit),
+            Some(1) => marks::robot(scene, placement, size, theme::BEST),
+            Some(_) => marks::robot(scene, placement, size, theme::OTHER),
         }
     });
     marks::scale_bar(&mut page.scene, &view, unit);

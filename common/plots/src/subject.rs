@@ -94,12 +94,12 @@ impl Truth {
 
 /// Places that lie behind the best by this score are not drawn.
 const FADES_OVER: f64 = 0.3;
-/// Most places that are drawn; more are not told apart.
-const MOST_SHOWN: usize = 9;
+/// Most places that are drawn; more cannot be distinguished.
+const MAX_SHOWN: usize = 9;
 /// How clearly a place is drawn that fits as well as the best.
 const CLEAREST: f64 = 0.75;
 /// A few beams through a gap, far away, must not make all else small.
-const MOST_OF_SCAN: f64 = 0.96;
+const MAX_OF_SCAN: f64 = 0.96;
 /// What is fainter is left out.
 const FAINTEST: f64 = 0.08;
 
@@ -117,7 +117,7 @@ impl Subject {
         let borrowed = scan.borrowed();
         let best = places.places.first().copied();
         let mut shown = Vec::new();
-        for (rank, place) in (1..).zip(places.places.iter().take(MOST_SHOWN)) {
+        for (rank, place) in (1..).zip(places.places.iter().take(MAX_SHOWN)) {
             let behind = best.map_or(0.0, |best| best.score - place.score);
             let opacity = CLEAREST * (1.0 - behind / FADES_OVER);
             if rank > 1 && opacity < FAINTEST {
@@ -190,7 +190,7 @@ impl Subject {
 /// A place and the ends of a scan there, the farthest left out.
 fn reached(pose: Pose, scan: &ScanAt) -> Vec<(f64, f64)> {
     let here = (pose.x, pose.y);
-    let far = scan.reach_m(pose, MOST_OF_SCAN);
+    let far = scan.reach_m(pose, MAX_OF_SCAN);
     let near = |end: &&BeamEnd| end.distance_to(pose) <= far;
     let ends = scan.ends.iter().filter(near).map(|end| end.at);
     ends.chain([here]).collect()
@@ -212,7 +212,7 @@ mod tests {
     }
 
     #[test]
-    fn small_errors_are_told_in_centimetres() {
+    fn small_errors_are_reported_in_centimetres() {
         let near = truth(Some((0.0123, 0.5f64.to_radians())));
         assert!(near.is_met());
         assert_eq!(near.says(), "1.2 cm and 0.50° from the truth");

@@ -16,7 +16,7 @@ use super::theme;
 use super::view::View;
 use crate::PlotError;
 
-/// Patches along the longer side: finer ones are not told apart.
+/// Patches along the longer side: finer ones cannot be distinguished.
 const PATCHES: f64 = 150.0;
 /// The height of the highest peak, as a share of the longer side.
 const PEAK: f64 = 0.32;

@@ -26,7 +26,7 @@ pub(super) const BEST: Color = Color::rgb(0x1B_5FD0);
 pub(super) const OTHER: Color = Color::rgb(0x5E_86BF);
 pub(super) const TRUTH: Color = Color::rgb(0xC2_187A);
 
-/// Colours of the curves of a chart, which the colour-blind tell apart (Okabe and Ito,
+/// Colours of the curves of a chart, which the colour-blind can distinguish (Okabe and Ito,
 /// "Color Universal Design", 2008).
 pub(super) const CURVES: [Color; 7] = [
     Color::rgb(0x00_72B2),
@@ -47,7 +47,7 @@ pub(super) const CLASSES: [BeamClass; 4] = [
 ];
 
 /// The colour of a beam, and what it did in a few words; the colours are those that the
-/// colour-blind tell apart, see [`CURVES`].
+/// colour-blind can distinguish, see [`CURVES`].
 pub(super) fn of_class(class: BeamClass) -> (Color, &'static str) {
     match class {
         BeamClass::Hit => (Color::rgb(0x00_9E73), "hit"),

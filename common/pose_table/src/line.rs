@@ -1,6 +1,6 @@
 //! What is printed for one scan, as a row of the table or as JSON. Pure.
 
-use engine::peaks::sentence::{Stand, sentence};
+use engine::peaks::sentence::{PlaceSummary, sentence};
 use geometry::{Covariance, Pose};
 use messages::{HypothesesHeader, Hypothesis, Verdict};
 use serde::Serialize;
@@ -51,7 +51,7 @@ impl Line {
             verdict: verdict.map_or("?", Verdict::as_str),
             alternatives: header.alternatives,
             says: verdict.map_or_else(String::new, |verdict| {
-                sentence(verdict, &stands(header, hypotheses))
+                sentence(verdict, &summaries(header, hypotheses))
             }),
             latency_ms: latency_ns as f64 / NS_PER_MS,
             engine_ms: engine_ns as f64 / NS_PER_MS,
@@ -94,13 +94,14 @@ impl Line {
 
 /// The best place and those that fit about as well, as far as they are numbers:
 /// they come from another process.
-fn stands(header: &HypothesesHeader, hypotheses: &[Hypothesis]) -> Vec<Stand> {
+fn summaries(header: &HypothesesHeader, hypotheses: &[Hypothesis]) -> Vec<PlaceSummary> {
     let is_finite = |h: &&Hypothesis| {
         Pose::from(h.map_from_laser).is_finite() && h.covariance.iter().all(|c| c.is_finite())
     };
-    let told = hypotheses.iter().take(1 + header.alternatives as usize);
-    told.filter(is_finite)
-        .map(|h| Stand {
+    let reported = hypotheses.iter().take(1 + header.alternatives as usize);
+    reported
+        .filter(is_finite)
+        .map(|h| PlaceSummary {
             map_from_laser: h.map_from_laser.into(),
             covariance: Covariance::from_rows(h.covariance),
             score: h.score.into(),
@@ -136,7 +137,7 @@ mod tests {
         let expected = "
        stamp s        x m        y m  heading deg  score  verdict    alternatives        ms
 1117803432.123      1.000     -2.000       180.00   0.88  Ambiguous             2     25.00  several places fit about as well
-             -          -          -            -      -  NoScan                2     25.00  no beam says anything about this map: is the laser covered?
+             -          -          -            -      -  NoScan                2     25.00  no usable beams: is the laser covered?
 ";
         let mut none = Line::new(
             &HypothesesHeader {
@@ -162,7 +163,7 @@ mod tests {
         let json = serde_json::to_string(&Line::new(&header, &found)).unwrap();
         assert_eq!(
             json,
-            r#"{"stamp_ns":7,"x":1.0,"y":-2.0,"heading_deg":180.0,"score":0.875,"verdict":"Unique","alternatives":2,"says":"one place fits, 88 % of the scan agrees","latency_ms":25.0,"engine_ms":24.0}"#
+            r#"{"stamp_ns":7,"x":1.0,"y":-2.0,"heading_deg":180.0,"score":0.875,"verdict":"Unique","alternatives":2,"says":"one place, fit 0.88","latency_ms":25.0,"engine_ms":24.0}"#
         );
         let none = serde_json::to_value(Line::new(&header, &[])).unwrap();
         assert!(none["x"].is_null() && none["score"].is_null());

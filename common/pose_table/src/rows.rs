@@ -84,7 +84,7 @@ impl Rows {
 }
 
 /// Whether a scan came before another of the same sender. One that was started again
-/// counts anew, at a later time.
+/// counts again, at a later time.
 fn is_before(scan: Stamp, other: Stamp) -> bool {
     scan.counter < other.counter && scan.entered_ns <= other.entered_ns
 }
@@ -153,7 +153,7 @@ mod tests {
     }
 
     #[test]
-    fn a_source_that_was_started_again_counts_anew() {
+    fn a_source_that_was_started_again_counts_again() {
         let mut rows = Rows::default();
         assert_eq!(answer(&mut rows, 7), []);
         assert_eq!(track(&mut rows, 7), [(Some(7), Some(7))]);

@@ -5,7 +5,7 @@ use std::time::{Duration, Instant};
 
 use sick::cola::{
     AngleConvention, Answer, Channel, Command, DeviceAngles, Encoding, Field, Framer, Telegram,
-    Value, Variable,
+    Value, Variable, state_word,
 };
 
 use super::line::Line;
@@ -15,9 +15,9 @@ use crate::ProbeError;
 /// Where devices listen.
 const PORTS: [u16; 2] = [2112, 2111];
 /// How long an answer may take.
-const PATIENCE: Duration = Duration::from_secs(1);
+const TIMEOUT: Duration = Duration::from_secs(1);
 /// A scan at 5 Hz, and some more.
-const SCAN_PATIENCE: Duration = Duration::from_secs(3);
+const SCAN_TIMEOUT: Duration = Duration::from_secs(3);
 /// Distances below are codes.
 const FIRST_DISTANCE: u16 = 16;
 
@@ -28,7 +28,7 @@ struct Device {
     encoding: Encoding,
     framer: Framer,
     /// Bytes that came.
-    heard: usize,
+    received: usize,
     /// Which way it looks, by its name.
     angles: DeviceAngles,
 }
@@ -82,7 +82,7 @@ pub(super) fn reader_options_of(address: &str, encoding: Encoding) -> String {
 fn find(target: &str) -> Result<Device, ProbeError> {
     let addresses = addresses(target);
     let mut failure = None;
-    let mut heard = 0;
+    let mut received = 0;
     let mut reached = None;
     for address in &addresses {
         for encoding in [Encoding::Binary, Encoding::Text] {
@@ -92,7 +92,7 @@ fn find(target: &str) -> Result<Device, ProbeError> {
                     line,
                     encoding,
                     framer: Framer::new(encoding),
-                    heard: 0,
+                    received: 0,
                     angles: DeviceAngles::Unnamed,
                 },
                 Err(error) => {
@@ -104,7 +104,7 @@ fn find(target: &str) -> Result<Device, ProbeError> {
             if device.ask_answers()? {
                 return Ok(device);
             }
-            heard += device.heard;
+            received += device.received;
         }
     }
     Err(match (reached, failure) {
@@ -114,7 +114,7 @@ fn find(target: &str) -> Result<Device, ProbeError> {
         },
         (reached, _) => ProbeError::DeviceNotUnderstood {
             address: reached.map_or(target, String::as_str).to_owned(),
-            heard,
+            received,
             tried: "CoLa B and CoLa A".to_owned(),
         },
     })
@@ -134,7 +134,7 @@ pub(super) fn addresses(target: &str) -> Vec<String> {
 impl Device {
     /// Whether it says what it is; a device in the other encoding may hang up.
     fn ask_answers(&mut self) -> Result<bool, ProbeError> {
-        let outcome = self.ask(Command::Read(Variable::DeviceIdent), PATIENCE, |telegram| {
+        let outcome = self.ask(Command::Read(Variable::DeviceIdent), TIMEOUT, |telegram| {
             matches!(telegram, Telegram::Answer(_) | Telegram::ScanData(_)).then_some(())
         });
         match outcome {
@@ -169,10 +169,10 @@ impl Device {
                     return Ok(Some(found));
                 }
             }
-            let heard = self.line.hear(&mut buffer, deadline);
-            match heard.map_err(|source| failed(&self.address, source))? {
+            let received = self.line.receive(&mut buffer, deadline);
+            match received.map_err(|source| failed(&self.address, source))? {
                 Some(piece) => {
-                    self.heard += piece.len();
+                    self.received += piece.len();
                     self.framer.push(piece);
                 }
                 None => return Ok(None),
@@ -184,7 +184,7 @@ impl Device {
     fn describe(&mut self, variable: Variable) -> Result<String, ProbeError> {
         let command = Command::Read(variable);
         let mut angles = None;
-        let found = self.ask(command, PATIENCE, |telegram| match telegram {
+        let found = self.ask(command, TIMEOUT, |telegram| match telegram {
             Telegram::Answer(Answer::Value(value)) if value.variable() == variable => {
                 if let Value::DeviceIdent { name, .. } = value {
                     angles = Some(DeviceAngles::of_name(name));
@@ -192,7 +192,7 @@ impl Device {
                 Some(in_words(value))
             }
             Telegram::Answer(Answer::Fault(fault)) => {
-                Some(format!("{variable:?}: the device refuses: {fault}"))
+                Some(format!("{variable:?}: rejected by the device: {fault}"))
             }
             _ => None,
         })?;
@@ -205,7 +205,7 @@ impl Device {
     /// One scan, in words and to be drawn.
     fn scan(&mut self) -> Result<(Vec<String>, Seen), ProbeError> {
         let angles = std::mem::take(&mut self.angles);
-        let found = self.ask(Command::SubscribeScans(true), SCAN_PATIENCE, |telegram| {
+        let found = self.ask(Command::SubscribeScans(true), SCAN_TIMEOUT, |telegram| {
             let Telegram::ScanData(scan) = telegram else {
                 return None;
             };
@@ -216,12 +216,12 @@ impl Device {
             let about = format!("a scan of {count} readings, {returns} with a return");
             Some((vec![looks, about], seen))
         })?;
-        self.ask(Command::SubscribeScans(false), PATIENCE, |telegram| {
+        self.ask(Command::SubscribeScans(false), TIMEOUT, |telegram| {
             matches!(telegram, Telegram::Answer(_)).then_some(())
         })?;
         let none = || {
             (
-                vec!["no scan came: does it measure?".to_owned()],
+                vec!["no scan received: is the device measuring?".to_owned()],
                 Seen::default(),
             )
         };
@@ -271,11 +271,7 @@ fn in_words(value: &Value<'_>) -> String {
             let (name, version) = (name.escape_ascii(), version.escape_ascii());
             format!("device      {name}, version {version}")
         }
-        Value::DeviceState(state) => {
-            let words = ["busy", "ready", "error", "standby"];
-            let word = words.get(usize::from(*state)).unwrap_or(&"unknown");
-            format!("state       {word}")
-        }
+        Value::DeviceState(state) => format!("state       {}", state_word(*state)),
         Value::ScanConfig(config) => format!(
             "measures    {} Hz, every {}°, from {}° to {}°",
             f64::from(config.frequency_raw_1e2_hz) * 1e-2,
@@ -320,7 +316,7 @@ mod tests {
     }
 
     #[test]
-    fn what_is_to_be_stated_is_told() {
+    fn what_is_to_be_stated_is_reported() {
         let around_zero = Field {
             first_deg: -120.0,
             last_deg: 120.0,

@@ -1,4 +1,4 @@
-//! What `backcast probe` does.
+//! The command `backcast probe`.
 
 use std::path::Path;
 use std::process::ExitCode;
@@ -18,7 +18,7 @@ Exit codes: 0 a device answered, 1 none did, 2 wrong use";
 /// Columns where nobody says how many there are.
 const COLUMNS: usize = 80;
 
-/// What `backcast probe` takes.
+/// Options of `backcast probe`.
 #[derive(Debug, clap::Args)]
 pub struct Config {
     /// The device: an address such as 192.168.0.1, HOST or HOST:PORT (also after
@@ -26,7 +26,8 @@ pub struct Config {
     #[arg(value_name = "DEVICE")]
     device: String,
 
-    /// Characters that the picture is wide [default: as the terminal, $COLUMNS or 80]
+    /// Width of the picture in characters [default: that of the terminal, $COLUMNS or
+    /// 80]
     #[arg(long, value_name = "CHARACTERS", value_parser = clap::value_parser!(u16).range(10..=500))]
     width: Option<u16>,
 }
@@ -80,11 +81,11 @@ fn address(device: &str) -> Option<&str> {
 /// As wide as the terminal.
 fn columns() -> usize {
     let (_, columns) = console::Term::stdout().size();
-    let told = std::env::var("COLUMNS").ok();
-    let told = told.and_then(|columns| columns.parse().ok());
+    let stated = std::env::var("COLUMNS").ok();
+    let stated = stated.and_then(|columns| columns.parse().ok());
     match console::Term::stdout().is_term() {
         true => usize::from(columns),
-        false => told.unwrap_or(COLUMNS),
+        false => stated.unwrap_or(COLUMNS),
     }
     .clamp(10, 500)
 }
@@ -94,7 +95,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn addresses_and_serial_lines_are_told_apart() {
+    fn addresses_and_serial_lines_are_distinguished() {
         for (device, expected) in [
             ("192.168.0.1", Some("192.168.0.1")),
             ("192.168.0.1:2111", Some("192.168.0.1:2111")),

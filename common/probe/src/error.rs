@@ -1,4 +1,4 @@
-//! All that can end a command of this crate early, and the exit code that it means.
+//! Errors of this crate's commands, and their exit codes.
 
 use std::io;
 
@@ -18,16 +18,16 @@ pub enum ProbeError {
     /// Something is there, but no laser that we know.
     #[error(
         "{address}: no laser answers; tried {tried}; {}",
-        match heard {
+        match received {
             0 => "nothing came".to_owned(),
-            n => format!("{n} bytes came that are no answer: is it another device, or in use?"),
+            n => format!("{n} bytes received that are not an answer: is it another device, or in use?"),
         }
     )]
     DeviceNotUnderstood {
         /// As it was given, with the port that was tried last.
         address: String,
         /// Bytes that came.
-        heard: usize,
+        received: usize,
         /// In which ways it was asked.
         tried: String,
     },

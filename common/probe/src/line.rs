@@ -65,7 +65,7 @@ impl Line {
     }
 
     /// What has come, at least a byte; nothing once the deadline has passed.
-    pub(super) fn hear<'b>(
+    pub(super) fn receive<'b>(
         &mut self,
         buffer: &'b mut [u8],
         deadline: Instant,

@@ -14,14 +14,14 @@ const RATES: [Baud; 4] = [Baud::B38400, Baud::B9600, Baud::B500000, Baud::B19200
 /// How often a rate is tried: the first command may meet a scan under way.
 const TRIES: usize = 2;
 /// How long an answer may take: two scans may be under way at 38400 baud.
-const PATIENCE: Duration = Duration::from_millis(700);
+const TIMEOUT: Duration = Duration::from_millis(700);
 
 struct Device<'a> {
     path: &'a Path,
     line: Line,
     framer: ReplyFramer,
     /// Bytes that came.
-    heard: usize,
+    received: usize,
 }
 
 /// Whether one answers, at whichever rate.
@@ -71,7 +71,7 @@ impl<'a> Device<'a> {
             path,
             line,
             framer: ReplyFramer::default(),
-            heard: 0,
+            received: 0,
         })
     }
 
@@ -93,7 +93,7 @@ impl<'a> Device<'a> {
         let rates = RATES.map(|baud| baud.rate().to_string());
         Err(ProbeError::DeviceNotUnderstood {
             address: self.path.display().to_string(),
-            heard: self.heard,
+            received: self.received,
             tried: format!("an LMS2xx at {} baud", rates.join(", ")),
         })
     }
@@ -107,7 +107,7 @@ impl<'a> Device<'a> {
         command.frame(&mut bytes);
         let said = self.line.say(&bytes);
         said.map_err(|source| self.failed(source))?;
-        let deadline = Instant::now() + PATIENCE;
+        let deadline = Instant::now() + TIMEOUT;
         let mut buffer = [0; 1 << 12];
         loop {
             while let Some(next) = self.framer.next_frame() {
@@ -118,10 +118,10 @@ impl<'a> Device<'a> {
                     return Ok(Some(found));
                 }
             }
-            let heard = self.line.hear(&mut buffer, deadline);
-            match heard.map_err(|source| self.failed(source))? {
+            let received = self.line.receive(&mut buffer, deadline);
+            match received.map_err(|source| self.failed(source))? {
                 Some(piece) => {
-                    self.heard += piece.len();
+                    self.received += piece.len();
                     self.framer.push(piece);
                 }
                 None => return Ok(None),

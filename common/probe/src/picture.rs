@@ -20,7 +20,7 @@ pub(super) struct Seen {
 }
 
 impl Seen {
-    /// A picture so many characters wide, with the reach of its sides below it.
+    /// A picture this many characters wide, with the reach of its sides below it.
     pub(super) fn draw(&self, columns: usize) -> String {
         let rows = ((columns as f64 * ROWS_PER_COLUMN) as usize).max(2);
         let reach_m = self.reach();

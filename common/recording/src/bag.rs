@@ -1,4 +1,4 @@
-//! Files of rosbag2 in SQLite (`.db3`), written anew as recordings.
+//! Files of rosbag2 in SQLite (`.db3`), written again as recordings.
 //!
 //! SQLite keeps no checksums of what is stored: its structure is checked before
 //! anything is taken, and a file that is damaged is refused as a whole, but a bit

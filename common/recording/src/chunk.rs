@@ -38,7 +38,7 @@ impl<'a> Chunk<'a> {
         let claimed = header.uncompressed_size;
         // The library looks at this size only where there is a checksum, and
         // without a packing not at all. Where there is a packing and the size is
-        // too small, records may be missing: the checksum tells, or that of the
+        // too small, records may be missing: the checksum shows it, or that of the
         // data, or the count in the summary.
         if claimed > MAX_CHUNK_BYTES {
             return Err(Damage::ChunkSize { at, claimed });

@@ -20,7 +20,7 @@ const ZSTD_SKIPPED: &[u8] = &[0x2a, 0x4d, 0x18];
 /// How the `metadata.yaml` of a bag begins.
 const METADATA: &[u8] = b"rosbag2_bagfile_information:";
 
-/// Bytes that tell.
+/// Bytes that identify the format.
 const START: u64 = 64;
 
 /// What is not read here: how it begins, what it is, and the command that makes of
@@ -133,7 +133,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn content_is_told_by_its_start() {
+    fn content_is_detected_by_its_start() {
         for (start, expected) in [
             (&b"\x89MCAP0\r\n..."[..], Content::Mcap),
             (b"SQLite format 3\0...", Content::Sqlite),

@@ -84,7 +84,7 @@ impl Recording {
     /// sound is a note, unless the laser's place depends on it.
     ///
     /// # Errors
-    /// If the laser's place depends on a transform that is none, or the laser is
+    /// If the laser's place depends on a transform that is invalid, or the laser is
     /// neither level nor upside down.
     pub fn mounted(&self, laser: &str) -> Result<Mounted, RecordingError> {
         let (mut tree, mut notes) = self.fixed_transforms()?;
@@ -401,12 +401,12 @@ mod tests {
         assert_eq!(
             mounted.notes,
             [
-                "the transform from base_link to camera is left out: the position (NaN, 0) is not finite"
+                "the transform from base_link to camera is ignored: the position (NaN, 0) is not finite"
             ]
         );
         assert_eq!(
             recording.mounted("camera").unwrap_err().to_string(),
-            "r.mcap: where camera sits is not known, for the transform from base_link to camera is \
+            "r.mcap: the mount of camera is not known, for the transform from base_link to camera is \
              none: the position (NaN, 0) is not finite"
         );
     }

@@ -1,4 +1,4 @@
-//! A bag, whatever it is made of, written anew as one recording.
+//! A bag, whatever it is made of, written again as one recording.
 
 use std::io::{Seek, Write};
 use std::path::Path;
@@ -47,7 +47,7 @@ pub fn write_bag<W: Write + Seek>(
         let own = Kind::ALL.into_iter().find(|kind| kind.schema() == schema);
         let text = definitions.get(schema).map(String::as_str);
         let text = text.or(own.map(definition)).unwrap_or_default();
-        // What does not unpack is kept as it is: whoever reads it is told.
+        // What does not unpack is kept as it is: whoever reads it gets the error.
         let body = unpack::message(&record.body).unwrap_or((&*record.body).into());
         writer.write_bytes(
             &channel.topic,

@@ -1,4 +1,4 @@
-//! What can be wrong with the bytes of a recording.
+//! Damage in the bytes of a recording.
 
 use crate::MAX_CHUNK_BYTES;
 
@@ -148,7 +148,7 @@ pub enum Damage {
         found: u64,
     },
     /// The file does not end as a recording does.
-    #[error("byte {at} should begin the recording's last 8 bytes, but it goes on with {found}")]
+    #[error("the recording's last 8 bytes should begin at byte {at}, but found is {found}")]
     End {
         /// Where the end belongs.
         at: u64,

@@ -1,4 +1,4 @@
-//! Why a recording could not be read, used or written.
+//! Errors of reading, using and writing a recording.
 
 use std::io;
 use std::path::PathBuf;
@@ -68,7 +68,7 @@ pub enum RecordingError {
         encoding: String,
     },
     /// A message does not decode as its schema says.
-    #[error("{}: the message of {topic} at log time {log_time_ns} ns is no {kind}: {reason}", path.display())]
+    #[error("{}: the message of {topic} at log time {log_time_ns} ns is not a {kind}: {reason}", path.display())]
     Message {
         /// The file.
         path: PathBuf,
@@ -127,8 +127,8 @@ pub enum RecordingError {
         /// The channels.
         found: Vec<String>,
     },
-    /// A laser whose place depends on a transform that is none.
-    #[error("{}: where {laser} sits is not known, for the transform {transform} is none: {reason}", path.display())]
+    /// A laser whose place depends on a transform that is invalid.
+    #[error("{}: the mount of {laser} is not known, for the transform {transform} is invalid: {reason}", path.display())]
     BrokenMount {
         /// The file.
         path: PathBuf,

@@ -21,7 +21,7 @@ pub(crate) fn part_options() -> LinearReaderOptions {
         .with_skip_end_magic(true)
 }
 
-/// Gives the reader as much as it wants, or what is left; nothing tells it that
+/// Gives the reader as much as it wants, or what is left; nothing informs it that
 /// the bytes have ended.
 pub(crate) fn feed(reader: &mut LinearReader, wanted: usize, rest: &mut &[u8]) {
     let (given, left) = rest.split_at(wanted.min(rest.len()));

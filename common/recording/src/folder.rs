@@ -86,7 +86,10 @@ impl Information {
         let description: Description = serde_saphyr::from_str(&text).map_err(|error| {
             let error = error.to_string();
             let error = error.lines().next().unwrap_or_default();
-            refused(metadata, format!("it is no description of a bag: {error}"))
+            refused(
+                metadata,
+                format!("it is not a description of a bag: {error}"),
+            )
         })?;
         Ok(description.rosbag2_bagfile_information)
     }
@@ -340,7 +343,7 @@ mod tests {
         );
         let yaml = said(&[], Some("resolution: 0.05"));
         assert!(
-            yaml.starts_with("it is no description of a bag: "),
+            yaml.starts_with("it is not a description of a bag: "),
             "{yaml}"
         );
         assert_eq!(

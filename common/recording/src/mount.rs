@@ -46,14 +46,14 @@ impl From<&Mount> for geometry::Mount {
 pub struct TransformTree {
     /// By child: its parent, and `parent_from_child`.
     parents: BTreeMap<String, (String, Isometry3<f64>)>,
-    /// By child: the parent of a transform that is none, and why.
+    /// By child: the parent of a transform that is invalid, and why.
     broken: BTreeMap<String, (String, ConversionError)>,
     /// By child: what was wrong with the transform that it has.
     mended: BTreeMap<String, Mend>,
 }
 
 impl TransformTree {
-    /// Adds a transform, or replaces the one that its child had. One that is none
+    /// Adds a transform, or replaces the one that its child had. An invalid one
     /// is kept in mind only as far as [`TransformTree::broken_below`] asks.
     ///
     /// # Errors
@@ -71,7 +71,7 @@ impl TransformTree {
         Ok(())
     }
 
-    /// As [`TransformTree::add`], but one that is none is noted, and ends nothing.
+    /// As [`TransformTree::add`], but an invalid one is noted, and ends nothing.
     pub fn take(&mut self, stamped: &TransformStamped) {
         if let Err(error) = self.add(stamped) {
             let parent = plain(&stamped.header.frame_id).to_owned();
@@ -84,7 +84,7 @@ impl TransformTree {
     /// those that had to be mended.
     pub fn notes(&self) -> impl Iterator<Item = String> {
         let broken = self.broken.iter().map(|(child, (parent, error))| {
-            format!("the transform from {parent} to {child} is left out: {error}")
+            format!("the transform from {parent} to {child} is ignored: {error}")
         });
         let mended = self.mended.iter().map(|(child, mend)| {
             let parent = self.parents.get(child).map_or("", |(parent, _)| parent);
@@ -93,7 +93,7 @@ impl TransformTree {
         broken.chain(mended)
     }
 
-    /// A transform that is none, if only that keeps the laser from a base: its
+    /// A transform that is invalid, if only that keeps the laser from a base: its
     /// parent and child, and what is wrong.
     #[must_use]
     pub fn broken_below(&self, laser: &str) -> Option<(&str, &str, &ConversionError)> {
@@ -393,7 +393,7 @@ mod tests {
         let notes: Vec<String> = tree.notes().collect();
         assert_eq!(
             notes[0],
-            "the transform from laser to camera is left out: the position (NaN, 0) is not finite"
+            "the transform from laser to camera is ignored: the position (NaN, 0) is not finite"
         );
         tree.take(&transform("base_link", "rear", nan, 0.0));
         let (parent, child, _) = tree.broken_below("rear").unwrap();

@@ -14,7 +14,7 @@ use ros::TransformStamped;
 use crate::mount::{TransformTree, isometry, plain};
 
 /// How far a transform that does not move may be from the first one, metres and
-/// radians: a calibration that is published anew, or a rounding.
+/// radians: a calibration that is published again, or a rounding.
 const STILL_M: f64 = 1e-3;
 const STILL_RAD: f64 = 0.1 * std::f64::consts::PI / 180.0;
 
@@ -42,7 +42,7 @@ pub(crate) struct MovingFrames {
 }
 
 impl MovingFrames {
-    /// Looks at a transform; one that is none says nothing.
+    /// Looks at a transform; an invalid one says nothing.
     pub(crate) fn see(&mut self, stamped: &TransformStamped) {
         let Ok((isometry, _)) = isometry(&stamped.transform) else {
             return;

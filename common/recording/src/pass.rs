@@ -93,7 +93,7 @@ impl<'a> Pass<'a> {
             Err(Damage::Record {
                 at,
                 kind: "misplaced",
-                reason: format!("a record of type {opcode:#04x} stands {belongs}"),
+                reason: format!("a record of type {opcode:#04x} is {belongs}"),
             })
         };
         match (self.part, opcode) {
@@ -108,7 +108,7 @@ impl<'a> Pass<'a> {
             (Part::Data, op::ATTACHMENT | op::METADATA) => {
                 self.survey.extras.add(opcode, body, &place)?;
             }
-            (Part::Data, op::FOOTER) => return misplaced("where the data goes on or ends"),
+            (Part::Data, op::FOOTER) => return misplaced("where data or its end belongs"),
             (Part::Data, op::DATA_END) => {
                 self.close_loose();
                 self.part = Part::Summary { from: place.end };

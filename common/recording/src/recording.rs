@@ -30,7 +30,7 @@ impl Recording {
     /// Opens a file, or the folder of a bag of rosbag2 with all its parts, and
     /// reads it once from start to end. A bag may be named by its `metadata.yaml`,
     /// and files may be packed with zstd; with the feature `rosbag2` they may also
-    /// be in SQLite. What a file holds is told by its content.
+    /// be in SQLite. What a file holds is detected from its content.
     ///
     /// A file that is cut short or damaged opens as far as it is sound; the
     /// damage is the last item of [`Recording::records`]. The file is mapped:

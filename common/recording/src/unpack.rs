@@ -11,8 +11,8 @@ use zstd::stream::read::Decoder;
 use crate::content::is_packed;
 use crate::{MAX_CHUNK_BYTES, RecordingError};
 
-/// Most bytes that a packed file may unpack to: so many for each that it has, and
-/// so many beside. A sound recording is packed to no less than a few hundredths;
+/// Most bytes that a packed file may unpack to: this many for each that it has, and
+/// this many beside. A sound recording is packed to no less than a few hundredths;
 /// what a damaged or a malicious one claims must not fill the disk.
 const MAX_FACTOR: u64 = 1000;
 const MAX_BESIDE: u64 = 1 << 30;

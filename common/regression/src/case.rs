@@ -113,7 +113,8 @@ mod tests {
         let folder = TempDir::new().unwrap();
         let none = Case::all_in(folder.path()).unwrap_err();
         assert!(
-            none.to_string().contains("no folder with recording.mcap"),
+            none.to_string()
+                .contains("not a folder with recording.mcap"),
             "{none}"
         );
         for (name, files) in [
@@ -148,7 +149,7 @@ mod tests {
         std::fs::write(folder.path().join("expected.json"), "[{}]").unwrap();
         let wrong = case.expected().unwrap_err();
         assert!(
-            wrong.to_string().contains("--accept writes it anew"),
+            wrong.to_string().contains("--accept writes it again"),
             "{wrong}"
         );
     }

@@ -1,4 +1,4 @@
-//! What `backcast regress` does.
+//! The command `backcast regress`.
 
 use std::path::{Path, PathBuf};
 use std::process::ExitCode;
@@ -27,10 +27,10 @@ positions within 1 mm, headings within 0.01 degrees, scores within 0.001.
 Exit codes: 0 all as expected or accepted, 1 differences, a graph that fails or a recording that is
 damaged, 2 wrong use";
 
-/// What `backcast regress` takes.
+/// Options of `backcast regress`.
 #[derive(Debug, clap::Args)]
 pub struct Config {
-    /// Folders that are cases, or hold some
+    /// Folders that are cases, or contain cases
     #[arg(default_value = "recordings", value_name = "FOLDER")]
     folders: Vec<PathBuf>,
 
@@ -38,21 +38,21 @@ pub struct Config {
     #[arg(long, default_value = DEFAULT_FILE, value_name = "FILE")]
     dataflow: PathBuf,
 
-    /// Expect from now on what was found
+    /// Accept the results as the new expectation
     #[arg(long)]
     accept: bool,
 
-    /// Draw each scan that differs, at most 20 a recording, where it is expected
-    /// and where it was found
+    /// Draw each scan that differs, at most 20 per recording, with the expected and the
+    /// found pose
     #[arg(long, value_name = "FOLDER")]
     pictures: Option<PathBuf>,
 
-    /// Write the outcome for a build server
+    /// Write a JUnit report for a build server
     #[arg(long, value_name = "FILE")]
     junit: Option<PathBuf>,
 }
 
-/// Replays one recording after another; one whose graph fails is told, and the
+/// Replays one recording after another; one whose graph fails is reported, and the
 /// next one follows.
 ///
 /// # Errors
@@ -122,7 +122,7 @@ fn judge(config: &Config, case: &Case, outcome: &mut Outcome) -> Result<(), Regr
         damage,
     } = play::play(descriptor, &name, &case.recording())?;
     outcome.scans = found.len();
-    // What is not written as it should be can be written anew.
+    // What is not written as it should be can be written again.
     let expected = match config.accept {
         true => Some(expected.ok().flatten().unwrap_or_default()),
         false => expected?,
@@ -138,7 +138,7 @@ fn judge(config: &Config, case: &Case, outcome: &mut Outcome) -> Result<(), Regr
     let all = differences(&expected, &found);
     if let Some(folder) = &config.pictures {
         let drawn = pictures::write(folder, case, (&expected, &found), &all)?;
-        tell(&case.name, folder, drawn);
+        print_pictures(&case.name, folder, drawn);
     }
     if let Some(damage) = damage {
         // What is cut off would be missed for ever.
@@ -155,7 +155,7 @@ fn judge(config: &Config, case: &Case, outcome: &mut Outcome) -> Result<(), Regr
     }
 }
 
-fn tell(case: &str, folder: &Path, drawn: Drawn) {
+fn print_pictures(case: &str, folder: &Path, drawn: Drawn) {
     let Drawn { pictures, scans } = drawn;
     if scans > 0 {
         let folder = folder.display();

@@ -238,7 +238,7 @@ mod tests {
     }
 
     #[test]
-    fn scans_that_are_missing_or_more_are_told() {
+    fn scans_that_are_missing_or_more_are_reported() {
         let (one, two) = (answer(1), answer(2));
         let both = [one.clone(), two.clone()];
         let missing = differences(&both, std::slice::from_ref(&one));

@@ -1,4 +1,4 @@
-//! All that can end a command of this crate early, and the exit code that it means.
+//! Errors of this crate's commands, and their exit codes.
 
 use std::path::PathBuf;
 
@@ -28,12 +28,12 @@ pub enum RegressionError {
     /// A recording cannot be used.
     #[error(transparent)]
     Recording(#[from] RecordingError),
-    /// The graph cannot be joined, heard or cleaned up.
+    /// The graph cannot be joined, read or cleaned up.
     #[error(transparent)]
     Transport(#[from] TransportError),
     /// There is no recording to replay.
     #[error(
-        "{} holds no folder with recording.mcap and map.yaml, and is none",
+        "{} is not a folder with recording.mcap and map.yaml and contains none",
         folder.display()
     )]
     NoCases {
@@ -41,7 +41,7 @@ pub enum RegressionError {
         folder: PathBuf,
     },
     /// What is expected of a recording is not written as it should be.
-    #[error("{} does not say what is expected: --accept writes it anew", file.display())]
+    #[error("{} does not say what is expected: --accept writes it again", file.display())]
     Expectation {
         /// The file.
         file: PathBuf,
@@ -49,7 +49,7 @@ pub enum RegressionError {
         source: serde_json::Error,
     },
     /// A graph did not answer every scan.
-    #[error("{}: {answered} of {scans} scans were answered; the graph's own lines say why", recording.display())]
+    #[error("{}: {answered} of {scans} scans were answered; see the graph's log", recording.display())]
     Unanswered {
         /// The recording.
         recording: PathBuf,

@@ -2,7 +2,7 @@
 //! answer with what is expected.
 //!
 //! `case` finds the recordings, `play` runs the graph, `answer` is what is
-//! compared, `compare` compares (pure), `junit` tells a build server, `pictures`
+//! compared, `compare` compares (pure), `junit` reports to a build server, `pictures`
 //! shows what differs.
 
 mod answer;

@@ -16,7 +16,7 @@ use super::compare::Difference;
 use crate::RegressionError;
 
 /// Most pictures of one recording: who changes all answers looks at some.
-const MOST: usize = 20;
+const MAX: usize = 20;
 
 /// What is said of a recording's pictures.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -39,7 +39,7 @@ pub(super) fn write(
 ) -> Result<Drawn, RegressionError> {
     let by_scan = by_scan(differences);
     let drawn = Drawn {
-        pictures: by_scan.len().min(MOST),
+        pictures: by_scan.len().min(MAX),
         scans: by_scan.len(),
     };
     if by_scan.is_empty() {
@@ -48,7 +48,7 @@ pub(super) fn write(
     let map = map::load(case.map())?;
     let scans = scans(case, |stamp_ns| by_scan.contains_key(&stamp_ns))?;
     fs::create_dir_all(folder).map_err(|source| failed(folder.to_owned(), source))?;
-    for (stamp_ns, differences) in by_scan.iter().take(MOST) {
+    for (stamp_ns, differences) in by_scan.iter().take(MAX) {
         let contrast = Contrast {
             title: format!("{} · scan of {stamp_ns} ns", case.name),
             says: says(differences),

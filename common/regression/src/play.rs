@@ -20,7 +20,7 @@ const NAME: &str = "regress";
 /// Between two looks at the processes.
 const TICK: Duration = Duration::from_millis(20);
 /// How long the last answers may take once the source is done.
-const PATIENCE: Duration = Duration::from_secs(20);
+const TIMEOUT: Duration = Duration::from_secs(20);
 
 /// Lets the graph replay this recording, on its map, as fast as it answers.
 ///
@@ -36,7 +36,7 @@ pub(super) fn direct(descriptor: &mut Descriptor, case: &Case) -> Result<(), Reg
     set(server, "--map", Some(&case.map().to_string_lossy()));
     tracker::settle(dataflow);
     for node in &mut dataflow.nodes {
-        // What goes wrong is told; what goes well is in the table.
+        // What goes wrong is reported; what goes well is in the table.
         node.env
             .insert(0, ("RUST_LOG".to_owned(), "warn".to_owned()));
     }
@@ -107,19 +107,19 @@ fn collect(
     let votes = graph.subscriber::<topic::Votes>()?;
     let hypotheses = graph.subscriber::<topic::Hypotheses>()?;
     let poses = graph.subscriber::<topic::Tracked>()?;
-    let mut heard = Heard {
+    let mut received = Received {
         is_tracked,
-        ..Heard::default()
+        ..Received::default()
     };
     let mut crew = Crew::new(descriptor.dataflow.nodes, &descriptor.folder, name)?;
     let mut last_progress = Instant::now();
     let outcome = graph.run(&[&votes, &hypotheses, &poses], TICK, |_| {
         let now = Instant::now();
         let over = crew.is_over();
-        if heard.take(&votes, &hypotheses, &poses)? || !over {
+        if received.take(&votes, &hypotheses, &poses)? || !over {
             last_progress = now;
         }
-        if heard.is_complete(scans) || over && now - last_progress >= PATIENCE {
+        if received.is_complete(scans) || over && now - last_progress >= TIMEOUT {
             return Ok(Flow::Stop);
         }
         crew.tick(now)?;
@@ -128,12 +128,12 @@ fn collect(
     let stopped = crew.stop();
     outcome?;
     stopped?;
-    Ok(heard.answers())
+    Ok(received.answers())
 }
 
 /// What came until now.
 #[derive(Default)]
-struct Heard {
+struct Received {
     is_tracked: bool,
     /// The tracker's poses of scans.
     poses: Vec<PoseHeader>,
@@ -141,8 +141,8 @@ struct Heard {
     hypotheses: Vec<(HypothesesHeader, Vec<Hypothesis>)>,
 }
 
-impl Heard {
-    /// Says whether anything came.
+impl Received {
+    /// Returns whether anything came.
     fn take(
         &mut self,
         votes: &Subscriber<topic::Votes>,

@@ -13,7 +13,7 @@ use crate::source::Timed;
 /// before it, nanoseconds of log time.
 const WINDOW_NS: i64 = 500_000_000;
 
-/// Odometry may lag behind the scans by so much and still tell of the motion within
+/// Odometry may lag behind the scans by this much and still measure the motion within
 /// them, nanoseconds.
 const MARGIN_NS: i64 = 250_000_000;
 
@@ -65,7 +65,7 @@ impl<E, I: Iterator<Item = Result<Timed, E>>> InOrder<I, E> {
     }
 
     /// What was measured by the time of the scan in front, recorded after it; of the
-    /// odometry also what tells of the motion within the scan.
+    /// odometry also what measures the motion within the scan.
     fn take_overdue(&mut self) -> Option<Timed> {
         let scan = self
             .ahead
@@ -74,10 +74,10 @@ impl<E, I: Iterator<Item = Result<Timed, E>>> InOrder<I, E> {
             .ok()
             .filter(|item| item.is_scan())?;
         let (stamp_ns, due_ns) = (scan.stamp_ns(), scan.log_time_ns);
-        let told_by_ns = scan
+        let needed_until_ns = scan
             .motion_until_ns()
             .map(|ns| ns.saturating_add(MARGIN_NS));
-        let lacks_odometry = told_by_ns.is_some_and(|until_ns| self.odometry_ns < until_ns);
+        let lacks_odometry = needed_until_ns.is_some_and(|until_ns| self.odometry_ns < until_ns);
         let belongs = |item: &Timed| {
             let delay_ns = item.log_time_ns.saturating_sub(due_ns);
             let by_then = item.stamp_ns() <= stamp_ns || (lacks_odometry && item.is_odometry());
@@ -156,7 +156,7 @@ mod tests {
     }
 
     #[test]
-    fn odometry_comes_before_the_scan_whose_motion_it_tells() {
+    fn odometry_comes_before_the_scan_whose_motion_it_shows() {
         let odometry = |log_ms: i64| {
             let mut odometry = Odometry::zeroed();
             odometry.stamp.measured_ns = log_ms * MS;

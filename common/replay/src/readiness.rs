@@ -17,7 +17,7 @@ impl Readiness {
     }
 
     /// Takes a node's report.
-    pub(crate) fn hear(&mut self, report: &HealthHeader) {
+    pub(crate) fn receive(&mut self, report: &HealthHeader) {
         let name = report.node.as_str();
         for (_, state) in self.nodes.iter_mut().filter(|(node, _)| node == name) {
             *state = NodeState::from_code(report.state);
@@ -29,7 +29,7 @@ impl Readiness {
         let missing = |(name, state): &(String, Option<NodeState>)| match state {
             Some(NodeState::Ready) => None,
             Some(state) => Some(format!("{name} ({state:?})")),
-            None => Some(format!("{name} (not heard of)")),
+            None => Some(format!("{name} (not started)")),
         };
         self.nodes.iter().filter_map(missing).collect()
     }
@@ -53,18 +53,15 @@ mod tests {
     #[test]
     fn all_must_be_ready_at_the_same_time() {
         let mut readiness = Readiness::of(&["a".into(), "b".into()]);
-        assert_eq!(
-            readiness.missing(),
-            ["a (not heard of)", "b (not heard of)"]
-        );
-        readiness.hear(&report("a", NodeState::Ready as u32));
-        readiness.hear(&report("c", NodeState::Ready as u32));
-        readiness.hear(&report("b", NodeState::Waiting as u32));
+        assert_eq!(readiness.missing(), ["a (not started)", "b (not started)"]);
+        readiness.receive(&report("a", NodeState::Ready as u32));
+        readiness.receive(&report("c", NodeState::Ready as u32));
+        readiness.receive(&report("b", NodeState::Waiting as u32));
         assert_eq!(readiness.missing(), ["b (Waiting)"]);
-        readiness.hear(&report("b", NodeState::Ready as u32));
-        readiness.hear(&report("a", 99));
-        assert_eq!(readiness.missing(), ["a (not heard of)"]);
-        readiness.hear(&report("a", NodeState::Ready as u32));
+        readiness.receive(&report("b", NodeState::Ready as u32));
+        readiness.receive(&report("a", 99));
+        assert_eq!(readiness.missing(), ["a (not started)"]);
+        readiness.receive(&report("a", NodeState::Ready as u32));
         assert!(readiness.missing().is_empty());
         assert!(Readiness::of(&[]).missing().is_empty());
     }

@@ -105,7 +105,7 @@ impl Schedule {
         self.not_before_ns = self.last_due_ns.saturating_add(self.scaled(gap_ns));
     }
 
-    /// Playing goes on after a pause: the next message is due at once.
+    /// Playing continues after a pause: the next message is due at once.
     pub fn resume(&mut self) {
         self.anchor = None;
         self.not_before_ns = i64::MIN;

@@ -64,7 +64,7 @@ impl Selection {
         }
     }
 
-    /// What lies so many seconds after the recording's first message, at most 1e9.
+    /// What lies this many seconds after the recording's first message, at most 1e9.
     #[must_use]
     pub fn within(self, recording: &Recording, start: Option<f64>, end: Option<f64>) -> Self {
         let first_ns = recording.time_range_ns().map_or(0, |(first, _)| first);

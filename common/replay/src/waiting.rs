@@ -41,7 +41,7 @@ impl Awaited {
     /// The graph fails.
     pub fn are_ready(&mut self) -> Result<bool, TransportError> {
         while let Some(report) = self.reports.receive()? {
-            self.readiness.hear(report.header());
+            self.readiness.receive(report.header());
         }
         let missing = self.readiness.missing();
         self.are_ready |= missing.is_empty();

@@ -22,7 +22,7 @@ pub struct DiagnosticStatus {
     pub level: u8,
     /// The part.
     pub name: String,
-    /// How it fares, in words.
+    /// The state in words.
     pub message: String,
     /// Which device it is.
     pub hardware_id: String,
@@ -37,7 +37,7 @@ impl DiagnosticStatus {
     pub const WARN: u8 = 1;
     /// It does not work.
     pub const ERROR: u8 = 2;
-    /// Nothing is heard of it.
+    /// Nothing is received from it.
     pub const STALE: u8 = 3;
 }
 

@@ -57,7 +57,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn state_and_last_error_are_told_in_words() {
+    fn state_and_last_error_are_reported_in_words() {
         let report = HealthHeader {
             node: Name::new("accumulator"),
             state: NodeState::Degraded as u32,

@@ -8,7 +8,7 @@ use messages::FrameName;
 pub enum ConversionError {
     /// A quaternion that is no rotation: its length is not 1 within a few percent,
     /// or it is not a number.
-    #[error("the quaternion ({x}, {y}, {z}, {w}) is no rotation; allowed: a length of 1")]
+    #[error("the quaternion ({x}, {y}, {z}, {w}) is not a rotation; allowed: a length of 1")]
     Rotation {
         /// Of i.
         x: f64,

@@ -292,7 +292,7 @@ mod tests {
         let message = of_length(0.9).yaw().unwrap_err().to_string();
         assert_eq!(
             message,
-            "the quaternion (0, 0, 0, 0.9) is no rotation; allowed: a length of 1"
+            "the quaternion (0, 0, 0, 0.9) is not a rotation; allowed: a length of 1"
         );
         let nan = Quaternion {
             x: f64::NAN,

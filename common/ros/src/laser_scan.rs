@@ -20,9 +20,9 @@ pub struct LaserScan {
     pub time_increment: f32,
     /// From one scan to the next, seconds.
     pub scan_time: f32,
-    /// Readings below are none, metres.
+    /// Readings below are not returns, metres.
     pub range_min: f32,
-    /// Readings above are none, metres.
+    /// Readings above are not returns, metres.
     pub range_max: f32,
     /// Metres; infinity where nothing came back.
     pub ranges: Vec<f32>,

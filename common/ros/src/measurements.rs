@@ -47,7 +47,7 @@ pub fn scan_header(scan: &LaserScan, frame: FrameName, mount: Option<Mount>) -> 
 /// Odometry.
 ///
 /// # Errors
-/// If the pose is none, or a frame's name too long.
+/// If the pose is invalid, or a frame's name too long.
 pub fn odometry(message: &ros::Odometry) -> Result<Odometry, ConversionError> {
     Ok(Odometry {
         stamp: measured(message.header.stamp),
@@ -119,6 +119,6 @@ mod tests {
         let mut turned = PoseStamped::default();
         turned.pose.orientation.w = f64::NAN;
         let error = ground_truth(&turned).unwrap_err().to_string();
-        assert!(error.contains("no rotation"), "{error}");
+        assert!(error.contains("not a rotation"), "{error}");
     }
 }

@@ -4,12 +4,12 @@ use transport::{Graph, Health, TransportError, with_causes};
 
 use crate::{Entries, Options, TranscriptError};
 
-/// Makes entries of what comes, and tells the graph how it fares.
+/// Makes entries of received messages, and reports its health to the graph.
 #[derive(Debug)]
 pub struct Transcript {
     /// What was made.
     pub entries: Entries,
-    /// By which it tells.
+    /// Its health reports.
     pub health: Health,
     dropped: u64,
     refused: u64,
@@ -61,7 +61,7 @@ impl Transcript {
     ) -> Result<(), TransportError> {
         self.health.count_received(1);
         if lost > 0 {
-            tracing::warn!("{lost} samples were lost: they came faster than they were taken");
+            tracing::warn!("{lost} samples were lost: they arrived faster than they were read");
             self.count_dropped(lost);
         }
         let Err(error) = outcome else {

@@ -140,7 +140,7 @@ pub enum SickError {
         /// What it may hold.
         allowed: &'static str,
     },
-    /// The content goes on after its last field.
+    /// The content continues after its last field.
     #[error("byte {offset} of the telegram: {left} bytes follow the last field, none may")]
     Trailing {
         /// Where the last field ended.

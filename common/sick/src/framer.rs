@@ -8,7 +8,7 @@
 
 use crate::SickError;
 
-/// How telegrams of one kind are told from other bytes.
+/// How telegrams of one kind are distinguished from other bytes.
 pub trait Protocol {
     /// What a content says.
     type Telegram<'a>;
@@ -60,7 +60,7 @@ pub struct Pending<'a> {
 /// What stands at the current byte.
 #[derive(Debug)]
 pub enum Judgement {
-    /// A telegram with so many bytes before, of and after its content.
+    /// A telegram with this many bytes before, of and after its content.
     Frame {
         /// Bytes before the content.
         prefix: usize,
@@ -234,7 +234,7 @@ impl<P: Protocol> Framer<P> {
         })
     }
 
-    /// Lets go of judged bytes, only once they outweigh what has to move.
+    /// Drops judged bytes, only once they outweigh what has to move.
     fn release(&mut self) {
         if self.at > self.bytes.len() / 2 {
             self.bytes.drain(..self.at);

@@ -28,7 +28,7 @@ enum Format {
 impl Format {
     const ALL: [Format; 3] = [Format::ColaA, Format::ColaB, Format::Lms2xx];
 
-    /// Scan `number`: every reading tells it.
+    /// Scan `number`: every reading encodes it.
     fn telegram(self, number: u16) -> Vec<u8> {
         let readings: Vec<u16> = (0..READINGS).map(|beam| reading(number, beam)).collect();
         let mut out = Vec::new();
@@ -155,7 +155,7 @@ fn faulty(format: Format, random: &mut Xoshiro256PlusPlus) -> (Vec<Vec<u8>>, Vec
         let mut bytes = format.telegram(number);
         let mut is_whole = true;
         match random.random_range(0..100) {
-            // CoLa A has no checksum: nothing tells a wrong digit from a right one.
+            // CoLa A has no checksum: nothing distinguishes a wrong digit from a right one.
             0 if format != Format::ColaA => {
                 let at = random.random_range(0..bytes.len());
                 bytes[at] ^= 1 << random.random_range(0..8);

@@ -30,8 +30,8 @@ pub struct DriveConfig {
         allow_hyphen_values = true
     )]
     pub mount: Mount,
-    /// A laser by its name and its mount, as front=0.4,0,0; several are given one by
-    /// one, the first one first.
+    /// A laser with its name and mount, as front=0.4,0,0; repeat it for several lasers,
+    /// the main one first.
     #[arg(
         long = "laser",
         value_name = "NAME=X,Y,DEGREES[,180]",
@@ -39,15 +39,15 @@ pub struct DriveConfig {
         conflicts_with_all = ["mount", "sonar"]
     )]
     pub lasers: Vec<NamedMount>,
-    /// From the first beam of a scan to its last, seconds, 0..=1: the robot drives on
-    /// meanwhile. 0 measures all beams at once.
+    /// Time from the first beam of a scan to the last, seconds, 0..=1: the robot keeps
+    /// driving meanwhile. 0 measures all beams at once.
     #[arg(long, value_name = "SECONDS", default_value_t = 0.0, value_parser = parse_duration, conflicts_with = "sonar")]
     pub scan_duration: f64,
     /// Standard deviation of a reading: metres, and with a second number what is
     /// added for each metre of range.
     #[arg(long, value_name = "METRES[,SHARE]", default_value = "0.01,0.002")]
     pub noise: Noise,
-    /// Share of the readings that are anything from 0 to the longest range, 0..=1.
+    /// Share of random readings, from 0 to the longest range, 0..=1.
     #[arg(long, value_name = "SHARE", default_value_t = 0.0, value_parser = parse_share)]
     pub outliers: f64,
     /// People who walk about near the path, discs of 0.2 m radius, 0..=1000.
@@ -57,7 +57,7 @@ pub struct DriveConfig {
     /// --sonar].
     #[arg(long, value_name = "METRES", value_parser = parse_reach)]
     pub range_max: Option<f64>,
-    /// Where all random numbers begin.
+    /// Seed of all random numbers.
     #[arg(long, value_name = "NUMBER", default_value_t = 1)]
     pub seed: u64,
     /// Errors of the wheels.
@@ -113,7 +113,7 @@ const MAX_NAME: usize = 32;
 fn parse_mount(text: &str) -> Result<Mount, String> {
     let level = numbers(text).map(|[x, y, degrees]| [x, y, degrees, 0.0]);
     let Some([x, y, degrees, roll]) = level.or_else(|| numbers(text)) else {
-        return Err(format!("{text:?} is no mount; needed are X,Y,DEGREES"));
+        return Err(format!("{text:?} is not a mount; needed are X,Y,DEGREES"));
     };
     if roll != 0.0 && roll != 180.0 {
         return Err(format!("a roll of {roll} degrees; allowed are 0 and 180"));
@@ -129,12 +129,12 @@ fn parse_mount(text: &str) -> Result<Mount, String> {
 fn parse_laser(text: &str) -> Result<NamedMount, String> {
     let (name, mount) = text
         .split_once('=')
-        .ok_or_else(|| format!("{text:?} is no laser; needed are NAME=X,Y,DEGREES"))?;
+        .ok_or_else(|| format!("{text:?} is not a laser; needed are NAME=X,Y,DEGREES"))?;
     let is_word = name.bytes().all(|b| b.is_ascii_alphanumeric() || b == b'_');
     let begins = name.bytes().next().is_some_and(|b| b.is_ascii_alphabetic());
     if !is_word || !begins || name.len() > MAX_NAME {
         return Err(format!(
-            "{name:?} is no name of a laser; allowed are 1 to {MAX_NAME} letters, digits and _, \
+            "{name:?} is not a name of a laser; allowed are 1 to {MAX_NAME} letters, digits and _, \
              a letter first"
         ));
     }
@@ -217,7 +217,7 @@ mod tests {
         );
         assert_eq!(
             refused("1,2"),
-            "\"1,2\" is no mount; needed are X,Y,DEGREES"
+            "\"1,2\" is not a mount; needed are X,Y,DEGREES"
         );
         assert_eq!(refused("9,0,0"), "9 is not within -5 to 5 metres");
         assert_eq!(refused("0,NaN,0"), "NaN is not within -5 to 5 metres");
@@ -232,12 +232,12 @@ mod tests {
         let refused = |text: &str| parse_laser(text).unwrap_err();
         assert_eq!(
             refused("0,0,0"),
-            "\"0,0,0\" is no laser; needed are NAME=X,Y,DEGREES"
+            "\"0,0,0\" is not a laser; needed are NAME=X,Y,DEGREES"
         );
         for name in ["", "a b", "2", "a/b"] {
             let error = refused(&format!("{name}=0,0,0"));
-            assert!(error.contains("is no name of a laser"), "{error}");
+            assert!(error.contains("is not a name of a laser"), "{error}");
         }
-        assert!(refused("a=0,0").contains("is no mount"));
+        assert!(refused("a=0,0").contains("is not a mount"));
     }
 }

@@ -186,7 +186,7 @@ impl Drive {
 
     fn snapshot(&mut self, start_s: f64, map_from_base: Pose) -> Snapshot {
         if self.before.is_some() {
-            // The world goes on by the time between two scans.
+            // The world continues by the time between two scans.
             let people = &mut self.scene.people;
             people.walk(1.0 / self.rate, &self.scene.obstacles);
         }
@@ -278,7 +278,7 @@ impl Iterator for Drive {
     }
 }
 
-/// Scans of a drive: one at the start, and then as long as it goes on.
+/// Scans of a drive: one at the start, and then as long as it continues.
 fn count(timetable: &Timetable, rate: f64) -> Result<u64, SimulationError> {
     let seconds = timetable.seconds();
     // Up to rounding, a drive that ends with a scan has it.

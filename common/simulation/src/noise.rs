@@ -27,7 +27,7 @@ impl FromStr for Noise {
     fn from_str(text: &str) -> Result<Self, String> {
         let [metres, share] = numbers(text)
             .or_else(|| numbers(text).map(|[metres]| [metres, 0.0]))
-            .ok_or_else(|| format!("{text:?} is no noise; needed is METRES or METRES,SHARE"))?;
+            .ok_or_else(|| format!("{text:?} is not a noise; needed is METRES or METRES,SHARE"))?;
         Ok(Noise {
             sigma_m: within(metres, 0.0..=2.0, "metres")?,
             sigma_per_m: within(share, 0.0..=0.25, "as a share of the range")?,

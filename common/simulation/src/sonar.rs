@@ -4,7 +4,7 @@
 //! A transducer answers with the nearest surface in its cone that is met nearly
 //! head on; a wall that is met at a flat angle sends the sound away (Leonard and
 //! Durrant-Whyte, Directed Sonar Sensing for Mobile Robot Navigation, 1992). Echoes
-//! that come by way of two walls are left out, and all transducers sit at one
+//! that are reflected by two walls are left out, and all transducers sit at one
 //! point.
 
 use std::f32::consts::PI;
@@ -30,7 +30,7 @@ const NEIGHBOURS: usize = 4;
 
 /// The fewest points that make a surface; fewer are an edge or a post, which
 /// sends sound everywhere.
-const LEAST_POINTS: usize = 3;
+const MIN_POINTS: usize = 3;
 
 /// What sets the ring apart from a laser.
 #[derive(Debug, Clone, Copy, PartialEq, clap::Args)]
@@ -97,11 +97,11 @@ impl Ring {
         let mut ranges = vec![f32::NAN; Self::BEARINGS.count];
         for (i, degrees) in TRANSDUCERS_DEG.into_iter().enumerate() {
             let [is_other, other] = [self.rng.random::<f64>(), self.rng.random()];
-            let heard = match is_other < self.config.cross_talk {
+            let received = match is_other < self.config.cross_talk {
                 true => (i + 1 + (other * (echoes.len() - 1) as f64) as usize) % echoes.len(),
                 false => i,
             };
-            ranges[(degrees + 180) as usize] = receiver.reading(echoes[heard]);
+            ranges[(degrees + 180) as usize] = receiver.reading(echoes[received]);
         }
         ranges
     }
@@ -111,11 +111,11 @@ impl Ring {
         let answers: Vec<_> = (0..RAYS).map(|ray| self.answer(hits, ray)).collect();
         TRANSDUCERS_DEG.map(|degrees| {
             let axis = f64::from(degrees).to_radians();
-            // A thousandth of a degree is room for rounding.
+            // A thousandth of a degree is a margin for rounding.
             let half_width = (self.config.beam_width / 2.0 + 1e-3).to_radians();
             let in_cone = |&ray: &usize| angle_between(bearing(ray), axis) <= half_width;
-            let heard = (0..RAYS).filter(in_cone).filter_map(|ray| answers[ray]);
-            heard.min_by(f64::total_cmp)
+            let received = (0..RAYS).filter(in_cone).filter_map(|ray| answers[ray]);
+            received.min_by(f64::total_cmp)
         })
     }
 
@@ -168,7 +168,7 @@ fn surface(hits: &[Option<Hit>], ray: usize) -> Vec<[f64; 2]> {
 /// Angle between a ray and the normal of the line through points, radians; 0
 /// for what is no surface.
 fn incidence(points: &[[f64; 2]], angle: f64) -> f64 {
-    if points.len() < LEAST_POINTS {
+    if points.len() < MIN_POINTS {
         return 0.0;
     }
     let count = points.len() as f64;
@@ -241,10 +241,10 @@ mod tests {
         for (alone, with) in alone.iter().zip(&with) {
             let echoes = TRANSDUCERS_DEG.map(|degrees| reading(alone, degrees));
             for (own, degrees) in echoes.into_iter().zip(TRANSDUCERS_DEG) {
-                let heard = reading(with, degrees);
-                assert!(echoes.contains(&heard));
+                let received = reading(with, degrees);
+                assert!(echoes.contains(&received));
                 total += 1.0;
-                others += f64::from(u8::from(heard != own));
+                others += f64::from(u8::from(received != own));
             }
         }
         // 14,600 readings give a share of 0.1 to 0.0025: four of those to each side,

@@ -33,13 +33,13 @@ graph its own, as root, or with --user --map-root-user:
 
     unshare --mount sh -c 'mount -t tmpfs -o size=256m tmpfs /dev/shm && backcast soak …'
 
-Exit codes: 0 all promises were kept, 1 a pose was wrong, something did not recover or was left
+Exit codes: 0 all guarantees were met, 1 a pose was wrong, something did not recover or was left
 behind, 2 wrong use";
 
 const DEFAULT_FAULTS: [Fault; 4] = [Fault::Kill, Fault::Pair, Fault::Stop, Fault::Map];
 const DEFAULT_MINUTES: f64 = 60.0;
 
-/// What `backcast soak` takes.
+/// Options of `backcast soak`.
 #[derive(Debug, clap::Args)]
 pub struct Config {
     /// The graph's descriptor
@@ -66,16 +66,16 @@ pub struct Config {
     #[arg(long, value_name = "FILE")]
     record: Option<PathBuf>,
 
-    /// What is done to the graph, with commas between
+    /// The faults to inject, separated by commas
     #[arg(long, value_enum, value_name = "FAULTS", value_delimiter = ',', default_values_t = DEFAULT_FAULTS)]
     faults: Vec<Fault>,
 
-    /// Seconds from one fault to the next, at least; the next one waits until the one
-    /// before is overcome
+    /// Minimum time between faults, seconds; the next fault waits until the graph has
+    /// recovered from the last
     #[arg(long, value_name = "SECONDS", value_parser = positive, default_value_t = 3.0)]
     pause: f64,
 
-    /// Where the randomness begins
+    /// Seed of the random numbers
     #[arg(long, value_name = "NUMBER", default_value_t = 1)]
     seed: u64,
 

@@ -28,8 +28,8 @@ use crate::SoakError;
 
 /// How long the first sure pose may take, and any pose after a fault, before the graph is
 /// given up: everything that it does by itself takes less.
-const PATIENCE: Duration = Duration::from_secs(60);
-/// A longer time without a pose is told at once, so that it can be looked for in the log.
+const TIMEOUT: Duration = Duration::from_secs(60);
+/// A longer time without a pose is reported at once, so that it can be found in the log.
 const LONG_GAP_S: f64 = 0.5;
 /// Between two looks at the processes.
 const LOOK: Duration = Duration::from_secs(1);
@@ -124,10 +124,10 @@ impl Course {
     /// Something cannot be done to it.
     pub(super) fn run(mut self) -> Result<Report, SoakError> {
         // A build may come first, which takes as long as it takes.
-        while self.watch(PATIENCE, Tally::is_sure) == Watched::Late {
+        while self.watch(TIMEOUT, Tally::is_sure) == Watched::Late {
             if self.status().is_some() {
                 self.failures
-                    .push(format!("no Unique pose within {PATIENCE:?}"));
+                    .push(format!("no Unique pose within {TIMEOUT:?}"));
                 break;
             }
         }
@@ -141,20 +141,23 @@ impl Course {
                 continue;
             };
             self.suffer(fault)?;
-            if self.watch(PATIENCE, Tally::has_recovered) == Watched::Late {
+            if self.watch(TIMEOUT, Tally::has_recovered) == Watched::Late {
                 let name = fault.name();
                 self.failures
-                    .push(format!("no pose within {PATIENCE:?} after {name}"));
+                    .push(format!("no pose within {TIMEOUT:?} after {name}"));
             }
             let gap_s = self.tally.last_gap_s();
             if gap_s > LONG_GAP_S {
-                say("soak", &format!("the next pose came after {gap_s:.2} s"));
+                say(
+                    "soak",
+                    &format!("the next pose was received after {gap_s:.2} s"),
+                );
             }
         }
-        if self.failures.is_empty() && self.watch(PATIENCE, Tally::is_sure) == Watched::Late {
+        if self.failures.is_empty() && self.watch(TIMEOUT, Tally::is_sure) == Watched::Late {
             let open = self.tally.not_overcome();
             self.failures
-                .push(format!("no Unique pose within {PATIENCE:?} after {open:?}"));
+                .push(format!("no Unique pose within {TIMEOUT:?} after {open:?}"));
         }
         self.finish()
     }
@@ -320,7 +323,7 @@ impl Course {
             node.pid.is_some_and(|pid| process(pid).exists())
         };
         while self.nodes.iter().any(lives) {
-            if killed.elapsed() > PATIENCE {
+            if killed.elapsed() > TIMEOUT {
                 self.failures
                     .push("nodes went on without their launcher".to_owned());
                 break;

@@ -1,4 +1,4 @@
-//! All that can end a command of this crate early, and the exit code that it means.
+//! Errors of this crate's commands, and their exit codes.
 
 use std::{io, path::PathBuf};
 
@@ -20,11 +20,11 @@ pub enum SoakError {
     /// A recording cannot be used.
     #[error(transparent)]
     Recording(#[from] RecordingError),
-    /// The graph cannot be joined, heard or cleaned up.
+    /// The graph cannot be joined, read or cleaned up.
     #[error(transparent)]
     Transport(#[from] TransportError),
     /// A recording by which nothing can be judged.
-    #[error("{} has no true poses on /ground_truth: there is nothing to judge by", file.display())]
+    #[error("{} has no true poses on /ground_truth: nothing to compare with", file.display())]
     NoTruths {
         /// The recording.
         file: PathBuf,

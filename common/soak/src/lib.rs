@@ -1,8 +1,8 @@
-//! `backcast soak`: runs a graph for hours, does it harm at random, and says whether it
-//! kept its promises.
+//! `backcast soak`: runs a graph for hours, does it harm at random, and returns whether it
+//! met its guarantees.
 //!
 //! `fault` says what can be done and draws what is done next, `tally` counts the poses and
-//! how long each fault was felt, `report` puts both into words: these are pure. `launched`
+//! how long each fault had an effect, `report` puts both into words: these are pure. `launched`
 //! is the launcher as a child process, `usage` what its processes take, `maps` and
 //! `filler` what some faults need, `course` does all of it.
 

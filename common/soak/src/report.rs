@@ -33,7 +33,7 @@ pub(super) struct Report {
 }
 
 impl Report {
-    /// Whether the graph kept its promises.
+    /// Whether the graph met its guarantees.
     pub(super) fn is_good(&self) -> bool {
         self.poses.wrong == 0 && self.leftovers.is_empty() && self.failures.is_empty()
     }
@@ -87,7 +87,7 @@ impl Report {
         }
         let verdict = match self.is_good() {
             true => "no pose was wrong, all recovered, nothing was left behind",
-            false => "the graph did not keep its promises",
+            false => "the graph did not meet its guarantees",
         };
         text.push_str(verdict);
         text.push('\n');
@@ -106,17 +106,17 @@ fn faults(text: &mut String, faults: &[FaultFigures]) {
         "{:<10} {:>6} {:>7} {:>24} {:>24}",
         "fault", "times", "killed", "next pose s median  max", "Unique pose s median  max"
     );
-    for felt in faults {
+    for effect in faults {
         let _ = writeln!(
             text,
             "{:<10} {:>6} {:>7} {:>17} {:>6} {:>17} {:>6}",
-            felt.fault.name(),
-            felt.times,
-            felt.killed,
-            number(felt.to_pose_s.median),
-            number(felt.to_pose_s.max),
-            number(felt.to_unique_s.median),
-            number(felt.to_unique_s.max),
+            effect.fault.name(),
+            effect.times,
+            effect.killed,
+            number(effect.to_pose_s.median),
+            number(effect.to_pose_s.max),
+            number(effect.to_unique_s.median),
+            number(effect.to_unique_s.max),
         );
     }
     text.push('\n');
@@ -257,7 +257,7 @@ no pose was wrong, all recovered, nothing was left behind
             assert!(
                 report
                     .text()
-                    .ends_with("the graph did not keep its promises\n")
+                    .ends_with("the graph did not meet its guarantees\n")
             );
         }
     }

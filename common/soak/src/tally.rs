@@ -11,15 +11,15 @@ use statistics::{Distribution, SUCCESS, Tail};
 use super::fault::Fault;
 use super::launched::SentPose;
 
-/// Parts of a run of which latencies are told one by one.
+/// Parts of a run whose latencies are listed one by one.
 const PARTS: usize = 10;
-/// Wrong poses that are told one by one.
-const MAX_TOLD: usize = 20;
+/// Wrong poses that are listed one by one.
+const MAX_WRONG_LISTED: usize = 20;
 /// Values of a figure that are kept: more than a run of days has in a part.
 const WINDOW: usize = 1_000_000;
 const NS_PER_S: f64 = 1e9;
 
-/// What was heard so far.
+/// What was received so far.
 #[derive(Debug)]
 pub(super) struct Tally {
     truths: BTreeMap<i64, Pose>,
@@ -29,11 +29,11 @@ pub(super) struct Tally {
     judged: u64,
     unique: u64,
     wrong: u64,
-    told: Vec<Wrong>,
+    first_wrong: Vec<Wrong>,
     latency_ms: Vec<Distribution>,
     /// Faults after which a pose is missing still.
     open: Vec<Open>,
-    faults: BTreeMap<Fault, Felt>,
+    faults: BTreeMap<Fault, FaultEffect>,
     /// From the end of the last fault to the next pose, seconds.
     last_gap_s: f64,
 }
@@ -58,14 +58,14 @@ struct Open {
 }
 
 #[derive(Debug)]
-struct Felt {
+struct FaultEffect {
     times: u64,
     killed: u64,
     to_pose_s: Distribution,
     to_unique_s: Distribution,
 }
 
-/// How one kind of fault was felt.
+/// The effect of one kind of fault.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub(super) struct FaultFigures {
     pub(super) fault: Fault,
@@ -114,7 +114,7 @@ impl Tally {
             judged: 0,
             unique: 0,
             wrong: 0,
-            told: Vec::new(),
+            first_wrong: Vec::new(),
             latency_ms: vec![Distribution::new(WINDOW); PARTS],
             open: Vec::new(),
             faults: BTreeMap::new(),
@@ -122,16 +122,16 @@ impl Tally {
         }
     }
 
-    /// A fault was over at `over_ns`, after it had killed so many processes of nodes.
+    /// A fault was over at `over_ns`, after it had killed this many processes of nodes.
     pub(super) fn suffered(&mut self, fault: Fault, killed: usize, over_ns: i64) {
-        let felt = self.faults.entry(fault).or_insert_with(|| Felt {
+        let effect = self.faults.entry(fault).or_insert_with(|| FaultEffect {
             times: 0,
             killed: 0,
             to_pose_s: Distribution::new(WINDOW),
             to_unique_s: Distribution::new(WINDOW),
         });
-        felt.times += 1;
-        felt.killed += killed as u64;
+        effect.times += 1;
+        effect.killed += killed as u64;
         self.open.push(Open {
             fault,
             over_ns,
@@ -167,8 +167,8 @@ impl Tally {
             return;
         }
         self.wrong += 1;
-        if self.told.len() < MAX_TOLD {
-            self.told.push(Wrong {
+        if self.first_wrong.len() < MAX_WRONG_LISTED {
+            self.first_wrong.push(Wrong {
                 stamp_ns: pose.stamp_ns,
                 after_s: self.since_s(pose.sent_ns),
                 off_m: truth.distance_to(found),
@@ -182,17 +182,17 @@ impl Tally {
         let (faults, entered_ns) = (&mut self.faults, pose.entered_ns());
         let last_gap_s = &mut self.last_gap_s;
         self.open.retain_mut(|open| {
-            let felt = faults.get_mut(&open.fault);
-            let (true, Some(felt)) = (open.over_ns <= entered_ns, felt) else {
+            let effect = faults.get_mut(&open.fault);
+            let (true, Some(effect)) = (open.over_ns <= entered_ns, effect) else {
                 return true;
             };
             let seconds = (pose.sent_ns - open.over_ns) as f64 / NS_PER_S;
             if !std::mem::replace(&mut open.any, true) {
-                felt.to_pose_s.add(seconds);
+                effect.to_pose_s.add(seconds);
                 *last_gap_s = seconds;
             }
             if is_unique {
-                felt.to_unique_s.add(seconds);
+                effect.to_unique_s.add(seconds);
             }
             !is_unique
         });
@@ -225,15 +225,15 @@ impl Tally {
             judged: self.judged,
             unique: self.unique,
             wrong: self.wrong,
-            first_wrong: self.told.clone(),
+            first_wrong: self.first_wrong.clone(),
             latency_ms: self.latency_ms.iter().map(Distribution::tail).collect(),
         };
-        let faults = self.faults.iter().map(|(fault, felt)| FaultFigures {
+        let faults = self.faults.iter().map(|(fault, effect)| FaultFigures {
             fault: *fault,
-            times: felt.times,
-            killed: felt.killed,
-            to_pose_s: Gap::of(&felt.to_pose_s),
-            to_unique_s: Gap::of(&felt.to_unique_s),
+            times: effect.times,
+            killed: effect.killed,
+            to_pose_s: Gap::of(&effect.to_pose_s),
+            to_unique_s: Gap::of(&effect.to_unique_s),
         });
         (poses, faults.collect())
     }
@@ -323,7 +323,7 @@ mod tests {
     }
 
     #[test]
-    fn latencies_are_told_for_each_tenth_of_the_run() {
+    fn latencies_are_reported_for_each_tenth_of_the_run() {
         let mut tally = tally();
         tally.pose(&pose(1, 5, 0.0, TrackState::Unique));
         let mut late = pose(1, 200, 0.0, TrackState::Unique);

@@ -1,4 +1,4 @@
-//! What the processes of a graph take, as Linux tells in /proc.
+//! What the processes of a graph take, as Linux reports in /proc.
 
 use std::collections::BTreeMap;
 use std::fs::{read_dir, read_to_string};

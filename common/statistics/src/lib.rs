@@ -165,7 +165,7 @@ impl Accuracy {
     }
 }
 
-/// The poses differ by at most so many metres and degrees.
+/// The poses differ by at most this many metres and degrees.
 fn within(a: Pose, b: Pose, (metres, degrees): (f64, f64)) -> bool {
     a.is_within(b, metres, f64::to_radians(degrees))
 }

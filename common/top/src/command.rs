@@ -9,10 +9,10 @@ use command_line::stdout as output;
 use super::{lines, screen, source};
 use crate::TopError;
 
-/// What `backcast top` takes.
+/// Options of `backcast top`.
 #[derive(Debug, clap::Args)]
 pub struct Config {
-    /// Where the monitor listens
+    /// Address of the monitor
     #[arg(default_value = "127.0.0.1:7440", value_name = "HOST:PORT")]
     address: String,
 
@@ -20,7 +20,7 @@ pub struct Config {
     #[arg(long, value_name = "NAME")]
     robot: Option<String>,
 
-    /// Print how it is now, and end; so does an output that is no terminal
+    /// Print the current state once, and exit; so does an output that is not a terminal
     #[arg(long)]
     once: bool,
 }

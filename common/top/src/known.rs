@@ -1,5 +1,5 @@
-//! What the monitor has told, and how old it is. Fields that it does not tell are at
-//! rest. Pure: told the time, and knowing no clock.
+//! What the monitor has received, and how old it is. Fields that it does not send are at
+//! rest. Pure: received the time, and knowing no clock.
 
 use std::collections::{BTreeMap, VecDeque};
 use std::time::{Duration, Instant};
@@ -22,7 +22,7 @@ pub(super) enum Message {
     Answer(Answer),
     /// Where the tracker has the robot.
     Pose(Tracked),
-    /// How a node fares.
+    /// The state of a node.
     Node(Node),
     /// What is not shown here.
     #[serde(other)]
@@ -105,7 +105,7 @@ pub(super) struct Pose {
     pub(super) yaw: f64,
 }
 
-/// How a node fares.
+/// The state of a node.
 #[derive(Debug, Clone, Default, Deserialize)]
 #[serde(default)]
 pub(super) struct Node {
@@ -119,24 +119,24 @@ pub(super) struct Node {
     pub(super) last_error: String,
 }
 
-/// How old something is: so old when it was told, and older since.
+/// How old something is: so old when it was received, and older since.
 #[derive(Debug, Clone, Copy)]
 struct Age {
-    told: Instant,
+    received: Instant,
     then: Duration,
 }
 
 impl Age {
-    fn of(seconds: f64, told: Instant) -> Self {
+    fn of(seconds: f64, received: Instant) -> Self {
         let then = Duration::try_from_secs_f64(seconds.max(0.0));
         Age {
-            told,
+            received,
             then: then.unwrap_or(Duration::MAX),
         }
     }
 
     fn at(self, now: Instant) -> Duration {
-        let since = now.saturating_duration_since(self.told);
+        let since = now.saturating_duration_since(self.received);
         self.then.saturating_add(since)
     }
 }
@@ -154,13 +154,13 @@ pub(super) struct Known {
     pose_age: Option<Age>,
     pub(super) nodes: BTreeMap<String, Node>,
     pub(super) latencies_ms: VecDeque<f64>,
-    /// Why nothing is heard at the moment.
+    /// Why nothing is received at the moment.
     pub(super) lost: Option<String>,
 }
 
 impl Known {
     /// Takes a message that came at `now`.
-    pub(super) fn hear(&mut self, message: Message, now: Instant) {
+    pub(super) fn receive(&mut self, message: Message, now: Instant) {
         let age = |seconds: f64| Age::of(seconds, now);
         self.lost = None;
         match message {
@@ -232,7 +232,7 @@ mod tests {
             r#"{"type":"beams","fate":"hh"}"#,
             r#"{"type":"answer","counter":7,"verdict":"Unique","latency_ms":20.5,"hypotheses":[]}"#,
         ] {
-            known.hear(serde_json::from_str(text).unwrap(), Instant::now());
+            known.receive(serde_json::from_str(text).unwrap(), Instant::now());
         }
         assert_eq!(known.robot, "r");
         assert_eq!(known.nodes.keys().collect::<Vec<_>>(), ["a", "b"]);
@@ -245,30 +245,30 @@ mod tests {
         let start = Instant::now();
         let after = |seconds: u64| start + Duration::from_secs(seconds);
         let mut known = Known::default();
-        let mut hear = |text: &str, at: u64| {
-            known.hear(serde_json::from_str(text).unwrap(), after(at));
+        let mut receive = |text: &str, at: u64| {
+            known.receive(serde_json::from_str(text).unwrap(), after(at));
             known.silence(after(at))
         };
         assert_eq!(
-            hear(r#"{"type":"snapshot","ages":{}}"#, 0),
+            receive(r#"{"type":"snapshot","ages":{}}"#, 0),
             None,
             "nothing came yet"
         );
-        // Whoever looks a minute after the laser died is told so at once.
+        // Whoever looks a minute after the laser died is received so at once.
         let old = r#"{"type":"snapshot","ages":{"scan_s":61.5},"answer":{"verdict":"Unique"}}"#;
-        assert_eq!(hear(old, 0).unwrap(), "no data for 61 s");
-        assert_eq!(hear(r#"{"type":"answer","age_ms":30.0}"#, 1), None);
+        assert_eq!(receive(old, 0).unwrap(), "no data for 61 s");
+        assert_eq!(receive(r#"{"type":"answer","age_ms":30.0}"#, 1), None);
         let odometry = r#"{"type":"pose","from_scan":false,"age_ms":9.0}"#;
-        assert_eq!(hear(odometry, 2), None);
+        assert_eq!(receive(odometry, 2), None);
         assert_eq!(
-            hear(odometry, 4).unwrap(),
+            receive(odometry, 4).unwrap(),
             "no data for 3 s",
             "but odometry"
         );
-        assert_eq!(hear(r#"{"type":"answer","age_ms":30.0}"#, 5), None);
+        assert_eq!(receive(r#"{"type":"answer","age_ms":30.0}"#, 5), None);
         let answer = r#"{"type":"answer","age_ms":30.0}"#;
         assert_eq!(
-            hear(answer, 7).unwrap(),
+            receive(answer, 7).unwrap(),
             "no pose for 3 s",
             "the tracker ended"
         );

@@ -1,6 +1,6 @@
 //! `backcast top`: a running graph in the terminal, by the API of its monitor.
 //!
-//! `known` reads what the monitor tells, `lines` puts it into words, both pure;
+//! `known` reads what the monitor sends, `lines` puts it into words, both pure;
 //! `source` asks and listens, `screen` shows.
 
 mod command;

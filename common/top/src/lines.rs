@@ -20,7 +20,7 @@ pub(super) fn text(known: &Known, now: Instant) -> Text<'static> {
         lines.extend(pose_lines(pose));
     }
     match &known.answer {
-        None => lines.push(Line::from("no scan was answered yet")),
+        None => lines.push(Line::from("no scan has been answered yet")),
         Some(answer) => {
             let verdict = match known.pose {
                 Some(_) => format!("This scan alone, {}: ", answer.verdict),
@@ -195,7 +195,7 @@ mod tests {
     fn known(messages: &[&str]) -> Known {
         let mut known = Known::default();
         for text in messages {
-            known.hear(
+            known.receive(
                 serde_json::from_str::<Message>(text).unwrap(),
                 Instant::now(),
             );
@@ -209,14 +209,14 @@ mod tests {
             r#"{"type":"snapshot","robot":"r7","nodes":[
                 {"name":"boundary_extractor","state":"degraded","received_hz":12345.6,
                  "dropped":12345,"refused":1234567,"restarts":3,"last_error":"no map"}]}"#,
-            r#"{"type":"answer","counter":7,"verdict":"Unique","says":"one place fits",
+            r#"{"type":"answer","counter":7,"verdict":"Unique","says":"one place, fit 0.90",
                 "latency_ms":20.5,"search_ms":15.0,"extract_ms":4.0,"hypotheses":[
                 {"laser":{"x":-1234.5,"y":2.0,"yaw":-3.1},"score":0.97,"probability":1.0}]}"#,
         ]);
         let text = plain(&known, Instant::now());
         for expected in [
             "r7  Unique  scan 7\n",
-            "one place fits.\n",
+            "one place, fit 0.90.\n",
             "-1234.500     2.000      -177.62   0.97      100.0 %",
             "scan to pose 20.5 ms",
             "   boundary_extractor    degraded",
@@ -235,7 +235,7 @@ mod tests {
         let mut known = known(&[]);
         known.lost = Some("it is gone".to_owned());
         assert!(plain(&known, Instant::now()).contains("DISCONNECTED: it is gone"));
-        known.hear(Message::Other, Instant::now());
+        known.receive(Message::Other, Instant::now());
         assert!(!plain(&known, Instant::now()).contains("DISCONNECTED"));
     }
 
@@ -269,7 +269,7 @@ mod tests {
     #[test]
     fn an_old_unique_is_not_green() {
         let known = known(&[r#"{"type":"snapshot","robot":"r7","ages":{"scan_s":12.5},
-            "answer":{"counter":7,"verdict":"Unique","says":"one place fits"}}"#]);
+            "answer":{"counter":7,"verdict":"Unique","says":"one place, fit 0.90"}}"#]);
         let now = Instant::now();
         assert!(plain(&known, now).starts_with("r7  Unique  scan 7  NO DATA FOR 12 S\n"));
         let title = &text(&known, now).lines[0];

@@ -9,22 +9,22 @@ use ratatui::widgets::Paragraph;
 
 use super::known::Known;
 use super::lines;
-use super::source::Told;
+use super::source::Update;
 use crate::TopError;
 
-/// Between two looks at what was told and at the keys.
+/// Between two looks at what was updates and at the keys.
 const FRAME: Duration = Duration::from_millis(50);
 
-/// Ages are shown anew as often, where nothing comes.
+/// Ages are shown again as often, where nothing comes.
 const AGES: Duration = Duration::from_millis(500);
 
-/// Shows what is known and what is told, until somebody wants no more.
+/// Shows what is known and what is updates, until somebody wants no more.
 ///
 /// # Errors
 /// The terminal fails.
-pub(super) fn show(mut known: Known, told: &Receiver<Told>) -> Result<(), TopError> {
+pub(super) fn show(mut known: Known, updates: &Receiver<Update>) -> Result<(), TopError> {
     let mut terminal = ratatui::try_init().map_err(TopError::Terminal)?;
-    let shown = follow(&mut terminal, &mut known, told);
+    let shown = follow(&mut terminal, &mut known, updates);
     ratatui::try_restore().map_err(TopError::Terminal)?;
     shown
 }
@@ -32,15 +32,15 @@ pub(super) fn show(mut known: Known, told: &Receiver<Told>) -> Result<(), TopErr
 fn follow(
     terminal: &mut DefaultTerminal,
     known: &mut Known,
-    told: &Receiver<Told>,
+    updates: &Receiver<Update>,
 ) -> Result<(), TopError> {
     let mut is_new = true;
     let mut drawn = Instant::now();
     loop {
-        for message in told.try_iter() {
+        for message in updates.try_iter() {
             is_new = true;
             match message {
-                Ok(message) => known.hear(message, Instant::now()),
+                Ok(message) => known.receive(message, Instant::now()),
                 Err(problem) => known.lost = Some(problem),
             }
         }

@@ -18,10 +18,10 @@ const WAITING: usize = 256;
 const PAUSE: Duration = Duration::from_secs(1);
 
 /// A monitor that says nothing for so long is gone: its nodes report each second.
-const PATIENCE: Duration = Duration::from_secs(5);
+const TIMEOUT: Duration = Duration::from_secs(5);
 
 /// A message, or why there is none.
-pub(super) type Told = Result<Message, String>;
+pub(super) type Update = Result<Message, String>;
 
 /// The robot to watch.
 ///
@@ -50,8 +50,8 @@ pub(super) fn find(address: &str, robot: Option<&str>) -> Result<String, TopErro
 /// No monitor answers.
 pub(super) fn snapshot(address: &str, robot: &str) -> Result<Known, TopError> {
     let mut known = Known::default();
-    let told = ask(address, &format!("/api/v1/robots/{robot}"))?;
-    known.hear(told, Instant::now());
+    let update = ask(address, &format!("/api/v1/robots/{robot}"))?;
+    known.receive(update, Instant::now());
     Ok(known)
 }
 
@@ -61,7 +61,7 @@ fn ask<A: serde::de::DeserializeOwned>(address: &str, path: &str) -> Result<A, T
         reason: error.to_string(),
     };
     let agent: ureq::Agent = ureq::Agent::config_builder()
-        .timeout_global(Some(PATIENCE))
+        .timeout_global(Some(TIMEOUT))
         .build()
         .into();
     let mut response = agent
@@ -76,12 +76,12 @@ fn ask<A: serde::de::DeserializeOwned>(address: &str, path: &str) -> Result<A, T
 ///
 /// # Errors
 /// The thread cannot be started.
-pub(super) fn follow(address: &str, robot: &str) -> Result<Receiver<Told>, TopError> {
-    let (tell, told) = sync_channel(WAITING);
+pub(super) fn follow(address: &str, robot: &str) -> Result<Receiver<Update>, TopError> {
+    let (updates, received) = sync_channel(WAITING);
     let (address, robot) = (address.to_owned(), robot.to_owned());
     let body = move || {
-        while let Err(problem) = listen(&address, &robot, &tell) {
-            if tell.send(Err(problem)).is_err() {
+        while let Err(problem) = listen(&address, &robot, &updates) {
+            if updates.send(Err(problem)).is_err() {
                 return;
             }
             thread::sleep(PAUSE);
@@ -91,13 +91,13 @@ pub(super) fn follow(address: &str, robot: &str) -> Result<Receiver<Told>, TopEr
         .name("monitor".into())
         .spawn(body)
         .map_err(TopError::Terminal)?;
-    Ok(told)
+    Ok(received)
 }
 
 /// Passes on all messages; returns when nobody wants them any more.
-fn listen(address: &str, robot: &str, tell: &SyncSender<Told>) -> Result<(), String> {
+fn listen(address: &str, robot: &str, updates: &SyncSender<Update>) -> Result<(), String> {
     let stream = TcpStream::connect(address).map_err(|error| error.to_string())?;
-    let patience = stream.set_read_timeout(Some(PATIENCE));
+    let patience = stream.set_read_timeout(Some(TIMEOUT));
     patience.map_err(|error| error.to_string())?;
     let url = format!("ws://{address}/api/v1/robots/{robot}/stream");
     let (mut socket, _) = client(url, stream).map_err(|error| error.to_string())?;
@@ -105,7 +105,7 @@ fn listen(address: &str, robot: &str, tell: &SyncSender<Told>) -> Result<(), Str
         match socket.read().map_err(|error| error.to_string())? {
             tungstenite::Message::Text(text) => {
                 let message = serde_json::from_str(&text).map_err(|error| error.to_string())?;
-                if tell.send(Ok(message)).is_err() {
+                if updates.send(Ok(message)).is_err() {
                     return Ok(());
                 }
             }

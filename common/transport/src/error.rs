@@ -94,7 +94,7 @@ pub enum TransportError {
         reason: String,
     },
     /// As many publishers as the topic allows are there already.
-    #[error("topic {topic} has {limit} publishers already, which is the most that it allows")]
+    #[error("topic {topic} has {limit} publishers already, which is the maximum")]
     TooManyPublishers {
         /// The topic.
         topic: &'static str,
@@ -102,7 +102,7 @@ pub enum TransportError {
         limit: usize,
     },
     /// As many subscribers as the topic allows are there already.
-    #[error("topic {topic} has {limit} subscribers already, which is the most that it allows")]
+    #[error("topic {topic} has {limit} subscribers already, which is the maximum")]
     TooManySubscribers {
         /// The topic.
         topic: &'static str,
@@ -135,7 +135,7 @@ pub enum TransportError {
         /// Where shared memory is mounted.
         path: PathBuf,
     },
-    /// A sample of so many items has no size that a machine could hold.
+    /// A sample of this many items has no size that a machine could hold.
     #[error("topic {topic} cannot carry a sample of {items} items of {item_bytes} bytes")]
     TooLarge {
         /// The topic.
@@ -213,7 +213,7 @@ pub enum TransportError {
         user: u32,
     },
     /// Files by which the processes of a graph find each other have been removed.
-    #[error("files of the running graph were removed from {}: nobody could join it any more", root.display())]
+    #[error("files of the running graph were removed from {}: no node can join it any more", root.display())]
     Vanished {
         /// The folder where the graph's processes meet.
         root: PathBuf,

@@ -18,7 +18,7 @@ use crate::{Graph, Input, TransportError};
 /// a day for nothing costs nothing.
 const LONGEST_SLEEP: Duration = Duration::from_secs(86_400);
 
-/// Whether an event loop goes on.
+/// Whether an event loop continues.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Flow {
     /// Wait for the next input or tick.

@@ -1,4 +1,4 @@
-//! Losses, told from the counters of the samples that did arrive.
+//! Losses, computed from the counters of the received samples.
 //!
 //! What is lost after the last sample shows only when another one comes.
 
@@ -18,8 +18,8 @@ impl GapCounter {
 
     /// The number of samples lost just before the one with `counter`.
     ///
-    /// The first sample tells nothing, for one may join late; a counter at or
-    /// below the last one belongs to a publisher that has started anew.
+    /// The first sample shows nothing, for one may join late; a counter at or
+    /// below the last one belongs to a publisher that has started again.
     pub fn lost_before(&mut self, counter: u64) -> u64 {
         let lost = self.next.map_or(0, |next| counter.saturating_sub(next));
         self.next = Some(counter.saturating_add(1));

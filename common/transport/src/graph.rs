@@ -198,7 +198,7 @@ impl Graph {
 
     /// Sends what was logged since the last call, if the process logs through
     /// [`crate::node::start_logging`]. [`Graph::run`] does so after each step. Lines
-    /// that cannot be sent are counted, and told of when others can.
+    /// that cannot be sent are counted, and reported when others can.
     pub fn send_log(&self) {
         if let Some(log) = &self.log {
             log.borrow_mut().send_waiting();

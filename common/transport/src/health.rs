@@ -1,6 +1,6 @@
 //! A node's report on itself.
 //!
-//! It says what it is told; what makes a node ready or degraded, the node knows.
+//! It reports what the node sets; what makes a node ready or degraded, the node knows.
 
 use std::cell::RefCell;
 use std::rc::Rc;
@@ -24,7 +24,7 @@ pub struct Health {
     /// Samples that found no room.
     losses: Losses,
     /// How many of them the last report counted.
-    losses_told: u64,
+    losses_reported: u64,
     /// The node's, for nodes that have a loop of their own.
     log: Option<Rc<RefCell<LogSender>>>,
 }
@@ -46,7 +46,7 @@ impl Health {
             },
             last_error: String::new(),
             losses,
-            losses_told: 0,
+            losses_reported: 0,
             log,
         };
         health.send()?;
@@ -97,7 +97,7 @@ impl Health {
         self.send()
     }
 
-    /// Forgets the last error, where it turned out to be none; told with the next
+    /// Forgets the last error, where it turned out to be none; reported with the next
     /// report.
     pub fn forget_error(&mut self) {
         self.last_error.clear();
@@ -131,7 +131,7 @@ impl Health {
         let losses = self.losses.count();
         let mut report = self.report;
         report.dropped += losses;
-        if losses > self.losses_told {
+        if losses > self.losses_reported {
             self.last_error = self.losses.reason();
             let end = self
                 .last_error
@@ -146,7 +146,7 @@ impl Health {
         *loan.header_mut() = report;
         loan.items_mut().copy_from_slice(self.last_error.as_bytes());
         loan.send()?;
-        self.losses_told = losses;
+        self.losses_reported = losses;
         Ok(())
     }
 }
@@ -155,7 +155,7 @@ impl Drop for Health {
     fn drop(&mut self) {
         if let Err(error) = self.state(NodeState::Stopped) {
             let problem = with_causes(&error);
-            tracing::warn!("the last health report was not sent: {problem}");
+            tracing::warn!("cannot send the last health report: {problem}");
         }
     }
 }

@@ -63,7 +63,7 @@ pub fn remove_dead_graphs() {
             paths.iter().filter_map(graph).collect::<Vec<_>>()
         }
         Err(error) => {
-            tracing::warn!("leftovers are not looked for: {}", with_causes(&error));
+            tracing::warn!("cannot search for stale files: {}", with_causes(&error));
             return;
         }
     };
@@ -72,10 +72,10 @@ pub fn remove_dead_graphs() {
             Ok(()) => {
                 // Its launcher's claim goes when it is let go of, unless it has a new one.
                 drop(Claim::take(&name));
-                tracing::info!("removed what graph {name} has left: it was killed");
+                tracing::info!("removed stale files of graph {name}, which was killed");
             }
             Err(TransportError::StillRunning { .. }) => {}
-            Err(error) => tracing::warn!("leftovers stay: {}", with_causes(&error)),
+            Err(error) => tracing::warn!("stale files remain: {}", with_causes(&error)),
         }
     }
 }
@@ -138,7 +138,7 @@ fn refuse_living(
 fn describe(details: Option<&NodeDetails>) -> String {
     match details {
         Some(node) => format!("{} (process {})", node.name(), node.process_id().value()),
-        None => "a node that does not say its name".into(),
+        None => "a node without a name".into(),
     }
 }
 

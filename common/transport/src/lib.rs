@@ -58,7 +58,7 @@
 //!   read there, in the same file at the same offset. A sample never changes
 //!   while somebody holds it, even if its publisher is killed.
 //! - **Nobody waits for a slow subscriber.** It loses its oldest samples beyond
-//!   [`messages::Topic::DEPTH`]; [`GapCounter`] tells how many.
+//!   [`messages::Topic::DEPTH`]; [`GapCounter`] counts them.
 //! - **No sample stays unseen for longer than a tick.** Each send is followed by
 //!   a wake-up, and wake-ups are taken before samples are. Where one is missing
 //!   all the same (the publisher was killed in between), the next tick finds the
@@ -67,7 +67,7 @@
 //! - **Late joiners get the newest sample of a latched topic**, or the newest
 //!   [`messages::Topic::HISTORY`], within a tick of its publisher, which must be
 //!   in [`Graph::run`]; the topic has none any more when its publisher has gone.
-//! - **Graphs do not hear each other**, nor do users: the prefix of every file
+//! - **Graphs do not receive each other's messages**, nor do users: the prefix of every file
 //!   holds user and graph, and no prefix begins another one.
 //! - **The dead make way.** Whoever joins cleans up after members that were
 //!   killed, and so do members that leave and [`Graph::cleanup_dead_nodes`].

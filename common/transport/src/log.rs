@@ -1,5 +1,5 @@
 //! What iceoryx2 says, as events of `tracing` instead of lines on the console.
-//! A program that listens to none of them hears nothing.
+//! A program that listens to none of them receives nothing.
 
 use std::fmt::Arguments;
 
@@ -25,7 +25,7 @@ impl Log for ToTracing {
 /// Routes iceoryx2's messages to `tracing`, at the level that is enabled there.
 ///
 /// Messages are formatted before `tracing` can refuse them, so iceoryx2 itself
-/// is told to drop what nobody listens to.
+/// is set to drop what nobody listens to.
 pub(crate) fn route_to_tracing() {
     set_logger(&ToTracing);
     set_log_level(match LevelFilter::current() {

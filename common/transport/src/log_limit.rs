@@ -1,5 +1,5 @@
 //! Keeps one message from filling a log: a device that toggles its state thousands of
-//! times a second, say. A message is what is written, with its numbers: one that tells
+//! times a second, say. A message is what is written, with its numbers: one with
 //! something new each time is never left out.
 
 use std::collections::HashMap;
@@ -17,7 +17,7 @@ use crate::log_lines::text_of;
 /// Lines of one message within [`PERIOD`]; the next ones are left out and counted.
 const LINES: u32 = 20;
 const PERIOD: Duration = Duration::from_secs(10);
-/// Messages that are remembered at most. Where there are more, counting begins anew.
+/// Messages that are remembered at most. Where there are more, counting begins again.
 const MESSAGES: usize = 256;
 
 /// Leaves out what repeats too fast. Whoever asks for `debug` gets all of that.
@@ -36,7 +36,7 @@ struct Recent {
 #[derive(Debug, PartialEq, Eq)]
 enum Fate {
     Written,
-    /// So many like it were not.
+    /// This many like it were not.
     WrittenAfter(u32),
     LeftOut,
 }
@@ -78,7 +78,7 @@ impl<S: Subscriber> Layer<S> for Limit {
         match self.judge(hasher.finish(), Instant::now()) {
             Fate::Written => true,
             Fate::WrittenAfter(left_out) => {
-                tracing::warn!("{left_out} lines like the next one were left out");
+                tracing::warn!("{left_out} lines like the next one were omitted");
                 true
             }
             Fate::LeftOut => false,

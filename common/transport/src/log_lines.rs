@@ -20,7 +20,7 @@ use crate::{monotonic_ns, wall_ns};
 pub const CONSOLE_ONLY: &str = "console_only";
 
 /// Lines that wait at most, so that a subscriber has room for all of them and for
-/// the one that tells of losses.
+/// the one that reports losses.
 const CAPACITY: usize = topic::Log::DEPTH - 1;
 
 static WAITING: Mutex<Waiting> = Mutex::new(Waiting::none());

@@ -11,10 +11,10 @@ pub(crate) struct LogSender {
     node: Name,
     publisher: Publisher<topic::Log>,
     sent: u64,
-    /// Lines that found no room in shared memory.
+    /// Lines that found no space in shared memory.
     unsent: u64,
-    /// Losses that were told already, of the first kind and the second.
-    told: (u64, u64),
+    /// Losses that were reported already, of the first kind and the second.
+    reported: (u64, u64),
 }
 
 impl LogSender {
@@ -24,7 +24,7 @@ impl LogSender {
             publisher,
             sent: 0,
             unsent: 0,
-            told: (0, 0),
+            reported: (0, 0),
         }
     }
 
@@ -41,12 +41,12 @@ impl LogSender {
         let Some((line, dropped)) = last else {
             return;
         };
-        let (too_fast, no_room) = (dropped - self.told.0, self.unsent - self.told.1);
+        let (too_fast, no_room) = (dropped - self.reported.0, self.unsent - self.reported.1);
         let why = match (too_fast, no_room) {
             (0, 0) => return,
-            (_, 0) => "they came faster than they could be sent",
+            (_, 0) => "they arrived faster than they could be sent",
             (0, _) => "shared memory was full",
-            _ => "they came faster than they could be sent, and shared memory was full",
+            _ => "they arrived faster than they could be sent, and shared memory was full",
         };
         let line = Line {
             level: LogLevel::Warn,
@@ -54,7 +54,7 @@ impl LogSender {
             ..line
         };
         if self.send(&line, dropped).is_ok() {
-            self.told = (dropped, self.unsent);
+            self.reported = (dropped, self.unsent);
         }
     }
 

@@ -1,6 +1,6 @@
 //! Samples that were not sent because shared memory was full.
 //!
-//! A node goes on without them: whoever fills shared memory must not end a graph. They
+//! A node continues without them: whoever fills shared memory must not end a graph. They
 //! are counted for the node's health and said once, when they begin and when they end.
 
 use std::cell::{Cell, RefCell};

@@ -141,7 +141,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn a_file_tells_its_graph() {
+    fn a_file_shows_its_graph() {
         let robot = GraphName::new("robot-7").unwrap();
         let path = PathBuf::from(format!("/dev/shm/{}alive", prefix(1000, &robot)));
         assert_eq!(graph_of_file(&path, 1000, "alive"), Some(robot));

@@ -7,8 +7,11 @@ use std::env::VarError;
 use std::error::Error;
 use std::io::IsTerminal;
 use std::process::ExitCode;
+use std::time::{SystemTime, UNIX_EPOCH};
 
 use tracing_subscriber::filter::LevelFilter;
+use tracing_subscriber::fmt::format::Writer;
+use tracing_subscriber::fmt::time::FormatTime;
 use tracing_subscriber::layer::SubscriberExt;
 use tracing_subscriber::util::SubscriberInitExt;
 use tracing_subscriber::{EnvFilter, Layer};
@@ -16,7 +19,9 @@ use tracing_subscriber::{EnvFilter, Layer};
 use crate::log_limit::Limit;
 use crate::{Graph, log_lines, with_causes};
 
-/// The environment variable that picks the form of log lines: `text` or `json`.
+/// The environment variable that picks the form of log lines: `text`, `short` or `json`.
+/// Where it is unset, lines are `short` on a terminal, without date, microseconds and
+/// module path, else `text`.
 pub const LOG_FORMAT_VARIABLE: &str = "BACKCAST_LOG_FORMAT";
 
 /// The environment variable that ends a node as soon as it has taken its arguments, before
@@ -29,12 +34,12 @@ pub const CHECK_ARGUMENTS_VARIABLE: &str = "BACKCAST_CHECK_ARGUMENTS";
 /// Returns 0 if `run` did, 1 if it or joining failed, 2 if a logging variable
 /// holds something that is not allowed.
 pub fn main<E: Error + 'static>(name: &str, run: impl FnOnce(&Graph) -> Result<(), E>) -> ExitCode {
-    main_hearing(name, "", run)
+    main_with_log(name, "", run)
 }
 
 /// As [`main`], for a node that is to log more than `info` where nobody says what:
 /// `filter` is then what `RUST_LOG` would hold.
-pub fn main_hearing<E: Error + 'static>(
+pub fn main_with_log<E: Error + 'static>(
     name: &str,
     filter: &str,
     run: impl FnOnce(&Graph) -> Result<(), E>,
@@ -50,7 +55,7 @@ pub fn main_hearing<E: Error + 'static>(
         Ok(graph) => graph,
         Err(error) => return failed(&error),
     };
-    // The graph hears of an error before it is left.
+    // The graph receives the error before it is left.
     match run(&graph) {
         Ok(()) => ExitCode::SUCCESS,
         Err(error) => failed(&error),
@@ -80,15 +85,18 @@ fn start_logging_by(default: &str) -> Result<(), String> {
         .with_default_directive(LevelFilter::INFO.into())
         .parse(&filter)
         .map_err(|error| format!("{} is {filter:?}: {error}", EnvFilter::DEFAULT_ENV))?;
+    let is_terminal = std::io::stderr().is_terminal();
     let console = tracing_subscriber::fmt::layer()
-        .with_ansi(std::io::stderr().is_terminal())
+        .with_ansi(is_terminal)
         .with_writer(std::io::stderr);
-    let console = match variable(LOG_FORMAT_VARIABLE, "text")?.as_str() {
+    let default_format = if is_terminal { "short" } else { "text" };
+    let console = match variable(LOG_FORMAT_VARIABLE, default_format)?.as_str() {
         "text" => console.boxed(),
+        "short" => console.with_timer(TimeOfDay).with_target(false).boxed(),
         "json" => console.json().boxed(),
         other => {
             return Err(format!(
-                "{LOG_FORMAT_VARIABLE} is {other:?}: allowed are text and json"
+                "{LOG_FORMAT_VARIABLE} is {other:?}: allowed are text, short and json"
             ));
         }
     };
@@ -99,6 +107,18 @@ fn start_logging_by(default: &str) -> Result<(), String> {
         .with(log_lines::keep())
         .try_init()
         .map_err(|error| format!("cannot start logging: {error}"))
+}
+
+/// Hours, minutes and seconds, UTC.
+struct TimeOfDay;
+
+impl FormatTime for TimeOfDay {
+    fn format_time(&self, w: &mut Writer<'_>) -> std::fmt::Result {
+        let since_1970 = SystemTime::now().duration_since(UNIX_EPOCH);
+        let second = since_1970.unwrap_or_default().as_secs() % 86_400;
+        let (hour, minute) = (second / 3600, second / 60 % 60);
+        write!(w, "{hour:02}:{minute:02}:{:02}Z", second % 60)
+    }
 }
 
 fn variable(name: &str, default: &str) -> Result<String, String> {

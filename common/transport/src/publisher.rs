@@ -125,7 +125,7 @@ impl<T: Topic> Publisher<T> {
     ///
     /// A publisher that ends takes along what it has sent since a subscriber
     /// last looked, so a source that ends by itself waits for this before, though
-    /// not for ever: where a subscriber lets go of samples in another order than
+    /// not for ever: where a subscriber drops samples in another order than
     /// they came, this may stay false. A latched topic keeps its newest sample
     /// and has no such moment.
     ///

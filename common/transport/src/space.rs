@@ -14,7 +14,7 @@ use crate::membership::SHARED_MEMORY;
 /// meanwhile: a connection to a new subscriber, the frame of a segment.
 pub(crate) const RESERVE: u64 = 1 << 20;
 
-/// Says whether `needed` bytes and the reserve fit into what is free.
+/// Returns whether `needed` bytes and the reserve fit into what is free.
 pub(crate) fn ensure_free(topic: &'static str, needed: u64) -> Result<(), TransportError> {
     decide(topic, needed, free_bytes(Path::new(SHARED_MEMORY))?)
 }

@@ -171,7 +171,7 @@ fn health_is_sent_at_once_when_it_changes_and_when_the_node_ends() {
 }
 
 #[test]
-fn the_event_loop_ends_as_it_is_told() {
+fn the_event_loop_ends_when_asked() {
     let isolated = Isolated::new("loop");
     let graph = isolated.join("tester");
     let tick = Duration::from_millis(1);

@@ -11,7 +11,7 @@ use transport::{Flow, TransportError};
 const FLOOD: usize = 100;
 
 #[test]
-fn lines_arrive_with_their_level_and_losses_are_told() {
+fn lines_arrive_with_their_level_and_losses_are_reported() {
     let isolated = Isolated::new("log");
     transport::node::start_logging().unwrap();
     let graph = isolated.join("talker");
@@ -21,43 +21,45 @@ fn lines_arrive_with_their_level_and_losses_are_told() {
     other.join().unwrap();
     transport::log_in_graph(LogLevel::Error, "printed already");
 
-    let mut heard: Vec<(LogHeader, String)> = Vec::new();
+    let mut received: Vec<(LogHeader, String)> = Vec::new();
     let mut flooded = false;
     let outcome = graph.run(&[&lines], Duration::from_millis(10), |_| {
         while let Some(line) = lines.receive()? {
             let text = String::from_utf8(line.items().to_vec()).unwrap();
-            heard.push((*line.header(), text));
+            received.push((*line.header(), text));
         }
-        if heard.len() >= 3 && !flooded {
+        if received.len() >= 3 && !flooded {
             (0..FLOOD).for_each(|number| tracing::info!("line {number}"));
             flooded = true;
         }
-        let told = heard.last().is_some_and(|(_, text)| text.contains("lost"));
-        Ok::<_, TransportError>(if told { Flow::Stop } else { Flow::Continue })
+        let reported = received
+            .last()
+            .is_some_and(|(_, text)| text.contains("lost"));
+        Ok::<_, TransportError>(if reported { Flow::Stop } else { Flow::Continue })
     });
     outcome.unwrap();
 
-    let (first, text) = &heard[0];
+    let (first, text) = &received[0];
     assert_eq!(text, "no map for it scan=7");
     assert_eq!(LogLevel::from_code(first.level), Some(LogLevel::Warn));
     assert_eq!((first.node.as_str(), first.counter), ("talker", 0));
     assert_eq!(first.pid, std::process::id());
     assert!(first.written_ns > 0 && first.wall_ns > 0);
     // Cut between characters of two bytes.
-    assert_eq!(heard[1].1, "ä".repeat(LogHeader::TEXT_CAPACITY / 2));
-    assert!(heard[0].0.written_ns <= heard[1].0.written_ns);
-    let (printed, text) = &heard[2];
+    assert_eq!(received[1].1, "ä".repeat(LogHeader::TEXT_CAPACITY / 2));
+    assert!(received[0].0.written_ns <= received[1].0.written_ns);
+    let (printed, text) = &received[2];
     assert_eq!(
         (printed.level, &text[..]),
         (LogLevel::Error as u32, "printed already")
     );
-    let (last, text) = heard.last().unwrap();
+    let (last, text) = received.last().unwrap();
     assert_eq!(last.dropped, 37);
-    let arrived = heard.iter().filter(|(_, text)| text.starts_with("line"));
+    let arrived = received.iter().filter(|(_, text)| text.starts_with("line"));
     assert_eq!(arrived.count(), 63);
     assert_eq!(
         text,
-        "37 log lines were lost: they came faster than they could be sent"
+        "37 log lines were lost: they arrived faster than they could be sent"
     );
 
     // Who comes late gets the newest lines, within a tick.

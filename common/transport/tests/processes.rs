@@ -96,7 +96,7 @@ fn a_subscriber_that_came_first_is_woken_by_the_first_publisher() {
     let isolated = Isolated::new("early");
     let mut subscriber = Member::start(isolated.name(), "subscriber");
     assert_eq!(subscriber.ask("subscribe"), "subscribed");
-    subscriber.tell("receive");
+    subscriber.command("receive");
     let mut publisher = Member::start(isolated.name(), "publisher");
     let place = publisher.ask("publish 9 10");
     assert_eq!(subscriber.answer(), format!("9 {place}"));

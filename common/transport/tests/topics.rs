@@ -80,13 +80,13 @@ round_trips! {
     beams_arrive: topic::Beams,
     ground_truth_arrives: topic::GroundTruthTopic,
     regions_arrive: topic::Region,
-    wishes_to_save_arrive: topic::Save,
+    requests_to_save_arrive: topic::Save,
     health_arrives: topic::Health,
     log_arrives: topic::Log,
 }
 
 #[test]
-fn graphs_side_by_side_do_not_hear_each_other() {
+fn graphs_side_by_side_do_not_receive_each_other() {
     let (here, there) = (Isolated::new("here"), Isolated::new("there"));
     let one = here.join("one");
     let other = there.join("other");

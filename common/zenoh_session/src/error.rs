@@ -1,4 +1,4 @@
-//! Why there is no session.
+//! Errors of opening a session.
 
 use std::path::PathBuf;
 
@@ -41,8 +41,8 @@ pub enum NetworkError {
         /// What Zenoh says.
         source: Cause,
     },
-    /// The file is none that Zenoh's configuration is read from.
-    #[error("{} is no configuration: allowed are files in JSON5 that end in .json5 or .json", file.display())]
+    /// The file is invalid that Zenoh's configuration is read from.
+    #[error("{} is not a configuration file: allowed are files in JSON5 that end in .json5 or .json", file.display())]
     Format {
         /// The file.
         file: PathBuf,

@@ -1,4 +1,4 @@
-//! What a user can set of it.
+//! Command-line options.
 
 use std::path::PathBuf;
 
@@ -10,13 +10,13 @@ pub struct Options {
     #[arg(long, value_name = "FILE")]
     pub config: Option<PathBuf>,
 
-    /// Where to listen, as tcp/0.0.0.0:7447. May be given again [default:
-    /// tcp/127.0.0.1:7447, and nowhere with --connect]
+    /// Address to listen on, as tcp/0.0.0.0:7447. May be repeated [default:
+    /// tcp/127.0.0.1:7447, and none with --connect]
     #[arg(long, value_name = "ENDPOINT")]
     pub listen: Vec<String>,
 
-    /// Whom to connect to, as tcp/192.168.0.7:7447; tried until it is there. May
-    /// be given again
+    /// Address to connect to, as tcp/192.168.0.7:7447; retried until it is reachable.
+    /// May be repeated
     #[arg(long, value_name = "ENDPOINT")]
     pub connect: Vec<String>,
 }

@@ -1,4 +1,4 @@
-//! What came from the network, on its way to the thread that owns the graph.
+//! Messages from the network, on their way to the thread that owns the graph.
 //!
 //! Zenoh calls on threads of its own; they only put what came into a queue that
 //! never grows, and wake the event loop. A flood pushes out the oldest, which is
@@ -21,7 +21,7 @@ const ACTION: &str = "subscribe to";
 
 /// How much may wait.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub struct Room {
+pub struct QueueLimits {
     /// Messages.
     pub messages: usize,
     /// Bytes of one message.
@@ -30,11 +30,11 @@ pub struct Room {
     pub bytes: usize,
 }
 
-impl Room {
-    /// For so many messages, each as long as it may be.
+impl QueueLimits {
+    /// For this many messages, each as long as it may be.
     #[must_use]
     pub fn for_any(messages: usize, message_bytes: usize) -> Self {
-        Room {
+        QueueLimits {
             messages,
             message_bytes,
             bytes: messages.saturating_mul(message_bytes),
@@ -47,18 +47,18 @@ impl Room {
 pub enum Past {
     /// None.
     Gone,
-    /// So many of each sender, who keeps them by Zenoh's advanced publisher.
+    /// This many of each sender, who keeps them by Zenoh's advanced publisher.
     Last(usize),
 }
 
 /// What came and was not looked at yet. Receives as long as it lives.
 pub struct Queue {
     waiting: Arc<Waiting>,
-    _subscriber: Ear,
+    _subscriber: Subscription,
 }
 
 /// Listens until it is dropped.
-enum Ear {
+enum Subscription {
     /// To what comes. The advanced one would take a message for a repetition that has
     /// an earlier time than one before it by the same clock, and a router that gives
     /// the times has one for all who send through it.
@@ -69,10 +69,10 @@ enum Ear {
 
 struct Waiting {
     samples: ArrayQueue<Sample>,
-    room: Room,
+    limits: QueueLimits,
     /// Of all payloads that wait.
     bytes: AtomicUsize,
-    /// Pushed out by later ones, or without room.
+    /// Pushed out by later ones, or too large.
     dropped: AtomicU64,
     /// Longer than a message can be; and the size of the last such.
     too_long: AtomicU64,
@@ -91,12 +91,12 @@ impl Queue {
         session: &Session,
         key: &str,
         past: Past,
-        room: Room,
+        limits: QueueLimits,
         waker: Waker,
     ) -> Result<Self, KeyError> {
         let waiting = Arc::new(Waiting {
-            samples: ArrayQueue::new(room.messages),
-            room,
+            samples: ArrayQueue::new(limits.messages),
+            limits,
             bytes: AtomicUsize::new(0),
             dropped: AtomicU64::new(0),
             too_long: AtomicU64::new(0),
@@ -111,7 +111,7 @@ impl Queue {
             }
         });
         let _subscriber = match past {
-            Past::Gone => Ear::Live {
+            Past::Gone => Subscription::Live {
                 _subscriber: subscriber.wait().map_err(KeyError::when(ACTION, key))?,
             },
             Past::Last(messages) => {
@@ -119,7 +119,7 @@ impl Queue {
                 let subscriber = subscriber
                     .history(history.detect_late_publishers())
                     .recovery(RecoveryConfig::default().heartbeat());
-                Ear::Kept {
+                Subscription::Kept {
                     _subscriber: subscriber.wait().map_err(KeyError::when(ACTION, key))?,
                 }
             }
@@ -139,11 +139,11 @@ impl Queue {
     /// Most messages that can wait: who takes no more at once keeps nobody else
     /// waiting, however fast they come.
     #[must_use]
-    pub fn room(&self) -> Room {
-        self.waiting.room
+    pub fn limits(&self) -> QueueLimits {
+        self.waiting.limits
     }
 
-    /// How many were lost for want of room since the last call.
+    /// How many were lost since the last call because the queue was full.
     #[must_use]
     pub fn dropped(&self) -> u64 {
         self.waiting.dropped.swap(0, Ordering::Relaxed)
@@ -163,12 +163,12 @@ impl Queue {
 impl Waiting {
     fn put(&self, sample: Sample) {
         let bytes = sample.payload().len();
-        if bytes > self.room.message_bytes {
+        if bytes > self.limits.message_bytes {
             self.too_long_bytes.store(bytes, Ordering::Relaxed);
             self.too_long.fetch_add(1, Ordering::Relaxed);
             return;
         }
-        if self.bytes.load(Ordering::Relaxed).saturating_add(bytes) > self.room.bytes {
+        if self.bytes.load(Ordering::Relaxed).saturating_add(bytes) > self.limits.bytes {
             self.dropped.fetch_add(1, Ordering::Relaxed);
             return;
         }

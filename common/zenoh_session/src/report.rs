@@ -8,7 +8,7 @@ use std::error::Error;
 use messages::{HealthHeader, NodeState};
 use transport::{Health, TransportError, monotonic_ns, with_causes};
 
-/// Between two refusals that are put into words, nanoseconds.
+/// Between two refusals that are reported, nanoseconds.
 const QUIET_NS: i64 = 1_000_000_000;
 
 /// Counts, and says what is wrong.
@@ -16,7 +16,7 @@ const QUIET_NS: i64 = 1_000_000_000;
 pub struct Report {
     health: Health,
     said_ns: i64,
-    /// Refusals that were counted and not put into words.
+    /// Refusals that were counted and not reported.
     unsaid: u64,
 }
 
@@ -57,7 +57,7 @@ impl Report {
         self.health.count_sent(1);
     }
 
-    /// So many messages were lost.
+    /// This many messages were lost.
     pub fn dropped(&mut self, messages: u64) {
         self.health.count_dropped(messages);
     }
@@ -87,7 +87,7 @@ impl Report {
         // Strangers decide what stands in it, too.
         let mut problem = with_causes(error);
         problem.truncate(problem.floor_char_boundary(HealthHeader::ERROR_CAPACITY));
-        tracing::warn!(unsaid, "refused: {problem}");
+        tracing::warn!(unsaid, "rejected: {problem}");
         self.health.error(&problem)
     }
 }

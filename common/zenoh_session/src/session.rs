@@ -23,7 +23,7 @@ const SCOUTING: &str = "scouting/multicast/enabled";
 /// in, and who is not and why, of which Zenoh would be silent.
 pub const LOG: &str = "info,zenoh_transport::unicast::establishment::accept=debug";
 
-/// Where a node listens that nobody told: on this machine alone.
+/// Where a node listens by default: on this machine only.
 const LOOPBACK: &str = r#"["tcp/127.0.0.1:7447"]"#;
 
 /// What a file with Zenoh's configuration may end with.
@@ -31,7 +31,7 @@ const EXTENSIONS: [&str; 2] = ["json5", "json"];
 
 /// What holds where the user's file names nothing else.
 const DEFAULTS: [(&str, &str); 7] = [
-    // Those who connect to the same machine are to hear each other: peers hand
+    // Those who connect to the same machine are to reach each other: peers hand
     // nothing on.
     (MODE, "'router'"),
     // Nobody is called over the network that was not named.
@@ -43,7 +43,7 @@ const DEFAULTS: [(&str, &str); 7] = [
         "connect/retry",
         "{ period_init_ms: 500, period_max_ms: 1000, period_increase_factor: 2 }",
     ),
-    // A cable that was pulled is noticed after so many milliseconds. Zenoh waits for
+    // A cable that was pulled is noticed after this many milliseconds. Zenoh waits for
     // ten seconds; TCP alone would then try again as late as that.
     ("transport/link/tx/lease", "4000"),
     // The largest message that is put together, bytes: a map and its frame. Zenoh's
@@ -56,7 +56,7 @@ const DEFAULTS: [(&str, &str); 7] = [
 /// to end before.
 ///
 /// # Errors
-/// If the file or an option cannot be used, Zenoh cannot listen where it was told
+/// If the file or an option cannot be used, Zenoh cannot listen where configured
 /// to, or `tick` fails.
 pub fn open(
     graph: &Graph,
@@ -99,7 +99,7 @@ fn start(
     Ok(opening)
 }
 
-/// What [`open`] tells Zenoh.
+/// What [`open`] passes to Zenoh.
 ///
 /// # Errors
 /// If the file or an option cannot be used.
@@ -191,7 +191,7 @@ mod tests {
     const ROUTER: &str = r#""router""#;
 
     #[test]
-    fn nothing_listens_beyond_this_machine_unless_told() {
+    fn nothing_listens_beyond_this_machine_by_default() {
         let here = r#"["tcp/127.0.0.1:7447"]"#;
         check(NONE, None, [ROUTER, here, "[]", "false"]);
         let peer = Some("{ mode: 'peer' }");

@@ -165,7 +165,7 @@ fn exact_header(votes: &VotesHeader, grid: &Grid) -> FieldHeader {
     }
 }
 
-/// The heading is none: the bounds hold for all.
+/// The heading is invalid: the bounds hold for all.
 fn bounds_header(votes: &VotesHeader, blocks: &BlockBounds) -> FieldHeader {
     FieldHeader {
         stamp: votes.stamp,

@@ -40,7 +40,7 @@ fn words_of(panic: &(dyn Any + Send)) -> String {
     let formatted = || panic.downcast_ref::<String>().cloned();
     literal
         .or_else(formatted)
-        .unwrap_or_else(|| "it panicked without words".into())
+        .unwrap_or_else(|| "it panicked without a message".into())
 }
 
 #[cfg(test)]
@@ -60,13 +60,13 @@ mod tests {
     }
 
     #[test]
-    fn work_that_panics_is_told_and_not_waited_for() {
+    fn work_that_panics_is_reported_and_not_waited_for() {
         let dies = |work: fn()| Background::start("test", work).unwrap().finish();
         assert_eq!(dies(|| panic!("no memory")), Err("no memory".into()));
         assert_eq!(dies(|| panic!("{} left", 0)), Err("0 left".into()));
         assert_eq!(
             dies(|| panic_any(7)),
-            Err("it panicked without words".into())
+            Err("it panicked without a message".into())
         );
     }
 }

@@ -1,4 +1,4 @@
-//! What a user can set.
+//! Command-line options.
 
 use clap::{CommandFactory, Parser, error::ErrorKind};
 use engine::directions::Directions;
@@ -36,7 +36,7 @@ pub struct Config {
     #[command(flatten)]
     pub join: JoinConfig,
 
-    /// What scans are read as.
+    /// How scans of sonars are read.
     #[command(flatten)]
     pub sonar: SonarConfig,
 
@@ -44,9 +44,9 @@ pub struct Config {
     #[arg(long, value_enum, default_value_t = Searched::All)]
     pub search: Searched,
 
-    /// Most images on `field` a second, 0.1..=100. They are sent while somebody
-    /// subscribes: the intensities of all cells where the heading is known, else
-    /// the most that any pose in a block of cells could have.
+    /// Maximum number of images per second on `field`, 0.1..=100. They are sent while
+    /// somebody subscribes: the intensities of all cells if the heading is known, else
+    /// the upper bound for each block of cells.
     #[arg(long, value_name = "HERTZ", default_value_t = 2.0, value_parser = field_rate)]
     pub field_rate: f64,
 }
@@ -54,7 +54,7 @@ pub struct Config {
 /// Which scans are searched.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, clap::ValueEnum)]
 pub enum Searched {
-    /// Each as it comes.
+    /// Every scan.
     All,
     /// Those that `attention` asks for, of the last 64.
     Asked,

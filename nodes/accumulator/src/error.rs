@@ -1,4 +1,4 @@
-//! What keeps a scan from being answered, a map from being used, and the node
+//! Errors that reject a scan or a map, and the node
 //! from running.
 
 use engine::EngineError;
@@ -43,7 +43,7 @@ pub enum AccumulatorError {
         found: usize,
     },
     /// A cell of the boundary is none of the map's obstacles.
-    #[error("cell {}, {} of the boundary is no occupied cell of the map", cell.x, cell.y)]
+    #[error("cell {}, {} of the boundary is not an occupied cell of the map", cell.x, cell.y)]
     BoundaryCell {
         /// As the boundary has it.
         cell: BoundaryCell,

@@ -112,7 +112,7 @@ mod tests {
         };
         assert_eq!(found.header.stamp, stamp(3));
         assert_eq!(found.kept, Kept::of(&found.kept.seen()));
-        // Nobody can tell yet whether it is still to come.
+        // It is not known yet whether it is still to come.
         scans.request(stamp(3));
         assert!(scans.next().is_none());
         (4..=3 + KEPT as u64).for_each(|counter| keep(&mut scans, counter));

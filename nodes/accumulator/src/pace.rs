@@ -1,4 +1,4 @@
-//! How often something may happen; told the time, and knowing no clock.
+//! How often something may happen. Pure: the time is an argument.
 
 /// Lets through at most one event a period.
 #[derive(Debug, Clone, Copy)]

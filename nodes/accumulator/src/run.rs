@@ -114,7 +114,7 @@ impl Node {
             self.map = prepared.or(self.map.take());
             self.health.tick()?;
             while self.pending.is_none() && self.take_scan(inputs)? {}
-            // What was sent before the scan has come by now.
+            // What was sent before the scan has arrived by now.
             inputs.take_poses(&mut self.joiner, &mut self.history, &mut self.health)?;
             let Some((scan, since)) = self.pending.take() else {
                 if self.answer_asked(inputs)? {
@@ -222,11 +222,11 @@ impl Node {
         if let Some(sonar) = &mut self.sonar
             && let Seen::Still(ranges) = self.joiner.seen()
         {
-            sonar.hear(scan, &ranges, &self.history)?;
+            sonar.receive(scan, &ranges, &self.history)?;
         }
         let notes = brought.notes(self.joiner.flows()).join("; ");
         self.note(&notes)?;
-        Ok(match self.joiner.seeks_base() {
+        Ok(match self.joiner.targets_base() {
             true => brought.lasers,
             false => 0,
         })
@@ -252,7 +252,7 @@ impl Node {
     ) -> Result<Option<Answer<'w>>, AccumulatorError> {
         let map = self.map.as_ref().ok_or(AccumulatorError::NoMap)?;
         let heading = self.source.heading_of(scan, &self.history)?;
-        let heading = heading.map(|heading| self.joiner.sought_heading(heading));
+        let heading = heading.map(|heading| self.joiner.target_heading(heading));
         let seen = self.seen();
         let observation = seen.observation();
         let start = Instant::now();
@@ -328,10 +328,10 @@ impl Node {
         self.health.count_refused(1);
         let (counter, reason) = (scan.stamp.counter, with_causes(error));
         self.health
-            .error(&format!("scan {counter} is refused: {reason}"))?;
+            .error(&format!("scan {counter} rejected: {reason}"))?;
         // A source that is always wrong would fill the log.
         if reason != self.last_refusal {
-            tracing::warn!("scan {counter} is refused: {reason}");
+            tracing::warn!("scan {counter} rejected: {reason}");
             self.last_refusal = reason;
         }
         Ok(())

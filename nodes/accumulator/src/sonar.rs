@@ -32,9 +32,9 @@ impl Sonar {
     /// Takes in a scan.
     ///
     /// # Errors
-    /// If no odometry tells where it was taken, or the engine refuses it; it is left
+    /// If no odometry covers it, or the engine refuses it; it is left
     /// out then.
-    pub fn hear(
+    pub fn receive(
         &mut self,
         header: &ScanHeader,
         scan: &Scan<'_>,
@@ -47,7 +47,7 @@ impl Sonar {
         Ok(())
     }
 
-    /// What the scan that was heard last is read as.
+    /// What the newest scan is read as.
     #[must_use]
     pub fn scan(&self) -> Scan<'_> {
         regions::scan_of(&self.ranges)

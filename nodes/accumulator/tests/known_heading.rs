@@ -120,7 +120,7 @@ fn headings_come_from_odometry_of_the_base() {
     assert_eq!(votes.outcome, SearchOutcome::Refused as u32);
     let (_, error) = wait_for_health(&world.graph, &world.health, |report| report.refused == 1);
     assert!(
-        error.contains("scan 0 is refused: the scan needs odometry"),
+        error.contains("scan 0 rejected: the scan needs odometry"),
         "{error}"
     );
 

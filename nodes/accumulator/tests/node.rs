@@ -163,7 +163,7 @@ fn bad_scans_are_refused_and_counted_and_the_next_good_one_is_answered() {
     assert!(is_refused(&votes) && poses.is_empty());
     assert_eq!(votes.map_id, 0);
     let (_, error) = wait_for_health(&world.graph, &world.health, |report| report.refused == 1);
-    assert_eq!(error, "scan 0 is refused: there is no map yet");
+    assert_eq!(error, "scan 0 rejected: there is no map yet");
 
     world.publish_map(&ROOM);
     world.publish_boundary(id(&ROOM), &ROOM);
@@ -180,7 +180,7 @@ fn bad_scans_are_refused_and_counted_and_the_next_good_one_is_answered() {
     }
     let (_, error) = wait_for_health(&world.graph, &world.health, |report| report.refused == 5);
     assert!(
-        error.starts_with("scan 4 is refused: the laser sits at x inf m"),
+        error.starts_with("scan 4 rejected: the laser sits at x inf m"),
         "{error}"
     );
 
@@ -276,7 +276,7 @@ fn a_map_that_is_refused_leaves_the_one_before_in_use() {
     let degraded = |report: &HealthHeader| report.refused == 2;
     let (_, error) = wait_for_health(&world.graph, &world.health, degraded);
     let expected = format!(
-        "map {:016x} is refused: cell 999, 0 of the boundary is no occupied cell of the map",
+        "map {:016x} rejected: cell 999, 0 of the boundary is not an occupied cell of the map",
         id(&CHANGED)
     );
     assert_eq!(error, expected);
@@ -309,8 +309,8 @@ fn a_map_that_is_taken_back_is_in_use_again() {
     node.stop();
 }
 
-/// Corners of a box of the grid, in cells, as somebody wishes for them.
-fn wish(regions: &Publisher<topic::Region>, corners: &[(f64, f64)]) {
+/// Corners of a box of the grid, in cells, as somebody requests for them.
+fn request(regions: &Publisher<topic::Region>, corners: &[(f64, f64)]) {
     let corner = |&(x, y): &(f64, f64)| {
         let side = FRAME.resolution_m;
         let (x, y) = FRAME.map_from_grid.transform(x * side, y * side);
@@ -324,7 +324,7 @@ fn wish(regions: &Publisher<topic::Region>, corners: &[(f64, f64)]) {
 }
 
 #[test]
-fn a_region_that_somebody_wishes_for_holds_until_it_is_taken_back() {
+fn a_requested_region_holds_until_it_is_taken_back() {
     let isolated = Isolated::new("region");
     let world = World::new(&isolated);
     let regions = world.graph.publisher::<topic::Region>().unwrap();
@@ -335,18 +335,18 @@ fn a_region_that_somebody_wishes_for_holds_until_it_is_taken_back() {
     let ranges = ranges(&ROOM, 12, 6, 211);
     let found = || world.ask(&ranges).1[0].x;
     assert_eq!(found(), 12);
-    // Scans are answered by the map as it was until it is prepared anew.
-    wish(&regions, &[(0.0, 0.0), (6.0, 0.0), (6.0, 9.0), (0.0, 9.0)]);
+    // Scans are answered by the map as it was until it is prepared again.
+    request(&regions, &[(0.0, 0.0), (6.0, 0.0), (6.0, 9.0), (0.0, 9.0)]);
     while found() >= 6 {}
     // What is no region changes nothing.
-    wish(&regions, &[(0.0, 0.0), (f64::NAN, 1.0)]);
+    request(&regions, &[(0.0, 0.0), (f64::NAN, 1.0)]);
     let (_, error) = wait_for_health(&world.graph, &world.health, |report| report.refused == 1);
     assert!(
-        error.contains("a region is refused: a corner at NaN"),
+        error.contains("search region rejected: a corner at NaN"),
         "{error}"
     );
     assert!(found() < 6);
-    wish(&regions, &[]);
+    request(&regions, &[]);
     while found() != 12 {}
     node.stop();
 }

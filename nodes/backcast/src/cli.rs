@@ -31,22 +31,22 @@ enum Command {
     /// Builds and starts the graph, and prints a pose for each scan
     #[command(after_help = EXIT_CODES)]
     Run(Box<run::Config>),
-    /// Says what is wrong with a graph's descriptor, or draws the graph
+    /// Checks a graph's descriptor, or draws the graph
     #[command(after_help = "Exit codes: 0 sound, 1 something is wrong, 2 wrong use")]
     Check(check::Config),
     #[cfg(feature = "tools")]
     #[command(flatten)]
     OnRecordings(Box<OnRecordings>),
-    /// Lists the graphs that run, with the state of their nodes
+    /// Lists the running graphs, with the state of their nodes
     #[command(after_help = EXIT_CODES)]
     Status(control::StatusConfig),
-    /// Stops a running graph in order
+    /// Stops a running graph
     #[command(after_help = EXIT_CODES)]
     Stop(control::StopConfig),
-    /// Ends one node of a running graph in order and starts it again
+    /// Restarts one node of a running graph
     #[command(after_help = EXIT_CODES)]
     Restart(control::RestartConfig),
-    /// Shows what the nodes of a running graph log
+    /// Shows the log of a running graph
     #[command(after_help = EXIT_CODES)]
     Logs(control::LogsConfig),
     #[cfg(feature = "tools")]
@@ -164,7 +164,7 @@ mod tests {
     }
 
     #[test]
-    fn causes_are_told_once() {
+    fn causes_are_reported_once() {
         let output = LauncherError::from(OutputError(io::Error::other("the disk is full")));
         assert_eq!(
             transport::with_causes(&output),

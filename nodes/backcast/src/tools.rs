@@ -16,22 +16,22 @@ pub(crate) enum OnRecordings {
     /// Finds the place of each scan of a recording, in one process
     #[command(after_help = EXIT_CODES)]
     Locate(locate::Config),
-    /// Judges the places that are found against the truth in recordings
+    /// Compares the places found with the true poses in recordings
     #[command(after_help = evaluate::NOTES)]
     Evaluate(Box<evaluate::Config>),
     /// Draws a map, a scan at its places, votes or errors, as PNG or SVG
     #[command(after_help = plots::NOTES)]
     Plot(plots::Config),
-    /// Lists what a recording holds
+    /// Lists the contents of a recording
     #[command(after_help = EXIT_CODES)]
     Info(info::Config),
-    /// Says what is wrong with a recording
+    /// Checks a recording for problems
     #[command(after_help = doctor::NOTES)]
     Doctor(doctor::Config),
     /// Converts laser logs of CARMEN and bags in SQLite to recordings, and back to logs
     #[command(after_help = convert::NOTES)]
     Convert(convert::Config),
-    /// Replays recordings through the graph and compares with what is expected
+    /// Replays recordings through the graph and compares the poses with expected ones
     #[command(after_help = regression::NOTES)]
     Regress(regression::Config),
 }
@@ -39,7 +39,7 @@ pub(crate) enum OnRecordings {
 /// What is done beside a graph, with a laser or on generated worlds.
 #[derive(Debug, Subcommand)]
 pub(crate) enum OnTheSide {
-    /// Runs a graph for long, does it harm, and says whether it kept its promises
+    /// Runs a graph for a long time under faults and checks that it recovers
     #[command(after_help = soak::NOTES)]
     Soak(soak::Config),
     /// Shows a running graph in the terminal
@@ -48,7 +48,7 @@ pub(crate) enum OnTheSide {
     /// Writes the descriptor of a graph for a laser, a ROS 2 robot or a recording
     #[command(after_help = init::NOTES)]
     Init(init::Config),
-    /// Says which laser is there, how it is set and what it sees
+    /// Shows which laser is connected, its settings and what it sees
     #[command(after_help = probe::NOTES)]
     Probe(probe::Config),
     /// Measures the methods of global localization on generated worlds
@@ -103,7 +103,7 @@ mod tests {
     use recording::RecordingError;
 
     #[test]
-    fn causes_are_told_once() {
+    fn causes_are_reported_once() {
         let recording = EvaluationError::from(RecordingError::Open {
             path: "r.mcap".into(),
             source: io::Error::other("gone"),

@@ -1,5 +1,5 @@
 //! Recordings as others make them: in folders, with maps that grow, with several
-//! topics of a kind, with transforms that are none.
+//! topics of a kind, with transforms that are invalid.
 
 #![allow(
     clippy::unwrap_used,
@@ -18,7 +18,7 @@ use recording::Message;
 use ros::{LaserScan, OccupancyGridMsg};
 use serde_json::Value;
 
-/// The room as far as it is known: so many of its rows.
+/// The room as far as it is known: this many of its rows.
 fn known_rows(rows: usize) -> (&'static str, Message) {
     let mut room = room();
     let width = room.width as usize;
@@ -53,7 +53,7 @@ fn the_newest_map_before_a_scan_counts() {
     assert_eq!(found, ["NoScan", "Unique", "Unique"], "{stderr}");
     assert_eq!(code, 0);
     // The two maps without a cell are the same, and said once.
-    let note = "backcast: r.mcap: a map is left out: the map has no occupied cell: there is nothing \
+    let note = "backcast: r.mcap: a map is ignored: the map has no occupied cell: there is nothing \
                 that a laser could see\n";
     assert_eq!(stderr, note);
     let (_, stdout, _) = run(folder.path(), "locate r.mcap");
@@ -87,7 +87,7 @@ fn where_every_scan_is_refused_there_is_an_error() {
     let folder = folder(&[map_message(), still(1), truth_at(1, HERE), still(2)]);
     let said = |scans: u32| {
         format!(
-            "backcast: r.mcap: every scan was refused, {scans} in all; the first: angle_increment is 0"
+            "backcast: r.mcap: every scan was rejected, {scans} in all; the first: angle_increment is 0"
         )
     };
     let (code, found, stderr) = verdicts(folder.path(), "r.mcap");
@@ -163,7 +163,7 @@ fn the_topic_is_named_where_several_could_be_meant() {
 }
 
 #[test]
-fn a_map_and_a_recording_that_are_swapped_are_told() {
+fn a_map_and_a_recording_that_are_swapped_are_reported() {
     let folder = folder(&[map_message(), scan_at(1, HERE)]);
     map::save(&room(), folder.path().join("room.yaml")).unwrap();
     for bag in ["--bag room.yaml", "room.yaml"] {
@@ -240,7 +240,7 @@ fn a_transform_that_is_none_is_a_note_where_the_laser_does_not_need_it() {
         (topic, message)
     };
     let camera = folder(&[framed_map(), broken("camera"), scan_at(1, HERE)]);
-    let note = "the transform from base_link to camera is left out: the position (NaN, 0) is not \
+    let note = "the transform from base_link to camera is ignored: the position (NaN, 0) is not \
                 finite\n";
     let (code, found, stderr) = verdicts(camera.path(), "r.mcap");
     assert_eq!((code, found), (0, vec!["Unique".to_owned()]));

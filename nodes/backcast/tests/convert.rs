@@ -226,7 +226,7 @@ fn a_laser_upside_down_is_turned_about_unless_its_driver_did_so() {
 }
 
 #[test]
-fn parameters_tell_the_field_of_view_of_old_lines() {
+fn parameters_show_the_field_of_view_of_old_lines() {
     let corridor = Corridor::new();
     let narrow = |words: Vec<&str>| {
         // 201 of 361 beams, the middle ones.

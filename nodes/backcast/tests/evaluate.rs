@@ -104,7 +104,7 @@ fn the_object_has_the_keys_of_the_contract() {
     assert!(object["cpu_ms"]["median"].as_f64() <= object["cpu_ms"]["max"].as_f64());
     assert_eq!(
         stderr,
-        "backcast: r.mcap: scans refused: 1; the first: the scan is empty: it has no ranges\n"
+        "backcast: r.mcap: scans rejected: 1; the first: the scan is empty: it has no ranges\n"
     );
 }
 
@@ -206,7 +206,10 @@ fn a_file_that_misses_a_requirement_fails_with_the_figure() {
     let (code, stdout, stderr) = run(folder.path(), &format!("evaluate --json {missed} r.mcap"));
     assert_eq!(code, 1, "{stderr}");
     let object = &objects(&stdout)[0];
-    assert_eq!((&object["success_50cm_10deg"], &object["unique_wrong"]), (&0.5.into(), &1.into()));
+    assert_eq!(
+        (&object["success_50cm_10deg"], &object["unique_wrong"]),
+        (&0.5.into(), &1.into())
+    );
     for said in [
         "r.mcap: success is 50.0 %, --min-success 75",
         "r.mcap: Unique and wrong are 1, --max-wrong 0",
@@ -218,14 +221,18 @@ fn a_file_that_misses_a_requirement_fails_with_the_figure() {
     let reached = "--min-success 50 --max-wrong 1 --max-p90-ms 1e6 --max-error-cm 50";
     let (code, _, stderr) = run(folder.path(), &format!("evaluate {reached} r.mcap"));
     assert_eq!(code, 0, "{stderr}");
-    for wrong in ["--min-success 101", "--max-p90-ms 0", "--sequence --max-wrong 0"] {
+    for wrong in [
+        "--min-success 101",
+        "--max-p90-ms 0",
+        "--sequence --max-wrong 0",
+    ] {
         let (code, _, stderr) = run(folder.path(), &format!("evaluate {wrong} r.mcap"));
         assert_eq!(code, 2, "{stderr}");
     }
 }
 
 #[test]
-fn wrong_use_is_told() {
+fn wrong_use_is_reported() {
     let folder = tempfile::tempdir().unwrap();
     for (options, expected) in [
         ("", "<FILE>..."),

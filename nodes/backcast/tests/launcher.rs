@@ -83,12 +83,12 @@ impl Running {
     }
 
     /// Waits for `node` to say something and returns it.
-    fn hear(&mut self, node: &str) -> String {
+    fn receive(&mut self, node: &str) -> String {
         let mark = format!("{node} | ");
         let all = self.said.by_ref().map(Result::unwrap);
-        let mut heard =
+        let mut received =
             all.filter_map(|line| line.trim_start().strip_prefix(&mark).map(ToOwned::to_owned));
-        heard
+        received
             .next()
             .unwrap_or_else(|| panic!("{node} said nothing more"))
     }
@@ -153,9 +153,9 @@ fn nodes_find_their_folder_graph_and_environment() {
         "id: a, env: {TAG: 7}, args: \"-c 'echo $0 $TAG $BACKCAST_GRAPH; pwd -P' 'two words'\"",
     ]);
     let mut running = Running::start(&folder, &["run", "./dataflow.yaml", "--graph", "test-env"]);
-    assert_eq!(running.hear("a"), "two words 7 test-env");
+    assert_eq!(running.receive("a"), "two words 7 test-env");
     let expected = folder.path().canonicalize().unwrap();
-    assert_eq!(running.hear("a"), expected.to_str().unwrap());
+    assert_eq!(running.receive("a"), expected.to_str().unwrap());
     assert!(running.wait().0.success());
 }
 
@@ -194,8 +194,8 @@ fn a_node_that_only_shows_fails_for_good_and_the_rest_goes_on() {
     mkfifo(&pipe, Mode::S_IRWXU).unwrap();
     let mut running = Running::start(&folder, &["--graph", name]);
     let lost = loop {
-        let line = running.hear("backcast");
-        if line.contains("goes on without") {
+        let line = running.receive("backcast");
+        if line.contains("continues without") {
             break line;
         }
     };
@@ -204,7 +204,7 @@ fn a_node_that_only_shows_fails_for_good_and_the_rest_goes_on() {
         "{lost}"
     );
 
-    // Who asks later is told, too.
+    // Who asks later is stdout, too.
     let member = Graph::join_named("tester", &GraphName::new(name).unwrap()).unwrap();
     let health = member.subscriber::<topic::Health>().unwrap();
     wait_for_health(&member, &health, |report| {
@@ -225,7 +225,7 @@ fn a_name_that_is_alive_is_refused_and_goes_on() {
     let pipe = folder.path().join("pipe");
     mkfifo(&pipe, Mode::S_IRWXU).unwrap();
     let mut running = Running::start(&folder, &["--graph", name]);
-    assert_eq!(running.hear("source"), "up");
+    assert_eq!(running.receive("source"), "up");
     let (code, _, said) = run(&["id: a, args: -c true"], &["--graph", name]);
     assert_eq!(code, 1, "{said}");
     assert!(said.contains("graph test-alive still runs"), "{said}");
@@ -267,7 +267,7 @@ fn others_have_no_rights_on_the_files_of_a_graph() {
     let pipe = folder.path().join("pipe");
     mkfifo(&pipe, Mode::S_IRWXU).unwrap();
     let mut running = Running::start(&folder, &["--graph", name]);
-    assert_eq!(running.hear("source"), "up");
+    assert_eq!(running.receive("source"), "up");
     let files = shared_memory_of(name);
     assert!(files.len() > 3, "{files:?}");
     for file in files {
@@ -290,10 +290,10 @@ fn a_graph_whose_files_are_removed_is_started_again_as_a_whole() {
     let pipe = folder.path().join("pipe");
     mkfifo(&pipe, Mode::S_IRWXU).unwrap();
     let mut running = Running::start(&folder, &["--graph", name]);
-    assert_eq!(running.hear("source"), "up");
+    assert_eq!(running.receive("source"), "up");
     let root = format!("/tmp/backcast-{}", nix::unistd::geteuid());
     remove_files_of(Path::new(&root), &format!("_{name}."));
-    assert_eq!(running.hear("source"), "up", "a second time");
+    assert_eq!(running.receive("source"), "up", "a second time");
     let mut writer = OpenOptions::new().write(true).open(&pipe).unwrap();
     std::io::Write::write_all(&mut writer, b"\n").unwrap();
     let (status, said) = running.wait();
@@ -321,7 +321,7 @@ fn a_graph_is_asked_restarted_in_part_and_stopped_from_elsewhere() {
         "id: other, args: \"-c 'exec sleep 1000'\"",
     ]);
     let mut running = Running::start(&folder, &["--graph", name]);
-    assert_eq!(running.hear("source"), "up");
+    assert_eq!(running.receive("source"), "up");
     let ask = |args: &[&str]| {
         let args = [args, &["--graph", name]].concat();
         let output = launcher(folder.path(), &args).output().unwrap();
@@ -332,9 +332,9 @@ fn a_graph_is_asked_restarted_in_part_and_stopped_from_elsewhere() {
             text(output.stderr),
         )
     };
-    let (code, told, said) = ask(&["status", "--json"]);
+    let (code, stdout, said) = ask(&["status", "--json"]);
     assert_eq!(code, Some(0), "{said}");
-    let status: serde_json::Value = serde_json::from_str(&told).unwrap();
+    let status: serde_json::Value = serde_json::from_str(&stdout).unwrap();
     assert_eq!(
         (&status["graph"], &status["nodes"][0]["state"]),
         (&name.into(), &"running".into())
@@ -349,18 +349,18 @@ fn a_graph_is_asked_restarted_in_part_and_stopped_from_elsewhere() {
     );
     let (code, _, said) = ask(&["restart", "source"]);
     assert_eq!(code, Some(0), "{said}");
-    assert_eq!(running.hear("source"), "up", "a second time");
-    let (_, told, _) = ask(&["status", "--json"]);
-    let status: serde_json::Value = serde_json::from_str(&told).unwrap();
+    assert_eq!(running.receive("source"), "up", "a second time");
+    let (_, stdout, _) = ask(&["status", "--json"]);
+    let status: serde_json::Value = serde_json::from_str(&stdout).unwrap();
     assert_ne!(status["nodes"][0]["pid"], before);
     assert_eq!(status["nodes"][0]["restarts"], 1);
     assert!(ask(&["status"]).1.contains("source               running"));
 
-    let (code, told, said) = ask(&["logs", "backcast"]);
+    let (code, stdout, said) = ask(&["logs", "backcast"]);
     assert_eq!(code, Some(0), "{said}");
     assert!(
-        told.contains("source is restarted from another terminal"),
-        "{told}"
+        stdout.contains("source is restarted from another terminal"),
+        "{stdout}"
     );
 
     let (code, _, said) = ask(&["stop"]);
@@ -376,7 +376,7 @@ fn a_graph_is_asked_restarted_in_part_and_stopped_from_elsewhere() {
 }
 
 #[test]
-fn a_service_manager_is_told_that_the_graph_runs_and_stops() {
+fn a_service_manager_is_notified_that_the_graph_runs_and_stops() {
     let folder = graph(&["id: source, outputs: [scan], args: \"-c 'exec sleep 1000'\""]);
     let path = folder.path().join("notify");
     let socket = UnixDatagram::bind(&path).unwrap();
@@ -384,16 +384,16 @@ fn a_service_manager_is_told_that_the_graph_runs_and_stops() {
         .env("NOTIFY_SOCKET", &path)
         .spawn()
         .unwrap();
-    let hear = || {
+    let receive = || {
         let mut bytes = [0; 512];
         let length = socket.recv(&mut bytes).unwrap();
         String::from_utf8(bytes[..length].to_vec()).unwrap()
     };
     for _ in 0..2 {
-        assert_eq!(hear(), "READY=1\nWATCHDOG=1\n");
+        assert_eq!(receive(), "READY=1\nWATCHDOG=1\n");
     }
     kill(Pid::from_raw(child.id().cast_signed()), Signal::SIGTERM).unwrap();
-    let last = std::iter::repeat_with(hear).find(|heard| !heard.contains("WATCHDOG"));
+    let last = std::iter::repeat_with(receive).find(|received| !received.contains("WATCHDOG"));
     assert_eq!(last.unwrap(), "STOPPING=1\n");
     assert!(child.wait().unwrap().success());
 }
@@ -464,7 +464,7 @@ fn a_killed_launcher_leaves_no_orphans() {
     let mut running = Running::start(&folder, &["--graph", "test-kill"]);
     // Opening waits for the node to open its end; reading, for it to end.
     let mut reader = File::open(&pipe).unwrap();
-    assert_eq!(running.hear("a"), "up");
+    assert_eq!(running.receive("a"), "up");
     running.signal(Signal::SIGKILL);
     let mut rest = String::new();
     reader.read_to_string(&mut rest).unwrap();

@@ -53,7 +53,7 @@ fn a_row_for_each_scan_under_the_columns_of_run() {
 }
 
 #[test]
-fn poses_are_sought_within_limits() {
+fn poses_are_searched_within_limits() {
     let folder = folder(&[map_message(), scan_at(7, HERE)]);
     let here = map_from_laser(HERE);
     let (x, y, degrees) = (here.x, here.y, here.yaw.to_degrees());
@@ -112,7 +112,7 @@ fn limits_that_leave_no_pose_are_refused() {
 }
 
 #[test]
-fn an_object_tells_votes_and_hypotheses() {
+fn an_object_shows_votes_and_hypotheses() {
     let folder = folder(&[map_message(), mount_message(), scan_at(7, HERE)]);
     let object = &objects(folder.path(), "")[0];
     assert_eq!(

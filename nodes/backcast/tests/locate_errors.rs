@@ -70,10 +70,7 @@ fn a_refused_scan_has_a_line_with_the_reason() {
     assert_eq!(word(columns, 5), "NoScan");
     assert_eq!(reason, "  the scan is empty: it has no ranges");
     let (_, says) = rows[2].split_at(rows[0].len());
-    assert_eq!(
-        says,
-        "  no beam says anything about this map: is the laser covered?"
-    );
+    assert_eq!(says, "  no usable beams: is the laser covered?");
 }
 
 #[test]
@@ -164,7 +161,7 @@ fn a_recording_that_is_cut_short_gives_what_lies_before() {
     let (code, stdout, stderr) = run(folder.path(), "locate --json --bag r.mcap");
     assert_eq!((code, stdout.lines().count()), (1, 1), "{stderr}");
     assert!(stderr.contains("r.mcap: the file is cut short"), "{stderr}");
-    // Cut within the only chunk, it is damage that is told, not missing scans.
+    // Cut within the only chunk, it is damage that is reported, not missing scans.
     fs::write(&path, &bytes[..200]).unwrap();
     let (code, stdout, stderr) = run(folder.path(), "locate --json --bag r.mcap");
     assert_eq!((code, stdout.as_str()), (1, ""), "{stderr}");
@@ -172,7 +169,7 @@ fn a_recording_that_is_cut_short_gives_what_lies_before() {
 }
 
 #[test]
-fn wrong_use_is_told_before_anything_is_opened() {
+fn wrong_use_is_reported_before_anything_is_opened() {
     let folder = tempfile::tempdir().unwrap();
     for (options, expected) in [
         ("", "<FILE>..."),

@@ -18,7 +18,7 @@ use tempfile::TempDir;
 /// times is compared only where all its ratios are farther from their bounds than this
 /// factor, and figures may differ by as much and more.
 const CLEAR_MARGIN: f64 = 2.0;
-/// By so much figures of times may differ from those on the page.
+/// By this much figures of times may differ from those on the page.
 const TIMES_DIFFER: f64 = 10.0;
 /// Counts, shares and errors are seeded; another processor may round some poses
 /// otherwise.
@@ -142,8 +142,8 @@ fn differences(id: &str, page: &OnPage, row: &Row) -> Vec<String> {
 fn the_page_says_what_the_quick_run_measures() {
     let folder = TempDir::new().unwrap();
     let output = bench(&["--quick"], folder.path());
-    let told = String::from_utf8_lossy(&output.stderr).into_owned();
-    assert!(output.status.success(), "{told}");
+    let said = String::from_utf8_lossy(&output.stderr).into_owned();
+    assert!(output.status.success(), "{said}");
     let page = fs::read_to_string(root().join("docs/paper.md")).unwrap();
     let rows = on_page(&page);
     let claims = read_csv(&folder.path().join("claims.csv"));
@@ -243,14 +243,14 @@ fn a_page_that_disagrees_is_noticed() {
 }
 
 #[test]
-fn a_folder_that_cannot_be_written_is_told_before_anything_is_measured() {
+fn a_folder_that_cannot_be_written_is_reported_before_anything_is_measured() {
     let folder = TempDir::new().unwrap();
     let file = folder.path().join("file");
     fs::write(&file, "no folder").unwrap();
     let output = bench(&["--quick"], &file.join("out"));
-    let told = String::from_utf8_lossy(&output.stderr).into_owned();
-    assert_eq!(output.status.code(), Some(1), "{told}");
-    assert!(told.contains("cannot write into the folder"), "{told}");
+    let said = String::from_utf8_lossy(&output.stderr).into_owned();
+    assert_eq!(output.status.code(), Some(1), "{said}");
+    assert!(said.contains("cannot write into the folder"), "{said}");
 }
 
 #[test]
@@ -271,8 +271,8 @@ fn options_of_other_tables_are_refused() {
         ("bench table1 --quick --out here", "are for `bench paper`"),
         ("bench paper --part figure9", "invalid value"),
     ] {
-        let (code, told) = run(options);
-        assert_eq!(code, Some(2), "{options}: {told}");
-        assert!(told.contains(says), "{options}: {told}");
+        let (code, said) = run(options);
+        assert_eq!(code, Some(2), "{options}: {said}");
+        assert!(said.contains(says), "{options}: {said}");
     }
 }

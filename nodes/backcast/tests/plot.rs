@@ -1,5 +1,5 @@
 //! `backcast plot` as a process: pictures of a drawn room and of a real
-//! recording, and what wrong use is told.
+//! recording, and the messages for wrong use.
 
 #![allow(
     clippy::unwrap_used,
@@ -153,7 +153,7 @@ fn a_scan_in_which_nothing_returned_is_drawn_without_a_robot() {
     assert!(picture.pixels().all(|pixel| *pixel != BEST));
     let (code, stdout, stderr) = run(folder.path(), "plot field --bag r.mcap --out p.png");
     assert_eq!((code, stdout.as_str()), (1, ""));
-    let expected = "r.mcap: scan 1 has no place on this map: no beam says anything";
+    let expected = "r.mcap: scan 1 has no place on this map: no usable beams";
     assert!(stderr.contains(expected), "{stderr}");
 }
 
@@ -221,7 +221,7 @@ fn what_is_missing_or_broken_is_named() {
 }
 
 #[test]
-fn wrong_use_is_told_before_anything_is_opened() {
+fn wrong_use_is_reported_before_anything_is_opened() {
     let folder = tempfile::tempdir().unwrap();
     for (options, expected) in [
         ("--bag r.mcap", "--out <FILE>"),

@@ -59,7 +59,7 @@ fn each_scan_of_a_laser_is_found_where_it_was_taken() {
 }
 
 #[test]
-fn two_lasers_back_to_back_tell_what_one_may_not() {
+fn two_lasers_back_to_back_show_what_one_may_not() {
     // The rear one upside down, which its place on /tf_static says.
     let folder = simulated(&format!(
         "--path '{CORRIDOR}' --rate 1 --laser front=0.49,0,0 --laser rear=-0.43,0,180,180 --range-max 3"
@@ -72,7 +72,7 @@ fn two_lasers_back_to_back_tell_what_one_may_not() {
     let unique = |judged: &Value| judged["unique"].as_u64().unwrap();
     assert!(
         unique(&joined) > unique(&alone),
-        "within 3 m one laser tells less: {joined} {alone}"
+        "within 3 m one laser sees less: {joined} {alone}"
     );
 }
 
@@ -160,7 +160,11 @@ fn what_cannot_be_driven_is_refused_and_nothing_is_written() {
             "from corner 1 to corner 2 meets an obstacle at 4.00,",
         ),
         ("--path '4,-10.5'", 2, "1 corners; allowed are 2 to 10000"),
-        ("--path '4,-10.5 5,-10.5' --noise x", 2, "\"x\" is no noise"),
+        (
+            "--path '4,-10.5 5,-10.5' --noise x",
+            2,
+            "\"x\" is not a noise",
+        ),
         (
             "--path '4,-10.5 5,-10.5' --sonar --beams 9",
             2,

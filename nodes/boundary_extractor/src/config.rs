@@ -1,4 +1,4 @@
-//! What a user can set.
+//! Command-line options.
 
 use clap::Parser;
 use engine::grid::CellRules;

@@ -1,4 +1,4 @@
-//! What keeps a map from having a boundary, and the node from running.
+//! Errors that reject a map, and those that end the node.
 
 use engine::EngineError;
 use transport::TransportError;

@@ -61,7 +61,7 @@ fn refuse(
     health: &mut Health,
 ) -> Result<(), TransportError> {
     let (map_id, error) = (map.header().map_id, with_causes(error));
-    let problem = format!("map {map_id:016x} is refused: {error}");
+    let problem = format!("map {map_id:016x} rejected: {error}");
     tracing::warn!("{problem}");
     health.count_refused(1);
     health.error(&problem)?;

@@ -107,7 +107,7 @@ fn a_refused_map_leaves_the_boundary_before_it_in_service() {
     assert_eq!((report.refused, report.sent), (1, 1));
     assert!(
         error.starts_with(&format!(
-            "map {empty:016x} is refused: the map has no occupied cell"
+            "map {empty:016x} rejected: the map has no occupied cell"
         )),
         "{error}"
     );

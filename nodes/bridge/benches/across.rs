@@ -160,7 +160,7 @@ fn repeated(world: &World) -> Vec<u8> {
 /// Sends scans on one machine, each after the answer to the one before; the times
 /// without those of computing.
 fn scans(laser: &Machine<'_>, world: &World) -> Times {
-    // Wherever they are, their health is heard here.
+    // Wherever they are, their health is received here.
     for node in ["accumulator", "peak_extractor"] {
         wait_until_ready(&laser.graph, node);
     }

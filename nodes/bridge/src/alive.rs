@@ -1,8 +1,8 @@
 //! Signs of life: a liveliness token for the bridge, and one for each node whose
-//! health it hears.
+//! health it receives.
 //!
 //! Tokens go when the process that holds them is killed or cut off, without
-//! anybody asking: whoever watches hears of it from Zenoh.
+//! anybody asking: whoever watches is notified by Zenoh.
 
 use std::collections::BTreeMap;
 
@@ -23,14 +23,14 @@ pub(crate) struct Alive {
     session: Session,
     robot: String,
     _bridge: LivelinessToken,
-    /// None where health comes in: what is heard is then not of this machine.
+    /// None where health comes in: what is received is then not of this machine.
     health: Option<Subscriber<topic::Health>>,
     nodes: BTreeMap<String, Node>,
 }
 
 struct Node {
     _token: LivelinessToken,
-    heard_ns: i64,
+    received_ns: i64,
 }
 
 impl Alive {
@@ -54,7 +54,7 @@ impl Alive {
         })
     }
 
-    /// Hears who is there, and lets go of who is not.
+    /// Takes the nodes that are alive, and drops those that are not.
     pub(crate) fn step(&mut self) -> Result<(), BridgeError> {
         let now_ns = monotonic_ns();
         while let Some(report) = self.next()? {
@@ -62,11 +62,11 @@ impl Alive {
             if report.state == NodeState::Stopped as u32 {
                 self.nodes.remove(name);
             } else if network_payload::name(name).is_ok() {
-                self.hear(name, report.sent_ns)?;
+                self.receive(name, report.sent_ns)?;
             }
         }
         self.nodes
-            .retain(|_, node| now_ns.saturating_sub(node.heard_ns) < SILENCE_NS);
+            .retain(|_, node| now_ns.saturating_sub(node.received_ns) < SILENCE_NS);
         Ok(())
     }
 
@@ -77,15 +77,15 @@ impl Alive {
         Ok(health.receive()?.map(|sample| *sample.header()))
     }
 
-    fn hear(&mut self, name: &str, heard_ns: i64) -> Result<(), BridgeError> {
+    fn receive(&mut self, name: &str, received_ns: i64) -> Result<(), BridgeError> {
         if let Some(node) = self.nodes.get_mut(name) {
-            node.heard_ns = heard_ns;
+            node.received_ns = received_ns;
             return Ok(());
         }
         let token = declare(&self.session, &self.robot, Some(name))?;
         let node = Node {
             _token: token,
-            heard_ns,
+            received_ns,
         };
         self.nodes.insert(name.to_owned(), node);
         Ok(())

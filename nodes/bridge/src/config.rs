@@ -1,4 +1,4 @@
-//! What a user can set.
+//! Command-line options.
 
 use std::path::PathBuf;
 
@@ -6,20 +6,19 @@ use clap::Parser;
 
 use crate::Rate;
 
-/// Joins graphs on several machines over Zenoh.
+/// Connects graphs on several machines over Zenoh.
 ///
-/// Listens on this machine alone unless told otherwise. Which topics go out and
-/// come in is in the descriptor: the inputs of the bridge go out, its outputs
-/// come in.
+/// Listens on this machine only by default. The descriptor says which topics are sent
+/// and received: inputs of the bridge are sent, its outputs are received.
 #[derive(Debug, Clone, Parser)]
 #[command(name = "bridge", version)]
 pub struct Config {
-    /// What the robot is called, a part of every key. All bridges of one robot
-    /// have the same [default: the name of the machine]
+    /// The robot's name, a part of every key. All bridges of one robot have the same
+    /// [default: the name of the machine]
     #[arg(long, value_name = "NAME", value_parser = network_payload::robot)]
     pub robot: Option<String>,
 
-    /// The descriptor that says which topics go out and come in
+    /// The descriptor that says which topics are sent and received
     #[arg(long, value_name = "FILE", default_value = "dataflow.yaml")]
     pub dataflow: PathBuf,
 
@@ -27,8 +26,8 @@ pub struct Config {
     #[arg(long, value_name = "ID", default_value = "bridge")]
     pub id: String,
 
-    /// Most messages a second of a live topic that go out, 0.001 to 10000, as field=2.
-    /// May be given again [default: field=2, the others as they come]
+    /// Maximum number of messages per second sent on a live topic, 0.001 to 10000, as
+    /// field=2. May be repeated [default: field=2, no limit for the others]
     #[arg(long, value_name = "TOPIC=HZ")]
     pub rate: Vec<Rate>,
 

@@ -1,4 +1,4 @@
-//! What keeps the bridge from running.
+//! Errors that end the bridge.
 
 use std::path::PathBuf;
 
@@ -11,7 +11,7 @@ use zenoh_session::{KeyError, NetworkError};
 #[derive(Debug, thiserror::Error)]
 pub enum BridgeError {
     /// The descriptor cannot be used.
-    #[error("cannot tell which topics go out and come in")]
+    #[error("cannot determine which topics go out and come in")]
     Dataflow(#[from] DataflowError),
     /// The descriptor has no such node.
     #[error("{} has no node {id:?}: allowed are {allowed}", file.display())]
@@ -23,7 +23,7 @@ pub enum BridgeError {
         /// The ids that are there.
         allowed: String,
     },
-    /// A topic would go round in circles.
+    /// A topic would loop.
     #[error(
         "topic {topic} goes out and comes in: it would come back for ever; \
          take it out of the inputs or the outputs of the bridge"
@@ -39,7 +39,7 @@ pub enum BridgeError {
     #[error(transparent)]
     Key(#[from] KeyError),
     /// The system gives no random number.
-    #[error("cannot draw a random number to be known by")]
+    #[error("cannot draw a random session id")]
     Random(#[source] getrandom::Error),
     /// A map that the graph could not hold.
     #[error(transparent)]

@@ -29,9 +29,9 @@ pub(crate) struct Aside {
 }
 
 impl Exit {
-    /// Whether anybody would get it. Where Zenoh cannot tell, it is sent; so is what
+    /// Whether anybody would get it. If Zenoh does not know, it is sent; so is what
     /// is kept, for those who come later.
-    pub(crate) fn is_heard(&self) -> bool {
+    pub(crate) fn has_subscribers(&self) -> bool {
         match self {
             Exit::Here(publisher) => {
                 let status = publisher.matching_status().wait();
@@ -69,12 +69,12 @@ impl Aside {
     /// The thread ends with this, or with the process where `send` holds it up.
     fn by(send: impl Fn(Vec<u8>) -> Outcome + Send + 'static) -> Self {
         let (to, from) = bounded(1);
-        let (told, outcomes) = unbounded();
+        let (done, outcomes) = unbounded();
         let waiting = from.clone();
         std::thread::spawn(move || {
             for payload in from {
                 // Where nobody wants to know, the process is about to end.
-                let _ = told.send(send(payload));
+                let _ = done.send(send(payload));
             }
         });
         Aside {
@@ -87,7 +87,7 @@ impl Aside {
     fn put(&self, payload: Vec<u8>) {
         if let Err(TrySendError::Full(payload)) = self.to.try_send(payload) {
             let _ = self.waiting.try_recv();
-            // There is room, for nobody else sends.
+            // There is limits, for nobody else sends.
             let _ = self.to.try_send(payload);
         }
     }

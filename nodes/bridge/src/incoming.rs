@@ -8,7 +8,7 @@ use messages::{MapHeader, Topic, topic};
 use network_payload::{Arrival, Arrivals, Received, Wire, WireError};
 use transport::{Graph, Publisher, TransportError, monotonic_ns};
 use zenoh::Session;
-use zenoh_session::{Past, Queue, Report, Room};
+use zenoh_session::{Past, Queue, QueueLimits, Report};
 
 use crate::BridgeError;
 
@@ -32,9 +32,9 @@ impl<T: Wire> Incoming<T> {
     ) -> Result<Self, BridgeError> {
         let key = network_payload::key::<T>(robot);
         let past = if T::KEPT { Past::Last(1) } else { Past::Gone };
-        let room = Room::for_any(T::DEPTH.max(4), T::MAX_BYTES);
+        let limits = QueueLimits::for_any(T::DEPTH.max(4), T::MAX_BYTES);
         let publisher = graph.publisher()?;
-        let queue = Queue::open(session, &key, past, room, graph.waker()?)?;
+        let queue = Queue::open(session, &key, past, limits, graph.waker()?)?;
         Ok(Incoming {
             queue,
             publisher,
@@ -54,7 +54,7 @@ impl<T: Wire> Incoming<T> {
             report.refused(&BridgeError::from(error))?;
         }
         // As many as fit at once: a flood must not keep the others waiting.
-        for _ in 0..self.queue.room().messages {
+        for _ in 0..self.queue.limits().messages {
             let Some(sample) = self.queue.next() else {
                 break;
             };
@@ -100,7 +100,7 @@ impl<T: Wire> Incoming<T> {
         Ok(())
     }
 
-    /// Whether it is in the graph already: its sender was started anew, and
+    /// Whether it is in the graph already: its sender was started again, and
     /// nothing else is.
     fn is_last(&self, header: &T::Header) -> bool {
         let last = self.last.as_ref();

@@ -7,7 +7,7 @@ use clap::Parser;
 
 fn main() -> ExitCode {
     let config = Config::parse();
-    transport::node::main_hearing("bridge", zenoh_session::LOG, |graph| {
+    transport::node::main_with_log("bridge", zenoh_session::LOG, |graph| {
         bridge::run(graph, &config)
     })
 }

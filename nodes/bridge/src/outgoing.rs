@@ -82,7 +82,7 @@ impl<T: Wire> Outgoing<T> {
             self.follow(graph)?;
         }
         while let Some(outcome) = self.exit.outcome() {
-            self.tell(outcome, report)?;
+            self.report(outcome, report)?;
         }
         let Some(subscriber) = self.subscriber.clone() else {
             return Ok(());
@@ -96,7 +96,7 @@ impl<T: Wire> Outgoing<T> {
 
     /// Subscribes while somebody beyond the bridge does.
     fn follow(&mut self, graph: &Graph) -> Result<(), TransportError> {
-        match (self.exit.is_heard(), &self.subscriber) {
+        match (self.exit.has_subscribers(), &self.subscriber) {
             (true, None) => self.subscriber = Some(Rc::new(graph.subscriber()?)),
             (false, Some(_)) => self.subscriber = None,
             _ => {}
@@ -106,7 +106,7 @@ impl<T: Wire> Outgoing<T> {
 
     fn send(&mut self, sample: &Sample<T>, report: &mut Report) -> Result<(), BridgeError> {
         let now_ns = monotonic_ns();
-        if !T::KEPT && (!self.exit.is_heard() || !self.limit.admits(now_ns)) {
+        if !T::KEPT && (!self.exit.has_subscribers() || !self.limit.admits(now_ns)) {
             return Ok(());
         }
         self.next.clock_ns = now_ns;
@@ -117,12 +117,12 @@ impl<T: Wire> Outgoing<T> {
             };
         self.next.sequence += 1;
         match self.exit.put(payload) {
-            Some(outcome) => self.tell(outcome, report),
+            Some(outcome) => self.report(outcome, report),
             None => Ok(()),
         }
     }
 
-    fn tell(&self, outcome: zenoh::Result<()>, report: &mut Report) -> Result<(), BridgeError> {
+    fn report(&self, outcome: zenoh::Result<()>, report: &mut Report) -> Result<(), BridgeError> {
         match outcome {
             Ok(()) => report.sent(),
             Err(source) => {

@@ -2,7 +2,7 @@
 //!
 //! What comes faster is left out, not kept for later: a reader at a slow link
 //! wants the present. What is kept for late joiners has no rate: it holds until it is
-//! said anew, so none of it may be left out.
+//! said again, so none of it may be left out.
 
 use std::str::FromStr;
 
@@ -27,7 +27,9 @@ impl FromStr for Rate {
             let live = topic::NAMES.iter().copied();
             let live = live.filter(|name| network_payload::by_name(name, IsKept) == Some(false));
             let allowed = live.collect::<Vec<_>>().join(", ");
-            return Err(format!("{name:?} is no live topic: allowed are {allowed}"));
+            return Err(format!(
+                "{name:?} is not a live topic: allowed are {allowed}"
+            ));
         }
         let hz: f64 = hz
             .parse()
@@ -50,7 +52,7 @@ impl Visit for IsKept {
     }
 }
 
-/// Says which messages of one topic may go. Pure: it is told the time.
+/// Decides which messages of one topic may go. Pure: the time is an argument.
 #[derive(Debug)]
 pub(crate) struct Limit {
     period_ns: i64,
@@ -114,7 +116,7 @@ mod tests {
     }
 
     #[test]
-    fn the_image_is_slow_unless_told_otherwise() {
+    fn the_image_is_slow_by_default() {
         assert_eq!(Limit::of::<topic::Field>(&[]).period_ns, 500 * MS);
         let fast = ["field=10".parse().unwrap()];
         assert_eq!(Limit::of::<topic::Field>(&fast).period_ns, 100 * MS);

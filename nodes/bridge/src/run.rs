@@ -50,12 +50,12 @@ pub fn run(graph: &Graph, config: &Config) -> Result<(), BridgeError> {
 }
 
 /// One topic, out or in.
-trait Way {
+trait Route {
     fn input(&self) -> Option<Rc<dyn Input>>;
     fn step(&mut self, graph: &Graph, tick: bool, report: &mut Report) -> Result<(), BridgeError>;
 }
 
-impl<T: Wire> Way for Outgoing<T> {
+impl<T: Wire> Route for Outgoing<T> {
     fn input(&self) -> Option<Rc<dyn Input>> {
         self.input()
     }
@@ -65,7 +65,7 @@ impl<T: Wire> Way for Outgoing<T> {
     }
 }
 
-impl<T: Wire> Way for Incoming<T> {
+impl<T: Wire> Route for Incoming<T> {
     fn input(&self) -> Option<Rc<dyn Input>> {
         None
     }
@@ -83,7 +83,7 @@ fn ways(
     robot: &str,
     ports: &Ports,
     config: &Config,
-) -> Result<Vec<Box<dyn Way>>, BridgeError> {
+) -> Result<Vec<Box<dyn Route>>, BridgeError> {
     let sender = getrandom::u64().map_err(BridgeError::Random)?;
     let out = ports.out.iter().filter_map(|name| {
         let rates = &config.rate;
@@ -118,7 +118,7 @@ struct Outward<'a> {
 }
 
 impl Visit for Outward<'_> {
-    type Output = Result<Box<dyn Way>, BridgeError>;
+    type Output = Result<Box<dyn Route>, BridgeError>;
 
     fn visit<T: Wire>(self) -> Self::Output {
         let Outward {
@@ -141,7 +141,7 @@ struct Inward<'a> {
 }
 
 impl Visit for Inward<'_> {
-    type Output = Result<Box<dyn Way>, BridgeError>;
+    type Output = Result<Box<dyn Route>, BridgeError>;
 
     fn visit<T: Wire>(self) -> Self::Output {
         let way = Incoming::<T>::open(self.graph, self.session, self.robot, self.memory_limit)?;

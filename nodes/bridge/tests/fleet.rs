@@ -46,7 +46,7 @@ impl Papers {
         let router = format!("router={address}");
         let names = [router.as_str(), "r1", "r2", "desk"];
         make_certificates(&folder.path().join("pki"), &names);
-        // Another authority, of which the router has never heard.
+        // Another authority, which the router does not know.
         make_certificates(&folder.path().join("other"), &["r1"]);
         let users = "r1:one\nr2:two\ndesk:three\n";
         std::fs::write(folder.path().join("pki/users.txt"), users).unwrap();
@@ -139,7 +139,7 @@ impl Fleet {
     }
 }
 
-/// Somebody who comes in, or does not: as Zenoh does unless told otherwise, it tries
+/// Somebody who comes in, or does not: as Zenoh does by default, it tries
 /// once.
 fn connect(config: &Path) -> Result<Session, zenoh::Error> {
     zenoh::open(zenoh::Config::from_file(config).unwrap()).wait()
@@ -200,33 +200,31 @@ fn a_robot_writes_its_own_keys_alone() {
     let other = connect(&fleet.papers.of("r2", "two")).unwrap();
     let desk = connect(&fleet.papers.of("desk", "three")).unwrap();
     let seen = subscribe(&desk, "backcast/*/odometry");
-    let overheard = subscribe(&other, "backcast/**");
+    let others = subscribe(&other, "backcast/**");
     let own = subscribe(&other, "backcast/r2/*");
     // What is written before a subscription is known at the router is lost, so it
-    // is written until it is heard.
-    let until = |heard: &Subscriber<FifoChannelHandler<Sample>>, puts: &[(&Session, &str)]| loop {
+    // is written until it is received.
+    let until = |received: &Subscriber<FifoChannelHandler<Sample>>, puts: &[(&Session, &str)]| loop {
         for (session, key) in puts {
             session.put(*key, "x").wait().unwrap();
         }
         // Writing without a pause would leave more behind than a session that closes
         // has time for.
         let pause = Duration::from_millis(5);
-        if let Some(sample) = heard.recv_timeout(pause).unwrap() {
+        if let Some(sample) = received.recv_timeout(pause).unwrap() {
             return sample.key_expr().to_string();
         }
     };
     let forged = (&robot, "backcast/r2/odometry");
-    let heard = until(&seen, &[forged, (&robot, "backcast/r1/odometry")]);
-    assert_eq!(heard, "backcast/r1/odometry");
-    // The other robot hears what the desk may tell it, and nothing of the first.
-    let heard = until(&own, &[forged, (&desk, "backcast/r2/save")]);
-    assert_eq!(heard, "backcast/r2/save");
-    // A session tells all its subscribers what it hears for one of them.
-    let overheard = overheard
-        .drain()
-        .map(|sample| sample.key_expr().to_string());
-    let foreign: Vec<_> = overheard.filter(|key| key != "backcast/r2/save").collect();
-    assert!(foreign.is_empty(), "a robot reads or is told {foreign:?}");
+    let received = until(&seen, &[forged, (&robot, "backcast/r1/odometry")]);
+    assert_eq!(received, "backcast/r1/odometry");
+    // The other robot receives what the desk may send it, and nothing from the first.
+    let received = until(&own, &[forged, (&desk, "backcast/r2/save")]);
+    assert_eq!(received, "backcast/r2/save");
+    // A session gives all its subscribers what it receives for one of them.
+    let others = others.drain().map(|sample| sample.key_expr().to_string());
+    let foreign: Vec<_> = others.filter(|key| key != "backcast/r2/save").collect();
+    assert!(foreign.is_empty(), "a robot reads or receives {foreign:?}");
     drop((seen, own));
     for session in [robot, other, desk] {
         session.close().wait().unwrap();

@@ -1,4 +1,4 @@
-//! Two graphs joined by two bridges over a loopback connection, and strangers who
+//! Two graphs joined by two bridges over a loopback connection, and unknown senders that
 //! send what they should not.
 #![allow(
     clippy::unwrap_used,
@@ -98,7 +98,7 @@ fn send(maps: &Publisher<topic::Map>, (header, cells): &(MapHeader, Vec<u8>)) {
     loan.send().unwrap();
 }
 
-/// Sends scans until it is told to stop, from a thread of its own: a member of a
+/// Sends scans until it is asked to stop, from a thread of its own: a member of a
 /// graph stays on its thread.
 fn send_scans(isolated: &Isolated, stop: &Arc<AtomicBool>) -> std::thread::JoinHandle<()> {
     let name = isolated.name().clone();
@@ -123,7 +123,7 @@ fn send_scans(isolated: &Isolated, stop: &Arc<AtomicBool>) -> std::thread::JoinH
 }
 
 #[test]
-fn scans_cross_as_they_are_and_nobody_else_hears_them() {
+fn scans_cross_as_they_are_and_nobody_else_receives_them() {
     let laser = machine("live-a", LASER);
     let engine = machine("live-b", ENGINE);
     let other = machine("live-c", ENGINE).of_robot("r2");
@@ -184,12 +184,12 @@ fn a_late_joiner_gets_the_map_once() {
         });
     };
     expect(&sent);
-    // One that joins the graph later hears it from the bridge.
+    // One that joins the graph later receives it from the bridge.
     let later = engine.graph.subscriber::<topic::Map>().unwrap();
     wait_until(&engine.graph, &later, |header, _| {
         header.map_id == sent.0.map_id
     });
-    // A bridge that is started anew brings nothing twice, and what is new arrives.
+    // A bridge that is started again brings nothing twice, and what is new arrives.
     first.kill();
     laser.graph.cleanup_dead_nodes();
     let first = laser.joined_bridge(&["--listen", &endpoint]);
@@ -251,16 +251,16 @@ fn what_strangers_send_is_refused_and_counted() {
         assert_eq!(report.refused, count, "{error}");
         assert!(!error.is_empty());
     }
-    // The bridge goes on, and lets in what is sound, once.
+    // The bridge continues, and lets in what is sound, once.
     for sequence in [5, 5, 6] {
         put(&sound, good(sequence));
     }
-    let mut heard = Vec::new();
+    let mut counters = Vec::new();
     wait_until(&engine.graph, &scans, |header, _| {
-        heard.push(header.stamp.counter);
+        counters.push(header.stamp.counter);
         header.stamp.counter == 6
     });
-    assert_eq!(heard, [5, 6]);
+    assert_eq!(counters, [5, 6]);
     bridge.stop();
 }
 
@@ -323,7 +323,7 @@ fn a_reader_of_zenoh_gets_the_map_and_knows_what_it_is() {
     let sent = map(0, 30, 20);
     send(&maps, &sent);
     let bridge = laser.joined_bridge(&["--listen", &endpoint]);
-    // The bridge's own report that it sent something: the map, for nobody hears
+    // The bridge's own report that it sent something: the map, for nobody receives
     // its health.
     let health = laser.graph.subscriber::<topic::Health>().unwrap();
     let (report, _) = wait_for_health(&laser.graph, &health, |report| report.sent > 0);

@@ -99,7 +99,7 @@ fn poses_are_those_of_one_machine() {
 }
 
 #[test]
-fn without_bridges_nothing_is_heard() {
+fn without_bridges_nothing_is_received() {
     let laser = machine("laser0", LASER, None);
     let engine = machine("engine0", ENGINE, None);
     let scans = engine.graph.subscriber::<topic::Scan>().unwrap();
@@ -167,8 +167,8 @@ fn three_machines_answer_as_one() {
     assert_same(&found);
 }
 
-/// What the machines that are not the laser's have heard.
-struct Heard<'a> {
+/// What the machines without the laser have received.
+struct Received<'a> {
     machine: &'a Machine<'a>,
     maps: Subscriber<topic::Map>,
     hypotheses: Subscriber<topic::Hypotheses>,
@@ -177,9 +177,9 @@ struct Heard<'a> {
     counters: Vec<u64>,
 }
 
-impl<'a> Heard<'a> {
+impl<'a> Received<'a> {
     fn new(machine: &'a Machine<'a>) -> Self {
-        Heard {
+        Received {
             machine,
             maps: machine.graph.subscriber().unwrap(),
             hypotheses: machine.graph.subscriber().unwrap(),
@@ -189,7 +189,7 @@ impl<'a> Heard<'a> {
     }
 
     /// Listens until the map of this id is there, and an answer about it to a scan
-    /// after `counter`: they come by ways of their own, in either order.
+    /// after `counter`: they arrive on separate connections, in either order.
     fn until(&mut self, map_id: u64, counter: u64) {
         let graph = &self.machine.graph;
         let tick = Duration::from_millis(100);
@@ -219,7 +219,7 @@ fn served(machine: &Machine<'_>, maps: &Subscriber<topic::Map>, not: u64) -> u64
     })
 }
 
-/// The number of the scan that comes after so many more.
+/// The number of the scan that comes after this many more.
 fn scan_after(machine: &Machine<'_>, scans: u64) -> u64 {
     let played = machine.graph.subscriber::<topic::Scan>().unwrap();
     let mut seen = 0;
@@ -250,7 +250,7 @@ fn a_cable_that_was_pulled_is_plugged_in_and_all_goes_on() {
     let monitor = machine("monitor4", MONITOR, Some(&places[2]));
     let maps = laser.graph.subscriber::<topic::Map>().unwrap();
     let map = laser.copy_of_map(&world().map());
-    let mut heard = Heard::new(&monitor);
+    let mut received = Received::new(&monitor);
     let mut nodes = engine.engine();
     nodes.extend([
         monitor.bridge(&FROM_MONITOR),
@@ -260,7 +260,7 @@ fn a_cable_that_was_pulled_is_plugged_in_and_all_goes_on() {
         laser.replayer(&world().recording(), &["--loop"]),
     ]);
     let first = served(&laser, &maps, 0);
-    heard.until(first, 0);
+    received.until(first, 0);
     for cable in ["cable1", "cable2"] {
         places[0].pull(cable);
     }
@@ -271,10 +271,10 @@ fn a_cable_that_was_pulled_is_plugged_in_and_all_goes_on() {
     for cable in ["cable1", "cable2"] {
         places[0].plug(cable);
     }
-    heard.until(second, back);
+    received.until(second, back);
     // Each map and each answer once, whatever was sent again.
-    assert_eq!(heard.map_ids, [first, second]);
-    let counters = &heard.counters;
+    assert_eq!(received.map_ids, [first, second]);
+    let counters = &received.counters;
     assert!(counters.is_sorted_by(|a, b| a < b), "{counters:?}");
     // Who joins now gets the map and the boundary that were sent long ago.
     let late = engine.graph.subscriber::<topic::Boundary>().unwrap();

@@ -116,7 +116,7 @@ impl ColaDevice {
     }
 
     /// The answer to a telegram; `None` to one that is no command.
-    pub(crate) fn hear(
+    pub(crate) fn receive(
         &mut self,
         session: &mut Session,
         telegram: &Telegram<'_>,

@@ -1,4 +1,4 @@
-//! What a user can set.
+//! Command-line options.
 
 use std::path::PathBuf;
 
@@ -50,8 +50,8 @@ pub struct Config {
     #[arg(long, value_name = "LINK")]
     pub pty: Option<PathBuf>,
 
-    /// The baud rate of the LMS2xx when it is switched on: 9600, 19200, 38400
-    /// or 500000. At any other it hears and says garbage.
+    /// The baud rate of the LMS2xx when it is switched on: 9600, 19200, 38400 or
+    /// 500000. At any other rate it receives and sends garbage.
     #[arg(long, value_name = "RATE", default_value = "9600", value_parser = baud)]
     pub baud: Baud,
 
@@ -60,27 +60,27 @@ pub struct Config {
     #[arg(long, value_name = "FACTOR|max", default_value_t = Rate::Factor(1.0))]
     pub rate: Rate,
 
-    /// Starts over at the end.
+    /// Repeats the recording.
     #[arg(long = "loop")]
     pub looped: bool,
 
-    /// Faults with commas between: crc=P, drop=P and garbage=P damage, omit and
-    /// precede telegrams with this probability; stall=DURATION is silent for so
-    /// long after one telegram in a hundred; reset=DURATION is how often the
-    /// device is started anew; split and merge cut telegrams into pieces and
-    /// send several at once. CoLa A has no checksum: there crc goes unnoticed.
+    /// Faults, separated by commas: crc=P, drop=P and garbage=P damage, omit and
+    /// precede telegrams with this probability; stall=DURATION is silent for this time
+    /// after one telegram in a hundred; reset=DURATION restarts the device at this
+    /// interval; split and merge cut telegrams into pieces and send several at once.
+    /// CoLa A has no checksum: there crc goes unnoticed.
     #[arg(long, value_name = "FAULTS", default_value = "")]
     pub fault: FaultPlan,
 
-    /// Nodes that must be ready before playing starts, with commas between.
+    /// Nodes that must be ready before playing starts, separated by commas.
     #[arg(long, value_name = "NODES", value_delimiter = ',')]
     pub wait_for: Vec<String>,
 
-    /// Seconds that an answer may take at --rate max, 0.1 to 3600.
+    /// Timeout for an answer at --rate max, seconds, 0.1 to 3600.
     #[arg(long, value_name = "SECONDS", default_value_t = 30.0, value_parser = patience)]
     pub patience: f64,
 
-    /// Where the randomness of faults starts.
+    /// Seed of the random faults.
     #[arg(long, value_name = "NUMBER", default_value_t = 1)]
     pub seed: u64,
 }

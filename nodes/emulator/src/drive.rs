@@ -105,7 +105,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn the_corridor_is_told_in_order_and_truths_keep_to_their_scans() {
+    fn the_corridor_is_reported_in_order_and_truths_keep_to_their_scans() {
         let path = concat!(
             env!("CARGO_MANIFEST_DIR"),
             "/../../recordings/malaga_corridor/recording.mcap"

@@ -1,4 +1,4 @@
-//! What can go wrong with a recording that is to be played as a device.
+//! Errors of playing a recording as a device.
 
 use std::path::PathBuf;
 

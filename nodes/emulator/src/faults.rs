@@ -9,7 +9,7 @@ use std::time::Duration;
 use rand::rngs::Xoshiro256PlusPlus;
 use rand::{RngExt, SeedableRng};
 
-/// One telegram in so many is followed by a stall, where stalls are wanted.
+/// One telegram in this number is followed by a stall, if stalls are wanted.
 const STALL_EVERY: f64 = 100.0;
 /// The longest garbage before a telegram, bytes.
 const GARBAGE: usize = 64;
@@ -25,7 +25,7 @@ pub struct FaultPlan {
     pub garbage: f64,
     /// How long a stall lasts.
     pub stall: Option<Duration>,
-    /// How often the device is started anew.
+    /// How often the device is started again.
     pub reset: Option<Duration>,
     /// Whether telegrams come in pieces.
     pub split: bool,
@@ -49,7 +49,7 @@ impl FromStr for FaultPlan {
                 None if fault == "merge" => plan.merge = true,
                 _ => {
                     return Err(format!(
-                        "{fault:?} is no fault: allowed are crc=, drop=, garbage=, stall=, \
+                        "{fault:?} is not a fault: allowed are crc=, drop=, garbage=, stall=, \
                          reset=, split and merge"
                     ));
                 }
@@ -100,7 +100,7 @@ impl Faults {
     }
 
     /// Changes the telegram that begins at `start`, the last in `out`, or takes
-    /// it away. Says whether it is as it was.
+    /// it away. Returns whether it is as it was.
     pub(crate) fn damage(&mut self, out: &mut Vec<u8>, start: usize, now_ns: i64) -> bool {
         let stalls = self.plan.stall.is_some() && self.happens(1.0 / STALL_EVERY);
         if now_ns < self.silent_until_ns || self.happens(self.plan.drop) {
@@ -131,7 +131,7 @@ impl Faults {
         self.plan.merge && self.happens(0.5)
     }
 
-    /// How many of so many bytes are written at once.
+    /// How many of this many bytes are written at once.
     pub(crate) fn piece(&mut self, bytes: usize) -> usize {
         match self.plan.split && bytes > 1 {
             true => self.rng.random_range(1..=bytes),
@@ -139,7 +139,7 @@ impl Faults {
         }
     }
 
-    /// Whether the device is started anew now.
+    /// Whether the device is started again now.
     pub(crate) fn resets(&mut self, now_ns: i64) -> bool {
         let (Some(at_ns), Some(every)) = (self.next_reset_ns, self.plan.reset) else {
             return false;
@@ -235,7 +235,7 @@ mod tests {
     }
 
     #[test]
-    fn the_device_starts_anew_each_time() {
+    fn the_device_starts_again_each_time() {
         let mut faults = faults("reset=1s");
         let times = [0, 999, 1000, 1001, 1999, 2000].map(|ms| ms * 1_000_000);
         let resets = times.map(|now_ns| faults.resets(now_ns));

@@ -1,7 +1,7 @@
 //! An LMS2xx: answers, refusals and scan telegrams.
 //!
 //! Pure: commands in, replies out. It sends scans of the field and resolution
-//! that it is told, as far as the recording has their beams.
+//! that it is set to, as far as the recording has their beams.
 
 use sick::lms2xx::{
     Answer, Baud, Command, Configuration, DEFAULT_PASSWORD, DeviceStatus, Mode, RangeMode, Reply,
@@ -69,7 +69,7 @@ impl Lms2xxDevice {
         })
     }
 
-    /// Starts anew, and says so; the configuration is kept.
+    /// Starts again, and says so; the configuration is kept.
     pub(crate) fn restart(&mut self) -> Reply<'static> {
         self.baud = self.power_on_baud;
         self.mode = Mode::OnRequest;
@@ -85,7 +85,7 @@ impl Lms2xxDevice {
 
     /// The acknowledgement and the answer to a command; then the device speaks
     /// at the rate that is returned.
-    pub(crate) fn hear(&mut self, command: &Command<'_>, out: &mut Vec<u8>) -> Baud {
+    pub(crate) fn receive(&mut self, command: &Command<'_>, out: &mut Vec<u8>) -> Baud {
         let mut next_baud = self.baud;
         let answer = match command {
             Command::SetMode(mode) => {
@@ -219,7 +219,7 @@ mod tests {
     /// The replies to a command.
     fn ask(device: &mut Lms2xxDevice, command: Command<'_>) -> Vec<Reply<'static>> {
         let mut bytes = Vec::new();
-        device.hear(&command, &mut bytes);
+        device.receive(&command, &mut bytes);
         // Tests are short, and a reply borrows its bytes.
         let bytes: &'static [u8] = bytes.leak();
         let mut rest = bytes;
@@ -321,7 +321,7 @@ mod tests {
         let mut device = device();
         let mut out = Vec::new();
         let command = Command::SetMode(Mode::Baud(Baud::B500000));
-        assert_eq!(device.hear(&command, &mut out), Baud::B500000);
+        assert_eq!(device.receive(&command, &mut out), Baud::B500000);
         assert_eq!(
             device.baud,
             Baud::B38400,

@@ -13,7 +13,7 @@ use crate::drive::Happening;
 /// What is to be done now.
 #[derive(Debug, PartialEq)]
 pub(crate) enum Due<'a> {
-    /// The scan is sent, after so many others.
+    /// The scan is sent, after this many others.
     Scan { index: usize, counter: u64 },
     /// Odometry or a true pose is.
     Other(&'a Happening),

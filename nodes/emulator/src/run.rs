@@ -26,7 +26,7 @@ const SLICE: Duration = Duration::from_millis(20);
 const ANSWER_SLICE: Duration = Duration::from_millis(1);
 
 /// How long the end waits for clients to take the last scans, nanoseconds.
-const PATIENCE_NS: i64 = 10_000_000_000;
+const TIMEOUT_NS: i64 = 10_000_000_000;
 
 /// What a run did.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]

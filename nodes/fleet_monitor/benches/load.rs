@@ -57,18 +57,18 @@ fn main() {
     let arguments = ["--page", &page, "--listen", &endpoint];
     let node = NodeProcess::start(env!("CARGO_BIN_EXE_fleet_monitor"), &graph, arguments);
     wait_until_ready(&graph, "fleet_monitor");
-    let (stop, heard) = (AtomicBool::new(false), AtomicU64::new(0));
+    let (stop, messages) = (AtomicBool::new(false), AtomicU64::new(0));
     std::thread::scope(|scope| {
         scope.spawn(|| send(&endpoint, &config, &stop));
-        scope.spawn(|| look(site, &stop, &heard));
-        watch(&graph, &config, &heard);
+        scope.spawn(|| look(site, &stop, &messages));
+        watch(&graph, &config, &messages);
         stop.store(true, Ordering::Relaxed);
     });
     node.stop();
 }
 
 /// Prints what the node takes, by its own reports of how many messages came.
-fn watch(graph: &Graph, config: &Config, heard: &AtomicU64) {
+fn watch(graph: &Graph, config: &Config, messages: &AtomicU64) {
     let health = graph.subscriber::<topic::Health>().unwrap();
     let start = Instant::now();
     let mut due = PERIOD;
@@ -93,7 +93,7 @@ fn watch(graph: &Graph, config: &Config, heard: &AtomicU64) {
                     report.dropped,
                     (cpu_s - last_s) / passed_s,
                     memory_mb(report.pid),
-                    heard.swap(0, Ordering::Relaxed),
+                    messages.swap(0, Ordering::Relaxed),
                 );
             }
             last = Some((cpu_s, report, now));
@@ -128,7 +128,7 @@ fn memory_mb(pid: u32) -> f64 {
 }
 
 /// Somebody who looks at one robot.
-fn look(Site(address): Site, stop: &AtomicBool, heard: &AtomicU64) {
+fn look(Site(address): Site, stop: &AtomicBool, messages: &AtomicU64) {
     let url = format!("ws://{address}/api/v1/robots/r0/stream");
     while !stop.load(Ordering::Relaxed) {
         let stream = TcpStream::connect(address).unwrap();
@@ -138,12 +138,12 @@ fn look(Site(address): Site, stop: &AtomicBool, heard: &AtomicU64) {
             continue;
         };
         while !stop.load(Ordering::Relaxed) && socket.read().is_ok() {
-            heard.fetch_add(1, Ordering::Relaxed);
+            messages.fetch_add(1, Ordering::Relaxed);
         }
     }
 }
 
-/// One robot's bridge, as far as it is heard.
+/// One robot's bridge, as far as it is messages.
 struct FarRobot {
     name: String,
     hypotheses: Publisher<'static>,

@@ -1,4 +1,4 @@
-//! What a user can set.
+//! Command-line options.
 
 use std::net::SocketAddr;
 
@@ -12,8 +12,8 @@ use clap::Parser;
 #[derive(Debug, Clone, Parser)]
 #[command(name = "fleet_monitor", version)]
 pub struct Config {
-    /// Where to serve the page; port 0 is any that is free. Beyond this machine
-    /// whoever reaches the port can read, and nothing is encrypted
+    /// Address of the page; port 0 is any free port. Beyond this machine whoever
+    /// reaches the port can read, and nothing is encrypted
     #[arg(long, value_name = "ADDRESS:PORT", default_value = "127.0.0.1:7440")]
     pub page: SocketAddr,
 

@@ -1,4 +1,4 @@
-//! What keeps the fleet's monitor from running, and what it refuses.
+//! Errors that end the fleet monitor, and reasons to reject a message.
 
 use dashboard::{DashboardError, Robots};
 use network_payload::WireError;
@@ -18,15 +18,15 @@ pub enum FleetError {
     #[error(transparent)]
     Key(#[from] KeyError),
     /// The system gives no random number.
-    #[error("cannot draw a random number to be known by")]
+    #[error("cannot draw a random session id")]
     Random(#[source] getrandom::Error),
-    /// A message is none, or a robot's name is none.
+    /// A message is invalid, or a robot's name is invalid.
     #[error(transparent)]
     Wire(#[from] WireError),
     /// There are as many robots already as may be.
     #[error(
-        "there are {} robots, which is the most; {robot} is left out",
-        Robots::MOST
+        "there are {} robots, which is the maximum; {robot} is ignored",
+        Robots::MAX
     )]
     TooMany {
         /// The one that is.

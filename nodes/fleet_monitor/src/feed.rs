@@ -7,7 +7,7 @@ use network_payload::{Received, Wire, WireError};
 use transport::{Waker, monotonic_ns};
 use zenoh::Session;
 use zenoh::sample::Sample;
-use zenoh_session::{Past, Queue, Room};
+use zenoh_session::{Past, Queue, QueueLimits};
 
 use crate::FleetError;
 
@@ -27,7 +27,7 @@ pub(crate) struct Feed<T: Wire> {
 }
 
 /// What came, and from which robot.
-pub(crate) struct Heard<T: Wire> {
+pub(crate) struct FleetMessage<T: Wire> {
     pub(crate) robot: String,
     pub(crate) message: Received<T>,
 }
@@ -40,18 +40,18 @@ impl<T: Wire> Feed<T> {
     pub(crate) fn open(session: &Session, robot: &str, waker: Waker) -> Result<Self, FleetError> {
         let key = network_payload::key::<T>(robot);
         let past = if T::KEPT { Past::Last(1) } else { Past::Gone };
-        let room = Room {
+        let limits = QueueLimits {
             messages: WAITING,
             message_bytes: T::MAX_BYTES,
             bytes: WAITING_BYTES,
         };
         Ok(Feed {
-            queue: Queue::open(session, &key, past, room, waker)?,
+            queue: Queue::open(session, &key, past, limits, waker)?,
             topic: PhantomData,
         })
     }
 
-    /// How many were lost for want of room since the last call.
+    /// How many were lost since the last call because the queue was full.
     pub(crate) fn dropped(&self) -> u64 {
         self.queue.dropped()
     }
@@ -59,23 +59,23 @@ impl<T: Wire> Feed<T> {
     /// What waits now, checked, and what is too long to be looked at: who takes it all
     /// keeps nobody else waiting, however fast more comes. Times are those of this
     /// machine's clock.
-    pub(crate) fn waiting(&self) -> impl Iterator<Item = Result<Heard<T>, WireError>> {
+    pub(crate) fn waiting(&self) -> impl Iterator<Item = Result<FleetMessage<T>, WireError>> {
         let (topic, most) = (Self::NAME, T::MAX_BYTES);
         let too_long = std::iter::from_fn(move || {
             let found = self.queue.next_too_long()?;
             Some(Err(WireError::TooLong { topic, found, most }))
         });
         let samples = std::iter::from_fn(|| self.queue.next());
-        let heard = samples.take(WAITING).map(|sample| hear(&sample));
-        too_long.take(WAITING).chain(heard)
+        let received = samples.take(WAITING).map(|sample| receive(&sample));
+        too_long.take(WAITING).chain(received)
     }
 }
 
-fn hear<T: Wire>(sample: &Sample) -> Result<Heard<T>, WireError> {
+fn receive<T: Wire>(sample: &Sample) -> Result<FleetMessage<T>, WireError> {
     let robot = sample.key_expr().as_str().split('/').nth(1);
     let robot = network_payload::robot(robot.unwrap_or_default())?;
     let encoding = sample.encoding().to_string();
     let mut message = network_payload::decode::<T>(&encoding, &sample.payload().to_bytes())?;
     message.rebase(monotonic_ns());
-    Ok(Heard { robot, message })
+    Ok(FleetMessage { robot, message })
 }

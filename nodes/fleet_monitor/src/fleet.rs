@@ -1,20 +1,20 @@
-//! The robots that were heard.
+//! The robots from which something was received.
 
 use std::collections::BTreeMap;
 use std::sync::Arc;
 use std::sync::mpsc::Receiver;
 
-use dashboard::{Abilities, Robot, Robots, Wish};
+use dashboard::{Abilities, Request, Robot, Robots};
 use messages::topic;
 use network_payload::{Arrival, Arrivals, Preamble, Wire};
 use transport::{Graph, monotonic_ns};
 use zenoh::Session;
 
 use crate::FleetError;
-use crate::feed::{Feed, Heard};
-use crate::wishes::Wishes;
+use crate::feed::{Feed, FleetMessage};
+use crate::requests::Requests;
 
-/// All robots, as their bridges tell of them.
+/// All robots, as their bridges report them.
 pub(crate) struct Fleet {
     robots: Robots,
     members: BTreeMap<String, Member>,
@@ -23,8 +23,8 @@ pub(crate) struct Fleet {
 /// One robot.
 struct Member {
     robot: Arc<Robot>,
-    wished: Receiver<Wish>,
-    wishes: Wishes,
+    requested: Receiver<Request>,
+    requests: Requests,
     /// What came of each topic, by its name.
     arrivals: BTreeMap<&'static str, Arrivals>,
     /// There while somebody looks at it, for it is computed only then.
@@ -34,7 +34,7 @@ struct Member {
 /// What a message came to.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(crate) enum Taken {
-    /// It is shown; so many before it were lost on the way.
+    /// It is shown; this many before it were lost on the way.
     Shown {
         /// Messages of its sender.
         lost: u64,
@@ -45,63 +45,65 @@ pub(crate) enum Taken {
 
 /// A message that can be shown.
 pub(crate) trait Shown: Wire + Sized {
-    /// Tells it to the robot that it came from; else says what is wrong with it.
-    fn show(heard: &Heard<Self>, robot: &Robot) -> Result<(), &'static str>;
+    /// Passes it to the robot that it came from; else returns what is wrong with it.
+    fn show(received: &FleetMessage<Self>, robot: &Robot) -> Result<(), &'static str>;
 }
 
 impl Shown for topic::Map {
-    fn show(heard: &Heard<Self>, robot: &Robot) -> Result<(), &'static str> {
-        let message = &heard.message;
-        let is_sound = robot.hear_map(&message.header, &message.items);
-        is_sound.then_some(()).ok_or("a map contradicts its header")
+    fn show(received: &FleetMessage<Self>, robot: &Robot) -> Result<(), &'static str> {
+        let message = &received.message;
+        let is_sound = robot.on_map(&message.header, &message.items);
+        is_sound
+            .then_some(())
+            .ok_or("the map contradicts its header")
     }
 }
 
 impl Shown for topic::Hypotheses {
-    fn show(heard: &Heard<Self>, robot: &Robot) -> Result<(), &'static str> {
-        let message = &heard.message;
-        robot.hear_answer(&message.header, &message.items, monotonic_ns());
+    fn show(received: &FleetMessage<Self>, robot: &Robot) -> Result<(), &'static str> {
+        let message = &received.message;
+        robot.on_answer(&message.header, &message.items, monotonic_ns());
         Ok(())
     }
 }
 
 impl Shown for topic::Tracked {
-    fn show(heard: &Heard<Self>, robot: &Robot) -> Result<(), &'static str> {
-        let message = &heard.message;
-        robot.hear_pose(&message.header, &message.items, monotonic_ns());
+    fn show(received: &FleetMessage<Self>, robot: &Robot) -> Result<(), &'static str> {
+        let message = &received.message;
+        robot.on_pose(&message.header, &message.items, monotonic_ns());
         Ok(())
     }
 }
 
 impl Shown for topic::Beams {
-    fn show(heard: &Heard<Self>, robot: &Robot) -> Result<(), &'static str> {
-        robot.hear_beams(&heard.message.header, &heard.message.items);
+    fn show(received: &FleetMessage<Self>, robot: &Robot) -> Result<(), &'static str> {
+        robot.on_beams(&received.message.header, &received.message.items);
         Ok(())
     }
 }
 
 impl Shown for topic::Health {
-    fn show(heard: &Heard<Self>, robot: &Robot) -> Result<(), &'static str> {
-        let is_shown = robot.hear_health(&heard.message.header, &heard.message.items);
+    fn show(received: &FleetMessage<Self>, robot: &Robot) -> Result<(), &'static str> {
+        let is_shown = robot.on_health(&received.message.header, &received.message.items);
         let problem = "a report of more nodes than are shown";
         is_shown.then_some(()).ok_or(problem)
     }
 }
 
 impl Shown for topic::Log {
-    fn show(heard: &Heard<Self>, robot: &Robot) -> Result<(), &'static str> {
-        robot.hear_log(&heard.message.header, &heard.message.items);
+    fn show(received: &FleetMessage<Self>, robot: &Robot) -> Result<(), &'static str> {
+        robot.on_log(&received.message.header, &received.message.items);
         Ok(())
     }
 }
 
 impl Shown for topic::Field {
-    fn show(heard: &Heard<Self>, robot: &Robot) -> Result<(), &'static str> {
-        let message = &heard.message;
-        let is_sound = robot.hear_field(&message.header, &message.items);
+    fn show(received: &FleetMessage<Self>, robot: &Robot) -> Result<(), &'static str> {
+        let message = &received.message;
+        let is_sound = robot.on_field(&message.header, &message.items);
         is_sound
             .then_some(())
-            .ok_or("an image contradicts its header")
+            .ok_or("the image contradicts its header")
     }
 }
 
@@ -117,34 +119,34 @@ impl Fleet {
     /// Shows a message; its robot is known from then on.
     pub(crate) fn take<T: Shown>(
         &mut self,
-        heard: &Heard<T>,
-        join: impl FnOnce(&str) -> Result<Wishes, FleetError>,
+        received: &FleetMessage<T>,
+        join: impl FnOnce(&str) -> Result<Requests, FleetError>,
     ) -> Result<Taken, FleetError> {
-        if !self.members.contains_key(&heard.robot) {
-            self.welcome(&heard.robot, join)?;
+        if !self.members.contains_key(&received.robot) {
+            self.welcome(&received.robot, join)?;
         }
-        let member = self.members.get_mut(&heard.robot);
+        let member = self.members.get_mut(&received.robot);
         let member = member.ok_or_else(|| FleetError::TooMany {
-            robot: heard.robot.clone(),
+            robot: received.robot.clone(),
         })?;
-        member.take(heard)
+        member.take(received)
     }
 
     fn welcome(
         &mut self,
         name: &str,
-        join: impl FnOnce(&str) -> Result<Wishes, FleetError>,
+        join: impl FnOnce(&str) -> Result<Requests, FleetError>,
     ) -> Result<(), FleetError> {
-        let (robot, wished) = Robot::new(name.to_owned());
+        let (robot, requested) = Robot::new(name.to_owned());
         if !self.robots.add(Arc::clone(&robot)) {
             let robot = name.to_owned();
             return Err(FleetError::TooMany { robot });
         }
-        tracing::info!(robot = name, "a robot was heard");
+        tracing::info!(robot = name, "robot discovered");
         let member = Member {
             robot,
-            wished,
-            wishes: join(name)?,
+            requested,
+            requests: join(name)?,
             arrivals: BTreeMap::new(),
             field: None,
         };
@@ -152,8 +154,8 @@ impl Fleet {
         Ok(())
     }
 
-    /// Looks for silent nodes, opens and closes images, and passes wishes on: what
-    /// each wish came to.
+    /// Looks for silent nodes, opens and closes images, and passes requests on: what
+    /// each request came to.
     pub(crate) fn tick(
         &mut self,
         graph: &Graph,
@@ -162,14 +164,14 @@ impl Fleet {
         let mut granted = Vec::new();
         for (name, member) in &mut self.members {
             member.robot.look_for_silence(monotonic_ns());
-            member.robot.hear_abilities(member.wishes.abilities());
+            member.robot.on_abilities(member.requests.abilities());
             match (member.robot.is_field_viewed(), &member.field) {
                 (true, None) => member.field = Some(Feed::open(session, name, graph.waker()?)?),
                 (false, Some(_)) => member.field = None,
                 _ => {}
             }
-            while let Ok(wish) = member.wished.try_recv() {
-                granted.push(member.grant(wish));
+            while let Ok(request) = member.requested.try_recv() {
+                granted.push(member.grant(request));
             }
         }
         Ok(granted)
@@ -183,9 +185,9 @@ impl Fleet {
                 continue;
             };
             // A slow reader wants the newest, so what was pushed out is no loss.
-            for heard in field.waiting() {
-                let heard = heard.map_err(FleetError::from);
-                outcomes.push(heard.and_then(|heard| member.take(&heard)));
+            for received in field.waiting() {
+                let received = received.map_err(FleetError::from);
+                outcomes.push(received.and_then(|received| member.take(&received)));
             }
             member.field = Some(field);
         }
@@ -194,10 +196,10 @@ impl Fleet {
 }
 
 impl Member {
-    fn take<T: Shown>(&mut self, heard: &Heard<T>) -> Result<Taken, FleetError> {
+    fn take<T: Shown>(&mut self, received: &FleetMessage<T>) -> Result<Taken, FleetError> {
         let Preamble {
             sender, sequence, ..
-        } = heard.message.preamble;
+        } = received.message.preamble;
         let arrivals = self.arrivals.entry(Feed::<T>::NAME).or_default();
         let lost = match arrivals.note(sender, sequence) {
             Arrival::Repeated => return Ok(Taken::Repeated),
@@ -205,39 +207,35 @@ impl Member {
             Arrival::New { .. } if T::KEPT => 0,
             Arrival::New { lost } => lost,
         };
-        let shown = T::show(heard, &self.robot);
+        let shown = T::show(received, &self.robot);
         shown.map_err(|problem| FleetError::Unusable {
             problem,
-            robot: heard.robot.clone(),
+            robot: received.robot.clone(),
         })?;
         Ok(Taken::Shown { lost })
     }
 
-    fn grant(&mut self, wish: Wish) -> Result<(), FleetError> {
+    fn grant(&mut self, request: Request) -> Result<(), FleetError> {
         let robot = self.robot.name();
-        match wish {
-            Wish::Region(corners) => {
-                tracing::info!(
-                    robot,
-                    corners = corners.len(),
-                    "a region to search in was set"
-                );
-                self.wishes.region(&corners)?;
-                self.robot.hear_region(corners);
+        match request {
+            Request::Region(corners) => {
+                tracing::info!(robot, corners = corners.len(), "search region set");
+                self.requests.region(&corners)?;
+                self.robot.on_region(corners);
                 Ok(())
             }
-            Wish::Save => {
-                tracing::info!(robot, "the recorder is asked to save the last minutes");
-                self.wishes.save()
+            Request::Save => {
+                tracing::info!(robot, "asking the recorder to save the last minutes");
+                self.requests.save()
             }
         }
     }
 }
 
-impl Wishes {
-    /// Who would hear them.
+impl Requests {
+    /// Who subscribes to them.
     fn abilities(&self) -> Abilities {
-        let (region, save) = self.heard();
+        let (region, save) = self.subscribed();
         Abilities { region, save }
     }
 }

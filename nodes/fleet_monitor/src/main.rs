@@ -7,7 +7,7 @@ use fleet_monitor::Config;
 
 fn main() -> ExitCode {
     let config = Config::parse();
-    transport::node::main_hearing("fleet_monitor", zenoh_session::LOG, |graph| {
+    transport::node::main_with_log("fleet_monitor", zenoh_session::LOG, |graph| {
         fleet_monitor::run(graph, &config)
     })
 }

@@ -1,4 +1,4 @@
-//! Listens to the network, and lets the server tell.
+//! Subscribes on the network, and feeds the server.
 
 use std::time::Duration;
 
@@ -10,10 +10,10 @@ use zenoh_session::Report;
 
 use crate::feed::{ALL, Feed};
 use crate::fleet::{Fleet, Shown, Taken};
-use crate::wishes::Wishes;
+use crate::requests::Requests;
 use crate::{Config, FleetError};
 
-/// How long a wish, an image and a silent node may wait.
+/// How long a request, an image and a silent node may wait.
 const TICK: Duration = Duration::from_millis(50);
 
 /// Serves the page until the stop flag is set.
@@ -44,7 +44,7 @@ pub fn run(graph: &Graph, config: &Config) -> Result<(), FleetError> {
     })
 }
 
-/// The topics that are always heard.
+/// The topics that are always subscribed to.
 struct Inputs {
     maps: Feed<topic::Map>,
     hypotheses: Feed<topic::Hypotheses>,
@@ -86,19 +86,19 @@ impl Node {
             sender,
             report,
         } = self;
-        let mut desk = Desk {
+        let mut intake = Intake {
             session,
             fleet,
             sender: *sender,
             report,
         };
-        desk.take(&inputs.maps)?;
-        desk.take(&inputs.hypotheses)?;
-        desk.take(&inputs.poses)?;
-        desk.take(&inputs.beams)?;
-        desk.take(&inputs.health)?;
-        desk.take(&inputs.log)?;
-        desk.take_fields()?;
+        intake.take(&inputs.maps)?;
+        intake.take(&inputs.hypotheses)?;
+        intake.take(&inputs.poses)?;
+        intake.take(&inputs.beams)?;
+        intake.take(&inputs.health)?;
+        intake.take(&inputs.log)?;
+        intake.take_fields()?;
         if tick {
             for granted in fleet.tick(graph, session)? {
                 match granted {
@@ -112,21 +112,21 @@ impl Node {
 }
 
 /// What taking a message needs.
-struct Desk<'a> {
+struct Intake<'a> {
     session: &'a Session,
     fleet: &'a mut Fleet,
     sender: u64,
     report: &'a mut Report,
 }
 
-impl Desk<'_> {
+impl Intake<'_> {
     fn take<T: Shown>(&mut self, feed: &Feed<T>) -> Result<(), FleetError> {
         self.report.dropped(feed.dropped());
         let (session, sender) = (self.session, self.sender);
-        let join = |robot: &str| Wishes::open(session, robot, sender);
-        for heard in feed.waiting() {
-            let heard = heard.map_err(FleetError::from);
-            let outcome = heard.and_then(|heard| self.fleet.take(&heard, join));
+        let join = |robot: &str| Requests::open(session, robot, sender);
+        for message in feed.waiting() {
+            let message = message.map_err(FleetError::from);
+            let outcome = message.and_then(|message| self.fleet.take(&message, join));
             self.note(outcome)?;
         }
         Ok(())

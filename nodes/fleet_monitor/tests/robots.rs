@@ -1,4 +1,4 @@
-//! Several robots on one page, as they are heard over a network, and strangers who
+//! Several robots on one page, as they are received over a network, and unknown senders that
 //! send what they should not.
 #![allow(
     clippy::unwrap_used,
@@ -257,7 +257,7 @@ fn the_pose_of_a_robots_tracker_is_shown() {
 /// Times are given by the router through which robots send, one after the other, but
 /// their messages may overtake each other there.
 #[test]
-fn a_robot_is_heard_whose_message_was_overtaken_by_anothers() {
+fn a_robot_is_received_whose_message_was_overtaken_by_anothers() {
     let world = World::new("fleet-times");
     let (a, b) = (world.robot("a"), world.robot("b"));
     let (earlier, later) = (a.session.new_timestamp(), a.session.new_timestamp());
@@ -283,7 +283,7 @@ fn a_region_reaches_the_robot_that_it_was_set_for() {
             .declare_subscriber(network_payload::key::<topic::Region>(&robot.name));
         subscriber.history(history).wait().unwrap()
     };
-    let (heard, others) = (listen(&a), listen(&b));
+    let (received, others) = (listen(&a), listen(&b));
     world.wait_for("/api/v1/robots/a", |known| {
         known["abilities"]["region"] == true
     });
@@ -295,7 +295,7 @@ fn a_region_reaches_the_robot_that_it_was_set_for() {
     let body = r#"{"corners":[[0,0],[2,1]]}"#;
     assert_eq!(world.site.ask("PUT", path, &headers[..1], body).0, 401);
     assert_eq!(world.site.ask("PUT", path, &headers, body).0, 202);
-    let sample = heard.recv().unwrap();
+    let sample = received.recv().unwrap();
     let encoding = sample.encoding().to_string();
     let region =
         network_payload::decode::<topic::Region>(&encoding, &sample.payload().to_bytes()).unwrap();

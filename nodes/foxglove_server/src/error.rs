@@ -1,4 +1,4 @@
-//! What keeps the server from running.
+//! Errors that end the server.
 
 use std::net::SocketAddr;
 
@@ -19,7 +19,7 @@ pub enum ServerError {
     #[error("no thread can be started for viewers")]
     Start(#[source] std::io::Error),
     /// The thread for viewers has failed.
-    #[error("the thread that serves viewers has failed; its panic stands above")]
+    #[error("the thread that serves viewers has failed; see its panic above")]
     Thread,
     /// A channel cannot be opened.
     #[error("cannot show {topic}")]

@@ -1,4 +1,4 @@
-//! Listens to the graph, and shows what it says.
+//! Subscribes to the graph, and shows its messages.
 
 use std::sync::Arc;
 use std::time::Duration;

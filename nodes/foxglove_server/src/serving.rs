@@ -1,6 +1,6 @@
 //! The thread on which viewers are served.
 //!
-//! The library tells viewers of a channel before it notes for itself that they know it
+//! The library announces a channel to viewers before it records that they know it
 //! (foxglove 0.30.3, `ConnectedClient::advertise_channels`), so that a viewer who asks for
 //! the channel in between is refused: "Unknown channel ID". Viewers are therefore served
 //! by one thread, and channels are opened on that thread, too: what a viewer says is read

@@ -191,7 +191,7 @@ impl Viewer {
             subscribed: BTreeMap::new(),
         };
         while viewer.server.is_null() {
-            assert!(viewer.hear().is_none());
+            assert!(viewer.receive().is_none());
         }
         viewer
     }
@@ -210,7 +210,7 @@ impl Viewer {
     }
 
     /// Takes one message of the server: one of a channel, or a note that is kept.
-    fn hear(&mut self) -> Option<Shown> {
+    fn receive(&mut self) -> Option<Shown> {
         match self.socket.read().unwrap() {
             Message::Text(text) => {
                 let said: Value = serde_json::from_str(&text).unwrap();
@@ -242,21 +242,23 @@ impl Viewer {
     /// Subscribes to a topic, once it is offered.
     fn subscribe(&mut self, topic: &str) {
         while !self.channels.contains_key(topic) {
-            assert!(self.hear().is_none_or(|shown| shown.topic != topic));
+            assert!(self.receive().is_none_or(|shown| shown.topic != topic));
         }
         let number = self.subscribed.len() as u32 + 1;
         self.subscribed.insert(number, topic.to_owned());
-        let wish = json!({
+        let request = json!({
             "op": "subscribe",
             "subscriptions": [{"id": number, "channelId": self.channels[topic]["id"]}],
         });
-        self.socket.send(Message::text(wish.to_string())).unwrap();
+        self.socket
+            .send(Message::text(request.to_string()))
+            .unwrap();
     }
 
     /// The next message of a topic.
     fn next(&mut self, topic: &str) -> Shown {
         loop {
-            if let Some(shown) = self.hear().filter(|shown| shown.topic == topic) {
+            if let Some(shown) = self.receive().filter(|shown| shown.topic == topic) {
                 return shown;
             }
         }
@@ -276,7 +278,7 @@ fn a_viewer_sees_scans_and_poses_at_their_times() {
     assert_eq!(
         viewer.server["capabilities"],
         json!([]),
-        "it is told nothing"
+        "it receives nothing"
     );
     viewer.subscribe("/scan");
     let channel = &viewer.channels["/scan"];
@@ -289,7 +291,7 @@ fn a_viewer_sees_scans_and_poses_at_their_times() {
     assert!(definition.contains("float32[] ranges"), "{definition}");
     world.answer(0, 1.5);
     viewer.subscribe("/pose");
-    // Wishes are granted one after the other, and what is latched comes at once.
+    // Requests are granted one after the other, and what is latched comes at once.
     viewer.subscribe("/tf_static");
     viewer.next("/tf_static");
     for counter in 1..=3 {

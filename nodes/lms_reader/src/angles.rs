@@ -1,7 +1,7 @@
 //! Which way the device looks: as it is stated, or by the name that it says, or by the
 //! middle of its field.
 //!
-//! Pure but for the log, which tells once on what the answer rests.
+//! Pure but for the log, which says once what the answer is based on.
 
 use sick::cola::{AngleConvention, ConventionError, DeviceAngles, Field};
 
@@ -12,7 +12,7 @@ pub(crate) struct Angles {
     stated: Option<DeviceAngles>,
     read: DeviceAngles,
     /// What has been logged.
-    told: Option<AngleConvention>,
+    logged: Option<AngleConvention>,
 }
 
 impl Angles {
@@ -24,18 +24,18 @@ impl Angles {
     }
 
     /// The device says its name.
-    pub(crate) fn heard_name(&mut self, name: &[u8]) {
+    pub(crate) fn on_name(&mut self, name: &[u8]) {
         let read = DeviceAngles::of_name(name);
         if read != self.read {
             self.read = read;
-            self.told = None;
+            self.logged = None;
         }
     }
 
     /// Another device may come.
     pub(crate) fn forget_name(&mut self) {
         self.read = DeviceAngles::Unnamed;
-        self.told = None;
+        self.logged = None;
     }
 
     /// How the angles of a scan over `field` are to be read, and how far the device
@@ -47,13 +47,13 @@ impl Angles {
         let angles = self.stated.as_ref().unwrap_or(&self.read);
         let convention = angles.convention(field)?;
         let reach_m = angles.reach_m();
-        if self.told != Some(convention) {
-            self.tell(convention);
+        if self.logged != Some(convention) {
+            self.log(convention);
         }
         Ok((convention, reach_m))
     }
 
-    fn tell(&mut self, convention: AngleConvention) {
+    fn log(&mut self, convention: AngleConvention) {
         match self.stated.as_ref().unwrap_or(&self.read) {
             DeviceAngles::Known(row) => {
                 let stated = self.stated.is_some();
@@ -74,7 +74,7 @@ impl Angles {
                 );
             }
         }
-        self.told = Some(convention);
+        self.logged = Some(convention);
     }
 }
 
@@ -91,7 +91,7 @@ mod tests {
     fn a_statement_counts_more_than_the_name_and_that_more_than_the_field() {
         let mut angles = Angles::default();
         assert_eq!(angles.of(USUAL), Ok((AngleConvention::USUAL, 80.0)));
-        angles.heard_name(b"NAV310");
+        angles.on_name(b"NAV310");
         let (nav, reach_m) = angles.of(USUAL).unwrap();
         assert_eq!(
             (nav.ahead_deg, nav.clockwise, reach_m),
@@ -100,7 +100,7 @@ mod tests {
         angles.forget_name();
         assert_eq!(angles.of(USUAL), Ok((AngleConvention::USUAL, 80.0)));
         let mut angles = Angles::new(Some(DeviceAngles::of_name(b"TiM240")));
-        angles.heard_name(b"NAV310");
+        angles.on_name(b"NAV310");
         assert_eq!(angles.of(USUAL).unwrap().0.ahead_deg, 0.0);
     }
 }

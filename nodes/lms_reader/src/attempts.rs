@@ -1,4 +1,4 @@
-//! When to say something again that nobody answered.
+//! When to repeat an unanswered command.
 //!
 //! Pure: the caller says when.
 

@@ -5,19 +5,19 @@
 //! switched on. What comes in is late by an unknown delay, never early: the line
 //! under all arrivals of the last half minute is the device's clock, and the
 //! arrivals that touch it had the least delay. A constant part of the delay
-//! cannot be told from the clock's offset; it stays in.
+//! cannot be distinguished from the clock's offset; it stays in.
 
 use std::collections::VecDeque;
 
-/// Arrivals are gathered over so much time of the device, of which the one with
+/// Arrivals are gathered over this much time of the device, of which the one with
 /// the least delay counts, µs.
 const SLOT_US: i64 = 1_000_000;
 /// Slots that are looked back on.
 const SLOTS: usize = 32;
 /// The rates of clocks differ by at most this share: quartz by 1e-4, twice.
-const MOST_SKEW: f64 = 2e-4;
-/// By so much the two clocks may disagree from one telegram to the next before
-/// the device is taken to have started anew, µs: longer than any delay.
+const MAX_SKEW: f64 = 2e-4;
+/// By this much the two clocks may disagree from one telegram to the next before
+/// the device is taken to have started again, µs: longer than any delay.
 const LONGEST_DELAY_US: i64 = 1_000_000;
 
 /// An arrival: what the device counted, and how much later the host did.
@@ -64,7 +64,7 @@ impl DeviceClock {
         received_ns - (delay_us * 1e3) as i64
     }
 
-    /// Counts on beyond 32 bits; begins anew where the device did.
+    /// Counts on beyond 32 bits; begins again where the device did.
     fn unroll(&mut self, device_us: u32, received_ns: i64) -> i64 {
         let unrolled_us = match self.newest {
             Some((last, last_us, last_ns)) => {
@@ -112,7 +112,7 @@ impl DeviceClock {
         });
         match (edge, self.hull.first()) {
             (Some(&[from, to]), _) => {
-                let skew = slope(from, to).clamp(-MOST_SKEW, MOST_SKEW);
+                let skew = slope(from, to).clamp(-MAX_SKEW, MAX_SKEW);
                 from.offset_us + skew * (device_us - from.device_us) as f64
             }
             (_, Some(only)) => only.offset_us,
@@ -228,7 +228,7 @@ mod tests {
     }
 
     #[test]
-    fn a_device_that_starts_anew_is_not_held_to_its_past() {
+    fn a_device_that_starts_again_is_not_held_to_its_past() {
         let (mut world, mut clock) = (World::new(0.0, 0), DeviceClock::default());
         assert!(world.error_us(&mut clock, 0, 500) < 2);
         world.on_ns += 60_000_000 * US;

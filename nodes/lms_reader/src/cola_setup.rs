@@ -1,4 +1,4 @@
-//! What is said to a CoLa device before its scans come.
+//! Setting up a CoLa device before it sends scans.
 //!
 //! Pure: answers and the time in, the next command out. It asks what the device
 //! is, changes what the configuration asks for and nothing else, reads it back,
@@ -8,14 +8,14 @@ use std::collections::VecDeque;
 
 use sick::cola::{
     AUTHORIZED_CLIENT, Answer, Command, DeviceAngles, Field, Method, OutputRange,
-    PASSWORD_AUTHORIZED_CLIENT, ScanConfig, ScanDataConfig, Value, Variable,
+    PASSWORD_AUTHORIZED_CLIENT, ScanConfig, ScanDataConfig, Value, Variable, state_word,
 };
 
 use crate::LmsError;
 use crate::attempts::{Attempt, Attempts, TRIES};
 
 /// How long most answers may take.
-const PATIENCE_NS: i64 = 1_000_000_000;
+const TIMEOUT_NS: i64 = 1_000_000_000;
 /// The mirror may have to change its speed.
 const SLOW_NS: i64 = 10_000_000_000;
 
@@ -47,7 +47,7 @@ enum Step {
     ReadScanConfig,
     SetResolution,
     CheckResolution,
-    /// Before the field is changed, for afterwards it tells no more.
+    /// Before the field is changed, for afterwards it no longer says so.
     CheckAhead,
     ReadRange,
     SetRange,
@@ -124,7 +124,7 @@ impl Setup {
             let patience_ns = if step == Step::SetResolution {
                 SLOW_NS
             } else {
-                PATIENCE_NS
+                TIMEOUT_NS
             };
             match self.attempts.next(now_ns, patience_ns) {
                 Attempt::Send => return Ok(Some(command)),
@@ -144,14 +144,14 @@ impl Setup {
     /// Takes an answer; what does not belong to the last command is let pass.
     ///
     /// # Errors
-    /// If the device refuses, or has other settings than it was told.
-    pub(crate) fn hear(&mut self, answer: &Answer<'_>) -> Result<(), LmsError> {
+    /// If the device refuses, or has other settings than requested.
+    pub(crate) fn receive(&mut self, answer: &Answer<'_>) -> Result<(), LmsError> {
         let Some(&step) = self.steps.front() else {
             return Ok(());
         };
-        let heard = match (step, answer) {
+        let received = match (step, answer) {
             (_, Answer::Fault(fault)) if step.is_optional() => {
-                tracing::debug!(%fault, ?step, "the device does not say");
+                tracing::debug!(%fault, ?step, "the device does not report it");
                 true
             }
             (_, Answer::Fault(fault)) => {
@@ -168,31 +168,28 @@ impl Setup {
                 }),
             ) => {
                 let (name, version) = (name_bytes.escape_ascii(), version.escape_ascii());
-                tracing::info!(%name, %version, "the device says what it is");
+                tracing::info!(%name, %version, "device identified");
                 if !self.is_stated {
                     self.angles = DeviceAngles::of_name(name_bytes);
                 }
                 true
             }
             (Step::AskState, Answer::Value(Value::DeviceState(state))) => {
-                tracing::info!(
-                    state,
-                    "the device says how it fares: 0 busy, 1 ready, 2 error, 3 standby"
-                );
+                tracing::info!("device state: {}", state_word(*state));
                 true
             }
             (Step::Login, Answer::AccessMode(success)) => done("log in", *success)?,
             (Step::Run, Answer::Running(success)) => done("run", *success)?,
             (Step::Subscribe, Answer::ScansSubscribed(on)) => done("send scans", *on)?,
-            _ => self.hear_settings(step, answer)?,
+            _ => self.on_settings(step, answer)?,
         };
-        if heard {
+        if received {
             self.advance();
         }
         Ok(())
     }
 
-    fn hear_settings(&mut self, step: Step, answer: &Answer<'_>) -> Result<bool, LmsError> {
+    fn on_settings(&mut self, step: Step, answer: &Answer<'_>) -> Result<bool, LmsError> {
         match (step, answer) {
             (Step::ReadScanConfig, Answer::Value(Value::ScanConfig(config))) => {
                 self.scan = Some(*config);
@@ -214,7 +211,7 @@ impl Setup {
                     config.start_angle_raw_1e4_deg,
                     config.stop_angle_raw_1e4_deg,
                 );
-                self.heard_field(Field::between(start, stop))?;
+                self.on_field(Field::between(start, stop))?;
                 Ok(true)
             }
             (Step::ReadRange, Answer::Value(Value::OutputRange(range))) => {
@@ -223,7 +220,7 @@ impl Setup {
             }
             (Step::SetRange, Answer::Written(Variable::OutputRange)) => Ok(true),
             (Step::ReadContents, Answer::Value(Value::ScanDataConfig(contents))) => {
-                self.heard_contents(*contents);
+                self.on_contents(*contents);
                 Ok(true)
             }
             (Step::AddTime, Answer::Written(Variable::ScanDataConfig)) => Ok(true),
@@ -237,7 +234,7 @@ impl Setup {
         }
     }
 
-    /// Where the name tells which way the device looks, nothing else is asked; where
+    /// If the name defines which way the device looks, nothing else is asked; where
     /// not even that helps, the setting stays as it is.
     fn skip_check(&mut self) -> Result<(), LmsError> {
         if self.steps.front() != Some(&Step::CheckAhead) {
@@ -251,13 +248,13 @@ impl Setup {
             }
             (None, None) => return Ok(()),
         };
-        self.heard_field(whole)?;
+        self.on_field(whole)?;
         self.advance();
         Ok(())
     }
 
     /// The whole field that the device measures.
-    fn heard_field(&mut self, whole: Field) -> Result<(), LmsError> {
+    fn on_field(&mut self, whole: Field) -> Result<(), LmsError> {
         let convention = self.angles.convention(whole)?;
         self.ahead_raw = Some((convention.ahead_deg * 1e4).round() as i32);
         Ok(())
@@ -269,7 +266,7 @@ impl Setup {
     }
 
     /// The time is asked for where the device leaves it out.
-    fn heard_contents(&mut self, contents: ScanDataConfig) {
+    fn on_contents(&mut self, contents: ScanDataConfig) {
         self.contents = Some(contents);
         if contents.time {
             return;

@@ -1,4 +1,4 @@
-//! What a user can set.
+//! Command-line options.
 
 use std::path::PathBuf;
 
@@ -27,33 +27,33 @@ pub struct Config {
     #[arg(long, value_enum, default_value_t = Encoding::Binary, conflicts_with = "serial")]
     pub protocol: Encoding,
 
-    /// The baud rate that the serial device is switched to: 9600, 19200, 38400
-    /// or 500000. Left out, the one at which it answers is kept.
+    /// The baud rate to switch the serial device to: 9600, 19200, 38400 or 500000
+    /// [default: the rate at which it answers].
     #[arg(long, value_name = "RATE", value_parser = baud, conflicts_with_all = ["tcp", "capture"])]
     pub baud: Option<Baud>,
 
-    /// Degrees that a scan covers, half of them to each side: 100 or 180 with
-    /// --serial, else up to 360. Left out, the device's setting is kept.
+    /// Field of view, degrees, half of it to each side: 100 or 180 with --serial, else
+    /// up to 360 [default: the device's setting].
     #[arg(long, value_name = "DEGREES", value_parser = field, conflicts_with = "capture")]
     pub field: Option<f64>,
 
-    /// Degrees from beam to beam: 0.25, 0.5 or 1 with --serial, else whatever
-    /// the device can. Left out, the device's setting is kept.
+    /// Angle between beams, degrees: 0.25, 0.5 or 1 with --serial, else whatever the
+    /// device supports [default: the device's setting].
     #[arg(long, value_name = "DEGREES", value_parser = resolution, conflicts_with = "capture")]
     pub resolution: Option<f64>,
 
-    /// Metres that the serial device measures: 8, 16 or 32 in millimetres, 80
-    /// in centimetres. Left out, its setting is kept; else it is written to the
-    /// device's memory, which lasts for some 10,000 times.
+    /// Range of the serial device, metres: 8, 16 or 32 in millimetres, 80 in
+    /// centimetres [default: the device's setting]. It is written to the device's
+    /// memory, which lasts for some 10,000 writes.
     #[arg(long, value_name = "METRES", value_parser = range, conflicts_with_all = ["tcp", "capture"])]
     pub range: Option<Reach>,
 
-    /// A file of CoLa telegrams back to back, instead of a device. At its end
-    /// the node waits for subscribers to take the last scans, up to 30 seconds.
+    /// A file of CoLa telegrams back to back, instead of a device. At its end the node
+    /// waits for subscribers to read the last scans, up to 30 seconds.
     #[arg(long, value_name = "FILE")]
     pub capture: Option<PathBuf>,
 
-    /// Starts the capture over at its end.
+    /// Repeats the capture.
     #[arg(long = "loop", conflicts_with_all = ["tcp", "serial"])]
     pub looped: bool,
 
@@ -61,26 +61,27 @@ pub struct Config {
     #[arg(long, value_enum, default_value_t = Rate::Device, conflicts_with_all = ["tcp", "serial"])]
     pub rate: Rate,
 
-    /// Whether to speak to a device on the network: read what it is, set it up
-    /// as asked and start the scans (`sEN LMDscandata 1`). Else it only listens.
+    /// Whether to send commands to a device on the network: identify it, configure it
+    /// and start the scans (`sEN LMDscandata 1`). Else the node only receives.
     #[arg(long, value_name = "BOOL", default_value_t = true, action = ArgAction::Set)]
     pub start_stream: bool,
 
-    /// Whose time a scan of --tcp or --capture gets.
+    /// Whose clock stamps a scan of --tcp or --capture.
     #[arg(long, value_enum, default_value_t = Stamps::Host, conflicts_with = "serial")]
     pub stamps: Stamps,
 
-    /// Ends when the device closes the connection after it has sent scans,
-    /// instead of connecting anew: for devices that play a recording.
+    /// Ends when the device closes the connection after it has sent scans, instead of
+    /// reconnecting: for devices that play a recording.
     #[arg(long, conflicts_with_all = ["serial", "capture"])]
     pub until_closed: bool,
 
-    /// Seconds without a byte (--tcp) or a telegram (--serial) after which a connection is given up, 0.2 to 3600.
+    /// Timeout after which the connection is closed if no byte (--tcp) or telegram
+    /// (--serial) is received, seconds, 0.2 to 3600.
     #[arg(long, value_name = "SECONDS", default_value_t = 5.0, value_parser = silence)]
     pub silence: f64,
 
-    /// Where the laser sits on the robot: metres ahead, metres to the left,
-    /// degrees counter-clockwise. Left out where it is not known.
+    /// Where the laser sits on the robot: metres ahead, metres to the left, degrees
+    /// counter-clockwise [default: unknown].
     #[arg(long, value_name = "X,Y,YAW_DEG", value_parser = mount, allow_hyphen_values = true)]
     pub mount: Option<Pose2>,
 
@@ -106,9 +107,9 @@ pub struct Config {
     #[arg(long, value_name = "METRES", value_parser = metres)]
     pub range_max_m: Option<f32>,
 
-    /// The device of --tcp or --capture by its name, such as TiM240 or NAV310: it
-    /// tells which of its angles points ahead and which way they grow. Left out,
-    /// the name that the device says is taken.
+    /// The device of --tcp or --capture by its name, such as TiM240 or NAV310, which
+    /// defines the angle that points ahead and the direction of the angles [default:
+    /// the name that the device reports].
     #[arg(long, value_name = "NAME", value_parser = device, conflicts_with = "serial")]
     pub device: Option<&'static KnownDevice>,
 

@@ -1,4 +1,4 @@
-//! Everything that can go wrong between a device and `scan`.
+//! Errors between a device and topic `scan`.
 //!
 //! An error names the place: bytes of the stream count from its start, bytes of
 //! a telegram from the first one of its content.
@@ -49,14 +49,14 @@ pub enum LmsError {
         found: String,
     },
     /// The device refused a command.
-    #[error("the device refuses {command} with CoLa error {fault}")]
+    #[error("the device rejects {command} with CoLa error {fault}")]
     Fault {
         /// What was sent.
         command: String,
         /// Its answer.
         fault: Fault,
     },
-    /// The device answered that it did not do what it was told.
+    /// The device answered that it did not execute the command.
     #[error("the device did not {what}: it answers {found}, expected is {expected}")]
     Refused {
         /// What was asked for.
@@ -75,13 +75,13 @@ pub enum LmsError {
         tries: u32,
     },
     /// No baud rate brought an answer.
-    #[error("no answer at any baud rate ({}); check power, wiring and that nobody else has the port", rates.iter().map(u32::to_string).collect::<Vec<_>>().join(", "))]
+    #[error("no answer at any baud rate ({}); check power, wiring and that no other program uses the port", rates.iter().map(u32::to_string).collect::<Vec<_>>().join(", "))]
     NoBaud {
         /// Those that were tried.
         rates: Vec<u32>,
     },
-    /// The device was started anew and has to be set up again.
-    #[error("the device was started anew")]
+    /// The device was started again and has to be set up again.
+    #[error("the device was restarted")]
     Restarted,
     /// The device is not in order; its scans are sent all the same.
     #[error(
@@ -123,7 +123,7 @@ pub enum LmsError {
         address: String,
     },
     /// The device is connected but says nothing.
-    #[error("{address}: nothing came for {seconds} s; the connection is given up")]
+    #[error("{address}: no data for {seconds} s; closing the connection")]
     Silent {
         /// As configured.
         address: String,

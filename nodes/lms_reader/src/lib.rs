@@ -4,7 +4,7 @@
 //! messages; `cola_setup` and `lms2xx_setup` say what is asked of a device before
 //! scans come; `angles` say which way it looks; `clock` brings the device's time to the
 //! host's; all pure. `run` reads from the device or a capture and sends. A device is
-//! told to send scans; its settings stay as they are unless the configuration asks for
+//! started to send scans; its settings stay as they are unless the configuration asks for
 //! others.
 
 mod angles;
@@ -12,9 +12,9 @@ mod attempts;
 mod backoff;
 mod clock;
 mod cola_setup;
-mod complaints;
 mod config;
 mod error;
+mod error_limit;
 mod lms2xx_scan;
 mod lms2xx_setup;
 mod pace;

@@ -1,6 +1,6 @@
 //! From the readings of an LMS2xx to the message of topic `scan`.
 //!
-//! Pure: the caller says when the telegram came. It tells distances from codes
+//! Pure: the caller says when the telegram came. It distinguishes distances from codes
 //! and decides nothing else.
 
 use messages::{Pose2, ScanHeader, Stamp};

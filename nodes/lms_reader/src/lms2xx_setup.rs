@@ -1,9 +1,9 @@
-//! What is said to an LMS2xx before its scans come.
+//! Setting up an LMS2xx before it sends scans.
 //!
 //! Pure: answers and the time in, the next action out. The device keeps its baud
 //! rate while it has power, so each is tried until it answers. Then it is asked
 //! what it is and how it measures, changed where the configuration asks for it,
-//! read back, and told to send every scan.
+//! read back, and set to send every scan.
 
 use std::collections::VecDeque;
 
@@ -15,7 +15,7 @@ use crate::attempts::{Attempt, Attempts, TRIES};
 use crate::{LmsError, Reach};
 
 /// How long most answers may take: two scans may be under way at 38400 baud.
-const PATIENCE_NS: i64 = 700_000_000;
+const TIMEOUT_NS: i64 = 700_000_000;
 /// The device writes its memory.
 const SLOW_NS: i64 = 15_000_000_000;
 
@@ -115,7 +115,7 @@ impl Setup {
         }
         let patience_ns = match step {
             Step::SetConfiguration => SLOW_NS,
-            _ => PATIENCE_NS,
+            _ => TIMEOUT_NS,
         };
         let command = self.command(step);
         match self.attempts.next(now_ns, patience_ns) {
@@ -148,8 +148,8 @@ impl Setup {
     /// Takes an answer; what does not belong to the last command is let pass.
     ///
     /// # Errors
-    /// If the device refuses, or has other settings than it was told.
-    pub(crate) fn hear(&mut self, answer: &Answer<'_>) -> Result<(), LmsError> {
+    /// If the device refuses, or has other settings than requested.
+    pub(crate) fn receive(&mut self, answer: &Answer<'_>) -> Result<(), LmsError> {
         let Some(&step) = self.steps.front() else {
             return Ok(());
         };
@@ -163,12 +163,12 @@ impl Setup {
                 self.baud = None;
             }
             (Step::AskType, Answer::Type(text)) => {
-                tracing::info!(device = %text.escape_ascii(), "the device says what it is");
+                tracing::info!(device = %text.escape_ascii(), "device identified");
             }
-            (Step::AskStatus, Answer::Status(status)) => self.heard_status(status),
-            (Step::SetVariant, Answer::VariantSet { .. }) => self.heard_variant(answer)?,
+            (Step::AskStatus, Answer::Status(status)) => self.on_status(status),
+            (Step::SetVariant, Answer::VariantSet { .. }) => self.on_variant(answer)?,
             (Step::AskConfiguration, Answer::Configuration(configuration)) => {
-                self.heard_configuration(*configuration);
+                self.on_configuration(*configuration);
             }
             (Step::Install, Answer::ModeSet(result)) => {
                 done("enter the installation mode", *result == 0, result)?;
@@ -194,7 +194,7 @@ impl Setup {
     fn hailed(&mut self) {
         let found = self.tried.last().copied().and_then(Baud::from_rate);
         self.baud = found;
-        tracing::info!(baud = found.map(Baud::rate), "the device answers");
+        tracing::info!(baud = found.map(Baud::rate), "the device answered");
         self.steps = match self.wanted.baud {
             Some(wanted) if found != Some(wanted) => {
                 VecDeque::from([Step::Hail, Step::SwitchBaud(wanted)])
@@ -209,7 +209,7 @@ impl Setup {
         };
     }
 
-    fn heard_status(&mut self, status: &DeviceStatus) {
+    fn on_status(&mut self, status: &DeviceStatus) {
         let width = self.wanted.width_deg.unwrap_or(status.width_deg);
         let resolution = self.wanted.resolution_raw_1e2_deg;
         let resolution = resolution.unwrap_or(status.resolution_raw_1e2_deg);
@@ -221,12 +221,12 @@ impl Setup {
             field_deg = status.width_deg,
             resolution_deg = f64::from(status.resolution_raw_1e2_deg) * 0.01,
             error = status.has_error,
-            "the device says how it measures"
+            "device configuration"
         );
         self.status = Some(*status);
     }
 
-    fn heard_variant(&mut self, answer: &Answer<'_>) -> Result<(), LmsError> {
+    fn on_variant(&mut self, answer: &Answer<'_>) -> Result<(), LmsError> {
         let wanted = self.wanted_variant();
         if let (
             Answer::VariantSet {
@@ -248,7 +248,7 @@ impl Setup {
         Ok(())
     }
 
-    fn heard_configuration(&mut self, configuration: Configuration) {
+    fn on_configuration(&mut self, configuration: Configuration) {
         self.configuration = Some(configuration);
         if self.wanted_configuration() != Some(configuration) {
             self.steps.insert(1, Step::Install);

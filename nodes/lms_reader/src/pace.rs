@@ -5,7 +5,7 @@
 
 use std::time::Duration;
 
-/// A gap that is believed; beyond it the device was started anew or the
+/// A gap that is believed; beyond it the device was restarted or the
 /// capture was, and the usual step stands in.
 const LONGEST_GAP_US: u32 = 10_000_000;
 

@@ -32,7 +32,7 @@ pub fn run(graph: &Graph, config: &Config) -> Result<(), LmsError> {
     }
 }
 
-/// Opens and reads a device anew, later each time that no scan came of it, until
+/// Opens and reads a device again, later each time that no scan came of it, until
 /// reading ends with success.
 fn keep(
     outlet: &mut Outlet,

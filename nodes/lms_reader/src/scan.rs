@@ -1,7 +1,7 @@
 //! From a scan telegram to the message of topic `scan`.
 //!
 //! Pure: the caller says when the telegram came. It decides nothing about what
-//! a range is good for; it only tells readings from codes.
+//! a range is good for; it only distinguishes readings from codes.
 
 use messages::{FrameName, Name, Pose2, ScanHeader, Stamp};
 use sick::cola::{AngleConvention, Channel, Field, LmdScanData, sweep_us};

@@ -213,5 +213,5 @@ fn a_silent_device_is_given_up_and_tried_again() {
     let _again = accept(&listener);
     node.interrupt();
     let (_, log) = node.finish();
-    assert!(log.contains("nothing came for 0.2 s"), "{log}");
+    assert!(log.contains("no data for 0.2 s"), "{log}");
 }

@@ -40,13 +40,13 @@ struct Config {
     #[arg(long)]
     recording: Option<PathBuf>,
 
-    /// Questions that are open at the same time
+    /// Requests that are open at the same time
     #[arg(long, default_value_t = 8)]
     callers: usize,
 
     /// How many are asked
     #[arg(long, default_value_t = 1000)]
-    questions: usize,
+    requests: usize,
 
     #[command(flatten)]
     network: zenoh_session::Options,
@@ -58,8 +58,8 @@ struct Config {
 
 fn main() {
     let config = Config::parse();
-    let is_told_whom_to_ask = config.network.config.is_some() || !config.network.connect.is_empty();
-    if is_told_whom_to_ask {
+    let has_address = config.network.config.is_some() || !config.network.connect.is_empty();
+    if has_address {
         load(&config);
     } else {
         compare();
@@ -152,7 +152,7 @@ fn load(config: &Config) {
         for caller in 0..config.callers {
             let (times, config) = (&times, &config);
             scope.spawn(move || {
-                for i in (caller..config.questions).step_by(config.callers) {
+                for i in (caller..config.requests).step_by(config.callers) {
                     let time = ask(i);
                     times.lock().unwrap().push(time);
                 }

@@ -43,9 +43,9 @@ pub fn ask(
         sequence: header.stamp.counter,
         clock_ns: monotonic_ns(),
     };
-    let question = network_payload::encode::<topic::Scan>(&preamble, header, ranges)?;
+    let request = network_payload::encode::<topic::Scan>(&preamble, header, ranges)?;
     let due = Instant::now() + deadline;
-    let (events, heard) = unbounded();
+    let (events, received) = unbounded();
     // How many attempts are under way, and when to make the next one.
     let (mut open, mut next) = (0, Instant::now());
     loop {
@@ -55,11 +55,11 @@ pub fn ask(
             return Err(LocateError::Late { deadline_ms });
         }
         if now >= next {
-            attempt(session, map, &question, due - now, events.clone())?;
+            attempt(session, map, &request, due - now, events.clone())?;
             // No deadline is so far that this overflows.
             (open, next) = (open + 1, now + SILENCE * 2_u32.pow(open));
         }
-        let Ok(event) = heard.recv_deadline(next.min(due)) else {
+        let Ok(event) = received.recv_deadline(next.min(due)) else {
             continue;
         };
         match event {
@@ -81,22 +81,22 @@ fn answer(sample: &Sample) -> Result<Received<topic::Hypotheses>, LocateError> {
     Ok(answer)
 }
 
-/// What an attempt hears; None, at last, when nobody will say any more.
+/// What an attempt receives; None, at last, when nobody will answer any more.
 type Event = Option<Result<Sample, ReplyError>>;
 
 /// An attempt under way, until Zenoh drops it.
 struct Attempt(Sender<Event>);
 
 impl Attempt {
-    fn hears(&self, event: Event) {
-        // Where nobody listens, the question has its answer.
+    fn deliver(&self, event: Event) {
+        // Where nobody listens, the request has its answer.
         let _ = self.0.send(event);
     }
 }
 
 impl Drop for Attempt {
     fn drop(&mut self) {
-        self.hears(None);
+        self.deliver(None);
     }
 }
 
@@ -104,7 +104,7 @@ impl Drop for Attempt {
 fn attempt(
     session: &Session,
     map: &str,
-    question: &[u8],
+    request: &[u8],
     remaining: Duration,
     events: Sender<Event>,
 ) -> Result<(), LocateError> {
@@ -113,10 +113,10 @@ fn attempt(
     let attempt = Attempt(events);
     session
         .get(format!("{key}?deadline_ms={milliseconds}"))
-        .payload(question)
+        .payload(request)
         .encoding(Encoding::from(network_payload::encoding::<topic::Scan>()))
         .timeout(remaining)
-        .callback(move |reply| attempt.hears(Some(reply.into_result())))
+        .callback(move |reply| attempt.deliver(Some(reply.into_result())))
         .wait()
         .map_err(KeyError::when("ask", &key))?;
     Ok(())

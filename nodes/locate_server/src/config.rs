@@ -1,4 +1,4 @@
-//! What a user can set.
+//! Command-line options.
 
 use std::num::NonZeroUsize;
 use std::path::PathBuf;
@@ -10,10 +10,10 @@ use engine::grid::CellRules;
 use engine::localizer::LocalizerConfig;
 use engine::peaks::PeakConfig;
 
-/// Answers scans with places on a map, for whoever asks over Zenoh.
+/// Locates scans on a map, for clients on Zenoh.
 ///
-/// Listens on this machine alone unless told otherwise. Any number of servers may
-/// answer for one map: each hands on what it has no time for.
+/// Listens on this machine only by default. Any number of servers may answer for one
+/// map: each passes on the requests that it has no time for.
 #[derive(Debug, Clone, Parser)]
 #[command(name = "locate_server", version)]
 pub struct Config {
@@ -21,22 +21,23 @@ pub struct Config {
     #[arg(long, value_name = "FILE")]
     pub map: PathBuf,
 
-    /// What the map is called, the last part of backcast/locate/NAME: 1 to 64 of
-    /// a-z A-Z 0-9 - _ . [default: that of the folder in which the map lies]
+    /// The map's name, the last part of backcast/locate/NAME: 1 to 64 of a-z A-Z 0-9 -
+    /// _ . [default: that of the folder in which the map lies]
     #[arg(long, value_name = "NAME", value_parser = network_payload::name)]
     pub name: Option<String>,
 
-    /// Scans that are searched at the same time, 1 to 256 [default: one a core]
+    /// Number of scans that are searched at the same time, 1 to 256 [default: one per
+    /// core]
     #[arg(long, value_name = "COUNT", value_parser = clap::value_parser!(u16).range(1..=256))]
     pub workers: Option<u16>,
 
-    /// Scans that may wait for each of them, 0 to 1000; further ones are answered
-    /// with "busy"
+    /// Number of scans that may wait for each of them, 0 to 1000; further ones are
+    /// answered with "busy"
     #[arg(long, value_name = "COUNT", default_value_t = 4, value_parser = clap::value_parser!(u16).range(0..=1000))]
     pub waiting: u16,
 
-    /// How long an answer may take where the question does not say, 0.01 to 60
-    /// seconds; what cannot be answered in time is not searched
+    /// Timeout of an answer if the request names none, 0.01 to 60 seconds; a scan that
+    /// cannot be answered in time is not searched
     #[arg(long, value_name = "SECONDS", default_value = "2", value_parser = deadline)]
     pub deadline: Duration,
 

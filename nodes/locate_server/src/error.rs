@@ -1,4 +1,4 @@
-//! What keeps a scan from being answered, or the server from running.
+//! Errors that reject a request, and those that end the server.
 
 use std::path::PathBuf;
 
@@ -8,7 +8,7 @@ use network_payload::WireError;
 use transport::TransportError;
 use zenoh_session::{KeyError, NetworkError};
 
-use crate::question::ENCODINGS;
+use crate::request::ENCODINGS;
 
 /// What was tried, what was found and what is allowed.
 #[derive(Debug, thiserror::Error)]
@@ -38,49 +38,49 @@ pub enum LocateError {
     /// The graph fails.
     #[error(transparent)]
     Transport(#[from] TransportError),
-    /// The question is in no form that is known.
-    #[error("the question is {found:?}: allowed are {}", ENCODINGS.join(" and "))]
+    /// The request is in no form that is known.
+    #[error("the request is {found:?}: allowed are {}", ENCODINGS.join(" and "))]
     Encoding {
         /// What it says of itself, cut to a few words.
         found: String,
     },
-    /// The question is longer than a scan can be.
-    #[error("a question of {found} bytes: allowed are at most {most}")]
+    /// The request is longer than a scan can be.
+    #[error("a request of {found} bytes: allowed are at most {most}")]
     TooLong {
         /// Bytes.
         found: usize,
         /// Most bytes.
         most: usize,
     },
-    /// A question in postcard, or an answer, that is not sound.
+    /// A request in postcard, or an answer, that is not sound.
     #[error(transparent)]
     Wire(#[from] WireError),
-    /// A question in JSON that is not sound.
-    #[error("the question is no scan in JSON")]
+    /// A request in JSON that is not sound.
+    #[error("the request is not a scan in JSON")]
     Json(#[from] serde_json::Error),
-    /// `deadline_ms` of the question is not a time.
+    /// `deadline_ms` of the request is not a time.
     #[error("deadline_ms={found:?}: allowed are 1 to 60000")]
     Deadline {
         /// What was found.
         found: String,
     },
     /// The scan is none that the engine can use.
-    #[error("the scan is refused")]
+    #[error("the scan is rejected")]
     Scan(#[from] EngineError),
     /// All servers have as much to do as they take on.
-    #[error("busy: {waiting} scans are being searched or wait, and more are not taken on")]
+    #[error("busy: {waiting} scans are being searched or waiting, which is the limit")]
     Busy {
         /// At the server that was asked.
         waiting: usize,
     },
     /// The answer would have come after the deadline.
-    #[error("late: there was no answer within {deadline_ms} ms")]
+    #[error("late: no answer within {deadline_ms} ms")]
     Late {
         /// As asked, milliseconds.
         deadline_ms: u128,
     },
     /// A server says so.
-    #[error("the server refuses: {says}")]
+    #[error("the server rejects the request: {says}")]
     Refused {
         /// In its words.
         says: String,

@@ -2,19 +2,19 @@
 //! scan, and gets its places on that map.
 //!
 //! Any number of servers may answer for one map, on any machines. Zenoh brings a
-//! question to one of them, which hands on what it has no free worker for; the
+//! request to one of them, which hands on what it has no free worker for; the
 //! caller gets one answer. Each takes on as much as its queue holds and says "busy"
 //! beyond that; what cannot be answered before its deadline is not searched. Nothing
-//! is kept from one question to the next: who wants to be tracked runs the graph.
+//! is kept from one request to the next: who wants to be tracked runs the graph.
 
 mod client;
 mod config;
 mod counts;
-mod desk;
+mod dispatcher;
 mod error;
 mod json;
 mod locator;
-mod question;
+mod request;
 mod run;
 mod team;
 mod worker;
@@ -23,5 +23,5 @@ pub use client::ask;
 pub use config::Config;
 pub use error::{BUSY, LATE, LocateError, REFUSED};
 pub use locator::{Answer, Locator, Workspace};
-pub use question::{Form, JSON, JSON_ANSWER, Question, read, write};
+pub use request::{Form, JSON, JSON_ANSWER, Request, read, write};
 pub use run::run;

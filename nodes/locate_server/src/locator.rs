@@ -7,7 +7,7 @@ use engine::grid::{CellRules, GridFrame};
 use engine::localizer::Prior;
 pub use engine::locator::Workspace;
 use engine::locator::{LocatorConfig, OccupancyView};
-use engine::peaks::{Places, Sought};
+use engine::peaks::{Places, Target};
 use engine::scan::Scan;
 use map::OccupancyGrid;
 use messages::{HypothesesHeader, Hypothesis, ScanHeader};
@@ -80,7 +80,7 @@ fn described(
     places: &Places,
 ) -> Answer {
     let mount_known = scan.mount_known == 1;
-    let sought = Sought::of(mount_known.then(|| scan.base_from_laser.into()), false);
+    let target = Target::of(mount_known.then(|| scan.base_from_laser.into()), false);
     let header = HypothesesHeader {
         stamp: scan.stamp,
         map_id,
@@ -94,6 +94,6 @@ fn described(
         ..HypothesesHeader::zeroed()
     };
     let places = places.places.iter();
-    let hypotheses = places.map(|place| place.hypothesis(map_id, sought));
+    let hypotheses = places.map(|place| place.hypothesis(map_id, target));
     (header, hypotheses.collect())
 }

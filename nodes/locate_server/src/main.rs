@@ -6,7 +6,7 @@ use locate_server::Config;
 
 fn main() -> ExitCode {
     let config = Config::from_command_line();
-    transport::node::main_hearing("locate_server", zenoh_session::LOG, |graph| {
+    transport::node::main_with_log("locate_server", zenoh_session::LOG, |graph| {
         locate_server::run(graph, &config)
     })
 }

@@ -1,4 +1,4 @@
-//! Prepares the map, opens the desk, and reports what goes on there.
+//! Prepares the map, opens the dispatcher, and reports its state.
 
 use std::sync::Arc;
 use std::time::{Duration, Instant};
@@ -14,14 +14,14 @@ use zenoh::{Result as ZenohResult, Session, Wait};
 use zenoh_session::KeyError;
 
 use crate::counts::Counts;
-use crate::desk::Desk;
+use crate::dispatcher::Dispatcher;
 use crate::locator::Locator;
 use crate::{Config, LocateError, worker};
 
 /// Between two looks at the counters, and at who else is there.
 const TICK: Duration = Duration::from_millis(200);
 
-/// How long a server looks who else is there before it takes questions.
+/// How long a server looks who else is there before it takes requests.
 const ACQUAINTANCE: Duration = Duration::from_millis(500);
 
 /// Answers until the stop flag is set.
@@ -75,8 +75,8 @@ struct Service {
     /// `backcast/locate/<map>`.
     key: String,
     since: u64,
-    desk: Arc<Desk>,
-    /// Questions to all servers, while they are this one's to take.
+    dispatcher: Arc<Dispatcher>,
+    /// Requests to all servers, while they are this one's to take.
     to_all: Option<Queryable<()>>,
     _handed_on: Queryable<()>,
     _team: Subscriber<()>,
@@ -95,12 +95,14 @@ impl Service {
         let workers = config.workers();
         let me = session.zid().to_string();
         let load = (workers, config.waiting.into());
-        let (desk, bench) = Desk::new(session, &key, load, config.deadline, counts);
-        let bench = Arc::new(bench);
+        let (dispatcher, work_queue) =
+            Dispatcher::new(session, &key, load, config.deadline, counts);
+        let work_queue = Arc::new(work_queue);
         for _ in 0..workers {
-            let (bench, locator, counts) = (bench.clone(), locator.clone(), counts.clone());
-            // They end when the desk is closed, or with the process.
-            std::thread::spawn(move || worker::work(&bench, &locator, &counts));
+            let (work_queue, locator, counts) =
+                (work_queue.clone(), locator.clone(), counts.clone());
+            // They end when the dispatcher is closed, or with the process.
+            std::thread::spawn(move || worker::work(&work_queue, &locator, &counts));
         }
         let map_id = locator.map_id();
         let since = wall_ns().unsigned_abs();
@@ -110,14 +112,14 @@ impl Service {
             session: session.clone(),
             to_all: None,
             _handed_on: answer(session, &mine, {
-                let (desk, key) = (desk.clone(), mine.as_str().into());
-                move |query| desk.ask_me(query, &key)
+                let (dispatcher, key) = (dispatcher.clone(), mine.as_str().into());
+                move |query| dispatcher.ask_me(query, &key)
             })?,
-            _team: meet(session, &key, map_id, &desk, waker)?,
+            _team: meet(session, &key, map_id, &dispatcher, waker)?,
             _token: tried("be alive at", &token, |key| {
                 session.liveliness().declare_token(key).wait()
             })?,
-            desk,
+            dispatcher,
             since,
             key,
         };
@@ -126,20 +128,20 @@ impl Service {
         Ok(service)
     }
 
-    /// Takes the questions to all servers where that is its turn. Were several to take
-    /// them, Zenoh would bring each question to the server that routes it and to another
-    /// one as well. Where one gives them up, a question on its way is lost until its
+    /// Takes the requests to all servers where that is its turn. Were several to take
+    /// them, Zenoh would bring each request to the server that routes it and to another
+    /// one as well. Where one gives them up, a request on its way is lost until its
     /// deadline, so that happens only where two did not know each other.
     fn follow_team(&mut self) -> Result<(), LocateError> {
         let me = self.session.zid().to_string();
-        let is_first = self.desk.team().is_led_by(self.since, &me);
+        let is_first = self.dispatcher.team().is_led_by(self.since, &me);
         if is_first && self.to_all.is_none() {
-            let desk = self.desk.clone();
-            let ask = move |query| desk.ask(query);
+            let dispatcher = self.dispatcher.clone();
+            let ask = move |query| dispatcher.ask(query);
             self.to_all = Some(answer(&self.session, &self.key, ask)?);
-            tracing::info!(key = self.key, "takes the questions to all servers");
+            tracing::info!(key = self.key, "answers the requests to all servers");
         } else if !is_first && self.to_all.take().is_some() {
-            tracing::info!(key = self.key, "another server takes the questions");
+            tracing::info!(key = self.key, "another server answers the requests to all");
         }
         Ok(())
     }
@@ -159,15 +161,15 @@ fn answer(
     })
 }
 
-/// Keeps the desk's list of servers that have the same map.
+/// Keeps the dispatcher's list of servers that have the same map.
 fn meet(
     session: &Session,
     key: &str,
     map_id: u64,
-    desk: &Arc<Desk>,
+    dispatcher: &Arc<Dispatcher>,
     waker: Waker,
 ) -> Result<Subscriber<()>, LocateError> {
-    let (me, desk) = (session.zid().to_string(), Arc::clone(desk));
+    let (me, dispatcher) = (session.zid().to_string(), Arc::clone(dispatcher));
     tried("watch", &format!("{key}/*/*/*/*"), |key| {
         session
             .liveliness()
@@ -193,11 +195,11 @@ fn meet(
                     workers,
                     comes,
                     fits,
-                    "another server of this map's name"
+                    "another server has the same map name"
                 );
                 match (comes, fits) {
-                    (true, true) => desk.team().join(session, since, workers),
-                    (false, _) => desk.leave(session),
+                    (true, true) => dispatcher.team().join(session, since, workers),
+                    (false, _) => dispatcher.leave(session),
                     // It answers those who ask it, of the map that it has.
                     (true, false) => {}
                 }
@@ -246,7 +248,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn tokens_tell_of_map_and_workers() {
+    fn tokens_show_map_and_workers() {
         let expected = Other {
             session: "a1",
             map_id: 0xff,

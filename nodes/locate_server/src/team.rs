@@ -1,7 +1,7 @@
 //! The servers of one map, and whose turn it is. Pure.
 //!
 //! Each server knows how much it has handed on to each other one, and nothing of
-//! what they have to do besides: one that has too much says so, and the question
+//! what they have to do besides: one that has too much says so, and the request
 //! comes back.
 
 use std::collections::BTreeMap;
@@ -43,14 +43,14 @@ impl Team {
     }
 
     /// Whether a server that is there `since` that time is the one that takes the
-    /// questions to all of them: the one that is there longest, so that who comes takes
+    /// requests to all of them: the one that is there longest, so that who comes takes
     /// them from nobody.
     pub(crate) fn is_led_by(&self, since: u64, session: &str) -> bool {
         let mut others = self.others.iter();
         others.all(|(name, other)| (since, session) < (other.since, name.as_str()))
     }
 
-    /// Who should take the next question instead of a server with `workers` of
+    /// Who should take the next request instead of a server with `workers` of
     /// which `busy` or more have something to do: the one with the least to do for
     /// each worker, if that is less than here. It has one more then.
     pub(crate) fn hand_on(&mut self, busy: usize, workers: usize) -> Option<String> {
@@ -104,7 +104,7 @@ mod tests {
     }
 
     #[test]
-    fn who_is_there_longest_takes_the_questions_to_all() {
+    fn who_is_there_longest_takes_the_requests_to_all() {
         let mut team = Team::default();
         assert!(team.is_led_by(5, "b"), "nobody else is there");
         team.join("a", 6, 1);

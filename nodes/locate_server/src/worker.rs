@@ -1,4 +1,4 @@
-//! Searches what is taken on, one question after the other.
+//! Searches what is taken on, one request after the other.
 
 use std::sync::Arc;
 use std::sync::atomic::Ordering;
@@ -8,14 +8,14 @@ use transport::monotonic_ns;
 use zenoh::Wait;
 
 use crate::counts::Counts;
-use crate::desk::{Bench, Job};
+use crate::dispatcher::{Job, WorkQueue};
 use crate::locator::{Locator, Workspace};
-use crate::{LocateError, question};
+use crate::{LocateError, request};
 
-/// Answers until nobody takes questions any more.
-pub(crate) fn work(bench: &Bench, locator: &Locator, counts: &Arc<Counts>) {
+/// Answers until nobody takes requests any more.
+pub(crate) fn work(work_queue: &WorkQueue, locator: &Locator, counts: &Arc<Counts>) {
     let mut workspace = Workspace::default();
-    while let Some(job) = bench.next() {
+    while let Some(job) = work_queue.next() {
         match answer(&job, locator, &mut workspace) {
             Ok((encoding, payload)) => {
                 let reply = job.query.reply(&*job.key, payload).encoding(encoding);
@@ -23,7 +23,7 @@ pub(crate) fn work(bench: &Bench, locator: &Locator, counts: &Arc<Counts>) {
             }
             Err(error) => counts.refuse(&job.query, &error),
         }
-        bench.busy.fetch_sub(1, Ordering::Relaxed);
+        work_queue.busy.fetch_sub(1, Ordering::Relaxed);
     }
 }
 
@@ -39,7 +39,7 @@ fn answer(
     let start = Instant::now();
     let encoding = job.query.encoding().map(ToString::to_string);
     let payload = job.query.payload().map(|payload| payload.to_bytes());
-    let asked = question::read(
+    let asked = request::read(
         &encoding.unwrap_or_default(),
         &payload.unwrap_or_default(),
         monotonic_ns(),
@@ -51,5 +51,5 @@ fn answer(
     };
     header.search_ns = start.elapsed().as_nanos() as u64;
     header.sent_ns = monotonic_ns();
-    question::write(asked.form, &header, &hypotheses, header.sent_ns)
+    request::write(asked.form, &header, &hypotheses, header.sent_ns)
 }

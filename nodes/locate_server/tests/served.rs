@@ -20,7 +20,7 @@ use zenoh::query::{ConsolidationMode, Query, QueryTarget, Queryable, Reply};
 use zenoh::{Session, Wait};
 
 /// Longer than any answer takes on any machine.
-const PATIENCE: Duration = Duration::from_secs(60);
+const TIMEOUT: Duration = Duration::from_secs(60);
 
 /// A server with a graph of its own.
 struct Server {
@@ -62,11 +62,11 @@ impl Server {
         endpoint(&self.isolated)
     }
 
-    /// Waits until the server has sent so many answers, to those who ask.
+    /// Waits until the server has sent this many answers, to those who ask.
     fn wait_until_sent(&self, answers: u64, asking: &ScopedJoinHandle<'_, ()>) {
         let health = self.graph.subscriber::<topic::Health>().unwrap();
         wait_for_health(&self.graph, &health, |report| {
-            assert!(!asking.is_finished(), "a question has no answer");
+            assert!(!asking.is_finished(), "a request has no answer");
             report.sent >= answers
         });
     }
@@ -108,7 +108,7 @@ fn ask_raw(session: &Session, parameters: &str, encoding: &str, payload: Vec<u8>
         .get(format!("backcast/locate/corridor{parameters}"))
         .payload(payload)
         .encoding(Encoding::from(encoding))
-        .timeout(PATIENCE)
+        .timeout(TIMEOUT)
         .wait()
         .unwrap();
     let mut replies: Vec<_> = replies.into_iter().collect();
@@ -137,7 +137,7 @@ fn answers_are_those_of_the_engine() {
     let mut workspace = Workspace::default();
     for scan in scans() {
         let asked = (&scan.0, scan.1.as_slice());
-        let found = ask(&session, "corridor", asked, PATIENCE).unwrap();
+        let found = ask(&session, "corridor", asked, TIMEOUT).unwrap();
         let expected = locator.locate(&mut workspace, asked, &|| false).unwrap();
         let (header, hypotheses) = expected.unwrap();
         assert_eq!(found.items, hypotheses);
@@ -156,7 +156,7 @@ fn answers_are_those_of_the_engine() {
 }
 
 #[test]
-fn what_is_no_question_is_refused_and_counted() {
+fn what_is_no_request_is_refused_and_counted() {
     let server = Server::start("refused", &[]);
     let session = caller(&[&server]);
     let scan = &scans()[0];
@@ -191,12 +191,12 @@ fn what_is_no_question_is_refused_and_counted() {
     let health = server.graph.subscriber::<topic::Health>().unwrap();
     wait_for_health(&server.graph, &health, |report| report.refused == count);
     // Through the client, too: asking again would not help, so it does not.
-    let empty = ask(&session, "corridor", (&scan.0, &[]), PATIENCE);
+    let empty = ask(&session, "corridor", (&scan.0, &[]), TIMEOUT);
     assert!(
         matches!(empty, Err(LocateError::Refused { .. })),
         "{empty:?}"
     );
-    // And it goes on.
+    // And it continues.
     assert!(ask_raw(&session, "", &postcard, sound).result().is_ok());
     server.process.stop();
 }
@@ -226,7 +226,7 @@ fn beyond_its_queue_a_server_is_busy() {
                 .get("backcast/locate/corridor")
                 .payload(payload.clone());
             get.encoding(Encoding::from(JSON))
-                .timeout(PATIENCE)
+                .timeout(TIMEOUT)
                 .wait()
                 .unwrap()
         });
@@ -244,7 +244,7 @@ fn beyond_its_queue_a_server_is_busy() {
     server.process.stop();
 }
 
-/// Asks on several threads until told to stop, each question until it is answered;
+/// Asks on several threads until stopped, each request until it is answered;
 /// returns how many there were.
 fn keep_asking(session: &Session, stop: &AtomicBool, answered: &AtomicUsize) {
     let scans = scans();
@@ -255,7 +255,7 @@ fn keep_asking(session: &Session, stop: &AtomicBool, answered: &AtomicUsize) {
                     if stop.load(Ordering::Relaxed) {
                         return;
                     }
-                    let answer = ask(session, "corridor", (header, ranges), PATIENCE).unwrap();
+                    let answer = ask(session, "corridor", (header, ranges), TIMEOUT).unwrap();
                     assert_eq!(answer.header.stamp.counter, header.stamp.counter);
                     answered.fetch_add(1, Ordering::Relaxed);
                 }
@@ -265,36 +265,36 @@ fn keep_asking(session: &Session, stop: &AtomicBool, answered: &AtomicUsize) {
 }
 
 #[test]
-fn a_question_is_brought_to_one_server() {
+fn a_request_is_brought_to_one_server() {
     let first = Server::start("once-a", &[]);
     let endpoint = first.endpoint();
     let second = Server::start("once-b", &["--connect", &endpoint]);
     // Whichever is asked.
     for asked in [&first, &second] {
-        assert_one_hears_it(asked);
+        assert_one_receives_it(asked);
     }
     first.process.stop();
     second.process.stop();
 }
 
-fn assert_one_hears_it(server: &Server) {
+fn assert_one_receives_it(server: &Server) {
     let session = caller(&[server]);
-    // An empty question is refused by each server that hears it.
-    let hearing = || {
+    // An empty request is rejected by each server that receives it.
+    let receivers = || {
         let get = session.get("backcast/locate/corridor");
         let get = get.target(QueryTarget::All);
         let get = get.consolidation(ConsolidationMode::None);
-        get.timeout(PATIENCE).wait().unwrap().into_iter().count()
+        get.timeout(TIMEOUT).wait().unwrap().into_iter().count()
     };
-    // Had they not met in time, both would hear it at first.
-    while hearing() != 1 {
+    // Had they not met in time, both would receive it at first.
+    while receivers() != 1 {
         std::thread::yield_now();
     }
     for scan in scans() {
         let asked = (&scan.0, scan.1.as_slice());
-        ask(&session, "corridor", asked, PATIENCE).unwrap();
+        ask(&session, "corridor", asked, TIMEOUT).unwrap();
     }
-    assert_eq!(hearing(), 1);
+    assert_eq!(receivers(), 1);
 }
 
 #[test]
@@ -313,7 +313,7 @@ fn several_servers_share_the_work_and_a_dead_one_costs_no_answer() {
         for server in [&first, &second, &third] {
             server.wait_until_sent(5, &asking);
         }
-        // One that questions are handed on to, and one that is asked.
+        // One that requests are handed on to, and one that is asked.
         let before = answered.load(Ordering::Relaxed);
         third.process.kill();
         second.wait_until_sent(20, &asking);
@@ -337,7 +337,7 @@ fn stand_silent(session: &Session, key: &str) -> (Queryable<()>, Receiver<Query>
 }
 
 #[test]
-fn a_question_that_nobody_ends_is_asked_again() {
+fn a_request_that_nobody_ends_is_asked_again() {
     let isolated = Isolated::new("silent");
     let endpoint = endpoint(&isolated);
     let there = session(std::slice::from_ref(&endpoint), &[]);
@@ -345,7 +345,7 @@ fn a_question_that_nobody_ends_is_asked_again() {
     let caller = session(&[], &[endpoint]);
     let (header, ranges) = &scans()[0];
     std::thread::scope(|scope| {
-        let asking = scope.spawn(|| ask(&caller, "attic", (header, ranges), PATIENCE));
+        let asking = scope.spawn(|| ask(&caller, "attic", (header, ranges), TIMEOUT));
         let _unanswered = kept.recv().unwrap();
         let again = kept.recv().unwrap();
         let refusal = again.reply_err("no such room").encoding(REFUSED);

@@ -1,4 +1,4 @@
-//! What ends the node.
+//! Errors that end the node.
 
 use std::path::PathBuf;
 

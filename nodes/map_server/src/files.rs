@@ -14,7 +14,7 @@ use serde::Deserialize;
 /// What is read of a description; a sound one has a few hundred bytes.
 const MAX_YAML_BYTES: u64 = 64 << 10;
 
-/// Tells one state of a file from another.
+/// Identifies the state of a file.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
 pub(crate) struct Fingerprint {
     pub(crate) device: u64,

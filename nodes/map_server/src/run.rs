@@ -110,7 +110,7 @@ impl Server {
     ) -> Result<(), TransportError> {
         match outcome {
             Ok(grid) if grid.id() == self.map_id => {
-                tracing::info!("the files were written anew and hold the map that is served");
+                tracing::info!("the map files were rewritten with the same map");
                 self.health.state(NodeState::Ready)
             }
             Ok(grid) => match self.serve(&grid) {
@@ -123,7 +123,7 @@ impl Server {
     }
 
     fn wait_for(&mut self, error: &dyn Error) -> Result<(), TransportError> {
-        let problem = format!("the map is waited for: {}", with_causes(error));
+        let problem = format!("waiting for the map: {}", with_causes(error));
         tracing::warn!("{problem}");
         self.health.error(&problem)?;
         self.health.state(NodeState::Waiting)
@@ -132,10 +132,10 @@ impl Server {
     fn refuse(&mut self, error: &dyn Error, config: &Config) -> Result<(), TransportError> {
         let (path, error) = (config.map.display(), with_causes(error));
         let kept = match self.served {
-            0 => "and there is none before",
-            _ => "the one before stays",
+            0 => "and no map is served",
+            _ => "the previous map stays",
         };
-        tracing::warn!("the changed map {path} is refused, {kept}: {error}");
+        tracing::warn!("the changed map {path} is rejected, {kept}: {error}");
         self.health.count_refused(1);
         self.health.error(&format!("map {path} refused: {error}"))?;
         self.health.state(NodeState::Degraded)

@@ -10,8 +10,8 @@ use std::path::PathBuf;
 use std::process::ExitStatus;
 
 use messages::{HealthHeader, NodeState, topic};
-use recording::{Message, Recording};
 use recording::write::{Packing, RecordingWriter};
+use recording::{Message, Recording};
 use ros::TfMessage;
 use tempfile::TempDir;
 use transport::testing::{Isolated, NodeProcess, wait_for_health, wait_until};
@@ -204,7 +204,7 @@ fn a_map_that_is_missing_at_the_start_is_waited_for() {
     world.interrupt();
     let (status, log) = world.finish();
     assert!(status.success(), "{log}");
-    assert!(log.contains("the map is waited for"), "{log}");
+    assert!(log.contains("waiting for the map"), "{log}");
 }
 
 #[test]

@@ -1,4 +1,4 @@
-//! What a user can set.
+//! Command-line options.
 
 use std::net::SocketAddr;
 
@@ -11,12 +11,12 @@ use clap::Parser;
 #[derive(Debug, Clone, Parser)]
 #[command(name = "monitor", version)]
 pub struct Config {
-    /// Where to listen; port 0 is any that is free. Beyond this machine whoever
+    /// Address to listen on; port 0 is any free port. Beyond this machine whoever
     /// reaches the port can read, and nothing is encrypted
     #[arg(long, value_name = "ADDRESS:PORT", default_value = "127.0.0.1:7440")]
     pub listen: SocketAddr,
 
-    /// What the robot of this graph is called [default: the name of the machine]
+    /// The robot's name [default: the name of the machine]
     #[arg(long, value_name = "NAME", value_parser = network_payload::robot)]
     pub robot: Option<String>,
 

@@ -1,4 +1,4 @@
-//! What keeps the monitor from running.
+//! Errors that end the monitor.
 
 /// What was tried, what was found and what is allowed.
 #[derive(Debug, thiserror::Error)]

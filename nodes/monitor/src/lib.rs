@@ -1,6 +1,6 @@
 //! Node `monitor`: a web page to watch a graph, and the API behind it.
 //!
-//! The page and the API are `dashboard`'s; here the messages of a graph are told to
+//! The page and the API are `dashboard`'s; here the messages of a graph are passed to
 //! it, and what those with the token want to the graph. The graph never waits for
 //! that: a sample is taken, and who is too slow loses messages.
 

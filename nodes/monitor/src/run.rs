@@ -1,4 +1,4 @@
-//! Listens to the graph, and lets the server tell.
+//! Subscribes to the graph, and feeds the server.
 
 mod inputs;
 mod outputs;
@@ -7,7 +7,7 @@ use std::sync::Arc;
 use std::sync::mpsc::Receiver;
 use std::time::Duration;
 
-use dashboard::{Robot, Robots, Server, Wish};
+use dashboard::{Request, Robot, Robots, Server};
 use messages::{NodeState, topic};
 use transport::{Flow, Graph, Health, Subscriber, TransportError, monotonic_ns};
 
@@ -15,7 +15,7 @@ use crate::{Config, MonitorError};
 use inputs::Inputs;
 use outputs::Outputs;
 
-/// How long a wish, an image and a silent node may wait.
+/// How long a request, an image and a silent node may wait.
 const TICK: Duration = Duration::from_millis(50);
 
 /// Serves the page until the stop flag is set.
@@ -23,18 +23,18 @@ const TICK: Duration = Duration::from_millis(50);
 /// # Errors
 /// If it cannot listen, the token cannot be read, or the graph fails.
 pub fn run(graph: &Graph, config: &Config) -> Result<(), MonitorError> {
-    let (robot, wishes) = Robot::new(config.robot());
+    let (robot, requests) = Robot::new(config.robot());
     let inputs = Inputs::open(graph)?;
     let mut node = Node {
         robot: Arc::clone(&robot),
-        wishes,
+        requests,
         field: None,
         outputs: Outputs::open(graph)?,
         health: graph.health()?,
     };
     let server = Server::start(config.listen, &config.page, Robots::from_iter([robot]))?;
     server.announce("watch it", config.listen);
-    // What a monitor before this one wished for is not known here, so it ends.
+    // What a monitor before this one requested for is not known here, so it ends.
     node.outputs.region(&[])?;
     node.health.state(NodeState::Ready)?;
     graph.run(&inputs.all(), TICK, |wake| {
@@ -46,7 +46,7 @@ pub fn run(graph: &Graph, config: &Config) -> Result<(), MonitorError> {
 
 struct Node {
     robot: Arc<Robot>,
-    wishes: Receiver<Wish>,
+    requests: Receiver<Request>,
     /// There while somebody looks at it, for it is computed only then.
     field: Option<Subscriber<topic::Field>>,
     outputs: Outputs,
@@ -58,8 +58,8 @@ impl Node {
         inputs.take(&self.robot, &mut self.health)?;
         if tick {
             self.follow_field(graph)?;
-            self.grant_wishes()?;
-            self.robot.hear_abilities(self.outputs.abilities());
+            self.handle_requests()?;
+            self.robot.on_abilities(self.outputs.abilities());
             self.robot.look_for_silence(monotonic_ns());
         }
         self.health.tick()
@@ -74,23 +74,23 @@ impl Node {
         let newest = self.field.as_ref().map_or(Ok(None), Subscriber::newest)?;
         if let Some(image) = newest {
             self.health.count_received(1);
-            if !self.robot.hear_field(image.header(), image.items()) {
-                inputs::refuse(&mut self.health, "an image contradicts its header")?;
+            if !self.robot.on_field(image.header(), image.items()) {
+                inputs::refuse(&mut self.health, "the image contradicts its header")?;
             }
         }
         Ok(())
     }
 
-    fn grant_wishes(&mut self) -> Result<(), TransportError> {
-        while let Ok(wish) = self.wishes.try_recv() {
-            match wish {
-                Wish::Region(corners) => {
-                    tracing::info!(corners = corners.len(), "a region to search in was set");
+    fn handle_requests(&mut self) -> Result<(), TransportError> {
+        while let Ok(request) = self.requests.try_recv() {
+            match request {
+                Request::Region(corners) => {
+                    tracing::info!(corners = corners.len(), "search region set");
                     self.outputs.region(&corners)?;
-                    self.robot.hear_region(corners);
+                    self.robot.on_region(corners);
                 }
-                Wish::Save => {
-                    tracing::info!("the recorder is asked to save the last minutes");
+                Request::Save => {
+                    tracing::info!("asking the recorder to save the last minutes");
                     self.outputs.save()?;
                 }
             }

@@ -128,7 +128,7 @@ impl World {
         loan.send().unwrap();
     }
 
-    /// Asks until the answer is as it should be; the graph goes on meanwhile.
+    /// Asks until the answer is as it should be; the graph continues meanwhile.
     fn wait_for_state(&self, is_awaited: impl Fn(&Value) -> bool) -> Value {
         let mut found = None;
         let tick = std::time::Duration::from_millis(20);
@@ -190,8 +190,8 @@ fn next_of(socket: &mut WebSocket<TcpStream>, kind: &str) -> Value {
 }
 
 #[test]
-fn what_flows_in_the_graph_is_told() {
-    let world = World::new("told");
+fn what_flows_in_the_graph_is_reported() {
+    let world = World::new("flow");
     let robots = world.site.get("/api/v1/robots");
     assert_eq!(robots["robots"], json!(["r"]));
     let known = world.wait_for_state(|known| !known["map"].is_null());
@@ -206,7 +206,7 @@ fn what_flows_in_the_graph_is_told() {
     *loan.header_mut() = BeamsHeader::zeroed();
     loan.send().unwrap();
     assert_eq!(next_of(&mut socket, "beams")["fate"], "h");
-    // Who comes later is told the same at once.
+    // A later viewer gets the same at once.
     let known = world.site.get("/api/v1/robots/r");
     assert_eq!(known["answer"]["counter"], 7);
     let names: Vec<&Value> = known["nodes"]
@@ -219,7 +219,7 @@ fn what_flows_in_the_graph_is_told() {
 }
 
 #[test]
-fn the_trackers_pose_is_told_with_its_age() {
+fn the_trackers_pose_is_reported_with_its_age() {
     let world = World::new("tracked");
     world.wait_for_state(|known| !known["map"].is_null());
     let mut socket = world.stream();
@@ -236,7 +236,7 @@ fn the_trackers_pose_is_told_with_its_age() {
     assert_eq!(known["pose"]["counter"], 7);
     assert_eq!(known["answer"]["hypotheses"][0]["laser"]["x"], 9.0);
     assert_eq!(known["track"], json!([[1.5, 2.0, "U"]]));
-    // Who looks later is told how old it is.
+    // A later viewer gets its age.
     let age_s = known["ages"]["scan_s"].as_f64().unwrap();
     assert!(age_s >= 61.0, "{age_s}");
 }

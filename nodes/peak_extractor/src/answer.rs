@@ -4,7 +4,7 @@ use bytemuck::Zeroable;
 use engine::EngineError;
 use engine::fit::{BeamClass, Ends};
 use engine::grid::GridFrame;
-use engine::peaks::{self, Judged, PeakConfig, Place, Places, Sought};
+use engine::peaks::{self, Judged, PeakConfig, Place, Places, Target};
 use engine::space::Space;
 use geometry::Pose;
 use messages::{
@@ -40,7 +40,7 @@ pub struct Answer<'a> {
     /// Items of `beams`; none where the votes alone decide.
     pub beams: &'a [Beam],
     /// Whose poses the places are.
-    pub sought: Sought,
+    pub target: Target,
     /// Where the map's cells lie; none where there is no answer.
     pub frame: Option<GridFrame>,
 }
@@ -63,7 +63,7 @@ pub fn answer<'w>(
     };
     let base_from_laser = mount(header)?;
     let frame = map.frame;
-    let sought = Sought::of(base_from_laser, header.lasers_used > 0);
+    let target = Target::of(base_from_laser, header.lasers_used > 0);
     let Workspace {
         peaks,
         beams: beams_seen,
@@ -79,7 +79,7 @@ pub fn answer<'w>(
         let extent = (header.headings, resolution_m, sides.0, sides.1);
         Ok(ends.find(&scan, kept_or_made(space, extent)?, &beams)?)
     };
-    let Judged { places, ends } = peaks.judge(&input, &map.terrain, config, take)?;
+    let Judged { places, ends } = peaks.judge(&input, &map.distance_field, config, take)?;
     beams_seen.clear();
     if let Some(ends) = ends {
         beams_seen.extend(judged(ends, places));
@@ -97,7 +97,7 @@ pub fn answer<'w>(
         },
         beams: beams_seen,
         places: &places.places,
-        sought,
+        target,
         frame: Some(frame),
     })
 }
@@ -132,7 +132,7 @@ pub fn nothing(votes: &VotesHeader) -> Answer<'static> {
             map_from_laser: Pose::IDENTITY.into(),
         },
         beams: &[],
-        sought: Sought::of(None, false),
+        target: Target::of(None, false),
         frame: None,
     }
 }
@@ -140,10 +140,10 @@ pub fn nothing(votes: &VotesHeader) -> Answer<'static> {
 impl Answer<'_> {
     /// The message's items, to be filled in place.
     pub fn hypotheses(&self) -> impl ExactSizeIterator<Item = Hypothesis> {
-        let (map_id, sought) = (self.header.map_id, self.sought);
+        let (map_id, target) = (self.header.map_id, self.target);
         self.places
             .iter()
-            .map(move |place| place.hypothesis(map_id, sought))
+            .map(move |place| place.hypothesis(map_id, target))
     }
 }
 
@@ -210,7 +210,7 @@ mod tests {
             },
             ..Zeroable::zeroed()
         };
-        maps.hear(&map, &[0; 30 * 20]).unwrap();
+        maps.receive(&map, &[0; 30 * 20]).unwrap();
         maps
     }
 
@@ -269,7 +269,7 @@ mod tests {
     }
 
     #[test]
-    fn the_header_tells_of_the_best_place() {
+    fn the_header_shows_the_best_place() {
         let expected = HypothesesHeader {
             stamp: header().stamp,
             map_id: 7,
@@ -337,7 +337,7 @@ mod tests {
             range_max_m: 30.0,
             ..Zeroable::zeroed()
         };
-        scans.hear(&scan, &[1.0, 2.0]);
+        scans.receive(&scan, &[1.0, 2.0]);
         let known = (&mut maps(), &scans);
         let said = answer(&header(), &VOTES, known, &config, &mut workspace).unwrap();
         // The map is empty, so that nothing fits.

@@ -17,7 +17,7 @@ use crate::PeakError;
 use crate::maps::{Map, Maps};
 
 /// Cells of a millimetre along a metre: none are finer, none searched larger.
-const MOST_POOLED: u32 = 1_000;
+const MAX_POOLED: u32 = 1_000;
 
 /// The votes of a scan as the engine takes them, and what they refer to.
 #[derive(Debug)]
@@ -131,7 +131,7 @@ fn beams(header: &VotesHeader) -> Result<BeamConfig, PeakError> {
 /// Cells of the map along the side of a cell that was searched.
 fn pooling(header: &VotesHeader) -> Result<u32, PeakError> {
     let found = header.pooling;
-    let pooling = Some(found).filter(|pooling| (1..=MOST_POOLED).contains(pooling));
+    let pooling = Some(found).filter(|pooling| (1..=MAX_POOLED).contains(pooling));
     pooling.ok_or(PeakError::Setting {
         field: "pooling",
         found: found.into(),
@@ -213,7 +213,7 @@ mod tests {
             resolution_m: 0.1,
             ..Zeroable::zeroed()
         };
-        maps.hear(&map, &[0; 30 * 20]).unwrap();
+        maps.receive(&map, &[0; 30 * 20]).unwrap();
         maps
     }
 

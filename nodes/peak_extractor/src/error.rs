@@ -1,4 +1,4 @@
-//! What keeps votes from being read, and the node from running.
+//! Errors that reject votes, and those that end the node.
 
 use engine::EngineError;
 use messages::{Pose2, Vote};
@@ -19,7 +19,7 @@ pub enum PeakError {
         known: String,
     },
     /// The scan of the votes never came, or came too long ago.
-    #[error("their scan is not known: it did not come here, or too long ago")]
+    #[error("their scan is not known: it was not received, or too long ago")]
     UnknownScan,
     /// How a map's cells or a scan's beams were read cannot be.
     #[error("{field} is {found}: allowed are {allowed}")]
@@ -45,7 +45,7 @@ pub enum PeakError {
         /// By the header.
         found: u32,
     },
-    /// No turn has so many headings.
+    /// No turn has this many headings.
     #[error("headings is {found}: allowed are 1 to 65536")]
     Headings {
         /// By the header.

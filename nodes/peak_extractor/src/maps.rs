@@ -4,7 +4,7 @@
 //! the map changes are of the one before.
 
 use engine::EngineError;
-use engine::fit::Terrain;
+use engine::fit::DistanceField;
 use engine::grid::{CellRules, GridFrame};
 use messages::MapHeader;
 
@@ -22,7 +22,7 @@ pub struct Map {
     /// Its grid in the map frame.
     pub frame: GridFrame,
     /// Distances to obstacles, by the rules for its cells.
-    pub terrain: Terrain,
+    pub distance_field: DistanceField,
     rules: CellRules,
     occupancy: Vec<u8>,
 }
@@ -45,7 +45,7 @@ impl Map {
             width: header.width,
             height: header.height,
             frame,
-            terrain: Terrain::new(frame, sides, &occupancy, rules)?,
+            distance_field: DistanceField::new(frame, sides, &occupancy, rules)?,
             rules,
             occupancy,
         })
@@ -54,7 +54,7 @@ impl Map {
     fn read_by(&mut self, rules: CellRules) -> Result<(), EngineError> {
         if self.rules != rules {
             let sides = (self.width as usize, self.height as usize);
-            self.terrain = Terrain::new(self.frame, sides, &self.occupancy, rules)?;
+            self.distance_field = DistanceField::new(self.frame, sides, &self.occupancy, rules)?;
             self.rules = rules;
         }
         Ok(())
@@ -67,7 +67,7 @@ impl Maps {
     /// # Errors
     /// If the grid's sides, resolution or origin are out of range, or the
     /// number of cells is not what the sides say.
-    pub fn hear(&mut self, header: &MapHeader, occupancy: &[u8]) -> Result<(), EngineError> {
+    pub fn receive(&mut self, header: &MapHeader, occupancy: &[u8]) -> Result<(), EngineError> {
         let map = Map::new(header, occupancy.to_vec(), self.rules)?;
         self.known.retain(|known| known.map_id != header.map_id);
         self.known.truncate(1);
@@ -137,7 +137,7 @@ mod tests {
     fn the_last_two_maps_are_known() {
         let mut maps = Maps::default();
         for map_id in [1, 2, 3] {
-            maps.hear(&map(map_id), &CELLS).unwrap();
+            maps.receive(&map(map_id), &CELLS).unwrap();
         }
         let found = maps.get(2, RULES).unwrap();
         assert_eq!((found.map_id, found.width, found.height), (2, 30, 20));
@@ -153,7 +153,7 @@ mod tests {
     fn a_map_that_is_served_again_does_not_push_out_the_one_before() {
         let mut maps = Maps::default();
         for map_id in [1, 2, 2] {
-            maps.hear(&map(map_id), &CELLS).unwrap();
+            maps.receive(&map(map_id), &CELLS).unwrap();
         }
         assert!(maps.get(1, RULES).is_ok() && maps.get(2, RULES).is_ok());
     }
@@ -167,11 +167,11 @@ mod tests {
                 .to_string()
                 .ends_with("none")
         );
-        maps.hear(&map(1), &CELLS).unwrap();
+        maps.receive(&map(1), &CELLS).unwrap();
         let mut refuse = |change: fn(&mut MapHeader), expected: &str| {
             let mut broken = map(2);
             change(&mut broken);
-            let error = maps.hear(&broken, &CELLS).unwrap_err().to_string();
+            let error = maps.receive(&broken, &CELLS).unwrap_err().to_string();
             assert!(error.contains(expected), "{error}");
         };
         refuse(|map| map.width = 0, "0 x 20 cells");

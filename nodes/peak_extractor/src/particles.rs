@@ -9,12 +9,12 @@ use crate::answer::Answer;
 /// How many are sent for each scan, and from which random numbers.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, clap::Args)]
 pub struct ParticlesConfig {
-    /// Send so many poses around the places of each scan on topic `particles`, as a start
-    /// for a particle filter, 1..=1000000 [default: the topic is not sent]
+    /// Send this many poses around the places of each scan on topic `particles`, as a
+    /// start for a particle filter, 1..=1000000 [default: the topic is not sent]
     #[arg(long, value_name = "COUNT", value_parser = clap::value_parser!(u32).range(1..=1_000_000))]
     pub particles: Option<u32>,
 
-    /// Where their random numbers begin, anew for each scan.
+    /// Seed of their random numbers, the same for each scan.
     #[arg(long, value_name = "NUMBER", default_value_t = 1)]
     pub particles_seed: u64,
 }
@@ -38,8 +38,8 @@ pub fn draw(
     };
     let candidates = answer.places.iter().map(Candidate::from);
     let poses = particles::draw(frame, candidates, count as usize, seed)?;
-    let particle = |map_from_sought| Particle {
-        map_from_base: answer.sought.base(map_from_sought).into(),
+    let particle = |map_from_target| Particle {
+        map_from_base: answer.target.base(map_from_target).into(),
     };
     Ok((header, poses.into_iter().map(particle).collect()))
 }

@@ -80,14 +80,14 @@ impl Node {
             // before the votes.
             while let Some(scan) = scans.receive()? {
                 self.health.count_received(1);
-                self.scans.hear(scan.header(), scan.items());
+                self.scans.receive(scan.header(), scan.items());
             }
             while let Some(sample) = readings.receive()? {
                 let stamp = sample.header().stamp;
                 self.scans.take_readings(stamp, sample.items());
             }
             if let Some(map) = maps.newest()? {
-                self.hear(&map)?;
+                self.on_map(&map)?;
             }
             self.health.tick()?;
             match sample {
@@ -97,16 +97,16 @@ impl Node {
         }
     }
 
-    fn hear(&mut self, map: &Sample<topic::Map>) -> Result<(), TransportError> {
+    fn on_map(&mut self, map: &Sample<topic::Map>) -> Result<(), TransportError> {
         self.health.count_received(1);
         self.health.state(NodeState::Busy)?;
         let (header, cells) = (map.header(), map.items());
         let checked = header.check_id(cells).map_err(PeakError::from);
-        match checked.and_then(|()| Ok(self.maps.hear(header, cells)?)) {
+        match checked.and_then(|()| Ok(self.maps.receive(header, cells)?)) {
             Ok(()) => self.health.state(NodeState::Ready),
             Err(error) => {
                 let map_id = map.header().map_id;
-                let problem = format!("map {map_id:016x} is refused: {}", with_causes(&error));
+                let problem = format!("map {map_id:016x} rejected: {}", with_causes(&error));
                 tracing::warn!("{problem}");
                 self.health.count_refused(1);
                 self.health.error(&problem)?;
@@ -201,7 +201,7 @@ impl Node {
     fn refuse(&mut self, counter: u64, error: &PeakError) -> Result<(), TransportError> {
         self.health.count_refused(1);
         let reason = with_causes(error);
-        let problem = format!("the votes of scan {counter} are refused: {reason}");
+        let problem = format!("votes of scan {counter} rejected: {reason}");
         self.health.error(&problem)?;
         // A sender that is always wrong would fill the log.
         if reason != self.last_refusal {

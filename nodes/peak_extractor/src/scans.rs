@@ -21,7 +21,7 @@ pub struct Scans {
 
 impl Scans {
     /// Takes a scan. Room is taken from the oldest one, once there are enough.
-    pub fn hear(&mut self, header: &ScanHeader, ranges: &[f32]) {
+    pub fn receive(&mut self, header: &ScanHeader, ranges: &[f32]) {
         let mut room = match self.kept.len() {
             KEPT => self
                 .kept
@@ -87,7 +87,7 @@ mod tests {
     fn the_last_scans_are_found_by_their_stamp() {
         let mut scans = Scans::default();
         for counter in 0..=KEPT as u64 {
-            scans.hear(&header(counter), &[counter as f32]);
+            scans.receive(&header(counter), &[counter as f32]);
         }
         let ranges = |counter| {
             scans

@@ -9,7 +9,7 @@ use std::f64::consts::PI;
 
 use bytemuck::Zeroable;
 use engine::beams::BeamConfig;
-use engine::fit::{BeamClass, Ends, Terrain};
+use engine::fit::{BeamClass, DistanceField, Ends};
 use engine::grid::{CellRules, Grid, GridFrame};
 use engine::localizer::{Localizer, LocalizerConfig, Outcome, Prior};
 use engine::peaks::{PeakConfig, PeakInput, Places, by_fit};
@@ -90,11 +90,12 @@ fn searched(x: i64, y: i64, heading: usize) -> Searched {
 
 /// What the engine makes of it on a map in a frame.
 fn expected(searched: &Searched, frame: GridFrame) -> Places {
-    let terrain = Terrain::new(frame, (16, 9), &cells(), CellRules::default()).unwrap();
+    let distance_field =
+        DistanceField::new(frame, (16, 9), &cells(), CellRules::default()).unwrap();
     let space = Space::new(360, frame.resolution_m, 16, 9).unwrap();
     let ends = Ends::new(&scan(&searched.ranges), &space, &BeamConfig::default()).unwrap();
     let input = PeakInput::of(&searched.outcome, frame);
-    by_fit(&input, (&terrain, &ends), &PeakConfig::default())
+    by_fit(&input, (&distance_field, &ends), &PeakConfig::default())
 }
 
 /// The node's neighbours.
@@ -317,7 +318,7 @@ fn votes_that_cannot_be_read_are_refused_and_the_next_ones_answered() {
     let error = refused(world.ask(sound, ranges, votes), 1);
     assert!(
         error.starts_with(&format!(
-            "the votes of scan 0 are refused: they are of map {:016x}",
+            "votes of scan 0 rejected: they are of map {:016x}",
             id()
         )),
         "{error}"

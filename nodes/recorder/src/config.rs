@@ -1,4 +1,4 @@
-//! What a user can set.
+//! Command-line options.
 
 use std::path::PathBuf;
 use std::time::Duration;
@@ -7,38 +7,39 @@ use clap::Parser;
 
 use crate::{Event, duration};
 
-/// Writes what flows in the graph to an MCAP recording with ROS 2 messages.
+/// Records the graph to an MCAP file with ROS 2 messages.
 ///
-/// Ends with 0, 1 on an error, 2 on wrong usage, and 3 when it recorded but lost
-/// data. Everything written is on its way to the disk within a second. A file
-/// that exists is kept; the recording goes to one with a number behind its name.
+/// Ends with 0, 1 on an error, 2 on wrong usage, and 3 when it recorded but lost data.
+/// Everything written is on its way to the disk within a second. An existing file is
+/// kept; the recording goes to one with a number behind its name.
 #[derive(Debug, Clone, Parser)]
 #[command(name = "recorder", version)]
 pub struct Config {
-    /// The recording; with --keep, what saved ones are called after
+    /// The recording; with --keep, the base of the names of saved ones
     #[arg(long, value_name = "FILE")]
     pub output: PathBuf,
 
-    /// Begin another file when one has so many megabytes (10^6 bytes), at least 1
+    /// Start a new file after this many megabytes (10^6 bytes), at least 1
     #[arg(long, value_name = "MB", value_parser = clap::value_parser!(u64).range(1..))]
     pub split_size: Option<u64>,
 
-    /// Begin another file when one covers so much time, as 90s, 10m or 1.5h
+    /// Start a new file after this much time, as 90s, 10m or 1.5h
     #[arg(long, value_name = "TIME", value_parser = duration::parse)]
     pub split_time: Option<Duration>,
 
-    /// Write nothing but keep the last so much time in memory, as 10m, and save it
-    /// on SIGUSR1 and on events
+    /// Keep only this much time in memory, as 10m, and write it on SIGUSR1 and on
+    /// events
     #[arg(long, value_name = "TIME", value_parser = duration::parse,
           conflicts_with_all = ["split_size", "split_time"])]
     pub keep: Option<Duration>,
 
-    /// Most megabytes (10^6 bytes) of memory for --keep; older messages go first
+    /// Memory limit for --keep, megabytes (10^6 bytes); the oldest messages are dropped
+    /// first
     #[arg(long, value_name = "MB", default_value_t = 512, requires = "keep",
           value_parser = clap::value_parser!(u64).range(1..))]
     pub keep_size: u64,
 
-    /// The events on which --keep saves, with commas between
+    /// The events on which --keep saves, separated by commas
     #[arg(
         long,
         value_name = "EVENTS",
@@ -48,12 +49,12 @@ pub struct Config {
     )]
     pub save_on: Vec<Event>,
 
-    /// How often what is written is synced to the disk, so that a loss of power takes no
-    /// more, as 1s; or never, which leaves it to the system (some 30 s)
+    /// How often the file is synced to the disk, which limits what a power failure can
+    /// take, as 1s; or never, which leaves it to the system (some 30 s)
     #[arg(long, value_name = "TIME|never", default_value = "5s", value_parser = SyncPeriod::parse)]
     pub sync: SyncPeriod,
 
-    /// A file to put into the recording; may be given again
+    /// A file to attach to the recording; may be repeated
     #[arg(long, value_name = "FILE")]
     pub attach: Vec<PathBuf>,
 
@@ -65,8 +66,8 @@ pub struct Config {
     #[command(flatten)]
     pub transcript: ros_export::Options,
 
-    /// Most megabytes (10^6 bytes) that may wait for a slow or full disk; what
-    /// comes then is dropped and counted
+    /// Limit of the queue for a slow or full disk, megabytes (10^6 bytes); further
+    /// messages are dropped and counted
     #[arg(long, value_name = "MB", default_value_t = 128,
           value_parser = clap::value_parser!(u64).range(1..))]
     pub queue_size: u64,

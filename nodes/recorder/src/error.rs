@@ -1,4 +1,4 @@
-//! What can go wrong between the graph and the file.
+//! Errors between the graph and the file.
 
 use std::io;
 use std::path::PathBuf;
@@ -17,7 +17,7 @@ pub enum RecorderError {
         source: io::Error,
     },
     /// A recording could not be ended.
-    #[error("cannot end the recording {}: what was flushed before is readable", path.display())]
+    #[error("cannot end the recording {}: what was flushed before that is readable", path.display())]
     Finish {
         /// The file.
         path: PathBuf,
@@ -66,10 +66,10 @@ pub enum RecorderError {
     #[error("cannot catch SIGUSR1")]
     Signal(#[source] io::Error),
     /// The thread that writes cannot be started.
-    #[error("cannot start the thread that writes")]
+    #[error("cannot start the writer thread")]
     Thread(#[source] io::Error),
     /// The thread that writes is gone.
-    #[error("the thread that writes has ended before its time")]
+    #[error("the writer thread ended unexpectedly")]
     ThreadEnded,
     /// The graph failed.
     #[error(transparent)]

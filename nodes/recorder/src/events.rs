@@ -1,4 +1,4 @@
-//! What happened that is worth a look at the minutes before it.
+//! Events on which the last minutes are saved.
 
 use messages::{HealthHeader, NodeState, TrackState, Verdict};
 
@@ -8,10 +8,10 @@ const LOST_AFTER: u32 = 5;
 /// Something on which a black box is saved.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, clap::ValueEnum)]
 pub enum Event {
-    /// The tracker lost the pose; without a tracker, the place was known, and is not for
-    /// five scans in a row
+    /// The tracker lost the pose; without a tracker, five scans in a row without a
+    /// place after one was known
     LostPose,
-    /// A node works no more as it should
+    /// A node is degraded
     Degraded,
 }
 
@@ -26,7 +26,7 @@ impl std::fmt::Display for Event {
 
 /// Looks out for events.
 #[derive(Debug, Default)]
-pub(crate) struct Lookout {
+pub(crate) struct EventDetector {
     /// Scans since the last known place, if there was one; none once the loss
     /// was noticed.
     unknown_for: Option<u32>,
@@ -36,7 +36,7 @@ pub(crate) struct Lookout {
     degraded: Vec<String>,
 }
 
-impl Lookout {
+impl EventDetector {
     /// Takes the verdict on a scan, by its number.
     pub(crate) fn verdict(&mut self, code: u32) -> Option<Event> {
         if self.tracked.is_some() {
@@ -91,11 +91,11 @@ mod tests {
 
     #[test]
     fn a_pose_is_lost_once_and_only_after_it_was_known() {
-        let mut lookout = Lookout::default();
+        let mut detector = EventDetector::default();
         let mut lost = |verdicts: &[Verdict]| -> Vec<usize> {
             let events = verdicts
                 .iter()
-                .map(|verdict| lookout.verdict(*verdict as u32));
+                .map(|verdict| detector.verdict(*verdict as u32));
             let seen = events.enumerate().filter(|(_, event)| event.is_some());
             seen.map(|(at, _)| at).collect()
         };
@@ -108,8 +108,8 @@ mod tests {
 
     #[test]
     fn where_there_is_a_tracker_it_says_when_the_pose_is_lost() {
-        let mut lookout = Lookout::default();
-        assert_eq!(lookout.verdict(Verdict::Unique as u32), None);
+        let mut detector = EventDetector::default();
+        assert_eq!(detector.verdict(Verdict::Unique as u32), None);
         let states = [
             TrackState::Searching,
             TrackState::Unique,
@@ -119,28 +119,28 @@ mod tests {
             TrackState::Unique,
             TrackState::Lost,
         ];
-        let events = states.map(|state| lookout.state(state as u32));
+        let events = states.map(|state| detector.state(state as u32));
         let lost = Some(Event::LostPose);
         assert_eq!(events, [None, None, None, lost, None, None, lost]);
-        let verdicts = [Verdict::Ambiguous; 20].map(|verdict| lookout.verdict(verdict as u32));
+        let verdicts = [Verdict::Ambiguous; 20].map(|verdict| detector.verdict(verdict as u32));
         assert!(verdicts.iter().all(Option::is_none));
     }
 
     #[test]
     fn a_node_is_reported_when_it_becomes_degraded() {
-        let mut lookout = Lookout::default();
-        let mut hear = |node: &str, state: NodeState| {
-            lookout.health(&HealthHeader {
+        let mut detector = EventDetector::default();
+        let mut receive = |node: &str, state: NodeState| {
+            detector.health(&HealthHeader {
                 node: Name::new(node),
                 state: state as u32,
                 ..HealthHeader::zeroed()
             })
         };
-        assert_eq!(hear("a", NodeState::Ready), None);
-        assert_eq!(hear("a", NodeState::Degraded), Some(Event::Degraded));
-        assert_eq!(hear("a", NodeState::Degraded), None);
-        assert_eq!(hear("b", NodeState::Degraded), Some(Event::Degraded));
-        assert_eq!(hear("a", NodeState::Ready), None);
-        assert_eq!(hear("a", NodeState::Degraded), Some(Event::Degraded));
+        assert_eq!(receive("a", NodeState::Ready), None);
+        assert_eq!(receive("a", NodeState::Degraded), Some(Event::Degraded));
+        assert_eq!(receive("a", NodeState::Degraded), None);
+        assert_eq!(receive("b", NodeState::Degraded), Some(Event::Degraded));
+        assert_eq!(receive("a", NodeState::Ready), None);
+        assert_eq!(receive("a", NodeState::Degraded), Some(Event::Degraded));
     }
 }

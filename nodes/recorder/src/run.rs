@@ -14,7 +14,7 @@ use signal_hook::consts::SIGUSR1;
 use transport::{Flow, Graph, Input, Subscriber, wall_ns};
 use writer::{Status, Writer};
 
-use crate::events::Lookout;
+use crate::events::EventDetector;
 use crate::{Config, Event, RecorderError};
 
 /// How long a signal to save and a report of health may be overdue.
@@ -66,7 +66,7 @@ pub fn run(graph: &Graph, config: &Config) -> Result<Summary, RecorderError> {
 
 struct Recorder {
     transcript: Transcript,
-    lookout: Lookout,
+    detector: EventDetector,
     save_on: Vec<Event>,
     /// Asked by a signal.
     save: Arc<AtomicBool>,
@@ -83,7 +83,7 @@ impl Recorder {
         signal_hook::flag::register(SIGUSR1, Arc::clone(&save)).map_err(RecorderError::Signal)?;
         Ok(Recorder {
             transcript: Transcript::new(graph, &config.transcript)?,
-            lookout: Lookout::default(),
+            detector: EventDetector::default(),
             save_on: match config.keep {
                 Some(_) => config.save_on.clone(),
                 None => Vec::new(),
@@ -115,7 +115,7 @@ impl Recorder {
         self.report()
     }
 
-    /// Tells the graph how the writer fares.
+    /// Reports the writer's state to the graph.
     fn report(&mut self) -> Result<(), RecorderError> {
         let status = self.writer.status();
         let written = status.tally.recorded - self.status.tally.recorded;
@@ -131,7 +131,7 @@ impl Recorder {
                 }
                 None => {
                     tracing::info!(
-                        "recording goes on; {} messages were lost",
+                        "recording continues; {} messages were lost",
                         status.tally.dropped
                     );
                     health.state(NodeState::Ready)?;
@@ -199,17 +199,17 @@ impl Listener for Recorder {
     }
 
     fn reported(&mut self, report: &HealthHeader) -> Result<(), RecorderError> {
-        let event = self.lookout.health(report);
+        let event = self.detector.health(report);
         self.happened(event)
     }
 
     fn judged(&mut self, verdict: u32) -> Result<(), RecorderError> {
-        let event = self.lookout.verdict(verdict);
+        let event = self.detector.verdict(verdict);
         self.happened(event)
     }
 
     fn tracked(&mut self, state: u32) -> Result<(), RecorderError> {
-        let event = self.lookout.state(state);
+        let event = self.detector.state(state);
         self.happened(event)
     }
 }

@@ -153,7 +153,7 @@ impl World {
         }
     }
 
-    /// Waits until the node says that it has written so many messages.
+    /// Waits until the node says that it has written this many messages.
     fn wait_for_written(&self, messages: u64) {
         let awaited = |report: &messages::HealthHeader| {
             report.node.as_str() == "recorder" && report.sent >= messages
@@ -266,8 +266,8 @@ fn a_black_box_is_saved_when_asked_and_when_the_pose_is_lost() {
 }
 
 #[test]
-fn a_black_box_is_saved_when_the_graph_wishes() {
-    let mut world = World::start("wish", &["--keep", "1s"]);
+fn a_black_box_is_saved_when_the_graph_asks() {
+    let mut world = World::start("save", &["--keep", "1s"]);
     let saves = world.graph.publisher::<topic::Save>().unwrap();
     world.send_map();
     world.send_scan();
@@ -287,14 +287,14 @@ fn wait_for_file(world: &World, name: &str) {
     }
 }
 
-/// The file may grow to so many bytes, as on a disk that fills up; more than the
+/// The file may grow to this many bytes, as on a disk that fills up; more than the
 /// segments of shared memory that the node makes.
 const ROOM: usize = 8 << 20;
 /// Beams of a scan, most of it noise that does not pack.
 const LARGE: usize = 100_000;
 
 #[test]
-fn a_full_disk_is_told_and_nothing_is_lost_once_there_is_room() {
+fn a_full_disk_is_reported_and_nothing_is_lost_once_there_is_room() {
     // The limit is asked for in blocks, of 512 bytes or of 1024.
     let script = format!(
         "trap '' XFSZ; ulimit -S -f {}; exec \"$0\" \"$@\"",
@@ -312,8 +312,8 @@ fn a_full_disk_is_told_and_nothing_is_lost_once_there_is_room() {
     let is_degraded = |report: &messages::HealthHeader| {
         report.node.as_str() == "recorder" && report.state == NodeState::Degraded as u32
     };
-    let (_, told) = wait_for_health(&world.graph, &world.health, is_degraded);
-    assert!(told.contains("File too large"), "{told}");
+    let (_, said) = wait_for_health(&world.graph, &world.health, is_degraded);
+    assert!(said.contains("File too large"), "{said}");
     let before = Recording::open(world.path("r.mcap")).unwrap();
     assert!(before.messages() > 0 && before.size() <= ROOM as u64);
 

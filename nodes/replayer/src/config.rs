@@ -1,4 +1,4 @@
-//! What a user can set.
+//! Command-line options.
 
 use std::path::PathBuf;
 
@@ -33,38 +33,36 @@ pub struct Config {
     #[arg(long, value_name = "FACTOR|max", default_value_t = Rate::Factor(1.0))]
     pub rate: Rate,
 
-    /// Starts over at the end.
+    /// Repeats the recording.
     #[arg(long = "loop")]
     pub looped: bool,
 
-    /// Begins so many seconds after the recording's first message
+    /// Starts this many seconds after the recording's first message
     #[arg(long, value_name = "SECONDS", value_parser = seconds)]
     pub start: Option<f64>,
 
-    /// Ends so many seconds after the recording's first message
+    /// Ends this many seconds after the recording's first message
     #[arg(long, value_name = "SECONDS", value_parser = seconds)]
     pub end: Option<f64>,
 
-    /// The channels that may be played, with commas between; all others are left
-    /// out
+    /// The channels to play, separated by commas; all others are ignored
     #[arg(long, value_name = "TOPICS", value_delimiter = ',')]
     pub topics: Vec<String>,
 
-    /// Takes a channel for another, as /front/scan:=/scan; with commas between
+    /// Renames a channel, as /front/scan:=/scan; separated by commas
     #[arg(long, value_name = "FROM:=TO", value_delimiter = ',')]
     pub remap: Vec<Remap>,
 
-    /// Begins paused: a line on standard input plays on to the next scan, `p`
-    /// plays and pauses, `q` ends
+    /// Starts paused: Enter plays to the next scan, `p` plays and pauses, `q` quits
     #[arg(long)]
     pub pause: bool,
 
-    /// Nodes that must be ready before playing starts, with commas between.
+    /// Nodes that must be ready before playing starts, separated by commas.
     #[arg(long, value_name = "NODES", value_delimiter = ',', value_parser = node)]
     pub wait_for: Vec<String>,
 
-    /// Seconds that one answer may take, 0.1 to 3600: of every scan at --rate
-    /// max, else of the last one, if anybody listens.
+    /// Timeout for an answer, seconds, 0.1 to 3600: of every scan at --rate max, else
+    /// of the last one, if anybody listens.
     #[arg(long, value_name = "SECONDS", default_value_t = 30.0, value_parser = patience)]
     pub patience: f64,
 }

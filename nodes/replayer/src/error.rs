@@ -1,4 +1,4 @@
-//! What can go wrong with a recording and on the way into the graph.
+//! Errors of reading a recording and of sending it into the graph.
 
 use std::path::PathBuf;
 
@@ -25,7 +25,7 @@ pub enum ReplayerError {
         found: Vec<String>,
     },
     /// Standard input cannot be read.
-    #[error("cannot read what is typed")]
+    #[error("cannot read the keyboard")]
     Keyboard(#[source] std::io::Error),
     /// The graph failed.
     #[error(transparent)]

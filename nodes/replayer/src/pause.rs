@@ -2,7 +2,7 @@
 
 /// What a line asks for.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub(crate) enum Wish {
+pub(crate) enum Command {
     /// Play on to the next scan.
     Step,
     /// Play, or pause.
@@ -11,13 +11,13 @@ pub(crate) enum Wish {
     Quit,
 }
 
-impl Wish {
+impl Command {
     /// `p`, `q`, or anything else for a step.
     pub(crate) fn of(line: &str) -> Self {
         match line.trim() {
-            "p" => Wish::Toggle,
-            "q" => Wish::Quit,
-            _ => Wish::Step,
+            "p" => Command::Toggle,
+            "q" => Command::Quit,
+            _ => Command::Step,
         }
     }
 }
@@ -81,14 +81,14 @@ mod tests {
     }
 
     #[test]
-    fn lines_are_wishes() {
-        for (line, wish) in [
-            ("", Wish::Step),
-            ("n\n", Wish::Step),
-            (" p\n", Wish::Toggle),
-            ("q", Wish::Quit),
+    fn lines_are_commands() {
+        for (line, command) in [
+            ("", Command::Step),
+            ("n\n", Command::Step),
+            (" p\n", Command::Toggle),
+            ("q", Command::Quit),
         ] {
-            assert_eq!(Wish::of(line), wish, "{line:?}");
+            assert_eq!(Command::of(line), command, "{line:?}");
         }
     }
 }

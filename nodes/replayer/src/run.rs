@@ -7,7 +7,7 @@ use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, Ordering};
 use std::time::Duration;
 
-use keyboard::{Heard, Keyboard};
+use keyboard::{KeyPress, Keyboard};
 use messages::{NodeState, topic};
 use outlet::Outlet;
 use recording::{Kind, Recording};
@@ -182,9 +182,9 @@ impl Player<'_> {
                 .as_ref()
                 .map(|keyboard| keyboard.take(&mut self.pause))
             {
-                Some(Heard::Quit) => return Ok(Flow::Stop),
-                Some(Heard::Resumed) => self.schedule.resume(),
-                Some(Heard::Nothing) | None => {}
+                Some(KeyPress::Quit) => return Ok(Flow::Stop),
+                Some(KeyPress::Resumed) => self.schedule.resume(),
+                Some(KeyPress::Nothing) | None => {}
             }
             if self.pause.is_paused() && self.pending.is_some() {
                 if !self.pause.may_step() {
@@ -228,7 +228,7 @@ impl Player<'_> {
         if let Some(timed) = self.pending.take()
             && let Some(stamp) = self.outlet.send(timed)?
             // At a factor the graph need not be there; at max it must answer.
-            && (self.config.rate == Rate::Max || self.outlet.is_heard())
+            && (self.config.rate == Rate::Max || self.outlet.has_subscribers())
         {
             self.schedule.scan_sent(stamp);
         }
@@ -282,7 +282,7 @@ impl Player<'_> {
         match self.failure {
             Some(error) if finished && error.is_damage() => {
                 let lost = with_causes(&error);
-                tracing::error!("what follows was lost: {lost}");
+                tracing::error!("the rest of the recording was lost: {lost}");
                 self.outlet.health.error(&lost)?;
                 summary.damaged = true;
                 Ok(summary)

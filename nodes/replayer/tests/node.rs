@@ -360,7 +360,8 @@ fn a_recording_that_is_cut_short_is_played_as_far_as_it_goes() {
     let played = format!("played scans={readable} answers={readable}");
     assert!(log.contains(&played), "{log}");
     assert!(
-        log.contains("what follows was lost") && log.contains("world.mcap: the file is cut short"),
+        log.contains("the rest of the recording was lost")
+            && log.contains("world.mcap: the file is cut short"),
         "{log}"
     );
 }

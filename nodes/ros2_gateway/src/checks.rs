@@ -1,4 +1,4 @@
-//! What of the robot's messages is refused.
+//! Checks of the robot's messages.
 
 use messages::Odometry as GraphOdometry;
 use ros::{LaserScan, Odometry, Time, TransformStamped};

@@ -1,4 +1,4 @@
-//! What a user can set.
+//! Command-line options.
 
 use clap::{Parser, ValueEnum};
 use geometry::{Mount, Pose};
@@ -6,12 +6,12 @@ use messages::FrameName;
 
 use crate::GatewayError;
 
-/// Joins a graph to a ROS 2 robot that speaks rmw_zenoh (jazzy and later), with no ROS
+/// Connects a graph to a ROS 2 robot that uses rmw_zenoh (jazzy and later), without ROS
 /// installed.
 ///
-/// Is the robot's Zenoh router unless told to connect to one. The robot's scan,
-/// odometry and map enter the graph; when the verdict is Unique, the robot's particle
-/// filter gets its initial pose.
+/// It is the robot's Zenoh router by default, unless it connects to another. The
+/// robot's scan, odometry and map enter the graph; when the verdict is Unique, the
+/// robot's particle filter gets its initial pose.
 #[derive(Debug, Clone, Parser)]
 #[command(name = "ros2_gateway", version)]
 pub struct Config {
@@ -19,11 +19,11 @@ pub struct Config {
     #[arg(long, value_name = "ID", value_parser = clap::value_parser!(u32).range(..=MAX_DOMAIN))]
     pub domain: Option<u32>,
 
-    /// Where the names below are that begin with no slash
+    /// Namespace of the names below that begin with no slash
     #[arg(long, value_name = "NAMESPACE", default_value = "/")]
     pub namespace: String,
 
-    /// What the gateway is called among the robot's nodes
+    /// The gateway's name among the robot's nodes
     #[arg(long, value_name = "NAME", default_value = "backcast")]
     pub node: String,
 
@@ -31,17 +31,17 @@ pub struct Config {
     #[arg(long, value_name = "TOPIC,…", value_delimiter = ',', default_values = ["scan", "odometry", "map"])]
     pub bring: Vec<Brought>,
 
-    /// When the particle filter is told where the robot is
+    /// When the particle filter gets an initial pose
     #[arg(long, value_name = "WHEN", default_value = "lost")]
     pub seed: Seed,
 
-    /// How far the particle filter's pose may be from all hypotheses before it is
-    /// taken for lost: metres and degrees
+    /// How far the particle filter's pose may be from all hypotheses before it counts
+    /// as lost: metres and degrees
     #[arg(long, value_name = "M,DEG", default_value = "1,30", value_parser = reach)]
     pub lost_beyond: Reach,
 
-    /// Standard deviation that an initial pose has at least, for the particles that are
-    /// drawn of it: metres and degrees
+    /// Minimum standard deviation of an initial pose, for the particles that are drawn
+    /// from it: metres and degrees
     #[arg(long, value_name = "M,DEG", default_value = "0.1,3", value_parser = reach)]
     pub spread: Reach,
 
@@ -69,7 +69,7 @@ pub struct Config {
     #[arg(long)]
     pub broadcast_tf: bool,
 
-    /// How far ahead of its scan that transform is dated, seconds, 0 to 10
+    /// How far that transform is stamped ahead of its scan, seconds, 0 to 10
     #[arg(long, value_name = "SECONDS", default_value = "1", value_parser = ahead)]
     pub tf_ahead: f64,
 
@@ -77,7 +77,7 @@ pub struct Config {
     #[command(flatten)]
     pub memory: map::MemoryOptions,
 
-    /// What the robot's topics and services are called.
+    /// Names of the robot's topics and services.
     #[command(flatten)]
     pub names: Names,
 
@@ -106,10 +106,10 @@ pub struct Names {
     /// tf2_msgs/TFMessage, transient local, in
     #[arg(long, value_name = "NAME", default_value = "tf_static")]
     pub tf_static: String,
-    /// geometry_msgs/PoseWithCovarianceStamped: where the particle filter thinks it is, in
+    /// geometry_msgs/PoseWithCovarianceStamped: the particle filter's pose, in
     #[arg(long, value_name = "NAME", default_value = "amcl_pose")]
     pub amcl_pose: String,
-    /// geometry_msgs/PoseWithCovarianceStamped: where it is told to be, out
+    /// geometry_msgs/PoseWithCovarianceStamped: the initial pose, out
     #[arg(long, value_name = "NAME", default_value = "initialpose")]
     pub initial_pose: String,
     /// geometry_msgs/PoseArray, out
@@ -138,12 +138,12 @@ pub enum Brought {
     Map,
 }
 
-/// When the particle filter is told where the robot is.
+/// When the particle filter gets an initial pose
 #[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]
 pub enum Seed {
-    /// Once it is there, and when the service is called
+    /// Once when it starts, and when the service is called
     Once,
-    /// Also whenever its pose leaves the hypotheses
+    /// Also whenever its pose is far from all hypotheses
     Lost,
     /// When the service is called
     Never,
@@ -211,7 +211,7 @@ impl Config {
     }
 }
 
-/// So many finite numbers, as `1,2,3`.
+/// This many finite numbers, as `1,2,3`.
 fn numbers<const N: usize>(text: &str) -> Option<[f64; N]> {
     let numbers: Option<Vec<f64>> = text
         .split(',')

@@ -1,4 +1,4 @@
-//! What keeps the gateway from running, and why a message is refused.
+//! Errors that end the gateway, and reasons to reject a message.
 
 use ros::ConversionError;
 use transport::TransportError;
@@ -16,7 +16,7 @@ pub enum GatewayError {
         reason: String,
     },
     /// A definition has a line that is no field.
-    #[error("the definition of {name}: {line:?} is no field")]
+    #[error("the definition of {name}: {line:?} is not a field")]
     Definition {
         /// The type.
         name: String,
@@ -98,11 +98,11 @@ pub enum GatewayError {
         /// Nanoseconds since 1970.
         stamp_ns: i64,
     },
-    /// A pose, a transform or a map is none, or the graph cannot say it.
+    /// A pose, a transform or a map is invalid, or the graph cannot say it.
     #[error(transparent)]
     Conversion(#[from] ConversionError),
     /// A topic that is taken is published as something else.
-    #[error("{node} publishes {topic} as {found}, which cannot be taken: expected is {expected}")]
+    #[error("{node} publishes {topic} as {found}, which is not supported: expected is {expected}")]
     Stranger {
         /// The robot's node.
         node: String,
@@ -114,7 +114,7 @@ pub enum GatewayError {
         expected: String,
     },
     /// A transform of `/tf_static` is none; the others of its message are taken.
-    #[error("the transform from {parent} to {child} is left out")]
+    #[error("the transform from {parent} to {child} is ignored")]
     Transform {
         /// The parent frame.
         parent: String,
@@ -137,7 +137,7 @@ pub enum GatewayError {
         /// Angle between their z axes.
         tilt_degrees: f64,
     },
-    /// A frame's name that is none.
+    /// A frame's name that is invalid.
     #[error("a frame's name has {found} bytes: allowed are at most {most}")]
     FrameName {
         /// Its bytes.
@@ -146,7 +146,7 @@ pub enum GatewayError {
         most: usize,
     },
     /// More frames than a robot has.
-    #[error("there is no room for frame {frame:?}: allowed are {most} frames")]
+    #[error("too many frames, {frame:?} is ignored: allowed are {most}")]
     Frames {
         /// The frame that was to come.
         frame: String,

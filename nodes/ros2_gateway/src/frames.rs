@@ -1,4 +1,4 @@
-//! How the robot's frames lie to each other: the laser on the base, and the base in the
+//! The transforms between the robot's frames: the laser on the base, and the base in the
 //! odometry's frame. Pure.
 //!
 //! Refuses lasers that look neither level nor upside down, and more frames than a robot
@@ -57,7 +57,7 @@ impl Frames {
     ///
     /// # Errors
     /// What is wrong with the first that cannot be used.
-    pub(crate) fn hear_fixed(&mut self, message: &TfMessage) -> Result<(), GatewayError> {
+    pub(crate) fn on_static_transforms(&mut self, message: &TfMessage) -> Result<(), GatewayError> {
         let outcomes: Vec<_> = message.transforms.iter().map(|t| self.add(t)).collect();
         outcomes.into_iter().collect()
     }
@@ -92,7 +92,7 @@ impl Frames {
         Ok(())
     }
 
-    pub(crate) fn hear_odometry(&mut self, odometry: &Odometry) {
+    pub(crate) fn on_odometry(&mut self, odometry: &Odometry) {
         if self.odometry.len() == KEPT {
             self.odometry.pop_front();
         }
@@ -229,11 +229,11 @@ mod tests {
         let mut frames = Frames::new(Vec::new());
         assert_eq!(frames.base_from_laser(0, "laser").unwrap(), None);
         let mount = fixed("base_link", "laser", 0.5, Quaternion::default());
-        frames.hear_fixed(&mount).unwrap();
+        frames.on_static_transforms(&mount).unwrap();
         let found = frames.base_from_laser(0, "laser").unwrap();
         assert_eq!(found, Some(mounted(0.5)));
         let mut frames = Frames::new(vec![mounted(9.0), mounted(8.0)]);
-        frames.hear_fixed(&mount).unwrap();
+        frames.on_static_transforms(&mount).unwrap();
         for (index, expected) in [9.0, 8.0].into_iter().enumerate() {
             let found = frames.base_from_laser(index, "laser").unwrap();
             assert_eq!(found, Some(mounted(expected)));
@@ -254,7 +254,9 @@ mod tests {
         let front = fixed("base_link", "front", 0.5, Quaternion::default());
         let rear = fixed("base_link", "rear", -0.4, OVER);
         let transforms = [front.transforms, rear.transforms].concat();
-        frames.hear_fixed(&TfMessage { transforms }).unwrap();
+        frames
+            .on_static_transforms(&TfMessage { transforms })
+            .unwrap();
         let turned = Mount {
             is_upside_down: true,
             ..mounted(-0.4)
@@ -271,7 +273,7 @@ mod tests {
             assert!(frames.mounts.len() <= MAX_MOUNTS);
         }
         let moved = fixed("base_link", "rear", -0.6, Quaternion::default());
-        frames.hear_fixed(&moved).unwrap();
+        frames.on_static_transforms(&moved).unwrap();
         let found = frames.base_from_laser(1, "rear").unwrap();
         assert_eq!(found, Some(mounted(-0.6)));
     }
@@ -290,9 +292,11 @@ mod tests {
         ]
         .map(|message| message.transforms)
         .concat();
-        let error = frames.hear_fixed(&TfMessage { transforms }).unwrap_err();
+        let error = frames
+            .on_static_transforms(&TfMessage { transforms })
+            .unwrap_err();
         let text = transport::with_causes(&error);
-        let expected = "the transform from base_link to camera is left out: the position (NaN, 0)";
+        let expected = "the transform from base_link to camera is ignored: the position (NaN, 0)";
         assert!(text.starts_with(expected), "{text}");
         for (index, laser, x) in [(0, "front", 0.5), (1, "rear", -0.4)] {
             let found = frames.base_from_laser(index, laser).unwrap();
@@ -307,7 +311,7 @@ mod tests {
         let mut frames = Frames::new(Vec::new());
         let long = "f".repeat(FrameName::CAPACITY);
         let mount = fixed("base_link", &long, 0.5, Quaternion::default());
-        frames.hear_fixed(&mount).unwrap();
+        frames.on_static_transforms(&mount).unwrap();
         let found = frames.base_from_laser(0, &long).unwrap();
         assert_eq!(found, Some(mounted(0.5)));
     }
@@ -323,17 +327,17 @@ mod tests {
             w: half,
         };
         frames
-            .hear_fixed(&fixed("base_link", "laser", 0.5, tilted))
+            .on_static_transforms(&fixed("base_link", "laser", 0.5, tilted))
             .unwrap();
         let error = frames.base_from_laser(0, "laser").unwrap_err().to_string();
         assert!(error.contains("tilted by 90.0"), "{error}");
         let long = fixed("base_link", &"f".repeat(257), 0.5, Quaternion::default());
-        let error = frames.hear_fixed(&long).unwrap_err().to_string();
+        let error = frames.on_static_transforms(&long).unwrap_err().to_string();
         assert!(error.contains("257 bytes"), "{error}");
         let mut refused = 0;
         for i in 0..2 * MAX_FRAMES {
             let child = fixed("base_link", &format!("f{i}"), 0.5, Quaternion::default());
-            refused += usize::from(frames.hear_fixed(&child).is_err());
+            refused += usize::from(frames.on_static_transforms(&child).is_err());
         }
         assert_eq!(refused, MAX_FRAMES + 1);
     }
@@ -353,10 +357,10 @@ mod tests {
             let mut frames = Frames::new(Vec::new());
             for (index, laser, x) in [(0, "laser", 0.5), (1, "rear", -0.4)] {
                 let mount = fixed("base_link", laser, x, Quaternion::default());
-                frames.hear_fixed(&mount).unwrap();
+                frames.on_static_transforms(&mount).unwrap();
                 frames.base_from_laser(index, laser).unwrap();
             }
-            frames.hear_odometry(&odometry(child, 4.0));
+            frames.on_odometry(&odometry(child, 4.0));
             let found = frames.map_from_odom(header, &best);
             assert_eq!(found.map(|(pose, _)| pose.x), expected, "{child}");
         };

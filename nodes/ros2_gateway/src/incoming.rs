@@ -95,7 +95,7 @@ impl Incoming {
         self.map_frame.as_deref()
     }
 
-    /// Takes what has come since the last call: first what tells how to take the rest.
+    /// Takes what has come since the last call: first what is needed to read the rest.
     pub(crate) fn step(
         &mut self,
         frames: &mut Frames,
@@ -115,12 +115,14 @@ impl Incoming {
             map_frame,
             mended,
         } = self;
-        take(fixed, report, |message, _| frames.hear_fixed(&message))?;
+        take(fixed, report, |message, _| {
+            frames.on_static_transforms(&message)
+        })?;
         take_if(odometry, report, |message, report| {
             let odometry = sound_odometry(&message)?;
             note("the odometry", message.pose.pose.orientation, mended);
             *odometry_ns = Some(monotonic_ns());
-            frames.hear_odometry(&odometry);
+            frames.on_odometry(&odometry);
             outlet.send_odometry(odometry, report)
         })?;
         let alone = odometry_ns.is_some_and(|ns| monotonic_ns() - ns < ODOMETRY_NS);
@@ -130,7 +132,7 @@ impl Incoming {
                     let turn = transform.transform.rotation;
                     let odometry = odometry_of(transform)?;
                     note("the odometry on /tf", turn, mended);
-                    frames.hear_odometry(&odometry);
+                    frames.on_odometry(&odometry);
                     outlet.send_odometry(odometry, report)?;
                 }
             }
@@ -149,7 +151,7 @@ impl Incoming {
         }
         take_if(beliefs, report, |message, _| {
             let turn = message.pose.pose.orientation;
-            seeding.hear_belief(Belief {
+            seeding.on_belief(Belief {
                 measured_ns: measured_ns("the particle filter's pose", message.header.stamp)?,
                 map_from_base: message.pose.pose.planar()?,
             });

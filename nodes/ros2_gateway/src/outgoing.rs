@@ -33,7 +33,7 @@ pub(crate) struct Outgoing {
     spread: Reach,
     /// Where the odometry's frame lies, by the last verdict that was Unique.
     map_from_odom: Option<(Pose, String)>,
-    /// Whether a tracker was heard: where the robot is, it says then.
+    /// Whether there is a tracker, which then provides the pose.
     is_tracked: bool,
     /// The newest scan: where the robot's clock meets the host's.
     newest: Option<Stamp>,
@@ -61,7 +61,7 @@ impl Outgoing {
         })
     }
 
-    /// Tells the robot what a scan says.
+    /// Sends the robot the answer to a scan.
     pub(crate) fn answer(
         &mut self,
         header: &HypothesesHeader,
@@ -75,13 +75,13 @@ impl Outgoing {
         let answer = answer(header, items);
         let reason = match self.is_tracked {
             true => None,
-            false => seeding.hear_answer(answer),
+            false => seeding.on_answer(answer),
         };
-        let outcome = self.tell(header, items, map_frame, frames, reason, report);
+        let outcome = self.send_answer(header, items, map_frame, frames, reason, report);
         outcome.or_else(|error| report.refused(&error))
     }
 
-    fn tell(
+    fn send_answer(
         &mut self,
         header: &HypothesesHeader,
         items: &[Hypothesis],
@@ -110,7 +110,7 @@ impl Outgoing {
         self.broadcast(header.stamp, in_map, report)
     }
 
-    /// Tells the robot where the tracker has it, by a scan.
+    /// Sends the robot the tracker's pose at a scan.
     pub(crate) fn tracked(
         &mut self,
         header: &PoseHeader,
@@ -123,12 +123,12 @@ impl Outgoing {
             return Ok(());
         }
         self.newest = Some(header.stamp);
-        let reason = seeding.hear_answer(tracked(header));
-        let outcome = self.tell_tracked(header, map_frame, reason, report);
+        let reason = seeding.on_answer(tracked(header));
+        let outcome = self.show_tracked(header, map_frame, reason, report);
         outcome.or_else(|error| report.refused(&error))
     }
 
-    fn tell_tracked(
+    fn show_tracked(
         &mut self,
         header: &PoseHeader,
         map_frame: &str,
@@ -157,12 +157,12 @@ impl Outgoing {
         self.initial_pose.send(&spread(pose, self.spread))?;
         report.sent();
         let (x, y, yaw_deg) = (at.x, at.y, at.yaw.to_degrees());
-        tracing::info!(?reason, x, y, yaw_deg, "told the robot where it is");
+        tracing::info!(?reason, x, y, yaw_deg, "sent the initial pose to the robot");
         Ok(())
     }
 
-    /// The odometry goes on from where the map was last known to lie, so the
-    /// transform is dated anew with each scan.
+    /// The odometry continues from where the map was last known to lie, so the
+    /// transform is dated again with each scan.
     fn broadcast(
         &mut self,
         of: Stamp,
@@ -188,7 +188,7 @@ impl Outgoing {
         Ok(())
     }
 
-    /// Tells the robot how a node fares.
+    /// Sends the robot the state of a node.
     pub(crate) fn health(
         &mut self,
         health: &HealthHeader,

@@ -123,7 +123,7 @@ impl Gateway {
         while let Some(seen) = self.watch.next(&self.member) {
             match seen {
                 Seen::Subscriber(node) => {
-                    tracing::info!(node, "wants to be told where the robot is");
+                    tracing::info!(node, "subscribes to the initial pose");
                     self.seeding.greet();
                 }
                 Seen::Stranger(error) => report.refused(&error)?,
@@ -138,7 +138,7 @@ impl Gateway {
             report.received();
             match outcome {
                 Ok(()) => {
-                    tracing::info!("asked to tell the robot where it is");
+                    tracing::info!("initial pose requested");
                     self.seeding.ask();
                 }
                 Err(error) => report.refused(&error)?,

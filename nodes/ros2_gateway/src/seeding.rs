@@ -1,6 +1,6 @@
-//! When the robot's particle filter is told where the robot is. Pure.
+//! When the robot's particle filter gets an initial pose. Pure.
 //!
-//! It is told once it is there, when somebody asks for it, and when its pose lies
+//! It gets one once it starts, when somebody asks for it, and when its pose lies
 //! apart from every hypothesis of a scan that is Unique, twice in a row: always by a
 //! scan whose verdict is Unique, and never otherwise.
 
@@ -17,7 +17,7 @@ const KEPT: usize = 128;
 /// nanoseconds: a robot at 2 m/s gets as far as half the distance that makes it lost.
 const SAME_TIME_NS: i64 = 250_000_000;
 
-/// So many poses in a row have to lie apart.
+/// This many poses in a row have to lie apart.
 const ENOUGH: u32 = 2;
 
 /// Where the robot may be, by one scan.
@@ -37,7 +37,7 @@ pub(crate) struct Belief {
     pub(crate) map_from_base: Pose,
 }
 
-/// Why it is to be told.
+/// Why it gets an initial pose.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(crate) enum Reason {
     /// It has just come.
@@ -58,8 +58,8 @@ pub(crate) struct Seeding {
     /// A pose that no answer was there for yet.
     waiting: Option<Belief>,
     apart: u32,
-    /// The scan by which it was told last.
-    told_ns: i64,
+    /// The scan of the last initial pose.
+    seeded_ns: i64,
 }
 
 impl Seeding {
@@ -71,7 +71,7 @@ impl Seeding {
             answers: VecDeque::with_capacity(KEPT),
             waiting: None,
             apart: 0,
-            told_ns: i64::MIN,
+            seeded_ns: i64::MIN,
         }
     }
 
@@ -82,21 +82,21 @@ impl Seeding {
         }
     }
 
-    /// Somebody asks that it be told.
+    /// Somebody asks for an initial pose.
     pub(crate) fn ask(&mut self) {
         self.wanted = Some(Reason::Asked);
     }
 
-    /// Whether it is to be told something.
+    /// Whether an initial pose is due.
     #[cfg(test)]
     fn is_wanted(&self) -> bool {
         self.wanted.is_some()
     }
 
     /// Takes the pose of the particle filter.
-    pub(crate) fn hear_belief(&mut self, belief: Belief) {
-        // What it thought before it was told does not count.
-        if self.when != Seed::Lost || belief.measured_ns <= self.told_ns {
+    pub(crate) fn on_belief(&mut self, belief: Belief) {
+        // Its poses from before the initial pose do not count.
+        if self.when != Seed::Lost || belief.measured_ns <= self.seeded_ns {
             return;
         }
         let newest = self.answers.back().map(|answer| answer.measured_ns);
@@ -107,15 +107,15 @@ impl Seeding {
         }
     }
 
-    /// Takes what a scan says; gives the reason if the particle filter is to be told
+    /// Takes what a scan says; gives the reason if the particle filter is to be sent
     /// the first pose of it.
-    pub(crate) fn hear_answer(&mut self, answer: Answer) -> Option<Reason> {
+    pub(crate) fn on_answer(&mut self, answer: Answer) -> Option<Reason> {
         let (now_ns, is_unique) = (answer.measured_ns, answer.is_unique);
         if self.answers.back().is_some_and(|a| a.measured_ns > now_ns) {
-            // The clock was set back: a recording that begins anew.
+            // The clock was set back: a recording that begins again.
             self.answers.clear();
             self.waiting = None;
-            self.told_ns = i64::MIN;
+            self.seeded_ns = i64::MIN;
         }
         if self.answers.len() == KEPT {
             self.answers.pop_front();
@@ -129,7 +129,7 @@ impl Seeding {
         }
         let reason = self.wanted.take()?;
         self.apart = 0;
-        self.told_ns = now_ns;
+        self.seeded_ns = now_ns;
         Some(reason)
     }
 
@@ -183,50 +183,50 @@ mod tests {
     }
 
     #[test]
-    fn who_comes_is_told_once_and_by_a_unique_verdict() {
+    fn a_new_filter_gets_one_pose_by_a_unique_verdict() {
         for when in [Seed::Once, Seed::Lost] {
             let mut seeding = seeding(when);
             assert_eq!(
-                seeding.hear_answer(answer(0, true, &[1.0])),
+                seeding.on_answer(answer(0, true, &[1.0])),
                 None,
                 "nobody there"
             );
             seeding.greet();
-            assert_eq!(seeding.hear_answer(answer(100, false, &[1.0, 9.0])), None);
+            assert_eq!(seeding.on_answer(answer(100, false, &[1.0, 9.0])), None);
             assert_eq!(
-                seeding.hear_answer(answer(200, true, &[1.0])),
+                seeding.on_answer(answer(200, true, &[1.0])),
                 Some(Reason::New)
             );
-            assert_eq!(seeding.hear_answer(answer(300, true, &[1.0])), None);
+            assert_eq!(seeding.on_answer(answer(300, true, &[1.0])), None);
         }
         let mut seeding = seeding(Seed::Never);
         seeding.greet();
-        assert_eq!(seeding.hear_answer(answer(200, true, &[1.0])), None);
+        assert_eq!(seeding.on_answer(answer(200, true, &[1.0])), None);
         seeding.ask();
         assert_eq!(
-            seeding.hear_answer(answer(300, true, &[1.0])),
+            seeding.on_answer(answer(300, true, &[1.0])),
             Some(Reason::Asked)
         );
     }
 
     #[test]
-    fn who_is_lost_is_told_again_after_the_second_sign() {
+    fn a_lost_filter_gets_another_after_the_second_sign() {
         let mut seeding = seeding(Seed::Lost);
-        seeding.hear_answer(answer(0, true, &[1.0]));
-        seeding.hear_belief(belief(0, 1.5));
-        seeding.hear_belief(belief(0, 9.0));
-        assert_eq!(seeding.hear_answer(answer(100, true, &[1.0])), None);
+        seeding.on_answer(answer(0, true, &[1.0]));
+        seeding.on_belief(belief(0, 1.5));
+        seeding.on_belief(belief(0, 9.0));
+        assert_eq!(seeding.on_answer(answer(100, true, &[1.0])), None);
         // This one comes before its answer does.
-        seeding.hear_belief(belief(200, 9.0));
+        seeding.on_belief(belief(200, 9.0));
         assert!(!seeding.is_wanted());
         assert_eq!(
-            seeding.hear_answer(answer(200, true, &[1.0])),
+            seeding.on_answer(answer(200, true, &[1.0])),
             Some(Reason::Lost)
         );
-        // What it thought before says nothing of what it was told.
-        seeding.hear_belief(belief(200, 9.0));
-        seeding.hear_belief(belief(150, 9.0));
-        assert_eq!(seeding.hear_answer(answer(300, true, &[1.0])), None);
+        // Poses from before say nothing of the initial pose.
+        seeding.on_belief(belief(200, 9.0));
+        seeding.on_belief(belief(150, 9.0));
+        assert_eq!(seeding.on_answer(answer(300, true, &[1.0])), None);
     }
 
     #[test]
@@ -234,51 +234,51 @@ mod tests {
         let mut seeding = seeding(Seed::Lost);
         for ms in (0..1000).step_by(100) {
             assert_eq!(
-                seeding.hear_answer(answer(ms, ms % 200 == 0, &[1.0, 20.0])),
+                seeding.on_answer(answer(ms, ms % 200 == 0, &[1.0, 20.0])),
                 None
             );
-            seeding.hear_belief(belief(ms, if ms % 200 == 0 { 20.0 } else { 9.0 }));
+            seeding.on_belief(belief(ms, if ms % 200 == 0 { 20.0 } else { 9.0 }));
         }
         assert!(!seeding.is_wanted());
         // Turned around at the right place.
-        seeding.hear_answer(answer(2000, true, &[1.0]));
+        seeding.on_answer(answer(2000, true, &[1.0]));
         for _ in 0..2 {
             let mut turned = belief(2000, 1.0);
             turned.map_from_base.yaw = 3.0;
-            seeding.hear_belief(turned);
+            seeding.on_belief(turned);
         }
         assert!(seeding.is_wanted());
         // It came back by itself, or somebody put it there.
-        seeding.hear_belief(belief(2000, 1.0));
+        seeding.on_belief(belief(2000, 1.0));
         assert!(!seeding.is_wanted());
     }
 
     #[test]
     fn only_what_is_of_one_time_is_compared() {
         let mut seeding = seeding(Seed::Lost);
-        seeding.hear_answer(answer(1000, true, &[1.0]));
-        seeding.hear_belief(belief(700, 9.0));
-        seeding.hear_belief(belief(600, 9.0));
+        seeding.on_answer(answer(1000, true, &[1.0]));
+        seeding.on_belief(belief(700, 9.0));
+        seeding.on_belief(belief(600, 9.0));
         assert!(!seeding.is_wanted());
     }
 
     #[test]
     fn once_means_once() {
         let mut seeding = seeding(Seed::Once);
-        seeding.hear_answer(answer(0, true, &[1.0]));
-        seeding.hear_belief(belief(0, 9.0));
-        seeding.hear_belief(belief(0, 9.0));
+        seeding.on_answer(answer(0, true, &[1.0]));
+        seeding.on_belief(belief(0, 9.0));
+        seeding.on_belief(belief(0, 9.0));
         assert!(!seeding.is_wanted());
     }
 
     #[test]
-    fn a_clock_that_is_set_back_begins_anew() {
+    fn a_clock_that_is_set_back_begins_again() {
         let mut seeding = seeding(Seed::Lost);
         seeding.ask();
-        assert!(seeding.hear_answer(answer(5000, true, &[1.0])).is_some());
-        assert_eq!(seeding.hear_answer(answer(0, true, &[1.0])), None);
-        seeding.hear_belief(belief(0, 9.0));
-        seeding.hear_belief(belief(0, 9.0));
+        assert!(seeding.on_answer(answer(5000, true, &[1.0])).is_some());
+        assert_eq!(seeding.on_answer(answer(0, true, &[1.0])), None);
+        seeding.on_belief(belief(0, 9.0));
+        seeding.on_belief(belief(0, 9.0));
         assert!(seeding.is_wanted());
     }
 }

@@ -1,5 +1,5 @@
 //! A ROS 2 robot of other people's libraries, and the gateway between it and a graph:
-//! every message both ways, and a particle filter that is told where it is.
+//! every message both ways, and a particle filter that gets initial poses.
 #![allow(
     clippy::unwrap_used,
     reason = "the lint spares test functions but not what they share"
@@ -244,26 +244,26 @@ fn what_the_graph_says_reaches_the_robot_byte_for_byte() {
     let scans_in = joined.graph.subscriber::<topic::Scan>().unwrap();
     robot.order("scan", json!({ "index": 0 }));
     wait_for(&joined.graph, &scans_in, |_, _| Some(()));
-    // Which verdict it is decides whether the filter is told.
+    // The verdict decides whether the filter gets an initial pose.
     for (counter, verdict) in [Verdict::Ambiguous, Verdict::Unique]
         .into_iter()
         .enumerate()
     {
         let sent = hypotheses(counter as u64, verdict);
         send(&publisher, &sent);
-        let mut heard = std::collections::BTreeMap::new();
+        let mut received = std::collections::BTreeMap::new();
         let wanted = if verdict == Verdict::Unique { 3 } else { 1 };
-        while heard.len() < wanted {
-            let said = joined.robot.hear();
+        while received.len() < wanted {
+            let said = joined.robot.receive();
             let event = said["event"].as_str().unwrap().to_owned();
             assert_eq!(said["same"], true, "the bytes of {event} differ");
             assert_eq!(said["attachment"], 33);
             if event != "/diagnostics" {
-                heard.insert(event, said);
+                received.insert(event, said);
             }
         }
         let stamp = sent.0.stamp.measured_ns;
-        let poses = &heard["hypotheses"];
+        let poses = &received["hypotheses"];
         assert_eq!(
             (&poses["stamp"], &poses["frame"]),
             (&json!(stamp), &json!("map"))
@@ -271,25 +271,25 @@ fn what_the_graph_says_reaches_the_robot_byte_for_byte() {
         assert_near(&poses["poses"][0], Pose::new(1.0, 2.0, 0.0));
         assert_near(&poses["poses"][1], Pose::new(-7.0, 2.0, 0.0));
         assert_eq!(poses["sequence"], counter + 1);
-        let Some(told) = heard.get("initialpose") else {
+        let Some(seed) = received.get("initialpose") else {
             assert_eq!(verdict, Verdict::Ambiguous);
             continue;
         };
-        assert_eq!(told["stamp"], stamp);
-        assert_near(&told["pose"], Pose::new(1.0, 2.0, 0.0));
+        assert_eq!(seed["stamp"], stamp);
+        assert_near(&seed["pose"], Pose::new(1.0, 2.0, 0.0));
         // At least the spread of 0.1 m and 3 degrees.
-        let variances: Vec<f64> = serde_json::from_value(told["variances"].clone()).unwrap();
+        let variances: Vec<f64> = serde_json::from_value(seed["variances"].clone()).unwrap();
         assert_eq!(variances[0], 0.1 * 0.1);
         // The laser's, and what its yaw does half a metre away, but for rounding.
         assert!((variances[1] - (0.01 + 0.25e-6)).abs() < 1e-12);
         assert!((variances[2].sqrt().to_degrees() - 3.0).abs() < 1e-9);
-        let tf = &heard["tf"];
+        let tf = &received["tf"];
         assert_eq!(
             (&tf["stamp"], &tf["child"]),
             (&json!(stamp + 1_000_000_000), &json!("odom"))
         );
     }
-    // A node of the graph, as it fares; one report a second.
+    // The state of a node of the graph; one report a second.
     let report = loop {
         let said = joined.robot.wait_for("/diagnostics");
         assert_eq!(said["same"], true);
@@ -305,7 +305,7 @@ fn what_the_graph_says_reaches_the_robot_byte_for_byte() {
 }
 
 #[test]
-fn a_robot_whose_pose_is_tracked_is_told_that_pose_and_no_single_answer() {
+fn a_robot_whose_pose_is_tracked_is_sent_that_pose_and_no_single_answer() {
     let options = ["--broadcast-tf", "--odom-frame", "odom"];
     let Some(mut joined) = Joined::new("ros-pose", "/", &options) else {
         return;
@@ -336,19 +336,19 @@ fn a_robot_whose_pose_is_tracked_is_told_that_pose_and_no_single_answer() {
         ..PoseHeader::zeroed()
     };
     loan.send().unwrap();
-    let told = joined.robot.wait_for("initialpose");
-    assert_eq!(told["same"], true, "the bytes differ");
-    assert_near(&told["pose"], Pose::new(3.0, 1.0, 0.25));
+    let seed = joined.robot.wait_for("initialpose");
+    assert_eq!(seed["same"], true, "the bytes differ");
+    assert_near(&seed["pose"], Pose::new(3.0, 1.0, 0.25));
     let tf = joined.robot.wait_for("tf");
     assert_eq!(tf["child"], "odom");
 
-    // The single answer says elsewhere, and is shown; nobody is told to be there.
+    // The single answer says elsewhere, and is shown; no initial pose is sent there.
     let mut header = answer;
     header.stamp.counter += 1;
     header.stamp.measured_ns += 1;
     send(&answers, &(header, items));
     loop {
-        let said = joined.robot.hear();
+        let said = joined.robot.receive();
         assert_ne!(said["event"], "initialpose", "{said}");
         if said["event"] == "hypotheses" {
             break;
@@ -373,7 +373,7 @@ fn bytes_of_no_meaning_are_refused_and_counted() {
             report.node.as_str() == "ros2_gateway" && report.refused >= refused
         });
         assert_eq!(report.refused, refused, "{error}");
-        // Of several in a second, the first is put into words.
+        // Of several in a second, the first is written as text.
         if refused == 1 {
             assert!(error.contains(expected), "{error}");
         }
@@ -394,7 +394,7 @@ fn bytes_of_no_meaning_are_refused_and_counted() {
         None,
         "at most",
     );
-    // It goes on, and takes what is sound.
+    // It continues, and takes what is sound.
     let scans_in = joined.graph.subscriber::<topic::Scan>().unwrap();
     joined.robot.order("scan", json!({ "index": 0 }));
     wait_for(&joined.graph, &scans_in, |_, _| Some(()));
@@ -412,7 +412,7 @@ fn engine(graph: &Graph) -> Vec<NodeProcess> {
 }
 
 #[test]
-fn a_particle_filter_is_told_where_it_is() {
+fn a_particle_filter_gets_its_initial_pose() {
     let Some(mut joined) = Joined::new("ros-amcl", "/", &["--lost-beyond", "1,30"]) else {
         return;
     };
@@ -430,12 +430,12 @@ fn a_particle_filter_is_told_where_it_is() {
         .collect();
     // What was said up to the answer to scan `index`, which has an answer itself.
     let until_answered = |robot: &mut Robot, index: usize| {
-        let mut told = Vec::new();
+        let mut seed = Vec::new();
         loop {
-            let said = robot.hear();
+            let said = robot.receive();
             match said["event"].as_str().unwrap() {
-                "initialpose" => told.push(said),
-                "hypotheses" if said["stamp"] == stamps[index] => return told,
+                "initialpose" => seed.push(said),
+                "hypotheses" if said["stamp"] == stamps[index] => return seed,
                 _ => {}
             }
         }
@@ -444,23 +444,23 @@ fn a_particle_filter_is_told_where_it_is() {
         robot.order("scan", json!({ "index": index }));
         until_answered(robot, index)
     };
-    // Nobody is there who could be told.
+    // No filter is there.
     assert_eq!(scan(robot, 0).len(), 0);
     robot.order("filter", json!({}));
-    // It is told by a scan after it came, once.
-    let mut told = Vec::new();
+    // It gets an initial pose by a scan after it started, once.
+    let mut seed = Vec::new();
     let mut index = 0;
-    while told.is_empty() {
+    while seed.is_empty() {
         index += 1;
-        told = scan(robot, index);
+        seed = scan(robot, index);
     }
-    assert_eq!(told.len(), 1);
+    assert_eq!(seed.len(), 1);
     assert_eq!(
-        (&told[0]["stamp"], &told[0]["frame"]),
+        (&seed[0]["stamp"], &seed[0]["frame"]),
         (&json!(stamps[index]), &json!("map"))
     );
     let of = |value: &Value, i: usize| value[i].as_f64().unwrap();
-    let pose = &told[0]["pose"];
+    let pose = &seed[0]["pose"];
     let base = Pose::new(of(pose, 0), of(pose, 1), of(pose, 2));
     let laser = base.then(Pose::new(0.78, 0.0, 0.0));
     // As near as all answers on this recording are.
@@ -491,13 +491,13 @@ fn a_particle_filter_is_told_where_it_is() {
     index += 1;
     assert_eq!(scan(robot, index).len(), 1);
     // It is carried away.
-    let mut told = Vec::new();
-    while told.is_empty() {
+    let mut seed = Vec::new();
+    while seed.is_empty() {
         index += 1;
         believe(robot, index, base.x + 5.0);
-        told = scan(robot, index);
+        seed = scan(robot, index);
     }
-    assert_eq!(told.len(), 1);
+    assert_eq!(seed.len(), 1);
     assert_eq!(
         refused_by_gateway(&joined.graph),
         before,

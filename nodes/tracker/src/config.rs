@@ -1,4 +1,4 @@
-//! What a user can set.
+//! Command-line options.
 
 use std::path::PathBuf;
 
@@ -15,22 +15,22 @@ use geometry::Pose;
 #[derive(Debug, Clone, Parser)]
 #[command(name = "tracker", version)]
 pub struct Config {
-    /// By what the robot is followed.
+    /// How the robot is tracked.
     #[command(flatten)]
     pub follow: FollowConfig,
 
-    /// Most poses a second, 0..=1000: between scans, odometry carries the pose on. With
-    /// 0 there is one for each scan only.
+    /// Maximum number of poses per second, 0..=1000: between scans, odometry
+    /// extrapolates the pose. 0 sends one per scan only.
     #[arg(long, value_name = "HERTZ", default_value_t = 50.0, allow_negative_numbers = true, value_parser = rate)]
     pub rate: f64,
 
-    /// Keep the last pose in this file, and try it first after a start. It is not
-    /// believed before scans confirm it.
+    /// Save the last pose in this file, and try it first after a start. It is not used
+    /// before scans confirm it.
     #[arg(long, value_name = "FILE")]
     pub remember: Option<PathBuf>,
 
-    /// Where the robot is at the start, in the map: metres, metres and degrees. It is
-    /// tried first, and not believed before a scan confirms it.
+    /// Initial pose in the map: metres, metres and degrees. It is tried first, and not
+    /// used before a scan confirms it.
     #[arg(long, value_name = "X,Y,DEGREES", allow_hyphen_values = true, value_parser = pose)]
     pub initial_pose: Option<Pose>,
 

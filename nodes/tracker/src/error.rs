@@ -1,4 +1,4 @@
-//! What keeps the node from running, and a scan from being tracked.
+//! Errors that end the node, and those that reject a scan.
 
 use engine::EngineError;
 use transport::TransportError;

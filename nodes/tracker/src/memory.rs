@@ -53,7 +53,7 @@ impl Memory {
                 .is_some();
         match is_sound {
             true => Ok(Some(found)),
-            false => Err(self.refuse(&"its pose or covariance is none")),
+            false => Err(self.refuse(&"its pose or covariance is not valid")),
         }
     }
 

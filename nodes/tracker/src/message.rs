@@ -1,7 +1,7 @@
 //! What is sent of a pose.
 
 use bytemuck::Zeroable;
-use engine::peaks::Sought;
+use engine::peaks::Target;
 use engine::tracking::Report;
 use geometry::{Covariance, Pose};
 use messages::{FrameName, PoseHeader, Stamp, TrackReason, TrackState};
@@ -16,11 +16,11 @@ pub(crate) struct Tracked {
     /// What the tracker says of the scan.
     pub(crate) report: Report,
     /// Whose pose that is.
-    pub(crate) sought: Sought,
+    pub(crate) target: Target,
     /// Whether it is known how the laser sits on the base.
     pub(crate) mount_known: bool,
-    /// Where the sought frame was by the odometry, and the odometry's frame.
-    pub(crate) odom_from_sought: Option<(Pose, FrameName)>,
+    /// Where the target frame was by the odometry, and the odometry's frame.
+    pub(crate) odom_from_target: Option<(Pose, FrameName)>,
     /// Nanoseconds of computing.
     pub(crate) tracking_ns: u64,
 }
@@ -29,8 +29,8 @@ impl Tracked {
     /// Where the odometry's frame lies in the map.
     #[must_use]
     pub(crate) fn map_from_odom(&self) -> Option<Pose> {
-        let (odom_from_sought, _) = self.odom_from_sought?;
-        Some(self.report.pose?.then(odom_from_sought.inverse()))
+        let (odom_from_target, _) = self.odom_from_target?;
+        Some(self.report.pose?.then(odom_from_target.inverse()))
     }
 
     /// The message of the scan.
@@ -41,20 +41,20 @@ impl Tracked {
 
     /// The message where odometry has carried the pose on since the scan.
     #[must_use]
-    pub(crate) fn carried(&self, odom_from_sought: Pose, stamp: Stamp) -> Option<PoseHeader> {
-        let map_from_sought = self.map_from_odom()?.then(odom_from_sought);
-        Some(self.at(map_from_sought, stamp, false))
+    pub(crate) fn carried(&self, odom_from_target: Pose, stamp: Stamp) -> Option<PoseHeader> {
+        let map_from_target = self.map_from_odom()?.then(odom_from_target);
+        Some(self.at(map_from_target, stamp, false))
     }
 
-    fn at(&self, map_from_sought: Pose, stamp: Stamp, from_scan: bool) -> PoseHeader {
+    fn at(&self, map_from_target: Pose, stamp: Stamp, from_scan: bool) -> PoseHeader {
         let report = &self.report;
-        let laser = self.sought.laser(map_from_sought);
-        let base = self.sought.base(map_from_sought);
+        let laser = self.target.laser(map_from_target);
+        let base = self.target.base(map_from_target);
         let covariance = |of: Pose| {
-            let sought = Covariance(report.covariance);
-            sought.carried(map_from_sought, of).to_rows()
+            let target = Covariance(report.covariance);
+            target.carried(map_from_target, of).to_rows()
         };
-        let frame = self.odom_from_sought.map(|(_, frame)| frame);
+        let frame = self.odom_from_target.map(|(_, frame)| frame);
         PoseHeader {
             stamp,
             map_id: self.map_id,

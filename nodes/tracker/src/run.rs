@@ -32,7 +32,7 @@ const TICK: Duration = Duration::from_millis(25);
 /// The last pose is kept on disk as often.
 const REMEMBERED_EVERY: Duration = Duration::from_secs(1);
 
-/// What is expected beforehand leads by so much over what a search finds: what an
+/// What is expected beforehand leads by this much over what a search finds: what an
 /// operator says, as much as a place that was known before; what was true when the
 /// robot was last on, as much as one key scan says.
 const INITIAL_LEAD: f64 = 10.0;
@@ -104,7 +104,7 @@ struct Node {
     /// Whether a search was waited for in vain, and no answer to any has come since: further
     /// ones are asked for and not waited for, so that poses go on.
     is_silent: bool,
-    /// Where the sought frame was by the odometry at the scan before.
+    /// Where the target frame was by the odometry at the scan before.
     before: Option<Pose>,
     /// Where the robot is said to be, of the base.
     initial: Option<(Pose, Covariance)>,
@@ -135,7 +135,7 @@ impl Node {
 
     /// Takes all that has come.
     fn take(&mut self, inputs: &Inputs) -> Result<(), TrackerError> {
-        // What was sent before a scan has come by the time that the scan has.
+        // What was sent before a scan has arrived when the scan has.
         while let Some(scan) = inputs.scans.receive()? {
             self.health.count_received(1);
             let dropped = self.scans.push(scan.header(), scan.items());
@@ -157,7 +157,9 @@ impl Node {
             let pose = Pose::from(initial.map_from_base);
             match pose.is_finite() && covariance.0.cholesky().is_some() {
                 true => self.initial = Some((pose, covariance)),
-                false => self.refuse("an initial pose is refused: it or its covariance is none")?,
+                false => {
+                    self.refuse("initial pose rejected: the pose or its covariance is not valid")?;
+                }
             }
         }
         while let Some(odometry) = inputs.odometry.receive()? {
@@ -215,13 +217,13 @@ impl Node {
         self.ends = ends;
         if let Err(error) = found {
             let (counter, reason) = (scan.stamp.counter, with_causes(&error));
-            self.refuse(&format!("scan {counter} is refused: {reason}"))?;
+            self.refuse(&format!("scan {counter} rejected: {reason}"))?;
             return self.send_nothing(scan, TrackReason::NoScan);
         }
         if let Some(initial) = self.initial.take() {
             self.expect_base(initial, INITIAL_LEAD);
         }
-        let now = self.joiner.odom_from_sought();
+        let now = self.joiner.odom_from_target();
         let moved = self
             .before
             .zip(now)
@@ -265,7 +267,7 @@ impl Node {
         start: Instant,
     ) -> Result<(), TrackerError> {
         self.turn = Turn::Idle;
-        let sought = self.sought();
+        let target = self.target();
         let Some(world) = &self.world else {
             return self.send_nothing(scan, TrackReason::NoMap);
         };
@@ -273,7 +275,7 @@ impl Node {
         let seen = world.seen(&self.ends, &self.config.fit);
         let answer = of.and_then(|of| self.answers.of(of));
         let of_map = answer.into_iter().flatten().filter(|h| h.map_id == map_id);
-        Candidate::fill(&mut self.candidates, of_map, sought);
+        Candidate::fill(&mut self.candidates, of_map, target);
         let found = answer.map(|_| &self.candidates[..]);
         self.tracker.finish(&seen, found);
         if self.tracker.asks_ahead() {
@@ -284,9 +286,9 @@ impl Node {
             stamp: scan.stamp,
             map_id,
             report: self.tracker.report(),
-            sought,
+            target,
             mount_known: scan.mount_known == 1,
-            odom_from_sought: self.before.map(|pose| (pose, self.joiner.odom_frame())),
+            odom_from_target: self.before.map(|pose| (pose, self.joiner.odom_frame())),
             tracking_ns: start.elapsed().as_nanos() as u64,
         };
         self.last = Some(last);
@@ -313,7 +315,7 @@ impl Node {
         else {
             return Ok(());
         };
-        let newest = self.joiner.newest_odom_from_sought();
+        let newest = self.joiner.newest_odom_from_target();
         let Some(header) = newest.and_then(|pose| last.carried(pose, stamp)) else {
             return Ok(());
         };

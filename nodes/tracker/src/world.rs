@@ -1,7 +1,7 @@
 //! The map as the tracker reads it.
 
 use engine::EngineError;
-use engine::fit::{Ends, FitConfig, Terrain};
+use engine::fit::{DistanceField, Ends, FitConfig};
 use engine::grid::{CellRules, GridFrame};
 use engine::space::Space;
 use engine::tracking::Seen;
@@ -15,7 +15,7 @@ pub(crate) struct World {
     /// Its id in messages.
     pub(crate) map_id: u64,
     /// Distances to obstacles.
-    pub(crate) terrain: Terrain,
+    pub(crate) distance_field: DistanceField,
     /// What scans are thinned for.
     pub(crate) space: Space,
 }
@@ -35,7 +35,7 @@ impl World {
         let (width, height) = (header.width as usize, header.height as usize);
         Ok(World {
             map_id: header.map_id,
-            terrain: Terrain::new(frame, (width, height), occupancy, rules)?,
+            distance_field: DistanceField::new(frame, (width, height), occupancy, rules)?,
             space: Space::new(HEADINGS, frame.resolution_m, width, height)?,
         })
     }
@@ -43,7 +43,7 @@ impl World {
     /// A scan on this map.
     pub(crate) fn seen<'a>(&'a self, ends: &'a Ends, fit: &'a FitConfig) -> Seen<'a> {
         Seen {
-            terrain: &self.terrain,
+            distance_field: &self.distance_field,
             ends,
             fit,
         }

@@ -1,4 +1,4 @@
-//! What `backcast bench paper` does: measures part by part, and writes tables, pictures
+//! The command `backcast bench paper`: measures part by part, and writes tables, pictures
 //! and what became of the claims.
 
 use std::path::PathBuf;
@@ -45,7 +45,7 @@ const ALL: [Part; 7] = [
 #[derive(Debug, Clone, Default, clap::Args)]
 #[command(next_help_heading = "Table paper")]
 pub(in super::super) struct Config {
-    /// Where tables and pictures are written [default: docs/paper]
+    /// Folder for tables and pictures [default: docs/paper]
     #[arg(long, value_name = "FOLDER")]
     out: Option<PathBuf>,
 

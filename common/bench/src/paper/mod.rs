@@ -1,5 +1,5 @@
-//! `backcast bench paper`: every claim of the paper's sections II to V measured anew, and
-//! its figures drawn anew, into a folder of CSV and PNG files.
+//! `backcast bench paper`: every claim of the paper's sections II to V measured again, and
+//! its figures drawn again, into a folder of CSV and PNG files.
 //!
 //! A file an experiment; each makes its rows, its pictures and what the claims need.
 //! `docs/paper.md` says what came out.

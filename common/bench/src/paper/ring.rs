@@ -12,7 +12,7 @@ use offline::OfflineError;
 
 use crate::BenchError;
 
-/// Beyond so many deviations the Gaussian over the bearing is left out.
+/// Beyond this many deviations the Gaussian over the bearing is left out.
 const DEVIATIONS: f64 = 2.5;
 
 /// How readings are projected.

@@ -109,7 +109,7 @@ pub(super) fn variants() -> Vec<Variant> {
     all
 }
 
-/// Judges all variants in both maps, at so many poses each.
+/// Judges all variants in both maps, at this many poses each.
 ///
 /// # Errors
 /// A map or a scan cannot be made.

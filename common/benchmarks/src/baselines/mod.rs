@@ -66,7 +66,7 @@ mod tests {
     };
 
     /// Of four scans in each kind of world, with and without their heading,
-    /// all but `missed` of 24 are found, to so many cells and a heading.
+    /// all but `missed` of 24 are found, to this many cells and a heading.
     #[track_caller]
     fn check(cells: usize, missed: usize, make: impl Fn(&World) -> Box<dyn Baseline>) {
         let mut far_off = Vec::new();

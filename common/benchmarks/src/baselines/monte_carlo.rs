@@ -1,9 +1,9 @@
 //! Monte Carlo localization (the paper's [2]): the engine's particles all over the map,
-//! weighed by the scan, drawn anew by their weights and scattered a little, until they
+//! weighed by the scan, drawn again by their weights and scattered a little, until they
 //! have gathered. The robot stands, so that the one scan is taken again and again.
 
 use engine::EngineError;
-use engine::fit::{Ends, Terrain};
+use engine::fit::{DistanceField, Ends};
 use engine::grid::{Cell, CellRules, GridFrame};
 use engine::particles::{
     Candidate, Estimate as Gathering, OdometryNoise, Particle, ParticleFilter, ParticlesConfig,
@@ -57,14 +57,14 @@ const SCATTER_CELLS: f64 = 4.0;
 const SCATTER_RADIANS: f64 = 0.03;
 
 /// And the least that is left of it.
-const LEAST_SCATTER: f64 = 0.125;
+const MIN_SCATTER: f64 = 0.125;
 
 /// Monte Carlo localization on a likelihood field, with particles that become
 /// fewer as they gather.
 #[derive(Debug, Clone)]
 pub struct MonteCarlo {
     space: Space,
-    terrain: Terrain,
+    distance_field: DistanceField,
     sides: (usize, usize),
     config: MonteCarloConfig,
     /// Updates of the last scan, and particles that were weighted in all.
@@ -86,7 +86,7 @@ impl MonteCarlo {
         };
         MonteCarlo {
             space: space.clone(),
-            terrain: terrain(world, space.resolution_m),
+            distance_field: distance_field(world, space.resolution_m),
             sides: (world.grid.width(), world.grid.height()),
             config: MonteCarloConfig {
                 particles,
@@ -120,7 +120,7 @@ impl MonteCarlo {
         candidates: &[Candidate],
     ) -> Option<Estimate> {
         let ends = self.ends(readings).ok()?;
-        let (frame, config) = (self.terrain.frame, self.config.particles);
+        let (frame, config) = (self.distance_field.frame, self.config.particles);
         let filter = ParticleFilter::seeded(frame, candidates.iter().copied(), config).ok()?;
         self.gather(&ends, filter, false)
     }
@@ -135,20 +135,23 @@ impl MonteCarlo {
         self.effort = (0, 0);
         self.started_with = filter.particles().len();
         for update in 1..=self.config.most_updates {
-            filter.weigh(&self.terrain, ends);
+            filter.weigh(&self.distance_field, ends);
             self.effort = (update, self.effort.1 + filter.particles().len());
             filter.resample();
             if spread_cells(filter.particles()) <= GATHERED_CELLS {
                 break;
             }
-            let scatter = (1.0 / update as f64).max(LEAST_SCATTER);
+            let scatter = (1.0 / update as f64).max(MIN_SCATTER);
             filter.predict(Pose::IDENTITY, &self.noise(scatter, heading_is_known));
         }
         filter.estimate().map(|found| self.on_the_grid(&found))
     }
 
     fn on_the_grid(&self, found: &Gathering) -> Estimate {
-        let (x, y, heading) = self.terrain.frame.cells_from_map(found.map_from_sought);
+        let (x, y, heading) = self
+            .distance_field
+            .frame
+            .cells_from_map(found.map_from_target);
         Estimate {
             x: (x as usize).min(self.sides.0 - 1),
             y: (y as usize).min(self.sides.1 - 1),
@@ -189,7 +192,7 @@ impl MonteCarlo {
 
 /// The world as the filter reads it. No beam ends within an obstacle, so that what lies
 /// there counts as unknown.
-fn terrain(world: &World, resolution_m: f64) -> Terrain {
+fn distance_field(world: &World, resolution_m: f64) -> DistanceField {
     let (width, height) = (world.grid.width(), world.grid.height());
     let inner = |&cell: &Cell| if cell == Cell::Open { 0 } else { UNKNOWN };
     let mut occupancy: Vec<u8> = world.grid.cells().iter().map(inner).collect();
@@ -200,7 +203,7 @@ fn terrain(world: &World, resolution_m: f64) -> Terrain {
         resolution_m,
         map_from_grid: Pose::IDENTITY,
     };
-    Terrain::new(frame, (width, height), &occupancy, CellRules::default())
+    DistanceField::new(frame, (width, height), &occupancy, CellRules::default())
         .expect("a world's grid is one of the engine's")
 }
 
@@ -213,12 +216,12 @@ impl Baseline for MonteCarlo {
         let headings: Vec<f64> = headings.iter().map(|&i| i as f64 * spacing).collect();
         let ends = self.ends(readings).ok()?;
         let (start, config) = (StartHeadings::OneOf(&headings), self.config.particles);
-        let filter = ParticleFilter::uniform(&self.terrain, start, config).ok()?;
+        let filter = ParticleFilter::uniform(&self.distance_field, start, config).ok()?;
         self.gather(&ends, filter, headings.len() == 1)
     }
 
     fn bytes(&self) -> usize {
-        self.terrain.bytes()
+        self.distance_field.bytes()
     }
 }
 

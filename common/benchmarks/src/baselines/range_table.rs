@@ -7,7 +7,7 @@ use engine::space::Space;
 
 use super::Baseline;
 use super::best::{Best, Estimate};
-use super::reading::{MOST_DEVIATIONS, Readings};
+use super::reading::{MAX_DEVIATIONS, Readings};
 use crate::worlds::World;
 
 /// Cells that are scored together: their ranges in 360 directions fit the
@@ -195,7 +195,7 @@ impl Errors {
     fn add_plain(self, ranges: &[u16], costs: &mut [f32]) {
         for (cost, &range) in costs.iter_mut().zip(ranges) {
             let deviations = f32::from(range) * self.scale - self.reading;
-            *cost += (deviations * deviations).min(MOST_DEVIATIONS * MOST_DEVIATIONS);
+            *cost += (deviations * deviations).min(MAX_DEVIATIONS * MAX_DEVIATIONS);
         }
     }
 }

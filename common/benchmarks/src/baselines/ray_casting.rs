@@ -7,7 +7,7 @@ use messages::BoundaryCell;
 use super::Baseline;
 use super::best::{Best, Estimate};
 use super::clearance::Clearance;
-use super::reading::{MOST_DEVIATIONS, Readings};
+use super::reading::{MAX_DEVIATIONS, Readings};
 use crate::worlds::World;
 
 /// Markov localization by ray casts.
@@ -58,7 +58,7 @@ impl RayCasting {
         let beam = |reading: &super::Reading| {
             let direction = (heading + reading.bearing) % count;
             let steps_per_cell = self.space.directions.get(direction).steps_per_cell;
-            let farthest = reading.cells + f64::from(MOST_DEVIATIONS) * reading.sigma_cells;
+            let farthest = reading.cells + f64::from(MAX_DEVIATIONS) * reading.sigma_cells;
             Beam {
                 direction,
                 scale: (1.0 / (steps_per_cell * reading.sigma_cells)) as f32,
@@ -74,10 +74,10 @@ impl RayCasting {
         let error = |beam: &Beam| {
             let direction = self.space.directions.get(beam.direction);
             let range = self.clearance.range(x, y, direction, beam.limit);
-            let deviations = range.map_or(MOST_DEVIATIONS, |steps| {
+            let deviations = range.map_or(MAX_DEVIATIONS, |steps| {
                 steps as f32 * beam.scale - beam.reading
             });
-            (deviations * deviations).min(MOST_DEVIATIONS * MOST_DEVIATIONS)
+            (deviations * deviations).min(MAX_DEVIATIONS * MAX_DEVIATIONS)
         };
         beams.iter().map(error).sum()
     }

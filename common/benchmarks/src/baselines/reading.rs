@@ -9,7 +9,7 @@ use crate::BenchmarksError;
 
 /// Deviations from which on a reading says nothing more against a pose: the
 /// flat part of a sensor model, for what the map does not know.
-pub(super) const MOST_DEVIATIONS: f32 = 3.0;
+pub(super) const MAX_DEVIATIONS: f32 = 3.0;
 
 /// One beam.
 #[derive(Debug, Clone, Copy, PartialEq)]

@@ -8,11 +8,11 @@ use super::canvas::{Canvas, Rect};
 use super::rooms::{DOOR, WALL};
 
 /// Fewest cells from wall to wall of a corridor: 1.5 m.
-const LEAST_CORRIDOR: usize = 30;
+const MIN_CORRIDOR: usize = 30;
 
 /// Draws corridors along x whose rooms are about `spacing` cells deep.
 pub(super) fn build(canvas: &mut Canvas, spacing: usize, rng: &mut Xoshiro256PlusPlus) {
-    let corridor = (spacing / 3).max(LEAST_CORRIDOR);
+    let corridor = (spacing / 3).max(MIN_CORRIDOR);
     let mut y = 1;
     while y + spacing + corridor < canvas.height {
         row_of_rooms(canvas, (y, y + spacing), spacing, y + spacing, rng);

@@ -23,7 +23,7 @@ use canvas::Canvas;
 pub use city::city;
 
 /// Fewest cells along a side.
-const LEAST_SIDE: usize = 16;
+const MIN_SIDE: usize = 16;
 
 /// How far p/n may lie from what was asked for, as a share of it.
 const TOLERANCE: f64 = 0.05;
@@ -76,11 +76,11 @@ impl World {
         p_over_n: f64,
         seed: u64,
     ) -> Result<Self, BenchmarksError> {
-        if width.min(height) < LEAST_SIDE {
+        if width.min(height) < MIN_SIDE {
             return Err(BenchmarksError::WorldSides {
                 width,
                 height,
-                least: LEAST_SIDE,
+                least: MIN_SIDE,
             });
         }
         let mut rng = Xoshiro256PlusPlus::seed_from_u64(seed);
@@ -106,7 +106,7 @@ impl World {
         self.boundary.len() as f64 / self.grid.free_cells() as f64
     }
 
-    /// The space of a search with so many headings.
+    /// The space of a search with this many headings.
     ///
     /// # Errors
     /// If the number of headings is not supported.

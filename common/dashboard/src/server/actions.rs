@@ -11,7 +11,7 @@ use serde::Deserialize;
 
 use super::gate::authorize;
 use super::{Refusal, Site};
-use crate::robot::{Abilities, Wish};
+use crate::robot::{Abilities, Request};
 
 /// Where to search.
 #[derive(Debug, Deserialize)]
@@ -21,7 +21,7 @@ pub(super) struct Wanted {
     corners: Vec<[f64; 2]>,
 }
 
-/// Lets poses be sought in a region alone.
+/// Lets poses be searched in a region alone.
 pub(super) async fn search_in(
     State(site): State<Arc<Site>>,
     Path(name): Path<String>,
@@ -33,17 +33,17 @@ pub(super) async fn search_in(
         wanted.map_err(|error| Refusal::new(error.status(), error.body_text()))?;
     Region::new(&corners)
         .map_err(|problem| Refusal::new(StatusCode::UNPROCESSABLE_ENTITY, problem))?;
-    wish(&site, &name, Wish::Region(corners))
+    request(&site, &name, Request::Region(corners))
 }
 
-/// Lets poses be sought everywhere.
+/// Lets poses be searched everywhere.
 pub(super) async fn search_everywhere(
     State(site): State<Arc<Site>>,
     Path(name): Path<String>,
     headers: HeaderMap,
 ) -> Result<StatusCode, Refusal> {
     authorize(&site, &headers)?;
-    wish(&site, &name, Wish::Region(Vec::new()))
+    request(&site, &name, Request::Region(Vec::new()))
 }
 
 /// Lets the recorder save its black box.
@@ -53,15 +53,15 @@ pub(super) async fn save(
     headers: HeaderMap,
 ) -> Result<StatusCode, Refusal> {
     authorize(&site, &headers)?;
-    wish(&site, &name, Wish::Save)
+    request(&site, &name, Request::Save)
 }
 
-fn wish(site: &Site, name: &str, wish: Wish) -> Result<StatusCode, Refusal> {
+fn request(site: &Site, name: &str, request: Request) -> Result<StatusCode, Refusal> {
     let robot = site.robot(name)?;
     let Abilities { region, save } = robot.abilities();
-    let (able, who) = match wish {
-        Wish::Region(_) => (region, "no accumulator takes a region"),
-        Wish::Save => (
+    let (able, who) = match request {
+        Request::Region(_) => (region, "no accumulator accepts a region"),
+        Request::Save => (
             save,
             "no recorder keeps the last minutes: backcast run --record FILE --keep 10m",
         ),
@@ -69,8 +69,8 @@ fn wish(site: &Site, name: &str, wish: Wish) -> Result<StatusCode, Refusal> {
     if !able {
         return Err(Refusal::new(StatusCode::CONFLICT, who));
     }
-    if !robot.wish(wish) {
-        let problem = "the graph is busy with what it was asked before";
+    if !robot.request(request) {
+        let problem = "the graph is still busy with an earlier request";
         return Err(Refusal::new(StatusCode::SERVICE_UNAVAILABLE, problem));
     }
     Ok(StatusCode::ACCEPTED)

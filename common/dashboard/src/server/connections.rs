@@ -1,4 +1,4 @@
-//! How many are connected, and which of them makes room for the next one.
+//! The number of connections, and which one is closed for the next.
 //!
 //! Nobody can lock others out by staying: where one peer has as many connections as one
 //! may, or all have, the one that has been silent for longest is closed; those that were
@@ -101,7 +101,7 @@ impl Open {
     fn close_one(&mut self, meant: impl Fn(&Entry) -> bool) {
         let meant = self.entries.iter().filter(|(_, entry)| meant(entry));
         if let Some((&number, _)) = meant.min_by_key(|(_, entry)| (entry.answered, entry.active)) {
-            // It hears of that when its sender is dropped.
+            // It notices when its sender is dropped.
             self.entries.remove(&number);
         }
     }

@@ -1,4 +1,4 @@
-//! Who gets in. Browsers tell for whom they ask; what they ask for another site
+//! Access control. Browsers state for whom they ask; what they ask for another site
 //! is refused.
 //!
 //! A foreign page cannot read answers of ours, but it could open a WebSocket, and
@@ -68,7 +68,7 @@ fn admit(headers: &HeaderMap, hosts: &[String]) -> Result<(), Refusal> {
             .strip_prefix("http://")
             .or_else(|| origin.strip_prefix("https://"));
         if authority.is_none_or(|authority| !authority.eq_ignore_ascii_case(host)) {
-            let problem = format!("a page of {origin} may not ask here");
+            let problem = format!("requests from pages of {origin} are not allowed");
             return Err(Refusal::new(StatusCode::FORBIDDEN, problem));
         }
     }
@@ -81,7 +81,7 @@ fn admit(headers: &HeaderMap, hosts: &[String]) -> Result<(), Refusal> {
         Some(Ok("navigate"))
     );
     if foreign && !visit {
-        let problem = "a page of another site may not ask here";
+        let problem = "requests from pages of other sites are not allowed";
         return Err(Refusal::new(StatusCode::FORBIDDEN, problem));
     }
     Ok(())
@@ -107,7 +107,7 @@ pub(super) fn authorize(site: &Site, headers: &HeaderMap) -> Result<(), Refusal>
     let token = given.and_then(|given| given.strip_prefix("Bearer "));
     match token {
         Some(token) if site.token.is(token) => Ok(()),
-        Some(_) => Err(Refusal::new(StatusCode::FORBIDDEN, "this is not the token")),
+        Some(_) => Err(Refusal::new(StatusCode::FORBIDDEN, "wrong token")),
         None => Err(Refusal::new(
             StatusCode::UNAUTHORIZED,
             "this needs the token that the monitor's log shows: Authorization: Bearer TOKEN",

@@ -64,7 +64,7 @@ pub(super) async fn serve(listener: TcpListener, app: Router) {
         let (stream, peer) = match listener.accept().await {
             Ok(accepted) => accepted,
             Err(error) => {
-                tracing::warn!("a connection is not taken: {error}");
+                tracing::warn!("cannot accept a connection: {error}");
                 tokio::time::sleep(SHORTAGE).await;
                 continue;
             }

@@ -1,4 +1,4 @@
-//! Answers that say no, as JSON with the reason.
+//! Error responses, as JSON with the reason.
 
 use axum::Json;
 use axum::http::{StatusCode, Uri};
@@ -22,7 +22,7 @@ impl Refusal {
 
     pub(super) fn unknown_robot(name: &str, names: &[String]) -> Self {
         let problem = match names {
-            [] => format!("there is no robot {name:?}, nor any other"),
+            [] => format!("there is no robot {name:?}, and no other"),
             _ => format!("there is no robot {name:?}; there is {}", names.join(", ")),
         };
         Refusal::new(StatusCode::NOT_FOUND, problem)

@@ -1,8 +1,8 @@
 //! A WebSocket: first all that is known, then what happens.
 //!
 //! The reader may ask for the field, and send its clock to get it back. Who does
-//! not read is disconnected; who reads slowly loses messages, is told so and gets
-//! all that is known anew.
+//! not read is disconnected; who reads slowly loses messages, is notified and gets
+//! all that is known again.
 
 use std::sync::Arc;
 use std::time::Duration;
@@ -24,7 +24,7 @@ use crate::view::Message;
 const MAX_MESSAGE: usize = 1024;
 
 /// How long a reader may take for one message.
-const PATIENCE: Duration = Duration::from_secs(10);
+const TIMEOUT: Duration = Duration::from_secs(10);
 
 /// The reader spoke what we do not understand.
 const POLICY_VIOLATION: u16 = 1008;
@@ -54,7 +54,7 @@ pub(super) async fn open(
     let robot = site.robot(&name)?;
     let permit = Arc::clone(&site.watchers).try_acquire_owned();
     let permit = permit.map_err(|_| {
-        let problem = "as many watch already as may";
+        let problem = "the maximum number of viewers is connected";
         Refusal::new(StatusCode::SERVICE_UNAVAILABLE, problem)
     })?;
     Ok(upgrade
@@ -70,7 +70,7 @@ async fn serve(socket: WebSocket, robot: Arc<Robot>, _permit: OwnedSemaphorePerm
         robot,
         field: None,
     };
-    // The reader is gone: nobody is left to be told.
+    // The reader is gone: nobody is left to be notified.
     if reader.send(Frame::Text(snapshot)).await.is_some() {
         reader.follow(news).await;
     }
@@ -90,8 +90,8 @@ impl Reader {
     ) -> Option<()> {
         loop {
             tokio::select! {
-                told = news.recv() => match told {
-                    Ok(told) => self.send(Frame::Text(told)).await?,
+                message = news.recv() => match message {
+                    Ok(text) => self.send(Frame::Text(text)).await?,
                     Err(RecvError::Lagged(messages)) => {
                         self.send(Frame::Text(text(&Message::Missed { messages }))).await?;
                         let Watching { snapshot, news: next } = self.robot.watch(transport::monotonic_ns());
@@ -103,12 +103,12 @@ impl Reader {
                 image = next_image(&mut self.field) => {
                     self.send(Frame::Binary(image?)).await?;
                 }
-                said = self.socket.recv() => self.hear(said?.ok()?).await?,
+                said = self.socket.recv() => self.receive(said?.ok()?).await?,
             }
         }
     }
 
-    async fn hear(&mut self, frame: Frame) -> Option<()> {
+    async fn receive(&mut self, frame: Frame) -> Option<()> {
         let Frame::Text(said) = frame else {
             // Pings are answered by the library; the end comes as none.
             return matches!(frame, Frame::Ping(_) | Frame::Pong(_)).then_some(());
@@ -134,7 +134,7 @@ impl Reader {
     }
 
     async fn send(&mut self, frame: Frame) -> Option<()> {
-        let sent = tokio::time::timeout(PATIENCE, self.socket.send(frame)).await;
+        let sent = tokio::time::timeout(TIMEOUT, self.socket.send(frame)).await;
         sent.ok()?.ok()
     }
 }

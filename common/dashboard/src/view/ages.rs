@@ -23,12 +23,12 @@ pub(crate) struct Ages {
 
 impl Times {
     /// Takes the answer to a scan.
-    pub(crate) fn hear_answer(&mut self, header: &HypothesesHeader) {
+    pub(crate) fn on_answer(&mut self, header: &HypothesesHeader) {
         self.scan_ns = self.scan_ns.max(Some(header.stamp.entered_ns));
     }
 
     /// Takes the tracker's pose, of a scan or between scans.
-    pub(crate) fn hear_pose(&mut self, header: &PoseHeader) {
+    pub(crate) fn on_pose(&mut self, header: &PoseHeader) {
         if header.from_scan == 1 {
             self.scan_ns = self.scan_ns.max(Some(header.stamp.entered_ns));
         }
@@ -63,15 +63,15 @@ mod tests {
         assert_eq!(times.ages(5 * SECOND), none);
         let mut header = HypothesesHeader::zeroed();
         header.stamp.entered_ns = SECOND;
-        times.hear_answer(&header);
+        times.on_answer(&header);
         assert_eq!(times.ages(5 * SECOND).scan_s, Some(4.0));
         let mut pose = PoseHeader::zeroed();
         (pose.stamp.entered_ns, pose.sent_ns) = (2 * SECOND, 3 * SECOND);
-        times.hear_pose(&pose);
+        times.on_pose(&pose);
         let ages = times.ages(5 * SECOND);
         assert_eq!((ages.scan_s, ages.pose_s), (Some(4.0), Some(2.0)));
         pose.from_scan = 1;
-        times.hear_pose(&pose);
+        times.on_pose(&pose);
         assert_eq!(times.ages(5 * SECOND).scan_s, Some(3.0));
         assert_eq!(times.ages(0).scan_s, Some(0.0), "another machine's clock");
     }

@@ -1,13 +1,13 @@
 //! What a scan says of the pose.
 
-use engine::peaks::sentence::{Stand, sentence};
+use engine::peaks::sentence::{PlaceSummary, sentence};
 use geometry::{Covariance, Pose};
 use messages::{HypothesesHeader, Hypothesis, Verdict};
 use serde::Serialize;
 
 use super::{Ellipse, PoseJson, ms};
 
-/// Most places that are told; the engine keeps 64.
+/// Most places that are sent; the engine keeps 64.
 const MAX_PLACES: usize = 64;
 
 /// The answer to one scan.
@@ -63,17 +63,17 @@ impl Answer {
     pub(crate) fn new(header: &HypothesesHeader, items: &[Hypothesis], now_ns: i64) -> Self {
         let verdict = Verdict::from_code(header.verdict);
         let since_entry = |ns: i64| ms(ns.saturating_sub(header.stamp.entered_ns));
-        let told = items.iter().filter(is_pose).take(MAX_PLACES);
+        let shown = items.iter().filter(is_pose).take(MAX_PLACES);
         let mount_known = header.mount_known == 1;
-        let stands: Vec<Stand> = told.clone().filter_map(stand).collect();
-        let meant = stands.len().min(1 + header.alternatives as usize);
+        let summaries: Vec<PlaceSummary> = shown.clone().filter_map(summary).collect();
+        let meant = summaries.len().min(1 + header.alternatives as usize);
         Answer {
             counter: header.stamp.counter,
             stamp_s: header.stamp.measured_ns as f64 / 1e9,
             map_id: format!("{:016x}", header.map_id),
             verdict: verdict.map_or("?", Verdict::as_str),
             says: verdict.map_or_else(String::new, |verdict| {
-                sentence(verdict, stands.get(..meant).unwrap_or_default())
+                sentence(verdict, summaries.get(..meant).unwrap_or_default())
             }),
             alternatives: header.alternatives,
             confidence: header.confidence,
@@ -84,7 +84,7 @@ impl Answer {
             age_ms: since_entry(now_ns),
             hypotheses: match verdict {
                 Some(Verdict::NoScan) => Vec::new(),
-                _ => told.map(|h| place(h, mount_known)).collect(),
+                _ => shown.map(|h| place(h, mount_known)).collect(),
             },
         }
     }
@@ -99,8 +99,8 @@ fn covariance(hypothesis: &Hypothesis) -> Option<Covariance> {
     is_finite.then(|| Covariance::from_rows(hypothesis.covariance))
 }
 
-fn stand(hypothesis: &Hypothesis) -> Option<Stand> {
-    Some(Stand {
+fn summary(hypothesis: &Hypothesis) -> Option<PlaceSummary> {
+    Some(PlaceSummary {
         map_from_laser: hypothesis.map_from_laser.into(),
         covariance: covariance(hypothesis)?,
         score: hypothesis.score.into(),
@@ -152,11 +152,11 @@ mod tests {
     }
 
     #[test]
-    fn an_answer_is_told_in_numbers_and_words() {
+    fn an_answer_is_reported_in_numbers_and_words() {
         let answer = Answer::new(&header(Verdict::Unique), &[hypothesis(1.0)], 31_000_000);
         assert_eq!((answer.counter, answer.verdict), (7, "Unique"));
         assert_eq!((answer.latency_ms, answer.age_ms), (20.0, 30.0));
-        assert_eq!(answer.says, "one place fits, 90 % of the scan agrees");
+        assert_eq!(answer.says, "one place, fit 0.90");
         let ellipse = answer.hypotheses[0].ellipse.unwrap();
         assert!((ellipse.major_m - 0.2).abs() < 1e-12);
         assert!((ellipse.yaw - 0.03).abs() < 1e-12);

@@ -5,7 +5,7 @@ use serde::Serialize;
 
 use super::PoseJson;
 
-/// Most beams that are told: as many as a picture can show.
+/// Most beams that are sent: as many as a picture can show.
 const MAX_BEAMS: usize = 1440;
 
 /// The beams of one scan that returned, column by column.
@@ -29,7 +29,7 @@ impl Beams {
     /// Reads a message of `beams`. What is no number is left out.
     pub(crate) fn new(header: &BeamsHeader, items: &[Beam]) -> Self {
         let is_number = |beam: &&Beam| beam.bearing.is_finite() && beam.range_m.is_finite();
-        let told = items
+        let shown = items
             .iter()
             .filter(is_number)
             .filter_map(|beam| letter(beam).map(|letter| (beam, letter)))
@@ -42,7 +42,7 @@ impl Beams {
             fate: String::new(),
             silent: items.len(),
         };
-        for (beam, letter) in told {
+        for (beam, letter) in shown {
             beams.bearing.push(rounded(beam.bearing, 1e4));
             beams.range_m.push(rounded(beam.range_m, 1e3));
             beams.fate.push(letter);

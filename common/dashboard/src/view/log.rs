@@ -12,7 +12,7 @@ const CAPACITY: usize = 200;
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub(crate) struct LogLine {
     node: String,
-    /// With the counter it tells one line from another.
+    /// With the counter it identifies a line.
     pid: u32,
     counter: u64,
     level: &'static str,
@@ -47,7 +47,7 @@ pub(crate) struct Log {
 
 impl Log {
     /// Takes a line.
-    pub(crate) fn hear(&mut self, line: LogLine) {
+    pub(crate) fn receive(&mut self, line: LogLine) {
         if self.lines.len() == CAPACITY {
             self.lines.pop_front();
         }
@@ -78,7 +78,7 @@ mod tests {
                 level: LogLevel::Warn as u32,
                 ..LogHeader::zeroed()
             };
-            log.hear(LogLine::new(&header, b"no \xff map"));
+            log.receive(LogLine::new(&header, b"no \xff map"));
         }
         assert_eq!(log.lines().count(), CAPACITY);
         let first = log.lines().next().unwrap();

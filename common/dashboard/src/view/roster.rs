@@ -1,4 +1,4 @@
-//! The nodes of a graph and how they fare.
+//! The nodes of a graph and their states.
 
 use messages::{HealthHeader, NodeState};
 use serde::Serialize;
@@ -12,7 +12,7 @@ const SILENT_AFTER_NS: i64 = 2_500_000_000;
 /// Rates are taken over at least so long.
 const RATE_NS: i64 = 900_000_000;
 
-/// How a node fares.
+/// The state of a node.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub(crate) struct NodeReport {
     pub(crate) name: String,
@@ -44,14 +44,14 @@ pub(crate) struct Roster(Vec<Entry>);
 struct Entry {
     report: NodeReport,
     /// Of the last report.
-    heard_ns: i64,
+    received_ns: i64,
     /// Counters at the time from which rates are taken.
     base: (i64, u64, u64),
 }
 
 impl Roster {
     /// Takes a report; `None` where there are too many nodes.
-    pub(crate) fn hear(&mut self, header: &HealthHeader, error: &[u8]) -> Option<&NodeReport> {
+    pub(crate) fn receive(&mut self, header: &HealthHeader, error: &[u8]) -> Option<&NodeReport> {
         let name = header.node.as_str();
         let at = match self.0.iter().position(|entry| entry.report.name == name) {
             Some(at) => at,
@@ -63,7 +63,7 @@ impl Roster {
             None => return None,
         };
         let entry = self.0.get_mut(at)?;
-        entry.hear(header, error);
+        entry.receive(header, error);
         Some(&entry.report)
     }
 
@@ -71,7 +71,7 @@ impl Roster {
     pub(crate) fn newly_silent(&mut self, now_ns: i64) -> Vec<&NodeReport> {
         let mut silent = Vec::new();
         for entry in &mut self.0 {
-            let quiet_ns = now_ns.saturating_sub(entry.heard_ns);
+            let quiet_ns = now_ns.saturating_sub(entry.received_ns);
             entry.report.quiet_s = (quiet_ns as f64 / 1e8).round() / 10.0;
             let is_expected = !matches!(entry.report.state, "silent" | "stopped");
             if is_expected && quiet_ns > SILENT_AFTER_NS {
@@ -107,12 +107,12 @@ impl Entry {
                 last_error: String::new(),
                 quiet_s: 0.0,
             },
-            heard_ns: header.sent_ns,
+            received_ns: header.sent_ns,
             base: (header.sent_ns, header.received, header.sent),
         }
     }
 
-    fn hear(&mut self, header: &HealthHeader, error: &[u8]) {
+    fn receive(&mut self, header: &HealthHeader, error: &[u8]) {
         let report = &mut self.report;
         if report.pid != header.pid {
             report.pid = header.pid;
@@ -145,7 +145,7 @@ impl Entry {
         let error = error.get(..HealthHeader::ERROR_CAPACITY).unwrap_or(error);
         report.last_error = String::from_utf8_lossy(error).into_owned();
         report.quiet_s = 0.0;
-        self.heard_ns = header.sent_ns;
+        self.received_ns = header.sent_ns;
     }
 }
 
@@ -172,25 +172,25 @@ mod tests {
     #[test]
     fn rates_come_from_the_counters_of_one_process() {
         let mut roster = Roster::default();
-        roster.hear(&report("a", 1, 0, 100), b"");
-        let heard = roster.hear(&report("a", 1, 2 * SECOND, 130), b"");
-        assert_eq!(heard.unwrap().received_hz, 15.0);
+        roster.receive(&report("a", 1, 0, 100), b"");
+        let entry = roster.receive(&report("a", 1, 2 * SECOND, 130), b"");
+        assert_eq!(entry.unwrap().received_hz, 15.0);
         // The next process counts from zero.
-        let heard = roster.hear(&report("a", 2, 3 * SECOND, 0), b"").unwrap();
-        assert_eq!((heard.restarts, heard.received_hz), (1, 15.0));
-        let heard = roster.hear(&report("a", 2, 4 * SECOND, 5), b"").unwrap();
-        assert_eq!(heard.received_hz, 5.0);
+        let entry = roster.receive(&report("a", 2, 3 * SECOND, 0), b"").unwrap();
+        assert_eq!((entry.restarts, entry.received_hz), (1, 15.0));
+        let entry = roster.receive(&report("a", 2, 4 * SECOND, 5), b"").unwrap();
+        assert_eq!(entry.received_hz, 5.0);
     }
 
     #[test]
     fn a_node_that_does_not_report_is_silent_until_it_does() {
         let mut roster = Roster::default();
-        roster.hear(&report("a", 1, 0, 0), b"");
+        roster.receive(&report("a", 1, 0, 0), b"");
         let ended = HealthHeader {
             state: NodeState::Stopped as u32,
             ..report("b", 1, 0, 0)
         };
-        roster.hear(&ended, b"");
+        roster.receive(&ended, b"");
         assert!(roster.newly_silent(2 * SECOND).is_empty());
         let silent: Vec<String> = roster
             .newly_silent(3 * SECOND)
@@ -198,22 +198,26 @@ mod tests {
             .map(|report| report.name.clone())
             .collect();
         assert_eq!(silent, ["a"], "who said that it ends is expected to");
-        assert!(roster.newly_silent(4 * SECOND).is_empty(), "told once");
-        let heard = roster.hear(&report("a", 1, 5 * SECOND, 0), b"").unwrap();
-        assert_eq!(heard.state, "ready");
+        assert!(roster.newly_silent(4 * SECOND).is_empty(), "reported once");
+        let entry = roster.receive(&report("a", 1, 5 * SECOND, 0), b"").unwrap();
+        assert_eq!(entry.state, "ready");
     }
 
     #[test]
     fn nodes_and_errors_are_bounded() {
         let mut roster = Roster::default();
         for i in 0..CAPACITY {
-            assert!(roster.hear(&report(&i.to_string(), 1, 0, 0), b"").is_some());
+            assert!(
+                roster
+                    .receive(&report(&i.to_string(), 1, 0, 0), b"")
+                    .is_some()
+            );
         }
-        assert!(roster.hear(&report("one more", 1, 0, 0), b"").is_none());
+        assert!(roster.receive(&report("one more", 1, 0, 0), b"").is_none());
         let long = vec![0xff; 10_000];
-        let heard = roster.hear(&report("1", 1, 0, 0), &long).unwrap();
+        let entry = roster.receive(&report("1", 1, 0, 0), &long).unwrap();
         assert_eq!(
-            heard.last_error.chars().count(),
+            entry.last_error.chars().count(),
             HealthHeader::ERROR_CAPACITY
         );
     }

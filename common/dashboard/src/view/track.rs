@@ -1,4 +1,4 @@
-//! The way that the robot has come.
+//! The path of the robot.
 
 use std::collections::VecDeque;
 
@@ -26,7 +26,7 @@ pub(crate) struct Track {
 
 impl Track {
     /// Takes the best pose of an answer, if it has one, and no tracker is there.
-    pub(crate) fn hear_answer(&mut self, answer: &Answer) {
+    pub(crate) fn on_answer(&mut self, answer: &Answer) {
         if self.is_tracked {
             return;
         }
@@ -35,7 +35,7 @@ impl Track {
     }
 
     /// Takes the tracker's pose, if it is of a scan. With the first one a new way begins.
-    pub(crate) fn hear_pose(&mut self, pose: &Tracked) {
+    pub(crate) fn on_pose(&mut self, pose: &Tracked) {
         if !std::mem::replace(&mut self.is_tracked, true) {
             self.points.clear();
         }
@@ -97,24 +97,24 @@ mod tests {
     fn the_newest_poses_of_one_map_are_kept() {
         let mut track = Track::default();
         for i in 0..CAPACITY + 5 {
-            track.hear_answer(&answer(1, i as f64));
+            track.on_answer(&answer(1, i as f64));
         }
         assert_eq!(track.points().count(), CAPACITY);
         assert_eq!(track.points().next(), Some(&TrackPoint(5.0, 0.0, 'U')));
-        track.hear_answer(&answer(2, 1.0));
+        track.on_answer(&answer(2, 1.0));
         assert_eq!(track.points().count(), 1);
     }
 
     #[test]
     fn with_a_tracker_the_way_is_its_own() {
         let mut track = Track::default();
-        track.hear_answer(&answer(0, 9.0));
+        track.on_answer(&answer(0, 9.0));
         let pose = header(TrackState::Doubtful, 1.5);
-        track.hear_pose(&Tracked::new(&pose, b"", 0));
-        track.hear_answer(&answer(0, 9.0));
+        track.on_pose(&Tracked::new(&pose, b"", 0));
+        track.on_answer(&answer(0, 9.0));
         let mut between = header(TrackState::Unique, 1.6);
         between.from_scan = 0;
-        track.hear_pose(&Tracked::new(&between, b"", 0));
+        track.on_pose(&Tracked::new(&between, b"", 0));
         let points: Vec<_> = track.points().copied().collect();
         assert_eq!(points, [TrackPoint(1.5, 2.0, 'D')]);
     }

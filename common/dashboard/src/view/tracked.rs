@@ -110,27 +110,27 @@ pub(crate) mod tests {
     }
 
     #[test]
-    fn a_pose_is_told_in_numbers_and_words() {
+    fn a_pose_is_reported_in_numbers_and_words() {
         let words = b"2 places fit, 25 m apart";
-        let told = Tracked::new(&header(TrackState::Doubtful, 1.5), words, 33_000_000);
-        assert_eq!((told.counter, told.state), (7, "Doubtful"));
-        assert_eq!(told.says, "2 places fit, 25 m apart");
-        assert_eq!((told.latency_ms, told.age_ms), (22.0, 32.0));
-        assert_eq!(told.sent_age_ms, 10.0);
-        assert_eq!(told.laser.map(|pose| pose.x), Some(1.5));
-        assert_eq!(told.base, None, "no mount is known");
-        assert!((told.ellipse.unwrap().major_m - 0.2).abs() < 1e-12);
+        let tracked = Tracked::new(&header(TrackState::Doubtful, 1.5), words, 33_000_000);
+        assert_eq!((tracked.counter, tracked.state), (7, "Doubtful"));
+        assert_eq!(tracked.says, "2 places fit, 25 m apart");
+        assert_eq!((tracked.latency_ms, tracked.age_ms), (22.0, 32.0));
+        assert_eq!(tracked.sent_age_ms, 10.0);
+        assert_eq!(tracked.laser.map(|pose| pose.x), Some(1.5));
+        assert_eq!(tracked.base, None, "no mount is known");
+        assert!((tracked.ellipse.unwrap().major_m - 0.2).abs() < 1e-12);
     }
 
     #[test]
-    fn what_is_not_known_is_not_told() {
+    fn what_is_not_known_is_not_reported() {
         let mut searching = header(TrackState::Searching, 1.5);
         searching.pose_known = 0;
-        let told = Tracked::new(&searching, b"", 0);
-        assert_eq!((told.laser, told.ellipse), (None, None));
-        let told = Tracked::new(&header(TrackState::Unique, f64::NAN), &[0xff; 999], 0);
-        assert_eq!(told.laser, None);
-        assert_eq!(told.says.chars().count(), PoseHeader::WORDS_CAPACITY);
+        let tracked = Tracked::new(&searching, b"", 0);
+        assert_eq!((tracked.laser, tracked.ellipse), (None, None));
+        let tracked = Tracked::new(&header(TrackState::Unique, f64::NAN), &[0xff; 999], 0);
+        assert_eq!(tracked.laser, None);
+        assert_eq!(tracked.says.chars().count(), PoseHeader::WORDS_CAPACITY);
         let mut unknown = header(TrackState::Unique, 1.0);
         unknown.state = 99;
         assert_eq!(Tracked::new(&unknown, b"", i64::MIN).state, "?");

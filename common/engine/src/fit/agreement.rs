@@ -1,7 +1,7 @@
 //! How well a scan agrees with the map at a pose, beam by beam.
 
 use super::ends::{End, Ends};
-use super::{FitConfig, GridPose, Terrain};
+use super::{DistanceField, FitConfig, GridPose};
 
 /// What became of a beam.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -23,7 +23,7 @@ const HIT_SIGMAS: f64 = 2.0;
 /// deviations passes through it.
 const THROUGH_SIGMAS: f64 = 3.0;
 
-impl Terrain {
+impl DistanceField {
     /// How well a scan agrees with the map at a pose: the mean score of the beams
     /// by weight, at most 1; below 0 where most beams pass through obstacles.
     #[must_use]
@@ -83,16 +83,16 @@ impl Terrain {
         let end = self.distance(x + reading * dx, y + reading * dy);
         let off = end.map_or(f64::INFINITY, |(distance, _)| distance / sigma);
         let near = (-0.5 * off * off).exp();
-        let way = self.look((x, y), (dx, dy), reading);
+        let hit = self.cast_ray((x, y), (dx, dy), reading);
         let longest = reading - THROUGH_SIGMAS * sigma;
-        let is_through = way.occupied.is_some_and(|occupied| occupied < longest);
-        let value = match (way.unknown, is_through) {
+        let is_through = hit.occupied.is_some_and(|occupied| occupied < longest);
+        let value = match (hit.unknown, is_through) {
             (Some(_), false) => near.max(config.unknown_score),
             (Some(_), true) => 0.5 * near.max(config.unknown_score),
             (None, false) => near,
             (None, true) => near - config.through_penalty,
         };
-        let class = match way.unknown {
+        let class = match hit.unknown {
             _ if is_through => BeamClass::Through,
             _ if off <= HIT_SIGMAS => BeamClass::Hit,
             Some(_) => BeamClass::Unknown,
@@ -104,7 +104,7 @@ impl Terrain {
 
 #[cfg(test)]
 mod tests {
-    use super::super::drawn::terrain;
+    use super::super::drawn::distance_field;
     use super::*;
     use crate::fit::ends::End;
 
@@ -155,7 +155,7 @@ mod tests {
             (22.0, 6.0),
             (-30.0, 5.0),
         ]);
-        let classes = terrain(&MAP).classes(&scan, POSE, &config());
+        let classes = distance_field(&MAP).classes(&scan, POSE, &config());
         let expected = [
             BeamClass::Hit,
             BeamClass::Short,
@@ -169,7 +169,7 @@ mod tests {
 
     #[test]
     fn the_score_is_what_the_ends_are_worth() {
-        let map = terrain(&MAP);
+        let map = distance_field(&MAP);
         // The score, and the share of hits.
         let judged = |readings: &[(f64, f64)]| {
             let scan = ends(readings);

@@ -12,18 +12,18 @@ pub struct FitConfig {
     /// The same in cells of the map, 0.1..=10: coarse maps are less exact.
     #[arg(long, value_name = "CELLS", default_value_t = 2.0, value_parser = parse_cells)]
     pub fit_sigma_cells: f64,
-    /// What a beam that passes through an obstacle loses of its full score,
-    /// 0..=1. It passes through where it reads three standard deviations more
-    /// than the way to the first obstacle.
+    /// Penalty for a beam that passes through an obstacle, as a share of its full
+    /// score, 0..=1. A beam passes through if its reading is longer than the distance
+    /// to the first obstacle by three standard deviations.
     #[arg(long, value_name = "SHARE", default_value_t = 0.15, value_parser = parse_share)]
     pub through_penalty: f64,
     /// The score of a beam that ends behind unknown space, 0..=1; half of it if
     /// it passes through an obstacle there.
     #[arg(long, value_name = "SHARE", default_value_t = 0.3, value_parser = parse_share)]
     pub unknown_score: f64,
-    /// A map that is drawn leaves out what its author did not know: so much the true
-    /// place may score worse there than another, 0..=1. A map counts as drawn by how
-    /// straight its walls are.
+    /// Tolerance for drawn maps, which leave out what their author did not know: the
+    /// true place may score this much worse than another, 0..=1. A map counts as drawn
+    /// if its walls are very straight.
     #[arg(long, value_name = "SCORE", default_value_t = 0.15, value_parser = parse_share)]
     pub drawn_doubt: f64,
 }

@@ -45,7 +45,7 @@ fn is_wall(grid: &Grid, i: usize) -> bool {
             || is_open(Some(i + width)))
 }
 
-/// Marks the cells of a line that stand in a row of at least so many.
+/// Marks the cells of a line that stand in a row of at least this many.
 fn mark_straight(
     (start, step, length): (usize, usize, usize),
     least: usize,

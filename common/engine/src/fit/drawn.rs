@@ -1,13 +1,13 @@
-//! Terrains drawn as text for tests: `#` is occupied, `?` unknown, the rest
+//! Distance fields drawn as text for tests: `#` is occupied, `?` unknown, the rest
 //! free. The last line is the lowest row; cells have sides of 0.1 m.
 
 use geometry::Pose;
 use messages::UNKNOWN;
 
-use super::Terrain;
+use super::DistanceField;
 use crate::grid::{CellRules, GridFrame};
 
-pub(crate) fn terrain(rows: &[&str]) -> Terrain {
+pub(crate) fn distance_field(rows: &[&str]) -> DistanceField {
     let cell = |cell| match cell {
         b'#' => 100,
         b'?' => UNKNOWN,
@@ -23,7 +23,7 @@ pub(crate) fn terrain(rows: &[&str]) -> Terrain {
         resolution_m: 0.1,
         map_from_grid: Pose::IDENTITY,
     };
-    Terrain::new(
+    DistanceField::new(
         frame,
         (rows[0].len(), rows.len()),
         &occupancy,

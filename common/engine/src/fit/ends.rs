@@ -1,4 +1,4 @@
-//! Where the beams of a scan end, seen from the frame whose pose is sought.
+//! Where the beams of a scan end, seen from the target frame.
 
 use messages::Reading;
 
@@ -10,7 +10,7 @@ use crate::observation::Observation;
 use crate::space::Space;
 
 /// The end points of a scan's beams, in cells; by default those of a scan
-/// without beams. They can be found anew for each scan, in the room of the one
+/// without beams. They can be found again for each scan, in the buffers of the one
 /// before.
 #[derive(Debug, Clone, Default, PartialEq)]
 pub struct Ends {
@@ -25,14 +25,14 @@ pub struct Ends {
 /// Where a beam ends.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(crate) struct End {
-    /// Where the laser was, cells in the frame that is sought; its origin where the
+    /// Where the laser was, cells in the target frame; its origin where the
     /// laser stood still.
     pub from: (f64, f64),
-    /// In the frame that is sought, radians.
+    /// In the target frame, radians.
     pub bearing: f64,
     /// Metres from the laser.
     pub reading_m: f64,
-    /// The unit vector along the beam, in the frame that is sought.
+    /// The unit vector along the beam, in the target frame.
     pub towards: (f64, f64),
     /// Cells.
     pub reading: f64,
@@ -57,7 +57,7 @@ impl Ends {
         Ok(ends)
     }
 
-    /// The same in the room of a scan before; where it is refused, that scan
+    /// The same in the buffers of a scan before; where it is refused, that scan
     /// stays.
     ///
     /// # Errors
@@ -105,7 +105,7 @@ impl Ends {
         self.weight = 0.0;
     }
 
-    /// Takes the beams from a message, in the room of a scan before.
+    /// Takes the beams from a message, in the buffers of a scan before.
     ///
     /// # Errors
     /// If a number is not finite, or a beam has no length or a weight that none can
@@ -143,7 +143,7 @@ impl Ends {
 /// A beam, and what became of it.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct JudgedBeam {
-    /// Where it ends, seen from the origin of the frame that is sought (the laser's
+    /// Where it ends, seen from the origin of the target frame (the laser's
     /// where it stood still): counter-clockwise from ahead, radians.
     pub bearing: f64,
     /// Metres from there.
@@ -156,7 +156,7 @@ pub struct JudgedBeam {
 
 impl Ends {
     /// The beams that voted, with their classes: those of
-    /// [`Terrain::classes`](super::Terrain::classes).
+    /// [`DistanceField::classes`](super::DistanceField::classes).
     pub fn judged(&self, classes: &[BeamClass]) -> impl Iterator<Item = JudgedBeam> {
         let both = self.ends.iter().zip(classes);
         both.map(|(end, &class)| {
@@ -178,7 +178,7 @@ impl Ends {
     }
 
     /// How many pieces of equal weight the scan sees, where neighbouring readings
-    /// that differ by more than so many metres lie on different pieces: Kish's
+    /// that differ by more than this many metres lie on different pieces: Kish's
     /// effective sample size, as for [`Ends::effective_beams`]. The beams of one
     /// piece fit, or do not fit, together.
     #[must_use]
@@ -195,14 +195,14 @@ impl Ends {
         self.weight * self.weight / squares.max(f64::MIN_POSITIVE)
     }
 
-    /// Bearings of the beams that say nothing, in the frame that is sought, radians.
+    /// Bearings of the beams that say nothing, in the target frame, radians.
     #[must_use]
     pub fn silent(&self) -> &[f64] {
         &self.silent
     }
 
     /// Share of the beams by weight that are of a class, 0..=1; `classes` are
-    /// those of [`Terrain::classes`](super::Terrain::classes).
+    /// those of [`DistanceField::classes`](super::DistanceField::classes).
     #[must_use]
     pub fn share(&self, classes: &[BeamClass], class: BeamClass) -> f64 {
         let both = self.ends.iter().zip(classes);
@@ -231,19 +231,19 @@ impl End {
         }
     }
 
-    /// The direction of the beam where the sought frame is turned.
+    /// The direction of the beam where the target frame is turned.
     #[inline]
     pub(super) fn direction(&self, turn: (f64, f64)) -> (f64, f64) {
         turned(self.towards, turn)
     }
 
-    /// Where the laser was from the sought frame's origin, where that is turned.
+    /// Where the laser was from the target frame's origin, where that is turned.
     #[inline]
     pub(super) fn start(&self, turn: (f64, f64)) -> (f64, f64) {
         turned(self.from, turn)
     }
 
-    /// Where the beam ends, seen from the origin of the sought frame: bearing and
+    /// Where the beam ends, seen from the origin of the target frame: bearing and
     /// metres.
     fn seen_from_origin(&self) -> (f64, f64) {
         if self.from == (0.0, 0.0) {

@@ -6,7 +6,7 @@
 //! continuously and judged again by the perpendicular distance:
 //!
 //! ```text
-//! occupancy ─ distance ─ terrain ─┬─ refine ─ agreement ─ score, beam classes
+//! occupancy ─ distance ─ distance_field ─┬─ refine ─ agreement ─ score, beam classes
 //! scan ─ beams ─ ends ────────────┘
 //! ```
 //!
@@ -16,13 +16,13 @@
 mod agreement;
 mod config;
 pub(crate) mod distance;
+mod distance_field;
 mod drawing;
 #[cfg(test)]
 pub(crate) mod drawn;
 mod ends;
 mod readings;
 mod refine;
-mod terrain;
 
 use geometry::{Pose, wrap_angle};
 use nalgebra::Vector3;
@@ -30,11 +30,11 @@ use nalgebra::Vector3;
 use crate::grid::GridFrame;
 pub use agreement::BeamClass;
 pub use config::FitConfig;
+pub use distance_field::DistanceField;
 pub(crate) use ends::End;
 pub use ends::{Ends, JudgedBeam};
 pub use readings::Readings;
 pub use refine::{Expected, Refined};
-pub use terrain::Terrain;
 
 /// A pose in cells of the grid and radians in its frame.
 #[derive(Debug, Clone, Copy, PartialEq)]

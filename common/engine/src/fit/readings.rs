@@ -8,8 +8,8 @@ use crate::beams::{BeamConfig, Chosen};
 use crate::observation::{CarriedScan, Observation};
 use crate::space::Space;
 
-/// The beams of an observation, in the frame that is sought; found anew for each
-/// scan, in the room of the one before.
+/// The beams of an observation, in the target frame; found again for each
+/// scan, in the buffers of the one before.
 #[derive(Debug, Clone, Default, PartialEq)]
 pub struct Readings {
     chosen: Chosen,
@@ -109,7 +109,7 @@ mod tests {
         let (still, config) = (scan(&ranges), BeamConfig::default());
         let carried = [CarriedScan {
             scan: still,
-            sought_from_laser: &[Pose::IDENTITY; 6],
+            target_from_laser: &[Pose::IDENTITY; 6],
         }];
         let expected = Ends::new(&still, &space(), &config).unwrap();
         let found = Ends::new(Observation::Carried(&carried), &space(), &config).unwrap();
@@ -125,11 +125,11 @@ mod tests {
         let scans = [
             CarriedScan {
                 scan: scan(&ranges),
-                sought_from_laser: &[at(1.0), at(2.0)],
+                target_from_laser: &[at(1.0), at(2.0)],
             },
             CarriedScan {
                 scan: scan(&[f32::NAN]),
-                sought_from_laser: &[at(3.0)],
+                target_from_laser: &[at(3.0)],
             },
         ];
         let mut readings = Readings::default();

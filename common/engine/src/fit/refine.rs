@@ -4,7 +4,7 @@
 use nalgebra::{Matrix3, Vector3};
 
 use super::ends::Ends;
-use super::{FitConfig, GridPose, Terrain};
+use super::{DistanceField, FitConfig, GridPose};
 
 /// A pose that was moved to the nearest best fit.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -41,23 +41,23 @@ struct Known<'a> {
 }
 
 /// Neighbouring beams end on the same piece of wall, and maps err by walls, not
-/// by points: so many beams tell as much as one with an error of its own.
+/// by points: this many beams are worth one with an independent error.
 const BEAMS_TOGETHER: f64 = 8.0;
 
 /// No end point is known better than the cell that it is compared with: the
 /// variance of a number that is anywhere within one, squared cells.
-const LEAST_VARIANCE: f64 = 1.0 / 12.0;
+const MIN_VARIANCE: f64 = 1.0 / 12.0;
 
 /// What walls are off by at least, cells: they lie anywhere between the middle of
 /// their cells and their edges.
-const LEAST_WALL_ERROR: f64 = 0.5;
+const MIN_WALL_ERROR: f64 = 0.5;
 
 /// Beams farther off have no say: coarse first, then fine, in standard
 /// deviations.
 const REACHES: [f64; 2] = [4.0, 2.0];
 
 /// Most steps with each reach.
-const MOST_STEPS: usize = 6;
+const MAX_STEPS: usize = 6;
 
 /// A step shorter than this, cells and radians times a hundred, is the last
 /// with each reach.
@@ -65,7 +65,7 @@ const LAST_STEPS: [f64; 2] = [0.1, 0.02];
 
 /// The variance with which a beam counts, of one that is measured so.
 fn independent(variance: f64) -> f64 {
-    BEAMS_TOGETHER * variance.max(LEAST_VARIANCE)
+    BEAMS_TOGETHER * variance.max(MIN_VARIANCE)
 }
 
 impl Refined {
@@ -82,19 +82,19 @@ impl Refined {
     /// addition, those of other directions by as much for themselves.
     #[must_use]
     pub fn by_walls(&self, covariance: Matrix3<f64>, drawn: f64) -> Matrix3<f64> {
-        let error = self.variance.max(LEAST_WALL_ERROR.powi(2)) + drawn * drawn;
+        let error = self.variance.max(MIN_WALL_ERROR.powi(2)) + drawn * drawn;
         let pulled = covariance / independent(self.variance);
         error * pulled * self.walls * pulled.transpose()
     }
 }
 
-/// Keeps steps short along what the scan does not tell, as a share of the
+/// Keeps steps short along what the scan does not constrain, as a share of the
 /// weight of all beams.
 const DAMPING: f64 = 1e-3;
 
-impl Terrain {
+impl DistanceField {
     /// Moves a pose to where the scan fits best nearby; its heading only where
-    /// that is not known. It stays where it is along what no beam tells.
+    /// that is not known. It stays where it is along what no beam constrains.
     #[must_use]
     pub fn refine(
         &self,
@@ -138,7 +138,7 @@ impl Terrain {
         let sigma = config.sigma_cells(self.frame.resolution_m);
         let mut pose = start;
         for (reach, last_step) in reaches.into_iter().zip(LAST_STEPS) {
-            for _ in 0..MOST_STEPS {
+            for _ in 0..MAX_STEPS {
                 let mut sums = Sums::default();
                 self.linearise(ends, pose, reach * sigma, |weight, distance, slope| {
                     sums.add(weight, distance, slope);
@@ -287,7 +287,7 @@ impl Sums {
 
 #[cfg(test)]
 mod tests {
-    use super::super::drawn::terrain;
+    use super::super::drawn::distance_field;
     use super::*;
     use crate::fit::ends::End;
 
@@ -314,7 +314,7 @@ mod tests {
 
     /// What a laser at the pose reads: the way to the middle of the walls.
     fn scan(rows: &[&str], pose: GridPose) -> Ends {
-        let map = terrain(rows);
+        let map = distance_field(rows);
         let end = |beam: i32| {
             let angle = f64::from(beam).to_radians();
             let (dy, dx) = (pose.heading + angle).sin_cos();
@@ -333,7 +333,7 @@ mod tests {
 
     #[test]
     fn a_pose_nearby_is_moved_to_where_the_scan_was_taken() {
-        let (map, ends) = (terrain(&ROOM), scan(&ROOM, TRUTH));
+        let (map, ends) = (distance_field(&ROOM), scan(&ROOM, TRUTH));
         for (x, y, turn) in [(0.0, 0.0, 0.0), (0.7, -0.6, 0.03), (-0.8, 0.5, -0.05)] {
             let start = GridPose {
                 x: TRUTH.x + x,
@@ -351,7 +351,7 @@ mod tests {
 
     #[test]
     fn a_known_heading_is_left_alone() {
-        let (map, ends) = (terrain(&ROOM), scan(&ROOM, TRUTH));
+        let (map, ends) = (distance_field(&ROOM), scan(&ROOM, TRUTH));
         let start = GridPose {
             x: TRUTH.x + 0.5,
             ..TRUTH
@@ -362,7 +362,7 @@ mod tests {
     }
 
     #[test]
-    fn what_no_beam_tells_stays_as_it_was() {
+    fn what_no_beam_shows_stays_as_it_was() {
         const CORRIDOR: [&str; 5] = [
             "##############################",
             "..............................",
@@ -375,7 +375,7 @@ mod tests {
             y: 2.5,
             heading: 0.0,
         };
-        let (map, ends) = (terrain(&CORRIDOR), scan(&CORRIDOR, pose));
+        let (map, ends) = (distance_field(&CORRIDOR), scan(&CORRIDOR, pose));
         let start = GridPose {
             x: 13.0,
             y: 2.9,
@@ -428,7 +428,7 @@ mod tests {
     #[test]
     fn a_scan_without_beams_moves_nothing() {
         let none = Ends::of(Vec::new());
-        let refined = terrain(&ROOM).refine(&none, TRUTH, false, &FitConfig::default());
+        let refined = distance_field(&ROOM).refine(&none, TRUTH, false, &FitConfig::default());
         assert_eq!((refined.pose, refined.weight), (TRUTH, 0.0));
     }
 }

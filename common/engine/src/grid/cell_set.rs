@@ -10,7 +10,7 @@ pub(crate) struct CellSet {
 }
 
 impl CellSet {
-    /// Those of so many cells that `holds` says.
+    /// Those of this many cells that `holds` says.
     pub(crate) fn of(cells: usize, holds: impl Fn(usize) -> bool) -> Self {
         let word = |first: usize| {
             let word = first..cells.min(first + WORD);
@@ -42,7 +42,7 @@ impl CellSet {
         }
     }
 
-    /// None of so many cells.
+    /// None of this many cells.
     pub(crate) fn none(cells: usize) -> Self {
         CellSet {
             words: vec![0; cells.div_ceil(WORD)],
@@ -83,7 +83,7 @@ impl CellSet {
         &mut self.words
     }
 
-    /// Whether no cell is among them but of the first so many.
+    /// Whether all cells in the set are among the first `cells`.
     pub(crate) fn are_below(&self, cells: usize) -> bool {
         let (full, rest) = (cells / WORD, cells % WORD);
         let mut beyond = self.words.iter().skip(full);

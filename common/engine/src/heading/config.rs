@@ -15,14 +15,13 @@ pub struct HeadingConfig {
     #[arg(long, value_enum, value_name = "SOURCE")]
     pub heading_from: Option<HeadingFrom>,
 
-    /// Added to the heading from odometry, degrees, -360..=360: the heading in
-    /// the map where odometry says 0. Odometry drifts, so this serves the start
-    /// of a run. 0 where it is not given.
+    /// Added to the heading from odometry, degrees, -360..=360: the heading in the map
+    /// where odometry reads 0. Odometry drifts, so this is useful at the start of a
+    /// run. Default 0.
     #[arg(long, value_name = "DEGREES", value_parser = degrees, allow_negative_numbers = true)]
     pub heading_offset: Option<f64>,
 
-    /// Odometry that was measured longer before its scan is not used, seconds,
-    /// 0..=60. 1 where it is not given.
+    /// Maximum age of odometry at its scan, seconds, 0..=60. Default 1.
     #[arg(long, value_name = "SECONDS", value_parser = seconds)]
     pub heading_max_age_s: Option<f64>,
 }

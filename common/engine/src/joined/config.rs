@@ -3,11 +3,11 @@
 /// What is joined, and how the motion is known.
 #[derive(Debug, Clone, PartialEq, Default, clap::Args)]
 pub struct JoinConfig {
-    /// Lasers whose scans are joined, the first one first: its new scan asks for an
-    /// answer. By default the graph has one.
+    /// Lasers whose scans are joined, the main one first: a new scan of it triggers an
+    /// answer. By default the graph has one laser.
     #[arg(long, value_name = "LASER,LASER", value_delimiter = ',', value_parser = parse_laser)]
     pub scans: Vec<String>,
-    /// How the motion is known.
+    /// How the motion is measured.
     #[command(flatten)]
     pub motion: MotionConfig,
 }
@@ -15,19 +15,20 @@ pub struct JoinConfig {
 /// How the motion within a scan, and between scans, is known.
 #[derive(Debug, Clone, PartialEq, clap::Args)]
 pub struct MotionConfig {
-    /// Added to the stamps of odometry, seconds, -1..=1: above zero where odometry
-    /// leads the laser.
+    /// Added to the stamps of odometry, seconds, -1..=1: positive if odometry leads the
+    /// laser.
     #[arg(long, value_name = "SECONDS", default_value_t = 0.0, allow_negative_numbers = true, value_parser = parse_delay)]
     pub odometry_delay_s: f64,
-    /// Of which beam a scan's stamp is.
+    /// Which beam the stamp of a scan belongs to.
     #[arg(long, value_enum, default_value_t = ScanStamp::First)]
     pub scan_stamp: ScanStamp,
-    /// Whether the motion within a scan is taken out, where odometry tells it.
+    /// Whether the motion within a scan is compensated (deskewed), if odometry covers
+    /// it.
     #[arg(long, value_name = "BOOL", default_value_t = true, action = clap::ArgAction::Set)]
     pub deskew: bool,
 }
 
-/// Of which beam a scan's stamp is.
+/// Which beam the stamp of a scan belongs to.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default, clap::ValueEnum)]
 pub enum ScanStamp {
     /// The first, as `sensor_msgs/LaserScan` defines it.

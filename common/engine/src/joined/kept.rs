@@ -21,18 +21,18 @@ struct KeptScan {
     range_min_m: f32,
     range_max_m: f32,
     ranges: Vec<f32>,
-    sought_from_laser: Vec<Pose>,
+    target_from_laser: Vec<Pose>,
 }
 
 impl KeptScan {
-    fn of(scan: &Scan<'_>, sought_from_laser: &[Pose]) -> Self {
+    fn of(scan: &Scan<'_>, target_from_laser: &[Pose]) -> Self {
         KeptScan {
             angle_min: scan.angle_min,
             angle_increment: scan.angle_increment,
             range_min_m: scan.range_min_m,
             range_max_m: scan.range_max_m,
             ranges: scan.ranges.to_vec(),
-            sought_from_laser: sought_from_laser.to_vec(),
+            target_from_laser: target_from_laser.to_vec(),
         }
     }
 
@@ -59,7 +59,7 @@ impl Kept {
             Seen::Carried(scans) => Kept {
                 scans: scans
                     .iter()
-                    .map(|carried| KeptScan::of(&carried.scan, carried.sought_from_laser))
+                    .map(|carried| KeptScan::of(&carried.scan, carried.target_from_laser))
                     .collect(),
                 is_carried: true,
             },
@@ -76,7 +76,7 @@ impl Kept {
                     .iter()
                     .map(|kept| CarriedScan {
                         scan: kept.scan(),
-                        sought_from_laser: &kept.sought_from_laser,
+                        target_from_laser: &kept.target_from_laser,
                     })
                     .collect(),
             ),

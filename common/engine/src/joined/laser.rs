@@ -12,7 +12,7 @@ use crate::scan::Scan;
 /// No laser takes longer than this for a scan; increments that say so are wrong.
 const MAX_SCAN_TIME_NS: f64 = 1e9;
 
-/// A scan is of its time if it is at most so many periods of its laser older.
+/// A scan is of its time if it is at most this many periods of its laser older.
 const MAX_AGE_PERIODS: f64 = 1.5;
 
 #[derive(Debug, Clone)]
@@ -27,7 +27,7 @@ pub(super) struct Laser {
     beam_ns: f64,
     /// From the scan before to this one; 0 where there was none.
     period_ns: i64,
-    sought_from_laser: Vec<Pose>,
+    target_from_laser: Vec<Pose>,
 }
 
 impl Laser {
@@ -39,7 +39,7 @@ impl Laser {
             first_beam_ns: 0,
             beam_ns: 0.0,
             period_ns: 0,
-            sought_from_laser: Vec::new(),
+            target_from_laser: Vec::new(),
         }
     }
 
@@ -113,7 +113,7 @@ impl Laser {
     pub(super) fn carried(&self) -> CarriedScan<'_> {
         CarriedScan {
             scan: self.scan(),
-            sought_from_laser: &self.sought_from_laser,
+            target_from_laser: &self.target_from_laser,
         }
     }
 
@@ -144,10 +144,10 @@ impl Laser {
         Ok(())
     }
 
-    /// The laser stayed at one place in the sought frame.
+    /// The laser stayed at one place in the target frame.
     pub(super) fn stand(&mut self, at: Pose) {
-        self.sought_from_laser.clear();
-        self.sought_from_laser.resize(self.ranges.len(), at);
+        self.target_from_laser.clear();
+        self.target_from_laser.resize(self.ranges.len(), at);
     }
 
     /// The laser was where `at` says for the time of each beam; `None` where it does
@@ -158,10 +158,10 @@ impl Laser {
             self.stand(place);
             return Some(());
         }
-        self.sought_from_laser.clear();
+        self.target_from_laser.clear();
         for range in 0..self.ranges.len() {
             let place = at(self.beam_at_ns(range))?;
-            self.sought_from_laser.push(place);
+            self.target_from_laser.push(place);
         }
         Some(())
     }

@@ -52,12 +52,12 @@ fn pair() -> Joiner {
     })
 }
 
-/// x of the laser in the sought frame at each beam, by laser.
+/// x of the laser in the target frame at each beam, by laser.
 fn places(joiner: &Joiner) -> Vec<Vec<f64>> {
     match joiner.seen() {
         Seen::Still(_) => Vec::new(),
         Seen::Carried(scans) => {
-            let xs = |scan: &CarriedScan<'_>| scan.sought_from_laser.iter().map(|p| p.x).collect();
+            let xs = |scan: &CarriedScan<'_>| scan.target_from_laser.iter().map(|p| p.x).collect();
             scans.iter().map(xs).collect()
         }
     }
@@ -97,7 +97,7 @@ fn the_motion_within_a_scan_is_taken_out() {
     assert!(!joiner.lacks_odometry());
     assert_eq!(joiner.bring().unwrap().motion, MotionKnown::ByOdometry);
     check_places(&joiner, &[&[-0.02, 0.0, 0.02]]);
-    assert!(!joiner.seeks_base());
+    assert!(!joiner.targets_base());
 }
 
 #[test]
@@ -141,7 +141,7 @@ fn several_lasers_are_seen_from_the_base_at_the_time_of_the_first() {
     let brought = joiner.bring().unwrap();
     assert_eq!((brought.lasers, brought.left_out.len()), (2, 0));
     check_places(&joiner, &[&[0.5; 3], &[-0.56; 3]]);
-    assert!(joiner.seeks_base());
+    assert!(joiner.targets_base());
 }
 
 #[test]
@@ -154,7 +154,7 @@ fn a_laser_that_cannot_be_joined_is_left_out_and_named() {
         reasons.map(|(laser, why)| format!("{laser}: {why}")).next()
     };
     joiner.on_scan(&scan("front", 100), &RANGES);
-    assert_eq!(left_out(&mut joiner).unwrap(), "rear: no scan has come");
+    assert_eq!(left_out(&mut joiner).unwrap(), "rear: no scan received");
     joiner.on_scan(&scan("rear", 100), &RANGES);
     assert_eq!(left_out(&mut joiner), None, "no odometry, nothing moves");
     // Every 50 ms from now on.
@@ -162,7 +162,7 @@ fn a_laser_that_cannot_be_joined_is_left_out_and_named() {
     joiner.on_scan(&scan("front", 225), &RANGES);
     assert_eq!(left_out(&mut joiner), None);
     joiner.on_scan(&scan("front", 226), &RANGES);
-    let old = "rear: its newest scan is 76 ms older, more than one and a half of its periods";
+    let old = "rear: its newest scan is 76 ms older, more than 1.5 scan periods";
     assert_eq!(left_out(&mut joiner).unwrap(), old);
     let lost = ScanHeader {
         mount_known: 0,
@@ -171,7 +171,7 @@ fn a_laser_that_cannot_be_joined_is_left_out_and_named() {
     joiner.on_scan(&lost, &RANGES);
     assert_eq!(
         left_out(&mut joiner).unwrap(),
-        "rear: it is not known where it sits on the base"
+        "rear: its mount on the base is not known"
     );
     joiner.on_scan(&scan("rear", 226), &[]);
     assert!(left_out(&mut joiner).unwrap().contains("no ranges"));
@@ -182,7 +182,7 @@ fn a_laser_that_cannot_be_joined_is_left_out_and_named() {
     joiner.on_scan(&scan("front", 1000), &RANGES);
     assert_eq!(
         left_out(&mut joiner).unwrap(),
-        "rear: no odometry tells how the robot moved since"
+        "rear: no odometry for the robot's motion since"
     );
 }
 

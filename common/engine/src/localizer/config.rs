@@ -19,7 +19,7 @@ pub enum FieldMethod {
 /// How scans are matched with the map.
 #[derive(Debug, Clone, PartialEq, clap::Args)]
 pub struct LocalizerConfig {
-    /// Headings a turn, a multiple of 8 from 8 to 3600.
+    /// Headings per turn, a multiple of 8 from 8 to 3600.
     #[arg(long, value_name = "COUNT", default_value_t = 360)]
     pub headings: u32,
     /// Threads of a search, 1..=64; the answer is the same with any number.
@@ -28,23 +28,23 @@ pub struct LocalizerConfig {
     /// How readings become votes.
     #[command(flatten)]
     pub votes: VoteConfig,
-    /// What is collected of a search.
+    /// Which poses a search collects.
     #[command(flatten)]
     pub collect: CollectConfig,
-    /// Where poses are sought.
+    /// Where poses are searched.
     #[command(flatten)]
     pub limits: LimitsConfig,
-    /// How votes are counted where the heading is known; the answer is the same.
+    /// How votes are counted if the heading is known; the answer is the same.
     #[arg(long, value_name = "METHOD", value_enum, default_value_t)]
     pub method: FieldMethod,
-    /// Finer maps are searched in cells of at most this side, and what is found
-    /// is refined on the map as it is, metres, 0..=1; 0 searches each map as it
-    /// is.
+    /// Cell size of the search, metres, 0..=1: finer maps are searched at this
+    /// resolution, and the places found are refined on the full map. 0 searches each
+    /// map at its own resolution.
     #[arg(long, value_name = "METRES", default_value_t = 0.05, value_parser = parse_cell)]
     pub search_cell: f64,
-    /// A map is refused whose preparation for searches of unknown headings would take
-    /// more memory than this, about, megabytes of 10⁶ bytes, 1..=1000000; by default none
-    /// is.
+    /// Memory limit for preparing a map for searches of unknown headings, megabytes of
+    /// 10⁶ bytes, 1..=1000000: a map that needs about more is rejected. No limit by
+    /// default.
     #[arg(long, value_name = "MEGABYTES", value_parser = clap::value_parser!(u32).range(1..=1_000_000))]
     pub memory_limit: Option<u32>,
 }

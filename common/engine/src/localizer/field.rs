@@ -89,8 +89,8 @@ mod tests {
             let fields = Fields::new(&grid, None);
             let votes = |method| {
                 let (mut workspace, mut field) = (sweep::Workspace::default(), Vec::new());
-                let room = (&mut workspace, &mut field);
-                fields.fill((&grid, method), query, room, &|| false).map(|()| field)
+                let scratch = (&mut workspace, &mut field);
+                fields.fill((&grid, method), query, scratch, &|| false).map(|()| field)
             };
             let swept = votes(FieldMethod::Sweep);
             prop_assert!(swept.is_some());

@@ -112,7 +112,7 @@ impl Preparation {
         (self.prior == Prior::None).then(key)
     }
 
-    /// Room for the sections of an index that was kept, of such lengths in bytes.
+    /// Buffers for the sections of a cached index, of such lengths in bytes.
     ///
     /// # Errors
     /// They are none of an index of this map, or take more memory than is allowed.

@@ -6,7 +6,7 @@ use proptest::collection::vec;
 use proptest::prelude::*;
 
 use super::*;
-use crate::fit::{Ends, Terrain};
+use crate::fit::{DistanceField, Ends};
 use crate::grid::{self, drawn::grid};
 use crate::peaks::{self, PeakConfig, PeakInput};
 use crate::reference;
@@ -93,7 +93,7 @@ fn a_known_heading_is_taken_in_the_map_frame() {
 }
 
 #[test]
-fn a_search_at_a_heading_ends_when_it_is_told_to() {
+fn a_search_at_a_heading_ends_when_it_is_asked_to() {
     let (ranges, localizer) = (ranges(5, 3, 40), localizer(Prior::Heading));
     let asked = Cell::new(0);
     let search_until = |last| {
@@ -165,7 +165,7 @@ fn said(all: &mut All, grid: &Grid, scan: &AnyScan, heading: Option<f64>) -> Opt
         _ => 0,
     };
     let occupancy: Vec<u8> = grid.cells().iter().map(occupied).collect();
-    let terrain = Terrain::new(frame, sides, &occupancy, Default::default()).unwrap();
+    let distance_field = DistanceField::new(frame, sides, &occupancy, Default::default()).unwrap();
     // Grids without obstacles or space are refused.
     let localizer = Localizer::new(frame, grid.clone(), config, prior).ok()?;
     let (workspace, scan) = (&mut all.localizer, scan.scan());
@@ -188,7 +188,9 @@ fn said(all: &mut All, grid: &Grid, scan: &AnyScan, heading: Option<f64>) -> Opt
     all.ends.find(&scan, localizer.space(), beams).unwrap();
     let (input, peaks) = (PeakInput::of(outcome, frame), PeakConfig::default());
     let by_votes = format!("{:?}", all.peaks.by_votes(&input, &peaks));
-    let by_fit = all.peaks.by_fit(&input, (&terrain, &all.ends), &peaks);
+    let by_fit = all
+        .peaks
+        .by_fit(&input, (&distance_field, &all.ends), &peaks);
     Some(text + &format!("{outcome:?} {by_votes} {by_fit:?}"))
 }
 

@@ -21,20 +21,20 @@ const STEP_S: f64 = 0.005;
 /// noise of the poses hides the motion; farther apart, odometry drifts.
 const GAP_NS: std::ops::RangeInclusive<i64> = 450_000_000..=1_000_000_000;
 
-/// Fewest pairs of sightings that can tell a delay from chance.
+/// Fewest pairs of sightings that can distinguish a delay from chance.
 const MIN_PAIRS: usize = 20;
 
 /// What a pair differs by at most, metres; a pose in another place must not decide.
 const MAX_DIFFERENCE_M: f64 = 0.2;
 
 /// A delay is reported only where it explains half of what the odometry at other delays
-/// leaves open: a robot that never speeds up or turns tells none.
+/// leaves open: a robot that never speeds up or turns shows none.
 const MAX_REST: f64 = 0.5;
 
 impl Motion {
     /// What is to be added to the stamps of the odometry, seconds, so that it moves as
-    /// the sightings do: above zero where it leads the laser. `None` where they do not
-    /// tell.
+    /// the sightings do: above zero where it leads the laser. `None` if they do not
+    /// show it.
     ///
     /// The motion between sightings half a second apart is compared with that of the
     /// odometry at the same times, shifted; a radian counts as a metre.
@@ -148,7 +148,7 @@ mod tests {
     }
 
     #[test]
-    fn a_lead_and_a_lag_are_told() {
+    fn a_lead_and_a_lag_are_reported() {
         for lead_s in [0.13, 0.0, -0.2] {
             let found = delay_s(at, lead_s).unwrap();
             // A parabola through steps of 5 ms, on a curve that is one nearby.
@@ -157,7 +157,7 @@ mod tests {
     }
 
     #[test]
-    fn a_robot_that_never_turns_tells_nothing() {
+    fn a_robot_that_never_turns_shows_nothing() {
         assert_eq!(
             delay_s(|seconds| Pose::new(0.5 * seconds, 0.0, 0.0), 0.1),
             None

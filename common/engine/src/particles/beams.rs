@@ -3,7 +3,7 @@
 use super::ParticlesConfig;
 use crate::fit::Ends;
 
-/// A beam in cells of the frame that is sought.
+/// A beam in cells of the target frame.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(super) struct Beam {
     /// Where it ends.
@@ -18,7 +18,7 @@ pub(super) struct Beam {
     pub(super) weight: f64,
 }
 
-/// Those of one scan; found anew for each, in the room of the one before.
+/// Those of one scan; found again for each, in the buffers of the one before.
 #[derive(Debug, Clone, Default)]
 pub(super) struct Beams {
     pub(super) beams: Vec<Beam>,

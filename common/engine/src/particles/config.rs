@@ -4,7 +4,7 @@ use crate::config::{parse, parse_length};
 
 use super::OdometryNoise;
 
-/// What a particle is weighed by.
+/// Sensor model that weighs a particle.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, clap::ValueEnum)]
 pub enum SensorModel {
     /// By how far the end points lie from obstacles, whatever stands between.
@@ -17,18 +17,18 @@ pub enum SensorModel {
 /// particle filter of ROS, it is the one of nav2's `nav2_amcl`.
 #[derive(Debug, Clone, Copy, PartialEq, clap::Args)]
 pub struct ParticlesConfig {
-    /// Fewest particles, 1..=10000000; the default is AMCL's.
+    /// Minimum number of particles, 1..=10000000; the default is AMCL's.
     #[arg(long, value_name = "COUNT", default_value_t = 500, value_parser = parse_count())]
     pub particles_min: u32,
-    /// Most particles, 1..=10000000; `--particles-min` if that is more. AMCL has 2000
-    /// and begins where it is told; a start on a whole map takes more.
+    /// Maximum number of particles, 1..=10000000; `--particles-min` if that is more.
+    /// AMCL has 2000 and starts from a given pose; a start on a whole map takes more.
     #[arg(long, value_name = "COUNT", default_value_t = 5000, value_parser = parse_count())]
     pub particles_max: u32,
-    /// How far the particles may be from the true distribution, as a Kullback-Leibler
-    /// distance that is kept with a probability of 99 %, 0.001..=1; AMCL's default.
+    /// Maximum error of the particle distribution, as a Kullback-Leibler distance that
+    /// is kept with a probability of 99 %, 0.001..=1; AMCL's default.
     #[arg(long, value_name = "DISTANCE", default_value_t = 0.05, value_parser = parse_error)]
     pub particles_error: f64,
-    /// Side of the bins by which that is counted and particles are one cluster, metres,
+    /// Side of the bins in which particles are counted and clustered, metres,
     /// 0.05..=10; AMCL's.
     #[arg(long, value_name = "METRES", default_value_t = 0.5, value_parser = parse_bin)]
     pub particles_bin_m: f64,
@@ -36,11 +36,11 @@ pub struct ParticlesConfig {
     /// make a turn. AMCL's.
     #[arg(long, value_name = "DEGREES", default_value_t = 10.0, value_parser = parse_bin_angle)]
     pub particles_bin_deg: f64,
-    /// What a particle is weighed by.
+    /// Sensor model that weighs a particle.
     #[arg(long, value_enum, default_value_t = SensorModel::LikelihoodField)]
     pub particles_model: SensorModel,
-    /// Most beams that weigh a particle, 1..=65536, evenly taken from those of the scan;
-    /// AMCL's default.
+    /// Maximum number of beams that weigh a particle, 1..=65536, evenly taken from
+    /// those of the scan; AMCL's default.
     #[arg(long, value_name = "COUNT", default_value_t = 60, value_parser = clap::value_parser!(u32).range(1..=65_536))]
     pub particles_beams: u32,
     /// Standard deviation of an end point around its obstacle, or of a reading, metres,
@@ -51,11 +51,11 @@ pub struct ParticlesConfig {
     /// one that fits, 0.001..=0.5. AMCL's defaults come to 0.03 at 30 m of range.
     #[arg(long, value_name = "SHARE", default_value_t = 0.05, value_parser = parse_random)]
     pub particles_random: f64,
-    /// The beams weigh a particle as so many independent ones, 1..=65536: neighbours
+    /// The beams weigh a particle as this many independent ones, 1..=65536: neighbours
     /// end on the same wall and err together.
     #[arg(long, value_name = "COUNT", default_value_t = 16, value_parser = clap::value_parser!(u32).range(1..=65_536))]
     pub particles_independent: u32,
-    /// Where the random numbers begin: the same seed gives the same particles.
+    /// Seed of the random numbers: the same seed gives the same particles.
     #[arg(long, value_name = "NUMBER", default_value_t = 1)]
     pub particles_seed: u64,
     /// How particles scatter as the robot moves.

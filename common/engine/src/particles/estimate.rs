@@ -16,14 +16,14 @@ use crate::peaks::in_map;
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Estimate {
     /// The mean pose of the heaviest cluster.
-    pub map_from_sought: Pose,
+    pub map_from_target: Pose,
     /// Its spread, in the map.
     pub covariance: Covariance,
     /// Its share of the weight of all particles, 0..=1.
     pub share: f64,
 }
 
-/// Finds clusters; kept from scan to scan, for its room.
+/// Finds clusters; kept from scan to scan, for its buffers.
 #[derive(Debug, Clone, Default)]
 pub(super) struct Clusters {
     /// The bin of each particle that weighs anything, sorted, with its number.
@@ -45,7 +45,7 @@ struct Occupied {
 }
 
 impl Clusters {
-    /// Makes room for so many particles, each in a bin of its own.
+    /// Allocates buffers for this many particles, each in a bin of its own.
     pub(super) fn reserve(&mut self, particles: usize) {
         self.keys.clear();
         self.keys.reserve(particles);
@@ -81,7 +81,7 @@ impl Clusters {
         }
         let (pose, spread) = self.moments(particles, cluster);
         Some(Estimate {
-            map_from_sought: frame.map_from_cells(pose.x, pose.y, pose.heading),
+            map_from_target: frame.map_from_cells(pose.x, pose.y, pose.heading),
             covariance: in_map(frame, spread),
             share: weight / all,
         })
@@ -222,7 +222,7 @@ mod tests {
         assert_eq!(found.share, 0.5);
         // The mean (1.5, 1) in cells, -5°; the grid is turned by a quarter.
         let expected = Pose::new(10.0 - 0.5, 0.75, 85f64.to_radians());
-        assert!(found.map_from_sought.is_within(expected, 1e-12, 1e-12));
+        assert!(found.map_from_target.is_within(expected, 1e-12, 1e-12));
         // Along the grid's x, which is the map's y: (1 + 0 + 0 + 1) / 4 squared cells.
         let variance = found.covariance.0[(1, 1)];
         assert!((variance - 0.25 * 0.5).abs() < 1e-12, "{variance}");

@@ -14,10 +14,10 @@ use super::{
     resample,
 };
 use crate::EngineError;
-use crate::fit::{Ends, GridPose, Terrain};
+use crate::fit::{DistanceField, Ends, GridPose};
 use crate::grid::GridFrame;
 
-/// Particles are drawn anew where their effective number falls below this share of
+/// Particles are drawn again where their effective number falls below this share of
 /// them: each drawing loses some of what they say. Half is usual (for instance
 /// Grisetti, Stachniss and Burgard, "Improved Techniques for Grid Mapping", IEEE
 /// Transactions on Robotics 23, 2007, section III).
@@ -46,12 +46,12 @@ impl ParticleFilter {
     /// # Errors
     /// If no cell is free, or no heading is given or one is not finite.
     pub fn uniform(
-        terrain: &Terrain,
+        distance_field: &DistanceField,
         headings: StartHeadings<'_>,
         config: ParticlesConfig,
     ) -> Result<Self, EngineError> {
-        let uniform = Uniform::new(terrain, headings)?;
-        let mut filter = Self::empty(terrain.frame, config);
+        let uniform = Uniform::new(distance_field, headings)?;
+        let mut filter = Self::empty(distance_field.frame, config);
         filter.start(|rng| uniform.draw(rng));
         Ok(filter)
     }
@@ -71,7 +71,7 @@ impl ParticleFilter {
         Ok(filter)
     }
 
-    /// Starts anew around candidates, see [`ParticleFilter::seeded`]; the random numbers
+    /// Starts again around candidates, see [`ParticleFilter::seeded`]; the random numbers
     /// go on.
     ///
     /// # Errors
@@ -120,7 +120,7 @@ impl ParticleFilter {
             .sort_by_cached_key(|particle| binning.bin(particle.pose));
     }
 
-    /// Moves the particles by a step of the odometry, given in the sought frame before
+    /// Moves the particles by a step of the odometry, given in the target frame before
     /// it: `before.inverse().then(after)`. A step that is not finite moves nothing.
     pub fn predict(&mut self, step: Pose, noise: &OdometryNoise) {
         if step.is_finite() {
@@ -135,16 +135,16 @@ impl ParticleFilter {
         }
     }
 
-    /// Multiplies the weights by the likelihood of a scan. `terrain` is the map of the
+    /// Multiplies the weights by the likelihood of a scan. `distance_field` is the map of the
     /// start, and `ends` are in its cells; a scan without beams changes nothing.
-    pub fn weigh(&mut self, terrain: &Terrain, ends: &Ends) {
-        debug_assert_eq!(self.frame, terrain.frame);
+    pub fn weigh(&mut self, distance_field: &DistanceField, ends: &Ends) {
+        debug_assert_eq!(self.frame, distance_field.frame);
         self.beams.choose(ends, &self.config);
         let mut most = f64::NEG_INFINITY;
         for particle in &mut self.particles {
             let scan = self
                 .sensor
-                .log_likelihood(terrain, &self.beams, particle.pose);
+                .log_likelihood(distance_field, &self.beams, particle.pose);
             particle.weight = particle.weight.ln() + scan;
             most = most.max(particle.weight);
         }
@@ -153,8 +153,8 @@ impl ParticleFilter {
         }
     }
 
-    /// Draws the particles anew, if their weights differ so much that less than half of
-    /// them count; says whether.
+    /// Draws the particles again, if their weights differ so much that less than half of
+    /// them count; returns whether.
     pub fn resample(&mut self) -> bool {
         if self.effective_number() >= RESAMPLE_BELOW * self.particles.len() as f64 {
             return false;
@@ -174,7 +174,7 @@ impl ParticleFilter {
         true
     }
 
-    /// How many are to be drawn: as many as are enough for the bins of so many. It
+    /// How many are to be drawn: as many as are enough for the bins of this many. It
     /// differs from KLD-sampling in that drawing is systematic, so that the number must
     /// be known before: it begins with the fewest and grows as their bins ask for, by a
     /// quarter at least, which keeps the passes few and the number at most that much too
@@ -199,7 +199,7 @@ impl ParticleFilter {
         self.clusters.heaviest(&self.particles, binning, frame)
     }
 
-    /// How many particles of equal weight would tell as much.
+    /// How many particles of equal weight are worth as much.
     #[must_use]
     pub fn effective_number(&self) -> f64 {
         resample::effective_number(self.particles.iter().map(|particle| particle.weight))

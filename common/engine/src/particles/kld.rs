@@ -16,7 +16,7 @@ use crate::fit::GridPose;
 /// The standard normal quantile of 1 - δ = 99 %.
 const QUANTILE: f64 = 2.326_347_874;
 
-/// The number of particles for so many bins, at an error of ε. The quantile of the χ²
+/// The number of particles for this many bins, at an error of ε. The quantile of the χ²
 /// distribution is that of Wilson and Hilferty (table 8.4, line 16).
 fn number_for(bins: usize, error: f64) -> f64 {
     if bins < 2 {
@@ -92,7 +92,7 @@ impl Enough {
         }
     }
 
-    /// Begins to count anew.
+    /// Begins to count again.
     pub(super) fn clear(&mut self) {
         self.bins.clear();
         self.number = self.min;
@@ -111,7 +111,7 @@ impl Enough {
         self.number
     }
 
-    /// The same, or so many, if that is more and is allowed.
+    /// The same, or this many, if that is more and is allowed.
     pub(super) fn at_least(&self, number: usize) -> usize {
         self.number.max(number.min(self.max))
     }

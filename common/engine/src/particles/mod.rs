@@ -1,5 +1,5 @@
 //! Monte Carlo localization: the pose as a set of weighted particles, which move with
-//! the robot, are weighed by its scans and drawn anew by their weights.
+//! the robot, are weighed by its scans and drawn again by their weights.
 //!
 //! Dellaert, Fox, Burgard and Thrun, "Monte Carlo Localization for Mobile Robots" (ICRA
 //! 1999); Thrun, Burgard and Fox, "Probabilistic Robotics" (2005), chapter 8. A search
@@ -9,18 +9,18 @@
 //!
 //! ```text
 //! places of the votes ─┐               ┌── predict ◄── step of the odometry
-//!                      ├─ start ─ particles ─ weigh ◄── ends of a scan, terrain
+//!                      ├─ start ─ particles ─ weigh ◄── ends of a scan, distance field
 //! free cells ──────────┘               └── resample (KLD) ── estimate
 //! ```
 //!
-//! Poses of the interface are those of the frame that is sought (laser, or base) in the
+//! Poses of the interface are those of the target frame (laser, or base) in the
 //! map, metres and radians; particles are kept in cells of the grid. All is
 //! deterministic: the same calls with the same seed give the same particles to the last
-//! bit on one machine. Nothing is allocated from scan to scan once there is room
+//! bit on one machine. Nothing is allocated from scan to scan once the buffers are large enough
 //! for the most particles that there have been, and for their bins.
 //!
 //! It does not notice that it is lost: no random particles are added (as in table 8.3 of
-//! the book). A search of the whole map does that better, and its places start it anew
+//! the book). A search of the whole map does that better, and its places start it again
 //! ([`ParticleFilter::seed`]).
 
 mod beams;

@@ -1,10 +1,10 @@
 //! How particles move with the robot.
 //!
-//! Each takes the step that odometry tells, in its own frame, with an error of its own:
+//! Each takes the step that odometry measures, in its own frame, with an error of its own:
 //! sampling from a motion model as in Probabilistic Robotics (Thrun, Burgard and Fox,
 //! 2005), section 5.4. It differs from table 5.6 there. The errors are normal on the
 //! step itself, not on a turn, a way and another turn: whoever stands still, or drives
-//! sideways, has no first turn that could be told. And their variances grow with the
+//! sideways, has no first turn that could be determined. And their variances grow with the
 //! way, not with its square, as errors do that are independent from step to step, so
 //! that a step in two halves scatters as one does.
 
@@ -23,15 +23,16 @@ use crate::fit::GridPose;
 #[derive(Debug, Clone, Copy, PartialEq, clap::Args)]
 pub struct OdometryNoise {
     /// Standard deviation after one metre: of x and y in metres and of the heading in
-    /// radians, 0..=2. It grows with the root of the way.
+    /// radians, 0..=2. It grows with the square root of the distance.
     #[arg(long, value_name = "SIGMA", default_value_t = 0.06, value_parser = parse_length)]
     pub particles_noise_per_metre: f64,
-    /// Standard deviation of the heading after turning by one radian, radians, 0..=2. It
-    /// grows with the root of the turn.
+    /// Standard deviation of the heading after turning by one radian, radians, 0..=2.
+    /// It grows with the square root of the angle.
     #[arg(long, value_name = "SIGMA", default_value_t = 0.06, value_parser = parse_turn)]
     pub particles_noise_per_radian: f64,
-    /// Standard deviation of x and y that each step adds, metres, 0..=2: copies of a
-    /// particle come apart even where the robot stands. A fifth of a cell of 5 cm.
+    /// Standard deviation of x and y that each step adds at least, metres, 0..=2:
+    /// copies of a particle spread even if the robot stands still. A fifth of a cell of
+    /// 5 cm.
     #[arg(long, value_name = "METRES", default_value_t = 0.01, value_parser = parse_length)]
     pub particles_noise_least_m: f64,
     /// The same of the heading, degrees, 0..=180.

@@ -22,7 +22,7 @@ pub(super) fn copies(
     })
 }
 
-/// How many particles of equal weight would tell as much: Kish's effective sample size,
+/// How many particles of equal weight are worth as much: Kish's effective sample size,
 /// (Σ w)² / Σ w² (Liu, "Metropolized independent sampling", 1996, of particles).
 pub(super) fn effective_number(weights: impl Iterator<Item = f64>) -> f64 {
     let (sum, squares) = weights.fold((0.0, 0.0), |(sum, squares), weight| {

@@ -14,8 +14,8 @@ use crate::peaks::Place;
 /// A place where the robot may be.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Candidate {
-    /// Pose of the frame that is sought, in the map.
-    pub map_from_sought: Pose,
+    /// Pose of the target frame, in the map.
+    pub map_from_target: Pose,
     /// Its spread, in the map.
     pub covariance: Covariance,
     /// How likely the robot is there, against the other candidates.
@@ -25,7 +25,7 @@ pub struct Candidate {
 impl From<&Place> for Candidate {
     fn from(place: &Place) -> Self {
         Candidate {
-            map_from_sought: place.map_from_laser,
+            map_from_target: place.map_from_laser,
             covariance: place.covariance,
             weight: place.probability,
         }
@@ -54,8 +54,8 @@ pub fn draw(
 
 /// No candidate is surer than this, cells and degrees: it was refined by the scan that
 /// weighs the particles next, which must not count twice.
-const LEAST_CELLS: f64 = 0.5;
-const LEAST_DEG: f64 = 1.0;
+const MIN_CELLS: f64 = 0.5;
+const MIN_DEG: f64 = 1.0;
 
 /// Draws poses around candidates, as often around each as it is likely.
 pub(super) struct Seeds {
@@ -112,11 +112,11 @@ impl Seeds {
 impl Seed {
     fn new(frame: GridFrame, candidate: &Candidate) -> Option<Self> {
         let Candidate {
-            map_from_sought,
+            map_from_target,
             covariance: Covariance(covariance),
             weight,
         } = *candidate;
-        let (x, y, heading) = frame.cells_from_map(map_from_sought);
+        let (x, y, heading) = frame.cells_from_map(map_from_target);
         let mut numbers = covariance.iter().chain([&x, &y, &heading, &weight]);
         if !(numbers.all(|number| number.is_finite()) && weight >= 0.0) {
             return None;
@@ -141,14 +141,14 @@ fn in_cells(frame: GridFrame, covariance: Matrix3<f64>) -> Matrix3<f64> {
 /// A root of the covariance, no narrower than the least one. It may be flat, where the
 /// heading was known.
 fn root(covariance: Matrix3<f64>) -> Option<Matrix3<f64>> {
-    const MOST_STEPS: usize = 100;
-    let least = LEAST_DEG.to_radians();
-    let least = Vector3::new(LEAST_CELLS, LEAST_CELLS, least).map(|d| d * d);
+    const MAX_STEPS: usize = 100;
+    let least = MIN_DEG.to_radians();
+    let least = Vector3::new(MIN_CELLS, MIN_CELLS, least).map(|d| d * d);
     let wide = covariance + Matrix3::from_diagonal(&least);
     let SymmetricEigen {
         eigenvalues,
         eigenvectors,
-    } = SymmetricEigen::try_new(wide, f64::EPSILON, MOST_STEPS)?;
+    } = SymmetricEigen::try_new(wide, f64::EPSILON, MAX_STEPS)?;
     let roots = eigenvalues.map(|value| value.max(0.0).sqrt());
     Some(eigenvectors * Matrix3::from_diagonal(&roots))
 }
@@ -164,7 +164,7 @@ mod tests {
 
     fn candidate(x: f64, weight: f64) -> Candidate {
         Candidate {
-            map_from_sought: Pose::new(x, 2.0, 1.0),
+            map_from_target: Pose::new(x, 2.0, 1.0),
             covariance: Covariance::from_deviations(0.3, 0.1, 0.05),
             weight,
         }
@@ -185,7 +185,7 @@ mod tests {
             let squares: f64 = first.iter().map(|pose| of(pose).powi(2)).sum();
             (squares / first.len() as f64).sqrt()
         };
-        // Half a cell and a degree are added; 2000 samples tell a deviation to 1.6 %,
+        // Half a cell and a degree are added; 2000 samples give a deviation to 1.6 %,
         // four of which are allowed.
         let check = |found: f64, asked: f64, least: f64| {
             let expected = asked.hypot(least);

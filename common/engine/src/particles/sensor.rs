@@ -14,13 +14,13 @@
 
 use super::beams::{Beam, Beams};
 use super::{ParticlesConfig, SensorModel};
-use crate::fit::{GridPose, Terrain};
+use crate::fit::{DistanceField, GridPose};
 
 /// Steps of a standard deviation at which the likelihood field is kept: between two, the
 /// likelihood differs by less than 2 %.
 const STEPS: f64 = 32.0;
 
-/// Beyond so many standard deviations a reading does not fit at all: 3 · 10⁻⁴ of the
+/// Beyond this many standard deviations a reading does not fit at all: 3 · 10⁻⁴ of the
 /// greatest likelihood, which is less than any random share.
 const REACH: f64 = 4.0;
 
@@ -72,8 +72,13 @@ impl Sensor {
     }
 
     /// The logarithm of the likelihood of the beams at a pose, at most 0.
-    pub(super) fn log_likelihood(&self, terrain: &Terrain, beams: &Beams, pose: GridPose) -> f64 {
-        let stands = terrain.cell_distance(pose.x, pose.y);
+    pub(super) fn log_likelihood(
+        &self,
+        distance_field: &DistanceField,
+        beams: &Beams,
+        pose: GridPose,
+    ) -> f64 {
+        let stands = distance_field.cell_distance(pose.x, pose.y);
         if stands.is_none_or(|distance| distance == 0.0) {
             return beams.weight * self.random.ln();
         }
@@ -81,10 +86,10 @@ impl Sensor {
         let beams = beams.beams.iter();
         match self.model {
             SensorModel::LikelihoodField => beams
-                .map(|beam| beam.weight * self.end(terrain, beam, pose, turn))
+                .map(|beam| beam.weight * self.end(distance_field, beam, pose, turn))
                 .sum(),
             SensorModel::Beam => beams
-                .map(|beam| beam.weight * self.reading(terrain, beam, pose, turn).ln())
+                .map(|beam| beam.weight * self.reading(distance_field, beam, pose, turn).ln())
                 .sum(),
         }
     }
@@ -92,9 +97,15 @@ impl Sensor {
     /// Table 6.3: by the nearest obstacle of the end point. The distance is that of the
     /// cell, up to 0.7 cells off, which is one look-up where the exact one takes four.
     #[inline(always)]
-    fn end(&self, terrain: &Terrain, beam: &Beam, pose: GridPose, turn: (f64, f64)) -> f64 {
+    fn end(
+        &self,
+        distance_field: &DistanceField,
+        beam: &Beam,
+        pose: GridPose,
+        turn: (f64, f64),
+    ) -> f64 {
         let (x, y) = turned(beam.end, turn);
-        let distance = terrain.cell_distance(pose.x + x, pose.y + y);
+        let distance = distance_field.cell_distance(pose.x + x, pose.y + y);
         let far = self.field.len() - 1;
         let step = distance.map_or(far, |cells| {
             (f64::from(cells) * self.steps_per_cell) as usize
@@ -103,17 +114,23 @@ impl Sensor {
     }
 
     /// Table 6.1: by the way to the first obstacle.
-    fn reading(&self, terrain: &Terrain, beam: &Beam, pose: GridPose, turn: (f64, f64)) -> f64 {
+    fn reading(
+        &self,
+        distance_field: &DistanceField,
+        beam: &Beam,
+        pose: GridPose,
+        turn: (f64, f64),
+    ) -> f64 {
         let (x, y) = turned(beam.from, turn);
         let limit = beam.cells + REACH * self.sigma;
         let laser = (pose.x + x, pose.y + y);
-        let way = terrain.look(laser, turned(beam.towards, turn), limit);
-        let expected = way.occupied.unwrap_or(f64::INFINITY);
-        let hit = fit((beam.cells - expected) / self.sigma);
+        let hit = distance_field.cast_ray(laser, turned(beam.towards, turn), limit);
+        let expected = hit.occupied.unwrap_or(f64::INFINITY);
+        let fits = fit((beam.cells - expected) / self.sigma);
         let is_short = beam.cells < expected;
         let short = f64::from(is_short) * (-beam.cells / self.short_cells).exp();
-        let known = self.random + SHORT_SHARE * short + (1.0 - self.random - SHORT_SHARE) * hit;
-        match way.unknown {
+        let known = self.random + SHORT_SHARE * short + (1.0 - self.random - SHORT_SHARE) * fits;
+        match hit.unknown {
             Some(unknown) if unknown < beam.cells => known.max(UNKNOWN),
             _ => known,
         }
@@ -133,7 +150,7 @@ fn turned((x, y): (f64, f64), (sin, cos): (f64, f64)) -> (f64, f64) {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::fit::drawn::terrain;
+    use crate::fit::drawn::distance_field;
 
     /// A wall at 8 cells, behind it open space, and unknown space above.
     const MAP: [&str; 5] = [
@@ -177,7 +194,7 @@ mod tests {
     #[track_caller]
     fn check(model: SensorModel, pose: GridPose, (bearing, cells): (f64, f64), expected: f64) {
         let beams = beams(bearing, cells);
-        let log = sensor(model).log_likelihood(&terrain(&MAP), &beams, pose);
+        let log = sensor(model).log_likelihood(&distance_field(&MAP), &beams, pose);
         assert!((log.exp() - expected).abs() < 1e-9, "{}", log.exp());
     }
 
@@ -197,8 +214,8 @@ mod tests {
     fn a_reading_as_long_as_the_way_is_likely_and_a_longer_one_is_not() {
         let beam = |ray, expected| check(SensorModel::Beam, POSE, ray, expected);
         // The wall's face is at 7.5 cells; a ray meets it up to half a cell behind.
-        let way = terrain(&MAP).look((0.5, 2.5), (1.0, 0.0), 20.0);
-        let wall = way.occupied.unwrap();
+        let hit = distance_field(&MAP).cast_ray((0.5, 2.5), (1.0, 0.0), 20.0);
+        let wall = hit.occupied.unwrap();
         assert!((7.5..=8.0).contains(&wall));
         beam((0.0, wall), 0.1 + 0.8);
         // Two deviations behind, where nothing is short; and far behind.

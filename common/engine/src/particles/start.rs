@@ -7,7 +7,7 @@ use rand::RngExt;
 
 use super::Rng;
 use crate::EngineError;
-use crate::fit::{GridPose, Terrain};
+use crate::fit::{DistanceField, GridPose};
 
 /// The headings with which particles start.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -40,17 +40,23 @@ pub(super) struct Uniform<'a> {
 }
 
 impl<'a> Uniform<'a> {
-    pub(super) fn new(terrain: &Terrain, headings: StartHeadings<'a>) -> Result<Self, EngineError> {
-        let free: Vec<u32> = terrain.free_cells().map(|cell| cell as u32).collect();
+    pub(super) fn new(
+        distance_field: &DistanceField,
+        headings: StartHeadings<'a>,
+    ) -> Result<Self, EngineError> {
+        let free: Vec<u32> = distance_field
+            .free_cells()
+            .map(|cell| cell as u32)
+            .collect();
         if free.is_empty() {
             return Err(EngineError::NoFreeCell);
         }
         headings.check()?;
         Ok(Uniform {
-            width: terrain.width(),
+            width: distance_field.width(),
             free,
             headings,
-            turn: terrain.frame.map_from_grid.yaw,
+            turn: distance_field.frame.map_from_grid.yaw,
         })
     }
 
@@ -77,12 +83,12 @@ mod tests {
     use rand::SeedableRng;
 
     use super::*;
-    use crate::fit::drawn::terrain;
+    use crate::fit::drawn::distance_field;
 
     #[test]
     fn particles_start_in_every_free_cell_and_in_no_other() {
-        let terrain = terrain(&["#.?", "..#"]);
-        let uniform = Uniform::new(&terrain, StartHeadings::OneOf(&[1.0, 4.0])).unwrap();
+        let distance_field = distance_field(&["#.?", "..#"]);
+        let uniform = Uniform::new(&distance_field, StartHeadings::OneOf(&[1.0, 4.0])).unwrap();
         let mut rng = Rng::seed_from_u64(1);
         let mut counts = [0; 6];
         for _ in 0..3000 {
@@ -103,7 +109,7 @@ mod tests {
 
     #[test]
     fn a_map_without_free_cells_has_no_start() {
-        let refused = Uniform::new(&terrain(&["#?"]), StartHeadings::Any);
+        let refused = Uniform::new(&distance_field(&["#?"]), StartHeadings::Any);
         assert_eq!(refused.err(), Some(EngineError::NoFreeCell));
     }
 }

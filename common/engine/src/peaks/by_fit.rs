@@ -7,13 +7,13 @@ use nalgebra::{Matrix3, Vector3};
 
 use super::summits::{self, Reach, Summit};
 use super::{PeakConfig, PeakInput, Place, Places, Workspace, in_map, likelihood};
-use crate::fit::{BeamClass, Ends, GridPose, Refined, Terrain};
+use crate::fit::{BeamClass, DistanceField, Ends, GridPose, Refined};
 use crate::votes::most_candidates;
 
 /// Reads the places from the votes of a scan and from the scan itself, see
 /// [`Workspace::by_fit`].
 #[must_use]
-pub fn by_fit(input: &PeakInput<'_>, scan: (&Terrain, &Ends), config: &PeakConfig) -> Places {
+pub fn by_fit(input: &PeakInput<'_>, scan: (&DistanceField, &Ends), config: &PeakConfig) -> Places {
     let mut workspace = Workspace::default();
     workspace.by_fit(input, scan, config);
     workspace.places
@@ -30,7 +30,7 @@ impl Workspace {
     pub fn by_fit(
         &mut self,
         input: &PeakInput<'_>,
-        (terrain, ends): (&Terrain, &Ends),
+        (distance_field, ends): (&DistanceField, &Ends),
         config: &PeakConfig,
     ) -> &Places {
         let reach = Reach::new(input, config.candidate_m, config.candidate_deg);
@@ -41,7 +41,7 @@ impl Workspace {
         let places = self
             .summits
             .iter()
-            .map(|summit| place(input, (terrain, ends), summit, config));
+            .map(|summit| place(input, (distance_field, ends), summit, config));
         self.refined.extend(places.enumerate());
         // Of equal ones, that with more votes comes first.
         self.refined.sort_unstable_by(|(i, a), (j, b)| {
@@ -52,17 +52,17 @@ impl Workspace {
         keep_distinct(&self.refined, &mut self.places.places, config);
         if let Some(best) = self.places.places.first().copied() {
             let found = &mut self.places;
-            let pose = GridPose::of(terrain.frame, best.map_from_laser);
-            terrain.classify(ends, pose, &config.fit, &mut found.classes);
+            let pose = GridPose::of(distance_field.frame, best.map_from_laser);
+            distance_field.classify(ends, pose, &config.fit, &mut found.classes);
             found.inlier_share = ends.share(&found.classes, BeamClass::Hit);
             let through = ends.share(&found.classes, BeamClass::Through);
-            let resolution = terrain.frame.resolution_m;
+            let resolution = distance_field.frame.resolution_m;
             let apart = PIECE_SIGMAS * config.fit.sigma_cells(resolution) * resolution;
             let scan = (ends.effective_beams(), ends.effective_pieces(apart));
             let needed = config.needed_lead((best.score, through), scan);
             let left_out = lead(
                 best.score,
-                best.score - terrain.left_out(best.score, &config.fit),
+                best.score - distance_field.left_out(best.score, &config.fit),
             );
             found.judge_by_fit((best.score, needed, left_out), &mut self.leads, config);
             if found.verdict == Verdict::Unique && input.may_lack(config.ambiguous_share) {
@@ -105,7 +105,7 @@ impl Places {
 }
 
 /// How far a score lies behind the best, against what that lacks of a perfect
-/// one: where the scan fits well, small differences tell much.
+/// one: where the scan fits well, small differences matter.
 pub(crate) fn lead(best: f64, other: f64) -> f64 {
     (best - other) / (1.1 - best).sqrt()
 }
@@ -131,12 +131,12 @@ fn keep_distinct(places: &[(usize, Place)], kept: &mut Vec<Place>, config: &Peak
 /// The refined place of a candidate.
 fn place(
     input: &PeakInput<'_>,
-    (terrain, ends): (&Terrain, &Ends),
+    (distance_field, ends): (&DistanceField, &Ends),
     summit: &Summit,
     config: &PeakConfig,
 ) -> Place {
     let vote = &summit.vote;
-    let side = input.frame.resolution_m / terrain.frame.resolution_m;
+    let side = input.frame.resolution_m / distance_field.frame.resolution_m;
     let start = GridPose {
         x: side * (f64::from(vote.x) + 0.5),
         y: side * (f64::from(vote.y) + 0.5),
@@ -145,30 +145,36 @@ fn place(
             .unwrap_or(input.heading_of(vote)),
     };
     let is_known = input.known_heading.is_some();
-    let refined = terrain.refine(ends, start, is_known, &config.fit);
+    let refined = distance_field.refine(ends, start, is_known, &config.fit);
     let pose = refined.pose;
-    let mut map_from_laser = terrain.frame.map_from_cells(pose.x, pose.y, pose.heading);
+    let mut map_from_laser = distance_field
+        .frame
+        .map_from_cells(pose.x, pose.y, pose.heading);
     if let Some(heading) = input.known_heading {
         map_from_laser.yaw = wrap_angle(heading);
     }
     Place {
         map_from_laser,
-        covariance: covariance(terrain, is_known, &refined),
-        score: terrain.score(ends, pose, &config.fit),
+        covariance: covariance(distance_field, is_known, &refined),
+        score: distance_field.score(ends, pose, &config.fit),
         probability: 0.0,
         intensity: vote.intensity,
         support: summit.support,
     }
 }
 
-/// How far a place may reach along what no beam tells: metres, and radians.
+/// How far a place may reach along what no beam constrains: metres, and radians.
 const LOOSE_M: f64 = 2.0;
 const LOOSE_RADIANS: f64 = 0.35;
 
 /// What the curvature of the fit and the walls of the map say about its error, in the
 /// map frame.
-fn covariance(terrain: &Terrain, heading_is_known: bool, refined: &Refined) -> Covariance {
-    let loose = LOOSE_M / terrain.frame.resolution_m;
+fn covariance(
+    distance_field: &DistanceField,
+    heading_is_known: bool,
+    refined: &Refined,
+) -> Covariance {
+    let loose = LOOSE_M / distance_field.frame.resolution_m;
     let prior = Vector3::new(loose.powi(-2), loose.powi(-2), LOOSE_RADIANS.powi(-2));
     let mut information = refined.information() + Matrix3::from_diagonal(&prior);
     if heading_is_known {
@@ -182,18 +188,18 @@ fn covariance(terrain: &Terrain, heading_is_known: bool, refined: &Refined) -> C
     if heading_is_known {
         in_cells[(2, 2)] = 0.0;
     }
-    let drawn = terrain.drawn_error_m() / terrain.frame.resolution_m;
+    let drawn = distance_field.drawn_error_m() / distance_field.frame.resolution_m;
     in_cells += refined.by_walls(in_cells, drawn);
-    in_map(terrain.frame, in_cells)
+    in_map(distance_field.frame, in_cells)
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::fit::drawn::terrain;
+    use crate::fit::drawn::distance_field;
 
     fn deviations(heading_is_known: bool, curvature: Matrix3<f64>) -> [f64; 3] {
-        let measured = terrain(&["....", ".##.", "#..#"]);
+        let measured = distance_field(&["....", ".##.", "#..#"]);
         let refined = Refined {
             pose: GridPose {
                 x: 0.0,
@@ -220,12 +226,12 @@ mod tests {
             "{y} {known_y}"
         );
         assert!(yaw > 0.0 && known_yaw == 0.0);
-        // Eight beams tell as much as one: 0.5 · 8 / 50 squared cells.
+        // Eight beams are worth one: 0.5 · 8 / 50 squared cells.
         assert!((known_x - 0.1 * 0.08f64.sqrt()).abs() < 1e-4, "{known_x}");
     }
 
     #[test]
-    fn along_what_no_beam_tells_a_place_is_two_metres_long() {
+    fn along_what_no_beam_shows_a_place_is_two_metres_long() {
         let corridor = Matrix3::from_diagonal(&Vector3::new(0.0, 90.0, 5_000.0));
         let [x, y, _] = deviations(false, corridor);
         assert!((x - LOOSE_M).abs() < 1e-9 && y < 0.03, "{x} {y}");

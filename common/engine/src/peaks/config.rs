@@ -16,7 +16,7 @@ pub enum Score {
 /// When poses are one place, and when a place stands alone.
 #[derive(Debug, Clone, Copy, PartialEq, clap::Args)]
 pub struct PeakConfig {
-    /// By what places are judged and ordered.
+    /// Score by which places are judged and ordered.
     #[arg(long, value_enum, default_value_t = Score::Fit)]
     pub score: Score,
     /// Poses within this distance and `--same-place-deg` are one place,
@@ -27,11 +27,11 @@ pub struct PeakConfig {
     /// 0..=180.
     #[arg(long, value_name = "DEGREES", default_value_t = 10.0, value_parser = parse_degrees)]
     pub same_place_deg: f64,
-    /// Most places that are reported, 1..=1000.
+    /// Maximum number of places that are reported, 1..=1000.
     #[arg(long, value_name = "COUNT", default_value_t = 64, value_parser = clap::value_parser!(u32).range(1..=1000))]
     pub max_hypotheses: u32,
-    /// Candidates that are refined, 1..=1000: the first of the votes, and up to four
-    /// times as many as long as they have half the best one's votes.
+    /// Number of candidates that are refined, 1..=1000: those with the most votes, and
+    /// up to four times as many as long as they have half the best one's votes.
     #[arg(long, value_name = "COUNT", default_value_t = 64, value_parser = clap::value_parser!(u32).range(1..=1000))]
     pub max_candidates: u32,
     /// Votes within this distance and `--candidate-deg` are refined together,
@@ -45,53 +45,53 @@ pub struct PeakConfig {
     /// How the places' fit is judged.
     #[command(flatten)]
     pub fit: FitConfig,
-    /// Another place whose score lies behind the best by less makes the answer
-    /// ambiguous, 0..=1. The lead is measured against what is missing of a
-    /// perfect score: (best - other) / √(1.1 - best).
+    /// Minimum lead of the best place: another place closer behind makes the answer
+    /// ambiguous, 0..=1. The lead is measured relative to what is missing of a perfect
+    /// score: (best - other) / √(1.1 - best).
     #[arg(long, value_name = "LEAD", default_value_t = 0.09, value_parser = parse_share)]
     pub least_lead: f64,
-    /// What a best place's score lacks of this must be made up for by its lead,
-    /// 0..=1: where the scan fits badly, the true place may not be on the map.
-    /// This is for a scan that sees six pieces, see `--piece-doubt`.
+    /// Score that needs no more than the minimum lead, 0..=1; a best place with a lower
+    /// score needs a larger lead: where the scan fits badly, the true place may not be
+    /// on the map. This is for a scan that sees six pieces, see `--piece-doubt`.
     #[arg(long, value_name = "SCORE", default_value_t = 0.74, value_parser = parse_share)]
     pub sure_score: f64,
-    /// By so much the sure score falls with the natural logarithm of the pieces of
-    /// the world that a scan sees, 0..=1, since many rarely fit together by chance.
-    /// Where neighbouring readings leap, another piece begins.
+    /// How far the sure score falls with the natural logarithm of the number of pieces
+    /// of the world that a scan sees, 0..=1, since many pieces rarely fit together by
+    /// chance. A new piece begins where neighbouring readings jump.
     #[arg(long, value_name = "SCORE", default_value_t = 0.14, value_parser = parse_share)]
     pub piece_doubt: f64,
-    /// Where beams pass through obstacles at the best place, its score counts for
-    /// less against that by this times their share, 0..=1. Which place is best does
-    /// not depend on it, see `--through-penalty`: walls that are seen at a flat
-    /// angle are passed through at the true place, too.
+    /// Doubt because of beams that pass through obstacles at the best place: the score
+    /// that is compared with the sure score is lowered by this times their share,
+    /// 0..=1. It does not change which place is best, see `--through-penalty`: walls
+    /// that are seen at a flat angle are passed through at the true place, too.
     #[arg(long, value_name = "SCORE", default_value_t = 0.4, value_parser = parse_share)]
     pub through_doubt: f64,
-    /// A scan of fewer beams needs a lead that is larger by the root of what it
-    /// lacks, for chance makes its scores differ so much more, 1..=1000. A beam of
-    /// little weight counts for less than one.
+    /// Number of beams that need no more than the minimum lead, 1..=1000: with fewer,
+    /// scores vary more by chance, and the lead must be larger by the square root of
+    /// what is missing. A beam of little weight counts for less than one.
     #[arg(long, value_name = "COUNT", default_value_t = 100, value_parser = clap::value_parser!(u32).range(1..=1000))]
     pub sure_beams: u32,
-    /// A best place with a lower score fits poorly: the scan may not be of this
-    /// map, 0..=1.
+    /// Minimum score of the best place; below it the verdict is PoorFit: the scan may
+    /// not be of this map, 0..=1.
     #[arg(long, value_name = "SCORE", default_value_t = 0.60, value_parser = parse_share)]
     pub least_score: f64,
-    /// Each such lead makes another place less likely by a factor of e, 0.001..=1.
+    /// Lead that makes another place less likely by a factor of e, 0.001..=1.
     #[arg(long, value_name = "LEAD", default_value_t = 0.025, value_parser = parse_scale)]
     pub lead_scale: f64,
-    /// A single place with this score is as likely as that the robot is at none
-    /// that was found, 0..=1.
+    /// Score at which a single place is as likely as that the robot is at none of the
+    /// places found, 0..=1.
     #[arg(long, value_name = "SCORE", default_value_t = 0.55, value_parser = parse_share)]
     pub even_score: f64,
-    /// By each such score above that, none becomes less likely by a factor of e,
+    /// Score above that which makes "none of them" less likely by a factor of e,
     /// 0.001..=1.
     #[arg(long, value_name = "SCORE", default_value_t = 0.06, value_parser = parse_scale)]
     pub score_scale: f64,
-    /// With `--score votes`: another place with at least this share of the best
-    /// one's votes makes the answer ambiguous, 0..=1.
+    /// With `--score votes`: another place with at least this share of the best place's
+    /// votes makes the answer ambiguous, 0..=1.
     #[arg(long, value_name = "SHARE", default_value_t = 0.92, value_parser = parse_share)]
     pub ambiguous_share: f64,
-    /// With `--score votes`: a best place with less than this share of the
-    /// votes that are possible fits poorly, 0..=1.
+    /// With `--score votes`: a best place with less than this share of the possible
+    /// votes has the verdict PoorFit, 0..=1.
     #[arg(long, value_name = "SHARE", default_value_t = 0.35, value_parser = parse_share)]
     pub poor_fit_share: f64,
 }
@@ -101,13 +101,13 @@ fn parse_scale(text: &str) -> Result<f64, String> {
     crate::config::parse(text, 0.001..=1.0, "as a share")
 }
 
-/// The sure score is that of scans that see so many pieces.
+/// The sure score is that of scans that see this many pieces.
 const SURE_PIECES: f64 = 6.0;
 
 impl PeakConfig {
     /// The lead at which a best place stands alone that has such a score, and where
-    /// such a share of the beams passes through obstacles; by so many beams that see
-    /// so many pieces.
+    /// such a share of the beams passes through obstacles; by this many beams that see
+    /// this many pieces.
     pub(super) fn needed_lead(
         &self,
         (score, through): (f64, f64),

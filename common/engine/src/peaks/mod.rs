@@ -19,14 +19,14 @@ use geometry::{Covariance, Pose, wrap_angle};
 use messages::{Hypothesis, Verdict, Vote};
 use nalgebra::Matrix3;
 
-use crate::fit::{BeamClass, Ends, Terrain};
+use crate::fit::{BeamClass, DistanceField, Ends};
 use crate::grid::GridFrame;
 use crate::localizer::Outcome;
 pub use by_fit::by_fit;
 pub(crate) use by_fit::lead;
 pub use by_votes::by_votes;
 pub use config::{PeakConfig, Score};
-use sentence::Stand;
+use sentence::PlaceSummary;
 use summits::Summit;
 
 /// The votes of one scan and what is needed to read them.
@@ -36,7 +36,7 @@ pub struct PeakInput<'a> {
     pub votes: &'a [Vote],
     /// All poses at or above this intensity are among the votes.
     pub certified_floor: u32,
-    /// Whether the search ended before it could tell that no other pose comes near the best.
+    /// Whether the search ended before it could prove that no other pose comes near the best.
     pub cut: bool,
     /// What a pose would have if every beam agreed fully.
     pub highest_possible: u32,
@@ -88,7 +88,7 @@ pub(crate) fn in_map(frame: GridFrame, in_cells: Matrix3<f64>) -> Covariance {
 /// One place where the robot may be.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Place {
-    /// Pose of the frame that was sought: the laser or, where several are joined,
+    /// Pose of the target frame: the laser or, where several are joined,
     /// the base.
     pub map_from_laser: Pose,
     /// The peak's spread, in the map frame.
@@ -115,7 +115,7 @@ pub struct Places {
     pub alternatives: u32,
     /// The probability of the best place, 0..=1. By votes alone, how far it
     /// stands above the next, as a share of its votes; where none was
-    /// collected, above the floor below which none was sought.
+    /// collected, above the floor below which none was searched.
     pub confidence: f64,
     /// Share of the beams by weight that end at an obstacle at the best place;
     /// by votes alone, its score.
@@ -128,12 +128,12 @@ pub struct Places {
 impl Place {
     /// As a message says it.
     #[must_use]
-    pub fn hypothesis(&self, map_id: u64, sought: Sought) -> Hypothesis {
-        let laser = self.of_laser(sought);
+    pub fn hypothesis(&self, map_id: u64, target: Target) -> Hypothesis {
+        let laser = self.of_laser(target);
         Hypothesis {
             map_id,
             map_from_laser: laser.map_from_laser.into(),
-            map_from_base: sought.base(self.map_from_laser).into(),
+            map_from_base: target.base(self.map_from_laser).into(),
             covariance: laser.covariance.to_rows(),
             score: self.score as f32,
             probability: self.probability as f32,
@@ -143,67 +143,67 @@ impl Place {
     }
 }
 
-/// Whose poses were sought, and how it lies to the first laser and to the base.
+/// Whose poses were searched, and how it lies to the first laser and to the base.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Sought {
-    sought_from_laser: Pose,
-    sought_from_base: Pose,
+pub struct Target {
+    target_from_laser: Pose,
+    target_from_base: Pose,
 }
 
-impl Sought {
+impl Target {
     /// The laser, which may have a known place on the base, or the base of several
     /// lasers, of which the first has one.
     #[must_use]
     pub fn of(base_from_laser: Option<Pose>, is_base: bool) -> Self {
         let base_from_laser = base_from_laser.unwrap_or(Pose::IDENTITY);
         match is_base {
-            true => Sought {
-                sought_from_laser: base_from_laser,
-                sought_from_base: Pose::IDENTITY,
+            true => Target {
+                target_from_laser: base_from_laser,
+                target_from_base: Pose::IDENTITY,
             },
-            false => Sought {
-                sought_from_laser: Pose::IDENTITY,
-                sought_from_base: base_from_laser.inverse(),
+            false => Target {
+                target_from_laser: Pose::IDENTITY,
+                target_from_base: base_from_laser.inverse(),
             },
         }
     }
 
-    /// The first laser's pose where the sought frame has this one.
+    /// The first laser's pose where the target frame has this one.
     #[must_use]
-    pub fn laser(self, map_from_sought: Pose) -> Pose {
-        match self.sought_from_laser == Pose::IDENTITY {
-            true => map_from_sought,
-            false => map_from_sought.then(self.sought_from_laser),
+    pub fn laser(self, map_from_target: Pose) -> Pose {
+        match self.target_from_laser == Pose::IDENTITY {
+            true => map_from_target,
+            false => map_from_target.then(self.target_from_laser),
         }
     }
 
-    /// The sought frame's pose where the first laser has this one.
+    /// The target frame's pose where the first laser has this one.
     #[must_use]
     pub fn from_laser(self, map_from_laser: Pose) -> Pose {
-        match self.sought_from_laser == Pose::IDENTITY {
+        match self.target_from_laser == Pose::IDENTITY {
             true => map_from_laser,
-            false => map_from_laser.then(self.sought_from_laser.inverse()),
+            false => map_from_laser.then(self.target_from_laser.inverse()),
         }
     }
 
-    /// The sought frame's pose where the base has this one.
+    /// The target frame's pose where the base has this one.
     #[must_use]
     pub fn from_base(self, map_from_base: Pose) -> Pose {
-        map_from_base.then(self.sought_from_base.inverse())
+        map_from_base.then(self.target_from_base.inverse())
     }
 
-    /// The base's pose where the sought frame has this one.
+    /// The base's pose where the target frame has this one.
     #[must_use]
-    pub fn base(self, map_from_sought: Pose) -> Pose {
-        map_from_sought.then(self.sought_from_base)
+    pub fn base(self, map_from_target: Pose) -> Pose {
+        map_from_target.then(self.target_from_base)
     }
 }
 
 impl Place {
-    /// The place of the first laser where this is one of the sought frame.
+    /// The place of the first laser where this is one of the target frame.
     #[must_use]
-    pub fn of_laser(&self, sought: Sought) -> Place {
-        let map_from_laser = sought.laser(self.map_from_laser);
+    pub fn of_laser(&self, target: Target) -> Place {
+        let map_from_laser = target.laser(self.map_from_laser);
         Place {
             map_from_laser,
             covariance: self.covariance.carried(self.map_from_laser, map_from_laser),
@@ -216,15 +216,15 @@ impl Places {
     /// The verdict in words.
     #[must_use]
     pub fn sentence(&self) -> String {
-        let told = self.places.iter().take(1 + self.alternatives as usize);
-        let stands: Vec<Stand> = told
-            .map(|place| Stand {
+        let reported = self.places.iter().take(1 + self.alternatives as usize);
+        let summaries: Vec<PlaceSummary> = reported
+            .map(|place| PlaceSummary {
                 map_from_laser: place.map_from_laser,
                 covariance: place.covariance,
                 score: place.score,
             })
             .collect();
-        sentence::sentence(self.verdict, &stands)
+        sentence::sentence(self.verdict, &summaries)
     }
 
     /// Becomes what there is to say of a scan of which nothing voted.
@@ -253,7 +253,7 @@ impl Default for Places {
 }
 
 /// What reading places takes, and the last ones. Kept from scan to scan: once
-/// there is room for all, nothing is allocated any more. It may serve any map.
+/// the buffers are large enough, nothing is allocated any more. It may serve any map.
 #[derive(Debug, Default)]
 pub struct Workspace {
     summits: Vec<Summit>,
@@ -285,7 +285,7 @@ impl Workspace {
     pub fn judge<E>(
         &mut self,
         input: &PeakInput<'_>,
-        terrain: &Terrain,
+        distance_field: &DistanceField,
         config: &PeakConfig,
         scan: impl FnOnce(&mut Ends) -> Result<(), E>,
     ) -> Result<Judged<'_>, E> {
@@ -296,7 +296,7 @@ impl Workspace {
         // Out of the workspace while that is at work.
         let mut ends = std::mem::take(&mut self.ends);
         let found = scan(&mut ends).map(|()| {
-            self.by_fit(input, (terrain, &ends), config);
+            self.by_fit(input, (distance_field, &ends), config);
         });
         self.ends = ends;
         found.map(|()| Judged {

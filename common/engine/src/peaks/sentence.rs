@@ -5,9 +5,9 @@ use std::f64::consts::PI;
 use geometry::{Covariance, Pose};
 use messages::Verdict;
 
-/// What is told of a place.
+/// What is reported of a place.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Stand {
+pub struct PlaceSummary {
     /// Pose of the laser in the map.
     pub map_from_laser: Pose,
     /// Its spread.
@@ -16,7 +16,7 @@ pub struct Stand {
     pub score: f64,
 }
 
-/// An ellipse that is so many times as long as it is wide lies along a
+/// An ellipse that is this many times as long as it is wide lies along a
 /// corridor.
 const CORRIDOR: f64 = 5.0;
 
@@ -29,17 +29,15 @@ const SAME_SPOT_M: f64 = 0.5;
 /// What a verdict means. Of the places, best first, those after the first fit
 /// about as well where the verdict is [`Verdict::Ambiguous`].
 #[must_use]
-pub fn sentence(verdict: Verdict, places: &[Stand]) -> String {
+pub fn sentence(verdict: Verdict, places: &[PlaceSummary]) -> String {
     match (verdict, places) {
-        (Verdict::NoScan, _) | (_, []) => {
-            "no beam says anything about this map: is the laser covered?".into()
-        }
+        (Verdict::NoScan, _) | (_, []) => "no usable beams: is the laser covered?".into(),
         (Verdict::Unique, [best, ..]) => {
-            format!("one place fits, {:.0} % of the scan agrees", percent(best))
+            format!("one place, fit {:.2}", fit(best))
         }
         (Verdict::PoorFit, [best, ..]) => format!(
-            "even at the best place only {:.0} % of the scan agrees: is it this map?",
-            percent(best)
+            "the best place has a fit of only {:.2}: is it this map?",
+            fit(best)
         ),
         (Verdict::Ambiguous, [_]) => "several places fit about as well".into(),
         (Verdict::Ambiguous, [best, others @ ..]) => {
@@ -48,19 +46,19 @@ pub fn sentence(verdict: Verdict, places: &[Stand]) -> String {
     }
 }
 
-fn percent(place: &Stand) -> f64 {
-    100.0 * place.score.clamp(0.0, 1.0)
+fn fit(place: &PlaceSummary) -> f64 {
+    place.score.clamp(0.0, 1.0)
 }
 
 /// How the others lie to the best place.
-fn apart(best: &Stand, others: &[Stand]) -> String {
-    let distance = |other: &Stand| best.map_from_laser.distance_to(other.map_from_laser);
+fn apart(best: &PlaceSummary, others: &[PlaceSummary]) -> String {
+    let distance = |other: &PlaceSummary| best.map_from_laser.distance_to(other.map_from_laser);
     let distances = others.iter().map(distance);
     let (nearest, farthest) = distances.fold((f64::INFINITY, 0.0_f64), |(near, far), distance| {
         (near.min(distance), far.max(distance))
     });
     if farthest <= SAME_SPOT_M {
-        let angle = |other: &Stand| best.map_from_laser.angle_to(other.map_from_laser);
+        let angle = |other: &PlaceSummary| best.map_from_laser.angle_to(other.map_from_laser);
         let turn = others.iter().map(angle).fold(0.0, f64::max);
         return format!("the same spot, turned by up to {:.0}°", turn.to_degrees());
     }
@@ -74,8 +72,8 @@ fn apart(best: &Stand, others: &[Stand]) -> String {
     range
 }
 
-/// Whether the way to another place lies along what the scan does not tell.
-fn is_along_corridor(best: &Stand, other: &Stand) -> bool {
+/// Whether the way to another place lies along what the scan does not constrain.
+fn is_along_corridor(best: &PlaceSummary, other: &PlaceSummary) -> bool {
     let ellipse = best.covariance.ellipse();
     let (from, to) = (best.map_from_laser, other.map_from_laser);
     let way = (to.y - from.y).atan2(to.x - from.x);
@@ -87,8 +85,8 @@ fn is_along_corridor(best: &Stand, other: &Stand) -> bool {
 mod tests {
     use super::*;
 
-    fn at(x: f64, y: f64, degrees: f64) -> Stand {
-        Stand {
+    fn at(x: f64, y: f64, degrees: f64) -> PlaceSummary {
+        PlaceSummary {
             map_from_laser: Pose::new(x, y, degrees.to_radians()),
             covariance: Covariance::from_deviations(2.0, 0.02, 0.01),
             score: 0.874,
@@ -97,18 +95,18 @@ mod tests {
 
     #[test]
     fn each_verdict_has_its_words() {
-        let say = |verdict, places: &[Stand]| sentence(verdict, places);
+        let say = |verdict, places: &[PlaceSummary]| sentence(verdict, places);
         assert_eq!(
             say(Verdict::Unique, &[at(0.0, 0.0, 0.0)]),
-            "one place fits, 87 % of the scan agrees"
+            "one place, fit 0.87"
         );
         assert_eq!(
             say(Verdict::PoorFit, &[at(0.0, 0.0, 0.0)]),
-            "even at the best place only 87 % of the scan agrees: is it this map?"
+            "the best place has a fit of only 0.87: is it this map?"
         );
         assert_eq!(
             say(Verdict::NoScan, &[]),
-            "no beam says anything about this map: is the laser covered?"
+            "no usable beams: is the laser covered?"
         );
         assert_eq!(
             say(Verdict::Ambiguous, &[at(0.0, 0.0, 0.0)]),
@@ -117,8 +115,8 @@ mod tests {
     }
 
     #[test]
-    fn rivals_are_told_by_how_they_lie_to_the_best() {
-        let say = |others: &[Stand]| {
+    fn rivals_are_reported_by_how_they_lie_to_the_best() {
+        let say = |others: &[PlaceSummary]| {
             let places = [&[at(0.0, 0.0, 0.0)], others].concat();
             sentence(Verdict::Ambiguous, &places)
         };

@@ -49,7 +49,7 @@ impl PeakInput<'_> {
     }
 }
 
-/// Fills in the best vote of each place, best first: so many at most, or up to so many
+/// Fills in the best vote of each place, best first: this many at most, or up to this many
 /// as long as they are close to the best one.
 pub(super) fn find(
     input: &PeakInput<'_>,

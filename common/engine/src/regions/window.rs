@@ -14,10 +14,10 @@ use crate::EngineError;
 use crate::scan::Scan;
 
 /// Scans of a window at most: those of the longest way, and of turns on the spot.
-const MOST_SCANS: usize = 128;
+const MAX_SCANS: usize = 128;
 
 /// Readings of a scan at most. No ring has as many sonars, a laser has more.
-const MOST_ECHOES: usize = 64;
+const MAX_ECHOES: usize = 64;
 
 /// Of scans that were taken nearer to each other than this, the last stands for
 /// all: metres, radians.
@@ -27,9 +27,9 @@ const APART: (f64, f64) = (0.05, PI / 60.0);
 #[derive(Debug, Clone, Copy, PartialEq, clap::Args)]
 pub struct SonarConfig {
     /// For a ring of sonars: each scan is read as the regions of constant depth among
-    /// the echoes of so many metres of way, 0.1..=5, which is known by the odometry
-    /// (five times a second at least). Until that much is driven, nothing votes; 2 is
-    /// a good value.
+    /// the echoes of this distance driven, metres, 0.1..=5, measured by odometry (at
+    /// least five times a second). Until it is driven, nothing votes; 2 is a good
+    /// value.
     #[arg(long, value_name = "METRES", value_parser = way)]
     pub sonar_way: Option<f64>,
 
@@ -79,7 +79,7 @@ struct Taken {
 }
 
 impl Window {
-    /// A window of so many metres, with nothing in it.
+    /// A window of this many metres, with nothing in it.
     #[must_use]
     pub fn new(way_m: f64, config: RegionConfig) -> Self {
         Window {
@@ -90,7 +90,7 @@ impl Window {
     }
 
     /// Takes in a scan, and leaves out what is behind the window then. One that was
-    /// measured before the last begins anew, as a recording does that is played again.
+    /// measured before the last begins again, as a recording does that is played again.
     ///
     /// # Errors
     /// If [`Scan::check`] refuses the scan, it has more readings than any ring of
@@ -105,10 +105,10 @@ impl Window {
             return Err(EngineError::Odometry(odom_from_laser));
         }
         let echoes: Vec<Echo> = Echo::of(scan, Pose::IDENTITY)?.collect();
-        if echoes.len() > MOST_ECHOES {
+        if echoes.len() > MAX_ECHOES {
             return Err(EngineError::TooManyEchoes {
                 found: echoes.len(),
-                allowed: MOST_ECHOES,
+                allowed: MAX_ECHOES,
             });
         }
         if self.newest_ns().is_some_and(|newest| newest > measured_ns) {
@@ -159,7 +159,7 @@ impl Window {
 
     fn leave_behind(&mut self, newest_m: f64) {
         let is_behind = |taken: &Taken| newest_m - taken.way_m > self.way_m;
-        while self.taken.len() > MOST_SCANS || self.taken.front().is_some_and(is_behind) {
+        while self.taken.len() > MAX_SCANS || self.taken.front().is_some_and(is_behind) {
             self.taken.pop_front();
         }
     }
@@ -253,11 +253,11 @@ mod tests {
             };
             window.add(&scan, 2000 + i, turned).unwrap();
         }
-        assert_eq!(window.taken.len(), MOST_SCANS);
+        assert_eq!(window.taken.len(), MAX_SCANS);
     }
 
     #[test]
-    fn a_recording_that_starts_anew_has_its_way_before_it() {
+    fn a_recording_that_starts_again_has_its_way_before_it() {
         let mut window = window();
         driven(&mut window);
         assert_eq!(readings(&read(&mut window, 3, 0.0)), 0);
@@ -267,7 +267,7 @@ mod tests {
     #[test]
     fn what_is_no_ring_of_sonars_is_refused() {
         let mut window = window();
-        let many = [1.0; MOST_ECHOES + 1];
+        let many = [1.0; MAX_ECHOES + 1];
         let laser = Scan {
             angle_increment: 0.01,
             ..scan_of(&many)

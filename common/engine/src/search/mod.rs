@@ -11,18 +11,18 @@
 //!                  │         │
 //! scan program ────┼─────────┴─ set bounds ─ 16 × 16, 8 × 8 ─┐
 //!                  ├─ interval bounds ────── 4 × 4 ──────────┼─ descent ─ votes
-//!                  └─ outlook ─ leaf ─────── poses ──────────┘
+//!                  └─ block_ranges ─ leaf ─────── poses ──────────┘
 //! ```
 //!
-//! Alternatives below the floor come from the most promising blocks. Where bounds do
-//! not tell blocks apart, every pose is counted instead (`fallback`).
+//! Alternatives below the floor come from the blocks with the highest bounds. Where bounds do
+//! not distinguish blocks, every pose is counted instead (`beam_sampling`).
 //!
 //! Each folder imports only those before it: `index`, what is known of a map; `bounds`,
 //! how many votes a block can have; `leaves`, how many a pose has; `task`, what threads
-//! share; `fallback`, counting every pose; `plan`, the order of a search.
+//! share; `beam_sampling`, counting every pose; `plan`, the order of a search.
 
+mod beam_sampling;
 mod bounds;
-mod fallback;
 mod index;
 mod leaves;
 mod plan;

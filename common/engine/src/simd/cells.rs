@@ -20,7 +20,7 @@ pub(crate) trait CellLanes: Copy {
     fn most(self, among: &[u16; CELLS]) -> u16;
 }
 
-/// What every processor has; on ARM, which always has NEON, short tables are looked
+/// The baseline CPU; on ARM, which always has NEON, short tables are looked
 /// up by its instructions.
 #[derive(Clone, Copy)]
 pub(crate) struct Portable([u16; CELLS]);

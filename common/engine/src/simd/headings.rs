@@ -50,14 +50,14 @@ pub(crate) trait HeadingLanes: Copy {
 
     fn add_to(self, sums: Self::Sums) -> Self::Sums;
 
-    /// The headings with a sum of at least so much.
+    /// The headings with a sum of at least this much.
     fn at_least(set: Self::Set, sums: Self::Sums, least: u16) -> u64;
 
     /// The sums, heading by heading.
     fn votes(set: Self::Set, sums: Self::Sums) -> [u16; HEADINGS];
 }
 
-/// What every processor has; on ARM, which always has NEON, tables are looked up by
+/// The baseline CPU; on ARM, which always has NEON, tables are looked up by
 /// its instructions.
 #[derive(Clone, Copy)]
 pub(crate) struct Portable([u8; HEADINGS]);

@@ -146,7 +146,7 @@ pub(crate) use compiled;
 #[cfg(target_arch = "x86_64")]
 pub(crate) use {avx2, avx512, sse2};
 
-/// What every processor has.
+/// The baseline CPU.
 #[derive(Debug, Clone, Copy, Default)]
 pub(crate) struct Portable;
 

@@ -21,7 +21,7 @@ pub(crate) trait RayLanes: Sized {
     fn word(set: Self::Set, rows: &BitRows<'_>) -> u64;
 
     /// Notes where rays end at one of eight positions, unless they did before. Bit
-    /// `i` of byte `j` of the word says whether ray `i` ends at `position + j`. And a
+    /// `i` of byte `j` of the word returns whether ray `i` ends at `position + j`. And a
     /// bit for each ray that ends in it.
     fn note(self, word: u64, position: i64) -> (Self, u8);
 
@@ -81,7 +81,7 @@ pub(crate) struct BitRows<'a> {
     pub slope: i64,
 }
 
-/// What every processor has.
+/// The baseline CPU.
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct Portable([u16; RAYS]);
 

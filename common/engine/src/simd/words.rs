@@ -34,7 +34,7 @@ pub(crate) trait BitWords: Copy {
     fn splat(set: Self::Set, word: u128) -> Self;
     /// Bytes as they lie in sets, see [`BitWords::sorted`].
     fn read(set: Self::Set, bytes: &[u8; BYTES]) -> Self;
-    /// Fours of bytes: those that the mask tells, one after the other, and others
+    /// Fours of bytes: those that the mask selects, one after the other, and others
     /// without bits.
     fn expand(set: Self::Set, mask: u16, bytes: &[u8; BYTES]) -> Self;
     fn from_words(set: Self::Set, words: &Words) -> Self;

@@ -54,7 +54,7 @@ impl BitGrid {
         8 * (self.occupied.len() + self.blocked.len())
     }
 
-    /// Whether rays can be lost in a cell.
+    /// Whether any cell blocks rays without a hit.
     pub(crate) fn has_blocked(&self) -> bool {
         !self.blocked.is_empty()
     }

@@ -20,14 +20,14 @@ const TILE_ROWS: usize = 32;
 #[derive(Debug, Default)]
 pub struct Workspace {
     plan: Plan,
-    room: Room,
+    scratch: Scratch,
     bytes: Sums<u8>,
     words: Sums<u16>,
 }
 
 /// Rows of cells under way: those of a batch of beams, and of a wide beam.
 #[derive(Debug, Default)]
-struct Room {
+struct Scratch {
     store: Vec<Line>,
     wide: Rows,
 }
@@ -156,20 +156,20 @@ impl Job<'_> {
     fn fill<S: Set>(&self, set: S, workspace: &mut Workspace, field: &mut Vec<u16>) -> Option<()> {
         let Workspace {
             plan,
-            room,
+            scratch,
             bytes,
             words,
         } = workspace;
         let sides = (self.sweeps.along_y.columns, self.sweeps.along_y.rows);
         plan.make(set, self.query, sides);
-        room.store.clear();
-        room.store.resize(plan.lines, Line([0; 64]));
+        scratch.store.clear();
+        scratch.store.resize(plan.lines, Line([0; 64]));
         field.resize(sides.0 * sides.1, 0);
         // Few beams have so few votes that bytes hold their sums.
         if self.query.program.highest_possible() <= 255 && plan.wide.is_empty() {
-            self.sum_up(set, plan, room, bytes, field)
+            self.sum_up(set, plan, scratch, bytes, field)
         } else {
-            self.sum_up(set, plan, room, words, field)
+            self.sum_up(set, plan, scratch, words, field)
         }
     }
 
@@ -178,7 +178,7 @@ impl Job<'_> {
         &self,
         set: S,
         plan: &Plan,
-        room: &mut Room,
+        scratch: &mut Scratch,
         sums: &mut Sums<M>,
         field: &mut [u16],
     ) -> Option<()> {
@@ -191,8 +191,8 @@ impl Job<'_> {
             let rows = bits.rows.next_multiple_of(merge::SQUARE);
             sums.resize(rows * stride(bits), M::default());
         }
-        self.sweep_axis(set, plan, room, columns, 2)?;
-        self.sweep_axis(set, plan, room, rows, 0)?;
+        self.sweep_axis(set, plan, scratch, columns, 2)?;
+        self.sweep_axis(set, plan, scratch, rows, 0)?;
         let rows = merge::Plane {
             sums: rows,
             stride: stride(&self.sweeps.along_y),
@@ -211,7 +211,7 @@ impl Job<'_> {
         &self,
         set: S,
         plan: &Plan,
-        Room { store, wide }: &mut Room,
+        Scratch { store, wide }: &mut Scratch,
         sums: &mut [M],
         first_group: usize,
     ) -> Option<()> {

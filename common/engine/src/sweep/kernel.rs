@@ -11,7 +11,7 @@ use std::ops::{AddAssign, Range};
 use super::bits::BitGrid;
 use super::line::{Bytes, Words};
 use super::merge::{self, Plane};
-use super::plan::{MOST_BEAMS, SweptBeam};
+use super::plan::{MAX_BEAMS, SweptBeam};
 use crate::simd::Set;
 use crate::simd::bytes::Lanes;
 
@@ -187,7 +187,7 @@ fn stretch_on<S: Set, M: Sum, D: Depth, const N: usize, const BLOCKED: bool>(
             step
         }
     };
-    let mut places = [Place::default(); MOST_BEAMS];
+    let mut places = [Place::default(); MAX_BEAMS];
     let first = major(stretch.steps.start) as i64;
     for (beam, place) in beams.iter().zip(&mut places) {
         place.minor = beam.direction.minor(first + beam.direction.step);
@@ -255,7 +255,7 @@ impl<S: Set, M: Sum> Row<'_, S, M> {
     fn rest<D: Depth, const N: usize, const BLOCKED: bool>(
         &mut self,
         beams: &[SweptBeam],
-        places: &[Place; MOST_BEAMS],
+        places: &[Place; MAX_BEAMS],
         vectors: usize,
     ) {
         let start = vectors / N * N;
@@ -273,7 +273,7 @@ impl<S: Set, M: Sum> Row<'_, S, M> {
     fn block<D: Depth, const N: usize, const BLOCKED: bool>(
         &mut self,
         beams: &[SweptBeam],
-        places: &[Place; MOST_BEAMS],
+        places: &[Place; MAX_BEAMS],
         start: usize,
     ) {
         let set = self.set;

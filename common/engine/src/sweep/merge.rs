@@ -10,14 +10,14 @@ const BLOCK: usize = 64;
 /// Sides of the largest square that is turned over: rows of sums come in multiples.
 pub(super) const SQUARE: usize = 16;
 
-/// The sums of votes along one axis: row by row, from each row to the next so many.
+/// The sums of votes along one axis: row by row, from each row to the next this many.
 pub(super) struct Plane<'a, S> {
     pub sums: &'a [S],
     pub stride: usize,
 }
 
 impl<S> Plane<'_, S> {
-    /// Whether squares that cover so many rows and columns can be read, and whole
+    /// Whether squares that cover this many rows and columns can be read, and whole
     /// blocks of each row.
     fn cover(&self, rows: usize, columns: usize) -> bool {
         self.stride >= columns.next_multiple_of(BLOCK)

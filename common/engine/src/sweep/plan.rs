@@ -12,7 +12,7 @@ use crate::simd::bytes::{Lanes, Lookup, MAX_REACH};
 const NEAR_BYTES: usize = 32 << 10;
 
 /// Most beams that are swept together.
-pub(super) const MOST_BEAMS: usize = 32;
+pub(super) const MAX_BEAMS: usize = 32;
 
 /// Directions with one major axis and one sense along it.
 pub(super) const GROUPS: usize = 4;
@@ -57,7 +57,7 @@ pub(super) fn group(direction: &Direction) -> usize {
 }
 
 impl Plan {
-    /// Plans a scan at a heading on a grid of so many cells.
+    /// Plans a scan at a heading on a grid of this many cells.
     pub(super) fn make<S: Set>(
         &mut self,
         set: S,
@@ -99,7 +99,7 @@ impl Plan {
             let lines = row_bytes::<L>(columns, beam.is_far).div_ceil(64);
             beam.row = 64 * line;
             line += lines;
-            let most = (NEAR_BYTES / (64 * lines)).clamp(1, MOST_BEAMS);
+            let most = (NEAR_BYTES / (64 * lines)).clamp(1, MAX_BEAMS);
             let peak = u32::from(beam.peak);
             let batches = &mut self.batches[group(&beam.direction)];
             match batches.last_mut() {

@@ -2,7 +2,7 @@
 
 use crate::config::{parse, parse_degrees, parse_length, parse_share};
 
-/// What the tracker expects of odometry and of scans. docs/tracking.md tells what
+/// What the tracker expects of odometry and of scans. docs/tracking.md explains what
 /// each setting is for and what becomes of the figures without it.
 #[derive(Debug, Clone, Copy, PartialEq, clap::Args)]
 pub struct TrackingConfig {
@@ -42,7 +42,7 @@ pub struct TrackingConfig {
     /// The same near the pose that is tracked.
     #[arg(long, value_name = "LOG", default_value_t = 5.0, value_parser = parse_log)]
     pub newborn_lag_near: f64,
-    /// By so much the score of a scan may fall below the mean of those before it
+    /// By this much the score of a scan may fall below the mean of those before it
     /// before the pose is doubted, 0..=1.
     #[arg(long, value_name = "SCORE", default_value_t = 0.25, value_parser = parse_share)]
     pub doubt_fall: f64,
@@ -52,7 +52,7 @@ pub struct TrackingConfig {
     /// A mean score below this is never unique, 0..=1.
     #[arg(long, value_name = "SCORE", default_value_t = 0.6, value_parser = parse_share)]
     pub least_mean: f64,
-    /// When the score falls by so much below the mean, the fit is tried again from
+    /// When the score falls by this much below the mean, the fit is tried again from
     /// headings around the prediction, 0..=1: odometry errs by tens of degrees at times.
     #[arg(long, value_name = "SCORE", default_value_t = 0.08, value_parser = parse_share)]
     pub restart_fall: f64,

@@ -1,4 +1,4 @@
-//! How the robot moved where no odometry tells: each scan is matched to one before, which
+//! How the robot moved without odometry: each scan is matched to one before, which
 //! stays the same until the robot is some way off, so that errors do not add up from
 //! scan to scan (Lu and Milios, "Robot pose estimation in unknown environments by
 //! matching 2D range scans", J. Intelligent and Robotic Systems 18, 1997).
@@ -7,15 +7,15 @@ use geometry::Pose;
 use nalgebra::Matrix3;
 
 use super::TrackingConfig;
+use super::driven_path::DrivenPath;
 use super::seen::Seen;
-use super::way::Way;
 use crate::EngineError;
-use crate::fit::{End, Ends, Terrain};
+use crate::fit::{DistanceField, End, Ends};
 use crate::grid::{CellRules, GridFrame};
 
 /// A match with a lower score says nothing: two fifths of the beams see what the scan
 /// before did not, or the robot was carried away.
-const LEAST_SCORE: f64 = 0.6;
+const MIN_SCORE: f64 = 0.6;
 
 /// A match with a lower score is tried again from other headings.
 const SURE_SCORE: f64 = 0.8;
@@ -28,15 +28,15 @@ const FARTHEST: f64 = 400.0;
 #[derive(Debug, Clone, Default)]
 pub(super) struct ScanMatcher {
     /// The scan that others are matched to, as a map in whose origin it was taken.
-    reference: Option<Terrain>,
+    reference: Option<DistanceField>,
     /// From there to the last scan.
     gone: Pose,
-    /// How the robot moved to the last scan: it goes on as it went.
+    /// How the robot moved to the last scan: it continues as it went.
     step: Pose,
 }
 
 impl ScanMatcher {
-    /// How the sought frame moved since the scan before: as odometry says, or where that
+    /// How the target frame moved since the scan before: as odometry says, or where that
     /// says nothing, as the two match; `None` where they do not, or there was none.
     pub(super) fn moved(
         &mut self,
@@ -66,13 +66,13 @@ impl ScanMatcher {
 
     fn matched(&self, seen: &Seen<'_>) -> Option<Pose> {
         let before = Seen {
-            terrain: self.reference.as_ref()?,
+            distance_field: self.reference.as_ref()?,
             ..*seen
         };
-        let unknown = Way {
+        let unknown = DrivenPath {
             has_hole: true,
             step: self.step,
-            ..Way::default()
+            ..DrivenPath::default()
         };
         let predicted = unknown.predict((self.gone, Matrix3::zeros()), 1.0);
         // The others end off the map.
@@ -82,14 +82,14 @@ impl ScanMatcher {
             fitted = before.settle_turned(predicted, fitted);
         }
         let step = self.gone.inverse().then(fitted.pose);
-        (fitted.score >= LEAST_SCORE * near).then_some(step)
+        (fitted.score >= MIN_SCORE * near).then_some(step)
     }
 }
 
 /// The ends of a scan as a map, with cells as large as those of the map on which the scan
 /// is looked for.
-fn around(seen: &Seen<'_>) -> Result<Terrain, EngineError> {
-    let resolution_m = seen.terrain.frame.resolution_m;
+fn around(seen: &Seen<'_>) -> Result<DistanceField, EngineError> {
+    let resolution_m = seen.distance_field.frame.resolution_m;
     let ends = || near_ends(seen.ends);
     let reach = ends().fold(1.0, |reach: f64, (x, y)| reach.max(x.abs()).max(y.abs()));
     let half = reach as usize + 2;
@@ -104,10 +104,10 @@ fn around(seen: &Seen<'_>) -> Result<Terrain, EngineError> {
         resolution_m,
         map_from_grid: Pose::new(corner, corner, 0.0),
     };
-    Terrain::new(frame, (side, side), &occupancy, CellRules::default())
+    DistanceField::new(frame, (side, side), &occupancy, CellRules::default())
 }
 
-/// Where beams end that end near, in cells about the frame that is sought.
+/// Where beams end that end near, in cells about the target frame.
 fn near_ends(ends: &Ends) -> impl Iterator<Item = (f64, f64)> {
     ends.ends.iter().map(point).filter(is_near)
 }

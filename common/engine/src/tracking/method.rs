@@ -1,4 +1,4 @@
-//! By what the robot is followed.
+//! How the robot is tracked: by places or by particles.
 
 use geometry::{Covariance, Pose};
 
@@ -20,8 +20,8 @@ pub struct FollowConfig {
     /// When a place is believed.
     #[command(flatten)]
     pub tracking: TrackingConfig,
-    /// Follow the robot by particles that start at the places that a search finds
-    /// (Monte Carlo localization), to compare.
+    /// Track the robot with particles that start at the places that a search finds
+    /// (Monte Carlo localization), for comparison.
     #[arg(long)]
     pub particles: bool,
     /// How many there are, and how a scan weighs them.

@@ -1,5 +1,5 @@
-//! A pose that stays: scans and odometry over time, where one scan alone cannot tell,
-//! or tells wrong.
+//! A pose that stays: scans and odometry over time, where one scan alone is ambiguous,
+//! or wrong.
 //!
 //! The tracker keeps a few places where the robot may be. Every scan moves the place
 //! that is believed; at *key scans*, some decimetres apart, all places are predicted by
@@ -23,6 +23,7 @@
 //! evidence that is capped.
 
 mod config;
+mod driven_path;
 mod matching;
 mod method;
 mod particles;
@@ -31,7 +32,6 @@ mod places;
 mod report;
 mod seen;
 mod verdict;
-mod way;
 
 pub use config::TrackingConfig;
 pub use method::{FollowConfig, Follower};
@@ -40,11 +40,11 @@ pub use place::Candidate;
 pub use report::Report;
 pub use seen::Seen;
 
+use driven_path::DrivenPath;
 use geometry::{Covariance, Pose};
 use matching::ScanMatcher;
 use places::Places;
 use verdict::Belief;
-use way::Way;
 
 /// What is needed of a search before a scan is done with.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -57,14 +57,14 @@ pub enum Need {
     EarlierScan,
 }
 
-/// A pose that is believed is checked by a search at each so many key scans.
+/// A pose that is believed is checked by a search every this many key scans.
 const CHECKED_EVERY: u32 = 10;
 
-/// What such a search finds counts so many scans later: nobody waits for it.
+/// What such a search finds counts this many scans later: nobody waits for it.
 const COUNTS_AFTER: u32 = 2;
 
 /// Scans of fewer beams say nothing.
-pub const LEAST_BEAMS: usize = 10;
+pub const MIN_BEAMS: usize = 10;
 
 /// Finds the robot, and keeps its pose.
 #[derive(Debug, Clone)]
@@ -75,11 +75,11 @@ pub struct Tracker {
     /// Where odometry is missing.
     matcher: ScanMatcher,
     /// Since the last key scan.
-    since_key: Way,
+    since_key: DrivenPath,
     /// Since the last scan that was looked at.
-    since_scan: Way,
+    since_scan: DrivenPath,
     /// Since the scan that was asked for ahead, and how many scans are left.
-    ahead: Option<(Way, u32)>,
+    ahead: Option<(DrivenPath, u32)>,
     asks_ahead: bool,
     keys_since_search: u32,
     is_key: bool,
@@ -98,8 +98,8 @@ impl Tracker {
             places: Places::new(config),
             belief: Belief::new(config),
             matcher: ScanMatcher::default(),
-            since_key: Way::default(),
-            since_scan: Way::default(),
+            since_key: DrivenPath::default(),
+            since_scan: DrivenPath::default(),
             ahead: None,
             asks_ahead: false,
             keys_since_search: 0,
@@ -111,7 +111,7 @@ impl Tracker {
     }
 
     /// Forgets all but where the robot should be at the next scan: that place is tried
-    /// first and leads by so much, natural logarithm of odds, over what a search finds.
+    /// first and leads by this much, natural logarithm of odds, over what a search finds.
     /// It is not believed before scans confirm it.
     pub fn expect(&mut self, pose: Pose, covariance: Covariance, lead: f64) {
         *self = Tracker {
@@ -127,8 +127,8 @@ impl Tracker {
         self.belief.believe(id);
     }
 
-    /// Takes the next scan and how the sought frame moved since the one before, if
-    /// odometry tells; otherwise scans are matched. The scan is done with at
+    /// Takes the next scan and how the target frame moved since the one before, if
+    /// odometry measures; otherwise scans are matched. The scan is done with at
     /// [`Tracker::finish`].
     pub fn begin(&mut self, seen: &Seen<'_>, stamp_ns: i64, moved: Option<Pose>) -> Need {
         let need = self.take_up(seen, stamp_ns, moved);
@@ -137,19 +137,19 @@ impl Tracker {
     }
 
     fn take_up(&mut self, seen: &Seen<'_>, stamp_ns: i64, moved: Option<Pose>) -> Need {
-        self.is_blank = seen.ends.beams() < LEAST_BEAMS;
+        self.is_blank = seen.ends.beams() < MIN_BEAMS;
         let moved = match self.is_blank {
             true => moved,
             false => self.matcher.moved(seen, moved, &self.config),
         };
         self.belief.go_on(stamp_ns, moved);
         self.asks_ahead = false;
-        for way in [&mut self.since_key, &mut self.since_scan] {
-            way.add(moved);
+        for path in [&mut self.since_key, &mut self.since_scan] {
+            path.add(moved);
         }
         let mut is_due = false;
-        if let Some((way, left)) = &mut self.ahead {
-            way.add(moved);
+        if let Some((path, left)) = &mut self.ahead {
+            path.add(moved);
             *left = left.saturating_sub(1);
             is_due = *left == 0;
         }
@@ -158,14 +158,14 @@ impl Tracker {
         }
         if let Some((pose, covariance, lead)) = self.expected.take() {
             self.places.expect(seen, (pose, covariance.0), lead);
-            self.since_key = Way::default();
+            self.since_key = DrivenPath::default();
             self.is_key = true;
             return Need::ThisScan;
         }
-        let way = std::mem::take(&mut self.since_scan);
+        let path = std::mem::take(&mut self.since_scan);
         let was_doubtful = self.belief.is_doubtful();
         if let Some(id) = self.belief.place() {
-            self.places.follow(id, seen, &way);
+            self.places.follow(id, seen, &path);
         }
         self.belief.look_at(&self.places);
         let is_suspicious = self.belief.is_doubtful();
@@ -194,7 +194,7 @@ impl Tracker {
             return;
         }
         if self.is_key {
-            let way = std::mem::take(&mut self.since_key);
+            let path = std::mem::take(&mut self.since_key);
             let due = self.ahead.take_if(|(_, left)| *left == 0);
             match (due, found) {
                 (_, None) => {}
@@ -205,7 +205,7 @@ impl Tracker {
                 self.keys_since_search = 0;
             }
             self.belief.search_ended(self.needs_search, found.is_some());
-            self.places.weigh(seen, &way, &mut self.belief);
+            self.places.weigh(seen, &path, &mut self.belief);
             self.keys_since_search += 1;
         }
         self.belief.conclude(&self.places, self.is_key);
@@ -214,7 +214,7 @@ impl Tracker {
             && self.belief.is_sound()
             && self.keys_since_search >= CHECKED_EVERY;
         if self.asks_ahead {
-            self.ahead = Some((Way::default(), COUNTS_AFTER));
+            self.ahead = Some((DrivenPath::default(), COUNTS_AFTER));
         }
     }
 

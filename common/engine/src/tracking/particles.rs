@@ -1,26 +1,26 @@
 //! The tracker by particles in place of a few places: Monte Carlo localization that a
 //! search starts, "those places where particles need to be initialized" (the paper,
-//! conclusions), and starts anew where it is lost. It is here to be compared with.
+//! conclusions), and starts again where it is lost. It is here to be compared with.
 
 use geometry::{Covariance, Pose};
 use messages::{TrackReason, TrackState};
 use nalgebra::Matrix3;
 
+use super::driven_path::DrivenPath;
 use super::matching::ScanMatcher;
 use super::report::Report;
 use super::seen::Seen;
-use super::verdict::LEAST_KEYS;
-use super::way::Way;
-use super::{Candidate, LEAST_BEAMS, Need, TrackingConfig};
+use super::verdict::MIN_KEYS;
+use super::{Candidate, MIN_BEAMS, Need, TrackingConfig};
 use crate::fit::GridPose;
 use crate::particles::{self, ParticleFilter, ParticlesConfig};
 
 /// One cluster that holds this share of the weight is the only one, and the most that it
 /// may be spread by, metres.
 const ONE_CLUSTER: f64 = 0.95;
-const MOST_SPREAD_M: f64 = 0.5;
+const MAX_SPREAD_M: f64 = 0.5;
 
-/// Key scans in a row that hardly fit before it starts anew.
+/// Key scans in a row that hardly fit before it starts again.
 const LOST_SCANS: u32 = 3;
 
 /// Follows the robot by particles.
@@ -31,7 +31,7 @@ pub struct ParticleTracker {
     filter: Option<ParticleFilter>,
     matcher: ScanMatcher,
     /// Since the last key scan.
-    since_key: Way,
+    since_key: DrivenPath,
     is_key: bool,
     is_blank: bool,
     /// Key scans in a row at which there was one cluster, and at which the scan hardly
@@ -54,7 +54,7 @@ impl ParticleTracker {
             particles,
             filter: None,
             matcher: ScanMatcher::default(),
-            since_key: Way::default(),
+            since_key: DrivenPath::default(),
             is_key: false,
             is_blank: false,
             agreeing: 0,
@@ -77,7 +77,7 @@ impl ParticleTracker {
     /// See [`Tracker::begin`](super::Tracker::begin).
     pub fn begin(&mut self, seen: &Seen<'_>, stamp_ns: i64, moved: Option<Pose>) -> Need {
         self.stamp_ns = stamp_ns;
-        self.is_blank = seen.ends.beams() < LEAST_BEAMS;
+        self.is_blank = seen.ends.beams() < MIN_BEAMS;
         if self.is_blank {
             self.since_key.add(moved);
             return Need::Nothing;
@@ -112,35 +112,35 @@ impl ParticleTracker {
     }
 
     fn start(&mut self, seen: &Seen<'_>, seeds: impl IntoIterator<Item = particles::Candidate>) {
-        self.since_key = Way::default();
+        self.since_key = DrivenPath::default();
         self.agreeing = 0;
         self.bad = 0;
         // Without a place to start at there are none: the next scan is searched.
-        self.filter = ParticleFilter::seeded(seen.terrain.frame, seeds, self.particles).ok();
+        self.filter = ParticleFilter::seeded(seen.distance_field.frame, seeds, self.particles).ok();
     }
 
     fn weigh(&mut self, seen: &Seen<'_>) {
         let Some(filter) = &mut self.filter else {
             return;
         };
-        let way = std::mem::take(&mut self.since_key);
-        filter.predict(way.step, &self.particles.noise);
-        filter.weigh(seen.terrain, seen.ends);
+        let path = std::mem::take(&mut self.since_key);
+        filter.predict(path.step, &self.particles.noise);
+        filter.weigh(seen.distance_field, seen.ends);
         let estimate = filter.estimate();
         filter.resample();
         let Some(estimate) = estimate else {
             return;
         };
-        let (pose, covariance) = (estimate.map_from_sought, estimate.covariance);
+        let (pose, covariance) = (estimate.map_from_target, estimate.covariance);
         let spread = covariance.0[(0, 0)].max(covariance.0[(1, 1)]).sqrt();
-        let is_one = estimate.share >= ONE_CLUSTER && spread <= MOST_SPREAD_M;
+        let is_one = estimate.share >= ONE_CLUSTER && spread <= MAX_SPREAD_M;
         self.agreeing = if is_one { self.agreeing + 1 } else { 0 };
         self.found = Some((pose, covariance));
         self.report.probability = estimate.share;
         self.report.lead = (estimate.share / (1.0 - estimate.share).max(1e-9)).ln();
         self.report.rivals = if is_one { 1 } else { 2 };
-        let at = GridPose::of(seen.terrain.frame, pose);
-        let score = seen.terrain.score(seen.ends, at, seen.fit);
+        let at = GridPose::of(seen.distance_field.frame, pose);
+        let score = seen.distance_field.score(seen.ends, at, seen.fit);
         self.bad = if score < self.config.doubt_score {
             self.bad + 1
         } else {
@@ -152,7 +152,7 @@ impl ParticleTracker {
     fn conclude(&mut self, seen: &Seen<'_>) {
         let was = self.report.state;
         let was_found = was != TrackState::Searching;
-        let is_sure = self.agreeing >= LEAST_KEYS && self.report.score >= self.config.least_mean;
+        let is_sure = self.agreeing >= MIN_KEYS && self.report.score >= self.config.least_mean;
         let (state, reason) = match () {
             () if self.bad >= LOST_SCANS && was_found => (TrackState::Lost, TrackReason::PoorFit),
             () if self.filter.is_none() => (TrackState::Searching, TrackReason::NoPlace),
@@ -184,9 +184,9 @@ impl ParticleTracker {
     }
 }
 
-fn seed(map_from_sought: Pose, covariance: Covariance) -> particles::Candidate {
+fn seed(map_from_target: Pose, covariance: Covariance) -> particles::Candidate {
     particles::Candidate {
-        map_from_sought,
+        map_from_target,
         covariance,
         weight: 1.0,
     }

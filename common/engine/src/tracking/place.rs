@@ -6,14 +6,14 @@ use geometry::{Covariance, Pose};
 use messages::Hypothesis;
 use nalgebra::{Matrix3, Rotation2, SymmetricEigen};
 
-use super::places::MOST;
+use super::places::MAX;
 use super::seen::{Fitted, with_map_error};
-use crate::peaks::Sought;
+use crate::peaks::Target;
 
 /// A place that a search found for one scan.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Candidate {
-    /// Of the frame that is sought.
+    /// Of the target frame.
     pub pose: Pose,
     /// Of that pose.
     pub covariance: Covariance,
@@ -23,14 +23,14 @@ pub struct Candidate {
     pub votes: u64,
 }
 
-/// Along what a scan does not tell, a candidate is taken to be known as well as this,
+/// Along what a scan does not constrain, a candidate is taken to be known as well as this,
 /// metres, or a search would confirm places that lie metres apart.
 const LOOSEST_M: f64 = 0.3;
 
 impl Candidate {
-    fn of(hypothesis: &Hypothesis, sought: Sought) -> Self {
+    fn of(hypothesis: &Hypothesis, target: Target) -> Self {
         let laser = hypothesis.map_from_laser.into();
-        let pose = sought.from_laser(laser);
+        let pose = target.from_laser(laser);
         Candidate {
             pose,
             covariance: Covariance::from_rows(hypothesis.covariance).carried(laser, pose),
@@ -41,16 +41,16 @@ impl Candidate {
 
     /// Fills in those of the places that a search found, as messages say them, for which
     /// the votes speak most: of many places, some fit a scan well by chance, and with
-    /// each there is one more to tell from the true one.
+    /// each there is one more to distinguish from the true one.
     pub fn fill<'a>(
         candidates: &mut Vec<Self>,
         found: impl Iterator<Item = &'a Hypothesis>,
-        sought: Sought,
+        target: Target,
     ) {
         candidates.clear();
-        candidates.extend(found.map(|hypothesis| Candidate::of(hypothesis, sought)));
+        candidates.extend(found.map(|hypothesis| Candidate::of(hypothesis, target)));
         candidates.sort_unstable_by_key(|candidate| Reverse(candidate.votes));
-        candidates.truncate(MOST);
+        candidates.truncate(MAX);
         let best = candidates.first().map_or(0, |best| best.votes);
         candidates.retain(|candidate| 2 * candidate.votes >= best);
     }
@@ -104,7 +104,7 @@ pub(super) struct Place {
     pub off: f64,
 }
 
-/// A mean is over so many key scans.
+/// A mean is over this many key scans.
 const MEAN_OVER: u32 = 8;
 
 impl Place {

@@ -4,17 +4,17 @@ use geometry::Pose;
 use nalgebra::{Matrix3, Vector3};
 
 use super::TrackingConfig;
+use super::driven_path::DrivenPath;
 use super::place::{Candidate, Place};
 use super::seen::{Fitted, Seen, information, squared_deviations};
 use super::verdict::Belief;
-use super::way::Way;
 use crate::peaks::lead;
 
 /// Most places that are kept, and how many of them may be older than one key scan, and
-/// new: those that a place was told from do not give way to what each search finds anew.
-pub(super) const MOST: usize = MOST_OLD + MOST_NEW;
-const MOST_OLD: usize = 20;
-const MOST_NEW: usize = 12;
+/// new: those that a place was distinguished from do not give way to what each search finds again.
+pub(super) const MAX: usize = MAX_OLD + MAX_NEW;
+const MAX_OLD: usize = 20;
+const MAX_NEW: usize = 12;
 
 /// A difference of scores, against what the best lacks of a perfect one, is worth a
 /// factor of e, as for the single scan (`--lead-scale`).
@@ -31,12 +31,12 @@ const GATE: f64 = 16.0;
 const GATE_M: f64 = 0.1;
 const GATE_RADIANS: f64 = 2.0 * std::f64::consts::PI / 180.0;
 
-/// A candidate in the gate that scores better by so much, and by so much a squared
+/// A candidate in the gate that scores better by this much, and by this much a squared
 /// deviation, is where the place is.
 const SNAP: f64 = 0.02;
 const SNAP_BY_DEVIATION: f64 = 0.01;
 
-/// Fits that come so close are of one place: as candidates of a search are told apart.
+/// Fits that come so close are of one place: as candidates of a search are distinguished.
 const SAME_M: f64 = 0.3;
 const SAME_RADIANS: f64 = 6.5 * std::f64::consts::PI / 180.0;
 
@@ -146,7 +146,7 @@ impl Places {
     }
 
     /// Moves one place by a way, and fits the scan there.
-    pub(super) fn follow(&mut self, id: u32, seen: &Seen<'_>, way: &Way) {
+    pub(super) fn follow(&mut self, id: u32, seen: &Seen<'_>, path: &DrivenPath) {
         let TrackingConfig {
             odometry_error,
             restart_fall,
@@ -155,7 +155,7 @@ impl Places {
         let Some(place) = self.kept.iter_mut().find(|place| place.id == id) else {
             return;
         };
-        let predicted = way.predict((place.pose, place.covariance), odometry_error);
+        let predicted = path.predict((place.pose, place.covariance), odometry_error);
         let mut fitted = seen.settle(predicted);
         if fitted.score < place.mean - restart_fall {
             fitted = seen.settle_turned(predicted, fitted);
@@ -172,24 +172,24 @@ impl Places {
 
     /// Takes what a search found for an earlier scan, from where the robot has gone a
     /// way since.
-    pub(super) fn take_ahead(&mut self, seen: &Seen<'_>, way: &Way, found: &[Candidate]) {
+    pub(super) fn take_ahead(&mut self, seen: &Seen<'_>, path: &DrivenPath, found: &[Candidate]) {
         let noise = self.config.odometry_error;
         self.candidates.clear();
         self.candidates.extend(found.iter().map(|candidate| {
             let Fitted {
                 pose, covariance, ..
             } = candidate.fitted();
-            seen.settle(way.predict((pose, covariance), noise))
+            seen.settle(path.predict((pose, covariance), noise))
         }));
     }
 
     /// Weighs all places by a key scan, and those that were taken with them; those
     /// that are not believed have gone `way` since the last one.
-    pub(super) fn weigh(&mut self, seen: &Seen<'_>, way: &Way, belief: &mut Belief) {
+    pub(super) fn weigh(&mut self, seen: &Seen<'_>, path: &DrivenPath, belief: &mut Belief) {
         let noise = self.config.odometry_error;
         for place in &mut self.kept {
             if belief.place() != Some(place.id) {
-                place.predicted = way.predict((place.pose, place.covariance), noise);
+                place.predicted = path.predict((place.pose, place.covariance), noise);
                 place.set(&seen.settle(place.predicted));
             }
         }
@@ -197,7 +197,7 @@ impl Places {
         let score = self.best_score();
         let best = Best {
             score,
-            left_out: seen.terrain.left_out(score, seen.fit),
+            left_out: seen.distance_field.left_out(score, seen.fit),
         };
         let fits_badly = belief
             .place()
@@ -338,9 +338,9 @@ impl Places {
         for i in 0..self.kept.len() {
             let place = self.kept[i];
             let is_full = match place.age > 1 {
-                true => old == MOST_OLD,
+                true => old == MAX_OLD,
                 // At the first there are no others.
-                false => new == if self.key_scans > 1 { MOST_NEW } else { MOST },
+                false => new == if self.key_scans > 1 { MAX_NEW } else { MAX },
             };
             if place.bad >= JUNK_SCANS || is_full || place.log_weight < top - FARTHEST_BEHIND {
                 continue;

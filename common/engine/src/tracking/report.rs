@@ -1,4 +1,4 @@
-//! What the tracker says.
+//! The tracker's report.
 
 use geometry::Pose;
 use messages::{TrackReason, TrackState};
@@ -11,7 +11,7 @@ pub struct Report {
     pub state: TrackState,
     /// Why.
     pub reason: TrackReason,
-    /// Of the frame that is sought, in the map: the place that is believed, else the
+    /// Of the target frame, in the map: the place that is believed, else the
     /// one that leads.
     pub pose: Option<Pose>,
     /// Of that pose. Where no place is believed, it spans all that are kept.
@@ -67,25 +67,21 @@ impl Report {
     }
 
     fn reason_in_words(&self) -> String {
-        let agrees = format!(
-            "{:.0} % of the scan agrees",
-            100.0 * self.score.clamp(0.0, 1.0)
-        );
+        let fit = format!("fit {:.2}", self.score.clamp(0.0, 1.0));
         let since = format!("since {:.0} m", self.since_m);
         match (self.reason, self.state) {
-            (TrackReason::NoScan, _) => "no scan has been answered yet".into(),
-            (TrackReason::NoMap, _) => "no map has come yet".into(),
-            (TrackReason::OnePlace, _) => format!("one place fits, {agrees}, {since}"),
+            (TrackReason::NoScan, _) => "waiting for the first scan".into(),
+            (TrackReason::NoMap, _) => "waiting for a map".into(),
+            (TrackReason::OnePlace, _) => format!("one place, {fit}, {since}"),
             (TrackReason::SeveralPlaces, _) => {
                 format!("{} places fit, {}, {since}", self.rivals, self.apart())
             }
-            (TrackReason::TooEarly, _) => format!("one place leads, {agrees}, {since}"),
-            (TrackReason::PoorFit, TrackState::Lost) => format!("lost: {agrees}"),
-            (TrackReason::PoorFit, _) => format!("only {agrees}, {since}"),
-            (TrackReason::OdometryJump, _) => format!(
-                "odometry jumped by {:.0}°, {agrees}",
-                self.jumped.to_degrees()
-            ),
+            (TrackReason::TooEarly, _) => format!("one place leads, {fit}, {since}"),
+            (TrackReason::PoorFit, TrackState::Lost) => format!("lost: {fit}"),
+            (TrackReason::PoorFit, _) => format!("only {fit}, {since}"),
+            (TrackReason::OdometryJump, _) => {
+                format!("odometry jumped by {:.0}°, {fit}", self.jumped.to_degrees())
+            }
             (TrackReason::AnotherPlace, _) => format!("lost: scans fit better elsewhere, {since}"),
             (TrackReason::NoPlace, _) => "no place on the map fits".into(),
         }
@@ -151,20 +147,20 @@ mod tests {
         );
         assert_eq!(
             say(TrackState::Lost, TrackReason::PoorFit),
-            "lost: 14 % of the scan agrees: drive a few metres, or mark a region"
+            "lost: fit 0.14: drive a few metres, or mark a region"
         );
         assert_eq!(
             say(TrackState::Unique, TrackReason::OdometryJump),
-            "odometry jumped by 80°, 14 % of the scan agrees"
+            "odometry jumped by 80°, fit 0.14"
         );
         assert_eq!(
             say(TrackState::Unique, TrackReason::OnePlace),
-            "one place fits, 14 % of the scan agrees, since 3 m"
+            "one place, fit 0.14, since 3 m"
         );
     }
 
     #[test]
-    fn one_spot_in_two_headings_is_told_apart_by_turning() {
+    fn one_spot_in_two_headings_is_distinguished_by_turning() {
         let spot = Report {
             apart_m: (0.1, 0.3),
             ..report(TrackState::Searching, TrackReason::SeveralPlaces)

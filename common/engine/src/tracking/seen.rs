@@ -3,13 +3,13 @@
 use geometry::{Pose, wrap_angle};
 use nalgebra::{Matrix3, Vector3};
 
-use crate::fit::{Ends, Expected, FitConfig, GridPose, Terrain};
+use crate::fit::{DistanceField, Ends, Expected, FitConfig, GridPose};
 
 /// A scan, and the map on which it was taken.
 #[derive(Debug, Clone, Copy)]
 pub struct Seen<'a> {
     /// The map.
-    pub terrain: &'a Terrain,
+    pub distance_field: &'a DistanceField,
     /// The beams of the scan.
     pub ends: &'a Ends,
     /// How they are judged.
@@ -46,7 +46,7 @@ const SCORE_BY_DEVIATION: f64 = 0.004;
 const MAP_ERROR_M: f64 = 0.03;
 const MAP_ERROR: f64 = 0.4 * std::f64::consts::PI / 180.0;
 
-/// A covariance with what a map errs by in addition, one that was drawn by so many
+/// A covariance with what a map errs by in addition, one that was drawn by this many
 /// metres more.
 pub(super) fn with_map_error(covariance: Matrix3<f64>, drawn_m: f64) -> Matrix3<f64> {
     let position = MAP_ERROR_M.hypot(drawn_m);
@@ -103,7 +103,7 @@ impl Seen<'_> {
         (mean, pull): (Pose, Matrix3<f64>),
         (reaches, known): ([f64; 2], Matrix3<f64>),
     ) -> Fitted {
-        let frame = self.terrain.frame;
+        let frame = self.distance_field.frame;
         let map_from_cells = frame.metres_from_cells();
         let cells_from_map = map_from_cells
             .try_inverse()
@@ -115,16 +115,16 @@ impl Seen<'_> {
         let start = GridPose::of(frame, start);
         let how = (&expected, reaches);
         let refined = self
-            .terrain
+            .distance_field
             .refine_expected(self.ends, start, how, self.fit);
-        let told = cells_from_map.transpose() * refined.information() * cells_from_map;
+        let measured = cells_from_map.transpose() * refined.information() * cells_from_map;
         let at = refined.pose;
         let pose = frame.map_from_cells(at.x, at.y, at.heading);
-        let covariance = information(&(told + known));
+        let covariance = information(&(measured + known));
         Fitted {
             pose,
-            covariance: with_map_error(covariance, self.terrain.drawn_error_m()),
-            score: self.terrain.score(self.ends, at, self.fit),
+            covariance: with_map_error(covariance, self.distance_field.drawn_error_m()),
+            score: self.distance_field.score(self.ends, at, self.fit),
             off: squared_deviations(pose, mean, &known),
         }
     }

@@ -4,10 +4,10 @@ use messages::{TrackReason, TrackState};
 
 use super::*;
 use crate::beams::BeamConfig;
-use crate::fit::{Ends, FitConfig, Terrain};
+use crate::fit::{DistanceField, Ends, FitConfig};
 use crate::grid::{CellRules, Grid, GridFrame};
 use crate::localizer::{Localizer, LocalizerConfig, Prior};
-use crate::peaks::{PeakConfig, PeakInput, Sought, by_fit};
+use crate::peaks::{PeakConfig, PeakInput, Target, by_fit};
 use crate::scan::Scan;
 use crate::space::Space;
 
@@ -17,7 +17,7 @@ const RESOLUTION_M: f64 = 0.1;
 /// A building in which scans are simulated and searched.
 struct Building {
     grid: Grid,
-    terrain: Terrain,
+    distance_field: DistanceField,
     localizer: Localizer,
     space: Space,
 }
@@ -42,7 +42,7 @@ fn building(rows: &[&str]) -> Building {
         ..LocalizerConfig::default()
     };
     Building {
-        terrain: Terrain::new(frame, (width, height), &cells, rules).unwrap(),
+        distance_field: DistanceField::new(frame, (width, height), &cells, rules).unwrap(),
         localizer: Localizer::new(frame, grid.clone(), config, Prior::None).unwrap(),
         space: Space::new(360, RESOLUTION_M, width, height).unwrap(),
         grid,
@@ -90,18 +90,22 @@ impl Building {
         let outcome = outcome.unwrap().unwrap();
         let input = PeakInput::of(&outcome, self.localizer.frame());
         let ends = self.ends(pose);
-        let places = by_fit(&input, (&self.terrain, &ends), &PeakConfig::default());
-        let sought = Sought::of(None, false);
-        let hypothesis = |place: &crate::peaks::Place| place.hypothesis(1, sought);
+        let places = by_fit(
+            &input,
+            (&self.distance_field, &ends),
+            &PeakConfig::default(),
+        );
+        let target = Target::of(None, false);
+        let hypothesis = |place: &crate::peaks::Place| place.hypothesis(1, target);
         let hypotheses: Vec<_> = places.places.iter().map(hypothesis).collect();
         let mut found = Vec::new();
-        Candidate::fill(&mut found, hypotheses.iter(), sought);
+        Candidate::fill(&mut found, hypotheses.iter(), target);
         found
     }
 
     fn seen<'a>(&'a self, ends: &'a Ends, fit: &'a FitConfig) -> Seen<'a> {
         Seen {
-            terrain: &self.terrain,
+            distance_field: &self.distance_field,
             ends,
             fit,
         }
@@ -260,7 +264,7 @@ fn nothing_becomes_the_only_place_without_a_search() {
 }
 
 #[test]
-fn places_that_look_alike_are_never_told_apart() {
+fn places_that_look_alike_are_never_distinguished() {
     let building = building(&ALIKE);
     let mut tracker = Tracker::new(TrackingConfig::default());
     building.step(&mut tracker, START, None);
@@ -315,7 +319,7 @@ fn what_odometry_misses_is_followed() {
 }
 
 #[test]
-fn without_odometry_scans_tell_how_the_robot_moved() {
+fn without_odometry_scans_show_how_the_robot_moved() {
     let building = building(&UNLIKE);
     let mut matcher = matching::ScanMatcher::default();
     let config = TrackingConfig::default();
@@ -365,7 +369,7 @@ fn particles_that_a_search_starts_find_the_robot_and_notice_when_it_is_carried_a
     }
     let report = take(at, Some(Pose::IDENTITY));
     assert_eq!(report.state, TrackState::Unique, "{report:?}");
-    // Particles tell to about a cell and some degrees.
+    // Particles are good to about a cell and some degrees.
     let pose = report.pose.unwrap();
     assert!(pose.is_within(at, 0.2, 0.1), "{pose:?} at {at:?}");
     let mut at = Pose::new(4.0, 1.9, PI);

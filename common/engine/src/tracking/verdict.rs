@@ -1,27 +1,27 @@
-//! Which place is believed, and how far.
+//! Which place is accepted, and with what probability.
 
 use geometry::{Covariance, Pose};
 use messages::{TrackReason, TrackState};
 use nalgebra::Matrix3;
 
 use super::TrackingConfig;
+use super::driven_path::DrivenPath;
 use super::place::Place;
 use super::places::{FARTHEST_BEHIND, NEAR_M, Places};
 use super::report::Report;
-use super::way::Way;
 
 /// Key scans since a step that is not known that have to agree before a place is the only
 /// one: nothing ties what was seen before to where the robot is now.
-pub(super) const LEAST_KEYS: u32 = 3;
+pub(super) const MIN_KEYS: u32 = 3;
 
-/// Places so near each other are not told apart by the verdict.
+/// Places so near each other are not distinguished by the verdict.
 const DISTINCT_M: f64 = 1.0;
 const DISTINCT_RADIANS: f64 = 15.0 * std::f64::consts::PI / 180.0;
 
 /// A lead below this makes the pose doubtful.
-const LEAST_LEAD: f64 = 3.0;
+const MIN_LEAD: f64 = 3.0;
 
-/// The last score may lie so much below `--least-mean` when a place becomes the only
+/// The last score may lie this much below `--least-mean` when a place becomes the only
 /// one.
 const LAST_BELOW: f64 = 0.1;
 
@@ -138,7 +138,7 @@ impl Belief {
         }
         self.look_at(places);
         let state = match self.place {
-            Some(_) if !self.fits_badly && !self.unchecked && self.lead >= LEAST_LEAD => {
+            Some(_) if !self.fits_badly && !self.unchecked && self.lead >= MIN_LEAD => {
                 TrackState::Unique
             }
             Some(_) => TrackState::Doubtful,
@@ -224,7 +224,7 @@ impl Belief {
     fn is_unique(&self, best: &Place) -> bool {
         let config = &self.config;
         let lack = (config.sure_mean - best.mean).max(0.0);
-        self.connected_keys >= LEAST_KEYS
+        self.connected_keys >= MIN_KEYS
             && self.lead >= config.sure_lead + config.poor_fit_lead * lack
             && best.mean >= config.least_mean
             && best.last >= config.least_mean - LAST_BELOW
@@ -232,7 +232,7 @@ impl Belief {
 
     /// What is to be said; places that are not believed have gone `since_key` since the
     /// last key scan.
-    pub(super) fn report(&self, places: &Places, since_key: &Way) -> Report {
+    pub(super) fn report(&self, places: &Places, since_key: &DrivenPath) -> Report {
         let believed = self.place.and_then(|id| places.get(id));
         let place = believed.or(places.all().first());
         let pose = place.map(|place| match believed {
@@ -282,9 +282,9 @@ fn spread(places: &[Place], about: Pose) -> Matrix3<f64> {
     parts.sum()
 }
 
-/// How likely the place is that leads by so much: a logistic regression over 2191 key
+/// How likely the place is that leads by this much: a logistic regression over 2191 key
 /// scans of seven drives, which docs/tracking.md has as a table. The lead by itself
-/// promises too much, for scans of one place err together.
+/// is overconfident, for scans of one place err together.
 fn probability(lead: f64) -> f64 {
     1.0 / (1.0 + (-(0.2 + 0.4 * lead)).exp())
 }

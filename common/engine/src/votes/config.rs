@@ -1,4 +1,4 @@
-//! What a user can set of what is collected.
+//! Options of what is collected.
 
 /// What is collected of a search.
 #[derive(Debug, Clone, Copy, PartialEq, clap::Args)]
@@ -7,20 +7,20 @@ pub struct CollectConfig {
     /// 0..=1; lower shares show more alternatives and take longer.
     #[arg(long, value_name = "SHARE", default_value_t = 0.85, value_parser = crate::config::parse_share)]
     pub floor_share: f64,
-    /// Most poses that are collected, 1..=1000000; the floor rises until they
-    /// fit.
+    /// Maximum number of poses that are collected, 1..=1000000; the floor rises until
+    /// they fit.
     #[arg(long, value_name = "COUNT", default_value_t = 65_536, value_parser = clap::value_parser!(u32).range(1..=1_000_000))]
     pub max_votes: u32,
-    /// Distinct poses that are wanted, 0..=1000: where fewer stand above the
-    /// floor, the most promising ones below are added. Where half of them have half
-    /// the best one's votes, up to four times as many that have are added.
+    /// Number of distinct poses wanted, 0..=1000: if fewer are above the floor, those
+    /// with the highest bounds below it are added. If half of them have half the best
+    /// one's votes, up to four times as many are added.
     #[arg(long, value_name = "COUNT", default_value_t = 64, value_parser = clap::value_parser!(u32).range(0..=1000))]
     pub candidates: u32,
-    /// A search of unknown headings ends with the best that it found, and says what it may
-    /// have missed, once it has taken so much work, millions of steps, 0 to 10⁹; 0 is
-    /// without end. A step takes about a nanosecond of one processor of 2 GHz, but steps are
-    /// counted and not timed: on one thread the same scan always ends alike.
-    /// [default: 5000 in the accumulator, none in the tools]
+    /// Work limit of a search of unknown headings, millions of steps, 0 to 10⁹: beyond
+    /// it the search ends with the best pose found and reports what it may have missed;
+    /// 0 is no limit. A step takes about a nanosecond of one 2 GHz processor, but steps
+    /// are counted and not timed: on one thread the same scan always gives the same
+    /// answer. [default: 5000 in the accumulator, none in the tools]
     #[arg(long, value_name = "MILLIONS", value_parser = parse_work)]
     pub work_limit: Option<f64>,
 }

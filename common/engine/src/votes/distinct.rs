@@ -12,13 +12,13 @@ pub const DISTINCT_M: f64 = 0.3;
 /// candidates, degrees.
 pub const DISTINCT_DEG: f64 = 6.5;
 
-/// Where many poses have almost as many votes, votes do not tell which are the first:
+/// Where many poses have almost as many votes, votes do not decide which are the first:
 /// beyond those that are wanted, poses close to the best are candidates as well, up to
-/// so many times as many.
+/// this many times as many.
 const CLOSE_TIMES: usize = 4;
 
-/// Most candidates where so many are wanted: those and the ones that are close. Where
-/// cells are larger than what tells candidates apart, the close ones are the neighbours
+/// Most candidates where this many are wanted: those and the ones that are close. Where
+/// cells are larger than what distinguishes candidates, the close ones are the neighbours
 /// of one place, and are not counted.
 pub(crate) fn most_candidates(wanted: usize, resolution_m: f64) -> usize {
     match resolution_m <= DISTINCT_M {
@@ -34,7 +34,7 @@ pub(crate) fn is_close(intensity: u16, best: u16) -> bool {
 }
 
 /// Takes poses in order and keeps those that are distinct from all kept before,
-/// at most so many.
+/// at most this many.
 #[derive(Debug)]
 pub(crate) struct Distinct<'a> {
     space: &'a Space,
@@ -45,7 +45,7 @@ pub(crate) struct Distinct<'a> {
 }
 
 impl<'a> Distinct<'a> {
-    /// Keeps none so far, of at most `wanted`, in the room of others before.
+    /// Keeps none so far, of at most `wanted`, in the buffers of others before.
     pub(crate) fn new(space: &'a Space, wanted: usize, kept: &'a mut Vec<Vote>) -> Self {
         kept.clear();
         Distinct {
@@ -83,7 +83,7 @@ impl<'a> Distinct<'a> {
     }
 }
 
-/// The distinct ones of poses in their order, at most so many: those that are more than
+/// The distinct ones of poses in their order, at most this many: those that are more than
 /// [`DISTINCT_M`] or [`DISTINCT_DEG`] apart from all that were taken before.
 #[must_use]
 pub fn distinct(votes: &[Vote], space: &Space, wanted: usize) -> Vec<Vote> {

@@ -1,4 +1,4 @@
-//! What `backcast evaluate` does: reads, asks scan by scan, and prints.
+//! The command `backcast evaluate`: reads, asks scan by scan, and prints.
 
 use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
@@ -28,7 +28,7 @@ Below, the probabilities of the best places of all files, and how many of those 
 
 Exit codes: 0 all evaluated, 1 a file could not be or misses a requirement, 2 wrong use";
 
-/// What `backcast evaluate` takes.
+/// Options of `backcast evaluate`.
 #[derive(Debug, clap::Args)]
 pub struct Config {
     /// Recordings with true poses on /ground_truth, each by itself: MCAP files, or
@@ -40,9 +40,9 @@ pub struct Config {
     #[arg(long)]
     json: bool,
 
-    /// Erase the map around each true pose: cells within so many metres become
-    /// unknown, 0..=1000. unique_wrong then tells how often a place that is not
-    /// on the map is taken for another
+    /// Erase the map around each true pose: cells within this distance become unknown,
+    /// metres, 0..=1000. unique_wrong then shows how often a place that is not on the
+    /// map is mistaken for another
     #[arg(long, value_name = "METRES", value_parser = radius)]
     erase_place: Option<f64>,
 
@@ -62,7 +62,7 @@ fn radius(text: &str) -> Result<f64, String> {
     metres.ok_or_else(|| "allowed are 0 to 1000 metres".into())
 }
 
-/// Evaluates one file after another. A file that cannot be evaluated is told on
+/// Evaluates one file after another. A file that cannot be evaluated is reported on
 /// standard error, and the next one follows.
 ///
 /// # Errors

@@ -60,7 +60,7 @@ pub(super) struct Evaluation {
     pub(super) prepare_cpu_ms: f64,
     /// The most memory that the process held, megabytes of 10⁶ bytes.
     pub(super) peak_rss_mb: f64,
-    /// Cells in which poses are sought, as large as they are searched.
+    /// Cells in which poses are searched, as large as they are searched.
     pub(super) searchable_cells: u64,
     /// Bytes of what a search keeps of the map.
     pub(super) index_bytes: u64,
@@ -146,7 +146,7 @@ impl Judge {
     pub(super) fn complaint(&self) -> Option<String> {
         let reason = self.first_refusal.as_ref()?;
         let refused = self.refused;
-        Some(format!("scans refused: {refused}; the first: {reason}"))
+        Some(format!("scans rejected: {refused}; the first: {reason}"))
     }
 
     /// The figures.
@@ -273,7 +273,7 @@ pub(super) mod tests {
         judge.refusal(Pose::IDENTITY, "empty".to_owned());
         judge.refusal(Pose::IDENTITY, "too long".to_owned());
         let complaint = judge.complaint().unwrap();
-        assert_eq!(complaint, "scans refused: 2; the first: empty");
+        assert_eq!(complaint, "scans rejected: 2; the first: empty");
     }
 
     #[test]

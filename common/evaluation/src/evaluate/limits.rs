@@ -29,7 +29,10 @@ fn percent(text: &str) -> Result<f64, String> {
 }
 
 fn above_zero(text: &str) -> Result<f64, String> {
-    let number = text.parse().ok().filter(|n: &f64| n.is_finite() && *n > 0.0);
+    let number = text
+        .parse()
+        .ok()
+        .filter(|n: &f64| n.is_finite() && *n > 0.0);
     number.ok_or_else(|| "allowed are numbers above 0".to_owned())
 }
 
@@ -73,13 +76,17 @@ impl Limits {
             && !most(found.cpu_ms.p90, limit)
         {
             let found = text(found.cpu_ms.p90, "ms");
-            missed.push(format!("the 90th percentile is {found}, --max-p90-ms {limit}"));
+            missed.push(format!(
+                "the 90th percentile is {found}, --max-p90-ms {limit}"
+            ));
         }
         if let Some(limit) = self.max_error_cm
             && !most(error_cm, limit)
         {
             let found = text(error_cm, "cm");
-            missed.push(format!("the median error is {found}, --max-error-cm {limit}"));
+            missed.push(format!(
+                "the median error is {found}, --max-error-cm {limit}"
+            ));
         }
         missed
     }

@@ -7,7 +7,7 @@ use nix::sys::resource::{UsageWho, getrusage};
 /// The number that makes the kernel forget the peak, see proc_pid_clear_refs(5).
 const FORGET_PEAK: &str = "5";
 
-/// The peak counts anew from what is held now.
+/// The peak counts again from what is held now.
 ///
 /// # Errors
 /// The system does not allow it: the peak stays that of the whole process.
@@ -18,12 +18,12 @@ pub(super) fn forget_peak() -> io::Result<()> {
 /// The most that was resident since, in megabytes of 10⁶ bytes.
 ///
 /// # Errors
-/// The system does not tell.
+/// The system does not report it.
 pub(super) fn peak_mb() -> io::Result<f64> {
     let status = fs::read_to_string("/proc/self/status")?;
     let kib = match peak_in(&status) {
         Some(kib) => kib,
-        // Kernels without this line tell the process's peak here, in KiB too.
+        // Kernels without this line report the process's peak here, in KiB too.
         None => getrusage(UsageWho::RUSAGE_SELF)?.max_rss() as f64,
     };
     Ok(kib * 1024.0 / 1e6)

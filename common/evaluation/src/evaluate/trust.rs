@@ -15,7 +15,7 @@ pub(super) struct Said {
     /// The range; its upper end belongs to it.
     pub(super) from: f64,
     pub(super) to: f64,
-    /// So many answers.
+    /// This many answers.
     pub(super) answers: u64,
     /// Those of them within 0.5 m and 10°.
     pub(super) right: u64,

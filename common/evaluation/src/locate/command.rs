@@ -1,4 +1,4 @@
-//! What `backcast locate` does: reads, asks scan by scan, and prints.
+//! The command `backcast locate`: reads, asks scan by scan, and prints.
 
 use std::path::PathBuf;
 use std::process::ExitCode;
@@ -14,7 +14,7 @@ use super::particles::{Particles, ParticlesOptions};
 use super::row;
 use crate::EvaluationError;
 
-/// What `backcast locate` takes.
+/// Options of `backcast locate`.
 #[derive(Debug, clap::Args)]
 pub struct Config {
     /// The recording: an MCAP file, or a bag of rosbag2 (its folder, or .db3);
@@ -38,11 +38,11 @@ pub struct Config {
 }
 
 /// Prints a line for each scan. A scan that is refused has one too, with the
-/// reason; one that does not decode is lost, and told on standard error.
+/// reason; one that does not decode is lost, and reported on standard error.
 ///
 /// # Errors
-/// Map or recording cannot be used, every scan was refused, or the recording is
-/// damaged: that is told after what lies before the damage.
+/// Map or recording cannot be used, every scan was rejected, or the recording is
+/// damaged: that is reported after what lies before the damage.
 pub fn run(config: &Config) -> Result<ExitCode, EvaluationError> {
     config.options.check()?;
     let files = [&config.recordings[..], &config.bag].concat();

@@ -12,12 +12,12 @@ use crate::EvaluationError;
 /// How many, and from which random numbers.
 #[derive(Debug, Clone, Copy, clap::Args)]
 pub(super) struct ParticlesOptions {
-    /// Draw so many poses around the places of each scan, as a start for a particle
-    /// filter: those of the base where the laser's mount is known, 1..=1000000
+    /// Draw this many poses around the places of each scan, as a start for a particle
+    /// filter: poses of the base if the laser's mount is known, 1..=1000000
     #[arg(long, value_name = "COUNT", value_parser = clap::value_parser!(u32).range(1..=1_000_000))]
     particles: Option<u32>,
 
-    /// Where their random numbers begin, anew for each scan
+    /// Seed of their random numbers, the same for each scan
     #[arg(
         long,
         value_name = "NUMBER",

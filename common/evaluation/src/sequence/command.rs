@@ -15,32 +15,32 @@ use super::figures::Figures;
 use super::{course, drive, follow, jumps, starts};
 use crate::EvaluationError;
 
-/// What `backcast evaluate --sequence` takes in addition.
+/// Further options of `backcast evaluate --sequence`.
 #[derive(Debug, Clone, clap::Args)]
 #[command(next_help_heading = "Sequences")]
 pub(crate) struct SequenceOptions {
-    /// Follow the pose over each recording with the tracker, started at many scans, put
-    /// elsewhere, and over the whole
+    /// Track the pose over each recording: from many starts, after moving the robot
+    /// elsewhere ("kidnapped"), and over the whole
     #[arg(long)]
     pub sequence: bool,
 
-    /// Starts, spread over the recording, 1..=1000
+    /// Number of starts, spread over the recording, 1..=1000
     #[arg(long, value_name = "COUNT", default_value_t = 80, value_parser = clap::value_parser!(u32).range(1..=1000))]
     pub starts: u32,
 
-    /// Times that the robot is put elsewhere, 0..=1000
+    /// How many times the robot is moved elsewhere, 0..=1000
     #[arg(long, value_name = "COUNT", default_value_t = 20, value_parser = clap::value_parser!(u32).range(0..=1000))]
     pub kidnaps: u32,
 
-    /// Leave the odometry out
+    /// Ignore the odometry
     #[arg(long)]
     pub without_odometry: bool,
 
-    /// Make the errors of odometry, against the truth, so many times as large, 0..=100
+    /// Multiply the errors of odometry, against the truth, by this factor, 0..=100
     #[arg(long, value_name = "FACTOR", default_value_t = 1.0, value_parser = parse_factor)]
     pub odometry_noise: f64,
 
-    /// Truths that are known to be wrong, by the numbers of their scans from 0
+    /// True poses that are known to be wrong, by the numbers of their scans from 0
     #[arg(long, value_name = "N,N", value_delimiter = ',')]
     pub ignore_truth: Vec<u64>,
 
@@ -49,7 +49,7 @@ pub(crate) struct SequenceOptions {
     #[arg(long, value_name = "FOLDER")]
     pub trajectories: Option<PathBuf>,
 
-    /// Draw it to this folder: the map, the way, and where it was not unique
+    /// Draw it into this folder: the map, the path, and where the pose was not unique
     #[arg(long, value_name = "FOLDER")]
     pub pictures: Option<PathBuf>,
 
@@ -65,7 +65,7 @@ fn parse_factor(text: &str) -> Result<f64, String> {
     }
 }
 
-/// Evaluates one file after another. A file that cannot be evaluated is told on
+/// Evaluates one file after another. A file that cannot be evaluated is reported on
 /// standard error, and the next one follows.
 ///
 /// # Errors

@@ -3,7 +3,7 @@
 use std::collections::{BTreeMap, BTreeSet};
 
 use engine::fit::Ends;
-use engine::peaks::Sought;
+use engine::peaks::Target;
 use engine::tracking::Candidate;
 use geometry::{Pose, wrap_angle};
 use offline::{Accepted, Session, View};
@@ -19,7 +19,7 @@ pub(super) struct Moment {
     /// The first laser's true pose in the map, if that is known.
     pub(super) truth: Option<Pose>,
     pub(super) view: View,
-    /// How the sought frame moved since the moment before.
+    /// How the target frame moved since the moment before.
     pub(super) moved: Option<Pose>,
     /// Metres along the drive until here.
     pub(super) gone_m: f64,
@@ -34,9 +34,9 @@ impl Moment {
         &self.view.ends
     }
 
-    /// The pose of the first laser where the tracker has the sought frame.
-    pub(super) fn laser(&self, map_from_sought: Pose) -> Pose {
-        self.view.sought.laser(map_from_sought)
+    /// The pose of the first laser where the tracker has the target frame.
+    pub(super) fn laser(&self, map_from_target: Pose) -> Pose {
+        self.view.target.laser(map_from_target)
     }
 }
 
@@ -60,8 +60,8 @@ pub(super) fn read(
         accepted.count(&reply);
         let (map_id, search_ms) = (reply.map_id, reply.cpu_ms);
         let hypotheses = reply.answer.map(|answer| {
-            let sought = |place: &engine::peaks::Place| place.hypothesis(map_id, of_laser());
-            answer.places.places.iter().map(sought).collect::<Vec<_>>()
+            let target = |place: &engine::peaks::Place| place.hypothesis(map_id, of_laser());
+            answer.places.places.iter().map(target).collect::<Vec<_>>()
         });
         for note in session.take_notes() {
             progress.say(&note);
@@ -73,7 +73,7 @@ pub(super) fn read(
         let Ok(hypotheses) = hypotheses else { continue };
         let view = session.view(&scan)?;
         let mut found = Vec::new();
-        Candidate::fill(&mut found, hypotheses.iter(), view.sought);
+        Candidate::fill(&mut found, hypotheses.iter(), view.target);
         moments.push(Moment {
             stamp_ns: scan.stamp_ns,
             truth,
@@ -90,8 +90,8 @@ pub(super) fn read(
 
 /// Places of the first laser stay what they are; as messages, scores have 32 bits, as in
 /// the graph.
-fn of_laser() -> Sought {
-    Sought::of(None, false)
+fn of_laser() -> Target {
+    Target::of(None, false)
 }
 
 /// Fills in how the moments follow each other.
@@ -100,12 +100,12 @@ fn connect(moments: &mut [Moment], options: &SequenceOptions) {
         let (before, now) = (&moments[i - 1], &moments[i]);
         let by_odometry = before
             .view
-            .odom_from_sought
-            .zip(now.view.odom_from_sought)
+            .odom_from_target
+            .zip(now.view.odom_from_target)
             .map(|(a, b)| a.inverse().then(b));
         let truly = before.truth.zip(now.truth).map(|(a, b)| {
-            let sought = |laser| now.view.sought.from_laser(laser);
-            sought(a).inverse().then(sought(b))
+            let target = |laser| now.view.target.from_laser(laser);
+            target(a).inverse().then(target(b))
         });
         let step = by_odometry
             .or(truly)
@@ -117,7 +117,7 @@ fn connect(moments: &mut [Moment], options: &SequenceOptions) {
     }
 }
 
-/// A step whose error is so many times as large.
+/// A step whose error is this many times as large.
 fn worsened(step: Pose, truly: Option<Pose>, factor: f64) -> Pose {
     let Some(truly) = truly else { return step };
     if factor == 1.0 {

@@ -7,7 +7,7 @@ use super::follow::Followed;
 use super::jumps::Jumps;
 use super::starts::Starts;
 
-/// Shares are 0..=1; docs/tracking.md tells what each is.
+/// Shares are 0..=1; docs/tracking.md explains each.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub(super) struct Figures {
     pub(super) bag: String,
@@ -31,7 +31,7 @@ pub(super) struct Figures {
     pub(super) cpu_ms_searching: Times,
 }
 
-/// Shares of the starts after so many metres.
+/// Shares of the starts after this many metres.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize)]
 pub(super) struct After {
     #[serde(rename = "1")]

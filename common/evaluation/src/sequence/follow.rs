@@ -8,7 +8,7 @@ use super::drive::Moment;
 use super::run::{Run, Said};
 use crate::EvaluationError;
 
-/// Off by more than this for so many truths in a row, metres and degrees, the robot is
+/// Off by more than this for this many truths in a row, metres and degrees, the robot is
 /// lost, and put back to the truth.
 const LOSS: (f64, f64) = (1.0, 20.0);
 const LOSS_TRUTHS: u32 = 3;
@@ -104,10 +104,10 @@ fn sum_up(all: &mut Followed, moments: &[Moment]) {
 
 /// Whether the true position lies in the ellipse that is to hold 95 % of them.
 fn is_in_ellipse(moment: &Moment, said: &Said) -> bool {
-    let Some(((sought, laser), truth)) = said.report.pose.zip(said.pose).zip(moment.truth) else {
+    let Some(((target, laser), truth)) = said.report.pose.zip(said.pose).zip(moment.truth) else {
         return false;
     };
-    let covariance = Covariance(said.report.covariance).carried(sought, laser);
+    let covariance = Covariance(said.report.covariance).carried(target, laser);
     let off = (truth.x - laser.x, truth.y - laser.y);
     statistics::holds(covariance, off)
 }

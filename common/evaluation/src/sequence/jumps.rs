@@ -10,9 +10,9 @@ use super::run::Run;
 use crate::EvaluationError;
 
 /// The robot is put at least so far away, metres.
-const LEAST_M: f64 = 3.0;
+const MIN_M: f64 = 3.0;
 
-/// It is followed for so many metres before, and for so many after.
+/// It is followed for this many metres before, and for this many after.
 const BEFORE_M: f64 = 5.0;
 const AFTER_M: f64 = 10.0;
 const RIGHT_AFTER_M: f64 = 5.0;
@@ -45,7 +45,7 @@ pub(super) fn choose(moments: &[Moment], count: u32) -> Vec<(usize, usize)> {
             let (a, b) = (moments[from].truth?, moments[to].truth?);
             let is_fit = moments[from].gone_m >= BEFORE_M
                 && total - moments[to].gone_m >= RIGHT_AFTER_M
-                && a.distance_to(b) >= LEAST_M;
+                && a.distance_to(b) >= MIN_M;
             is_fit.then_some((from, to))
         })
         .step_by(2)
@@ -53,7 +53,7 @@ pub(super) fn choose(moments: &[Moment], count: u32) -> Vec<(usize, usize)> {
         .collect()
 }
 
-/// Puts the robot elsewhere so many times.
+/// Puts the robot elsewhere this many times.
 pub(super) fn evaluate(
     world: &World,
     moments: &[Moment],

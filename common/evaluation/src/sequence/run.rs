@@ -73,7 +73,7 @@ impl<'a> Run<'a> {
 
     fn seen(&self, moment: &'a Moment) -> Seen<'a> {
         Seen {
-            terrain: self.world.terrain(),
+            distance_field: self.world.distance_field(),
             ends: moment.ends(),
             fit: &self.world.peaks().fit,
         }
@@ -85,7 +85,7 @@ impl<'a> Run<'a> {
         let seen = self.seen(moment);
         // What the truths at hand err by.
         let covariance = Covariance::from_deviations(0.05, 0.05, 1f64.to_radians());
-        let pose = moment.view.sought.from_laser(truth);
+        let pose = moment.view.target.from_laser(truth);
         self.asked = None;
         self.tracker.start_at(&seen, pose, covariance);
     }

@@ -1,6 +1,6 @@
 //! The tracker started at many scans of a drive, with no guess.
 
-use engine::tracking::{FollowConfig, LEAST_BEAMS};
+use engine::tracking::{FollowConfig, MIN_BEAMS};
 use offline::World;
 
 use super::drive::Moment;
@@ -32,11 +32,11 @@ pub(super) struct Starts {
     pub(super) searches: u64,
 }
 
-/// Indices of so many starts, evenly along the drive, at scans with a truth.
+/// Indices of this many starts, evenly along the drive, at scans with a truth.
 pub(super) fn choose(moments: &[Moment], count: u32) -> Vec<usize> {
     let total = moments.last().map_or(0.0, |last| last.gone_m);
     let end = total - LEFT.0.min(LEFT.1 * total);
-    let is_fit = |moment: &Moment| moment.truth.is_some() && moment.ends().beams() >= LEAST_BEAMS;
+    let is_fit = |moment: &Moment| moment.truth.is_some() && moment.ends().beams() >= MIN_BEAMS;
     let mut chosen: Vec<usize> = (0..count)
         .filter_map(|i| {
             let at = end * f64::from(i) / f64::from(count.max(2) - 1);

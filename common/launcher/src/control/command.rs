@@ -11,19 +11,19 @@ use super::text;
 use crate::LauncherError;
 use crate::run::control::{Answer, Question, Status, ask};
 
-/// What `backcast status` takes.
+/// Options of `backcast status`.
 #[derive(Debug, Args)]
 pub struct StatusConfig {
-    /// Of this graph alone [default: of all that this user runs]
+    /// Only this graph [default: all that this user runs]
     #[arg(long, value_name = "NAME", value_parser = GraphName::new)]
     graph: Option<GraphName>,
 
-    /// Print JSON, an object a line for each graph
+    /// Print JSON, one object per line and graph
     #[arg(long)]
     json: bool,
 }
 
-/// What `backcast stop` takes.
+/// Options of `backcast stop`.
 #[derive(Debug, Args)]
 pub struct StopConfig {
     /// The graph [default: the only one that this user runs]
@@ -31,7 +31,7 @@ pub struct StopConfig {
     graph: Option<GraphName>,
 }
 
-/// What `backcast restart` takes.
+/// Options of `backcast restart`.
 #[derive(Debug, Args)]
 pub struct RestartConfig {
     /// The node's id in the descriptor
@@ -95,14 +95,14 @@ pub(super) fn the_graph(named: Option<&GraphName>) -> Result<GraphName, Launcher
             let names: Vec<_> = several.iter().map(ToString::to_string).collect();
             let names = names.join(", ");
             Err(LauncherError::Usage(format!(
-                "several graphs run: say which one with --graph; there are {names}"
+                "several graphs are running: choose one with --graph; running are {names}"
             )))
         }
     }
 }
 
 fn no_graph() -> LauncherError {
-    LauncherError::Usage("no graph of this user runs".to_owned())
+    LauncherError::Usage("no graph of this user is running".to_owned())
 }
 
 fn done(graph: &GraphName, question: &Question) -> Result<ExitCode, LauncherError> {
@@ -116,7 +116,7 @@ fn status_of(graph: &GraphName) -> Result<Status, LauncherError> {
     match asked(graph, &Question::Status)? {
         Answer::Status(status) => Ok(status),
         Answer::Refused(why) => Err(LauncherError::Usage(why)),
-        Answer::Done => Err(LauncherError::Usage("it gave another answer".to_owned())),
+        Answer::Done => Err(LauncherError::Usage("unexpected answer".to_owned())),
     }
 }
 

@@ -18,17 +18,17 @@ use crate::LauncherError;
 const KEPT_LINES: Duration = Duration::from_millis(700);
 const TICK: Duration = Duration::from_millis(100);
 
-/// What `backcast logs` takes.
+/// Options of `backcast logs`.
 #[derive(Debug, Args)]
 pub struct LogsConfig {
-    /// Of this node alone
+    /// Only this node
     node: Option<String>,
 
-    /// Go on with what comes, until Ctrl-C
+    /// Keep printing new lines, until Ctrl-C
     #[arg(long, short)]
     follow: bool,
 
-    /// Print JSON, an object a line
+    /// Print JSON, one object per line
     #[arg(long)]
     json: bool,
 

@@ -14,7 +14,7 @@ pub(crate) fn path(dataflow: &Dataflow, executable: &str) -> String {
 }
 
 /// As the first node is built, if cargo builds it. It joins the packages that
-/// are built together, for cargo builds what packages share anew for each set of
+/// are built together, for cargo builds what packages share again for each set of
 /// packages that share it differently.
 pub(crate) fn build(dataflow: &mut Dataflow, executable: &str) -> Vec<Command> {
     let Some(like) = dataflow.nodes.iter().find(|n| n.build.iter().any(is_cargo)) else {

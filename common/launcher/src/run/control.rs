@@ -22,7 +22,7 @@ use crate::LauncherError;
 /// The longest question, bytes.
 const MAX_QUESTION: u64 = 4096;
 /// How long a question may take to come, and its answer to be given and taken.
-const PATIENCE: Duration = Duration::from_secs(5);
+const TIMEOUT: Duration = Duration::from_secs(5);
 
 /// What can be asked.
 #[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize)]
@@ -62,7 +62,7 @@ pub struct Status {
     pub descriptor: String,
     /// How long it runs, seconds.
     pub uptime_s: u64,
-    /// A sentence on each node that the graph goes on without.
+    /// A sentence on each node that the graph continues without.
     pub given_up: Vec<String>,
     /// Its nodes, as the descriptor has them.
     pub nodes: Vec<NodeStatus>,
@@ -119,19 +119,19 @@ pub fn listen(path: &Path, waker: Waker) -> Result<Receiver<Asked>, LauncherErro
 }
 
 fn serve(mut stream: &UnixStream, asked: &Sender<Asked>, waker: &Waker) -> std::io::Result<()> {
-    stream.set_read_timeout(Some(PATIENCE))?;
-    stream.set_write_timeout(Some(PATIENCE))?;
+    stream.set_read_timeout(Some(TIMEOUT))?;
+    stream.set_write_timeout(Some(TIMEOUT))?;
     let mut line = String::new();
     BufReader::new(stream.take(MAX_QUESTION)).read_line(&mut line)?;
     let answer = match serde_json::from_str(&line) {
-        Err(error) => Answer::Refused(format!("this version does not understand: {error}")),
+        Err(error) => Answer::Refused(format!("this version does not know the request: {error}")),
         Ok(question) => {
             let (answer, answered) = channel();
             let busy = || Answer::Refused("the launcher does not answer".to_owned());
             match asked.send(Asked { question, answer }) {
                 Ok(()) => {
                     waker.wake();
-                    answered.recv_timeout(PATIENCE).unwrap_or_else(|_| busy())
+                    answered.recv_timeout(TIMEOUT).unwrap_or_else(|_| busy())
                 }
                 Err(_) => busy(),
             }
@@ -145,10 +145,10 @@ fn serve(mut stream: &UnixStream, asked: &Sender<Asked>, waker: &Waker) -> std::
 /// Asks the launcher that listens at `path`.
 ///
 /// # Errors
-/// Nobody listens, or the answer is none.
+/// Nobody listens, or the answer is invalid.
 pub fn ask(path: &Path, question: &Question) -> std::io::Result<Answer> {
     let stream = UnixStream::connect(path)?;
-    stream.set_read_timeout(Some(2 * PATIENCE))?;
+    stream.set_read_timeout(Some(2 * TIMEOUT))?;
     let mut text = serde_json::to_string(question)?;
     text.push('\n');
     (&stream).write_all(text.as_bytes())?;

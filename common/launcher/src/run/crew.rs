@@ -1,6 +1,6 @@
 //! The processes of the graph: started, watched, started again, stopped.
 //!
-//! A node that fails for good ends the run if the graph needs it; else the rest goes on
+//! A node that fails for good ends the run if the graph needs it; else the rest continues
 //! without it, and [`Crew::given_up`] says so.
 
 use std::{
@@ -44,7 +44,7 @@ pub struct Crew {
     /// Every thread that forwards output holds a copy.
     output_open: Option<Sender<()>>,
     output_closed: Receiver<()>,
-    /// A sentence on each node that the graph goes on without.
+    /// A sentence on each node that the graph continues without.
     given_up: Vec<String>,
 }
 
@@ -106,7 +106,7 @@ impl Crew {
         })
     }
 
-    /// Starts what is due and looks after what has ended. Says whether any
+    /// Starts what is due and looks after what has ended. Returns whether any
     /// process has ended since the last time.
     ///
     /// # Errors
@@ -123,7 +123,7 @@ impl Crew {
                 Ok(ended) => any_ended |= ended,
                 Err(error) if !member.essential => {
                     any_ended = true;
-                    let goes_on = format!("the graph goes on without {}", member.node.id);
+                    let goes_on = format!("the graph continues without {}", member.node.id);
                     let sentence = format!("{}; {goes_on}", with_causes(&error));
                     warn(&sentence);
                     self.given_up.push(sentence);
@@ -135,14 +135,14 @@ impl Crew {
     }
 
     /// A process reported on itself.
-    pub fn heard(&mut self, report: &HealthHeader, now: Instant) {
+    pub fn received(&mut self, report: &HealthHeader, now: Instant) {
         let is_it = |member: &&mut Member| match &member.state {
             State::Running(process) => process.pid().cast_unsigned() == report.pid,
             _ => false,
         };
         if let Some(member) = self.members.iter_mut().find(is_it) {
             let busy = NodeState::from_code(report.state) == Some(NodeState::Busy);
-            member.pulse.heard(busy, now);
+            member.pulse.received(busy, now);
         }
     }
 
@@ -155,7 +155,7 @@ impl Crew {
     }
 
     /// Ends a node in order, as its process is asked to, and starts it again: now, whatever
-    /// its policy says. One that has ended is started. Says whether there is such a node.
+    /// its policy says. One that has ended is started. Returns whether there is such a node.
     ///
     /// # Errors
     /// Its process cannot be signalled.
@@ -175,13 +175,13 @@ impl Crew {
     }
 
     /// No process could report.
-    pub fn excuse(&mut self, now: Instant) {
+    pub fn restart_timeout(&mut self, now: Instant) {
         for member in &mut self.members {
-            member.pulse.excuse(now);
+            member.pulse.restart_timeout(now);
         }
     }
 
-    /// A sentence on each node that failed for good and that the graph goes on without.
+    /// A sentence on each node that failed for good and that the graph continues without.
     pub fn given_up(&self) -> &[String] {
         &self.given_up
     }
@@ -213,9 +213,11 @@ impl Crew {
 
     /// The nodes that said with their exit code that they lost data, by themselves
     /// or when they were ended.
-    pub fn losers(&self) -> Vec<String> {
-        let losers = self.members.iter().filter(|member| member.lost_data);
-        losers.map(|member| member.node.id.clone()).collect()
+    pub fn nodes_with_data_loss(&self) -> Vec<String> {
+        let nodes_with_data_loss = self.members.iter().filter(|member| member.lost_data);
+        nodes_with_data_loss
+            .map(|member| member.node.id.clone())
+            .collect()
     }
 
     /// Sends `signal` to the processes of one executable; returns how many there
@@ -314,7 +316,7 @@ impl Member {
         if let AfterEnd::Restart(delay) = after {
             let id = &self.node.id;
             warn(&format!(
-                "{id} cannot be started, and is tried again: {source}"
+                "{id} cannot be started and will be retried: {source}"
             ));
             self.state = State::Due(now + delay);
             return Ok(());
@@ -328,7 +330,7 @@ impl Member {
         })
     }
 
-    /// Says whether the process has ended, after deciding what follows.
+    /// Returns whether the process has ended, after deciding what follows.
     fn look_after(&mut self, now: Instant) -> Result<bool, LauncherError> {
         let Some(status) = self.poll()? else {
             self.end_if_hung(now)?;
@@ -345,7 +347,7 @@ impl Member {
             AfterEnd::Done => State::Done,
             AfterEnd::Restart(delay) => {
                 let id = &self.node.id;
-                warn(&format!("{id} ended with {status} and is started again"));
+                warn(&format!("{id} ended with {status} and is restarted"));
                 State::Due(now + delay)
             }
             AfterEnd::Failed => {
@@ -385,10 +387,10 @@ impl Member {
         };
         let (id, seconds) = (&self.node.id, silent.as_secs());
         warn(&format!(
-            "{id} gave no sign of life for {seconds} s and is ended"
+            "{id} sent no heartbeat for {seconds} s and is killed"
         ));
         // Its end is seen later; until then it is not ended again.
-        self.pulse.excuse(now);
+        self.pulse.restart_timeout(now);
         let killed = process.signal(Signal::SIGKILL);
         killed.map_err(|error| not_supervised(&self.node, process.pid(), error))
     }
@@ -404,7 +406,7 @@ impl Member {
     }
 }
 
-/// Who did all that could be done, and lost data, would not do better anew.
+/// Who did all that could be done, and lost data, would not do better again.
 fn how_ended(status: ExitStatus) -> Ended {
     if status.success() || lost_data(status) {
         Ended::Well

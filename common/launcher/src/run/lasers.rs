@@ -1,6 +1,6 @@
 //! Several lasers in one graph: who sends which scans, and which the accumulator joins.
 //!
-//! Each `lms_reader` is told its name, and the accumulator in which order the lasers
+//! Each `lms_reader` gets its name, and the accumulator in which order the lasers
 //! are wired to it. What the descriptor says itself stays.
 
 use dataflow::{Dataflow, Input};
@@ -12,7 +12,7 @@ const LMS_READER: &str = "lms_reader";
 const SCANS: &str = "--scans";
 const LASER: &str = "--laser";
 
-/// Tells readers and accumulators of each other, where a graph has several lasers.
+/// Connects readers and accumulators if a graph has several lasers.
 pub(crate) fn name(dataflow: &mut Dataflow) {
     let sends_scans = |node: &&dataflow::Node| node.outputs.iter().any(|o| o == topic::Scan::NAME);
     let senders = dataflow.nodes.iter().filter(sends_scans);

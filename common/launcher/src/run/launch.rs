@@ -1,4 +1,4 @@
-//! The course of a run: check, build, start, watch, stop, sum up.
+//! The stages of a run: check, build, start, watch, stop, sum up.
 
 use std::{
     io,
@@ -61,7 +61,7 @@ const LAST_OUTPUT: Duration = Duration::from_millis(100);
 struct Course {
     end: End,
     /// Nodes that lost data, by their own account.
-    losers: Vec<String>,
+    nodes_with_data_loss: Vec<String>,
 }
 
 /// Why a run has ended in order.
@@ -124,11 +124,11 @@ pub fn run(config: &Config) -> Result<ExitCode, LauncherError> {
         let Err(LauncherError::Transport(TransportError::Vanished { .. })) = &outcome else {
             break outcome;
         };
-        // Nobody of the graph runs any more: all of it can begin anew.
+        // Nobody of the graph runs any more: all of it can begin again.
         if let Err(error) = clear(&graph) {
             break Err(error.into());
         }
-        say(LAUNCHER, "the whole graph is started again");
+        say(LAUNCHER, "the whole graph is restarted");
     };
     let cleared = clear(&graph);
     let finished = outcome
@@ -137,18 +137,18 @@ pub fn run(config: &Config) -> Result<ExitCode, LauncherError> {
     let summary_wanted = outcome.is_ok() || journal.report.any_answer();
     let summary = journal.finish(summary_wanted, (!finished).then_some(LAST_OUTPUT));
     // What came first says most.
-    let losers = outcome?.losers;
+    let nodes_with_data_loss = outcome?.nodes_with_data_loss;
     cleared?;
     let summary = summary?;
-    if !losers.is_empty() {
-        say(LAUNCHER, &format!("{} lost data", losers.join(", ")));
+    if !nodes_with_data_loss.is_empty() {
+        say(
+            LAUNCHER,
+            &format!("{} lost data", nodes_with_data_loss.join(", ")),
+        );
         return Ok(ExitCode::from(LOST_DATA));
     }
     if finished && lossless && summary.lost_data() {
-        say(
-            LAUNCHER,
-            "data was lost, though nothing may be at `--rate max`",
-        );
+        say(LAUNCHER, "data was lost, which `--rate max` does not allow");
         return Ok(ExitCode::from(LOST_DATA));
     }
     Ok(ExitCode::SUCCESS)
@@ -172,7 +172,7 @@ fn launch(
     health.state(NodeState::Ready)?;
     let save = Arc::new(AtomicBool::new(false));
     signal_hook::flag::register(SIGUSR1, Arc::clone(&save)).map_err(LauncherError::Signal)?;
-    let desk = Desk {
+    let control_port = ControlPort {
         questions: control::listen(&control_socket(name), graph.waker()?)?,
         graph: name.clone(),
         descriptor: descriptor.file.clone(),
@@ -180,33 +180,36 @@ fn launch(
     };
     let end = stay(
         &graph,
-        (&watch, &save, &desk),
+        (&watch, &save, &control_port),
         &mut crew,
         &mut health,
         journal,
     );
     if let Err(error) = &end {
-        // The console hears of it when all have ended, a recorder has to before.
+        // The console shows it when all have ended, a recorder has to before.
         log_in_graph(LogLevel::Error, &with_causes(error));
         graph.send_log();
     }
-    // That we stop is seen all the same where it cannot be told.
+    // That we stop is seen all the same where it cannot be notified.
     let _ = sd_notify::notify(&[NotifyState::Stopping]);
     let stopped = crew.stop();
     // Nodes that are stopped send a last report on their health.
-    let heard = watch.take(journal, |_| {});
+    let received = watch.take(journal, |_| {});
     let end = end?;
     stopped?;
-    heard?;
-    let losers = crew.losers();
-    Ok(Course { end, losers })
+    received?;
+    let nodes_with_data_loss = crew.nodes_with_data_loss();
+    Ok(Course {
+        end,
+        nodes_with_data_loss,
+    })
 }
 
-/// Supervises the crew and enters what is heard, until the end. Recorders are asked
+/// Supervises the crew and records what is received, until the end. Recorders are asked
 /// to save where `save` is set.
 fn stay(
     graph: &Graph,
-    (watch, save, desk): (&Watch, &AtomicBool, &Desk),
+    (watch, save, control_port): (&Watch, &AtomicBool, &ControlPort),
     crew: &mut Crew,
     health: &mut Health,
     journal: &mut Journal,
@@ -214,43 +217,43 @@ fn stay(
     let mut end = End::Interrupted;
     let mut last_progress = Instant::now();
     let mut last_cleanup = last_progress;
-    let mut told = 0;
+    let mut reported = 0;
     graph.run(&watch.inputs(), TICK, |_| {
         let now = Instant::now();
-        // What a source has sent is heard after its end has been seen.
+        // What a source has sent may be received after its end has been seen.
         let over = crew.is_over();
-        let heard = watch.take(journal, |health| crew.heard(health, now))?;
-        if heard.reader == Reader::Gone {
+        let received = watch.take(journal, |health| crew.received(health, now))?;
+        if received.reader == Reader::Gone {
             return Ok(Flow::Stop);
         }
-        if heard.answers || !over {
+        if received.answers || !over {
             last_progress = now;
         }
-        let patient = now - last_progress < LAST_ANSWERS;
-        if over && (journal.report.all_answered() || !patient) {
+        let may_wait = now - last_progress < LAST_ANSWERS;
+        if over && (journal.report.all_answered() || !may_wait) {
             end = End::Finished;
             return Ok(Flow::Stop);
         }
-        if desk.answer(crew, now)? == Flow::Stop {
+        if control_port.answer(crew, now)? == Flow::Stop {
             return Ok(Flow::Stop);
         }
         if save.swap(false, Ordering::Relaxed) && crew.signal(RECORDER, Signal::SIGUSR1)? == 0 {
-            warn("SIGUSR1 saves what a recorder keeps, but none runs");
+            warn("SIGUSR1 is for a recorder with --keep, but none is running");
         }
         if !shared_memory_has_room() {
             // Nobody can give a sign of life.
-            crew.excuse(now);
+            crew.restart_timeout(now);
         }
         if crew.tick(now)? || now - last_cleanup >= CLEANUP_PERIOD {
             graph.ensure_intact()?;
             graph.cleanup_dead_nodes();
             last_cleanup = now;
-            // Where a service manager has started us, it hears that we are at work.
+            // If a service manager has started us, it is notified that we run.
             let at_work = [NotifyState::Ready, NotifyState::Watchdog];
             sd_notify::notify(&at_work).map_err(LauncherError::Notify)?;
         }
-        if crew.given_up().len() > told {
-            told = crew.given_up().len();
+        if crew.given_up().len() > reported {
+            reported = crew.given_up().len();
             health.error(&crew.given_up().join("; "))?;
             health.state(NodeState::Degraded)?;
         }
@@ -261,14 +264,14 @@ fn stay(
 }
 
 /// Where other terminals ask the launcher.
-struct Desk {
+struct ControlPort {
     questions: Receiver<Asked>,
     graph: GraphName,
     descriptor: PathBuf,
     started: Instant,
 }
 
-impl Desk {
+impl ControlPort {
     /// Answers what was asked; says to stop where that was wanted.
     fn answer(&self, crew: &mut Crew, now: Instant) -> Result<Flow, LauncherError> {
         let mut flow = Flow::Continue;
@@ -347,7 +350,7 @@ fn foreign(path: PathBuf, source: io::Error) -> TransportError {
 fn clear(graph: &GraphName) -> Result<(), TransportError> {
     match remove_leftovers(graph) {
         Err(error @ TransportError::StillRunning { .. }) => {
-            say(LAUNCHER, &format!("shared memory is kept: {error}"));
+            say(LAUNCHER, &format!("cannot remove shared memory: {error}"));
             Ok(())
         }
         other => other,

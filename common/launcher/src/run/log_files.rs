@@ -1,4 +1,4 @@
-//! What the nodes log, as files: JSON lines, a file for each node, begun anew when one is
+//! What the nodes log, as files: JSON lines, a file for each node, begun again when one is
 //! full. A disk that takes no more costs lines, never the graph.
 
 use std::collections::BTreeMap;
@@ -55,10 +55,7 @@ impl LogFiles {
         let failed = self.try_write(line).err();
         if let (Some(error), false) = (&failed, self.failed) {
             let folder = self.folder.display();
-            say(
-                LAUNCHER,
-                &format!("lines are not logged in {folder}: {error}"),
-            );
+            say(LAUNCHER, &format!("cannot write logs in {folder}: {error}"));
         }
         self.failed = failed.is_some();
     }

@@ -1,4 +1,4 @@
-//! What `backcast run` takes on the command line.
+//! Options of `backcast run`.
 
 use std::{
     hash::{BuildHasher, Hasher, RandomState},
@@ -12,7 +12,7 @@ use transport::{GRAPH_VARIABLE, GraphName, TransportError};
 
 use crate::descriptor::DEFAULT_FILE;
 
-/// What `backcast run` takes.
+/// Options of `backcast run`.
 #[derive(Debug, Args)]
 pub struct Config {
     /// The graph's descriptor
@@ -34,8 +34,8 @@ impl Config {
 /// The options of `run`, which may also stand without the command.
 #[derive(Debug, Clone, Default, Args)]
 pub struct Options {
-    /// Replay this recording in place of whatever feeds the graph, a laser say, on its own
-    /// map if it holds one; several files are replayed as one
+    /// Replay this recording in place of the graph's laser, on its own map if it holds one;
+    /// several files are replayed as one
     #[arg(long, value_name = "FILE")]
     pub replay: Vec<PathBuf>,
 
@@ -48,12 +48,11 @@ pub struct Options {
     #[arg(long, value_name = "TOPIC", requires = "replay")]
     pub odom_topic: Option<String>,
 
-    /// Play so many times as fast as it was recorded, or `max`: wait for each
-    /// answer and lose nothing
+    /// Playback speed as a factor, or `max`: wait for each answer and lose nothing
     #[arg(long, value_name = "FACTOR|max")]
     pub rate: Option<Rate>,
 
-    /// Play the recording again and again, until Ctrl-C
+    /// Repeat the recording, until Ctrl-C
     #[arg(long = "loop")]
     pub repeat: bool,
 
@@ -77,25 +76,25 @@ pub struct Options {
     #[arg(long)]
     pub no_build: bool,
 
-    /// Leave out the web page to watch the graph
+    /// Do not start the web page
     #[arg(long)]
     pub no_monitor: bool,
 
-    /// Also show the graph live to Foxglove and Lichtblick, on ws://127.0.0.1:8765
+    /// Also show the graph live in Foxglove and Lichtblick, on ws://127.0.0.1:8765
     #[arg(long)]
     pub foxglove: bool,
 
-    /// The graph's name, by which other tools join it: 1 to 20 of a-z 0-9 - _
-    /// [default: $BACKCAST_GRAPH, or a name of its own]
+    /// The graph's name, by which other tools join it: 1 to 20 of a-z 0-9 - _ [default:
+    /// $BACKCAST_GRAPH, or a generated name]
     #[arg(long, value_name = "NAME", value_parser = GraphName::new)]
     pub graph: Option<GraphName>,
 
-    /// Also write what each node logs to NODE.jsonl in this folder, as JSON lines; of
-    /// each node the last 50 MB stay
+    /// Also write the log of each node to NODE.jsonl in this folder, as JSON lines; the
+    /// last 50 MB of each node are kept
     #[arg(long, value_name = "FOLDER")]
     pub log_folder: Option<PathBuf>,
 
-    /// Print JSON, an object a line; the last one holds the summary
+    /// Print JSON, one object per line; the last one is the summary
     #[arg(long)]
     pub json: bool,
 }
@@ -107,12 +106,12 @@ pub struct RecordOptions {
     #[arg(long, value_name = "FILE")]
     pub record: Option<PathBuf>,
 
-    /// With --record: keep the last so much time in memory, as 10m, and save it
-    /// when a pose is lost or the recorder gets SIGUSR1
+    /// With --record: keep only this much time in memory, as 10m, and save it when the
+    /// pose is lost or the recorder gets SIGUSR1
     #[arg(long, value_name = "TIME", requires = "record")]
     pub keep: Option<String>,
 
-    /// With --record: begin another file after so much time, as 10m
+    /// With --record: start a new file after this much time, as 10m
     #[arg(
         long,
         value_name = "TIME",
@@ -121,11 +120,11 @@ pub struct RecordOptions {
     )]
     pub split_time: Option<String>,
 
-    /// With --record: begin another file after so many megabytes
+    /// With --record: start a new file after this many megabytes
     #[arg(long, value_name = "MB", requires = "record", conflicts_with = "keep")]
     pub split_size: Option<String>,
 
-    /// With --record: also the intensity image, which is then computed
+    /// With --record: also record the intensity image, which is then computed
     #[arg(long, requires = "record")]
     pub record_field: bool,
 }
@@ -155,7 +154,7 @@ fn random() -> u32 {
 /// How fast a recording is played.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub enum Rate {
-    /// So many times as fast as it was recorded.
+    /// This many times as fast as it was recorded.
     Times(f64),
     /// As fast as answers come.
     Max,

@@ -1,10 +1,10 @@
 //! One process of a node, in a process group of its own.
 //!
 //! Signals go to the group, so that what a node starts ends with it. If the
-//! launcher dies, in whatever way, the kernel tells the process to end.
+//! launcher dies, in whatever way, the kernel ends the process.
 
 use std::{
-    io,
+    io::{self, IsTerminal},
     os::unix::process::CommandExt,
     path::{Path, PathBuf},
     process::{Child, Command, ExitStatus, Stdio},
@@ -21,7 +21,7 @@ use nix::{
     },
     unistd::{Pid, getpid, getppid},
 };
-use transport::{GRAPH_VARIABLE, GraphName};
+use transport::{GRAPH_VARIABLE, GraphName, node::LOG_FORMAT_VARIABLE};
 
 use super::console;
 
@@ -51,6 +51,10 @@ impl Process {
         open: &Sender<()>,
     ) -> io::Result<Self> {
         let mut command = Command::new(executable(node, folder));
+        // Lines on a terminal are short, of nodes too, whose standard error is a pipe.
+        if io::stderr().is_terminal() && std::env::var_os(LOG_FORMAT_VARIABLE).is_none() {
+            command.env(LOG_FORMAT_VARIABLE, "short");
+        }
         command
             .args(&node.args)
             .envs(node.env.iter().map(|(name, value)| (name, value)))
@@ -139,7 +143,7 @@ fn prepare_signals(command: &mut Command) {
         prctl::set_pdeathsig(Signal::SIGTERM)?;
         // SAFETY: to ignore a signal calls nothing.
         unsafe { signal(Signal::SIGUSR1, SigHandler::SigIgn) }?;
-        // A parent that died before the question was asked is not told of.
+        // A parent that died before the request is not signalled.
         if getppid() != parent {
             return Err(Errno::ESRCH.into());
         }

@@ -60,7 +60,7 @@ pub(crate) fn add(
         inputs: Vec::new(),
         outputs: Vec::new(),
         streams: Vec::new(),
-        // It goes on in another file.
+        // It continues in another file.
         restart: Restart::ON_FAILURE,
     };
     for source in &mut dataflow.nodes {

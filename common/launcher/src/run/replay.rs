@@ -79,7 +79,7 @@ fn replayer(dataflow: &mut Dataflow) -> Node {
         inputs,
         outputs: MEASUREMENTS.map(str::to_owned).into(),
         streams: Vec::new(),
-        // Started again it would begin anew.
+        // Started again it would begin again.
         restart: Restart::DEFAULT,
     }
 }

@@ -16,7 +16,7 @@ use super::{pairs::Pairs, summary::Summary, tracking::Tracking};
 /// months: some hours.
 const WINDOW: usize = 200_000;
 
-/// What was heard so far.
+/// What was received so far.
 pub(crate) struct Report {
     /// Of publishers that have ended since, and their restarts.
     earlier_scans: u64,
@@ -37,7 +37,7 @@ pub(crate) struct Report {
 }
 
 impl Report {
-    /// Nothing heard, of a graph that has a tracker or none.
+    /// Nothing received, of a graph that has a tracker or none.
     pub(crate) fn new(is_tracked: bool) -> Self {
         Report {
             earlier_scans: 0,
@@ -63,7 +63,7 @@ impl Report {
             && stamp.counter <= last.counter
             && stamp != last
         {
-            // The sender was started again and counts anew.
+            // The sender was started again and counts again.
             let sent = last.counter.saturating_add(1);
             self.earlier_scans = self.earlier_scans.saturating_add(sent);
         }
@@ -146,7 +146,7 @@ impl Report {
         };
         let scans = self.earlier_scans.saturating_add(newest);
         Summary {
-            // An answer proves its scan, should the scan itself not be heard.
+            // An answer proves its scan, should the scan itself not be received.
             scans: scans.max(self.answered).max(tracked),
             answered,
             searched: self.answered,

@@ -94,7 +94,7 @@ fn tracking_lines(tracking: &TrackingFigures) -> Vec<String> {
 
 fn accuracy_lines(figures: &Figures) -> Vec<String> {
     if figures.truths == 0 {
-        return vec!["truth      none was sent, so poses are not judged".to_owned()];
+        return vec!["truth      none received, so poses are not judged".to_owned()];
     }
     let error = |m, deg| format!("{} m, {} deg", number(m, 3), number(deg, 2));
     vec![
@@ -182,7 +182,7 @@ engine     p50 19.50 ms, p99 195.00 ms of it
 graph      p50 0.50 ms, p99 5.00 ms on top"
         );
         let unjudged = summary(&Accuracy::new(1)).text();
-        assert!(unjudged.contains("none was sent"), "{unjudged}");
+        assert!(unjudged.contains("none received"), "{unjudged}");
     }
 
     #[test]

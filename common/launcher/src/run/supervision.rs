@@ -11,13 +11,13 @@ use messages::{Topic, topic};
 
 use crate::LauncherError;
 
-/// The variable of a node's `env` that says whether the graph ends with it.
+/// The variable of a node's `env` that returns whether the graph ends with it.
 const ESSENTIAL: &str = "BACKCAST_ESSENTIAL";
 /// Those without which a robot is localized just as well.
 const ONLY_SHOW: [&str; 3] = ["foxglove_server", "monitor", "recorder"];
 
 /// Whether the graph ends when this node has failed for good: the descriptor says so
-/// with `BACKCAST_ESSENTIAL` in the node's `env`, or else its executable tells.
+/// with `BACKCAST_ESSENTIAL` in the node's `env`, or else its executable decides.
 ///
 /// # Errors
 /// The variable is neither `true` nor `false`.
@@ -46,7 +46,7 @@ pub enum Ended {
 /// What follows when a process has ended by itself.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum AfterEnd {
-    /// It is started again, so much later.
+    /// It is started again, this much later.
     Restart(Duration),
     /// It has done its work.
     Done,
@@ -128,7 +128,7 @@ pub struct Pulse {
 }
 
 impl Pulse {
-    /// Nothing heard yet.
+    /// Nothing received yet.
     pub fn new(timeout: Duration) -> Self {
         Pulse {
             timeout,
@@ -140,23 +140,23 @@ impl Pulse {
     /// Its process was started: who has reported before is expected to report again.
     pub fn started(&mut self, now: Instant) {
         self.busy = false;
-        self.excuse(now);
+        self.restart_timeout(now);
     }
 
     /// It reported.
-    pub fn heard(&mut self, busy: bool, now: Instant) {
+    pub fn received(&mut self, busy: bool, now: Instant) {
         self.last = Some(now);
         self.busy = busy;
     }
 
     /// It could not have reported.
-    pub fn excuse(&mut self, now: Instant) {
+    pub fn restart_timeout(&mut self, now: Instant) {
         if self.last.is_some() {
             self.last = Some(now);
         }
     }
 
-    /// For how long nothing was heard, if that is too long.
+    /// For how long nothing was received, if that is too long.
     pub fn missed_for(&self, now: Instant) -> Option<Duration> {
         let silent = now.saturating_duration_since(self.last?);
         (!self.busy && silent > self.timeout).then_some(silent)
@@ -213,7 +213,7 @@ mod tests {
             }
         }
 
-        /// The process ends after so many seconds.
+        /// The process ends after this many seconds.
         fn end_after(&mut self, seconds: u64, ended: Ended) -> AfterEnd {
             let worked = Duration::from_secs(seconds);
             self.now += worked;
@@ -269,7 +269,7 @@ mod tests {
     }
 
     #[test]
-    fn the_delay_doubles_up_to_the_longest_and_begins_anew_after_good_work() {
+    fn the_delay_doubles_up_to_the_longest_and_begins_again_after_good_work() {
         let mut delayed = Course::new(RestartPolicy::OnFailure, 0, 200);
         let mut delays = |seconds, times| -> Vec<u64> {
             let delay = |_| match delayed.end_after(seconds, Ended::Badly) {
@@ -290,15 +290,15 @@ mod tests {
         let mut pulse = Pulse::new(Duration::from_secs(15));
         pulse.started(at(0));
         assert_eq!(pulse.missed_for(at(100)), None, "it never reported");
-        pulse.heard(false, at(100));
+        pulse.received(false, at(100));
         assert_eq!(pulse.missed_for(at(115)), None);
         assert_eq!(pulse.missed_for(at(116)), Some(Duration::from_secs(16)));
-        pulse.heard(true, at(116));
+        pulse.received(true, at(116));
         assert_eq!(pulse.missed_for(at(1000)), None, "it is busy");
         pulse.started(at(1000));
         assert_eq!(pulse.missed_for(at(1014)), None);
         assert!(pulse.missed_for(at(1016)).is_some(), "anew, and silent");
-        pulse.excuse(at(1016));
+        pulse.restart_timeout(at(1016));
         assert_eq!(pulse.missed_for(at(1020)), None);
     }
 
@@ -333,7 +333,7 @@ mod tests {
     }
 
     #[test]
-    fn sources_are_told_by_what_they_send() {
+    fn sources_are_recognized_by_what_they_send() {
         let topics = dataflow::Topics {
             names: messages::topic::NAMES,
             shared: &[],

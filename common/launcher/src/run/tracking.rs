@@ -34,7 +34,7 @@ pub(crate) struct TrackingFigures {
 }
 
 impl Tracking {
-    /// Nothing heard. Errors and times keep the newest `window` values.
+    /// Nothing received. Errors and times keep the newest `window` values.
     pub(crate) fn new(window: usize) -> Self {
         Tracking {
             states: BTreeMap::new(),
@@ -45,7 +45,7 @@ impl Tracking {
         }
     }
 
-    /// Takes the pose of a scan, sent so many milliseconds after it.
+    /// Takes the pose of a scan, sent this many milliseconds after it.
     pub(crate) fn pose(&mut self, header: &PoseHeader, latency_ms: f64) {
         let state = TrackState::from_code(header.state);
         self.scans += 1;
@@ -69,7 +69,7 @@ impl Tracking {
         }
     }
 
-    /// The figures so far; none where no tracker was heard.
+    /// The figures so far; none if there is no tracker.
     pub(crate) fn figures(&self) -> Option<TrackingFigures> {
         let share = |count: u64| count as f64 / self.scans as f64;
         let states = self.states.iter();

@@ -5,7 +5,7 @@ use transport::{Graph, Input, Subscriber, TransportError};
 
 use super::{journal::Journal, output::Reader};
 
-/// The topics that the launcher hears.
+/// The topics that the launcher subscribes to.
 pub(crate) struct Watch {
     first_laser: Option<String>,
     scans: Subscriber<topic::Scan>,
@@ -19,7 +19,7 @@ pub(crate) struct Watch {
 
 /// What came of one look at the topics.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub(crate) struct Heard {
+pub(crate) struct Received {
     /// Any answer.
     pub answers: bool,
     /// Whether somebody reads them.
@@ -33,7 +33,7 @@ impl Watch {
     /// The graph refuses.
     ///
     /// `first_laser` is the one whose scans are answered, where there are several; what the
-    /// nodes log is heard where `logs` says so.
+    /// nodes log is received where `logs` says so.
     pub(crate) fn new(
         graph: &Graph,
         first_laser: Option<String>,
@@ -63,7 +63,7 @@ impl Watch {
         &self,
         journal: &mut Journal,
         mut on_health: impl FnMut(&HealthHeader),
-    ) -> Result<Heard, TransportError> {
+    ) -> Result<Received, TransportError> {
         let mut newest = None;
         while let Some(scan) = self.scans.receive()? {
             let laser = scan.header().laser;
@@ -81,20 +81,20 @@ impl Watch {
         while let Some(truth) = self.truths.receive()? {
             journal.report.truth(truth.header());
         }
-        let mut heard = Heard {
+        let mut received = Received {
             answers: false,
             reader: Reader::Reads,
         };
         while let Some(found) = self.hypotheses.receive()? {
-            heard.answers = true;
-            heard.reader = journal.answer(found.header(), found.items());
+            received.answers = true;
+            received.reader = journal.answer(found.header(), found.items());
         }
         // A pose follows the answer that it was made of.
         while let Some(pose) = self.poses.receive()? {
-            heard.answers = true;
+            received.answers = true;
             let reader = journal.pose(pose.header(), pose.items());
             if reader == Reader::Gone {
-                heard.reader = reader;
+                received.reader = reader;
             }
         }
         while let Some(health) = self.health.receive()? {
@@ -106,6 +106,6 @@ impl Watch {
                 journal.log(line.header(), line.items());
             }
         }
-        Ok(heard)
+        Ok(received)
     }
 }

@@ -5,7 +5,7 @@
 //! 18 and 19 of its header are 2): there the last messages may stand in a log of
 //! their own, `FILE-wal`, and readers agree in another, `FILE-shm`. So where there
 //! is a log with content, both are copied to a temporary folder and opened there;
-//! where there is none, the file is all there is, and SQLite is told that nobody
+//! where there is none, the file is all there is, and SQLite is set up to assume that nobody
 //! changes it. The same holds for the journal of a writer that was cut off.
 //! (<https://www.sqlite.org/wal.html>, section 5, and `immutable` in
 //! <https://www.sqlite.org/uri.html>.)

@@ -55,7 +55,7 @@ pub(super) fn of(laser: &Laser, mounting: &Mounting) -> Result<(f64, f64), Strin
     Ok((start + turned, step))
 }
 
-/// The step of so many beams over a field of view: an odd number of them has one at
+/// The step of this many beams over a field of view: an odd number of them has one at
 /// either end, of an even number the last one is missing.
 pub(super) fn step_over(view: f64, beams: usize) -> f64 {
     match beams {
@@ -153,12 +153,12 @@ mod tests {
     }
 
     #[test]
-    fn parameters_tell_the_field_of_view() {
+    fn parameters_show_the_field_of_view() {
         check(angles(201, Some(100.0), Some(0.5)), (-50.0, 0.5));
         check(angles(200, Some(100.0), Some(0.5)), (-50.0, 0.5));
         check(angles(1081, Some(270.0), None), (-135.0, 0.25));
         check(angles(360, Some(360.0), None), (-180.0, 1.0));
-        // The step tells whether the last beam is missing.
+        // The step shows whether the last beam is missing.
         check(angles(360, Some(179.5), Some(0.5)), (-89.75, 0.5));
         check(angles(1, Some(100.0), None), (-50.0, 100.0));
         check(angles(0, Some(100.0), None), (-50.0, 100.0));

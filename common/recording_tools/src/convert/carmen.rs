@@ -11,7 +11,7 @@
 //! | `PARAM` | name, value, and then no further words, or time, host, time in the log |
 //!
 //! Metres, radians and seconds; laser 1 is the front one, 2 the rear one. The old
-//! lines tell no angles. (CARMEN, `logger/readlog.c` and the notes that its logger
+//! lines have no angles. (CARMEN, `logger/readlog.c` and the notes that its logger
 //! writes at the head of each log.)
 
 use geometry::Pose;
@@ -34,19 +34,19 @@ pub(super) struct Laser {
     pub(super) kind: Kind,
     /// From 1, the front laser.
     pub(super) number: u8,
-    /// Where the line tells them.
+    /// If the line has them.
     pub(super) angles: Option<Angles>,
-    /// Readings of so much and more are no returns, where the line tells.
+    /// Readings of this much and more are no returns, if the line has it.
     pub(super) range_max_m: Option<f64>,
     /// One that is no number is NaN.
     pub(super) ranges: Vec<f32>,
-    /// Where the line tells them.
+    /// If the line has them.
     pub(super) poses: Option<Poses>,
     /// As the line says it, nanoseconds.
     pub(super) time_ns: i64,
 }
 
-/// What a line tells beside its readings; kinds that tell more are greater.
+/// What a line has besides its readings; kinds with more are greater.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
 pub(super) enum Kind {
     /// `RAWLASER1`: angles, and no poses.
@@ -109,7 +109,7 @@ pub(super) enum Fault {
 }
 
 impl Laser {
-    /// The name that its line has, as [`name_of`] tells it.
+    /// The name that its line has, as [`name_of`] finds it.
     pub(super) fn name(&self) -> String {
         name_of(self.kind, self.number)
     }
@@ -126,7 +126,7 @@ pub(super) fn name_of(kind: Kind, number: u8) -> String {
     }
 }
 
-/// Whether a line of this name is of a kind that logs of CARMEN have; used to tell
+/// Whether a line of this name is of a kind that logs of CARMEN have; used to distinguish
 /// such a log from other text.
 pub(super) fn is_known(name: &str) -> bool {
     matches!(name, "ODOM" | "PARAM" | "SYNC" | "TRUEPOS") || laser_named(name).is_some()

@@ -1,4 +1,4 @@
-//! What `backcast convert` does.
+//! The command `backcast convert`.
 
 use std::fs::File;
 use std::io::{BufWriter, Write};
@@ -19,12 +19,12 @@ use crate::RecordingToolsError;
 pub const NOTES: &str = "\
 .log, .clf and .txt are CARMEN's laser logs, which may be packed with gzip (.log.gz); .mcap is a
 recording with ROS 2 messages, .db3 (or a folder of such) a bag of rosbag2 in SQLite, of which all
-topics are converted. What a file holds decides where its name does not tell.
+topics are converted. The content decides if the name does not.
 
 Exit codes: 0 done, 1 failed or nothing to convert, which leaves no file, 2 wrong use, 3 done but
 something could not be read";
 
-/// What `backcast convert` takes.
+/// Options of `backcast convert`.
 #[derive(Debug, clap::Args)]
 pub struct Config {
     /// The file to read: .log, .clf, .txt, .mcap or .db3, or the folder of a bag
@@ -39,7 +39,7 @@ pub struct Config {
     #[arg(long)]
     truth: bool,
 
-    /// Readings of so much and more are no returns, metres, where the log does not say
+    /// Readings from this range on are no returns, metres, if the log does not say
     #[arg(long, value_name = "METRES", default_value_t = 80.0, value_parser = range)]
     range_max: f32,
 }
@@ -133,7 +133,7 @@ pub fn run(config: &Config) -> Result<ExitCode, RecordingToolsError> {
         (file::Kind::Recording, true) if is_bag(&config.from) => bag_to_recording,
         (file::Kind::Log, false) => return Err(no_conversion("log", &config.to)),
         (file::Kind::Recording, true) => {
-            // What cannot be read at all is told by what reads recordings.
+            // What cannot be read at all is reported by the code that reads recordings.
             Recording::open(&config.from)?;
             return Err(no_conversion(&ending(&config.from), &config.to));
         }
@@ -150,13 +150,13 @@ pub fn run(config: &Config) -> Result<ExitCode, RecordingToolsError> {
         });
     }
     unfinished.keep();
-    Ok(tell(&report, &config.to))
+    Ok(print_report(&report, &config.to))
 }
 
 fn no_conversion(from: &str, to: &Path) -> RecordingToolsError {
     let to = to.extension().unwrap_or_default().to_string_lossy();
     RecordingToolsError::Usage(format!(
-        "from .{from} to .{to} is no conversion; allowed are .log, .clf, .txt and .db3 to .mcap, \
+        "from .{from} to .{to} is not a conversion; allowed are .log, .clf, .txt and .db3 to .mcap, \
          and .mcap and .db3 to .log"
     ))
 }
@@ -166,7 +166,7 @@ fn ends_packed(path: &Path) -> bool {
         .is_some_and(|e| e.eq_ignore_ascii_case("gz"))
 }
 
-fn tell(report: &Report, to: &Path) -> ExitCode {
+fn print_report(report: &Report, to: &Path) -> ExitCode {
     let Report {
         scans, odometry, ..
     } = report;
@@ -187,7 +187,7 @@ fn tell(report: &Report, to: &Path) -> ExitCode {
     }
     if report.tally.missing_readings > 0 {
         say(&format!(
-            "{} readings are no numbers, and so many beams are missing",
+            "{} readings are not numbers, and their beams are missing",
             report.tally.missing_readings
         ));
     }
@@ -228,7 +228,7 @@ fn bag_to_recording(config: &Config, to: BufWriter<File>) -> Result<Report, Reco
     let mut writer = RecordingWriter::new(to, Packing::Zstd)?;
     let messages = recording::write_bag(&config.from, &mut writer)?;
     finish(writer, config)?;
-    // Read again, which also tells whether it can be.
+    // Read again, which also checks whether it can be.
     let recording = Recording::open(&config.to)?;
     let of = |kind| {
         let channels = recording.channels().filter(|c| c.kind == Some(kind));
@@ -262,7 +262,7 @@ impl Unfinished {
 impl Drop for Unfinished {
     fn drop(&mut self) {
         if let Some(path) = &self.0 {
-            // What made the conversion fail is told; this may fail for the same reason.
+            // What made the conversion fail is reported; this may fail for the same reason.
             let _ = std::fs::remove_file(path);
         }
     }

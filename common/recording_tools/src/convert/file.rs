@@ -1,7 +1,7 @@
 //! Which kind of file something is, and the lines of a log.
 //!
-//! Content decides where the ending does not tell, and whether a log is packed with
-//! gzip is told by content alone.
+//! Content decides if the ending does not, and whether a log is packed with
+//! gzip is detected from the content alone.
 
 use std::fs::File;
 use std::io::{self, BufRead, BufReader, Read};
@@ -22,7 +22,7 @@ const RECORDINGS: [&[u8]; 4] = [
     b"\x28\xb5\x2f\xfd",
 ];
 
-/// As much of a file is looked at to tell its kind.
+/// How much of a file is read to detect its kind.
 const HEAD_BYTES: u64 = 64 << 10;
 
 /// Longest line: 36000 readings and as many remissions of twelve digits come to less.
@@ -48,7 +48,7 @@ pub(super) fn kind(path: &Path) -> io::Result<Kind> {
         return Ok(Kind::Recording);
     }
     let mut head = Vec::new();
-    // A file that is cut within its head still tells by what is there.
+    // A file that is cut within its head is still detected by what is there.
     let read = open(path)?.take(HEAD_BYTES).read_to_end(&mut head);
     if head.is_empty() {
         read?;
@@ -146,7 +146,7 @@ mod tests {
     }
 
     #[test]
-    fn endings_and_contents_tell_the_kind() {
+    fn endings_and_contents_show_the_kind() {
         let folder = tempfile::tempdir().unwrap();
         let kind_of = |name: &str, content: &[u8]| {
             let path = folder.path().join(name);

@@ -2,7 +2,7 @@
 //!
 //! `carmen`, `read` and `write` are the text format, `parameters` and `angles` what a log says
 //! of its lasers beside their readings, `turning` which way their beams run (all pure);
-//! `file` tells kinds of files, `survey` reads a log for the first time, `to_recording`
+//! `file` detects kinds of files, `survey` reads a log for the first time, `to_recording`
 //! and `to_carmen` translate. Lines that are not converted are counted by kind (`tally`).
 
 mod angles;

@@ -12,10 +12,10 @@ use geometry::Pose;
 
 use super::carmen::Parameter;
 
-/// Field of view of so much and more is degrees: it is no turn's radians.
+/// Field of view of this much and more is degrees: it is no turn's radians.
 const MAX_RADIANS: f64 = TAU + 0.01;
 
-/// Steps of so much and more are degrees: 0.05 rad is three of them.
+/// Steps of this much and more are degrees: 0.05 rad is three of them.
 const MAX_STEP_RADIANS: f64 = 0.05;
 
 /// What is said of one laser; angles in radians.

@@ -134,7 +134,7 @@ impl<'a> Words<'a> {
         let word = self.next(what)?;
         let count = word.parse().ok().filter(|count| *count <= MAX_READINGS);
         let count: usize = count.ok_or_else(|| {
-            let reason = format!("{word:?} is no count of {what}; allowed: 0 to {MAX_READINGS}");
+            let reason = format!("{word:?} is not a count of {what}; allowed: 0 to {MAX_READINGS}");
             (Fault::Count, reason)
         })?;
         let mut values = Vec::new();
@@ -315,7 +315,7 @@ mod tests {
             refused("FLASER 99999999999 1"),
             is(
                 Fault::Count,
-                "\"99999999999\" is no count of readings; allowed: 0 to 36000"
+                "\"99999999999\" is not a count of readings; allowed: 0 to 36000"
             )
         );
         assert_eq!(

@@ -16,7 +16,7 @@ pub(super) struct Source {
     pub(super) frame: String,
     /// The parameter by which the laser is mounted upside down.
     flipped: Option<String>,
-    /// Whether its beams run the other way, as far as the scans tell.
+    /// Whether its beams run the other way, as far as the scans show.
     is_mirrored: Option<bool>,
     scans: u64,
     /// Beams of the first scan, and where its first and last one point, radians.

@@ -35,7 +35,7 @@ impl Survey {
             }
             Ok::<_, std::convert::Infallible>(())
         });
-        // What cannot be read is told by the second reading.
+        // What cannot be read is reported by the second pass.
         drop(read);
         survey
     }
@@ -61,7 +61,7 @@ impl Survey {
     }
 
     /// The kind of line that a laser's scans are taken from. CARMEN logs the same scan
-    /// as it comes and again with poses; the lines that tell more are taken, unless
+    /// as it comes and again with poses; the lines with more data are taken, unless
     /// they are the fewer by far.
     pub(super) fn kind_of(&self, number: u8) -> Option<Kind> {
         let of = |kind| self.scans.get(&(number, kind)).copied().unwrap_or_default();
@@ -73,7 +73,7 @@ impl Survey {
     }
 
     /// For a laser that is said to be mounted upside down: whether its beams run the
-    /// other way than the line says, or `None` where the scans do not tell.
+    /// other way than the line says, or `None` if the scans do not show it.
     pub(super) fn is_mirrored(&self, number: u8, kind: Kind) -> Option<bool> {
         self.turnings.get(&(number, kind))?.is_mirrored()
     }
@@ -84,7 +84,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn the_lines_that_tell_more_are_taken() {
+    fn the_lines_that_show_more_are_taken() {
         let raw = "RAWLASER1 0 -1 2 1 80 0 0 1 5 0 1.0 h 1\n";
         let robot = "ROBOTLASER1 0 -1 2 1 80 0 0 1 5 0 0 0 0 0 0 0 0 0 0 0 0 1.0 h 1\n";
         let old = "FLASER 1 5 0 0 0 0 0 0 1.0 h 1\n";

@@ -8,7 +8,7 @@ use super::carmen::{Broken, Fault};
 /// many as it has lines.
 const MAX_NAMES: usize = 100;
 
-/// Names of other kinds that are told, those with most lines first.
+/// Names of other kinds that are listed, those with most lines first.
 const SHOWN: usize = 6;
 
 /// Longest name that a kind may have.
@@ -122,7 +122,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn what_is_left_out_is_told_by_kind() {
+    fn what_is_left_out_is_reported_by_kind() {
         let mut tally = Tally::default();
         assert_eq!(tally.text(), None);
         let broken = |name: &str, fault| Broken {

@@ -182,7 +182,7 @@ impl<W: Write + Seek> Conversion<'_, W> {
         self.write(ODOM, ns, &Message::Odometry(Box::new(message)))
     }
 
-    /// Notes where a laser sits, by the first line that tells.
+    /// Notes where a laser sits, by the first line that has it.
     fn mount(
         &mut self,
         ns: i64,

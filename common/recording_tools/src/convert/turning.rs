@@ -2,7 +2,7 @@
 //! that its line says, or the other way.
 //!
 //! CARMEN's own driver reverses the readings of such a laser before anybody logs
-//! them (`laser/laser_ipc.c`); other programs log them as they come. The scans tell:
+//! them (`laser/laser_ipc.c`); other programs log them as they come. The scans show it:
 //! as the robot turns left, what it sees moves to the right.
 
 use super::carmen::Laser;
@@ -52,7 +52,7 @@ impl Turning {
         self.last = Some((yaw, laser.ranges.clone()));
     }
 
-    /// Whether the beams run the other way; `None` where the scans do not tell.
+    /// Whether the beams run the other way; `None` if the scans do not show it.
     pub(super) fn is_mirrored(&self) -> Option<bool> {
         if self.mirrored > 2 * self.as_logged {
             Some(true)
@@ -102,7 +102,7 @@ mod tests {
         }
     }
 
-    fn told(yaws: &[f64], is_mirrored: bool) -> Option<bool> {
+    fn is_turned(yaws: &[f64], is_mirrored: bool) -> Option<bool> {
         let mut turning = Turning::default();
         for &yaw in yaws {
             turning.note(&scan(yaw, is_mirrored), yaw, 1f64.to_radians());
@@ -111,21 +111,21 @@ mod tests {
     }
 
     #[test]
-    fn a_turning_robot_tells_which_way_beams_run() {
+    fn a_turning_robot_shows_which_way_beams_run() {
         for yaws in [[0.3, 0.4, 0.5], [0.5, 0.4, 0.3], [3.1, -3.1, -3.0]] {
-            assert_eq!(told(&yaws, true), Some(true), "{yaws:?}");
-            assert_eq!(told(&yaws, false), Some(false), "{yaws:?}");
+            assert_eq!(is_turned(&yaws, true), Some(true), "{yaws:?}");
+            assert_eq!(is_turned(&yaws, false), Some(false), "{yaws:?}");
         }
         // Small turns add up.
         let slow: Vec<f64> = (0..20).map(|i| 0.3 + 0.01 * f64::from(i)).collect();
-        assert_eq!(told(&slow, true), Some(true));
-        assert_eq!(told(&slow, false), Some(false));
+        assert_eq!(is_turned(&slow, true), Some(true));
+        assert_eq!(is_turned(&slow, false), Some(false));
     }
 
     #[test]
-    fn a_robot_that_stands_tells_nothing() {
-        assert_eq!(told(&[0.3, 0.3, 0.3], true), None);
-        assert_eq!(told(&[], true), None);
-        assert_eq!(told(&[0.0, 2.0], true), None);
+    fn a_robot_that_stands_shows_nothing() {
+        assert_eq!(is_turned(&[0.3, 0.3, 0.3], true), None);
+        assert_eq!(is_turned(&[], true), None);
+        assert_eq!(is_turned(&[0.0, 2.0], true), None);
     }
 }

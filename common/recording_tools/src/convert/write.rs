@@ -12,7 +12,7 @@ use super::carmen::{Odometry, Poses};
 pub(super) struct Scan {
     pub(super) angle_min: f64,
     pub(super) angle_increment: f64,
-    /// Readings of so much and more are no returns.
+    /// Readings of this much and more are no returns.
     pub(super) range_max_m: f64,
     pub(super) ranges: Vec<f32>,
     pub(super) poses: Poses,

@@ -9,11 +9,11 @@ use recording::{GROUND_TRUTH, Kind, Mounted, Recording};
 use ros::OccupancyGridMsg;
 use transport::with_causes;
 
-use super::ailment::Ailment;
 use super::delay::odometry_delay;
-use super::patient::{Farthest, Patient, Seen};
+use super::finding::Finding;
+use super::survey::{Farthest, Seen, Survey};
 
-/// A gap is worth a note from so many usual distances on.
+/// A gap is worth a note from this many usual distances on.
 const GAP_FACTOR: i64 = 5;
 
 /// Share of readings at exactly one value from which it is no distance.
@@ -23,32 +23,32 @@ const PILED_UP: f64 = 0.02;
 const MOSTLY_SILENT: f64 = 0.9;
 
 /// Everything that is found, the worst first.
-pub(super) fn all(recording: &Recording, patient: &Patient) -> Vec<Ailment> {
+pub(super) fn all(recording: &Recording, survey: &Survey) -> Vec<Finding> {
     let checks = [
         damage(recording),
-        undecodable(patient),
-        topics(recording, patient),
+        undecodable(survey),
+        topics(recording, survey),
         map(recording),
-        mount(recording, patient),
-        frames(patient),
-        stamps(patient),
-        gaps(patient),
-        scans(patient),
-        mended(patient),
-        truths(recording, patient),
+        mount(recording, survey),
+        frames(survey),
+        stamps(survey),
+        gaps(survey),
+        scans(survey),
+        mended(survey),
+        truths(recording, survey),
         order(recording),
         odometry_delay(recording),
     ];
-    let mut all: Vec<Ailment> = checks.into_iter().flatten().collect();
-    all.sort_by_key(|ailment| std::cmp::Reverse(ailment.severity));
+    let mut all: Vec<Finding> = checks.into_iter().flatten().collect();
+    all.sort_by_key(|finding| std::cmp::Reverse(finding.severity));
     all
 }
 
-fn damage(recording: &Recording) -> Vec<Ailment> {
+fn damage(recording: &Recording) -> Vec<Finding> {
     let damage = recording.damage().map(|damage| {
         let messages = recording.messages();
         let found = format!("{damage}; {messages} messages before that are readable");
-        Ailment::lost(match (recording.file_count(), recording.damage_error()) {
+        Finding::lost(match (recording.file_count(), recording.damage_error()) {
             (1, _) | (_, None) => found,
             // Of several files, the error names the one.
             (_, Some(error)) => error.to_string(),
@@ -57,44 +57,44 @@ fn damage(recording: &Recording) -> Vec<Ailment> {
     damage.into_iter().collect()
 }
 
-fn undecodable(patient: &Patient) -> Vec<Ailment> {
+fn undecodable(survey: &Survey) -> Vec<Finding> {
     let finding = |(topic, seen): (&String, &Seen)| {
         let reason = seen.first_reason.as_ref()?;
         let count = seen.undecodable;
-        Some(Ailment::lost(format!(
+        Some(Finding::lost(format!(
             "{topic}: {count} messages do not decode; the first: {reason}"
         )))
     };
-    patient.channels.iter().filter_map(finding).collect()
+    survey.channels.iter().filter_map(finding).collect()
 }
 
 /// Whether it is clear what is meant, and all is there that localizing needs.
-fn topics(recording: &Recording, patient: &Patient) -> Vec<Ailment> {
+fn topics(recording: &Recording, survey: &Survey) -> Vec<Finding> {
     let kinds = [Kind::Scan, Kind::Map, Kind::Odometry];
     let unclear = kinds
         .into_iter()
         .filter_map(|kind| recording.topic(kind).err());
-    let mut found: Vec<Ailment> = unclear.map(|e| Ailment::problem(with_causes(&e))).collect();
-    if patient.of_kind(Kind::Scan).next().is_none() {
-        found.push(Ailment::problem(
+    let mut found: Vec<Finding> = unclear.map(|e| Finding::problem(with_causes(&e))).collect();
+    if survey.of_kind(Kind::Scan).next().is_none() {
+        found.push(Finding::problem(
             "no laser scans: there is nothing to localize",
         ));
     }
-    if patient.of_kind(Kind::Map).next().is_none() {
-        found.push(Ailment::note("no map: commands need --map"));
+    if survey.of_kind(Kind::Map).next().is_none() {
+        found.push(Finding::note("no map: commands need --map"));
     }
     found
 }
 
 /// Whether the maps can be searched, and are those that the metadata names.
-fn map(recording: &Recording) -> Vec<Ailment> {
+fn map(recording: &Recording) -> Vec<Finding> {
     let maps = match recording.maps() {
         Ok(maps) => maps,
         // It is said with the topics.
         Err(_) => return Vec::new(),
     };
     let (mut seen, mut refused, mut newest) = (0, Vec::new(), None);
-    // Those that do not decode are told with the other messages.
+    // Those that do not decode are reported with the other messages.
     for (_, map) in maps.flatten() {
         seen += 1;
         match usable(&map) {
@@ -106,10 +106,10 @@ fn map(recording: &Recording) -> Vec<Ailment> {
     if let Some(first) = refused.first() {
         let count = refused.len();
         found.push(match newest {
-            Some(_) => Ailment::note(format!(
-                "{count} of {seen} maps cannot be searched and are left out; of the first: {first}"
+            Some(_) => Finding::note(format!(
+                "{count} of {seen} maps cannot be searched and are ignored; of the first: {first}"
             )),
-            None => Ailment::problem(format!("no map can be searched: {first}")),
+            None => Finding::problem(format!("no map can be searched: {first}")),
         });
     }
     found.extend(newest.and_then(|grid| misnamed(recording, &grid, seen)));
@@ -123,7 +123,7 @@ fn usable(map: &OccupancyGridMsg) -> Result<OccupancyGrid, String> {
     Ok(grid)
 }
 
-fn misnamed(recording: &Recording, grid: &OccupancyGrid, maps: u64) -> Option<Ailment> {
+fn misnamed(recording: &Recording, grid: &OccupancyGrid, maps: u64) -> Option<Finding> {
     let found = format!("{:016x}", grid.id());
     let mut named = recording.metadata().iter().filter_map(|record| {
         let is_map = record.name == "backcast/map";
@@ -132,12 +132,12 @@ fn misnamed(recording: &Recording, grid: &OccupancyGrid, maps: u64) -> Option<Ai
     // A map that was changed while recording is named, too.
     let other = named.find(|id| **id != found)?;
     (maps == 1)
-        .then(|| Ailment::problem(format!("the map is {found}, but the metadata says {other}")))
+        .then(|| Finding::problem(format!("the map is {found}, but the metadata says {other}")))
 }
 
 /// Whether the place of each laser on the robot is known.
-fn mount(recording: &Recording, patient: &Patient) -> Vec<Ailment> {
-    let lasers: BTreeSet<&String> = patient
+fn mount(recording: &Recording, survey: &Survey) -> Vec<Finding> {
+    let lasers: BTreeSet<&String> = survey
         .of_kind(Kind::Scan)
         .flat_map(|(_, seen)| &seen.frames)
         .collect();
@@ -147,63 +147,61 @@ fn mount(recording: &Recording, patient: &Patient) -> Vec<Ailment> {
             Ok(Mounted { mount, notes }) => {
                 let is_explained = notes.iter().any(|note| note.contains(laser.as_str()));
                 if mount.is_none() && !is_explained {
-                    found.push(Ailment::note(format!(
+                    found.push(Finding::note(format!(
                         "/tf_static does not say where {laser:?} sits on the robot: poses are of \
                          the laser"
                     )));
                 }
                 said.extend(notes);
             }
-            Err(error) => found.push(Ailment::problem(with_causes(&error))),
+            Err(error) => found.push(Finding::problem(with_causes(&error))),
         }
     }
-    found.extend(said.into_iter().map(Ailment::note));
+    found.extend(said.into_iter().map(Finding::note));
     found
 }
 
 /// Whether frames are named, one to a channel, and poses share the map's.
-fn frames(patient: &Patient) -> Vec<Ailment> {
+fn frames(survey: &Survey) -> Vec<Finding> {
     let mut found = Vec::new();
-    for (topic, seen) in &patient.channels {
+    for (topic, seen) in &survey.channels {
         if seen
             .frames
             .iter()
             .chain(&seen.children)
             .any(String::is_empty)
         {
-            found.push(Ailment::problem(format!(
+            found.push(Finding::problem(format!(
                 "{topic}: a message names no frame"
             )));
         }
         if seen.frames.len() > 1 && seen.kind != Some(Kind::StaticTransforms) {
             let frames: Vec<&str> = seen.frames.iter().map(String::as_str).collect();
             let frames = frames.join(", ");
-            found.push(Ailment::problem(format!(
+            found.push(Finding::problem(format!(
                 "{topic}: several frames, {frames}"
             )));
         }
     }
-    let maps = patient
-        .of_kind(Kind::Map)
-        .flat_map(|(_, seen)| &seen.frames);
+    let maps = survey.of_kind(Kind::Map).flat_map(|(_, seen)| &seen.frames);
     let maps: BTreeSet<&String> = maps.filter(|frame| !frame.is_empty()).collect();
-    if let Some(truths) = patient.channels.get(GROUND_TRUTH)
+    if let Some(truths) = survey.channels.get(GROUND_TRUTH)
         && let Some(other) = truths.frames.iter().find(|frame| !maps.contains(frame))
         && let Some(map) = maps.first()
     {
-        found.push(Ailment::problem(format!(
+        found.push(Finding::problem(format!(
             "{GROUND_TRUTH} is in frame {other:?}, the map in {map:?}"
         )));
     }
-    let lasers = patient
+    let lasers = survey
         .of_kind(Kind::Scan)
         .flat_map(|(_, seen)| &seen.frames);
-    let known = patient.of_kind(Kind::StaticTransforms);
+    let known = survey.of_kind(Kind::StaticTransforms);
     let known = known.flat_map(|(_, seen)| seen.frames.iter().chain(&seen.children));
     let known: BTreeSet<&String> = known.chain(lasers).collect();
-    for (topic, seen) in patient.of_kind(Kind::Odometry) {
+    for (topic, seen) in survey.of_kind(Kind::Odometry) {
         if let Some(child) = seen.children.iter().find(|child| !known.contains(child)) {
-            found.push(Ailment::note(format!(
+            found.push(Finding::note(format!(
                 "{topic} moves {child:?}, which neither a scan nor /tf_static names"
             )));
         }
@@ -212,22 +210,22 @@ fn frames(patient: &Patient) -> Vec<Ailment> {
 }
 
 /// Whether stamps rise from message to message.
-fn stamps(patient: &Patient) -> Vec<Ailment> {
+fn stamps(survey: &Survey) -> Vec<Finding> {
     let mut found = Vec::new();
-    for (topic, seen) in &patient.channels {
+    for (topic, seen) in &survey.channels {
         let count = |is: fn(i64, i64) -> bool| {
             let pairs = seen.stamps_ns.windows(2);
             pairs.filter(|pair| is(pair[0], pair[1])).count()
         };
         let back = count(|before, after| after < before);
         if back > 0 {
-            found.push(Ailment::problem(format!(
+            found.push(Finding::problem(format!(
                 "{topic}: stamps go back {back} times"
             )));
         }
         let same = count(|before, after| after == before);
         if same > 0 && seen.kind == Some(Kind::Scan) {
-            found.push(Ailment::problem(format!(
+            found.push(Finding::problem(format!(
                 "{topic}: {same} scans have the stamp before"
             )));
         }
@@ -235,7 +233,7 @@ fn stamps(patient: &Patient) -> Vec<Ailment> {
     found
 }
 
-fn gaps(patient: &Patient) -> Vec<Ailment> {
+fn gaps(survey: &Survey) -> Vec<Finding> {
     let finding = |(topic, seen): (&String, &Seen)| {
         let steps = seen
             .stamps_ns
@@ -250,20 +248,20 @@ fn gaps(patient: &Patient) -> Vec<Ailment> {
             .count();
         let (usual, longest) = (usual as f64 * 1e-9, longest as f64 * 1e-9);
         (gaps > 0).then(|| {
-            Ailment::note(format!(
+            Finding::note(format!(
                 "{topic}: {gaps} gaps, the longest of {longest:.2} s where {usual:.2} s is usual"
             ))
         })
     };
-    patient.of_kind(Kind::Scan).filter_map(finding).collect()
+    survey.of_kind(Kind::Scan).filter_map(finding).collect()
 }
 
-fn scans(patient: &Patient) -> Vec<Ailment> {
+fn scans(survey: &Survey) -> Vec<Finding> {
     let mut found = Vec::new();
-    for (topic, seen) in patient.of_kind(Kind::Scan) {
+    for (topic, seen) in survey.of_kind(Kind::Scan) {
         if let Some(oddity) = &seen.first_oddity {
             let odd = seen.odd_scans;
-            found.push(Ailment::problem(format!(
+            found.push(Finding::problem(format!(
                 "{topic}: {odd} odd scans; of the first {oddity}"
             )));
         }
@@ -271,7 +269,7 @@ fn scans(patient: &Patient) -> Vec<Ailment> {
         let share = seen.silent as f64 / seen.readings.max(1) as f64;
         if share > MOSTLY_SILENT {
             let percent = 100.0 * share;
-            found.push(Ailment::note(format!(
+            found.push(Finding::note(format!(
                 "{topic}: {percent:.0} % of the readings say nothing"
             )));
         }
@@ -281,7 +279,7 @@ fn scans(patient: &Patient) -> Vec<Ailment> {
 
 /// Whether many readings are exactly the farthest one: so some drivers say that
 /// nothing came back.
-fn pile(topic: &str, seen: &Seen) -> Option<Ailment> {
+fn pile(topic: &str, seen: &Seen) -> Option<Finding> {
     let Farthest {
         range_m,
         count,
@@ -298,44 +296,44 @@ fn pile(topic: &str, seen: &Seen) -> Option<Ailment> {
              are no returns"
         ),
     };
-    (share >= PILED_UP).then(|| Ailment::note(format!("{what}, {reason}")))
+    (share >= PILED_UP).then(|| Finding::note(format!("{what}, {reason}")))
 }
 
 /// What had to be mended to be used.
-fn mended(patient: &Patient) -> Vec<Ailment> {
+fn mended(survey: &Survey) -> Vec<Finding> {
     let finding = |(topic, seen): (&String, &Seen)| {
         let first = seen.first_mend?;
         let count = seen.mended;
-        Some(Ailment::note(format!(
+        Some(Finding::note(format!(
             "{topic}: {count} orientations are mended; of the first, {first}"
         )))
     };
-    patient.channels.iter().filter_map(finding).collect()
+    survey.channels.iter().filter_map(finding).collect()
 }
 
 /// Whether true poses are sound and belong to scans.
-fn truths(recording: &Recording, patient: &Patient) -> Vec<Ailment> {
+fn truths(recording: &Recording, survey: &Survey) -> Vec<Finding> {
     let truths = match recording.ground_truths() {
         Ok(truths) => truths,
-        Err(error) => return vec![Ailment::problem(with_causes(&error))],
+        Err(error) => return vec![Finding::problem(with_causes(&error))],
     };
-    let scans = patient
+    let scans = survey
         .of_kind(Kind::Scan)
         .flat_map(|(_, seen)| &seen.stamps_ns);
     let scans: BTreeSet<&i64> = scans.collect();
     match truths.keys().filter(|stamp| !scans.contains(stamp)).count() {
         0 => Vec::new(),
-        orphans => vec![Ailment::note(format!(
+        orphans => vec![Finding::note(format!(
             "{orphans} of {} true poses have the stamp of no scan",
             truths.len()
         ))],
     }
 }
 
-fn order(recording: &Recording) -> Vec<Ailment> {
+fn order(recording: &Recording) -> Vec<Finding> {
     match recording.parts().map(|part| part.unsorted).sum() {
         0 => Vec::new(),
-        unsorted => vec![Ailment::note(format!(
+        unsorted => vec![Finding::note(format!(
             "{unsorted} messages stand in the file behind later ones; readers sort them"
         ))],
     }

@@ -1,4 +1,4 @@
-//! What `backcast doctor` does.
+//! The command `backcast doctor`.
 
 use std::path::PathBuf;
 use std::process::ExitCode;
@@ -8,16 +8,16 @@ use offline::TopicOptions;
 use recording::Recording;
 use serde::Serialize;
 
-use super::ailment::{Ailment, Severity};
 use super::checks;
-use super::patient::Patient;
+use super::finding::{Finding, Severity};
+use super::survey::Survey;
 use crate::RecordingToolsError;
 
 /// What stands below the options.
 pub const NOTES: &str = "\
 Exit codes: 0 nothing but notes, 1 there are problems, 2 wrong use, 3 data was lost";
 
-/// What `backcast doctor` takes.
+/// Options of `backcast doctor`.
 #[derive(Debug, clap::Args)]
 pub struct Config {
     /// The recordings, each by itself: MCAP files, or bags of rosbag2 (their
@@ -37,7 +37,7 @@ pub struct Config {
 #[derive(Debug, Serialize)]
 struct Report {
     recording: String,
-    findings: Vec<Ailment>,
+    findings: Vec<Finding>,
 }
 
 /// Examines one file after another.
@@ -49,8 +49,8 @@ pub fn run(config: &Config) -> Result<ExitCode, RecordingToolsError> {
     for path in &config.recordings {
         let mut recording = Recording::open(path)?;
         config.topics.apply(&mut recording)?;
-        let findings = checks::all(&recording, &Patient::of(&recording));
-        let severity = findings.iter().map(|ailment| ailment.severity).max();
+        let findings = checks::all(&recording, &Survey::of(&recording));
+        let severity = findings.iter().map(|finding| finding.severity).max();
         worst = worst.max(severity.unwrap_or(Severity::Note));
         let report = Report {
             recording: path.display().to_string(),
@@ -76,6 +76,6 @@ fn text(report: &Report) -> String {
     if findings.is_empty() {
         return format!("{recording}: sound\n");
     }
-    let lines = findings.iter().map(|ailment| format!("{ailment}\n"));
+    let lines = findings.iter().map(|finding| format!("{finding}\n"));
     format!("{recording}:\n{}", lines.collect::<String>())
 }

@@ -7,7 +7,7 @@ use geometry::Pose;
 use offline::{Options, Session, each_odometry};
 use recording::{Kind, Recording};
 
-use super::ailment::Ailment;
+use super::finding::Finding;
 use crate::RecordingToolsError;
 
 /// Scans that are located at most: a minute of a laser of 8 Hz, seconds of computing.
@@ -25,11 +25,11 @@ struct Line {
 }
 
 /// Where scans take time, whether the odometry's stamps fit them.
-pub(super) fn odometry_delay(recording: &Recording) -> Vec<Ailment> {
+pub(super) fn odometry_delay(recording: &Recording) -> Vec<Finding> {
     let found = estimate(recording).ok().flatten();
     let note = found.filter(|delay_s| delay_s.abs() >= WORTH_A_NOTE_S).map(|delay_s| {
         let way = if delay_s > 0.0 { "leads" } else { "lags behind" };
-        Ailment::note(format!(
+        Finding::note(format!(
             "odometry {way} the laser by about {:.2} s: --odometry-delay-s={delay_s:.2} makes up \
              for it",
             delay_s.abs()
@@ -38,7 +38,7 @@ pub(super) fn odometry_delay(recording: &Recording) -> Vec<Ailment> {
     note.into_iter().collect()
 }
 
-/// What is to be added to the odometry's stamps, seconds, if the scans tell.
+/// What is to be added to the odometry's stamps, seconds, if the scans show it.
 ///
 /// # Errors
 /// The recording has no map, or cannot be read: that is said elsewhere.

@@ -1,4 +1,4 @@
-//! What `backcast info` does.
+//! The command `backcast info`.
 
 use std::path::PathBuf;
 use std::process::ExitCode;
@@ -11,7 +11,7 @@ use super::contents::Contents;
 use super::text;
 use crate::RecordingToolsError;
 
-/// What `backcast info` takes.
+/// Options of `backcast info`.
 #[derive(Debug, clap::Args)]
 pub struct Config {
     /// The recordings, each by itself: MCAP files, or bags of rosbag2 (their

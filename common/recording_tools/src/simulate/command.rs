@@ -1,4 +1,4 @@
-//! What `backcast simulate` does: reads the map, drives, and records.
+//! The command `backcast simulate`: reads the map, drives, and records.
 
 use std::path::PathBuf;
 use std::process::ExitCode;
@@ -15,18 +15,18 @@ use crate::RecordingToolsError;
 
 const SECOND_NS: i64 = 1_000_000_000;
 
-/// What `backcast simulate` takes.
+/// Options of `backcast simulate`.
 #[derive(Debug, clap::Args)]
 pub struct Config {
     /// The map, a YAML file as map_server reads it
     #[arg(long, value_name = "FILE")]
     map: PathBuf,
 
-    /// The way of the robot's base, corners in metres in the map: "X,Y X,Y …"
+    /// The path of the robot's base, corners in metres in the map: "X,Y X,Y …"
     #[arg(long, value_name = "CORNERS", allow_hyphen_values = true)]
     path: Path,
 
-    /// The recording that is written, an MCAP file
+    /// The recording to write, an MCAP file
     #[arg(long, value_name = "FILE")]
     out: PathBuf,
 

@@ -54,7 +54,7 @@ impl Frames {
     }
 
     /// Takes a scan's header; gives all mounts where its own is new.
-    pub(super) fn hear_scan(&mut self, scan: &ScanHeader, stamp: Time) -> Option<TfMessage> {
+    pub(super) fn on_scan(&mut self, scan: &ScanHeader, stamp: Time) -> Option<TfMessage> {
         let frame = scan.frame.as_str();
         let mount =
             (scan.mount_known != 0).then(|| planar::as_recorded(scan.base_from_laser.into()));
@@ -79,7 +79,7 @@ impl Frames {
     }
 
     /// Takes odometry; gives the robot's place in its frame.
-    pub(super) fn hear_odometry(&mut self, odometry: &Odometry, stamp: Time) -> TfMessage {
+    pub(super) fn on_odometry(&mut self, odometry: &Odometry, stamp: Time) -> TfMessage {
         if self.odometry.len() == KEPT {
             self.odometry.pop_front();
         }
@@ -104,7 +104,7 @@ impl Frames {
         let map_from_robot = poses::robot(header, best);
         let odometry = self.odometry_at(header.stamp.measured_ns);
         let transform = match odometry {
-            // Its frame is the laser's, or the mount tells how the two lie.
+            // Its frame is the laser's, or the mount relates the two.
             Some(odometry) if mount.is_some() || odometry.child_frame.as_str() == laser.frame => {
                 let (_, odom_from_robot) = self.robot_in(odometry);
                 let map_from_odom = map_from_robot.then(odom_from_robot.inverse());
@@ -256,11 +256,11 @@ mod tests {
     fn without_odometry_the_map_holds_the_robot() {
         let mut frames = Frames::new("map", "base_link");
         assert_eq!(localized(&frames, false, Verdict::Unique), "");
-        assert_eq!(shown(frames.hear_scan(&scan(false), Time::default())), "");
+        assert_eq!(shown(frames.on_scan(&scan(false), Time::default())), "");
         assert_eq!(localized(&frames, false, Verdict::Unique), "map->laser 10");
-        let mounts = frames.hear_scan(&scan(true), Time::default());
+        let mounts = frames.on_scan(&scan(true), Time::default());
         assert_eq!(shown(mounts), "base_link->laser 0.5");
-        assert_eq!(shown(frames.hear_scan(&scan(true), Time::default())), "");
+        assert_eq!(shown(frames.on_scan(&scan(true), Time::default())), "");
         assert_eq!(
             localized(&frames, true, Verdict::Unique),
             "map->base_link 9.5"
@@ -271,12 +271,12 @@ mod tests {
     #[test]
     fn with_odometry_the_map_holds_its_frame() {
         let mut frames = Frames::new("map", "base_link");
-        frames.hear_scan(&scan(true), Time::default());
-        let base = frames.hear_odometry(&odometry("base_link", 2.0), Time::default());
+        frames.on_scan(&scan(true), Time::default());
+        let base = frames.on_odometry(&odometry("base_link", 2.0), Time::default());
         assert_eq!(shown(Some(base)), "odom->base_link 2");
         assert_eq!(localized(&frames, true, Verdict::Unique), "map->odom 7.5");
         // The laser of the odometry hangs below the base already.
-        let laser = frames.hear_odometry(&odometry("laser", 2.0), Time::default());
+        let laser = frames.on_odometry(&odometry("laser", 2.0), Time::default());
         assert_eq!(shown(Some(laser)), "odom->base_link 1.5");
         assert_eq!(localized(&frames, true, Verdict::Unique), "map->odom 8");
     }
@@ -284,17 +284,17 @@ mod tests {
     #[test]
     fn where_nobody_knows_how_laser_and_base_lie_neither_is_moved() {
         let mut frames = Frames::new("map", "base_link");
-        frames.hear_scan(&scan(false), Time::default());
-        frames.hear_odometry(&odometry("base_link", 2.0), Time::default());
+        frames.on_scan(&scan(false), Time::default());
+        frames.on_odometry(&odometry("base_link", 2.0), Time::default());
         assert_eq!(localized(&frames, false, Verdict::Unique), "map->laser 10");
-        frames.hear_odometry(&odometry("laser", 2.0), Time::default());
+        frames.on_odometry(&odometry("laser", 2.0), Time::default());
         assert_eq!(localized(&frames, false, Verdict::Unique), "map->odom 8");
     }
 
     #[test]
     fn the_tracker_says_where_the_map_lies_as_long_as_it_believes_a_place() {
         let mut frames = Frames::new("map", "base_link");
-        frames.hear_scan(&scan(true), Time::default());
+        frames.on_scan(&scan(true), Time::default());
         let mut header = PoseHeader {
             map_from_base: at(9.5),
             map_from_odom: at(7.0),
@@ -312,7 +312,7 @@ mod tests {
         header.state = TrackState::Lost as u32;
         assert_eq!(shown_of(&header), "");
         header.state = TrackState::Unique as u32;
-        frames.hear_odometry(&odometry("base_link", 2.0), Time::default());
+        frames.on_odometry(&odometry("base_link", 2.0), Time::default());
         let shown_of = |header: &PoseHeader| shown(frames.tracked(header, Time::default()));
         assert_eq!(shown_of(&header), "", "the base hangs on the odometry");
     }

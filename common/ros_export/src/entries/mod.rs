@@ -50,7 +50,7 @@ pub struct Entries {
     waiting_map: Option<OccupancyGridMsg>,
     waiting_health: VecDeque<(HealthHeader, String)>,
     waiting_log: VecDeque<(LogHeader, String)>,
-    /// Whether a tracker was heard.
+    /// Whether there is a tracker.
     is_tracked: bool,
     made: Vec<Entry>,
 }
@@ -83,7 +83,7 @@ impl Entries {
     /// If its stamp is no time of ROS, or CDR cannot say it.
     pub fn scan(&mut self, scan: &ScanHeader, ranges: &[f32]) -> Result<(), TranscriptError> {
         let at = self.measured(scan.stamp, topic::Scan::NAME)?;
-        if let Some(mounts) = self.frames.hear_scan(scan, at.stamp) {
+        if let Some(mounts) = self.frames.on_scan(scan, at.stamp) {
             self.latched(topics::TF_STATIC, at.ns, &mounts)?;
         }
         let message = measurements::scan(at.stamp, scan, ranges);
@@ -99,7 +99,7 @@ impl Entries {
     /// If its stamp is no time of ROS, or CDR cannot say it.
     pub fn odometry(&mut self, odometry: &Odometry) -> Result<(), TranscriptError> {
         let at = self.measured(odometry.stamp, topic::OdometryTopic::NAME)?;
-        let transform = self.frames.hear_odometry(odometry, at.stamp);
+        let transform = self.frames.on_odometry(odometry, at.stamp);
         self.message(topics::TF, at.ns, &transform)?;
         let message = measurements::odometry(at.stamp, odometry);
         self.message(topics::ODOM, at.ns, &message)
@@ -241,7 +241,7 @@ impl Entries {
     /// Takes a node's report, at the host's time `now_ns`.
     ///
     /// # Errors
-    /// If the time of the measurements is none of ROS, or CDR cannot say it.
+    /// If the time of the measurements is not one of ROS, or CDR cannot say it.
     pub fn health(
         &mut self,
         report: &HealthHeader,
@@ -258,7 +258,7 @@ impl Entries {
     /// Takes a line of a node's log, which stands at the time when it was written.
     ///
     /// # Errors
-    /// If the time of the measurements is none of ROS, or CDR cannot say it.
+    /// If the time of the measurements is not one of ROS, or CDR cannot say it.
     pub fn log(&mut self, line: &LogHeader, text: &[u8]) -> Result<(), TranscriptError> {
         wait(&mut self.waiting_log, *line, text);
         match self.clock_ns(line.written_ns) {
@@ -271,7 +271,7 @@ impl Entries {
     /// `wall_ns`, nanoseconds since 1970.
     ///
     /// # Errors
-    /// If the time of the measurements is none of ROS, or CDR cannot say it.
+    /// If the time of the measurements is not one of ROS, or CDR cannot say it.
     pub fn finish(&mut self, wall_ns: i64) -> Result<(), TranscriptError> {
         self.release(wall_ns)
     }
@@ -283,7 +283,7 @@ impl Entries {
         Some(newest.measured_ns.saturating_add(since_ns))
     }
 
-    /// Checks a measurement's stamp, and lets go of what waited for it.
+    /// Checks a measurement's stamp, and drops what waited for it.
     fn measured(&mut self, stamp: Stamp, topic: &'static str) -> Result<Moment, TranscriptError> {
         let at = Moment::of(stamp.measured_ns, topic)?;
         let first = self.newest.is_none();
@@ -449,7 +449,7 @@ mod tests {
             ("/scan", 1000),
         ];
         assert_eq!(made(&mut entries), expected);
-        // From then on the host's clock tells how much later it is.
+        // From then on the host's clock measures how much later it is.
         entries.health(&HealthHeader::zeroed(), b"", 40).unwrap();
         entries.map(&map(&[0, 100]), &[0, 100], 50).unwrap();
         entries.map(&map(&[0, 0]), &[0, 0], 60).unwrap();

@@ -158,7 +158,7 @@ mod tests {
     }
 
     #[test]
-    fn the_mirror_tells_how_long_a_scan_takes() {
+    fn the_mirror_shows_how_long_a_scan_takes() {
         let values = [0; 181];
         let channel = Channel {
             name: *b"DIST1",

@@ -109,7 +109,7 @@ impl<'a> Cursor<'a> {
         }
     }
 
-    /// A number of so many bits as a word of text.
+    /// A number of this many bits as a word of text.
     pub(crate) fn number(&mut self, field: &'static str, bits: u32) -> Result<u32, SickError> {
         if let Some((value, length)) = leading_hex(self.rest)
             && (bits == 32 || value >> bits == 0)
@@ -208,7 +208,7 @@ impl<'a> Cursor<'a> {
         }
     }
 
-    /// So many characters, which may be spaces.
+    /// This many characters, which may be spaces.
     pub(crate) fn characters(
         &mut self,
         field: &'static str,
@@ -264,7 +264,7 @@ impl<'a> Cursor<'a> {
         self.u8_upto(field, 1, "0 or 1").map(|value| value == 1)
     }
 
-    /// A u16 that says whether a block follows.
+    /// A u16 that returns whether a block follows.
     pub(crate) fn flag(&mut self, field: &'static str) -> Result<bool, SickError> {
         self.u16_upto(field, 1, "0 or 1").map(|value| value == 1)
     }

@@ -58,7 +58,7 @@ impl DeviceAngles {
         }
     }
 
-    /// The convention where no field is needed to tell it.
+    /// The convention if no field is needed to find it.
     #[must_use]
     pub fn certain(&self) -> Option<AngleConvention> {
         match self {
@@ -119,14 +119,14 @@ pub enum ConventionError {
 /// The options of `lms_reader` that help where a device may be in the table.
 fn remedy() -> String {
     format!(
-        "no scan is published until lms_reader is told --device NAME (such as TiM240, NAV310 or \
+        "no scan is published until lms_reader is given --device NAME (such as TiM240, NAV310 or \
          LMS111), or {OPTIONS}"
     )
 }
 
 /// Those that always help.
 fn turned() -> String {
-    format!("no scan is published until lms_reader is told {OPTIONS}")
+    format!("no scan is published until lms_reader is given {OPTIONS}")
 }
 
 const OPTIONS: &str = "--zero-deg DEGREES, the device's own angle that points ahead, with \

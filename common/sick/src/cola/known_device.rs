@@ -1,7 +1,7 @@
 //! Which devices count their angles in which way.
 //!
 //! Each row says where its fact stands. A device is in the table only where a
-//! document or SICK's own driver tells; the others must be stated by whoever owns
+//! document or SICK's own driver states; the others must be stated by whoever owns
 //! one.
 
 use super::AngleConvention;
@@ -136,7 +136,7 @@ impl KnownDevice {
         self.reach_m.unwrap_or(USUAL_REACH_M)
     }
 
-    /// The names of all rows that tell how devices count, for people.
+    /// The names of all rows that define how devices count, for people.
     #[must_use]
     pub fn names() -> String {
         let rows = Self::ALL.iter().filter(|row| row.convention.is_some());

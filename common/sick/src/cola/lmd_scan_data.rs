@@ -80,7 +80,7 @@ pub struct LmdScanData<'a> {
     pub channels_16_bit: Channels<'a>,
     /// Narrow remissions.
     pub channels_8_bit: Channels<'a>,
-    /// Where the device is mounted, if it was told and sends it.
+    /// Where the device is mounted, if it is configured and sent.
     pub position: Option<Position>,
     /// The device's name, if it sends it.
     pub name: Option<&'a [u8]>,

@@ -51,4 +51,4 @@ pub use settings::{OutputRange, ScanConfig, ScanDataConfig};
 pub use tail::{DeviceTime, Event, Position};
 pub use telegram::Telegram;
 pub use values::Values;
-pub use variable::{Value, Variable};
+pub use variable::{Value, Variable, state_word};

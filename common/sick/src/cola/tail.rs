@@ -6,7 +6,7 @@ use super::cursor::{Cursor, field_error};
 use super::writer::Writer;
 use crate::SickError;
 
-/// Where the device is mounted, as it was told.
+/// Where the device is mounted, as configured.
 ///
 /// | bytes | field | |
 /// |---|---|---|
@@ -15,9 +15,9 @@ use crate::SickError;
 /// | 1 | kind of rotation | 0 none, 1 pitch, 2 roll, 3 free |
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Position {
-    /// x, y and z in the unit that the device was told.
+    /// x, y and z in the configured unit.
     pub place: [f32; 3],
-    /// About x, y and z, in the unit that the device was told.
+    /// About x, y and z, in the configured unit.
     pub rotation: [f32; 3],
     /// 0 none, 1 pitch, 2 roll, 3 free.
     pub rotation_kind: u8,
@@ -106,7 +106,7 @@ impl DeviceTime {
     }
 
     /// Microseconds since 1970 began, where it is UTC; `None` where there is no
-    /// such day, as on devices that nobody told the time. A second 60 is the first
+    /// such day, as on devices whose clock was never set. A second 60 is the first
     /// of the next minute.
     #[must_use]
     pub fn unix_us(&self) -> Option<i64> {

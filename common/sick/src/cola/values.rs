@@ -20,7 +20,7 @@ enum Place<'a> {
     Wide(&'a [u8]),
     /// A byte each.
     Narrow(&'a [u8]),
-    /// Words with a space between, each a number of so many bits.
+    /// Words with a space between, each a number of this many bits.
     Words(&'a [u8], u32),
     /// In memory.
     Listed(&'a [u16]),

@@ -10,7 +10,7 @@ use crate::SickError;
 pub enum Variable {
     /// `DeviceIdent`: what the device is.
     DeviceIdent,
-    /// `SCdevicestate`: how it fares.
+    /// `SCdevicestate`: whether it is ready.
     DeviceState,
     /// `LMPscancfg`: how it scans.
     ScanConfig,
@@ -72,6 +72,13 @@ pub enum Value<'a> {
     OutputRange(OutputRange),
     /// u8: whether it is CoLa B.
     HostEncoding(bool),
+}
+
+/// A device state in a word.
+#[must_use]
+pub fn state_word(state: u8) -> &'static str {
+    let words = ["busy", "ready", "error", "standby"];
+    words.get(usize::from(state)).copied().unwrap_or("unknown")
 }
 
 impl<'a> Value<'a> {

@@ -82,7 +82,7 @@ impl Baud {
         }
     }
 
-    /// The baud rate of so many bits a second.
+    /// The baud rate of this many bits a second.
     #[must_use]
     pub fn from_rate(rate: u32) -> Option<Self> {
         Self::ALL.into_iter().find(|baud| baud.rate() == rate)

@@ -1,4 +1,4 @@
-//! How a device fares: the byte behind every answer, and the long status.
+//! The state of a device: the byte behind every answer, and the long status.
 
 use super::fields::Fields;
 use super::range_mode::{RangeMode, Unit};

@@ -19,7 +19,7 @@ pub struct Isolated {
 }
 
 impl Isolated {
-    /// `tag` tells the tests of one executable apart, in at most 11 bytes.
+    /// `tag` distinguishes the tests of one executable, in at most 11 bytes.
     ///
     /// # Panics
     /// If `tag` is longer, or holds what a graph's name must not.
@@ -30,7 +30,7 @@ impl Isolated {
         Isolated { name, _watched }
     }
 
-    /// For a benchmark, which takes as long as it was told to.
+    /// For a benchmark, which takes as long as requested.
     ///
     /// # Panics
     /// As [`Isolated::new`].

@@ -18,4 +18,4 @@ mod watch;
 pub use isolated::Isolated;
 pub use node_process::NodeProcess;
 pub use waiting::{wait_for, wait_for_health, wait_until, wait_until_ready};
-pub use watch::patiently;
+pub use watch::allow_long;

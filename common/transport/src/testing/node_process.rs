@@ -132,7 +132,7 @@ mod tests {
     }
 
     #[test]
-    fn a_process_tells_its_graph_its_log_and_its_code() {
+    fn a_process_shows_its_graph_its_log_and_its_code() {
         let isolated = Isolated::new("process");
         let graph = isolated.join("test");
         // More than a pipe holds.

@@ -10,7 +10,7 @@ use crate::GraphName;
 
 /// How long a test may take: it waits for what it expects, and what never comes
 /// would hold up all tests behind it. Many times the slowest test on a slow machine.
-const PATIENCE: Duration = Duration::from_secs(300);
+const TIMEOUT: Duration = Duration::from_secs(300);
 
 /// From being asked to end until it has to, for what does not wait in a graph.
 const GRACE: Duration = Duration::from_secs(10);
@@ -20,7 +20,7 @@ static LONG_WORK: AtomicUsize = AtomicUsize::new(0);
 
 /// Does what takes long without hanging, as compiling; one at a time. Tests have all
 /// their time again afterwards.
-pub fn patiently<R>(work: impl FnOnce() -> R) -> R {
+pub fn allow_long<R>(work: impl FnOnce() -> R) -> R {
     LONG_WORK.fetch_add(1, Ordering::Relaxed);
     let done = work();
     LONG_WORK.fetch_add(1, Ordering::Relaxed);
@@ -34,11 +34,11 @@ pub(super) fn watch(graph: GraphName) -> Sender<()> {
     std::thread::spawn(move || {
         let lasts = |time| end.recv_timeout(time) == Err(RecvTimeoutError::Timeout);
         let mut before = LONG_WORK.load(Ordering::Relaxed);
-        while lasts(PATIENCE) {
+        while lasts(TIMEOUT) {
             let now = LONG_WORK.load(Ordering::Relaxed);
-            // Where a start has no end yet, that goes on.
+            // Where a start has no end yet, that continues.
             if now == before && now.is_multiple_of(2) {
-                eprintln!("the test in graph {graph} takes more than {PATIENCE:?}: it is ended");
+                eprintln!("the test in graph {graph} takes more than {TIMEOUT:?}: it is ended");
                 let _ = raise(Signal::SIGTERM);
                 if lasts(GRACE) {
                     std::process::abort();

@@ -1,5 +1,5 @@
 //! Another process of a test's graph: the test's own executable, which does
-//! what it is told line by line. It can be killed.
+//! what it is commanded line by line. It can be killed.
 
 use std::io::{BufRead, BufReader, Write};
 use std::os::unix::fs::MetadataExt;
@@ -13,7 +13,7 @@ use transport::{Flow, GRAPH_VARIABLE, Graph, GraphName, Publisher, Subscriber, T
 
 /// Set in such a process: the name under which it joins.
 const NODE_VARIABLE: &str = "TRANSPORT_TEST_NODE";
-/// Tells answers from what the test harness prints.
+/// Distinguishes answers from what the test harness prints.
 const ANSWER: &str = "answer:";
 
 /// The member, as the test sees it.
@@ -43,7 +43,7 @@ impl Member {
         }
     }
 
-    pub(crate) fn tell(&mut self, command: &str) {
+    pub(crate) fn command(&mut self, command: &str) {
         writeln!(self.commands.as_mut().unwrap(), "{command}").unwrap();
     }
 
@@ -60,7 +60,7 @@ impl Member {
     }
 
     pub(crate) fn ask(&mut self, command: &str) -> String {
-        self.tell(command);
+        self.command(command);
         self.answer()
     }
 
@@ -94,7 +94,7 @@ impl Drop for Member {
     }
 }
 
-/// In a process that [`Member::start`] started, does what it is told until its
+/// In a process that [`Member::start`] started, does what it is commanded until its
 /// input ends, and returns true; false in the test itself.
 pub(crate) fn serve_if_asked() -> bool {
     let Ok(node) = std::env::var(NODE_VARIABLE) else {

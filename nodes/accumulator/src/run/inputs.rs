@@ -60,12 +60,12 @@ impl Inputs {
     ) -> Result<(), TransportError> {
         while let Some(odometry) = self.odometry.receive()? {
             joiner.on_odometry(odometry.header());
-            history.hear_odometry(odometry.header());
+            history.on_odometry(odometry.header());
             health.count_received(1);
         }
         if let Some(subscriber) = &self.truths {
             while let Some(truth) = subscriber.receive()? {
-                history.hear_truth(truth.header());
+                history.on_truth(truth.header());
                 health.count_received(1);
             }
         }

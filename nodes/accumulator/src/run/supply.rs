@@ -18,10 +18,10 @@ use crate::{AccumulatorError, Config};
 /// localizer at a time, always for what came last.
 pub(super) struct Supply {
     config: LocalizerConfig,
-    /// Where poses are sought unless somebody wishes otherwise.
+    /// Where poses are searched unless somebody requests otherwise.
     configured: Option<Region>,
-    /// Counts the regions that were wished for.
-    wishes: u64,
+    /// Counts the regions that were region_changed for.
+    requests: u64,
     prior: Prior,
     /// Where prepared maps are kept.
     cache: Option<IndexCache>,
@@ -34,7 +34,7 @@ pub(super) struct Supply {
     handed_out: Option<Order>,
 }
 
-/// What to prepare, and the number of the wish for a region that it is to heed.
+/// What to prepare, and the number of the request for a region that it is to heed.
 type Order = (Key, u64);
 
 struct UnderWay {
@@ -47,12 +47,12 @@ impl Supply {
     pub(super) fn new(config: &Config) -> Self {
         let cache = config.index_cache.open(CachePlace::User);
         let cache = cache.unwrap_or_else(|problem| {
-            tracing::warn!("prepared maps are not kept: {}", with_causes(&problem));
+            tracing::warn!("prepared maps are not cached: {}", with_causes(&problem));
             None
         });
         Supply {
             configured: config.localizer.limits.region.clone(),
-            wishes: 0,
+            requests: 0,
             config: config.localizer(),
             prior: config.prior(),
             cache,
@@ -75,8 +75,8 @@ impl Supply {
         inputs: &Inputs,
         health: &mut Health,
     ) -> Result<Option<PreparedMap>, AccumulatorError> {
-        let wished = self.hear_wish(&inputs.regions, health)?;
-        if self.receive(&inputs.maps, &inputs.boundaries, health)? || wished {
+        let region_changed = self.on_region(&inputs.regions, health)?;
+        if self.receive(&inputs.maps, &inputs.boundaries, health)? || region_changed {
             self.consider(health)?;
         }
         let prepared = self.finish(health)?;
@@ -105,29 +105,29 @@ impl Supply {
         Ok(came > 0)
     }
 
-    /// Takes a wish for a region: none is for what is configured. One that cannot
+    /// Takes a request for a region: none is for what is configured. One that cannot
     /// be used is refused, and the one before holds.
-    fn hear_wish(
+    fn on_region(
         &mut self,
         regions: &Subscriber<topic::Region>,
         health: &mut Health,
     ) -> Result<bool, TransportError> {
-        let Some(wish) = regions.newest()? else {
+        let Some(request) = regions.newest()? else {
             return Ok(false);
         };
         health.count_received(1);
-        match region(wish.items()) {
+        match region(request.items()) {
             Ok(region) => {
                 let region = region.or_else(|| self.configured.clone());
                 let is_new = region != self.config.limits.region;
                 self.config.limits.region = region;
-                self.wishes += u64::from(is_new);
+                self.requests += u64::from(is_new);
                 Ok(is_new)
             }
             Err(problem) => {
-                tracing::warn!("a region is refused: {problem}");
+                tracing::warn!("search region rejected: {problem}");
                 health.count_refused(1);
-                health.error(&format!("a region is refused: {problem}"))?;
+                health.error(&format!("search region rejected: {problem}"))?;
                 Ok(false)
             }
         }
@@ -139,7 +139,7 @@ impl Supply {
         self.wanted = None;
         if let (Some(map), Some(boundary)) = (&self.map, &self.boundary) {
             match Key::of(map.header(), boundary.header()) {
-                Ok(key) => self.wanted = key.map(|key| (key, self.wishes)),
+                Ok(key) => self.wanted = key.map(|key| (key, self.requests)),
                 Err(error) => refuse(map.header().map_id, &error, health)?,
             }
         }
@@ -227,7 +227,7 @@ fn region(corners: &[Corner]) -> Result<Option<Region>, String> {
 /// Reports on the file of an index, and writes one that is to be written, beside the scans
 /// that are answered meanwhile. Nobody waits for that.
 fn keep(kept: Kept) {
-    let warn = |problem: &dyn Error| tracing::warn!("kept index: {}", with_causes(problem));
+    let warn = |problem: &dyn Error| tracing::warn!("cached index: {}", with_causes(problem));
     if let Some(problem) = kept.problem {
         warn(&problem);
     }
@@ -244,7 +244,7 @@ fn refuse(
     error: &AccumulatorError,
     health: &mut Health,
 ) -> Result<(), TransportError> {
-    let problem = format!("map {map_id:016x} is refused: {}", with_causes(error));
+    let problem = format!("map {map_id:016x} rejected: {}", with_causes(error));
     tracing::warn!("{problem}");
     health.count_refused(1);
     health.error(&problem)?;

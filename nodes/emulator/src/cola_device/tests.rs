@@ -12,7 +12,9 @@ fn model(name: &str) -> Model {
 }
 
 fn ask(device: &mut ColaDevice, session: &mut Session, command: Command<'_>) -> Answer<'static> {
-    device.hear(session, &Telegram::Command(command)).unwrap()
+    device
+        .receive(session, &Telegram::Command(command))
+        .unwrap()
 }
 
 const LOGIN: Command<'_> = Command::Call(Method::SetAccessMode {
@@ -110,7 +112,7 @@ fn unknown_names_are_refused_by_kind() {
     let (mut device, mut session) = (device(), Session::default());
     let mut fault = |content: &[u8]| {
         device
-            .hear(&mut session, &Telegram::Other(content))
+            .receive(&mut session, &Telegram::Other(content))
             .unwrap()
     };
     assert_eq!(fault(b"sRN STlms"), Answer::Fault(Fault::UNKNOWN_VARIABLE));

@@ -8,12 +8,12 @@ use sick::SickError;
 use sick::lms2xx::{Baud, CommandFramer, Reply};
 use transport::monotonic_ns;
 
-use super::{Common, PATIENCE_NS, SLICE, Summary};
+use super::{Common, SLICE, Summary, TIMEOUT_NS};
 use crate::EmulatorError;
 use crate::lms2xx_device::Lms2xxDevice;
 
 /// What nobody reads is lost on a line; the terminal counts up to 4095.
-const MOST_UNREAD: u32 = 3300;
+const MAX_UNREAD: u32 = 3300;
 
 /// How long nothing must be unread before the terminal is closed, which takes
 /// along what it has not handed over, nanoseconds. It hands over in the
@@ -28,7 +28,7 @@ pub(super) fn run(link: &Path, baud: Baud, common: Common) -> Result<Summary, Em
         terminal.listen()?;
         let now_ns = monotonic_ns();
         if terminal.common.faults.resets(now_ns) {
-            tracing::info!("started anew");
+            tracing::info!("restarted");
             let reply = terminal.device.restart();
             terminal.say(now_ns, |_, out| reply.frame(out))?;
         }
@@ -46,7 +46,7 @@ pub(super) fn run(link: &Path, baud: Baud, common: Common) -> Result<Summary, Em
         if is_over {
             let over_ns = *over_ns.get_or_insert(now_ns);
             let rested_ns = now_ns - over_ns;
-            if rested_ns > PATIENCE_NS || rested_ns > REST_NS && terminal.unread()? == 0 {
+            if rested_ns > TIMEOUT_NS || rested_ns > REST_NS && terminal.unread()? == 0 {
                 return Ok(terminal.common.conclude(true));
             }
         }
@@ -112,8 +112,8 @@ impl Terminal {
             let start = self.unsent.len();
             match next {
                 Ok(frame) => {
-                    tracing::debug!(command = ?frame.telegram, "heard");
-                    next_baud = self.device.hear(&frame.telegram, &mut self.unsent);
+                    tracing::debug!(command = ?frame.telegram, "received");
+                    next_baud = self.device.receive(&frame.telegram, &mut self.unsent);
                     self.common.health.count_received(1);
                 }
                 Err(SickError::Checksum { .. } | SickError::Unreadable { .. }) => {
@@ -163,7 +163,7 @@ impl Terminal {
         if !self.is_understood()? {
             self.unsent = self.common.faults.noise(self.unsent.len());
         }
-        if self.unread()? < MOST_UNREAD {
+        if self.unread()? < MAX_UNREAD {
             let mut rest = &self.unsent[..];
             while !rest.is_empty() {
                 let piece = self.common.faults.piece(rest.len());
@@ -220,7 +220,7 @@ impl Link {
 
 impl Drop for Link {
     fn drop(&mut self) {
-        // There is nobody left to tell.
+        // There is nobody left to notify.
         let _ = std::fs::remove_file(&self.0);
     }
 }

@@ -11,13 +11,13 @@ use sick::SickError;
 use sick::cola::{Answer, Encoding, Fault, Framer, Telegram};
 use transport::{TransportError, monotonic_ns};
 
-use super::{Common, PATIENCE_NS, Summary};
+use super::{Common, Summary, TIMEOUT_NS};
 use crate::EmulatorError;
 use crate::cola_device::{ColaDevice, Model, Session};
 use crate::faults::Faults;
 
-/// A client that leaves so much unread is given up, bytes.
-const MOST_UNREAD: usize = 1 << 22;
+/// A client that leaves this much unread is given up, bytes.
+const MAX_UNREAD: usize = 1 << 22;
 
 pub(super) fn run(
     address: &str,
@@ -42,12 +42,12 @@ pub(super) fn run(
         accept(&listener, encoding, &mut clients);
         let now_ns = monotonic_ns();
         if common.faults.resets(now_ns) {
-            tracing::info!("started anew: all clients are disconnected");
+            tracing::info!("restarted: all clients are disconnected");
             device = ColaDevice::new(*model, encoding, &common.sweep);
             clients.clear();
         }
         for client in &mut clients {
-            client.hear(&mut device, &mut common, now_ns)?;
+            client.receive(&mut device, &mut common, now_ns)?;
         }
         if clients.iter().any(|client| client.session.subscribed) {
             common.start()?;
@@ -63,7 +63,7 @@ pub(super) fn run(
         if is_over {
             let over_ns = *over_ns.get_or_insert(now_ns);
             let unread = clients.iter().any(|client| !client.unsent.is_empty());
-            if !unread || now_ns - over_ns > PATIENCE_NS {
+            if !unread || now_ns - over_ns > TIMEOUT_NS {
                 return Ok(common.conclude(true));
             }
         }
@@ -161,7 +161,7 @@ impl Client {
     }
 
     /// Takes its commands and answers them.
-    fn hear(
+    fn receive(
         &mut self,
         device: &mut ColaDevice,
         common: &mut Common,
@@ -185,7 +185,7 @@ impl Client {
         }
         while let Some(next) = self.framer.next_frame() {
             let answer = match next {
-                Ok(frame) => device.hear(&mut self.session, &frame.telegram),
+                Ok(frame) => device.receive(&mut self.session, &frame.telegram),
                 Err(SickError::Unreadable { .. }) => Some(Answer::Fault(Fault::INVALID_DATA)),
                 Err(_) => None,
             };
@@ -225,7 +225,7 @@ impl Client {
             }
         }
         self.unsent.drain(..sent);
-        if self.unsent.len() > MOST_UNREAD {
+        if self.unsent.len() > MAX_UNREAD {
             tracing::warn!(client = %self.address, "too slow, disconnected");
             self.has_gone = true;
         }

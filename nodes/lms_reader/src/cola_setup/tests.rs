@@ -17,26 +17,30 @@ const RANGE: OutputRange = OutputRange {
 const CONTENTS: ScanDataConfig = ScanDataConfig::DISTANCES;
 
 #[test]
-fn without_wishes_nothing_is_changed() {
+fn without_requests_nothing_is_changed() {
     let mut setup = Setup::new(Wanted::default(), None);
     let ident = Command::Read(Variable::DeviceIdent);
     assert_eq!(setup.next(0).unwrap(), Some(ident));
     assert_eq!(setup.next(1).unwrap(), None);
-    setup.hear(&Answer::Fault(Fault::UNKNOWN_VARIABLE)).unwrap();
+    setup
+        .receive(&Answer::Fault(Fault::UNKNOWN_VARIABLE))
+        .unwrap();
     let state = Command::Read(Variable::DeviceState);
     assert_eq!(setup.next(2).unwrap(), Some(state));
-    setup.hear(&Answer::Value(Value::DeviceState(1))).unwrap();
+    setup
+        .receive(&Answer::Value(Value::DeviceState(1)))
+        .unwrap();
     let subscribe = Command::SubscribeScans(true);
     assert_eq!(setup.next(3).unwrap(), Some(subscribe));
     // An answer to something else changes nothing.
-    setup.hear(&Answer::Running(true)).unwrap();
+    setup.receive(&Answer::Running(true)).unwrap();
     assert!(!setup.is_done());
-    setup.hear(&Answer::ScansSubscribed(true)).unwrap();
+    setup.receive(&Answer::ScansSubscribed(true)).unwrap();
     assert!(setup.is_done());
     assert_eq!(setup.next(i64::MAX).unwrap(), None);
 }
 
-/// Answers as an LMS111 does that takes over what it is told, but for `range`.
+/// Answers as an LMS111 that applies all requested settings but `range`.
 fn play(setup: &mut Setup, range: Option<OutputRange>) -> Result<Vec<String>, LmsError> {
     play_as(b"LMS111", setup, range)
 }
@@ -50,7 +54,7 @@ fn play_as(
     let mut said = Vec::new();
     while let Some(command) = setup.next(0)? {
         said.push(format!("{command:?}"));
-        setup.hear(&match command {
+        setup.receive(&match command {
             Command::Read(Variable::DeviceIdent) => Answer::Value(Value::DeviceIdent {
                 name,
                 version: b"1",
@@ -83,7 +87,7 @@ fn play_as(
 }
 
 #[test]
-fn wishes_are_set_and_read_back() {
+fn requested_settings_are_set_and_read_back() {
     let mut setup = Setup::new(Wanted::of(Some(180.0), Some(0.5), false), None);
     let said = play(&mut setup, None).unwrap();
     assert_eq!(said.len(), 11, "{said:#?}");
@@ -100,7 +104,7 @@ fn wishes_are_set_and_read_back() {
 fn the_time_of_a_scan_is_asked_for_where_it_is_left_out() {
     let mut setup = Setup::new(Wanted::of(None, None, true), None);
     let said = play(&mut setup, None).unwrap();
-    // What it is and how it fares, its contents, login, change, check, run, scans.
+    // Its identity and state, its contents, login, change, check, run, scans.
     assert_eq!(said.len(), 8, "{said:#?}");
     assert!(said[3].contains("SetAccessMode"), "{said:#?}");
     assert!(said[4].contains("Write") && said[4].contains("time: true"));
@@ -123,7 +127,7 @@ fn a_device_that_sends_the_time_already_is_not_changed() {
         })),
     ] {
         setup.next(0).unwrap();
-        setup.hear(&answer).unwrap();
+        setup.receive(&answer).unwrap();
     }
     let subscribe = Command::SubscribeScans(true);
     assert_eq!(setup.next(0).unwrap(), Some(subscribe));
@@ -139,18 +143,18 @@ fn a_device_that_keeps_its_own_settings_is_an_error() {
 #[test]
 fn refusals_and_silence_name_the_command() {
     let mut setup = Setup::new(Wanted::of(Some(180.0), None, false), None);
-    let mut hear = |answer| {
+    let mut receive = |answer| {
         setup.next(0).unwrap();
-        setup.hear(&answer)
+        setup.receive(&answer)
     };
-    hear(Answer::Fault(Fault::UNKNOWN_VARIABLE)).unwrap();
-    hear(Answer::Fault(Fault::UNKNOWN_VARIABLE)).unwrap();
-    let error = hear(Answer::AccessMode(false)).unwrap_err().to_string();
+    receive(Answer::Fault(Fault::UNKNOWN_VARIABLE)).unwrap();
+    receive(Answer::Fault(Fault::UNKNOWN_VARIABLE)).unwrap();
+    let error = receive(Answer::AccessMode(false)).unwrap_err().to_string();
     assert!(
         error.contains("did not log in: it answers false"),
         "{error}"
     );
-    let error = hear(Answer::Fault(Fault::METHOD_DENIED)).unwrap_err();
+    let error = receive(Answer::Fault(Fault::METHOD_DENIED)).unwrap_err();
     let error = error.to_string();
     assert!(error.contains("SetAccessMode"), "{error}");
     assert!(error.contains("does not allow this method"), "{error}");
@@ -195,19 +199,19 @@ fn a_field_is_laid_around_what_is_ahead_on_that_device() {
 fn an_unknown_device_that_looks_elsewhere_is_not_changed() {
     let wanted = Wanted::of(Some(90.0), None, false);
     let mut setup = Setup::new(wanted, None);
-    let mut hear = |answer| {
+    let mut receive = |answer| {
         let said = setup.next(0)?;
-        setup.hear(&answer).map(|()| said)
+        setup.receive(&answer).map(|()| said)
     };
-    hear(Answer::Fault(Fault::UNKNOWN_VARIABLE)).unwrap();
-    hear(Answer::Fault(Fault::UNKNOWN_VARIABLE)).unwrap();
-    hear(Answer::AccessMode(true)).unwrap();
+    receive(Answer::Fault(Fault::UNKNOWN_VARIABLE)).unwrap();
+    receive(Answer::Fault(Fault::UNKNOWN_VARIABLE)).unwrap();
+    receive(Answer::AccessMode(true)).unwrap();
     let around_zero = ScanConfig {
         start_angle_raw_1e4_deg: -1_200_000,
         stop_angle_raw_1e4_deg: 1_200_000,
         ..SCAN
     };
-    let error = hear(Answer::Value(Value::ScanConfig(around_zero))).unwrap_err();
+    let error = receive(Answer::Value(Value::ScanConfig(around_zero))).unwrap_err();
     assert!(error.to_string().contains("--zero-deg"), "{error}");
 }
 
@@ -216,6 +220,8 @@ fn scans_wait_for_the_name() {
     let mut setup = Setup::new(Wanted::default(), None);
     assert!(setup.is_identifying());
     setup.next(0).unwrap();
-    setup.hear(&Answer::Fault(Fault::UNKNOWN_VARIABLE)).unwrap();
+    setup
+        .receive(&Answer::Fault(Fault::UNKNOWN_VARIABLE))
+        .unwrap();
     assert!(!setup.is_identifying());
 }

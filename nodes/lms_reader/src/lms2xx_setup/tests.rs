@@ -1,10 +1,10 @@
-//! The dialogue against a device that does what it is told, or does not.
+//! The dialogue with a device that executes commands, or does not.
 
 use sick::lms2xx::Unit;
 
 use super::*;
 
-/// A device at this rate that does what it is told; what was said to it.
+/// A device at this rate that executes commands; the commands it received.
 struct Device {
     baud: Baud,
     port: Baud,
@@ -33,7 +33,7 @@ fn device(baud: Baud) -> Device {
 }
 
 impl Device {
-    fn hear(&mut self, command: &Command<'_>) -> Option<Answer<'static>> {
+    fn receive(&mut self, command: &Command<'_>) -> Option<Answer<'static>> {
         if self.port != self.baud {
             return None;
         }
@@ -67,12 +67,12 @@ impl Device {
     fn speak(&mut self, setup: &mut Setup) -> Result<(), LmsError> {
         let mut now_ns = 0;
         while setup.format().is_none() {
-            now_ns += PATIENCE_NS;
+            now_ns += TIMEOUT_NS;
             match setup.next(now_ns)? {
                 Action::Baud(baud) => self.port = baud,
                 Action::Send(command) => {
-                    if let Some(answer) = self.hear(&command) {
-                        setup.hear(&answer)?;
+                    if let Some(answer) = self.receive(&command) {
+                        setup.receive(&answer)?;
                     }
                 }
                 Action::Wait => {}
@@ -100,7 +100,7 @@ fn the_baud_rate_is_found_and_nothing_changed() {
 }
 
 #[test]
-fn wishes_are_set_and_read_back() {
+fn requested_settings_are_set_and_read_back() {
     let reach = Reach {
         mode: RangeMode::Range32Field,
         unit: Unit::Millimetre,
@@ -133,7 +133,7 @@ fn nobody_there_names_the_rates_that_were_tried() {
     let mut setup = Setup::new(Wanted::default(), Some(Baud::B500000));
     let mut now_ns = 0;
     let error = loop {
-        now_ns += PATIENCE_NS;
+        now_ns += TIMEOUT_NS;
         if let Err(error) = setup.next(now_ns) {
             break error.to_string();
         }
@@ -153,15 +153,15 @@ fn a_device_that_refuses_is_an_error() {
         match setup.next(0).unwrap() {
             Action::Baud(baud) => device.port = baud,
             Action::Send(Command::SetVariant { .. }) => {
-                break setup.hear(&Answer::VariantSet {
+                break setup.receive(&Answer::VariantSet {
                     done: false,
                     width_deg: 180,
                     resolution_raw_1e2_deg: 100,
                 });
             }
             Action::Send(command) => {
-                let answer = device.hear(&command).unwrap();
-                setup.hear(&answer).unwrap();
+                let answer = device.receive(&command).unwrap();
+                setup.receive(&answer).unwrap();
             }
             Action::Wait => panic!("nothing to wait for"),
         }

@@ -32,7 +32,7 @@ pub(super) fn run(path: &Path, config: &Config, outlet: &mut Outlet) -> Result<(
         }
     }
     let (sent, refused) = (outlet.sent, outlet.refused);
-    tracing::info!(sent, refused, "the capture has been played");
+    tracing::info!(sent, refused, "end of the capture");
     outlet.finish()
 }
 
@@ -74,7 +74,7 @@ fn send_all(
         let data = match outlet.take(next)? {
             Some(Telegram::ScanData(data)) => data,
             Some(Telegram::Answer(Answer::Value(Value::DeviceIdent { name, .. }))) => {
-                outlet.angles.heard_name(name);
+                outlet.angles.on_name(name);
                 continue;
             }
             Some(other) => {

@@ -1,4 +1,4 @@
-//! Where scans leave the node and troubles are reported.
+//! Where scans are published and errors are reported.
 
 use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, Ordering};
@@ -12,7 +12,7 @@ use transport::{Graph, Health, Publisher, TransportError, with_causes};
 
 use crate::angles::Angles;
 use crate::clock::DeviceClock;
-use crate::complaints::Complaints;
+use crate::error_limit::ErrorLimit;
 use crate::lms2xx_scan::WholeScan;
 use crate::scan::{self, Received, ScanSettings};
 use crate::{Config, LmsError};
@@ -22,7 +22,7 @@ pub(super) const SLICE: Duration = Duration::from_millis(20);
 
 /// How long the end waits for subscribers that are busy with what was sent: a
 /// search takes seconds at most, and each may have a few scans before it.
-const PATIENCE: Duration = Duration::from_secs(30);
+const TIMEOUT: Duration = Duration::from_secs(30);
 
 /// What was last said about the source.
 #[derive(PartialEq)]
@@ -39,7 +39,7 @@ pub(super) struct Outlet {
     settings: ScanSettings,
     /// Which way the device looks.
     pub(super) angles: Angles,
-    complaints: Complaints,
+    error_limit: ErrorLimit,
     /// Of the device that sends now.
     clock: DeviceClock,
     link: Link,
@@ -61,7 +61,7 @@ impl Outlet {
             stop: graph.stop_flag(),
             settings: config.scan_settings(),
             angles: Angles::new(config.stated_angles()),
-            complaints: Complaints::default(),
+            error_limit: ErrorLimit::default(),
             clock: DeviceClock::default(),
             link: Link::Untried,
             device_status: 0,
@@ -92,15 +92,15 @@ impl Outlet {
     /// The end of all scans: waits until subscribers have taken the last ones, for
     /// a publisher takes along what nobody has looked at.
     pub(super) fn finish(&mut self) -> Result<(), LmsError> {
-        if !self.wait_until_taken(Instant::now() + PATIENCE)? && !self.stopped() {
-            let seconds = PATIENCE.as_secs();
-            tracing::warn!("not all subscribers took the last scans within {seconds} s");
+        if !self.wait_until_taken(Instant::now() + TIMEOUT)? && !self.stopped() {
+            let seconds = TIMEOUT.as_secs();
+            tracing::warn!("not all subscribers read the last scans within {seconds} s");
         }
         Ok(())
     }
 
     /// Waits until every subscriber is done with what was sent, until `deadline`
-    /// or the stop flag; says whether they are.
+    /// or the stop flag; returns whether they are.
     fn wait_until_taken(&mut self, deadline: Instant) -> Result<bool, TransportError> {
         loop {
             if self.publisher.is_settled()? {
@@ -118,7 +118,7 @@ impl Outlet {
         self.health.tick()
     }
 
-    /// The telegram in a frame; what is none is reported.
+    /// The telegram in a frame; anything else is reported.
     pub(super) fn take<T>(
         &mut self,
         next: Result<Frame<'_, T>, SickError>,
@@ -204,7 +204,7 @@ impl Outlet {
         self.sent += 1;
         self.health.count_sent(1);
         if self.link != Link::Up {
-            tracing::info!(beams, "scans arrive");
+            tracing::info!(beams, "receiving scans");
             self.link = Link::Up;
         }
         Ok(())
@@ -218,8 +218,8 @@ impl Outlet {
         {
             match self.link {
                 // A device may come up after the node.
-                Link::Untried => tracing::info!("{reason}; trying again"),
-                _ => tracing::warn!("{reason}; trying again"),
+                Link::Untried => tracing::info!("waiting for the device: {reason}"),
+                _ => tracing::warn!("{reason}; reconnecting"),
             }
             self.health.error(reason)?;
         }
@@ -233,7 +233,7 @@ impl Outlet {
     pub(super) fn refuse(&mut self, error: &LmsError) -> Result<(), LmsError> {
         self.refused += 1;
         self.health.count_refused(1);
-        if let Some(held_back) = self.complaints.note(transport::monotonic_ns()) {
+        if let Some(held_back) = self.error_limit.note(transport::monotonic_ns()) {
             let problem = with_causes(error);
             tracing::warn!(held_back, "{problem}");
             self.health.error(&problem)?;
@@ -251,7 +251,7 @@ impl Outlet {
         if status != self.device_status {
             self.device_status = status;
             if status == 0 {
-                tracing::info!("the device is in order again");
+                tracing::info!("the device works again");
             } else {
                 let problem = problem().to_string();
                 tracing::warn!("{problem}");

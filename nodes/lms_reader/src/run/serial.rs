@@ -44,7 +44,7 @@ struct Line<'a> {
     framer: ReplyFramer,
     parts: Option<PartialScans>,
     /// When the last telegram came.
-    heard: Instant,
+    last_data: Instant,
     /// Is filled and sent, again and again.
     command: Vec<u8>,
 }
@@ -63,7 +63,7 @@ impl<'a> Line<'a> {
             setup: Setup::new(wanted(config), last_baud),
             framer: ReplyFramer::default(),
             parts: None,
-            heard: Instant::now(),
+            last_data: Instant::now(),
             command: Vec::new(),
         })
     }
@@ -81,13 +81,14 @@ impl<'a> Line<'a> {
                 Ok(count) => {
                     let received = super::now();
                     self.framer.push(piece.get(..count).unwrap_or_default());
-                    self.hear(outlet, received)?;
+                    self.receive(outlet, received)?;
                 }
                 Err(error)
                     if matches!(error.kind(), ErrorKind::TimedOut | ErrorKind::Interrupted) => {}
                 Err(error) => return Err(failed(self.name, "read", error)),
             }
-            if self.setup.format().is_some() && self.heard.elapsed().as_secs_f64() > self.silence_s
+            if self.setup.format().is_some()
+                && self.last_data.elapsed().as_secs_f64() > self.silence_s
             {
                 return Err(LmsError::Silent {
                     address: self.name.display().to_string(),
@@ -99,7 +100,7 @@ impl<'a> Line<'a> {
         Ok(())
     }
 
-    fn hear(
+    fn receive(
         &mut self,
         outlet: &mut Outlet,
         received: crate::scan::Received,
@@ -110,15 +111,15 @@ impl<'a> Line<'a> {
                 if let Ok(frame) = next
                     && let Reply::Answer(answer, _) = frame.telegram
                 {
-                    self.setup.hear(&answer)?;
+                    self.setup.receive(&answer)?;
                 }
-                self.heard = Instant::now();
+                self.last_data = Instant::now();
                 continue;
             };
             let Some(Reply::Answer(answer, status)) = outlet.take(next)? else {
                 continue;
             };
-            self.heard = Instant::now();
+            self.last_data = Instant::now();
             match (answer, self.setup.format()) {
                 (Answer::Started(_), _) => return Err(LmsError::Restarted),
                 (Answer::Scan(scan), Some(format)) => {
@@ -130,7 +131,7 @@ impl<'a> Line<'a> {
                         outlet,
                     )?;
                 }
-                _ => self.setup.hear(&answer)?,
+                _ => self.setup.receive(&answer)?,
             }
         }
         Ok(())

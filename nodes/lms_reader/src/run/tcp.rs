@@ -21,7 +21,10 @@ pub(super) fn run(address: &str, config: &Config, outlet: &mut Outlet) -> Result
         let outcome = Connection::open(address, config).and_then(|mut c| c.listen(outlet));
         match outcome {
             Err(LmsError::Closed { .. }) if config.until_closed && outlet.sent > 0 => {
-                tracing::info!(sent = outlet.sent, "the device has sent everything");
+                tracing::info!(
+                    sent = outlet.sent,
+                    "the device closed the connection after its last scan"
+                );
                 outlet.finish()
             }
             other => other,
@@ -84,7 +87,7 @@ impl<'a> Connection<'a> {
     /// Reads until the stop flag is set, which alone is a success.
     fn listen(&mut self, outlet: &mut Outlet) -> Result<(), LmsError> {
         let mut piece = [0; 1 << 14];
-        let mut heard = Instant::now();
+        let mut last_data = Instant::now();
         while !outlet.stopped() {
             self.speak()?;
             match self.stream.read(&mut piece) {
@@ -94,11 +97,11 @@ impl<'a> Connection<'a> {
                     });
                 }
                 Ok(count) => {
-                    heard = Instant::now();
-                    self.hear(piece.get(..count).unwrap_or_default(), outlet)?;
+                    last_data = Instant::now();
+                    self.receive(piece.get(..count).unwrap_or_default(), outlet)?;
                 }
                 Err(error) if is_pause(error.kind()) => {
-                    if heard.elapsed().as_secs_f64() > self.silence_s {
+                    if last_data.elapsed().as_secs_f64() > self.silence_s {
                         return Err(LmsError::Silent {
                             address: self.address.into(),
                             seconds: self.silence_s,
@@ -126,13 +129,13 @@ impl<'a> Connection<'a> {
                 .map_err(|source| failed(self.address, "send a command", source))?;
         }
         if setup.is_done() {
-            tracing::info!("the device sends scans");
+            tracing::info!("the device has started to send scans");
             self.setup = None;
         }
         Ok(())
     }
 
-    fn hear(&mut self, piece: &[u8], outlet: &mut Outlet) -> Result<(), LmsError> {
+    fn receive(&mut self, piece: &[u8], outlet: &mut Outlet) -> Result<(), LmsError> {
         let received = super::now();
         self.framer.push(piece);
         while let Some(next) = self.framer.next_frame() {
@@ -141,9 +144,9 @@ impl<'a> Connection<'a> {
                 (Some(Telegram::ScanData(_)), Some(setup)) if setup.is_identifying() => {}
                 (Some(Telegram::ScanData(data)), _) => outlet.publish_cola(&data, received)?,
                 (Some(Telegram::Answer(answer)), Some(setup)) => {
-                    setup.hear(&answer)?;
+                    setup.receive(&answer)?;
                     if let Answer::Value(Value::DeviceIdent { name, .. }) = answer {
-                        outlet.angles.heard_name(name);
+                        outlet.angles.on_name(name);
                     }
                 }
                 (Some(other), _) => tracing::debug!(?other, "skipped a telegram"),

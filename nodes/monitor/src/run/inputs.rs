@@ -1,4 +1,4 @@
-//! The topics that are always heard.
+//! The topics that are always subscribed to.
 
 use dashboard::Robot;
 use messages::topic;
@@ -42,33 +42,33 @@ impl Inputs {
     pub(super) fn take(&self, to: &Robot, health: &mut Health) -> Result<(), TransportError> {
         if let Some(map) = self.maps.newest()? {
             health.count_received(1);
-            if !to.hear_map(map.header(), map.items()) {
-                refuse(health, "a map contradicts its header")?;
+            if !to.on_map(map.header(), map.items()) {
+                refuse(health, "the map contradicts its header")?;
             }
         }
         while let Some(answer) = self.hypotheses.receive()? {
             // A gap may be a scan that was never answered. What this node is too
             // slow for is only not seen, and no loss of the graph's.
             health.count_received(1);
-            to.hear_answer(answer.header(), answer.items(), monotonic_ns());
+            to.on_answer(answer.header(), answer.items(), monotonic_ns());
         }
         while let Some(pose) = self.poses.receive()? {
             health.count_received(1);
-            to.hear_pose(pose.header(), pose.items(), monotonic_ns());
+            to.on_pose(pose.header(), pose.items(), monotonic_ns());
         }
         if let Some(beams) = self.beams.newest()? {
             health.count_received(1);
-            to.hear_beams(beams.header(), beams.items());
+            to.on_beams(beams.header(), beams.items());
         }
         while let Some(report) = self.health.receive()? {
             health.count_received(1);
-            if !to.hear_health(report.header(), report.items()) {
+            if !to.on_health(report.header(), report.items()) {
                 refuse(health, "there are more nodes than are shown")?;
             }
         }
         while let Some(line) = self.log.receive()? {
             health.count_received(1);
-            to.hear_log(line.header(), line.items());
+            to.on_log(line.header(), line.items());
         }
         Ok(())
     }

@@ -19,7 +19,7 @@ impl Outputs {
         })
     }
 
-    /// Who would hear it.
+    /// Who subscribes to it.
     pub(super) fn abilities(&self) -> Abilities {
         Abilities {
             region: self.regions.has_subscribers(),
@@ -45,7 +45,7 @@ impl Outputs {
         loan.send()
     }
 
-    /// Nothing was measured: it is a wish of this moment.
+    /// Nothing was measured: it is a request of this moment.
     fn stamp(&mut self) -> Stamp {
         let counter = self.sent;
         self.sent += 1;

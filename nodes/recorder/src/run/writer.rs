@@ -13,13 +13,13 @@ use crate::writing::{BlackBox, Limits, Parts, Preamble, Store, Tally};
 use crate::{Config, RecorderError};
 
 /// How long something may lie in memory before it is on its way to the disk;
-/// well below the promised second.
+/// well below the guaranteed second.
 const FLUSH_PERIOD: Duration = Duration::from_millis(500);
 
 /// A million bytes.
 const MEGABYTE: u64 = 1_000_000;
 
-/// How the writer fares.
+/// The state of the writer.
 #[derive(Debug, Clone, PartialEq, Eq, Default)]
 pub(super) struct Status {
     pub(super) tally: Tally,
@@ -66,7 +66,7 @@ impl Writer {
         let (commands, waiting) = channel();
         let status = Arc::new(Mutex::default());
         let queued_bytes = Arc::new(AtomicUsize::new(0));
-        let mut desk = Desk {
+        let mut thread = WriterThread {
             store,
             waiting,
             queued_bytes: Arc::clone(&queued_bytes),
@@ -76,7 +76,7 @@ impl Writer {
         };
         let thread = std::thread::Builder::new()
             .name("writer".into())
-            .spawn(move || desk.work())
+            .spawn(move || thread.work())
             .map_err(RecorderError::Thread)?;
         Ok(Writer {
             commands,
@@ -134,7 +134,7 @@ impl Writer {
 }
 
 /// What the thread works with.
-struct Desk {
+struct WriterThread {
     store: Store,
     waiting: Receiver<Command>,
     queued_bytes: Arc<AtomicUsize>,
@@ -144,7 +144,7 @@ struct Desk {
     sync: Option<Duration>,
 }
 
-impl Desk {
+impl WriterThread {
     /// Writes until nobody sends any more.
     fn work(&mut self) -> Status {
         let mut flush_at = Instant::now() + FLUSH_PERIOD;
@@ -190,7 +190,7 @@ impl Desk {
         }
     }
 
-    /// Publishes how it fares, after an attempt to write.
+    /// Publishes its state, after an attempt to write.
     fn note(&mut self, outcome: Result<(), RecorderError>) {
         self.problem = outcome.err().map(|error| with_causes(&error));
         let current = self.current();

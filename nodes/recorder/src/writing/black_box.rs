@@ -64,7 +64,7 @@ impl BlackBox {
         }
     }
 
-    /// Writes what is kept, which goes on to be kept.
+    /// Writes what is kept, which continues to be kept.
     ///
     /// # Errors
     /// If the file cannot be written.

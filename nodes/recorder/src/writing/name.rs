@@ -7,7 +7,7 @@ use std::path::{Path, PathBuf};
 use crate::RecorderError;
 
 /// Most numbers that are tried.
-const MOST: u32 = 100_000;
+const MAX: u32 = 100_000;
 
 /// Creates the file `path`, or where it exists the first of `stem_1.mcap`,
 /// `stem_2.mcap` and so on that does not; with `numbered`, `stem_0.mcap` and so
@@ -20,7 +20,7 @@ pub(super) fn create(path: &Path, numbered: bool) -> Result<(PathBuf, File), Rec
     let first = u32::from(!numbered);
     let candidates = plain
         .into_iter()
-        .chain((first..MOST).map(|n| with_number(path, n)));
+        .chain((first..MAX).map(|n| with_number(path, n)));
     for candidate in candidates {
         match File::create_new(&candidate) {
             Ok(file) => return Ok((candidate, file)),
@@ -35,7 +35,7 @@ pub(super) fn create(path: &Path, numbered: bool) -> Result<(PathBuf, File), Rec
     }
     Err(RecorderError::NoFreeName {
         path: path.to_owned(),
-        tried: MOST,
+        tried: MAX,
     })
 }
 

@@ -139,7 +139,7 @@ mod tests {
 
     use super::*;
 
-    /// A disk with room for so many bytes; what does not fit is written in part.
+    /// A disk with room for this many bytes; what does not fit is written in part.
     #[derive(Debug, Clone, Default)]
     struct SmallDisk {
         bytes: Rc<RefCell<Vec<u8>>>,

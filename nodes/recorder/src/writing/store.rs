@@ -10,7 +10,7 @@ use crate::RecorderError;
 pub(crate) struct Tally {
     /// Messages that are in a file, or on the way to it.
     pub(crate) recorded: u64,
-    /// Messages that are lost because they came faster than they could be
+    /// Messages that are lost because they arrived faster than they could be
     /// written.
     pub(crate) dropped: u64,
     /// Files begun.
@@ -24,7 +24,7 @@ pub(crate) enum Store {
 }
 
 impl Store {
-    /// Takes an entry; says whether there was room.
+    /// Takes an entry; returns whether there was room.
     ///
     /// # Errors
     /// If it cannot be written for another reason than a full disk.

@@ -1,20 +1,20 @@
-//! What somebody types, read on a thread of its own.
+//! Keyboard input, read on a thread of its own.
 
 use std::io::BufRead;
 use std::sync::mpsc::{Receiver, TryRecvError, channel};
 
-use crate::pause::{Pause, Wish};
+use crate::pause::{Command, Pause};
 
 /// The typed lines.
 pub(super) struct Keyboard {
-    wishes: Receiver<Wish>,
+    commands: Receiver<Command>,
 }
 
 /// What came of the lines.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub(super) enum Heard {
+pub(super) enum KeyPress {
     Nothing,
-    /// Playing goes on after a pause.
+    /// Playing continues after a pause.
     Resumed,
     Quit,
 }
@@ -23,11 +23,11 @@ impl Keyboard {
     /// Reads `input` to its end. The thread stays with it; it ends with the
     /// process.
     pub(super) fn read(input: impl BufRead + Send + 'static) -> std::io::Result<Self> {
-        let (send, wishes) = channel();
+        let (send, commands) = channel();
         let body = move || {
             for line in input.lines() {
                 let Ok(line) = line else { return };
-                if send.send(Wish::of(&line)).is_err() {
+                if send.send(Command::of(&line)).is_err() {
                     return;
                 }
             }
@@ -35,17 +35,17 @@ impl Keyboard {
         std::thread::Builder::new()
             .name("keyboard".into())
             .spawn(body)?;
-        Ok(Keyboard { wishes })
+        Ok(Keyboard { commands })
     }
 
     /// Takes what was typed. Where nobody can type any more, nothing is held up.
-    pub(super) fn take(&self, pause: &mut Pause) -> Heard {
+    pub(super) fn take(&self, pause: &mut Pause) -> KeyPress {
         let before = *pause;
         loop {
-            match self.wishes.try_recv() {
-                Ok(Wish::Step) => pause.step(),
-                Ok(Wish::Toggle) => pause.toggle(),
-                Ok(Wish::Quit) => return Heard::Quit,
+            match self.commands.try_recv() {
+                Ok(Command::Step) => pause.step(),
+                Ok(Command::Toggle) => pause.toggle(),
+                Ok(Command::Quit) => return KeyPress::Quit,
                 Err(TryRecvError::Empty) => break,
                 Err(TryRecvError::Disconnected) => {
                     if pause.is_paused() && !pause.may_step() {
@@ -56,8 +56,8 @@ impl Keyboard {
             }
         }
         match before.is_paused() && !pause.is_paused() {
-            true => Heard::Resumed,
-            false => Heard::Nothing,
+            true => KeyPress::Resumed,
+            false => KeyPress::Nothing,
         }
     }
 }
@@ -68,14 +68,14 @@ mod tests {
 
     use super::*;
 
-    /// What was heard, and the pause in the end, once `until` holds.
-    fn typed(lines: &'static str, until: impl Fn(Heard, Pause) -> bool) -> (Heard, Pause) {
+    /// What was pressed, and the pause in the end, once `until` holds.
+    fn typed(lines: &'static str, until: impl Fn(KeyPress, Pause) -> bool) -> (KeyPress, Pause) {
         let keyboard = Keyboard::read(Cursor::new(lines)).unwrap();
         let mut pause = Pause::new(true);
         loop {
-            let heard = keyboard.take(&mut pause);
-            if until(heard, pause) {
-                return (heard, pause);
+            let pressed = keyboard.take(&mut pause);
+            if until(pressed, pause) {
+                return (pressed, pause);
             }
             std::thread::yield_now();
         }
@@ -85,16 +85,16 @@ mod tests {
     fn lines_step_play_and_quit() {
         let (_, pause) = typed("\nn\n", |_, pause| pause.may_step());
         assert!(pause.is_paused());
-        let (heard, pause) = typed("p\n", |heard, _| heard != Heard::Nothing);
-        assert_eq!((heard, pause.is_paused()), (Heard::Resumed, false));
-        let (heard, _) = typed("q\n", |heard, _| heard != Heard::Nothing);
+        let (pressed, pause) = typed("p\n", |pressed, _| pressed != KeyPress::Nothing);
+        assert_eq!((pressed, pause.is_paused()), (KeyPress::Resumed, false));
+        let (pressed, _) = typed("q\n", |pressed, _| pressed != KeyPress::Nothing);
         // The end of what is typed may be seen with it, or not.
-        assert_eq!(heard, Heard::Quit);
+        assert_eq!(pressed, KeyPress::Quit);
     }
 
     #[test]
     fn where_nobody_types_nothing_is_held_up() {
-        let (heard, pause) = typed("", |heard, _| heard != Heard::Nothing);
-        assert_eq!((heard, pause.is_paused()), (Heard::Resumed, false));
+        let (pressed, pause) = typed("", |pressed, _| pressed != KeyPress::Nothing);
+        assert_eq!((pressed, pause.is_paused()), (KeyPress::Resumed, false));
     }
 }

@@ -1,4 +1,4 @@
-//! Where messages leave the node and troubles are reported.
+//! Where messages are published and errors are reported.
 
 use std::collections::BTreeMap;
 
@@ -31,7 +31,7 @@ impl Outlet {
     }
 
     /// Whether anybody gets the scans.
-    pub(super) fn is_heard(&self) -> bool {
+    pub(super) fn has_subscribers(&self) -> bool {
         self.scans.has_subscribers()
     }
 

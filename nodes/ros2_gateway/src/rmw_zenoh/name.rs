@@ -26,7 +26,7 @@ pub(crate) fn resolve(namespace: &str, name: &str) -> Result<String, String> {
         return Ok(whole);
     }
     Err(format!(
-        "{whole:?} is no name: allowed are parts of a-z A-Z 0-9 _ that begin with no digit, \
+        "{whole:?} is not a name: allowed are parts of a-z A-Z 0-9 _ that begin with no digit, \
          each behind a slash"
     ))
 }

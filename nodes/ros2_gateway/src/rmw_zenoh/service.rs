@@ -1,4 +1,4 @@
-//! A service of type `std_srvs/srv/Empty`: a wish without words, answered without words.
+//! A service of type `std_srvs/srv/Empty`: an empty request with an empty reply.
 
 use std::sync::Arc;
 

@@ -1,6 +1,6 @@
 //! A topic from the robot.
 //!
-//! What is lost is counted: here for want of room, and before by the sender's own
+//! What is lost is counted: here for want of limits, and before by the sender's own
 //! numbers.
 
 use std::collections::BTreeMap;
@@ -11,13 +11,13 @@ use serde::de::DeserializeOwned;
 use transport::Graph;
 use zenoh::liveliness::LivelinessToken;
 use zenoh::sample::Sample;
-use zenoh_session::{Past, Queue, Room};
+use zenoh_session::{Past, Queue, QueueLimits};
 
 use super::entity::Kind;
 use super::{Attachment, Member, description};
 use crate::GatewayError;
 
-/// Senders of a topic whose sequence is followed; who has more is not told what it
+/// Senders of a topic whose sequence is followed; who has more is not informed what it
 /// lost.
 const MAX_SENDERS: usize = 64;
 
@@ -38,7 +38,7 @@ pub(crate) struct Subscription<M> {
     queue: Queue,
     /// The last sequence number of each sender.
     senders: BTreeMap<[u8; 16], i64>,
-    heard: bool,
+    received: bool,
     _token: LivelinessToken,
     message: PhantomData<M>,
 }
@@ -65,19 +65,25 @@ impl<M: RosMessage + DeserializeOwned> Subscription<M> {
             Keeping::Fresh | Keeping::Reliable => Past::Gone,
             Keeping::Kept => Past::Last(depth),
         };
-        let room = Room::for_any(depth, max_bytes);
-        let queue = Queue::open(member.session(), &endpoint.key, past, room, graph.waker()?);
+        let limits = QueueLimits::for_any(depth, max_bytes);
+        let queue = Queue::open(
+            member.session(),
+            &endpoint.key,
+            past,
+            limits,
+            graph.waker()?,
+        );
         Ok(Subscription {
             topic: topic.to_owned(),
             queue: queue?,
             senders: BTreeMap::new(),
-            heard: false,
+            received: false,
             _token: member.show(&endpoint)?,
             message: PhantomData,
         })
     }
 
-    /// Messages that were lost for want of room since the last call.
+    /// Messages that were lost because the queue was full since the last call.
     pub(crate) fn dropped(&self) -> u64 {
         self.queue.dropped()
     }
@@ -85,7 +91,7 @@ impl<M: RosMessage + DeserializeOwned> Subscription<M> {
     /// Most messages that can wait: who takes no more at once keeps no other topic
     /// waiting, however fast they come.
     pub(crate) fn depth(&self) -> usize {
-        self.queue.room().messages
+        self.queue.limits().messages
     }
 
     /// Why a message was not let in at all, for each such.
@@ -94,7 +100,7 @@ impl<M: RosMessage + DeserializeOwned> Subscription<M> {
         Some(GatewayError::TooLong {
             topic: self.topic.clone(),
             found,
-            most: self.queue.room().message_bytes,
+            most: self.queue.limits().message_bytes,
         })
     }
 
@@ -102,9 +108,9 @@ impl<M: RosMessage + DeserializeOwned> Subscription<M> {
         let sample = self.queue.next()?;
         let mut lost = 0;
         let message = self.decode(&sample, &mut lost);
-        if message.is_ok() && !self.heard {
-            self.heard = true;
-            tracing::info!(topic = self.topic, "the first message came");
+        if message.is_ok() && !self.received {
+            self.received = true;
+            tracing::info!(topic = self.topic, "first message received");
         }
         Some(Received { message, lost })
     }

@@ -38,7 +38,7 @@ pub(crate) struct Watch {
 }
 
 impl Watch {
-    /// Tells of subscribers of `subscribed`.
+    /// Reports subscribers of `subscribed`.
     pub(crate) fn open(
         graph: &Graph,
         member: &Member,
@@ -73,7 +73,7 @@ impl Watch {
         })
     }
 
-    /// Tells of publishers of `topic` too that publish anything but `M`.
+    /// Also reports publishers of `topic` that publish anything but `M`.
     pub(crate) fn expect<M: RosMessage>(&mut self, topic: &str) -> Result<(), GatewayError> {
         let info = description::of_message::<M>()?;
         self.published.push((topic.to_owned(), info));

@@ -1,6 +1,6 @@
 //! The map, and where the robot is expected on it.
 
-use engine::peaks::Sought;
+use engine::peaks::Target;
 use engine::tracking::Follower;
 use geometry::{Covariance, Pose};
 use messages::{MapHeader, NodeState, TrackState};
@@ -31,7 +31,7 @@ impl Node {
             }
             Err(error) => {
                 self.refuse(&format!(
-                    "map {:016x} is refused: {}",
+                    "map {:016x} rejected: {}",
                     header.map_id,
                     with_causes(&error)
                 ))?;
@@ -63,13 +63,13 @@ impl Node {
     }
 
     pub(super) fn expect_base(&mut self, (base, covariance): (Pose, Covariance), lead: f64) {
-        let sought = self.sought().from_base(base);
+        let target = self.target().from_base(base);
         self.tracker
-            .expect(sought, covariance.carried(base, sought), lead);
+            .expect(target, covariance.carried(base, target), lead);
     }
 
-    pub(super) fn sought(&self) -> Sought {
+    pub(super) fn target(&self) -> Target {
         let mount = self.joiner.base_from_laser();
-        Sought::of(mount, self.joiner.seeks_base())
+        Target::of(mount, self.joiner.targets_base())
     }
 }

@@ -66,7 +66,7 @@ impl Node {
         }
         if !has_come {
             self.is_silent |= !is_lost;
-            self.refuse(&format!("no hypotheses came for scan {}", of.counter))?;
+            self.refuse(&format!("no hypotheses received for scan {}", of.counter))?;
         }
         self.finish(inputs, scan, has_come.then_some(of), Instant::now())?;
         Ok(true)

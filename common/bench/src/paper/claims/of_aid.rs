@@ -7,7 +7,7 @@ use super::{Basis, Case, Claim, least, most};
 const FEW: f64 = 0.01;
 /// Particles are fewer if there are at most half.
 const FEWER_PARTICLES: f64 = 0.5;
-/// As often is no less than so much of it: what a few dozen scans tell apart.
+/// As often is no less than this much of it: what a few dozen scans can distinguish.
 const AS_OFTEN: f64 = 0.9;
 
 const SECTION: &str = "I, VI";

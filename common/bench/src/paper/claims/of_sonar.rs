@@ -5,13 +5,13 @@ use engine::taper::TaperShape;
 use super::super::sonar::Judged;
 use super::{Basis, Case, Claim, least, most};
 
-/// A share that is no worse than another is at least so much of it: what a hundred poses
-/// tell apart.
+/// A share that is no worse than another is at least this much of it: what a hundred poses
+/// can distinguish.
 const AS_GOOD: f64 = 0.95;
-/// The peak is taken for the robot if it is in so many of the poses.
+/// The peak is taken for the robot if it is in this many of the poses.
 const RELIABLE: f64 = 0.95;
 /// The paper's error of a position, per cent.
-const MOST_PERCENT: f64 = 5.0;
+const MAX_PERCENT: f64 = 5.0;
 
 /// The claims about eight sonars.
 pub(in super::super) fn of_sonar(all: &[Judged]) -> Vec<Claim> {
@@ -37,7 +37,7 @@ pub(in super::super) fn of_sonar(all: &[Judged]) -> Vec<Claim> {
             ours: most(errors()),
             is: "the largest mean error, % of the mean reading",
             cases: errors()
-                .map(|percent| Case::at_most(percent, MOST_PERCENT))
+                .map(|percent| Case::at_most(percent, MAX_PERCENT))
                 .collect(),
         },
         Claim {
@@ -49,7 +49,7 @@ pub(in super::super) fn of_sonar(all: &[Judged]) -> Vec<Claim> {
             ours: most(found_errors()),
             is: "the largest mean error of those found, % of the mean reading",
             cases: found_errors()
-                .map(|percent| Case::at_most(percent, MOST_PERCENT))
+                .map(|percent| Case::at_most(percent, MAX_PERCENT))
                 .collect(),
         },
         Claim {

@@ -16,7 +16,7 @@ pub(in crate::search) struct Aligned(pub Words);
 /// after it.
 pub(in crate::search) type Carries = [Vec<Aligned>; 3];
 
-/// Beams whose bearings leave the same rest by eight.
+/// Beams with the same bearing modulo 8.
 #[derive(Debug, Clone)]
 pub(in crate::search) struct Group {
     /// That rest.
@@ -74,7 +74,7 @@ impl Group {
         self.shift
     }
 
-    /// Lets go of all windows; their room stays.
+    /// Drops all windows; their buffer stays.
     pub(in crate::search) fn clear(&mut self) {
         self.planes.iter_mut().for_each(Plane::clear);
         self.possible = 0;

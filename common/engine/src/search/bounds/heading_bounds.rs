@@ -28,7 +28,7 @@ pub(in crate::search) struct Chunk {
 }
 
 impl HeadingBounds {
-    /// Makes room for bounds at some headings, a word a chunk; nothing is left of what
+    /// Allocates bounds at some headings, a word a chunk; nothing is left of what
     /// was there.
     pub(in crate::search) fn fit(&mut self, unit: u16, headings: impl Iterator<Item = u128>) {
         self.unit = unit;

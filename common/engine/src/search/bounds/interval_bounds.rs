@@ -43,7 +43,7 @@ pub(crate) struct Window {
 }
 
 /// What is to be bounded, and when it may be given up.
-struct Sought<'a> {
+struct BoundQuery<'a> {
     order: &'a Order,
     block: &'a BlockIntervals,
     /// The first of the headings, and those that matter from there on.
@@ -51,7 +51,7 @@ struct Sought<'a> {
     among: u64,
     /// Votes that any of them must reach.
     least: u16,
-    /// What the beams give at most that are missing when so many sectors or groups are
+    /// What the beams give at most that are missing when this many sectors or groups are
     /// complete.
     rests: &'a [u16],
 }
@@ -68,7 +68,7 @@ impl IntervalProgram {
         least: u16,
         bounds: &mut IntervalBounds,
     ) -> bool {
-        let sought = Sought {
+        let query = BoundQuery {
             order: &self.by_sector,
             block,
             heading,
@@ -76,12 +76,12 @@ impl IntervalProgram {
             least,
             rests: &self.possible_from,
         };
-        self.run::<true>(&sought, bounds)
+        self.run::<true>(&query, bounds)
     }
 
     /// The same at the headings of a window that is known of a block around it, but
-    /// for what is told of sectors and beams. What is known of the beams that are missing
-    /// tells sooner whether any heading may have so many votes.
+    /// for the bounds of sectors and beams. What is known of the beams that are missing
+    /// decides sooner whether any heading may have this many votes.
     pub(crate) fn bound_within(
         &self,
         block: &BlockIntervals,
@@ -89,7 +89,7 @@ impl IntervalProgram {
         least: u16,
         bounds: &mut IntervalBounds,
     ) -> bool {
-        let sought = Sought {
+        let query = BoundQuery {
             order: &self.by_group,
             block,
             heading: usize::from(window.first),
@@ -97,46 +97,50 @@ impl IntervalProgram {
             least,
             rests: &window.rests,
         };
-        self.run::<false>(&sought, bounds)
+        self.run::<false>(&query, bounds)
     }
 
-    /// `TELLS` what sectors and beams have.
-    fn run<const TELLS: bool>(&self, sought: &Sought<'_>, bounds: &mut IntervalBounds) -> bool {
-        self.simd.run(Bounding::<TELLS> {
+    /// `DETAILED`: also the bounds of sectors and beams.
+    fn run<const DETAILED: bool>(
+        &self,
+        query: &BoundQuery<'_>,
+        bounds: &mut IntervalBounds,
+    ) -> bool {
+        self.simd.run(Bounding::<DETAILED> {
             program: self,
-            sought,
+            query,
             bounds,
         })
     }
 
     #[inline(always)]
-    fn run_on<S: Set, const TELLS: bool>(
+    fn run_on<S: Set, const DETAILED: bool>(
         &self,
         set: S,
-        sought: &Sought<'_>,
+        query: &BoundQuery<'_>,
         bounds: &mut IntervalBounds,
     ) -> bool {
-        let rows = sought.block.rows();
+        let rows = query.block.rows();
         let mut sums = S::Headings::no_sums(set);
         let mut alive = false;
         bounds.sectors.clear();
         bounds.voting.clear();
-        for (beams, complete) in sought.order.pieces() {
+        for (beams, complete) in query.order.pieces() {
             let mut votes = S::Headings::none(set);
             for beam in beams {
-                let direction = self.direction(beam, sought.heading);
+                let direction = self.direction(beam, query.heading);
                 let of_beam = S::Headings::of_beam(set, &beam.votes, rows.from(direction));
                 votes = votes.add(of_beam);
-                if TELLS {
+                if DETAILED {
                     bounds.voting.push(of_beam.present());
                 }
             }
-            if TELLS {
+            if DETAILED {
                 bounds.sectors.push(votes.to_bytes());
             }
             sums = votes.add_to(sums);
-            let missing = sought.least.saturating_sub(sought.rests[complete]);
-            alive = S::Headings::at_least(set, sums, missing) & sought.among != 0;
+            let missing = query.least.saturating_sub(query.rests[complete]);
+            alive = S::Headings::at_least(set, sums, missing) & query.among != 0;
             if !alive {
                 break;
             }
@@ -157,20 +161,20 @@ impl IntervalProgram {
     }
 }
 
-/// Bounding a block; `TELLS` what sectors and beams have.
-struct Bounding<'a, const TELLS: bool> {
+/// Bounding a block; `DETAILED`: also the bounds of sectors and beams.
+struct Bounding<'a, const DETAILED: bool> {
     program: &'a IntervalProgram,
-    sought: &'a Sought<'a>,
+    query: &'a BoundQuery<'a>,
     bounds: &'a mut IntervalBounds,
 }
 
-impl<const TELLS: bool> Kernel for Bounding<'_, TELLS> {
+impl<const DETAILED: bool> Kernel for Bounding<'_, DETAILED> {
     type Result = bool;
 
     #[inline(always)]
     fn run<S: Set>(self, set: S) -> bool {
         self.program
-            .run_on::<S, TELLS>(set, self.sought, self.bounds)
+            .run_on::<S, DETAILED>(set, self.query, self.bounds)
     }
 }
 
@@ -214,10 +218,10 @@ mod tests {
                 for block in 0..fine.blocks() {
                     let (outside, place) = fine.place_of(block);
                     let (outer_quad, outer_place) = coarse.place_of(outside);
-                    let outer_quad = coarse.sought(outer_quad, |_| true);
+                    let outer_quad = coarse.searched(outer_quad, |_| true);
                     let around = sets.bound((coarse, &outer_quad), None, &mut outer_bounds);
                     let known: Vec<_> = around.by_chunk(outer_place).map(AtomicU16::new).collect();
-                    let quad = fine.sought(outside, |other| other == block);
+                    let quad = fine.searched(outside, |other| other == block);
                     let greatest = sets.bound((fine, &quad), None, &mut inner_bounds).greatest(place);
                     let least = (f64::from(greatest) * share) as u16;
                     let known = Some((&known[..], least.max(1)));

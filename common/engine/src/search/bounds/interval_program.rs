@@ -11,7 +11,7 @@ use crate::tables::TABLE;
 /// As many votes of at most 16 as fit into a byte.
 const BEAMS_OF_A_BYTE: usize = 15;
 
-/// A scan program laid out for bounds from intervals; made anew for each scan.
+/// A scan program laid out for bounds from intervals; made again for each scan.
 #[derive(Debug, Clone, Default)]
 pub(crate) struct IntervalProgram {
     pub(in crate::search) directions: usize,
@@ -43,7 +43,7 @@ pub(in crate::search) struct IntervalBeam {
 
 impl IntervalProgram {
     /// Lays out a program whose sectors are in this order, see [`sectors::order`];
-    /// `shifts` tell the groups of beams in theirs, see
+    /// `shifts` give the groups of beams in theirs, see
     /// [`SetProgram::shifts`](super::set_program::SetProgram::shifts).
     pub(crate) fn make(
         &mut self,

@@ -1,6 +1,6 @@
 //! The sets of a quad of blocks, laid out so that windows of bins are read quickly.
 //!
-//! Each row goes round once and a word further: a word can be read from any direction
+//! Each row holds a full turn and one word more: a word can be read from any direction
 //! on. Beside each row lies the same joined with the next one, so that a window takes
 //! half as many reads.
 
@@ -75,7 +75,7 @@ pub(crate) struct Reader<'a, const N: usize> {
 }
 
 impl RowLayout {
-    /// Starts anew, with nothing that is read.
+    /// Starts again, with nothing that is read.
     pub(crate) fn start(&mut self, directions: usize) {
         self.stride = directions / 8;
         let turns = (READ - 1).div_ceil(self.stride);
@@ -134,7 +134,7 @@ impl RowLayout {
 }
 
 impl QuadRows {
-    /// Makes room for a layout; nothing is left of what another one had.
+    /// Allocates buffers for a layout; nothing is left of what another one had.
     pub(crate) fn fit(&mut self, layout: &RowLayout) {
         self.bytes.clear();
         self.bytes.resize(layout.end(), [0; QUAD]);

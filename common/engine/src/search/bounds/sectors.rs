@@ -1,7 +1,7 @@
 //! The order in which a block's beams are counted.
 //!
 //! Neighbouring beams need neighbouring directions, so beams are counted in
-//! sectors of neighbours. Those that can give most votes come first: they tell
+//! sectors of neighbours. Those that can give most votes come first: they decide
 //! most about a pose, and counting can stop early.
 
 use std::cmp::Reverse;

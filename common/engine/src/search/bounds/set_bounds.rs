@@ -19,7 +19,7 @@ use crate::simd::words::{BitWords, EMPTY, QUAD, Several};
 use crate::simd::{Kernel, Set};
 
 /// Most chunks that are bounded at a time by any instruction set.
-const MOST_AT_A_TIME: usize = 3;
+const MAX_AT_A_TIME: usize = 3;
 
 /// What the beams from each group on give at most, in votes: more for the first
 /// group than they can, and 0 behind the last.
@@ -32,7 +32,7 @@ pub(crate) type Known<'a> = (&'a [AtomicU16], u16);
 /// The bounds of a quad, and a place there.
 pub(crate) type Placed<'a> = (&'a HeadingBounds, usize);
 
-/// Bounds of the blocks of a quad, and room to find them.
+/// Bounds of the blocks of a quad, and scratch buffers to find them.
 #[derive(Debug, Clone, Default)]
 pub(crate) struct SetBounds {
     pub found: HeadingBounds,
@@ -45,7 +45,7 @@ pub(crate) struct SetBounds {
 }
 
 impl SetBounds {
-    /// Makes room for the bounds by a program of blocks at some headings, a word a
+    /// Allocates the bounds by a program of blocks at some headings, a word a
     /// chunk; nothing is left of what another program had.
     pub(crate) fn fit(&mut self, program: &SetProgram, headings: impl Iterator<Item = u128>) {
         self.found.fit(program.unit, headings);
@@ -53,7 +53,7 @@ impl SetBounds {
         self.rows.fit(&program.layout);
         let carries = program.groups().iter().map(Group::carries).max();
         for rows in &mut self.carries {
-            rows.resize(MOST_AT_A_TIME * (carries.unwrap_or(0)), Aligned(EMPTY));
+            rows.resize(MAX_AT_A_TIME * (carries.unwrap_or(0)), Aligned(EMPTY));
         }
     }
 }
@@ -163,7 +163,7 @@ impl SetProgram {
         }
     }
 
-    /// Bounds blocks at the headings of some chunks, if so many units matter as long as
+    /// Bounds blocks at the headings of some chunks, if this many units matter as long as
     /// any may have them.
     #[inline(always)]
     fn run_chunks<S: Set, const N: usize>(
@@ -291,7 +291,7 @@ mod tests {
                     let mut bounds = SetBounds::default();
                     bounds.fit(&set_program, all.headings(directions.count()));
                     let mut found = vec![0; sets.blocks()];
-                    let all = |quad| sets.sought(quad, |_| true);
+                    let all = |quad| sets.searched(quad, |_| true);
                     set_program.bound_all(sets, (0..sets.quads()).map(all), &mut bounds, |quad, bounds| {
                         for (place, block) in quad.blocks() {
                             found[block] = bounds.greatest(place);
@@ -299,7 +299,7 @@ mod tests {
                     });
                     for (block, &greatest) in found.iter().enumerate() {
                         let (quad, place) = sets.place_of(block);
-                        let quad = sets.sought(quad, |other| other == block);
+                        let quad = sets.searched(quad, |other| other == block);
                         let alone = set_program.bound((sets, &quad), None, &mut bounds);
                         prop_assert_eq!(alone.greatest(place), greatest);
                         let others = (0..QUAD).filter(|&other| other != place);
@@ -347,23 +347,23 @@ mod tests {
                 let possible: Vec<_> = (0..headings).map(|_| AtomicU16::new(program.highest_possible() as u16)).collect();
                 for outside in 0..coarse.blocks() {
                     let (outer_quad, outer_place) = coarse.place_of(outside);
-                    let outer_quad = coarse.sought(outer_quad, |_| true);
+                    let outer_quad = coarse.searched(outer_quad, |_| true);
                     let around = set_program.bound((coarse, &outer_quad), None, &mut around);
                     let known: Vec<_> = around.by_chunk(outer_place).map(AtomicU16::new).collect();
-                    let quad = fine.sought(outside, |_| true);
+                    let quad = fine.searched(outside, |_| true);
                     // About as many votes as they have, where it matters most.
                     let greatest = set_program.bound((fine, &quad), None, &mut alone).greatest(0);
                     let least = (f64::from(greatest) * share) as u16;
                     for least in [0, least, greatest, greatest + 1] {
                         for wanted in 1..1 << QUAD {
                             let places = |block: &usize| quad.blocks.iter().position(|other| other.as_ref() == Some(block));
-                            let quad = fine.sought(outside, |block| places(&block).is_some_and(|place| wanted >> place & 1 == 1));
+                            let quad = fine.searched(outside, |block| places(&block).is_some_and(|place| wanted >> place & 1 == 1));
                             let found = set_program.bound((fine, &quad), Some((&known, least)), &mut found);
                             let plain = set_program.bound((fine, &quad), Some((&possible, least)), &mut plain);
                             let alone = set_program.bound((fine, &quad), None, &mut alone);
                             for place in 0..QUAD {
-                                let is_sought = quad.blocks[place].is_some();
-                                let reaches = is_sought && alone.greatest(place) >= least;
+                                let is_searched = quad.blocks[place].is_some();
+                                let reaches = is_searched && alone.greatest(place) >= least;
                                 prop_assert_eq!(found.reach(place).next().is_some(), reaches);
                                 prop_assert!(found.reach(place).eq(plain.reach(place)));
                                 let greatest = if reaches { alone.greatest(place) } else { 0 };

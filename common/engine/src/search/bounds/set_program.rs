@@ -17,7 +17,7 @@ use crate::simd::Simd;
 /// Rests that bearings leave by eight, each with a group of beams.
 pub(in crate::search) const GROUPS: usize = 8;
 
-/// A scan program laid out for bounds from sets; made anew for each scan.
+/// A scan program laid out for bounds from sets; made again for each scan.
 #[derive(Debug, Clone)]
 pub(crate) struct SetProgram {
     pub(in crate::search) simd: Simd,

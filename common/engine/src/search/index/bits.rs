@@ -33,7 +33,7 @@ pub(crate) fn words(of_block: impl Fn(usize) -> u128) -> Words {
     ]
 }
 
-/// The greatest of the numbers that `among` selects, of so many planes.
+/// The greatest of the numbers that `among` selects, of this many planes.
 #[inline(always)]
 pub(crate) fn greatest(planes: usize, number: impl Fn(usize) -> u64, among: u64) -> u16 {
     let (mut candidates, mut value) = (among, 0);
@@ -47,7 +47,7 @@ pub(crate) fn greatest(planes: usize, number: impl Fn(usize) -> u64, among: u64)
     value
 }
 
-/// The greatest of the numbers of each block that `among` selects, of so many planes.
+/// The greatest of the numbers of each block that `among` selects, of this many planes.
 #[inline(always)]
 pub(crate) fn greatest_of_each<W: BitWords>(
     set: W::Set,
@@ -65,7 +65,7 @@ pub(crate) fn greatest_of_each<W: BitWords>(
     value.to_words()[0].map(|value| value as u16)
 }
 
-/// Where the numbers that `among` selects, of so many planes, are at least `least`.
+/// Where the numbers that `among` selects, of this many planes, are at least `least`.
 #[inline(always)]
 pub(crate) fn at_least<W: BitWords>(
     set: W::Set,
@@ -106,7 +106,7 @@ pub(crate) fn ones(word: u64) -> impl Iterator<Item = usize> + Clone {
     })
 }
 
-/// The set bits of so many chunks in windows: the place of the first bit, and all of
+/// The set bits of this many chunks in windows: the place of the first bit, and all of
 /// them less than 64 places behind it.
 pub(crate) fn windows(
     chunks: usize,
@@ -127,7 +127,7 @@ pub(crate) fn windows(
     })
 }
 
-/// The bits of so many chunks from a place on, as many as a window has; none behind the
+/// The bits of this many chunks from a place on, as many as a window has; none behind the
 /// last chunk.
 #[inline(always)]
 pub(crate) fn window_of(chunks: usize, bits: impl Fn(usize) -> u128, first: usize) -> u64 {

@@ -1,4 +1,4 @@
-//! The blocks of a grid in which poses are sought, numbered without gaps.
+//! The blocks of a grid in which poses are searched, numbered without gaps.
 //!
 //! What is kept of blocks is kept of these alone, so that it grows with where a robot can
 //! be and not with the rectangle that the map fills.
@@ -29,7 +29,7 @@ impl BlockIds {
         ids
     }
 
-    /// Numbers the blocks of the set, which may have been filled in anew.
+    /// Numbers the blocks of the set, which may have been filled in again.
     pub(crate) fn number(&mut self) {
         let mut count = 0;
         self.before.clear();
@@ -50,7 +50,7 @@ impl BlockIds {
         &mut self.blocks
     }
 
-    /// All of so many blocks.
+    /// All of this many blocks.
     #[cfg(test)]
     pub(crate) fn all(blocks: usize) -> Self {
         Self::new(&vec![true; blocks])

@@ -34,11 +34,11 @@ const PACKED: usize = 3;
 /// A nibble that stands for the width of all that the block sees.
 const ALL: u8 = 15;
 
-/// Nibbles beyond each of these stand for widths that are so many bins farther apart
+/// Nibbles beyond each of these stand for widths that are this many bins farther apart
 /// than before; up to the first a nibble is a width itself.
 const STRETCHES: [(u8, u8); 3] = [(4, 1), (8, 6), (12, 8)];
 
-/// The two intervals in all directions of the blocks in which poses are sought.
+/// The two intervals in all directions of the blocks in which poses are searched.
 #[derive(Debug, Clone)]
 pub(crate) struct RangeIntervals {
     /// Blocks along x.
@@ -143,8 +143,8 @@ impl RangeIntervals {
         (intervals, wide)
     }
 
-    /// Those of some blocks of a grid, to be filled in: so many bytes. `None` where there
-    /// cannot be so many.
+    /// Those of some blocks of a grid, to be filled in: this many bytes. `None` where there
+    /// cannot be this many.
     pub(crate) fn unfilled(grid: &Grid, directions: &Directions, bytes: usize) -> Option<Self> {
         let (columns, rows) = (grid.width().div_ceil(SIDE), grid.height().div_ceil(SIDE));
         let most = PACKED * directions.count() * columns * rows;

@@ -1,4 +1,4 @@
-//! A map prepared for searches: what the blocks see in which poses are sought.
+//! A map prepared for searches: what the blocks see in which poses are searched.
 //!
 //! It is made once for each map and then only read. What it says of a block holds for all
 //! its cells: no range that a cell sees is missing. Nothing here knows a scan, a floor or
@@ -49,13 +49,13 @@ pub struct SearchIndex {
 }
 
 impl SearchIndex {
-    /// Prepares a map of which poses are sought in all open cells.
+    /// Prepares a map of which poses are searched in all open cells.
     #[must_use]
     pub fn new(grid: &Grid, space: &Space) -> Self {
         Self::within(grid, space, Limits::none(grid.width()))
     }
 
-    /// Prepares a map of which poses are sought only within limits, those of its grid.
+    /// Prepares a map of which poses are searched only within limits, those of its grid.
     /// What is kept of blocks is kept of those alone that hold such a pose.
     #[must_use]
     pub fn within(grid: &Grid, space: &Space, limits: Limits) -> Self {
@@ -86,7 +86,7 @@ impl SearchIndex {
         (steps, bins)
     }
 
-    /// Where poses are sought.
+    /// Where poses are searched.
     #[must_use]
     pub fn limits(&self) -> &Limits {
         &self.within.limits

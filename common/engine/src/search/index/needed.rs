@@ -6,13 +6,13 @@ use crate::grid::Grid;
 use crate::limits::Limits;
 use crate::space::Space;
 
-/// Bytes for each block of 4 × 4 cells in which poses are sought and each direction: three
+/// Bytes for each block of 4 × 4 cells in which poses are searched and each direction: three
 /// of the intervals, and while these are built up to 26 where they are wide, which on real
 /// maps they are in at most 7 of a hundred. The sets come when that is gone and take less.
 const BYTES_A_DIRECTION: usize = 5;
 
 /// Bytes for each cell of the map: its class, the bits that rays and sweeps follow, and
-/// which cells are free and sought.
+/// which cells are free and searched.
 const BYTES_A_CELL: usize = 3;
 
 /// Bytes on any map.
@@ -25,8 +25,8 @@ impl SearchIndex {
     #[must_use]
     pub fn needed_bytes(grid: &Grid, space: &Space, limits: &Limits) -> usize {
         let blocks = limits.blocks(SIDE, grid);
-        let sought = blocks.iter().filter(|&&is_sought| is_sought).count();
-        let by_blocks = sought * space.directions.count() * BYTES_A_DIRECTION;
+        let searched = blocks.iter().filter(|&&is_searched| is_searched).count();
+        let by_blocks = searched * space.directions.count() * BYTES_A_DIRECTION;
         BYTES_OF_ALL + by_blocks + grid.cells().len() * BYTES_A_CELL
     }
 }

@@ -242,7 +242,7 @@ impl Rays<'_> {
         (major, self.offset + i as i64 + self.direction.minor(major))
     }
 
-    /// What ends eight rays at eight positions: bit `i` of byte `j` says whether
+    /// What ends eight rays at eight positions: bit `i` of byte `j` returns whether
     /// ray `i` ends at `position + j`. `None` where all of them have left the map;
     /// there must be a row at `position`.
     #[inline(always)]

@@ -102,7 +102,7 @@ impl SearchIndex {
 }
 
 impl UncheckedIndex {
-    /// Room for sections of such lengths, in bytes, if an index of the map can have them.
+    /// Buffers for sections of such lengths, in bytes, if an index of the map can have them.
     pub(crate) fn new(
         lengths: [u64; SECTIONS],
         grid: &Grid,

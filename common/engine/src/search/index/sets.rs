@@ -127,7 +127,7 @@ impl RangeSets {
         }
     }
 
-    /// Those of blocks of so many cells a side, to be filled in: so many bytes of where
+    /// Those of blocks of this many cells a side, to be filled in: this many bytes of where
     /// quads start, of masks, and of bytes that are kept. `None` where there cannot be so
     /// many.
     pub(crate) fn unfilled(
@@ -237,7 +237,7 @@ impl RangeSets {
     }
 
     /// A quad, for those of its blocks that are wanted.
-    pub(crate) fn sought(&self, quad: usize, wanted: impl Fn(usize) -> bool) -> Quad {
+    pub(crate) fn searched(&self, quad: usize, wanted: impl Fn(usize) -> bool) -> Quad {
         let blocks = quad_of(quad, (self.columns, self.rows));
         Quad {
             index: quad,
@@ -283,13 +283,13 @@ impl Quad {
     }
 }
 
-/// How many of a kind so many bytes are.
+/// How many of a kind this many bytes are.
 fn count<T>(bytes: usize) -> Option<usize> {
     let each = size_of::<T>();
     bytes.is_multiple_of(each).then_some(bytes / each)
 }
 
-/// The blocks of a quad on a map of so many columns and rows of blocks.
+/// The blocks of a quad on a map of this many columns and rows of blocks.
 fn quad_of(quad: usize, (columns, rows): (usize, usize)) -> [Option<usize>; QUAD] {
     let quads = columns.div_ceil(2);
     let (left, bottom) = (2 * (quad % quads), 2 * (quad / quads));
@@ -385,7 +385,7 @@ mod tests {
                         let rows = plain.get(block?)?.get(row * sets.stride..)?;
                         rows.get(..sets.stride)
                     };
-                    let blocks = sets.sought(quad, |_| true).blocks.map(of_block);
+                    let blocks = sets.searched(quad, |_| true).blocks.map(of_block);
                     let turn = (0..sets.stride).map(|byte| blocks.map(|row| row.map_or(0, |row| row[byte])));
                     let turn: Vec<Byte> = turn.collect();
                     if turn.as_flattened().iter().any(|&byte| byte != 0) {

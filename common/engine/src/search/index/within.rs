@@ -6,11 +6,11 @@ use super::sets::{Quad, RangeSets};
 use crate::grid::{CellSet, Grid};
 use crate::limits::Limits;
 
-/// Where poses are sought, block by block.
+/// Where poses are searched, block by block.
 #[derive(Debug, Clone)]
 pub(in crate::search) struct Within {
     pub limits: Limits,
-    /// The blocks of 8 × 8 and of 16 × 16 cells in which poses are sought.
+    /// The blocks of 8 × 8 and of 16 × 16 cells in which poses are searched.
     pub blocks: [CellSet; 2],
 }
 
@@ -40,7 +40,7 @@ impl Within {
         Within { limits, blocks }
     }
 
-    /// Whether poses are sought in a block.
+    /// Whether poses are searched in a block.
     pub(in crate::search) fn holds(&self, size: Size, block: usize) -> bool {
         self.blocks[size as usize].holds(block)
     }
@@ -50,17 +50,17 @@ impl Within {
         self.limits.bytes() + self.blocks.iter().map(CellSet::bytes).sum::<usize>()
     }
 
-    /// A quad of blocks of a size, for those in which poses are sought.
+    /// A quad of blocks of a size, for those in which poses are searched.
     pub(in crate::search) fn quad(&self, size: Size, sets: &RangeSets, quad: usize) -> Quad {
-        sets.sought(quad, |block| self.holds(size, block))
+        sets.searched(quad, |block| self.holds(size, block))
     }
 
-    /// The headings that are sought among `count`, a word a chunk.
+    /// The headings that are searched among `count`, a word a chunk.
     pub(in crate::search) fn headings(&self, count: usize) -> impl Iterator<Item = u128> {
         (0..count).step_by(CHUNK).map(move |first| {
             let headings = first..count.min(first + CHUNK);
-            let sought = headings.filter(|&heading| self.limits.hold_heading(heading));
-            sought.fold(0u128, |word, heading| word | 1u128 << (heading - first))
+            let searched = headings.filter(|&heading| self.limits.hold_heading(heading));
+            searched.fold(0u128, |word, heading| word | 1u128 << (heading - first))
         })
     }
 }

@@ -139,8 +139,8 @@ impl Bundle {
     }
 }
 
-/// Where a ray ends in a cell that it is lost in, it has no range.
-pub(in crate::search) fn lose(rays: &Rays<'_>, grid: &Grid, hits: &mut [u16; RAYS]) {
+/// Where a ray ends in an unknown cell that blocks it, it has no range.
+pub(in crate::search) fn drop_blocked(rays: &Rays<'_>, grid: &Grid, hits: &mut [u16; RAYS]) {
     for (i, hit) in hits.iter_mut().enumerate() {
         if *hit == NO_RANGE {
             continue;

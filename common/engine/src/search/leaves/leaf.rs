@@ -4,7 +4,7 @@
 //! votes for the whole block are one table look-up for each cell, all of them at once
 //! (`simd/cells.rs`).
 
-use super::outlook::{Outlook, View};
+use super::block_ranges::{BlockRanges, View};
 use crate::directions::Directions;
 use crate::program::ScanProgram;
 use crate::search::bounds::sectors;
@@ -14,7 +14,7 @@ use crate::simd::cells::{self, CellLanes};
 use crate::simd::{Kernel, Set, Simd};
 use crate::tables::{VoteTable, VoteTables};
 
-/// A scan program laid out for counting in blocks; made anew for each scan.
+/// A scan program laid out for counting in blocks; made again for each scan.
 #[derive(Debug, Clone, Default)]
 pub(crate) struct LeafProgram {
     simd: Simd,
@@ -31,7 +31,7 @@ pub(crate) struct LeafProgram {
 #[repr(align(64))]
 pub(crate) struct Count {
     pub votes: [u16; CELLS],
-    /// The most where poses are sought.
+    /// The most where poses are searched.
     pub most: u16,
 }
 
@@ -54,26 +54,26 @@ impl LeafProgram {
     }
 
     /// Adds the votes of a sector of beams to those of the block's cells, at headings from
-    /// a first one on that bits tell, each with a count. What is added where a cell is not
-    /// open means nothing. Of each beam of all sectors bits tell at which headings it may
+    /// a first one on that bits select, each with a count. What is added where a cell is not
+    /// open means nothing. Of each beam of all sectors bits show at which headings it may
     /// vote.
     pub(crate) fn add(
         &self,
-        looking: (&mut Outlook, &View<'_>),
+        rays: (&mut BlockRanges, &View<'_>),
         (sector, voting): (usize, &[u64]),
         headings: (usize, u64),
         counts: &mut [Count],
     ) {
         let beams = sectors::beams(sector, self.bearings.len());
         let of_sector = (beams.start, &voting[beams]);
-        self.add_beams(looking, of_sector, headings, counts);
+        self.add_beams(rays, of_sector, headings, counts);
     }
 
     /// The votes of the block's cells at a heading, by beams that may vote as its
     /// intervals say. What is counted where a cell is not open means nothing.
     pub(crate) fn count(
         &self,
-        outlook: &mut Outlook,
+        block_ranges: &mut BlockRanges,
         view: &View<'_>,
         heading: usize,
     ) -> [u16; CELLS] {
@@ -82,7 +82,7 @@ impl LeafProgram {
             let beams = sectors::beams(sector, self.bearings.len());
             let may_vote = |beam: usize| {
                 let (direction, table) = self.place(beam, heading);
-                let spans = outlook.spans(view, direction);
+                let spans = block_ranges.spans(view, direction);
                 spans.into_iter().any(|span| table.has_votes_in(span))
             };
             let mut voting = [0; sectors::BEAMS];
@@ -91,23 +91,23 @@ impl LeafProgram {
             }
             let beams = (beams.start, &voting[..beams.len()]);
             let counts = std::slice::from_mut(&mut count);
-            self.add_beams((outlook, view), beams, (heading, 1), counts);
+            self.add_beams((block_ranges, view), beams, (heading, 1), counts);
         }
         count.votes
     }
 
-    /// Adds the votes of beams from a first one on, at the headings at which bits tell that
+    /// Adds the votes of beams from a first one on, at the headings at which bits show that
     /// each may vote.
     fn add_beams(
         &self,
-        looking: (&mut Outlook, &View<'_>),
+        rays: (&mut BlockRanges, &View<'_>),
         beams: (usize, &[u64]),
         headings: (usize, u64),
         counts: &mut [Count],
     ) {
         self.simd.run(Adding {
             program: self,
-            looking,
+            rays,
             beams,
             headings,
             counts,
@@ -123,7 +123,7 @@ impl LeafProgram {
         adding: Adding<'_, '_>,
     ) {
         let Adding {
-            looking: (outlook, view),
+            rays: (block_ranges, view),
             beams: (first_beam, beams),
             headings: (first, headings),
             counts,
@@ -131,7 +131,7 @@ impl LeafProgram {
         } = adding;
         for (beam, voting) in (first_beam..).zip(beams) {
             for lane in bits::ones(headings & voting) {
-                outlook.look(set, view, self.direction(beam, first + lane));
+                block_ranges.compute(set, view, self.direction(beam, first + lane));
             }
         }
         for lane in bits::ones(headings) {
@@ -141,10 +141,10 @@ impl LeafProgram {
             let voting = voting.fold(0, |all, (i, voting)| all | (voting >> lane & 1) << i);
             for beam in bits::ones(voting).map(|i| first_beam + i) {
                 let (direction, table) = self.place(beam, first + lane);
-                sums = sums.add(table, outlook.ranges(direction));
+                sums = sums.add(table, block_ranges.ranges(direction));
             }
             count.votes = sums.votes();
-            count.most = sums.most(outlook.open());
+            count.most = sums.most(block_ranges.open());
         }
     }
 
@@ -172,7 +172,7 @@ impl LeafProgram {
 /// with a count.
 struct Adding<'a, 'b> {
     program: &'a LeafProgram,
-    looking: (&'b mut Outlook, &'a View<'a>),
+    rays: (&'b mut BlockRanges, &'a View<'a>),
     beams: (usize, &'a [u64]),
     headings: (usize, u64),
     counts: &'b mut [Count],
@@ -224,19 +224,19 @@ mod tests {
             for instruction_set in InstructionSet::available() {
                 let mut leaf = LeafProgram::default();
                 leaf.make(&program, directions, Simd::new(instruction_set));
-                let mut outlook = Outlook::default();
-                outlook.prepare(&grid, directions);
-                outlook.enter((&view, &Limits::none(grid.width())), &intervals, block);
+                let mut block_ranges = BlockRanges::default();
+                block_ranges.prepare(&grid, directions);
+                block_ranges.enter((&view, &Limits::none(grid.width())), &intervals, block);
                 let mut counts = [Count::default()];
                 let all = vec![1; program.beams()];
                 for sector in 0..sectors::count(program.beams()) {
-                    leaf.add((&mut outlook, &view), (sector, &all), (heading, 1), &mut counts);
+                    leaf.add((&mut block_ranges, &view), (sector, &all), (heading, 1), &mut counts);
                 }
-                // The same with no more looks than needed.
-                outlook.enter((&view, &Limits::none(grid.width())), &intervals, block);
-                let sparing = leaf.count(&mut outlook, &view, heading);
+                // The same with no more rays than needed.
+                block_ranges.enter((&view, &Limits::none(grid.width())), &intervals, block);
+                let sparing = leaf.count(&mut block_ranges, &view, heading);
                 for (i, counts) in counts[0].votes.into_iter().zip(sparing).enumerate() {
-                    let (x, y) = outlook.cell(i);
+                    let (x, y) = block_ranges.cell(i);
                     if grid.is_open(x as i64, y as i64) {
                         let plain = reference::intensity(&grid, &program, &space, x as i64, y as i64, heading);
                         prop_assert_eq!(counts, (plain, plain), "{:?} {:?}", (x, y), instruction_set);

@@ -2,6 +2,6 @@
 //!
 //! What is counted here is what the plain reference counts, to the last vote.
 
+pub(in crate::search) mod block_ranges;
 pub(in crate::search) mod bundle;
 pub(in crate::search) mod leaf;
-pub(in crate::search) mod outlook;

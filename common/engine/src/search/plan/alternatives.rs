@@ -1,8 +1,8 @@
-//! Candidates below the floor of a search: the best poses of the blocks that
-//! promise most.
+//! Candidates below the floor of a search: the best poses of the blocks
+//! with the highest bounds.
 //!
 //! The search proves which poses stand above its floor. Below, where proofs
-//! would cost more than they are worth, single blocks are looked into: the 8 × 8
+//! would cost more than they are worth, single blocks are searched: the 8 × 8
 //! with the highest bounds, and in each of those one pose of the 4 × 4 and the
 //! heading with the highest bound. The search bounded all blocks that the floor
 //! leaves. Where those are too few, the coarse blocks with the highest bounds are split.
@@ -14,7 +14,7 @@ use std::sync::atomic::Ordering;
 use messages::Vote;
 
 use super::descent;
-use super::queue::Promise;
+use super::queue::BoundedBlock;
 use crate::search::bounds::heading_bounds::HeadingBounds;
 use crate::search::bounds::interval_bounds::IntervalBounds;
 use crate::search::bounds::set_bounds::SetBounds;
@@ -24,42 +24,42 @@ use crate::search::index::intervals::{BlockIntervals, SIDE};
 use crate::search::index::sets::Quad;
 use crate::search::index::within::Size;
 use crate::search::index::within::quarters;
-use crate::search::leaves::outlook::Outlook;
+use crate::search::leaves::block_ranges::BlockRanges;
 use crate::search::task::Task;
 use crate::votes::Distinct;
 
 /// Coarse blocks that are split for each candidate that is wanted.
 const COARSE_SHARE: usize = 6;
 
-/// On large maps, one of so many coarse blocks is split.
+/// On large maps, one in this number of coarse blocks is split.
 const COARSE_PART: usize = 16;
 
-/// Blocks of 8 × 8 cells that are looked into for each candidate.
+/// Blocks of 8 × 8 cells that are searched for each candidate.
 const FINE_SHARE: usize = 1;
 
-/// All 8 × 8 blocks that are looked into likely promise this share of what the last of
-/// the coarse ones does that are split, in parts of 16.
+/// All 8 × 8 blocks that are searched likely have bounds of at least this share of that of
+/// the last coarse one that is split, in parts of 16.
 const LIKELY_SIXTEENTHS: u32 = 13;
 
 /// Headings with less than this share of a block's highest bound, in parts of
-/// 32, are not looked at.
-const LEAST_THIRTY_SECONDTHS: u32 = 31;
+/// 32, are skipped.
+const MIN_BOUND_RATIO: u32 = 31;
 
-/// Looks for candidates on one thread, whatever the search did.
+/// Finds candidates on one thread, whatever the search did.
 pub(in crate::search) struct Alternatives<'a> {
     task: &'a Task<'a>,
-    room: &'a mut Room,
+    scratch: &'a mut Scratch,
 }
 
-/// What candidates are looked for with, kept from scan to scan.
+/// Buffers for finding candidates, kept from scan to scan.
 #[derive(Debug, Default)]
-pub(in crate::search) struct Room {
+pub(in crate::search) struct Scratch {
     bounds: SetBounds,
     intervals: BlockIntervals,
     interval_bounds: IntervalBounds,
-    outlook: Outlook,
-    coarse: Vec<Promise>,
-    /// Blocks of 8 × 8 cells that are looked into.
+    block_ranges: BlockRanges,
+    coarse: Vec<BoundedBlock>,
+    /// Blocks of 8 × 8 cells that are searched.
     fine: Greatest,
     spots: Vec<Spot>,
     /// Poses or spots that are distinct.
@@ -77,94 +77,96 @@ struct Spot {
 }
 
 impl<'a> Alternatives<'a> {
-    pub(in crate::search) fn new(task: &'a Task<'a>, room: &'a mut Room) -> Self {
-        room.bounds.fit(&task.programs.sets, task.headings());
-        room.outlook.prepare(task.grid, &task.space.directions);
-        Alternatives { task, room }
+    pub(in crate::search) fn new(task: &'a Task<'a>, scratch: &'a mut Scratch) -> Self {
+        scratch.bounds.fit(&task.programs.sets, task.headings());
+        scratch
+            .block_ranges
+            .prepare(task.grid, &task.space.directions);
+        Alternatives { task, scratch }
     }
 
-    /// Leaves in its room poses of the blocks that promise most, in no order, at
-    /// most so many. The search ended with a floor, in rooms that are given if it
+    /// Leaves in its scratch buffer poses of the blocks with the highest bounds, in no order,
+    /// at most this many. The search ended with a floor; its scratch buffers are given if it
     /// bounded all blocks that the floor leaves.
     pub(in crate::search) fn find(
         &mut self,
         wanted: usize,
         floor: u16,
-        rooms: Option<&[descent::Room]>,
+        scratches: Option<&[descent::Scratch]>,
     ) {
         let count = FINE_SHARE * wanted;
-        self.room.fine.start(count);
-        match rooms {
-            Some(rooms) => {
-                let bounded = rooms.iter().flat_map(|room| &room.fine);
+        self.scratch.fine.start(count);
+        match scratches {
+            Some(scratches) => {
+                let bounded = scratches.iter().flat_map(|scratch| &scratch.fine);
                 let left = bounded.filter(|&&(bound, _)| bound >= floor);
-                left.for_each(|&promise| self.room.fine.offer(promise));
+                left.for_each(|&bounded| self.scratch.fine.offer(bounded));
             }
             None => {
-                self.take_most_promising(usize::MAX);
+                self.take_highest(usize::MAX);
                 self.choose(floor);
             }
         }
-        if !self.room.fine.is_full() {
-            self.split_most_promising(wanted, count);
+        if !self.scratch.fine.is_full() {
+            self.split_highest(wanted, count);
         }
-        self.room.spots.clear();
-        for i in 0..self.room.fine.blocks().len() {
-            let Reverse(promise) = self.room.fine.blocks()[i];
-            let spot = self.best_spot(promise);
-            self.room.spots.extend(spot);
+        self.scratch.spots.clear();
+        for i in 0..self.scratch.fine.blocks().len() {
+            let Reverse(bounded) = self.scratch.fine.blocks()[i];
+            let spot = self.best_spot(bounded);
+            self.scratch.spots.extend(spot);
         }
-        let Room {
+        let Scratch {
             spots, distinct, ..
-        } = &mut *self.room;
+        } = &mut *self.scratch;
         spots.sort_unstable_by(|a, b| b.cmp(a));
         let columns = self.task.index.intervals.columns;
         let mut distinct = Distinct::new(self.task.space, wanted, distinct);
         spots.retain(|spot| distinct.take(&spot.corner(columns)));
-        self.room.votes.clear();
-        for i in 0..self.room.spots.len() {
-            let vote = self.count(self.room.spots[i]);
-            self.room.votes.extend(vote);
+        self.scratch.votes.clear();
+        for i in 0..self.scratch.spots.len() {
+            let vote = self.count(self.scratch.spots[i]);
+            self.scratch.votes.extend(vote);
         }
     }
 
-    /// Chooses so many 8 × 8 blocks in the coarse ones that promise most.
-    fn split_most_promising(&mut self, wanted: usize, count: usize) {
+    /// Chooses this many 8 × 8 blocks in the coarse ones with the highest bounds.
+    fn split_highest(&mut self, wanted: usize, count: usize) {
         let part = self.task.coarse_bounds.len() / COARSE_PART;
-        self.take_most_promising(part.max(COARSE_SHARE * wanted));
+        self.take_highest(part.max(COARSE_SHARE * wanted));
         // With a guess of what the last one reaches, most others are dropped early.
-        let last = self.room.coarse.last().map_or(0, |&(bound, _)| bound);
+        let last = self.scratch.coarse.last().map_or(0, |&(bound, _)| bound);
         let likely = (u32::from(last) * LIKELY_SIXTEENTHS / 16) as u16;
         for floor in [likely.max(1), 1] {
-            self.room.fine.start(count);
+            self.scratch.fine.start(count);
             self.choose(floor);
-            if self.room.fine.is_full() {
+            if self.scratch.fine.is_full() {
                 break;
             }
         }
     }
 
-    /// Takes the coarse blocks that promise most.
-    fn take_most_promising(&mut self, count: usize) {
+    /// Takes the coarse blocks with the highest bounds.
+    fn take_highest(&mut self, count: usize) {
         let task = self.task;
         let blocks = (0..task.coarse_bounds.len())
             .filter(|&block| task.index.within.holds(Size::Coarse, block))
-            .map(|block| promise(task, block));
-        self.room.coarse.clear();
-        self.room.coarse.extend(blocks);
-        keep_greatest(&mut self.room.coarse, count);
+            .map(|block| bounded(task, block));
+        self.scratch.coarse.clear();
+        self.scratch.coarse.extend(blocks);
+        keep_greatest(&mut self.scratch.coarse, count);
     }
 
     /// Chooses the 8 × 8 blocks with the highest bounds, none of them below a floor,
     /// in the coarse ones that were taken.
     fn choose(&mut self, floor: u16) {
         let SearchIndex { fine, within, .. } = self.task.index;
-        let Room {
+        let Scratch {
             bounds,
             coarse,
             fine: chosen,
             ..
-        } = &mut *self.room;
+        } = &mut *self.scratch;
         for &(bound, Reverse(block)) in &*coarse {
             // Where enough are known, others matter only if they are as good.
             let least = floor.max(chosen.least());
@@ -177,22 +179,22 @@ impl<'a> Alternatives<'a> {
                 .blocks()
                 .map(|(place, block)| (bounds.greatest(place), Reverse(block as u32)));
             let left = bounded.filter(|&(bound, _)| bound >= least);
-            left.for_each(|promise| chosen.offer(promise));
+            left.for_each(|bounded| chosen.offer(bounded));
         }
     }
 
     /// Where in an 8 × 8 block the bound of a small block is highest.
-    fn best_spot(&mut self, (bound, Reverse(block)): Promise) -> Option<Spot> {
+    fn best_spot(&mut self, (bound, Reverse(block)): BoundedBlock) -> Option<Spot> {
         let (index, block) = (self.task.index, block as usize);
-        let Room {
+        let Scratch {
             bounds,
             intervals,
             interval_bounds,
             ..
-        } = &mut *self.room;
+        } = &mut *self.scratch;
         let (quad, place) = index.fine.place_of(block);
-        let quad = index.fine.sought(quad, |other| other == block);
-        let least = (u32::from(bound) * LEAST_THIRTY_SECONDTHS / 32) as u16;
+        let quad = index.fine.searched(quad, |other| other == block);
+        let least = (u32::from(bound) * MIN_BOUND_RATIO / 32) as u16;
         let bounds = bound_fine(self.task, &quad, least.max(1), bounds);
         let program = &self.task.programs.interval;
         let sides = (index.intervals.columns, index.intervals.rows);
@@ -220,13 +222,13 @@ impl<'a> Alternatives<'a> {
         let index = self.task.index;
         let (Reverse(block), Reverse(heading)) = (spot.block, spot.heading);
         let view = self.task.view();
-        let outlook = &mut self.room.outlook;
-        outlook.enter((&view, &index.within.limits), &index.intervals, block);
-        let counts = self.task.programs.leaf.count(outlook, &view, heading);
-        let open = outlook.open();
+        let block_ranges = &mut self.scratch.block_ranges;
+        block_ranges.enter((&view, &index.within.limits), &index.intervals, block);
+        let counts = self.task.programs.leaf.count(block_ranges, &view, heading);
+        let open = block_ranges.open();
         let votes = counts.iter().zip(open).map(|(count, open)| count & open);
         let (intensity, Reverse(i)) = votes.zip((0..).map(Reverse)).max()?;
-        let (x, y) = outlook.cell(i);
+        let (x, y) = block_ranges.cell(i);
         (intensity > 0).then_some(Vote {
             x: x as u16,
             y: y as u16,
@@ -250,22 +252,22 @@ fn bound_fine<'a>(
     task.programs.sets.bound(blocks, Some(known), bounds)
 }
 
-/// What a coarse block promises.
-fn promise(task: &Task<'_>, block: usize) -> Promise {
+/// A coarse block with its bound.
+fn bounded(task: &Task<'_>, block: usize) -> BoundedBlock {
     let bound = task.coarse_bounds[block].load(Ordering::Relaxed);
     (bound, Reverse(block as u32))
 }
 
-/// The greatest so many of what was offered.
+/// The `count` greatest blocks of those offered.
 #[derive(Debug, Default)]
 struct Greatest {
     count: usize,
     /// The least first.
-    kept: BinaryHeap<Reverse<Promise>>,
+    kept: BinaryHeap<Reverse<BoundedBlock>>,
 }
 
 impl Greatest {
-    /// Starts with nothing; so many will be kept, of which there is at least one.
+    /// Starts with nothing; this many will be kept, of which there is at least one.
     fn start(&mut self, count: usize) {
         self.count = count;
         self.kept.clear();
@@ -283,24 +285,24 @@ impl Greatest {
         }
     }
 
-    fn offer(&mut self, promise: Promise) {
-        if promise.0 < self.least() {
+    fn offer(&mut self, bounded: BoundedBlock) {
+        if bounded.0 < self.least() {
             return;
         }
-        self.kept.push(Reverse(promise));
+        self.kept.push(Reverse(bounded));
         if self.kept.len() > self.count {
             self.kept.pop();
         }
     }
 
     /// What was kept, in no order.
-    fn blocks(&self) -> &[Reverse<Promise>] {
+    fn blocks(&self) -> &[Reverse<BoundedBlock>] {
         self.kept.as_slice()
     }
 }
 
 impl Spot {
-    /// The spot as a pose, by which spots are told apart; blocks lie in so many
+    /// The spot as a pose, by which spots are distinguished; blocks lie in this many
     /// columns.
     fn corner(&self, columns: usize) -> Vote {
         let (Reverse(block), Reverse(heading)) = (self.block, self.heading);
@@ -313,7 +315,7 @@ impl Spot {
     }
 }
 
-/// Keeps the greatest so many, in falling order.
+/// Keeps the `count` greatest, in falling order.
 fn keep_greatest<T: Ord>(all: &mut Vec<T>, count: usize) {
     if count < all.len() {
         all.select_nth_unstable_by(count, |a, b| b.cmp(a));

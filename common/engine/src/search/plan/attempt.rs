@@ -4,25 +4,25 @@ use super::alternatives::{self, Alternatives};
 use super::descent;
 use super::parts;
 use crate::program::ScanProgram;
-use crate::search::fallback::{self, Sift};
+use crate::search::beam_sampling::{self, BeamSampling};
 use crate::search::task::{End, Task};
 use crate::votes::{Distinct, VoteSet, is_close, most_candidates};
 
-/// A search to be made, and the room for it, of as many threads as there are rooms and
+/// A search to be made, and its scratch buffers, of as many threads as there are of them and
 /// shares.
 pub(in crate::search) struct Attempt<'a> {
     pub task: Task<'a>,
     pub program: &'a ScanProgram,
-    pub rooms: &'a mut [descent::Room],
-    pub alternatives: &'a mut alternatives::Room,
-    pub sift: &'a mut Sift,
-    pub shares: &'a mut [fallback::Share],
+    pub scratches: &'a mut [descent::Scratch],
+    pub alternatives: &'a mut alternatives::Scratch,
+    pub sampling: &'a mut BeamSampling,
+    pub shares: &'a mut [beam_sampling::Share],
     pub stop: &'a dyn Fn() -> bool,
 }
 
 impl Attempt<'_> {
     /// Finds the poses above the floor and candidates below, one way or the other;
-    /// `None` if it was told to stop.
+    /// `None` if it was asked to stop.
     pub(in crate::search) fn find(&mut self, found: &mut VoteSet) -> Option<()> {
         let end = self.by_bounds(found);
         match end {
@@ -36,17 +36,17 @@ impl Attempt<'_> {
 
     /// Finds the poses above the floor by bounds, unless that is hopeless.
     pub(in crate::search) fn by_bounds(&mut self, found: &mut VoteSet) -> End {
-        let end = parts::run(&self.task, self.rooms, self.stop);
+        let end = parts::run(&self.task, self.scratches, self.stop);
         if end == End::Done {
-            parts::finish(self.rooms, found);
+            parts::finish(self.scratches, found);
         }
         end
     }
 
-    /// Finds them by counting every pose; `None` if it was told to stop.
+    /// Finds them by counting every pose; `None` if it was asked to stop.
     pub(in crate::search) fn by_counting(&mut self, found: &mut VoteSet) -> Option<()> {
         let what = (&self.task, self.program);
-        self.sift.count(what, self.shares, found, self.stop)
+        self.sampling.count(what, self.shares, found, self.stop)
     }
 
     /// Adds the candidates that are wanted below what was found, however bounding the
@@ -54,13 +54,13 @@ impl Attempt<'_> {
     pub(in crate::search) fn add_candidates(&mut self, end: End, found: &mut VoteSet) {
         let Self {
             task,
-            rooms,
+            scratches,
             alternatives,
             ..
         } = self;
         let wanted = task.config.candidates as usize;
         if wanted > 0 && found.best > 0 {
-            let bounded = (end == End::Done).then_some(&**rooms);
+            let bounded = (end == End::Done).then_some(&**scratches);
             let certain = found.votes.len();
             // Of a search that was cut, all that it bounded may hold candidates.
             let floor = if found.cut { 1 } else { found.certified_floor };

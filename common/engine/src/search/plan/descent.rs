@@ -1,4 +1,5 @@
-//! One search: from large blocks down to poses, the most promising first.
+//! One branch-and-bound search: from large blocks down to poses, those with the highest
+//! bound first.
 
 use std::cmp::Reverse;
 use std::ops::Range;
@@ -6,18 +7,18 @@ use std::sync::atomic::Ordering;
 
 use messages::Vote;
 
-use super::queue::{Block, Level, Promise, Queue};
+use super::queue::{Block, BoundedBlock, Level, Queue};
+use crate::search::beam_sampling;
 use crate::search::bounds::interval_bounds::{IntervalBounds, Window};
 use crate::search::bounds::set_bounds::SetBounds;
-use crate::search::fallback;
 use crate::search::index::SearchIndex;
 use crate::search::index::bits;
 use crate::search::index::intervals::BlockIntervals;
 use crate::search::index::intervals::CELLS;
 use crate::search::index::prefetch::prefetch;
 use crate::search::index::within::{Size, quarters};
+use crate::search::leaves::block_ranges::BlockRanges;
 use crate::search::leaves::leaf::Count;
-use crate::search::leaves::outlook::Outlook;
 use crate::search::task::budget::{Budget, LEVELS, Tally};
 use crate::search::task::{End, Programs, Task};
 use crate::simd::headings::HEADINGS;
@@ -26,16 +27,16 @@ use crate::votes::Collector;
 /// One thread's part of a search.
 pub(in crate::search) struct Descent<'a> {
     task: &'a Task<'a>,
-    room: &'a mut Room,
+    scratch: &'a mut Scratch,
 }
 
-/// What a thread searches with, kept from scan to scan.
+/// Buffers of one thread's search, kept from scan to scan.
 #[derive(Debug, Default)]
-pub(in crate::search) struct Room {
+pub(in crate::search) struct Scratch {
     set_bounds: SetBounds,
     intervals: BlockIntervals,
     interval_bounds: IntervalBounds,
-    outlook: Outlook,
+    block_ranges: BlockRanges,
     /// The votes of a block of 4 × 4 cells at each of [`HEADINGS`].
     counts: Vec<Count>,
     queue: Queue,
@@ -43,14 +44,14 @@ pub(in crate::search) struct Room {
     windows: Vec<Window>,
     /// The bounds of these blocks: of all, once the search is done, whose bound
     /// is not below the floor.
-    pub fine: Vec<Promise>,
+    pub fine: Vec<BoundedBlock>,
     /// Headings at which blocks of 4 × 4 cells may matter.
     candidates: Vec<Candidate>,
     /// The poses that matter.
     pub collector: Collector,
     /// How many were counted.
     pub poses_evaluated: u64,
-    /// The most votes that any pose can have where the search did not come to.
+    /// The most votes that any pose can have that the search did not reach.
     pub left: u16,
     tally: Tally,
 }
@@ -62,12 +63,12 @@ struct Candidate {
     bound: u16,
 }
 
-impl Room {
-    /// Makes room for a task; nothing is left of the one before.
+impl Scratch {
+    /// Makes scratch for a task; nothing is left of the one before.
     fn start(&mut self, task: &Task<'_>) {
         let programs = task.programs;
         self.set_bounds.fit(&programs.sets, task.headings());
-        self.outlook.prepare(task.grid, &task.space.directions);
+        self.block_ranges.prepare(task.grid, &task.space.directions);
         self.counts.resize(HEADINGS, Count::default());
         self.queue.clear();
         self.windows.clear();
@@ -81,9 +82,9 @@ impl Room {
 }
 
 impl<'a> Descent<'a> {
-    pub(in crate::search) fn new(task: &'a Task<'a>, room: &'a mut Room) -> Self {
-        room.start(task);
-        Descent { task, room }
+    pub(in crate::search) fn new(task: &'a Task<'a>, scratch: &'a mut Scratch) -> Self {
+        scratch.start(task);
+        Descent { task, scratch }
     }
 
     /// Searches one of `parts` of the coarse blocks.
@@ -94,13 +95,13 @@ impl<'a> Descent<'a> {
     ) -> End {
         self.bound_coarse(part, parts);
         let task = self.task;
-        let (counting, most_steps) = (fallback::likely_cost(task), task.config.most_steps());
+        let (counting, most_steps) = (beam_sampling::likely_cost(task), task.config.most_steps());
         let mut budget = Budget::new(task.brute_force, counting, most_steps, parts);
-        while let Some(block) = self.next(budget.dives()) {
+        while let Some(block) = self.next(budget.prefers_leaves()) {
             if stop() {
                 return End::Stopped;
             }
-            if let Some(next) = self.room.queue.peek(budget.dives()) {
+            if let Some(next) = self.scratch.queue.peek(budget.prefers_leaves()) {
                 self.prefetch(&next);
             }
             let (level, index) = (block.level, block.index as usize);
@@ -112,12 +113,12 @@ impl<'a> Descent<'a> {
                 Level::Leaf { start, end } => self.count(index, start as usize..end as usize),
             }
             let Programs { simd, beams, .. } = self.task.programs;
-            let cost = self.room.tally.take(simd.set(), *beams);
+            let cost = self.scratch.tally.take(simd.set(), *beams);
             budget.spend(level.number(), cost);
             // Some pose has to be found: without any it would seem that no beam votes.
-            if budget.is_used_up() && self.room.collector.best() > 0 {
-                let left = self.room.queue.iter().map(|block| block.bound).max();
-                self.room.left = left.unwrap_or(0);
+            if budget.is_used_up() && self.scratch.collector.best() > 0 {
+                let left = self.scratch.queue.iter().map(|block| block.bound).max();
+                self.scratch.left = left.unwrap_or(0);
                 return End::Done;
             }
             if budget.is_up() && budget.is_hopeless(self.left()) {
@@ -136,9 +137,9 @@ impl<'a> Descent<'a> {
         let own = (part..coarse.quads()).step_by(parts);
         let own = own.map(|quad| within.quad(Size::Coarse, coarse, quad));
         let own = own.filter(|quad| quad.blocks().next().is_some());
-        let Room {
+        let Scratch {
             set_bounds, queue, ..
-        } = &mut *self.room;
+        } = &mut *self.scratch;
         program.bound_all(coarse, own, set_bounds, |quad, found| {
             for (place, block) in quad.blocks() {
                 let bound = found.greatest(place);
@@ -158,10 +159,12 @@ impl<'a> Descent<'a> {
     }
 
     /// The next block that may matter.
-    fn next(&mut self, dives: bool) -> Option<Block> {
+    fn next(&mut self, prefers_leaves: bool) -> Option<Block> {
         let best = self.task.best.load(Ordering::Relaxed);
-        self.room.collector.hear_of(best);
-        self.room.queue.pop(dives, self.room.collector.floor())
+        self.scratch.collector.raise_best(best);
+        self.scratch
+            .queue
+            .pop(prefers_leaves, self.scratch.collector.floor())
     }
 
     /// Asks for what is known of a block that is likely the next one.
@@ -174,7 +177,7 @@ impl<'a> Descent<'a> {
             // A coarse block is a quad of those within.
             Level::Coarse => fine.prefetch(index),
             Level::Fine { start, end } => {
-                prefetch(&self.room.windows[start as usize..end as usize]);
+                prefetch(&self.scratch.windows[start as usize..end as usize]);
                 let sides = (intervals.columns, intervals.rows);
                 // The others are asked for one by one: more at a time would be waited for.
                 if let Some(first) = quarters(index, fine.columns, sides).next() {
@@ -182,7 +185,7 @@ impl<'a> Descent<'a> {
                 }
             }
             Level::Leaf { start, end } => {
-                prefetch(&self.room.candidates[start as usize..end as usize]);
+                prefetch(&self.scratch.candidates[start as usize..end as usize]);
                 intervals.prefetch(index);
             }
         }
@@ -191,16 +194,21 @@ impl<'a> Descent<'a> {
     /// How many blocks of each level are left that may matter.
     fn left(&self) -> [usize; LEVELS] {
         let mut left = [0; LEVELS];
-        let floor = self.room.collector.floor();
-        for block in self.room.queue.iter().filter(|block| block.bound >= floor) {
+        let floor = self.scratch.collector.floor();
+        for block in self
+            .scratch
+            .queue
+            .iter()
+            .filter(|block| block.bound >= floor)
+        {
             left[block.level.number()] += 1;
         }
         left
     }
 
     fn push(&mut self, bound: u16, index: usize, level: Level) {
-        if bound >= self.room.collector.floor() {
-            self.room.queue.push(Block {
+        if bound >= self.scratch.collector.floor() {
+            self.scratch.queue.push(Block {
                 bound,
                 index: index as u32,
                 level,
@@ -213,14 +221,14 @@ impl<'a> Descent<'a> {
         let SearchIndex { fine, within, .. } = self.task.index;
         let program = &self.task.programs.sets;
         let quad = within.quad(Size::Fine, fine, index);
-        let known = (self.task.by_chunk(index), self.room.collector.floor());
-        program.bound((fine, &quad), Some(known), &mut self.room.set_bounds);
+        let known = (self.task.by_chunk(index), self.scratch.collector.floor());
+        program.bound((fine, &quad), Some(known), &mut self.scratch.set_bounds);
         for (place, block) in quad.blocks() {
             self.queue_fine(block, place);
         }
-        let Room {
+        let Scratch {
             set_bounds, tally, ..
-        } = &mut *self.room;
+        } = &mut *self.scratch;
         tally.reads = set_bounds.reads;
     }
 
@@ -228,11 +236,11 @@ impl<'a> Descent<'a> {
     /// may matter.
     fn queue_fine(&mut self, index: usize, place: usize) {
         let program = &self.task.programs.sets;
-        let Room {
+        let Scratch {
             windows,
             set_bounds,
             ..
-        } = &mut *self.room;
+        } = &mut *self.scratch;
         let bounds = (&set_bounds.found, place);
         let start = windows.len();
         windows.extend(bounds.0.reach(place).map(|(first, among)| Window {
@@ -243,7 +251,7 @@ impl<'a> Descent<'a> {
         let (start, end) = (start as u32, windows.len() as u32);
         if start < end {
             let bound = bounds.0.greatest(place);
-            self.room.fine.push((bound, Reverse(index as u32)));
+            self.scratch.fine.push((bound, Reverse(index as u32)));
             self.push(bound, index, Level::Fine { start, end });
         }
     }
@@ -252,11 +260,11 @@ impl<'a> Descent<'a> {
     fn split_fine(&mut self, index: usize, windows: &Range<usize>) {
         let (fine, intervals) = (&self.task.index.fine, &self.task.index.intervals);
         let quarters = quarters(index, fine.columns, (intervals.columns, intervals.rows));
-        let mut sought = quarters
+        let mut searched = quarters
             .filter(|&block| intervals.ids.holds(block))
             .peekable();
-        while let Some(block) = sought.next() {
-            if let Some(&next) = sought.peek() {
+        while let Some(block) = searched.next() {
+            if let Some(&next) = searched.peek() {
                 intervals.prefetch(next);
             }
             self.queue_leaf(block, windows.clone());
@@ -265,16 +273,16 @@ impl<'a> Descent<'a> {
 
     /// Queues a block of 4 × 4 cells at the headings at which it may matter.
     fn queue_leaf(&mut self, index: usize, windows: Range<usize>) {
-        let floor = self.room.collector.floor();
-        let start = self.room.candidates.len();
-        let Room {
+        let floor = self.scratch.collector.floor();
+        let start = self.scratch.candidates.len();
+        let Scratch {
             intervals,
             interval_bounds: bounds,
             windows: known,
             candidates,
             tally,
             ..
-        } = &mut *self.room;
+        } = &mut *self.scratch;
         self.task.index.intervals.read(index, intervals);
         let program = &self.task.programs.interval;
         for window in &known[windows] {
@@ -301,16 +309,16 @@ impl<'a> Descent<'a> {
         let SearchIndex {
             intervals, within, ..
         } = self.task.index;
-        let outlook = &mut self.room.outlook;
-        outlook.enter((&self.task.view(), &within.limits), intervals, index);
+        let block_ranges = &mut self.scratch.block_ranges;
+        block_ranges.enter((&self.task.view(), &within.limits), intervals, index);
         while let Some((first, among)) = self.next_headings(&mut candidates) {
-            let floor = self.room.collector.floor();
+            let floor = self.scratch.collector.floor();
             let (intervals, bounds) = (
-                self.room.outlook.intervals(),
-                &mut self.room.interval_bounds,
+                self.scratch.block_ranges.intervals(),
+                &mut self.scratch.interval_bounds,
             );
             let program = &self.task.programs.interval;
-            self.room.tally.windows += 1;
+            self.scratch.tally.windows += 1;
             if program.bound(intervals, first, among, floor, bounds) {
                 self.count_at(first, among);
             }
@@ -320,10 +328,10 @@ impl<'a> Descent<'a> {
     /// Takes candidates less than [`HEADINGS`] behind the first: its heading,
     /// and those from there on that may still matter.
     fn next_headings(&self, candidates: &mut Range<usize>) -> Option<(usize, u64)> {
-        let floor = self.room.collector.floor();
-        let first = usize::from(self.room.candidates[candidates.clone()].first()?.heading);
+        let floor = self.scratch.collector.floor();
+        let first = usize::from(self.scratch.candidates[candidates.clone()].first()?.heading);
         let mut among = 0;
-        for candidate in &self.room.candidates[candidates.clone()] {
+        for candidate in &self.scratch.candidates[candidates.clone()] {
             let lane = usize::from(candidate.heading) - first;
             if lane >= HEADINGS {
                 break;
@@ -339,24 +347,24 @@ impl<'a> Descent<'a> {
     fn count_at(&mut self, first: usize, among: u64) {
         let view = self.task.view();
         for lane in bits::ones(among) {
-            self.room.counts[lane] = Count::default();
+            self.scratch.counts[lane] = Count::default();
         }
-        let mut rest = self.room.interval_bounds.all;
+        let mut rest = self.scratch.interval_bounds.all;
         let mut alive = among;
-        let floor = self.room.collector.floor();
+        let floor = self.scratch.collector.floor();
         let IntervalBounds {
             sectors, voting, ..
-        } = &self.room.interval_bounds;
+        } = &self.scratch.interval_bounds;
         for (sector, bounds) in sectors.iter().enumerate() {
-            self.room.tally.sectors += u64::from(alive.count_ones());
-            let looking = (&mut self.room.outlook, &view);
+            self.scratch.tally.sectors += u64::from(alive.count_ones());
+            let rays = (&mut self.scratch.block_ranges, &view);
             let program = &self.task.programs.leaf;
             let beams = (sector, &voting[..]);
-            program.add(looking, beams, (first, alive), &mut self.room.counts);
+            program.add(rays, beams, (first, alive), &mut self.scratch.counts);
             let mut still = 0;
             for lane in bits::ones(alive) {
                 rest[lane] -= u16::from(bounds[lane]);
-                let most = self.room.counts[lane].most;
+                let most = self.scratch.counts[lane].most;
                 still |= u64::from(most + rest[lane] >= floor) << lane;
             }
             alive = still;
@@ -365,27 +373,27 @@ impl<'a> Descent<'a> {
             }
         }
         for lane in bits::ones(alive) {
-            let votes = self.room.counts[lane].votes;
+            let votes = self.scratch.counts[lane].votes;
             self.take((first + lane) as u16, &votes);
         }
-        self.room.tally.looks = self.room.outlook.looks();
-        let best = self.room.collector.best();
+        self.scratch.tally.casts = self.scratch.block_ranges.casts();
+        let best = self.scratch.collector.best();
         self.task.best.fetch_max(best, Ordering::Relaxed);
     }
 
     fn take(&mut self, heading: u16, counts: &[u16; CELLS]) {
-        let open = *self.room.outlook.open();
-        self.room.poses_evaluated += CELLS as u64;
+        let open = *self.scratch.block_ranges.open();
+        self.scratch.poses_evaluated += CELLS as u64;
         for (i, &intensity) in counts.iter().enumerate() {
             if open[i] != 0 {
-                let (x, y) = self.room.outlook.cell(i);
+                let (x, y) = self.scratch.block_ranges.cell(i);
                 let vote = Vote {
                     x: x as u16,
                     y: y as u16,
                     heading,
                     intensity,
                 };
-                self.room.collector.take(vote);
+                self.scratch.collector.take(vote);
             }
         }
     }

@@ -1,4 +1,4 @@
-//! Blocks that wait to be searched, the most promising first.
+//! Blocks that wait to be searched, the highest bound first.
 
 use std::cmp::Reverse;
 use std::num::NonZeroU32;
@@ -29,11 +29,11 @@ impl Queue {
         }
     }
 
-    /// The next block with a bound that is not below the floor: the most promising
-    /// one, or if `dives` that of the smallest.
-    pub(in crate::search) fn pop(&mut self, dives: bool, floor: u16) -> Option<Block> {
+    /// The next block with a bound that is not below the floor: the one with
+    /// the highest bound, or if `prefers_leaves` the best of the smallest.
+    pub(in crate::search) fn pop(&mut self, prefers_leaves: bool, floor: u16) -> Option<Block> {
         loop {
-            let blocks = self.next_of(dives);
+            let blocks = self.next_of(prefers_leaves);
             let block = blocks.pop()?;
             if block.bound >= floor {
                 return Some(block);
@@ -44,13 +44,13 @@ impl Queue {
     }
 
     /// What would be popped now.
-    pub(in crate::search) fn peek(&mut self, dives: bool) -> Option<Block> {
-        self.next_of(dives).peek()
+    pub(in crate::search) fn peek(&mut self, prefers_leaves: bool) -> Option<Block> {
+        self.next_of(prefers_leaves).peek()
     }
 
-    fn next_of(&mut self, dives: bool) -> &mut ByBound {
+    fn next_of(&mut self, prefers_leaves: bool) -> &mut ByBound {
         let is_leaf = match (self.leaves.greatest(), self.larger.greatest()) {
-            (Some(leaf), Some(larger)) => dives || leaf > larger,
+            (Some(leaf), Some(larger)) => prefers_leaves || leaf > larger,
             (leaf, _) => leaf.is_some(),
         };
         if is_leaf {
@@ -153,7 +153,7 @@ pub(in crate::search) struct Block {
 }
 
 /// The bound of a block, and which it is; of equal ones the first comes first.
-pub(in crate::search) type Promise = (u16, Reverse<u32>);
+pub(in crate::search) type BoundedBlock = (u16, Reverse<u32>);
 
 /// How large a block is, and what is known of it.
 #[derive(Debug, Clone, Copy)]
@@ -211,7 +211,7 @@ mod tests {
         }
 
         #[test]
-        fn leaves_come_first_where_it_dives_and_nothing_below_the_floor(
+        fn leaves_come_first_where_they_are_preferred_and_nothing_below_the_floor(
             steps in vec(
                 prop_oneof![
                     3 => (0u16..50, any::<bool>()).prop_map(Ok),
@@ -230,12 +230,12 @@ mod tests {
                         queue.push(Block { bound, index, level });
                         waiting.push((is_leaf, bound, index));
                     }
-                    Err((dives, floor)) => {
-                        let popped = queue.pop(dives, floor).map(|block| block.index);
+                    Err((prefers_leaves, floor)) => {
+                        let popped = queue.pop(prefers_leaves, floor).map(|block| block.index);
                         // Those below the floor are given up as soon as one is met.
                         let next = |waiting: &[(bool, u16, u32)]| {
                             let key = |&(leaf, bound, index): &(bool, u16, u32)| {
-                                (dives && leaf, bound, !leaf, index)
+                                (prefers_leaves && leaf, bound, !leaf, index)
                             };
                             waiting.iter().copied().max_by_key(key)
                         };

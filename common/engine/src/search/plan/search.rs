@@ -6,24 +6,24 @@ use super::{alternatives, descent};
 use crate::grid::Grid;
 use crate::instruction_set::InstructionSet;
 use crate::program::ScanProgram;
-use crate::search::fallback::{self, Sift};
+use crate::search::beam_sampling::{self, BeamSampling};
 use crate::search::index::SearchIndex;
 use crate::search::task::{Shared, Task};
 use crate::simd::Simd;
 use crate::space::Space;
 use crate::votes::{CollectConfig, VoteSet};
 
-/// What searches need beside the map, kept from scan to scan: once there is room
+/// What searches need beside the map, kept from scan to scan: once there is scratch
 /// for all, nothing is allocated any more. It may serve any map.
 #[derive(Debug, Default)]
 pub struct Workspace {
     shared: Shared,
     /// One for each thread.
-    rooms: Vec<descent::Room>,
-    alternatives: alternatives::Room,
+    scratches: Vec<descent::Scratch>,
+    alternatives: alternatives::Scratch,
     /// For counting every pose, the shares one for each thread.
-    sift: Sift,
-    shares: Vec<fallback::Share>,
+    sampling: BeamSampling,
+    shares: Vec<beam_sampling::Share>,
     pub(in crate::search) bounding: Bounding,
 }
 
@@ -68,7 +68,7 @@ impl SearchIndex {
     /// served other scans and maps; `None` if `stop` said so before the end.
     ///
     /// The outcome is the same with any instruction set and number of threads,
-    /// but for the number of poses that were counted. Where bounds cannot tell
+    /// but for the number of poses that were counted. Where bounds cannot distinguish
     /// blocks apart, all poses are counted.
     ///
     /// # Panics
@@ -99,21 +99,21 @@ impl SearchIndex {
     ) -> Attempt<'a> {
         let Workspace {
             shared,
-            rooms,
+            scratches,
             alternatives,
-            sift,
+            sampling,
             shares,
             ..
         } = workspace;
         let task = Task::new(shared, Simd::new(instruction_set), self, grid, scan, config);
-        rooms.resize_with(threads, descent::Room::default);
-        shares.resize_with(threads, fallback::Share::default);
+        scratches.resize_with(threads, descent::Scratch::default);
+        shares.resize_with(threads, beam_sampling::Share::default);
         Attempt {
             task,
             program: scan.0,
-            rooms,
+            scratches,
             alternatives,
-            sift,
+            sampling,
             shares,
             stop,
         }
@@ -314,7 +314,7 @@ mod tests {
     }
 
     #[test]
-    fn a_search_that_is_told_to_stop_has_no_outcome() {
+    fn a_search_that_is_asked_to_stop_has_no_outcome() {
         let grid = crate::grid::drawn::grid(&["####", "#..#", "####"]);
         let space = space_of(&grid, 8);
         let scan = crate::scan::Scan {

@@ -1,6 +1,6 @@
 //! When a search is worse than counting every pose.
 //!
-//! In uniform clutter no bound tells blocks apart. The search tallies what it
+//! In uniform clutter bounds do not distinguish blocks. The search tallies what it
 //! did, estimates what is left from what blocks of each level have cost so far,
 //! and gives up where counting every pose would be done sooner. Where that is seen at
 //! the first look, a tenth of what brute force costs is lost.
@@ -27,9 +27,9 @@ pub(in crate::search) struct Tally {
     pub windows: u64,
     /// Sectors of beams that were counted at a heading.
     pub sectors: u64,
-    /// Directions that were looked in, ever.
-    pub looks: u64,
-    looks_before: u64,
+    /// Directions in which rays were cast, ever.
+    pub casts: u64,
+    casts_before: u64,
 }
 
 /// What a search has cost so far.
@@ -54,7 +54,7 @@ struct Rates {
     read: f64,
     window_per_beam: f64,
     sector: f64,
-    look: f64,
+    cast: f64,
     /// For counting every pose: at each heading, cell and beam.
     vote: f64,
 }
@@ -66,21 +66,21 @@ impl Rates {
                 read: 0.9,
                 window_per_beam: 1.6,
                 sector: 40.0,
-                look: 55.0,
+                cast: 55.0,
                 vote: 0.015,
             },
             InstructionSet::Avx2 => Rates {
                 read: 1.0,
                 window_per_beam: 1.8,
                 sector: 40.0,
-                look: 60.0,
+                cast: 60.0,
                 vote: 0.03,
             },
             InstructionSet::Portable => Rates {
                 read: 3.5,
                 window_per_beam: 15.0,
                 sector: 75.0,
-                look: 200.0,
+                cast: 200.0,
                 vote: 0.9,
             },
         }
@@ -88,9 +88,9 @@ impl Rates {
 }
 
 /// Share of the work that goes into the smallest blocks before their turn.
-const DIVES: f64 = 0.4;
+const LEAF_SHARE: f64 = 0.4;
 
-/// The first look, as a share of what brute force costs: so much is lost where a
+/// The first look, as a share of what brute force costs: this much is lost where a
 /// search is given up then.
 const FIRST_LOOK: f64 = 0.1;
 
@@ -98,7 +98,7 @@ const FIRST_LOOK: f64 = 0.1;
 const NEXT_LOOK: f64 = 1.5;
 
 /// What is expected to be left, as a multiple of counting every pose, where a search is
-/// given up. The blocks that are left promise less and cost less, to half of those before;
+/// given up. The blocks that are left have lower bounds and cost less, to half of those before;
 /// and at first the best pose may not be known, so that the floor is still low.
 const HOPELESS: f64 = 2.5;
 
@@ -116,7 +116,7 @@ impl Cost {
 }
 
 impl Tally {
-    /// What was done since the last time, with so many beams.
+    /// What was done since the last time, with this many beams.
     pub(in crate::search) fn take(
         &mut self,
         instruction_set: InstructionSet,
@@ -126,10 +126,10 @@ impl Tally {
         let cost = (self.reads - self.reads_before) as f64 * rates.read
             + self.windows as f64 * rates.window_per_beam * beams
             + self.sectors as f64 * rates.sector
-            + (self.looks - self.looks_before) as f64 * rates.look;
+            + (self.casts - self.casts_before) as f64 * rates.cast;
         *self = Tally {
-            looks: self.looks,
-            looks_before: self.looks,
+            casts: self.casts,
+            casts_before: self.casts,
             reads: self.reads,
             reads_before: self.reads,
             ..Tally::default()
@@ -139,7 +139,7 @@ impl Tally {
 }
 
 impl Budget {
-    /// For one of so many parts of a search, which takes so many steps at most. Counting
+    /// For one of `parts` of a search, which takes `most_steps` at most. Counting
     /// every pose costs such a share of brute force.
     pub(in crate::search) fn new(
         brute_force: Cost,
@@ -165,10 +165,10 @@ impl Budget {
         self.taken[level].1 += cost.0;
     }
 
-    /// Whether the most promising of the smallest blocks is looked at next, be others
-    /// more promising: as long as that has cost a small part.
-    pub(in crate::search) fn dives(&self) -> bool {
-        self.taken[LEVELS - 1].1 < self.spent * DIVES
+    /// Whether the smallest block with the highest bound comes next, even where larger
+    /// blocks have higher bounds: as long as that has cost a small part.
+    pub(in crate::search) fn prefers_leaves(&self) -> bool {
+        self.taken[LEVELS - 1].1 < self.spent * LEAF_SHARE
     }
 
     /// Whether it is time to see how much is left.
@@ -231,13 +231,13 @@ mod tests {
     #[test]
     fn the_smallest_blocks_come_before_their_turn_while_they_cost_little() {
         let mut budget = Budget::new(Cost(1.0), 1.0, f64::INFINITY, 1);
-        assert!(!budget.dives(), "nothing was done");
+        assert!(!budget.prefers_leaves(), "nothing was done");
         budget.spend(0, Cost(100.0));
-        assert!(budget.dives());
+        assert!(budget.prefers_leaves());
         budget.spend(LEVELS - 1, Cost(10.0));
-        assert!(budget.dives());
+        assert!(budget.prefers_leaves());
         budget.spend(LEVELS - 1, Cost(60.0));
-        assert!(!budget.dives(), "70 of 170");
+        assert!(!budget.prefers_leaves(), "70 of 170");
     }
 
     #[test]
@@ -257,12 +257,12 @@ mod tests {
             reads: 1,
             windows: 2,
             sectors: 3,
-            looks: 4,
+            casts: 4,
             ..Tally::default()
         };
         let (best, rates) = (InstructionSet::best(), Rates::of(InstructionSet::best()));
         let cost =
-            rates.read + 2.0 * rates.window_per_beam * 10.0 + 3.0 * rates.sector + 4.0 * rates.look;
+            rates.read + 2.0 * rates.window_per_beam * 10.0 + 3.0 * rates.sector + 4.0 * rates.cast;
         assert_eq!(tally.take(best, 10), Cost(cost));
         assert_eq!(tally.take(best, 10), Cost(0.0));
     }

@@ -1,7 +1,7 @@
 //! What the threads of a search share, and what it may cost.
 //!
 //! A task does not change while it is searched but for bounds and the best pose so far,
-//! which only tell threads what they need not look at.
+//! which only let threads skip work.
 
 pub(in crate::search) mod budget;
 
@@ -12,8 +12,8 @@ use crate::program::ScanProgram;
 use crate::search::bounds::interval_program::IntervalProgram;
 use crate::search::bounds::set_program::SetProgram;
 use crate::search::index::SearchIndex;
+use crate::search::leaves::block_ranges::View;
 use crate::search::leaves::leaf::LeafProgram;
-use crate::search::leaves::outlook::View;
 use crate::search::task::budget::Cost;
 use crate::simd::Simd;
 use crate::space::Space;
@@ -26,7 +26,7 @@ pub(in crate::search) struct Task<'a> {
     pub space: &'a Space,
     pub config: CollectConfig,
     pub programs: &'a Programs,
-    /// The bound of each coarse block in which poses are sought.
+    /// The bound of each coarse block in which poses are searched.
     pub coarse_bounds: &'a [AtomicU16],
     /// The same, chunk by chunk of headings.
     by_chunk: &'a [AtomicU16],
@@ -42,7 +42,7 @@ pub(in crate::search) enum End {
     /// With the poses that matter, but for those in blocks that were left where it took
     /// more work than it may.
     Done,
-    /// It was told to stop.
+    /// It was asked to stop.
     Stopped,
     /// Counting every pose would take less than what is left.
     Hopeless,
@@ -125,13 +125,13 @@ impl<'a> Task<'a> {
         &self.by_chunk[block * chunks..][..chunks]
     }
 
-    /// The headings that are sought.
-    pub(in crate::search) fn sought(&self) -> impl Iterator<Item = usize> + Clone {
+    /// The headings that are searched.
+    pub(in crate::search) fn searched(&self) -> impl Iterator<Item = usize> + Clone {
         let limits = &self.index.within.limits;
         (0..self.space.directions.count()).filter(|&heading| limits.hold_heading(heading))
     }
 
-    /// The headings that are sought, a word a chunk.
+    /// The headings that are searched, a word a chunk.
     pub(in crate::search) fn headings(&self) -> impl Iterator<Item = u128> {
         self.index.within.headings(self.space.directions.count())
     }

@@ -89,7 +89,7 @@ pub(crate) trait Lanes: Copy {
     /// The cells of a vector, the first in the lowest bit. There are blocked ones only
     /// where `BLOCKED` says so.
     fn cells<const BLOCKED: bool>(set: Self::Set, occupied: u64, blocked: u64) -> Self::Cells;
-    /// What is left a step before cells with so much left: `end` where the cell
+    /// What is left a step before cells with this much left: `end` where the cell
     /// is occupied, nothing where it blocks.
     fn step<const BLOCKED: bool>(self, cells: Self::Cells, end: Self) -> Self;
 

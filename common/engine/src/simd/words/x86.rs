@@ -95,7 +95,7 @@ avx512! {
 #[derive(Clone, Copy)]
 pub(crate) struct Avx2Words([__m256i; 2]);
 
-/// For each mask of eight, which of those that it tells comes where.
+/// For each mask of eight, which of those that it selects comes where.
 static PLACES: [u64; 256] = places();
 
 const fn places() -> [u64; 256] {
@@ -114,7 +114,7 @@ const fn places() -> [u64; 256] {
 }
 
 avx2! {
-    /// Eight times four bytes: those that the mask tells, one after the other, and
+    /// Eight times four bytes: those that the mask selects, one after the other, and
     /// others without bits.
     fn expand(_set: Avx2, mask: u8, bytes: &[u8; BYTES / 2]) -> __m256i {
         let places = _mm_cvtsi64_si128(PLACES[usize::from(mask)].cast_signed());

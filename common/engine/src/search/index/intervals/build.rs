@@ -236,7 +236,7 @@ impl<'a> StripBlocks<'a> {
         }
     }
 
-    /// Which are wanted of so many from `start` on, which are a part of a tile.
+    /// Which are wanted of `count` from `start` on, which are a part of a tile.
     #[inline(always)]
     pub(super) fn wanted(&self, start: usize, count: usize) -> u64 {
         let word = self

@@ -98,7 +98,7 @@ impl Row {
 pub(super) struct StripMasks {
     /// 0 where the cell is occupied, else all ones.
     pass: [Row; SIDE],
-    /// All ones where rays are lost in the cell or it is off the map, else 0.
+    /// All ones where the cell blocks rays without a hit or is off the map, else 0.
     lose: [Row; SIDE],
 }
 

@@ -1,7 +1,7 @@
 //! Turns bytes that lie block by block for each direction into bytes that lie
 //! direction by direction for each block.
 
-/// Bytes of a word: so many directions are turned at a time.
+/// Bytes of a word: this many directions are turned at a time.
 pub(super) const WORD: usize = 8;
 
 /// Blocks that are turned at a time.

@@ -13,7 +13,7 @@ use crate::search::index::steps::BinSteps;
 /// smears distances by more.
 pub(crate) const ROW_SHIFT: u32 = 2;
 
-/// Intervals are wide if the ends of both lie so many bins apart, in sum: four rows. On
+/// Intervals are wide if the ends of both lie this many bins apart, in sum: four rows. On
 /// real maps at most 7 in a hundred are; noting more of them gains nothing.
 pub(super) const WIDE: u8 = 16;
 
@@ -36,7 +36,7 @@ pub(crate) struct WideViews {
 }
 
 impl WideViews {
-    /// Sorts the views of so many blocks.
+    /// Sorts the views of this many blocks.
     pub(super) fn new(blocks: usize, lists: &[Vec<WideView>]) -> Self {
         let mut starts = vec![0; blocks + 1];
         for view in lists.iter().flatten() {

@@ -107,7 +107,7 @@ fn join<S: Set>(set: S, source: Source<'_>, quad_rows: Range<usize>) -> Rows {
 }
 
 /// Marks what the block in column `x` and row `y` sees in words, of which all are 0:
-/// in which rows. The chunks are room for the directions of a turn.
+/// in which rows. The chunks are buffers for the directions of a turn.
 #[inline(always)]
 fn mark<S: Set>(
     set: S,

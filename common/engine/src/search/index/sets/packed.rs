@@ -32,7 +32,7 @@ pub(crate) struct SetRows<'a> {
     pub bytes: &'a [Byte],
 }
 
-/// How many words a row of so many bytes has.
+/// How many words a row of this many bytes has.
 pub(super) fn words(stride: usize) -> usize {
     stride.div_ceil(READ)
 }
@@ -59,7 +59,7 @@ impl PackedRows {
         self.bytes.append(&mut other.bytes);
     }
 
-    /// Lets words be read from any byte on, and gives back what room is left.
+    /// Lets words be read from any byte on, and gives back the capacity that is left.
     pub(super) fn finish(&mut self) {
         self.bytes.resize(self.bytes.len() + READ, NOTHING);
         self.bytes.shrink_to_fit();
@@ -73,7 +73,7 @@ impl PackedRows {
 }
 
 impl<'a> SetRows<'a> {
-    /// Rows of so many bytes each, with their masks and the bytes that were kept.
+    /// Rows of this many bytes each, with their masks and the bytes that were kept.
     #[inline(always)]
     pub(super) fn new(
         rows: Range<usize>,

@@ -1,4 +1,4 @@
-//! Counting every pose, where bounds do not tell blocks apart: few beams tell most
+//! Counting every pose, where bounds do not distinguish blocks: few beams separate most
 //! poses from the best one.
 //!
 //! In clutter most poses have half of the votes that are possible, but hardly one has
@@ -27,7 +27,7 @@ use crate::search::task::Task;
 use crate::threads;
 use crate::votes::VoteSet;
 pub(in crate::search) use share::Share;
-use share::{Pose, Seen};
+use share::{Pose, SampledHeading};
 
 /// Beams of a sample where hardly more than the best pose is wanted. After 20, more poses
 /// are as good as the best one, and sweeping 40 takes longer.
@@ -36,7 +36,7 @@ const FEW_BEAMS: usize = 30;
 /// Beams of a sample, in quarters of all, where poses that lack some of the best one's
 /// votes are wanted. Half of the beams say too little of a floor at 0.85, and what seven
 /// eighths spare is not worth sweeping them.
-const MOST_BEAMS_QUARTERS: usize = 3;
+const MAX_BEAMS_QUARTERS: usize = 3;
 
 /// Votes of the best pose, as a share of the highest possible, in scans of a world that is
 /// as the map says. Where a scan's best pose has fewer, the sample may say too little.
@@ -45,22 +45,22 @@ const EXPECTED_BEST: f64 = 0.98;
 /// What sweeping no beam at all would take, as a share of sweeping all.
 const SHARE_OF_NONE: f64 = 0.15;
 
-/// Of so many cells one pose is kept at a heading, and not less than so many poses.
+/// One pose is kept for this number of cells at a heading, and at least this many poses.
 const CELLS_A_KEPT: usize = 1024;
-const LEAST_KEPT: usize = 64;
+const MIN_KEPT: usize = 64;
 
 /// The least votes of what is kept rise by this part of the highest possible where it
 /// is more, and fall where it is less than an eighth.
 const STEP: u32 = 64;
 
-/// Sweeping all beams over so many cells takes no longer than counting one pose by
+/// Sweeping all beams over this many cells takes no longer than counting one pose by
 /// itself. A few poses are counted on any map.
 const CELLS_A_COUNT: usize = 2048;
 const FEW_COUNTS: usize = 4;
 
-/// A scan program laid out for sifting, kept from scan to scan.
+/// A sample of a scan program's beams, kept from scan to scan.
 #[derive(Debug, Default)]
-pub(in crate::search) struct Sift {
+pub(in crate::search) struct BeamSampling {
     /// Some of the beams, as evenly as they go.
     sample: ScanProgram,
     /// The least votes of the sample that a pose likely needs; `None` where it says too
@@ -72,7 +72,7 @@ pub(in crate::search) struct Sift {
     all: Vec<u64>,
 }
 
-impl Sift {
+impl BeamSampling {
     /// Finds the poses with the most votes, on as many threads as there are shares;
     /// `None` if `stop` said so before the end.
     pub(in crate::search) fn count(
@@ -83,17 +83,20 @@ impl Sift {
         stop: &dyn Fn() -> bool,
     ) -> Option<()> {
         self.make(task, program);
-        let (sift, threads) = (&*self, shares.len());
-        let what = (task, program, sift);
+        let (sampling, threads) = (&*self, shares.len());
+        let what = (task, program, sampling);
         let sampled = threads::run(shares, stop, |thread, share, stop| {
-            share.start(task, sift);
-            let mut sifting = Sifting::new(what, share, stop);
-            let mut own = task.sought().skip(thread).step_by(threads);
-            own.try_for_each(|heading| sifting.look(heading)).ok_or(())
+            share.start(task, sampling);
+            let mut sampler = SamplingThread::new(what, share, stop);
+            let mut own = task.searched().skip(thread).step_by(threads);
+            own.try_for_each(|heading| sampler.sample(heading))
+                .ok_or(())
         });
         sampled.ok()?;
         let counted = threads::run(shares, stop, |_, share, stop| {
-            Sifting::new(what, share, stop).count_seen().ok_or(())
+            SamplingThread::new(what, share, stop)
+                .count_sampled()
+                .ok_or(())
         });
         counted.ok()?;
         let (own, others) = shares.split_first_mut().expect("a thread");
@@ -146,7 +149,7 @@ fn is_best_enough(task: &Task<'_>) -> bool {
 fn sample_beams(task: &Task<'_>) -> usize {
     match is_best_enough(task) {
         true => FEW_BEAMS,
-        false => task.programs.beams * MOST_BEAMS_QUARTERS / 4,
+        false => task.programs.beams * MAX_BEAMS_QUARTERS / 4,
     }
 }
 
@@ -156,25 +159,25 @@ pub(in crate::search) fn likely_cost(task: &Task<'_>) -> f64 {
     SHARE_OF_NONE + (1.0 - SHARE_OF_NONE) * part
 }
 
-/// One thread at it.
-struct Sifting<'a> {
+/// One thread of it.
+struct SamplingThread<'a> {
     task: &'a Task<'a>,
     program: &'a ScanProgram,
-    sift: &'a Sift,
+    sampling: &'a BeamSampling,
     share: &'a mut Share,
     stop: &'a dyn Fn() -> bool,
 }
 
-impl<'a> Sifting<'a> {
+impl<'a> SamplingThread<'a> {
     fn new(
-        (task, program, sift): (&'a Task<'a>, &'a ScanProgram, &'a Sift),
+        (task, program, sampling): (&'a Task<'a>, &'a ScanProgram, &'a BeamSampling),
         share: &'a mut Share,
         stop: &'a dyn Fn() -> bool,
     ) -> Self {
-        Sifting {
+        SamplingThread {
             task,
             program,
-            sift,
+            sampling,
             share,
             stop,
         }
@@ -182,21 +185,21 @@ impl<'a> Sifting<'a> {
 
     /// Keeps the poses that have most votes of the sample at a heading, and
     /// counts the first of them.
-    fn look(&mut self, heading: usize) -> Option<()> {
+    fn sample(&mut self, heading: usize) -> Option<()> {
         let task = self.task;
-        let most = (task.grid.cells().len() / CELLS_A_KEPT).max(LEAST_KEPT);
+        let most = (task.grid.cells().len() / CELLS_A_KEPT).max(MIN_KEPT);
         let start = self.share.kept.len();
-        if self.sift.least.is_none() {
-            self.share.see(heading);
+        if self.sampling.least.is_none() {
+            self.share.record_heading(heading);
             return Some(());
         }
-        let sample = &self.sift.sample;
+        let sample = &self.sampling.sample;
         let step = (sample.highest_possible() / STEP).max(1) as u16;
         self.sweep(sample, heading)?;
         while !self.share.keep(most) {
             self.share.least += step;
         }
-        self.share.see(heading);
+        self.share.record_heading(heading);
         let kept = &self.share.kept[start..];
         if kept.len() < most / 8 {
             self.share.least = self.share.least.saturating_sub(step).max(1);
@@ -210,19 +213,19 @@ impl<'a> Sifting<'a> {
     }
 
     /// Takes the poses that reach the floor, now that the best one is likely known.
-    fn count_seen(&mut self) -> Option<()> {
+    fn count_sampled(&mut self) -> Option<()> {
         // What the beams give at most that are not in the sample.
-        let sampled = self.sift.sample.highest_possible();
+        let sampled = self.sampling.sample.highest_possible();
         let rest = (self.program.highest_possible() - sampled) as u16;
-        let rest = self.sift.least.map_or(u16::MAX, |_| rest);
+        let rest = self.sampling.least.map_or(u16::MAX, |_| rest);
         let most = self.most_counts();
         let mut start = 0;
-        for i in 0..self.share.seen.len() {
-            let Seen {
+        for i in 0..self.share.sampled.len() {
+            let SampledHeading {
                 heading,
                 end,
                 below,
-            } = self.share.seen[i];
+            } = self.share.sampled[i];
             let least = self.floor().saturating_sub(rest);
             let kept = self.share.kept[start..end].iter();
             if below <= least && kept.filter(|pose| pose.votes >= least).count() <= most {
@@ -249,7 +252,7 @@ impl<'a> Sifting<'a> {
         Some(())
     }
 
-    /// Takes the poses that reach the floor of those kept, which have so many votes of
+    /// Takes the poses that reach the floor of those kept, which have this many votes of
     /// a sample.
     fn take_kept(&mut self, kept: Range<usize>, least: u16, heading: usize) {
         for i in kept {
@@ -264,7 +267,7 @@ impl<'a> Sifting<'a> {
         }
     }
 
-    /// Fills in the votes of some beams for all poses that are sought at a heading.
+    /// Fills in the votes of some beams for all poses that are searched at a heading.
     fn sweep(&mut self, program: &ScanProgram, heading: usize) -> Option<()> {
         let Task {
             index,
@@ -298,10 +301,10 @@ impl<'a> Sifting<'a> {
 
     /// The votes of a pose, or 0 if they do not reach a floor.
     fn count(&mut self, cell: u32, heading: usize, floor: u16) -> u16 {
-        let (task, rests) = (self.task, &self.sift.rests);
+        let (task, rests) = (self.task, &self.sampling.rests);
         let (x, y) = self.place(cell);
         let Share {
-            outlook,
+            block_ranges,
             entered,
             poses_evaluated,
             ..
@@ -309,12 +312,12 @@ impl<'a> Sifting<'a> {
         let (view, intervals) = (task.view(), &task.index.intervals);
         let block = y / SIDE * intervals.columns + x / SIDE;
         // Of an index that was read from a file nobody knows that blocks hold all cells in
-        // which poses are sought.
+        // which poses are searched.
         if !intervals.ids.holds(block) {
             return 0;
         }
         if *entered != Some(block) {
-            outlook.enter((&view, &task.index.within.limits), intervals, block);
+            block_ranges.enter((&view, &task.index.within.limits), intervals, block);
             *entered = Some(block);
         }
         *poses_evaluated += 1;
@@ -322,8 +325,8 @@ impl<'a> Sifting<'a> {
         let mut counts = [Count::default()];
         for (sector, rest) in rests[1..].iter().enumerate() {
             let program = &task.programs.leaf;
-            let beams = (sector, &self.sift.all[..]);
-            program.add((outlook, &view), beams, (heading, 1), &mut counts);
+            let beams = (sector, &self.sampling.all[..]);
+            program.add((block_ranges, &view), beams, (heading, 1), &mut counts);
             if counts[0].votes[place] + rest < floor {
                 return 0;
             }
@@ -340,7 +343,7 @@ impl<'a> Sifting<'a> {
     /// The least votes that matter.
     fn floor(&mut self) -> u16 {
         let best = self.task.best.load(Ordering::Relaxed);
-        self.share.collector.hear_of(best);
+        self.share.collector.raise_best(best);
         self.share.collector.floor()
     }
 
@@ -370,16 +373,16 @@ mod tests {
     };
     use crate::votes::CollectConfig;
 
-    /// Where everything is sifted, be there need or not.
+    /// Always uses sampling.
     #[derive(Default)]
-    struct Sifter {
+    struct Sampler {
         shared: Shared,
-        sift: Sift,
+        sampling: BeamSampling,
         shares: Vec<Share>,
         found: VoteSet,
     }
 
-    impl Sifter {
+    impl Sampler {
         /// The outcome where some pose is known to have `best` votes.
         fn count(
             &mut self,
@@ -401,7 +404,7 @@ mod tests {
             self.shares.resize_with(threads, Share::default);
             let scan = (&task, scan.0);
             let counted = self
-                .sift
+                .sampling
                 .count(scan, &mut self.shares, &mut self.found, &|| false);
             assert!(counted.is_some());
             &self.found
@@ -410,12 +413,12 @@ mod tests {
 
     proptest! {
         #[test]
-        fn what_is_sifted_is_what_the_reference_finds_whatever_was_sifted_before(
+        fn sampling_finds_what_the_reference_finds_whatever_was_searched_before(
             worlds in vec((any_limited_grid(4), prop_oneof![2 => any_dense_scan(), 1 => any_scan()], 1usize..4), 1..4),
             floor_share in prop_oneof![1 => Just(1.0), 2 => 0.6..1.0f64], max_votes in 1u32..400, is_known: bool,
         ) {
             let config = CollectConfig { floor_share, max_votes, ..CollectConfig::exact() };
-            let mut sifter = Sifter::default();
+            let mut sampler = Sampler::default();
             for ((grid, limits, headings), scan, threads) in worlds {
                 let space = space_of(&grid, headings);
                 let program = scan.program(&space);
@@ -424,7 +427,7 @@ mod tests {
                 let best = if is_known { plain.best } else { 0 };
                 for instruction_set in InstructionSet::available() {
                     let how = (instruction_set, threads);
-                    let found = sifter.count(how, (&index, &grid), (&program, &space), (config, best));
+                    let found = sampler.count(how, (&index, &grid), (&program, &space), (config, best));
                     let found = VoteSet { poses_evaluated: 0, ..found.clone() };
                     prop_assert_eq!(&found, &plain, "{:?}", how);
                 }
@@ -444,7 +447,7 @@ mod tests {
     }
 
     #[test]
-    fn few_poses_are_counted_where_a_sample_of_the_beams_tells_the_best_one() {
+    fn few_poses_are_counted_where_a_sample_of_the_beams_shows_the_best_one() {
         let (grid, beams) = (clutter(), 120);
         let space = space_of(&grid, beams);
         let pose = grid
@@ -474,7 +477,7 @@ mod tests {
         let program = ScanProgram::new(&scan, 0.0, &space, &votes).expect("a sound scan");
         let index = SearchIndex::new(&grid, &space);
         let how = (InstructionSet::best(), 1);
-        let mut sifter = Sifter::default();
+        let mut sampler = Sampler::default();
         // Hardly more than one at each heading; where poses lack more of the best one's
         // votes, the cells of some headings, too.
         for (floor_share, most) in [(1.0, 1000), (0.85, 4 * 96 * 96)] {
@@ -483,7 +486,7 @@ mod tests {
                 ..CollectConfig::default()
             };
             let wanted = (config, 0);
-            let found = sifter.count(how, (&index, &grid), (&program, &space), wanted);
+            let found = sampler.count(how, (&index, &grid), (&program, &space), wanted);
             let best = found.votes[0];
             assert_eq!((usize::from(best.x), usize::from(best.y)), (x, y));
             assert_eq!(best.heading, 0);

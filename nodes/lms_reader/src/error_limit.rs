@@ -8,12 +8,12 @@ const PERIOD_NS: i64 = 1_000_000_000;
 
 /// Decides which errors are logged.
 #[derive(Debug, Default)]
-pub(crate) struct Complaints {
+pub(crate) struct ErrorLimit {
     last_ns: Option<i64>,
     held_back: u64,
 }
 
-impl Complaints {
+impl ErrorLimit {
     /// Counts an error at `now_ns`; `Some` with the number held back before it
     /// if it is to be logged.
     pub(crate) fn note(&mut self, now_ns: i64) -> Option<u64> {
@@ -32,9 +32,9 @@ mod tests {
 
     #[test]
     fn the_first_at_once_then_one_a_second_with_the_rest_counted() {
-        let mut complaints = Complaints::default();
+        let mut error_limit = ErrorLimit::default();
         let seconds = [0.0, 0.1, 0.9, 1.0, 1.5, 3.0];
-        let noted = seconds.map(|s| complaints.note((s * 1e9) as i64));
+        let noted = seconds.map(|s| error_limit.note((s * 1e9) as i64));
         assert_eq!(noted, [Some(0), None, None, Some(2), None, Some(1)]);
     }
 }

@@ -1,16 +1,16 @@
-//! The way that odometry tells, and how far it may be wrong.
+//! The motion that odometry measures, and its error.
 
 use geometry::Pose;
 use nalgebra::{Matrix3, Vector3};
 
 use super::TrackingConfig;
 
-/// A robot that turns to and fro takes a key scan after so many times the distance.
+/// A robot that turns to and fro takes a key scan after this many times the distance.
 const KEY_PATHS: f64 = 2.0;
 
 /// A way of several steps.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
-pub(super) struct Way {
+pub(super) struct DrivenPath {
     /// From its start to its end.
     pub step: Pose,
     /// Metres along it.
@@ -35,7 +35,7 @@ const PER_RADIAN: f64 = 0.15;
 const UNKNOWN_M: f64 = 0.4;
 const UNKNOWN: f64 = 30.0 * std::f64::consts::PI / 180.0;
 
-impl Way {
+impl DrivenPath {
     /// Goes on by a step, if that is known.
     pub(super) fn add(&mut self, step: Option<Pose>) {
         let Some(step) = step else {

@@ -1,4 +1,4 @@
-//! What can be wrong with a recording.
+//! A finding about a recording, with its severity.
 
 use serde::Serialize;
 
@@ -16,34 +16,34 @@ pub(crate) enum Severity {
 
 /// One finding.
 #[derive(Debug, Clone, PartialEq, Eq, Serialize)]
-pub(crate) struct Ailment {
+pub(crate) struct Finding {
     pub severity: Severity,
     /// What was found, and what would be right.
     pub finding: String,
 }
 
-impl Ailment {
+impl Finding {
     pub(crate) fn note(finding: impl Into<String>) -> Self {
-        Ailment::new(Severity::Note, finding)
+        Finding::new(Severity::Note, finding)
     }
 
     pub(crate) fn problem(finding: impl Into<String>) -> Self {
-        Ailment::new(Severity::Problem, finding)
+        Finding::new(Severity::Problem, finding)
     }
 
     pub(crate) fn lost(finding: impl Into<String>) -> Self {
-        Ailment::new(Severity::Lost, finding)
+        Finding::new(Severity::Lost, finding)
     }
 
     fn new(severity: Severity, finding: impl Into<String>) -> Self {
-        Ailment {
+        Finding {
             severity,
             finding: finding.into(),
         }
     }
 }
 
-impl std::fmt::Display for Ailment {
+impl std::fmt::Display for Finding {
     fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
         let word = match self.severity {
             Severity::Note => "note",

@@ -1,28 +1,28 @@
-//! What one thread sifts with, and what it keeps of what it swept.
+//! Buffers of one thread's beam sampling, and what it keeps of what it swept.
 
-use super::Sift;
-use crate::search::leaves::outlook::Outlook;
+use super::BeamSampling;
+use crate::search::leaves::block_ranges::BlockRanges;
 use crate::search::task::Task;
 use crate::sweep;
 use crate::votes::Collector;
 
-/// Cells whose greatest votes are looked at together.
+/// Cells whose greatest votes are compared together.
 const STRETCH: usize = 1024;
 
-/// What one thread sifts with and finds, kept from scan to scan.
+/// Buffers of one thread and what it finds, kept from scan to scan.
 #[derive(Debug, Default)]
 pub(in crate::search) struct Share {
     pub(super) sweep: sweep::Workspace,
     /// The votes of a sample at a heading.
     pub(super) field: Vec<u16>,
-    pub(super) outlook: Outlook,
-    /// The block in which the outlook is.
+    pub(super) block_ranges: BlockRanges,
+    /// The block of the ranges.
     pub(super) entered: Option<usize>,
     /// The headings of this thread.
-    pub(super) seen: Vec<Seen>,
+    pub(super) sampled: Vec<SampledHeading>,
     /// Poses that have most votes of the sample, heading by heading.
     pub(super) kept: Vec<Pose>,
-    /// They have so many or more.
+    /// They have this many or more.
     pub(super) least: u16,
     pub(super) collector: Collector,
     pub(super) poses_evaluated: u64,
@@ -30,19 +30,19 @@ pub(in crate::search) struct Share {
 
 impl Share {
     /// Starts with nothing.
-    pub(super) fn start(&mut self, task: &Task<'_>, sift: &Sift) {
-        self.outlook.prepare(task.grid, &task.space.directions);
+    pub(super) fn start(&mut self, task: &Task<'_>, sampling: &BeamSampling) {
+        self.block_ranges.prepare(task.grid, &task.space.directions);
         self.entered = None;
-        self.seen.clear();
+        self.sampled.clear();
         self.kept.clear();
-        self.least = sift.least.unwrap_or(1);
+        self.least = sampling.least.unwrap_or(1);
         self.collector.start(task.config);
         self.poses_evaluated = 0;
     }
 
-    /// Notes what was kept at a heading.
-    pub(super) fn see(&mut self, heading: usize) {
-        self.seen.push(Seen {
+    /// Records what was kept at a heading.
+    pub(super) fn record_heading(&mut self, heading: usize) {
+        self.sampled.push(SampledHeading {
             heading,
             end: self.kept.len(),
             below: self.least,
@@ -50,7 +50,7 @@ impl Share {
     }
 
     /// Keeps the poses of the field that have the least votes or more; none if that
-    /// would be more than so many.
+    /// would be more than this many.
     pub(super) fn keep(&mut self, most: usize) -> bool {
         let start = self.kept.len();
         for (first, cells) in (0..).step_by(STRETCH).zip(self.field.chunks(STRETCH)) {
@@ -73,7 +73,7 @@ impl Share {
 
 /// What the sample said of a heading.
 #[derive(Debug, Clone, Copy)]
-pub(super) struct Seen {
+pub(super) struct SampledHeading {
     pub(super) heading: usize,
     /// The end of its poses among those kept.
     pub(super) end: usize,

@@ -7,7 +7,7 @@ use crate::grid::{Cell, CellRules, Grid, GridFrame};
 
 /// Distances to obstacles and to what is unknown.
 #[derive(Debug, Clone)]
-pub struct Terrain {
+pub struct DistanceField {
     /// Where the grid lies in the map.
     pub frame: GridFrame,
     width: usize,
@@ -20,9 +20,9 @@ pub struct Terrain {
     drawn_share: f64,
 }
 
-/// What a ray meets, in cells from where it starts.
+/// What a ray hits, in cells from where it starts.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub(crate) struct Way {
+pub(crate) struct RayHit {
     /// To the first occupied cell, if it is on the map and near enough.
     pub occupied: Option<f64>,
     /// To the first unknown cell before that.
@@ -31,7 +31,7 @@ pub(crate) struct Way {
 
 /// Cells that a ray moves on at least; it may miss a corner that it cuts by
 /// less.
-const LEAST_STEP: f64 = 0.5;
+const MIN_STEP: f64 = 0.5;
 
 /// How far walls lie from where somebody drew them, metres: right answers on a map of
 /// offices that was drawn by hand lie 12 cm off, along both axes together.
@@ -41,7 +41,7 @@ const DRAWN_ERROR_M: f64 = 0.1;
 /// nearer to each other than the centres do.
 const SLACK: f64 = std::f64::consts::SQRT_2;
 
-impl Terrain {
+impl DistanceField {
     /// Prepares a map of `width · height` occupancies, row by row from the
     /// lowest y.
     ///
@@ -53,7 +53,7 @@ impl Terrain {
         occupancy: &[u8],
         rules: CellRules,
     ) -> Result<Self, EngineError> {
-        // A grid in which unknown cells block tells them apart.
+        // A grid in which unknown cells block distinguishes them.
         let rules = CellRules {
             unknown_blocks: true,
             ..rules
@@ -61,7 +61,7 @@ impl Terrain {
         let grid = Grid::new(width, height, occupancy, rules)?;
         let cells = grid.cells();
         let to_unknown = distance::transform(width, height, |i| cells[i] == Cell::Blocked);
-        Ok(Terrain {
+        Ok(DistanceField {
             frame,
             width,
             height,
@@ -111,33 +111,33 @@ impl Terrain {
 
     /// What a ray from a point in a direction, a vector of length 1, meets
     /// within `limit` cells.
-    pub(crate) fn look(&self, (x, y): (f64, f64), (dx, dy): (f64, f64), limit: f64) -> Way {
-        let mut way = Way {
+    pub(crate) fn cast_ray(&self, (x, y): (f64, f64), (dx, dy): (f64, f64), limit: f64) -> RayHit {
+        let mut hit = RayHit {
             occupied: None,
             unknown: None,
         };
         let mut gone = 0.0;
         while gone <= limit {
             let Some(at) = self.index(x + gone * dx, y + gone * dy) else {
-                return way;
+                return hit;
             };
             let occupied = self.to_occupied[at];
             if occupied == 0.0 {
-                way.occupied = Some(gone);
-                return way;
+                hit.occupied = Some(gone);
+                return hit;
             }
             let mut clear = f64::from(occupied);
-            if way.unknown.is_none() {
+            if hit.unknown.is_none() {
                 let unknown = self.to_unknown[at];
                 if unknown == 0 {
-                    way.unknown = Some(gone);
+                    hit.unknown = Some(gone);
                 } else {
                     clear = clear.min(f64::from(unknown));
                 }
             }
-            gone += (clear - SLACK).max(LEAST_STEP);
+            gone += (clear - SLACK).max(MIN_STEP);
         }
-        way
+        hit
     }
 
     /// Distance of the cell at a point to the nearest occupied one, between the cells'
@@ -180,12 +180,12 @@ mod tests {
     use proptest::prelude::*;
 
     use super::*;
-    use crate::fit::drawn::terrain;
+    use crate::fit::drawn::distance_field;
 
     #[test]
     fn distance_is_bilinear_between_the_centres_of_cells() {
-        let terrain = terrain(&["....", "#...", "...."]);
-        let at = |x, y| terrain.distance(x, y);
+        let distance_field = distance_field(&["....", "#...", "...."]);
+        let at = |x, y| distance_field.distance(x, y);
         // Distances are kept in 32 bits.
         let diagonal = f64::from(2f32.sqrt());
         assert_eq!(at(1.5, 1.5), Some((1.0, [1.0, diagonal - 1.0])));
@@ -199,15 +199,15 @@ mod tests {
 
     #[test]
     fn a_ray_meets_the_first_obstacle_and_what_is_unknown_before_it() {
-        let terrain = terrain(&["......?..#..#"]);
-        let from = |x, limit| terrain.look((x, 0.5), (1.0, 0.0), limit);
-        let way = from(0.5, 20.0);
+        let distance_field = distance_field(&["......?..#..#"]);
+        let from = |x, limit| distance_field.cast_ray((x, 0.5), (1.0, 0.0), limit);
+        let hit = from(0.5, 20.0);
         // It steps by half a cell at most where it matters.
-        assert!((8.5..9.0).contains(&way.occupied.unwrap()), "{way:?}");
-        assert!((5.5..6.0).contains(&way.unknown.unwrap()), "{way:?}");
+        assert!((8.5..9.0).contains(&hit.occupied.unwrap()), "{hit:?}");
+        assert!((5.5..6.0).contains(&hit.unknown.unwrap()), "{hit:?}");
         assert_eq!(from(7.5, 20.0).unknown, None);
         assert_eq!(from(0.5, 8.0).occupied, None, "beyond the limit");
-        let back = terrain.look((8.5, 0.5), (-1.0, 0.0), 20.0);
+        let back = distance_field.cast_ray((8.5, 0.5), (-1.0, 0.0), 20.0);
         assert_eq!(back.occupied, None, "it leaves the map");
     }
 
@@ -223,18 +223,18 @@ mod tests {
             }).collect();
             let frame = GridFrame { resolution_m: 0.1, map_from_grid: Pose::IDENTITY };
             let sides = (grid.width(), grid.height());
-            let terrain = Terrain::new(frame, sides, &occupancy, CellRules::default()).unwrap();
+            let distance_field = DistanceField::new(frame, sides, &occupancy, CellRules::default()).unwrap();
             let (dy, dx) = angle.sin_cos();
-            let way = terrain.look(start, (dx, dy), 100.0);
-            // Steps of a tenth of a cell, until the way ends.
+            let hit = distance_field.cast_ray(start, (dx, dy), 100.0);
+            // Steps of a tenth of a cell, until the ray ends.
             for step in 0..1000 {
                 let gone = 0.1 * f64::from(step);
-                let Some(at) = terrain.index(start.0 + gone * dx, start.1 + gone * dy) else { break };
+                let Some(at) = distance_field.index(start.0 + gone * dx, start.1 + gone * dy) else { break };
                 // The shortest step enters a cell late, but passes none.
-                if way.occupied.is_some_and(|end| gone > end - LEAST_STEP) { break }
+                if hit.occupied.is_some_and(|end| gone > end - MIN_STEP) { break }
                 let (x, y) = (start.0 + gone * dx, start.1 + gone * dy);
                 let inner = [x, y].iter().all(|c| (0.36..0.64).contains(&c.fract()));
-                prop_assert!(!(inner && terrain.to_occupied[at] == 0.0), "{:?} at {}", way, gone);
+                prop_assert!(!(inner && distance_field.to_occupied[at] == 0.0), "{:?} at {}", hit, gone);
             }
         }
     }

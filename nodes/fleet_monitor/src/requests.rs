@@ -13,16 +13,16 @@ use zenoh_session::KeyError;
 use crate::FleetError;
 
 /// What a robot may be asked.
-pub(crate) struct Wishes {
+pub(crate) struct Requests {
     regions: AdvancedPublisher<'static>,
     saves: AdvancedPublisher<'static>,
     next: Preamble,
 }
 
-impl Wishes {
-    /// To a robot, from the process that is known by `sender`.
+impl Requests {
+    /// To a robot, from the process with the session id `sender`.
     pub(crate) fn open(session: &Session, robot: &str, sender: u64) -> Result<Self, FleetError> {
-        Ok(Wishes {
+        Ok(Requests {
             regions: declare::<topic::Region>(session, robot)?,
             saves: declare::<topic::Save>(session, robot)?,
             next: Preamble {
@@ -33,13 +33,13 @@ impl Wishes {
         })
     }
 
-    /// Whether somebody hears of regions, and of saving.
-    pub(crate) fn heard(&self) -> (bool, bool) {
-        let is_heard = |publisher: &AdvancedPublisher<'_>| {
+    /// Whether somebody subscribes to regions, and to saving.
+    pub(crate) fn subscribed(&self) -> (bool, bool) {
+        let has_subscribers = |publisher: &AdvancedPublisher<'_>| {
             let status = publisher.matching_status().wait();
             status.is_ok_and(|status| status.matching())
         };
-        (is_heard(&self.regions), is_heard(&self.saves))
+        (has_subscribers(&self.regions), has_subscribers(&self.saves))
     }
 
     /// Corners, metres in the map; none for everywhere.
@@ -58,7 +58,7 @@ impl Wishes {
         put(&self.saves, payload)
     }
 
-    /// Nothing was measured: it is a wish of this moment.
+    /// Nothing was measured: it is a request of this moment.
     fn stamp(&mut self) -> (Preamble, Stamp) {
         self.next.clock_ns = monotonic_ns();
         let stamp = Stamp {

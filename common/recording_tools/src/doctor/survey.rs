@@ -42,21 +42,21 @@ pub(super) struct Farthest {
 
 /// What was seen on all channels.
 #[derive(Debug, Clone, PartialEq, Default)]
-pub(super) struct Patient {
+pub(super) struct Survey {
     pub(super) channels: BTreeMap<String, Seen>,
 }
 
-impl Patient {
+impl Survey {
     pub(super) fn of(recording: &Recording) -> Self {
-        let mut patient = Patient::default();
+        let mut survey = Survey::default();
         for record in recording.records() {
             match record {
-                Ok(record) => patient.see(&record),
+                Ok(record) => survey.see(&record),
                 Err(
                     ref error @ (RecordingError::Message { ref topic, .. }
                     | RecordingError::NotCdr { ref topic, .. }),
                 ) => {
-                    let seen = patient.channels.entry(topic.clone()).or_default();
+                    let seen = survey.channels.entry(topic.clone()).or_default();
                     seen.undecodable += 1;
                     seen.first_reason.get_or_insert_with(|| error.to_string());
                 }
@@ -64,7 +64,7 @@ impl Patient {
                 Err(_) => {}
             }
         }
-        patient
+        survey
     }
 
     /// The channels of a kind.

@@ -1,5 +1,5 @@
-//! Exact ranges of the cells of a small block, in directions as they are asked
-//! for.
+//! Exact ranges of the cells of a small block, computed for a direction when they are
+//! first needed.
 //!
 //! The block's intervals say how far away the first obstacle lies at least, so
 //! rays are followed only from there, all that leave the block in a direction at
@@ -15,7 +15,7 @@ use crate::search::index::obstacles::Obstacles;
 use crate::search::index::steps::BinSteps;
 use crate::simd::Set;
 
-/// What is looked at.
+/// The map and what is known of it.
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct View<'a> {
     pub grid: &'a Grid,
@@ -24,12 +24,12 @@ pub(crate) struct View<'a> {
     pub directions: &'a Directions,
 }
 
-/// What one block sees.
+/// The ranges of the cells of one block.
 #[derive(Debug, Clone)]
-pub(crate) struct Outlook {
+pub(crate) struct BlockRanges {
     by_direction: Vec<[u16; CELLS]>,
-    /// The block for which each direction was looked in last, by its number.
-    looked_for: Vec<u32>,
+    /// The block for which each direction was computed last, by its number.
+    computed_for: Vec<u32>,
     /// Counts the blocks.
     number: u32,
     left: usize,
@@ -37,21 +37,21 @@ pub(crate) struct Outlook {
     cells: [Cell; CELLS],
     /// Whether all of them are open.
     all_open: bool,
-    /// For each cell, all ones where poses are sought.
+    /// For each cell, all ones where poses are searched.
     open: [u16; CELLS],
     intervals: BlockIntervals,
-    /// Whether rays can be lost on the map: then they must be followed from the
-    /// start, as intervals say only where they hit.
-    can_lose: bool,
-    /// How often a direction was looked in.
-    looks: u64,
+    /// Whether unknown cells block rays: then rays must be followed from the
+    /// start, as intervals say only where they hit an obstacle.
+    has_blocked: bool,
+    /// How often rays were cast in a direction.
+    casts: u64,
 }
 
-impl Default for Outlook {
+impl Default for BlockRanges {
     fn default() -> Self {
-        Outlook {
+        BlockRanges {
             by_direction: Vec::new(),
-            looked_for: Vec::new(),
+            computed_for: Vec::new(),
             number: 0,
             left: 0,
             bottom: 0,
@@ -59,24 +59,24 @@ impl Default for Outlook {
             all_open: false,
             open: [0; CELLS],
             intervals: BlockIntervals::default(),
-            can_lose: false,
-            looks: 0,
+            has_blocked: false,
+            casts: 0,
         }
     }
 }
 
-impl Outlook {
-    /// Turns to a map. What was looked at before is forgotten with the next
+impl BlockRanges {
+    /// Starts with a map. What was computed before is dropped with the next
     /// block, whose number nothing has yet.
     pub(crate) fn prepare(&mut self, grid: &Grid, directions: &Directions) {
         let count = directions.count();
         self.by_direction.resize(count, [NO_RANGE; CELLS]);
-        self.looked_for.resize(count, 0);
-        self.can_lose = grid.has_blocked();
-        self.looks = 0;
+        self.computed_for.resize(count, 0);
+        self.has_blocked = grid.has_blocked();
+        self.casts = 0;
     }
 
-    /// Turns to a block.
+    /// Starts with a block.
     pub(crate) fn enter(
         &mut self,
         (view, limits): (&View<'_>, &Limits),
@@ -84,7 +84,7 @@ impl Outlook {
         block: usize,
     ) {
         if self.number == u32::MAX {
-            self.looked_for.fill(0);
+            self.computed_for.fill(0);
             self.number = 0;
         }
         self.number += 1;
@@ -102,8 +102,8 @@ impl Outlook {
         }
         self.open = std::array::from_fn(|i| {
             let (x, y) = self.cell(i);
-            let is_sought = self.cells[i] == Cell::Open && limits.hold_cell(x, y);
-            if is_sought { u16::MAX } else { 0 }
+            let is_searched = self.cells[i] == Cell::Open && limits.hold_cell(x, y);
+            if is_searched { u16::MAX } else { 0 }
         });
     }
 
@@ -117,31 +117,31 @@ impl Outlook {
         &self.intervals
     }
 
-    /// For each cell, all ones where the robot may stand and is sought.
+    /// For each cell, all ones where the robot may stand and is searched.
     pub(crate) fn open(&self) -> &[u16; CELLS] {
         &self.open
     }
 
-    /// Looks in direction `d`, unless that was done for this block. To be inlined into
-    /// what is compiled for the instruction set.
+    /// Computes the ranges in direction `d`, unless that was done for this block. To be
+    /// inlined into what is compiled for the instruction set.
     #[inline(always)]
-    pub(in crate::search) fn look<S: Set>(&mut self, set: S, view: &View<'_>, d: usize) {
-        if self.looked_for[d] != self.number {
-            self.looked_for[d] = self.number;
-            self.looks += 1;
-            self.look_anew(set, view, d);
+    pub(in crate::search) fn compute<S: Set>(&mut self, set: S, view: &View<'_>, d: usize) {
+        if self.computed_for[d] != self.number {
+            self.computed_for[d] = self.number;
+            self.casts += 1;
+            self.cast_rays(set, view, d);
         }
     }
 
-    /// The ranges in direction `d`, in steps; it must have been looked in.
+    /// The ranges in direction `d`, in steps; they must have been computed.
     #[inline(always)]
     pub(crate) fn ranges(&self, d: usize) -> &[u16; CELLS] {
         &self.by_direction[d]
     }
 
-    /// How often a direction of any block was looked in.
-    pub(crate) fn looks(&self) -> u64 {
-        self.looks
+    /// How often rays were cast in a direction of any block.
+    pub(crate) fn casts(&self) -> u64 {
+        self.casts
     }
 
     /// The steps at which rays in direction `d` may end, without the ends: two spans.
@@ -157,10 +157,10 @@ impl Outlook {
     }
 
     #[inline(always)]
-    fn look_anew<S: Set>(&mut self, set: S, view: &View<'_>, d: usize) {
+    fn cast_rays<S: Set>(&mut self, set: S, view: &View<'_>, d: usize) {
         let direction = &view.directions.all()[d];
         let [near, far] = self.spans(view, d);
-        let spans = if self.can_lose {
+        let spans = if self.has_blocked {
             [(1, near.1.max(far.1)), (0, 0)]
         } else {
             [near, far]
@@ -168,8 +168,8 @@ impl Outlook {
         let bundle = Bundle::new(direction, (self.left, self.bottom));
         let rays = view.obstacles.rays(direction, bundle.start);
         let mut hits = bundle.follow::<S::Rays>(set, &rays, spans);
-        if self.can_lose {
-            bundle::lose(&rays, view.grid, &mut hits);
+        if self.has_blocked {
+            bundle::drop_blocked(&rays, view.grid, &mut hits);
         }
         self.by_direction[d] = if self.all_open {
             bundle.ranges::<S::Rays>(set, &hits)
@@ -190,15 +190,15 @@ mod tests {
     use crate::simd::{Kernel, Simd};
     use crate::testing::{any_grid, any_long_grid, space_of};
 
-    /// Looking in a direction.
-    struct Looking<'a>(&'a mut Outlook, &'a View<'a>, usize);
+    /// Computing the ranges in a direction.
+    struct Computing<'a>(&'a mut BlockRanges, &'a View<'a>, usize);
 
-    impl Kernel for Looking<'_> {
+    impl Kernel for Computing<'_> {
         type Result = ();
 
         #[inline(always)]
         fn run<S: Set>(self, set: S) {
-            self.0.look(set, self.1, self.2);
+            self.0.compute(set, self.1, self.2);
         }
     }
 
@@ -213,21 +213,21 @@ mod tests {
             let (intervals, _) = RangeIntervals::of_all(&grid, directions, (&bins, &steps));
             let obstacles = Obstacles::new(&grid);
             let view = View { grid: &grid, obstacles: &obstacles, steps: &steps, directions };
-            let mut outlook = Outlook::default();
-            outlook.prepare(&grid, directions);
+            let mut block_ranges = BlockRanges::default();
+            block_ranges.prepare(&grid, directions);
             let blocks = 0..intervals.columns * intervals.rows;
             for (block, set) in InstructionSet::available().flat_map(|set| blocks.clone().map(move |block| (block, set))) {
-                outlook.enter((&view, &Limits::none(grid.width())), &intervals, block);
-                let open = *outlook.open();
+                block_ranges.enter((&view, &Limits::none(grid.width())), &intervals, block);
+                let open = *block_ranges.open();
                 for (d, direction) in directions.all().iter().enumerate() {
-                    Simd::new(set).run(Looking(&mut outlook, &view, d));
+                    Simd::new(set).run(Computing(&mut block_ranges, &view, d));
                     for (i, &open) in open.iter().enumerate() {
-                        let (x, y) = outlook.cell(i);
+                        let (x, y) = block_ranges.cell(i);
                         let (x, y) = (x as i64, y as i64);
                         prop_assert_eq!(open != 0, grid.is_open(x, y));
                         if grid.is_open(x, y) {
                             let plain = reference::range(&grid, x, y, direction).unwrap_or(NO_RANGE);
-                            prop_assert_eq!(outlook.ranges(d)[i], plain, "{:?} {:?}", (x, y), direction);
+                            prop_assert_eq!(block_ranges.ranges(d)[i], plain, "{:?} {:?}", (x, y), direction);
                         }
                     }
                 }

@@ -1,7 +1,7 @@
-//! Questions and answers as bytes.
+//! Requests and answers as bytes.
 //!
-//! A question is a scan as the bridge sends it, in postcard, or the same in JSON;
-//! the answer comes in the form of the question. Postcard is for programs that have
+//! A request is a scan as the bridge sends it, in postcard, or the same in JSON;
+//! the answer comes in the form of the request. Postcard is for programs that have
 //! these types; JSON is for everybody else: any language writes a scan with what it
 //! brings along, and new fields of a message do not break it.
 
@@ -11,19 +11,19 @@ use network_payload::{Preamble, Wire};
 use crate::LocateError;
 use crate::json;
 
-/// The encoding of a question in JSON.
+/// The encoding of a request in JSON.
 pub const JSON: &str = "application/json;backcast.Scan/v1";
 /// That of its answer.
 pub const JSON_ANSWER: &str = "application/json;backcast.Hypotheses/v2";
-/// What a question may say of itself.
+/// What a request may say of itself.
 pub(crate) const ENCODINGS: [&str; 2] = ["application/postcard;backcast.Scan/v2", JSON];
 /// Characters of a foreign encoding that an error shows.
 const SHOWN: usize = 80;
 
-/// In which form the question came, and the answer goes.
+/// In which form the request came, and the answer goes.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Form {
-    /// As the bridge sends it; the preamble of the question is that of the answer.
+    /// As the bridge sends it; the preamble of the request is that of the answer.
     Postcard(Preamble),
     /// JSON.
     Json,
@@ -31,7 +31,7 @@ pub enum Form {
 
 /// A scan that somebody wants to be located.
 #[derive(Debug, Clone, PartialEq)]
-pub struct Question {
+pub struct Request {
     /// How it came.
     pub form: Form,
     /// As in topic `scan`.
@@ -40,12 +40,12 @@ pub struct Question {
     pub ranges: Vec<f32>,
 }
 
-/// Reads a question that says of itself what it is, at `now_ns` of the monotonic
+/// Reads a request that says of itself what it is, at `now_ns` of the monotonic
 /// clock.
 ///
 /// # Errors
 /// If it is in no form that is known, too long, or not sound.
-pub fn read(encoding: &str, payload: &[u8], now_ns: i64) -> Result<Question, LocateError> {
+pub fn read(encoding: &str, payload: &[u8], now_ns: i64) -> Result<Request, LocateError> {
     let most = topic::Scan::MAX_BYTES;
     if payload.len() > most {
         let found = payload.len();
@@ -54,7 +54,7 @@ pub fn read(encoding: &str, payload: &[u8], now_ns: i64) -> Result<Question, Loc
     if encoding == JSON {
         let (header, ranges) = json::read(payload, now_ns)?;
         let form = Form::Json;
-        return Ok(Question {
+        return Ok(Request {
             form,
             header,
             ranges,
@@ -66,7 +66,7 @@ pub fn read(encoding: &str, payload: &[u8], now_ns: i64) -> Result<Question, Loc
     }
     let mut scan = network_payload::decode::<topic::Scan>(encoding, payload)?;
     scan.rebase(now_ns);
-    Ok(Question {
+    Ok(Request {
         form: Form::Postcard(scan.preamble),
         header: scan.header,
         ranges: scan.items,
@@ -136,7 +136,7 @@ mod tests {
     }
 
     #[test]
-    fn a_question_in_postcard_is_answered_in_postcard() {
+    fn a_request_in_postcard_is_answered_in_postcard() {
         let payload =
             network_payload::encode::<topic::Scan>(&PREAMBLE, &scan(), &[1.0, 2.0]).unwrap();
         let asked = read(ENCODINGS[0], &payload, 50_000).unwrap();
@@ -155,15 +155,15 @@ mod tests {
     }
 
     #[test]
-    fn what_is_no_question_is_refused_with_what_would_be_one() {
+    fn what_is_no_request_is_refused_with_what_would_be_one() {
         let check = |encoding: &str, payload: &[u8], expected: &str| {
             let error = read(encoding, payload, 0).unwrap_err().to_string();
             assert!(error.contains(expected), "{error}");
         };
         check("zenoh/bytes", b"", "allowed are application/postcard");
         check("application/postcard;backcast.Scan/v9", b"", JSON);
-        check(ENCODINGS[0], b"\xff", "no postcard of its schema");
-        check(JSON, b"{", "no scan in JSON");
+        check(ENCODINGS[0], b"\xff", "does not match its postcard schema");
+        check(JSON, b"{", "not a scan in JSON");
         check(JSON, &vec![b' '; (1 << 20) + 1], "at most 1048576");
     }
 }

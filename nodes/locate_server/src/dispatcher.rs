@@ -1,6 +1,6 @@
-//! Where questions come in: takes them on, hands them on, or says why not.
+//! Where requests arrive: accepts them, passes them on, or rejects them.
 //!
-//! Zenoh calls on threads of its own, which wait for nothing here: a question that
+//! Zenoh calls on threads of its own, which wait for nothing here: a request that
 //! is taken on lies in a queue with an end, for the workers. What each of them
 //! costs is bounded before it is looked at.
 
@@ -18,12 +18,12 @@ use crate::counts::Counts;
 use crate::error::REFUSED;
 use crate::team::Team;
 
-/// The name of the question's own deadline.
+/// The name of the request's own deadline.
 const DEADLINE: &str = "deadline_ms";
-/// Longest deadline that a question may name, milliseconds.
+/// Longest deadline that a request may name, milliseconds.
 const LONGEST_MS: u64 = 60_000;
 
-/// A question that is taken on.
+/// A request that is taken on.
 pub(crate) struct Job {
     pub(crate) query: Query,
     /// Under which the answer goes.
@@ -58,15 +58,15 @@ impl Deadline {
     }
 }
 
-/// Takes questions, from whichever thread.
-pub(crate) struct Desk {
+/// Takes requests, from whichever thread.
+pub(crate) struct Dispatcher {
     session: Session,
     /// `backcast/locate/<map>`.
     key: Arc<str>,
     jobs: Sender<Job>,
     returned: Sender<Job>,
     workers: usize,
-    /// Questions that wait or are being searched.
+    /// Requests that wait or are being searched.
     busy: Arc<AtomicUsize>,
     team: Mutex<Team>,
     /// What others have.
@@ -76,16 +76,16 @@ pub(crate) struct Desk {
 }
 
 /// What workers need of it.
-pub(crate) struct Bench {
+pub(crate) struct WorkQueue {
     jobs: Receiver<Job>,
     /// What was handed on and came back: as much as was handed on, and no more.
     returned: Receiver<Job>,
     pub(crate) busy: Arc<AtomicUsize>,
 }
 
-impl Bench {
-    /// The next question, once there is one: first those that have waited elsewhere.
-    /// None when the desk is closed.
+impl WorkQueue {
+    /// The next request, once there is one: first those that have waited elsewhere.
+    /// None when the dispatcher is closed.
     pub(crate) fn next(&self) -> Option<Job> {
         let job = crossbeam::channel::select_biased! {
             recv(self.returned) -> job => job,
@@ -95,20 +95,20 @@ impl Bench {
     }
 }
 
-impl Desk {
-    /// A desk with `workers`, for each of which `waiting` questions may wait.
+impl Dispatcher {
+    /// A dispatcher with `workers`, for each of which `waiting` requests may wait.
     pub(crate) fn new(
         session: &Session,
         key: &str,
         (workers, waiting): (usize, usize),
         default_deadline: Duration,
         counts: &Arc<Counts>,
-    ) -> (Arc<Self>, Bench) {
+    ) -> (Arc<Self>, WorkQueue) {
         // Each worker holds one more, which it has taken out.
         let (jobs, taken) = bounded(workers * (waiting + 1));
         let (returned, again) = unbounded();
         let busy = Arc::new(AtomicUsize::new(0));
-        let desk = Desk {
+        let dispatcher = Dispatcher {
             session: session.clone(),
             key: key.into(),
             jobs,
@@ -120,12 +120,12 @@ impl Desk {
             default_deadline,
             counts: Arc::clone(counts),
         };
-        let bench = Bench {
+        let work_queue = WorkQueue {
             jobs: taken,
             returned: again,
             busy,
         };
-        (Arc::new(desk), bench)
+        (Arc::new(dispatcher), work_queue)
     }
 
     /// The others, and what they were given.
@@ -140,7 +140,7 @@ impl Desk {
         handed_on.unwrap_or_else(PoisonError::into_inner)
     }
 
-    /// Another server is gone, and what it has comes back: a question that is sent while
+    /// Another server is gone, and what it has comes back: a request that is sent while
     /// Zenoh forgets that server would be answered, or ended, by nobody.
     pub(crate) fn leave(&self, other: &str) {
         self.team().leave(other);
@@ -152,7 +152,7 @@ impl Desk {
         }
     }
 
-    /// A question to all servers: it may be handed on.
+    /// A request to all servers: it may be handed on.
     pub(crate) fn ask(self: &Arc<Self>, query: Query) {
         let key = Arc::clone(&self.key);
         if let Some(job) = self.open(query, key) {
@@ -165,14 +165,14 @@ impl Desk {
         }
     }
 
-    /// A question that another server hands on, under this one's own `key`.
+    /// A request that another server hands on, under this one's own `key`.
     pub(crate) fn ask_me(&self, query: Query, key: &Arc<str>) {
         if let Some(job) = self.open(query, Arc::clone(key)) {
             self.take_on(job);
         }
     }
 
-    /// Reads what the question says of its time; refuses it if that is nothing.
+    /// Reads what the request says of its time; refuses it if that is nothing.
     fn open(&self, query: Query, key: Arc<str>) -> Option<Job> {
         self.counts.received();
         let said = query.parameters().get(DEADLINE).map(str::to_owned);
@@ -206,7 +206,7 @@ impl Desk {
     /// server goes, Zenoh drops what waits for it with a lock held that sending takes.
     fn take_back(&self, job: Job) {
         self.busy.fetch_add(1, Ordering::Relaxed);
-        // It has room, and workers are there as long as the desk is.
+        // It has room, and workers are there as long as the dispatcher is.
         let _ = self.returned.send(job);
     }
 
@@ -224,7 +224,7 @@ impl Desk {
             .payload(job.query.payload().cloned().unwrap_or_default())
             .timeout(remaining);
         let handed = Arc::new(Handed {
-            desk: Arc::clone(self),
+            dispatcher: Arc::clone(self),
             other,
             job: Mutex::new(Some(job)),
         });
@@ -234,33 +234,33 @@ impl Desk {
             return;
         }
         // Where asking fails, what was handed on is dropped here, and so comes back.
-        let _ = asking.callback(move |reply| handed.hear(&reply)).wait();
+        let _ = asking.callback(move |reply| handed.on_reply(&reply)).wait();
     }
 }
 
-/// A question that another server has. Zenoh drops it when no answer can come any
+/// A request that another server has. Zenoh drops it when no answer can come any
 /// more: it was answered, the other is gone, or the time is over.
 struct Handed {
-    desk: Arc<Desk>,
+    dispatcher: Arc<Dispatcher>,
     other: String,
     job: Mutex<Option<Job>>,
 }
 
 impl Handed {
-    fn hear(&self, reply: &Reply) {
+    fn on_reply(&self, reply: &Reply) {
         match reply.result() {
             Ok(sample) => {
                 let Some(job) = self.take() else { return };
                 let answer = (sample.encoding().clone(), sample.payload().clone());
                 let reply = job.query.reply(&*job.key, answer.1).encoding(answer.0);
-                self.desk.counts.sent(&reply.wait());
+                self.dispatcher.counts.sent(&reply.wait());
             }
             // What is wrong with a scan is wrong everywhere.
-            Err(error) if is_about_the_question(error.encoding()) => {
+            Err(error) if is_about_the_request(error.encoding()) => {
                 let Some(job) = self.take() else { return };
                 let answer = (error.encoding().clone(), error.payload().clone());
                 let reply = job.query.reply_err(answer.1).encoding(answer.0);
-                self.desk.counts.sent(&reply.wait());
+                self.dispatcher.counts.sent(&reply.wait());
             }
             Err(_) => {}
         }
@@ -274,18 +274,18 @@ impl Handed {
 
 impl Drop for Handed {
     fn drop(&mut self) {
-        self.desk.team().done(&self.other);
+        self.dispatcher.team().done(&self.other);
         // Among them this one: nobody can reach it any more.
         let is_open = |handed: &Weak<Handed>| handed.strong_count() > 0;
-        self.desk.handed_on().retain(is_open);
+        self.dispatcher.handed_on().retain(is_open);
         if let Some(job) = self.take() {
-            self.desk.take_back(job);
+            self.dispatcher.take_back(job);
         }
     }
 }
 
 /// Unlike that the server is busy, or what Zenoh itself says.
-fn is_about_the_question(encoding: &Encoding) -> bool {
+fn is_about_the_request(encoding: &Encoding) -> bool {
     encoding.to_string() == REFUSED
 }
 
@@ -307,7 +307,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn a_question_may_say_until_when() {
+    fn a_request_may_say_until_when() {
         let default = Duration::from_secs(2);
         let check = |said, expected: u64| {
             let found = deadline(said, default).unwrap();
