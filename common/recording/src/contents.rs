@@ -407,7 +407,7 @@ mod tests {
         assert_eq!(
             recording.mounted("camera").unwrap_err().to_string(),
             "r.mcap: the mount of camera is not known, for the transform from base_link to camera is \
-             none: the position (NaN, 0) is not finite"
+             invalid: the position (NaN, 0) is not finite"
         );
     }
 

@@ -148,7 +148,7 @@ mod tests {
         assert!(items[0].is_ok() && items[2].is_ok());
         assert_eq!(
             items[1].as_ref().unwrap_err().to_string(),
-            "r.mcap: the message of /scan at log time 2 ns is no sensor_msgs/msg/LaserScan: \
+            "r.mcap: the message of /scan at log time 2 ns is not a sensor_msgs/msg/LaserScan: \
              unexpected end of input"
         );
     }

@@ -136,7 +136,7 @@ mod tests {
         );
         assert!(refusal(|m| m.info.width = 3).contains("4 cells for a grid of 3 x 2"));
         assert!(refusal(|m| m.info.resolution = f32::NAN).contains("a resolution of NaN m"));
-        assert!(refusal(|m| m.info.origin.orientation.w = 0.0).contains("no rotation"));
+        assert!(refusal(|m| m.info.origin.orientation.w = 0.0).contains("not a rotation"));
         assert!(refusal(|m| m.info.width = u32::MAX).contains("allowed: sides of"));
     }
 }
