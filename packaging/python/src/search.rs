@@ -94,7 +94,8 @@ impl Default for Signals {
 impl Signals {
     fn ask(&self) -> bool {
         if self.asked.get().elapsed() >= SIGNALS_EVERY {
-            let said = Python::attach(|py| Python::check_signals(py)).err();
+            let signals = |py: Python<'_>| py.check_signals();
+            let said = Python::attach(signals).err();
             self.asked.set(Instant::now());
             if said.is_some() {
                 self.said.replace(said);

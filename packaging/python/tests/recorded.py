@@ -17,6 +17,7 @@ class Scan:
     ranges: list
     angles: tuple
     limits: dict
+    time_increment: float
 
 
 @dataclass
@@ -41,8 +42,12 @@ def planar(position, orientation):
 @functools.cache
 def read(name):
     """Reads a recording of the repository."""
+    return read_file(RECORDINGS / name / "recording.mcap")
+
+
+def read_file(path):
     recorded = Recorded()
-    with open(RECORDINGS / name / "recording.mcap", "rb") as file:
+    with open(path, "rb") as file:
         reader = make_reader(file, decoder_factories=[DecoderFactory()])
         for _, channel, _, message in reader.iter_decoded_messages():
             take(recorded, channel.topic, message)
@@ -51,10 +56,10 @@ def read(name):
 
 def take(recorded, topic, said):
     if topic == "/scan":
-        assert said.time_increment == 0.0
         limits = {"range_min": said.range_min, "range_max": said.range_max}
         angles = (said.angle_min, said.angle_increment)
-        recorded.scans.append(Scan(stamp_ns(said.header), said.ranges, angles, limits))
+        stamp, time = stamp_ns(said.header), said.time_increment
+        recorded.scans.append(Scan(stamp, said.ranges, angles, limits, time))
     elif topic == "/odom":
         pose = said.pose.pose
         at = planar(pose.position, pose.orientation)
