@@ -1,0 +1,72 @@
+//! What is wrong, as the exceptions that Python expects: `ValueError` with what was found
+//! and what is allowed, `OSError` for files, and never a panic.
+
+use std::error::Error;
+use std::io;
+use std::panic::{AssertUnwindSafe, catch_unwind};
+
+use engine::EngineError;
+use map::MapError;
+use pyo3::exceptions::{PyMemoryError, PyRuntimeError, PyValueError};
+use pyo3::prelude::*;
+
+/// A `ValueError`.
+pub(crate) fn value(text: impl Into<String>) -> PyErr {
+    PyValueError::new_err(text.into())
+}
+
+/// Why the engine refuses a map or a scan.
+pub(crate) fn of_engine(error: &EngineError) -> PyErr {
+    match error {
+        // The command's options have other names here.
+        EngineError::Memory {
+            needed_mb,
+            limit_mb,
+        } => PyMemoryError::new_err(format!(
+            "preparing the map takes about {needed_mb} MB and memory_limit allows {limit_mb}: \
+             larger cells (search_cell), fewer headings (headings) or a part of the map (region) \
+             take less"
+        )),
+        other => value(with_causes(other)),
+    }
+}
+
+/// Why a map cannot be read or built.
+pub(crate) fn of_map(error: &MapError) -> PyErr {
+    match error.source().and_then(|cause| cause.downcast_ref()) {
+        Some(cause) => of_file(error, cause),
+        None => value(with_causes(error)),
+    }
+}
+
+/// The class of the exception, `FileNotFoundError` say, is that of the cause.
+fn of_file(error: &MapError, cause: &io::Error) -> PyErr {
+    io::Error::new(cause.kind(), with_causes(error)).into()
+}
+
+fn with_causes(error: &dyn Error) -> String {
+    let mut text = error.to_string();
+    let mut cause = error.source();
+    while let Some(error) = cause {
+        text = format!("{text}: {error}");
+        cause = error.source();
+    }
+    text
+}
+
+/// Runs what may take long without Python's lock. A panic, which would be a fault of the
+/// engine, becomes a `RuntimeError`.
+pub(crate) fn detached<T: Send>(
+    py: Python<'_>,
+    run: impl FnOnce() -> PyResult<T> + Send,
+) -> PyResult<T> {
+    let caught = py.detach(|| catch_unwind(AssertUnwindSafe(run)));
+    caught.unwrap_or_else(|panic| {
+        let text = panic.downcast_ref::<String>().map(String::as_str);
+        let text = text.or_else(|| panic.downcast_ref::<&str>().copied());
+        Err(PyRuntimeError::new_err(format!(
+            "a fault in the engine: {}",
+            text.unwrap_or("it says nothing")
+        )))
+    })
+}

@@ -1,0 +1,35 @@
+//! Backcast's engine as a Python module: maps, the places of a scan, and the tracker.
+//!
+//! It converts and checks; everything that is computed lies in `common/engine`, which the
+//! command uses, too. Whatever takes long runs without Python's lock. Nothing here knows
+//! a recording or a graph.
+
+mod error;
+mod localizer;
+mod map;
+mod numbers;
+mod result;
+mod scan;
+mod search;
+mod settings;
+mod tracked;
+mod tracker;
+
+/// Where on a map was a laser scan taken? See `backcast`.
+#[pyo3::pymodule]
+mod _backcast {
+    #[pymodule_export]
+    use crate::localizer::Localizer;
+    #[pymodule_export]
+    use crate::map::Map;
+    #[pymodule_export]
+    use crate::result::LocateResult;
+    #[pymodule_export]
+    use crate::tracked::TrackedPose;
+    #[pymodule_export]
+    use crate::tracker::Tracker;
+
+    #[pymodule_export]
+    #[allow(non_upper_case_globals)]
+    const __version__: &str = env!("CARGO_PKG_VERSION");
+}

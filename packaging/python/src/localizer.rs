@@ -1,0 +1,142 @@
+//! From a scan to places, with no memory.
+
+use engine::localizer::Prior;
+use pyo3::prelude::*;
+use pyo3::types::PyDict;
+
+use crate::error::{detached, value};
+use crate::map::Map;
+use crate::result::{Found, LocateResult};
+use crate::scan::GivenScan;
+use crate::search::Search;
+use crate::settings::EngineSettings;
+
+/// A map that is ready to be asked where scans were taken, each by itself.
+///
+/// Preparing takes from milliseconds to seconds. With heading_known=True only x and y are
+/// searched, and each scan comes with its heading. The other keywords are the engine's
+/// settings, those of `backcast locate`, with the same defaults: see backcast.Settings.
+///
+/// Any number of threads may ask at once: Python's lock is released while the map is
+/// prepared and while it is searched. Ctrl-C ends a search.
+#[pyclass(frozen, module = "backcast")]
+pub(crate) struct Localizer {
+    map: Py<Map>,
+    search: Search,
+    heading_known: bool,
+}
+
+#[pymethods]
+impl Localizer {
+    #[new]
+    #[pyo3(signature = (map, *, heading_known=false, **settings))]
+    fn new(
+        py: Python<'_>,
+        map: Py<Map>,
+        heading_known: bool,
+        settings: Option<&Bound<'_, PyDict>>,
+    ) -> PyResult<Self> {
+        let settings = EngineSettings::new(settings)?;
+        let prior = match heading_known {
+            true => Prior::Heading,
+            false => Prior::None,
+        };
+        let of = map.get();
+        let search = detached(py, || Search::prepare(of, settings, prior))?;
+        Ok(Localizer {
+            map,
+            search,
+            heading_known,
+        })
+    }
+
+    /// Finds the places at which a scan may have been taken.
+    ///
+    /// ranges are metres, in the order in which they were measured; NaN, infinite, zero and
+    /// negative ones are no returns, as are those below range_min and those at or above
+    /// range_max (metres). Range i has the bearing angle_min + i · angle_increment, radians
+    /// counter-clockwise from the laser's x axis; the increment is below zero where the
+    /// laser turns clockwise.
+    ///
+    /// mount is where the laser sits on the robot, (x, y, yaw) of the laser in the base's
+    /// frame, metres and radians: then the poses that are found are the base's, else the
+    /// laser's. upside_down says that the laser hangs there rolled by half a turn about its
+    /// x axis.
+    ///
+    /// heading is that of the base or, without a mount, of the laser in the map, radians:
+    /// it is given if and only if the localizer was made with heading_known=True.
+    ///
+    /// ValueError if the scan is not sound, with what was found and what is allowed.
+    #[pyo3(signature = (
+        ranges, angle_min, angle_increment, *, range_min=0.0, range_max=f64::INFINITY,
+        mount=None, upside_down=false, heading=None
+    ))]
+    #[allow(clippy::too_many_arguments)]
+    fn locate(
+        &self,
+        py: Python<'_>,
+        ranges: &Bound<'_, PyAny>,
+        angle_min: f64,
+        angle_increment: f64,
+        range_min: f64,
+        range_max: f64,
+        mount: Option<&Bound<'_, PyAny>>,
+        upside_down: bool,
+        heading: Option<f64>,
+    ) -> PyResult<LocateResult> {
+        let scan = GivenScan::new(
+            ranges,
+            (angle_min, angle_increment),
+            (range_min, range_max),
+            (mount, upside_down),
+        )?;
+        let heading = self.of_laser(heading, &scan)?;
+        let found = detached(py, || {
+            let seen = (&scan.above()).into();
+            self.search.locate(seen, heading, Found::of)
+        })?;
+        found.read(py, scan.base_from_laser)
+    }
+
+    /// The map.
+    #[getter]
+    fn map(&self, py: Python<'_>) -> Py<Map> {
+        self.map.clone_ref(py)
+    }
+
+    /// Whether each scan comes with its heading.
+    #[getter]
+    fn heading_known(&self) -> bool {
+        self.heading_known
+    }
+
+    /// Bytes of what is kept of the map for searches, beside its cells.
+    #[getter]
+    fn index_bytes(&self) -> usize {
+        self.search.locator().localizer().index_bytes()
+    }
+
+    fn __repr__(&self) -> String {
+        format!("<backcast.Localizer on {}>", self.map.get())
+    }
+}
+
+impl Localizer {
+    /// The heading of the laser, where that of the base or the laser is given.
+    fn of_laser(&self, heading: Option<f64>, scan: &GivenScan) -> PyResult<Option<f64>> {
+        match (self.heading_known, heading) {
+            (false, Some(heading)) => Err(value(format!(
+                "heading is {heading}; allowed: None, unless the localizer was made with \
+                 heading_known=True"
+            ))),
+            (true, None) => Err(value(
+                "heading is None; allowed: radians in the map, for the localizer was made with \
+                 heading_known=True",
+            )),
+            (_, heading) => {
+                let mount = scan.base_from_laser.unwrap_or_default();
+                Ok(heading.map(|heading| heading + mount.yaw))
+            }
+        }
+    }
+}

@@ -1,0 +1,212 @@
+//! Maps from files and from arrays.
+
+use std::ffi::CString;
+use std::path::PathBuf;
+use std::sync::Arc;
+
+use engine::grid::{CellRules, GridFrame};
+use engine::locator::OccupancyView;
+use geometry::Pose;
+use map::{OccupancyGrid, UNKNOWN};
+use numpy::{
+    PyArray1, PyArray2, PyArrayDescrMethods, PyArrayMethods, PyReadonlyArray2, PyUntypedArray,
+    PyUntypedArrayMethods,
+};
+use pyo3::exceptions::PyUserWarning;
+use pyo3::prelude::*;
+
+use crate::error::{detached, of_map, value};
+use crate::numbers::{self, PoseTuple};
+
+/// A map of square cells: where obstacles are.
+///
+/// Made by `Map.from_yaml` or `Map.from_array`; it does not change.
+#[pyclass(frozen, module = "backcast")]
+pub(crate) struct Map {
+    grid: Arc<OccupancyGrid>,
+}
+
+#[pymethods]
+impl Map {
+    /// Reads a map as ROS' map_server does: a YAML file, and the image that it names, a
+    /// PGM, PNG or BMP.
+    ///
+    /// A key of the YAML file that is not known is a warning. OSError if a file cannot be
+    /// read, ValueError if one is not sound.
+    #[staticmethod]
+    fn from_yaml(py: Python<'_>, path: PathBuf) -> PyResult<Self> {
+        let (grid, notes) = detached(py, move || {
+            let mut notes = Vec::new();
+            let grid = map::load_noting(path, |key| notes.push(key.to_string()));
+            Ok((grid.map_err(|error| of_map(&error))?, notes))
+        })?;
+        for note in notes {
+            let category = py.get_type::<PyUserWarning>();
+            PyErr::warn(py, &category, &CString::new(note)?, 1)?;
+        }
+        Ok(Map::of(grid))
+    }
+
+    /// A map from its cells, as in nav_msgs/OccupancyGrid: a 2-D array of int8 with 0 for
+    /// free to 100 for occupied, per cent, and -1 for unknown; in uint8, 255 is unknown.
+    ///
+    /// Row 0 has the lowest y, column 0 the lowest x, so that cells[row, column] is the
+    /// cell at x = (column + 0.5) · resolution and y = (row + 0.5) · resolution from the
+    /// origin. An image has its rows the other way round: numpy.flipud turns them.
+    ///
+    /// resolution is the side of a cell in metres. origin is the pose of the outer corner
+    /// of cell (0, 0) in the map, (x, y, yaw) in metres and radians.
+    #[staticmethod]
+    #[pyo3(signature = (cells, resolution, origin=None))]
+    fn from_array(
+        py: Python<'_>,
+        cells: &Bound<'_, PyAny>,
+        resolution: f64,
+        origin: Option<&Bound<'_, PyAny>>,
+    ) -> PyResult<Self> {
+        let origin = origin.map_or(Ok(Pose::IDENTITY), |given| numbers::pose("origin", given))?;
+        let ((height, width), cells) = occupancies(cells)?;
+        let grid = detached(py, || {
+            let grid = OccupancyGrid::from_parts(width, height, resolution, origin, cells);
+            grid.map_err(|error| of_map(&error))
+        })?;
+        Ok(Map::of(grid))
+    }
+
+    /// The side of a cell, metres.
+    #[getter]
+    fn resolution(&self) -> f64 {
+        self.grid.resolution_m
+    }
+
+    /// Cells along x.
+    #[getter]
+    fn width(&self) -> u32 {
+        self.grid.width
+    }
+
+    /// Cells along y.
+    #[getter]
+    fn height(&self) -> u32 {
+        self.grid.height
+    }
+
+    /// The pose of the outer corner of cell (0, 0) in the map: (x, y, yaw) in metres and
+    /// radians.
+    #[getter]
+    fn origin(&self) -> PoseTuple {
+        numbers::tuple(self.grid.map_from_grid)
+    }
+
+    /// A copy of the cells, height × width of int8: row 0 has the lowest y; 0 free to 100
+    /// occupied, per cent, -1 unknown.
+    #[getter]
+    fn cells<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyArray2<i8>>> {
+        let cells = self.grid.cells.iter().map(|&cell| cell as i8);
+        let sides = [self.grid.height as usize, self.grid.width as usize];
+        PyArray1::from_vec(py, cells.collect()).reshape(sides)
+    }
+
+    /// What tells maps apart, by geometry and cells; the command prints it as map_id.
+    #[getter]
+    fn id(&self) -> String {
+        format!("{:016x}", self.grid.id())
+    }
+
+    fn __repr__(&self) -> String {
+        format!("<backcast.{self}>")
+    }
+
+    fn __eq__(&self, other: &Map) -> bool {
+        self.grid == other.grid
+    }
+
+    fn __hash__(&self) -> u64 {
+        self.grid.id()
+    }
+}
+
+impl Map {
+    fn of(grid: OccupancyGrid) -> Self {
+        Map {
+            grid: Arc::new(grid),
+        }
+    }
+
+    /// As the engine takes it.
+    pub(crate) fn view(&self, rules: CellRules) -> OccupancyView<'_> {
+        let grid = &*self.grid;
+        OccupancyView {
+            frame: GridFrame {
+                resolution_m: grid.resolution_m,
+                map_from_grid: grid.map_from_grid,
+            },
+            sides: (grid.width as usize, grid.height as usize),
+            occupancy: &grid.cells,
+            rules,
+        }
+    }
+}
+
+impl std::fmt::Display for Map {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        let grid = &self.grid;
+        let Pose { x, y, yaw } = grid.map_from_grid;
+        write!(
+            f,
+            "Map of {} x {} cells of {} m from ({x}, {y}, {yaw})",
+            grid.width, grid.height, grid.resolution_m
+        )
+    }
+}
+
+/// Rows and columns, and the cells row by row.
+fn occupancies(given: &Bound<'_, PyAny>) -> PyResult<((u32, u32), Vec<u8>)> {
+    let allowed = "allowed: a 2-D numpy array of int8 or uint8, rows from the lowest y";
+    let Ok(array) = given.cast::<PyUntypedArray>() else {
+        let kind = given.get_type().name()?;
+        return Err(value(format!("cells is a {kind}; {allowed}")));
+    };
+    let sides = match *array.shape() {
+        [height, width] => (height, width),
+        _ => {
+            let dimensions = array.ndim();
+            return Err(value(format!(
+                "cells has {dimensions} dimensions; {allowed}"
+            )));
+        }
+    };
+    let cells = if let Ok(cells) = given.extract::<PyReadonlyArray2<'_, i8>>() {
+        let cells = cells.as_array();
+        check(cells.iter().map(|&cell| i16::from(cell)), sides.1, -1)?;
+        cells.iter().map(|&cell| cell as u8).collect()
+    } else if let Ok(cells) = given.extract::<PyReadonlyArray2<'_, u8>>() {
+        let cells = cells.as_array();
+        let unknown = i16::from(UNKNOWN);
+        check(cells.iter().map(|&cell| cell.into()), sides.1, unknown)?;
+        cells.iter().copied().collect()
+    } else {
+        let dtype = array.dtype().typeobj();
+        return Err(value(format!(
+            "cells has dtype {}; {allowed}",
+            dtype.name()?
+        )));
+    };
+    let side = |cells: usize| u32::try_from(cells).unwrap_or(u32::MAX);
+    Ok(((side(sides.0), side(sides.1)), cells))
+}
+
+fn check(mut cells: impl Iterator<Item = i16>, width: usize, unknown: i16) -> PyResult<()> {
+    let is_wrong = |cell: &i16| !(0..=100).contains(cell) && *cell != unknown;
+    let mut at = 0;
+    let wrong = cells.find(|cell| {
+        at += 1;
+        is_wrong(cell)
+    });
+    let Some(cell) = wrong else { return Ok(()) };
+    let (row, column) = ((at - 1) / width, (at - 1) % width);
+    Err(value(format!(
+        "cells[{row}, {column}] is {cell}; allowed: 0 for free to 100 for occupied, {unknown} \
+         for unknown"
+    )))
+}

@@ -1,0 +1,88 @@
+//! Poses and covariances from Python, which hands them over as any row of numbers, and to
+//! it, as tuples and arrays.
+
+use geometry::{Covariance, Pose};
+use numpy::{PyArray1, PyArray2, PyArray3, PyArrayMethods};
+use pyo3::prelude::*;
+
+use crate::error::value;
+
+/// x and y in metres and yaw in radians, as Python has them.
+pub(crate) type PoseTuple = (f64, f64, f64);
+
+/// A pose from three numbers.
+pub(crate) fn pose(name: &str, given: &Bound<'_, PyAny>) -> PyResult<Pose> {
+    let numbers = row(name, given, "(x, y, yaw) in metres and radians")?;
+    match numbers[..] {
+        [x, y, yaw] if numbers.iter().all(|n| n.is_finite()) => Ok(Pose::new(x, y, yaw)),
+        [_, _, _] => Err(value(format!(
+            "{name} is {numbers:?}; allowed: three finite numbers, (x, y, yaw) in metres and \
+             radians"
+        ))),
+        _ => Err(value(format!(
+            "{name} has {} numbers; allowed: three, (x, y, yaw) in metres and radians",
+            numbers.len()
+        ))),
+    }
+}
+
+/// Numbers in a row: a tuple, a list or an array of one dimension.
+pub(crate) fn row(name: &str, given: &Bound<'_, PyAny>, allowed: &str) -> PyResult<Vec<f64>> {
+    let numbers = given.try_iter().and_then(|items| {
+        let numbers = items.map(|item| item?.extract::<f64>());
+        numbers.collect::<PyResult<Vec<f64>>>()
+    });
+    numbers.map_err(|_| value(format!("{name} is {given}; allowed: {allowed}")))
+}
+
+/// The covariance of a pose from three rows of three numbers.
+pub(crate) fn covariance(name: &str, given: &Bound<'_, PyAny>) -> PyResult<Covariance> {
+    let wrong = || {
+        value(format!(
+            "{name} is {given}; allowed: 3 × 3 finite numbers over (x, y, yaw) in metres and \
+             radians, symmetric and positive definite"
+        ))
+    };
+    let rows = given.try_iter().and_then(|rows| {
+        let rows = rows.map(|row| crate::numbers::row(name, &row?, "numbers"));
+        rows.collect::<PyResult<Vec<_>>>()
+    });
+    let rows = rows.map_err(|_| wrong())?;
+    let all = rows.concat();
+    let is_square = rows.len() == 3 && rows.iter().all(|row| row.len() == 3);
+    let numbers: [f64; 9] = match all.try_into() {
+        Ok(numbers) if is_square => numbers,
+        _ => return Err(wrong()),
+    };
+    let covariance = Covariance::from_rows(numbers);
+    // It is symmetric up to what rounding leaves.
+    let is_symmetric = (covariance.0 - covariance.0.transpose()).amax() <= 1e-9;
+    match is_symmetric && covariance.0.cholesky().is_some() {
+        true => Ok(covariance),
+        false => Err(wrong()),
+    }
+}
+
+pub(crate) fn tuple(pose: Pose) -> PoseTuple {
+    (pose.x, pose.y, pose.yaw)
+}
+
+/// An array of N × 3.
+pub(crate) fn poses(py: Python<'_>, poses: &[Pose]) -> PyResult<Py<PyArray2<f64>>> {
+    let numbers = poses.iter().flat_map(|pose| [pose.x, pose.y, pose.yaw]);
+    let flat = PyArray1::from_vec(py, numbers.collect());
+    Ok(flat.reshape([poses.len(), 3])?.unbind())
+}
+
+/// An array of N × 3 × 3.
+pub(crate) fn covariances(py: Python<'_>, all: &[Covariance]) -> PyResult<Py<PyArray3<f64>>> {
+    let numbers = all.iter().flat_map(|covariance| covariance.to_rows());
+    let flat = PyArray1::from_vec(py, numbers.collect());
+    Ok(flat.reshape([all.len(), 3, 3])?.unbind())
+}
+
+/// An array of 3 × 3.
+pub(crate) fn matrix(py: Python<'_>, covariance: Covariance) -> PyResult<Py<PyArray2<f64>>> {
+    let flat = PyArray1::from_vec(py, covariance.to_rows().to_vec());
+    Ok(flat.reshape([3, 3])?.unbind())
+}

@@ -1,0 +1,137 @@
+//! What a scan says of the place, as Python reads it.
+
+use engine::locator::Located;
+use engine::peaks::{Place, Sought};
+use geometry::{Covariance, Pose};
+use numpy::{PyArray1, PyArray2, PyArray3};
+use pyo3::prelude::*;
+
+use crate::numbers::{self, PoseTuple, covariances, matrix, poses};
+
+/// Where a scan may have been taken: places, best first, and whether one stands alone.
+#[pyclass(frozen, get_all, module = "backcast", name = "Result")]
+pub(crate) struct LocateResult {
+    /// What the places allow to say: "Unique", one place fits and no other comes near it;
+    /// "Ambiguous", several fit about as well; "PoorFit", even the best fits badly, perhaps
+    /// it is another map; "NoScan", the scan says nothing.
+    verdict: &'static str,
+    /// The verdict in words.
+    why: String,
+    /// The best place's probability, 0 to 1.
+    confidence: f64,
+    /// How many other places fit about as well as the best.
+    alternatives: u32,
+    /// Whose poses they are: "base" where a mount was given, else "laser".
+    frame: &'static str,
+    /// The best place: (x, y, yaw) in the map, metres and radians; None if there is none.
+    /// It is the base's pose where a mount was given, else the laser's.
+    pose: Option<PoseTuple>,
+    /// The covariance of pose, 3 × 3 over x, y and yaw in m², m·rad and rad²; None if there
+    /// is no place.
+    covariance: Option<Py<PyArray2<f64>>>,
+    /// N × 3: x, y and yaw of each place in the map, metres and radians, best first; of the
+    /// base where a mount was given, else of the laser.
+    poses: Py<PyArray2<f64>>,
+    /// N × 3 × 3: of each of poses, over x, y and yaw in m², m·rad and rad².
+    covariances: Py<PyArray3<f64>>,
+    /// N: how likely the robot is at each place, 0 to 1. What they leave of 1 is that it is
+    /// at none.
+    probabilities: Py<PyArray1<f64>>,
+    /// N: how well the scan fits the map at each place, at most 1.
+    scores: Py<PyArray1<f64>>,
+    /// N: votes of the best pose that led to each place.
+    votes: Py<PyArray1<u16>>,
+    /// N × 3: as poses, of the laser in any case.
+    laser_poses: Py<PyArray2<f64>>,
+    /// N × 3 × 3: as covariances, of the laser in any case.
+    laser_covariances: Py<PyArray3<f64>>,
+    /// Beams that voted.
+    beams_used: u32,
+}
+
+/// The same before Python's lock is taken.
+#[derive(Debug)]
+pub(crate) struct Found {
+    verdict: &'static str,
+    why: String,
+    confidence: f64,
+    alternatives: u32,
+    beams_used: u32,
+    places: Vec<Place>,
+}
+
+impl Found {
+    pub(crate) fn of(
+        Located {
+            outcome, places, ..
+        }: Located<'_>,
+    ) -> Self {
+        Found {
+            verdict: places.verdict.as_str(),
+            why: places.sentence(),
+            confidence: places.confidence,
+            alternatives: places.alternatives,
+            beams_used: outcome.beams_used,
+            places: places.places.clone(),
+        }
+    }
+
+    /// As Python reads it, for a laser that sits there.
+    pub(crate) fn read(
+        self,
+        py: Python<'_>,
+        base_from_laser: Option<Pose>,
+    ) -> PyResult<LocateResult> {
+        let sought = Sought::of(base_from_laser, false);
+        let of_laser = || self.places.iter().map(|place| place.map_from_laser);
+        let lasers: Vec<Pose> = of_laser().collect();
+        let bases: Vec<Pose> = match base_from_laser {
+            Some(_) => of_laser().map(|laser| sought.base(laser)).collect(),
+            None => lasers.clone(),
+        };
+        let laser_covariances: Vec<Covariance> =
+            self.places.iter().map(|place| place.covariance).collect();
+        let carried = laser_covariances.iter().zip(lasers.iter().zip(&bases));
+        let base_covariances: Vec<Covariance> = carried
+            .map(|(covariance, (&laser, &base))| covariance.carried(laser, base))
+            .collect();
+        let of_each = |read: fn(&Place) -> f64| {
+            PyArray1::from_vec(py, self.places.iter().map(read).collect()).unbind()
+        };
+        let votes = self.places.iter().map(|place| place.intensity);
+        let best = base_covariances.first();
+        Ok(LocateResult {
+            verdict: self.verdict,
+            why: self.why,
+            confidence: self.confidence,
+            alternatives: self.alternatives,
+            frame: match base_from_laser {
+                Some(_) => "base",
+                None => "laser",
+            },
+            pose: bases.first().map(|&best| numbers::tuple(best)),
+            covariance: best.map(|&best| matrix(py, best)).transpose()?,
+            poses: poses(py, &bases)?,
+            covariances: covariances(py, &base_covariances)?,
+            probabilities: of_each(|place| place.probability),
+            scores: of_each(|place| place.score),
+            votes: PyArray1::from_vec(py, votes.collect()).unbind(),
+            laser_poses: poses(py, &lasers)?,
+            laser_covariances: covariances(py, &laser_covariances)?,
+            beams_used: self.beams_used,
+        })
+    }
+}
+
+#[pymethods]
+impl LocateResult {
+    fn __repr__(&self) -> String {
+        match self.pose {
+            Some((x, y, yaw)) => format!(
+                "<backcast.Result {}: {} at x {x:.3} m, y {y:.3} m, yaw {yaw:.4} rad; {}>",
+                self.verdict, self.frame, self.why
+            ),
+            None => format!("<backcast.Result {}: {}>", self.verdict, self.why),
+        }
+    }
+}

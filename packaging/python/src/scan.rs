@@ -1,0 +1,96 @@
+//! A scan from Python: an array of ranges, and what they share.
+
+use engine::scan::Scan;
+use geometry::Pose;
+use numpy::{
+    PyArrayDescrMethods, PyReadonlyArray1, PyUntypedArray, PyUntypedArrayMethods, get_array_module,
+};
+use pyo3::prelude::*;
+
+use crate::error::{of_engine, value};
+use crate::numbers;
+
+/// A scan that was checked, and where its laser sits.
+#[derive(Debug)]
+pub(crate) struct GivenScan {
+    ranges: Vec<f32>,
+    /// As the laser has them, seen in its own frame.
+    pub(crate) angle_min: f64,
+    pub(crate) angle_increment: f64,
+    pub(crate) range_min_m: f32,
+    pub(crate) range_max_m: f32,
+    /// Where the laser sits on the base, if that is given.
+    pub(crate) base_from_laser: Option<Pose>,
+    pub(crate) upside_down: bool,
+}
+
+/// Radians of the first beam and from one to the next.
+pub(crate) type Angles = (f64, f64);
+
+/// Metres.
+pub(crate) type Limits = (f64, f64);
+
+impl GivenScan {
+    /// Checks what Python hands over.
+    pub(crate) fn new(
+        ranges: &Bound<'_, PyAny>,
+        (angle_min, angle_increment): Angles,
+        (range_min, range_max): Limits,
+        (mount, upside_down): (Option<&Bound<'_, PyAny>>, bool),
+    ) -> PyResult<Self> {
+        let scan = GivenScan {
+            ranges: metres(ranges)?,
+            angle_min,
+            angle_increment,
+            range_min_m: range_min as f32,
+            range_max_m: range_max as f32,
+            base_from_laser: mount
+                .map(|given| numbers::pose("mount", given))
+                .transpose()?,
+            upside_down,
+        };
+        scan.above().check().map_err(|error| of_engine(&error))?;
+        Ok(scan)
+    }
+
+    /// Metres, in the order in which they were measured.
+    pub(crate) fn ranges(&self) -> &[f32] {
+        &self.ranges
+    }
+
+    /// As the engine takes it: seen from above.
+    pub(crate) fn above(&self) -> Scan<'_> {
+        let as_measured = Scan {
+            angle_min: self.angle_min,
+            angle_increment: self.angle_increment,
+            range_min_m: self.range_min_m,
+            range_max_m: self.range_max_m,
+            ranges: &self.ranges,
+        };
+        as_measured.seen_from_above(self.upside_down)
+    }
+}
+
+/// The ranges in 32 bits, as messages have them; NaN and infinite ones stay what they are.
+fn metres(given: &Bound<'_, PyAny>) -> PyResult<Vec<f32>> {
+    let allowed = "allowed: numbers in a row, metres, best a 1-D numpy array of float32";
+    let array = get_array_module(given.py())?.call_method1("asarray", (given,));
+    let array = array.map_err(|error| value(format!("ranges is no array ({error}); {allowed}")))?;
+    let array = array.cast::<PyUntypedArray>()?;
+    if array.ndim() != 1 {
+        let dimensions = array.ndim();
+        return Err(value(format!(
+            "ranges has {dimensions} dimensions; {allowed}"
+        )));
+    }
+    if !matches!(array.dtype().kind(), b'f' | b'i' | b'u') {
+        let dtype = array.dtype();
+        return Err(value(format!("ranges has dtype {dtype}; {allowed}")));
+    }
+    if let Ok(ranges) = array.extract::<PyReadonlyArray1<'_, f32>>() {
+        return Ok(ranges.as_array().to_vec());
+    }
+    let doubles = array.call_method1("astype", ("float64",))?;
+    let doubles: PyReadonlyArray1<'_, f64> = doubles.extract()?;
+    Ok(doubles.as_array().iter().map(|&m| m as f32).collect())
+}

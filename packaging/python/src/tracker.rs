@@ -1,0 +1,340 @@
+//! From scans and odometry to a pose that stays: what `nodes/tracker` does for the graph,
+//! with the same engine, and searches made in place of those that it asks for.
+
+use std::sync::{Mutex, PoisonError};
+
+use bytemuck::Zeroable;
+use engine::joined::{JoinConfig, Joiner, Kept};
+use engine::localizer::Prior;
+use engine::observation::Observation;
+use engine::peaks::Sought;
+use engine::tracking::{self, Candidate, Need, Seen, TrackingConfig};
+use geometry::{Covariance, Pose};
+use messages::{FrameName, Hypothesis, Odometry, ScanHeader, Stamp};
+use pyo3::prelude::*;
+use pyo3::types::PyDict;
+
+use crate::error::{detached, of_engine, value};
+use crate::map::Map;
+use crate::numbers;
+use crate::scan::GivenScan;
+use crate::search::Search;
+use crate::settings::TrackerSettings;
+use crate::tracked::{Followed, TrackedPose};
+
+/// What is expected leads by so much over what a search finds, as in the graph.
+const EXPECTED_LEAD: f64 = 10.0;
+
+/// What a pose that is expected may err by where nothing else is said, metres and radians,
+/// as in the graph.
+const EXPECTED_ERROR: (f64, f64) = (0.5, 0.26);
+
+/// Finds the robot, and keeps its pose from scan to scan: one scan alone may not tell where
+/// it was taken, or tell wrong.
+///
+/// The keywords are the engine's settings and the tracker's, with the same defaults as the
+/// command's: see backcast.TrackerSettings.
+///
+/// Python's lock is released while the map is prepared and while a scan is followed. A
+/// tracker follows one robot: calls from several threads wait for each other.
+#[pyclass(frozen, module = "backcast")]
+pub(crate) struct Tracker {
+    map: Py<Map>,
+    search: Search,
+    config: TrackingConfig,
+    join: JoinConfig,
+    state: Mutex<State>,
+}
+
+/// What is known from scan to scan.
+#[derive(Debug)]
+struct State {
+    tracker: tracking::Tracker,
+    /// The newest scan, and how the robot moved.
+    joiner: Joiner,
+    /// The scan whose search counts later.
+    asked: Option<Kept>,
+    /// Where the laser was by the odometry at the scan before.
+    before: Option<Pose>,
+    /// Where the robot is said to be, of the base.
+    expected: Option<(Pose, Covariance)>,
+}
+
+impl State {
+    fn new(config: TrackingConfig, join: JoinConfig) -> Self {
+        State {
+            tracker: tracking::Tracker::new(config),
+            joiner: Joiner::new(join),
+            asked: None,
+            before: None,
+            expected: None,
+        }
+    }
+}
+
+#[pymethods]
+impl Tracker {
+    #[new]
+    #[pyo3(signature = (map, **settings))]
+    fn new(py: Python<'_>, map: Py<Map>, settings: Option<&Bound<'_, PyDict>>) -> PyResult<Self> {
+        let TrackerSettings {
+            engine,
+            tracking,
+            motion,
+        } = TrackerSettings::new(settings)?;
+        let of = map.get();
+        let search = detached(py, || Search::prepare(of, engine, Prior::None))?;
+        let join = JoinConfig {
+            motion,
+            ..JoinConfig::default()
+        };
+        Ok(Tracker {
+            map,
+            search,
+            config: tracking,
+            state: Mutex::new(State::new(tracking, join.clone())),
+            join,
+        })
+    }
+
+    /// Takes odometry: the base's pose, (x, y, yaw) since the odometry's start in metres and
+    /// radians, at a time in nanoseconds.
+    ///
+    /// It comes in the order of its time, and before the scans that it tells of: up to the
+    /// middle of a scan, or to its end where the motion within the scan is to be taken out.
+    fn add_odometry(&self, py: Python<'_>, stamp_ns: i64, pose: &Bound<'_, PyAny>) -> PyResult<()> {
+        let odom_from_base = numbers::pose("pose", pose)?;
+        self.with_state(py, |state| {
+            state
+                .joiner
+                .on_odometry(&odometry(stamp_ns, odom_from_base));
+            Ok(())
+        })
+    }
+
+    /// Follows the robot to a scan.
+    ///
+    /// stamp_ns is when its first range was measured, nanoseconds, and time_increment the
+    /// seconds from one range to the next: where odometry tells it, the motion between them
+    /// is taken out. odometry is the base's pose at that time, as add_odometry takes it;
+    /// whoever calls that needs it not. Without any, scans are matched to each other.
+    ///
+    /// The others are those of Localizer.locate: metres and radians, and the mount, with
+    /// which poses are the base's.
+    ///
+    /// ValueError if the scan is not sound; the tracker then stays as it was.
+    #[pyo3(signature = (
+        ranges, angle_min, angle_increment, stamp_ns, *, odometry=None, range_min=0.0,
+        range_max=f64::INFINITY, mount=None, upside_down=false, time_increment=0.0
+    ))]
+    #[allow(clippy::too_many_arguments)]
+    fn update(
+        &self,
+        py: Python<'_>,
+        ranges: &Bound<'_, PyAny>,
+        angle_min: f64,
+        angle_increment: f64,
+        stamp_ns: i64,
+        odometry: Option<&Bound<'_, PyAny>>,
+        range_min: f64,
+        range_max: f64,
+        mount: Option<&Bound<'_, PyAny>>,
+        upside_down: bool,
+        time_increment: f64,
+    ) -> PyResult<TrackedPose> {
+        let scan = GivenScan::new(
+            ranges,
+            (angle_min, angle_increment),
+            (range_min, range_max),
+            (mount, upside_down),
+        )?;
+        if !time_increment.is_finite() {
+            return Err(value(format!(
+                "time_increment is {time_increment}; allowed: finite numbers, seconds"
+            )));
+        }
+        let odom_from_base = odometry
+            .map(|given| numbers::pose("odometry", given))
+            .transpose()?;
+        let header = header(&scan, stamp_ns, time_increment);
+        let followed = self.with_state(py, |state| {
+            if let Some(odom_from_base) = odom_from_base {
+                // The middle of a scan is halved to even nanoseconds, and what is measured
+                // after it does not count.
+                let stamp_ns = stamp_ns & !1;
+                state
+                    .joiner
+                    .on_odometry(&self::odometry(stamp_ns, odom_from_base));
+            }
+            self.follow(state, &scan, &header)
+        })?;
+        followed.read(py)
+    }
+
+    /// Forgets all but where the robot should be at the next scan: the base's pose, or the
+    /// laser's without a mount, (x, y, yaw) in the map, metres and radians. It is tried
+    /// first, and not believed before scans confirm it.
+    ///
+    /// covariance is 3 × 3 over x, y and yaw in m², m·rad and rad²; by default it is that of
+    /// 0.5 m and 0.26 rad.
+    #[pyo3(signature = (pose, covariance=None))]
+    fn expect(
+        &self,
+        py: Python<'_>,
+        pose: &Bound<'_, PyAny>,
+        covariance: Option<&Bound<'_, PyAny>>,
+    ) -> PyResult<()> {
+        let pose = numbers::pose("pose", pose)?;
+        let (metres, radians) = EXPECTED_ERROR;
+        let covariance = match covariance {
+            Some(given) => numbers::covariance("covariance", given)?,
+            None => Covariance::from_deviations(metres, metres, radians),
+        };
+        self.with_state(py, |state| {
+            state.expected = Some((pose, covariance));
+            Ok(())
+        })
+    }
+
+    /// Forgets all: the next scan is the first.
+    fn reset(&self, py: Python<'_>) -> PyResult<()> {
+        self.with_state(py, |state| {
+            *state = State::new(self.config, self.join.clone());
+            Ok(())
+        })
+    }
+
+    /// The map.
+    #[getter]
+    fn map(&self, py: Python<'_>) -> Py<Map> {
+        self.map.clone_ref(py)
+    }
+
+    fn __repr__(&self) -> String {
+        format!("<backcast.Tracker on {}>", self.map.get())
+    }
+}
+
+impl Tracker {
+    /// Waits for other threads without Python's lock, so that they can end.
+    fn with_state<T: Send>(
+        &self,
+        py: Python<'_>,
+        run: impl FnOnce(&mut State) -> PyResult<T> + Send,
+    ) -> PyResult<T> {
+        detached(py, || {
+            let state = self.state.lock();
+            run(&mut state.unwrap_or_else(PoisonError::into_inner))
+        })
+    }
+
+    fn follow(
+        &self,
+        state: &mut State,
+        scan: &GivenScan,
+        header: &ScanHeader,
+    ) -> PyResult<Followed> {
+        let State {
+            tracker,
+            joiner,
+            asked,
+            before,
+            expected,
+        } = state;
+        let locator = self.search.locator();
+        joiner.on_scan(header, scan.ranges());
+        joiner.bring().map_err(|error| of_engine(&error))?;
+        let brought = joiner.seen();
+        let ends = locator.ends(brought.observation());
+        let ends = ends.map_err(|error| of_engine(&error))?;
+        let sought = Sought::of(scan.base_from_laser, false);
+        if let Some((base, covariance)) = expected.take() {
+            let laser = sought.from_base(base);
+            tracker.expect(laser, covariance.carried(base, laser), EXPECTED_LEAD);
+        }
+        let now = joiner.odom_from_sought();
+        let moved = before
+            .zip(now)
+            .map(|(before, now)| before.inverse().then(now));
+        *before = now;
+        let seen = Seen {
+            terrain: locator.terrain(),
+            ends: &ends,
+            fit: &locator.peaks().fit,
+        };
+        let found = match tracker.begin(&seen, header.stamp.measured_ns, moved) {
+            Need::Nothing => None,
+            Need::ThisScan => {
+                *asked = None;
+                Some(self.candidates(brought.observation()))
+            }
+            Need::EarlierScan => asked
+                .take()
+                .map(|kept| self.candidates(kept.seen().observation())),
+        };
+        let searched = found.is_some();
+        let (found, interrupt) = match found.transpose() {
+            Ok(found) => (found, None),
+            Err(interrupt) => (None, Some(interrupt)),
+        };
+        // A scan that was begun is done with, also where its search was interrupted.
+        tracker.finish(&seen, found.as_deref());
+        if tracker.asks_ahead() {
+            *asked = Some(Kept::of(&brought));
+        }
+        match interrupt {
+            Some(interrupt) => Err(interrupt),
+            None => Ok(Followed {
+                stamp_ns: header.stamp.measured_ns,
+                report: tracker.report(),
+                base_from_laser: scan.base_from_laser,
+                odom_from_laser: now,
+                searched,
+            }),
+        }
+    }
+
+    /// What a search finds, as messages of the graph say it: their scores have 32 bits.
+    fn candidates(&self, seen: Observation<'_>) -> PyResult<Vec<Candidate>> {
+        let of_laser = Sought::of(None, false);
+        let hypotheses: Vec<Hypothesis> = self.search.locate(seen, None, |found| {
+            let places = found.places.places.iter();
+            places.map(|place| place.hypothesis(0, of_laser)).collect()
+        })?;
+        let mut candidates = Vec::new();
+        Candidate::fill(&mut candidates, hypotheses.iter(), of_laser);
+        Ok(candidates)
+    }
+}
+
+fn stamp(measured_ns: i64) -> Stamp {
+    Stamp {
+        measured_ns,
+        ..Stamp::default()
+    }
+}
+
+fn odometry(stamp_ns: i64, odom_from_base: Pose) -> Odometry {
+    Odometry {
+        stamp: stamp(stamp_ns),
+        odom_from_child: odom_from_base.into(),
+        child_frame: FrameName::new("base"),
+        ..Odometry::zeroed()
+    }
+}
+
+fn header(scan: &GivenScan, stamp_ns: i64, time_increment_s: f64) -> ScanHeader {
+    ScanHeader {
+        stamp: stamp(stamp_ns),
+        angle_min: scan.angle_min,
+        angle_increment: scan.angle_increment,
+        time_increment_s,
+        range_min_m: scan.range_min_m,
+        range_max_m: scan.range_max_m,
+        base_from_laser: scan.base_from_laser.unwrap_or_default().into(),
+        mount_known: scan.base_from_laser.is_some().into(),
+        upside_down: scan.upside_down.into(),
+        frame: FrameName::new("laser"),
+        ..ScanHeader::zeroed()
+    }
+}
