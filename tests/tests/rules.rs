@@ -198,7 +198,12 @@ fn paths_are_found_however_they_are_written() {
     let source = "use std::{fmt, fs::{self, File}, io as outside};\nfn f() { ::std::env::args(); }";
     let found = paths_in(source);
     let impure: Vec<_> = found.iter().filter(|path| is_impure(path)).collect();
-    let expected = ["std::env::args", "std::fs::File", "std::fs::self", "std::io"];
+    let expected = [
+        "std::env::args",
+        "std::fs::File",
+        "std::fs::self",
+        "std::io",
+    ];
     assert_eq!(impure, expected);
     assert!(is_impure("std::*") && !is_impure("std::iter::from_fn"));
     assert!(!is_impure("outside::fs"));
@@ -226,7 +231,10 @@ fn every_dependency_is_used() {
             let renamed = dependency["rename"].as_str();
             let dependency = renamed.unwrap_or_else(|| dependency["name"].as_str().unwrap());
             let is_used = words.contains(dependency.replace('-', "_").as_str());
-            assert!(is_used || dependency == FEATURES, "{name} does not use {dependency}");
+            assert!(
+                is_used || dependency == FEATURES,
+                "{name} does not use {dependency}"
+            );
         }
     }
 }
