@@ -280,7 +280,7 @@ fn a_reading_that_is_no_number_is_one_missing_beam() {
         owned(&words)
     });
     let (said, scans) = corridor.converted("b.log", log.as_bytes());
-    assert!(said.contains("74 readings are no numbers"), "{said}");
+    assert!(said.contains("74 readings are not numbers"), "{said}");
     assert_eq!(scans.len(), 37);
     for (found, scan) in scans.iter().zip(&corridor.scans) {
         let missing: Vec<usize> = (0..361).filter(|i| found.ranges[*i].is_nan()).collect();

@@ -59,7 +59,7 @@ fn a_capture_ends_by_itself() {
     let graph = isolated.join("test");
     let (status, log) = start(&graph, &["--capture", CAPTURE_PATH, "--rate", "max"]).finish();
     assert!(status.success(), "{log}");
-    assert!(log.contains("has been played sent=16 refused=0"), "{log}");
+    assert!(log.contains("end of the capture sent=16 refused=0"), "{log}");
 }
 
 #[test]
@@ -96,7 +96,7 @@ fn damage_in_a_capture_is_counted_and_the_rest_played() {
         log.contains("byte 3374 of the stream: the checksum"),
         "{log}"
     );
-    assert!(log.contains("has been played sent=3 refused=1"), "{log}");
+    assert!(log.contains("end of the capture sent=3 refused=1"), "{log}");
 }
 
 #[test]
