@@ -143,6 +143,6 @@ fn what_is_no_laser_is_distinguished() {
             let _ = std::io::copy(&mut stream, &mut std::io::sink());
         }
     });
-    fails(&target, "48 bytes came that are no answer");
+    fails(&target, "48 bytes received that are not an answer");
     server.join().unwrap();
 }

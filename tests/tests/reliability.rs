@@ -182,7 +182,7 @@ fn a_disk_that_is_full_for_a_while_delays_no_pose_and_spoils_no_recording() {
     let (_, error) = wait_for_health(&graph, &health, |report| {
         is_recorder(report) && report.state == NodeState::Degraded as u32
     });
-    assert!(error.contains("no storage space"), "{error}");
+    assert!(error.contains("No space left on device"), "{error}");
     let missed = live.poses(20);
     std::fs::remove_file("/mnt/filler").unwrap();
     wait_for_health(&graph, &health, |report| {
