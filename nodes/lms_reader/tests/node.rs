@@ -59,7 +59,10 @@ fn a_capture_ends_by_itself() {
     let graph = isolated.join("test");
     let (status, log) = start(&graph, &["--capture", CAPTURE_PATH, "--rate", "max"]).finish();
     assert!(status.success(), "{log}");
-    assert!(log.contains("end of the capture sent=16 refused=0"), "{log}");
+    assert!(
+        log.contains("end of the capture sent=16 refused=0"),
+        "{log}"
+    );
 }
 
 #[test]
