@@ -125,7 +125,7 @@ mod tests {
                     ..pose
                 })
                 .unwrap(),
-                "is none",
+                "is not valid",
             ),
         ] {
             std::fs::write(&memory.file, wrong).unwrap();
