@@ -10,15 +10,15 @@ use std::sync::mpsc::Receiver;
 use std::sync::{LazyLock, Mutex};
 use std::time::Duration;
 
-use dashboard::{Abilities, Options, Robot, Robots, Server, Wish};
+use dashboard::{Abilities, Options, Request, Robot, Robots, Server};
 use libfuzzer_sys::fuzz_target;
 
 const TOKEN: &str = "fuzzed-fuzzed-fuzzed";
 
-/// A page of one robot, `r`, that takes every wish.
+/// A page of one robot, `r`, that takes every request.
 struct Page {
     address: SocketAddr,
-    wishes: Mutex<Receiver<Wish>>,
+    requests: Mutex<Receiver<Request>>,
     _server: Server,
 }
 
@@ -27,12 +27,25 @@ static PAGE: LazyLock<Page> = LazyLock::new(|| {
     let token = folder.path().join("token");
     std::fs::write(&token, TOKEN).unwrap();
     std::fs::set_permissions(&token, std::fs::Permissions::from_mode(0o600)).unwrap();
-    let (robot, wishes) = Robot::new("r".into());
-    robot.hear_abilities(Abilities { region: true, save: true });
-    let options = Options { host: Vec::new(), token_file: Some(token) };
-    let address = std::net::TcpListener::bind("127.0.0.1:0").unwrap().local_addr().unwrap();
+    let (robot, requests) = Robot::new("r".into());
+    robot.on_abilities(Abilities {
+        region: true,
+        save: true,
+    });
+    let options = Options {
+        host: Vec::new(),
+        token_file: Some(token),
+    };
+    let address = std::net::TcpListener::bind("127.0.0.1:0")
+        .unwrap()
+        .local_addr()
+        .unwrap();
     let server = Server::start(address, &options, [robot].into_iter().collect::<Robots>()).unwrap();
-    Page { address, wishes: Mutex::new(wishes), _server: server }
+    Page {
+        address,
+        requests: Mutex::new(requests),
+        _server: server,
+    }
 });
 
 /// The answer, as far as it came; none where the connection is kept for too long.
@@ -47,7 +60,9 @@ fn read_all(stream: &mut TcpStream) -> Option<Vec<u8>> {
 
 fn ask(method: &str, path: &[u8], body: &[u8]) {
     let mut stream = TcpStream::connect(PAGE.address).unwrap();
-    stream.set_read_timeout(Some(Duration::from_secs(10))).unwrap();
+    stream
+        .set_read_timeout(Some(Duration::from_secs(10)))
+        .unwrap();
     let host = PAGE.address;
     let mut request = [method.as_bytes(), b" ", path, b" HTTP/1.1\r\n"].concat();
     let length = body.len();
@@ -63,12 +78,18 @@ fn ask(method: &str, path: &[u8], body: &[u8]) {
     let _ = stream.write_all(&request);
     let answer = read_all(&mut stream).expect("a request without an answer");
     let status = answer.get(9..12);
-    assert!(!matches!(status, Some(b"500" | b"501" | b"502")), "{}", answer.escape_ascii());
+    assert!(
+        !matches!(status, Some(b"500" | b"501" | b"502")),
+        "{}",
+        answer.escape_ascii()
+    );
 }
 
 fn watch(path: &[u8], sent: &[u8]) {
     let mut stream = TcpStream::connect(PAGE.address).unwrap();
-    stream.set_read_timeout(Some(Duration::from_secs(10))).unwrap();
+    stream
+        .set_read_timeout(Some(Duration::from_secs(10)))
+        .unwrap();
     let mut request = [b"GET ", path, b" HTTP/1.1\r\n"].concat();
     let host = PAGE.address;
     request.extend_from_slice(
@@ -88,11 +109,17 @@ fn watch(path: &[u8], sent: &[u8]) {
 }
 
 fuzz_target!(|bytes: &[u8]| {
-    let Some((line, body)) = bytes.iter().position(|&b| b == b'\n').map(|at| bytes.split_at(at))
+    let Some((line, body)) = bytes
+        .iter()
+        .position(|&b| b == b'\n')
+        .map(|at| bytes.split_at(at))
     else {
         return;
     };
-    let Some((method, path)) = line.iter().position(|&b| b == b' ').map(|at| line.split_at(at))
+    let Some((method, path)) = line
+        .iter()
+        .position(|&b| b == b' ')
+        .map(|at| line.split_at(at))
     else {
         return;
     };
@@ -109,8 +136,8 @@ fuzz_target!(|bytes: &[u8]| {
         b"DELETE" => ask("DELETE", path, body),
         _ => return,
     }
-    for wish in PAGE.wishes.lock().unwrap().try_iter() {
-        if let Wish::Region(corners) = wish {
+    for request in PAGE.requests.lock().unwrap().try_iter() {
+        if let Request::Region(corners) = request {
             assert!(corners.is_empty() || engine::limits::Region::new(&corners).is_ok());
         }
     }
