@@ -2,7 +2,7 @@
 //! and says so; it fails where all that it needs was required.
 //!
 //! `BACKCAST_REQUIRE` names what must be there: a list of [`Need::name`], `all` or `none`.
-//! Where it is not set, and `CI` is, all but root and data must be there. Each test that was
+//! Where it is not set, and `CI` is, all but overlay, root and data must be there. Each test that was
 //! left out adds a line to `target/left-out.txt`, which `.ci/run` counts at its end.
 
 use std::fs::OpenOptions;
@@ -17,6 +17,8 @@ pub enum Need {
     Python,
     /// A kernel that lets this user make namespaces, for networks or mounts.
     Namespaces,
+    /// A kernel that lays a file system over that of the root.
+    Overlay,
     /// A superuser, who can act as other users.
     Root,
     /// The recordings of other robots, beside the project.
@@ -31,6 +33,7 @@ impl Need {
             Need::Browser => "browser",
             Need::Python => "python",
             Need::Namespaces => "namespaces",
+            Need::Overlay => "overlay",
             Need::Root => "root",
             Need::Data => "data",
         }
@@ -41,7 +44,7 @@ impl Need {
             Some(list) => list
                 .split(',')
                 .any(|name| [self.name(), "all"].contains(&name.trim())),
-            None => in_ci && ![Need::Root, Need::Data].contains(&self),
+            None => in_ci && ![Need::Overlay, Need::Root, Need::Data].contains(&self),
         }
     }
 
@@ -83,16 +86,23 @@ mod tests {
                 Need::Browser,
                 Need::Python,
                 Need::Namespaces,
+                Need::Overlay,
                 Need::Root,
                 Need::Data,
             ]
             .map(|need| need.is_required(list, in_ci))
         };
-        assert_eq!(required(None, false), [false; 5]);
-        assert_eq!(required(None, true), [true, true, true, false, false]);
-        assert_eq!(required(Some("all"), false), [true; 5]);
-        assert_eq!(required(Some("none"), true), [false; 5]);
+        assert_eq!(required(None, false), [false; 6]);
+        assert_eq!(
+            required(None, true),
+            [true, true, true, false, false, false]
+        );
+        assert_eq!(required(Some("all"), false), [true; 6]);
+        assert_eq!(required(Some("none"), true), [false; 6]);
         let some = Some("python, data");
-        assert_eq!(required(some, true), [false, true, false, false, true]);
+        assert_eq!(
+            required(some, true),
+            [false, true, false, false, false, true]
+        );
     }
 }

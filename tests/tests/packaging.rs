@@ -100,7 +100,7 @@ fn the_package_does_its_work_where_nothing_else_is() {
         .stderr(Stdio::null())
         .status();
     if !probe.is_ok_and(|status| status.success()) {
-        return Need::Namespaces.is_missing(test, "this kernel lets nobody mount an overlay here");
+        return Need::Overlay.is_missing(test, "this kernel lets nobody mount an overlay here");
     }
     let folder = tempfile::tempdir().unwrap();
     let package = package(folder.path());
