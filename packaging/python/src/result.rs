@@ -1,7 +1,7 @@
 //! What a scan says of the place, as Python reads it.
 
 use engine::locator::Located;
-use engine::peaks::{Place, Sought};
+use engine::peaks::{Place, Target};
 use geometry::{Covariance, Pose};
 use numpy::{PyArray1, PyArray2, PyArray3};
 use pyo3::prelude::*;
@@ -82,11 +82,11 @@ impl Found {
         py: Python<'_>,
         base_from_laser: Option<Pose>,
     ) -> PyResult<LocateResult> {
-        let sought = Sought::of(base_from_laser, false);
+        let target = Target::of(base_from_laser, false);
         let of_laser = || self.places.iter().map(|place| place.map_from_laser);
         let lasers: Vec<Pose> = of_laser().collect();
         let bases: Vec<Pose> = match base_from_laser {
-            Some(_) => of_laser().map(|laser| sought.base(laser)).collect(),
+            Some(_) => of_laser().map(|laser| target.base(laser)).collect(),
             None => lasers.clone(),
         };
         let laser_covariances: Vec<Covariance> =

@@ -1,6 +1,6 @@
 //! Where the robot is, as Python reads it.
 
-use engine::peaks::Sought;
+use engine::peaks::Target;
 use engine::tracking::Report;
 use geometry::{Covariance, Pose};
 use numpy::PyArray2;
@@ -68,10 +68,10 @@ impl Followed {
     /// As Python reads it.
     pub(crate) fn read(self, py: Python<'_>) -> PyResult<TrackedPose> {
         let report = self.report;
-        let sought = Sought::of(self.base_from_laser, false);
+        let target = Target::of(self.base_from_laser, false);
         let laser = report.pose;
         let pose = laser.map(|laser| match self.base_from_laser {
-            Some(_) => sought.base(laser),
+            Some(_) => target.base(laser),
             None => laser,
         });
         let of_laser = Covariance(report.covariance);

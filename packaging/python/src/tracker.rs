@@ -7,7 +7,7 @@ use bytemuck::Zeroable;
 use engine::joined::{JoinConfig, Joiner, Kept};
 use engine::localizer::Prior;
 use engine::observation::Observation;
-use engine::peaks::Sought;
+use engine::peaks::Target;
 use engine::tracking::{self, Candidate, Need, Seen, TrackingConfig};
 use geometry::{Covariance, Pose};
 use messages::{FrameName, Hypothesis, Odometry, ScanHeader, Stamp};
@@ -247,18 +247,18 @@ impl Tracker {
         let brought = joiner.seen();
         let ends = locator.ends(brought.observation());
         let ends = ends.map_err(|error| of_engine(&error))?;
-        let sought = Sought::of(scan.base_from_laser, false);
+        let target = Target::of(scan.base_from_laser, false);
         if let Some((base, covariance)) = expected.take() {
-            let laser = sought.from_base(base);
+            let laser = target.from_base(base);
             tracker.expect(laser, covariance.carried(base, laser), EXPECTED_LEAD);
         }
-        let now = joiner.odom_from_sought();
+        let now = joiner.odom_from_target();
         let moved = before
             .zip(now)
             .map(|(before, now)| before.inverse().then(now));
         *before = now;
         let seen = Seen {
-            terrain: locator.terrain(),
+            distance_field: locator.distance_field(),
             ends: &ends,
             fit: &locator.peaks().fit,
         };
@@ -296,7 +296,7 @@ impl Tracker {
 
     /// What a search finds, as messages of the graph say it: their scores have 32 bits.
     fn candidates(&self, seen: Observation<'_>) -> PyResult<Vec<Candidate>> {
-        let of_laser = Sought::of(None, false);
+        let of_laser = Target::of(None, false);
         let hypotheses: Vec<Hypothesis> = self.search.locate(seen, None, |found| {
             let places = found.places.places.iter();
             places.map(|place| place.hypothesis(0, of_laser)).collect()

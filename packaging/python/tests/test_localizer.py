@@ -27,7 +27,7 @@ def ranges():
 def test_a_scan_is_found(localizer, ranges):
     result = localizer.locate(ranges, *ANGLES)
     assert result.verdict == "Unique" and result.alternatives == 0
-    assert "one place fits" in result.why
+    assert "one place, fit" in result.why
     assert result.frame == "laser"
     # A cell, and a degree.
     assert np.allclose(result.pose, TRUTH, atol=[0.1, 0.1, 0.02])
