@@ -36,7 +36,7 @@ backcast check laser.yaml >&2
 man=/usr/share/man/man1/backcast-init.1.gz
 gzip --decompress --stdout $man | grep --quiet 'serial'
 bash -n /usr/share/bash-completion/completions/backcast
-# Options that no node takes are told, and what is removed is gone.
+# Options that no node takes are named, and what is removed is gone.
 sed -i 's/--protocol/--protokoll/' laser.yaml
 if backcast check laser.yaml >&2; then exit 8; fi
 dpkg --remove backcast >&2

@@ -2,7 +2,7 @@
 
 use std::{io, path::PathBuf};
 
-use command_line::{CommandError, FAILED, OutputError, WRONG_USE};
+use command_line::{CommandError, FAILED, OutputError};
 use engine::heading::HeadingError;
 use map::MapError;
 use offline::OfflineError;
@@ -24,9 +24,6 @@ pub enum EvaluationError {
     /// A map file cannot be used.
     #[error(transparent)]
     Map(#[from] MapError),
-    /// Options that do not go together.
-    #[error("{0}")]
-    Usage(String),
     /// A trajectory could not be written.
     #[error("cannot write the trajectory {}", .file.display())]
     Trajectory {
@@ -51,7 +48,6 @@ impl CommandError for EvaluationError {
         match self {
             Self::Offline(error) => error.exit_code(),
             Self::Plot(error) => error.exit_code(),
-            Self::Usage(_) => WRONG_USE,
             _ => FAILED,
         }
     }

@@ -118,20 +118,7 @@ fn source(config: &Config) -> Result<Source, InitError> {
         return Err(InitError::Usage(needed.to_owned()));
     }
     if let Some(device) = config.laser.as_ref().or(config.serial.as_ref()) {
-        let options = match config.no_probe {
-            false => {
-                say(&format!("asking the laser at {device}"));
-                probe::reader_options(device, config.serial.is_some())
-            }
-            true => Ok(probe::default_reader_options(
-                device,
-                config.serial.is_some(),
-            )),
-        };
-        let options = options.map_err(|source| InitError::Laser {
-            device: device.clone(),
-            source,
-        })?;
+        let options = reader_options(config, device)?;
         if mount.is_none() {
             say(
                 "where the laser sits on the robot is not known: poses are those of the laser \
@@ -160,6 +147,19 @@ fn source(config: &Config) -> Result<Source, InitError> {
     Ok(Source::Recording {
         file: absolute(&file)?,
         has_odometry,
+    })
+}
+
+/// How the laser is read: as it answers, or as lasers are delivered.
+fn reader_options(config: &Config, device: &str) -> Result<Vec<String>, InitError> {
+    let is_serial = config.serial.is_some();
+    if config.no_probe {
+        return Ok(probe::default_reader_options(device, is_serial));
+    }
+    say(&format!("asking the laser at {device}"));
+    probe::reader_options(device, is_serial).map_err(|source| InitError::Laser {
+        device: device.to_owned(),
+        source,
     })
 }
 

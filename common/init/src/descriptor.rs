@@ -7,8 +7,8 @@ use std::borrow::Cow;
 pub(crate) enum Source {
     /// A laser of ours to read.
     Laser {
-        /// Options of `lms_reader` that name it and say how it speaks.
-        options: String,
+        /// Options of `lms_reader` that name it and say how it speaks, a word each.
+        options: Vec<String>,
         /// `X,Y,YAW_DEG`.
         mount: Option<String>,
     },
@@ -39,7 +39,7 @@ impl Source {
     /// What it is, for people.
     pub(crate) fn title(&self) -> String {
         match self {
-            Source::Laser { options, .. } => format!("a laser (lms_reader {options})"),
+            Source::Laser { options, .. } => format!("a laser (lms_reader {})", words(options)),
             Source::Ros2 { router, .. } => match router {
                 Some(router) => format!("a ROS 2 robot with the router {router}"),
                 None => "a ROS 2 robot that connects to this graph".to_owned(),
@@ -90,7 +90,7 @@ impl Source {
     args: {args}
     outputs: [scan]
 {RESTARTS}",
-                args = quoted(&format!("{options}{}", mount(at)))
+                args = quoted(&format!("{}{}", words(options), mount(at)))
             ),
             Source::Ros2 {
                 router,
@@ -98,9 +98,9 @@ impl Source {
                 brings_map,
             } => {
                 let router = router.as_deref().map(|r| format!(" --connect {}", word(r)));
-                let bring = match brings_map {
-                    true => ",map",
-                    false => "",
+                let (brought, output) = match brings_map {
+                    true => (",map", ", map"),
+                    false => ("", ""),
                 };
                 format!(
                     "  # Takes scans, odometry and transforms from the robot, and gives it the pose.
@@ -111,14 +111,13 @@ impl Source {
     inputs:
       hypotheses: peak_extractor/hypotheses
       pose: tracker/pose
-    outputs: [scan, odometry{map}]
+    outputs: [scan, odometry{output}]
 {RESTARTS}",
                     args = quoted(&format!(
-                        "--bring scan,odometry{bring}{}{}",
+                        "--bring scan,odometry{brought}{}{}",
                         router.unwrap_or_default(),
                         mount(at)
                     )),
-                    map = if *brings_map { ", map" } else { "" },
                 )
             }
             Source::Recording { file, has_odometry } => format!(
@@ -177,7 +176,7 @@ nodes:
     outputs: [boundary]
 {RESTARTS}
   # Searches the whole map for each scan that the tracker asks about. `--threads N` uses
-  # several processors, `--on`, `--within` and others limit where it searches.
+  # several processors, `--region` and `--headings-within` limit where it searches.
   - id: accumulator
     path: accumulator
     inputs:
@@ -215,6 +214,12 @@ nodes:
     )
 }
 
+/// The words of `args`, each quoted where it has to be.
+fn words(words: &[String]) -> String {
+    let words: Vec<String> = words.iter().map(|text| word(text)).collect();
+    words.join(" ")
+}
+
 /// A word of `args`, quoted where it has to be.
 fn word(text: &str) -> String {
     // What cannot be quoted, a zero byte, stands in no path.
@@ -248,7 +253,7 @@ mod tests {
         let mount = Some("0.2,0,-90".to_owned());
         let router = Some("tcp/robot:7447".to_owned());
         let laser = |mount| Source::Laser {
-            options: "--tcp 192.168.0.1:2112 --protocol cola-a".to_owned(),
+            options: ["--serial", "/dev/a laser"].map(str::to_owned).to_vec(),
             mount,
         };
         let robot = |router, brings_map| Source::Ros2 {
@@ -293,6 +298,9 @@ mod tests {
             match &source {
                 Source::Recording { file, .. } => assert_eq!(fed_by[1], *file),
                 Source::Laser { mount, .. } | Source::Ros2 { mount, .. } => {
+                    if let Source::Laser { options, .. } = &source {
+                        assert_eq!(fed_by[..2], options[..]);
+                    }
                     let place = fed_by.iter().position(|word| word == "--mount");
                     let given = place.map(|place| fed_by[place + 1].clone());
                     assert_eq!(given, *mount);

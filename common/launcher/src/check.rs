@@ -52,9 +52,9 @@ pub struct Config {
 pub fn run(config: &Config) -> Result<ExitCode, LauncherError> {
     let descriptor = descriptor::load(&config.dataflow, Builds::Run)?;
     let nodes = descriptor.dataflow.nodes.iter();
-    let own: Vec<_> = nodes.filter(|node| is_own(node)).collect();
-    let (built, unbuilt): (Vec<&Node>, Vec<&Node>) = own
-        .into_iter()
+    // Ours end at once where only their arguments are checked.
+    let (built, unbuilt): (Vec<&Node>, Vec<&Node>) = nodes
+        .filter(|node| NODES.contains(&node.executable()))
         .partition(|node| executable(node, &descriptor.folder).is_file());
     let refused: Vec<String> = built
         .iter()
@@ -79,12 +79,6 @@ pub fn run(config: &Config) -> Result<ExitCode, LauncherError> {
     }
     stdout::print(&format!("{text}\n{picture}"))?;
     Ok(ExitCode::SUCCESS)
-}
-
-/// Whether it is one of ours, which end at once where only their arguments are checked.
-fn is_own(node: &Node) -> bool {
-    let name = Path::new(&node.path).file_name();
-    name.is_some_and(|name| NODES.iter().any(|own| name == *own))
 }
 
 /// What the node says of its arguments, if it does not take them.

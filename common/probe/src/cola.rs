@@ -66,17 +66,18 @@ pub(super) fn probe(target: &str) -> Result<(Vec<String>, Seen), ProbeError> {
 ///
 /// # Errors
 /// As [`probe`].
-pub(super) fn reader_options(target: &str) -> Result<String, ProbeError> {
+pub(super) fn reader_options(target: &str) -> Result<Vec<String>, ProbeError> {
     let device = find(target)?;
     Ok(reader_options_of(&device.address, device.encoding))
 }
 
-pub(super) fn reader_options_of(address: &str, encoding: Encoding) -> String {
+pub(super) fn reader_options_of(address: &str, encoding: Encoding) -> Vec<String> {
     let protocol = match encoding {
         Encoding::Binary => "cola-b",
         Encoding::Text => "cola-a",
     };
-    format!("--tcp {address} --protocol {protocol}")
+    let words = ["--tcp", address, "--protocol", protocol];
+    words.map(str::to_owned).to_vec()
 }
 
 fn find(target: &str) -> Result<Device, ProbeError> {

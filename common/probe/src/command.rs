@@ -46,12 +46,12 @@ pub fn run(config: &Config) -> Result<ExitCode, ProbeError> {
     Ok(ExitCode::SUCCESS)
 }
 
-/// The options by which `lms_reader` reads the device at an address, or on a serial line:
-/// which port and encoding it answers on.
+/// The options by which `lms_reader` reads the device at an address, or on a serial line,
+/// a word each: which port and encoding it answers on.
 ///
 /// # Errors
 /// No device answers.
-pub fn reader_options(device: &str, is_serial: bool) -> Result<String, ProbeError> {
+pub fn reader_options(device: &str, is_serial: bool) -> Result<Vec<String>, ProbeError> {
     match is_serial {
         false => cola::reader_options(address(device).unwrap_or(device)),
         true => lms2xx::ask(Path::new(device)).map(|()| default_reader_options(device, true)),
@@ -60,9 +60,9 @@ pub fn reader_options(device: &str, is_serial: bool) -> Result<String, ProbeErro
 
 /// The same for a device that is not asked, and set as devices are delivered.
 #[must_use]
-pub fn default_reader_options(device: &str, is_serial: bool) -> String {
+pub fn default_reader_options(device: &str, is_serial: bool) -> Vec<String> {
     if is_serial {
-        return format!("--serial {device}");
+        return ["--serial", device].map(str::to_owned).to_vec();
     }
     let address = address(device).unwrap_or(device);
     cola::reader_options_of(&cola::addresses(address)[0], Encoding::Binary)

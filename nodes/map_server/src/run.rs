@@ -32,15 +32,10 @@ pub fn run(graph: &Graph, config: &Config) -> Result<(), MapServerError> {
     // Looked at before loading: what changes in between is noticed.
     let mut watch = Watch::new(files.look());
     server.health.state(NodeState::Busy)?;
-    if let Some(grid) = recorded(config)? {
-        server.serve(&grid)?;
-        graph.run(&[], TICK, |_| {
-            server.health.tick()?;
-            Ok::<_, TransportError>(Flow::Continue)
-        })?;
-        return Ok(());
-    }
-    match load(config) {
+    let recorded = recorded(config)?;
+    // What is in a recording does not change.
+    let is_watched = recorded.is_none();
+    match recorded.map_or_else(|| load(config), Ok) {
         Ok(grid) => server.serve(&grid)?,
         Err(error) if error.is_missing() => server.wait_for(&error)?,
         Err(source) => {
@@ -51,7 +46,7 @@ pub fn run(graph: &Graph, config: &Config) -> Result<(), MapServerError> {
         }
     }
     graph.run(&[], TICK, |_| {
-        if watch.look(files.look()) == Look::Settled {
+        if is_watched && watch.look(files.look()) == Look::Settled {
             server.health.state(NodeState::Busy)?;
             let outcome = load(config);
             if watch.judged(files.look()) {

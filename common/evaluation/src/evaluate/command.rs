@@ -72,10 +72,6 @@ pub fn run(config: &Config) -> Result<ExitCode, EvaluationError> {
     config.options.check()?;
     let map = config.options.load_map(&config.bags)?;
     if config.sequence.sequence {
-        if let [option, ..] = config.limits.names()[..] {
-            let reason = format!("{option} is about single scans, and not for --sequence");
-            return Err(EvaluationError::Usage(reason));
-        }
         let how = (&config.options, &config.sequence);
         return sequence::evaluate(&config.bags, config.json, map.as_ref(), how);
     }

@@ -2,24 +2,24 @@
 
 use super::judge::Evaluation;
 
-/// What each file must reach; nothing by default.
+/// What each file must reach; nothing by default, and not for whole drives.
 #[derive(Debug, Clone, Default, clap::Args)]
 #[command(next_help_heading = "Requirements: exit code 1 if a file misses one")]
 pub(super) struct Limits {
     /// Least share of the truths that are found within 0.5 m and 10 degrees, per cent
-    #[arg(long, value_name = "PERCENT", value_parser = percent)]
+    #[arg(long, value_name = "PERCENT", conflicts_with = "sequence", value_parser = percent)]
     min_success: Option<f64>,
 
     /// Most answers that are Unique and wrong
-    #[arg(long, value_name = "COUNT")]
+    #[arg(long, value_name = "COUNT", conflicts_with = "sequence")]
     max_wrong: Option<u64>,
 
     /// Longest time of a scan, milliseconds of one thread, at the 90th percentile
-    #[arg(long, value_name = "MS", value_parser = above_zero)]
+    #[arg(long, value_name = "MS", conflicts_with = "sequence", value_parser = above_zero)]
     max_p90_ms: Option<f64>,
 
     /// Largest median distance of the right answers from the truth, centimetres
-    #[arg(long, value_name = "CM", value_parser = above_zero)]
+    #[arg(long, value_name = "CM", conflicts_with = "sequence", value_parser = above_zero)]
     max_error_cm: Option<f64>,
 }
 
@@ -37,18 +37,6 @@ fn above_zero(text: &str) -> Result<f64, String> {
 }
 
 impl Limits {
-    /// The options that are set and speak of single scans alone.
-    pub(super) fn names(&self) -> Vec<&'static str> {
-        let set = [
-            ("--min-success", self.min_success.is_some()),
-            ("--max-wrong", self.max_wrong.is_some()),
-            ("--max-p90-ms", self.max_p90_ms.is_some()),
-            ("--max-error-cm", self.max_error_cm.is_some()),
-        ];
-        let set = set.into_iter().filter(|(_, is_set)| *is_set);
-        set.map(|(name, _)| name).collect()
-    }
-
     /// What the file misses, a sentence each. A figure that there is none of, as no answer
     /// was right, is missed too.
     pub(super) fn missed(&self, found: &Evaluation) -> Vec<String> {
