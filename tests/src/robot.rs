@@ -1,8 +1,10 @@
 //! A ROS 2 robot, by libraries of others in Python.
 
-use std::io::{BufRead, BufReader, Lines, Write};
+use std::io::{BufRead, BufReader, Write};
 use std::path::Path;
-use std::process::{Child, ChildStdin, ChildStdout, Command, Stdio};
+use std::process::{Child, ChildStdin, Command, Stdio};
+use std::sync::mpsc::{Receiver, RecvTimeoutError, channel};
+use std::time::Duration;
 
 use serde_json::{Value, json};
 
@@ -16,11 +18,17 @@ pub const LIBRARIES: [&str; 3] = [
     "zenoh-ros2-sdk==0.1.8",
 ];
 
+/// How long it may say nothing that a test waits for: many times as long as its
+/// libraries take to be loaded on a busy machine.
+const TIMEOUT: Duration = Duration::from_secs(120);
+
 /// A process that executes commands, killed if the test fails.
 pub struct Robot {
     process: Child,
     orders: ChildStdin,
-    said: Lines<BufReader<ChildStdout>>,
+    said: Receiver<String>,
+    /// What it has said that no call has returned yet.
+    passed_over: Vec<Value>,
 }
 
 impl Robot {
@@ -44,11 +52,19 @@ impl Robot {
             .spawn()
             .unwrap();
         let orders = process.stdin.take().unwrap();
-        let said = BufReader::new(process.stdout.take().unwrap()).lines();
+        let lines = BufReader::new(process.stdout.take().unwrap()).lines();
+        let (say, said) = channel();
+        std::thread::spawn(move || {
+            // A test that has ended reads no more.
+            for line in lines.map_while(Result::ok) {
+                let _ = say.send(line);
+            }
+        });
         let mut robot = Robot {
             process,
             orders,
             said,
+            passed_over: Vec::new(),
         };
         robot.wait_for("there");
         Some(robot)
@@ -66,25 +82,45 @@ impl Robot {
     /// The next that it says.
     ///
     /// # Panics
-    /// If the robot ends, or a message of the gateway made it fail.
+    /// If the robot ends or says nothing, or a message of the gateway made it fail.
     pub fn receive(&mut self) -> Value {
-        let line = self.said.next().expect("the robot has ended").unwrap();
-        let said: Value = serde_json::from_str(&line).unwrap();
-        assert_ne!(said["event"], "failed", "{said}");
-        said
+        if self.passed_over.is_empty() {
+            self.read()
+        } else {
+            self.passed_over.remove(0)
+        }
     }
 
-    /// The next event of that name; others are passed over.
+    /// The next event of that name. Others that come before it are kept: topics reach
+    /// the robot in no certain order.
     ///
     /// # Panics
     /// As [`Robot::receive`].
     pub fn wait_for(&mut self, event: &str) -> Value {
+        let is_awaited = |said: &Value| said["event"] == event;
+        if let Some(index) = self.passed_over.iter().position(is_awaited) {
+            return self.passed_over.remove(index);
+        }
         loop {
-            let said = self.receive();
-            if said["event"] == event {
+            let said = self.read();
+            if is_awaited(&said) {
                 return said;
             }
+            self.passed_over.push(said);
         }
+    }
+
+    fn read(&mut self) -> Value {
+        let line = self.said.recv_timeout(TIMEOUT).unwrap_or_else(|why| {
+            let what = match why {
+                RecvTimeoutError::Timeout => "says nothing",
+                RecvTimeoutError::Disconnected => "has ended",
+            };
+            panic!("the robot {what}; before that: {:#?}", self.passed_over)
+        });
+        let said: Value = serde_json::from_str(&line).unwrap();
+        assert_ne!(said["event"], "failed", "{said}");
+        said
     }
 }
 

@@ -49,7 +49,7 @@ impl Outgoing {
             .broadcast_tf
             .then(|| Publisher::open(member, &topics.tf, 100));
         Ok(Outgoing {
-            initial_pose: Publisher::open(member, &topics.initial_pose, 1)?,
+            initial_pose: Publisher::open_blocking(member, &topics.initial_pose, 1)?,
             hypotheses: Publisher::open(member, &topics.hypotheses, 10)?,
             diagnostics: Publisher::open(member, &topics.diagnostics, 10)?,
             transforms: transforms.transpose()?,

@@ -87,10 +87,12 @@ impl Gateway {
         health: &Subscriber<topic::Health>,
         report: &mut Report,
     ) -> Result<(), TransportError> {
-        self.look(report)?;
-        self.serve(report)?;
         self.incoming
             .step(&mut self.frames, &mut self.seeding, report)?;
+        // After the scans and before their answers: who came or asked before a scan gets
+        // the initial pose by that scan.
+        self.look(report)?;
+        self.serve(report)?;
         let robots = self.incoming.map_frame();
         let map_frame = self.map_frame.as_deref().or(robots).unwrap_or(MAP_FRAME);
         while let Some(sample) = hypotheses.receive()? {

@@ -159,9 +159,6 @@ impl Tracker {
         let header = header(&scan, stamp_ns, time_increment);
         let followed = self.with_state(py, |state| {
             if let Some(odom_from_base) = odom_from_base {
-                // The middle of a scan is halved to even nanoseconds, and what is measured
-                // after it does not count.
-                let stamp_ns = stamp_ns & !1;
                 state
                     .joiner
                     .on_odometry(&self::odometry(stamp_ns, odom_from_base));

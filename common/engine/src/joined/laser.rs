@@ -83,7 +83,7 @@ impl Laser {
     /// When half of the beams were measured.
     pub(super) fn middle_ns(&self) -> i64 {
         let last = self.ranges.len().saturating_sub(1);
-        (self.first_beam_ns / 2).saturating_add(self.beam_at_ns(last) / 2)
+        i64::midpoint(self.first_beam_ns, self.beam_at_ns(last))
     }
 
     fn beam_at_ns(&self, range: usize) -> i64 {

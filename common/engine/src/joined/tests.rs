@@ -101,6 +101,33 @@ fn the_motion_within_a_scan_is_taken_out() {
 }
 
 #[test]
+fn odometry_of_the_stamp_of_a_scan_counts_for_it_to_the_nanosecond() {
+    for odd in [0, 1] {
+        let at = |ms: i64| Stamp {
+            measured_ns: ms * MS + odd,
+            ..Stamp::default()
+        };
+        let mut joiner = Joiner::new(JoinConfig::default());
+        for ms in [0, 1000] {
+            joiner.on_odometry(&Odometry {
+                stamp: at(ms),
+                ..odometry(ms)
+            });
+        }
+        let header = ScanHeader {
+            stamp: at(1000),
+            ..scan("", 1000)
+        };
+        joiner.on_scan(&header, &RANGES);
+        let odom_from_base = joiner
+            .odom_from_target()
+            .unwrap()
+            .then(Pose::new(-0.5, 0.0, 0.0));
+        assert_eq!(odom_from_base, Pose::new(1.0, 0.0, 0.0), "{odd}");
+    }
+}
+
+#[test]
 fn the_stamp_may_be_of_another_beam_and_odometry_late() {
     let mut joiner = Joiner::new(JoinConfig {
         motion: MotionConfig {

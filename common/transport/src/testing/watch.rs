@@ -1,5 +1,6 @@
 //! Ends tests that hang.
 
+use std::io::{Write, stderr};
 use std::sync::atomic::{AtomicUsize, Ordering};
 use std::sync::mpsc::{RecvTimeoutError, Sender, channel};
 use std::time::Duration;
@@ -38,7 +39,11 @@ pub(super) fn watch(graph: GraphName) -> Sender<()> {
             let now = LONG_WORK.load(Ordering::Relaxed);
             // Where a start has no end yet, that continues.
             if now == before && now.is_multiple_of(2) {
-                eprintln!("the test in graph {graph} takes more than {TIMEOUT:?}: it is ended");
+                // Not by `eprintln!`, whose words a test keeps until it ends.
+                let _ = writeln!(
+                    stderr(),
+                    "the test in graph {graph} takes more than {TIMEOUT:?}: it is ended"
+                );
                 let _ = raise(Signal::SIGTERM);
                 if lasts(GRACE) {
                     std::process::abort();

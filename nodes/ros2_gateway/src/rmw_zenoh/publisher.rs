@@ -24,19 +24,38 @@ pub(crate) struct Publisher<M> {
 }
 
 impl<M: RosMessage> Publisher<M> {
-    /// Reliable, with the last `depth` messages kept by those that are slow.
+    /// Reliable, with the last `depth` messages kept by those that are slow. What comes
+    /// with each scan is dropped where the robot's network is slower than the graph: it
+    /// is fresh or of no use.
     pub(crate) fn open(member: &Member, topic: &str, depth: usize) -> Result<Self, GatewayError> {
+        Self::with(member, topic, depth, CongestionControl::Drop)
+    }
+
+    /// As [`Publisher::open`], for what comes seldom and must arrive: where the network
+    /// is slow it is waited for, until Zenoh closes the connection.
+    pub(crate) fn open_blocking(
+        member: &Member,
+        topic: &str,
+        depth: usize,
+    ) -> Result<Self, GatewayError> {
+        Self::with(member, topic, depth, CongestionControl::Block)
+    }
+
+    fn with(
+        member: &Member,
+        topic: &str,
+        depth: usize,
+        congestion: CongestionControl,
+    ) -> Result<Self, GatewayError> {
         let info = description::of_message::<M>()?;
         let quality = (Keeping::Reliable, depth);
         let endpoint = member.endpoint(Kind::Publisher, topic, &info, quality);
         let publisher = member
             .session()
             .declare_publisher(endpoint.key.clone())
-            // The robot's network may be slower than the graph; what is sent is
-            // fresh or of no use.
             // Not express: each message would take one of the two batches of its
             // priority, so that a third at once is dropped, and Zenoh may go on to drop.
-            .congestion_control(CongestionControl::Drop)
+            .congestion_control(congestion)
             .wait();
         let publisher = publisher.map_err(KeyError::when("publish", &endpoint.key))?;
         Ok(Publisher {
