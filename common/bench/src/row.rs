@@ -1,5 +1,6 @@
 //! What is reported of one method in one case.
 
+use command_line::json;
 use serde::Serialize;
 
 use super::measure::Measured;
@@ -71,6 +72,6 @@ impl Row {
 
     /// As a line of JSON, without its end.
     pub(super) fn json(&self) -> String {
-        serde_json::to_string(self).unwrap_or_else(|error| format!("{{\"error\":\"{error}\"}}"))
+        json::object(self)
     }
 }

@@ -1,5 +1,6 @@
-//! What the commands of `backcast` have in common: exit codes, and standard output.
+//! What the commands of `backcast` have in common: exit codes, standard output and JSON.
 
+pub mod json;
 pub mod stdout;
 
 use std::error::Error;

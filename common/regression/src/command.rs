@@ -12,7 +12,7 @@ use progress::say;
 use transport::{GraphName, with_causes};
 
 use super::case::{self, Case};
-use super::compare::{differences, table};
+use super::compare::{Tolerance, differences, summary, table};
 use super::junit::{self, Outcome};
 use super::pictures::{self, Drawn};
 use super::play::{self, Played};
@@ -21,8 +21,10 @@ use crate::RegressionError;
 /// What stands below the options.
 pub const NOTES: &str = "\
 A case is a folder with recording.mcap (or the folder recording, of a bag), map.yaml and
-expected.json. Votes, verdicts, the tracker's states and counts must come out exactly;
-positions within 1 mm, headings within 0.01 degrees, scores within 0.001.
+expected.json. With --tolerance exact, votes, verdicts, the tracker's states and counts must
+come out exactly; positions within 1 mm, headings within 0.01 degrees, scores within 0.001.
+With --tolerance pose, verdicts and states must, and where both are Unique the pose within
+5 cm and 1 degree: what a robot would notice of another version of the engine.
 
 Exit codes: 0 all as expected or accepted, 1 differences, a graph that fails or a recording that is
 damaged, 2 wrong use";
@@ -38,7 +40,11 @@ pub struct Config {
     #[arg(long, default_value = DEFAULT_FILE, value_name = "FILE")]
     dataflow: PathBuf,
 
-    /// Accept the results as the new expectation
+    /// What counts as a difference
+    #[arg(long, value_enum, default_value_t = Tolerance::Exact)]
+    tolerance: Tolerance,
+
+    /// Accept the results as the new expectation, and say what changed, a line a kind
     #[arg(long)]
     accept: bool,
 
@@ -47,7 +53,7 @@ pub struct Config {
     #[arg(long, value_name = "FOLDER")]
     pictures: Option<PathBuf>,
 
-    /// Write a JUnit report for a build server
+    /// Write a JUnit report for a build server: a suite a recording, a test case a scan
     #[arg(long, value_name = "FILE")]
     junit: Option<PathBuf>,
 }
@@ -96,7 +102,7 @@ fn replay(config: &Config, case: &Case) -> Outcome {
     let start = Instant::now();
     let mut outcome = Outcome {
         name: case.name.clone(),
-        scans: 0,
+        scans: Vec::new(),
         took: start.elapsed(),
         result: Ok(Vec::new()),
     };
@@ -121,7 +127,7 @@ fn judge(config: &Config, case: &Case, outcome: &mut Outcome) -> Result<(), Regr
         is_tracked,
         damage,
     } = play::play(descriptor, &name, &case.recording())?;
-    outcome.scans = found.len();
+    outcome.scans = found.iter().map(|answer| answer.stamp_ns).collect();
     // What is not written as it should be can be written again.
     let expected = match config.accept {
         true => Some(expected.ok().flatten().unwrap_or_default()),
@@ -135,7 +141,7 @@ fn judge(config: &Config, case: &Case, outcome: &mut Outcome) -> Result<(), Regr
         // A graph without a tracker has no poses to compare.
         expected.iter_mut().for_each(|answer| answer.pose = None);
     }
-    let all = differences(&expected, &found);
+    let all = differences(&expected, &found, config.tolerance);
     if let Some(folder) = &config.pictures {
         let drawn = pictures::write(folder, case, (&expected, &found), &all)?;
         print_pictures(&case.name, folder, drawn);
@@ -169,7 +175,7 @@ fn text(outcome: &Outcome, accepted: bool) -> String {
     let Outcome {
         name, scans, took, ..
     } = outcome;
-    let seconds = took.as_secs_f64();
+    let (scans, seconds) = (scans.len(), took.as_secs_f64());
     let word = match (&outcome.result, accepted) {
         (Ok(_), true) => "accepted: ",
         _ => "",
@@ -179,6 +185,7 @@ fn text(outcome: &Outcome, accepted: bool) -> String {
         .unwrap_or_else(|| "as expected".to_owned());
     let line = format!("{name}: {scans} scans in {seconds:.1} s, {word}{verdict}\n");
     match &outcome.result {
+        Ok(differences) if accepted => line + &summary(differences),
         Ok(differences) if !differences.is_empty() => line + &table(differences),
         _ => line,
     }

@@ -4,13 +4,42 @@ use std::collections::BTreeMap;
 
 use super::answer::{Answer, TrackedPose};
 
-/// Far below what any laser resolves, far above rounding.
-pub(super) const POSITION_M: f64 = 0.001;
-/// As for the position.
-pub(super) const HEADING_DEG: f64 = 0.01;
+/// What counts as a difference.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default, clap::ValueEnum)]
+pub(super) enum Tolerance {
+    /// Every figure: for changes that should change no answer
+    #[default]
+    Exact,
+    /// Verdicts, states and the poses of answers that are Unique: for another version of
+    /// the engine
+    Pose,
+}
+
+impl Tolerance {
+    /// Metres. Exactly: far below what any laser resolves, far above rounding. Of
+    /// poses: a usual cell of a map.
+    fn position_m(self) -> f64 {
+        match self {
+            Tolerance::Exact => 0.001,
+            Tolerance::Pose => 0.05,
+        }
+    }
+
+    /// As for the position: the second moves what is 3 m away by a cell.
+    fn heading_deg(self) -> f64 {
+        match self {
+            Tolerance::Exact => 0.01,
+            Tolerance::Pose => 1.0,
+        }
+    }
+}
+
 /// Of scores and probabilities, which are shares of 1 kept in 32 bits: below
 /// what moves a verdict, above the rounding of exponential functions.
-pub(super) const SHARE: f64 = 0.001;
+const SHARE: f64 = 0.001;
+
+/// What a verdict and a state are called that stand for one place.
+const UNIQUE: &str = "Unique";
 
 /// One value that is not as expected.
 #[derive(Debug, Clone, PartialEq, Eq)]
@@ -23,7 +52,11 @@ pub(super) struct Difference {
 }
 
 /// All differences, by the stamps of the scans.
-pub(super) fn differences(expected: &[Answer], found: &[Answer]) -> Vec<Difference> {
+pub(super) fn differences(
+    expected: &[Answer],
+    found: &[Answer],
+    tolerance: Tolerance,
+) -> Vec<Difference> {
     let mut pairs: BTreeMap<i64, (Vec<&Answer>, Vec<&Answer>)> = BTreeMap::new();
     for answer in expected {
         pairs.entry(answer.stamp_ns).or_default().0.push(answer);
@@ -35,6 +68,7 @@ pub(super) fn differences(expected: &[Answer], found: &[Answer]) -> Vec<Differen
     for (stamp_ns, (expected, found)) in pairs {
         let mut scan = Scan {
             stamp_ns,
+            tolerance,
             all: &mut all,
         };
         scan.note(
@@ -53,6 +87,7 @@ pub(super) fn differences(expected: &[Answer], found: &[Answer]) -> Vec<Differen
 /// One scan whose values are compared.
 struct Scan<'a> {
     stamp_ns: i64,
+    tolerance: Tolerance,
     all: &'a mut Vec<Difference>,
 }
 
@@ -66,23 +101,30 @@ impl Scan<'_> {
                 })+
             };
         }
-        exact!(
-            best,
-            floor,
-            certified_floor,
-            highest_possible,
-            votes,
-            beams_used
-        );
-        exact!(verdict, alternatives, hypotheses);
-        let share = |share: Option<f32>| share.map(f64::from);
-        self.near("x_m", expected.x_m, found.x_m, POSITION_M);
-        self.near("y_m", expected.y_m, found.y_m, POSITION_M);
-        let headings = (expected.heading_deg, found.heading_deg);
-        self.near_heading("heading_deg", headings);
-        self.near("score", share(expected.score), share(found.score), SHARE);
-        let (confidence, now) = (Some(expected.confidence), Some(found.confidence));
-        self.near("confidence", share(confidence), share(now), SHARE);
+        exact!(verdict);
+        let is_unique = expected.verdict == UNIQUE && found.verdict == UNIQUE;
+        if is_unique || self.is_exact() {
+            let by_m = self.tolerance.position_m();
+            self.near("x_m", expected.x_m, found.x_m, by_m);
+            self.near("y_m", expected.y_m, found.y_m, by_m);
+            let headings = (expected.heading_deg, found.heading_deg);
+            self.near_heading("heading_deg", headings);
+        }
+        if self.is_exact() {
+            exact!(
+                best,
+                floor,
+                certified_floor,
+                highest_possible,
+                votes,
+                beams_used
+            );
+            exact!(alternatives, hypotheses);
+            let share = |share: Option<f32>| share.map(f64::from);
+            self.near("score", share(expected.score), share(found.score), SHARE);
+            let (confidence, now) = (Some(expected.confidence), Some(found.confidence));
+            self.near("confidence", share(confidence), share(now), SHARE);
+        }
         match (&expected.pose, &found.pose) {
             (Some(expected), Some(found)) => self.compare_tracked(expected, found),
             (expected, found) => {
@@ -107,13 +149,24 @@ impl Scan<'_> {
                 );)+
             };
         }
-        exact!(state, reason, places);
-        self.near("pose.x_m", expected.x_m, found.x_m, POSITION_M);
-        self.near("pose.y_m", expected.y_m, found.y_m, POSITION_M);
-        let headings = (expected.heading_deg, found.heading_deg);
-        self.near_heading("pose.heading_deg", headings);
-        let (probability, now) = (Some(expected.probability), Some(found.probability));
-        self.near("pose.probability", probability, now, SHARE);
+        exact!(state);
+        let is_unique = expected.state == UNIQUE && found.state == UNIQUE;
+        if is_unique || self.is_exact() {
+            let by_m = self.tolerance.position_m();
+            self.near("pose.x_m", expected.x_m, found.x_m, by_m);
+            self.near("pose.y_m", expected.y_m, found.y_m, by_m);
+            let headings = (expected.heading_deg, found.heading_deg);
+            self.near_heading("pose.heading_deg", headings);
+        }
+        if self.is_exact() {
+            exact!(reason, places);
+            let (probability, now) = (Some(expected.probability), Some(found.probability));
+            self.near("pose.probability", probability, now, SHARE);
+        }
+    }
+
+    fn is_exact(&self) -> bool {
+        self.tolerance == Tolerance::Exact
     }
 
     /// Headings are compared on the circle.
@@ -121,7 +174,12 @@ impl Scan<'_> {
         let turned = expected.zip(found).map(|(expected, found)| {
             expected + (found - expected + 180.0).rem_euclid(360.0) - 180.0
         });
-        self.near(what, expected, turned.or(found), HEADING_DEG);
+        self.near(
+            what,
+            expected,
+            turned.or(found),
+            self.tolerance.heading_deg(),
+        );
     }
 
     fn near(&mut self, what: &'static str, expected: Option<f64>, found: Option<f64>, by: f64) {
@@ -169,6 +227,32 @@ pub(super) fn table(differences: &[Difference]) -> String {
     text
 }
 
+/// What differs, a line a kind: on how many scans, by how much at most where it is a
+/// number, and on which scan first.
+pub(super) fn summary(differences: &[Difference]) -> String {
+    let mut kinds: BTreeMap<&str, Vec<&Difference>> = BTreeMap::new();
+    for difference in differences {
+        kinds.entry(difference.what).or_default().push(difference);
+    }
+    let line = |(what, of): (&str, Vec<&Difference>)| {
+        let first = of[0];
+        let by = |difference: &&Difference| {
+            let number = |text: &str| text.parse::<f64>().ok();
+            Some((number(&difference.expected)? - number(&difference.found)?).abs())
+        };
+        let most = of.iter().filter_map(by).reduce(f64::max);
+        let most = most.map_or_else(String::new, |most| format!(", by at most {most:.4}"));
+        format!(
+            "  {what}: {} scans{most}; first {} -> {} at {} ns\n",
+            of.len(),
+            first.expected,
+            first.found,
+            first.stamp_ns
+        )
+    };
+    kinds.into_iter().map(line).collect()
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -196,7 +280,10 @@ mod tests {
     fn spoilt(spoil: fn(&mut Answer)) -> Vec<&'static str> {
         let mut found = answer(1);
         spoil(&mut found);
-        let differences = differences(&[answer(1)], &[found]);
+        names(&differences(&[answer(1)], &[found], Tolerance::Exact))
+    }
+
+    fn names(differences: &[Difference]) -> Vec<&'static str> {
         differences
             .iter()
             .map(|difference| difference.what)
@@ -241,11 +328,55 @@ mod tests {
     fn scans_that_are_missing_or_more_are_reported() {
         let (one, two) = (answer(1), answer(2));
         let both = [one.clone(), two.clone()];
-        let missing = differences(&both, std::slice::from_ref(&one));
+        let missing = differences(&both, std::slice::from_ref(&one), Tolerance::Pose);
         assert_eq!(missing.len(), 1);
         assert_eq!((missing[0].stamp_ns, missing[0].what), (2, "scan"));
         assert_eq!((&*missing[0].expected, &*missing[0].found), ("1", "0"));
-        let more = differences(&[one], &both);
+        let more = differences(&[one], &both, Tolerance::Exact);
         assert!(table(&more).contains("2 scan"), "{}", table(&more));
+    }
+
+    #[test]
+    fn another_version_may_count_otherwise_but_not_place_the_robot_elsewhere() {
+        let spoilt = |spoil: fn(&mut Answer)| {
+            let mut found = answer(1);
+            spoil(&mut found);
+            names(&differences(&[answer(1)], &[found], Tolerance::Pose))
+        };
+        let counted_otherwise = |a: &mut Answer| {
+            (a.best, a.floor, a.votes, a.hypotheses) = (1, 2, 3, 4);
+            (a.score, a.confidence) = (None, 0.5);
+            a.pose.as_mut().unwrap().places = 7;
+        };
+        assert!(spoilt(counted_otherwise).is_empty());
+        assert!(spoilt(|a| a.x_m = Some(1.049)).is_empty());
+        assert_eq!(spoilt(|a| a.x_m = Some(1.051)), ["x_m"]);
+        assert_eq!(spoilt(|a| a.heading_deg = Some(178.9)), ["heading_deg"]);
+        let elsewhere = |a: &mut Answer| a.pose.as_mut().unwrap().x_m = Some(5.0);
+        assert_eq!(spoilt(elsewhere), ["pose.x_m"]);
+        // Of several places that fit as well, either may come first.
+        let unsure = |x_m| Answer {
+            verdict: "Ambiguous".to_owned(),
+            x_m: Some(x_m),
+            ..answer(1)
+        };
+        let of = |tolerance| names(&differences(&[unsure(1.0)], &[unsure(9.0)], tolerance));
+        assert!(of(Tolerance::Pose).is_empty());
+        assert_eq!(of(Tolerance::Exact), ["x_m"]);
+    }
+
+    #[test]
+    fn what_changed_is_summed_up_by_its_kind() {
+        let found = |x_m, verdict: &str| Answer {
+            x_m: Some(x_m),
+            verdict: verdict.to_owned(),
+            ..answer(1)
+        };
+        let found = [found(1.25, "Unique"), found(1.5, "PoorFit")];
+        let expected = [answer(1), answer(1)];
+        let text = summary(&differences(&expected, &found, Tolerance::Exact));
+        let expected = "  verdict: 1 scans; first Unique -> PoorFit at 1 ns\n  \
+                        x_m: 2 scans, by at most 0.5000; first 1.0000 -> 1.2500 at 1 ns\n";
+        assert_eq!(text, expected);
     }
 }

@@ -1,5 +1,6 @@
 //! The outcome for a build server.
 
+use std::collections::BTreeMap;
 use std::time::Duration;
 
 use quick_junit::{NonSuccessKind, Report, TestCase, TestCaseStatus, TestSuite};
@@ -10,7 +11,8 @@ use super::compare::{Difference, table};
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub(super) struct Outcome {
     pub(super) name: String,
-    pub(super) scans: usize,
+    /// The stamps of the scans that were answered, by their coming.
+    pub(super) scans: Vec<i64>,
     pub(super) took: Duration,
     pub(super) result: Result<Vec<Difference>, String>,
 }
@@ -30,38 +32,67 @@ impl Outcome {
     }
 }
 
-/// A report in the form of JUnit: a test case a recording. One that was not
-/// replayed to its end is an error, differences are a failure.
+/// A report in the form of JUnit: a suite a recording, a test case a scan, which fails
+/// where an answer differs. A recording that was not replayed to its end has one more
+/// case, an error.
 ///
 /// # Errors
 /// A text holds what XML cannot say.
 pub(super) fn report(outcomes: &[Outcome]) -> Result<String, quick_junit::SerializeError> {
-    let mut suite = TestSuite::new("backcast regress");
-    suite.add_test_cases(outcomes.iter().map(case));
-    let mut report = Report::new("backcast");
-    report.add_test_suite(suite);
+    let mut report = Report::new("backcast regress");
+    report.add_test_suites(outcomes.iter().map(suite));
     report.to_string()
 }
 
-fn case(outcome: &Outcome) -> TestCase {
-    let kind = match &outcome.result {
-        Ok(_) => NonSuccessKind::Failure,
-        Err(_) => NonSuccessKind::Error,
+fn suite(outcome: &Outcome) -> TestSuite {
+    let mut by_scan: BTreeMap<i64, Vec<Difference>> = BTreeMap::new();
+    let differences = outcome.result.as_ref().map_or(&[][..], Vec::as_slice);
+    for difference in differences {
+        let of_scan = by_scan.entry(difference.stamp_ns).or_default();
+        of_scan.push(difference.clone());
+    }
+    let mut suite = TestSuite::new(outcome.name.clone());
+    suite.set_time(outcome.took);
+    let scan = |stamp_ns: i64, differences: &[Difference]| {
+        let status = match differences {
+            [] => TestCaseStatus::success(),
+            differences => failed(differences),
+        };
+        let (seconds, ns) = (
+            stamp_ns.div_euclid(1_000_000_000),
+            stamp_ns.rem_euclid(1_000_000_000),
+        );
+        let mut case = TestCase::new(format!("scan {seconds}.{ns:09}"), status);
+        case.set_classname(outcome.name.clone());
+        case
     };
-    let status = match outcome.complaint() {
-        None => TestCaseStatus::success(),
-        Some(complaint) => {
-            let mut status = TestCaseStatus::non_success(kind);
-            status.set_message(complaint);
-            if let Ok(differences) = &outcome.result {
-                status.set_description(table(differences));
-            }
-            status
-        }
-    };
-    let mut case = TestCase::new(outcome.name.clone(), status);
-    case.set_classname("recordings").set_time(outcome.took);
-    case
+    for &stamp_ns in &outcome.scans {
+        let differences = by_scan.remove(&stamp_ns).unwrap_or_default();
+        suite.add_test_case(scan(stamp_ns, &differences));
+    }
+    // Those that were expected and did not come.
+    for (stamp_ns, differences) in by_scan {
+        suite.add_test_case(scan(stamp_ns, &differences));
+    }
+    if let Err(problem) = &outcome.result {
+        let mut status = TestCaseStatus::non_success(NonSuccessKind::Error);
+        status.set_message(problem.clone());
+        let mut case = TestCase::new("recording", status);
+        case.set_classname(outcome.name.clone());
+        suite.add_test_case(case);
+    }
+    suite
+}
+
+fn failed(differences: &[Difference]) -> TestCaseStatus {
+    let mut status = TestCaseStatus::non_success(NonSuccessKind::Failure);
+    let names: Vec<&str> = differences
+        .iter()
+        .map(|difference| difference.what)
+        .collect();
+    status.set_message(names.join(", "));
+    status.set_description(table(differences));
+    status
 }
 
 #[cfg(test)]
@@ -69,31 +100,38 @@ mod tests {
     use super::*;
 
     #[test]
-    fn a_report_names_each_recording_and_what_is_wrong() {
-        let outcome = |name: &str, result| Outcome {
+    fn a_report_names_each_scan_of_each_recording_and_what_is_wrong() {
+        let outcome = |name: &str, scans: &[i64], result| Outcome {
             name: name.to_owned(),
-            scans: 1,
+            scans: scans.to_vec(),
             took: Duration::from_millis(1500),
             result,
         };
-        let difference = Difference {
-            stamp_ns: 7,
-            what: "verdict",
+        let difference = |stamp_ns, what| Difference {
+            stamp_ns,
+            what,
             expected: "Unique".to_owned(),
             found: "<PoorFit>".to_owned(),
         };
+        let differences = vec![
+            difference(7_000_000_001, "verdict"),
+            difference(7_000_000_001, "x_m"),
+            difference(9, "scan"),
+        ];
         let text = report(&[
-            outcome("sound", Ok(Vec::new())),
-            outcome("changed", Ok(vec![difference])),
-            outcome("broken", Err("no map".to_owned())),
+            outcome("sound", &[1, 2], Ok(Vec::new())),
+            outcome("changed", &[7_000_000_001, 8_000_000_000], Ok(differences)),
+            outcome("broken", &[], Err("no map".to_owned())),
         ])
         .unwrap();
         for part in [
-            "tests=\"3\"",
-            "failures=\"1\"",
+            "tests=\"6\"",
+            "failures=\"2\"",
             "errors=\"1\"",
-            "<testcase name=\"sound\"",
-            "message=\"1 differences\"",
+            "<testsuite name=\"sound\" tests=\"2\"",
+            "<testcase name=\"scan 7.000000001\" classname=\"changed\"",
+            "message=\"verdict, x_m\"",
+            "message=\"scan\"",
             "&lt;PoorFit&gt;",
             "message=\"no map\"",
         ] {

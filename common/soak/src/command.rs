@@ -5,7 +5,6 @@ use std::path::{Path, PathBuf};
 use std::process::ExitCode;
 use std::time::Duration;
 
-use command_line::OutputError;
 use command_line::stdout::print;
 use dataflow::RestartPolicy;
 use geometry::Pose;
@@ -120,7 +119,7 @@ pub fn run(config: &Config) -> Result<ExitCode, SoakError> {
     };
     let report = Course::start(plan, maps, truths)?.run()?;
     print(&match config.json {
-        true => report.json().map_err(|error| OutputError(error.into()))?,
+        true => report.json(),
         false => report.text(),
     })?;
     Ok(match report.is_good() {

@@ -2,6 +2,7 @@
 
 use std::fmt::Write;
 
+use command_line::json;
 use serde::Serialize;
 
 use super::launched::Losses;
@@ -39,8 +40,8 @@ impl Report {
     }
 
     /// One line of JSON.
-    pub(super) fn json(&self) -> Result<String, serde_json::Error> {
-        Ok(serde_json::to_string(self)? + "\n")
+    pub(super) fn json(&self) -> String {
+        json::object(self) + "\n"
     }
 
     /// A table for people.

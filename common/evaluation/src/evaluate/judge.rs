@@ -1,5 +1,6 @@
 //! From answers and true poses to the figures of one file. Pure.
 
+use command_line::json;
 use engine::peaks::Places;
 use geometry::Pose;
 use messages::Verdict;
@@ -177,10 +178,9 @@ impl Judge {
 }
 
 impl Evaluation {
-    /// One line, without its end. Plain values under fixed keys cannot fail to
-    /// serialize; a fault there would show as the line's content.
+    /// One line, without its end.
     pub(super) fn json(&self) -> String {
-        serde_json::to_string(self).unwrap_or_else(|error| format!("{{\"error\":\"{error}\"}}"))
+        json::object(self)
     }
 }
 

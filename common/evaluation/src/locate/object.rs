@@ -3,6 +3,7 @@
 //! Every line has the same keys; what a refused scan does not have is null, and
 //! what only it has, the reason, is null elsewhere.
 
+use command_line::json;
 use engine::fit::BeamClass;
 use engine::localizer::Outcome;
 use engine::peaks::Place;
@@ -146,10 +147,9 @@ impl Object {
         self.hypotheses = places.places.iter().map(hypothesis).collect();
     }
 
-    /// One line, without its end. Plain values under fixed keys cannot fail to
-    /// serialize; a fault there would show as the line's content.
+    /// One line, without its end.
     pub(super) fn json(&self) -> String {
-        serde_json::to_string(self).unwrap_or_else(|error| format!("{{\"error\":\"{error}\"}}"))
+        json::object(self)
     }
 }
 

@@ -12,6 +12,7 @@ use progress::{Progress, say};
 
 use super::drive::Moment;
 use super::figures::Figures;
+use super::run::Said;
 use super::{course, drive, follow, jumps, starts};
 use crate::EvaluationError;
 
@@ -111,7 +112,8 @@ fn one(
     let moments = drive::read(&mut session, &truths, sequence, (&progress, &mut accepted))?;
     accepted.check(bag)?;
     let (world, config) = (session.world()?, sequence.follow);
-    show(&session, &moments, (options, sequence), bag)?;
+    let said = course::of(world, &moments, config)?;
+    show(&session, (&moments, &said), (options, sequence), bag)?;
     let chosen = starts::choose(&moments, sequence.starts);
     let starts = starts::evaluate(world, &moments, &chosen, config)?;
     let followed = follow::evaluate(world, &moments, config)?;
@@ -135,6 +137,7 @@ fn one(
     Ok(Figures::new(
         name,
         (&starts, &followed, &jumps),
+        course::errors(&moments, &said),
         searching_ms,
     ))
 }
@@ -142,21 +145,17 @@ fn one(
 /// Writes what is asked for of the drive from its first scan.
 fn show(
     session: &Session<'_>,
-    moments: &[Moment],
+    (moments, said): (&[Moment], &[Said]),
     (options, sequence): (&Options, &SequenceOptions),
     bag: &Path,
 ) -> Result<(), EvaluationError> {
-    if sequence.trajectories.is_none() && sequence.pictures.is_none() {
-        return Ok(());
-    }
     let name = bag.file_stem().unwrap_or_default().to_string_lossy();
-    let said = course::of(session.world()?, moments, sequence.follow)?;
     if let Some(folder) = &sequence.trajectories {
-        course::write(folder, &name, (moments, &said))?;
+        course::write(folder, &name, (moments, said))?;
     }
     if let Some(folder) = &sequence.pictures {
-        let words = (name.to_string(), course::doubts(&said));
-        let stops = course::stops(moments, &said);
+        let words = (name.to_string(), course::doubts(said));
+        let stops = course::stops(moments, said);
         let scene = draw_drive(session.map()?, options.engine.cells, &stops, words)?;
         let file = folder.join(format!("{name}.png"));
         let picture = drawing::to_png(&scene).map_err(PlotError::from)?;

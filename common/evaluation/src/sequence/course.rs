@@ -10,6 +10,7 @@ use offline::World;
 use plots::Stop;
 
 use super::drive::Moment;
+use super::errors::Errors;
 use super::run::{Run, Said};
 use crate::EvaluationError;
 
@@ -48,6 +49,16 @@ pub(super) fn write(
     };
     save(format!("{name}.tum"), trajectory(tracked))?;
     save(format!("{name}_truth.tum"), trajectory(truths))
+}
+
+/// Of the poses that [`write`] writes.
+pub(super) fn errors(moments: &[Moment], said: &[Said]) -> Errors {
+    let both = moments.iter().zip(said);
+    let pairs = both.filter_map(|(moment, said)| {
+        let pose = said.pose.filter(|_| said.report.state.is_believed());
+        pose.zip(moment.truth)
+    });
+    Errors::of(&pairs.collect::<Vec<_>>())
 }
 
 fn trajectory(poses: impl Iterator<Item = (i64, Pose)>) -> String {

@@ -1,8 +1,10 @@
 //! The figures of one drive.
 
+use command_line::json;
 use serde::Serialize;
 use statistics::Distribution;
 
+use super::errors::{Errors, Spread};
 use super::follow::Followed;
 use super::jumps::Jumps;
 use super::starts::Starts;
@@ -26,6 +28,8 @@ pub(super) struct Figures {
     pub(super) kidnaps_noticed_within_2: Option<f64>,
     pub(super) kidnaps_right_after_5_m: Option<f64>,
     pub(super) kidnaps_wrong: u64,
+    /// Of the drive from its first scan, with no guess.
+    pub(super) from_first_scan: Errors,
     pub(super) searched_share: Option<f64>,
     pub(super) cpu_ms_tracking: Times,
     pub(super) cpu_ms_searching: Times,
@@ -81,6 +85,7 @@ impl Figures {
     pub(super) fn new(
         bag: String,
         (starts, followed, jumps): (&Starts, &Followed, &Jumps),
+        from_first_scan: Errors,
         searching_ms: impl IntoIterator<Item = f64>,
     ) -> Self {
         let hourly = |count: u64| count as f64 / followed.hours;
@@ -101,6 +106,7 @@ impl Figures {
             kidnaps_noticed_within_2: share(jumps.noticed, jumps.jumps),
             kidnaps_right_after_5_m: share(jumps.right, jumps.jumps),
             kidnaps_wrong: jumps.wrong.len() as u64,
+            from_first_scan,
             searched_share: share(starts.searches, starts.scans),
             cpu_ms_tracking: Times::of(followed.tracking_ms.iter().copied()),
             cpu_ms_searching: Times::of(searching_ms),
@@ -109,7 +115,7 @@ impl Figures {
 
     /// As a line of JSON.
     pub(super) fn json(&self) -> String {
-        serde_json::to_string(self).expect("plain numbers and text become JSON")
+        json::object(self)
     }
 
     /// As lines to read.
@@ -131,10 +137,22 @@ impl Figures {
                 .map(|p| format!("{p:>6}"))
                 .concat()
         };
+        let spread = |spread: Option<Spread>, digits: usize| {
+            spread.map_or("–".into(), |Spread { rmse, median, max }| {
+                format!("{rmse:.digits$} / {median:.digits$} / {max:.digits$}")
+            })
+        };
+        let Errors {
+            poses,
+            ape_m,
+            rpe_m,
+            rpe_deg,
+        } = self.from_first_scan;
         format!(
             "{}\n  starts {:>4}   after     1     2     5    10    20 m\n    right, %       {}\n    not yet, %     {}\n    wrong at any time  {}\n  \
              followed: losses {}, RMS {} m {}°, farthest {} m; in the ellipse {} %; Unique {} %; false alarms {} an hour\n  \
              put elsewhere {} times: noticed within 2 scans {} %, right after 5 m {} %, wrong {}\n  \
+             from the first scan, {poses} poses, RMSE / median / max: APE {} m; RPE {} m, {}°\n  \
              CPU a scan, median / p90: tracking {} / {} ms, searching {} / {} ms; searched {} % of the scans after a start\n",
             self.bag,
             self.starts,
@@ -152,6 +170,9 @@ impl Figures {
             percent(self.kidnaps_noticed_within_2),
             percent(self.kidnaps_right_after_5_m),
             self.kidnaps_wrong,
+            spread(ape_m, 3),
+            spread(rpe_m, 3),
+            spread(rpe_deg, 2),
             number(self.cpu_ms_tracking.median, 2),
             number(self.cpu_ms_tracking.p90, 2),
             number(self.cpu_ms_searching.median, 1),

@@ -5,6 +5,7 @@
 mod command;
 mod course;
 mod drive;
+mod errors;
 mod figures;
 mod follow;
 mod jumps;

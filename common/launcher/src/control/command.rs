@@ -3,7 +3,7 @@
 use std::{path::PathBuf, process::ExitCode};
 
 use clap::Args;
-use command_line::OutputError;
+use command_line::json;
 use command_line::stdout::print;
 use transport::{GraphName, control_socket, running_graphs};
 
@@ -57,7 +57,7 @@ pub fn status(config: &StatusConfig) -> Result<ExitCode, LauncherError> {
     for graph in &graphs {
         let status = status_of(graph)?;
         print(&match config.json {
-            true => serde_json::to_string(&status).map_err(unreadable)? + "\n",
+            true => json::object(&status) + "\n",
             false => text::status(&status),
         })?;
     }
@@ -126,8 +126,4 @@ fn asked(graph: &GraphName, question: &Question) -> Result<Answer, LauncherError
         graph: graph.to_string(),
         source,
     })
-}
-
-fn unreadable(error: serde_json::Error) -> LauncherError {
-    OutputError(error.into()).into()
 }

@@ -6,6 +6,7 @@ use std::{
 };
 
 use clap::Args;
+use command_line::json;
 use command_line::stdout::print;
 use messages::{LogHeader, LogLevel, topic};
 use serde::Serialize;
@@ -108,8 +109,7 @@ impl LogLine {
 
     /// As an object on a line of its own.
     pub fn json(&self) -> String {
-        // Plain texts and numbers do not fail to serialize.
-        serde_json::to_string(self).unwrap_or_default() + "\n"
+        json::object(self) + "\n"
     }
 
     fn text(&self) -> String {

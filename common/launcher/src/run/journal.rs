@@ -3,6 +3,7 @@
 
 use std::time::Duration;
 
+use command_line::json;
 use messages::{HypothesesHeader, Hypothesis, LogHeader, PoseHeader};
 use pose_table::{Line, Row, Rows};
 use serde::Serialize;
@@ -75,7 +76,11 @@ impl Journal {
     pub(crate) fn answer(&mut self, header: &HypothesesHeader, found: &[Hypothesis]) -> Reader {
         let line = self.report.answer(header, found);
         let Some(rows) = &mut self.rows else {
-            let text = if self.json { json(&line) } else { line.text() };
+            let text = if self.json {
+                json::object(&line)
+            } else {
+                line.text()
+            };
             return self.output.line(text);
         };
         let due = rows.answer(header.stamp, line);
@@ -95,7 +100,11 @@ impl Journal {
     fn print(&mut self, rows: &[Row]) -> Reader {
         let mut reader = Reader::Reads;
         for row in rows {
-            let text = if self.json { json(row) } else { row.text() };
+            let text = if self.json {
+                json::object(row)
+            } else {
+                row.text()
+            };
             reader = self.output.line(text);
         }
         reader
@@ -121,7 +130,7 @@ impl Journal {
         if wanted {
             let last = Last { summary: &summary };
             self.output.line(if self.json {
-                json(&last)
+                json::object(&last)
             } else {
                 summary.text()
             });
@@ -136,10 +145,4 @@ impl Journal {
         }
         Ok(summary)
     }
-}
-
-/// One line of JSON. Our own structs have text keys and plain values, which
-/// cannot fail to serialize; a fault there would show as the line's content.
-fn json(value: &impl Serialize) -> String {
-    serde_json::to_string(value).unwrap_or_else(|error| format!("{{\"error\":\"{error}\"}}"))
 }

@@ -3,7 +3,7 @@
 use std::path::PathBuf;
 use std::process::ExitCode;
 
-use command_line::{LOST_DATA, stdout};
+use command_line::{LOST_DATA, json, stdout};
 use offline::TopicOptions;
 use recording::Recording;
 use serde::Serialize;
@@ -57,7 +57,7 @@ pub fn run(config: &Config) -> Result<ExitCode, RecordingToolsError> {
             findings,
         };
         stdout::print(&match config.json {
-            true => serde_json::to_string(&report).unwrap_or_default() + "\n",
+            true => json::object(&report) + "\n",
             false => text(&report),
         })?;
     }

@@ -2,6 +2,7 @@
 
 use std::collections::BTreeMap;
 
+use command_line::json;
 use recording::{Kind, Recording};
 use serde::Serialize;
 
@@ -72,8 +73,7 @@ impl Contents {
 
     /// As an object on one line.
     pub(crate) fn json(&self) -> String {
-        // Texts and numbers always serialize.
-        serde_json::to_string(self).unwrap_or_default() + "\n"
+        json::object(self) + "\n"
     }
 }
 

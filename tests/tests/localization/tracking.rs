@@ -1,0 +1,210 @@
+//! The tracker in the graph and in `backcast evaluate --sequence` finds the same poses to
+//! the last bit, and searching on demand changes none of them.
+#![allow(
+    clippy::unwrap_used,
+    reason = "the lint spares test functions but not what they share"
+)]
+
+use std::path::Path;
+use std::process::Command;
+use std::time::Duration;
+
+use messages::{PoseHeader, TrackState, topic};
+use serde_json::Value;
+use tempfile::TempDir;
+use tests::needs::Need;
+use tests::world::World;
+use tests::{executables, python};
+use transport::testing::{Isolated, NodeProcess};
+use transport::{Flow, TransportError};
+
+/// Stamp, x, y, and the quaternion's z and w.
+type Track = Vec<(String, f64, f64, f64, f64)>;
+
+fn by_tools(recording: &Path, map: &Path) -> Track {
+    let folder = TempDir::new().unwrap();
+    let mut command = executables::backcast();
+    command.args([
+        "evaluate",
+        "--sequence",
+        "--starts",
+        "1",
+        "--kidnaps",
+        "0",
+        "--map",
+    ]);
+    command.arg(map).arg("--trajectories").arg(folder.path());
+    let output = command.arg(recording).output().unwrap();
+    assert!(
+        output.status.success(),
+        "{}",
+        String::from_utf8_lossy(&output.stderr)
+    );
+    let text = std::fs::read_to_string(folder.path().join("recording.tum")).unwrap();
+    let line = |line: &str| {
+        let words: Vec<&str> = line.split(' ').collect();
+        let number = |i: usize| words[i].parse().unwrap();
+        (
+            words[0].to_owned(),
+            number(1),
+            number(2),
+            number(6),
+            number(7),
+        )
+    };
+    text.lines().map(line).collect()
+}
+
+/// The poses of all scans, from a graph that is fed at a rate.
+fn by_graph(
+    tag: &str,
+    recording: &Path,
+    map: &Path,
+    rate: &str,
+    search: &str,
+    scans: usize,
+) -> Vec<PoseHeader> {
+    let isolated = Isolated::new(tag);
+    let graph = isolated.join("test");
+    let poses = graph.subscriber::<topic::Tracked>().unwrap();
+    let start = |name: &str, arguments: &[&str]| {
+        NodeProcess::start(executables::path(name).to_str().unwrap(), &graph, arguments)
+    };
+    let nodes = [
+        start("map_server", &["--map", map.to_str().unwrap()]),
+        start("boundary_extractor", &[]),
+        start("accumulator", &["--search", search]),
+        start("peak_extractor", &[]),
+        start("tracker", &[]),
+    ];
+    let recording = recording.to_str().unwrap();
+    let wait = "accumulator,peak_extractor,tracker";
+    let player = start(
+        "replayer",
+        &["--rate", rate, "--wait-for", wait, "--recording", recording],
+    );
+    let mut found: Vec<PoseHeader> = Vec::new();
+    let outcome = graph.run(&[&poses], Duration::from_millis(100), |_| {
+        while let Some(pose) = poses.receive()? {
+            if pose.header().from_scan == 1 {
+                found.push(*pose.header());
+            }
+        }
+        Ok::<_, TransportError>(if found.len() == scans {
+            Flow::Stop
+        } else {
+            Flow::Continue
+        })
+    });
+    outcome.unwrap();
+    assert_eq!(player.exit_code(), Some(0), "the player lost something");
+    for node in nodes {
+        node.stop();
+    }
+    found
+}
+
+/// Those that a trajectory holds.
+fn track(poses: &[PoseHeader]) -> Track {
+    let states = [TrackState::Unique as u32, TrackState::Doubtful as u32];
+    let meant = poses.iter().filter(|pose| states.contains(&pose.state));
+    meant
+        .map(|pose| {
+            let (stamp, at) = (pose.stamp.measured_ns, pose.map_from_laser);
+            let (sin, cos) = (0.5 * at.yaw).sin_cos();
+            let stamp = format!("{}.{:09}", stamp / 1_000_000_000, stamp % 1_000_000_000);
+            (stamp, at.x, at.y, sin, cos)
+        })
+        .collect()
+}
+
+#[test]
+fn the_graph_and_the_tools_track_alike() {
+    let world = World::of("malaga_corridor");
+    let (recording, map) = (world.recording(), world.map());
+    let expected = by_tools(&recording, &map);
+    let poses = by_graph("track-all", &recording, &map, "max", "all", 37);
+    assert!(expected.len() > 25, "{}", expected.len());
+    assert_eq!(track(&poses), expected);
+    // With odometry, the map's frame is tied to the odometry's.
+    assert!(poses.iter().all(|pose| pose.odom_known == 1));
+    let asked = by_graph("track-asked", &recording, &map, "4", "asked", 37);
+    assert_eq!(track(&asked), expected);
+}
+
+/// evo asks for much that reading and comparing two files needs nothing of.
+const EVO: [&str; 5] = [
+    "--no-deps",
+    "evo==1.31.1",
+    "numpy==2.4.6",
+    "scipy==1.17.1",
+    "packaging==26.4",
+];
+
+#[test]
+fn evo_finds_the_same_errors_of_a_trajectory() {
+    let test = "evo_finds_the_same_errors_of_a_trajectory";
+    let python = match python::with("evo", &EVO, "evo.core.metrics, evo.core.sync") {
+        Ok(python) => python,
+        Err(why) => return Need::Python.is_missing(test, &why),
+    };
+    let world = World::of("malaga_campus");
+    let (folder, map) = (TempDir::new().unwrap(), world.map());
+    let written = folder.path().to_str().unwrap();
+    let once = ["--starts", "1", "--kidnaps", "0", "--trajectories", written];
+    let options = [&once[..], &["--map", map.to_str().unwrap()]].concat();
+    let ours = &figures(&world.recording(), &options)["from_first_scan"];
+    let script = concat!(env!("CARGO_MANIFEST_DIR"), "/tests/localization/evo.py");
+    let files = ["recording_truth.tum", "recording.tum"].map(|file| folder.path().join(file));
+    let theirs = tests::json_of(Command::new(python).arg(script).args(files));
+    assert!(theirs["poses"].as_u64().unwrap() > 100, "{theirs}");
+    assert_eq!(ours["poses"], theirs["poses"]);
+    for error in ["ape_m", "rpe_m", "rpe_deg"] {
+        for figure in ["rmse", "median", "max"] {
+            let [ours, theirs] = [ours, &theirs].map(|all| all[error][figure].as_f64().unwrap());
+            // Quaternions and matrices in double precision, and angles by their cosine,
+            // which is flat near none.
+            assert!(
+                (ours - theirs).abs() < 1e-6,
+                "{error} {figure}: {ours} {theirs}"
+            );
+        }
+    }
+}
+
+fn figures(recording: &Path, options: &[&str]) -> Value {
+    let mut command = executables::backcast();
+    command.args(["evaluate", "--sequence", "--json"]);
+    tests::json_of(command.args(options).arg(recording))
+}
+
+#[test]
+fn drives_of_other_robots_are_tracked() {
+    let Some(folder) = tests::evaluation_data() else {
+        let test = "drives_of_other_robots_are_tracked";
+        Need::Data.is_missing(test, "no folder shared/data/evaluation beside the project");
+        return;
+    };
+    for (file, right) in [
+        ("intel_sequence.mcap", 0.98),
+        ("seattle_sequence.mcap", 0.95),
+    ] {
+        let found = figures(&folder.join(file), &["--starts", "20", "--kidnaps", "10"]);
+        assert_eq!(found["wrong_starts"], 0, "{file}: {found}");
+        assert_eq!(found["losses"], 0, "{file}: {found}");
+        assert_eq!(found["kidnaps_wrong"], 0, "{file}: {found}");
+        assert!(
+            found["right"]["5"].as_f64().unwrap() >= right,
+            "{file}: {found}"
+        );
+        assert!(found["rms_m"].as_f64().unwrap() <= 0.03, "{file}: {found}");
+    }
+    // A map that was drawn leaves out doors, and its bays repeat.
+    let drawn = folder.join("guardian_drawn_map.mcap");
+    let found = figures(
+        &drawn,
+        &["--starts", "20", "--kidnaps", "0", "--every", "2"],
+    );
+    assert_eq!(found["wrong_starts"], 0, "{found}");
+    assert!(found["right"]["20"].as_f64().unwrap() >= 0.8, "{found}");
+}
