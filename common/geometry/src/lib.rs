@@ -6,8 +6,10 @@
 
 mod angle;
 mod covariance;
+mod mount;
 mod pose;
 
 pub use angle::{angle_between, wrap_angle};
 pub use covariance::{Covariance, Ellipse};
-pub use pose::{Mount, Pose};
+pub use mount::{Mount, MountError};
+pub use pose::Pose;

@@ -17,16 +17,6 @@ pub struct Pose {
     pub yaw: f64,
 }
 
-/// How a laser sits on the robot.
-#[derive(Debug, Clone, Copy, PartialEq, Default)]
-pub struct Mount {
-    /// Where it is, seen from above; its yaw is that of the laser's x axis.
-    pub base_from_laser: Pose,
-    /// Whether it hangs upside down: rolled by half a turn about its x axis, so that
-    /// what is to its left lies to the right.
-    pub is_upside_down: bool,
-}
-
 impl Pose {
     /// The transform that changes nothing.
     pub const IDENTITY: Pose = Pose::new(0.0, 0.0, 0.0);

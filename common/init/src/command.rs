@@ -9,6 +9,7 @@ use std::process::ExitCode;
 
 use clap::ArgGroup;
 use command_line::stdout;
+use geometry::Mount;
 use launcher::descriptor::{self, Builds};
 use progress::say;
 use recording::{Kind, Recording};
@@ -165,16 +166,9 @@ fn reader_options(config: &Config, device: &str) -> Result<Vec<String>, InitErro
 
 /// The mount as it was given, if it is one.
 fn mount(text: &str) -> Result<String, InitError> {
-    let numbers = text.split(',').map(|number| number.trim().parse::<f64>());
-    let numbers: Vec<f64> = numbers.map_while(Result::ok).collect();
-    let is_mount = numbers.len() == 3 && text.split(',').count() == 3;
-    match is_mount && numbers.iter().all(|number| number.is_finite()) {
-        true => Ok(text.replace(' ', "")),
-        false => Err(InitError::Usage(format!(
-            "--mount {text:?} is no place; allowed: metres ahead, metres to the left, degrees, as \
-             0.2,0,90"
-        ))),
-    }
+    let is_mount: Result<Mount, _> = text.parse();
+    is_mount.map_err(|error| InitError::Usage(format!("--mount {text:?}: {error}")))?;
+    Ok(text.replace(' ', ""))
 }
 
 /// The map's file, absolute, if it can be used.
@@ -203,11 +197,12 @@ mod tests {
     use super::*;
 
     #[test]
-    fn a_mount_is_three_numbers() {
+    fn a_mount_is_kept_as_one_word() {
         assert_eq!(mount("0.2, 0,-90").unwrap(), "0.2,0,-90");
-        for wrong in ["", "1,2", "1,2,3,4", "1,2,x", "1,2,inf"] {
-            let error = mount(wrong).unwrap_err().to_string();
-            assert!(error.contains("allowed"), "{wrong}: {error}");
-        }
+        let error = mount("1,2").unwrap_err().to_string();
+        assert!(
+            error.starts_with("--mount \"1,2\": expected are three"),
+            "{error}"
+        );
     }
 }

@@ -3,7 +3,8 @@
 use std::path::PathBuf;
 
 use clap::{ArgAction, ArgGroup, CommandFactory, Parser, ValueEnum, error::ErrorKind};
-use messages::{FrameName, Name, Pose2};
+use geometry::Mount;
+use messages::{FrameName, Name};
 use sick::cola::{AngleConvention, DeviceAngles, Encoding, KnownDevice, USUAL_REACH_M};
 use sick::lms2xx::{Baud, RangeMode, Unit};
 
@@ -81,9 +82,9 @@ pub struct Config {
     pub silence: f64,
 
     /// Where the laser sits on the robot: metres ahead, metres to the left, degrees
-    /// counter-clockwise [default: unknown].
-    #[arg(long, value_name = "X,Y,YAW_DEG", value_parser = mount, allow_hyphen_values = true)]
-    pub mount: Option<Pose2>,
+    /// counter-clockwise, and 180 if it hangs upside down [default: unknown].
+    #[arg(long, value_name = "X,Y,YAW_DEG[,180]", allow_hyphen_values = true)]
+    pub mount: Option<Mount>,
 
     /// The laser hangs upside down: rolled by half a turn about its x axis.
     #[arg(long)]
@@ -205,8 +206,8 @@ impl Config {
         ScanSettings {
             range_min_m: self.range_min_m,
             range_max_m: self.range_max_m,
-            base_from_laser: self.mount,
-            upside_down: self.upside_down,
+            base_from_laser: self.mount.map(|mount| mount.base_from_laser.into()),
+            upside_down: self.upside_down || self.mount.is_some_and(|m| m.is_upside_down),
             laser: self.laser,
             frame: self.frame,
             stamps: self.stamps,
@@ -326,127 +327,5 @@ fn laser(text: &str) -> Result<Name, String> {
     }
 }
 
-fn mount(text: &str) -> Result<Pose2, String> {
-    let numbers: Vec<f64> = text
-        .split(',')
-        .map_while(|number| number.trim().parse().ok().filter(|n: &f64| n.is_finite()))
-        .collect();
-    match (&numbers[..], text.matches(',').count()) {
-        (&[x, y, yaw_deg], 2) => Ok(Pose2 {
-            x,
-            y,
-            yaw: yaw_deg.to_radians(),
-        }),
-        _ => Err("expected are three finite numbers: X,Y,YAW_DEG".into()),
-    }
-}
-
 #[cfg(test)]
-mod tests {
-    use super::*;
-
-    fn parse(arguments: &str) -> Result<Config, String> {
-        let words = ["lms_reader"]
-            .into_iter()
-            .chain(arguments.split_whitespace());
-        let config = Config::try_parse_from(words).map_err(|error| error.to_string())?;
-        config.check().map(|()| config)
-    }
-
-    #[test]
-    fn the_command_line_is_well_formed() {
-        Config::command().debug_assert();
-    }
-
-    #[test]
-    fn defaults() {
-        let config = parse("--tcp 192.168.0.1:2112").unwrap();
-        assert!(config.start_stream && !config.looped);
-        assert_eq!(config.rate, Rate::Device);
-        assert_eq!(config.scan_settings().base_from_laser, None);
-        assert_eq!(config.frame.as_str(), "laser");
-    }
-
-    #[test]
-    fn a_device_whose_zero_is_elsewhere() {
-        let angles = |arguments: &str| parse(arguments).unwrap().stated_angles();
-        assert_eq!(angles("--capture a"), None);
-        let tim = angles("--capture a --device tim240").unwrap();
-        assert_eq!(
-            tim.certain().map(|c| (c.ahead_deg, c.clockwise)),
-            Some((0.0, false))
-        );
-        let nav = angles("--tcp a:1 --zero-deg -180 --clockwise").unwrap();
-        assert_eq!(
-            nav.certain().map(|c| (c.ahead_deg, c.clockwise)),
-            Some((-180.0, true))
-        );
-    }
-
-    #[test]
-    fn a_serial_device() {
-        let config = parse("--serial /dev/ttyUSB0 --baud 500000 --range 80 --field 100").unwrap();
-        let range = config.range.unwrap();
-        assert_eq!(config.baud, Some(Baud::B500000));
-        assert_eq!((range.mode.mask(), range.unit), (0x1fff, Unit::Centimetre));
-        assert!(parse("--serial a --resolution 0.25 --field 100").is_ok());
-    }
-
-    #[test]
-    fn a_mount_behind_the_base_turned_around() {
-        let config = parse("--capture a.bin --mount -0.1,0.2,180 --rate max --loop").unwrap();
-        let mount = config.mount.unwrap();
-        assert_eq!(
-            (mount.x, mount.y, mount.yaw),
-            (-0.1, 0.2, std::f64::consts::PI)
-        );
-    }
-
-    #[test]
-    fn what_is_refused_says_what_is_allowed() {
-        let refuse = |arguments: &str, expected: &str| {
-            let text = parse(arguments).unwrap_err();
-            assert!(text.contains(expected), "{arguments}: {text}");
-        };
-        refuse("", "--tcp");
-        refuse("--tcp a:1 --capture b", "cannot be used with");
-        refuse("--tcp a:1 --loop", "cannot be used with");
-        refuse("--tcp a:1 --rate max", "cannot be used with");
-        refuse("--tcp 192.168.0.1", "HOST:PORT with a port from 1 to 65535");
-        refuse("--tcp a:0", "1 to 65535");
-        refuse("--tcp a:1 --serial b", "cannot be used with");
-        refuse("--serial a --loop", "cannot be used with");
-        refuse("--serial a --protocol cola-a", "cannot be used with");
-        refuse("--tcp a:1 --baud 9600", "cannot be used with");
-        refuse("--serial a --baud 57600", "38400 and 500000");
-        refuse("--serial a --field 90", "100 or 180 at 0.5 or 1");
-        refuse("--serial a --field 180 --resolution 0.25", "100 at 0.25");
-        refuse("--serial a --range 10", "8, 16, 32 and 80");
-        refuse("--serial a --start-stream false", "must be asked");
-        refuse("--tcp a:1 --field 0", "1 to 360 degrees");
-        refuse("--tcp a:1 --resolution x", "0.01 to 5 degrees");
-        refuse("--tcp a:1 --mount 1,2", "X,Y,YAW_DEG");
-        refuse("--tcp a:1 --mount 1,2,x", "X,Y,YAW_DEG");
-        refuse("--tcp a:1 --mount 1,2,3,4", "X,Y,YAW_DEG");
-        refuse("--tcp a:1 --mount 1,2,3,x", "X,Y,YAW_DEG");
-        refuse("--serial a --stamps device", "cannot be used with");
-        refuse("--serial a --until-closed", "cannot be used with");
-        refuse("--tcp a:1 --silence 0", "0.2 to 3600");
-        refuse("--tcp a:1 --device XY7", "known are LMS1xx, LMS5xx");
-        refuse("--tcp a:1 --device NAV245", "the sources differ");
-        refuse(
-            "--tcp a:1 --device TiM240 --zero-deg 0",
-            "cannot be used with",
-        );
-        refuse("--tcp a:1 --zero-deg 361", "-360 to 360 degrees");
-        refuse("--tcp a:1 --clockwise", "--zero-deg");
-        refuse("--serial a --device LMS111", "cannot be used with");
-        refuse("--tcp a:1 --range-min-m 90", "the maximum must be larger");
-        refuse("--tcp a:1 --range-min-m nan", "finite");
-        refuse("--tcp a:1 --range-max-m 0.01", "the maximum must be larger");
-        refuse(
-            &format!("--tcp a:1 --frame {}", "f".repeat(257)),
-            "257 bytes, allowed are 1 to 256",
-        );
-    }
-}
+mod tests;

@@ -1,7 +1,7 @@
 //! Command-line options.
 
 use clap::{Parser, ValueEnum};
-use geometry::{Mount, Pose};
+use geometry::Mount;
 use messages::FrameName;
 
 use crate::GatewayError;
@@ -49,7 +49,11 @@ pub struct Config {
     /// does not say it; a fourth number of 180 is a laser that hangs upside down, rolled
     /// by half a turn about its x axis. For several lasers once each, in the order of
     /// their --scan
-    #[arg(long = "mount", value_name = "X,Y,YAW_DEG[,180]", value_parser = mount, allow_hyphen_values = true)]
+    #[arg(
+        long = "mount",
+        value_name = "X,Y,YAW_DEG[,180]",
+        allow_hyphen_values = true
+    )]
     pub mounts: Vec<Mount>,
 
     /// The only laser, that of --mount, hangs upside down
@@ -230,21 +234,6 @@ fn reach(text: &str) -> Result<Reach, String> {
     }
 }
 
-fn mount(text: &str) -> Result<Mount, String> {
-    let level = numbers(text).map(|[x, y, yaw_deg]| [x, y, yaw_deg, 0.0]);
-    match level.or_else(|| numbers(text)) {
-        Some([x, y, yaw_deg, roll_deg]) if [0.0, 180.0, -180.0].contains(&roll_deg) => Ok(Mount {
-            base_from_laser: Pose::new(x, y, yaw_deg.to_radians()),
-            is_upside_down: roll_deg != 0.0,
-        }),
-        _ => Err(
-            "expected are three finite numbers, X,Y,YAW_DEG, and of a laser upside down 180 as \
-             the fourth"
-                .into(),
-        ),
-    }
-}
-
 fn frame(text: &str) -> Result<String, String> {
     if (1..=FrameName::CAPACITY).contains(&text.len()) {
         return Ok(text.to_owned());
@@ -263,6 +252,8 @@ fn ahead(text: &str) -> Result<f64, String> {
 #[cfg(test)]
 mod tests {
     use clap::CommandFactory;
+
+    use geometry::Pose;
 
     use super::*;
 

@@ -3,26 +3,27 @@
 //! A node that fails for good ends the run if the graph needs it; else the rest continues
 //! without it, and [`Crew::given_up`] says so.
 
+mod member;
+
 use std::{
     io,
     path::{Path, PathBuf},
-    process::ExitStatus,
     sync::mpsc::{Receiver, Sender, channel},
     thread,
     time::{Duration, Instant},
 };
 
-use command_line::{LOST_DATA, WRONG_USE};
 use dataflow::Node;
-use messages::{HealthHeader, LogLevel, NodeState};
+use messages::{HealthHeader, NodeState};
 use nix::sys::signal::Signal;
-use transport::{GraphName, log_in_graph, with_causes};
+use transport::{GraphName, with_causes};
 
+use self::member::{Member, State, lost_data, not_supervised};
 use super::{
     console::warn,
     control::NodeStatus,
-    process::{Process, executable},
-    supervision::{AfterEnd, Ended, Pulse, Restarts, is_essential, is_over, is_source},
+    process::Process,
+    supervision::{is_over, is_source},
 };
 use crate::LauncherError;
 
@@ -48,30 +49,6 @@ pub struct Crew {
     given_up: Vec<String>,
 }
 
-struct Member {
-    node: Node,
-    essential: bool,
-    restarts: Restarts,
-    pulse: Pulse,
-    state: State,
-    /// When its process was started last.
-    started: Option<Instant>,
-    /// How often it was started again, and how its last process ended.
-    restarted: u64,
-    last_end: Option<ExitStatus>,
-    /// Somebody wants its process to end and another one to follow.
-    wanted_anew: bool,
-    /// Whether it said so with its exit code.
-    lost_data: bool,
-}
-
-enum State {
-    /// To be started at this time.
-    Due(Instant),
-    Running(Process),
-    Done,
-}
-
 impl Crew {
     /// The crew of `nodes`, in `folder`; nothing runs before the first
     /// [`Crew::tick`].
@@ -81,21 +58,7 @@ impl Crew {
     pub fn new(nodes: Vec<Node>, folder: &Path, graph: &GraphName) -> Result<Self, LauncherError> {
         let now = Instant::now();
         let (output_open, output_closed) = channel();
-        let member = |node: Node| {
-            Ok(Member {
-                essential: is_essential(&node)?,
-                restarts: Restarts::new(node.restart),
-                pulse: Pulse::new(node.restart.health_timeout),
-                state: State::Due(now),
-                started: None,
-                restarted: 0,
-                last_end: None,
-                wanted_anew: false,
-                lost_data: false,
-                node,
-            })
-        };
-        let members = nodes.into_iter().map(member);
+        let members = nodes.into_iter().map(|node| Member::new(node, now));
         Ok(Crew {
             members: members.collect::<Result<_, LauncherError>>()?,
             folder: folder.to_owned(),
@@ -274,158 +237,5 @@ impl Crew {
             }
         }
         Ok(())
-    }
-}
-
-impl Member {
-    fn start_if_due(
-        &mut self,
-        now: Instant,
-        folder: &Path,
-        graph: &GraphName,
-        open: &Sender<()>,
-    ) -> Result<(), LauncherError> {
-        if !matches!(self.state, State::Due(at) if at <= now) {
-            return Ok(());
-        }
-        let process = match Process::start(&self.node, folder, graph, open) {
-            Ok(process) => process,
-            Err(source) => return self.not_started(source, folder, now),
-        };
-        // The console need not have it.
-        let started = format!("{} runs as process {}", self.node.id, process.pid());
-        log_in_graph(LogLevel::Info, &started);
-        self.restarted += u64::from(self.started.is_some());
-        self.started = Some(now);
-        self.pulse.started(now);
-        self.state = State::Running(process);
-        Ok(())
-    }
-
-    /// What ran before can be started another time: memory or processes were short.
-    fn not_started(
-        &mut self,
-        source: io::Error,
-        folder: &Path,
-        now: Instant,
-    ) -> Result<(), LauncherError> {
-        let after = match self.started {
-            Some(_) => self.restarts.after_end(Ended::Badly, Duration::ZERO, now),
-            None => AfterEnd::Failed,
-        };
-        if let AfterEnd::Restart(delay) = after {
-            let id = &self.node.id;
-            warn(&format!(
-                "{id} cannot be started and will be retried: {source}"
-            ));
-            self.state = State::Due(now + delay);
-            return Ok(());
-        }
-        self.state = State::Done;
-        Err(LauncherError::NotStarted {
-            node: self.node.id.clone(),
-            path: executable(&self.node, folder),
-            folder: folder.to_owned(),
-            source,
-        })
-    }
-
-    /// Returns whether the process has ended, after deciding what follows.
-    fn look_after(&mut self, now: Instant) -> Result<bool, LauncherError> {
-        let Some(status) = self.poll()? else {
-            self.end_if_hung(now)?;
-            return Ok(false);
-        };
-        self.lost_data = lost_data(status);
-        self.last_end = Some(status);
-        if std::mem::take(&mut self.wanted_anew) {
-            self.state = State::Due(now);
-            return Ok(true);
-        }
-        let worked = self.started.map_or(Duration::ZERO, |started| now - started);
-        self.state = match self.restarts.after_end(how_ended(status), worked, now) {
-            AfterEnd::Done => State::Done,
-            AfterEnd::Restart(delay) => {
-                let id = &self.node.id;
-                warn(&format!("{id} ended with {status} and is restarted"));
-                State::Due(now + delay)
-            }
-            AfterEnd::Failed => {
-                self.state = State::Done;
-                return Err(LauncherError::NodeFailed {
-                    node: self.node.id.clone(),
-                    status,
-                    restarts: self.restarts.recent(),
-                });
-            }
-        };
-        Ok(true)
-    }
-
-    fn status(&self, now: Instant) -> NodeStatus {
-        let (state, pid) = match &self.state {
-            State::Due(_) => ("waiting to start", None),
-            State::Running(process) => ("running", Some(process.pid())),
-            State::Done => ("ended", None),
-        };
-        let up = self.started.filter(|_| pid.is_some());
-        NodeStatus {
-            id: self.node.id.clone(),
-            state: state.to_owned(),
-            pid,
-            uptime_s: up.map(|started| (now - started).as_secs()),
-            restarts: self.restarted,
-            last_end: self.last_end.map(|status| status.to_string()),
-        }
-    }
-
-    /// What does not report any more does not work any more, or is stopped.
-    fn end_if_hung(&mut self, now: Instant) -> Result<(), LauncherError> {
-        let (Some(silent), State::Running(process)) = (self.pulse.missed_for(now), &self.state)
-        else {
-            return Ok(());
-        };
-        let (id, seconds) = (&self.node.id, silent.as_secs());
-        warn(&format!(
-            "{id} sent no heartbeat for {seconds} s and is killed"
-        ));
-        // Its end is seen later; until then it is not ended again.
-        self.pulse.restart_timeout(now);
-        let killed = process.signal(Signal::SIGKILL);
-        killed.map_err(|error| not_supervised(&self.node, process.pid(), error))
-    }
-
-    fn poll(&mut self) -> Result<Option<ExitStatus>, LauncherError> {
-        let State::Running(process) = &mut self.state else {
-            return Ok(None);
-        };
-        let pid = process.pid();
-        process
-            .poll()
-            .map_err(|e| not_supervised(&self.node, pid, e))
-    }
-}
-
-/// Who did all that could be done, and lost data, would not do better again.
-fn how_ended(status: ExitStatus) -> Ended {
-    if status.success() || lost_data(status) {
-        Ended::Well
-    } else if status.code() == Some(WRONG_USE.into()) {
-        Ended::Misused
-    } else {
-        Ended::Badly
-    }
-}
-
-/// Whether a process said so.
-fn lost_data(status: ExitStatus) -> bool {
-    status.code() == Some(LOST_DATA.into())
-}
-
-fn not_supervised(node: &Node, pid: i32, source: io::Error) -> LauncherError {
-    LauncherError::NotSupervised {
-        node: node.id.clone(),
-        pid,
-        source,
     }
 }

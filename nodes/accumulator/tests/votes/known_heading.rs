@@ -5,8 +5,6 @@
     reason = "the lint spares test functions but not what they share"
 )]
 
-mod world;
-
 use std::f64::consts::FRAC_PI_2;
 
 use bytemuck::Zeroable;
@@ -16,7 +14,8 @@ use messages::{
     Stamp, topic,
 };
 use transport::testing::{Isolated, NodeProcess, wait_for, wait_for_health};
-use world::{FRAME, MOUNT, ROOM, World, id, localizer, ranges, scan};
+
+use crate::world::{FRAME, MOUNT, ROOM, World, id, localizer, ranges, scan};
 
 /// In the grid's frame, as the scans are drawn.
 const HEADING: usize = 40;

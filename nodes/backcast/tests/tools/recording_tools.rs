@@ -5,16 +5,15 @@
     reason = "a test fails by panicking, helpers of tests too"
 )]
 
-mod drawn;
-
 use std::fs;
 
-use drawn::{
+use recording::Message;
+use serde_json::Value;
+
+use crate::drawn::{
     HERE, THERE, folder, keys, map_message, mount_message, odometry_at, recordings, run, scan,
     scan_at, truth_at,
 };
-use recording::Message;
-use serde_json::Value;
 
 /// The room in a frame with a name.
 fn framed_map() -> (&'static str, Message) {

@@ -5,16 +5,17 @@
     reason = "a test fails by panicking, helpers of tests too"
 )]
 
-mod drawn;
-
 use std::fs;
 
-use drawn::{HERE, folder, lines, map_message, objects, room, run, scan, scan_at, truth_at, word};
 use recording::Message;
 use recording::write::{Packing, RecordingWriter};
 use ros::LaserScan;
 use serde_json::Value;
 use tempfile::TempDir;
+
+use crate::drawn::{
+    HERE, folder, lines, map_message, objects, room, run, scan, scan_at, truth_at, word,
+};
 
 #[test]
 fn a_refused_scan_has_a_line_with_the_reason() {

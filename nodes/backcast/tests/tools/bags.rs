@@ -6,17 +6,16 @@
     reason = "a test fails by panicking, helpers of tests too"
 )]
 
-mod drawn;
-
 use std::fs;
 
-use drawn::{
-    HERE, THERE, folder, map_message, mount_message, record, recordings, room, run, scan, scan_at,
-    truth_at,
-};
 use recording::Message;
 use ros::{LaserScan, OccupancyGridMsg};
 use serde_json::Value;
+
+use crate::drawn::{
+    HERE, THERE, folder, map_message, mount_message, record, recordings, room, run, scan, scan_at,
+    truth_at,
+};
 
 /// The room as far as it is known: this many of its rows.
 fn known_rows(rows: usize) -> (&'static str, Message) {

@@ -5,15 +5,16 @@
     reason = "a test fails by panicking, helpers of tests too"
 )]
 
-mod drawn;
-
 use std::fs;
 use std::path::Path;
 
-use drawn::{HERE, THERE, keys, map_message, record, recordings, run, scan, scan_at, truth_at};
 use recording::Message;
 use serde_json::Value;
 use tempfile::TempDir;
+
+use crate::drawn::{
+    HERE, THERE, keys, map_message, record, recordings, run, scan, scan_at, truth_at,
+};
 
 /// A folder with `r.mcap`: a map and five scans, of which the second has no
 /// truth, the third is empty, and the truth of the last is of another place.

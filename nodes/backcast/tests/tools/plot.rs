@@ -6,18 +6,17 @@
     reason = "a test fails by panicking, helpers of tests too"
 )]
 
-mod drawn;
-
 use std::fs;
 use std::path::Path;
 
-use drawn::{
-    HERE, THERE, folder, map_from_laser, map_message, recordings, room, run, scan, scan_at,
-    truth_at,
-};
 use image::{Rgb, RgbImage};
 use recording::Message;
 use tempfile::TempDir;
+
+use crate::drawn::{
+    HERE, THERE, folder, map_from_laser, map_message, recordings, room, run, scan, scan_at,
+    truth_at,
+};
 
 /// The colour of the best place, as the picture's legend shows it too.
 const BEST: Rgb<u8> = Rgb([0x1B, 0x5F, 0xD0]);

@@ -13,7 +13,8 @@ use sick::cola::{Answer, Command, Encoding, Fault, Framer, Telegram};
 use transport::Graph;
 use transport::testing::{Isolated, NodeProcess, wait_for_health, wait_until};
 
-const CAPTURE: &[u8] = include_bytes!("../../../common/sick/tests/data/tim781_colab_telegrams.bin");
+const CAPTURE: &[u8] =
+    include_bytes!("../../../../common/sick/tests/data/tim781_colab_telegrams.bin");
 const CAPTURE_PATH: &str = concat!(
     env!("CARGO_MANIFEST_DIR"),
     "/../../common/sick/tests/data/tim781_colab_telegrams.bin"

@@ -5,12 +5,10 @@
     reason = "the lint spares test functions but not what they share"
 )]
 
-mod drawn;
-
 use std::fs;
 use std::path::Path;
 
-use drawn::{recordings, run};
+use crate::drawn::{recordings, run};
 
 fn init(folder: &Path, options: &str) -> (i32, String, String) {
     let corridor = recordings().join("malaga_corridor");

@@ -6,19 +6,18 @@
     reason = "a test fails by panicking, helpers of tests too"
 )]
 
-mod drawn;
-
 use std::f64::consts::{FRAC_PI_2, PI};
 use std::fs;
 use std::io::Write;
 use std::path::Path;
 
-use drawn::{folder, recordings, run};
 use flate2::Compression;
 use flate2::write::GzEncoder;
 use geometry::Pose;
 use recording::{Kind, Message, Recording};
 use ros::LaserScan;
+
+use crate::drawn::{folder, recordings, run};
 
 #[test]
 fn a_recording_becomes_a_log_and_a_recording_again() {

@@ -5,8 +5,6 @@
     reason = "the lint spares test functions but not what they share"
 )]
 
-mod world;
-
 use engine::localizer::{Outcome, Prior};
 use messages::{
     BoundaryCell, Corner, FieldHeader, FieldKind, HealthHeader, NodeState, SearchOutcome, Vote,
@@ -14,7 +12,8 @@ use messages::{
 };
 use transport::Publisher;
 use transport::testing::{Isolated, wait_for, wait_for_health};
-use world::{FRAME, MOUNT, ROOM, World, id, localizer, map_header, occupancy, ranges, scan};
+
+use crate::world::{FRAME, MOUNT, ROOM, World, id, localizer, map_header, occupancy, ranges, scan};
 
 /// The same room after somebody has moved the pillar and opened a door.
 const CHANGED: [&str; 9] = [

@@ -5,18 +5,17 @@
     reason = "a test fails by panicking, helpers of tests too"
 )]
 
-mod drawn;
-
 use std::fs::File;
 use std::io::Read;
 
-use drawn::{
+use geometry::Pose;
+use serde_json::Value;
+
+use crate::drawn::{
     BASE_FROM_LASER, HERE, ODOMETRY_OFFSET_DEG, RESOLUTION_M, SECOND_NS, THERE, backcast, folder,
     keys, lines, map_from_laser, map_message, mount_message, objects, odometry_at, recordings,
     room, run, scan_at, truth_at, word,
 };
-use geometry::Pose;
-use serde_json::Value;
 
 fn pose(object: &Value) -> Pose {
     let number = |key: &str| object[key].as_f64().unwrap();

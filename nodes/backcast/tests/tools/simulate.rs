@@ -5,12 +5,11 @@
     reason = "the lint spares test functions but not what they share"
 )]
 
-mod drawn;
-
-use drawn::{recordings, run};
 use recording::Recording;
 use serde_json::Value;
 use tempfile::TempDir;
+
+use crate::drawn::{recordings, run};
 
 const START_NS: i64 = 1_700_000_000_000_000_000;
 

@@ -1,0 +1,144 @@
+use super::super::drawn::distance_field;
+use super::*;
+use crate::fit::ends::End;
+
+/// An L-shaped room, 20 cells wide.
+const ROOM: [&str; 12] = [
+    "####################",
+    "#..................#",
+    "#..................#",
+    "#..................#",
+    "#..................#",
+    "#..................#",
+    "#..................#",
+    "#.......############",
+    "#.......#...........",
+    "#.......#...........",
+    "#.......#...........",
+    "#########...........",
+];
+const TRUTH: GridPose = GridPose {
+    x: 5.25,
+    y: 7.75,
+    heading: 0.3,
+};
+
+/// What a laser at the pose reads: the way to the middle of the walls.
+fn scan(rows: &[&str], pose: GridPose) -> Ends {
+    let map = distance_field(rows);
+    let end = |beam: i32| {
+        let angle = f64::from(beam).to_radians();
+        let (dy, dx) = (pose.heading + angle).sin_cos();
+        let is_at_wall = |reading: &f64| {
+            let at = map.distance(pose.x + reading * dx, pose.y + reading * dy);
+            at.is_some_and(|(distance, _)| distance < 0.05)
+        };
+        let reading = (0..4000)
+            .map(|step| 0.01 * f64::from(step))
+            .find(is_at_wall)?;
+        Some(End::new((0.0, 0.0), angle, (0.1 * reading, reading), 1.0))
+    };
+    let ends = (-180..180).step_by(3).filter_map(end);
+    Ends::of(ends.collect())
+}
+
+#[test]
+fn a_pose_nearby_is_moved_to_where_the_scan_was_taken() {
+    let (map, ends) = (distance_field(&ROOM), scan(&ROOM, TRUTH));
+    for (x, y, turn) in [(0.0, 0.0, 0.0), (0.7, -0.6, 0.03), (-0.8, 0.5, -0.05)] {
+        let start = GridPose {
+            x: TRUTH.x + x,
+            y: TRUTH.y + y,
+            heading: TRUTH.heading + turn,
+        };
+        let refined = map.refine(&ends, start, false, &FitConfig::default());
+        let off = (refined.pose.x - TRUTH.x).hypot(refined.pose.y - TRUTH.y);
+        // Readings end up to 0.05 cells before the middle of a wall.
+        assert!(off < 0.1, "{off} cells from {start:?}");
+        assert!((refined.pose.heading - TRUTH.heading).abs() < 0.01);
+        assert!(refined.variance < 0.05 && refined.weight > 0.9 * ends.weight);
+    }
+}
+
+#[test]
+fn a_known_heading_is_left_alone() {
+    let (map, ends) = (distance_field(&ROOM), scan(&ROOM, TRUTH));
+    let start = GridPose {
+        x: TRUTH.x + 0.5,
+        ..TRUTH
+    };
+    let refined = map.refine(&ends, start, true, &FitConfig::default());
+    assert_eq!(refined.pose.heading, TRUTH.heading);
+    assert!((refined.pose.x - TRUTH.x).abs() < 0.1);
+}
+
+#[test]
+fn what_no_beam_shows_stays_as_it_was() {
+    const CORRIDOR: [&str; 5] = [
+        "##############################",
+        "..............................",
+        "..............................",
+        "..............................",
+        "##############################",
+    ];
+    let pose = GridPose {
+        x: 15.0,
+        y: 2.5,
+        heading: 0.0,
+    };
+    let (map, ends) = (distance_field(&CORRIDOR), scan(&CORRIDOR, pose));
+    let start = GridPose {
+        x: 13.0,
+        y: 2.9,
+        ..pose
+    };
+    let refined = map.refine(&ends, start, false, &FitConfig::default());
+    // Ends at the corridor's far ends say a little about x.
+    assert!((refined.pose.x - 13.0).abs() < 0.5, "{:?}", refined.pose);
+    assert!((refined.pose.y - 2.5).abs() < 0.1);
+    assert!(refined.curvature[(0, 0)] < 0.05 * refined.curvature[(1, 1)]);
+}
+
+/// The deviations that walls which err add to those of a pose, by how the distances
+/// of its ends grow.
+fn by_walls(pulls: &[[f64; 3]], drawn: f64) -> [f64; 3] {
+    let (mut sums, mut walls) = (Sums::default(), Walls::default());
+    for &slope in pulls {
+        sums.add(1.0, 0.5, slope);
+        walls.add(1.0, slope);
+    }
+    let refined = Refined {
+        pose: TRUTH,
+        curvature: sums.curvature() + 1e-9 * Matrix3::identity(),
+        variance: 0.25,
+        weight: sums.weight,
+        walls: walls.products(),
+    };
+    let covariance = refined.information().try_inverse().unwrap();
+    let added = refined.by_walls(covariance, drawn);
+    std::array::from_fn(|i| added[(i, i)].sqrt())
+}
+
+#[test]
+fn a_wall_that_is_off_moves_the_pose_however_many_beams_end_there() {
+    // One wall, ahead along x: the pose is off by what the wall is.
+    for beams in [10, 1000] {
+        let one = vec![[1.0, 0.0, 0.0]; beams];
+        assert!((by_walls(&one, 0.0)[0] - 0.5).abs() < 1e-6);
+        assert!((by_walls(&one, 1.2)[0] - 1.3).abs() < 1e-6);
+    }
+    // Two that face each other are each off for themselves: the mean of both is
+    // off by 1/√2 of that.
+    let both = [[[1.0, 0.0, 0.0]; 40], [[-1.0, 0.0, 0.0]; 40]].concat();
+    assert!((by_walls(&both, 0.0)[0] - 0.5 / 2f64.sqrt()).abs() < 1e-6);
+    // Parts of a wall that runs almost along an axis are one wall.
+    let bent = [[[1.0, 0.1, 0.0]; 40], [[1.0, -0.1, 0.0]; 40]].concat();
+    assert!((by_walls(&bent, 0.0)[0] - 0.5).abs() < 0.01);
+}
+
+#[test]
+fn a_scan_without_beams_moves_nothing() {
+    let none = Ends::of(Vec::new());
+    let refined = distance_field(&ROOM).refine(&none, TRUTH, false, &FitConfig::default());
+    assert_eq!((refined.pose, refined.weight), (TRUTH, 0.0));
+}

@@ -1,0 +1,167 @@
+//! Drawn buildings in which a robot drives.
+
+use super::*;
+
+pub(super) const BEAMS: usize = 180;
+pub(super) const RESOLUTION_M: f64 = 0.1;
+
+/// A building in which scans are simulated and searched.
+pub(super) struct Building {
+    grid: Grid,
+    distance_field: DistanceField,
+    localizer: Localizer,
+    space: Space,
+}
+
+/// Ragged walls, so that it does not count as drawn.
+pub(super) fn building(rows: &[&str]) -> Building {
+    let (width, height) = (rows[0].len(), rows.len());
+    let cells: Vec<u8> = rows
+        .iter()
+        .rev()
+        .flat_map(|row| row.bytes())
+        .map(|cell| if cell == b'#' { 100 } else { 0 })
+        .collect();
+    let frame = GridFrame {
+        resolution_m: RESOLUTION_M,
+        map_from_grid: Pose::IDENTITY,
+    };
+    let rules = CellRules::default();
+    let grid = Grid::new(width, height, &cells, rules).unwrap();
+    let config = LocalizerConfig {
+        search_cell: 0.0,
+        ..LocalizerConfig::default()
+    };
+    Building {
+        distance_field: DistanceField::new(frame, (width, height), &cells, rules).unwrap(),
+        localizer: Localizer::new(frame, grid.clone(), config, Prior::None).unwrap(),
+        space: Space::new(360, RESOLUTION_M, width, height).unwrap(),
+        grid,
+    }
+}
+
+impl Building {
+    /// What a laser reads at a pose, all around, to a centimetre.
+    pub(super) fn ranges(&self, pose: Pose) -> Vec<f32> {
+        let read = |beam: usize| {
+            let bearing = -PI + 2.0 * PI * beam as f64 / BEAMS as f64;
+            let (sin, cos) = (pose.yaw + bearing).sin_cos();
+            let is_wall = |range: &f64| {
+                let (x, y) = (pose.x + range * cos, pose.y + range * sin);
+                let (x, y) = (x / RESOLUTION_M, y / RESOLUTION_M);
+                let i = y as usize * self.grid.width() + x as usize;
+                self.grid.cells()[i] == crate::grid::Cell::Occupied
+            };
+            let mut ranges = (0..3000).map(|step| 0.01 * f64::from(step));
+            ranges
+                .find(is_wall)
+                .map_or(f32::INFINITY, |range| range as f32)
+        };
+        (0..BEAMS).map(read).collect()
+    }
+
+    pub(super) fn scan<'a>(&self, ranges: &'a [f32]) -> Scan<'a> {
+        Scan {
+            angle_min: -PI,
+            angle_increment: 2.0 * PI / BEAMS as f64,
+            range_min_m: 0.0,
+            range_max_m: 30.0,
+            ranges,
+        }
+    }
+
+    pub(super) fn ends(&self, pose: Pose) -> Ends {
+        let ranges = self.ranges(pose);
+        Ends::new(&self.scan(&ranges), &self.space, &BeamConfig::default()).unwrap()
+    }
+
+    pub(super) fn found(&self, pose: Pose) -> Vec<Candidate> {
+        let ranges = self.ranges(pose);
+        let outcome = self.localizer.search(&self.scan(&ranges), &|| false);
+        let outcome = outcome.unwrap().unwrap();
+        let input = PeakInput::of(&outcome, self.localizer.frame());
+        let ends = self.ends(pose);
+        let places = by_fit(
+            &input,
+            (&self.distance_field, &ends),
+            &PeakConfig::default(),
+        );
+        let target = Target::of(None, false);
+        let hypothesis = |place: &crate::peaks::Place| place.hypothesis(1, target);
+        let hypotheses: Vec<_> = places.places.iter().map(hypothesis).collect();
+        let mut found = Vec::new();
+        Candidate::fill(&mut found, hypotheses.iter(), target);
+        found
+    }
+
+    pub(super) fn seen<'a>(&'a self, ends: &'a Ends, fit: &'a FitConfig) -> Seen<'a> {
+        Seen {
+            distance_field: &self.distance_field,
+            ends,
+            fit,
+        }
+    }
+
+    /// Gives a tracker the scan at a pose; returns what was needed.
+    pub(super) fn step(&self, tracker: &mut Tracker, truth: Pose, moved: Option<Pose>) -> Need {
+        let (ends, fit) = (self.ends(truth), FitConfig::default());
+        let seen = self.seen(&ends, &fit);
+        let need = tracker.begin(&seen, 1, moved);
+        let found = (need == Need::ThisScan).then(|| self.found(truth));
+        tracker.finish(&seen, found.as_deref());
+        need
+    }
+
+    /// Drives straight on by steps of 0.3 m.
+    pub(super) fn drive(&self, tracker: &mut Tracker, from: Pose, steps: usize) -> Pose {
+        let step = Pose::new(0.3, 0.0, 0.0);
+        let mut pose = from;
+        for _ in 0..steps {
+            pose = pose.then(step);
+            self.step(tracker, pose, Some(step));
+        }
+        pose
+    }
+}
+
+/// A corridor with a niche; no two places look alike.
+pub(super) const UNLIKE: [&str; 22] = [
+    "##################################################",
+    "#................................................#",
+    "##...............................................#",
+    "#.......................#........................#",
+    "##.....................##.......................##",
+    "#.......................#........................#",
+    "##..............................................##",
+    "#................................................#",
+    "##..................................######......##",
+    "#...................................#....#.......#",
+    "##......#...........................#....#......##",
+    "#......###..........................#....#.......#",
+    "##......#...........................######......##",
+    "#................................................#",
+    "##..............................................##",
+    "#.............####...............................#",
+    "##............#..#..............................##",
+    "#.............####...............................#",
+    "##..............................................##",
+    "#................................................#",
+    "##..............................................##",
+    "##################################################",
+];
+
+/// Looks the same when it is turned by half.
+pub(super) const ALIKE: [&str; 12] = [
+    "########################################",
+    "#......................................#",
+    "#......................................#",
+    "#......................................#",
+    "#.....##...............................#",
+    "#......................................#",
+    "#......................................#",
+    "#...............................##.....#",
+    "#......................................#",
+    "#......................................#",
+    "#......................................#",
+    "########################################",
+];

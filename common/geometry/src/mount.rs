@@ -1,0 +1,90 @@
+//! Where a sensor sits on the robot.
+
+use std::error::Error;
+use std::fmt::{self, Display};
+use std::str::FromStr;
+
+use crate::Pose;
+
+/// How a laser sits on the robot.
+///
+/// As text it is `X,Y,YAW_DEG`, metres ahead, metres to the left and degrees
+/// counter-clockwise; of a laser that hangs upside down `X,Y,YAW_DEG,180`.
+#[derive(Debug, Clone, Copy, PartialEq, Default)]
+pub struct Mount {
+    /// Where it is, seen from above; its yaw is that of the laser's x axis.
+    pub base_from_laser: Pose,
+    /// Whether it hangs upside down: rolled by half a turn about its x axis, so that
+    /// what is to its left lies to the right.
+    pub is_upside_down: bool,
+}
+
+/// A text that is no mount.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub struct MountError;
+
+impl Display for MountError {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.write_str(
+            "expected are three finite numbers, X,Y,YAW_DEG, and of a laser upside down 180 as \
+             the fourth",
+        )
+    }
+}
+
+impl Error for MountError {}
+
+impl FromStr for Mount {
+    type Err = MountError;
+
+    fn from_str(text: &str) -> Result<Self, MountError> {
+        let number = |word: &str| word.trim().parse().ok().filter(|n: &f64| n.is_finite());
+        let numbers: Option<Vec<f64>> = text.split(',').map(number).collect();
+        let (x, y, yaw_deg, is_upside_down) = match numbers.as_deref() {
+            Some(&[x, y, yaw_deg]) => (x, y, yaw_deg, false),
+            Some(&[x, y, yaw_deg, roll_deg]) if [0.0, 180.0, -180.0].contains(&roll_deg) => {
+                (x, y, yaw_deg, roll_deg != 0.0)
+            }
+            _ => return Err(MountError),
+        };
+        Ok(Mount {
+            base_from_laser: Pose::new(x, y, yaw_deg.to_radians()),
+            is_upside_down,
+        })
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_mount_is_three_numbers_or_four() {
+        let mount = |is_upside_down| Mount {
+            base_from_laser: Pose::new(0.78, 0.0, -std::f64::consts::FRAC_PI_2),
+            is_upside_down,
+        };
+        for (text, is_upside_down) in [
+            ("0.78,0,-90", false),
+            ("0.78, 0,-90", false),
+            ("0.78,0,-90,0", false),
+            ("0.78,0,-90,180", true),
+            ("0.78,0,-90,-180", true),
+        ] {
+            assert_eq!(text.parse(), Ok(mount(is_upside_down)), "{text}");
+        }
+        for wrong in [
+            "",
+            "1,2",
+            "1,2,x",
+            "1,2,inf",
+            "1,NaN,3",
+            "1,2,3,",
+            "1,2,3,x",
+            "1,2,3,90",
+            "1,2,3,0,0",
+        ] {
+            assert_eq!(wrong.parse::<Mount>(), Err(MountError), "{wrong}");
+        }
+    }
+}

@@ -1,0 +1,225 @@
+use geometry::Pose;
+
+use super::*;
+use crate::sample;
+use crate::write::{Packing, RecordingWriter};
+use ros::{PoseStamped, TfMessage, TransformStamped};
+
+fn recording(messages: &[(&str, Message)]) -> Recording {
+    let mut writer = RecordingWriter::in_memory(Packing::Zstd).unwrap();
+    for (time, (topic, message)) in messages.iter().enumerate() {
+        writer.write(topic, time as i64, message).unwrap();
+    }
+    let bytes = writer.finish().unwrap().into_inner();
+    Recording::from_bytes("r.mcap", bytes).unwrap()
+}
+
+fn pose(sec: i32, x: f64) -> Message {
+    let mut stamped = PoseStamped {
+        pose: ros::Pose::from_planar(Pose::new(x, 2.0, 0.5)),
+        ..PoseStamped::default()
+    };
+    stamped.header.stamp.sec = sec;
+    stamped.header.frame_id = "map".to_owned();
+    Message::PoseStamped(stamped)
+}
+
+#[test]
+fn a_sample_gives_its_map_truths_and_mount() {
+    let bytes = sample::bytes(Packing::Lz4);
+    let recording = Recording::from_bytes("r.mcap", bytes).unwrap();
+    assert_eq!(recording.damage(), None);
+    assert_eq!(recording.map().unwrap().unwrap(), sample::grid());
+    let truths = recording.ground_truths().unwrap();
+    assert_eq!(truths.len(), sample::SCANS);
+    let first = &truths[&sample::stamp_ns(0)];
+    assert_eq!(first.frame, "map");
+    // Through a quaternion and back: a few units in the last place.
+    assert!(first.pose.is_within(sample::truth(0), 1e-12, 1e-12));
+    let mount = recording.base_from_laser("laser").unwrap().unwrap();
+    assert_eq!(mount.base_frame, "base_link");
+    assert!(mount.base_from_laser.is_within(sample::MOUNT, 1e-12, 1e-12));
+    assert_eq!(recording.base_from_laser("camera").unwrap(), None);
+    let (first, last) = recording.time_range_ns().unwrap();
+    assert_eq!(first, sample::stamp_ns(0));
+    assert_eq!(last, sample::stamp_ns(sample::SCANS - 1));
+}
+
+#[test]
+fn what_is_missing_is_named_with_what_is_there() {
+    let recording = recording(&[(GOAL, pose(1, 1.0))]);
+    let error = recording.required_topic(Kind::Scan).unwrap_err();
+    assert_eq!(
+        error.to_string(),
+        "r.mcap has no sensor_msgs/msg/LaserScan; it has \
+         /goal_pose (geometry_msgs/msg/PoseStamped)"
+    );
+    assert!(recording.map().unwrap().is_none());
+    assert!(
+        recording.ground_truths().unwrap().is_empty(),
+        "a goal is no truth"
+    );
+    assert_eq!(recording.base_from_laser("laser").unwrap(), None);
+    let missing = Recording::open("no/such.mcap").unwrap_err().to_string();
+    assert_eq!(missing, "cannot read the recording no/such.mcap");
+}
+
+const GOAL: &str = "/goal_pose";
+const TRUTH: &str = crate::GROUND_TRUTH;
+
+#[test]
+fn truths_that_contradict_each_other_are_refused() {
+    let equal = recording(&[
+        (TRUTH, pose(1, 1.0)),
+        (TRUTH, pose(1, 1.0)),
+        (GOAL, pose(1, 9.0)),
+    ]);
+    assert_eq!(equal.ground_truths().unwrap().len(), 1);
+    let other = recording(&[(TRUTH, pose(1, 1.0)), (TRUTH, pose(1, 1.1))]);
+    assert_eq!(
+        other.ground_truths().unwrap_err().to_string(),
+        "r.mcap: two ground truths are stamped 1000000000 ns, and differ"
+    );
+    let nowhere = recording(&[(TRUTH, pose(1, f64::NAN))]);
+    let error = nowhere.ground_truths().unwrap_err();
+    assert_eq!(
+        error.to_string(),
+        "r.mcap: the message of /ground_truth at log time 0 ns cannot be used"
+    );
+    let cause = std::error::Error::source(&error).unwrap();
+    assert_eq!(cause.to_string(), "the position (NaN, 2) is not finite");
+}
+
+fn transform(parent: &str, child: &str, x: f64, turn: ros::Quaternion) -> TransformStamped {
+    let mut transform = TransformStamped::default();
+    transform.header.frame_id = parent.to_owned();
+    transform.child_frame_id = child.to_owned();
+    transform.transform.translation.x = x;
+    transform.transform.rotation = turn;
+    transform
+}
+
+fn fixed(transforms: Vec<TransformStamped>) -> Message {
+    Message::StaticTransforms(TfMessage { transforms })
+}
+
+const LEVEL: ros::Quaternion = ros::Quaternion {
+    x: 0.0,
+    y: 0.0,
+    z: 0.0,
+    w: 1.0,
+};
+
+#[test]
+fn a_laser_upside_down_is_taken_and_one_on_its_side_is_not() {
+    let (half, quarter) = ((1.0, 0.0), (0.5_f64.sqrt(), 0.5_f64.sqrt()));
+    let mounted = |(x, w): (f64, f64)| {
+        let turn = ros::Quaternion { x, w, ..LEVEL };
+        let laser = transform("base_link", "laser", 0.5, turn);
+        recording(&[(crate::TF_STATIC, fixed(vec![laser]))]).base_from_laser("laser")
+    };
+    let mount = mounted(half).unwrap().unwrap();
+    assert!(
+        mount.upside_down && mount.base_from_laser.x == 0.5,
+        "{mount:?}"
+    );
+    let error = mounted(quarter).unwrap_err().to_string();
+    assert!(
+        error.contains("laser is tilted by 90 degrees against base_link"),
+        "{error}"
+    );
+}
+
+#[test]
+fn the_newest_map_is_the_map_and_all_are_given_out() {
+    let map = |cells: [i8; 2]| {
+        let mut map = OccupancyGridMsg {
+            data: cells.to_vec(),
+            ..OccupancyGridMsg::default()
+        };
+        (map.info.width, map.info.height, map.info.resolution) = (2, 1, 0.5);
+        Message::Map(map)
+    };
+    let recording = recording(&[(crate::MAP, map([0, 0])), (crate::MAP, map([0, 100]))]);
+    assert_eq!(recording.map().unwrap().unwrap().cells, [0, 100]);
+    let maps = recording.maps().unwrap().map(Result::unwrap);
+    let maps: Vec<_> = maps.map(|(time, map)| (time, map.data)).collect();
+    assert_eq!(maps, [(0, vec![0, 0]), (1, vec![0, 100])]);
+}
+
+#[test]
+fn a_transform_that_is_none_is_a_note_unless_the_laser_needs_it() {
+    let broken = |child: &str| transform("base_link", child, f64::NAN, LEVEL);
+    let recording = recording(&[(
+        crate::TF_STATIC,
+        fixed(vec![
+            transform("base_link", "laser", 0.5, LEVEL),
+            broken("camera"),
+        ]),
+    )]);
+    let mounted = recording.mounted("laser").unwrap();
+    assert_eq!(mounted.mount.unwrap().base_from_laser.x, 0.5);
+    assert_eq!(
+        mounted.notes,
+        ["the transform from base_link to camera is ignored: the position (NaN, 0) is not finite"]
+    );
+    assert_eq!(
+        recording.mounted("camera").unwrap_err().to_string(),
+        "r.mcap: the mount of camera is not known, for the transform from base_link to camera is \
+         invalid: the position (NaN, 0) is not finite"
+    );
+}
+
+/// A recording with these transforms on /tf, each with odometry's own.
+fn on_tf(lasers: &[TransformStamped]) -> Recording {
+    let mut writer = RecordingWriter::in_memory(Packing::Zstd).unwrap();
+    for (time, laser) in (0..).zip(lasers) {
+        let odometry = transform("odom", "base_link", time as f64, LEVEL);
+        let message = TfMessage {
+            transforms: vec![odometry, laser.clone()],
+        };
+        let body = ros::cdr::encode(&message).unwrap();
+        writer
+            .write_bytes("/tf", TfMessage::SCHEMA, "", "cdr", time, &body)
+            .unwrap();
+    }
+    let bytes = writer.finish().unwrap().into_inner();
+    Recording::from_bytes("r.mcap", bytes).unwrap()
+}
+
+#[test]
+fn a_mount_on_tf_is_taken_where_it_does_not_move() {
+    let laser = |x: f64| transform("base_link", "laser", x, LEVEL);
+    let still = on_tf(&[laser(0.5), laser(0.5004), laser(0.5)]);
+    let mounted = still.mounted("laser").unwrap();
+    assert_eq!(mounted.mount.unwrap().base_from_laser.x, 0.5);
+    assert_eq!(
+        mounted.notes,
+        ["the mount of laser is taken from /tf, where it does not move"]
+    );
+    let moving = on_tf(&[laser(0.5), laser(0.52)]).mounted("laser").unwrap();
+    assert_eq!(moving.mount, None);
+    assert_eq!(
+        moving.notes,
+        [
+            "/tf_static does not say where laser sits, and on /tf laser moves by 0.020 m and 0.0 \
+          degrees: poses are of the laser"
+        ]
+    );
+    let unknown = still.mounted("camera").unwrap();
+    assert_eq!(unknown, Mounted::default());
+}
+
+#[test]
+fn the_channel_that_the_user_names_is_meant() {
+    let mut recording = recording(&[(TRUTH, pose(1, 1.0)), (GOAL, pose(1, 9.0))]);
+    let of_goal = "geometry_msgs/msg/PoseStamped";
+    recording.prefer(Kind::PoseStamped, GOAL).unwrap();
+    let truths = recording.ground_truths().unwrap();
+    assert_eq!(truths.values().next().unwrap().pose.x, 9.0);
+    let refusal = recording.prefer(Kind::PoseStamped, "/scan").unwrap_err();
+    assert_eq!(
+        refusal.to_string(),
+        format!("r.mcap has no {of_goal} on /scan; it has /ground_truth, /goal_pose")
+    );
+}

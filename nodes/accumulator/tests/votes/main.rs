@@ -1,0 +1,5 @@
+//! The accumulator as a process.
+
+mod known_heading;
+mod node;
+mod world;

@@ -1,0 +1,183 @@
+//! Graphs by their names: taken, private, restarted and stopped from elsewhere.
+
+use super::*;
+
+#[test]
+fn a_name_that_is_alive_is_refused_and_goes_on() {
+    let name = "test-alive";
+    let folder = graph(&["id: source, outputs: [scan], args: -c 'echo up; read line < pipe'"]);
+    let pipe = folder.path().join("pipe");
+    mkfifo(&pipe, Mode::S_IRWXU).unwrap();
+    let mut running = Running::start(&folder, &["--graph", name]);
+    assert_eq!(running.receive("source"), "up");
+    let (code, _, said) = run(&["id: a, args: -c true"], &["--graph", name]);
+    assert_eq!(code, 1, "{said}");
+    assert!(said.contains("graph test-alive still runs"), "{said}");
+    assert!(!shared_memory_of(name).is_empty());
+    let mut writer = OpenOptions::new().write(true).open(&pipe).unwrap();
+    std::io::Write::write_all(&mut writer, b"\n").unwrap();
+    let (status, said) = running.wait();
+    assert_eq!(status.code(), Some(0), "{said}");
+    assert_eq!(shared_memory_of(name), [""; 0]);
+}
+
+#[test]
+fn a_name_that_another_user_has_taken_is_refused_and_the_user_named() {
+    if !nix::unistd::geteuid().is_root() {
+        let test = "a_name_that_another_user_has_taken_is_refused_and_the_user_named";
+        Need::Root.is_missing(test, "nobody else can act as two users");
+        return;
+    }
+    let file = Path::new("/dev/shm/bc12345_test-foreign.in_the_way");
+    fs::write(file, "").unwrap();
+    let folder = graph(&["id: a, args: -c true"]);
+    let user = Some(nix::unistd::Uid::from_raw(12_345));
+    nix::unistd::chown(folder.path(), user, None).unwrap();
+    let output = launcher(folder.path(), &["--graph", "test-foreign"])
+        .uid(12_345)
+        .output();
+    fs::remove_file(file).unwrap();
+    let output = output.unwrap();
+    let said = String::from_utf8(output.stderr).unwrap();
+    assert_eq!(output.status.code(), Some(1), "{said}");
+    assert!(said.contains("in_the_way belongs to user 0"), "{said}");
+    assert!(said.contains("--graph"), "{said}");
+}
+
+#[test]
+fn others_have_no_rights_on_the_files_of_a_graph() {
+    let name = "test-rights";
+    let folder = graph(&["id: source, outputs: [scan], args: -c 'echo up; read line < pipe'"]);
+    let pipe = folder.path().join("pipe");
+    mkfifo(&pipe, Mode::S_IRWXU).unwrap();
+    let mut running = Running::start(&folder, &["--graph", name]);
+    assert_eq!(running.receive("source"), "up");
+    let files = shared_memory_of(name);
+    assert!(files.len() > 3, "{files:?}");
+    for file in files {
+        use std::os::unix::fs::PermissionsExt;
+        let mode = fs::metadata(Path::new("/dev/shm").join(&file))
+            .unwrap()
+            .permissions()
+            .mode();
+        assert_eq!(mode & 0o077, 0, "{file}: {mode:o}");
+    }
+    running.signal(Signal::SIGHUP);
+    let (status, said) = running.wait();
+    assert_eq!(status.code(), Some(0), "a hangup stops in order: {said}");
+}
+
+#[test]
+fn a_graph_whose_files_are_removed_is_started_again_as_a_whole() {
+    let name = "test-cleaned";
+    let folder = graph(&["id: source, outputs: [scan], args: -c 'echo up; read line < pipe'"]);
+    let pipe = folder.path().join("pipe");
+    mkfifo(&pipe, Mode::S_IRWXU).unwrap();
+    let mut running = Running::start(&folder, &["--graph", name]);
+    assert_eq!(running.receive("source"), "up");
+    let root = format!("/tmp/backcast-{}", nix::unistd::geteuid());
+    remove_files_of(Path::new(&root), &format!("_{name}."));
+    assert_eq!(running.receive("source"), "up", "a second time");
+    let mut writer = OpenOptions::new().write(true).open(&pipe).unwrap();
+    std::io::Write::write_all(&mut writer, b"\n").unwrap();
+    let (status, said) = running.wait();
+    assert_eq!(status.code(), Some(0), "{said}");
+    assert_eq!(shared_memory_of(name), [""; 0]);
+}
+
+/// As whatever cleans temporary folders does.
+fn remove_files_of(folder: &Path, part: &str) {
+    for entry in fs::read_dir(folder).into_iter().flatten().flatten() {
+        let path = entry.path();
+        if path.is_dir() {
+            remove_files_of(&path, part);
+        } else if path.to_string_lossy().contains(part) {
+            fs::remove_file(&path).unwrap();
+        }
+    }
+}
+
+#[test]
+fn a_graph_is_asked_restarted_in_part_and_stopped_from_elsewhere() {
+    let name = "test-control";
+    let folder = graph(&[
+        "id: source, outputs: [scan], args: \"-c 'echo up; exec sleep 1000'\"",
+        "id: other, args: \"-c 'exec sleep 1000'\"",
+    ]);
+    let mut running = Running::start(&folder, &["--graph", name]);
+    assert_eq!(running.receive("source"), "up");
+    let ask = |args: &[&str]| {
+        let args = [args, &["--graph", name]].concat();
+        let output = launcher(folder.path(), &args).output().unwrap();
+        let text = |bytes| String::from_utf8(bytes).unwrap();
+        (
+            output.status.code(),
+            text(output.stdout),
+            text(output.stderr),
+        )
+    };
+    let (code, stdout, said) = ask(&["status", "--json"]);
+    assert_eq!(code, Some(0), "{said}");
+    let status: serde_json::Value = serde_json::from_str(&stdout).unwrap();
+    assert_eq!(
+        (&status["graph"], &status["nodes"][0]["state"]),
+        (&name.into(), &"running".into())
+    );
+    let before = status["nodes"][0]["pid"].clone();
+
+    let (code, _, said) = ask(&["restart", "sauce"]);
+    assert_eq!(code, Some(2), "{said}");
+    assert!(
+        said.contains("no node sauce: allowed are source, other"),
+        "{said}"
+    );
+    let (code, _, said) = ask(&["restart", "source"]);
+    assert_eq!(code, Some(0), "{said}");
+    assert_eq!(running.receive("source"), "up", "a second time");
+    let (_, stdout, _) = ask(&["status", "--json"]);
+    let status: serde_json::Value = serde_json::from_str(&stdout).unwrap();
+    assert_ne!(status["nodes"][0]["pid"], before);
+    assert_eq!(status["nodes"][0]["restarts"], 1);
+    assert!(ask(&["status"]).1.contains("source               running"));
+
+    let (code, stdout, said) = ask(&["logs", "backcast"]);
+    assert_eq!(code, Some(0), "{said}");
+    assert!(
+        stdout.contains("source is restarted from another terminal"),
+        "{stdout}"
+    );
+
+    let (code, _, said) = ask(&["stop"]);
+    assert_eq!(code, Some(0), "{said}");
+    let (status, said) = running.wait();
+    assert_eq!(status.code(), Some(0), "{said}");
+    let (code, _, said) = ask(&["stop"]);
+    assert_eq!(code, Some(1), "{said}");
+    assert!(
+        said.contains("no launcher of graph test-control answers"),
+        "{said}"
+    );
+}
+
+#[test]
+fn a_service_manager_is_notified_that_the_graph_runs_and_stops() {
+    let folder = graph(&["id: source, outputs: [scan], args: \"-c 'exec sleep 1000'\""]);
+    let path = folder.path().join("notify");
+    let socket = UnixDatagram::bind(&path).unwrap();
+    let mut child = launcher(folder.path(), &["--graph", "test-notify"])
+        .env("NOTIFY_SOCKET", &path)
+        .spawn()
+        .unwrap();
+    let receive = || {
+        let mut bytes = [0; 512];
+        let length = socket.recv(&mut bytes).unwrap();
+        String::from_utf8(bytes[..length].to_vec()).unwrap()
+    };
+    for _ in 0..2 {
+        assert_eq!(receive(), "READY=1\nWATCHDOG=1\n");
+    }
+    kill(Pid::from_raw(child.id().cast_signed()), Signal::SIGTERM).unwrap();
+    let last = std::iter::repeat_with(receive).find(|received| !received.contains("WATCHDOG"));
+    assert_eq!(last.unwrap(), "STOPPING=1\n");
+    assert!(child.wait().unwrap().success());
+}

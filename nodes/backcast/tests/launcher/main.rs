@@ -1,0 +1,124 @@
+//! The launcher as a process, with small shell scripts as nodes. Tests wait for
+//! what processes say or for the ends of pipes, never for time.
+
+#![allow(
+    clippy::unwrap_used,
+    reason = "a test fails by panicking, helpers of tests too"
+)]
+
+mod graphs;
+mod processes;
+mod usage;
+
+use std::{
+    fs::{self, File, OpenOptions},
+    io::{BufRead, BufReader, Lines, Read},
+    os::unix::net::UnixDatagram,
+    os::unix::process::{CommandExt, ExitStatusExt},
+    path::Path,
+    process::{Child, ChildStderr, Command, ExitStatus, Output, Stdio},
+};
+
+use messages::{HypothesesHeader, Hypothesis, NodeState, Pose2, Stamp, Verdict, topic};
+use nix::{
+    sys::signal::{Signal, kill},
+    sys::stat::Mode,
+    unistd::{Pid, mkfifo},
+};
+use tempfile::TempDir;
+use tests::needs::Need;
+use transport::testing::wait_for_health;
+use transport::{Graph, GraphName};
+
+/// A folder with a descriptor of these nodes, one a line.
+fn graph(nodes: &[&str]) -> TempDir {
+    let folder = tempfile::tempdir().unwrap();
+    let nodes: String = nodes
+        .iter()
+        .map(|n| format!("  - {{path: /bin/sh, {n}}}\n"))
+        .collect();
+    fs::write(
+        folder.path().join("dataflow.yaml"),
+        format!("nodes:\n{nodes}"),
+    )
+    .unwrap();
+    folder
+}
+
+fn launcher(folder: &Path, args: &[&str]) -> Command {
+    // Under nohup hangups are ignored, and the launcher leaves it at that.
+    let mut command = Command::new("env");
+    command
+        .args(["--default-signal=HUP", env!("CARGO_BIN_EXE_backcast")])
+        .args(args)
+        .current_dir(folder)
+        .env_remove("BACKCAST_GRAPH")
+        .env_remove("RUST_LOG");
+    command
+        .stdin(Stdio::null())
+        .stdout(Stdio::piped())
+        .stderr(Stdio::piped());
+    command
+}
+
+/// Runs to the end: exit code, standard output, standard error.
+fn run(nodes: &[&str], args: &[&str]) -> (i32, String, String) {
+    let folder = graph(nodes);
+    let Output {
+        status,
+        stdout,
+        stderr,
+    } = launcher(folder.path(), args).output().unwrap();
+    let text = |bytes| String::from_utf8(bytes).unwrap();
+    (status.code().unwrap(), text(stdout), text(stderr))
+}
+
+/// A launcher that runs, and what it says.
+struct Running {
+    child: Child,
+    said: Lines<BufReader<ChildStderr>>,
+}
+
+impl Running {
+    fn start(folder: &TempDir, args: &[&str]) -> Self {
+        let mut child = launcher(folder.path(), args).spawn().unwrap();
+        let said = BufReader::new(child.stderr.take().unwrap()).lines();
+        Running { child, said }
+    }
+
+    /// Waits for `node` to say something and returns it.
+    fn receive(&mut self, node: &str) -> String {
+        let mark = format!("{node} | ");
+        let all = self.said.by_ref().map(Result::unwrap);
+        let mut received =
+            all.filter_map(|line| line.trim_start().strip_prefix(&mark).map(ToOwned::to_owned));
+        received
+            .next()
+            .unwrap_or_else(|| panic!("{node} said nothing more"))
+    }
+
+    fn signal(&self, signal: Signal) {
+        let pid = i32::try_from(self.child.id()).unwrap();
+        kill(Pid::from_raw(pid), signal).unwrap();
+    }
+
+    fn wait(mut self) -> (ExitStatus, String) {
+        // Its pipe is read to the end, so that it does not wait for us.
+        let said: Vec<String> = self.said.by_ref().map(Result::unwrap).collect();
+        (self.child.wait().unwrap(), said.join("\n"))
+    }
+}
+
+/// Whether a process has ended. One whose parent has ended before it stays a
+/// zombie where nobody takes orphans, as in a container.
+fn has_ended(pid: &str) -> bool {
+    fs::read_to_string(format!("/proc/{pid}/stat")).map_or(true, |stat| stat.contains(") Z "))
+}
+
+fn shared_memory_of(graph: &str) -> Vec<String> {
+    fs::read_dir("/dev/shm")
+        .unwrap()
+        .map(|entry| entry.unwrap().file_name().into_string().unwrap())
+        .filter(|name| name.contains(graph))
+        .collect()
+}

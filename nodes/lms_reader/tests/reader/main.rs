@@ -1,0 +1,4 @@
+//! The reader as a process.
+
+mod angles;
+mod node;

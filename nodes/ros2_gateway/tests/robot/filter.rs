@@ -1,0 +1,116 @@
+//! A particle filter that gets initial poses.
+
+use super::*;
+
+/// Starts the engine's nodes; they are ready once they have a map.
+fn engine(graph: &Graph) -> Vec<NodeProcess> {
+    let nodes = ["boundary_extractor", "accumulator", "peak_extractor"];
+    let start = |name: &&str| {
+        let executable = executables::path(name);
+        NodeProcess::start(executable.to_str().unwrap(), graph, [""; 0])
+    };
+    nodes.iter().map(start).collect()
+}
+
+#[test]
+fn a_particle_filter_gets_its_initial_pose() {
+    let Some(mut joined) = Joined::new("ros-amcl", "/", &["--lost-beyond", "1,30"]) else {
+        return;
+    };
+    let nodes = engine(&joined.graph);
+    let robot = &mut joined.robot;
+    robot.order("arrive", json!({}));
+    for node in ["boundary_extractor", "accumulator", "peak_extractor"] {
+        wait_until_ready(&joined.graph, node);
+    }
+    let truths = Recording::open(World::of("malaga_corridor").recording()).unwrap();
+    let truths = truths.ground_truths().unwrap();
+    let stamps: Vec<i64> = scans()
+        .iter()
+        .map(|scan| scan.header.stamp.as_ns())
+        .collect();
+    // What was said up to the answer to scan `index`, which has an answer itself.
+    let until_answered = |robot: &mut Robot, index: usize| {
+        let mut seed = Vec::new();
+        loop {
+            let said = robot.receive();
+            match said["event"].as_str().unwrap() {
+                "initialpose" => seed.push(said),
+                "hypotheses" if said["stamp"] == stamps[index] => return seed,
+                _ => {}
+            }
+        }
+    };
+    let scan = |robot: &mut Robot, index: usize| {
+        robot.order("scan", json!({ "index": index }));
+        until_answered(robot, index)
+    };
+    // No filter is there.
+    assert_eq!(scan(robot, 0).len(), 0);
+    robot.order("filter", json!({}));
+    // It gets an initial pose by a scan after it started, once.
+    let mut seed = Vec::new();
+    let mut index = 0;
+    while seed.is_empty() {
+        index += 1;
+        seed = scan(robot, index);
+    }
+    assert_eq!(seed.len(), 1);
+    assert_eq!(
+        (&seed[0]["stamp"], &seed[0]["frame"]),
+        (&json!(stamps[index]), &json!("map"))
+    );
+    let of = |value: &Value, i: usize| value[i].as_f64().unwrap();
+    let pose = &seed[0]["pose"];
+    let base = Pose::new(of(pose, 0), of(pose, 1), of(pose, 2));
+    let laser = base.then(Pose::new(0.78, 0.0, 0.0));
+    // As near as all answers on this recording are.
+    let truth = truths[&stamps[index]].pose;
+    assert!(laser.is_within(truth, 0.2, 0.05), "{laser:?} {truth:?}");
+    let believe = |robot: &mut Robot, index: usize, x: f64| {
+        let (y, yaw) = (base.y, base.yaw);
+        robot.order(
+            "believe",
+            json!({ "index": index, "x": x, "y": y, "yaw": yaw }),
+        );
+    };
+    // It follows, and is left alone.
+    let before = refused_by_gateway(&joined.graph);
+    for _ in 0..3 {
+        index += 1;
+        believe(robot, index, base.x);
+        assert_eq!(scan(robot, index).len(), 0);
+    }
+    // Somebody asks.
+    robot.order("call", json!({}));
+    let called = robot.wait_for("called");
+    assert_eq!(called["reply"], "0001000000", "{called}");
+    assert_eq!(
+        (&called["sequence"], &called["sender"]),
+        (&json!(7), &json!("0123456789abcdef"))
+    );
+    index += 1;
+    assert_eq!(scan(robot, index).len(), 1);
+    // It is carried away.
+    let mut seed = Vec::new();
+    while seed.is_empty() {
+        index += 1;
+        believe(robot, index, base.x + 5.0);
+        seed = scan(robot, index);
+    }
+    assert_eq!(seed.len(), 1);
+    assert_eq!(
+        refused_by_gateway(&joined.graph),
+        before,
+        "something was refused"
+    );
+    nodes.into_iter().for_each(NodeProcess::stop);
+    joined.stop();
+}
+
+/// How much the gateway has refused.
+fn refused_by_gateway(graph: &Graph) -> u64 {
+    let health = graph.subscriber::<topic::Health>().unwrap();
+    let is_gateway = |report: &messages::HealthHeader| report.node.as_str() == "ros2_gateway";
+    wait_for_health(graph, &health, is_gateway).0.refused
+}

@@ -1,0 +1,11 @@
+//! Whether the robot is found: by the engine, the tools and the graph, on buildings that
+//! are drawn, simulated and recorded.
+
+mod any_sensor;
+mod corridor;
+mod evaluation;
+mod hard_cases;
+mod lost_searches;
+mod reference;
+mod side_by_side;
+mod tracking;
