@@ -33,6 +33,11 @@ backcast run graph.yaml --rate max --no-monitor --json | tail -1
 # A laser that is not there is written without asking it.
 backcast init --laser 192.168.0.1 --no-probe --map $map --mount 0.2,0,0 --out laser.yaml >&2
 backcast check laser.yaml >&2
+# Those that are ready to be copied name a map that this machine lacks, and nothing else.
+for ready in laser_network laser_serial ros2; do
+    sed "s#/etc/backcast/map.yaml#$map#" /usr/share/backcast/graphs/$ready.yaml > ready.yaml
+    backcast check ready.yaml >&2
+done
 man=/usr/share/man/man1/backcast-init.1.gz
 gzip --decompress --stdout $man | grep --quiet 'serial'
 bash -n /usr/share/bash-completion/completions/backcast
