@@ -27,7 +27,7 @@ fn metadata() -> Value {
 /// tests use does not count.
 fn dependencies() -> BTreeMap<String, BTreeSet<String>> {
     let metadata = metadata();
-    let name = |value: &Value| value["name"].as_str().unwrap().to_owned();
+    let name = |value: &Value| folder_of(value["name"].as_str().unwrap()).to_owned();
     let linked = |package: &Value| {
         let all = package["dependencies"].as_array().unwrap().iter();
         all.filter(|dependency| dependency["kind"].is_null())
@@ -38,6 +38,11 @@ fn dependencies() -> BTreeMap<String, BTreeSet<String>> {
     packages
         .map(|package| (name(package), linked(package)))
         .collect()
+}
+
+/// What others may use has a name of its own on crates.io.
+fn folder_of(package: &str) -> &str {
+    package.strip_prefix("backcast-").unwrap_or(package)
 }
 
 fn folders(parent: &str) -> BTreeSet<String> {
@@ -235,6 +240,36 @@ fn every_dependency_is_used() {
             );
         }
     }
+}
+
+/// What a program links that uses the engine as a library.
+#[test]
+fn the_engine_as_a_library_brings_no_command_line_and_no_shared_memory() {
+    let options = [
+        "--edges", "normal", "--prefix", "none", "--format", "{p}", "--locked",
+    ];
+    let mut tree = Command::new(env!("CARGO"));
+    tree.args(["tree", "--package", "backcast-engine"])
+        .args(options);
+    let output = tree.current_dir(tests::root()).output().unwrap();
+    assert!(
+        output.status.success(),
+        "{}",
+        String::from_utf8_lossy(&output.stderr)
+    );
+    let text = String::from_utf8(output.stdout).unwrap();
+    let names: BTreeSet<&str> = text
+        .lines()
+        .filter_map(|line| line.split(' ').next())
+        .collect();
+    assert!(
+        names.contains("backcast-engine") && names.contains("nalgebra"),
+        "{text}"
+    );
+    let foreign = names
+        .iter()
+        .filter(|name| name.starts_with("clap") || name.starts_with("iceoryx2"));
+    assert_eq!(foreign.collect::<Vec<_>>(), Vec::<&&str>::new());
 }
 
 #[test]

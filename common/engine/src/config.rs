@@ -1,21 +1,25 @@
 //! Parsers of settings, so that a value out of range is refused by name.
 
 /// A length of 0 to 2 metres: the width of a taper, the arc of a beam.
+#[cfg(feature = "clap")]
 pub(crate) fn parse_length(text: &str) -> Result<f64, String> {
     parse(text, 0.0..=2.0, "metres")
 }
 
 /// A share of the range, 0 to 0.25: no laser is worse.
+#[cfg(feature = "clap")]
 pub(crate) fn parse_range_share(text: &str) -> Result<f64, String> {
     parse(text, 0.0..=0.25, "as a share of the range")
 }
 
 /// A share of 0 to 1.
+#[cfg(feature = "clap")]
 pub(crate) fn parse_share(text: &str) -> Result<f64, String> {
     parse(text, 0.0..=1.0, "as a share")
 }
 
 /// An angle of 0 to 180 degrees.
+#[cfg(feature = "clap")]
 pub(crate) fn parse_degrees(text: &str) -> Result<f64, String> {
     parse(text, 0.0..=180.0, "degrees")
 }
@@ -41,6 +45,7 @@ pub(crate) fn parse(
 }
 
 #[cfg(test)]
+#[cfg(feature = "clap")]
 mod tests {
     use super::*;
 

@@ -34,19 +34,20 @@ pub const MAX_RESOLUTION_M: f64 = 10.0;
 pub const MAX_ORIGIN_M: f64 = 1e8;
 
 /// Rules by which the occupancy of a cell, 0..=100 or unknown, is read.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, clap::Args)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+#[cfg_attr(feature = "clap", derive(clap::Args))]
 pub struct CellRules {
     /// Occupancy from which a cell is occupied, per cent, 1..=100; the default
     /// is that of map savers.
-    #[arg(long, value_name = "PERCENT", default_value_t = 65, value_parser = clap::value_parser!(u8).range(1..=100))]
+    #[cfg_attr(feature = "clap", arg(long, value_name = "PERCENT", default_value_t = 65, value_parser = clap::value_parser!(u8).range(1..=100)))]
     pub occupied_from: u8,
     /// Occupancy up to which a cell is free, per cent, 0..=99; what lies
     /// between counts as unknown.
-    #[arg(long, value_name = "PERCENT", default_value_t = 25, value_parser = clap::value_parser!(u8).range(0..=99))]
+    #[cfg_attr(feature = "clap", arg(long, value_name = "PERCENT", default_value_t = 25, value_parser = clap::value_parser!(u8).range(0..=99)))]
     pub free_to: u8,
     /// Unknown cells block rays and cannot hold the robot. Real maps are half
     /// known, so by default they do not block, and those near free cells can.
-    #[arg(long)]
+    #[cfg_attr(feature = "clap", arg(long))]
     pub unknown_blocks: bool,
 }
 

@@ -21,20 +21,21 @@ const FULL_VOTE: u32 = 15;
 const MAX_SIGMA_CELLS: f64 = 6000.0;
 
 /// How readings become votes.
-#[derive(Debug, Clone, Copy, PartialEq, clap::Args)]
+#[derive(Debug, Clone, Copy, PartialEq)]
+#[cfg_attr(feature = "clap", derive(clap::Args))]
 pub struct VoteConfig {
     /// Which beams vote, and with what weight.
-    #[command(flatten)]
+    #[cfg_attr(feature = "clap", command(flatten))]
     pub beams: BeamConfig,
     /// How votes fall off in front of a reading and behind it.
-    #[arg(long, value_enum, default_value_t = TaperShape::Trapezoid)]
+    #[cfg_attr(feature = "clap", arg(long, value_enum, default_value_t = TaperShape::Trapezoid))]
     pub taper: TaperShape,
     /// Standard deviation of a reading at distance 0, metres, 0..=2; the taper is never
     /// narrower than one cell.
-    #[arg(long, value_name = "METRES", default_value_t = 0.10, value_parser = crate::config::parse_length)]
+    #[cfg_attr(feature = "clap", arg(long, value_name = "METRES", default_value_t = 0.10, value_parser = crate::config::parse_length))]
     pub sigma_m: f64,
     /// What is added to the standard deviation for each metre of range, 0..=0.25.
-    #[arg(long, value_name = "SHARE", default_value_t = 0.01, value_parser = crate::config::parse_range_share)]
+    #[cfg_attr(feature = "clap", arg(long, value_name = "SHARE", default_value_t = 0.01, value_parser = crate::config::parse_range_share))]
     pub sigma_per_m: f64,
 }
 

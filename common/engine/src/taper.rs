@@ -5,7 +5,8 @@
 //! 1 and never rise with the distance.
 
 /// The shape of a taper over the distance from the reading, in units of σ.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, clap::ValueEnum)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+#[cfg_attr(feature = "clap", derive(clap::ValueEnum))]
 pub enum TaperShape {
     /// exp(-d²/2), Eq. 1 of the paper.
     Gaussian,

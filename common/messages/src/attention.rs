@@ -1,15 +1,21 @@
 //! What the tracker wants searched.
 
 use bytemuck::{Pod, Zeroable};
+#[cfg(feature = "iceoryx2")]
 use iceoryx2_bb_derive_macros::ZeroCopySend;
+#[cfg(feature = "iceoryx2")]
 use iceoryx2_bb_elementary_traits::zero_copy_send::ZeroCopySend;
 use serde::{Deserialize, Serialize};
 
 use crate::Stamp;
 
 /// The message of topic `attention`: a scan that is to be searched.
-#[derive(Debug, Clone, Copy, PartialEq, Pod, Zeroable, ZeroCopySend, Serialize, Deserialize)]
-#[type_name("AttentionHeader/v1")]
+#[derive(Debug, Clone, Copy, PartialEq, Pod, Zeroable, Serialize, Deserialize)]
+#[cfg_attr(
+    feature = "iceoryx2",
+    derive(ZeroCopySend),
+    type_name("AttentionHeader/v1")
+)]
 #[repr(C)]
 pub struct AttentionHeader {
     /// Of the scan; of the first laser's, where several are joined.

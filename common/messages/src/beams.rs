@@ -1,7 +1,9 @@
 //! What became of each beam of a scan.
 
 use bytemuck::{Pod, Zeroable};
+#[cfg(feature = "iceoryx2")]
 use iceoryx2_bb_derive_macros::ZeroCopySend;
+#[cfg(feature = "iceoryx2")]
 use iceoryx2_bb_elementary_traits::zero_copy_send::ZeroCopySend;
 use serde::{Deserialize, Serialize};
 
@@ -9,8 +11,12 @@ use crate::{Pose2, Stamp};
 
 /// Header of topic `beams`; the items are the beams that voted, by bearing, and
 /// behind them those of which nothing returned.
-#[derive(Debug, Clone, Copy, PartialEq, Pod, Zeroable, ZeroCopySend, Serialize, Deserialize)]
-#[type_name("BeamsHeader/v1")]
+#[derive(Debug, Clone, Copy, PartialEq, Pod, Zeroable, Serialize, Deserialize)]
+#[cfg_attr(
+    feature = "iceoryx2",
+    derive(ZeroCopySend),
+    type_name("BeamsHeader/v1")
+)]
 #[repr(C)]
 pub struct BeamsHeader {
     /// Of the scan.
@@ -22,8 +28,8 @@ pub struct BeamsHeader {
 }
 
 /// One beam.
-#[derive(Debug, Clone, Copy, PartialEq, Pod, Zeroable, ZeroCopySend, Serialize, Deserialize)]
-#[type_name("Beam/v1")]
+#[derive(Debug, Clone, Copy, PartialEq, Pod, Zeroable, Serialize, Deserialize)]
+#[cfg_attr(feature = "iceoryx2", derive(ZeroCopySend), type_name("Beam/v1"))]
 #[repr(C)]
 pub struct Beam {
     /// In the laser's frame, counter-clockwise from ahead, radians.

@@ -1,7 +1,9 @@
 //! The boundary of the obstacles.
 
 use bytemuck::{Pod, Zeroable};
+#[cfg(feature = "iceoryx2")]
 use iceoryx2_bb_derive_macros::ZeroCopySend;
+#[cfg(feature = "iceoryx2")]
 use iceoryx2_bb_elementary_traits::zero_copy_send::ZeroCopySend;
 use serde::{Deserialize, Serialize};
 
@@ -11,10 +13,12 @@ use crate::Stamp;
 ///
 /// It carries the rules by which cells were classed, so that whoever uses the
 /// boundary classes the map in the same way.
-#[derive(
-    Debug, Clone, Copy, PartialEq, Eq, Pod, Zeroable, ZeroCopySend, Serialize, Deserialize,
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Pod, Zeroable, Serialize, Deserialize)]
+#[cfg_attr(
+    feature = "iceoryx2",
+    derive(ZeroCopySend),
+    type_name("BoundaryHeader/v1")
 )]
-#[type_name("BoundaryHeader/v1")]
 #[repr(C)]
 pub struct BoundaryHeader {
     /// Of the map.
@@ -36,10 +40,12 @@ pub struct BoundaryHeader {
 }
 
 /// A boundary cell: column and row.
-#[derive(
-    Debug, Clone, Copy, PartialEq, Eq, Hash, Pod, Zeroable, ZeroCopySend, Serialize, Deserialize,
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Pod, Zeroable, Serialize, Deserialize)]
+#[cfg_attr(
+    feature = "iceoryx2",
+    derive(ZeroCopySend),
+    type_name("BoundaryCell/v1")
 )]
-#[type_name("BoundaryCell/v1")]
 #[repr(C)]
 pub struct BoundaryCell {
     /// Cells along x from the grid's origin.

@@ -1,7 +1,9 @@
 //! The intensity image of one scan.
 
 use bytemuck::{Pod, Zeroable};
+#[cfg(feature = "iceoryx2")]
 use iceoryx2_bb_derive_macros::ZeroCopySend;
+#[cfg(feature = "iceoryx2")]
 use iceoryx2_bb_elementary_traits::zero_copy_send::ZeroCopySend;
 use serde::{Deserialize, Serialize};
 
@@ -9,8 +11,12 @@ use crate::Stamp;
 
 /// Header of topic `field`; the items are `width · height` intensities, row by
 /// row from the lowest y.
-#[derive(Debug, Clone, Copy, PartialEq, Pod, Zeroable, ZeroCopySend, Serialize, Deserialize)]
-#[type_name("FieldHeader/v1")]
+#[derive(Debug, Clone, Copy, PartialEq, Pod, Zeroable, Serialize, Deserialize)]
+#[cfg_attr(
+    feature = "iceoryx2",
+    derive(ZeroCopySend),
+    type_name("FieldHeader/v1")
+)]
 #[repr(C)]
 pub struct FieldHeader {
     /// Of the scan.

@@ -1,15 +1,21 @@
 //! The true pose of a scan, as recordings made for evaluation hold it.
 
 use bytemuck::{Pod, Zeroable};
+#[cfg(feature = "iceoryx2")]
 use iceoryx2_bb_derive_macros::ZeroCopySend;
+#[cfg(feature = "iceoryx2")]
 use iceoryx2_bb_elementary_traits::zero_copy_send::ZeroCopySend;
 use serde::{Deserialize, Serialize};
 
 use crate::{FrameName, Pose2, Stamp};
 
 /// The message of topic `ground_truth`; its `measured_ns` is the scan's.
-#[derive(Debug, Clone, Copy, PartialEq, Pod, Zeroable, ZeroCopySend, Serialize, Deserialize)]
-#[type_name("GroundTruth/v2")]
+#[derive(Debug, Clone, Copy, PartialEq, Pod, Zeroable, Serialize, Deserialize)]
+#[cfg_attr(
+    feature = "iceoryx2",
+    derive(ZeroCopySend),
+    type_name("GroundTruth/v2")
+)]
 #[repr(C)]
 pub struct GroundTruth {
     /// Of the scan that it belongs to.

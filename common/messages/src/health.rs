@@ -1,7 +1,9 @@
 //! The state of a node.
 
 use bytemuck::{Pod, Zeroable};
+#[cfg(feature = "iceoryx2")]
 use iceoryx2_bb_derive_macros::ZeroCopySend;
+#[cfg(feature = "iceoryx2")]
 use iceoryx2_bb_elementary_traits::zero_copy_send::ZeroCopySend;
 use serde::{Deserialize, Serialize};
 
@@ -9,10 +11,12 @@ use crate::Name;
 
 /// Header of topic `health`; the items are the last error as UTF-8, at most
 /// [`HealthHeader::ERROR_CAPACITY`] bytes, empty where there was none.
-#[derive(
-    Debug, Clone, Copy, PartialEq, Eq, Pod, Zeroable, ZeroCopySend, Serialize, Deserialize,
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Pod, Zeroable, Serialize, Deserialize)]
+#[cfg_attr(
+    feature = "iceoryx2",
+    derive(ZeroCopySend),
+    type_name("HealthHeader/v1")
 )]
-#[type_name("HealthHeader/v1")]
 #[repr(C)]
 pub struct HealthHeader {
     /// The node's name.

@@ -1,15 +1,21 @@
 //! Where the robot may be.
 
 use bytemuck::{Pod, Zeroable};
+#[cfg(feature = "iceoryx2")]
 use iceoryx2_bb_derive_macros::ZeroCopySend;
+#[cfg(feature = "iceoryx2")]
 use iceoryx2_bb_elementary_traits::zero_copy_send::ZeroCopySend;
 use serde::{Deserialize, Serialize};
 
 use crate::{Pose2, Stamp};
 
 /// Header of topic `hypotheses`; the items are distinct poses, best first.
-#[derive(Debug, Clone, Copy, PartialEq, Pod, Zeroable, ZeroCopySend, Serialize, Deserialize)]
-#[type_name("HypothesesHeader/v3")]
+#[derive(Debug, Clone, Copy, PartialEq, Pod, Zeroable, Serialize, Deserialize)]
+#[cfg_attr(
+    feature = "iceoryx2",
+    derive(ZeroCopySend),
+    type_name("HypothesesHeader/v3")
+)]
 #[repr(C)]
 pub struct HypothesesHeader {
     /// Of the scan.
@@ -39,8 +45,8 @@ pub struct HypothesesHeader {
 }
 
 /// One place where the robot may be.
-#[derive(Debug, Clone, Copy, PartialEq, Pod, Zeroable, ZeroCopySend, Serialize, Deserialize)]
-#[type_name("Hypothesis/v3")]
+#[derive(Debug, Clone, Copy, PartialEq, Pod, Zeroable, Serialize, Deserialize)]
+#[cfg_attr(feature = "iceoryx2", derive(ZeroCopySend), type_name("Hypothesis/v3"))]
 #[repr(C)]
 pub struct Hypothesis {
     /// Pose of the laser in the map.

@@ -1,7 +1,9 @@
 //! A line of a node's log.
 
 use bytemuck::{Pod, Zeroable};
+#[cfg(feature = "iceoryx2")]
 use iceoryx2_bb_derive_macros::ZeroCopySend;
+#[cfg(feature = "iceoryx2")]
 use iceoryx2_bb_elementary_traits::zero_copy_send::ZeroCopySend;
 use serde::{Deserialize, Serialize};
 
@@ -9,10 +11,8 @@ use crate::Name;
 
 /// Header of topic `log`; the items are the line as UTF-8 without its end, at
 /// most [`LogHeader::TEXT_CAPACITY`] bytes.
-#[derive(
-    Debug, Clone, Copy, PartialEq, Eq, Pod, Zeroable, ZeroCopySend, Serialize, Deserialize,
-)]
-#[type_name("LogHeader/v1")]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Pod, Zeroable, Serialize, Deserialize)]
+#[cfg_attr(feature = "iceoryx2", derive(ZeroCopySend), type_name("LogHeader/v1"))]
 #[repr(C)]
 pub struct LogHeader {
     /// The node's name.

@@ -3,7 +3,9 @@
 use std::hash::Hasher;
 
 use bytemuck::{Pod, Zeroable};
+#[cfg(feature = "iceoryx2")]
 use iceoryx2_bb_derive_macros::ZeroCopySend;
+#[cfg(feature = "iceoryx2")]
 use iceoryx2_bb_elementary_traits::zero_copy_send::ZeroCopySend;
 use serde::{Deserialize, Serialize};
 
@@ -16,8 +18,8 @@ pub const UNKNOWN: u8 = 255;
 
 /// Header of topic `map`; the items are `width · height` cells, row by row from
 /// the lowest y: 0 free to 100 occupied, [`UNKNOWN`] unknown.
-#[derive(Debug, Clone, Copy, PartialEq, Pod, Zeroable, ZeroCopySend, Serialize, Deserialize)]
-#[type_name("MapHeader/v1")]
+#[derive(Debug, Clone, Copy, PartialEq, Pod, Zeroable, Serialize, Deserialize)]
+#[cfg_attr(feature = "iceoryx2", derive(ZeroCopySend), type_name("MapHeader/v1"))]
 #[repr(C)]
 pub struct MapHeader {
     /// When the map was read; the counter counts the maps served.

@@ -1,15 +1,17 @@
 //! Short texts inside messages: the names of nodes and of frames.
 
 use bytemuck::{Pod, Zeroable};
+#[cfg(feature = "iceoryx2")]
 use iceoryx2_bb_derive_macros::ZeroCopySend;
+#[cfg(feature = "iceoryx2")]
 use iceoryx2_bb_elementary_traits::zero_copy_send::ZeroCopySend;
 use serde::{Deserialize, Deserializer, Serialize, Serializer, de::Error};
 
 macro_rules! text {
     ($(#[$doc:meta])* $name:ident, $type_name:literal, $capacity:literal) => {
         $(#[$doc])*
-        #[derive(Clone, Copy, PartialEq, Eq, Pod, Zeroable, ZeroCopySend)]
-        #[type_name($type_name)]
+        #[derive(Clone, Copy, PartialEq, Eq, Pod, Zeroable)]
+        #[cfg_attr(feature = "iceoryx2", derive(ZeroCopySend), type_name($type_name))]
         #[repr(C)]
         pub struct $name([u8; $capacity]);
 

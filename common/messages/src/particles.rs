@@ -1,7 +1,9 @@
 //! Where a particle filter may start.
 
 use bytemuck::{Pod, Zeroable};
+#[cfg(feature = "iceoryx2")]
 use iceoryx2_bb_derive_macros::ZeroCopySend;
+#[cfg(feature = "iceoryx2")]
 use iceoryx2_bb_elementary_traits::zero_copy_send::ZeroCopySend;
 use serde::{Deserialize, Serialize};
 
@@ -9,8 +11,12 @@ use crate::{Pose2, Stamp};
 
 /// Header of topic `particles`; the items are poses around the hypotheses of a scan, as
 /// many around each as it is likely. None where the scan has no place.
-#[derive(Debug, Clone, Copy, PartialEq, Pod, Zeroable, ZeroCopySend, Serialize, Deserialize)]
-#[type_name("ParticlesHeader/v1")]
+#[derive(Debug, Clone, Copy, PartialEq, Pod, Zeroable, Serialize, Deserialize)]
+#[cfg_attr(
+    feature = "iceoryx2",
+    derive(ZeroCopySend),
+    type_name("ParticlesHeader/v1")
+)]
 #[repr(C)]
 pub struct ParticlesHeader {
     /// Of the scan.
@@ -22,8 +28,8 @@ pub struct ParticlesHeader {
 }
 
 /// One pose; all weigh the same.
-#[derive(Debug, Clone, Copy, PartialEq, Pod, Zeroable, ZeroCopySend, Serialize, Deserialize)]
-#[type_name("Particle/v1")]
+#[derive(Debug, Clone, Copy, PartialEq, Pod, Zeroable, Serialize, Deserialize)]
+#[cfg_attr(feature = "iceoryx2", derive(ZeroCopySend), type_name("Particle/v1"))]
 #[repr(C)]
 pub struct Particle {
     /// Pose of the robot's base in the map; the laser's where no mount is known.

@@ -2,13 +2,15 @@
 
 use bytemuck::{Pod, Zeroable};
 use geometry::Pose;
+#[cfg(feature = "iceoryx2")]
 use iceoryx2_bb_derive_macros::ZeroCopySend;
+#[cfg(feature = "iceoryx2")]
 use iceoryx2_bb_elementary_traits::zero_copy_send::ZeroCopySend;
 use serde::{Deserialize, Serialize};
 
 /// Metres and radians; the field that holds it names the frames.
-#[derive(Debug, Clone, Copy, PartialEq, Pod, Zeroable, ZeroCopySend, Serialize, Deserialize)]
-#[type_name("Pose2/v1")]
+#[derive(Debug, Clone, Copy, PartialEq, Pod, Zeroable, Serialize, Deserialize)]
+#[cfg_attr(feature = "iceoryx2", derive(ZeroCopySend), type_name("Pose2/v1"))]
 #[repr(C)]
 pub struct Pose2 {
     /// Metres.

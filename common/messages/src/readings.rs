@@ -1,15 +1,21 @@
 //! The readings of a scan that was brought to one time and place.
 
 use bytemuck::{Pod, Zeroable};
+#[cfg(feature = "iceoryx2")]
 use iceoryx2_bb_derive_macros::ZeroCopySend;
+#[cfg(feature = "iceoryx2")]
 use iceoryx2_bb_elementary_traits::zero_copy_send::ZeroCopySend;
 use serde::{Deserialize, Serialize};
 
 use crate::Stamp;
 
 /// Header of topic `readings`; the items are the beams that the second stage judges.
-#[derive(Debug, Clone, Copy, PartialEq, Pod, Zeroable, ZeroCopySend, Serialize, Deserialize)]
-#[type_name("ReadingsHeader/v1")]
+#[derive(Debug, Clone, Copy, PartialEq, Pod, Zeroable, Serialize, Deserialize)]
+#[cfg_attr(
+    feature = "iceoryx2",
+    derive(ZeroCopySend),
+    type_name("ReadingsHeader/v1")
+)]
 #[repr(C)]
 pub struct ReadingsHeader {
     /// Of the scan.
@@ -18,10 +24,8 @@ pub struct ReadingsHeader {
 
 /// One beam, in the target frame: that of the laser at the scan's
 /// stamp or, where several lasers are joined, that of the base.
-#[derive(
-    Debug, Clone, Copy, PartialEq, Default, Pod, Zeroable, ZeroCopySend, Serialize, Deserialize,
-)]
-#[type_name("Reading/v1")]
+#[derive(Debug, Clone, Copy, PartialEq, Default, Pod, Zeroable, Serialize, Deserialize)]
+#[cfg_attr(feature = "iceoryx2", derive(ZeroCopySend), type_name("Reading/v1"))]
 #[repr(C)]
 pub struct Reading {
     /// Where the laser was when it measured, metres.

@@ -1,7 +1,9 @@
 //! Where poses are to be searched.
 
 use bytemuck::{Pod, Zeroable};
+#[cfg(feature = "iceoryx2")]
 use iceoryx2_bb_derive_macros::ZeroCopySend;
+#[cfg(feature = "iceoryx2")]
 use iceoryx2_bb_elementary_traits::zero_copy_send::ZeroCopySend;
 use serde::{Deserialize, Serialize};
 
@@ -9,10 +11,12 @@ use crate::Stamp;
 
 /// Header of topic `region`; the items are the corners of a polygon in turn, two
 /// of an upright rectangle, or none where poses are searched everywhere.
-#[derive(
-    Debug, Clone, Copy, PartialEq, Eq, Pod, Zeroable, ZeroCopySend, Serialize, Deserialize,
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Pod, Zeroable, Serialize, Deserialize)]
+#[cfg_attr(
+    feature = "iceoryx2",
+    derive(ZeroCopySend),
+    type_name("RegionHeader/v1")
 )]
-#[type_name("RegionHeader/v1")]
 #[repr(C)]
 pub struct RegionHeader {
     /// When it was requested; the counter counts the requests.
@@ -20,8 +24,8 @@ pub struct RegionHeader {
 }
 
 /// A corner, metres in the map.
-#[derive(Debug, Clone, Copy, PartialEq, Pod, Zeroable, ZeroCopySend, Serialize, Deserialize)]
-#[type_name("Corner/v1")]
+#[derive(Debug, Clone, Copy, PartialEq, Pod, Zeroable, Serialize, Deserialize)]
+#[cfg_attr(feature = "iceoryx2", derive(ZeroCopySend), type_name("Corner/v1"))]
 #[repr(C)]
 pub struct Corner {
     /// Metres.

@@ -1,17 +1,17 @@
 //! A request that the last minutes be saved.
 
 use bytemuck::{Pod, Zeroable};
+#[cfg(feature = "iceoryx2")]
 use iceoryx2_bb_derive_macros::ZeroCopySend;
+#[cfg(feature = "iceoryx2")]
 use iceoryx2_bb_elementary_traits::zero_copy_send::ZeroCopySend;
 use serde::{Deserialize, Serialize};
 
 use crate::Stamp;
 
 /// The message of topic `save`.
-#[derive(
-    Debug, Clone, Copy, PartialEq, Eq, Pod, Zeroable, ZeroCopySend, Serialize, Deserialize,
-)]
-#[type_name("SaveHeader/v1")]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Pod, Zeroable, Serialize, Deserialize)]
+#[cfg_attr(feature = "iceoryx2", derive(ZeroCopySend), type_name("SaveHeader/v1"))]
 #[repr(C)]
 pub struct SaveHeader {
     /// When it was requested; the counter counts the requests.

@@ -1,7 +1,9 @@
 //! One laser scan.
 
 use bytemuck::{Pod, Zeroable};
+#[cfg(feature = "iceoryx2")]
 use iceoryx2_bb_derive_macros::ZeroCopySend;
+#[cfg(feature = "iceoryx2")]
 use iceoryx2_bb_elementary_traits::zero_copy_send::ZeroCopySend;
 use serde::{Deserialize, Serialize};
 
@@ -9,8 +11,8 @@ use crate::{FrameName, Name, Pose2, Stamp};
 
 /// Header of topic `scan`; the items are ranges in metres. Beam `i` points to
 /// `angle_min + i · angle_increment` in the laser's frame.
-#[derive(Debug, Clone, Copy, PartialEq, Pod, Zeroable, ZeroCopySend, Serialize, Deserialize)]
-#[type_name("ScanHeader/v2")]
+#[derive(Debug, Clone, Copy, PartialEq, Pod, Zeroable, Serialize, Deserialize)]
+#[cfg_attr(feature = "iceoryx2", derive(ZeroCopySend), type_name("ScanHeader/v2"))]
 #[repr(C)]
 pub struct ScanHeader {
     /// Of the first beam.

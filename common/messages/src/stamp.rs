@@ -1,16 +1,16 @@
 //! When something was measured, and when the graph first saw it.
 
 use bytemuck::{Pod, Zeroable};
+#[cfg(feature = "iceoryx2")]
 use iceoryx2_bb_derive_macros::ZeroCopySend;
+#[cfg(feature = "iceoryx2")]
 use iceoryx2_bb_elementary_traits::zero_copy_send::ZeroCopySend;
 use serde::{Deserialize, Serialize};
 
 /// The origin of a measurement. Every step copies the stamp of its input
 /// onward, so latency is always now minus `entered_ns`.
-#[derive(
-    Debug, Clone, Copy, PartialEq, Eq, Default, Pod, Zeroable, ZeroCopySend, Serialize, Deserialize,
-)]
-#[type_name("Stamp/v1")]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Pod, Zeroable, Serialize, Deserialize)]
+#[cfg_attr(feature = "iceoryx2", derive(ZeroCopySend), type_name("Stamp/v1"))]
 #[repr(C)]
 pub struct Stamp {
     /// Nanoseconds since 1970 at which the source measured; a recording keeps

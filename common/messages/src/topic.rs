@@ -1,7 +1,6 @@
 //! The topics of the graph: their names, types and quality of service.
 
 use bytemuck::Pod;
-use iceoryx2_bb_elementary_traits::zero_copy_send::ZeroCopySend;
 
 use crate::{
     AttentionHeader, Beam, BeamsHeader, BoundaryCell, BoundaryHeader, Corner, FieldHeader,
@@ -10,10 +9,20 @@ use crate::{
     SaveHeader, ScanHeader, Vote, VotesHeader,
 };
 
-/// Plain data that one process may write and another may read in place.
-pub trait Message: Pod + ZeroCopySend + std::fmt::Debug {}
+#[cfg(feature = "iceoryx2")]
+use iceoryx2_bb_elementary_traits::zero_copy_send::ZeroCopySend as Shareable;
 
-impl<T: Pod + ZeroCopySend + std::fmt::Debug> Message for T {}
+/// What iceoryx2 asks of what lies in shared memory; without it, nothing.
+#[cfg(not(feature = "iceoryx2"))]
+pub trait Shareable {}
+
+#[cfg(not(feature = "iceoryx2"))]
+impl<T> Shareable for T {}
+
+/// Plain data that one process may write and another may read in place.
+pub trait Message: Pod + Shareable + std::fmt::Debug {}
+
+impl<T: Pod + Shareable + std::fmt::Debug> Message for T {}
 
 /// A topic: a header and a slice of items under one name.
 ///

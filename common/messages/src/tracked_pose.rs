@@ -1,7 +1,9 @@
 //! Where the tracker has the robot, and how sure it is.
 
 use bytemuck::{Pod, Zeroable};
+#[cfg(feature = "iceoryx2")]
 use iceoryx2_bb_derive_macros::ZeroCopySend;
+#[cfg(feature = "iceoryx2")]
 use iceoryx2_bb_elementary_traits::zero_copy_send::ZeroCopySend;
 use serde::{Deserialize, Serialize};
 
@@ -9,8 +11,8 @@ use crate::{FrameName, Pose2, Stamp};
 
 /// The message of topic `pose`; the items are the reason in words, and what to do, as
 /// UTF-8.
-#[derive(Debug, Clone, Copy, PartialEq, Pod, Zeroable, ZeroCopySend, Serialize, Deserialize)]
-#[type_name("PoseHeader/v1")]
+#[derive(Debug, Clone, Copy, PartialEq, Pod, Zeroable, Serialize, Deserialize)]
+#[cfg_attr(feature = "iceoryx2", derive(ZeroCopySend), type_name("PoseHeader/v1"))]
 #[repr(C)]
 pub struct PoseHeader {
     /// Of the scan or, between scans, of the odometry.

@@ -1,7 +1,9 @@
 //! The outcome of one search: the poses that the scan votes for.
 
 use bytemuck::{Pod, Zeroable};
+#[cfg(feature = "iceoryx2")]
 use iceoryx2_bb_derive_macros::ZeroCopySend;
+#[cfg(feature = "iceoryx2")]
 use iceoryx2_bb_elementary_traits::zero_copy_send::ZeroCopySend;
 use serde::{Deserialize, Serialize};
 
@@ -10,8 +12,12 @@ use crate::{Pose2, Stamp};
 /// Header of topic `votes`; the items are poses by falling intensity, equal ones
 /// by (heading, y, x): all at or above `certified_floor`, and distinct candidates
 /// below.
-#[derive(Debug, Clone, Copy, PartialEq, Pod, Zeroable, ZeroCopySend, Serialize, Deserialize)]
-#[type_name("VotesHeader/v4")]
+#[derive(Debug, Clone, Copy, PartialEq, Pod, Zeroable, Serialize, Deserialize)]
+#[cfg_attr(
+    feature = "iceoryx2",
+    derive(ZeroCopySend),
+    type_name("VotesHeader/v4")
+)]
 #[repr(C)]
 pub struct VotesHeader {
     /// Of the scan.
@@ -104,10 +110,8 @@ impl SearchOutcome {
 }
 
 /// A pose of the search grid and its intensity.
-#[derive(
-    Debug, Clone, Copy, PartialEq, Eq, Hash, Pod, Zeroable, ZeroCopySend, Serialize, Deserialize,
-)]
-#[type_name("Vote/v1")]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Pod, Zeroable, Serialize, Deserialize)]
+#[cfg_attr(feature = "iceoryx2", derive(ZeroCopySend), type_name("Vote/v1"))]
 #[repr(C)]
 pub struct Vote {
     /// Cells that were searched along x from the grid's origin.

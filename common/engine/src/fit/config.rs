@@ -1,33 +1,36 @@
 //! The lengths and shares of the second stage.
 
+#[cfg(feature = "clap")]
 use crate::config::{parse_length, parse_share};
 
 /// How end points are judged by their distance to obstacles.
-#[derive(Debug, Clone, Copy, PartialEq, clap::Args)]
+#[derive(Debug, Clone, Copy, PartialEq)]
+#[cfg_attr(feature = "clap", derive(clap::Args))]
 pub struct FitConfig {
     /// Standard deviation of an end point around the obstacle that it belongs
     /// to, map errors included, metres, 0..=2; at least `--fit-sigma-cells`.
-    #[arg(long, value_name = "METRES", default_value_t = 0.10, value_parser = parse_length)]
+    #[cfg_attr(feature = "clap", arg(long, value_name = "METRES", default_value_t = 0.10, value_parser = parse_length))]
     pub fit_sigma_m: f64,
     /// The same in cells of the map, 0.1..=10: coarse maps are less exact.
-    #[arg(long, value_name = "CELLS", default_value_t = 2.0, value_parser = parse_cells)]
+    #[cfg_attr(feature = "clap", arg(long, value_name = "CELLS", default_value_t = 2.0, value_parser = parse_cells))]
     pub fit_sigma_cells: f64,
     /// Penalty for a beam that passes through an obstacle, as a share of its full
     /// score, 0..=1. A beam passes through if its reading is longer than the distance
     /// to the first obstacle by three standard deviations.
-    #[arg(long, value_name = "SHARE", default_value_t = 0.15, value_parser = parse_share)]
+    #[cfg_attr(feature = "clap", arg(long, value_name = "SHARE", default_value_t = 0.15, value_parser = parse_share))]
     pub through_penalty: f64,
     /// The score of a beam that ends behind unknown space, 0..=1; half of it if
     /// it passes through an obstacle there.
-    #[arg(long, value_name = "SHARE", default_value_t = 0.3, value_parser = parse_share)]
+    #[cfg_attr(feature = "clap", arg(long, value_name = "SHARE", default_value_t = 0.3, value_parser = parse_share))]
     pub unknown_score: f64,
     /// Tolerance for drawn maps, which leave out what their author did not know: the
     /// true place may score this much worse than another, 0..=1. A map counts as drawn
     /// if its walls are very straight.
-    #[arg(long, value_name = "SCORE", default_value_t = 0.15, value_parser = parse_share)]
+    #[cfg_attr(feature = "clap", arg(long, value_name = "SCORE", default_value_t = 0.15, value_parser = parse_share))]
     pub drawn_doubt: f64,
 }
 
+#[cfg(feature = "clap")]
 fn parse_cells(text: &str) -> Result<f64, String> {
     crate::config::parse(text, 0.1..=10.0, "cells")
 }

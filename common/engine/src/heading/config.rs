@@ -3,31 +3,33 @@
 use super::HeadingSource;
 
 /// What is known of the heading. With nothing given, all headings are searched.
-#[derive(Debug, Clone, Default, clap::Args)]
+#[derive(Debug, Clone, Default)]
+#[cfg_attr(feature = "clap", derive(clap::Args))]
 pub struct HeadingConfig {
     /// The laser's heading in the map, degrees counter-clockwise from its x
     /// axis, -360..=360: only x and y are searched.
-    #[arg(long, value_name = "DEGREES", value_parser = degrees, allow_negative_numbers = true)]
-    #[arg(conflicts_with = "heading_from")]
+    #[cfg_attr(feature = "clap", arg(long, value_name = "DEGREES", value_parser = degrees, allow_negative_numbers = true))]
+    #[cfg_attr(feature = "clap", arg(conflicts_with = "heading_from"))]
     pub heading: Option<f64>,
 
     /// Where each scan's heading comes from: only x and y are searched.
-    #[arg(long, value_enum, value_name = "SOURCE")]
+    #[cfg_attr(feature = "clap", arg(long, value_enum, value_name = "SOURCE"))]
     pub heading_from: Option<HeadingFrom>,
 
     /// Added to the heading from odometry, degrees, -360..=360: the heading in the map
     /// where odometry reads 0. Odometry drifts, so this is useful at the start of a
     /// run. Default 0.
-    #[arg(long, value_name = "DEGREES", value_parser = degrees, allow_negative_numbers = true)]
+    #[cfg_attr(feature = "clap", arg(long, value_name = "DEGREES", value_parser = degrees, allow_negative_numbers = true))]
     pub heading_offset: Option<f64>,
 
     /// Maximum age of odometry at its scan, seconds, 0..=60. Default 1.
-    #[arg(long, value_name = "SECONDS", value_parser = seconds)]
+    #[cfg_attr(feature = "clap", arg(long, value_name = "SECONDS", value_parser = seconds))]
     pub heading_max_age_s: Option<f64>,
 }
 
 /// What headings come from.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, clap::ValueEnum)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+#[cfg_attr(feature = "clap", derive(clap::ValueEnum))]
 pub enum HeadingFrom {
     /// The newest odometry that was measured before the scan.
     Odometry,
@@ -79,15 +81,18 @@ impl HeadingConfig {
     }
 }
 
+#[cfg(feature = "clap")]
 fn degrees(text: &str) -> Result<f64, String> {
     crate::config::parse(text, -360.0..=360.0, "degrees")
 }
 
+#[cfg(feature = "clap")]
 fn seconds(text: &str) -> Result<f64, String> {
     crate::config::parse(text, 0.0..=60.0, "seconds")
 }
 
 #[cfg(test)]
+#[cfg(feature = "clap")]
 mod tests {
     use super::*;
     use crate::localizer::Prior;

@@ -1,35 +1,38 @@
 //! The settings of joining.
 
 /// What is joined, and how the motion is known.
-#[derive(Debug, Clone, PartialEq, Default, clap::Args)]
+#[derive(Debug, Clone, PartialEq, Default)]
+#[cfg_attr(feature = "clap", derive(clap::Args))]
 pub struct JoinConfig {
     /// Lasers whose scans are joined, the main one first: a new scan of it triggers an
     /// answer. By default the graph has one laser.
-    #[arg(long, value_name = "LASER,LASER", value_delimiter = ',', value_parser = parse_laser)]
+    #[cfg_attr(feature = "clap", arg(long, value_name = "LASER,LASER", value_delimiter = ',', value_parser = parse_laser))]
     pub scans: Vec<String>,
     /// How the motion is measured.
-    #[command(flatten)]
+    #[cfg_attr(feature = "clap", command(flatten))]
     pub motion: MotionConfig,
 }
 
 /// How the motion within a scan, and between scans, is known.
-#[derive(Debug, Clone, PartialEq, clap::Args)]
+#[derive(Debug, Clone, PartialEq)]
+#[cfg_attr(feature = "clap", derive(clap::Args))]
 pub struct MotionConfig {
     /// Added to the stamps of odometry, seconds, -1..=1: positive if odometry leads the
     /// laser.
-    #[arg(long, value_name = "SECONDS", default_value_t = 0.0, allow_negative_numbers = true, value_parser = parse_delay)]
+    #[cfg_attr(feature = "clap", arg(long, value_name = "SECONDS", default_value_t = 0.0, allow_negative_numbers = true, value_parser = parse_delay))]
     pub odometry_delay_s: f64,
     /// Which beam the stamp of a scan belongs to.
-    #[arg(long, value_enum, default_value_t = ScanStamp::First)]
+    #[cfg_attr(feature = "clap", arg(long, value_enum, default_value_t = ScanStamp::First))]
     pub scan_stamp: ScanStamp,
     /// Whether the motion within a scan is compensated (deskewed), if odometry covers
     /// it.
-    #[arg(long, value_name = "BOOL", default_value_t = true, action = clap::ArgAction::Set)]
+    #[cfg_attr(feature = "clap", arg(long, value_name = "BOOL", default_value_t = true, action = clap::ArgAction::Set))]
     pub deskew: bool,
 }
 
 /// Which beam the stamp of a scan belongs to.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Default, clap::ValueEnum)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+#[cfg_attr(feature = "clap", derive(clap::ValueEnum))]
 pub enum ScanStamp {
     /// The first, as `sensor_msgs/LaserScan` defines it.
     #[default]
@@ -57,10 +60,12 @@ impl Default for MotionConfig {
     }
 }
 
+#[cfg(feature = "clap")]
 fn parse_delay(text: &str) -> Result<f64, String> {
     crate::config::parse(text, -1.0..=1.0, "seconds")
 }
 
+#[cfg(feature = "clap")]
 fn parse_laser(text: &str) -> Result<String, String> {
     match text.len() {
         1..=messages::Name::CAPACITY => Ok(text.into()),

@@ -4,25 +4,32 @@ use super::Region;
 use crate::config;
 
 /// Where poses are searched; by default wherever the robot may stand.
-#[derive(Debug, Clone, PartialEq, clap::Args)]
+#[derive(Debug, Clone, PartialEq)]
+#[cfg_attr(feature = "clap", derive(clap::Args))]
 pub struct LimitsConfig {
     /// Unknown cells that do not block can hold the laser only within this distance of
     /// a free cell, between centres, metres, 0..=1000: a map ends where the robot that
     /// made it could not see, and not far behind that nothing can be found.
-    #[arg(long, value_name = "METRES", default_value_t = 1.0, value_parser = parse_reach)]
+    #[cfg_attr(feature = "clap", arg(long, value_name = "METRES", default_value_t = 1.0, value_parser = parse_reach))]
     pub unknown_reach: f64,
     /// Only cells at least this far from the centre of every occupied cell can hold the
     /// laser, metres, 0..=5: the distance from the laser to the robot's nearest side.
-    #[arg(long, value_name = "METRES", default_value_t = 0.0, value_parser = parse_radius)]
+    #[cfg_attr(feature = "clap", arg(long, value_name = "METRES", default_value_t = 0.0, value_parser = parse_radius))]
     pub robot_radius: f64,
     /// Only poses in this polygon are searched: two opposite corners of an upright
     /// rectangle, or all corners of any other polygon, in metres in the map: "X,Y X,Y
     /// …".
-    #[arg(long, value_name = "CORNERS", allow_hyphen_values = true)]
+    #[cfg_attr(
+        feature = "clap",
+        arg(long, value_name = "CORNERS", allow_hyphen_values = true)
+    )]
     pub region: Option<Region>,
     /// Only headings from FROM counter-clockwise to TO are searched, degrees in the
     /// map, -360..=360: "FROM,TO".
-    #[arg(long, value_name = "FROM,TO", allow_hyphen_values = true)]
+    #[cfg_attr(
+        feature = "clap",
+        arg(long, value_name = "FROM,TO", allow_hyphen_values = true)
+    )]
     pub headings_within: Option<HeadingInterval>,
 }
 
@@ -79,10 +86,12 @@ impl std::str::FromStr for HeadingInterval {
     }
 }
 
+#[cfg(feature = "clap")]
 fn parse_reach(text: &str) -> Result<f64, String> {
     config::parse(text, 0.0..=1000.0, "metres")
 }
 
+#[cfg(feature = "clap")]
 fn parse_radius(text: &str) -> Result<f64, String> {
     config::parse(text, 0.0..=5.0, "metres")
 }

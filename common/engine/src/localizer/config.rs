@@ -5,7 +5,8 @@ use crate::program::VoteConfig;
 use crate::votes::CollectConfig;
 
 /// How votes are counted where the heading is known. The votes are the same.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Default, clap::ValueEnum)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+#[cfg_attr(feature = "clap", derive(clap::ValueEnum))]
 pub enum FieldMethod {
     /// The one that takes fewer steps, scan by scan.
     #[default]
@@ -17,38 +18,46 @@ pub enum FieldMethod {
 }
 
 /// How scans are matched with the map.
-#[derive(Debug, Clone, PartialEq, clap::Args)]
+#[derive(Debug, Clone, PartialEq)]
+#[cfg_attr(feature = "clap", derive(clap::Args))]
 pub struct LocalizerConfig {
     /// Headings per turn, a multiple of 8 from 8 to 3600.
-    #[arg(long, value_name = "COUNT", default_value_t = 360)]
+    #[cfg_attr(
+        feature = "clap",
+        arg(long, value_name = "COUNT", default_value_t = 360)
+    )]
     pub headings: u32,
     /// Threads of a search, 1..=64; the answer is the same with any number.
-    #[arg(long, value_name = "COUNT", default_value_t = 1, value_parser = clap::value_parser!(u8).range(1..=64))]
+    #[cfg_attr(feature = "clap", arg(long, value_name = "COUNT", default_value_t = 1, value_parser = clap::value_parser!(u8).range(1..=64)))]
     pub threads: u8,
     /// How readings become votes.
-    #[command(flatten)]
+    #[cfg_attr(feature = "clap", command(flatten))]
     pub votes: VoteConfig,
     /// Which poses a search collects.
-    #[command(flatten)]
+    #[cfg_attr(feature = "clap", command(flatten))]
     pub collect: CollectConfig,
     /// Where poses are searched.
-    #[command(flatten)]
+    #[cfg_attr(feature = "clap", command(flatten))]
     pub limits: LimitsConfig,
     /// How votes are counted if the heading is known; the answer is the same.
-    #[arg(long, value_name = "METHOD", value_enum, default_value_t)]
+    #[cfg_attr(
+        feature = "clap",
+        arg(long, value_name = "METHOD", value_enum, default_value_t)
+    )]
     pub method: FieldMethod,
     /// Cell size of the search, metres, 0..=1: finer maps are searched at this
     /// resolution, and the places found are refined on the full map. 0 searches each
     /// map at its own resolution.
-    #[arg(long, value_name = "METRES", default_value_t = 0.05, value_parser = parse_cell)]
+    #[cfg_attr(feature = "clap", arg(long, value_name = "METRES", default_value_t = 0.05, value_parser = parse_cell))]
     pub search_cell: f64,
     /// Memory limit for preparing a map for searches of unknown headings, megabytes of
     /// 10⁶ bytes, 1..=1000000: a map that needs about more is rejected. No limit by
     /// default.
-    #[arg(long, value_name = "MEGABYTES", value_parser = clap::value_parser!(u32).range(1..=1_000_000))]
+    #[cfg_attr(feature = "clap", arg(long, value_name = "MEGABYTES", value_parser = clap::value_parser!(u32).range(1..=1_000_000)))]
     pub memory_limit: Option<u32>,
 }
 
+#[cfg(feature = "clap")]
 fn parse_cell(text: &str) -> Result<f64, String> {
     crate::config::parse(text, 0.0..=1.0, "metres")
 }

@@ -1,11 +1,13 @@
 //! What makes poses one place, and a place the answer.
 
+#[cfg(feature = "clap")]
 use crate::config::{parse_degrees, parse_length, parse_share};
 use crate::fit::FitConfig;
 use crate::votes::{DISTINCT_DEG, DISTINCT_M};
 
 /// By what the places are judged.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, clap::ValueEnum)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+#[cfg_attr(feature = "clap", derive(clap::ValueEnum))]
 pub enum Score {
     /// By how well the scan fits the map at the refined pose.
     Fit,
@@ -14,89 +16,91 @@ pub enum Score {
 }
 
 /// When poses are one place, and when a place stands alone.
-#[derive(Debug, Clone, Copy, PartialEq, clap::Args)]
+#[derive(Debug, Clone, Copy, PartialEq)]
+#[cfg_attr(feature = "clap", derive(clap::Args))]
 pub struct PeakConfig {
     /// Score by which places are judged and ordered.
-    #[arg(long, value_enum, default_value_t = Score::Fit)]
+    #[cfg_attr(feature = "clap", arg(long, value_enum, default_value_t = Score::Fit))]
     pub score: Score,
     /// Poses within this distance and `--same-place-deg` are one place,
     /// metres, 0..=2.
-    #[arg(long, value_name = "METRES", default_value_t = 0.5, value_parser = parse_length)]
+    #[cfg_attr(feature = "clap", arg(long, value_name = "METRES", default_value_t = 0.5, value_parser = parse_length))]
     pub same_place_m: f64,
     /// Poses within this angle and `--same-place-m` are one place, degrees,
     /// 0..=180.
-    #[arg(long, value_name = "DEGREES", default_value_t = 10.0, value_parser = parse_degrees)]
+    #[cfg_attr(feature = "clap", arg(long, value_name = "DEGREES", default_value_t = 10.0, value_parser = parse_degrees))]
     pub same_place_deg: f64,
     /// Maximum number of places that are reported, 1..=1000.
-    #[arg(long, value_name = "COUNT", default_value_t = 64, value_parser = clap::value_parser!(u32).range(1..=1000))]
+    #[cfg_attr(feature = "clap", arg(long, value_name = "COUNT", default_value_t = 64, value_parser = clap::value_parser!(u32).range(1..=1000)))]
     pub max_hypotheses: u32,
     /// Number of candidates that are refined, 1..=1000: those with the most votes, and
     /// up to four times as many as long as they have half the best one's votes.
-    #[arg(long, value_name = "COUNT", default_value_t = 64, value_parser = clap::value_parser!(u32).range(1..=1000))]
+    #[cfg_attr(feature = "clap", arg(long, value_name = "COUNT", default_value_t = 64, value_parser = clap::value_parser!(u32).range(1..=1000)))]
     pub max_candidates: u32,
     /// Votes within this distance and `--candidate-deg` are refined together,
     /// metres, 0..=2.
-    #[arg(long, value_name = "METRES", default_value_t = DISTINCT_M, value_parser = parse_length)]
+    #[cfg_attr(feature = "clap", arg(long, value_name = "METRES", default_value_t = DISTINCT_M, value_parser = parse_length))]
     pub candidate_m: f64,
     /// Votes within this angle and `--candidate-m` are refined together,
     /// degrees, 0..=180.
-    #[arg(long, value_name = "DEGREES", default_value_t = DISTINCT_DEG, value_parser = parse_degrees)]
+    #[cfg_attr(feature = "clap", arg(long, value_name = "DEGREES", default_value_t = DISTINCT_DEG, value_parser = parse_degrees))]
     pub candidate_deg: f64,
     /// How the places' fit is judged.
-    #[command(flatten)]
+    #[cfg_attr(feature = "clap", command(flatten))]
     pub fit: FitConfig,
     /// Minimum lead of the best place: another place closer behind makes the answer
     /// ambiguous, 0..=1. The lead is measured relative to what is missing of a perfect
     /// score: (best - other) / √(1.1 - best).
-    #[arg(long, value_name = "LEAD", default_value_t = 0.09, value_parser = parse_share)]
+    #[cfg_attr(feature = "clap", arg(long, value_name = "LEAD", default_value_t = 0.09, value_parser = parse_share))]
     pub least_lead: f64,
     /// Score that needs no more than the minimum lead, 0..=1; a best place with a lower
     /// score needs a larger lead: where the scan fits badly, the true place may not be
     /// on the map. This is for a scan that sees six pieces, see `--piece-doubt`.
-    #[arg(long, value_name = "SCORE", default_value_t = 0.74, value_parser = parse_share)]
+    #[cfg_attr(feature = "clap", arg(long, value_name = "SCORE", default_value_t = 0.74, value_parser = parse_share))]
     pub sure_score: f64,
     /// How far the sure score falls with the natural logarithm of the number of pieces
     /// of the world that a scan sees, 0..=1, since many pieces rarely fit together by
     /// chance. A new piece begins where neighbouring readings jump.
-    #[arg(long, value_name = "SCORE", default_value_t = 0.14, value_parser = parse_share)]
+    #[cfg_attr(feature = "clap", arg(long, value_name = "SCORE", default_value_t = 0.14, value_parser = parse_share))]
     pub piece_doubt: f64,
     /// Doubt because of beams that pass through obstacles at the best place: the score
     /// that is compared with the sure score is lowered by this times their share,
     /// 0..=1. It does not change which place is best, see `--through-penalty`: walls
     /// that are seen at a flat angle are passed through at the true place, too.
-    #[arg(long, value_name = "SCORE", default_value_t = 0.4, value_parser = parse_share)]
+    #[cfg_attr(feature = "clap", arg(long, value_name = "SCORE", default_value_t = 0.4, value_parser = parse_share))]
     pub through_doubt: f64,
     /// Number of beams that need no more than the minimum lead, 1..=1000: with fewer,
     /// scores vary more by chance, and the lead must be larger by the square root of
     /// what is missing. A beam of little weight counts for less than one.
-    #[arg(long, value_name = "COUNT", default_value_t = 100, value_parser = clap::value_parser!(u32).range(1..=1000))]
+    #[cfg_attr(feature = "clap", arg(long, value_name = "COUNT", default_value_t = 100, value_parser = clap::value_parser!(u32).range(1..=1000)))]
     pub sure_beams: u32,
     /// Minimum score of the best place; below it the verdict is PoorFit: the scan may
     /// not be of this map, 0..=1.
-    #[arg(long, value_name = "SCORE", default_value_t = 0.60, value_parser = parse_share)]
+    #[cfg_attr(feature = "clap", arg(long, value_name = "SCORE", default_value_t = 0.60, value_parser = parse_share))]
     pub least_score: f64,
     /// Lead that makes another place less likely by a factor of e, 0.001..=1.
-    #[arg(long, value_name = "LEAD", default_value_t = 0.025, value_parser = parse_scale)]
+    #[cfg_attr(feature = "clap", arg(long, value_name = "LEAD", default_value_t = 0.025, value_parser = parse_scale))]
     pub lead_scale: f64,
     /// Score at which a single place is as likely as that the robot is at none of the
     /// places found, 0..=1.
-    #[arg(long, value_name = "SCORE", default_value_t = 0.55, value_parser = parse_share)]
+    #[cfg_attr(feature = "clap", arg(long, value_name = "SCORE", default_value_t = 0.55, value_parser = parse_share))]
     pub even_score: f64,
     /// Score above that which makes "none of them" less likely by a factor of e,
     /// 0.001..=1.
-    #[arg(long, value_name = "SCORE", default_value_t = 0.06, value_parser = parse_scale)]
+    #[cfg_attr(feature = "clap", arg(long, value_name = "SCORE", default_value_t = 0.06, value_parser = parse_scale))]
     pub score_scale: f64,
     /// With `--score votes`: another place with at least this share of the best place's
     /// votes makes the answer ambiguous, 0..=1.
-    #[arg(long, value_name = "SHARE", default_value_t = 0.92, value_parser = parse_share)]
+    #[cfg_attr(feature = "clap", arg(long, value_name = "SHARE", default_value_t = 0.92, value_parser = parse_share))]
     pub ambiguous_share: f64,
     /// With `--score votes`: a best place with less than this share of the possible
     /// votes has the verdict PoorFit, 0..=1.
-    #[arg(long, value_name = "SHARE", default_value_t = 0.35, value_parser = parse_share)]
+    #[cfg_attr(feature = "clap", arg(long, value_name = "SHARE", default_value_t = 0.35, value_parser = parse_share))]
     pub poor_fit_share: f64,
 }
 
 /// A scale of scores: something is divided by it.
+#[cfg(feature = "clap")]
 fn parse_scale(text: &str) -> Result<f64, String> {
     crate::config::parse(text, 0.001..=1.0, "as a share")
 }

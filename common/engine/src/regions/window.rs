@@ -24,25 +24,28 @@ const MAX_ECHOES: usize = 64;
 const APART: (f64, f64) = (0.05, PI / 60.0);
 
 /// For the wide beams of sonars.
-#[derive(Debug, Clone, Copy, PartialEq, clap::Args)]
+#[derive(Debug, Clone, Copy, PartialEq)]
+#[cfg_attr(feature = "clap", derive(clap::Args))]
 pub struct SonarConfig {
     /// For a ring of sonars: each scan is read as the regions of constant depth among
     /// the echoes of this distance driven, metres, 0.1..=5, measured by odometry (at
     /// least five times a second). Until it is driven, nothing votes; 2 is a good
     /// value.
-    #[arg(long, value_name = "METRES", value_parser = way)]
+    #[cfg_attr(feature = "clap", arg(long, value_name = "METRES", value_parser = way))]
     pub sonar_way: Option<f64>,
 
     /// The full width of a sonar's cone, degrees, 1..=90.
-    #[arg(long, value_name = "DEGREES", default_value_t = 30.0, value_parser = cone)]
-    #[arg(requires = "sonar_way")]
+    #[cfg_attr(feature = "clap", arg(long, value_name = "DEGREES", default_value_t = 30.0, value_parser = cone))]
+    #[cfg_attr(feature = "clap", arg(requires = "sonar_way"))]
     pub sonar_cone: f64,
 }
 
+#[cfg(feature = "clap")]
 fn way(text: &str) -> Result<f64, String> {
     crate::config::parse(text, 0.1..=5.0, "metres")
 }
 
+#[cfg(feature = "clap")]
 fn cone(text: &str) -> Result<f64, String> {
     crate::config::parse(text, 1.0..=90.0, "degrees")
 }

@@ -15,17 +15,18 @@ pub enum Follower {
 }
 
 /// By what the robot is followed.
-#[derive(Debug, Clone, Copy, PartialEq, Default, clap::Args)]
+#[derive(Debug, Clone, Copy, PartialEq, Default)]
+#[cfg_attr(feature = "clap", derive(clap::Args))]
 pub struct FollowConfig {
     /// When a place is believed.
-    #[command(flatten)]
+    #[cfg_attr(feature = "clap", command(flatten))]
     pub tracking: TrackingConfig,
     /// Track the robot with particles that start at the places that a search finds
     /// (Monte Carlo localization), for comparison.
-    #[arg(long)]
+    #[cfg_attr(feature = "clap", arg(long))]
     pub particles: bool,
     /// How many there are, and how a scan weighs them.
-    #[command(flatten)]
+    #[cfg_attr(feature = "clap", command(flatten))]
     pub of_particles: ParticlesConfig,
 }
 

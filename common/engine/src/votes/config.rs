@@ -1,30 +1,32 @@
 //! Options of what is collected.
 
 /// What is collected of a search.
-#[derive(Debug, Clone, Copy, PartialEq, clap::Args)]
+#[derive(Debug, Clone, Copy, PartialEq)]
+#[cfg_attr(feature = "clap", derive(clap::Args))]
 pub struct CollectConfig {
     /// Poses with at least this share of the best pose's votes are collected,
     /// 0..=1; lower shares show more alternatives and take longer.
-    #[arg(long, value_name = "SHARE", default_value_t = 0.85, value_parser = crate::config::parse_share)]
+    #[cfg_attr(feature = "clap", arg(long, value_name = "SHARE", default_value_t = 0.85, value_parser = crate::config::parse_share))]
     pub floor_share: f64,
     /// Maximum number of poses that are collected, 1..=1000000; the floor rises until
     /// they fit.
-    #[arg(long, value_name = "COUNT", default_value_t = 65_536, value_parser = clap::value_parser!(u32).range(1..=1_000_000))]
+    #[cfg_attr(feature = "clap", arg(long, value_name = "COUNT", default_value_t = 65_536, value_parser = clap::value_parser!(u32).range(1..=1_000_000)))]
     pub max_votes: u32,
     /// Number of distinct poses wanted, 0..=1000: if fewer are above the floor, those
     /// with the highest bounds below it are added. If half of them have half the best
     /// one's votes, up to four times as many are added.
-    #[arg(long, value_name = "COUNT", default_value_t = 64, value_parser = clap::value_parser!(u32).range(0..=1000))]
+    #[cfg_attr(feature = "clap", arg(long, value_name = "COUNT", default_value_t = 64, value_parser = clap::value_parser!(u32).range(0..=1000)))]
     pub candidates: u32,
     /// Work limit of a search of unknown headings, millions of steps, 0 to 10⁹: beyond
     /// it the search ends with the best pose found and reports what it may have missed;
     /// 0 is no limit. A step takes about a nanosecond of one 2 GHz processor, but steps
     /// are counted and not timed: on one thread the same scan always gives the same
     /// answer. [default: 5000 in the accumulator, none in the tools]
-    #[arg(long, value_name = "MILLIONS", value_parser = parse_work)]
+    #[cfg_attr(feature = "clap", arg(long, value_name = "MILLIONS", value_parser = parse_work))]
     pub work_limit: Option<f64>,
 }
 
+#[cfg(feature = "clap")]
 fn parse_work(text: &str) -> Result<f64, String> {
     crate::config::parse(text, 0.0..=1e9, "millions of steps")
 }
