@@ -90,16 +90,16 @@ impl Parameter {
             return;
         }
         let mut line = line.to_owned();
-        // clap's own words stand alone or at the end; one with a comma is ours.
-        if let Some((before, default)) = line.rsplit_once("[default: ")
-            && let Some(default) = default.strip_suffix(']')
-            && !default.contains(' ')
+        if let Some((before, rest)) = line.split_once("[default: ")
+            && let Some((default, after)) = rest.split_once(']')
         {
             default.clone_into(&mut self.default);
-            line = before.trim().to_owned();
+            line = format!("{}{after}", before.trim_end());
         }
         if let Some(values) = line.strip_prefix("[possible values: ") {
-            line = format!("Possible: {}", values.trim_end_matches(']'));
+            let values = values.trim_end_matches(']').split(", ");
+            let values: Vec<_> = values.map(|value| format!("`{value}`")).collect();
+            line = values.join(" or ");
         }
         if let Some(value) = line.strip_prefix("- ") {
             let (name, meaning) = value.split_once(':').unwrap_or((value, ""));
@@ -149,6 +149,7 @@ impl Tables {
         {
             let default = match default.as_str() {
                 "" => String::new(),
+                words if words.contains(' ') => words.to_owned(),
                 value => format!("`{value}`"),
             };
             let (usage, meaning) = (escaped(usage), cell(meaning));
@@ -227,7 +228,7 @@ Options:
           [default: box]
 
       --limit <N>
-          A limit. [default: 5 here, none there]
+          A limit [default: 5 here, none there]. It holds
 
   -h, --help
           Print help
@@ -253,12 +254,11 @@ Exit codes: 0 done,
     fn options_have_defaults_and_values() {
         let help = Help::parse(LONG);
         let taper = "How votes fall off; `box`: Flat, then nothing; `linear`: Falls evenly";
-        let limit = "A limit. [default: 5 here, none there]";
         let expected = [
             parameter("<FILE>", "", "What is read"),
             parameter("--threads <COUNT>", "1", "Threads of a search, 1..=64"),
             parameter("--taper <TAPER>", "box", taper),
-            parameter("--limit <N>", "", limit),
+            parameter("--limit <N>", "5 here, none there", "A limit. It holds"),
             parameter("-f, --follow <A|B>", "", "Go on"),
         ];
         assert_eq!(help.parameters, expected);
