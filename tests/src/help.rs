@@ -1,0 +1,300 @@
+//! What `--help` of a node or a command says, and tables of it in Markdown: so that the
+//! documents list what the executables take. Pure.
+
+use std::collections::BTreeMap;
+use std::fmt::Write as _;
+
+/// The columns at which clap writes options, and the text below one.
+const OPTION_INDENT: [&str; 2] = ["      --", "  -"];
+const TEXT_INDENT: &str = "          ";
+
+/// An option, or an argument without a name.
+#[derive(Debug, Clone, Default, PartialEq, Eq)]
+pub struct Parameter {
+    /// As it is typed, with its value: `--threads <COUNT>`.
+    pub usage: String,
+    /// Empty where there is none.
+    pub default: String,
+    /// What it means, with unit and range, in one paragraph.
+    pub meaning: String,
+}
+
+/// What one executable says of itself.
+#[derive(Debug, Clone, Default, PartialEq, Eq)]
+pub struct Help {
+    /// The first paragraph.
+    pub about: String,
+    /// In the order of the help, without `--help` and `--version`.
+    pub parameters: Vec<Parameter>,
+    /// What stands behind "Exit codes:"; empty where nothing does.
+    pub exit_codes: String,
+}
+
+impl Help {
+    /// Reads what clap prints.
+    #[must_use]
+    pub fn parse(text: &str) -> Self {
+        let about = text.lines().take_while(|line| !line.trim().is_empty());
+        let exit_codes = text
+            .split_once("Exit codes:")
+            .map_or("", |(_, after)| after);
+        Help {
+            about: about.map(str::trim).collect::<Vec<_>>().join(" "),
+            parameters: parameters(text),
+            exit_codes: words(exit_codes),
+        }
+    }
+}
+
+fn parameters(text: &str) -> Vec<Parameter> {
+    let mut all: Vec<Parameter> = Vec::new();
+    let mut in_arguments = false;
+    let mut is_open = false;
+    for line in text.lines() {
+        if let Some(text) = line.strip_prefix(TEXT_INDENT)
+            && is_open
+            && !OPTION_INDENT.iter().any(|indent| line.starts_with(indent))
+        {
+            if let Some(parameter) = all.last_mut() {
+                parameter.read(text.trim());
+            }
+            continue;
+        }
+        let is_option = OPTION_INDENT.iter().any(|indent| line.starts_with(indent));
+        let is_argument = in_arguments && line.starts_with("  ") && !line.starts_with("   ");
+        if is_option || is_argument {
+            let line = line.trim();
+            let (usage, text) = line.split_once("  ").unwrap_or((line, ""));
+            all.push(Parameter {
+                usage: usage.trim().to_owned(),
+                ..Parameter::default()
+            });
+            if let Some(parameter) = all.last_mut() {
+                parameter.read(text.trim());
+            }
+            is_open = true;
+        } else if !line.trim().is_empty() {
+            in_arguments = line == "Arguments:";
+            is_open = false;
+        }
+    }
+    let of_clap = ["-h, --help", "-V, --version"];
+    all.retain(|parameter| !of_clap.contains(&parameter.usage.as_str()));
+    all
+}
+
+impl Parameter {
+    /// Takes a line below the option.
+    fn read(&mut self, line: &str) {
+        if line.is_empty() || line == "Possible values:" {
+            return;
+        }
+        let mut line = line.to_owned();
+        if let Some((before, rest)) = line.split_once("[default: ")
+            && let Some((default, after)) = rest.split_once(']')
+        {
+            default.clone_into(&mut self.default);
+            line = format!("{}{after}", before.trim_end());
+        }
+        if let Some(values) = line.strip_prefix("[possible values: ") {
+            let values = values.trim_end_matches(']').split(", ");
+            let values: Vec<_> = values.map(|value| format!("`{value}`")).collect();
+            line = values.join(" or ");
+        }
+        if let Some(value) = line.strip_prefix("- ") {
+            let (name, meaning) = value.split_once(':').unwrap_or((value, ""));
+            line = format!("`{}`: {}", name.trim(), meaning.trim());
+        }
+        let separator = match self.meaning.as_str() {
+            "" => "",
+            text if text.ends_with(['.', ':', ';']) => " ",
+            _ => "; ",
+        };
+        if !line.is_empty() {
+            self.meaning += separator;
+            self.meaning += &line;
+        }
+    }
+}
+
+/// Tables of several executables, a section each. An option that stood before, with the
+/// same meaning and default, is only named, with the section where it is explained.
+#[derive(Debug, Default)]
+pub struct Tables {
+    known: BTreeMap<String, Vec<(Parameter, String)>>,
+}
+
+impl Tables {
+    /// The section of one executable, under a heading of this level.
+    pub fn section(&mut self, level: usize, name: &str, help: &Help) -> String {
+        let mut new = Vec::new();
+        let mut again: BTreeMap<&str, Vec<&str>> = BTreeMap::new();
+        for parameter in &help.parameters {
+            let known = self.known.get(&parameter.usage).into_iter().flatten();
+            let same = known.into_iter().find(|(other, _)| other == parameter);
+            match same {
+                Some((_, section)) => again.entry(section).or_default().push(&parameter.usage),
+                None => new.push(parameter),
+            }
+        }
+        let mut text = format!("{} {name}\n\n{}\n", "#".repeat(level), cell(&help.about));
+        if !new.is_empty() {
+            text += "\n| option | default | meaning |\n|---|---|---|\n";
+        }
+        for Parameter {
+            usage,
+            default,
+            meaning,
+        } in new.iter().copied()
+        {
+            let default = match default.as_str() {
+                "" => String::new(),
+                words if words.contains(' ') => words.to_owned(),
+                value => format!("`{value}`"),
+            };
+            let (usage, meaning) = (escaped(usage), cell(meaning));
+            // Writing to a text does not fail.
+            let _ = writeln!(text, "| `{usage}` | {} | {meaning} |", escaped(&default));
+        }
+        for (section, options) in &again {
+            let link = section.replace(' ', "-");
+            let names = options.iter().map(|usage| format!("`{}`", flag(usage)));
+            let names: Vec<_> = names.collect();
+            let _ = writeln!(text, "\nAs of [{section}](#{link}): {}.", names.join(", "));
+        }
+        for parameter in new {
+            let known = self.known.entry(parameter.usage.clone()).or_default();
+            known.push((parameter.clone(), name.to_owned()));
+        }
+        text
+    }
+}
+
+/// A table of exit codes, a row for each executable.
+#[must_use]
+pub fn exit_codes<'a>(all: impl IntoIterator<Item = (&'a str, &'a Help)>) -> String {
+    let mut text = "| command | exit codes |\n|---|---|\n".to_owned();
+    for (name, help) in all {
+        if !help.exit_codes.is_empty() {
+            let _ = writeln!(text, "| `{name}` | {} |", cell(&help.exit_codes));
+        }
+    }
+    text
+}
+
+/// The option without its value.
+fn flag(usage: &str) -> &str {
+    usage.split(" <").next().unwrap_or(usage)
+}
+
+fn words(text: &str) -> String {
+    text.split_whitespace().collect::<Vec<_>>().join(" ")
+}
+
+fn escaped(text: &str) -> String {
+    text.replace('|', "\\|")
+}
+
+/// Text in a cell: what stands in angle brackets would be taken for HTML.
+fn cell(text: &str) -> String {
+    escaped(text).replace('<', "&lt;")
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    const LONG: &str = "Searches poses
+
+Usage: accumulator [OPTIONS] <FILE>
+
+Arguments:
+  <FILE>
+          What is read
+
+Options:
+      --threads <COUNT>
+          Threads of a search, 1..=64
+          
+          [default: 1]
+
+      --taper <TAPER>
+          How votes fall off
+
+          Possible values:
+          - box:    Flat, then nothing
+          - linear: Falls evenly
+          
+          [default: box]
+
+      --limit <N>
+          A limit [default: 5 here, none there]. It holds
+
+  -h, --help
+          Print help
+
+Topics:
+  -f, --follow <A|B>
+          Go on
+
+Exit codes: 0 done,
+1 failed
+";
+
+    fn parameter(usage: &str, default: &str, meaning: &str) -> Parameter {
+        let [usage, default, meaning] = [usage, default, meaning].map(str::to_owned);
+        Parameter {
+            usage,
+            default,
+            meaning,
+        }
+    }
+
+    #[test]
+    fn options_have_defaults_and_values() {
+        let help = Help::parse(LONG);
+        let taper = "How votes fall off; `box`: Flat, then nothing; `linear`: Falls evenly";
+        let expected = [
+            parameter("<FILE>", "", "What is read"),
+            parameter("--threads <COUNT>", "1", "Threads of a search, 1..=64"),
+            parameter("--taper <TAPER>", "box", taper),
+            parameter("--limit <N>", "5 here, none there", "A limit. It holds"),
+            parameter("-f, --follow <A|B>", "", "Go on"),
+        ];
+        assert_eq!(help.parameters, expected);
+        assert_eq!(help.about, "Searches poses");
+        assert_eq!(help.exit_codes, "0 done, 1 failed");
+    }
+
+    #[test]
+    fn short_help_has_its_text_on_the_same_line() {
+        let text = "Stops\n\nUsage: stop [OPTIONS] <NODE>\n\nArguments:\n  <NODE>  The node\n\n\
+                    Options:\n      --rate <R>  How fast [default: 2]\n  -h, --help      Print help\n";
+        let expected = [
+            parameter("<NODE>", "", "The node"),
+            parameter("--rate <R>", "2", "How fast"),
+        ];
+        assert_eq!(Help::parse(text).parameters, expected);
+    }
+
+    #[test]
+    fn what_was_explained_is_named() {
+        let mut tables = Tables::default();
+        let help = Help::parse(LONG);
+        let first = tables.section(2, "accumulator", &help);
+        assert!(
+            first.contains("| `--threads <COUNT>` | `1` | Threads"),
+            "{first}"
+        );
+        assert!(first.contains("| `-f, --follow <A\\|B>` |"), "{first}");
+        let second = tables.section(2, "backcast locate", &help);
+        let expected = "## backcast locate\n\nSearches poses\n\nAs of [accumulator](#accumulator): \
+                        `<FILE>`, `--threads`, `--taper`, `--limit`, `-f, --follow`.\n";
+        assert_eq!(second, expected);
+        let codes = exit_codes([("locate", &help)]);
+        assert!(
+            codes.ends_with("| `locate` | 0 done, 1 failed |\n"),
+            "{codes}"
+        );
+    }
+}

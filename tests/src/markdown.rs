@@ -1,0 +1,95 @@
+//! What a document links to, and what in it can be linked to. Pure; it knows as much of
+//! Markdown as the documents use.
+
+use std::collections::BTreeMap;
+
+/// The lines outside fenced code.
+fn prose(text: &str) -> impl Iterator<Item = &str> {
+    let mut is_code = false;
+    text.lines().filter(move |line| {
+        let is_fence = line.trim_start().starts_with("```");
+        is_code ^= is_fence;
+        !is_code && !is_fence
+    })
+}
+
+/// The targets of all links and pictures, as they are written.
+#[must_use]
+pub fn links(text: &str) -> Vec<String> {
+    let prose: Vec<&str> = prose(text).collect();
+    let mut found = Vec::new();
+    // In code spans, every second piece, nothing is a link.
+    let text: String = prose.join("\n").split('`').step_by(2).collect();
+    for after in text.split("](").skip(1) {
+        let target = after.split(')').next().unwrap_or_default();
+        found.push(target.split_whitespace().collect());
+    }
+    found
+}
+
+/// The anchors of all headings, as GitHub and mdBook make them.
+#[must_use]
+pub fn anchors(text: &str) -> Vec<String> {
+    let mut seen: BTreeMap<String, usize> = BTreeMap::new();
+    let headings = prose(text).filter_map(|line| {
+        let title = line.trim_start_matches('#');
+        let is_heading = title.len() < line.len() && title.starts_with(' ');
+        is_heading.then(|| anchor(title.trim()))
+    });
+    let mut all = Vec::new();
+    for heading in headings {
+        let count = seen.entry(heading.clone()).or_default();
+        all.push(match *count {
+            0 => heading,
+            count => format!("{heading}-{count}"),
+        });
+        *count += 1;
+    }
+    all
+}
+
+fn anchor(title: &str) -> String {
+    let kept = |c: &char| c.is_alphanumeric() || ['-', '_', ' '].contains(c);
+    let kept = title.chars().filter(kept);
+    kept.collect::<String>().to_lowercase().replace(' ', "-")
+}
+
+/// The first cells of all rows of the tables below the first heading of this title, up to
+/// the next heading of any level: the text in their first code span.
+#[must_use]
+pub fn first_cells(text: &str, title: &str) -> Vec<String> {
+    let mut lines = prose(text).skip_while(|line| line.trim_start_matches('#').trim() != title);
+    lines.next();
+    let section = lines.take_while(|line| !line.starts_with('#'));
+    let rows = section.filter_map(|line| line.strip_prefix("| `"));
+    rows.filter_map(|row| row.split_once('`'))
+        .map(|(name, _)| name.to_owned())
+        .collect()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    const TEXT: &str = "# The way: 1 & 2\n\n[a](b.md#c), ![p](d.png) and `[no](link)`\n\
+                        ```sh\n# no heading\n[no](code)\n```\n## Topic `pose`\n\n\
+                        | field | |\n|---|---|\n| `x` | m |\n| `y`, `z` | m |\n\n## Twice\n\n\
+                        | `w` | |\n\n## Twice\n[over\n](lines.md)\n";
+
+    #[test]
+    fn links_stand_outside_code() {
+        assert_eq!(links(TEXT), ["b.md#c", "d.png", "lines.md"]);
+    }
+
+    #[test]
+    fn anchors_are_those_of_headings() {
+        let expected = ["the-way-1--2", "topic-pose", "twice", "twice-1"];
+        assert_eq!(anchors(TEXT), expected);
+    }
+
+    #[test]
+    fn a_section_has_its_rows() {
+        assert_eq!(first_cells(TEXT, "Topic `pose`"), ["x", "y"]);
+        assert!(first_cells(TEXT, "None").is_empty());
+    }
+}
