@@ -51,6 +51,9 @@ pub enum LauncherError {
         /// The descriptor.
         file: PathBuf,
     },
+    /// No graph is there to be asked.
+    #[error("no graph of this user is running")]
+    NoGraph,
     /// No launcher answers.
     #[error("no launcher of graph {graph} answers: `backcast status` lists the graphs that run")]
     NoLauncher {

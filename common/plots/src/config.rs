@@ -1,7 +1,7 @@
 //! Options of `backcast plot`, and which options belong to
 //! which picture.
 
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 
 use clap::ValueEnum;
 use map::OccupancyGrid;
@@ -84,6 +84,17 @@ pub(super) enum Format {
 }
 
 impl Config {
+    /// Whether the file is the image of --map.
+    fn is_map(&self, file: &Path) -> bool {
+        let image = self
+            .options
+            .map
+            .as_ref()
+            .and_then(|yaml| map::image_of(yaml).ok());
+        let whole = |path: &Path| path.canonicalize().ok();
+        image.is_some_and(|image| whole(&image).is_some() && whole(&image) == whole(file))
+    }
+
     /// Checks what no option can check alone; opens nothing.
     ///
     /// # Errors
@@ -109,6 +120,12 @@ impl Config {
         }
         if self.whole && matches!(self.kind, Kind::Map | Kind::Errors) {
             return usage("--whole is for the pictures of scans".into());
+        }
+        if self.is_map(&self.out) {
+            return usage(format!(
+                "--out {} is the map itself; a picture needs a name of its own",
+                self.out.display()
+            ));
         }
         let extension = self.out.extension().and_then(|name| name.to_str());
         match extension.map(str::to_ascii_lowercase).as_deref() {

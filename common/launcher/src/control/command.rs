@@ -102,7 +102,7 @@ pub(super) fn the_graph(named: Option<&GraphName>) -> Result<GraphName, Launcher
 }
 
 fn no_graph() -> LauncherError {
-    LauncherError::Usage("no graph of this user is running".to_owned())
+    LauncherError::NoGraph
 }
 
 fn done(graph: &GraphName, question: &Question) -> Result<ExitCode, LauncherError> {

@@ -280,7 +280,10 @@ impl ControlPort {
                 Question::Status => Answer::Status(Status {
                     graph: self.graph.to_string(),
                     pid: std::process::id(),
-                    descriptor: self.descriptor.display().to_string(),
+                    descriptor: std::path::absolute(&self.descriptor)
+                        .unwrap_or_else(|_| self.descriptor.clone())
+                        .display()
+                        .to_string(),
                     uptime_s: (now - self.started).as_secs(),
                     given_up: crew.given_up().to_vec(),
                     nodes: crew.status(now),

@@ -127,6 +127,14 @@ fn a_map_needs_no_recording() {
     let boundary = Rgb([0xD6, 0x3A, 0x2F]);
     let red = picture.pixels().filter(|pixel| **pixel == boundary).count();
     assert!(red > 1000, "{red} pixels of boundary cells");
+    // The picture of a map never takes the place of the map.
+    let image = folder.path().join("room.png");
+    let before = fs::read(&image).unwrap();
+    let options = "plot map --map room.yaml --out ./room.png";
+    let (code, _, stderr) = run(folder.path(), options);
+    assert_eq!(code, 2, "{stderr}");
+    assert!(stderr.contains("is the map itself"), "{stderr}");
+    assert_eq!(fs::read(&image).unwrap(), before);
 }
 
 #[test]
