@@ -1,6 +1,5 @@
 //! What is reported of one method in one case.
 
-use command_line::json;
 use serde::Serialize;
 
 use super::measure::Measured;

@@ -1,6 +1,5 @@
-//! What the commands of `backcast` have in common: exit codes, standard output and JSON.
+//! What the commands of `backcast` have in common: exit codes, standard output.
 
-pub mod json;
 pub mod stdout;
 
 use std::error::Error;

@@ -2,7 +2,6 @@
 
 use std::fmt::Write;
 
-use command_line::json;
 use serde::Serialize;
 
 use super::launched::Losses;

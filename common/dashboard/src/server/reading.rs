@@ -15,7 +15,11 @@ use super::{Refusal, Site};
 
 /// The robots' names.
 pub(super) async fn robots(State(site): State<Arc<Site>>) -> Json<Value> {
-    Json(json!({ "version": env!("CARGO_PKG_VERSION"), "robots": site.robots.names() }))
+    Json(json!({
+        "schema": json::SCHEMA,
+        "version": env!("CARGO_PKG_VERSION"),
+        "robots": site.robots.names(),
+    }))
 }
 
 /// All that is known of a robot.

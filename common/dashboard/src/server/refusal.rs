@@ -36,7 +36,11 @@ impl Refusal {
 
 impl IntoResponse for Refusal {
     fn into_response(self) -> Response {
-        (self.status, Json(json!({ "error": self.problem }))).into_response()
+        (
+            self.status,
+            Json(json!({ "schema": json::SCHEMA, "error": self.problem })),
+        )
+            .into_response()
     }
 }
 

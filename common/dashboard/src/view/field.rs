@@ -9,6 +9,7 @@ const MAX_PIXELS: usize = 1 << 18;
 /// What stands before the pixels.
 #[derive(Debug, PartialEq, Serialize)]
 struct Head {
+    schema: u32,
     #[serde(rename = "type")]
     kind_of_message: &'static str,
     counter: u64,
@@ -36,6 +37,7 @@ pub(crate) fn frame(header: &FieldHeader, items: &[u16]) -> Option<Vec<u8>> {
     }
     let factor = (1..).find(|f| width.div_ceil(*f) * height.div_ceil(*f) <= MAX_PIXELS)?;
     let head = Head {
+        schema: json::SCHEMA,
         kind_of_message: "field",
         counter: header.stamp.counter,
         map_id: format!("{:016x}", header.map_id),

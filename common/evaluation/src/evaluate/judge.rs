@@ -1,6 +1,5 @@
 //! From answers and true poses to the figures of one file. Pure.
 
-use command_line::json;
 use engine::peaks::Places;
 use geometry::Pose;
 use messages::Verdict;

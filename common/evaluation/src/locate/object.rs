@@ -3,7 +3,6 @@
 //! Every line has the same keys; what a refused scan does not have is null, and
 //! what only it has, the reason, is null elsewhere.
 
-use command_line::json;
 use engine::fit::BeamClass;
 use engine::localizer::Outcome;
 use engine::peaks::Place;

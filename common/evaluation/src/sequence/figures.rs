@@ -1,6 +1,5 @@
 //! The figures of one drive.
 
-use command_line::json;
 use serde::Serialize;
 use statistics::Distribution;
 

@@ -3,7 +3,6 @@
 use std::{path::PathBuf, process::ExitCode};
 
 use clap::Args;
-use command_line::json;
 use command_line::stdout::print;
 use transport::{GraphName, control_socket, running_graphs};
 

@@ -6,7 +6,6 @@ use std::{
 };
 
 use clap::Args;
-use command_line::json;
 use command_line::stdout::print;
 use messages::{LogHeader, LogLevel, topic};
 use serde::Serialize;

@@ -3,7 +3,6 @@
 
 use std::time::Duration;
 
-use command_line::json;
 use messages::{HypothesesHeader, Hypothesis, LogHeader, PoseHeader};
 use pose_table::{Line, Row, Rows};
 use serde::Serialize;

@@ -3,7 +3,7 @@
 use std::path::PathBuf;
 use std::process::ExitCode;
 
-use command_line::{LOST_DATA, json, stdout};
+use command_line::{LOST_DATA, stdout};
 use offline::TopicOptions;
 use recording::Recording;
 use serde::Serialize;

@@ -2,7 +2,6 @@
 
 use std::collections::BTreeMap;
 
-use command_line::json;
 use recording::{Kind, Recording};
 use serde::Serialize;
 

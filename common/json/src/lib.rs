@@ -1,8 +1,9 @@
-//! What commands print for programs: an object of JSON on a line of its own.
+//! What is written for programs to read: objects of JSON, each with the schema that it
+//! follows (docs/json.md).
 
 use serde::Serialize;
 
-/// Raised when a field changes its meaning or goes, of any command; a field that is
+/// Raised when a field changes its meaning or goes, of any object; a field that is
 /// added raises nothing.
 pub const SCHEMA: u32 = 1;
 
