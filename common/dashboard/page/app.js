@@ -127,7 +127,7 @@ function show(now) {
   showTiming(store, theme());
   showNodes(store);
   showEvents(store, moment, momentEnds);
-  showLegend(store, view.layers, theme());
+  showLegend(store, view.beamsShown(), theme());
   $("region").disabled = !store.abilities.region;
   $("everywhere").disabled = !store.abilities.region || store.region.length === 0;
   $("save").disabled = !store.abilities.save;

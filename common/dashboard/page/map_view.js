@@ -137,7 +137,7 @@ export class MapView {
     if (layers.grid) drawGrid(c, camera, camera.step(), colors);
     this.#drawRegion(c);
     if (layers.track) this.#drawTrack(c);
-    if (this.#beamsShown()) this.#drawBeams(c, known ? 1 : 0.5);
+    if (this.beamsShown()) this.#drawBeams(c, known ? 1 : 0.5);
     if (layers.hypotheses) this.#drawOthers(c, known);
     if (best) this.#drawBest(c, best);
     for (const { x, y, text } of this.flags) drawFlag(c, camera.toScreen(x, y), text, colors);
@@ -147,7 +147,7 @@ export class MapView {
   }
 
   /** While the tracker is sure, few scans are searched: beams of an old one lie elsewhere. */
-  #beamsShown() {
+  beamsShown() {
     const { store, layers } = this;
     const fresh = !store.pose || performance.now() - store.beamsAt < BEAMS_MS;
     return layers.beams && store.beams && store.best() && fresh;
@@ -197,7 +197,7 @@ export class MapView {
     const place = layers.hypotheses && !unique
       ? nearest(candidates(store).map((place) => inFrame(place, this.frame)), REACH.place) : undefined;
     if (place !== undefined) return { kind: "place", i: place };
-    const beam = this.#beamsShown() ? nearest(beamEnds(store.beams), REACH.beam) : undefined;
+    const beam = this.beamsShown() ? nearest(beamEnds(store.beams), REACH.beam) : undefined;
     return beam === undefined ? null : { kind: "beam", i: beam };
   }
 

@@ -12,7 +12,7 @@ export function showPlaces(store, frame, chosen) {
   const all = store.answer?.hypotheses ?? [];
   const places = candidates(store);
   const shown = places.slice(0, PLACES).map((place) => ({ ...inFrame(place, frame), place }));
-  write("place-count", all.length ? `${all.length} of the last search, ${shown[0]?.frame ?? ""}` : "");
+  write("place-count", all.length ? `${all.length} of the last scan searched, ${shown[0]?.frame ?? ""}` : "");
   const rows = shown.map(({ x, y, yaw, place }) => [
     fixed(x, 1), fixed(y, 1), `${fixed(degrees(yaw), 0)}°`, fixed(place.score, 2), percent(place.probability)]);
   replace($("places"), JSON.stringify(rows), () => rows.map(([x, y, yaw, score, probability], i) => element("tr", { className: "num" },
@@ -114,9 +114,9 @@ export function showEvents({ events }, period, ends) {
 }
 
 /** What the colours of the beams mean, for those that there are. */
-export function showLegend({ beams }, layers, theme) {
+export function showLegend({ beams }, shown, theme) {
   const { beams: colors } = palette(theme);
-  const kinds = layers.beams && beams ? Object.keys(FATES).filter((kind) => beams.fate.includes(kind)) : [];
+  const kinds = shown ? Object.keys(FATES).filter((kind) => beams.fate.includes(kind)) : [];
   const key = `${theme}${kinds}`;
   if ($("legend").dataset.key === key) return;
   $("legend").dataset.key = key;

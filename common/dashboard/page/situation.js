@@ -1,6 +1,6 @@
 // What is said of the robot, from all that is known. No page, no network.
 
-import { sentence, STATES } from "./words.js";
+import { capital, duration, sentence, STATES } from "./words.js";
 import { whatToCheck } from "./what_to_check.js";
 
 export const STALE_S = 2; // without a scan: nothing is live any more
@@ -17,7 +17,7 @@ export function situation(store, link = "live", paused = false) {
   const why = pose ? pose.why : answer ? answer.says : "";
   const advice = pose?.advice || is.todo;
   const said = { state, silence, stale, known: KNOWN.includes(state), best: state === "Unique" };
-  const past = state ? `Before: ${is.word}. ${sentence(why)}` : "";
+  const past = state ? `Before: ${is.word}. ${capital(sentence(why))}` : "";
   if (link === "lost") {
     return { ...said, stale: true, kind: "", word: "Disconnected", means: "The monitor does not answer.", why: past, todo: ["Is the robot on, and in reach of the network? The page connects again by itself."] };
   }
@@ -25,12 +25,12 @@ export function situation(store, link = "live", paused = false) {
     return { ...said, stale: true, kind: "", word: "Paused", means: "The page is paused, the robot is not.", why: past, todo: ["Press space, or the button above, to continue."] };
   }
   if (state && stale) {
-    return { ...said, kind: "", word: "No data", means: `No scan for ${Math.floor(silence ?? 0)} s: what is shown is past.`, why: past, todo: whatToCheck(store) };
+    return { ...said, kind: "", word: "No data", means: `No scan for ${duration(silence ?? 0)}: what is shown is past.`, why: past, todo: whatToCheck(store) };
   }
   if (!state) {
     return { ...said, kind: "", word: is.word, means: is.means, why: "", todo: store.robot ? whatToCheck(store) : [] };
   }
-  return { ...said, kind: state, word: is.word, means: is.means, why: sentence(why), todo: advice ? [sentence(advice)] : [] };
+  return { ...said, kind: state, word: is.word, means: is.means, why: sentence(why), todo: advice ? [capital(sentence(advice))] : [] };
 }
 
 /** The places of the last search that are worth a look, best first. */

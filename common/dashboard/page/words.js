@@ -48,6 +48,8 @@ export function stamp(seconds) {
 
 export const sentence = (text) => (text && !/[.?!]$/.test(text) ? `${text}.` : text);
 
+export const capital = (text) => text.slice(0, 1).toUpperCase() + text.slice(1);
+
 /** What a state is called, what it means, and what to do where the tracker says nothing. */
 export const STATES = {
   Unique: { word: "Unique", means: "The pose is known: one place fits.", todo: "" },

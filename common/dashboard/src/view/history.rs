@@ -81,7 +81,7 @@ impl History {
         }
         // The one that holds when the hour begins stays.
         while let Some(second) = self.entries.get(1)
-            && now_ns.saturating_sub(second.from_ns) > KEPT_NS
+            && now_ns.saturating_sub(second.from_ns) >= KEPT_NS
         {
             self.entries.pop_front();
         }
