@@ -16,13 +16,13 @@ export function situation(store, link = "live", paused = false) {
   const is = STATES[state] ?? { word: state ?? "Waiting", means: "Waiting for the first scan.", todo: "" };
   const why = pose ? pose.why : answer ? answer.says : "";
   const advice = pose?.advice || is.todo;
-  const said = { state, silence, stale, known: KNOWN.includes(state), best: state === "Unique" };
+  const said = { state, silence, stale, known: KNOWN.includes(state), best: state === "Unique", title: "What to check" };
   const past = state ? `Before: ${is.word}. ${capital(sentence(why))}` : "";
   if (link === "lost") {
     return { ...said, stale: true, kind: "", word: "Disconnected", means: "The monitor does not answer.", why: past, todo: ["Is the robot on, and in reach of the network? The page connects again by itself."] };
   }
   if (paused) {
-    return { ...said, stale: true, kind: "", word: "Paused", means: "The page is paused, the robot is not.", why: past, todo: ["Press space, or the button above, to continue."] };
+    return { ...said, stale: true, kind: "", word: "Paused", means: "The page is paused, the robot is not.", why: past, todo: ["Press space, or the button above, to continue."], title: "What to do" };
   }
   if (state && stale) {
     return { ...said, kind: "", word: "No data", means: `No scan for ${duration(silence ?? 0)}: what is shown is past.`, why: past, todo: whatToCheck(store) };
@@ -30,7 +30,7 @@ export function situation(store, link = "live", paused = false) {
   if (!state) {
     return { ...said, kind: "", word: is.word, means: is.means, why: "", todo: store.robot ? whatToCheck(store) : [] };
   }
-  return { ...said, kind: state, word: is.word, means: is.means, why: sentence(why), todo: advice ? [capital(sentence(advice))] : [] };
+  return { ...said, kind: state, word: is.word, means: is.means, why: sentence(why), todo: advice ? [capital(sentence(advice))] : [], title: "What to do" };
 }
 
 /** The places of the last search that are worth a look, best first. */

@@ -14,7 +14,7 @@ export function showState(store, is, frame) {
   write("why", is.why);
   replace($("todo"), is.todo.join("\n"), () => is.todo.map((text) => element("li", {}, text)));
   $("todo-part").hidden = !is.todo.length;
-  write("todo-title", is.kind ? "What to do" : "What to check");
+  write("todo-title", is.title);
   showPose(store, is, frame);
   showTrust(store, is, frame);
   const newest = pose ?? answer;

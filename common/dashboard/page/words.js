@@ -55,7 +55,7 @@ export const STATES = {
   Unique: { word: "Unique", means: "The pose is known: one place fits.", todo: "" },
   Doubtful: { word: "Doubtful", means: "The pose is kept, but something speaks against it.", todo: "Drive on slowly, and watch whether it passes." },
   Searching: { word: "Searching", means: "The pose is not known yet.", todo: "Drive a few metres, or mark a region." },
-  Lost: { word: "Lost", means: "The robot is not where it was, and is searched everywhere.", todo: "Drive a few metres, or mark a region." },
+  Lost: { word: "Lost", means: "The robot is not where it was; its place is searched.", todo: "Drive a few metres, or mark a region." },
   Ambiguous: { word: "Ambiguous", means: "Several places fit: this scan cannot tell which.", todo: "Drive a few metres, or mark a region." },
   PoorFit: { word: "Poor fit", means: "Even the best place fits badly.", todo: "Is it this map? Is the view blocked?" },
   NoScan: { word: "No scan", means: "No beam of the scan can be used.", todo: "Is the laser covered or dirty, or all beyond its range?" },
