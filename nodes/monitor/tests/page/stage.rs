@@ -135,8 +135,9 @@ impl Source {
     /// Serves a corridor of 100 by 10 metres.
     fn new(graph: &Graph) -> Self {
         let (width, height) = (1000, 100);
-        let is_wall = |i: usize| i < 1000 || i >= 99_000 || i % 1000 == 0 || i % 1000 == 999;
-        let cells: Vec<u8> = (0..100_000).map(|i| u8::from(is_wall(i)) * 100).collect();
+        let is_free = |i: usize| (1..999).contains(&(i % 1000)) && (1..99).contains(&(i / 1000));
+        let cells = (0..100_000).map(|i| if is_free(i) { 0 } else { 100 });
+        let cells: Vec<u8> = cells.collect();
         let mut header = MapHeader {
             width,
             height,
