@@ -108,7 +108,7 @@ function showLink() {
   }
   $("past").hidden = !silent || is.silence === null;
   write("past", `${is.word} · ${duration(is.silence ?? 0)} old`);
-  notify.tell(robot, is);
+  notify.tell(robot, is); // here, too: hidden pages draw nothing
 }
 
 const PANEL_MS = 80; // nobody reads faster
@@ -122,6 +122,7 @@ function show(now) {
   shownAt = now;
   const is = situation(store, link, paused);
   showState(store, is, view.frame);
+  notify.tell(robot, is);
   showPlaces(store, view.frame, (i) => look({ kind: "place", i }, true));
   timeline.show(theme());
   showTiming(store, theme());

@@ -6,6 +6,7 @@
 )]
 
 mod stage;
+mod telling;
 
 use messages::TrackState;
 use serde_json::{Value, json};
