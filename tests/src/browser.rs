@@ -88,15 +88,19 @@ impl Browser {
         self.runtime.block_on(ran).unwrap()
     }
 
+    /// What a script passes to `done`, sooner or later.
+    #[must_use]
+    pub fn finish(&self, script: &str) -> Value {
+        let script = format!("const done = arguments[0]; {script}");
+        let ran = self.client.execute_async(&script, Vec::new());
+        self.runtime.block_on(ran).unwrap()
+    }
+
     /// Waits until an expression is true on the page.
     pub fn wait_until(&self, expression: &str) {
-        let script = format!(
-            "const done = arguments[0];
-             const look = () => ({expression}) ? done() : setTimeout(look, 20);
-             look();"
-        );
-        let waited = self.client.execute_async(&script, Vec::new());
-        self.runtime.block_on(waited).unwrap();
+        let script =
+            format!("const look = () => ({expression}) ? done() : setTimeout(look, 20); look();");
+        let _ = self.finish(&script);
     }
 }
 

@@ -3,6 +3,7 @@
 #![allow(clippy::unwrap_used, reason = "this crate is tests and nothing else")]
 
 pub mod answers;
+pub mod axe;
 pub mod browser;
 pub mod building;
 pub mod executables;

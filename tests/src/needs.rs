@@ -15,6 +15,8 @@ pub enum Need {
     Browser,
     /// Python 3 and the package registry.
     Python,
+    /// npm and its package registry.
+    Npm,
     /// A kernel that lets this user make namespaces, for networks or mounts.
     Namespaces,
     /// A kernel that lays a file system over that of the root.
@@ -32,6 +34,7 @@ impl Need {
         match self {
             Need::Browser => "browser",
             Need::Python => "python",
+            Need::Npm => "npm",
             Need::Namespaces => "namespaces",
             Need::Overlay => "overlay",
             Need::Root => "root",
@@ -85,6 +88,7 @@ mod tests {
             [
                 Need::Browser,
                 Need::Python,
+                Need::Npm,
                 Need::Namespaces,
                 Need::Overlay,
                 Need::Root,
@@ -92,17 +96,17 @@ mod tests {
             ]
             .map(|need| need.is_required(list, in_ci))
         };
-        assert_eq!(required(None, false), [false; 6]);
+        assert_eq!(required(None, false), [false; 7]);
         assert_eq!(
             required(None, true),
-            [true, true, true, false, false, false]
+            [true, true, true, true, false, false, false]
         );
-        assert_eq!(required(Some("all"), false), [true; 6]);
-        assert_eq!(required(Some("none"), true), [false; 6]);
+        assert_eq!(required(Some("all"), false), [true; 7]);
+        assert_eq!(required(Some("none"), true), [false; 7]);
         let some = Some("python, data");
         assert_eq!(
             required(some, true),
-            [false, true, false, false, false, true]
+            [false, true, false, false, false, false, true]
         );
     }
 }

@@ -448,6 +448,10 @@ const JSON: &[(&str, &[(&str, &str)])] = &[
         &[("common/dashboard/src/view/tracked.rs", "Tracked")],
     ),
     (
+        "`state`",
+        &[("common/dashboard/src/view/history.rs", "Period")],
+    ),
+    (
         "`beams`",
         &[("common/dashboard/src/view/beams.rs", "Beams")],
     ),

@@ -173,12 +173,17 @@ fn an_operator_sees_the_graph_and_what_befalls_it() {
         })()",
     );
     browser.wait_until("document.getElementById('verdict').textContent === 'No data'");
+    browser.wait_until(
+        "document.getElementById('todo').textContent.includes('accumulator does not report')",
+    );
 
     // A monitor that hangs is a lost connection, until it continues.
     let monitor = process(&browser, "monitor");
     kill(monitor, Signal::SIGSTOP).unwrap();
     browser.wait_until(
-        "!document.getElementById('lost').hidden && document.body.dataset.link === 'lost'",
+        "!document.getElementById('lost').hidden && document.body.dataset.link === 'lost'
+         && getComputedStyle(document.querySelector('.halves')).filter === 'grayscale(1)'
+         && document.getElementById('verdict').textContent === 'Disconnected'",
     );
     kill(monitor, Signal::SIGCONT).unwrap();
     browser.wait_until(

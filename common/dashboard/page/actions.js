@@ -1,6 +1,6 @@
 // What changes something: the token, requests, and pictures.
 
-import { $ } from "./panel.js";
+import { $ } from "./dom.js";
 
 const KEY = "backcast-token";
 

@@ -4,11 +4,20 @@ import { ask, savePicture, takeToken } from "./actions.js";
 import { Connection } from "./connection.js";
 import { listen } from "./gestures.js";
 import { MapView } from "./map_view.js";
-import { $, showAnswer, showEvents, showLegend, showNodes, showPlaces, showScale, showTiming, STALE_S } from "./panel.js";
+import { $, write } from "./dom.js";
+import * as inspector from "./inspect.js";
+import { keys } from "./keys.js";
+import * as notify from "./notify.js";
+import { showEvents, showLegend, showNodes, showPlaces, showScale, showTiming } from "./panel.js";
+import { inFrame, situation } from "./situation.js";
+import { showState } from "./state_card.js";
 import { Store } from "./store.js";
+import { flagsOf, Timeline } from "./timeline.js";
+import { degrees, duration, fixed } from "./words.js";
 
 const store = new Store();
 const view = new MapView($("map"), store);
+const timeline = new Timeline(store, showMoment);
 let connection = null;
 let robot = "";
 let paused = false;
@@ -84,20 +93,22 @@ async function loadMap() {
 
 function showLink() {
   document.body.dataset.link = link;
-  const silence = store.silence();
-  const silent = link === "live" && (silence === null || silence > STALE_S);
+  const is = situation(store, link, paused);
+  const silent = link === "live" && is.stale;
   document.body.toggleAttribute("data-silent", silent);
   const age = delay === null ? null : Math.round(delay + ((store.pose ?? store.answer)?.age_ms ?? 0));
   const live = age === null ? "live" : `live · ${age} ms`;
-  const nothing = silence === null ? "no data yet" : `no data for ${Math.floor(silence)} s`;
+  const nothing = is.silence === null ? "no data yet" : `no data for ${duration(is.silence)}`;
   const words = { live: silent ? nothing : live, lost: "disconnected", connecting: "connecting", alone: "no robot yet" };
-  $("link-text").textContent = paused && link === "live" ? "paused" : words[link];
+  write("link-text", paused && link === "live" ? "Paused" : words[link]);
   $("lost").hidden = link !== "lost";
   if (link === "lost") {
-    const seconds = Math.floor((Date.now() - lostAt) / 1000);
-    const since = wasLive ? `What you see is ${seconds} s old.` : "No data was received yet.";
-    $("lost-text").textContent = `${since} Reconnecting.`;
+    const since = wasLive ? `What you see is ${duration((Date.now() - lostAt) / 1000)} old or more.` : "No data was received yet.";
+    write("lost-text", `${since} Reconnecting.`);
   }
+  $("past").hidden = !silent || is.silence === null;
+  write("past", `${is.word} · ${duration(is.silence ?? 0)} old`);
+  notify.tell(robot, is); // here, too: hidden pages draw nothing
 }
 
 const PANEL_MS = 80; // nobody reads faster
@@ -109,18 +120,22 @@ function show(now) {
   if (!dirty || now - shownAt < PANEL_MS) return;
   dirty = false;
   shownAt = now;
-  showAnswer(store);
-  showPlaces(store);
+  const is = situation(store, link, paused);
+  showState(store, is, view.frame);
+  notify.tell(robot, is);
+  showPlaces(store, view.frame, (i) => look({ kind: "place", i }, true));
+  timeline.show(theme());
   showTiming(store, theme());
   showNodes(store);
-  showEvents(store);
-  showLegend(store, view.layers, theme());
+  showEvents(store, moment, momentEnds);
+  showLegend(store, view.beamsShown(), theme());
   $("region").disabled = !store.abilities.region;
   $("everywhere").disabled = !store.abilities.region || store.region.length === 0;
   $("save").disabled = !store.abilities.save;
   $("save").title = store.abilities.save ? "" : "No recorder keeps the last minutes: backcast run --record FILE --keep 10m";
-  const word = link === "lost" ? "disconnected" : $("verdict").textContent.toLowerCase();
-  const title = `${word} · ${robot} · Backcast`;
+  $("graph-name").hidden = !store.graph;
+  write("graph-name", store.graph ?? "");
+  const title = [is.word.toLowerCase(), robot, store.graph, "Backcast"].filter(Boolean).join(" · ");
   if (document.title !== title) document.title = title;
 }
 setInterval(() => { dirty = true; showLink(); view.draw(); }, 500);
@@ -131,6 +146,8 @@ function watch(name) {
   $("robot-name").textContent = name;
   shownMap = "";
   store.clear();
+  timeline.select(null);
+  inspector.close(view);
   view.setCells(null);
   setFollow(true);
   connection = new Connection(name, handlers);
@@ -168,8 +185,46 @@ function offer(robots) {
   }
 }
 
+let moment = null; // the period that is looked at
+let momentEnds = null;
+
+/** Shows where the robot was around a period; without one, where it is. */
+function showMoment(period, before, after) {
+  if (!period && !moment) return;
+  moment = period;
+  momentEnds = after?.at ?? null;
+  view.flags = flagsOf(period, before, after);
+  if (view.flags.length) view.fitPoints(view.flags);
+  setFollow(!period);
+  dirty = true;
+}
+
+/** Shows a place or a beam in numbers and, if it is `far` perhaps, where it is. */
+function look(what, far = false) {
+  inspector.inspect(store, view, what);
+  if (far && view.inspected && !view.camera.sees(...view.inspected)) {
+    setFollow(false);
+    [view.camera.x, view.camera.y] = view.inspected;
+  }
+  view.draw();
+}
+
+function setFrame(name) {
+  view.frame = name;
+  inspector.close(view);
+  dirty = true;
+}
+
+/** Where the pointer or, with keys, the middle is. */
+function showCursor(at) {
+  view.cross = at === "middle";
+  const point = view.cross ? [view.camera.x, view.camera.y] : at;
+  write("cursor", point ? `x ${fixed(point[0], 2)} m, y ${fixed(point[1], 2)} m` : "");
+}
+
 function start() {
   takeToken();
+  notify.start();
   applyTheme();
   find();
 }
@@ -224,17 +279,30 @@ async function searchIn(corners) {
 
 function picture() {
   const { answer } = store;
-  const best = answer?.hypotheses[0]?.laser;
-  const pose = best ? `x ${best.x.toFixed(2)} m, y ${best.y.toFixed(2)} m, ${((best.yaw * 180) / Math.PI).toFixed(1)}°` : "no pose";
+  const is = situation(store, link, paused);
+  const best = is.known ? inFrame(store.best(), view.frame) : null;
+  const pose = best ? `${best.frame} x ${fixed(best.x, 2)} m, y ${fixed(best.y, 2)} m, ${fixed(degrees(best.yaw), 1)}°` : "pose not known";
   const stamp = answer ? new Date(answer.stamp_s * 1000).toISOString() : "";
-  savePicture($("map"), view.colors, `${robot}   ${answer?.verdict ?? ""}   ${pose}   ${stamp}`, view.ratio);
+  savePicture($("map"), view.colors, [robot, store.graph, is.word, pose, stamp].filter(Boolean).join("   "), view.ratio);
 }
 
-listen(view, { choosing: () => choosing, chosen: searchIn, moved: () => setFollow(false) });
-view.ondrawn = () => showScale(view.camera);
+listen(view, {
+  choosing: () => choosing, chosen: searchIn, moved: () => setFollow(false),
+  clicked: (px, py) => look(view.pick(px, py)), pointed: showCursor,
+});
+view.ondrawn = () => {
+  showScale(view.camera);
+  if (view.cross) showCursor("middle");
+};
 const zoom = (factor) => { view.camera.zoom(factor); view.draw(); };
 const fit = () => { setFollow(false); view.fit(); };
+const leave = () => {
+  if (choosing) setChoosing(false);
+  else if (inspector.isOpen()) inspector.close(view);
+  else timeline.select(null);
+};
 for (const button of document.querySelectorAll("[data-layer]")) button.onclick = () => setLayer(button.dataset.layer);
+for (const button of $("frames").querySelectorAll("button")) button.onclick = () => setFrame(button.dataset.frame);
 $("zoom-in").onclick = () => zoom(1.5);
 $("zoom-out").onclick = () => zoom(1 / 1.5);
 $("fit").onclick = fit;
@@ -243,6 +311,11 @@ $("pause").onclick = () => setPaused(!paused);
 $("picture").onclick = picture;
 $("theme").onclick = switchTheme;
 $("help").onclick = () => $("keys-dialog").showModal();
+$("inspect-close").onclick = () => { inspector.close(view); $("map").focus(); };
+$("beam-before").onclick = () => { inspector.step(view, -1); view.draw(); };
+$("beam-after").onclick = () => { inspector.step(view, 1); view.draw(); };
+$("log-level").onchange = $("log-node").onchange = () => { dirty = true; };
+$("map").onblur = () => { showCursor(null); view.draw(); };
 $("robot").onchange = () => {
   asked = null;
   watch($("robot").value);
@@ -251,31 +324,25 @@ $("region").onclick = () => { setChoosing(!choosing); $("map").focus(); };
 $("everywhere").onclick = () => ask(robot, "DELETE", "region", null, "Poses are searched everywhere again.");
 $("save").onclick = () => ask(robot, "POST", "save", null, "The recorder saves the last minutes.");
 
-const STEP = 80; // pixels
-const KEYS = {
-  ArrowLeft: () => view.camera.pan(STEP, 0), ArrowRight: () => view.camera.pan(-STEP, 0),
-  ArrowUp: () => view.camera.pan(0, STEP), ArrowDown: () => view.camera.pan(0, -STEP),
-  "+": () => zoom(1.25), "=": () => zoom(1.25), "-": () => zoom(0.8), 0: fit,
-  f: () => setFollow(!view.follow), p: picture, t: switchTheme, " ": () => setPaused(!paused),
-  1: () => setLayer("beams"), 2: () => setLayer("hypotheses"), 3: () => setLayer("track"), 4: () => setLayer("field"),
-  "?": () => $("keys-dialog").showModal(), Escape: () => setChoosing(false),
-};
-document.addEventListener("keydown", (event) => {
-  const target = event.target;
-  const typing = target.closest("input, select, dialog") || event.ctrlKey || event.metaKey || event.altKey;
-  const arrows = event.key.startsWith("Arrow");
-  // A button takes the space and enter keys, and what scrolls takes the arrows.
-  if (typing || (target.closest("button") && event.key === " ") || (arrows && target.closest(".events"))) return;
-  if (event.key === "Enter" && choosing && target === $("map")) {
+keys({
+  move(dx, dy) {
+    setFollow(false);
+    view.camera.pan(dx, dy);
+    showCursor("middle");
+  },
+  enter() {
     const { width, height } = view.camera;
-    searchIn([view.camera.toMap(0, height), view.camera.toMap(width, 0)]);
-  }
-  const act = KEYS[event.key] ?? KEYS[event.key.toLowerCase()];
-  if (!act) return;
-  event.preventDefault();
-  if (arrows) setFollow(false);
-  act();
-  view.draw();
+    if (choosing) searchIn([view.camera.toMap(0, height), view.camera.toMap(width, 0)]);
+    else look(view.pick(width / 2, height / 2));
+  },
+  zoom, fit, picture, leave,
+  follow: () => setFollow(!view.follow),
+  theme: switchTheme,
+  pause: () => setPaused(!paused),
+  layer: setLayer,
+  frame: () => setFrame(view.frame === "laser" ? "base_link" : "laser"),
+  help: () => $("keys-dialog").showModal(),
+  drawn: () => view.draw(),
 });
 
 start();

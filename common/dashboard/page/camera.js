@@ -2,6 +2,8 @@
 
 const MIN_SCALE = 0.5; // pixels a metre
 const MAX_SCALE = 2000;
+const STEPS = [0.01, 0.02, 0.05, 0.1, 0.2, 0.5, 1, 2, 5, 10, 20, 50, 100, 200, 500, 1000];
+const LEAST_STEP = 60; // pixels
 
 export class Camera {
   x = 0;
@@ -29,6 +31,18 @@ export class Camera {
     const [nx, ny] = this.toMap(px, py);
     this.x += x - nx;
     this.y += y - ny;
+  }
+
+  /** Whether a point is in view, and not at its edge. */
+  sees(x, y) {
+    const [px, py] = this.toScreen(x, y);
+    const [dx, dy] = [0.04 * this.width, 0.04 * this.height];
+    return px > dx && px < this.width - dx && py > dy && py < this.height - dy;
+  }
+
+  /** A round number of metres that is not small on the screen. */
+  step() {
+    return STEPS.find((metres) => metres * this.scale >= LEAST_STEP) ?? STEPS.at(-1);
   }
 
   /** Shows all of a box, with some air. */

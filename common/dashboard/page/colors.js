@@ -4,7 +4,7 @@ const LIGHT = {
   unknown: [228, 233, 232], free: [252, 253, 253], wall: [38, 48, 47],
   ground: "#e4e9e8", accent: "#0d7a72", accentSoft: "rgba(13,122,114,.15)", halo: "#ffffff",
   track: "13,122,114", other: "#6b4fb0", otherSoft: "rgba(107,79,176,.14)", region: "#0d7a72",
-  ink: "#18211f", soft: "#53605d", faint: "#b9c4c1",
+  ink: "#18211f", soft: "#53605d", grid: "rgba(60,80,76,.10)",
   beams: { h: "#0f9488", s: "#d08a00", t: "#cf3a64", u: "#8796a5" },
   ray: "rgba(15,148,136,.10)", field: [[255, 236, 170], [240, 130, 60], [160, 20, 70]],
 };
@@ -12,7 +12,7 @@ const DARK = {
   unknown: [13, 19, 20], free: [31, 41, 43], wall: [186, 202, 199],
   ground: "#0d1314", accent: "#48d6c5", accentSoft: "rgba(72,214,197,.20)", halo: "#0d1314",
   track: "72,214,197", other: "#b39bff", otherSoft: "rgba(179,155,255,.16)", region: "#48d6c5",
-  ink: "#e3ebe9", soft: "#a5b3b0", faint: "#3b4a4b",
+  ink: "#e3ebe9", soft: "#a5b3b0", grid: "rgba(200,225,220,.08)",
   beams: { h: "#3fd2c0", s: "#f0b647", t: "#ff7193", u: "#7f93a3" },
   ray: "rgba(72,214,197,.09)", field: [[70, 30, 100], [220, 80, 70], [255, 220, 130]],
 };

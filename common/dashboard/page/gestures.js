@@ -1,7 +1,10 @@
 // Mouse, finger and wheel on the map. Keys are the page's business.
 
-/** Moves the view; while `choosing()` says so, chooses a box and hands it over. */
-export function listen(view, { choosing, chosen, moved }) {
+const STILL = 5; // pixels that a click may move
+
+/** Moves the view; while `choosing()` says so, chooses a box and hands it over. A click
+ * and the place of the pointer, in the map, are passed on. */
+export function listen(view, { choosing, chosen, moved, clicked, pointed }) {
   const { canvas, camera } = view;
   const fingers = new Map();
   const at = (event) => {
@@ -9,24 +12,28 @@ export function listen(view, { choosing, chosen, moved }) {
     return [event.clientX - box.left, event.clientY - box.top];
   };
   let corner = null;
+  let pressed = null; // where a click may have begun
 
   canvas.addEventListener("pointerdown", (event) => {
     if (event.button > 0) return;
     canvas.setPointerCapture(event.pointerId);
     fingers.set(event.pointerId, at(event));
+    pressed = fingers.size === 1 ? at(event) : null;
     canvas.classList.add("moving");
     if (choosing()) corner = camera.toMap(...at(event));
   });
 
   canvas.addEventListener("pointermove", (event) => {
     const before = fingers.get(event.pointerId);
-    if (!before) return;
     const now = at(event);
+    pointed(camera.toMap(...now));
+    if (pressed && isFar(pressed, now)) pressed = null;
+    if (!before) return;
     if (corner) {
       view.selection = [corner, camera.toMap(...now)];
     } else if (fingers.size === 1) {
       camera.pan(now[0] - before[0], now[1] - before[1]);
-      if (now[0] !== before[0] || now[1] !== before[1]) moved();
+      if (!pressed) moved();
     } else {
       pinch(event.pointerId, before, now);
     }
@@ -52,10 +59,14 @@ export function listen(view, { choosing, chosen, moved }) {
       const box = [corner, camera.toMap(...at(event))];
       corner = null;
       chosen(box);
+    } else if (pressed && event.type === "pointerup") {
+      clicked(...at(event));
     }
+    pressed = null;
   };
   canvas.addEventListener("pointerup", release);
   canvas.addEventListener("pointercancel", release);
+  canvas.addEventListener("pointerleave", () => pointed(null));
 
   canvas.addEventListener("wheel", (event) => {
     event.preventDefault();
@@ -70,3 +81,5 @@ export function listen(view, { choosing, chosen, moved }) {
     view.draw();
   });
 }
+
+const isFar = ([x0, y0], [x1, y1]) => Math.hypot(x1 - x0, y1 - y0) > STILL;

@@ -2,18 +2,24 @@
 
 import { Camera } from "./camera.js";
 import { cellColors, fieldColors, palette } from "./colors.js";
-import { STALE_S } from "./panel.js";
+import { knownExtent, painted, pyramid } from "./map_images.js";
+import { drawArrow, drawCross, drawEllipse, drawFlag, drawGrid, drawRing } from "./marks.js";
+import { candidates, contenders, inFrame, situation } from "./situation.js";
 
-const MAX_SIDE = 8192; // pixels of an image along a side
-const SIGMAS = 2.448; // of an ellipse that holds 95 %
 const NEAR_M = 34; // what a view that begins shows at least
 const BEAMS_MS = 500; // so long the beams of a scan are shown beside the tracker's pose
 const LEASH = 0.3; // how far off the middle a followed robot may go, of the view
+const AROUND_M = 4; // what is shown around places that are compared
+const REACH = { place: 22, beam: 14 }; // pixels, from a click to what is meant
 
 export class MapView {
   camera = new Camera();
-  layers = { beams: true, hypotheses: true, track: true, field: false };
+  layers = { beams: true, hypotheses: true, track: true, field: false, grid: true };
   follow = true;
+  frame = "base_link"; // whose pose is shown
+  inspected = null; // x and y in the map
+  flags = []; // where something was: x, y and text
+  cross = false; // whether the middle is marked
   selection = null; // two corners of a region that is being chosen
   #levels = [];
   #fieldImage = null;
@@ -119,22 +125,80 @@ export class MapView {
 
   #drawNow() {
     const { camera, colors, store, layers } = this;
-    const best = store.best();
-    if (this.follow && best) this.#keepInView(best.laser);
+    const { known } = situation(store);
+    const best = known ? inFrame(store.best(), this.frame) : null;
+    if (this.follow) this.#followRobot(best);
     const c = this.canvas.getContext("2d");
     c.setTransform(1, 0, 0, 1, 0, 0);
     c.fillStyle = colors.ground;
     c.fillRect(0, 0, this.canvas.width, this.canvas.height);
     if (store.map) this.#drawCells(c);
     c.setTransform(this.ratio ?? 1, 0, 0, this.ratio ?? 1, 0, 0);
+    if (layers.grid) drawGrid(c, camera, camera.step(), colors);
     this.#drawRegion(c);
     if (layers.track) this.#drawTrack(c);
-    // While the tracker is sure, few scans are searched: beams of an old one lie elsewhere.
-    const fresh = !store.pose || performance.now() - store.beamsAt < BEAMS_MS;
-    if (layers.beams && store.beams && best && fresh) this.#drawBeams(c);
-    if (layers.hypotheses) this.#drawOthers(c);
+    if (this.beamsShown()) this.#drawBeams(c, known ? 1 : 0.5);
+    if (layers.hypotheses) this.#drawOthers(c, known);
     if (best) this.#drawBest(c, best);
+    for (const { x, y, text } of this.flags) drawFlag(c, camera.toScreen(x, y), text, colors);
+    if (this.inspected) drawRing(c, camera.toScreen(...this.inspected), 14, colors.ink, colors.halo);
+    if (this.cross) drawCross(c, camera, colors);
     this.ondrawn?.();
+  }
+
+  /** While the tracker is sure, few scans are searched: beams of an old one lie elsewhere. */
+  beamsShown() {
+    const { store, layers } = this;
+    const fresh = !store.pose || performance.now() - store.beamsAt < BEAMS_MS;
+    return layers.beams && store.beams && store.best() && fresh;
+  }
+
+  /** Keeps the robot in view or, where that is not known, all places where it may be. */
+  #followRobot(best) {
+    if (best) {
+      if (this.#nearScale) this.camera.scale = this.#nearScale;
+      this.#nearScale = 0;
+      return this.#keepInView(best);
+    }
+    const places = contenders(this.store).map((place) => inFrame(place, this.frame));
+    if (!places.length || this.camera.width <= 1) return;
+    if (places.every(({ x, y }) => this.camera.sees(x, y)) && this.#nearScale) return;
+    this.#nearScale ||= this.camera.scale;
+    this.fitPoints(places);
+  }
+  #nearScale = 0;
+
+  /** All of some points, and what is around them. */
+  fitPoints(points) {
+    const [xs, ys] = [points.map(({ x }) => x), points.map(({ y }) => y)];
+    this.camera.fit({
+      left: Math.min(...xs) - AROUND_M, right: Math.max(...xs) + AROUND_M,
+      bottom: Math.min(...ys) - AROUND_M, top: Math.max(...ys) + AROUND_M,
+    });
+  }
+
+  /** What is drawn there: the number of a place or of a beam, or nothing. */
+  pick(px, py) {
+    const { camera, store, layers } = this;
+    const distance = (x, y) => {
+      const [sx, sy] = camera.toScreen(x, y);
+      return Math.hypot(sx - px, sy - py);
+    };
+    const nearest = (points, reach) => {
+      const near = points.map((point, i) => ({ i, off: point ? distance(point.x, point.y) : Infinity }));
+      return near.filter(({ off }) => off <= reach).sort((a, b) => a.off - b.off)[0]?.i;
+    };
+    const { known } = situation(store);
+    if (known && store.pose) {
+      const pose = inFrame(store.best(), this.frame);
+      if (nearest([pose], REACH.place) === 0) return { kind: "pose" };
+    }
+    const unique = store.pose?.state === "Unique";
+    const place = layers.hypotheses && !unique
+      ? nearest(candidates(store).map((place) => inFrame(place, this.frame)), REACH.place) : undefined;
+    if (place !== undefined) return { kind: "place", i: place };
+    const beam = this.beamsShown() ? nearest(beamEnds(store.beams), REACH.beam) : undefined;
+    return beam === undefined ? null : { kind: "beam", i: beam };
   }
 
   /** The view stays where it is as long as the robot is well within. */
@@ -192,14 +256,16 @@ export class MapView {
   /** Older parts are fainter; a leap is no way. */
   #drawTrack(c) {
     const { track } = this.store;
+    const at = this.#onRobot();
     c.lineWidth = 2;
     c.lineJoin = c.lineCap = "round";
     const part = Math.max(1, Math.ceil(track.length / 12));
     for (let from = 0; from < track.length; from += part) {
       c.beginPath();
       for (let i = Math.max(1, from); i < Math.min(track.length, from + part + 1); i++) {
-        const [[x0, y0, v0], [x1, y1, v1]] = [track[i - 1], track[i]];
-        if (v0 !== "U" || v1 !== "U" || Math.hypot(x1 - x0, y1 - y0) > 2) continue;
+        if (track[i - 1][2] !== "U" || track[i][2] !== "U") continue;
+        const [[x0, y0], [x1, y1]] = [at(track[i - 1]), at(track[i])];
+        if (Math.hypot(x1 - x0, y1 - y0) > 2) continue;
         c.moveTo(...this.camera.toScreen(x0, y0));
         c.lineTo(...this.camera.toScreen(x1, y1));
       }
@@ -208,11 +274,22 @@ export class MapView {
     }
   }
 
-  #drawBeams(c) {
-    const { laser, bearing, range_m, fate } = this.store.beams;
+  /** From a point of the laser's path to that of the frame that is shown. */
+  #onRobot() {
+    const best = this.store.best();
+    if (this.frame === "laser" || !best?.base) return ([x, y]) => [x, y];
+    const { laser, base } = best;
+    const [dx, dy] = [base.x - laser.x, base.y - laser.y];
+    const [cos, sin] = [Math.cos(laser.yaw), Math.sin(laser.yaw)];
+    const [ahead, left] = [dx * cos + dy * sin, dy * cos - dx * sin];
+    return ([x, y, , yaw]) => [x + ahead * Math.cos(yaw) - left * Math.sin(yaw), y + ahead * Math.sin(yaw) + left * Math.cos(yaw)];
+  }
+
+  #drawBeams(c, alpha) {
+    const { laser, fate } = this.store.beams;
     const from = this.camera.toScreen(laser.x, laser.y);
-    const ends = bearing.map((angle, i) => this.camera.toScreen(
-      laser.x + range_m[i] * Math.cos(laser.yaw + angle), laser.y + range_m[i] * Math.sin(laser.yaw + angle)));
+    const ends = beamEnds(this.store.beams).map(({ x, y }) => this.camera.toScreen(x, y));
+    c.globalAlpha = alpha;
     c.beginPath();
     for (const end of ends) {
       c.moveTo(...from);
@@ -221,7 +298,7 @@ export class MapView {
     c.strokeStyle = this.colors.ray;
     c.lineWidth = 1;
     c.stroke();
-    const radius = Math.min(4, Math.max(1.900, this.camera.scale * 0.045));
+    const radius = Math.min(4, Math.max(1.9, this.camera.scale * 0.045));
     for (const kind of "uhst") {
       c.beginPath();
       ends.forEach(([x, y], i) => {
@@ -232,129 +309,62 @@ export class MapView {
       c.fillStyle = this.colors.beams[kind];
       c.fill();
     }
+    c.globalAlpha = 1;
   }
 
-  #drawOthers(c) {
-    const { answer, pose } = this.store;
-    if (pose?.state === "Unique") return;
-    const places = answer?.hypotheses.slice(1) ?? [];
-    c.font = "600 11px system-ui, sans-serif";
+  /** The places beside the pose; where that is not known all of them, large as it would be. */
+  #drawOthers(c, known) {
+    const { store, camera, colors } = this;
+    if (store.pose?.state === "Unique") return;
+    const equal = known ? store.answer?.alternatives ?? 0 : contenders(store).length;
+    const first = known && !store.pose ? 1 : 0;
+    const places = candidates(store);
+    c.font = "600 12px system-ui, sans-serif";
     c.textAlign = "center";
     c.textBaseline = "middle";
-    const near = (this.store.answer?.alternatives ?? 0);
-    for (let i = places.length - 1; i >= 0; i--) {
-      const { laser, ellipse, score } = places[i];
-      const [x, y] = this.camera.toScreen(laser.x, laser.y);
-      c.globalAlpha = i < near ? 1 : Math.min(0.75, Math.max(0.18, score));
-      if (i < Math.max(8, near)) this.#drawEllipse(c, x, y, ellipse, this.colors.other, this.colors.otherSoft);
-      this.#drawArrow(c, x, y, laser.yaw, i < near ? 9 : 6, this.colors.other);
-      if (i < near || (i < 5 && this.camera.scale > 14)) {
-        c.fillStyle = this.colors.other;
-        c.fillText(String(i + 2), x + 12 * Math.cos(laser.yaw + 2.600), y - 12 * Math.sin(laser.yaw + 2.600));
+    for (let i = places.length - 1; i >= first; i--) {
+      const { x, y, yaw, ellipse } = inFrame(places[i], this.frame);
+      const at = camera.toScreen(x, y);
+      const leads = i < equal + first;
+      c.globalAlpha = leads ? 1 : Math.min(0.75, Math.max(0.18, places[i].score));
+      if (leads || i < 8) drawEllipse(c, at, ellipse, camera.scale, colors.other, colors.otherSoft);
+      drawArrow(c, at, yaw, leads ? (known ? 9 : 13) : 6, colors.other, colors.halo);
+      if (leads || (i < 5 && camera.scale > 14)) {
+        const beside = [at[0] + 18 * Math.cos(yaw + 2.6), at[1] - 18 * Math.sin(yaw + 2.6)];
+        c.lineWidth = 3;
+        c.strokeStyle = colors.halo;
+        c.strokeText(String(i + 1), ...beside);
+        c.fillStyle = colors.other;
+        c.fillText(String(i + 1), ...beside);
       }
     }
     c.globalAlpha = 1;
   }
 
-  #drawBest(c, { laser, base, ellipse }) {
-    const { camera } = this;
-    const stale = (this.store.silence() ?? Infinity) > STALE_S;
-    const state = this.store.pose?.state ?? "Unique";
-    const accent = stale ? this.colors.soft : { Unique: this.colors.accent, Lost: this.colors.beams.t }[state] ?? this.colors.beams.s;
-    const colors = { ...this.colors, accent };
-    const [x, y] = camera.toScreen(laser.x, laser.y);
-    this.#drawEllipse(c, x, y, ellipse, colors.accent, colors.accentSoft);
-    if (base) {
-      const [bx, by] = camera.toScreen(base.x, base.y);
+  /** The pose, and a line to the other frame. */
+  #drawBest(c, best) {
+    const { camera, colors, store } = this;
+    const color = store.pose?.state === "Doubtful" ? colors.beams.s : colors.accent;
+    const at = camera.toScreen(best.x, best.y);
+    drawEllipse(c, at, best.ellipse, camera.scale, color, colors.accentSoft);
+    const { laser, base } = store.best();
+    const other = best.frame === "laser" ? base : laser;
+    if (other) {
+      const [x, y] = camera.toScreen(other.x, other.y);
       c.beginPath();
-      c.moveTo(bx, by);
+      c.moveTo(...at);
       c.lineTo(x, y);
-      c.arc(bx, by, 3, 0, 2 * Math.PI);
-      c.strokeStyle = colors.accent;
+      c.arc(x, y, 3, 0, 2 * Math.PI);
+      c.strokeStyle = color;
       c.lineWidth = 2;
       c.stroke();
     }
-    this.#drawArrow(c, x, y, laser.yaw, Math.min(26, Math.max(13, 0.35 * camera.scale)), colors.accent);
-  }
-
-  #drawEllipse(c, x, y, ellipse, line, fill) {
-    if (!ellipse) return;
-    const radius = (metres) => Math.max(1, metres * SIGMAS * this.camera.scale);
-    c.beginPath();
-    c.ellipse(x, y, radius(ellipse.major_m), radius(ellipse.minor_m), -ellipse.angle, 0, 2 * Math.PI);
-    c.fillStyle = fill;
-    c.fill();
-    c.strokeStyle = line;
-    c.lineWidth = 1;
-    c.stroke();
-  }
-
-  /** A pointed shape with its tip ahead, and a light edge around it. */
-  #drawArrow(c, x, y, yaw, size, color) {
-    c.save();
-    c.translate(x, y);
-    c.rotate(-yaw);
-    c.beginPath();
-    c.moveTo(size, 0);
-    c.lineTo(-size * 0.72, size * 0.66);
-    c.lineTo(-size * 0.36, 0);
-    c.lineTo(-size * 0.72, -size * 0.66);
-    c.closePath();
-    c.lineJoin = "round";
-    c.lineWidth = size > 10 ? 4 : 2.500;
-    c.strokeStyle = this.colors.halo;
-    c.stroke();
-    c.fillStyle = color;
-    c.fill();
-    c.restore();
+    drawArrow(c, at, best.yaw, Math.min(26, Math.max(13, 0.35 * camera.scale)), color, colors.halo);
   }
 }
 
-export const rectangle = ([[x0, y0], [x1, y1]]) => [[x0, y0], [x1, y0], [x1, y1], [x0, y1]];
+const rectangle = ([[x0, y0], [x1, y1]]) => [[x0, y0], [x1, y0], [x1, y1], [x0, y1]];
 
-/** Images of halved size, so that walls do not vanish from afar. */
-function pyramid(cells, width, height) {
-  const levels = [];
-  for (let factor = 1; ; factor *= 2) {
-    if (width <= MAX_SIDE && height <= MAX_SIDE) levels.push({ cells, width, height, factor });
-    if (width <= 256 && height <= 256) return levels;
-    [cells, width, height] = halved(cells, width, height);
-  }
-}
-
-/** Left, bottom, right and top of the known cells, in cells of the map. */
-function knownExtent({ cells, width, height, factor }) {
-  let [left, bottom, right, top] = [width, height, 0, 0];
-  cells.forEach((value, i) => {
-    if (value > 100) return;
-    const [x, y] = [i % width, Math.floor(i / width)];
-    [left, right] = [Math.min(left, x), Math.max(right, x + 1)];
-    [bottom, top] = [Math.min(bottom, y), Math.max(top, y + 1)];
-  });
-  const box = right > left ? [left, bottom, right, top] : [0, 0, width, height];
-  return box.map((side) => side * factor);
-}
-
-/** The most occupied of four cells; unknown only where all are. */
-function halved(cells, width, height) {
-  const [w, h] = [Math.ceil(width / 2), Math.ceil(height / 2)];
-  const out = new Uint8Array(w * h).fill(255);
-  for (let y = 0; y < height; y++) {
-    for (let x = 0; x < width; x++) {
-      const value = cells[y * width + x];
-      const at = (y >> 1) * w + (x >> 1);
-      if (value <= 100 && (out[at] > 100 || value > out[at])) out[at] = value;
-    }
-  }
-  return [out, w, h];
-}
-
-function painted(cells, width, height, table) {
-  const image = new ImageData(width, height);
-  const pixels = new Uint32Array(image.data.buffer);
-  for (let i = 0; i < pixels.length; i++) pixels[i] = table[cells[i]];
-  const canvas = document.createElement("canvas");
-  [canvas.width, canvas.height] = [width, height];
-  canvas.getContext("2d").putImageData(image, 0, 0);
-  return canvas;
-}
+/** Where the beams of a scan end. */
+export const beamEnds = ({ laser, bearing, range_m }) => bearing.map((angle, i) => ({
+  x: laser.x + range_m[i] * Math.cos(laser.yaw + angle), y: laser.y + range_m[i] * Math.sin(laser.yaw + angle) }));

@@ -1,93 +1,28 @@
-// The panel beside the map.
+// The lists of the panel beside the map: places, times, nodes, log.
 
+import { $, element, replace, write } from "./dom.js";
 import { FATES, palette } from "./colors.js";
+import { candidates, inFrame } from "./situation.js";
+import { clock, degrees, duration, fixed, percent } from "./words.js";
 
-const PLACES = 6;
-export const STALE_S = 2; // without a scan: nothing is live any more
+const PLACES = 8;
 
-export const $ = (id) => document.getElementById(id);
-
-/** Writes only what changes: what is read aloud is read once. */
-function write(id, text) {
-  if ($(id).textContent !== text) $(id).textContent = text;
-}
-
-function element(tag, attributes = {}, ...children) {
-  const made = document.createElement(tag);
-  for (const [name, value] of Object.entries(attributes)) {
-    if (name.startsWith("data-")) made.setAttribute(name, value);
-    else made[name] = value;
-  }
-  made.append(...children);
-  return made;
-}
-
-/** A number with a true minus, and none before zero. */
-function fixed(value, digits) {
-  if (!Number.isFinite(value)) return "–";
-  const text = value.toFixed(digits);
-  return Number(text) === 0 ? text.replace("-", "") : text.replace("-", "−");
-}
-
-/** A share in words that distinguish almost none from none. */
-const percent = (share) => (share > 0 && share < 0.005 ? "<1 %" : `${Math.round(share * 100)} %`);
-const degrees = (radians) => (radians * 180) / Math.PI;
-
-/** A stamp as a time of day here. */
-function clock(seconds) {
-  const date = new Date(seconds * 1000);
-  const tenths = Math.floor((((seconds % 1) + 1) % 1) * 10);
-  return `${date.toLocaleDateString("en-CA")} ${date.toLocaleTimeString("en-GB")}.${tenths}`;
-}
-
-const WORDS = { PoorFit: "Poor fit", NoScan: "No scan" };
-
-/** What is said of the pose: by the tracker or, without one, of the last scan. */
-function verdict({ pose, answer }) {
-  if (pose) return { word: pose.state, kind: pose.state, says: pose.says };
-  if (answer) return { word: WORDS[answer.verdict] ?? answer.verdict, kind: answer.verdict, says: answer.says };
-  return null;
-}
-
-export function showAnswer(store) {
-  const { answer, pose } = store;
-  const silence = store.silence();
-  const stale = silence === null || silence > STALE_S;
-  const is = verdict(store);
-  $("verdict-card").classList.toggle("stale", stale);
-  if (!is) {
-    write("verdict", "Waiting");
-    $("verdict").dataset.verdict = "";
-    write("says", "Waiting for the first scan.");
-  } else {
-    write("verdict", stale ? "No data" : is.word);
-    $("verdict").dataset.verdict = stale ? "" : is.kind;
-    write("says", stale ? `No scan for ${Math.floor(silence ?? 0)} s. Last: ${sentence(is.says)}` : sentence(is.says));
-  }
-  write("stamp", pose ? clock(pose.stamp_s) : answer ? clock(answer.stamp_s) : "");
-  const best = store.best();
-  write("pose-x", fixed(best?.laser.x, 2));
-  write("pose-y", fixed(best?.laser.y, 2));
-  write("pose-yaw", fixed(best && degrees(best.laser.yaw), 1));
-  const ellipse = best?.ellipse;
-  $("spread").textContent = ellipse
-    ? `± ${fixed(ellipse.major_m * 100, 1)} cm along, ${fixed(ellipse.minor_m * 100, 1)} cm across, ${fixed(degrees(ellipse.yaw), 2)}°` : "";
-  write("single", pose && answer ? `Single scan: ${WORDS[answer.verdict] ?? answer.verdict}, ${sentence(answer.says)}` : "");
-}
-
-const sentence = (text) => (/[.?!]$/.test(text) ? text : `${text}.`);
-
-export function showPlaces({ answer }) {
-  const places = answer?.hypotheses ?? [];
-  write("place-count", `${places.length || ""}`);
-  const rows = places.slice(0, PLACES).map(({ laser, score, probability }, i) => element("li", { className: "num" },
-    element("i", {}, String(i + 1)),
-    element("span", {}, `${fixed(laser.x, 1)}, ${fixed(laser.y, 1)}, ${fixed(degrees(laser.yaw), 0)}°`),
-    element("progress", { max: 1, value: Math.max(0, Math.min(1, score)), title: `score ${fixed(score, 2)}` }),
-    element("b", { title: "probability" }, percent(probability))));
-  if (places.length > PLACES) rows.push(element("li", { className: "more" }, `and ${places.length - PLACES} that fit worse`));
-  if (!places.length) rows.push(element("li", { className: "more" }, "none"));
-  $("places").replaceChildren(...rows);
+/** `chosen(i)` is called with the number of a place. */
+export function showPlaces(store, frame, chosen) {
+  const all = store.answer?.hypotheses ?? [];
+  const places = candidates(store);
+  const shown = places.slice(0, PLACES).map((place) => ({ ...inFrame(place, frame), place }));
+  write("place-count", all.length ? `${all.length} of the last scan searched, ${shown[0]?.frame ?? ""}` : "");
+  const rows = shown.map(({ x, y, yaw, place }) => [
+    fixed(x, 1), fixed(y, 1), `${fixed(degrees(yaw), 0)}°`, fixed(place.score, 2), percent(place.probability)]);
+  replace($("places"), JSON.stringify(rows), () => rows.map(([x, y, yaw, score, probability], i) => element("tr", { className: "num" },
+    element("th", { scope: "row" }, element("button", {
+      "data-focus": `place ${i}`, "aria-label": `Inspect place ${i + 1}`, onclick: () => chosen(i) }, String(i + 1))),
+    ...[x, y, yaw, score].map((text) => element("td", {}, text)), element("td", {}, element("b", {}, probability)))));
+  $("places-table").hidden = !rows.length;
+  const [worse, hidden] = [places.length - shown.length, all.length - places.length];
+  const notes = [worse > 0 ? `${worse} more fit worse` : "", hidden > 0 ? `${hidden} below 1 % are hidden` : "", all.length ? "" : "none"];
+  write("places-note", notes.filter(Boolean).join(", "));
 }
 
 export function showTiming({ answer, latencies }, theme) {
@@ -108,13 +43,13 @@ function drawSpark(canvas, values, colors) {
   if (values.length < 2) return;
   const c = canvas.getContext("2d");
   c.scale(ratio, ratio);
-  const top = Math.max(...values, 1) * 1.100;
+  const top = Math.max(...values, 1) * 1.1;
   const x = (i) => width - 2 - ((values.length - 1 - i) * (width - 4)) / 119;
   const y = (v) => height - 2 - (v / top) * (height - 6);
   c.beginPath();
   values.forEach((v, i) => c.lineTo(x(i), y(v)));
   c.strokeStyle = colors.accent;
-  c.lineWidth = 1.500;
+  c.lineWidth = 1.5;
   c.lineJoin = "round";
   c.stroke();
   c.lineTo(x(values.length - 1), height);
@@ -123,50 +58,65 @@ function drawSpark(canvas, values, colors) {
   c.fill();
 }
 
-export function showNodes({ nodes, answer }) {
+/** The last report of each; whoever never reported is not known here. */
+export function showNodes({ robot, nodes, answer }) {
   const all = [...nodes.values()].sort((a, b) => a.name.localeCompare(b.name));
   const well = all.filter(({ state }) => state === "ready").length;
-  write("node-count", all.length ? `${well} of ${all.length} ready` : "");
+  write("node-count", all.length ? `${well} of ${all.length} ready` : robot ? "none has reported: not started" : "not known");
   const took = { accumulator: answer?.search_ms, peak_extractor: answer?.extract_ms };
-  $("nodes").replaceChildren(...all.map((node) => nodeRow(node, took[node.name])));
+  const rows = all.map((node) => nodeWords(node, took[node.name]));
+  replace($("nodes"), JSON.stringify(rows), () => rows.map(nodeRow));
 }
 
-function nodeRow(node, took) {
+function nodeWords(node, took) {
   const rates = [];
   if (node.received_hz) rates.push(`${fixed(node.received_hz, 1)} in`);
   if (node.sent_hz) rates.push(`${fixed(node.sent_hz, 1)} out`);
-  const facts = [];
-  if (rates.length) facts.push(`${rates.join(", ")} a second`);
-  if (took !== undefined) facts.push(`${fixed(took, 1)} ms`);
+  const done = [];
+  if (rates.length) done.push(`${rates.join(", ")} a second`);
+  if (took !== undefined) done.push(`${fixed(took, 1)} ms`);
   const troubles = [];
   if (node.dropped) troubles.push(`${node.dropped} lost`);
-  if (node.refused) troubles.push(`${node.refused} refused`);
+  if (node.refused) troubles.push(`${node.refused} rejected`);
   if (node.restarts) troubles.push(`started again ${node.restarts}×`);
-  const more = element("div", { className: "more num" }, facts.join(" · "));
-  if (troubles.length) more.append(facts.length ? " · " : "", element("b", {}, troubles.join(", ")));
-  const row = element("li", { "data-state": node.state, "data-node": node.name },
-    element("div", { className: "name" }, element("i"), element("span", {}, node.name), element("em", {}, node.state)));
+  const quiet = node.state === "silent" ? ` for ${duration((performance.now() - node.at) / 1000)}` : "";
+  const error = node.last_error && (node.state === "ready" ? `earlier: ${node.last_error}` : node.last_error);
+  return { name: node.name, state: node.state, quiet, done: done.join(" · "), troubles: troubles.join(", "), error };
+}
+
+function nodeRow({ name, state, quiet, done, troubles, error }) {
+  const more = element("div", { className: "more num" }, done);
+  if (troubles) more.append(done ? " · " : "", element("b", {}, troubles));
+  const row = element("li", { "data-state": state, "data-node": name },
+    element("div", { className: "name" }, element("i"), element("span", {}, name), element("em", {}, state + quiet)));
   if (more.textContent) row.append(more);
-  if (node.last_error) {
-    const past = node.state === "ready" ? "earlier: " : "";
-    row.append(element("div", { className: "more error" }, past + node.last_error));
-  }
+  if (error) row.append(element("div", { className: "more error" }, error));
   return row;
 }
 
-let shownEvents = null;
+const LEVELS = ["faint", "info", "good", "warn", "bad"];
+const AROUND_MS = 10000; // of the log, before and after a moment
 
-export function showEvents({ events }) {
-  if (events === shownEvents) return;
-  shownEvents = events;
-  $("events").replaceChildren(...events.map(({ at, text, level }) => element("li", { "data-level": level },
-    element("time", {}, at.toLocaleTimeString("en-GB")), element("span", {}, text))));
+/** The lines of the log from a level on, of a node, and around a period if one is given. */
+export function showEvents({ events }, period, ends) {
+  const names = [...new Set(events.map(({ node }) => node))].sort();
+  replace($("log-node"), names.join(), () => [new Option("all nodes", ""), ...names.map((name) => new Option(name, name))]);
+  const [least, node] = [Number($("log-level").value), $("log-node").value];
+  const wall = (at) => Date.now() - performance.now() + at;
+  const [from, to] = period ? [wall(period.at) - AROUND_MS, wall(ends ?? performance.now()) + AROUND_MS] : [-Infinity, Infinity];
+  const rows = events.filter((event) => LEVELS.indexOf(event.level) >= least && (!node || event.node === node)
+    && event.at >= from && event.at <= to);
+  const key = `${events.length} ${events[0]?.at.getTime()} ${events[0]?.text} ${rows.length} ${least} ${node} ${period?.at}`;
+  replace($("events"), key, () => rows.map(({ at, text, level, node }) => element("li", { "data-level": level },
+    element("time", {}, clock(at)),
+    element("span", {}, text.startsWith(node) || node === "page" ? text : `${node}: ${text}`))));
+  write("log-count", period ? "around that moment" : rows.length < events.length ? `${rows.length} of ${events.length}` : "");
 }
 
 /** What the colours of the beams mean, for those that there are. */
-export function showLegend({ beams }, layers, theme) {
+export function showLegend({ beams }, shown, theme) {
   const { beams: colors } = palette(theme);
-  const kinds = layers.beams && beams ? Object.keys(FATES).filter((kind) => beams.fate.includes(kind)) : [];
+  const kinds = shown ? Object.keys(FATES).filter((kind) => beams.fate.includes(kind)) : [];
   const key = `${theme}${kinds}`;
   if ($("legend").dataset.key === key) return;
   $("legend").dataset.key = key;
@@ -177,7 +127,7 @@ function dot(color) {
   const space = "http://www.w3.org/2000/svg";
   const svg = document.createElementNS(space, "svg");
   const circle = document.createElementNS(space, "circle");
-  for (const [name, value] of [["cx", 5], ["cy", 5], ["r", 4.500], ["fill", color]]) circle.setAttribute(name, value);
+  for (const [name, value] of [["cx", 5], ["cy", 5], ["r", 4.5], ["fill", color]]) circle.setAttribute(name, value);
   svg.setAttribute("viewBox", "0 0 10 10");
   svg.append(circle);
   return svg;
@@ -185,7 +135,7 @@ function dot(color) {
 
 /** A bar as long as a round number of metres. */
 export function showScale(camera) {
-  const step = [0.01, 0.02, 0.05, 0.1, 0.2, 0.5, 1, 2, 5, 10, 20, 50, 100, 200, 500].find((m) => m * camera.scale >= 60) ?? 1000;
+  const step = camera.step();
   $("scale").style.width = `${step * camera.scale}px`;
-  $("scale").firstElementChild.textContent = step < 1 ? `${step * 100} cm` : `${step} m`;
+  write("scale-text", step < 1 ? `${step * 100} cm` : `${step} m`);
 }

@@ -3,6 +3,14 @@
 const TRACK = 3000;
 const LATENCIES = 120;
 const EVENTS = 200;
+const STATES = 300;
+const HOUR_MS = 3600 * 1000;
+
+/** A state with when it began, by the clock of this page. */
+const began = (period) => ({ ...period, at: performance.now() - 1000 * period.ago_s });
+
+/** A node's report with when it was made, by the same clock. */
+const reported = (node) => ({ ...node, at: performance.now() - 1000 * node.quiet_s });
 
 export class Store {
   constructor() {
@@ -12,7 +20,7 @@ export class Store {
 
   clear() {
     Object.assign(this, {
-      robot: "", map: null, cells: null, answer: null, pose: null, scanAt: null, posedAt: null, beams: null, beamsAt: 0, field: null,
+      robot: "", graph: null, states: [], map: null, cells: null, answer: null, pose: null, scanAt: null, posedAt: null, beams: null, beamsAt: 0, field: null,
       nodes: new Map(), track: [], region: [], latencies: [], missed: 0,
       abilities: { region: false, save: false },
     });
@@ -25,6 +33,7 @@ export class Store {
       case "map": this.map = message; this.field = null; return "map";
       case "answer": return this.#answer(message);
       case "pose": return this.#pose(message);
+      case "state": return this.#state(message);
       case "beams": this.beams = message; this.beamsAt = performance.now(); return "beams";
       case "node": return this.#node(message);
       case "log": return this.#log(message);
@@ -38,12 +47,13 @@ export class Store {
     }
   }
 
-  #snapshot({ robot, map, answer, pose, ages, beams, nodes, track, log, region, abilities }) {
-    Object.assign(this, { robot, map, answer, pose, beams, track, region, abilities });
+  #snapshot({ robot, graph, map, answer, pose, ages, states, beams, nodes, track, log, region, abilities }) {
+    Object.assign(this, { robot, graph, map, answer, pose, beams, track, region, abilities });
+    this.states = states.map(began);
     const since = (seconds) => (seconds === null ? null : performance.now() - 1000 * seconds);
     this.scanAt = since(ages.scan_s);
     this.posedAt = since(ages.pose_s);
-    this.nodes = new Map(nodes.map((node) => [node.name, node]));
+    this.nodes = new Map(nodes.map((node) => [node.name, reported(node)]));
     for (const line of log) this.#log(line);
     return "snapshot";
   }
@@ -56,6 +66,7 @@ export class Store {
     }
     this.#scanned(answer.age_ms);
     if (!this.pose) this.#went(this.answer, answer, answer.hypotheses[0]?.laser, answer.verdict);
+    if (!this.pose) this.#stands(answer.verdict, answer.hypotheses[0]?.base ?? answer.hypotheses[0]?.laser);
     this.answer = answer;
     return "answer";
   }
@@ -71,9 +82,24 @@ export class Store {
       this.#scanned(pose.age_ms);
       this.#went(this.pose, pose, pose.laser, pose.state);
     }
+    this.#stands(pose.state, pose.base ?? pose.laser);
     this.pose = pose;
     this.posedAt = performance.now() - pose.sent_age_ms;
     return "pose";
+  }
+
+  /** Another state begins; what is older than an hour is let go of. */
+  #state(message) {
+    const period = began(message);
+    const kept = (_, i) => i === this.states.length - 1 || period.at - this.states[i + 1].at < HOUR_MS;
+    this.states = [...this.states.filter(kept), period].slice(-STATES);
+    return "state";
+  }
+
+  /** Where the robot is while the newest state lasts. */
+  #stands(state, pose) {
+    const period = this.states.at(-1);
+    if (period?.state === state && pose) period.last = pose;
   }
 
   /** When the newest scan came, by the clock of this page. */
@@ -84,7 +110,7 @@ export class Store {
   /** The way goes on, or begins anew on another map. */
   #went(before, now, laser, word) {
     if (before && before.map_id !== now.map_id) this.track = [];
-    if (laser) this.track.push([laser.x, laser.y, word[0]]);
+    if (laser) this.track.push([laser.x, laser.y, word[0], laser.yaw]);
     if (this.track.length > TRACK) this.track.shift();
     this.latencies.push(now.latency_ms);
     if (this.latencies.length > LATENCIES) this.latencies.shift();
@@ -108,13 +134,13 @@ export class Store {
     if (before?.state !== node.state) {
       const level = { silent: "bad", degraded: "warn" }[node.state] ?? "good";
       const word = node.state === "silent" ? "does not report any more" : `is ${node.state}`;
-      this.event(`${node.name} ${word}`, level);
+      this.event(`${node.name} ${word}`, level, node.name);
     }
-    if (before && node.restarts > before.restarts) this.event(`${node.name} was started again`, "warn");
+    if (before && node.restarts > before.restarts) this.event(`${node.name} was started again`, "warn", node.name);
     if (node.last_error && node.last_error !== before?.last_error) {
-      this.event(`${node.name}: ${node.last_error}`, "warn");
+      this.event(`${node.name}: ${node.last_error}`, "warn", node.name);
     }
-    this.nodes.set(node.name, node);
+    this.nodes.set(node.name, reported(node));
     return "nodes";
   }
 
@@ -123,7 +149,7 @@ export class Store {
     const key = `${node} ${pid} ${counter}`;
     if (this.events.some((event) => event.key === key)) return "log";
     const grave = { debug: "faint", info: "info", warn: "warn", error: "bad" }[level] ?? "info";
-    this.#insert({ at: new Date(at_s * 1000), text: `${node}: ${text}`, level: grave, key });
+    this.#insert({ at: new Date(at_s * 1000), text, node, level: grave, key });
     return "log";
   }
 
@@ -134,8 +160,8 @@ export class Store {
     this.field = { ...head, pixels: new Uint8Array(buffer, 4 + length) };
   }
 
-  event(text, level = "good") {
-    this.#insert({ at: new Date(), text, level });
+  event(text, level = "good", node = "page") {
+    this.#insert({ at: new Date(), text, level, node });
   }
 
   /** Newest first, wherever it comes from. */

@@ -17,8 +17,8 @@ use serde::Serialize;
 use tokio::sync::{broadcast, watch};
 
 use crate::view::{
-    Answer, Beams, Log, LogLine, Map, Message, Region, Roster, Snapshot, Times, Track, Tracked,
-    field_frame,
+    Answer, Beams, History, Log, LogLine, Map, Message, Region, Roster, Snapshot, Times, Track,
+    Tracked, field_frame,
 };
 
 /// Messages that may wait for a slow reader; beyond, it loses the oldest.
@@ -49,6 +49,7 @@ pub struct Abilities {
 #[derive(Debug)]
 pub struct Robot {
     name: String,
+    graph: Option<String>,
     known: Mutex<Known>,
     news: broadcast::Sender<Utf8Bytes>,
     field: watch::Sender<Option<Bytes>>,
@@ -63,6 +64,7 @@ struct Known {
     /// None if there is no tracker.
     pose: Option<Tracked>,
     times: Times,
+    history: History,
     beams: Option<Beams>,
     roster: Roster,
     track: Track,
@@ -89,9 +91,16 @@ impl Robot {
     /// addresses.
     #[must_use]
     pub fn new(name: String) -> (Arc<Self>, Receiver<Request>) {
+        Self::in_graph(name, None)
+    }
+
+    /// The same, and the name of its graph, if that is known.
+    #[must_use]
+    pub fn in_graph(name: String, graph: Option<String>) -> (Arc<Self>, Receiver<Request>) {
         let (requests, requested) = sync_channel(MAX_REQUESTS);
         let robot = Robot {
             name,
+            graph,
             known: Mutex::default(),
             news: broadcast::Sender::new(QUEUE),
             field: watch::Sender::new(None),
@@ -119,6 +128,9 @@ impl Robot {
         self.broadcast(&Message::Answer(&answer));
         known.times.on_answer(header);
         known.track.on_answer(&answer);
+        if known.pose.is_none() && known.history.on_answer(&answer, now_ns) {
+            self.broadcast_state(&known, now_ns);
+        }
         known.answer = Some(answer);
     }
 
@@ -129,6 +141,9 @@ impl Robot {
         self.broadcast(&Message::Pose(&pose));
         known.times.on_pose(header);
         known.track.on_pose(&pose);
+        if known.history.on_pose(&pose, now_ns) {
+            self.broadcast_state(&known, now_ns);
+        }
         known.pose = Some(pose);
     }
 
@@ -183,10 +198,15 @@ impl Robot {
         }
     }
 
-    /// Looks for nodes that have become silent.
+    /// Looks whether scans still come, and for nodes that have become silent.
     pub fn look_for_silence(&self, now_ns: i64) {
-        for report in self.known().roster.newly_silent(now_ns) {
+        let mut known = self.known();
+        for report in known.roster.newly_silent(now_ns) {
             self.broadcast(&Message::Node(report));
+        }
+        let newest_ns = known.times.newest_ns();
+        if known.history.look_for_silence(newest_ns, now_ns) {
+            self.broadcast_state(&known, now_ns);
         }
     }
 
@@ -194,6 +214,12 @@ impl Robot {
     #[must_use]
     pub fn is_field_viewed(&self) -> bool {
         self.field_viewers.load(Ordering::Relaxed) > 0
+    }
+
+    fn broadcast_state(&self, known: &Known, now_ns: i64) {
+        if let Some(period) = known.history.newest(now_ns) {
+            self.broadcast(&Message::State(period));
+        }
     }
 
     /// Puts it into words once for all who watch, if there are any. The lock is
@@ -257,10 +283,12 @@ impl Robot {
     fn snapshot_of(&self, known: &Known, now_ns: i64) -> Utf8Bytes {
         text(&Message::Snapshot(Snapshot {
             robot: &self.name,
+            graph: self.graph.as_deref(),
             map: known.map.as_ref().map(|map| &map.info),
             answer: known.answer.as_ref(),
             pose: known.pose.as_ref(),
             ages: known.times.ages(now_ns),
+            states: known.history.periods(now_ns).collect(),
             beams: known.beams.as_ref(),
             nodes: known.roster.reports().collect(),
             track: known.track.points().collect(),
@@ -287,100 +315,4 @@ pub(crate) fn text(message: &Message<'_>) -> Utf8Bytes {
 }
 
 #[cfg(test)]
-mod tests {
-    use bytemuck::Zeroable;
-    use messages::{TrackState, Verdict};
-    use serde_json::Value;
-
-    use super::*;
-
-    fn json(text: &str) -> Value {
-        serde_json::from_str(text).unwrap()
-    }
-
-    fn receive(robot: &Robot, counter: u64) {
-        let mut header = HypothesesHeader {
-            verdict: Verdict::Unique as u32,
-            ..HypothesesHeader::zeroed()
-        };
-        header.stamp.counter = counter;
-        robot.on_answer(&header, &[Hypothesis::zeroed()], 0);
-    }
-
-    #[test]
-    fn who_comes_receives_what_is_known_and_then_all_that_follows() {
-        let (robot, _requests) = Robot::new("r".into());
-        receive(&robot, 1);
-        let mut watching = robot.watch(0);
-        receive(&robot, 2);
-        let snapshot = json(&watching.snapshot);
-        assert_eq!(
-            (&snapshot["type"], &snapshot["robot"]),
-            (&"snapshot".into(), &"r".into())
-        );
-        assert_eq!(snapshot["answer"]["counter"], 1);
-        assert_eq!(snapshot["track"][0], serde_json::json!([0.0, 0.0, "U"]));
-        let news = json(&watching.news.try_recv().unwrap());
-        assert_eq!(
-            (&news["type"], &news["counter"]),
-            (&"answer".into(), &2.into())
-        );
-        assert!(watching.news.try_recv().is_err());
-    }
-
-    #[test]
-    fn a_pose_is_reported_beside_the_answer_and_so_is_its_age() {
-        let (robot, _requests) = Robot::new("r".into());
-        receive(&robot, 1);
-        let mut watching = robot.watch(0);
-        assert_eq!(json(&watching.snapshot)["pose"], Value::Null, "no tracker");
-        let header = PoseHeader {
-            sent_ns: 1_000_000_000,
-            state: TrackState::Lost as u32,
-            ..PoseHeader::zeroed()
-        };
-        robot.on_pose(&header, b"no place fits", 0);
-        let news = json(&watching.news.try_recv().unwrap());
-        assert_eq!(
-            (&news["type"], &news["state"]),
-            (&"pose".into(), &"Lost".into())
-        );
-        let snapshot = json(&robot.snapshot(3_500_000_000));
-        assert_eq!(snapshot["pose"]["says"], "no place fits");
-        assert_eq!(snapshot["answer"]["counter"], 1, "the single answer stays");
-        assert_eq!(
-            snapshot["ages"],
-            serde_json::json!({"scan_s": 3.5, "pose_s": 2.5})
-        );
-    }
-
-    #[test]
-    fn who_is_slow_loses_the_oldest_and_receives_how_many() {
-        let (robot, _requests) = Robot::new("r".into());
-        let mut watching = robot.watch(0);
-        for counter in 0..QUEUE as u64 + 3 {
-            receive(&robot, counter);
-        }
-        let lagged = watching.news.try_recv().unwrap_err();
-        assert_eq!(lagged, broadcast::error::TryRecvError::Lagged(3));
-        assert_eq!(json(&watching.news.try_recv().unwrap())["counter"], 3);
-    }
-
-    #[test]
-    fn the_field_is_wanted_as_long_as_somebody_looks() {
-        let (robot, _requests) = Robot::new("r".into());
-        assert!(!robot.is_field_viewed());
-        let view = robot.view_field();
-        assert!(robot.is_field_viewed());
-        drop(view);
-        assert!(!robot.is_field_viewed());
-    }
-
-    #[test]
-    fn requests_are_bounded() {
-        let (robot, requests) = Robot::new("r".into());
-        assert!((0..MAX_REQUESTS).all(|_| robot.request(Request::Save)));
-        assert!(!robot.request(Request::Save));
-        assert_eq!(requests.try_iter().count(), MAX_REQUESTS);
-    }
-}
+mod tests;

@@ -8,6 +8,7 @@ mod ages;
 mod answer;
 mod beams;
 mod field;
+mod history;
 mod log;
 mod map;
 mod roster;
@@ -18,6 +19,7 @@ pub(crate) use ages::{Ages, Times};
 pub(crate) use answer::Answer;
 pub(crate) use beams::Beams;
 pub(crate) use field::frame as field_frame;
+pub(crate) use history::{History, Period};
 pub(crate) use log::{Log, LogLine};
 pub(crate) use map::{Map, MapInfo};
 pub(crate) use roster::{NodeReport, Roster};
@@ -42,6 +44,8 @@ pub(crate) enum Message<'a> {
     Answer(&'a Answer),
     /// Where the tracker has the robot.
     Pose(&'a Tracked),
+    /// Another state begins.
+    State(Period<'a>),
     /// What became of its beams.
     Beams(&'a Beams),
     /// The state of a node.
@@ -75,11 +79,15 @@ pub(crate) struct Region<'a> {
 #[derive(Debug, Serialize)]
 pub(crate) struct Snapshot<'a> {
     pub(crate) robot: &'a str,
+    /// The graph's name; none where it is elsewhere.
+    pub(crate) graph: Option<&'a str>,
     pub(crate) map: Option<&'a MapInfo>,
     pub(crate) answer: Option<&'a Answer>,
     /// None where the graph has no tracker.
     pub(crate) pose: Option<&'a Tracked>,
     pub(crate) ages: Ages,
+    /// The states of the last hour, oldest first.
+    pub(crate) states: Vec<Period<'a>>,
     pub(crate) beams: Option<&'a Beams>,
     pub(crate) nodes: Vec<&'a NodeReport>,
     pub(crate) track: Vec<&'a TrackPoint>,

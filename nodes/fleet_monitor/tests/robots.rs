@@ -16,7 +16,9 @@ use messages::{
 use network_payload::{Preamble, Wire};
 use serde_json::{Value, json};
 use tempfile::TempDir;
+use tests::browser::Browser;
 use tests::http::{Site, token_file};
+use tests::needs::Need;
 use transport::testing::{Isolated, NodeProcess, wait_for_health, wait_until_ready};
 use transport::{Flow, Graph, TransportError, monotonic_ns};
 use zenoh::bytes::Encoding;
@@ -340,4 +342,34 @@ fn what_strangers_send_is_refused_and_counted() {
     world.wait_for("/api/v1/robots/a", |known| {
         known["answer"]["hypotheses"][0]["laser"]["x"] == 3.0
     });
+}
+
+#[test]
+fn the_page_lets_people_choose_a_robot() {
+    let test = "the_page_lets_people_choose_a_robot";
+    let Some(browser) = Browser::open(1280, 800) else {
+        return Need::Browser.is_missing(test, "there is no chromium or no chromedriver");
+    };
+    let world = World::new("fleet-choose");
+    let (a, b) = (world.robot("a"), world.robot("b"));
+    a.track(0, 1.5);
+    b.track(0, 9.0);
+    world.wait_for("/api/v1/robots", |known| {
+        known["robots"] == json!(["a", "b"])
+    });
+    let shows = |robot: &str, x: &str| {
+        browser.wait_until(&format!(
+            "document.getElementById('pose-x').textContent === '{x}'
+             && document.getElementById('robot').value === '{robot}'
+             && document.title.includes(' · {robot} · ')"
+        ));
+    };
+    browser.visit(&format!("http://{}/?robot=b", world.site.0));
+    shows("b", "9.00");
+    let _ = browser.run(
+        "const list = document.getElementById('robot');
+         list.value = 'a';
+         list.dispatchEvent(new Event('change'))",
+    );
+    shows("a", "1.50");
 }

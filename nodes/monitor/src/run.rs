@@ -23,7 +23,7 @@ const TICK: Duration = Duration::from_millis(50);
 /// # Errors
 /// If it cannot listen, the token cannot be read, or the graph fails.
 pub fn run(graph: &Graph, config: &Config) -> Result<(), MonitorError> {
-    let (robot, requests) = Robot::new(config.robot());
+    let (robot, requests) = Robot::in_graph(config.robot(), Some(graph.name().to_string()));
     let inputs = Inputs::open(graph)?;
     let mut node = Node {
         robot: Arc::clone(&robot),

@@ -235,7 +235,7 @@ fn the_trackers_pose_is_reported_with_its_age() {
     let known = world.site.get("/api/v1/robots/r");
     assert_eq!(known["pose"]["counter"], 7);
     assert_eq!(known["answer"]["hypotheses"][0]["laser"]["x"], 9.0);
-    assert_eq!(known["track"], json!([[1.5, 2.0, "U"]]));
+    assert_eq!(known["track"], json!([[1.5, 2.0, "U", 0.5]]));
     // A later viewer gets its age.
     let age_s = known["ages"]["scan_s"].as_f64().unwrap();
     assert!(age_s >= 61.0, "{age_s}");

@@ -24,16 +24,28 @@ macro_rules! files {
 files! {
     "index.html": HTML,
     "style.css": CSS,
+    "panel.css": CSS,
     "icon.svg": SVG,
     "actions.js": JS,
     "app.js": JS,
     "camera.js": JS,
     "colors.js": JS,
     "connection.js": JS,
+    "dom.js": JS,
     "gestures.js": JS,
+    "inspect.js": JS,
+    "keys.js": JS,
+    "map_images.js": JS,
     "map_view.js": JS,
+    "marks.js": JS,
+    "notify.js": JS,
     "panel.js": JS,
+    "situation.js": JS,
+    "state_card.js": JS,
     "store.js": JS,
+    "timeline.js": JS,
+    "what_to_check.js": JS,
+    "words.js": JS,
 }
 
 /// The page itself.

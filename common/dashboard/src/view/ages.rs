@@ -35,6 +35,12 @@ impl Times {
         self.pose_ns = self.pose_ns.max(Some(header.sent_ns));
     }
 
+    /// When the newest scan or, with a tracker, its newest pose came, whichever is older.
+    pub(crate) fn newest_ns(self) -> Option<i64> {
+        let scan_ns = self.scan_ns.or(self.pose_ns)?;
+        Some(self.pose_ns.map_or(scan_ns, |pose_ns| scan_ns.min(pose_ns)))
+    }
+
     /// How old all is at `now_ns`.
     pub(crate) fn ages(self, now_ns: i64) -> Ages {
         let seconds = |ns: i64| now_ns.saturating_sub(ns).max(0) as f64 / 1e9;
@@ -63,13 +69,16 @@ mod tests {
         assert_eq!(times.ages(5 * SECOND), none);
         let mut header = HypothesesHeader::zeroed();
         header.stamp.entered_ns = SECOND;
+        assert_eq!(times.newest_ns(), None);
         times.on_answer(&header);
+        assert_eq!(times.newest_ns(), Some(SECOND));
         assert_eq!(times.ages(5 * SECOND).scan_s, Some(4.0));
         let mut pose = PoseHeader::zeroed();
         (pose.stamp.entered_ns, pose.sent_ns) = (2 * SECOND, 3 * SECOND);
         times.on_pose(&pose);
         let ages = times.ages(5 * SECOND);
         assert_eq!((ages.scan_s, ages.pose_s), (Some(4.0), Some(2.0)));
+        assert_eq!(times.newest_ns(), Some(SECOND), "odometry alone is no scan");
         pose.from_scan = 1;
         times.on_pose(&pose);
         assert_eq!(times.ages(5 * SECOND).scan_s, Some(3.0));

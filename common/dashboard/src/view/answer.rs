@@ -56,6 +56,8 @@ pub(crate) struct Place {
     pub(crate) support: u64,
     /// The ellipse of one standard deviation.
     pub(crate) ellipse: Option<Ellipse>,
+    /// That of the base's pose, where the mount is known.
+    pub(crate) base_ellipse: Option<Ellipse>,
 }
 
 impl Answer {
@@ -108,13 +110,17 @@ fn summary(hypothesis: &Hypothesis) -> Option<PlaceSummary> {
 }
 
 fn place(hypothesis: &Hypothesis, mount_known: bool) -> Place {
+    let (laser, base) = (hypothesis.map_from_laser, hypothesis.map_from_base);
+    let of_base = covariance(hypothesis).filter(|_| mount_known);
+    let of_base = of_base.map(|known| known.carried(laser.into(), base.into()).to_rows());
     Place {
-        laser: hypothesis.map_from_laser.into(),
-        base: mount_known.then(|| hypothesis.map_from_base.into()),
+        laser: laser.into(),
+        base: mount_known.then(|| base.into()),
         score: hypothesis.score,
         probability: hypothesis.probability,
         support: hypothesis.support,
         ellipse: Ellipse::new(hypothesis.covariance),
+        base_ellipse: of_base.and_then(Ellipse::new),
     }
 }
 
@@ -161,6 +167,36 @@ mod tests {
         assert!((ellipse.major_m - 0.2).abs() < 1e-12);
         assert!((ellipse.yaw - 0.03).abs() < 1e-12);
         assert_eq!(answer.hypotheses[0].base, None, "no mount is known");
+    }
+
+    #[test]
+    fn the_base_behind_a_laser_is_less_sure_across() {
+        let mounted = HypothesesHeader {
+            mount_known: 1,
+            ..header(Verdict::Unique)
+        };
+        let mut place = hypothesis(1.0);
+        // The laser looks along x, two metres before the base: 0.06 m a deviation of yaw.
+        place.map_from_laser.yaw = 0.0;
+        place.covariance = [1e-4, 0.0, 0.0, 0.0, 1e-4, 0.0, 0.0, 0.0, 0.0009];
+        place.map_from_base = Pose2 {
+            x: -1.0,
+            y: 2.0,
+            yaw: 0.0,
+        };
+        let answer = Answer::new(&mounted, &[place], 0);
+        let ellipse = answer.hypotheses[0].base_ellipse.unwrap();
+        assert!((ellipse.major_m - 0.0037f64.sqrt()).abs() < 1e-9);
+        assert!((ellipse.minor_m - 0.01).abs() < 1e-9);
+        let wild = Hypothesis {
+            map_from_base: Pose2 {
+                x: f64::NAN,
+                ..place.map_from_base
+            },
+            ..place
+        };
+        let answer = Answer::new(&mounted, &[wild], 0);
+        assert_eq!(answer.hypotheses[0].base_ellipse, None);
     }
 
     #[test]

@@ -9,10 +9,15 @@ use super::{Answer, PoseJson, Tracked};
 /// Poses that are kept: some minutes.
 const CAPACITY: usize = 3000;
 
-/// One pose of the way: x, y and the first letter of the tracker's state or, where there
-/// is no tracker, of the verdict.
+/// One pose of the laser's way: x, y, the first letter of the tracker's state or, where
+/// there is no tracker, of the verdict, and the heading.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize)]
-pub(crate) struct TrackPoint(pub(crate) f64, pub(crate) f64, pub(crate) char);
+pub(crate) struct TrackPoint(
+    pub(crate) f64,
+    pub(crate) f64,
+    pub(crate) char,
+    pub(crate) f64,
+);
 
 /// The poses of the last scans, all in one map: the tracker's, or the best of each scan
 /// where there is no tracker.
@@ -56,10 +61,10 @@ impl Track {
         if self.points.len() == CAPACITY {
             self.points.pop_front();
         }
-        let millimetres = |metres: f64| (metres * 1e3).round() / 1e3;
+        let rounded = |value: f64| (value * 1e3).round() / 1e3;
         let letter = word.chars().next().unwrap_or('?');
-        let (x, y) = (millimetres(pose.x), millimetres(pose.y));
-        self.points.push_back(TrackPoint(x, y, letter));
+        let (x, y, yaw) = (rounded(pose.x), rounded(pose.y), rounded(pose.yaw));
+        self.points.push_back(TrackPoint(x, y, letter, yaw));
     }
 
     /// The poses, oldest first.
@@ -100,7 +105,7 @@ mod tests {
             track.on_answer(&answer(1, i as f64));
         }
         assert_eq!(track.points().count(), CAPACITY);
-        assert_eq!(track.points().next(), Some(&TrackPoint(5.0, 0.0, 'U')));
+        assert_eq!(track.points().next(), Some(&TrackPoint(5.0, 0.0, 'U', 0.0)));
         track.on_answer(&answer(2, 1.0));
         assert_eq!(track.points().count(), 1);
     }
@@ -116,6 +121,6 @@ mod tests {
         between.from_scan = 0;
         track.on_pose(&Tracked::new(&between, b"", 0));
         let points: Vec<_> = track.points().copied().collect();
-        assert_eq!(points, [TrackPoint(1.5, 2.0, 'D')]);
+        assert_eq!(points, [TrackPoint(1.5, 2.0, 'D', 0.5)]);
     }
 }

@@ -1,5 +1,6 @@
 //! Where the tracker has the robot.
 
+use engine::tracking::Report;
 use messages::{PoseHeader, TrackState};
 use serde::Serialize;
 
@@ -20,12 +21,18 @@ pub(crate) struct Tracked {
     pub(crate) state: &'static str,
     /// Why it is in this state, and what to do.
     pub(crate) says: String,
+    /// Of that, why.
+    pub(crate) why: String,
+    /// Of that, what to do; empty where nothing.
+    pub(crate) advice: String,
     /// Of the laser in the map, where it is known.
     pub(crate) laser: Option<PoseJson>,
     /// Of the robot's base, where the laser's mount is known, too.
     pub(crate) base: Option<PoseJson>,
     /// The ellipse of one standard deviation of the laser's pose.
     pub(crate) ellipse: Option<Ellipse>,
+    /// That of the base's pose, where it is known.
+    pub(crate) base_ellipse: Option<Ellipse>,
     /// How likely the robot is there.
     pub(crate) probability: f64,
     /// By how much the place leads over the next, in natural logarithms of odds.
@@ -56,17 +63,22 @@ impl Tracked {
         let is_pose = geometry::Pose::from(header.map_from_laser).is_finite();
         let is_known = header.pose_known == 1 && is_pose;
         let words = words.get(..PoseHeader::WORDS_CAPACITY).unwrap_or(words);
-        let ellipse = Ellipse::new(header.laser_covariance);
+        let has_base = is_known && header.mount_known == 1;
+        let says = String::from_utf8_lossy(words).into_owned();
+        let (why, advice) = Report::split(&says);
         Tracked {
             counter: header.stamp.counter,
             stamp_s: header.stamp.measured_ns as f64 / 1e9,
             map_id: format!("{:016x}", header.map_id),
             from_scan: header.from_scan == 1,
             state: state.map_or("?", TrackState::as_str),
-            says: String::from_utf8_lossy(words).into_owned(),
+            why: why.to_owned(),
+            advice: advice.to_owned(),
+            says,
             laser: is_known.then(|| header.map_from_laser.into()),
-            base: (is_known && header.mount_known == 1).then(|| header.map_from_base.into()),
-            ellipse: ellipse.filter(|_| is_known),
+            base: has_base.then(|| header.map_from_base.into()),
+            ellipse: Ellipse::new(header.laser_covariance).filter(|_| is_known),
+            base_ellipse: Ellipse::new(header.base_covariance).filter(|_| has_base),
             probability: header.probability,
             lead: header.lead,
             score: header.score,
@@ -111,15 +123,25 @@ pub(crate) mod tests {
 
     #[test]
     fn a_pose_is_reported_in_numbers_and_words() {
-        let words = b"2 places fit, 25 m apart";
+        let words = b"2 places fit, 25 m apart: drive on";
         let tracked = Tracked::new(&header(TrackState::Doubtful, 1.5), words, 33_000_000);
         assert_eq!((tracked.counter, tracked.state), (7, "Doubtful"));
-        assert_eq!(tracked.says, "2 places fit, 25 m apart");
+        assert_eq!(tracked.says, "2 places fit, 25 m apart: drive on");
+        let parts = (&*tracked.why, &*tracked.advice);
+        assert_eq!(parts, ("2 places fit, 25 m apart", "drive on"));
         assert_eq!((tracked.latency_ms, tracked.age_ms), (22.0, 32.0));
         assert_eq!(tracked.sent_age_ms, 10.0);
         assert_eq!(tracked.laser.map(|pose| pose.x), Some(1.5));
         assert_eq!(tracked.base, None, "no mount is known");
         assert!((tracked.ellipse.unwrap().major_m - 0.2).abs() < 1e-12);
+        assert_eq!(tracked.base_ellipse, None);
+        let mounted = PoseHeader {
+            mount_known: 1,
+            base_covariance: [0.09, 0.0, 0.0, 0.0, 0.01, 0.0, 0.0, 0.0, 0.0009],
+            ..header(TrackState::Unique, 1.5)
+        };
+        let tracked = Tracked::new(&mounted, b"", 0);
+        assert!((tracked.base_ellipse.unwrap().major_m - 0.3).abs() < 1e-12);
     }
 
     #[test]

@@ -66,6 +66,12 @@ impl Report {
         }
     }
 
+    /// The reason and the advice in [`Report::words`]; the latter may be empty.
+    #[must_use]
+    pub fn split(words: &str) -> (&str, &str) {
+        words.rsplit_once(": ").unwrap_or((words, ""))
+    }
+
     fn reason_in_words(&self) -> String {
         let fit = format!("fit {:.2}", self.score.clamp(0.0, 1.0));
         let since = format!("since {:.0} m", self.since_m);
@@ -157,6 +163,19 @@ mod tests {
             say(TrackState::Unique, TrackReason::OnePlace),
             "one place, fit 0.14, since 3 m"
         );
+    }
+
+    #[test]
+    fn reason_and_advice_are_found_again_in_the_words() {
+        let states = (0..4).filter_map(TrackState::from_code);
+        for (state, reason) in states.flat_map(|state| {
+            let reasons = (0..9).filter_map(TrackReason::from_code);
+            reasons.map(move |reason| (state, reason))
+        }) {
+            let report = report(state, reason);
+            let why = report.reason_in_words();
+            assert_eq!(Report::split(&report.words()), (&*why, report.advice()));
+        }
     }
 
     #[test]

@@ -1,0 +1,63 @@
+// What is said of the robot, from all that is known. No page, no network.
+
+import { capital, duration, sentence, STATES } from "./words.js";
+import { whatToCheck } from "./what_to_check.js";
+
+export const STALE_S = 2; // without a scan: nothing is live any more
+const LIKELY = 0.01; // places that are less likely are left out where one is the only one
+const KNOWN = ["Unique", "Doubtful"];
+
+/** The state in words. `kind` is empty where what is shown is past: then nothing is coloured. */
+export function situation(store, link = "live", paused = false) {
+  const { pose, answer } = store;
+  const state = pose?.state ?? answer?.verdict ?? null;
+  const silence = store.silence();
+  const stale = silence === null || silence > STALE_S;
+  const is = STATES[state] ?? { word: state ?? "Waiting", means: "Waiting for the first scan.", todo: "" };
+  const why = pose ? pose.why : answer ? answer.says : "";
+  const advice = pose?.advice || is.todo;
+  const said = { state, silence, stale, known: KNOWN.includes(state), best: state === "Unique", title: "What to check" };
+  const past = state ? `Before: ${is.word}. ${capital(sentence(why))}` : "";
+  if (link === "lost") {
+    return { ...said, stale: true, kind: "", word: "Disconnected", means: "The monitor does not answer.", why: past, todo: ["Is the robot on, and in reach of the network? The page connects again by itself."] };
+  }
+  if (paused) {
+    return { ...said, stale: true, kind: "", word: "Paused", means: "The page is paused, the robot is not.", why: past, todo: ["Press space, or the button above, to continue."], title: "What to do" };
+  }
+  if (state && stale) {
+    return { ...said, kind: "", word: "No data", means: `No scan for ${duration(silence ?? 0)}: what is shown is past.`, why: past, todo: whatToCheck(store) };
+  }
+  if (!state) {
+    return { ...said, kind: "", word: is.word, means: is.means, why: "", todo: store.robot ? whatToCheck(store) : [] };
+  }
+  return { ...said, kind: state, word: is.word, means: is.means, why: sentence(why), todo: advice ? [capital(sentence(advice))] : [], title: "What to do" };
+}
+
+/** The places of the last search that are worth a look, best first. */
+export function candidates({ answer, pose }) {
+  const places = answer?.hypotheses ?? [];
+  const unique = (pose?.state ?? answer?.verdict) === "Unique";
+  return unique ? places.filter(({ probability }, i) => i === 0 || probability >= LIKELY) : places;
+}
+
+/** Those that have to be in view while it is not known which it is. */
+export function contenders({ answer }) {
+  const places = answer?.hypotheses ?? [];
+  return places.filter(({ probability }, i) => i <= (answer.alternatives ?? 0) || probability >= LIKELY);
+}
+
+/** The pose and its ellipse in a frame; the laser's where the base's is not known. */
+export function inFrame(place, frame) {
+  if (!place) return null;
+  if (frame === "base_link" && place.base) return { ...place.base, ellipse: place.base_ellipse, frame };
+  return place.laser ? { ...place.laser, ellipse: place.ellipse, frame: "laser" } : null;
+}
+
+/** Since when the state holds, seconds; null where that is not known. */
+export function since({ pose, states }, now) {
+  const period = states.at(-1);
+  const seen = period ? (now - period.at) / 1000 : null;
+  const measured = pose?.since_s > 0 ? pose.stamp_s - pose.since_s : 0;
+  // The monitor may have come later than the state.
+  return states.length === 1 ? Math.max(seen, measured) : seen;
+}

@@ -1,0 +1,178 @@
+//! The states of the last hour: since when, why, and where the robot was.
+
+use std::collections::VecDeque;
+
+use serde::Serialize;
+
+use super::{Answer, PoseJson, Tracked};
+
+/// How far back it goes.
+const KEPT_NS: i64 = 3600 * 1_000_000_000;
+
+/// States that are kept at most, where they change fast.
+const CAPACITY: usize = 300;
+
+/// Without a scan for so long, nothing is known.
+const SILENT_AFTER_NS: i64 = 2_000_000_000;
+
+/// The state while nothing comes.
+const NO_DATA: &str = "NoData";
+
+/// A state of the robot, which lasts until the next one begins.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+pub(crate) struct Period<'a> {
+    /// The tracker's state or, without one, the verdict; `NoData` where no scan came.
+    pub(crate) state: &'static str,
+    /// Why it began.
+    pub(crate) why: &'a str,
+    /// How long ago it began.
+    pub(crate) ago_s: f64,
+    /// Of the base or, where its mount is not known, of the laser, when it began.
+    pub(crate) first: Option<PoseJson>,
+    /// The same of the last scan in this state.
+    pub(crate) last: Option<PoseJson>,
+}
+
+#[derive(Debug)]
+struct Entry {
+    state: &'static str,
+    why: String,
+    from_ns: i64,
+    first: Option<PoseJson>,
+    last: Option<PoseJson>,
+}
+
+/// What is known of the past.
+#[derive(Debug, Default)]
+pub(crate) struct History {
+    entries: VecDeque<Entry>,
+}
+
+impl History {
+    /// Takes the answer to a scan, where there is no tracker; returns whether a state
+    /// begins.
+    pub(crate) fn on_answer(&mut self, answer: &Answer, now_ns: i64) -> bool {
+        let best = answer.hypotheses.first();
+        let pose = best.map(|place| place.base.unwrap_or(place.laser));
+        self.add(answer.verdict, &answer.says, pose, now_ns)
+    }
+
+    /// Takes the tracker's pose; returns whether a state begins.
+    pub(crate) fn on_pose(&mut self, pose: &Tracked, now_ns: i64) -> bool {
+        self.add(pose.state, &pose.why, pose.base.or(pose.laser), now_ns)
+    }
+
+    /// Looks whether nothing has come since `newest_ns`; returns whether that is new.
+    pub(crate) fn look_for_silence(&mut self, newest_ns: Option<i64>, now_ns: i64) -> bool {
+        let since_ns = newest_ns.unwrap_or(now_ns);
+        let is_silent = now_ns.saturating_sub(since_ns) > SILENT_AFTER_NS;
+        is_silent && self.add(NO_DATA, "no scan came", None, since_ns)
+    }
+
+    fn add(&mut self, state: &'static str, why: &str, pose: Option<PoseJson>, now_ns: i64) -> bool {
+        if let Some(entry) = self.entries.back_mut()
+            && entry.state == state
+        {
+            entry.last = pose.or(entry.last);
+            return false;
+        }
+        if self.entries.len() == CAPACITY {
+            self.entries.pop_front();
+        }
+        // The one that holds when the hour begins stays.
+        while let Some(second) = self.entries.get(1)
+            && now_ns.saturating_sub(second.from_ns) >= KEPT_NS
+        {
+            self.entries.pop_front();
+        }
+        let before_ns = self.entries.back().map_or(i64::MIN, |entry| entry.from_ns);
+        self.entries.push_back(Entry {
+            state,
+            why: why.to_owned(),
+            from_ns: now_ns.max(before_ns),
+            first: pose,
+            last: pose,
+        });
+        true
+    }
+
+    /// The states, oldest first, as they are at `now_ns`.
+    pub(crate) fn periods(&self, now_ns: i64) -> impl DoubleEndedIterator<Item = Period<'_>> {
+        self.entries.iter().map(move |entry| Period {
+            state: entry.state,
+            why: &entry.why,
+            ago_s: now_ns.saturating_sub(entry.from_ns).max(0) as f64 / 1e9,
+            first: entry.first,
+            last: entry.last,
+        })
+    }
+
+    /// The state that holds.
+    pub(crate) fn newest(&self, now_ns: i64) -> Option<Period<'_>> {
+        self.periods(now_ns).next_back()
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use messages::TrackState;
+
+    use super::super::tracked::tests::header;
+    use super::*;
+
+    const SECOND: i64 = 1_000_000_000;
+
+    fn tracked(state: TrackState, x: f64) -> Tracked {
+        Tracked::new(&header(state, x), b"one place: none", 0)
+    }
+
+    fn states(history: &History, now_ns: i64) -> Vec<(&'static str, f64)> {
+        let periods = history.periods(now_ns);
+        periods.map(|period| (period.state, period.ago_s)).collect()
+    }
+
+    #[test]
+    fn a_state_lasts_until_another_begins() {
+        let mut history = History::default();
+        assert!(history.on_pose(&tracked(TrackState::Unique, 1.0), SECOND));
+        assert!(!history.on_pose(&tracked(TrackState::Unique, 2.0), 2 * SECOND));
+        assert!(history.on_pose(&tracked(TrackState::Lost, 3.0), 3 * SECOND));
+        let expected = [("Unique", 9.0), ("Lost", 7.0)];
+        assert_eq!(states(&history, 10 * SECOND), expected);
+        let first = history.periods(0).next().unwrap();
+        assert_eq!((first.why, first.ago_s), ("one place", 0.0));
+        let ends = (first.first.unwrap().x, first.last.unwrap().x);
+        assert_eq!(ends, (1.0, 2.0));
+    }
+
+    #[test]
+    fn silence_began_with_the_last_scan_and_ends_with_the_next() {
+        let mut history = History::default();
+        assert!(
+            !history.look_for_silence(None, 9 * SECOND),
+            "nothing came yet"
+        );
+        history.on_pose(&tracked(TrackState::Unique, 1.0), SECOND);
+        assert!(!history.look_for_silence(Some(SECOND), 3 * SECOND));
+        assert!(history.look_for_silence(Some(SECOND), 4 * SECOND));
+        assert!(!history.look_for_silence(Some(SECOND), 5 * SECOND), "once");
+        assert!(history.on_pose(&tracked(TrackState::Unique, 1.0), 6 * SECOND));
+        let expected = [("Unique", 5.0), ("NoData", 5.0), ("Unique", 0.0)];
+        assert_eq!(states(&history, 6 * SECOND), expected);
+    }
+
+    #[test]
+    fn an_hour_and_the_state_before_it_are_kept() {
+        let mut history = History::default();
+        let pair = [TrackState::Unique, TrackState::Doubtful];
+        for (minute, state) in (0..100).zip(pair.into_iter().cycle()) {
+            history.on_pose(&tracked(state, 0.0), minute * 60 * SECOND);
+        }
+        let kept = states(&history, 99 * 60 * SECOND);
+        assert_eq!((kept.len(), kept[0].1), (61, 3600.0));
+        for (at, state) in (6000..7000).zip(pair.into_iter().cycle()) {
+            history.on_pose(&tracked(state, 0.0), at * SECOND);
+        }
+        assert_eq!(history.periods(0).count(), CAPACITY);
+    }
+}

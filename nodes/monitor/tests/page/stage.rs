@@ -1,0 +1,264 @@
+//! A graph that is in whatever state a test wants, with the monitor and a browser.
+
+use std::sync::mpsc::{Receiver, Sender, TryRecvError, channel};
+use std::thread::JoinHandle;
+use std::time::Duration;
+
+use bytemuck::Zeroable;
+use messages::{
+    Beam, BeamFate, BeamsHeader, HypothesesHeader, Hypothesis, MapHeader, NodeState, Pose2,
+    PoseHeader, Stamp, TrackState, Verdict, topic,
+};
+use tests::http::Site;
+use transport::testing::{Isolated, NodeProcess, wait_until_ready};
+use transport::{Flow, Graph, GraphName, Publisher, TransportError, monotonic_ns};
+
+/// The places that fit: where the laser would be.
+pub(crate) const PLACES: [Pose2; 3] = [place(50.0), place(5.0), place(95.0)];
+
+/// The base lies so far behind the laser.
+pub(crate) const BEHIND_M: f64 = 0.5;
+
+const fn place(x: f64) -> Pose2 {
+    let (y, yaw) = (5.0, 0.0);
+    Pose2 { x, y, yaw }
+}
+
+/// What the graph does.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(crate) enum Scene {
+    /// Several places fit, and there is no tracker.
+    Ambiguous,
+    /// The tracker is in this state.
+    Tracked(TrackState),
+    /// No scan comes, for the laser cannot be reached.
+    Silent,
+}
+
+/// The monitor, and what feeds it.
+pub(crate) struct Stage {
+    node: Option<NodeProcess>,
+    pub(crate) site: Site,
+    scenes: Option<Sender<Scene>>,
+    feed: Option<JoinHandle<()>>,
+    pub(crate) graph: GraphName,
+    _test: Graph,
+    _isolated: Isolated,
+}
+
+impl Stage {
+    pub(crate) fn new(test: &str) -> Self {
+        let isolated = Isolated::new(test);
+        let graph = isolated.join("test");
+        let site = Site::free();
+        let address = site.0.to_string();
+        let node = NodeProcess::start(
+            env!("CARGO_BIN_EXE_monitor"),
+            &graph,
+            ["--listen", &address, "--robot", "r7"],
+        );
+        wait_until_ready(&graph, "monitor");
+        let (scenes, wanted) = channel();
+        let name = isolated.name().clone();
+        let feed = std::thread::spawn(move || feed(&name, &wanted));
+        Stage {
+            node: Some(node),
+            site,
+            scenes: Some(scenes),
+            feed: Some(feed),
+            graph: isolated.name().clone(),
+            _test: graph,
+            _isolated: isolated,
+        }
+    }
+
+    pub(crate) fn show(&self, scene: Scene) {
+        self.scenes.as_ref().unwrap().send(scene).unwrap();
+    }
+
+    pub(crate) fn url(&self) -> String {
+        format!("http://{}/", self.site.0)
+    }
+}
+
+impl Drop for Stage {
+    fn drop(&mut self) {
+        drop(self.scenes.take());
+        let fed = self.feed.take().map(JoinHandle::join);
+        if std::thread::panicking() {
+            return;
+        }
+        assert!(fed.is_some_and(|fed| fed.is_ok()), "the feed ended well");
+        if let Some(node) = self.node.take() {
+            node.stop();
+        }
+    }
+}
+
+/// Sends what a graph would, twenty times a second, until nobody wants anything any more.
+fn feed(graph: &GraphName, wanted: &Receiver<Scene>) {
+    let graph = Graph::join_named("lms_reader", graph).unwrap();
+    let mut health = graph.health().unwrap();
+    let source = Source::new(&graph);
+    let (mut scene, mut counter) = (Scene::Silent, 0);
+    let step = |_| {
+        match wanted.try_recv() {
+            Err(TryRecvError::Empty) => {}
+            Err(TryRecvError::Disconnected) => return Ok(Flow::Stop),
+            Ok(next) => {
+                scene = next;
+                if scene == Scene::Silent {
+                    health.error("cannot connect to 192.168.0.1:2112")?;
+                    health.state(NodeState::Degraded)?;
+                } else {
+                    health.state(NodeState::Ready)?;
+                }
+            }
+        }
+        counter += 1;
+        source.play(scene, counter)?;
+        health.tick()?;
+        Ok::<_, TransportError>(Flow::Continue)
+    };
+    graph.run(&[], Duration::from_millis(50), step).unwrap();
+}
+
+struct Source {
+    map_id: u64,
+    _map: Publisher<topic::Map>,
+    hypotheses: Publisher<topic::Hypotheses>,
+    poses: Publisher<topic::Tracked>,
+    beams: Publisher<topic::Beams>,
+}
+
+impl Source {
+    /// Serves a corridor of 100 by 10 metres.
+    fn new(graph: &Graph) -> Self {
+        let (width, height) = (1000, 100);
+        let is_free = |i: usize| (1..999).contains(&(i % 1000)) && (1..99).contains(&(i / 1000));
+        let cells = (0..100_000).map(|i| if is_free(i) { 0 } else { 100 });
+        let cells: Vec<u8> = cells.collect();
+        let mut header = MapHeader {
+            width,
+            height,
+            resolution_m: 0.1,
+            ..MapHeader::zeroed()
+        };
+        header.map_id = header.id_of(&cells);
+        let map = graph.publisher::<topic::Map>().unwrap();
+        let mut loan = map.loan(cells.len()).unwrap();
+        *loan.header_mut() = header;
+        loan.items_mut().copy_from_slice(&cells);
+        loan.send().unwrap();
+        Source {
+            map_id: header.map_id,
+            _map: map,
+            hypotheses: graph.publisher().unwrap(),
+            poses: graph.publisher().unwrap(),
+            beams: graph.publisher().unwrap(),
+        }
+    }
+
+    fn play(&self, scene: Scene, counter: u64) -> Result<(), TransportError> {
+        let stamp = Stamp {
+            measured_ns: 1_600_000_000_000_000_000 + i64::try_from(counter).unwrap() * 50_000_000,
+            entered_ns: monotonic_ns(),
+            counter,
+        };
+        match scene {
+            Scene::Silent => return Ok(()),
+            Scene::Ambiguous => self.answer(stamp, Verdict::Ambiguous)?,
+            Scene::Tracked(state) => {
+                self.answer(stamp, Verdict::Unique)?;
+                self.track(stamp, state)?;
+            }
+        }
+        self.reflect(stamp)
+    }
+
+    fn answer(&self, stamp: Stamp, verdict: Verdict) -> Result<(), TransportError> {
+        let mut loan = self.hypotheses.loan(PLACES.len())?;
+        let is_unique = verdict == Verdict::Unique;
+        *loan.header_mut() = HypothesesHeader {
+            stamp,
+            map_id: self.map_id,
+            sent_ns: monotonic_ns(),
+            verdict: verdict as u32,
+            alternatives: if is_unique { 0 } else { 2 },
+            mount_known: 1,
+            ..HypothesesHeader::zeroed()
+        };
+        let probabilities = match is_unique {
+            true => [0.98, 0.005, 0.005],
+            false => [0.5, 0.3, 0.15],
+        };
+        for ((item, at), probability) in loan.items_mut().iter_mut().zip(PLACES).zip(probabilities)
+        {
+            *item = Hypothesis {
+                map_from_laser: at,
+                map_from_base: behind(at),
+                covariance: COVARIANCE,
+                score: 0.9,
+                probability,
+                ..Hypothesis::zeroed()
+            };
+        }
+        loan.send()
+    }
+
+    fn track(&self, stamp: Stamp, state: TrackState) -> Result<(), TransportError> {
+        let words: &[u8] = match state {
+            TrackState::Unique => b"one place, fit 0.90, since 3 m",
+            _ => b"lost: fit 0.14: drive a few metres, or mark a region",
+        };
+        let mut loan = self.poses.loan(words.len())?;
+        *loan.header_mut() = PoseHeader {
+            stamp,
+            map_id: self.map_id,
+            sent_ns: monotonic_ns(),
+            map_from_laser: PLACES[0],
+            map_from_base: behind(PLACES[0]),
+            laser_covariance: COVARIANCE,
+            base_covariance: COVARIANCE,
+            probability: 0.87,
+            state: state as u32,
+            places: 3,
+            from_scan: 1,
+            pose_known: 1,
+            mount_known: 1,
+            ..PoseHeader::zeroed()
+        };
+        loan.items_mut().copy_from_slice(words);
+        loan.send()
+    }
+
+    /// Two walls, four metres away.
+    fn reflect(&self, stamp: Stamp) -> Result<(), TransportError> {
+        let bearings = [std::f32::consts::FRAC_PI_2, -std::f32::consts::FRAC_PI_2];
+        let mut loan = self.beams.loan(bearings.len())?;
+        *loan.header_mut() = BeamsHeader {
+            stamp,
+            map_id: self.map_id,
+            map_from_laser: PLACES[0],
+        };
+        for (item, bearing) in loan.items_mut().iter_mut().zip(bearings) {
+            *item = Beam {
+                bearing,
+                range_m: 4.0,
+                weight: 1.0,
+                fate: BeamFate::Hit as u32,
+            };
+        }
+        loan.send()
+    }
+}
+
+/// Of 2 cm along either axis, and 0.01 radians.
+const COVARIANCE: [f64; 9] = [4e-4, 0.0, 0.0, 0.0, 4e-4, 0.0, 0.0, 0.0, 1e-4];
+
+fn behind(laser: Pose2) -> Pose2 {
+    Pose2 {
+        x: laser.x - BEHIND_M,
+        ..laser
+    }
+}

@@ -1,0 +1,94 @@
+//! What the page tells who does not look at it closely: causes and notifications.
+
+use serde_json::{Value, json};
+
+use crate::stage::{Scene, Stage};
+use crate::{LOST, UNIQUE, browser, click, wait_for};
+
+#[test]
+fn the_first_cause_is_named_first() {
+    let Some(browser) = browser("the_first_cause_is_named_first", 1280, 800) else {
+        return;
+    };
+    let stage = Stage::new("causes");
+    browser.visit(&stage.url());
+    let causes = |nodes: Value, map: Value| {
+        let found = browser.finish(&format!(
+            "import('/what_to_check.js').then(({{ whatToCheck }}) => {{
+                 const nodes = new Map({nodes}.map((node) => [node.name, node]));
+                 done(whatToCheck({{ nodes, map: {map} }}));
+             }}, (error) => done(String(error)))"
+        ));
+        let lines = found.as_array().expect("sentences").iter();
+        let lines: Vec<String> = lines.map(|line| line.as_str().unwrap().into()).collect();
+        lines
+    };
+    let node = |name: &str, state: &str, sent_hz: f64, last_error: &str| json!({ "name": name, "state": state, "sent_hz": sent_hz, "last_error": last_error });
+    let laser = node("lms_reader", "ready", 10.0, "");
+    let check = |nodes: &[&Value], map: Value, expected: &[&str]| {
+        let found = causes(json!(nodes), map);
+        let same = found.len() == expected.len();
+        let all = found.iter().zip(expected);
+        let told = same && all.clone().all(|(line, part)| line.contains(part));
+        assert!(told, "{found:?}, expected {expected:?}");
+    };
+    check(&[], Value::Null, &["is the graph started?"]);
+    // Later nodes wait for what the first does not send.
+    let tracker = node("tracker", "waiting", 0.0, "");
+    let dead = node("lms_reader", "silent", 0.0, "");
+    let expected = ["lms_reader does not report", "tracker waits"];
+    check(&[&tracker, &dead], json!({}), &expected);
+    check(&[&laser], Value::Null, &["No map has come"]);
+    let quiet = node("lms_reader", "ready", 0.0, "");
+    check(
+        &[&quiet],
+        json!({}),
+        &["lms_reader sends no scans: check the laser"],
+    );
+    check(&[&laser], json!({}), &["Scans come, and no pose"]);
+    let player = node("replayer", "stopped", 0.0, "");
+    check(&[&player], json!({}), &["The recording has ended."]);
+    let accumulator = node("accumulator", "ready", 0.0, "");
+    check(&[&accumulator], json!({}), &["No node that reads a laser"]);
+}
+
+#[test]
+fn who_wishes_is_notified_when_it_is_lost_and_once() {
+    let test = "who_wishes_is_notified_when_it_is_lost_and_once";
+    let Some(browser) = browser(test, 1280, 800) else {
+        return;
+    };
+    let stage = Stage::new("notify");
+    stage.show(UNIQUE);
+    browser.visit(&stage.url());
+    wait_for(&browser, "Unique");
+    // In place of the browser's own, which asks whoever sits before it.
+    let _ = browser.run(
+        "window.told = [];
+         window.Notification = class {
+             static permission = 'granted';
+             static requestPermission = async () => 'granted';
+             constructor(title, { body }) { window.told.push(`${title}: ${body}`); }
+         }",
+    );
+    stage.show(LOST);
+    wait_for(&browser, "Lost");
+    stage.show(UNIQUE);
+    wait_for(&browser, "Unique");
+    assert_eq!(browser.run("return window.told"), json!([]), "nobody asked");
+    click(&browser, "#notify");
+    browser.wait_until("document.getElementById('notify').ariaPressed === 'true'");
+    stage.show(LOST);
+    browser.wait_until("window.told.length === 1");
+    assert_eq!(
+        browser.run("return window.told[0]"),
+        "r7: lost: lost: fit 0.14."
+    );
+    stage.show(Scene::Silent);
+    browser.wait_until("window.told.length === 2");
+    let told = browser.run("return window.told[1]");
+    assert!(
+        told.as_str().unwrap().starts_with("r7: no data: "),
+        "{told}"
+    );
+}

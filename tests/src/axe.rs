@@ -1,0 +1,76 @@
+//! axe-core, which finds what keeps people from using a page. It is not part of this
+//! repository: npm fetches it when a test first asks.
+
+use std::fs::File;
+use std::path::Path;
+use std::process::Command;
+
+use serde_json::Value;
+
+use crate::browser::Browser;
+
+const PACKAGE: &str = "axe-core@4.14.1";
+
+/// The script, kept in the target folder. Tests that ask at once wait for the one that
+/// fetches it.
+///
+/// # Errors
+/// What the command that failed said, as without npm or a network.
+pub fn script() -> Result<String, String> {
+    let test = std::env::current_exe().unwrap();
+    let target = test.ancestors().nth(3).unwrap();
+    let folder = target.join(PACKAGE);
+    let lock = File::create(folder.with_extension("lock")).unwrap();
+    lock.lock().unwrap();
+    let script = folder.join("package/axe.min.js");
+    if let Ok(text) = std::fs::read_to_string(&script) {
+        return Ok(text);
+    }
+    std::fs::create_dir_all(&folder).unwrap();
+    run(&folder, "npm", &["pack", "--silent", PACKAGE])?;
+    let archive = PACKAGE.replace('@', "-") + ".tgz";
+    run(&folder, "tar", &["-xzf", &archive, "package/axe.min.js"])?;
+    std::fs::read_to_string(&script).map_err(|error| format!("{}: {error}", script.display()))
+}
+
+fn run(folder: &Path, program: &str, arguments: &[&str]) -> Result<(), String> {
+    let command = format!("{program} {}", arguments.join(" "));
+    let mut process = Command::new(program);
+    let outcome = process.args(arguments).current_dir(folder).output();
+    let outcome = outcome.map_err(|error| format!("{command}: {error}"))?;
+    if outcome.status.success() {
+        return Ok(());
+    }
+    let said = String::from_utf8_lossy(&outcome.stderr);
+    Err(format!("{command}: {}\n{said}", outcome.status))
+}
+
+/// What breaks the rules of WCAG 2.2, level AA, and axe's own good practice, on the page
+/// as it is: a line for each rule and each element.
+///
+/// # Panics
+/// If the script cannot be run.
+#[must_use]
+pub fn violations(browser: &Browser, script: &str) -> Vec<String> {
+    let _ = browser.run(script);
+    let found = browser.finish(
+        "const tags = ['wcag2a', 'wcag2aa', 'wcag21a', 'wcag21aa', 'wcag22aa', 'best-practice'];
+         axe.run({ runOnly: tags }).then(
+             ({ passes, violations }) => done({ passes: passes.length, violations }),
+             (error) => done({ error: String(error) }));",
+    );
+    assert_eq!(found["error"], Value::Null);
+    let passes = found["passes"].as_u64().unwrap();
+    assert!(passes > 10, "it looked at a page: {passes} rules");
+    let text = |value: &Value| value.as_str().unwrap_or_default().to_owned();
+    let of_rule = |rule: &Value| {
+        let id = text(&rule["id"]);
+        let nodes = rule["nodes"].as_array().cloned().unwrap_or_default();
+        nodes.into_iter().map(move |node| {
+            let why = text(&node["failureSummary"]).replace('\n', " ");
+            format!("{id}: {}: {why}", text(&node["html"]))
+        })
+    };
+    let violations = found["violations"].as_array().unwrap();
+    violations.iter().flat_map(of_rule).collect()
+}
