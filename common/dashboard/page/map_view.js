@@ -221,8 +221,8 @@ export class MapView {
     c.translate(x - camera.x, y - camera.y);
     c.rotate(yaw);
     const pixels = map.resolution_m * camera.scale * ratio;
-    const wanted = Math.max(0, Math.floor(Math.log2(1.200 / pixels)));
-    const level = this.#levels[Math.min(wanted, this.#levels.length - 1)];
+    // The finest level may be coarser than the map, where that is large.
+    const level = this.#levels.findLast(({ factor }) => factor * pixels <= 1.200) ?? this.#levels[0];
     if (level) {
       const side = map.resolution_m * level.factor;
       c.imageSmoothingEnabled = side * camera.scale * ratio < 3;

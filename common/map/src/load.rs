@@ -28,7 +28,7 @@ pub fn load(yaml: impl AsRef<Path>) -> Result<OccupancyGrid, MapError> {
 }
 
 /// As [`load_noting`], unless the graph could not hold the map: its sides are looked at
-/// before memory is taken for it.
+/// before memory is taken for it, and then where poses are searched.
 ///
 /// # Errors
 /// As [`load`], and [`MapError::Memory`].
@@ -70,13 +70,15 @@ fn load_from(
     })?;
     let raster = kind::decode(&bytes, &description.image)?;
     drop(bytes);
-    OccupancyGrid::from_parts(
+    let grid = OccupancyGrid::from_parts(
         raster.width,
         raster.height,
         description.resolution_m,
         description.map_from_grid,
         cells(&raster, &description),
-    )
+    )?;
+    limit.check_grid(&grid)?;
+    Ok(grid)
 }
 
 /// The image that the description at `yaml` names, which need not be there.
@@ -287,7 +289,7 @@ mod tests {
 
     #[test]
     fn a_map_that_the_graph_could_not_hold_is_refused_by_its_header() {
-        let memory_limit = Some(1);
+        let memory_limit = Some(100);
         let limit = MemoryOptions { memory_limit }.limit();
         // Nothing but headers: whoever decodes them finds no pixels.
         let mut png = b"\x89PNG\r\n\x1a\n\0\0\0\x0dIHDR".to_vec();
@@ -297,7 +299,7 @@ mod tests {
             let path = folder.path().join("floor.yaml");
             let error = load_within(limit, path, |_| {}).unwrap_err();
             assert!(
-                matches!(error, MapError::Memory { limit_mb: 1, .. }),
+                matches!(error, MapError::Memory { limit_mb: 100, .. }),
                 "{error}"
             );
         }

@@ -1,13 +1,30 @@
 //! How large a map may be, so that the graph can hold it.
 //!
 //! A file or a message of a few kilobytes can be a map that no search index fits into
-//! memory for. Nothing is measured here: the bytes that a cell takes are known.
+//! memory for. Nothing is measured here: the bytes that a cell takes are known, and so is
+//! where poses are searched.
 
-use crate::MapError;
+use crate::{MapError, OccupancyGrid, UNKNOWN};
 
-/// What the nodes of a graph take for each cell of a map together, at most: the search
-/// index, the distances of two nodes, and two maps on their way.
-const BYTES_A_CELL: u64 = 150;
+/// What the nodes of a graph take for each cell of any map together: the map on its way
+/// and a copy of it in each of them, and the distances of two.
+const BYTES_A_CELL: u64 = 25;
+
+/// What they take besides for each cell of the blocks in which poses are searched: the
+/// search index, and what making it takes.
+const BYTES_A_SEARCHED_CELL: u64 = 125;
+
+/// What they take with any map.
+const BYTES_OF_ALL: u64 = 64 << 20;
+
+/// Cells along a side of such a block.
+const BLOCK: usize = 4;
+
+/// Cells up to this occupancy are free, as the boundary's rules have it by default.
+const FREE_TO: u8 = 25;
+
+/// So far from free cells poses are searched by default, metres.
+const REACH_M: f64 = 1.0;
 
 /// The option by which a user says what a graph may use.
 #[derive(Debug, Clone, Default, clap::Args)]
@@ -36,13 +53,44 @@ impl MemoryLimit {
     /// For tools that hold a map and no index of it.
     pub const NONE: MemoryLimit = MemoryLimit(u64::MAX);
 
-    /// Whether the graph can hold a map with these sides.
+    /// Whether the graph can hold a map with these sides in which hardly a cell is free:
+    /// what is known before the cells are.
     ///
     /// # Errors
     /// It cannot.
-    pub fn check(self, (width, height): (u32, u32)) -> Result<(), MapError> {
+    pub fn check(self, sides: (u32, u32)) -> Result<(), MapError> {
+        self.check_searched(sides, 0)
+    }
+
+    /// Whether the graph can hold this map.
+    ///
+    /// # Errors
+    /// It cannot.
+    pub fn check_grid(self, grid: &OccupancyGrid) -> Result<(), MapError> {
+        let sides = (grid.width, grid.height);
+        self.check_cells(sides, grid.resolution_m, &grid.cells)
+    }
+
+    /// Whether the graph can hold a map of these cells, row by row.
+    ///
+    /// # Errors
+    /// It cannot.
+    pub fn check_cells(
+        self,
+        (width, height): (u32, u32),
+        resolution_m: f64,
+        cells: &[u8],
+    ) -> Result<(), MapError> {
+        let reach = (REACH_M / resolution_m / BLOCK as f64).ceil() as usize;
+        let blocks = near_free(width.max(1) as usize, cells, reach);
+        let searched = blocks.saturating_mul(BLOCK * BLOCK).min(cells.len());
+        self.check_searched((width, height), searched as u64)
+    }
+
+    fn check_searched(self, (width, height): (u32, u32), searched: u64) -> Result<(), MapError> {
         let cells = u64::from(width) * u64::from(height);
-        let needed = cells.saturating_mul(BYTES_A_CELL);
+        let of_all = BYTES_OF_ALL + cells.saturating_mul(BYTES_A_CELL);
+        let needed = of_all.saturating_add(searched.saturating_mul(BYTES_A_SEARCHED_CELL));
         if needed <= self.0 {
             return Ok(());
         }
@@ -53,6 +101,43 @@ impl MemoryLimit {
             limit_mb: self.0 >> 20,
         })
     }
+}
+
+/// How many blocks hold a free cell, or lie at most `reach` blocks from one that does, in
+/// rows and columns.
+fn near_free(width: usize, cells: &[u8], reach: usize) -> usize {
+    let columns = width.div_ceil(BLOCK);
+    let rows: Vec<Vec<bool>> = cells
+        .chunks(BLOCK * width)
+        .map(|rows| {
+            let mut free = vec![false; columns];
+            for row in rows.chunks(width) {
+                for (block, cells) in free.iter_mut().zip(row.chunks(BLOCK)) {
+                    *block |= cells.iter().any(|&cell| cell <= FREE_TO);
+                }
+            }
+            spread(&free, reach)
+        })
+        .collect();
+    (0..columns)
+        .map(|column| {
+            let free: Vec<bool> = rows.iter().map(|row| row[column]).collect();
+            spread(&free, reach).into_iter().filter(|&is| is).count()
+        })
+        .sum()
+}
+
+/// Those that are at most `reach` places from one that is set.
+fn spread(set: &[bool], reach: usize) -> Vec<bool> {
+    let mut near = vec![false; set.len()];
+    // Up to here it is done.
+    let mut end = 0;
+    for (at, _) in set.iter().enumerate().filter(|(_, is)| **is) {
+        let next = (at + reach + 1).min(set.len());
+        near[at.saturating_sub(reach).max(end)..next].fill(true);
+        end = next;
+    }
+    near
 }
 
 /// What this process and its neighbours may use: the limit of the control group, where
@@ -92,9 +177,40 @@ mod tests {
         let limit = MemoryOptions { memory_limit }.limit();
         assert!(limit.check((800, 800)).is_ok());
         let error = limit.check((8000, 8000)).unwrap_err().to_string();
-        let expected = "a map of 8000 x 8000 cells takes about 9155 MB in the graph; allowed are \
+        let expected = "a map of 8000 x 8000 cells takes about 1589 MB in the graph; allowed are \
                         100 MB (--memory-limit)";
         assert_eq!(error, expected);
         assert!(MemoryLimit::NONE.check((32_767, 32_767)).is_ok());
+    }
+
+    #[test]
+    fn what_is_searched_decides() {
+        let memory_limit = Some(100);
+        let limit = MemoryOptions { memory_limit }.limit();
+        let sides = (800, 800);
+        let mut cells = vec![UNKNOWN; 800 * 800];
+        assert!(limit.check_cells(sides, 0.05, &cells).is_ok());
+        cells[..800 * 400].fill(0);
+        let error = limit.check_cells(sides, 0.05, &cells).unwrap_err();
+        // 15.3 MB, 40.1 of the half that is free and of a metre beyond it, and 64.
+        let expected = "a map of 800 x 800 cells takes about 119 MB in the graph; allowed are \
+                        100 MB (--memory-limit)";
+        assert_eq!(error.to_string(), expected);
+        cells[..800 * 400].fill(100);
+        assert!(limit.check_cells(sides, 0.05, &cells).is_ok());
+    }
+
+    #[test]
+    fn blocks_near_free_cells_are_counted() {
+        let mut cells = vec![UNKNOWN; 42 * 23];
+        assert_eq!(near_free(42, &cells, 2), 0);
+        // In block (5, 3) of 11 times 6.
+        cells[13 * 42 + 22] = 0;
+        assert_eq!(near_free(42, &cells, 0), 1);
+        assert_eq!(near_free(42, &cells, 2), 5 * 5);
+        assert_eq!(near_free(42, &cells, 9), 11 * 6);
+        // The last, which is cut.
+        cells[42 * 23 - 1] = 0;
+        assert_eq!(near_free(42, &cells, 1), 9 + 4);
     }
 }

@@ -6,7 +6,7 @@ pub enum SimulationError {
     /// A corner of the path is off the map.
     #[error(
         "corner {corner} of the path, {x},{y}, is not on the map, which spans x {} to {} and y {} to {}",
-        x_m[0], x_m[1], y_m[0], y_m[1]
+        to_mm(x_m[0]), to_mm(x_m[1]), to_mm(y_m[0]), to_mm(y_m[1])
     )]
     CornerOffMap {
         /// Counted from 1.
@@ -95,4 +95,9 @@ pub enum SimulationError {
         /// How far from the path they were put, metres.
         within_m: f64,
     },
+}
+
+/// What a map spans, without what sums of binary fractions add.
+fn to_mm(metres: f64) -> f64 {
+    (metres * 1000.0).round() / 1000.0
 }

@@ -115,7 +115,10 @@ fn refuse_too_large<T: Wire>(message: &Received<T>, limit: MemoryLimit) -> Resul
     }
     // Every topic is received alike; the map alone is what others prepare for.
     match bytemuck::try_from_bytes::<MapHeader>(bytemuck::bytes_of(&message.header)) {
-        Ok(map) => Ok(limit.check((map.width, map.height))?),
+        Ok(map) => {
+            let cells = bytemuck::cast_slice(&message.items);
+            Ok(limit.check_cells((map.width, map.height), map.resolution_m, cells)?)
+        }
         Err(_) => Ok(()),
     }
 }

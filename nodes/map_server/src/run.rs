@@ -82,10 +82,12 @@ fn recorded(config: &Config) -> Result<Option<OccupancyGrid>, MapServerError> {
         return Ok(None);
     };
     let (_, map) = last.map_err(|error| failed(error.into()))?;
-    let size = (map.info.width, map.info.height);
-    let fits = config.memory.limit().check(size);
+    let (limit, size) = (config.memory.limit(), (map.info.width, map.info.height));
+    let fits = limit.check(size);
     fits.map_err(|error| failed(error.into()))?;
     let grid = map.to_grid().map_err(|error| failed(error.into()))?;
+    let fits = limit.check_grid(&grid);
+    fits.map_err(|error| failed(error.into()))?;
     tracing::info!(recording = %path.display(), "the map is that of the recording");
     Ok(Some(grid))
 }

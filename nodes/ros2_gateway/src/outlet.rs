@@ -117,6 +117,9 @@ impl Outlet {
         if self.map_id == Some(map_id) {
             return Ok(());
         }
+        if let Err(error) = self.memory_limit.check_grid(&grid) {
+            return Ok(report.map_refused(&error)?);
+        }
         let stamp = Stamp {
             measured_ns,
             ..Stamp::default()
