@@ -32,6 +32,8 @@ pub(crate) enum Source {
 
 /// How each node is supervised.
 const RESTARTS: &str = "    restart_policy: on-failure
+    max_restarts: 15
+    restart_window: 60
     restart_delay: 0.2
 ";
 

@@ -4,6 +4,8 @@
 //! memory for. Nothing is measured here: the bytes that a cell takes are known, and so is
 //! where poses are searched.
 
+use std::path::{Path, PathBuf};
+
 use crate::{MapError, OccupancyGrid, UNKNOWN};
 
 /// What the nodes of a graph take for each cell of any map together: the map on its way
@@ -133,29 +135,54 @@ fn spread(set: &[bool], reach: usize) -> Vec<bool> {
     // Up to here it is done.
     let mut end = 0;
     for (at, _) in set.iter().enumerate().filter(|(_, is)| **is) {
-        let next = (at + reach + 1).min(set.len());
+        let next = at.saturating_add(reach).saturating_add(1).min(set.len());
         near[at.saturating_sub(reach).max(end)..next].fill(true);
         end = next;
     }
     near
 }
 
-/// What this process and its neighbours may use: the limit of the control group, where
-/// there is one, else the memory of the machine.
+/// What this process and its neighbours may use: the least limit of its control group and
+/// those that hold it, where there is one, else the memory of the machine.
 fn available() -> u64 {
-    let group = std::fs::read_to_string("/sys/fs/cgroup/memory.max");
-    let machine = std::fs::read_to_string("/proc/meminfo");
-    decide(&group.unwrap_or_default(), &machine.unwrap_or_default())
+    let read = |path: &Path| std::fs::read_to_string(path).unwrap_or_default();
+    let files = limit_files(&read(Path::new("/proc/self/cgroup")));
+    let limits: Vec<String> = files.iter().map(|file| read(file)).collect();
+    decide(&limits, &read(Path::new("/proc/meminfo")))
 }
 
-fn decide(group: &str, machine: &str) -> u64 {
-    let group: Option<u64> = group.trim().parse().ok();
+/// Where the limits of these control groups stand, as `/proc/self/cgroup` lists them: in
+/// version 2 a line `0::PATH`, in version 1 one whose controllers have `memory`. A
+/// container has a file system of its own, in which its group is the root.
+fn limit_files(groups: &str) -> Vec<PathBuf> {
+    let of_line = |line: &str| {
+        let (_, rest) = line.split_once(':')?;
+        let (controllers, path) = rest.split_once(':')?;
+        let (root, file) = match controllers {
+            "" => ("/sys/fs/cgroup", "memory.max"),
+            _ if controllers.split(',').any(|name| name == "memory") => {
+                ("/sys/fs/cgroup/memory", "memory.limit_in_bytes")
+            }
+            _ => return None,
+        };
+        let path = Path::new(path.trim_start_matches('/'));
+        // The last of the ancestors is the empty path.
+        let folders = path.ancestors().map(|folder| Path::new(root).join(folder));
+        Some(folders.map(|folder| folder.join(file)).collect::<Vec<_>>())
+    };
+    groups.lines().filter_map(of_line).flatten().collect()
+}
+
+fn decide(limits: &[String], machine: &str) -> u64 {
+    let limits = limits
+        .iter()
+        .filter_map(|limit| limit.trim().parse::<u64>().ok());
     let total = machine
         .lines()
         .find_map(|line| line.strip_prefix("MemTotal:"));
     let kilobytes = total.and_then(|rest| rest.trim().strip_suffix("kB")?.trim().parse().ok());
     let machine = kilobytes.map(|found: u64| found.saturating_mul(1024));
-    group.into_iter().chain(machine).min().unwrap_or(u64::MAX)
+    limits.chain(machine).min().unwrap_or(u64::MAX)
 }
 
 #[cfg(test)]
@@ -165,10 +192,44 @@ mod tests {
     #[test]
     fn the_smaller_of_group_and_machine_counts() {
         let machine = "MemFree: 1 kB\nMemTotal:       2048 kB\n";
-        assert_eq!(decide("1000000\n", machine), 1_000_000);
-        assert_eq!(decide("max\n", machine), 2 << 20);
-        assert_eq!(decide("9000000000", machine), 2 << 20);
-        assert_eq!(decide("", ""), u64::MAX);
+        let decide = |limits: &[&str], machine| {
+            let limits: Vec<String> = limits.iter().map(ToString::to_string).collect();
+            super::decide(&limits, machine)
+        };
+        assert_eq!(decide(&["1000000\n"], machine), 1_000_000);
+        assert_eq!(decide(&["max\n", "3000\n", "5000\n"], machine), 3000);
+        assert_eq!(decide(&["max\n", ""], machine), 2 << 20);
+        assert_eq!(decide(&["9223372036854771712"], machine), 2 << 20);
+        assert_eq!(decide(&[], ""), u64::MAX);
+    }
+
+    #[test]
+    fn limits_are_those_of_the_own_group_and_of_all_around_it() {
+        let files = |groups: &str| -> Vec<String> {
+            let files = limit_files(groups).into_iter();
+            files
+                .map(|file| file.to_str().unwrap().to_owned())
+                .collect()
+        };
+        let root = "/sys/fs/cgroup";
+        let second = "0::/system.slice/backcast.service\n";
+        assert_eq!(
+            files(second),
+            [
+                format!("{root}/system.slice/backcast.service/memory.max"),
+                format!("{root}/system.slice/memory.max"),
+                format!("{root}/memory.max"),
+            ]
+        );
+        assert_eq!(files("0::/\n"), [format!("{root}/memory.max")]);
+        let first = "12:cpu,cpuacct:/a\n9:memory:/a\n1:name=systemd:/a\nnonsense\n";
+        assert_eq!(
+            files(first),
+            [
+                format!("{root}/memory/a/memory.limit_in_bytes"),
+                format!("{root}/memory/memory.limit_in_bytes"),
+            ]
+        );
     }
 
     #[test]

@@ -58,7 +58,10 @@ pub(super) fn snapshot(address: &str, robot: &str) -> Result<Known, TopError> {
 fn ask<A: serde::de::DeserializeOwned>(address: &str, path: &str) -> Result<A, TopError> {
     let no_monitor = |error: ureq::Error| TopError::NoMonitor {
         address: address.to_owned(),
-        reason: error.to_string(),
+        reason: match error {
+            ureq::Error::Timeout(_) => format!("no answer within {TIMEOUT:?}"),
+            error => error.to_string(),
+        },
     };
     let agent: ureq::Agent = ureq::Agent::config_builder()
         .timeout_global(Some(TIMEOUT))

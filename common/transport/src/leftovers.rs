@@ -72,7 +72,7 @@ pub fn remove_dead_graphs() {
             Ok(()) => {
                 // Its launcher's claim goes when it is let go of, unless it has a new one.
                 drop(Claim::take(&name));
-                tracing::info!("removed stale files of graph {name}, which was killed");
+                tracing::info!("removed what graph {name} had left");
             }
             Err(TransportError::StillRunning { .. }) => {}
             Err(error) => tracing::warn!("stale files remain: {}", with_causes(&error)),

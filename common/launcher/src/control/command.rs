@@ -119,6 +119,25 @@ fn status_of(graph: &GraphName) -> Result<Status, LauncherError> {
     }
 }
 
+/// Whether the graph has this node.
+///
+/// # Errors
+/// It has not; what it has is named.
+pub(super) fn known_node(graph: &GraphName, node: &str) -> Result<(), LauncherError> {
+    let ids: Vec<String> = status_of(graph)?
+        .nodes
+        .into_iter()
+        .map(|node| node.id)
+        .collect();
+    match ids.iter().any(|id| id == node) {
+        true => Ok(()),
+        false => Err(LauncherError::Usage(format!(
+            "there is no node {node}: allowed are {}",
+            ids.join(", ")
+        ))),
+    }
+}
+
 fn asked(graph: &GraphName, question: &Question) -> Result<Answer, LauncherError> {
     let file: PathBuf = control_socket(graph);
     ask(&file, question).map_err(|source| LauncherError::NoLauncher {

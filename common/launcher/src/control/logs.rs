@@ -11,7 +11,7 @@ use messages::{LogHeader, LogLevel, topic};
 use serde::Serialize;
 use transport::{Flow, Graph, GraphName};
 
-use super::command::the_graph;
+use super::command::{known_node, the_graph};
 use crate::LauncherError;
 
 /// How long the lines that nodes keep for late joiners take to come.
@@ -47,7 +47,7 @@ pub fn logs(config: &LogsConfig) -> Result<ExitCode, LauncherError> {
     let lines = graph.subscriber::<topic::Log>()?;
     let begin = Instant::now();
     let mut kept: Vec<LogLine> = Vec::new();
-    let mut all_kept = false;
+    let (mut all_kept, mut printed) = (false, 0u64);
     graph.run(&[&lines], TICK, |_| {
         while let Some(line) = lines.receive()? {
             let line = LogLine::of(line.header(), line.items());
@@ -60,6 +60,7 @@ pub fn logs(config: &LogsConfig) -> Result<ExitCode, LauncherError> {
         if all_kept {
             kept.sort_by_key(|line| line.wall_ns);
             for line in kept.drain(..) {
+                printed += 1;
                 print(&match config.json {
                     true => line.json(),
                     false => line.text(),
@@ -69,6 +70,11 @@ pub fn logs(config: &LogsConfig) -> Result<ExitCode, LauncherError> {
         let goes_on = config.follow || !all_kept;
         Ok::<_, LauncherError>(if goes_on { Flow::Continue } else { Flow::Stop })
     })?;
+    match &config.node {
+        // One that is there and has logged nothing is no fault.
+        Some(node) if printed == 0 => known_node(&name, node)?,
+        _ => {}
+    }
     Ok(ExitCode::SUCCESS)
 }
 

@@ -200,6 +200,10 @@ impl Supply {
             Ok(job) => job,
             Err(error) => return Ok(refuse(order.0.map_id, &error, health)?),
         };
+        if self.handed_out.is_none() {
+            // Scans are not answered before; with another map, they are meanwhile.
+            health.state(NodeState::Busy)?;
+        }
         let (config, prior, cache) = (self.config.clone(), self.prior, self.cache.clone());
         let prepare = move || job.prepare(config, prior, cache.as_ref());
         let work = Background::start("prepare map", prepare);
