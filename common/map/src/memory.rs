@@ -6,7 +6,7 @@
 
 use std::path::{Path, PathBuf};
 
-use crate::{MapError, OccupancyGrid, UNKNOWN};
+use crate::{MapError, OccupancyGrid};
 
 /// What the nodes of a graph take for each cell of any map together: the map on its way
 /// and a copy of it in each of them, and the distances of two.
@@ -188,6 +188,7 @@ fn decide(limits: &[String], machine: &str) -> u64 {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::UNKNOWN;
 
     #[test]
     fn the_smaller_of_group_and_machine_counts() {
