@@ -23,7 +23,6 @@ let robot = "";
 let paused = false;
 let choosing = false;
 let link = "connecting";
-let lostAt = 0;
 let wasLive = false;
 let delay = null;
 let shownMap = "";
@@ -47,7 +46,6 @@ const handlers = {
   state(word) {
     if (word === link) return;
     if (word === "lost") {
-      lostAt = Date.now();
       delay = null;
       if (wasLive) store.event("the connection was lost", "bad");
     } else if (word === "live") {
@@ -103,7 +101,7 @@ function showLink() {
   write("link-text", paused && link === "live" ? "Paused" : words[link]);
   $("lost").hidden = link !== "lost";
   if (link === "lost") {
-    const since = wasLive ? `What you see is ${duration((Date.now() - lostAt) / 1000)} old or more.` : "No data was received yet.";
+    const since = is.silence === null ? "No data was received yet." : `What you see is ${duration(is.silence)} old.`;
     write("lost-text", `${since} Reconnecting.`);
   }
   $("past").hidden = !silent || is.silence === null;
