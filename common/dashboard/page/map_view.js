@@ -62,6 +62,7 @@ export class MapView {
     const box = this.#box();
     if (!box) return this.draw();
     camera.fit(box);
+    this.#nearScale = 0;
     const near = Math.min(camera.width, camera.height) / NEAR_M;
     if (camera.scale < near) camera.scale = near;
     const best = this.store.best();
@@ -161,12 +162,12 @@ export class MapView {
       return this.#keepInView(best);
     }
     const places = contenders(this.store).map((place) => inFrame(place, this.frame));
-    if (!places.length || this.camera.width <= 1) return;
+    if (!places.length || !this.#extent || this.camera.width <= 1) return;
     if (places.every(({ x, y }) => this.camera.sees(x, y)) && this.#nearScale) return;
     this.#nearScale ||= this.camera.scale;
     this.fitPoints(places);
   }
-  #nearScale = 0;
+  #nearScale = 0; // from before all places were shown
 
   /** All of some points, and what is around them. */
   fitPoints(points) {
