@@ -36,6 +36,7 @@ mod pose_array;
 mod pose_stamped;
 mod pose_with_covariance_stamped;
 pub mod poses;
+mod service;
 mod std_msgs;
 mod tf_message;
 
@@ -52,6 +53,7 @@ pub use odometry::Odometry;
 pub use pose_array::PoseArray;
 pub use pose_stamped::PoseStamped;
 pub use pose_with_covariance_stamped::PoseWithCovarianceStamped;
+pub use service::{Empty, Nothing, RosService};
 pub use std_msgs::{Header, Time};
 pub use tf_message::{TfMessage, TransformStamped};
 

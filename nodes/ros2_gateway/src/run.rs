@@ -4,6 +4,7 @@ use std::time::Duration;
 
 use geometry::Mount;
 use messages::topic;
+use ros::{Empty, Nothing};
 use transport::{Flow, Graph, Subscriber, TransportError};
 use zenoh_session::Report;
 
@@ -50,7 +51,7 @@ pub fn run(graph: &Graph, config: &Config) -> Result<(), GatewayError> {
 struct Gateway {
     member: Member,
     watch: Watch,
-    service: Service,
+    service: Service<Empty>,
     incoming: Incoming,
     outgoing: Outgoing,
     frames: Frames,
@@ -136,7 +137,7 @@ impl Gateway {
 
     /// Who asked.
     fn serve(&mut self, report: &mut Report) -> Result<(), TransportError> {
-        while let Some(outcome) = self.service.next() {
+        while let Some(outcome) = self.service.next(|_| Nothing::default()) {
             report.received();
             match outcome {
                 Ok(()) => {
