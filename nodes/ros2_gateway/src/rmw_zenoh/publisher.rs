@@ -36,7 +36,12 @@ impl<M: RosMessage> Publisher<M> {
     /// with each scan is dropped where the robot's network is slower than the graph: it
     /// is fresh or of no use.
     pub(crate) fn open(member: &Member, topic: &str, depth: usize) -> Result<Self, GatewayError> {
-        Self::volatile(member, topic, depth, CongestionControl::Drop)
+        Self::volatile(
+            member,
+            topic,
+            (Keeping::Reliable, depth),
+            CongestionControl::Drop,
+        )
     }
 
     /// As [`Publisher::open`], for what comes seldom and must arrive: where the network
@@ -46,16 +51,31 @@ impl<M: RosMessage> Publisher<M> {
         topic: &str,
         depth: usize,
     ) -> Result<Self, GatewayError> {
-        Self::volatile(member, topic, depth, CongestionControl::Block)
+        Self::volatile(
+            member,
+            topic,
+            (Keeping::Reliable, depth),
+            CongestionControl::Block,
+        )
+    }
+
+    /// Best effort, as sensors are: what nobody misses who did not get it.
+    pub(crate) fn open_fresh(
+        member: &Member,
+        topic: &str,
+        depth: usize,
+    ) -> Result<Self, GatewayError> {
+        let congestion = CongestionControl::Drop;
+        Self::volatile(member, topic, (Keeping::Fresh, depth), congestion)
     }
 
     fn volatile(
         member: &Member,
         topic: &str,
-        depth: usize,
+        quality: (Keeping, usize),
         congestion: CongestionControl,
     ) -> Result<Self, GatewayError> {
-        Self::with(member, topic, (Keeping::Reliable, depth), |key| {
+        Self::with(member, topic, quality, |key| {
             let publisher = member.session().declare_publisher(key);
             // Not express: each message would take one of the two batches of its
             // priority, so that a third at once is dropped, and Zenoh may go on to drop.
