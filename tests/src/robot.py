@@ -1,8 +1,6 @@
 """A ROS 2 robot as rmw_zenoh puts it on the network, by libraries that know nothing of
 this project: zenoh_ros2_sdk for keys, tokens and attachments, rosbags for messages and
-their hashes. It takes orders as JSON, one a line, and says what it sees likewise.
-
-    robot.py ENDPOINT RECORDING NAMESPACE
+their hashes. It says what it sees as JSON, one event a line.
 """
 
 import json
@@ -348,15 +346,3 @@ class Robot:
         publisher = self.publisher(topic)
         extra = {} if attachment is None else {"attachment": bytes.fromhex(attachment)}
         publisher.put(bytes.fromhex(payload), **extra)
-
-
-def main():
-    robot = Robot(*sys.argv[1:])
-    say(event="there")
-    for line in sys.stdin:
-        order = json.loads(line)
-        getattr(robot, order.pop("do"))(**order)
-    robot.session.close()
-
-
-main()

@@ -18,6 +18,9 @@ pub const LIBRARIES: [&str; 3] = [
     "zenoh-ros2-sdk==0.1.8",
 ];
 
+/// The robot's program: what each robot does, then what one with Nav2 does besides.
+const PROGRAM: &str = concat!(include_str!("robot.py"), include_str!("nav2.py"));
+
 /// How long it may say nothing that a test waits for: many times as long as its
 /// libraries take to be loaded on a busy machine.
 const TIMEOUT: Duration = Duration::from_secs(120);
@@ -43,7 +46,7 @@ impl Robot {
             .map_err(|why| Need::Python.is_missing("a robot with ROS 2", &why))
             .ok()?;
         let mut process = Command::new(python)
-            .args(["-c", include_str!("robot.py"), endpoint])
+            .args(["-c", PROGRAM, endpoint])
             .arg(recording)
             .arg(namespace)
             .env_remove("ROS_DOMAIN_ID")

@@ -139,17 +139,14 @@ impl TransformTree {
             let is_base = |frame: &&String| frame.rsplit('/').next() == Some(base);
             connected.keys().find(is_base)
         })?;
-        let base_from_laser = connected.get(base)?.inverse();
-        let forward = base_from_laser.rotation * Vector3::x();
-        let up = base_from_laser.rotation * Vector3::z();
-        let place = base_from_laser.translation;
-        Some(Mount {
-            base_frame: base.clone(),
-            base_from_laser: Pose::new(place.x, place.y, forward.y.atan2(forward.x)),
-            upside_down: up.z < 0.0,
-            height_m: place.z,
-            tilt_degrees: up.xy().norm().atan2(up.z.abs()).to_degrees(),
-        })
+        Some(mount(base, connected.get(base)?))
+    }
+
+    /// As [`TransformTree::base_from`], of the base frame with this name.
+    #[must_use]
+    pub fn base_named(&self, base: &str, laser: &str) -> Option<Mount> {
+        let base = plain(base);
+        Some(mount(base, self.connected_to(plain(laser)).get(base)?))
     }
 
     /// Where another frame lies in the laser's, seen from above, if they are
@@ -186,6 +183,21 @@ impl TransformTree {
             found.insert(frame, laser_from_frame);
         }
         found
+    }
+}
+
+/// A laser's place in a base frame.
+fn mount(base: &str, laser_from_base: &Isometry3<f64>) -> Mount {
+    let base_from_laser = laser_from_base.inverse();
+    let forward = base_from_laser.rotation * Vector3::x();
+    let up = base_from_laser.rotation * Vector3::z();
+    let place = base_from_laser.translation;
+    Mount {
+        base_frame: base.to_owned(),
+        base_from_laser: Pose::new(place.x, place.y, forward.y.atan2(forward.x)),
+        upside_down: up.z < 0.0,
+        height_m: place.z,
+        tilt_degrees: up.xy().norm().atan2(up.z.abs()).to_degrees(),
     }
 }
 

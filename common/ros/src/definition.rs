@@ -92,6 +92,61 @@ float64 theta
 "
         )
     };
+    (State) => {
+        $crate::definition::part!(
+            "\
+lifecycle_msgs/State
+uint8 id
+string label
+"
+        )
+    };
+    (Transition) => {
+        $crate::definition::part!(
+            "\
+lifecycle_msgs/Transition
+uint8 id
+string label
+"
+        )
+    };
+    (ParameterValue) => {
+        $crate::definition::part!(
+            "\
+rcl_interfaces/ParameterValue
+uint8 type
+bool bool_value
+int64 integer_value
+float64 double_value
+string string_value
+byte[] byte_array_value
+bool[] bool_array_value
+int64[] integer_array_value
+float64[] double_array_value
+string[] string_array_value
+"
+        )
+    };
+    (Parameter) => {
+        definition!(
+            "",
+            "\
+rcl_interfaces/Parameter
+string name
+rcl_interfaces/ParameterValue value
+",
+            ParameterValue
+        )
+    };
+    (SetParametersResult) => {
+        $crate::definition::part!(
+            "\
+rcl_interfaces/SetParametersResult
+bool successful
+string reason
+"
+        )
+    };
     ($name_and_fields:literal) => {
         concat!(
             "\

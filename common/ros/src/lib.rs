@@ -19,6 +19,7 @@
 //! everything that reads or writes a recording.
 
 pub mod backcast_msgs;
+mod bond;
 pub mod cdr;
 mod definition;
 mod diagnostic_array;
@@ -27,8 +28,10 @@ mod error;
 mod geometry_msgs;
 mod laser_scan;
 pub mod lasers;
+pub mod lifecycle_msgs;
 mod log;
 pub mod measurements;
+pub mod nav2_msgs;
 mod occupancy_grid;
 mod odometry;
 pub mod planar;
@@ -36,9 +39,12 @@ mod pose_array;
 mod pose_stamped;
 mod pose_with_covariance_stamped;
 pub mod poses;
+pub mod rcl_interfaces;
+mod service;
 mod std_msgs;
 mod tf_message;
 
+pub use bond::BondStatus;
 pub use diagnostic_array::{DiagnosticArray, DiagnosticStatus, KeyValue};
 pub use error::ConversionError;
 pub use geometry_msgs::{
@@ -52,6 +58,7 @@ pub use odometry::Odometry;
 pub use pose_array::PoseArray;
 pub use pose_stamped::PoseStamped;
 pub use pose_with_covariance_stamped::PoseWithCovarianceStamped;
+pub use service::{Empty, Nothing, RosService};
 pub use std_msgs::{Header, Time};
 pub use tf_message::{TfMessage, TransformStamped};
 
@@ -194,6 +201,9 @@ mod tests {
             PoseArray::DEFINITION,
             DiagnosticArray::DEFINITION,
             Log::DEFINITION,
+            BondStatus::DEFINITION,
+            nav2_msgs::ParticleCloud::DEFINITION,
+            lifecycle_msgs::TransitionEvent::DEFINITION,
             Votes::DEFINITION,
             Hypotheses::DEFINITION,
             Beams::DEFINITION,

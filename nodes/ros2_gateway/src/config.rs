@@ -5,6 +5,7 @@ use geometry::Mount;
 use messages::FrameName;
 
 use crate::GatewayError;
+use crate::amcl::{Options, Role};
 
 /// Connects a graph to a ROS 2 robot that uses rmw_zenoh (jazzy and later), without ROS
 /// installed.
@@ -23,9 +24,13 @@ pub struct Config {
     #[arg(long, value_name = "NAMESPACE", default_value = "/")]
     pub namespace: String,
 
-    /// The gateway's name among the robot's nodes
-    #[arg(long, value_name = "NAME", default_value = "backcast")]
-    pub node: String,
+    /// The gateway's name among the robot's nodes [default: backcast, with --as amcl amcl]
+    #[arg(long, value_name = "NAME")]
+    pub node: Option<String>,
+
+    /// In AMCL's place.
+    #[command(flatten)]
+    pub amcl: Options,
 
     /// Which of the robot's topics enter the graph
     #[arg(long, value_name = "TOPIC,…", value_delimiter = ',', default_values = ["scan", "odometry", "map"])]
@@ -110,10 +115,11 @@ pub struct Names {
     /// tf2_msgs/TFMessage, transient local, in
     #[arg(long, value_name = "NAME", default_value = "tf_static")]
     pub tf_static: String,
-    /// geometry_msgs/PoseWithCovarianceStamped: the particle filter's pose, in
+    /// geometry_msgs/PoseWithCovarianceStamped: the particle filter's pose, in; with
+    /// --as amcl ours, out
     #[arg(long, value_name = "NAME", default_value = "amcl_pose")]
     pub amcl_pose: String,
-    /// geometry_msgs/PoseWithCovarianceStamped: the initial pose, out
+    /// geometry_msgs/PoseWithCovarianceStamped: the initial pose, out; with --as amcl in
     #[arg(long, value_name = "NAME", default_value = "initialpose")]
     pub initial_pose: String,
     /// geometry_msgs/PoseArray, out
@@ -122,7 +128,8 @@ pub struct Names {
     /// diagnostic_msgs/DiagnosticArray, out
     #[arg(long, value_name = "NAME", default_value = "/diagnostics")]
     pub diagnostics: String,
-    /// std_srvs/Empty: seeds again as soon as the verdict is Unique
+    /// std_srvs/Empty: seeds again as soon as the verdict is Unique; with --as amcl the
+    /// request to localize from anywhere
     #[arg(
         long,
         value_name = "NAME",
@@ -162,6 +169,9 @@ pub struct Reach {
     pub radians: f64,
 }
 
+/// The map's frame where neither the user nor the robot names it.
+pub(crate) const MAP_FRAME: &str = "map";
+
 /// The highest domain of ROS 2.
 const MAX_DOMAIN: i64 = 232;
 
@@ -183,6 +193,16 @@ impl Config {
                     reason: format!("ROS_DOMAIN_ID is {text:?}: allowed are 0 to {MAX_DOMAIN}"),
                 })
             }
+        }
+    }
+
+    /// The gateway's name among the robot's nodes.
+    #[must_use]
+    pub fn node(&self) -> &str {
+        match (&self.node, self.amcl.role) {
+            (Some(node), _) => node,
+            (None, Role::Seed) => "backcast",
+            (None, Role::Amcl) => "amcl",
         }
     }
 

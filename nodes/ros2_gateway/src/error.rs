@@ -15,6 +15,38 @@ pub enum GatewayError {
         /// What is wrong, and what is allowed.
         reason: String,
     },
+    /// A file of parameters cannot be used.
+    #[error("{file}: {reason}")]
+    ParameterFile {
+        /// Its path.
+        file: String,
+        /// What is wrong, and what is allowed.
+        reason: String,
+    },
+    /// A parameter's value cannot be used.
+    #[error("parameter {name} is {found}: allowed are {allowed}")]
+    Parameter {
+        /// The parameter.
+        name: String,
+        /// What it was to hold.
+        found: String,
+        /// What it may hold.
+        allowed: String,
+    },
+    /// An initial pose is in a frame that is not the map's.
+    #[error("the initial pose is in frame {found:?}: allowed is {allowed:?}")]
+    InitialPoseFrame {
+        /// The frame of the pose.
+        found: String,
+        /// The map's.
+        allowed: String,
+    },
+    /// An initial pose has a covariance that is none.
+    #[error(
+        "the covariance of the initial pose is none: allowed are finite, symmetric and positive \
+         ones, and zeros where nobody knows"
+    )]
+    InitialPoseCovariance,
     /// A definition has a line that is no field.
     #[error("the definition of {name}: {line:?} is not a field")]
     Definition {

@@ -31,6 +31,8 @@ pub(crate) struct Frames {
     fixed: TransformTree,
     /// Children whose transform was mended, which is said once.
     mended: BTreeSet<String>,
+    /// The base's frame, where the user says it.
+    base: Option<String>,
     /// What the user says of each laser; empty where the transforms say it.
     given: Vec<Mount>,
     /// By laser and its frame, those that were asked for since the last change.
@@ -45,10 +47,19 @@ impl Frames {
         Frames {
             fixed: TransformTree::default(),
             mended: BTreeSet::new(),
+            base: None,
             given,
             mounts: BTreeMap::new(),
             first: None,
             odometry: VecDeque::with_capacity(KEPT),
+        }
+    }
+
+    /// With this frame for the base, where the transforms connect it to the laser.
+    pub(crate) fn with_base(self, base: String) -> Self {
+        Frames {
+            base: Some(base),
+            ..self
         }
     }
 
@@ -112,7 +123,13 @@ impl Frames {
         if let Some(mount) = self.mounts.get(&key) {
             return Ok(*mount);
         }
-        let mount = match (self.given.get(index), self.fixed.base_from(laser)) {
+        let fixed = &self.fixed;
+        let named = self
+            .base
+            .as_ref()
+            .and_then(|base| fixed.base_named(base, laser));
+        let found = named.or_else(|| fixed.base_from(laser));
+        let mount = match (self.given.get(index), found) {
             (Some(given), _) => Some(*given),
             (None, Some(mount)) if mount.tilt_degrees > MAX_TILT_DEGREES => {
                 return Err(GatewayError::Tilted {
@@ -167,6 +184,16 @@ impl Frames {
         Some((map_from_odom, odometry.frame.as_str().to_owned()))
     }
 
+    /// What the robot has moved since, by odometry, where that is still known.
+    pub(crate) fn moved_since(&self, measured_ns: i64) -> Option<Pose> {
+        let (first, newest) = (self.odometry.front()?, self.odometry.back()?);
+        if first.stamp.measured_ns > measured_ns {
+            return None;
+        }
+        let then = Pose::from(self.odometry_at(measured_ns)?.odom_from_child);
+        Some(then.inverse().then(newest.odom_from_child.into()))
+    }
+
     /// The newest odometry up to this time, else the first.
     fn odometry_at(&self, measured_ns: i64) -> Option<&Odometry> {
         let by_then = |odometry: &&Odometry| odometry.stamp.measured_ns <= measured_ns;
@@ -176,201 +203,5 @@ impl Frames {
 }
 
 #[cfg(test)]
-mod tests {
-    use bytemuck::Zeroable;
-    use messages::{FrameName, Pose2};
-    use ros::{Header, Quaternion, Transform, TransformStamped, Vector3};
-
-    use super::*;
-
-    fn fixed(parent: &str, child: &str, x: f64, rotation: Quaternion) -> TfMessage {
-        let transform = TransformStamped {
-            header: Header {
-                frame_id: parent.to_owned(),
-                ..Header::default()
-            },
-            child_frame_id: child.to_owned(),
-            transform: Transform {
-                translation: Vector3 { x, y: 0.0, z: 0.0 },
-                rotation,
-            },
-        };
-        TfMessage {
-            transforms: vec![transform],
-        }
-    }
-
-    fn at(x: f64) -> Pose2 {
-        Pose2 {
-            x,
-            y: 0.0,
-            yaw: 0.0,
-        }
-    }
-
-    fn odometry(child: &str, x: f64) -> Odometry {
-        Odometry {
-            odom_from_child: at(x),
-            frame: FrameName::new("odom"),
-            child_frame: FrameName::new(child),
-            ..Odometry::zeroed()
-        }
-    }
-
-    fn mounted(x: f64) -> Mount {
-        Mount {
-            base_from_laser: Pose::new(x, 0.0, 0.0),
-            is_upside_down: false,
-        }
-    }
-
-    #[test]
-    fn the_mount_comes_with_the_transforms_or_from_the_user() {
-        let mut frames = Frames::new(Vec::new());
-        assert_eq!(frames.base_from_laser(0, "laser").unwrap(), None);
-        let mount = fixed("base_link", "laser", 0.5, Quaternion::default());
-        frames.on_static_transforms(&mount).unwrap();
-        let found = frames.base_from_laser(0, "laser").unwrap();
-        assert_eq!(found, Some(mounted(0.5)));
-        let mut frames = Frames::new(vec![mounted(9.0), mounted(8.0)]);
-        frames.on_static_transforms(&mount).unwrap();
-        for (index, expected) in [9.0, 8.0].into_iter().enumerate() {
-            let found = frames.base_from_laser(index, "laser").unwrap();
-            assert_eq!(found, Some(mounted(expected)));
-        }
-    }
-
-    /// A turn about x by half a turn.
-    const OVER: Quaternion = Quaternion {
-        x: 1.0,
-        y: 0.0,
-        z: 0.0,
-        w: 0.0,
-    };
-
-    #[test]
-    fn each_laser_has_its_own_mount_also_upside_down() {
-        let mut frames = Frames::new(Vec::new());
-        let front = fixed("base_link", "front", 0.5, Quaternion::default());
-        let rear = fixed("base_link", "rear", -0.4, OVER);
-        let transforms = [front.transforms, rear.transforms].concat();
-        frames
-            .on_static_transforms(&TfMessage { transforms })
-            .unwrap();
-        let turned = Mount {
-            is_upside_down: true,
-            ..mounted(-0.4)
-        };
-        for _ in 0..2 {
-            let found = frames.base_from_laser(0, "front").unwrap();
-            assert_eq!(found, Some(mounted(0.5)));
-            let found = frames.base_from_laser(1, "rear").unwrap();
-            assert_eq!(found, Some(turned));
-        }
-        // What is kept is bounded, and changes with the transforms.
-        for i in 0..3 * MAX_MOUNTS {
-            frames.base_from_laser(1, &format!("f{i}")).unwrap();
-            assert!(frames.mounts.len() <= MAX_MOUNTS);
-        }
-        let moved = fixed("base_link", "rear", -0.6, Quaternion::default());
-        frames.on_static_transforms(&moved).unwrap();
-        let found = frames.base_from_laser(1, "rear").unwrap();
-        assert_eq!(found, Some(mounted(-0.6)));
-    }
-
-    #[test]
-    fn a_transform_that_is_none_does_not_stop_the_rest() {
-        let mut frames = Frames::new(Vec::new());
-        let scaled = |w: f64| Quaternion {
-            w,
-            ..Quaternion::default()
-        };
-        let transforms = [
-            fixed("base_link", "camera", f64::NAN, Quaternion::default()),
-            fixed("base_link", "front", 0.5, scaled(0.0)),
-            fixed("base_link", "rear", -0.4, scaled(1.02)),
-        ]
-        .map(|message| message.transforms)
-        .concat();
-        let error = frames
-            .on_static_transforms(&TfMessage { transforms })
-            .unwrap_err();
-        let text = transport::with_causes(&error);
-        let expected = "the transform from base_link to camera is ignored: the position (NaN, 0)";
-        assert!(text.starts_with(expected), "{text}");
-        for (index, laser, x) in [(0, "front", 0.5), (1, "rear", -0.4)] {
-            let found = frames.base_from_laser(index, laser).unwrap();
-            assert_eq!(found, Some(mounted(x)));
-        }
-        let mended = ["front".to_owned(), "rear".to_owned()];
-        assert!(frames.mended.iter().eq(&mended));
-    }
-
-    #[test]
-    fn a_frame_may_have_the_longest_name_of_a_message() {
-        let mut frames = Frames::new(Vec::new());
-        let long = "f".repeat(FrameName::CAPACITY);
-        let mount = fixed("base_link", &long, 0.5, Quaternion::default());
-        frames.on_static_transforms(&mount).unwrap();
-        let found = frames.base_from_laser(0, &long).unwrap();
-        assert_eq!(found, Some(mounted(0.5)));
-    }
-
-    #[test]
-    fn a_tilted_laser_and_too_many_frames_are_refused() {
-        let mut frames = Frames::new(Vec::new());
-        let half = 0.5f64.sqrt();
-        let tilted = Quaternion {
-            x: half,
-            y: 0.0,
-            z: 0.0,
-            w: half,
-        };
-        frames
-            .on_static_transforms(&fixed("base_link", "laser", 0.5, tilted))
-            .unwrap();
-        let error = frames.base_from_laser(0, "laser").unwrap_err().to_string();
-        assert!(error.contains("tilted by 90.0"), "{error}");
-        let long = fixed("base_link", &"f".repeat(257), 0.5, Quaternion::default());
-        let error = frames.on_static_transforms(&long).unwrap_err().to_string();
-        assert!(error.contains("257 bytes"), "{error}");
-        let mut refused = 0;
-        for i in 0..2 * MAX_FRAMES {
-            let child = fixed("base_link", &format!("f{i}"), 0.5, Quaternion::default());
-            refused += usize::from(frames.on_static_transforms(&child).is_err());
-        }
-        assert_eq!(refused, MAX_FRAMES + 1);
-    }
-
-    #[test]
-    fn the_odometry_lies_where_the_hypothesis_says() {
-        let header = HypothesesHeader {
-            mount_known: 1,
-            ..HypothesesHeader::zeroed()
-        };
-        let best = Hypothesis {
-            map_from_laser: at(10.0),
-            map_from_base: at(9.5),
-            ..Hypothesis::zeroed()
-        };
-        let check = |child: &str, expected: Option<f64>, header: &HypothesesHeader| {
-            let mut frames = Frames::new(Vec::new());
-            for (index, laser, x) in [(0, "laser", 0.5), (1, "rear", -0.4)] {
-                let mount = fixed("base_link", laser, x, Quaternion::default());
-                frames.on_static_transforms(&mount).unwrap();
-                frames.base_from_laser(index, laser).unwrap();
-            }
-            frames.on_odometry(&odometry(child, 4.0));
-            let found = frames.map_from_odom(header, &best);
-            assert_eq!(found.map(|(pose, _)| pose.x), expected, "{child}");
-        };
-        check("base_link", Some(5.5), &header);
-        check("laser", Some(6.0), &header);
-        // Hypotheses are about the first laser, whichever sent a scan last.
-        check("rear", Some(5.1), &header);
-        check("base_footprint", Some(5.5), &header);
-        check("base_footprint", None, &HypothesesHeader::zeroed());
-        let nobody = Frames::new(Vec::new());
-        assert_eq!(nobody.map_from_odom(&header, &best), None);
-    }
-}
+#[path = "frames_tests.rs"]
+mod tests;

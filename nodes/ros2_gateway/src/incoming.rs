@@ -10,17 +10,18 @@ use serde::de::DeserializeOwned;
 use transport::{Graph, TransportError, monotonic_ns};
 use zenoh_session::Report;
 
+use crate::amcl::Role;
 use crate::checks::{measured_ns, odometry_of, sound_odometry};
 use crate::config::{Brought, Config};
 use crate::frames::Frames;
-use crate::outlet::Outlet;
+use crate::outlet::{Outlet, Rules};
 use crate::rmw_zenoh::{Keeping, Member, Subscription, Watch};
 use crate::seeding::{Belief, Seeding};
 use crate::topics::Topics;
 use crate::{GatewayError, Seed};
 
 /// Most bytes of a scan, odometry, a pose or transforms.
-const MAX_BYTES: usize = 1 << 20;
+pub(crate) const MAX_BYTES: usize = 1 << 20;
 
 /// Most bytes of a map: 64 million cells, and what stands before them.
 const MAX_MAP_BYTES: usize = (64 << 20) + 4096;
@@ -61,8 +62,13 @@ impl Incoming {
             member,
             watch,
         };
-        let odometry = Brought::Odometry;
         let brings = |topic| config.brings(topic);
+        let (odometry, by_topic) = match config.amcl.role {
+            Role::Seed => (brings(Brought::Odometry), brings(Brought::Odometry)),
+            // As AMCL does: what wheels report may differ from what the robot's own filter
+            // makes of it, and the transform from the map is to the latter.
+            Role::Amcl => (brings(Brought::Odometry), false),
+        };
         let reliable = Keeping::Reliable;
         let sizes = (MAX_BYTES, MAX_MAP_BYTES);
         let mut scans = Vec::with_capacity(topics.scans.len());
@@ -72,8 +78,8 @@ impl Incoming {
         Ok(Incoming {
             scans,
             fixed: open.subscribe(&topics.tf_static, Keeping::Kept, 100, sizes.0)?,
-            moving: open.wanted(brings(odometry), &topics.tf, reliable, 100, sizes.0)?,
-            odometry: open.wanted(brings(odometry), &topics.odom, reliable, 16, sizes.0)?,
+            moving: open.wanted(odometry, &topics.tf, reliable, 100, sizes.0)?,
+            odometry: open.wanted(by_topic, &topics.odom, reliable, 16, sizes.0)?,
             maps: open.wanted(brings(Brought::Map), &topics.map, Keeping::Kept, 1, sizes.1)?,
             beliefs: open.wanted(
                 config.seed == Seed::Lost,
@@ -88,6 +94,16 @@ impl Incoming {
             map_frame: None,
             mended: BTreeSet::new(),
         })
+    }
+
+    /// What is done to scans and maps from now on.
+    pub(crate) fn set_rules(&mut self, rules: Rules) {
+        self.outlet.rules = rules;
+    }
+
+    /// How many maps came, and how many scans of each laser.
+    pub(crate) fn sent(&self) -> (u64, impl Iterator<Item = u64>) {
+        self.outlet.sent()
     }
 
     /// The frame of the robot's map, if one came.
@@ -217,7 +233,7 @@ fn take_if<M: RosMessage + DeserializeOwned>(
 }
 
 /// Hands on what waits, and counts what is refused; only a graph that fails ends it.
-fn take<M: RosMessage + DeserializeOwned>(
+pub(crate) fn take<M: RosMessage + DeserializeOwned>(
     subscription: &mut Subscription<M>,
     report: &mut Report,
     mut each: impl FnMut(M, &mut Report) -> Result<(), GatewayError>,

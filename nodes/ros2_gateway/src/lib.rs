@@ -7,8 +7,10 @@
 //! network is checked before it enters the graph, refused if it is wrong, and counted
 //! in `health`.
 //!
-//! It moves no robot and sets no parameter; it offers one service.
+//! It moves no robot and sets no parameter. Module `amcl` is the node in AMCL's place: the
+//! tracker's pose in all its forms, with AMCL's services and parameters.
 
+mod amcl;
 mod checks;
 mod config;
 mod error;
@@ -21,6 +23,7 @@ mod run;
 mod seeding;
 mod topics;
 
+pub use amcl::{Options, Role};
 pub use config::{Brought, Config, Seed};
 pub use error::GatewayError;
 pub use run::run;

@@ -260,14 +260,14 @@ fn spread(mut pose: PoseWithCovarianceStamped, least: Reach) -> PoseWithCovarian
     pose
 }
 
-fn in_map(of: Stamp, map_frame: &str) -> Result<Header, GatewayError> {
+pub(crate) fn in_map(of: Stamp, map_frame: &str) -> Result<Header, GatewayError> {
     Ok(Header {
         stamp: stamp(of.measured_ns)?,
         frame_id: map_frame.to_owned(),
     })
 }
 
-fn stamp(stamp_ns: i64) -> Result<Time, GatewayError> {
+pub(crate) fn stamp(stamp_ns: i64) -> Result<Time, GatewayError> {
     let stamp = Time::from_ns(stamp_ns).filter(|_| stamp_ns >= 0);
     stamp.ok_or(GatewayError::Unstampable { stamp_ns })
 }

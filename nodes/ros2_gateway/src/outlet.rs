@@ -12,6 +12,17 @@ use crate::config::{Brought, Config};
 use crate::frames::Frames;
 use crate::topics::Scans;
 
+/// What is done to scans and maps on the way.
+#[derive(Debug, Clone, Copy, Default)]
+pub(crate) struct Rules {
+    /// Readings below are no returns, metres, where the laser itself takes nearer ones.
+    pub(crate) range_min_m: Option<f32>,
+    /// Readings beyond are no returns, metres, where the laser itself takes farther ones.
+    pub(crate) range_max_m: Option<f32>,
+    /// Whether maps after the first are left out.
+    pub(crate) first_map_only: bool,
+}
+
 /// Where messages enter the graph; what nobody sends has no publisher.
 pub(crate) struct Outlet {
     scans: Option<Publisher<topic::Scan>>,
@@ -24,6 +35,7 @@ pub(crate) struct Outlet {
     odometry_sent: u64,
     maps_sent: u64,
     map_id: Option<u64>,
+    pub(crate) rules: Rules,
 }
 
 impl Outlet {
@@ -48,7 +60,13 @@ impl Outlet {
             odometry_sent: 0,
             maps_sent: 0,
             map_id: None,
+            rules: Rules::default(),
         })
+    }
+
+    /// How many maps came, and how many scans of each laser.
+    pub(crate) fn sent(&self) -> (u64, impl Iterator<Item = u64>) {
+        (self.maps_sent, self.lasers.iter().map(|(_, sent)| *sent))
     }
 
     /// Sends a scan of a laser, by its place among them.
@@ -70,6 +88,13 @@ impl Outlet {
         let header = ScanHeader {
             stamp: entering(header.stamp, *sent),
             laser: *name,
+            range_min_m: header
+                .range_min_m
+                .max(self.rules.range_min_m.unwrap_or(0.0)),
+            range_max_m: self
+                .rules
+                .range_max_m
+                .map_or(header.range_max_m, |most| header.range_max_m.min(most)),
             ..header
         };
         let mut loan = publisher.loan(message.ranges.len())?;
@@ -107,6 +132,9 @@ impl Outlet {
         let Some(publisher) = &self.maps else {
             return Ok(());
         };
+        if self.rules.first_map_only && self.map_id.is_some() {
+            return Ok(());
+        }
         let info = &message.info;
         if let Err(error) = self.memory_limit.check((info.width, info.height)) {
             return Ok(report.map_refused(&error)?);

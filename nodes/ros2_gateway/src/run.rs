@@ -4,9 +4,12 @@ use std::time::Duration;
 
 use geometry::Mount;
 use messages::topic;
+use ros::{Empty, Nothing};
 use transport::{Flow, Graph, Subscriber, TransportError};
 use zenoh_session::Report;
 
+use crate::amcl::{self, Role};
+use crate::config::MAP_FRAME;
 use crate::frames::Frames;
 use crate::incoming::Incoming;
 use crate::outgoing::Outgoing;
@@ -16,10 +19,7 @@ use crate::topics::Topics;
 use crate::{Config, GatewayError};
 
 /// How long a late joiner of the graph may wait for the map.
-const TICK: Duration = Duration::from_millis(50);
-
-/// The map's frame where neither the user nor the robot names it.
-const MAP_FRAME: &str = "map";
+pub(crate) const TICK: Duration = Duration::from_millis(50);
 
 /// Carries messages until the stop flag is set.
 ///
@@ -27,6 +27,14 @@ const MAP_FRAME: &str = "map";
 /// If a name or Zenoh's configuration cannot be used, the session cannot be opened,
 /// or the graph fails. A robot that is not there is no error: it is waited for.
 pub fn run(graph: &Graph, config: &Config) -> Result<(), GatewayError> {
+    match config.amcl.role {
+        Role::Seed => seed(graph, config),
+        Role::Amcl => amcl::run(graph, config),
+    }
+}
+
+/// Gives the robot's particle filter its initial pose.
+fn seed(graph: &Graph, config: &Config) -> Result<(), GatewayError> {
     let topics = Topics::of(config)?;
     // What is wrong with options is said before anything is opened.
     let (domain, mounts) = (config.domain()?, config.mounts()?);
@@ -34,9 +42,9 @@ pub fn run(graph: &Graph, config: &Config) -> Result<(), GatewayError> {
     let Some(session) = zenoh_session::open(graph, &config.network, || report.tick())? else {
         return Ok(());
     };
-    let member = Member::join(&session, domain, &config.namespace, &config.node)?;
+    let member = Member::join(&session, domain, &config.namespace, config.node())?;
     let mut gateway = Gateway::open(graph, member, config, &topics, mounts)?;
-    tracing::info!(domain, node = config.node, "joined the robot's domain");
+    tracing::info!(domain, node = config.node(), "joined the robot's domain");
     report.ready()?;
     let (hypotheses, health) = (graph.subscriber()?, graph.subscriber()?);
     let poses = graph.subscriber()?;
@@ -50,7 +58,7 @@ pub fn run(graph: &Graph, config: &Config) -> Result<(), GatewayError> {
 struct Gateway {
     member: Member,
     watch: Watch,
-    service: Service,
+    service: Service<Empty>,
     incoming: Incoming,
     outgoing: Outgoing,
     frames: Frames,
@@ -136,7 +144,7 @@ impl Gateway {
 
     /// Who asked.
     fn serve(&mut self, report: &mut Report) -> Result<(), TransportError> {
-        while let Some(outcome) = self.service.next() {
+        while let Some(outcome) = self.service.next(|_| Nothing::default()) {
             report.received();
             match outcome {
                 Ok(()) => {

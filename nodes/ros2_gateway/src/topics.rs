@@ -19,6 +19,11 @@ pub(crate) struct Topics {
     pub(crate) hypotheses: String,
     pub(crate) diagnostics: String,
     pub(crate) reinitialize: String,
+    /// In AMCL's place; these have the names that AMCL gives them.
+    pub(crate) particle_cloud: String,
+    pub(crate) set_initial_pose: String,
+    pub(crate) nomotion: String,
+    pub(crate) bond: String,
 }
 
 /// The scans of a laser.
@@ -36,7 +41,7 @@ impl Topics {
                 .map_err(|reason| GatewayError::Option { option, reason })
         };
         // Refused here, before anything is opened: it becomes a part of every token.
-        resolve("node", &config.node)?;
+        resolve("node", config.node())?;
         let Names {
             scans,
             odom,
@@ -60,6 +65,10 @@ impl Topics {
             hypotheses: resolve("hypotheses", hypotheses)?,
             diagnostics: resolve("diagnostics", diagnostics)?,
             reinitialize: resolve("reinitialize", reinitialize)?,
+            particle_cloud: resolve("namespace", "particle_cloud")?,
+            set_initial_pose: resolve("namespace", "set_initial_pose")?,
+            nomotion: resolve("namespace", "request_nomotion_update")?,
+            bond: resolve("namespace", "bond")?,
         })
     }
 }

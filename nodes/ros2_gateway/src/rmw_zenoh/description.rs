@@ -2,8 +2,8 @@
 //! of REP-2011 (`RIHS01`): SHA-256 over the fields' names and types, and those of the
 //! types that it is made of.
 //!
-//! Constants and defaults do not count. Refuses bounds of texts and sequences in
-//! definitions, which no message in use has.
+//! Constants and defaults do not count. Refuses bounds of texts, which no message
+//! in use has.
 
 use std::collections::BTreeMap;
 
@@ -162,6 +162,10 @@ fn field(line: &str) -> Option<FieldDescription> {
     let (kind, offset, capacity) = match kind.split_once('[') {
         None => (kind, 0, 0),
         Some((kind, "]")) => (kind, TypeId::UNBOUNDED_SEQUENCE_OFFSET, 0),
+        Some((kind, bound)) if bound.starts_with("<=") => {
+            let most = bound.strip_prefix("<=")?.strip_suffix(']')?.parse().ok()?;
+            (kind, TypeId::BOUNDED_SEQUENCE_OFFSET, most)
+        }
         Some((kind, length)) => {
             let length = length.strip_suffix(']')?.parse().ok()?;
             (kind, TypeId::ARRAY_OFFSET, length)
@@ -207,9 +211,12 @@ fn primitive(kind: &str) -> Option<u8> {
 
 #[cfg(test)]
 mod tests {
+    use ros::lifecycle_msgs::{ChangeState, TransitionEvent};
+    use ros::nav2_msgs::ParticleCloud;
+    use ros::rcl_interfaces::{DescribeParameters, GetParameters};
     use ros::{
-        DiagnosticArray, LaserScan, OccupancyGridMsg, Odometry, PoseArray,
-        PoseWithCovarianceStamped, TfMessage,
+        BondStatus, DiagnosticArray, LaserScan, OccupancyGridMsg, Odometry, PoseArray,
+        PoseWithCovarianceStamped, RosService, TfMessage,
     };
 
     use super::*;
@@ -260,6 +267,38 @@ mod tests {
         );
     }
 
+    /// As `rosbags` makes them of the definitions.
+    #[test]
+    fn messages_in_amcls_place_have_their_hashes() {
+        check(
+            of_message::<ParticleCloud>(),
+            "nav2_msgs::msg::dds_::ParticleCloud_",
+            "193d8cb88ca2b98cd81ece15342744f054bb398ebfa8f6369914432303f42b11",
+        );
+        check(
+            of_message::<BondStatus>(),
+            "bond::msg::dds_::Status_",
+            "87eaccffa254ffffadc0b61600452e8251740f06c25659a2dbda4927fdb1f70a",
+        );
+        check(
+            of_message::<TransitionEvent>(),
+            "lifecycle_msgs::msg::dds_::TransitionEvent_",
+            "d5f8873a2f0146498f812d7885c7327ce27e463d36811d8792f35ee38c0d6c38",
+        );
+        let whole = DescribeParameters::RESPONSE;
+        let (_, descriptor) = whole
+            .split_once("rcl_interfaces/ParameterDescriptor\n")
+            .unwrap();
+        let name = "rcl_interfaces/msg/ParameterDescriptor";
+        let mut all = parts(name, descriptor).unwrap();
+        let main = described(name, all.remove(name).unwrap());
+        check(
+            info(name, main, all),
+            "rcl_interfaces::msg::dds_::ParameterDescriptor_",
+            "52175dbfda6c51153101d33d2a9da05743f66f02d5ab2ca9ec4709b46b73d704",
+        );
+    }
+
     #[test]
     fn services_have_the_hashes_that_ros_gives_them() {
         check(
@@ -273,6 +312,24 @@ mod tests {
         );
     }
 
+    /// As `zenoh_ros2_sdk` makes them of the definitions.
+    #[test]
+    fn services_of_a_managed_node_have_their_hashes() {
+        fn of<S: RosService>() -> Result<TypeInfo, GatewayError> {
+            of_service(S::NAME, S::REQUEST, S::RESPONSE)
+        }
+        check(
+            of::<ChangeState>(),
+            "lifecycle_msgs::srv::dds_::ChangeState_",
+            "356fe34f0475a43acf54542013af4167b0e729f77ea22ffb045c6ad8e20668e5",
+        );
+        check(
+            of::<GetParameters>(),
+            "rcl_interfaces::srv::dds_::GetParameters_",
+            "bf9803d5c74cf989a5de3e0c2e99444599a627c7ff75f97b8c05b01003675cbc",
+        );
+    }
+
     #[test]
     fn what_is_no_field_is_refused_by_name() {
         for line in [
@@ -280,6 +337,7 @@ mod tests {
             "string<=5 name",
             "Header header",
             "int8[x] cells",
+            "int8[<=x] cells",
         ] {
             let error = of_service("a/srv/B", line, "").unwrap_err().to_string();
             assert!(error.contains(line), "{error}");

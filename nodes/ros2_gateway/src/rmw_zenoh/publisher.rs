@@ -8,19 +8,27 @@ use zenoh::Wait;
 use zenoh::liveliness::LivelinessToken;
 use zenoh::pubsub::Publisher as ZenohPublisher;
 use zenoh::qos::CongestionControl;
+use zenoh_ext::{AdvancedPublisher, AdvancedPublisherBuilderExt, CacheConfig, MissDetectionConfig};
 use zenoh_session::KeyError;
 
 use super::entity::{Endpoint, Kind};
 use super::{Attachment, Keeping, Member, description};
 use crate::GatewayError;
 
-/// Sends messages that nobody gets who joins later.
+/// Sends messages.
 pub(crate) struct Publisher<M> {
     endpoint: Endpoint,
-    publisher: ZenohPublisher<'static>,
+    sink: Sink,
     _token: LivelinessToken,
     sequence: i64,
     message: PhantomData<M>,
+}
+
+enum Sink {
+    /// Nobody gets a message who joins later.
+    Volatile(ZenohPublisher<'static>),
+    /// Who joins later gets the last ones.
+    Kept(AdvancedPublisher<'static>),
 }
 
 impl<M: RosMessage> Publisher<M> {
@@ -28,7 +36,12 @@ impl<M: RosMessage> Publisher<M> {
     /// with each scan is dropped where the robot's network is slower than the graph: it
     /// is fresh or of no use.
     pub(crate) fn open(member: &Member, topic: &str, depth: usize) -> Result<Self, GatewayError> {
-        Self::with(member, topic, depth, CongestionControl::Drop)
+        Self::volatile(
+            member,
+            topic,
+            (Keeping::Reliable, depth),
+            CongestionControl::Drop,
+        )
     }
 
     /// As [`Publisher::open`], for what comes seldom and must arrive: where the network
@@ -38,30 +51,74 @@ impl<M: RosMessage> Publisher<M> {
         topic: &str,
         depth: usize,
     ) -> Result<Self, GatewayError> {
-        Self::with(member, topic, depth, CongestionControl::Block)
+        Self::volatile(
+            member,
+            topic,
+            (Keeping::Reliable, depth),
+            CongestionControl::Block,
+        )
+    }
+
+    /// Best effort, as sensors are: what nobody misses who did not get it.
+    pub(crate) fn open_fresh(
+        member: &Member,
+        topic: &str,
+        depth: usize,
+    ) -> Result<Self, GatewayError> {
+        let congestion = CongestionControl::Drop;
+        Self::volatile(member, topic, (Keeping::Fresh, depth), congestion)
+    }
+
+    fn volatile(
+        member: &Member,
+        topic: &str,
+        quality: (Keeping, usize),
+        congestion: CongestionControl,
+    ) -> Result<Self, GatewayError> {
+        Self::with(member, topic, quality, |key| {
+            let publisher = member.session().declare_publisher(key);
+            // Not express: each message would take one of the two batches of its
+            // priority, so that a third at once is dropped, and Zenoh may go on to drop.
+            let publisher = publisher.congestion_control(congestion).wait()?;
+            Ok(Sink::Volatile(publisher))
+        })
+    }
+
+    /// Reliable and transient local: who joins later gets the last `depth` messages.
+    pub(crate) fn open_kept(
+        member: &Member,
+        topic: &str,
+        depth: usize,
+    ) -> Result<Self, GatewayError> {
+        Self::with(member, topic, (Keeping::Kept, depth), |key| {
+            let publisher = member.session().declare_publisher(key);
+            let publisher = publisher
+                .congestion_control(CongestionControl::Drop)
+                .advanced()
+                .cache(CacheConfig::default().max_samples(depth))
+                // Else each message would need a time by Zenoh's clock.
+                .sample_miss_detection(MissDetectionConfig::default())
+                // By which subscribers that were connected late ask for what they missed.
+                .publisher_detection()
+                .wait()?;
+            Ok(Sink::Kept(publisher))
+        })
     }
 
     fn with(
         member: &Member,
         topic: &str,
-        depth: usize,
-        congestion: CongestionControl,
+        quality: (Keeping, usize),
+        declare: impl FnOnce(String) -> zenoh::Result<Sink>,
     ) -> Result<Self, GatewayError> {
         let info = description::of_message::<M>()?;
-        let quality = (Keeping::Reliable, depth);
         let endpoint = member.endpoint(Kind::Publisher, topic, &info, quality);
-        let publisher = member
-            .session()
-            .declare_publisher(endpoint.key.clone())
-            // Not express: each message would take one of the two batches of its
-            // priority, so that a third at once is dropped, and Zenoh may go on to drop.
-            .congestion_control(congestion)
-            .wait();
-        let publisher = publisher.map_err(KeyError::when("publish", &endpoint.key))?;
+        let sink = declare(endpoint.key.clone());
+        let sink = sink.map_err(KeyError::when("publish", &endpoint.key))?;
         Ok(Publisher {
             _token: member.show(&endpoint)?,
             endpoint,
-            publisher,
+            sink,
             // As rmw_zenoh counts.
             sequence: 1,
             message: PhantomData,
@@ -79,8 +136,11 @@ impl<M: RosMessage> Publisher<M> {
             sender: self.endpoint.sender,
         };
         self.sequence += 1;
-        let sent = self.publisher.put(bytes).attachment(attachment.encode());
-        let failed = KeyError::when("send on", &self.endpoint.key);
-        Ok(sent.wait().map_err(failed)?)
+        let attachment = attachment.encode();
+        let sent = match &self.sink {
+            Sink::Volatile(publisher) => publisher.put(bytes).attachment(attachment).wait(),
+            Sink::Kept(publisher) => publisher.put(bytes).attachment(attachment).wait(),
+        };
+        Ok(sent.map_err(KeyError::when("send on", &self.endpoint.key))?)
     }
 }

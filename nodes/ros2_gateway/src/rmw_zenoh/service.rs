@@ -1,10 +1,13 @@
-//! A service of type `std_srvs/srv/Empty`: an empty request with an empty reply.
+//! A service: each request has one response.
 
+use std::marker::PhantomData;
 use std::sync::Arc;
 
 use crossbeam::queue::ArrayQueue;
+use ros::RosService;
 use transport::{Graph, wall_ns};
 use zenoh::Wait;
+use zenoh::bytes::ZBytes;
 use zenoh::liveliness::LivelinessToken;
 use zenoh::query::{Query, Queryable};
 use zenoh_session::KeyError;
@@ -16,25 +19,22 @@ use crate::GatewayError;
 /// Calls that wait for their answer; more are turned away.
 const MAX_WAITING: usize = 16;
 
-/// Most bytes of a request: a header and the one byte of a message without fields,
-/// filled up.
-const MAX_BYTES: usize = 16;
-
-/// A message without fields in CDR, little-endian: ROS gives it one of eight bits.
-const EMPTY: [u8; 5] = [0, 1, 0, 0, 0];
+/// Most bytes of a request: names and values of some hundred parameters.
+const MAX_BYTES: usize = 64 << 10;
 
 /// Offers the service as long as it lives.
-pub(crate) struct Service {
+pub(crate) struct Service<S> {
     topic: String,
     key: String,
     calls: Arc<ArrayQueue<Query>>,
     _queryable: Queryable<()>,
     _token: LivelinessToken,
+    service: PhantomData<S>,
 }
 
-impl Service {
+impl<S: RosService> Service<S> {
     pub(crate) fn open(graph: &Graph, member: &Member, topic: &str) -> Result<Self, GatewayError> {
-        let info = description::of_service("std_srvs/srv/Empty", "", "")?;
+        let info = description::of_service(S::NAME, S::REQUEST, S::RESPONSE)?;
         // As ROS has it for services.
         let quality = (Keeping::Reliable, 10);
         let endpoint = member.endpoint(Kind::Service, topic, &info, quality);
@@ -59,36 +59,56 @@ impl Service {
             _queryable: queryable,
             _token: member.show(&endpoint)?,
             key: endpoint.key,
+            service: PhantomData,
         })
     }
 
-    /// Answers the next call, and says that there was one.
-    pub(crate) fn next(&self) -> Option<Result<(), GatewayError>> {
+    /// Answers the next call by what `respond` says, and says that there was one.
+    pub(crate) fn next(
+        &self,
+        respond: impl FnOnce(S::Request) -> S::Response,
+    ) -> Option<Result<(), GatewayError>> {
         let call = self.calls.pop()?;
-        let outcome = self.answer(&call);
+        let outcome = self.answer(&call, respond);
         if let Err(error) = &outcome {
             let _ = call.reply_err(error.to_string()).wait();
         }
         Some(outcome)
     }
 
-    fn answer(&self, call: &Query) -> Result<(), GatewayError> {
-        let found = call.payload().map_or(0, zenoh::bytes::ZBytes::len);
-        if found > MAX_BYTES {
+    fn answer(
+        &self,
+        call: &Query,
+        respond: impl FnOnce(S::Request) -> S::Response,
+    ) -> Result<(), GatewayError> {
+        let none = ZBytes::new();
+        let payload = call.payload().unwrap_or(&none);
+        let (found, most) = (payload.len(), MAX_BYTES);
+        let topic = || self.topic.clone();
+        if found > most {
             return Err(GatewayError::TooLong {
-                topic: self.topic.clone(),
+                topic: topic(),
                 found,
-                most: MAX_BYTES,
+                most,
             });
         }
-        let none = zenoh::bytes::ZBytes::new();
-        let request = Attachment::decode(&self.topic, call.attachment().unwrap_or(&none))?;
+        let attachment = Attachment::decode(&self.topic, call.attachment().unwrap_or(&none))?;
+        let request =
+            ros::cdr::decode(&payload.to_bytes()).map_err(|reason| GatewayError::Message {
+                topic: topic(),
+                reason,
+            })?;
+        let response =
+            ros::cdr::encode(&respond(request)).map_err(|error| GatewayError::Encode {
+                topic: topic(),
+                reason: error.to_string(),
+            })?;
         // The caller knows its call again by number and sender.
         let attachment = Attachment {
             sent_ns: wall_ns(),
-            ..request
+            ..attachment
         };
-        let reply = call.reply(self.key.as_str(), EMPTY.as_slice());
+        let reply = call.reply(self.key.as_str(), response);
         let reply = reply.attachment(attachment.encode()).wait();
         Ok(reply.map_err(KeyError::when("answer", &self.key))?)
     }

@@ -1,5 +1,6 @@
 //! Who comes to the robot's domain, by the tokens of its nodes.
 
+use std::collections::BTreeSet;
 use std::sync::Arc;
 use std::sync::atomic::{AtomicU64, Ordering};
 
@@ -34,6 +35,8 @@ pub(crate) struct Watch {
     dropped: Arc<AtomicU64>,
     subscribed: String,
     published: Vec<(String, TypeInfo)>,
+    /// Those of them that somebody has published as they are taken.
+    found: BTreeSet<String>,
     _subscriber: Subscriber<()>,
 }
 
@@ -69,6 +72,7 @@ impl Watch {
             dropped,
             subscribed: subscribed.to_owned(),
             published: Vec::new(),
+            found: BTreeSet::new(),
             _subscriber: subscriber,
         })
     }
@@ -80,17 +84,31 @@ impl Watch {
         Ok(())
     }
 
+    /// Whether somebody has published the topic as it is taken.
+    pub(crate) fn has_found(&self, topic: &str) -> bool {
+        self.found.contains(topic)
+    }
+
     /// Tokens that were not looked at since the last call: there were too many.
     pub(crate) fn dropped(&self) -> u64 {
         self.dropped.swap(0, Ordering::Relaxed)
     }
 
     /// The next that is of interest. A token that cannot be read is of no interest.
-    pub(crate) fn next(&self, member: &Member) -> Option<Seen> {
+    pub(crate) fn next(&mut self, member: &Member) -> Option<Seen> {
         while let Some(key) = self.tokens.pop() {
             let token = Token::read(&key);
             let mine = member.session().zid().to_string();
             let others = token.filter(|token| token.session != mine);
+            if let Some(token) = &others
+                && token.kind == Kind::Publisher.code()
+                && self
+                    .published
+                    .iter()
+                    .any(|(topic, info)| *topic == token.topic && *info == token.info)
+            {
+                self.found.insert(token.topic.clone());
+            }
             let seen = others.and_then(|token| judge(&token, &self.subscribed, &self.published));
             if seen.is_some() {
                 return seen;

@@ -3,7 +3,7 @@
 use super::*;
 
 /// Starts the engine's nodes; they are ready once they have a map.
-fn engine(graph: &Graph) -> Vec<NodeProcess> {
+pub(super) fn engine(graph: &Graph) -> Vec<NodeProcess> {
     let nodes = ["boundary_extractor", "accumulator", "peak_extractor"];
     let start = |name: &&str| {
         let executable = executables::path(name);

@@ -1,0 +1,70 @@
+//! The parts of `nav2_msgs` that a localizer has.
+
+use serde::{Deserialize, Serialize};
+
+use super::definition::definition;
+use super::service::Nothing;
+use super::{Header, Pose, PoseWithCovarianceStamped, RosMessage, RosService};
+
+/// `nav2_msgs/msg/ParticleCloud`.
+#[derive(Debug, Clone, PartialEq, Default, Serialize, Deserialize)]
+pub struct ParticleCloud {
+    /// When, and the frame of the poses.
+    pub header: Header,
+    /// Where the robot may be.
+    pub particles: Vec<Particle>,
+}
+
+/// `nav2_msgs/msg/Particle`.
+#[derive(Debug, Clone, Copy, PartialEq, Default, Serialize, Deserialize)]
+pub struct Particle {
+    /// A place.
+    pub pose: Pose,
+    /// How likely the robot is there; of all together at most 1.
+    pub weight: f64,
+}
+
+impl RosMessage for ParticleCloud {
+    const SCHEMA: &'static str = "nav2_msgs/msg/ParticleCloud";
+    const DEFINITION: &'static str = definition!(
+        "\
+std_msgs/Header header
+nav2_msgs/Particle[] particles
+",
+        Header,
+        "\
+nav2_msgs/Particle
+geometry_msgs/Pose pose
+float64 weight
+",
+        Pose,
+    );
+}
+
+/// `nav2_msgs/srv/SetInitialPose`.
+#[derive(Debug)]
+pub enum SetInitialPose {}
+
+/// Where the robot is said to be.
+#[derive(Debug, Clone, PartialEq, Default, Serialize, Deserialize)]
+pub struct SetInitialPoseRequest {
+    /// As on topic `initialpose`.
+    pub pose: PoseWithCovarianceStamped,
+}
+
+impl RosService for SetInitialPose {
+    const NAME: &'static str = "nav2_msgs/srv/SetInitialPose";
+    const REQUEST: &'static str = definition!(
+        "geometry_msgs/PoseWithCovarianceStamped pose\n",
+        "\
+geometry_msgs/PoseWithCovarianceStamped
+std_msgs/Header header
+geometry_msgs/PoseWithCovariance pose
+",
+        Header,
+        PoseWithCovariance,
+    );
+    const RESPONSE: &'static str = "";
+    type Request = SetInitialPoseRequest;
+    type Response = Nothing;
+}

@@ -1,0 +1,72 @@
+//! The bond with the lifecycle manager: signs of life while the node is active, which end
+//! when it is not.
+
+use ros::{BondStatus, Header, Time};
+use transport::{monotonic_ns, wall_ns};
+use twox_hash::XxHash3_128;
+
+use crate::GatewayError;
+use crate::rmw_zenoh::{Member, Publisher};
+
+/// Without a sign for so long the manager gives the node up, seconds: as nav2 has it.
+const TIMEOUT_S: f32 = 4.0;
+
+/// The node's side.
+pub(super) struct Bond {
+    publisher: Publisher<BondStatus>,
+    /// The node's name, without its namespace.
+    id: String,
+    instance_id: String,
+    period_ns: i64,
+    sent_ns: Option<i64>,
+}
+
+impl Bond {
+    /// Of a node; `period_s` above 0.
+    pub(super) fn open(
+        member: &Member,
+        topic: &str,
+        node: &str,
+        period_s: f64,
+    ) -> Result<Self, GatewayError> {
+        // Nobody else begins at this nanosecond in this process.
+        let seed = format!("{} {} {}", wall_ns(), monotonic_ns(), std::process::id());
+        Ok(Bond {
+            publisher: Publisher::open_blocking(member, topic, 10)?,
+            id: node.to_owned(),
+            instance_id: format!("{:032x}", XxHash3_128::oneshot(seed.as_bytes())),
+            period_ns: (period_s * 1e9) as i64,
+            sent_ns: None,
+        })
+    }
+
+    /// Sends a sign of life where one is due.
+    pub(super) fn tick(&mut self) -> Result<(), GatewayError> {
+        let now_ns = monotonic_ns();
+        let is_due = |sent_ns| now_ns - sent_ns >= self.period_ns;
+        match self.sent_ns.is_none_or(is_due) {
+            true => self.send(true),
+            false => Ok(()),
+        }
+    }
+
+    /// Ends the bond in good order.
+    pub(super) fn end(mut self) -> Result<(), GatewayError> {
+        self.send(false)
+    }
+
+    fn send(&mut self, active: bool) -> Result<(), GatewayError> {
+        self.sent_ns = Some(monotonic_ns());
+        self.publisher.send(&BondStatus {
+            header: Header {
+                stamp: Time::from_ns(wall_ns()).unwrap_or_default(),
+                frame_id: String::new(),
+            },
+            id: self.id.clone(),
+            instance_id: self.instance_id.clone(),
+            active,
+            heartbeat_timeout: TIMEOUT_S,
+            heartbeat_period: self.period_ns as f32 * 1e-9,
+        })
+    }
+}

@@ -1,0 +1,225 @@
+//! The parameters of AMCL: what each holds, what it means here, and which mean nothing.
+
+use crate::amcl::parameters::Value;
+
+/// A parameter.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct Declared {
+    pub(super) name: &'static str,
+    pub(super) default: Plain,
+    pub(super) meaning: &'static str,
+    pub(super) counts: Counts,
+    /// The least and the most, of a number.
+    pub(super) range: Option<(f64, f64)>,
+}
+
+/// When a parameter counts.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(super) enum Counts {
+    /// At once when it is set.
+    Always,
+    /// When the node starts.
+    AtStart,
+    /// Never; `meaning` says why.
+    Never,
+}
+
+/// A value that is written in the source.
+#[derive(Debug, Clone, Copy)]
+pub(super) enum Plain {
+    Bool(bool),
+    Integer(i64),
+    Double(f64),
+    Text(&'static str),
+}
+
+impl From<Plain> for Value {
+    fn from(plain: Plain) -> Self {
+        match plain {
+            Plain::Bool(value) => Value::Bool(value),
+            Plain::Integer(value) => Value::Integer(value),
+            Plain::Double(value) => Value::Double(value),
+            Plain::Text(value) => Value::Text(value.to_owned()),
+        }
+    }
+}
+
+use Plain::{Bool, Double, Integer, Text};
+
+const PARTICLES: &str = "no particles are drawn to localize: all poses are searched";
+const MOTION: &str = "how odometry errs is learned from scans, not set";
+const SENSOR: &str = "how scans are judged is set at the nodes of the graph (--help of each)";
+const EVERY_SCAN: &str = "every scan counts";
+
+/// All of them.
+pub(super) const ALL: &[Declared] = &[
+    never("alpha1", Double(0.2), MOTION),
+    never("alpha2", Double(0.2), MOTION),
+    never("alpha3", Double(0.2), MOTION),
+    never("alpha4", Double(0.2), MOTION),
+    never("alpha5", Double(0.2), MOTION),
+    always(
+        "always_reset_initial_pose",
+        Bool(false),
+        "each activation begins with initial_pose, not the first alone",
+    ),
+    start(
+        "base_frame_id",
+        Text("base_footprint"),
+        "the frame whose pose is published",
+    ),
+    never("beam_skip_distance", Double(0.5), SENSOR),
+    never("beam_skip_error_threshold", Double(0.9), SENSOR),
+    never("beam_skip_threshold", Double(0.3), SENSOR),
+    ranged(
+        start(
+            "bond_heartbeat_period",
+            Double(0.1),
+            "seconds between signs of life; 0 for none",
+        ),
+        (0.0, 60.0),
+    ),
+    never("do_beamskip", Bool(false), SENSOR),
+    always(
+        "first_map_only",
+        Bool(false),
+        "maps after the first are not taken",
+    ),
+    never("freespace_downsampling", Bool(false), PARTICLES),
+    start("global_frame_id", Text("map"), "the map's frame"),
+    ranged(
+        always(
+            "initial_pose.x",
+            Double(0.0),
+            "metres; see set_initial_pose",
+        ),
+        FINITE,
+    ),
+    ranged(
+        always(
+            "initial_pose.y",
+            Double(0.0),
+            "metres; see set_initial_pose",
+        ),
+        FINITE,
+    ),
+    ranged(
+        always(
+            "initial_pose.yaw",
+            Double(0.0),
+            "radians; see set_initial_pose",
+        ),
+        FINITE,
+    ),
+    never("initial_pose.z", Double(0.0), "the robot is in the plane"),
+    never("lambda_short", Double(0.1), SENSOR),
+    never("laser_likelihood_max_dist", Double(2.0), SENSOR),
+    ranged(
+        always(
+            "laser_max_range",
+            Double(100.0),
+            "readings beyond are no returns, metres; below 0 the laser's own limit",
+        ),
+        FINITE,
+    ),
+    ranged(
+        always(
+            "laser_min_range",
+            Double(-1.0),
+            "readings below are no returns, metres; below 0 the laser's own limit",
+        ),
+        FINITE,
+    ),
+    never("laser_model_type", Text("likelihood_field"), SENSOR),
+    start("map_topic", Text("map"), "where the map comes from"),
+    never("max_beams", Integer(60), SENSOR),
+    never("max_particles", Integer(2000), PARTICLES),
+    never("min_particles", Integer(500), PARTICLES),
+    start(
+        "odom_frame_id",
+        Text("odom"),
+        "the odometry's frame, on /tf",
+    ),
+    never("pf_err", Double(0.05), PARTICLES),
+    never("pf_z", Double(0.99), PARTICLES),
+    never("random_seed", Integer(-1), "nothing is random"),
+    never("recovery_alpha_fast", Double(0.0), PARTICLES),
+    never("recovery_alpha_slow", Double(0.0), PARTICLES),
+    never("resample_interval", Integer(1), PARTICLES),
+    never(
+        "robot_model_type",
+        Text("nav2_amcl::DifferentialMotionModel"),
+        MOTION,
+    ),
+    never(
+        "save_pose_rate",
+        Double(0.5),
+        "the tracker saves the pose: --remember FILE",
+    ),
+    start(
+        "scan_topic",
+        Text("scan"),
+        "where scans come from; --scan counts before it",
+    ),
+    always(
+        "set_initial_pose",
+        Bool(false),
+        "the first activation begins with initial_pose, which a scan must confirm",
+    ),
+    never("sigma_hit", Double(0.2), SENSOR),
+    always(
+        "tf_broadcast",
+        Bool(true),
+        "the transform from map to odometry is published",
+    ),
+    ranged(
+        always(
+            "transform_tolerance",
+            Double(1.0),
+            "seconds that it is dated ahead",
+        ),
+        (0.0, 10.0),
+    ),
+    never("update_min_a", Double(0.2), EVERY_SCAN),
+    never("update_min_d", Double(0.25), EVERY_SCAN),
+    never(
+        "use_sim_time",
+        Bool(false),
+        "all is dated as the scans are, by whatever clock",
+    ),
+    never("z_hit", Double(0.5), SENSOR),
+    never("z_max", Double(0.05), SENSOR),
+    never("z_rand", Double(0.5), SENSOR),
+    never("z_short", Double(0.05), SENSOR),
+];
+
+const FINITE: (f64, f64) = (-1e9, 1e9);
+
+const fn of(name: &'static str, default: Plain, meaning: &'static str, counts: Counts) -> Declared {
+    Declared {
+        name,
+        default,
+        meaning,
+        counts,
+        range: None,
+    }
+}
+
+const fn always(name: &'static str, default: Plain, meaning: &'static str) -> Declared {
+    of(name, default, meaning, Counts::Always)
+}
+
+const fn start(name: &'static str, default: Plain, meaning: &'static str) -> Declared {
+    of(name, default, meaning, Counts::AtStart)
+}
+
+const fn never(name: &'static str, default: Plain, meaning: &'static str) -> Declared {
+    of(name, default, meaning, Counts::Never)
+}
+
+const fn ranged(declared: Declared, range: (f64, f64)) -> Declared {
+    Declared {
+        range: Some(range),
+        ..declared
+    }
+}

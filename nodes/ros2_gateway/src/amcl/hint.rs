@@ -1,0 +1,145 @@
+//! Where somebody says that the robot is, as the graph takes it. Pure.
+//!
+//! Refuses poses in other frames than the map's, and covariances that are none.
+
+use geometry::{Covariance, Pose};
+use messages::{InitialPose, Stamp};
+use ros::PoseWithCovarianceStamped;
+
+use crate::GatewayError;
+use crate::checks::measured_ns;
+
+/// How far a pose may be off of which nobody says it: standard deviations, metres and
+/// radians, as RViz has them.
+const UNSAID: (f64, f64) = (0.5, 0.26);
+
+/// Nobody points at a place better than this: standard deviations, metres and radians.
+const LEAST: (f64, f64) = (0.1, 0.05);
+
+/// The pose of a message, carried on by what the robot moved since its stamp.
+pub(super) fn of_message(
+    message: &PoseWithCovarianceStamped,
+    map_frame: &str,
+    moved_since: impl FnOnce(i64) -> Option<Pose>,
+) -> Result<InitialPose, GatewayError> {
+    let frame = message.header.frame_id.trim_start_matches('/');
+    if frame != map_frame.trim_start_matches('/') {
+        return Err(GatewayError::InitialPoseFrame {
+            found: message.header.frame_id.clone(),
+            allowed: map_frame.to_owned(),
+        });
+    }
+    let said_ns = measured_ns("the initial pose", message.header.stamp)?;
+    let pose = message.pose.pose.planar()?;
+    let moved = moved_since(said_ns).unwrap_or_default();
+    let now = pose.then(moved);
+    let covariance = widened(message.pose.planar_covariance())?;
+    Ok(InitialPose {
+        stamp: Stamp {
+            measured_ns: said_ns,
+            ..Stamp::default()
+        },
+        map_from_base: now.into(),
+        covariance: covariance
+            .carried(
+                pose,
+                Pose {
+                    yaw: pose.yaw,
+                    ..now
+                },
+            )
+            .to_rows(),
+    })
+}
+
+/// The pose of the parameters.
+pub(super) fn of_parameters(pose: Pose) -> InitialPose {
+    InitialPose {
+        stamp: Stamp::default(),
+        map_from_base: pose.into(),
+        covariance: unsaid().to_rows(),
+    }
+}
+
+fn unsaid() -> Covariance {
+    let (metres, radians) = UNSAID;
+    Covariance::from_deviations(metres, metres, radians)
+}
+
+fn widened(rows: [f64; 9]) -> Result<Covariance, GatewayError> {
+    if rows == [0.0; 9] {
+        return Ok(unsaid());
+    }
+    let mut covariance = Covariance::from_rows(rows);
+    let (metres, radians) = LEAST;
+    for (axis, least) in [(0, metres), (1, metres), (2, radians)] {
+        let variance = &mut covariance.0[(axis, axis)];
+        *variance = variance.max(least * least);
+    }
+    let is_sound = rows.iter().all(|value| value.is_finite())
+        && [rows[0], rows[4], rows[8]]
+            .iter()
+            .all(|variance| *variance >= 0.0)
+        && covariance.0.cholesky().is_some();
+    is_sound
+        .then_some(covariance)
+        .ok_or(GatewayError::InitialPoseCovariance)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn said(frame: &str) -> PoseWithCovarianceStamped {
+        let mut message = PoseWithCovarianceStamped::default();
+        message.header.frame_id = frame.to_owned();
+        message.pose.pose.position.x = 2.0;
+        message.pose.pose.orientation = ros::Quaternion::from_yaw(std::f64::consts::FRAC_PI_2);
+        message
+    }
+
+    #[test]
+    fn a_pose_is_carried_on_by_what_the_robot_moved() {
+        let mut message = said("/map");
+        message.header.stamp.sec = 7;
+        let moved = |ns| (ns == 7_000_000_000).then(|| Pose::new(1.0, 0.0, 0.5));
+        let hint = of_message(&message, "map", moved).unwrap();
+        let expected = Pose::new(2.0, 1.0, std::f64::consts::FRAC_PI_2 + 0.5);
+        assert!(Pose::from(hint.map_from_base).is_within(expected, 1e-12, 1e-12));
+        // Nobody said how sure it is.
+        assert_eq!(hint.covariance[8], 0.26 * 0.26);
+    }
+
+    #[test]
+    fn another_frame_is_refused_by_name() {
+        for frame in ["odom", "", "map2"] {
+            let error = of_message(&said(frame), "map", |_| None)
+                .unwrap_err()
+                .to_string();
+            assert!(
+                error.contains(&format!("{frame:?}")) && error.contains("\"map\""),
+                "{error}"
+            );
+        }
+    }
+
+    #[test]
+    fn a_covariance_is_one_and_never_too_tight() {
+        let mut message = said("map");
+        message.pose.covariance[0][0] = 1e-9;
+        message.pose.covariance[5][5] = 0.5;
+        let hint = of_message(&message, "map", |_| None).unwrap();
+        assert_eq!([hint.covariance[0], hint.covariance[8]], [0.1 * 0.1, 0.5]);
+        for wrong in [f64::NAN, -1.0, f64::INFINITY] {
+            message.pose.covariance[1][1] = wrong;
+            let error = of_message(&message, "map", |_| None)
+                .unwrap_err()
+                .to_string();
+            assert!(error.contains("covariance"), "{error}");
+        }
+        message.pose.covariance[1][1] = 1.0;
+        message.pose.covariance[0][1] = 5.0;
+        message.pose.covariance[1][0] = 5.0;
+        assert!(of_message(&message, "map", |_| None).is_err());
+    }
+}

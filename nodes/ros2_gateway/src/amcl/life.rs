@@ -1,0 +1,125 @@
+//! The services by which a lifecycle manager starts and stops the node, and what is
+//! published of it.
+
+use ros::lifecycle_msgs::{
+    ChangeState, ChangeStateResponse, GetAvailableStates, GetAvailableStatesResponse,
+    GetAvailableTransitions, GetAvailableTransitionsResponse, GetState, GetStateResponse,
+    TransitionEvent,
+};
+use transport::{Graph, TransportError, wall_ns};
+use zenoh_session::Report;
+
+use super::lifecycle::{self, Change, Lifecycle};
+use crate::GatewayError;
+use crate::rmw_zenoh::{Member, Publisher, Service};
+
+/// The node's life, as others see it.
+pub(super) struct Life {
+    pub(super) lifecycle: Lifecycle,
+    change: Service<ChangeState>,
+    state: Service<GetState>,
+    states: Service<GetAvailableStates>,
+    transitions: Service<GetAvailableTransitions>,
+    graph: Service<GetAvailableTransitions>,
+    events: Publisher<TransitionEvent>,
+}
+
+impl Life {
+    /// Of the node with this whole name.
+    pub(super) fn open(graph: &Graph, member: &Member, node: &str) -> Result<Self, GatewayError> {
+        let name = |service: &str| format!("{node}/{service}");
+        Ok(Life {
+            lifecycle: Lifecycle::new(),
+            change: Service::open(graph, member, &name("change_state"))?,
+            state: Service::open(graph, member, &name("get_state"))?,
+            states: Service::open(graph, member, &name("get_available_states"))?,
+            transitions: Service::open(graph, member, &name("get_available_transitions"))?,
+            graph: Service::open(graph, member, &name("get_transition_graph"))?,
+            events: Publisher::open_blocking(member, &name("transition_event"), 10)?,
+        })
+    }
+
+    /// Answers who asks; `act` does what is wanted, and says whether it could.
+    pub(super) fn serve(
+        &mut self,
+        mut act: impl FnMut(Change) -> bool,
+        report: &mut Report,
+    ) -> Result<(), TransportError> {
+        let Life {
+            lifecycle,
+            change,
+            state,
+            states,
+            transitions,
+            graph,
+            events,
+        } = self;
+        while let Some(outcome) = change.next(|request| {
+            let success = match lifecycle.asked(&request.transition) {
+                Ok(change) => turn(lifecycle, events, change, &mut act),
+                Err(reason) => {
+                    tracing::warn!("change_state refused: {reason}");
+                    false
+                }
+            };
+            ChangeStateResponse { success }
+        }) {
+            count(outcome, report)?;
+        }
+        let current_state = || lifecycle.state();
+        while let Some(outcome) = state.next(|_| GetStateResponse {
+            current_state: current_state(),
+        }) {
+            count(outcome, report)?;
+        }
+        while let Some(outcome) = states.next(|_| GetAvailableStatesResponse {
+            available_states: lifecycle::states(),
+        }) {
+            count(outcome, report)?;
+        }
+        while let Some(outcome) = transitions.next(|_| GetAvailableTransitionsResponse {
+            available_transitions: lifecycle.available(),
+        }) {
+            count(outcome, report)?;
+        }
+        while let Some(outcome) = graph.next(|_| GetAvailableTransitionsResponse {
+            available_transitions: lifecycle::graph(),
+        }) {
+            count(outcome, report)?;
+        }
+        Ok(())
+    }
+
+    /// Goes on without being asked.
+    pub(super) fn start(&mut self, mut act: impl FnMut(Change) -> bool) {
+        for change in [Change::Configure, Change::Activate] {
+            turn(&mut self.lifecycle, &mut self.events, change, &mut act);
+        }
+    }
+}
+
+fn turn(
+    lifecycle: &mut Lifecycle,
+    events: &mut Publisher<TransitionEvent>,
+    change: Change,
+    act: &mut impl FnMut(Change) -> bool,
+) -> bool {
+    let is_done = act(change);
+    let timestamp = u64::try_from(wall_ns()).unwrap_or(0);
+    for event in lifecycle.take(change, is_done, timestamp) {
+        if let Err(error) = events.send(&event) {
+            tracing::warn!("the transition is not published: {error}");
+        }
+    }
+    tracing::info!(is_done, state = lifecycle.state().label, "{change:?}");
+    is_done
+}
+
+/// Counts a call.
+pub(super) fn count(
+    outcome: Result<(), GatewayError>,
+    report: &mut Report,
+) -> Result<(), TransportError> {
+    report.received();
+    outcome.or_else(|error| report.refused(&error))
+}

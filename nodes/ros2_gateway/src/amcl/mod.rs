@@ -1,0 +1,138 @@
+//! In the place of `nav2_amcl`: the same node, topics, services and parameters, and a pose
+//! with no initial guess.
+//!
+//! `lifecycle`, `parameters`, `params_file`, `hint`, `cloud`, `standing` and
+//! `waiting` are pure; `life`
+//! and `parameter_services` offer the first two, `body` is what a lifecycle manager
+//! configures and activates.
+
+mod body;
+mod bond;
+mod cloud;
+mod declared;
+mod hint;
+mod life;
+mod lifecycle;
+mod outgoing;
+mod parameter_services;
+mod parameters;
+mod params_file;
+mod standing;
+mod waiting;
+
+use std::path::{Path, PathBuf};
+
+use clap::ValueEnum;
+use transport::{Flow, Graph};
+use zenoh_session::Report;
+
+use crate::GatewayError;
+use crate::config::{Config, MAP_FRAME, Seed};
+use crate::rmw_zenoh::{self, Member};
+use crate::run::TICK;
+use crate::topics::Topics;
+use body::{Body, Said};
+use life::Life;
+use parameter_services::ParameterServices;
+use parameters::Parameters;
+
+/// Options of the gateway in AMCL's place.
+#[derive(Debug, Clone, clap::Args)]
+#[command(next_help_heading = "In AMCL's place")]
+pub struct Options {
+    /// What the gateway is to the robot
+    #[arg(long = "as", value_name = "ROLE", default_value = "seed")]
+    pub role: Role,
+
+    /// Parameters in the form of ROS, as nav2_amcl has them; with --as amcl
+    #[arg(long, value_name = "FILE")]
+    pub params_file: Option<PathBuf>,
+
+    /// Start active, for robots without a lifecycle manager; with --as amcl
+    #[arg(long)]
+    pub autostart: bool,
+}
+
+/// What the gateway is to the robot.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]
+pub enum Role {
+    /// Beside a particle filter, which gets its initial pose
+    Seed,
+    /// In the place of nav2_amcl
+    Amcl,
+}
+
+/// Is nav2's AMCL until the stop flag is set.
+pub(crate) fn run(graph: &Graph, config: &Config) -> Result<(), GatewayError> {
+    let node = rmw_zenoh::resolve(&config.namespace, config.node());
+    let node = node.map_err(|reason| GatewayError::Option {
+        option: "node",
+        reason,
+    })?;
+    let mut parameters = Parameters::default();
+    if let Some(file) = &config.amcl.params_file {
+        for remark in load(&mut parameters, file, &node)? {
+            tracing::warn!("{remark}");
+        }
+    }
+    let config = applied(config, &parameters);
+    let topics = Topics::of(&config)?;
+    let domain = config.domain()?;
+    config.mounts()?;
+    let mut report = Report::new(graph.health()?);
+    let Some(session) = zenoh_session::open(graph, &config.network, || report.tick())? else {
+        return Ok(());
+    };
+    let member = Member::join(&session, domain, &config.namespace, config.node())?;
+    let mut life = Life::open(graph, &member, &node)?;
+    let services = ParameterServices::open(graph, &member, &node)?;
+    let map_frame = config
+        .map_frame
+        .clone()
+        .unwrap_or_else(|| MAP_FRAME.to_owned());
+    let mut body = Body::new(graph, &member, &config, &topics, map_frame);
+    let said = Said {
+        hypotheses: graph.subscriber()?,
+        poses: graph.subscriber()?,
+        health: graph.subscriber()?,
+    };
+    tracing::info!(domain, node, "joined the robot's domain in AMCL's place");
+    report.ready()?;
+    if config.amcl.autostart {
+        life.start(|change| body.change(change, &parameters));
+    }
+    graph.run(&[&said.hypotheses, &said.poses, &said.health], TICK, |_| {
+        life.serve(|change| body.change(change, &parameters), &mut report)?;
+        services.serve(&mut parameters, &mut report)?;
+        body.step(&said, &parameters, &mut report)?;
+        report.tick()?;
+        Ok(Flow::Continue)
+    })
+}
+
+fn load(parameters: &mut Parameters, path: &Path, node: &str) -> Result<Vec<String>, GatewayError> {
+    let file = path.display().to_string();
+    let text = std::fs::read_to_string(path).map_err(|error| GatewayError::ParameterFile {
+        file: file.clone(),
+        reason: error.to_string(),
+    })?;
+    params_file::load(parameters, &text, &file, node)
+}
+
+/// The options with what the parameters say. What was given as an option counts before
+/// them.
+fn applied(config: &Config, parameters: &Parameters) -> Config {
+    let mut config = config.clone();
+    config.seed = Seed::Never;
+    config.odom_frame = parameters.text("odom_frame_id").to_owned();
+    let map_frame = parameters.text("global_frame_id").to_owned();
+    config.map_frame.get_or_insert(map_frame);
+    let names = &mut config.names;
+    if names.scans == ["scan"] {
+        names.scans = vec![parameters.text("scan_topic").to_owned()];
+    }
+    if names.map == "map" {
+        names.map = parameters.text("map_topic").to_owned();
+    }
+    config
+}

@@ -1,0 +1,310 @@
+//! AMCL's parameters, as a file and as other nodes set them. Pure.
+//!
+//! Refuses what is of another type, out of range, or cannot change while the node runs.
+
+use std::collections::BTreeMap;
+
+use geometry::Pose;
+use ros::rcl_interfaces::{
+    FloatingPointRange, ListParametersResult, ParameterDescriptor, ParameterType, ParameterValue,
+    SetParametersResult,
+};
+
+use super::declared::{ALL, Counts, Declared};
+use crate::GatewayError;
+
+/// What a parameter holds.
+#[derive(Debug, Clone, PartialEq)]
+pub(crate) enum Value {
+    Bool(bool),
+    Integer(i64),
+    Double(f64),
+    Text(String),
+}
+
+/// All parameters with their values.
+#[derive(Debug, Clone)]
+pub(crate) struct Parameters(BTreeMap<&'static str, Value>);
+
+impl Default for Parameters {
+    fn default() -> Self {
+        Parameters(ALL.iter().map(|d| (d.name, d.default.into())).collect())
+    }
+}
+
+impl Parameters {
+    /// Takes a value that a file has. The result is a remark: that the parameter is none of
+    /// AMCL's, or has no meaning here.
+    pub(super) fn load(
+        &mut self,
+        name: &str,
+        value: Value,
+    ) -> Result<Option<String>, GatewayError> {
+        let Some(declared) = declared(name) else {
+            return Ok(Some(format!(
+                "parameter {name} is none of AMCL's, and ignored"
+            )));
+        };
+        self.0.insert(declared.name, fitting(declared, value)?);
+        let meaning = declared.meaning;
+        Ok((declared.counts == Counts::Never)
+            .then(|| format!("parameter {name} has no meaning here: {meaning}")))
+    }
+
+    /// Sets a value while the node runs.
+    pub(super) fn set(&mut self, name: &str, value: &ParameterValue) -> SetParametersResult {
+        let outcome = self.checked(name, value);
+        match outcome {
+            Ok((declared, value)) => {
+                self.0.insert(declared.name, value);
+                let is_idle = declared.counts == Counts::Never;
+                let reason = format!("it has no meaning here: {}", declared.meaning);
+                SetParametersResult {
+                    successful: true,
+                    reason: if is_idle { reason } else { String::new() },
+                }
+            }
+            Err(reason) => SetParametersResult {
+                successful: false,
+                reason,
+            },
+        }
+    }
+
+    /// Sets all of these or none.
+    pub(super) fn set_all<'a>(
+        &mut self,
+        values: impl Iterator<Item = (&'a str, &'a ParameterValue)>,
+    ) -> SetParametersResult {
+        let mut next = self.clone();
+        for (name, value) in values {
+            let result = next.set(name, value);
+            if !result.successful {
+                return result;
+            }
+        }
+        *self = next;
+        SetParametersResult {
+            successful: true,
+            reason: String::new(),
+        }
+    }
+
+    fn checked(
+        &self,
+        name: &str,
+        value: &ParameterValue,
+    ) -> Result<(&'static Declared, Value), String> {
+        let declared =
+            declared(name).ok_or_else(|| format!("{name} is none of AMCL's parameters"))?;
+        let value =
+            Value::try_from(value).map_err(|found| refused(declared, &found).to_string())?;
+        let value = fitting(declared, value).map_err(|error| error.to_string())?;
+        if declared.counts == Counts::AtStart && self.0.get(name) != Some(&value) {
+            return Err(format!(
+                "{name} cannot change while the node runs: set it in --params-file and start again"
+            ));
+        }
+        Ok((declared, value))
+    }
+
+    /// What a parameter holds; of type `NotSet` where there is none.
+    pub(super) fn get(&self, name: &str) -> ParameterValue {
+        self.0
+            .get(name)
+            .map(ParameterValue::from)
+            .unwrap_or_default()
+    }
+
+    /// What a parameter means.
+    pub(super) fn describe(&self, name: &str) -> ParameterDescriptor {
+        let unknown = ParameterDescriptor {
+            name: name.to_owned(),
+            ..ParameterDescriptor::default()
+        };
+        declared(name).map_or(unknown.clone(), |declared| {
+            let range = declared
+                .range
+                .map(|(from_value, to_value)| FloatingPointRange {
+                    from_value,
+                    to_value,
+                    step: 0.0,
+                });
+            ParameterDescriptor {
+                r#type: self.get(name).r#type,
+                description: match declared.counts {
+                    Counts::Never => format!("no meaning here: {}", declared.meaning),
+                    Counts::Always | Counts::AtStart => declared.meaning.to_owned(),
+                },
+                read_only: declared.counts == Counts::AtStart,
+                floating_point_range: range.into_iter().collect(),
+                ..unknown
+            }
+        })
+    }
+
+    /// The names that begin with one of the prefixes, and no more than `depth` levels below
+    /// it; 0 is any number of levels.
+    pub(super) fn list(&self, prefixes: &[String], depth: u64) -> ListParametersResult {
+        let is_near = |rest: &str| depth == 0 || (rest.matches('.').count() as u64) < depth;
+        let is_listed = |name: &str| {
+            let below = |prefix: &String| match name.strip_prefix(prefix.as_str()) {
+                Some("") => true,
+                Some(rest) => rest.strip_prefix('.').is_some_and(is_near),
+                None => false,
+            };
+            match prefixes {
+                [] => is_near(name),
+                prefixes => prefixes.iter().any(below),
+            }
+        };
+        let names: Vec<String> = self
+            .0
+            .keys()
+            .copied()
+            .filter(|name| is_listed(name))
+            .map(str::to_owned)
+            .collect();
+        let mut above: Vec<String> = names
+            .iter()
+            .filter_map(|name| Some(name.rsplit_once('.')?.0.to_owned()))
+            .collect();
+        above.dedup();
+        ListParametersResult {
+            names,
+            prefixes: above,
+        }
+    }
+
+    /// Whether there is one of that name.
+    pub(super) fn has(&self, name: &str) -> bool {
+        self.0.contains_key(name)
+    }
+
+    /// A text; empty where there is none of that name.
+    pub(super) fn text(&self, name: &str) -> &str {
+        match self.0.get(name) {
+            Some(Value::Text(text)) => text,
+            _ => "",
+        }
+    }
+
+    pub(super) fn is_on(&self, name: &str) -> bool {
+        self.0.get(name) == Some(&Value::Bool(true))
+    }
+
+    /// A number; 0 where there is none of that name.
+    pub(super) fn number(&self, name: &str) -> f64 {
+        match self.0.get(name) {
+            Some(Value::Double(number)) => *number,
+            _ => 0.0,
+        }
+    }
+
+    /// Where the robot is said to be when it starts.
+    pub(super) fn initial_pose(&self) -> Pose {
+        let of = |axis: &str| self.number(&format!("initial_pose.{axis}"));
+        Pose::new(of("x"), of("y"), of("yaw"))
+    }
+}
+
+fn declared(name: &str) -> Option<&'static Declared> {
+    ALL.iter().find(|declared| declared.name == name)
+}
+
+/// The value as the parameter holds it: a whole number is a number, too.
+fn fitting(declared: &Declared, value: Value) -> Result<Value, GatewayError> {
+    let value = match (Value::from(declared.default), value) {
+        (Value::Double(_), Value::Integer(whole)) => Value::Double(whole as f64),
+        (_, value) => value,
+    };
+    let is_same =
+        std::mem::discriminant(&value) == std::mem::discriminant(&Value::from(declared.default));
+    let is_within = match (&value, declared.range) {
+        (Value::Double(number), Some((least, most))) => (least..=most).contains(number),
+        (Value::Double(number), None) => number.is_finite(),
+        // Names of frames and topics.
+        (Value::Text(text), _) => text.len() <= messages::FrameName::CAPACITY,
+        _ => true,
+    };
+    match is_same && is_within {
+        true => Ok(value),
+        false => Err(refused(declared, &value.to_string())),
+    }
+}
+
+fn refused(declared: &Declared, found: &str) -> GatewayError {
+    let allowed = match (Value::from(declared.default), declared.range) {
+        (Value::Bool(_), _) => "true and false".to_owned(),
+        (Value::Integer(_), _) => "whole numbers".to_owned(),
+        (Value::Double(_), None) => "finite numbers".to_owned(),
+        (Value::Double(_), Some((least, most))) => format!("numbers from {least} to {most}"),
+        (Value::Text(_), _) => format!("texts of at most {} bytes", messages::FrameName::CAPACITY),
+    };
+    GatewayError::Parameter {
+        name: declared.name.to_owned(),
+        found: found.to_owned(),
+        allowed,
+    }
+}
+
+impl std::fmt::Display for Value {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        match self {
+            Value::Bool(value) => write!(f, "{value}"),
+            Value::Integer(value) => write!(f, "{value}"),
+            Value::Double(value) => write!(f, "{value:?}"),
+            // Somebody else decides how long it is.
+            Value::Text(value) => {
+                let end = value.floor_char_boundary(80);
+                write!(f, "the text {:?}", value.get(..end).unwrap_or_default())
+            }
+        }
+    }
+}
+
+impl From<&Value> for ParameterValue {
+    fn from(value: &Value) -> Self {
+        let of = |kind: ParameterType| ParameterValue {
+            r#type: kind as u8,
+            ..ParameterValue::default()
+        };
+        match value {
+            Value::Bool(bool_value) => ParameterValue {
+                bool_value: *bool_value,
+                ..of(ParameterType::Bool)
+            },
+            Value::Integer(integer_value) => ParameterValue {
+                integer_value: *integer_value,
+                ..of(ParameterType::Integer)
+            },
+            Value::Double(double_value) => ParameterValue {
+                double_value: *double_value,
+                ..of(ParameterType::Double)
+            },
+            Value::Text(text) => ParameterValue {
+                string_value: text.clone(),
+                ..of(ParameterType::String)
+            },
+        }
+    }
+}
+
+impl TryFrom<&ParameterValue> for Value {
+    type Error = String;
+
+    fn try_from(value: &ParameterValue) -> Result<Self, String> {
+        match ParameterType::from_code(value.r#type) {
+            Some(ParameterType::Bool) => Ok(Value::Bool(value.bool_value)),
+            Some(ParameterType::Integer) => Ok(Value::Integer(value.integer_value)),
+            Some(ParameterType::Double) => Ok(Value::Double(value.double_value)),
+            Some(ParameterType::String) => Ok(Value::Text(value.string_value.clone())),
+            Some(other) => Err(format!("of type {other:?}")),
+            None => Err(format!("of type {}", value.r#type)),
+        }
+    }
+}
+
+#[cfg(test)]
+#[path = "parameters_tests.rs"]
+mod tests;

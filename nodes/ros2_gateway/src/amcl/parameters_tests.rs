@@ -1,0 +1,101 @@
+use super::*;
+
+fn double(value: f64) -> ParameterValue {
+    (&Value::Double(value)).into()
+}
+
+#[test]
+fn every_default_fits_its_own_parameter_and_names_are_in_order() {
+    for declared in ALL {
+        let value = Value::from(declared.default);
+        assert_eq!(fitting(declared, value.clone()).unwrap(), value);
+    }
+    assert!(ALL.is_sorted_by_key(|declared| declared.name));
+}
+
+#[test]
+fn what_cannot_be_set_says_why() {
+    let mut parameters = Parameters::default();
+    assert_eq!(
+        parameters.set("transform_tolerance", &double(0.5)).reason,
+        ""
+    );
+    assert_eq!(parameters.number("transform_tolerance"), 0.5);
+    let whole = (&Value::Integer(2)).into();
+    assert!(parameters.set("transform_tolerance", &whole).successful);
+    assert_eq!(parameters.number("transform_tolerance"), 2.0);
+    let idle = parameters.set("alpha1", &double(0.5));
+    assert!(idle.successful && idle.reason.contains("no meaning here"));
+    let text: ParameterValue = (&Value::Text("odom2".into())).into();
+    let array = ParameterValue {
+        r#type: ParameterType::DoubleArray as u8,
+        ..ParameterValue::default()
+    };
+    for (name, value, reason) in [
+        (
+            "transform_tolerance",
+            &double(11.0),
+            "is 11.0: allowed are numbers from 0 to 10",
+        ),
+        ("transform_tolerance", &double(f64::NAN), "is NaN"),
+        (
+            "transform_tolerance",
+            &text,
+            "the text \"odom2\": allowed are numbers",
+        ),
+        ("transform_tolerance", &array, "of type DoubleArray"),
+        (
+            "tf_broadcast",
+            &double(1.0),
+            "is 1.0: allowed are true and false",
+        ),
+        ("odom_frame_id", &text, "cannot change while the node runs"),
+        ("none", &text, "none of AMCL's"),
+    ] {
+        let result = parameters.set(name, value);
+        assert!(
+            !result.successful && result.reason.contains(reason),
+            "{result:?}"
+        );
+    }
+    // To what it is already, as tools do that restore what they saved.
+    let same: ParameterValue = (&Value::Text("odom".into())).into();
+    assert!(parameters.set("odom_frame_id", &same).successful);
+}
+
+#[test]
+fn all_are_set_or_none() {
+    let mut parameters = Parameters::default();
+    let (good, bad) = (double(0.5), double(-1.0));
+    let both = [("laser_max_range", &good), ("transform_tolerance", &bad)];
+    assert!(!parameters.set_all(both.into_iter()).successful);
+    assert_eq!(parameters.number("laser_max_range"), 100.0);
+    assert!(parameters.set_all(both[..1].iter().copied()).successful);
+    assert_eq!(parameters.number("laser_max_range"), 0.5);
+}
+
+#[test]
+fn names_are_listed_by_prefix_and_depth() {
+    let parameters = Parameters::default();
+    let list = |prefixes: &[&str], depth| {
+        let prefixes: Vec<String> = prefixes.iter().map(|p| (*p).to_owned()).collect();
+        parameters.list(&prefixes, depth)
+    };
+    assert_eq!(list(&[], 0).names.len(), ALL.len());
+    assert_eq!(list(&[], 1).names.len(), ALL.len() - 4);
+    let pose = list(&["initial_pose"], 0);
+    assert_eq!(pose.names.len(), 4);
+    assert_eq!(pose.prefixes, ["initial_pose"]);
+    assert_eq!(list(&["odom_frame_id", "x"], 1).names, ["odom_frame_id"]);
+    assert!(list(&["initial"], 0).names.is_empty());
+}
+
+#[test]
+fn what_is_not_there_has_no_type() {
+    let parameters = Parameters::default();
+    assert_eq!(parameters.get("none").r#type, 0);
+    assert_eq!(parameters.describe("none").r#type, 0);
+    let described = parameters.describe("transform_tolerance");
+    assert_eq!(described.floating_point_range[0].to_value, 10.0);
+    assert!(!described.read_only && parameters.describe("scan_topic").read_only);
+}

@@ -1,0 +1,192 @@
+//! A file of parameters in the form of ROS. Pure.
+//!
+//! ```yaml
+//! amcl:
+//!   ros__parameters:
+//!     initial_pose: { x: 1.0 }
+//! ```
+//!
+//! Nodes are called by name, in a namespace (`r2: amcl:` or `/r2/amcl:`), or by wildcards:
+//! `*` is one level, `/**` any number. The parameters of other nodes are not looked at.
+
+use serde_json::Value as Json;
+
+use super::parameters::{Parameters, Value};
+use crate::GatewayError;
+
+/// Under this word stand the parameters of a node.
+const PARAMETERS: &str = "ros__parameters";
+
+/// Most bytes of a file, and how deep it may go: those of a whole robot fit many times.
+const MAX_BYTES: usize = 1 << 20;
+const MAX_DEPTH: usize = 16;
+
+/// Takes from a file's text what it has for the node with this whole name; remarks on
+/// what has no effect.
+pub(super) fn load(
+    parameters: &mut Parameters,
+    text: &str,
+    file: &str,
+    node: &str,
+) -> Result<Vec<String>, GatewayError> {
+    let refuse = |reason: String| GatewayError::ParameterFile {
+        file: file.to_owned(),
+        reason,
+    };
+    if text.len() > MAX_BYTES {
+        let found = text.len();
+        return Err(refuse(format!(
+            "it has {found} bytes: allowed are {MAX_BYTES}"
+        )));
+    }
+    let root: Json = serde_saphyr::from_str(text).map_err(|error| refuse(error.to_string()))?;
+    let mut found = Found::default();
+    find(&root, "", MAX_DEPTH, &mut found).map_err(&refuse)?;
+    let mut remarks = Vec::new();
+    // Wildcards come before names in the order of bytes, so that names count.
+    found.nodes.sort_by(|a, b| a.0.cmp(&b.0));
+    let mut is_there = false;
+    for (name, values) in found.nodes.iter().filter(|(name, _)| is_meant(name, node)) {
+        is_there = true;
+        let mut flat = Vec::new();
+        flatten(values, String::new(), MAX_DEPTH, &mut flat).map_err(&refuse)?;
+        for (parameter, json) in flat {
+            let value = value(json).ok_or_else(|| {
+                refuse(format!(
+                    "{parameter} of {name} is {}: allowed are true, false, numbers and texts",
+                    kind(json)
+                ))
+            });
+            // Lists are none of AMCL's, but may stand in its file.
+            let remark = match (value, json) {
+                (Ok(value), _) => parameters.load(&parameter, value),
+                (Err(_), Json::Array(_)) if !parameters.has(&parameter) => Ok(Some(format!(
+                    "parameter {parameter} is none of AMCL's, and ignored"
+                ))),
+                (Err(error), _) => Err(error),
+            };
+            let remark = remark.map_err(|error| match error {
+                GatewayError::Parameter { .. } => refuse(error.to_string()),
+                error => error,
+            })?;
+            remarks.extend(remark);
+        }
+    }
+    if !is_there {
+        let names: Vec<&str> = found
+            .nodes
+            .iter()
+            .map(|(name, _)| &**name)
+            .take(20)
+            .collect();
+        let names = names.join(", ");
+        remarks.push(format!(
+            "{file} has no parameters for {node}, but for: {names}"
+        ));
+    }
+    Ok(remarks)
+}
+
+#[derive(Default)]
+struct Found<'a> {
+    nodes: Vec<(String, &'a Json)>,
+}
+
+/// All nodes below, with their names so far.
+fn find<'a>(json: &'a Json, name: &str, depth: usize, found: &mut Found<'a>) -> Result<(), String> {
+    let Json::Object(keys) = json else {
+        return match (json, name) {
+            (Json::Null, _) => Ok(()),
+            _ => Err(format!(
+                "{name:?} is {}: allowed is {PARAMETERS} below it",
+                kind(json)
+            )),
+        };
+    };
+    if depth == 0 {
+        return Err(format!("{name:?} goes deeper than {MAX_DEPTH} levels"));
+    }
+    for (key, below) in keys {
+        if key == PARAMETERS {
+            found.nodes.push((name.to_owned(), below));
+        } else {
+            let key = key.trim_matches('/');
+            find(below, &format!("{name}/{key}"), depth - 1, found)?;
+        }
+    }
+    Ok(())
+}
+
+/// Whether the name, with wildcards, is that of the node.
+fn is_meant(pattern: &str, node: &str) -> bool {
+    let parts = |name: &str| -> Vec<String> {
+        name.split('/')
+            .filter(|p| !p.is_empty())
+            .map(str::to_owned)
+            .collect()
+    };
+    fits(&parts(pattern), &parts(node))
+}
+
+fn fits(pattern: &[String], node: &[String]) -> bool {
+    match (pattern, node) {
+        ([], []) => true,
+        ([any, rest @ ..], _) if any == "**" => {
+            (0..=node.len()).any(|n| node.get(n..).is_some_and(|node| fits(rest, node)))
+        }
+        ([one, rest @ ..], [name, others @ ..]) if one == "*" || one == name => fits(rest, others),
+        _ => false,
+    }
+}
+
+fn flatten<'a>(
+    json: &'a Json,
+    name: String,
+    depth: usize,
+    flat: &mut Vec<(String, &'a Json)>,
+) -> Result<(), String> {
+    match json {
+        Json::Object(_) if depth == 0 => {
+            Err(format!("{name:?} goes deeper than {MAX_DEPTH} levels"))
+        }
+        Json::Object(keys) => keys.iter().try_for_each(|(key, below)| {
+            let name = match &*name {
+                "" => key.clone(),
+                name => format!("{name}.{key}"),
+            };
+            flatten(below, name, depth - 1, flat)
+        }),
+        Json::Null => Ok(()),
+        json => {
+            flat.push((name, json));
+            Ok(())
+        }
+    }
+}
+
+fn value(json: &Json) -> Option<Value> {
+    Some(match json {
+        Json::Bool(value) => Value::Bool(*value),
+        Json::Number(number) => match number.as_i64() {
+            Some(whole) => Value::Integer(whole),
+            None => Value::Double(number.as_f64()?),
+        },
+        Json::String(text) => Value::Text(text.clone()),
+        Json::Null | Json::Array(_) | Json::Object(_) => return None,
+    })
+}
+
+fn kind(json: &Json) -> &'static str {
+    match json {
+        Json::Null => "nothing",
+        Json::Bool(_) => "true or false",
+        Json::Number(_) => "a number",
+        Json::String(_) => "a text",
+        Json::Array(_) => "a list",
+        Json::Object(_) => "a group",
+    }
+}
+
+#[cfg(test)]
+#[path = "params_file_tests.rs"]
+mod tests;

@@ -1,0 +1,335 @@
+//! A robot that starts us in the place of nav2_amcl.
+
+use std::path::PathBuf;
+
+use messages::InitialPose;
+
+use super::filter::engine;
+use super::*;
+
+/// As `nav2_bringup` has it, but for a tolerance that shows.
+const PARAMETERS: &str = "\
+amcl:
+  ros__parameters:
+    use_sim_time: false
+    alpha1: 0.2
+    base_frame_id: base_link
+    global_frame_id: map
+    laser_max_range: 100.0
+    max_particles: 2000
+    odom_frame_id: odom
+    robot_model_type: nav2_amcl::DifferentialMotionModel
+    tf_broadcast: true
+    transform_tolerance: 0.5
+    scan_topic: scan
+";
+
+fn parameters(name: &str) -> PathBuf {
+    let file = PathBuf::from(env!("CARGO_TARGET_TMPDIR")).join(name);
+    std::fs::write(&file, PARAMETERS).unwrap();
+    file
+}
+
+/// What a service answers.
+fn ask(robot: &mut Robot, service: &str, request: Value) -> Value {
+    robot.order("ask", json!({ "service": service, "request": request }));
+    let said = robot.wait_for("answer");
+    assert_eq!(said["service"], service);
+    assert_eq!(said["same"], true, "the bytes differ: {said}");
+    said["response"].clone()
+}
+
+/// Whether the lifecycle manager gets the transition of that number, and the state then.
+fn change(robot: &mut Robot, id: u8) -> (bool, String) {
+    let done = ask(
+        robot,
+        "amcl/change_state",
+        json!({ "transition": { "id": id } }),
+    );
+    (done["success"].as_bool().unwrap(), state(robot))
+}
+
+fn state(robot: &mut Robot) -> String {
+    let state = ask(robot, "amcl/get_state", json!({}));
+    state["current_state"]["label"].as_str().unwrap().to_owned()
+}
+
+/// All that was said up to now.
+fn until_now(robot: &mut Robot) -> Vec<Value> {
+    robot.order("mark", json!({}));
+    let mut all = Vec::new();
+    loop {
+        let said = robot.receive();
+        if said["event"] == "mark" {
+            return all;
+        }
+        all.push(said);
+    }
+}
+
+fn planar(value: &Value) -> Pose {
+    let of = |index: usize| value[index].as_f64().unwrap();
+    Pose::new(of(0), of(1), of(2))
+}
+
+#[test]
+fn nav2_starts_us_in_amcls_place_and_gets_a_pose_with_no_click() {
+    let file = parameters("nav2.yaml");
+    let options = ["--as", "amcl", "--params-file", file.to_str().unwrap()];
+    let Some(mut joined) = Joined::new("ros-nav2", "/", &options) else {
+        return;
+    };
+    let mut nodes = engine(&joined.graph);
+    let tracker = executables::path("tracker");
+    let tracker = NodeProcess::start(tracker.to_str().unwrap(), &joined.graph, [""; 0]);
+    nodes.push(tracker);
+    let graph = &joined.graph;
+    let poses = graph.subscriber::<topic::Tracked>().unwrap();
+    let hints = graph.subscriber::<topic::InitialPoseTopic>().unwrap();
+    let health = graph.subscriber::<topic::Health>().unwrap();
+    let robot = &mut joined.robot;
+    robot.order("follow", json!({}));
+
+    // The lifecycle manager's way.
+    assert_eq!(state(robot), "unconfigured");
+    assert_eq!(change(robot, 3), (false, "unconfigured".into()));
+    assert_eq!(change(robot, 1), (true, "inactive".into()));
+    let event = robot.wait_for("amcl/transition_event");
+    assert_eq!(event["goal_state"]["label"], "configuring");
+    robot.order("arrive", json!({}));
+    for node in [
+        "boundary_extractor",
+        "accumulator",
+        "peak_extractor",
+        "tracker",
+    ] {
+        wait_until_ready(graph, node);
+    }
+    assert_eq!(change(robot, 3), (true, "active".into()));
+    let bond = robot.wait_for("bond");
+    assert_eq!(
+        (&bond["id"], &bond["active"]),
+        (&json!("amcl"), &json!(true))
+    );
+    assert_eq!(bond["same"], true);
+
+    // It drives, and gets a pose.
+    let truths = Recording::open(World::of("malaga_corridor").recording()).unwrap();
+    let truths = truths.ground_truths().unwrap();
+    let odometry = recorded(Kind::Odometry);
+    let scans = scans();
+    let drive = |robot: &mut Robot, index: usize| -> bool {
+        robot.order("drive", json!({ "index": index }));
+        let stamp = scans[index].header.stamp.as_ns();
+        wait_for(graph, &poses, |header: &PoseHeader, _| {
+            let is_this = header.from_scan == 1 && header.stamp.measured_ns == stamp;
+            is_this.then(|| header.is_believed())
+        })
+    };
+    let (mut right, mut index) = (0, 0);
+    while right < 5 {
+        let is_believed = drive(robot, index);
+        let stamp = scans[index].header.stamp.as_ns();
+        if is_believed {
+            let pose = robot.wait_for("amcl_pose");
+            assert_eq!(
+                (&pose["stamp"], &pose["frame"]),
+                (&json!(stamp), &json!("map"))
+            );
+            assert_eq!(pose["same"], true);
+            // The laser is 0.78 m ahead of the base.
+            let mount = Pose::new(0.78, 0.0, 0.0);
+            let base = planar(&pose["pose"]);
+            let truth = truths[&stamp].pose;
+            assert!(
+                base.then(mount).is_within(truth, 0.2, 0.05),
+                "{base:?} {truth:?}"
+            );
+            // And so it is by the transforms.
+            let tf = loop {
+                let tf = robot.wait_for("tf");
+                if tf["stamp"] == stamp + 500_000_000 {
+                    break tf;
+                }
+            };
+            let Message::Odometry(odometry) = &odometry[index] else {
+                panic!("no odometry");
+            };
+            let odom_from_base = odometry.pose.pose.planar().unwrap();
+            let by_tf = planar(&tf["pose"]).then(odom_from_base).then(mount);
+            assert!(by_tf.is_within(truth, 0.2, 0.05), "{by_tf:?} {truth:?}");
+            right += 1;
+        }
+        index += 1;
+    }
+    // While it searched, and since.
+    let cloud = robot.wait_for("particle_cloud");
+    assert_eq!(cloud["same"], true);
+    let weight = cloud["weight"].as_f64().unwrap();
+    assert!(weight > 0.0 && weight <= 1.0 + 1e-9, "{weight}");
+    assert!(!cloud["poses"].as_array().unwrap().is_empty());
+    until_now(robot);
+
+    // Who joins later has the last pose at once.
+    robot.order("join", json!({ "name": "late" }));
+    let last = robot.wait_for("amcl_pose");
+    assert_eq!(last["stamp"], scans[index - 1].header.stamp.as_ns());
+
+    // A pose that somebody points at is a hint, in the map's frame alone.
+    let refused = |least: u64| {
+        wait_for_health(graph, &health, |report| {
+            report.node.as_str() == "ros2_gateway" && report.refused >= least
+        })
+    };
+    let before = refused(0).0.refused;
+    robot.order("point", json!({ "frame": "odom", "x": 1.0, "y": 2.0 }));
+    let (_, error) = refused(before + 1);
+    assert!(
+        error.contains("frame \"odom\": allowed is \"map\""),
+        "{error}"
+    );
+    let hint = |x: f64| {
+        wait_for(graph, &hints, |hint: &InitialPose, _| {
+            (hint.map_from_base.x == x).then_some(*hint)
+        })
+    };
+    robot.order("point", json!({ "frame": "map", "x": 1.0, "y": 2.0 }));
+    assert_eq!(hint(1.0).map_from_base.y, 2.0);
+    let pose = json!({ "pose": { "header": { "frame_id": "map" }, "pose": { "pose": {
+        "position": { "x": 7.0 }, "orientation": { "w": 1.0 } } } } });
+    ask(robot, "set_initial_pose", pose);
+    hint(7.0);
+    ask(robot, "request_nomotion_update", json!({}));
+    ask(robot, "reinitialize_global_localization", json!({}));
+
+    // Once it is not active, nothing is published.
+    assert_eq!(change(robot, 4), (true, "inactive".into()));
+    let ended = until_now(robot);
+    let last_bond = ended.iter().rfind(|said| said["event"] == "bond");
+    assert_eq!(last_bond.unwrap()["active"], false);
+    drive(robot, index);
+    // The pose came before these calls.
+    for _ in 0..2 {
+        assert_eq!(state(robot), "inactive");
+    }
+    let quiet = until_now(robot);
+    let events: Vec<&Value> = quiet.iter().map(|said| &said["event"]).collect();
+    let is_quiet = |event: &&Value| **event == "/diagnostics";
+    assert!(events.iter().all(is_quiet), "{events:?}");
+    assert_eq!(change(robot, 2), (true, "unconfigured".into()));
+    assert_eq!(change(robot, 5), (true, "finalized".into()));
+    nodes.into_iter().for_each(NodeProcess::stop);
+    joined.stop();
+}
+
+#[test]
+fn tools_find_amcl_with_its_names_types_and_parameters() {
+    let file = parameters("tools.yaml");
+    let options = [
+        "--as",
+        "amcl",
+        "--autostart",
+        "--params-file",
+        file.to_str().unwrap(),
+    ];
+    let Some(mut joined) = Joined::new("ros-tools", "/", &options) else {
+        return;
+    };
+    let robot = &mut joined.robot;
+    assert_eq!(state(robot), "active");
+    robot.order("endpoints", json!({ "node": "amcl" }));
+    let endpoints = robot.wait_for("endpoints");
+    assert_eq!(endpoints["wrong"], json!([]));
+    let services = [
+        "amcl/change_state",
+        "amcl/describe_parameters",
+        "amcl/get_available_states",
+        "amcl/get_available_transitions",
+        "amcl/get_parameter_types",
+        "amcl/get_parameters",
+        "amcl/get_state",
+        "amcl/get_transition_graph",
+        "amcl/list_parameters",
+        "amcl/set_parameters",
+        "amcl/set_parameters_atomically",
+        "reinitialize_global_localization",
+        "request_nomotion_update",
+        "set_initial_pose",
+    ];
+    let topics = [
+        "MP /amcl/transition_event ::,10:,:,:,,",
+        "MP /amcl_pose :1:,1:,:,:,,",
+        "MP /bond ::,10:,:,:,,",
+        "MP /diagnostics ::,10:,:,:,,",
+        "MP /particle_cloud 2::,5:,:,:,,",
+        "MP /tf ::,100:,:,:,,",
+        "MS /initialpose ::,10:,:,:,,",
+        "MS /map :1:,1:,:,:,,",
+        "MS /scan 2::,5:,:,:,,",
+        "MS /tf ::,100:,:,:,,",
+        "MS /tf_static :1:,100:,:,:,,",
+    ];
+    let services = services
+        .iter()
+        .map(|name| format!("SS /{name} ::,10:,:,:,,"));
+    let expected: Vec<String> = topics
+        .iter()
+        .map(|topic| (*topic).to_owned())
+        .chain(services)
+        .collect();
+    assert_eq!(endpoints["found"], json!(expected));
+
+    let states = ask(robot, "amcl/get_available_states", json!({}));
+    assert_eq!(states["available_states"].as_array().unwrap().len(), 11);
+    let graph = ask(robot, "amcl/get_transition_graph", json!({}));
+    assert_eq!(graph["available_transitions"].as_array().unwrap().len(), 25);
+    let here = ask(robot, "amcl/get_available_transitions", json!({}));
+    let label = |index: usize| &here["available_transitions"][index]["transition"]["label"];
+    assert_eq!(
+        (label(0), label(1)),
+        (&json!("deactivate"), &json!("shutdown"))
+    );
+
+    // ros2 param list, get, describe and set.
+    let listed = ask(
+        robot,
+        "amcl/list_parameters",
+        json!({ "prefixes": ["initial_pose"] }),
+    );
+    assert_eq!(listed["result"]["prefixes"], json!(["initial_pose"]));
+    assert_eq!(listed["result"]["names"].as_array().unwrap().len(), 4);
+    let names = json!({ "names": ["transform_tolerance", "scan_topic", "none"] });
+    let got = ask(robot, "amcl/get_parameters", names.clone());
+    assert_eq!(got["values"][0]["double_value"], 0.5);
+    assert_eq!(got["values"][1]["string_value"], "scan");
+    let types = ask(robot, "amcl/get_parameter_types", names.clone());
+    assert_eq!(types["types"], json!([3, 4, 0]));
+    let described = ask(robot, "amcl/describe_parameters", names);
+    let [first, second] = [0, 1].map(|index| &described["descriptors"][index]);
+    assert_eq!(first["floating_point_range"][0]["to_value"], 10.0);
+    assert_eq!(
+        (&first["read_only"], &second["read_only"]),
+        (&json!(false), &json!(true))
+    );
+    let value = |name: &str, number: f64| json!({ "name": name, "value": { "type": 3, "double_value": number } });
+    let text = json!({ "name": "scan_topic", "value": { "type": 4, "string_value": "other" } });
+    let values =
+        json!({ "parameters": [value("transform_tolerance", 0.25), text, value("z_hit", 0.4)] });
+    let results = ask(robot, "amcl/set_parameters", values.clone());
+    let result = |index: usize| &results["results"][index];
+    assert_eq!(result(0), &json!({ "successful": true, "reason": "" }));
+    assert_eq!(result(1)["successful"], false);
+    let reason = result(1)["reason"].as_str().unwrap();
+    assert!(
+        reason.starts_with("scan_topic cannot change while the node runs"),
+        "{reason}"
+    );
+    let reason = result(2)["reason"].as_str().unwrap();
+    assert!(reason.starts_with("it has no meaning here"), "{reason}");
+    let together = ask(robot, "amcl/set_parameters_atomically", values);
+    assert_eq!(together["result"]["successful"], false);
+    let names = json!({ "names": ["transform_tolerance"] });
+    let got = ask(robot, "amcl/get_parameters", names);
+    assert_eq!(got["values"][0]["double_value"], 0.25);
+    joined.stop();
+}
