@@ -6,10 +6,12 @@
 #     robot.py nav2.py ENDPOINT RECORDING NAMESPACE
 
 import dataclasses
+import re
 
 import numpy
 from rosbags.interfaces import Nodetype
 from rosbags.typesys import get_types_from_msg
+from zenoh_ros2_sdk import utils
 
 # What rosbags does not bring.
 DEFINITIONS = {
@@ -90,8 +92,19 @@ SERVICES = {
     "request_nomotion_update": (SERVICE, EMPTY, EMPTY),
     "reinitialize_global_localization": (SERVICE, EMPTY, EMPTY),
 }
-# Its definition has bounded lists of types, which zenoh_ros2_sdk cannot read.
-UNHASHED = "amcl/describe_parameters"
+
+
+def parse(text, unbounded=utils._parse_msg_definition):
+    """Fields with bounded lists of any type; the library reads those of texts alone."""
+    bounds = {name: int(most) for most, name in re.findall(r"\[<=(\d+)\]\s+(\w+)", text)}
+    fields = unbounded(re.sub(r"\[<=\d+\]", "[]", text))
+    for field in fields:
+        if most := bounds.get(field["name"]):
+            field |= {"is_bounded": True, "array_size": most}
+    return fields
+
+
+utils._parse_msg_definition = parse
 
 
 def register():
@@ -114,9 +127,7 @@ def part_of(service, part):
 
 
 def service_hash(service):
-    """As a client has it in its keys; any where the library cannot say."""
-    if service == UNHASHED:
-        return "*"
+    """As a client has it in its keys."""
     name, request, response = SERVICES[service]
     parts = dict(TIME)
     for part in ["Request", "Response"]:
@@ -289,7 +300,7 @@ class Nav2(Robot):
                 expected = [ros2_to_dds_type(TYPES[name]), STORE.hash_rihs01(TYPES[name])]
             else:
                 expected = [None, None]
-            if parts[10] != expected[0] or expected[1] not in ["*", parts[11]]:
+            if parts[10] != expected[0] or expected[1] != parts[11]:
                 wrong.append(parts)
         say(event="endpoints", found=sorted(found), wrong=wrong)
 

@@ -203,5 +203,4 @@ impl Frames {
 }
 
 #[cfg(test)]
-#[path = "frames_tests.rs"]
 mod tests;

@@ -35,6 +35,7 @@ pub fn run(graph: &Graph, config: &Config) -> Result<(), GatewayError> {
 
 /// Gives the robot's particle filter its initial pose.
 fn seed(graph: &Graph, config: &Config) -> Result<(), GatewayError> {
+    config.amcl.check()?;
     let topics = Topics::of(config)?;
     // What is wrong with options is said before anything is opened.
     let (domain, mounts) = (config.domain()?, config.mounts()?);

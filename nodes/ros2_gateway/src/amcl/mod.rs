@@ -53,6 +53,23 @@ pub struct Options {
     pub autostart: bool,
 }
 
+impl Options {
+    /// Refuses what counts in AMCL's place alone.
+    pub(crate) fn check(&self) -> Result<(), GatewayError> {
+        let given = [
+            (self.params_file.is_some(), "params-file"),
+            (self.autostart, "autostart"),
+        ];
+        match given.into_iter().find(|(is_given, _)| *is_given) {
+            Some((_, option)) if self.role != Role::Amcl => Err(GatewayError::Option {
+                option,
+                reason: "allowed with --as amcl".to_owned(),
+            }),
+            _ => Ok(()),
+        }
+    }
+}
+
 /// What the gateway is to the robot.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]
 pub enum Role {
@@ -135,4 +152,49 @@ fn applied(config: &Config, parameters: &Parameters) -> Config {
         names.map = parameters.text("map_topic").to_owned();
     }
     config
+}
+
+#[cfg(test)]
+mod tests {
+    use clap::Parser;
+
+    use super::*;
+
+    #[test]
+    fn options_of_amcls_place_are_refused_elsewhere() {
+        let parse = |words: &[&str]| Config::parse_from(["ros2_gateway"].iter().chain(words));
+        for words in [&["--autostart"][..], &["--params-file", "a"]] {
+            let error = parse(words).amcl.check().unwrap_err().to_string();
+            assert_eq!(error, format!("{}: allowed with --as amcl", words[0]));
+            let with = [words, &["--as", "amcl"]].concat();
+            parse(&with).amcl.check().unwrap();
+        }
+    }
+
+    #[test]
+    fn parameters_name_frames_and_topics_where_no_option_does() {
+        let mut parameters = Parameters::default();
+        for (name, value) in [
+            ("scan_topic", "front"),
+            ("odom_frame_id", "o"),
+            ("map_topic", "m"),
+        ] {
+            let value = parameters::Value::Text(value.to_owned());
+            assert_eq!(parameters.load(name, value).unwrap(), None);
+        }
+        let config = Config::parse_from(["ros2_gateway", "--as", "amcl"]);
+        assert_eq!(config.node(), "amcl");
+        let found = applied(&config, &parameters);
+        assert_eq!(
+            (found.names.scans, &*found.names.map),
+            (vec!["front".to_owned()], "m")
+        );
+        assert_eq!(
+            (&*found.odom_frame, found.map_frame.as_deref()),
+            ("o", Some("map"))
+        );
+        let words = ["ros2_gateway", "--as", "amcl", "--scan", "a", "--scan", "b"];
+        let config = Config::parse_from(words);
+        assert_eq!(applied(&config, &parameters).names.scans, ["a", "b"]);
+    }
 }

@@ -306,5 +306,4 @@ impl TryFrom<&ParameterValue> for Value {
 }
 
 #[cfg(test)]
-#[path = "parameters_tests.rs"]
 mod tests;

@@ -188,5 +188,4 @@ fn kind(json: &Json) -> &'static str {
 }
 
 #[cfg(test)]
-#[path = "params_file_tests.rs"]
 mod tests;

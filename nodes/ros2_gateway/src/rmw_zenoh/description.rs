@@ -212,7 +212,7 @@ fn primitive(kind: &str) -> Option<u8> {
 #[cfg(test)]
 mod tests {
     use ros::lifecycle_msgs::{ChangeState, TransitionEvent};
-    use ros::nav2_msgs::ParticleCloud;
+    use ros::nav2_msgs::{ParticleCloud, SetInitialPose};
     use ros::rcl_interfaces::{DescribeParameters, GetParameters};
     use ros::{
         BondStatus, DiagnosticArray, LaserScan, OccupancyGridMsg, Odometry, PoseArray,
@@ -327,6 +327,16 @@ mod tests {
             of::<GetParameters>(),
             "rcl_interfaces::srv::dds_::GetParameters_",
             "bf9803d5c74cf989a5de3e0c2e99444599a627c7ff75f97b8c05b01003675cbc",
+        );
+        check(
+            of::<DescribeParameters>(),
+            "rcl_interfaces::srv::dds_::DescribeParameters_",
+            "845b484d71eb0673dae682f2e3ba3c4851a65a3dcfb97bddd82c5b57e91e4cff",
+        );
+        check(
+            of::<SetInitialPose>(),
+            "nav2_msgs::srv::dds_::SetInitialPose_",
+            "1f818551d505d16d89c8bf9b07121a6408de4408b7889dfda9a0db326c296153",
         );
     }
 

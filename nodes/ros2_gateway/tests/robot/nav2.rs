@@ -31,7 +31,7 @@ fn parameters(name: &str) -> PathBuf {
 }
 
 /// What a service answers.
-fn ask(robot: &mut Robot, service: &str, request: Value) -> Value {
+fn ask(robot: &mut Robot, service: &str, request: &Value) -> Value {
     robot.order("ask", json!({ "service": service, "request": request }));
     let said = robot.wait_for("answer");
     assert_eq!(said["service"], service);
@@ -44,13 +44,13 @@ fn change(robot: &mut Robot, id: u8) -> (bool, String) {
     let done = ask(
         robot,
         "amcl/change_state",
-        json!({ "transition": { "id": id } }),
+        &json!({ "transition": { "id": id } }),
     );
     (done["success"].as_bool().unwrap(), state(robot))
 }
 
 fn state(robot: &mut Robot) -> String {
-    let state = ask(robot, "amcl/get_state", json!({}));
+    let state = ask(robot, "amcl/get_state", &json!({}));
     state["current_state"]["label"].as_str().unwrap().to_owned()
 }
 
@@ -197,10 +197,10 @@ fn nav2_starts_us_in_amcls_place_and_gets_a_pose_with_no_click() {
     assert_eq!(hint(1.0).map_from_base.y, 2.0);
     let pose = json!({ "pose": { "header": { "frame_id": "map" }, "pose": { "pose": {
         "position": { "x": 7.0 }, "orientation": { "w": 1.0 } } } } });
-    ask(robot, "set_initial_pose", pose);
+    ask(robot, "set_initial_pose", &pose);
     hint(7.0);
-    ask(robot, "request_nomotion_update", json!({}));
-    ask(robot, "reinitialize_global_localization", json!({}));
+    ask(robot, "request_nomotion_update", &json!({}));
+    ask(robot, "reinitialize_global_localization", &json!({}));
 
     // Once it is not active, nothing is published.
     assert_eq!(change(robot, 4), (true, "inactive".into()));
@@ -279,11 +279,11 @@ fn tools_find_amcl_with_its_names_types_and_parameters() {
         .collect();
     assert_eq!(endpoints["found"], json!(expected));
 
-    let states = ask(robot, "amcl/get_available_states", json!({}));
+    let states = ask(robot, "amcl/get_available_states", &json!({}));
     assert_eq!(states["available_states"].as_array().unwrap().len(), 11);
-    let graph = ask(robot, "amcl/get_transition_graph", json!({}));
+    let graph = ask(robot, "amcl/get_transition_graph", &json!({}));
     assert_eq!(graph["available_transitions"].as_array().unwrap().len(), 25);
-    let here = ask(robot, "amcl/get_available_transitions", json!({}));
+    let here = ask(robot, "amcl/get_available_transitions", &json!({}));
     let label = |index: usize| &here["available_transitions"][index]["transition"]["label"];
     assert_eq!(
         (label(0), label(1)),
@@ -294,17 +294,17 @@ fn tools_find_amcl_with_its_names_types_and_parameters() {
     let listed = ask(
         robot,
         "amcl/list_parameters",
-        json!({ "prefixes": ["initial_pose"] }),
+        &json!({ "prefixes": ["initial_pose"] }),
     );
     assert_eq!(listed["result"]["prefixes"], json!(["initial_pose"]));
     assert_eq!(listed["result"]["names"].as_array().unwrap().len(), 4);
     let names = json!({ "names": ["transform_tolerance", "scan_topic", "none"] });
-    let got = ask(robot, "amcl/get_parameters", names.clone());
+    let got = ask(robot, "amcl/get_parameters", &names);
     assert_eq!(got["values"][0]["double_value"], 0.5);
     assert_eq!(got["values"][1]["string_value"], "scan");
-    let types = ask(robot, "amcl/get_parameter_types", names.clone());
+    let types = ask(robot, "amcl/get_parameter_types", &names);
     assert_eq!(types["types"], json!([3, 4, 0]));
-    let described = ask(robot, "amcl/describe_parameters", names);
+    let described = ask(robot, "amcl/describe_parameters", &names);
     let [first, second] = [0, 1].map(|index| &described["descriptors"][index]);
     assert_eq!(first["floating_point_range"][0]["to_value"], 10.0);
     assert_eq!(
@@ -315,7 +315,7 @@ fn tools_find_amcl_with_its_names_types_and_parameters() {
     let text = json!({ "name": "scan_topic", "value": { "type": 4, "string_value": "other" } });
     let values =
         json!({ "parameters": [value("transform_tolerance", 0.25), text, value("z_hit", 0.4)] });
-    let results = ask(robot, "amcl/set_parameters", values.clone());
+    let results = ask(robot, "amcl/set_parameters", &values);
     let result = |index: usize| &results["results"][index];
     assert_eq!(result(0), &json!({ "successful": true, "reason": "" }));
     assert_eq!(result(1)["successful"], false);
@@ -326,10 +326,10 @@ fn tools_find_amcl_with_its_names_types_and_parameters() {
     );
     let reason = result(2)["reason"].as_str().unwrap();
     assert!(reason.starts_with("it has no meaning here"), "{reason}");
-    let together = ask(robot, "amcl/set_parameters_atomically", values);
+    let together = ask(robot, "amcl/set_parameters_atomically", &values);
     assert_eq!(together["result"]["successful"], false);
     let names = json!({ "names": ["transform_tolerance"] });
-    let got = ask(robot, "amcl/get_parameters", names);
+    let got = ask(robot, "amcl/get_parameters", &names);
     assert_eq!(got["values"][0]["double_value"], 0.25);
     joined.stop();
 }
