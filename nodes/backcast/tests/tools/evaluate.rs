@@ -63,6 +63,7 @@ fn the_object_has_the_keys_of_the_contract() {
             "prepare_cpu_ms",
             "probabilities",
             "scans",
+            "schema",
             "searchable_cells",
             "success_20cm_3deg",
             "success_50cm_10deg",

@@ -68,7 +68,7 @@ fn what_cannot_be_meant_leaves_no_file() {
         ("--replay DRIVE --map nowhere.yaml", 1, "nowhere.yaml"),
         ("--replay DRIVE", 2, "--map is missing"),
         ("--replay DRIVE --map MAP --mount 1,2,3", 2, "/tf_static"),
-        ("--ros2 --mount 1,2", 2, "metres ahead"),
+        ("--ros2 --mount 1,2", 2, "X,Y,YAW_DEG"),
     ] {
         let (found, stdout, stderr) = init(folder.path(), options);
         assert_eq!((found, stdout.as_str()), (code, ""), "{options}: {stderr}");

@@ -126,6 +126,7 @@ fn an_object_shows_votes_and_hypotheses() {
             "particles",
             "refused",
             "says",
+            "schema",
             "stamp_ns",
             "verdict",
             "votes"

@@ -82,6 +82,7 @@ fn info_lists_what_is_there() {
         "messages",
         "metadata",
         "recording",
+        "schema",
         "taken",
         "unclear",
     ];
