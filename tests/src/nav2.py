@@ -264,10 +264,15 @@ class Nav2(Robot):
         )
         self.sequence[service] = self.sequence.get(service, 0) + 1
         attachment = Attachment(self.sequence[service], time.time_ns(), b"0123456789abcdef")
-        replies = self.session.get(
+        querier = self.session.declare_querier(
             key,
             target=zenoh.QueryTarget.ALL_COMPLETE,
             consolidation=zenoh.ConsolidationMode.NONE,
+        )
+        # Clients of ROS wait for their service, too.
+        while not querier.matching_status.matching:
+            time.sleep(0.01)
+        replies = querier.get(
             payload=bytes(STORE.serialize_cdr(message, asked)),
             attachment=attachment.to_bytes(),
         )
@@ -280,6 +285,7 @@ class Nav2(Robot):
             response = STORE.deserialize_cdr(data, answered)
             same = bytes(STORE.serialize_cdr(response, answered)) == data
             say(event="answer", service=service, same=same, response=plain(response))
+        querier.undeclare()
         if response is None:
             say(event="failed", error=f"nobody answers {key}")
 

@@ -12,7 +12,8 @@ use std::collections::{BTreeMap, BTreeSet};
 use std::path::{Component, Path, PathBuf};
 use std::process::Command;
 
-use syn::{Attribute, Fields, Item, ItemStruct, LitStr};
+use syn::punctuated::Punctuated;
+use syn::{Attribute, Fields, Item, ItemStruct, LitStr, Meta, Token};
 use tests::help::{Help, Tables, exit_codes};
 use tests::{executables, markdown, root};
 
@@ -272,16 +273,23 @@ fn structs(file: &str) -> Vec<ItemStruct> {
     structs.collect()
 }
 
-/// The text of an attribute, as `#[type_name("Scan/v1")]` or `#[serde(rename = "type")]`.
-fn text_of(attributes: &[Attribute], name: &str, key: Option<&str>) -> Option<String> {
-    let attribute = attributes.iter().find(|a| a.path().is_ident(name))?;
-    let Some(key) = key else {
-        return Some(attribute.parse_args::<LitStr>().ok()?.value());
-    };
+/// The versioned name of a message, as `type_name("Scan/v1")` beside its derivation.
+fn type_name(item: &ItemStruct) -> Option<String> {
+    let attribute = item.attrs.iter().find(|a| a.path().is_ident("cfg_attr"))?;
+    let parts = attribute.parse_args_with(Punctuated::<Meta, Token![,]>::parse_terminated);
+    let parts = parts.ok()?.into_iter();
+    let mut lists = parts.filter_map(|part| part.require_list().ok().cloned());
+    let named = lists.find(|list| list.path.is_ident("type_name"))?;
+    Some(named.parse_args::<LitStr>().ok()?.value())
+}
+
+/// The name that serde gives a field, as `#[serde(rename = "type")]`.
+fn renamed(attributes: &[Attribute]) -> Option<String> {
+    let attribute = attributes.iter().find(|a| a.path().is_ident("serde"))?;
     let mut found = None;
-    // What is not `key = "text"` has no text to be found.
+    // What is not `rename = "text"` has no text to be found.
     let _ = attribute.parse_nested_meta(|meta| {
-        if meta.path.is_ident(key) {
+        if meta.path.is_ident("rename") {
             let text: LitStr = meta.value()?.parse()?;
             found = Some(text.value());
         }
@@ -312,8 +320,7 @@ fn fields(item: &ItemStruct) -> Vec<String> {
     let sent = fields.named.iter();
     let sent = sent.filter(|f| !has_word(&f.attrs, "flatten") && !has_word(&f.attrs, "skip"));
     sent.map(|field| {
-        let renamed = text_of(&field.attrs, "serde", Some("rename"));
-        renamed.unwrap_or_else(|| field.ident.as_ref().unwrap().to_string())
+        renamed(&field.attrs).unwrap_or_else(|| field.ident.as_ref().unwrap().to_string())
     })
     .collect()
 }
@@ -332,7 +339,7 @@ fn every_message_has_its_table() {
     for entry in std::fs::read_dir(root().join("common/messages/src")).unwrap() {
         let file = entry.unwrap().file_name().into_string().unwrap();
         for item in structs(&format!("common/messages/src/{file}")) {
-            let Some(name) = text_of(&item.attrs, "type_name", None) else {
+            let Some(name) = type_name(&item) else {
                 continue;
             };
             let found = markdown::first_cells(&text, &format!("`{name}`"));

@@ -154,7 +154,10 @@ fn evo_finds_the_same_errors_of_a_trajectory() {
     let once = ["--starts", "1", "--kidnaps", "0", "--trajectories", written];
     let options = [&once[..], &["--map", map.to_str().unwrap()]].concat();
     let ours = &figures(&world.recording(), &options)["from_first_scan"];
-    let script = concat!(env!("CARGO_MANIFEST_DIR"), "/tests/localization/evo.py");
+    let script = concat!(
+        env!("CARGO_MANIFEST_DIR"),
+        "/tests/localization/trajectory_errors.py"
+    );
     let files = ["recording_truth.tum", "recording.tum"].map(|file| folder.path().join(file));
     let theirs = tests::json_of(Command::new(python).arg(script).args(files));
     assert!(theirs["poses"].as_u64().unwrap() > 100, "{theirs}");

@@ -1,4 +1,4 @@
-"""Errors of a trajectory by evo: evo.py TRUTH FOUND, both in the TUM format."""
+"""Errors of a trajectory by evo: trajectory_errors.py TRUTH FOUND, both in the TUM format."""
 
 import json
 import sys
