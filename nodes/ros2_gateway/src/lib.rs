@@ -13,6 +13,7 @@
 mod amcl;
 mod checks;
 mod config;
+mod diagnostics;
 mod error;
 mod frames;
 mod incoming;

@@ -1,18 +1,14 @@
 //! From the graph to the robot.
 
 use geometry::Pose;
-use messages::{
-    HealthHeader, HypothesesHeader, Hypothesis, PoseHeader, Stamp, TrackState, Verdict,
-};
-use ros::{
-    DiagnosticArray, Header, PoseArray, PoseWithCovarianceStamped, TfMessage, Time,
-    TransformStamped,
-};
-use transport::{TransportError, monotonic_ns, wall_ns};
+use messages::{HypothesesHeader, Hypothesis, PoseHeader, Stamp, TrackState, Verdict};
+use ros::{Header, PoseArray, PoseWithCovarianceStamped, TfMessage, Time, TransformStamped};
+use transport::TransportError;
 use zenoh_session::Report;
 
 use crate::GatewayError;
 use crate::config::{Config, Reach};
+use crate::diagnostics::Diagnostics;
 use crate::frames::Frames;
 use crate::rmw_zenoh::{Member, Publisher};
 use crate::seeding::{Answer, Reason, Seeding};
@@ -26,7 +22,7 @@ const LIKELY: f32 = 0.01;
 pub(crate) struct Outgoing {
     initial_pose: Publisher<PoseWithCovarianceStamped>,
     hypotheses: Publisher<PoseArray>,
-    diagnostics: Publisher<DiagnosticArray>,
+    pub(crate) diagnostics: Diagnostics,
     /// None where the user does not want it.
     transforms: Option<Publisher<TfMessage>>,
     ahead_ns: i64,
@@ -35,8 +31,6 @@ pub(crate) struct Outgoing {
     map_from_odom: Option<(Pose, String)>,
     /// Whether there is a tracker, which then provides the pose.
     is_tracked: bool,
-    /// The newest scan: where the robot's clock meets the host's.
-    newest: Option<Stamp>,
 }
 
 impl Outgoing {
@@ -51,13 +45,12 @@ impl Outgoing {
         Ok(Outgoing {
             initial_pose: Publisher::open_blocking(member, &topics.initial_pose, 1)?,
             hypotheses: Publisher::open(member, &topics.hypotheses, 10)?,
-            diagnostics: Publisher::open(member, &topics.diagnostics, 10)?,
+            diagnostics: Diagnostics::open(member, &topics.diagnostics)?,
             transforms: transforms.transpose()?,
             ahead_ns: (config.tf_ahead * 1e9) as i64,
             spread: config.spread,
             map_from_odom: None,
             is_tracked: false,
-            newest: None,
         })
     }
 
@@ -71,7 +64,7 @@ impl Outgoing {
         seeding: &mut Seeding,
         report: &mut Report,
     ) -> Result<(), TransportError> {
-        self.newest = Some(header.stamp);
+        self.diagnostics.on_scan(header.stamp);
         let answer = answer(header, items);
         let reason = match self.is_tracked {
             true => None,
@@ -107,7 +100,7 @@ impl Outgoing {
         {
             self.map_from_odom = frames.map_from_odom(header, best);
         }
-        self.broadcast(header.stamp, in_map, report)
+        self.broadcast(header.stamp, map_frame, report)
     }
 
     /// Sends the robot the tracker's pose at a scan.
@@ -122,7 +115,7 @@ impl Outgoing {
         if header.from_scan != 1 {
             return Ok(());
         }
-        self.newest = Some(header.stamp);
+        self.diagnostics.on_scan(header.stamp);
         let reason = seeding.on_answer(tracked(header));
         let outcome = self.show_tracked(header, map_frame, reason, report);
         outcome.or_else(|error| report.refused(&error))
@@ -145,7 +138,7 @@ impl Outgoing {
             let odom = header.odom_frame.as_str().to_owned();
             (header.map_from_odom.into(), odom)
         });
-        self.broadcast(header.stamp, in_map, report)
+        self.broadcast(header.stamp, map_frame, report)
     }
 
     fn seed(
@@ -166,53 +159,17 @@ impl Outgoing {
     fn broadcast(
         &mut self,
         of: Stamp,
-        in_map: Header,
+        map_frame: &str,
         report: &mut Report,
     ) -> Result<(), GatewayError> {
         let (Some(transforms), Some((pose, odom))) = (&mut self.transforms, &self.map_from_odom)
         else {
             return Ok(());
         };
-        let transform = TransformStamped {
-            header: Header {
-                stamp: stamp(of.measured_ns.saturating_add(self.ahead_ns))?,
-                ..in_map
-            },
-            child_frame_id: odom.clone(),
-            transform: ros::planar::transform(*pose),
-        };
-        transforms.send(&TfMessage {
-            transforms: vec![transform],
-        })?;
+        let at_ns = of.measured_ns.saturating_add(self.ahead_ns);
+        transforms.send(&transform(at_ns, map_frame, odom, *pose)?)?;
         report.sent();
         Ok(())
-    }
-
-    /// Sends the robot the state of a node.
-    pub(crate) fn health(
-        &mut self,
-        health: &HealthHeader,
-        error: &[u8],
-        report: &mut Report,
-    ) -> Result<(), TransportError> {
-        let error = String::from_utf8_lossy(error);
-        let outcome = stamp(self.clock_ns()).and_then(|now| {
-            let message = ros::diagnostics::of(now, health, &error);
-            self.diagnostics.send(&message)
-        });
-        match outcome {
-            Ok(()) => report.sent(),
-            Err(error) => report.refused(&error)?,
-        }
-        Ok(())
-    }
-
-    /// The robot's clock: as its scans are dated, else the host's.
-    fn clock_ns(&self) -> i64 {
-        self.newest.map_or_else(wall_ns, |newest| {
-            let since_ns = monotonic_ns().saturating_sub(newest.entered_ns).max(0);
-            newest.measured_ns.saturating_add(since_ns)
-        })
     }
 }
 
@@ -264,6 +221,26 @@ pub(crate) fn in_map(of: Stamp, map_frame: &str) -> Result<Header, GatewayError>
     Ok(Header {
         stamp: stamp(of.measured_ns)?,
         frame_id: map_frame.to_owned(),
+    })
+}
+
+/// The transform from the map to the odometry, `at_ns`.
+pub(crate) fn transform(
+    at_ns: i64,
+    map_frame: &str,
+    odom: &str,
+    map_from_odom: Pose,
+) -> Result<TfMessage, GatewayError> {
+    let transform = TransformStamped {
+        header: Header {
+            stamp: stamp(at_ns)?,
+            frame_id: map_frame.to_owned(),
+        },
+        child_frame_id: odom.to_owned(),
+        transform: ros::planar::transform(map_from_odom),
+    };
+    Ok(TfMessage {
+        transforms: vec![transform],
     })
 }
 

@@ -122,8 +122,8 @@ impl Gateway {
                 .tracked(header, map_frame, &mut self.seeding, report)?;
         }
         while let Some(sample) = health.receive()? {
-            self.outgoing
-                .health(sample.header(), sample.items(), report)?;
+            let diagnostics = &mut self.outgoing.diagnostics;
+            diagnostics.health(sample.header(), sample.items(), report)?;
         }
         Ok(())
     }
@@ -145,15 +145,10 @@ impl Gateway {
 
     /// Who asked.
     fn serve(&mut self, report: &mut Report) -> Result<(), TransportError> {
-        while let Some(outcome) = self.service.next(|_| Nothing::default()) {
-            report.received();
-            match outcome {
-                Ok(()) => {
-                    tracing::info!("initial pose requested");
-                    self.seeding.ask();
-                }
-                Err(error) => report.refused(&error)?,
-            }
+        let answered = self.service.serve(report, |_| Nothing::default())?;
+        if answered > 0 {
+            tracing::info!("initial pose requested");
+            self.seeding.ask();
         }
         Ok(())
     }

@@ -9,7 +9,6 @@ use zenoh_session::Report;
 
 use super::bond::Bond;
 use super::hint;
-use super::life::count;
 use super::lifecycle::Change;
 use super::outgoing::Outgoing;
 use super::parameters::Parameters;
@@ -200,7 +199,7 @@ impl<'a> Body<'a> {
     }
 }
 
-/// Leaves unread what nobody is to be told.
+/// Passes over what is sent to nobody.
 fn drain(said: &Said) -> Result<(), TransportError> {
     while said.hypotheses.receive()?.is_some() {}
     while said.poses.receive()?.is_some() {}
@@ -271,32 +270,28 @@ impl Parts {
         report: &mut Report,
     ) -> Result<(), TransportError> {
         let frames = &self.frames;
-        let mut wrong = None;
-        while let Some(outcome) = self.set_initial_pose.next(|request| {
+        let mut wrong = Vec::new();
+        self.set_initial_pose.serve(report, |request| {
             match hint::of_message(&request.pose, map_frame, |ns| frames.moved_since(ns)) {
                 Ok(found) => *hint = Some(found),
                 // The response has no room for it.
-                Err(error) => wrong = Some(error),
+                Err(error) => wrong.push(error),
             }
             Nothing::default()
-        }) {
-            count(outcome, report)?;
-            if let Some(error) = wrong.take() {
-                report.refused(&error)?;
-            }
+        })?;
+        for error in wrong {
+            report.refused(&error)?;
         }
-        while let Some(outcome) = self.nomotion.next(|_| Nothing::default()) {
-            // Each scan is an update, also while the robot stands.
-            count(outcome, report)?;
-        }
-        while let Some(outcome) = self.reinitialize.next(|_| Nothing::default()) {
+        // Each scan is an update, also while the robot stands.
+        self.nomotion.serve(report, |_| Nothing::default())?;
+        self.reinitialize.serve(report, |_| {
             tracing::info!(
                 "asked to localize from anywhere: the tracker searches by itself whenever scans \
                  speak against its pose, and keeps the pose while they fit"
             );
             *hint = None;
-            count(outcome, report)?;
-        }
+            Nothing::default()
+        })?;
         Ok(())
     }
 
@@ -336,7 +331,8 @@ impl Parts {
             outgoing.found(sample.header(), sample.items(), map_frame, report)?;
         }
         while let Some(sample) = said.health.receive()? {
-            outgoing.health(sample.header(), sample.items(), report)?;
+            let diagnostics = &mut outgoing.diagnostics;
+            diagnostics.health(sample.header(), sample.items(), report)?;
         }
         outgoing.tick(map_frame, parameters, report)
     }

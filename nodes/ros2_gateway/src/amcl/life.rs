@@ -54,7 +54,7 @@ impl Life {
             graph,
             events,
         } = self;
-        while let Some(outcome) = change.next(|request| {
+        change.serve(report, |request| {
             let success = match lifecycle.asked(&request.transition) {
                 Ok(change) => turn(lifecycle, events, change, &mut act),
                 Err(reason) => {
@@ -63,30 +63,20 @@ impl Life {
                 }
             };
             ChangeStateResponse { success }
-        }) {
-            count(outcome, report)?;
-        }
+        })?;
         let current_state = || lifecycle.state();
-        while let Some(outcome) = state.next(|_| GetStateResponse {
+        state.serve(report, |_| GetStateResponse {
             current_state: current_state(),
-        }) {
-            count(outcome, report)?;
-        }
-        while let Some(outcome) = states.next(|_| GetAvailableStatesResponse {
+        })?;
+        states.serve(report, |_| GetAvailableStatesResponse {
             available_states: lifecycle::states(),
-        }) {
-            count(outcome, report)?;
-        }
-        while let Some(outcome) = transitions.next(|_| GetAvailableTransitionsResponse {
+        })?;
+        transitions.serve(report, |_| GetAvailableTransitionsResponse {
             available_transitions: lifecycle.available(),
-        }) {
-            count(outcome, report)?;
-        }
-        while let Some(outcome) = graph.next(|_| GetAvailableTransitionsResponse {
+        })?;
+        graph.serve(report, |_| GetAvailableTransitionsResponse {
             available_transitions: lifecycle::graph(),
-        }) {
-            count(outcome, report)?;
-        }
+        })?;
         Ok(())
     }
 
@@ -113,13 +103,4 @@ fn turn(
     }
     tracing::info!(is_done, state = lifecycle.state().label, "{change:?}");
     is_done
-}
-
-/// Counts a call.
-pub(super) fn count(
-    outcome: Result<(), GatewayError>,
-    report: &mut Report,
-) -> Result<(), TransportError> {
-    report.received();
-    outcome.or_else(|error| report.refused(&error))
 }

@@ -2,17 +2,18 @@
 //! odometry.
 
 use geometry::Pose;
-use messages::{HealthHeader, HypothesesHeader, Hypothesis, PoseHeader, Stamp};
+use messages::{HypothesesHeader, Hypothesis, PoseHeader};
 use ros::nav2_msgs::ParticleCloud;
-use ros::{DiagnosticArray, Header, PoseWithCovarianceStamped, TfMessage, TransformStamped};
-use transport::{TransportError, monotonic_ns, wall_ns};
+use ros::{PoseWithCovarianceStamped, TfMessage};
+use transport::{TransportError, monotonic_ns};
 use zenoh_session::Report;
 
 use super::cloud;
 use super::parameters::Parameters;
 use super::standing::Standing;
 use crate::GatewayError;
-use crate::outgoing::{in_map, stamp};
+use crate::diagnostics::Diagnostics;
+use crate::outgoing::{in_map, transform};
 use crate::rmw_zenoh::{Member, Publisher};
 use crate::topics::Topics;
 
@@ -21,12 +22,10 @@ pub(super) struct Outgoing {
     pose: Publisher<PoseWithCovarianceStamped>,
     cloud: Publisher<ParticleCloud>,
     transforms: Publisher<TfMessage>,
-    diagnostics: Publisher<DiagnosticArray>,
+    pub(super) diagnostics: Diagnostics,
     standing: Standing,
     /// Whether the tracker believes a pose.
     is_believed: bool,
-    /// The newest scan: where the robot's clock meets the host's.
-    newest: Option<Stamp>,
 }
 
 impl Outgoing {
@@ -35,10 +34,9 @@ impl Outgoing {
             pose: Publisher::open_kept(member, &topics.amcl_pose, 1)?,
             cloud: Publisher::open_fresh(member, &topics.particle_cloud, 5)?,
             transforms: Publisher::open(member, &topics.tf, 100)?,
-            diagnostics: Publisher::open(member, &topics.diagnostics, 10)?,
+            diagnostics: Diagnostics::open(member, &topics.diagnostics)?,
             standing: Standing::default(),
             is_believed: false,
-            newest: None,
         })
     }
 
@@ -58,7 +56,7 @@ impl Outgoing {
         if header.from_scan != 1 {
             return Ok(());
         }
-        self.newest = Some(header.stamp);
+        self.diagnostics.on_scan(header.stamp);
         // The pose of a laser is not the robot's.
         self.is_believed = header.is_believed() && header.mount_known == 1;
         let is_tied = self.is_believed && header.odom_known == 1;
@@ -126,42 +124,9 @@ impl Outgoing {
             return Ok(());
         }
         let ahead_ns = (parameters.number("transform_tolerance") * 1e9) as i64;
-        let sent = stamp(due.at_ns.saturating_add(ahead_ns)).and_then(|stamp| {
-            let transform = TransformStamped {
-                header: Header {
-                    stamp,
-                    frame_id: map_frame.to_owned(),
-                },
-                child_frame_id: due.odom.to_owned(),
-                transform: ros::planar::transform(due.map_from_odom),
-            };
-            self.transforms.send(&TfMessage {
-                transforms: vec![transform],
-            })
-        });
-        match sent {
-            Ok(()) => report.sent(),
-            Err(error) => report.refused(&error)?,
-        }
-        Ok(())
-    }
-
-    /// Sends the state of a node of the graph, also while this one is not active.
-    pub(super) fn health(
-        &mut self,
-        health: &HealthHeader,
-        error: &[u8],
-        report: &mut Report,
-    ) -> Result<(), TransportError> {
-        let now_ns = self.newest.map_or_else(wall_ns, |newest| {
-            let since_ns = monotonic_ns().saturating_sub(newest.entered_ns).max(0);
-            newest.measured_ns.saturating_add(since_ns)
-        });
-        let error = String::from_utf8_lossy(error);
-        let sent = stamp(now_ns).and_then(|now| {
-            self.diagnostics
-                .send(&ros::diagnostics::of(now, health, &error))
-        });
+        let at_ns = due.at_ns.saturating_add(ahead_ns);
+        let sent = transform(at_ns, map_frame, due.odom, due.map_from_odom)
+            .and_then(|transform| self.transforms.send(&transform));
         match sent {
             Ok(()) => report.sent(),
             Err(error) => report.refused(&error)?,

@@ -8,7 +8,6 @@ use ros::rcl_interfaces::{
 use transport::{Graph, TransportError};
 use zenoh_session::Report;
 
-use super::life::count;
 use super::parameters::Parameters;
 use crate::GatewayError;
 use crate::rmw_zenoh::{Member, Service};
@@ -43,56 +42,46 @@ impl ParameterServices {
         parameters: &mut Parameters,
         report: &mut Report,
     ) -> Result<(), TransportError> {
-        while let Some(outcome) = self.describe.next(|request| DescribeParametersResponse {
-            descriptors: request
-                .names
-                .iter()
-                .map(|name| parameters.describe(name))
-                .collect(),
-        }) {
-            count(outcome, report)?;
-        }
-        while let Some(outcome) = self.get.next(|request| GetParametersResponse {
+        self.describe
+            .serve(report, |request| DescribeParametersResponse {
+                descriptors: request
+                    .names
+                    .iter()
+                    .map(|name| parameters.describe(name))
+                    .collect(),
+            })?;
+        self.get.serve(report, |request| GetParametersResponse {
             values: request
                 .names
                 .iter()
                 .map(|name| parameters.get(name))
                 .collect(),
-        }) {
-            count(outcome, report)?;
-        }
-        while let Some(outcome) = self.types.next(|request| GetParameterTypesResponse {
-            types: request
-                .names
-                .iter()
-                .map(|name| parameters.get(name).r#type)
-                .collect(),
-        }) {
-            count(outcome, report)?;
-        }
-        while let Some(outcome) = self.list.next(|request| ListParametersResponse {
+        })?;
+        self.types
+            .serve(report, |request| GetParameterTypesResponse {
+                types: request
+                    .names
+                    .iter()
+                    .map(|name| parameters.get(name).r#type)
+                    .collect(),
+            })?;
+        self.list.serve(report, |request| ListParametersResponse {
             result: parameters.list(&request.prefixes, request.depth),
-        }) {
-            count(outcome, report)?;
-        }
-        while let Some(outcome) = self.set.next(|request| SetParametersResponse {
+        })?;
+        self.set.serve(report, |request| SetParametersResponse {
             results: request
                 .parameters
                 .iter()
                 .map(|parameter| parameters.set(&parameter.name, &parameter.value))
                 .collect(),
-        }) {
-            count(outcome, report)?;
-        }
-        while let Some(outcome) = self.set_all.next(|request| {
+        })?;
+        self.set_all.serve(report, |request| {
             let values = request.parameters.iter();
             let values = values.map(|parameter| (&*parameter.name, &parameter.value));
             SetParametersAtomicallyResponse {
                 result: parameters.set_all(values),
             }
-        }) {
-            count(outcome, report)?;
-        }
+        })?;
         Ok(())
     }
 }

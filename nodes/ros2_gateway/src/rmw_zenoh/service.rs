@@ -5,12 +5,12 @@ use std::sync::Arc;
 
 use crossbeam::queue::ArrayQueue;
 use ros::RosService;
-use transport::{Graph, wall_ns};
+use transport::{Graph, TransportError, wall_ns};
 use zenoh::Wait;
 use zenoh::bytes::ZBytes;
 use zenoh::liveliness::LivelinessToken;
 use zenoh::query::{Query, Queryable};
-use zenoh_session::KeyError;
+use zenoh_session::{KeyError, Report};
 
 use super::entity::Kind;
 use super::{Attachment, Keeping, Member, description};
@@ -63,17 +63,26 @@ impl<S: RosService> Service<S> {
         })
     }
 
-    /// Answers the next call by what `respond` says, and says that there was one.
-    pub(crate) fn next(
+    /// Answers the calls that wait by what `respond` says, and counts them; returns how
+    /// many were answered.
+    pub(crate) fn serve(
         &self,
-        respond: impl FnOnce(S::Request) -> S::Response,
-    ) -> Option<Result<(), GatewayError>> {
-        let call = self.calls.pop()?;
-        let outcome = self.answer(&call, respond);
-        if let Err(error) = &outcome {
-            let _ = call.reply_err(error.to_string()).wait();
+        report: &mut Report,
+        mut respond: impl FnMut(S::Request) -> S::Response,
+    ) -> Result<u64, TransportError> {
+        let mut answered = 0;
+        while let Some(call) = self.calls.pop() {
+            report.received();
+            match self.answer(&call, &mut respond) {
+                Ok(()) => answered += 1,
+                Err(error) => {
+                    // Where this fails, the caller has gone.
+                    let _ = call.reply_err(error.to_string()).wait();
+                    report.refused(&error)?;
+                }
+            }
         }
-        Some(outcome)
+        Ok(answered)
     }
 
     fn answer(

@@ -1,0 +1,58 @@
+//! The state of the graph's nodes, for the robot.
+
+use messages::{HealthHeader, Stamp};
+use ros::DiagnosticArray;
+use transport::{TransportError, monotonic_ns, wall_ns};
+use zenoh_session::Report;
+
+use crate::GatewayError;
+use crate::outgoing::stamp;
+use crate::rmw_zenoh::{Member, Publisher};
+
+/// Sends it, dated by the robot's clock.
+pub(crate) struct Diagnostics {
+    publisher: Publisher<DiagnosticArray>,
+    /// The newest scan: where the robot's clock meets the host's.
+    newest: Option<Stamp>,
+}
+
+impl Diagnostics {
+    pub(crate) fn open(member: &Member, topic: &str) -> Result<Self, GatewayError> {
+        Ok(Diagnostics {
+            publisher: Publisher::open(member, topic, 10)?,
+            newest: None,
+        })
+    }
+
+    /// Something is known of this scan.
+    pub(crate) fn on_scan(&mut self, stamp: Stamp) {
+        self.newest = Some(stamp);
+    }
+
+    /// Sends the robot the state of a node.
+    pub(crate) fn health(
+        &mut self,
+        health: &HealthHeader,
+        error: &[u8],
+        report: &mut Report,
+    ) -> Result<(), TransportError> {
+        let error = String::from_utf8_lossy(error);
+        let outcome = stamp(self.clock_ns()).and_then(|now| {
+            let message = ros::diagnostics::of(now, health, &error);
+            self.publisher.send(&message)
+        });
+        match outcome {
+            Ok(()) => report.sent(),
+            Err(error) => report.refused(&error)?,
+        }
+        Ok(())
+    }
+
+    /// The robot's clock: as its scans are dated, else the host's.
+    fn clock_ns(&self) -> i64 {
+        self.newest.map_or_else(wall_ns, |newest| {
+            let since_ns = monotonic_ns().saturating_sub(newest.entered_ns).max(0);
+            newest.measured_ns.saturating_add(since_ns)
+        })
+    }
+}
