@@ -15,6 +15,8 @@ use sick::cola::{
 use transport::Graph;
 use transport::testing::{Isolated, NodeProcess, wait_for_health, wait_until};
 
+use crate::listen;
+
 /// A scan with a reading every degree: the first at `first_deg` is 1 m, each
 /// further one a millimetre more.
 fn scan(first_deg: i32, beams: u16) -> Vec<u8> {
@@ -223,8 +225,7 @@ fn a_device_says_its_name_before_its_scans_count() {
     let isolated = Isolated::new("named");
     let graph = isolated.join("test");
     let scans = graph.subscriber::<topic::Scan>().unwrap();
-    let listener = TcpListener::bind("127.0.0.1:0").unwrap();
-    let address = listener.local_addr().unwrap().to_string();
+    let (listener, address) = listen();
     let arguments = ["--tcp", &address];
     let node = NodeProcess::start(env!("CARGO_BIN_EXE_lms_reader"), &graph, arguments);
     // Half of its field, whose middle is where others have ahead: without the name it
@@ -235,9 +236,7 @@ fn a_device_says_its_name_before_its_scans_count() {
         assert_eq!((header.angle_min, header.stamp.counter), (0.0, 0));
         true
     });
-    node.interrupt();
-    let (status, log) = node.finish();
-    assert!(status.success(), "{log}");
+    node.stop();
 }
 
 #[test]
@@ -245,8 +244,7 @@ fn health_says_what_to_state() {
     let isolated = Isolated::new("unnamed");
     let graph = isolated.join("test");
     let health = graph.subscriber::<topic::Health>().unwrap();
-    let listener = TcpListener::bind("127.0.0.1:0").unwrap();
-    let address = listener.local_addr().unwrap().to_string();
+    let (listener, address) = listen();
     let arguments = ["--tcp", &address];
     let node = NodeProcess::start(env!("CARGO_BIN_EXE_lms_reader"), &graph, arguments);
     let _stream = device(&listener, "XY7", &[], &scan(-120, 241));
@@ -255,7 +253,5 @@ fn health_says_what_to_state() {
     });
     assert_eq!(report.sent, 0);
     says_what_to_state(&reason);
-    node.interrupt();
-    let (status, log) = node.finish();
-    assert!(status.success(), "{log}");
+    node.stop();
 }

@@ -13,6 +13,8 @@ use sick::cola::{Answer, Command, Encoding, Fault, Framer, Telegram};
 use transport::Graph;
 use transport::testing::{Isolated, NodeProcess, wait_for_health, wait_until};
 
+use crate::listen;
+
 const CAPTURE: &[u8] =
     include_bytes!("../../../../common/sick/tests/data/tim781_colab_telegrams.bin");
 const CAPTURE_PATH: &str = concat!(
@@ -49,9 +51,7 @@ fn a_capture_is_played_over_and_over_at_the_pace_of_the_device() {
         // Sixteen scans are in the file, so this one is of the second round.
         stamp.counter >= 17
     });
-    node.interrupt();
-    let (status, log) = node.finish();
-    assert!(status.success(), "{log}");
+    node.stop();
 }
 
 #[test]
@@ -158,8 +158,7 @@ fn a_device_that_goes_and_comes_back() {
     let graph = isolated.join("test");
     let scans = graph.subscriber::<topic::Scan>().unwrap();
     let health = graph.subscriber::<topic::Health>().unwrap();
-    let listener = TcpListener::bind("127.0.0.1:0").unwrap();
-    let address = listener.local_addr().unwrap().to_string();
+    let (listener, address) = listen();
     let node = start(&graph, &["--tcp", &address]);
 
     let mut stream = accept(&listener);
@@ -182,9 +181,7 @@ fn a_device_that_goes_and_comes_back() {
         header.state == NodeState::Ready as u32
     });
 
-    node.interrupt();
-    let (status, log) = node.finish();
-    assert!(status.success(), "{log}");
+    node.stop();
 }
 
 #[test]
@@ -192,8 +189,7 @@ fn a_device_that_is_not_there_does_not_hold_up_a_stop() {
     let isolated = Isolated::new("refused");
     let graph = isolated.join("test");
     let health = graph.subscriber::<topic::Health>().unwrap();
-    let listener = TcpListener::bind("127.0.0.1:0").unwrap();
-    let address = listener.local_addr().unwrap().to_string();
+    let (listener, address) = listen();
     drop(listener);
     let node = start(&graph, &["--tcp", &address]);
     wait_until(&graph, &health, |header, error| {
@@ -210,8 +206,7 @@ fn a_device_that_is_not_there_does_not_hold_up_a_stop() {
 fn a_silent_device_is_given_up_and_tried_again() {
     let isolated = Isolated::new("silent");
     let graph = isolated.join("test");
-    let listener = TcpListener::bind("127.0.0.1:0").unwrap();
-    let address = listener.local_addr().unwrap().to_string();
+    let (listener, address) = listen();
     let node = start(&graph, &["--tcp", &address, "--silence", "0.2"]);
     let _silent = accept(&listener);
     let _again = accept(&listener);

@@ -1,4 +1,4 @@
-//! The page in a browser, in each state of the robot: what an operator is told, and that
+//! The page in a browser, in each state of the robot: what an operator reads, and that
 //! everybody can read and reach it.
 #![allow(
     clippy::unwrap_used,

@@ -29,8 +29,8 @@ fn the_first_cause_is_named_first() {
         let found = causes(json!(nodes), map);
         let same = found.len() == expected.len();
         let all = found.iter().zip(expected);
-        let told = same && all.clone().all(|(line, part)| line.contains(part));
-        assert!(told, "{found:?}, expected {expected:?}");
+        let is_so = same && all.clone().all(|(line, part)| line.contains(part));
+        assert!(is_so, "{found:?}, expected {expected:?}");
     };
     check(&[], Value::Null, &["is the graph started?"]);
     // Later nodes wait for what the first does not send.
@@ -64,31 +64,35 @@ fn who_wishes_is_notified_when_it_is_lost_and_once() {
     wait_for(&browser, "Unique");
     // In place of the browser's own, which asks whoever sits before it.
     let _ = browser.run(
-        "window.told = [];
+        "window.notified = [];
          window.Notification = class {
              static permission = 'granted';
              static requestPermission = async () => 'granted';
-             constructor(title, { body }) { window.told.push(`${title}: ${body}`); }
+             constructor(title, { body }) { window.notified.push(`${title}: ${body}`); }
          }",
     );
     stage.show(LOST);
     wait_for(&browser, "Lost");
     stage.show(UNIQUE);
     wait_for(&browser, "Unique");
-    assert_eq!(browser.run("return window.told"), json!([]), "nobody asked");
+    assert_eq!(
+        browser.run("return window.notified"),
+        json!([]),
+        "nobody asked"
+    );
     click(&browser, "#notify");
     browser.wait_until("document.getElementById('notify').ariaPressed === 'true'");
     stage.show(LOST);
-    browser.wait_until("window.told.length === 1");
+    browser.wait_until("window.notified.length === 1");
     assert_eq!(
-        browser.run("return window.told[0]"),
+        browser.run("return window.notified[0]"),
         "r7: lost: lost: fit 0.14."
     );
     stage.show(Scene::Silent);
-    browser.wait_until("window.told.length === 2");
-    let told = browser.run("return window.told[1]");
+    browser.wait_until("window.notified.length === 2");
+    let notified = browser.run("return window.notified[1]");
     assert!(
-        told.as_str().unwrap().starts_with("r7: no data: "),
-        "{told}"
+        notified.as_str().unwrap().starts_with("r7: no data: "),
+        "{notified}"
     );
 }

@@ -1,0 +1,239 @@
+//! Messages and JSON, by the structs that are sent.
+
+use std::collections::BTreeSet;
+
+use syn::punctuated::Punctuated;
+use syn::{Attribute, Fields, Item, ItemStruct, LitStr, Meta, Token};
+use tests::{markdown, root};
+
+use crate::read;
+
+/// The structs of a source, by name.
+fn structs(file: &str) -> Vec<ItemStruct> {
+    let source = syn::parse_file(&read(&root().join(file))).unwrap();
+    let structs = source.items.into_iter().filter_map(|item| match item {
+        Item::Struct(item) => Some(item),
+        _ => None,
+    });
+    structs.collect()
+}
+
+/// The versioned name of a message, as `type_name("Scan/v1")` beside its derivation.
+fn type_name(item: &ItemStruct) -> Option<String> {
+    let attribute = item.attrs.iter().find(|a| a.path().is_ident("cfg_attr"))?;
+    let parts = attribute.parse_args_with(Punctuated::<Meta, Token![,]>::parse_terminated);
+    let parts = parts.ok()?.into_iter();
+    let mut lists = parts.filter_map(|part| part.require_list().ok().cloned());
+    let named = lists.find(|list| list.path.is_ident("type_name"))?;
+    Some(named.parse_args::<LitStr>().ok()?.value())
+}
+
+/// The name that serde gives a field, as `#[serde(rename = "type")]`.
+fn renamed(attributes: &[Attribute]) -> Option<String> {
+    let attribute = attributes.iter().find(|a| a.path().is_ident("serde"))?;
+    let mut found = None;
+    // What is not `rename = "text"` has no text to be found.
+    let _ = attribute.parse_nested_meta(|meta| {
+        if meta.path.is_ident("rename") {
+            let text: LitStr = meta.value()?.parse()?;
+            found = Some(text.value());
+        }
+        Ok(())
+    });
+    found
+}
+
+/// Whether serde has this word for the field, as `flatten` or `skip`.
+fn has_word(attributes: &[Attribute], word: &str) -> bool {
+    let mut found = false;
+    for attribute in attributes.iter().filter(|a| a.path().is_ident("serde")) {
+        // What stands behind the word is of another one.
+        let _ = attribute.parse_nested_meta(|meta| {
+            found |= meta.path.is_ident(word);
+            Ok(())
+        });
+    }
+    found
+}
+
+/// The names under which the fields of a struct are sent, those that are flattened or
+/// skipped left out.
+fn fields(item: &ItemStruct) -> Vec<String> {
+    let Fields::Named(fields) = &item.fields else {
+        return Vec::new();
+    };
+    let sent = fields.named.iter();
+    let sent = sent.filter(|f| !has_word(&f.attrs, "flatten") && !has_word(&f.attrs, "skip"));
+    sent.map(|field| {
+        renamed(&field.attrs).unwrap_or_else(|| field.ident.as_ref().unwrap().to_string())
+    })
+    .collect()
+}
+
+#[test]
+fn every_message_has_its_table() {
+    let text = read(&root().join("docs/topics.md"));
+    let topics = markdown::first_cells(&text, "All topics");
+    let expected: Vec<&str> = messages::topic::NAMES.to_vec();
+    let sorted = |names: &[&str]| names.iter().map(|&n| n.to_owned()).collect::<BTreeSet<_>>();
+    assert_eq!(
+        topics.into_iter().collect::<BTreeSet<_>>(),
+        sorted(&expected)
+    );
+    let mut count = 0;
+    for entry in std::fs::read_dir(root().join("common/messages/src")).unwrap() {
+        let file = entry.unwrap().file_name().into_string().unwrap();
+        for item in structs(&format!("common/messages/src/{file}")) {
+            let Some(name) = type_name(&item) else {
+                continue;
+            };
+            let found = markdown::first_cells(&text, &format!("`{name}`"));
+            assert_eq!(found, fields(&item), "{name} in docs/topics.md");
+            count += 1;
+        }
+    }
+    assert!(count > 20, "{count}");
+}
+
+/// The structs that are sent as JSON, each with the section that has its fields: those of
+/// several structs where they are sent as one object.
+const JSON: &[(&str, &[(&str, &str)])] = &[
+    (
+        "`backcast locate --json`",
+        &[("common/evaluation/src/locate/object.rs", "Object")],
+    ),
+    (
+        "Votes of a scan",
+        &[("common/evaluation/src/locate/object.rs", "Votes")],
+    ),
+    (
+        "Beams of a scan",
+        &[("common/evaluation/src/locate/object.rs", "Beams")],
+    ),
+    (
+        "Places of a scan",
+        &[("common/evaluation/src/locate/object.rs", "Hypothesis")],
+    ),
+    (
+        "Particles of a scan",
+        &[("common/evaluation/src/locate/particles.rs", "Particles")],
+    ),
+    (
+        "`backcast evaluate --json`",
+        &[("common/evaluation/src/evaluate/judge.rs", "Evaluation")],
+    ),
+    (
+        "Probabilities of a file",
+        &[("common/evaluation/src/evaluate/trust.rs", "Said")],
+    ),
+    (
+        "`backcast evaluate --sequence --json`",
+        &[("common/evaluation/src/sequence/figures.rs", "Figures")],
+    ),
+    (
+        "Of the single scan",
+        &[("common/pose_table/src/line.rs", "Line")],
+    ),
+    (
+        "Of the tracker",
+        &[("common/pose_table/src/pose_line.rs", "PoseLine")],
+    ),
+    (
+        "Of the run",
+        &[
+            ("common/launcher/src/run/summary.rs", "Summary"),
+            ("common/statistics/src/lib.rs", "Figures"),
+        ],
+    ),
+    (
+        "`backcast status --json`",
+        &[("common/launcher/src/run/control.rs", "Status")],
+    ),
+    (
+        "A node of a graph",
+        &[("common/launcher/src/run/control.rs", "NodeStatus")],
+    ),
+    (
+        "`backcast logs --json`",
+        &[("common/launcher/src/control/logs.rs", "LogLine")],
+    ),
+    (
+        "`backcast info --json`",
+        &[("common/recording_tools/src/info/contents.rs", "Contents")],
+    ),
+    (
+        "`backcast doctor --json`",
+        &[("common/recording_tools/src/doctor/command.rs", "Report")],
+    ),
+    (
+        "`backcast soak --json`",
+        &[
+            ("common/soak/src/report.rs", "Report"),
+            ("common/soak/src/tally.rs", "PoseFigures"),
+            ("common/soak/src/launched.rs", "Losses"),
+        ],
+    ),
+    (
+        "`backcast bench --json`",
+        &[("common/bench/src/row.rs", "Row")],
+    ),
+    (
+        "The last pose",
+        &[("nodes/tracker/src/memory.rs", "Remembered")],
+    ),
+    (
+        "`snapshot`",
+        &[("common/dashboard/src/view.rs", "Snapshot")],
+    ),
+    ("`map`", &[("common/dashboard/src/view/map.rs", "MapInfo")]),
+    (
+        "`answer`",
+        &[("common/dashboard/src/view/answer.rs", "Answer")],
+    ),
+    (
+        "A place",
+        &[("common/dashboard/src/view/answer.rs", "Place")],
+    ),
+    ("An ellipse", &[("common/dashboard/src/view.rs", "Ellipse")]),
+    (
+        "`pose`",
+        &[("common/dashboard/src/view/tracked.rs", "Tracked")],
+    ),
+    (
+        "`state`",
+        &[("common/dashboard/src/view/history.rs", "Period")],
+    ),
+    (
+        "`beams`",
+        &[("common/dashboard/src/view/beams.rs", "Beams")],
+    ),
+    (
+        "`node`",
+        &[("common/dashboard/src/view/roster.rs", "NodeReport")],
+    ),
+    ("`log`", &[("common/dashboard/src/view/log.rs", "LogLine")]),
+    ("`region`", &[("common/dashboard/src/view.rs", "Region")]),
+    (
+        "`abilities`",
+        &[("common/dashboard/src/robot.rs", "Abilities")],
+    ),
+    ("`field`", &[("common/dashboard/src/view/field.rs", "Head")]),
+];
+
+#[test]
+fn every_object_in_json_has_its_table() {
+    let text = read(&root().join("docs/json.md"));
+    for (section, sources) in JSON {
+        let mut sent = BTreeSet::new();
+        for (file, name) in *sources {
+            let structs = structs(file);
+            let item = structs.iter().find(|item| item.ident == name);
+            let item = item.unwrap_or_else(|| panic!("{file} has no struct {name}"));
+            sent.extend(fields(item));
+        }
+        // Every object has it, and the document says so once.
+        sent.remove("schema");
+        let listed: BTreeSet<String> = markdown::first_cells(&text, section).into_iter().collect();
+        assert_eq!(listed, sent, "section {section} of docs/json.md");
+    }
+}
