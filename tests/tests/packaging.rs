@@ -11,13 +11,13 @@ use std::process::{Command, Output, Stdio};
 use serde_json::Value;
 use tests::needs::Need;
 
-/// What a new user types, once the package is installed; `$1` is a folder of the repository's
-/// data. The first line that fails ends it.
+/// What a new user types, once the package is installed; `$1` is the folder that held the
+/// sources, `$2` the package. The first line that fails ends it.
 const SCRIPT: &str = r#"
 set -e
 cd /home
 dpkg --install "$2" >&2
-if command -v cargo >&2 || ls /work/* >&2 2>/dev/null; then
+if command -v cargo >&2 || [ -n "$(ls -A "$1")" ]; then
     echo 'this root is not clean' >&2
     exit 9
 fi
@@ -68,7 +68,7 @@ mount --rbind /dev /mnt/root/dev
 mount -t proc proc /mnt/root/proc
 cd /
 exec env --ignore-environment PATH=/usr/sbin:/usr/bin:/sbin:/bin HOME=/home \
-    chroot /mnt/root sh -c "$script" sh - "/package/$(basename "$package")"
+    chroot /mnt/root sh -c "$script" sh "$hidden" "/package/$(basename "$package")"
 "#;
 
 fn run(command: &mut Command) -> Output {
