@@ -88,7 +88,7 @@ impl<'a, A: Accumulator> Share<'a, A> {
                 self.accumulator.fill(query, &mut self.field, stop)?;
                 self.collector.raise_best(best.load(Ordering::Relaxed));
                 self.collect(limits, heading);
-                best.fetch_max(self.collector.best(), Ordering::Relaxed);
+                best.fetch_max(self.collector.best_taken(), Ordering::Relaxed);
             }
         }
         Some(())

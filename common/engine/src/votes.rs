@@ -10,7 +10,7 @@ use messages::Vote;
 
 pub use config::CollectConfig;
 pub use distinct::{DISTINCT_DEG, DISTINCT_M, distinct};
-pub(crate) use distinct::{Distinct, is_close, most_candidates};
+pub(crate) use distinct::{Distinct, is_close, least_close, most_candidates};
 pub(crate) use of_field::FieldVotes;
 pub use of_field::of_field;
 
@@ -25,7 +25,8 @@ pub struct VoteSet {
     pub floor: u16,
     /// All poses at or above this intensity are among the votes.
     pub certified_floor: u16,
-    /// The highest intensity of any pose.
+    /// The highest intensity of any pose; where several maps are searched, of those at or above
+    /// the certified floor.
     pub best: u16,
     /// Whether poses above the share asked for were left out, as they did not fit.
     pub truncated: bool,
@@ -48,6 +49,23 @@ impl VoteSet {
         others.sort_unstable_by_key(order);
         others.retain(|vote| distinct.take(vote));
         self.votes.append(others);
+        self.floor = self.votes.last().map_or(0, |vote| vote.intensity);
+    }
+
+    /// Raises the certified floor where the best pose is one of another map, and leaves out
+    /// what has fewer votes than that or, if given, than `least`. The best one's votes are
+    /// worth this many here, and the floor is that of them.
+    pub(crate) fn confine(&mut self, (best, floor): (u16, u16), least: Option<u16>) {
+        if best <= self.best {
+            return;
+        }
+        if floor >= self.certified_floor {
+            (self.truncated, self.cut) = (false, false);
+        }
+        self.certified_floor = self.certified_floor.max(floor);
+        let least = least.unwrap_or(self.certified_floor);
+        self.votes.retain(|vote| vote.intensity >= least);
+        self.best = self.votes.first().map_or(0, |vote| vote.intensity);
         self.floor = self.votes.last().map_or(0, |vote| vote.intensity);
     }
 
@@ -78,7 +96,10 @@ impl VoteSet {
 pub(crate) struct Collector {
     config: CollectConfig,
     votes: Vec<Vote>,
+    /// The most votes of any pose, be it one seen elsewhere.
     best: u16,
+    /// The same of those that were taken.
+    best_taken: u16,
     /// Below this intensity too many poses were seen for all to fit.
     crowded_below: u16,
     /// The intensity of which not even all best poses fit.
@@ -98,6 +119,7 @@ impl Collector {
         self.config = config;
         self.votes.clear();
         self.best = 0;
+        self.best_taken = 0;
         self.crowded_below = 1;
         self.cut = None;
     }
@@ -108,7 +130,7 @@ impl Collector {
     }
 
     fn share_floor(&self) -> u16 {
-        ((f64::from(self.best) * self.config.floor_share).ceil() as u16).max(1)
+        self.config.floor(self.best)
     }
 
     /// Takes a pose, unless it lies below the floor.
@@ -116,7 +138,8 @@ impl Collector {
         if vote.intensity < self.floor() {
             return;
         }
-        self.best = self.best.max(vote.intensity);
+        self.best_taken = self.best_taken.max(vote.intensity);
+        self.raise_best(vote.intensity);
         self.votes.push(vote);
         if self.votes.len() >= 2 * self.config.max_votes as usize {
             self.make_room();
@@ -146,11 +169,15 @@ impl Collector {
     /// Raises the floor to what follows from a pose seen elsewhere.
     pub(crate) fn raise_best(&mut self, best: u16) {
         self.best = self.best.max(best);
+        if let Some(level) = self.cut.take_if(|level| *level < best) {
+            // Some of that level were left out, and it is the best no more.
+            self.crowded_below = self.crowded_below.max(level + 1);
+        }
     }
 
-    /// The most votes of any pose so far.
-    pub(crate) fn best(&self) -> u16 {
-        self.best
+    /// The most votes of any pose that was taken.
+    pub(crate) fn best_taken(&self) -> u16 {
+        self.best_taken
     }
 
     /// Becomes what one collector would be that had taken the poses of both.
@@ -160,9 +187,8 @@ impl Collector {
         for &vote in &other.votes {
             self.take(vote);
         }
-        if other.cut == Some(self.best) {
-            self.cut = other.cut;
-        }
+        self.cut = self.cut.max(other.cut);
+        self.raise_best(self.best);
     }
 
     /// Drops what lies below the floor, then whole levels from below until
@@ -192,7 +218,7 @@ impl Collector {
         let best_is_cut = self.cut == Some(self.best);
         outcome.floor = self.votes.last().map_or(0, |vote| vote.intensity);
         outcome.certified_floor = self.floor().saturating_add(u16::from(best_is_cut));
-        outcome.best = self.best;
+        outcome.best = self.votes.first().map_or(0, |vote| vote.intensity);
         outcome.truncated = best_is_cut || self.crowded_below > self.share_floor();
         outcome.cut = false;
         outcome.poses_evaluated = poses_evaluated;

@@ -29,4 +29,4 @@ mod plan;
 mod task;
 
 pub use index::{IndexKey, SECTIONS, SearchIndex, SectionError, UncheckedIndex};
-pub use plan::{BlockBounds, Workspace};
+pub use plan::{BlockBounds, Searched, Workspace};

@@ -41,6 +41,11 @@ impl CollectConfig {
         }
     }
 
+    /// The least intensity that is collected where the best pose has this one.
+    pub(crate) fn floor(&self, best: u16) -> u16 {
+        ((f64::from(best) * self.floor_share).ceil() as u16).max(1)
+    }
+
     /// Steps after which a search ends; infinitely many without a limit.
     pub(crate) fn most_steps(&self) -> f64 {
         let limit = self.work_limit.filter(|&millions| millions > 0.0);

@@ -33,6 +33,11 @@ pub(crate) fn is_close(intensity: u16, best: u16) -> bool {
     2 * u32::from(intensity) >= u32::from(best)
 }
 
+/// The least number of votes that is close to the best.
+pub(crate) fn least_close(best: u16) -> u16 {
+    best.div_ceil(2).max(1)
+}
+
 /// Takes poses in order and keeps those that are distinct from all kept before,
 /// at most this many.
 #[derive(Debug)]

@@ -14,7 +14,6 @@
 mod share;
 
 use std::ops::Range;
-use std::sync::atomic::Ordering;
 
 use messages::Vote;
 
@@ -205,9 +204,9 @@ impl<'a> SamplingThread<'a> {
             self.share.least = self.share.least.saturating_sub(step).max(1);
         }
         if let Some(&Pose { cell, .. }) = kept.iter().max_by_key(|pose| pose.votes) {
-            let floor = task.best.load(Ordering::Relaxed);
+            let floor = task.best();
             let intensity = self.count(cell, heading, floor);
-            task.best.fetch_max(intensity, Ordering::Relaxed);
+            task.raise_best(intensity);
         }
         Some(())
     }
@@ -246,8 +245,8 @@ impl<'a> SamplingThread<'a> {
             field, collector, ..
         } = &mut *self.share;
         collector.take_field(field, self.task.grid.width(), heading as u16);
-        let best = collector.best();
-        self.task.best.fetch_max(best, Ordering::Relaxed);
+        let best = collector.best_taken();
+        self.task.raise_best(best);
         self.share.poses_evaluated += self.share.field.len() as u64;
         Some(())
     }
@@ -263,7 +262,7 @@ impl<'a> SamplingThread<'a> {
             let floor = self.floor();
             let vote = self.vote(cell, heading, floor);
             self.share.collector.take(vote);
-            self.task.best.fetch_max(vote.intensity, Ordering::Relaxed);
+            self.task.raise_best(vote.intensity);
         }
     }
 
@@ -342,8 +341,7 @@ impl<'a> SamplingThread<'a> {
 
     /// The least votes that matter.
     fn floor(&mut self) -> u16 {
-        let best = self.task.best.load(Ordering::Relaxed);
-        self.share.collector.raise_best(best);
+        self.share.collector.raise_best(self.task.best());
         self.share.collector.floor()
     }
 

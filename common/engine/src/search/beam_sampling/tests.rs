@@ -8,6 +8,7 @@ use crate::reference;
 use crate::scan::Scan;
 use crate::search::index::SearchIndex;
 use crate::search::task::Shared;
+use crate::search::task::lead::Lead;
 use crate::simd::Simd;
 use crate::space::Space;
 use crate::testing::{any_dense_scan, any_limited_grid, any_scan, plain_votes_within, space_of};
@@ -31,16 +32,16 @@ impl Sampler {
         scan: (&ScanProgram, &Space),
         (config, best): (CollectConfig, u16),
     ) -> &VoteSet {
-        let shared = &mut self.shared;
+        let (shared, lead) = (&mut self.shared, Lead::default());
         let task = Task::new(
             shared,
             Simd::new(instruction_set),
             index,
             grid,
             scan,
-            config,
+            (config, &lead),
         );
-        task.best.store(best, Ordering::Relaxed);
+        task.raise_best(best);
         self.shares.resize_with(threads, Share::default);
         let scan = (&task, scan.0);
         let counted = self

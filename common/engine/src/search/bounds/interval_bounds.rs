@@ -190,6 +190,7 @@ mod tests {
     use crate::search::index::SearchIndex;
     use crate::search::index::bits;
     use crate::search::index::within::quarters;
+    use crate::search::task::lead::Lead;
     use crate::search::task::{Programs, Shared, Task};
     use crate::simd::Simd;
     use crate::testing::{any_grid, any_scan, space_of};
@@ -208,8 +209,8 @@ mod tests {
             let mut read = BlockIntervals::default();
             for instruction_set in InstructionSet::available() {
                 let mut shared = Shared::default();
-                let scan = (&program, &space);
-                let task = Task::new(&mut shared, Simd::new(instruction_set), &index, &grid, scan, CollectConfig::default());
+                let (scan, lead) = ((&program, &space), Lead::default());
+                let task = Task::new(&mut shared, Simd::new(instruction_set), &index, &grid, scan, (CollectConfig::default(), &lead));
                 let Programs { sets, interval, .. } = task.programs;
                 let (mut outer_bounds, mut inner_bounds) = (SetBounds::default(), SetBounds::default());
                 outer_bounds.fit(sets, task.headings());

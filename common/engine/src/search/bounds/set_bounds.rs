@@ -260,6 +260,7 @@ mod tests {
     use crate::search::index::intervals::RangeIntervals;
     use crate::search::index::steps::BinSteps;
     use crate::search::index::within::Within;
+    use crate::search::task::lead::Lead;
     use crate::search::task::{Shared, Task};
     use crate::simd::Simd;
     use crate::testing::{any_grid, any_scan, space_of};
@@ -334,8 +335,8 @@ mod tests {
             let SearchIndex { coarse, fine, .. } = &index;
             for instruction_set in InstructionSet::available() {
                 let mut shared = Shared::default();
-                let scan = (&program, &space);
-                let task = Task::new(&mut shared, Simd::new(instruction_set), &index, &grid, scan, CollectConfig::default());
+                let (scan, lead) = ((&program, &space), Lead::default());
+                let task = Task::new(&mut shared, Simd::new(instruction_set), &index, &grid, scan, (CollectConfig::default(), &lead));
                 let set_program = &task.programs.sets;
                 let [mut around, mut alone] = [(); 2].map(|()| {
                     let mut bounds = SetBounds::default();

@@ -87,11 +87,12 @@ impl<'a> Alternatives<'a> {
 
     /// Leaves in its scratch buffer poses of the blocks with the highest bounds, in no order,
     /// at most this many. The search ended with a floor; its scratch buffers are given if it
-    /// bounded all blocks that the floor leaves.
+    /// bounded all blocks that the floor leaves. Blocks whose bounds lie below `least` are not
+    /// searched.
     pub(in crate::search) fn find(
         &mut self,
         wanted: usize,
-        floor: u16,
+        (floor, least): (u16, u16),
         scratches: Option<&[descent::Scratch]>,
     ) {
         let count = FINE_SHARE * wanted;
@@ -108,7 +109,7 @@ impl<'a> Alternatives<'a> {
             }
         }
         if !self.scratch.fine.is_full() {
-            self.split_highest(wanted, count);
+            self.split_highest(wanted, count, least);
         }
         self.scratch.spots.clear();
         for i in 0..self.scratch.fine.blocks().len() {
@@ -130,14 +131,15 @@ impl<'a> Alternatives<'a> {
         }
     }
 
-    /// Chooses this many 8 × 8 blocks in the coarse ones with the highest bounds.
-    fn split_highest(&mut self, wanted: usize, count: usize) {
+    /// Chooses this many 8 × 8 blocks in the coarse ones with the highest bounds, none of
+    /// them below `least`.
+    fn split_highest(&mut self, wanted: usize, count: usize, least: u16) {
         let part = self.task.coarse_bounds.len() / COARSE_PART;
         self.take_highest(part.max(COARSE_SHARE * wanted));
         // With a guess of what the last one reaches, most others are dropped early.
         let last = self.scratch.coarse.last().map_or(0, |&(bound, _)| bound);
         let likely = (u32::from(last) * LIKELY_SIXTEENTHS / 16) as u16;
-        for floor in [likely.max(1), 1] {
+        for floor in [likely.max(least), least] {
             self.scratch.fine.start(count);
             self.choose(floor);
             if self.scratch.fine.is_full() {

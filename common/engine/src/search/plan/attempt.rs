@@ -6,7 +6,7 @@ use super::parts;
 use crate::program::ScanProgram;
 use crate::search::beam_sampling::{self, BeamSampling};
 use crate::search::task::{End, Task};
-use crate::votes::{Distinct, VoteSet, is_close, most_candidates};
+use crate::votes::{Distinct, VoteSet, is_close, least_close, most_candidates};
 
 /// A search to be made, and its scratch buffers, of as many threads as there are of them and
 /// shares.
@@ -34,6 +34,30 @@ impl Attempt<'_> {
         Some(())
     }
 
+    /// Finds those of several maps that are searched together: of each map, the poses that
+    /// come near the best one of all.
+    pub(in crate::search) fn find_all(
+        maps: &mut [(Self, &mut VoteSet)],
+        stop: &dyn Fn() -> bool,
+    ) -> Option<()> {
+        let searched = maps.iter_mut();
+        let searched = searched.map(|(map, _)| (&map.task, &mut *map.scratches));
+        let ends = parts::run_all(searched, stop)?;
+        for ((map, found), end) in maps.iter_mut().zip(&ends) {
+            // The best pose is likely known by now, and most poses need not be counted.
+            match end {
+                End::Hopeless => map.by_counting(found)?,
+                _ => parts::finish(map.scratches, found),
+            }
+        }
+        for ((map, found), end) in maps.iter_mut().zip(ends) {
+            let best = map.task.best();
+            found.confine((best, map.task.config.floor(best)), None);
+            map.add_candidates(end, found);
+        }
+        Some(())
+    }
+
     /// Finds the poses above the floor by bounds, unless that is hopeless.
     pub(in crate::search) fn by_bounds(&mut self, found: &mut VoteSet) -> End {
         let end = parts::run(&self.task, self.scratches, self.stop);
@@ -58,8 +82,13 @@ impl Attempt<'_> {
             alternatives,
             ..
         } = self;
-        let wanted = task.config.candidates as usize;
-        if wanted > 0 && found.best > 0 {
+        let (wanted, best) = (task.config.candidates as usize, task.best());
+        // Where another map has the best pose, only those that are close to it are wanted.
+        let least = match found.best == best {
+            true => 1,
+            false => least_close(best),
+        };
+        if wanted > 0 && best > 0 {
             let bounded = (end == End::Done).then_some(&**scratches);
             let certain = found.votes.len();
             // Of a search that was cut, all that it bounded may hold candidates.
@@ -67,12 +96,13 @@ impl Attempt<'_> {
             let most = most_candidates(wanted, task.space.resolution_m);
             for count in [wanted, most] {
                 found.votes.truncate(certain);
-                Alternatives::new(task, alternatives).find(count, floor, bounded);
+                Alternatives::new(task, alternatives).find(count, (floor, least), bounded);
                 let distinct = Distinct::new(task.space, wanted, &mut alternatives.distinct);
-                let distinct = distinct.and_close(found.best);
+                let distinct = distinct.and_close(best);
+                alternatives.votes.retain(|vote| vote.intensity >= least);
                 found.add_candidates(&mut alternatives.votes, distinct);
                 let kept = alternatives.distinct.iter();
-                let close = kept.filter(|vote| is_close(vote.intensity, found.best));
+                let close = kept.filter(|vote| is_close(vote.intensity, best));
                 if most == wanted || 2 * close.count() < wanted {
                     break;
                 }
@@ -91,6 +121,7 @@ mod tests {
     use crate::search::Workspace;
     use crate::search::index::SearchIndex;
     use crate::search::task::budget::Cost;
+    use crate::search::task::lead::Lead;
     use crate::testing::{any_grid, any_limited_grid, any_scan, plain_votes, space_of};
     use crate::votes::CollectConfig;
 
@@ -104,9 +135,9 @@ mod tests {
             let program = scan.program(&space);
             let config = CollectConfig { candidates, ..CollectConfig::default() };
             let index = SearchIndex::within(&grid, &space, limits);
-            let mut workspace = Workspace::default();
+            let (mut workspace, lead) = (Workspace::default(), Lead::default());
             let (how, scan) = ((InstructionSet::best(), threads), (&program, &space));
-            let mut attempt = index.attempt(&mut workspace, how, &grid, scan, config, &|| false);
+            let mut attempt = index.attempt(&mut workspace, how, &grid, scan, config, (&lead, &|| false));
             attempt.task.brute_force = Cost(f64::INFINITY);
             let mut found = VoteSet::default();
             prop_assert_eq!(attempt.by_bounds(&mut found), End::Done);
@@ -124,9 +155,9 @@ mod tests {
             let program = scan.program(&space);
             let config = CollectConfig { candidates: 0, ..CollectConfig::default() };
             let index = SearchIndex::new(&grid, &space);
-            let mut workspace = Workspace::default();
+            let (mut workspace, lead) = (Workspace::default(), Lead::default());
             let (how, scan) = ((InstructionSet::best(), threads), (&program, &space));
-            let mut attempt = index.attempt(&mut workspace, how, &grid, scan, config, &|| false);
+            let mut attempt = index.attempt(&mut workspace, how, &grid, scan, config, (&lead, &|| false));
             attempt.task.brute_force = Cost(0.0);
             let (mut found, plain) = (VoteSet::default(), plain_votes(&grid, &program, &space, config));
             // A search that is done after the first block has nothing to give up.

@@ -28,6 +28,7 @@ use crate::votes::Collector;
 pub(in crate::search) struct Descent<'a> {
     task: &'a Task<'a>,
     scratch: &'a mut Scratch,
+    budget: Budget,
 }
 
 /// Buffers of one thread's search, kept from scan to scan.
@@ -82,50 +83,74 @@ impl Scratch {
 }
 
 impl<'a> Descent<'a> {
-    pub(in crate::search) fn new(task: &'a Task<'a>, scratch: &'a mut Scratch) -> Self {
+    /// Starts with one of `parts` of the coarse blocks.
+    pub(in crate::search) fn new(
+        task: &'a Task<'a>,
+        scratch: &'a mut Scratch,
+        (part, parts): (usize, usize),
+    ) -> Self {
         scratch.start(task);
-        Descent { task, scratch }
+        let (counting, most_steps) = (beam_sampling::likely_cost(task), task.config.most_steps());
+        let budget = Budget::new(task.brute_force, counting, most_steps, parts);
+        let mut descent = Descent {
+            task,
+            scratch,
+            budget,
+        };
+        descent.bound_coarse(part, parts);
+        descent
     }
 
-    /// Searches one of `parts` of the coarse blocks.
-    pub(in crate::search) fn run(
-        mut self,
-        (part, parts): (usize, usize),
-        stop: &dyn Fn() -> bool,
-    ) -> End {
-        self.bound_coarse(part, parts);
-        let task = self.task;
-        let (counting, most_steps) = (beam_sampling::likely_cost(task), task.config.most_steps());
-        let mut budget = Budget::new(task.brute_force, counting, most_steps, parts);
-        while let Some(block) = self.next(budget.prefers_leaves()) {
-            if stop() {
-                return End::Stopped;
-            }
-            if let Some(next) = self.scratch.queue.peek(budget.prefers_leaves()) {
-                self.prefetch(&next);
-            }
-            let (level, index) = (block.level, block.index as usize);
-            match level {
-                Level::Coarse => self.split_coarse(index),
-                Level::Fine { start, end } => {
-                    self.split_fine(index, &(start as usize..end as usize));
-                }
-                Level::Leaf { start, end } => self.count(index, start as usize..end as usize),
-            }
-            let Programs { simd, beams, .. } = self.task.programs;
-            let cost = self.scratch.tally.take(simd.set(), *beams);
-            budget.spend(level.number(), cost);
-            // Some pose has to be found: without any it would seem that no beam votes.
-            if budget.is_used_up() && self.scratch.collector.best() > 0 {
-                let left = self.scratch.queue.iter().map(|block| block.bound).max();
-                self.scratch.left = left.unwrap_or(0);
-                return End::Done;
-            }
-            if budget.is_up() && budget.is_hopeless(self.left()) {
-                return End::Hopeless;
+    /// Searches until there is nothing left that may matter.
+    pub(in crate::search) fn run(mut self, stop: &dyn Fn() -> bool) -> End {
+        loop {
+            if let Some(end) = self.step(0.0, stop) {
+                return end;
             }
         }
-        End::Done
+    }
+
+    /// What was spent so far.
+    pub(in crate::search) fn spent(&self) -> f64 {
+        self.budget.spent()
+    }
+
+    /// Searches the next block; how the search ended, if it did. So much was spent on other
+    /// maps that are searched with this one.
+    pub(in crate::search) fn step(
+        &mut self,
+        elsewhere: f64,
+        stop: &dyn Fn() -> bool,
+    ) -> Option<End> {
+        let Some(block) = self.next() else {
+            return Some(End::Done);
+        };
+        if stop() {
+            return Some(End::Stopped);
+        }
+        if let Some(next) = self.scratch.queue.peek(self.budget.prefers_leaves()) {
+            self.prefetch(&next);
+        }
+        let (level, index) = (block.level, block.index as usize);
+        match level {
+            Level::Coarse => self.split_coarse(index),
+            Level::Fine { start, end } => {
+                self.split_fine(index, &(start as usize..end as usize));
+            }
+            Level::Leaf { start, end } => self.count(index, start as usize..end as usize),
+        }
+        let Programs { simd, beams, .. } = self.task.programs;
+        let cost = self.scratch.tally.take(simd.set(), *beams);
+        self.budget.spend(level.number(), cost);
+        // Some pose has to be found: without any it would seem that no beam votes.
+        if self.budget.is_used_up(elsewhere) && self.task.best() > 0 {
+            let left = self.scratch.queue.iter().map(|block| block.bound).max();
+            self.scratch.left = left.unwrap_or(0);
+            return Some(End::Done);
+        }
+        let left = self.budget.is_up().then(|| self.left());
+        let is_hopeless = left.is_some_and(|left| self.budget.is_hopeless(left, elsewhere));
+        is_hopeless.then_some(End::Hopeless)
     }
 
     /// Bounds one of `parts` of the coarse quads, and queues them.
@@ -159,12 +184,12 @@ impl<'a> Descent<'a> {
     }
 
     /// The next block that may matter.
-    fn next(&mut self, prefers_leaves: bool) -> Option<Block> {
-        let best = self.task.best.load(Ordering::Relaxed);
-        self.scratch.collector.raise_best(best);
-        self.scratch
-            .queue
-            .pop(prefers_leaves, self.scratch.collector.floor())
+    fn next(&mut self) -> Option<Block> {
+        self.scratch.collector.raise_best(self.task.best());
+        self.scratch.queue.pop(
+            self.budget.prefers_leaves(),
+            self.scratch.collector.floor(),
+        )
     }
 
     /// Asks for what is known of a block that is likely the next one.
@@ -377,8 +402,7 @@ impl<'a> Descent<'a> {
             self.take((first + lane) as u16, &votes);
         }
         self.scratch.tally.casts = self.scratch.block_ranges.casts();
-        let best = self.scratch.collector.best();
-        self.task.best.fetch_max(best, Ordering::Relaxed);
+        self.task.raise_best(self.scratch.collector.best_taken());
     }
 
     fn take(&mut self, heading: u16, counts: &[u16; CELLS]) {

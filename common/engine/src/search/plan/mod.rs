@@ -13,4 +13,4 @@ mod queue;
 mod search;
 
 pub use block_bounds::BlockBounds;
-pub use search::Workspace;
+pub use search::{Searched, Workspace};

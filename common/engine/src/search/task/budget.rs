@@ -176,16 +176,25 @@ impl Budget {
         self.spent >= self.next
     }
 
-    /// Whether the search has to end.
-    pub(in crate::search) fn is_used_up(&self) -> bool {
-        self.spent >= self.limit
+    /// What the search has cost.
+    pub(in crate::search) fn spent(&self) -> f64 {
+        self.spent
+    }
+
+    /// Whether the search has to end, together with what was spent on other maps.
+    pub(in crate::search) fn is_used_up(&self, elsewhere: f64) -> bool {
+        self.spent + elsewhere >= self.limit
     }
 
     /// Whether counting every pose would be done sooner than what is left, blocks of
     /// each level, and before the search has to end.
-    pub(in crate::search) fn is_hopeless(&mut self, left: [usize; LEVELS]) -> bool {
+    pub(in crate::search) fn is_hopeless(
+        &mut self,
+        left: [usize; LEVELS],
+        elsewhere: f64,
+    ) -> bool {
         self.next = self.spent * NEXT_LOOK;
-        if self.spent + self.counting > self.limit {
+        if self.spent + elsewhere + self.counting > self.limit {
             return false;
         }
         let mut below = 0.0;
@@ -223,9 +232,9 @@ mod tests {
         }
         assert!(budget.is_up());
         // Five fine ones cost 500 each; a coarse one 100, and twice 500.
-        assert!(!budget.is_hopeless([0, 5, 0]));
+        assert!(!budget.is_hopeless([0, 5, 0], 0.0));
         assert!(!budget.is_up(), "not at once again");
-        assert!(budget.is_hopeless([1, 5, 0]));
+        assert!(budget.is_hopeless([1, 5, 0], 0.0));
     }
 
     #[test]
@@ -244,11 +253,12 @@ mod tests {
     fn a_search_ends_where_its_limit_is_used_up() {
         let mut budget = Budget::new(Cost(1000.0), 0.5, 600.0, 2);
         budget.spend(0, Cost(60.0));
-        assert!(budget.is_up() && !budget.is_used_up(), "of 300");
+        assert!(budget.is_up() && !budget.is_used_up(239.0), "of 300");
+        assert!(budget.is_used_up(240.0));
         // Counting takes 250 of them, and all that is left more.
-        assert!(!budget.is_hopeless([1000, 0, 0]));
+        assert!(!budget.is_hopeless([1000, 0, 0], 0.0));
         budget.spend(0, Cost(240.0));
-        assert!(budget.is_used_up());
+        assert!(budget.is_used_up(0.0));
     }
 
     #[test]

@@ -4,6 +4,7 @@
 //! which only let threads skip work.
 
 pub(in crate::search) mod budget;
+pub(in crate::search) mod lead;
 
 use std::sync::atomic::AtomicU16;
 
@@ -15,6 +16,7 @@ use crate::search::index::SearchIndex;
 use crate::search::leaves::block_ranges::View;
 use crate::search::leaves::leaf::LeafProgram;
 use crate::search::task::budget::Cost;
+use crate::search::task::lead::Lead;
 use crate::simd::Simd;
 use crate::space::Space;
 use crate::votes::CollectConfig;
@@ -30,8 +32,10 @@ pub(in crate::search) struct Task<'a> {
     pub coarse_bounds: &'a [AtomicU16],
     /// The same, chunk by chunk of headings.
     by_chunk: &'a [AtomicU16],
-    /// The most votes of any pose so far, whoever found it.
-    pub best: AtomicU16,
+    /// The best pose so far, whoever found it, and on whichever map.
+    lead: &'a Lead,
+    /// What a pose would have if every beam agreed fully.
+    possible: u16,
     /// What counting every pose with all beams would cost one thread.
     pub brute_force: Cost,
 }
@@ -85,7 +89,7 @@ impl<'a> Task<'a> {
         index: &'a SearchIndex,
         grid: &'a Grid,
         (program, space): (&ScanProgram, &'a Space),
-        config: CollectConfig,
+        (config, lead): (CollectConfig, &'a Lead),
     ) -> Self {
         shared.programs.make(simd, index, program, space);
         let chunks = index.within.headings(space.directions.count()).count();
@@ -104,9 +108,21 @@ impl<'a> Task<'a> {
             programs: &shared.programs,
             coarse_bounds: &shared.coarse_bounds,
             by_chunk: &shared.by_chunk,
-            best: AtomicU16::new(0),
+            lead,
+            possible: program.highest_possible() as u16,
             brute_force: Cost::of_brute_force(simd.set(), grid, program, space),
         }
+    }
+
+    /// The votes of the best pose so far; where that is one of another map, the least number
+    /// that is as good here.
+    pub(in crate::search) fn best(&self) -> u16 {
+        self.lead.on(self.possible)
+    }
+
+    /// Takes the votes of a pose of this map.
+    pub(in crate::search) fn raise_best(&self, votes: u16) {
+        self.lead.raise(votes, self.possible);
     }
 
     /// What poses of the map see.
