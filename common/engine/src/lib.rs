@@ -21,7 +21,8 @@
 //! odometry (`motion`), and what is searched is an `observation` of carried scans.
 //! Where the robot goes from the places that were found, `particles` follow it.
 //!
-//! A [`locator::Locator`] is all of it in one call: start there, its example compiles.
+//! A [`locator::Locator`] is all of it in one call: start there, its example compiles. A
+//! [`map_set::MapSet`] is the same for several maps at once.
 //! `docs/engine.md` explains the method with drawings.
 //!
 //! The crate knows no process, socket, clock or file.
@@ -42,6 +43,7 @@ pub mod joined;
 pub mod limits;
 pub mod localizer;
 pub mod locator;
+pub mod map_set;
 pub mod motion;
 pub mod observation;
 pub mod particles;

@@ -3,6 +3,7 @@
 mod config;
 mod field;
 mod preparation;
+mod together;
 
 use std::sync::Arc;
 
@@ -68,6 +69,11 @@ impl Workspace {
     pub fn intensities(&self) -> &[u16] {
         &self.field
     }
+
+    /// What the last scan said.
+    pub(crate) fn outcome(&self) -> &Outcome {
+        &self.outcome
+    }
 }
 
 /// What a scan says about the pose.
@@ -77,6 +83,9 @@ pub struct Outcome {
     pub found: VoteSet,
     /// What a pose would have if every beam agreed fully.
     pub highest_possible: u32,
+    /// The votes of the best pose; where several maps are searched and another one has it,
+    /// the least number that is as good here.
+    pub lead: u16,
     /// Beams that voted.
     pub beams_used: u32,
     /// Beams whose reading says nothing.
@@ -338,6 +347,7 @@ impl Localizer {
         known_heading: Option<f64>,
         outcome: &'w mut Outcome,
     ) -> &'w Outcome {
+        outcome.lead = outcome.found.best;
         outcome.highest_possible = program.highest_possible();
         outcome.beams_used = program.beams() as u32;
         outcome.beams_silent = program.silent() as u32;

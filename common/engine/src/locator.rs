@@ -9,11 +9,11 @@
 
 use crate::EngineError;
 use crate::beams::BeamConfig;
-use crate::fit::{DistanceField, Ends};
+use crate::fit::{BeamClass, DistanceField, Ends};
 use crate::grid::{CellRules, GridFrame};
 use crate::localizer::{self, Localizer, LocalizerConfig, Outcome, Prior};
 use crate::observation::Observation;
-use crate::peaks::{self, Judged, PeakConfig, PeakInput};
+use crate::peaks::{self, Judged, PeakConfig, PeakInput, Score};
 use crate::space::Space;
 
 /// A map of occupancies.
@@ -118,6 +118,28 @@ pub struct Located<'w> {
     pub ends: Option<&'w Ends>,
 }
 
+impl Workspace {
+    /// What the first half takes.
+    pub(crate) fn localizer(&mut self) -> &mut localizer::Workspace {
+        &mut self.localizer
+    }
+
+    /// The votes of the last scan.
+    pub(crate) fn outcome(&self) -> &Outcome {
+        self.localizer.outcome()
+    }
+
+    /// What became of the beams of the last scan at its best place.
+    pub(crate) fn classes(&self) -> &Vec<BeamClass> {
+        self.peaks.classes()
+    }
+
+    /// The beams of the last scan, where places are judged by them.
+    pub(crate) fn ends(&self, score: Score) -> Option<&Ends> {
+        (score == Score::Fit).then(|| self.peaks.ends())
+    }
+}
+
 impl Locator {
     /// Prepares a map, which takes from milliseconds to seconds.
     ///
@@ -200,16 +222,38 @@ impl Locator {
         let Some(outcome) = found else {
             return Ok(None);
         };
-        let input = PeakInput::of(outcome, self.localizer.frame());
-        let find = |ends: &mut Ends| ends.find(scan, &self.space, self.beams());
         let peaks = &mut workspace.peaks;
-        let Judged { places, ends } =
-            peaks.judge(&input, &self.distance_field, &self.peaks, find)?;
+        let Judged { places, ends, .. } = self.judged((outcome, peaks), scan, &self.peaks)?;
         Ok(Some(Located {
             outcome,
             places,
             ends,
         }))
+    }
+
+    /// The second half alone, for a scan whose votes the workspace has.
+    pub(crate) fn judge<R>(
+        &self,
+        workspace: &mut Workspace,
+        scan: Observation<'_>,
+        config: &PeakConfig,
+        read: impl FnOnce(&Outcome, &Judged<'_>) -> R,
+    ) -> Result<R, EngineError> {
+        let Workspace { localizer, peaks } = workspace;
+        let outcome = localizer.outcome();
+        let judged = self.judged((outcome, peaks), scan, config)?;
+        Ok(read(outcome, &judged))
+    }
+
+    fn judged<'w>(
+        &self,
+        (outcome, peaks): (&Outcome, &'w mut peaks::Workspace),
+        scan: Observation<'_>,
+        config: &PeakConfig,
+    ) -> Result<Judged<'w>, EngineError> {
+        let input = PeakInput::of(outcome, self.localizer.frame());
+        let find = |ends: &mut Ends| ends.find(scan, &self.space, self.beams());
+        peaks.judge(&input, &self.distance_field, config, find)
     }
 
     /// The beams of a scan, as the second stage compares them with the map.

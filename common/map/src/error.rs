@@ -18,6 +18,14 @@ pub enum MapError {
         /// What the system says.
         source: io::Error,
     },
+    /// A set of maps is none.
+    #[error("{}: {reason}", path.display())]
+    Set {
+        /// The folder or the file.
+        path: PathBuf,
+        /// What is wrong, and what is allowed.
+        reason: String,
+    },
     /// The graph could not hold the map.
     #[error(
         "a map of {width} x {height} cells takes about {needed_mb} MB in the graph; allowed are {limit_mb} MB (--memory-limit)"

@@ -2,7 +2,7 @@
 //!
 //! [`load`] reads what `map_server` reads: a YAML description beside a PGM,
 //! PNG or BMP image, in trinary, scale or raw mode; [`save`] writes such a pair.
-//! [`OccupancyGrid::from_parts`] takes a grid from anywhere else. Every grid
+//! [`set_of`] lists the maps of a building; [`OccupancyGrid::from_parts`] takes a grid from anywhere else. Every grid
 //! that the crate hands out is within the limits that it states. It knows no
 //! topic and no engine, and repairs nothing: a map that is not sound is refused
 //! with file, place and what is allowed.
@@ -20,6 +20,7 @@ mod png;
 mod raster;
 mod rules;
 mod save;
+mod set;
 
 pub use description::Mode;
 pub use error::MapError;
@@ -30,3 +31,4 @@ pub use keys::UnknownKey;
 pub use load::{image_of, load, load_noting, load_within};
 pub use memory::{MemoryLimit, MemoryOptions};
 pub use save::save;
+pub use set::{MAX_MAPS, MapFile, set_of, set_of_files};

@@ -30,6 +30,15 @@ impl<'a> Maps<'a> {
         }
     }
 
+    /// None: what counts was prepared before.
+    pub(super) fn none() -> Self {
+        Maps {
+            given: None,
+            recorded: Maps::of(std::iter::empty()),
+            began: true,
+        }
+    }
+
     /// Those of a recording.
     ///
     /// # Errors

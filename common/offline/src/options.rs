@@ -21,9 +21,10 @@ use crate::OfflineError;
 #[derive(Debug, Clone, clap::Args)]
 pub struct Options {
     /// The map, a YAML file as map_server reads it, or another recording that
-    /// holds one [default: in the recording, the newest before each scan]
+    /// holds one; `locate` searches several together if it is given several times
+    /// [default: in the recording, the newest before each scan]
     #[arg(long, value_name = "FILE")]
-    pub map: Option<PathBuf>,
+    pub map: Vec<PathBuf>,
 
     /// Which channels are meant.
     #[command(flatten)]
@@ -50,6 +51,17 @@ pub struct Options {
     pub index_cache: IndexCacheConfig,
 }
 
+/// A map of several.
+#[derive(Debug, Clone, PartialEq)]
+pub struct NamedMap {
+    /// What it is called.
+    pub name: String,
+    /// The floor, where the set says so.
+    pub floor: Option<String>,
+    /// The map.
+    pub grid: OccupancyGrid,
+}
+
 /// All settings of the engine, as the nodes of the graph take them.
 #[derive(Debug, Clone, clap::Args)]
 #[command(next_help_heading = "Engine")]
@@ -66,11 +78,26 @@ pub struct EngineOptions {
 }
 
 impl Options {
-    /// Checks what no option can check alone; opens nothing.
+    /// Checks what no option can check alone, and that there is one map at most; opens
+    /// nothing.
     ///
     /// # Errors
     /// Names the option and what is allowed.
     pub fn check(&self) -> Result<(), OfflineError> {
+        let maps = self.map.len();
+        if maps > 1 {
+            return Err(OfflineError::Usage(format!(
+                "--map is given {maps} times: only `backcast locate` searches several maps"
+            )));
+        }
+        self.check_settings()
+    }
+
+    /// The same where there may be several maps.
+    ///
+    /// # Errors
+    /// Names the option and what is allowed.
+    pub fn check_settings(&self) -> Result<(), OfflineError> {
         Directions::new(self.engine.localizer.headings).map_err(OfflineError::Setting)?;
         self.heading.check().map_err(OfflineError::Usage)
     }
@@ -81,12 +108,36 @@ impl Options {
     /// # Errors
     /// It cannot be read.
     pub fn load_map(&self, recordings: &[PathBuf]) -> Result<Option<OccupancyGrid>, OfflineError> {
-        let Some(file) = &self.map else {
-            return Ok(None);
+        let file = self.map.first();
+        file.map(|file| self.load(file, recordings)).transpose()
+    }
+
+    /// The maps that are named, if there are several: by `--map`, or those of a set, which is
+    /// a folder or a file that lists them.
+    ///
+    /// # Errors
+    /// One of them cannot be read, or the set is none.
+    pub fn load_set(
+        &self,
+        set: Option<&Path>,
+        recordings: &[PathBuf],
+    ) -> Result<Vec<NamedMap>, OfflineError> {
+        let files = match set {
+            Some(set) => map::set_of(set)?,
+            None if self.map.len() > 1 => map::set_of_files(&self.map)?,
+            None => return Ok(Vec::new()),
         };
+        let load = |map::MapFile { name, yaml, floor }: map::MapFile| {
+            let grid = self.load(&yaml, recordings)?;
+            Ok(NamedMap { name, floor, grid })
+        };
+        files.into_iter().map(load).collect()
+    }
+
+    fn load(&self, file: &Path, recordings: &[PathBuf]) -> Result<OccupancyGrid, OfflineError> {
         if !recording::is_recording(file) {
             let grid = map::load_noting(file, |key| say(&key.to_string()))?;
-            return Ok(Some(grid));
+            return Ok(grid);
         }
         if let Some(other) = recordings.iter().find(|path| is_map(path)) {
             let (other, file) = (other.display(), file.display());
@@ -98,7 +149,7 @@ impl Options {
         if let Some(topic) = &self.topics.map_topic {
             recording.prefer(Kind::Map, topic)?;
         }
-        map_in(&recording).map(Some)
+        map_in(&recording)
     }
 
     /// Opens a recording, or several files of one.
@@ -108,7 +159,11 @@ impl Options {
     pub fn open(&self, paths: &[PathBuf]) -> Result<Recording, OfflineError> {
         let mut recording = Recording::open_all(paths)?;
         // Where the map is another's, so is its channel.
-        let map_topic = self.topics.map_topic.clone().filter(|_| self.map.is_none());
+        let map_topic = self
+            .topics
+            .map_topic
+            .clone()
+            .filter(|_| self.map.is_empty());
         let topics = TopicOptions {
             map_topic,
             ..self.topics.clone()

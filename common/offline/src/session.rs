@@ -19,7 +19,7 @@ use super::heading::Headings;
 use super::layout::{check_map, frame_of, sides_of};
 use super::maps::{Arrived, Maps};
 use super::motion::Motion;
-use super::options::EngineOptions;
+use super::options::{EngineOptions, NamedMap};
 use super::scans::Scans;
 use super::world::{Answer, World};
 use super::{Options, TakenScan, cpu};
@@ -86,12 +86,6 @@ impl<'a> Session<'a> {
         options: &Options,
         given: Option<&'a OccupancyGrid>,
     ) -> Result<Self, OfflineError> {
-        let damage = |error| match error {
-            RecordingError::NoTopic { .. } => damage_of(recording).unwrap_or(error),
-            other => other,
-        };
-        let topics = options.topics.scans(recording).map_err(damage)?;
-        let headings = Headings::of(&options.heading, recording).map_err(damage)?;
         let mut maps = match given {
             Some(map) => Maps::given(map),
             None => Maps::recorded(recording)?,
@@ -99,7 +93,30 @@ impl<'a> Session<'a> {
         if maps.is_empty() {
             return Err(no_map(recording));
         }
-        let mut session = Session {
+        let mut session = Session::unprepared(recording, options, maps)?;
+        if let Some(map) = given {
+            // Without it there is nothing to be done for any scan.
+            session.maps.since(i64::MIN, |_| Ok(()));
+            session.prepare(Cow::Borrowed(map))?.map_err(|source| {
+                let file = session.map_file.clone();
+                OfflineError::UnusableMap { file, source }
+            })?;
+        }
+        Ok(session)
+    }
+
+    fn unprepared(
+        recording: &'a Recording,
+        options: &Options,
+        maps: Maps<'a>,
+    ) -> Result<Self, OfflineError> {
+        let damage = |error| match error {
+            RecordingError::NoTopic { .. } => damage_of(recording).unwrap_or(error),
+            other => other,
+        };
+        let topics = options.topics.scans(recording).map_err(damage)?;
+        let headings = Headings::of(&options.heading, recording).map_err(damage)?;
+        Ok(Session {
             motion: Motion::of(recording, &topics, &options.motion),
             scans: Scans::of(recording, topics, options.every),
             prepare_cpu_ms: 0.0,
@@ -112,15 +129,34 @@ impl<'a> Session<'a> {
             engine: options.engine.clone(),
             cache: options.index_cache.open(CachePlace::Off)?,
             headings,
+        })
+    }
+
+    /// Looks at several maps that are given, for each scan at all of them together.
+    ///
+    /// # Errors
+    /// As [`Session::open`].
+    pub fn open_on(
+        recording: &'a Recording,
+        options: &Options,
+        maps: &[NamedMap],
+    ) -> Result<Self, OfflineError> {
+        let Some(first) = maps.first() else {
+            return Session::open(recording, options, None);
         };
-        if let Some(map) = given {
-            // Without it there is nothing to be done for any scan.
-            session.maps.since(i64::MIN, |_| Ok(()));
-            session.prepare(Cow::Borrowed(map))?.map_err(|source| {
-                let file = session.map_file.clone();
-                OfflineError::UnusableMap { file, source }
-            })?;
-        }
+        let mut session = Session::unprepared(recording, options, Maps::none())?;
+        let prior = session.headings.source().prior();
+        let cache = session.cache.as_ref();
+        let prepare = || World::of_set(maps, &options.engine, prior, cache);
+        let (prepared, cpu_ms) = cpu::timed(prepare)?;
+        session.prepare_cpu_ms += cpu_ms;
+        let (world, kept) = prepared?;
+        kept.into_iter().for_each(|kept| session.keep(kept));
+        session.prepared = Some(Prepared {
+            map: Cow::Owned(first.grid.clone()),
+            map_id: first.grid.id(),
+            world,
+        });
         Ok(session)
     }
 
@@ -266,7 +302,7 @@ impl<'a> Session<'a> {
                 answer: Err(no_usable_map(&self.map_file, &self.refusal)),
             });
         };
-        let map_id = prepared.world.map_id;
+        let mut map_id = prepared.world.map_id;
         let heading = match self.headings.of_scan(scan) {
             Ok(heading) => heading,
             Err(refusal) => {
@@ -292,6 +328,9 @@ impl<'a> Session<'a> {
             let seen = motion.seen();
             prepared.world.locate(seen.observation(), heading, target)
         })?;
+        if let Ok(Answer { map, .. }) = &found {
+            map_id = map.id;
+        }
         Ok(Reply {
             map_id,
             cpu_ms,
@@ -342,5 +381,6 @@ fn no_map(recording: &Recording) -> OfflineError {
 }
 
 fn map_file(options: &Options, bag: &Path) -> PathBuf {
-    options.map.as_deref().unwrap_or(bag).to_owned()
+    let file = options.map.first().map(PathBuf::as_path);
+    file.unwrap_or(bag).to_owned()
 }

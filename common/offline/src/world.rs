@@ -5,7 +5,8 @@ use engine::EngineError;
 use engine::fit::{BeamClass, DistanceField, Ends, GridPose, JudgedBeam};
 use engine::grid::GridFrame;
 use engine::localizer::{Outcome, Preparation, Prior};
-use engine::locator::{self, Located, Locator, OccupancyView};
+use engine::locator::{self, Locator, OccupancyView};
+use engine::map_set::{self, MapSet};
 use engine::observation::Observation;
 use engine::peaks::{PeakConfig, Places, Target};
 use engine::scan::Scan;
@@ -14,18 +15,33 @@ use index_cache::{IndexCache, Kept, Prepared};
 use map::OccupancyGrid;
 
 use super::layout::{frame_of, sides_of};
-use super::options::EngineOptions;
+use super::options::{EngineOptions, NamedMap};
+use crate::OfflineError;
 
 /// A map and all settings.
 #[derive(Debug)]
 pub struct World {
-    /// The map's id, as the graph's messages have it.
+    /// The map's id, as the graph's messages have it; the first one's of several.
     pub map_id: u64,
-    locator: Locator,
-    cells: u64,
+    maps: Vec<KnownMap>,
+    set: MapSet,
     workspace: locator::Workspace,
+    together: map_set::Workspace,
     /// The last places, of the first laser.
     of_laser: Places,
+}
+
+/// A map that is searched.
+#[derive(Debug, Clone, PartialEq)]
+pub struct KnownMap {
+    /// As the graph's messages have it.
+    pub id: u64,
+    /// What it is called, where several are searched; else empty.
+    pub name: String,
+    /// The floor, where the set of maps says so.
+    pub floor: Option<String>,
+    frame: GridFrame,
+    cells: u64,
 }
 
 /// What a scan says about the place.
@@ -35,8 +51,12 @@ pub struct Answer<'a> {
     pub outcome: &'a Outcome,
     /// What they say, the verdict included.
     pub places: &'a Places,
-    /// Where the map's cells lie.
+    /// Where the cells of that map lie.
     pub frame: GridFrame,
+    /// The map of the best place.
+    pub map: &'a KnownMap,
+    /// All maps that were searched, by the numbers that places have.
+    pub maps: &'a [KnownMap],
 }
 
 /// A scan at a pose.
@@ -113,55 +133,74 @@ impl World {
         prior: Prior,
         cache: Option<&IndexCache>,
     ) -> Result<(Self, Kept), EngineError> {
-        let view = OccupancyView {
-            frame: frame_of(map),
-            sides: sides_of(map),
-            occupancy: &map.cells,
-            rules: options.cells,
-        };
-        let config = options.localizer.clone();
-        let preparation = Preparation::of_map(
-            view.frame,
-            view.sides,
-            view.occupancy,
-            view.rules,
-            config,
-            prior,
-        )?;
-        let Prepared { localizer, kept } = Prepared::new(cache, preparation)?;
-        let world = World {
-            map_id: map.id(),
-            locator: Locator::with(localizer, view, options.peaks)?,
-            cells: u64::from(map.width) * u64::from(map.height),
-            workspace: locator::Workspace::default(),
-            of_laser: Places::default(),
-        };
-        Ok((world, kept))
+        let (locator, kept) = locator_of(map, options, prior, cache)?;
+        let known = KnownMap::of(map, String::new(), None);
+        Ok((World::of(vec![known], vec![locator]), kept))
     }
 
-    /// Cells of the map.
+    /// The same with several maps, which are searched together.
+    ///
+    /// # Errors
+    /// See [`World::prepare`]; the map is named.
+    pub fn of_set(
+        maps: &[NamedMap],
+        options: &EngineOptions,
+        prior: Prior,
+        cache: Option<&IndexCache>,
+    ) -> Result<(Self, Vec<Kept>), OfflineError> {
+        let (mut known, mut locators, mut all_kept) = (Vec::new(), Vec::new(), Vec::new());
+        for NamedMap { name, floor, grid } in maps {
+            let prepared = locator_of(grid, options, prior, cache);
+            let (locator, kept) = prepared.map_err(|source| OfflineError::UnusableMap {
+                file: name.into(),
+                source,
+            })?;
+            known.push(KnownMap::of(grid, name.clone(), floor.clone()));
+            locators.push(locator);
+            all_kept.push(kept);
+        }
+        Ok((World::of(known, locators), all_kept))
+    }
+
+    fn of(maps: Vec<KnownMap>, locators: Vec<Locator>) -> Self {
+        World {
+            map_id: maps[0].id,
+            maps,
+            set: MapSet::new(locators),
+            workspace: locator::Workspace::default(),
+            together: map_set::Workspace::default(),
+            of_laser: Places::default(),
+        }
+    }
+
+    /// The map, the first of several.
+    fn locator(&self) -> &Locator {
+        &self.set.locators()[0]
+    }
+
+    /// Cells of all maps.
     pub fn cells(&self) -> u64 {
-        self.cells
+        self.maps.iter().map(|map| map.cells).sum()
     }
 
     /// Cells in which poses are searched, as large as they are searched.
     pub fn searchable_cells(&self) -> u64 {
-        self.locator.localizer().searchable_cells() as u64
+        self.locator().localizer().searchable_cells() as u64
     }
 
     /// Bytes of what a search keeps of the map.
     pub fn index_bytes(&self) -> u64 {
-        self.locator.localizer().index_bytes() as u64
+        self.locator().localizer().index_bytes() as u64
     }
 
     /// The map as the second stage reads it.
     pub fn distance_field(&self) -> &DistanceField {
-        self.locator.distance_field()
+        self.locator().distance_field()
     }
 
     /// How the second stage judges places.
     pub fn peaks(&self) -> &PeakConfig {
-        self.locator.peaks()
+        self.locator().peaks()
     }
 
     /// The beams of a scan, as the second stage judges them.
@@ -169,7 +208,7 @@ impl World {
     /// # Errors
     /// The scan is refused.
     pub fn ends(&self, scan: Observation<'_>) -> Result<Ends, EngineError> {
-        self.locator.ends(scan)
+        self.locator().ends(scan)
     }
 
     /// Searches all poses or, where the heading in the map is given in radians,
@@ -185,21 +224,33 @@ impl World {
         heading: Option<f64>,
         target: Target,
     ) -> Result<Answer<'_>, EngineError> {
-        let workspace = &mut self.workspace;
-        let found = self
-            .locator
-            .locate_unless(workspace, scan, heading, &|| false)?;
-        let Located {
-            outcome, places, ..
-        } = found.expect("a search that nothing stops ends with an outcome");
+        let all = "a search that nothing stops ends with an outcome";
+        let (outcome, places) = match self.set.locators() {
+            [locator] => {
+                let workspace = &mut self.workspace;
+                let found = locator.locate_unless(workspace, scan, heading, &|| false)?;
+                let found = found.expect(all);
+                (found.outcome, found.places)
+            }
+            _ => {
+                let together = &mut self.together;
+                let found = self.set.locate_unless(together, scan, heading, &|| false)?;
+                let found = found.expect(all);
+                (found.outcome, found.places)
+            }
+        };
         self.of_laser.clone_from(places);
         for place in &mut self.of_laser.places {
             *place = place.of_laser(target);
         }
+        let best = self.of_laser.places.first();
+        let map = &self.maps[best.map_or(0, |best| best.map as usize)];
         Ok(Answer {
             outcome,
             places: &self.of_laser,
-            frame: self.locator.distance_field().frame,
+            frame: map.frame,
+            map,
+            maps: &self.maps,
         })
     }
 
@@ -232,18 +283,55 @@ impl World {
     /// The scan is refused.
     pub fn field_at(&self, scan: &Scan<'_>, heading: f64) -> Result<Field, EngineError> {
         let found = self
-            .locator
+            .locator()
             .localizer()
             .search_at(scan, heading, &|| false)?;
         let (outcome, intensities) = found.expect("a search that nothing stops ends");
-        let grid = self.locator.localizer().grid();
+        let grid = self.locator().localizer().grid();
         Ok(Field {
-            frame: self.locator.localizer().frame(),
+            frame: self.locator().localizer().frame(),
             sides: (grid.width(), grid.height()),
             intensities,
             outcome,
         })
     }
+}
+
+impl KnownMap {
+    fn of(map: &OccupancyGrid, name: String, floor: Option<String>) -> Self {
+        KnownMap {
+            id: map.id(),
+            name,
+            floor,
+            frame: frame_of(map),
+            cells: u64::from(map.width) * u64::from(map.height),
+        }
+    }
+}
+
+fn locator_of(
+    map: &OccupancyGrid,
+    options: &EngineOptions,
+    prior: Prior,
+    cache: Option<&IndexCache>,
+) -> Result<(Locator, Kept), EngineError> {
+    let view = OccupancyView {
+        frame: frame_of(map),
+        sides: sides_of(map),
+        occupancy: &map.cells,
+        rules: options.cells,
+    };
+    let config = options.localizer.clone();
+    let preparation = Preparation::of_map(
+        view.frame,
+        view.sides,
+        view.occupancy,
+        view.rules,
+        config,
+        prior,
+    )?;
+    let Prepared { localizer, kept } = Prepared::new(cache, preparation)?;
+    Ok((Locator::with(localizer, view, options.peaks)?, kept))
 }
 
 /// Where a beam ends in the map if the scan was taken at a pose, metres.

@@ -62,7 +62,7 @@ fn draw_map(
     given: Option<OccupancyGrid>,
     recording: Option<&Recording>,
 ) -> Result<Scene, PlotError> {
-    let (map, file) = match (given, recording, &config.options.map) {
+    let (map, file) = match (given, recording, config.options.map.first()) {
         (None, Some(recording), _) => (map_in(recording)?, recording.path()),
         (Some(map), _, Some(file)) => (map, file.as_path()),
         // `Config::check` asks for the one or the other.

@@ -89,7 +89,7 @@ impl Config {
         let image = self
             .options
             .map
-            .as_ref()
+            .first()
             .and_then(|yaml| map::image_of(yaml).ok());
         let whole = |path: &Path| path.canonicalize().ok();
         image.is_some_and(|image| whole(&image).is_some() && whole(&image) == whole(file))
@@ -102,7 +102,7 @@ impl Config {
     pub(super) fn check(&self) -> Result<Format, PlotError> {
         self.options.check()?;
         let usage = |text: String| Err(OfflineError::Usage(text).into());
-        if self.bag.is_empty() && (self.kind != Kind::Map || self.options.map.is_none()) {
+        if self.bag.is_empty() && (self.kind != Kind::Map || self.options.map.is_empty()) {
             return usage(
                 "--bag is missing: only the picture `map` does without, and then needs --map"
                     .into(),

@@ -131,6 +131,8 @@ mod tests {
     /// A robot at a pose, whose only beam hits something two metres ahead.
     fn subject(pose: Pose) -> Subject {
         let place = Place {
+            map: 0,
+            possible: 100,
             map_from_laser: pose,
             covariance: Covariance::from_deviations(0.01, 0.01, 0.01),
             score: 1.0,

@@ -102,6 +102,7 @@ fn summaries(header: &HypothesesHeader, hypotheses: &[Hypothesis]) -> Vec<PlaceS
     reported
         .filter(is_finite)
         .map(|h| PlaceSummary {
+            map: h.map_id,
             map_from_laser: h.map_from_laser.into(),
             covariance: Covariance::from_rows(h.covariance),
             score: h.score.into(),

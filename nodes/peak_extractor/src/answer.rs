@@ -79,7 +79,7 @@ pub fn answer<'w>(
         let extent = (header.headings, resolution_m, sides.0, sides.1);
         Ok(ends.find(&scan, kept_or_made(space, extent)?, &beams)?)
     };
-    let Judged { places, ends } = peaks.judge(&input, &map.distance_field, config, take)?;
+    let Judged { places, ends, .. } = peaks.judge(&input, &map.distance_field, config, take)?;
     beams_seen.clear();
     if let Some(ends) = ends {
         beams_seen.extend(judged(ends, places));

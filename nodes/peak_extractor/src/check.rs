@@ -63,6 +63,7 @@ pub fn check<'a>(
         certified_floor: header.certified_floor,
         cut: header.truncated == VotesHeader::CUT,
         highest_possible: header.highest_possible,
+        lead: votes.first().map_or(0, |vote| vote.intensity.into()),
         headings: header.headings,
         known_heading: (header.heading_known == 1).then_some(header.known_heading),
         frame: map.frame.pooled(pooling as usize),

@@ -6,6 +6,7 @@ mod corridor;
 mod evaluation;
 mod hard_cases;
 mod lost_searches;
+mod many_maps;
 mod reference;
 mod side_by_side;
 mod tracking;

@@ -103,6 +103,7 @@ fn covariance(hypothesis: &Hypothesis) -> Option<Covariance> {
 
 fn summary(hypothesis: &Hypothesis) -> Option<PlaceSummary> {
     Some(PlaceSummary {
+        map: hypothesis.map_id,
         map_from_laser: hypothesis.map_from_laser.into(),
         covariance: covariance(hypothesis)?,
         score: hypothesis.score.into(),

@@ -6,7 +6,7 @@ use messages::Verdict;
 use nalgebra::{Matrix3, Vector3};
 
 use super::summits::{self, Reach, Summit};
-use super::{PeakConfig, PeakInput, Place, Places, Workspace, in_map, likelihood};
+use super::{Margin, PeakConfig, PeakInput, Place, Places, Workspace, in_map, likelihood};
 use crate::fit::{BeamClass, DistanceField, Ends, GridPose, Refined};
 use crate::votes::most_candidates;
 
@@ -64,10 +64,12 @@ impl Workspace {
                 best.score,
                 best.score - distance_field.left_out(best.score, &config.fit),
             );
-            found.judge_by_fit((best.score, needed, left_out), &mut self.leads, config);
-            if found.verdict == Verdict::Unique && input.may_lack(config.ambiguous_share) {
-                found.verdict = Verdict::Ambiguous;
-            }
+            self.margin = Margin {
+                needed,
+                left_out,
+                may_lack: input.may_lack(config.ambiguous_share),
+            };
+            found.judge_by_fit((best.score, self.margin), &mut self.leads, config);
         }
         &self.places
     }
@@ -77,12 +79,17 @@ impl Places {
     /// What the scores of the places allow to say, where the best one needs such a
     /// lead to stand alone, and such a lead may come from what the map leaves out; keeps
     /// as many as are wanted.
-    fn judge_by_fit(
+    pub(super) fn judge_by_fit(
         &mut self,
-        (best, needed, left_out): (f64, f64, f64),
+        (best, margin): (f64, Margin),
         leads: &mut Vec<f64>,
         config: &PeakConfig,
     ) {
+        let Margin {
+            needed,
+            left_out,
+            may_lack,
+        } = margin;
         let places = &mut self.places;
         leads.clear();
         leads.extend(places.iter().map(|place| lead(best, place.score)));
@@ -96,7 +103,7 @@ impl Places {
         likelihood::assign(places, leads, config);
         self.verdict = match () {
             () if best < config.least_score => Verdict::PoorFit,
-            () if self.alternatives > 0 => Verdict::Ambiguous,
+            () if self.alternatives > 0 || may_lack => Verdict::Ambiguous,
             () => Verdict::Unique,
         };
         places.truncate(config.max_hypotheses as usize);
@@ -154,11 +161,13 @@ fn place(
         map_from_laser.yaw = wrap_angle(heading);
     }
     Place {
+        map: 0,
         map_from_laser,
         covariance: covariance(distance_field, is_known, &refined),
         score: distance_field.score(ends, pose, &config.fit),
         probability: 0.0,
         intensity: vote.intensity,
+        possible: input.highest_possible as u16,
         support: summit.support,
     }
 }

@@ -90,11 +90,13 @@ fn place(input: &PeakInput<'_>, summit: &Summit, reach: Reach) -> Place {
         map_from_laser.yaw = wrap_angle(heading);
     }
     Place {
+        map: 0,
         map_from_laser,
         covariance: spread_in_map(input, moments.covariance()),
         probability: 0.0,
         score: f64::from(summit.intensity) / f64::from(input.highest_possible.max(1)),
         intensity: summit.intensity,
+        possible: input.highest_possible as u16,
         support: moments.count,
     }
 }

@@ -28,11 +28,13 @@ mod tests {
 
     fn assigned(scores: &[f64], leads: &[f64]) -> Vec<f64> {
         let place = |&score: &f64| Place {
+            map: 0,
             map_from_laser: Pose::IDENTITY,
             covariance: Covariance::from_deviations(0.1, 0.1, 0.01),
             score,
             probability: 0.0,
             intensity: 1,
+            possible: 1,
             support: 1,
         };
         let mut places: Vec<Place> = scores.iter().map(place).collect();

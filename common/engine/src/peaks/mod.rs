@@ -12,6 +12,7 @@ mod by_fit;
 mod by_votes;
 mod config;
 mod likelihood;
+mod merged;
 pub mod sentence;
 mod summits;
 
@@ -26,6 +27,7 @@ pub use by_fit::by_fit;
 pub(crate) use by_fit::lead;
 pub use by_votes::by_votes;
 pub use config::{PeakConfig, Score};
+pub use merged::{Found, Merged, merge};
 use sentence::PlaceSummary;
 use summits::Summit;
 
@@ -40,6 +42,9 @@ pub struct PeakInput<'a> {
     pub cut: bool,
     /// What a pose would have if every beam agreed fully.
     pub highest_possible: u32,
+    /// The votes of the best pose; where several maps are searched and another one has it,
+    /// the least number that is as good here.
+    pub lead: u32,
     /// Headings a turn.
     pub headings: u32,
     /// The heading that was given, in the map frame, radians.
@@ -57,6 +62,7 @@ impl<'a> PeakInput<'a> {
             certified_floor: u32::from(outcome.found.certified_floor),
             cut: outcome.found.cut,
             highest_possible: outcome.highest_possible,
+            lead: outcome.lead.into(),
             headings: outcome.headings,
             known_heading: outcome.known_heading,
             frame,
@@ -66,9 +72,8 @@ impl<'a> PeakInput<'a> {
     /// Whether a pose that the search did not come to may have such a share of the best
     /// one's votes.
     fn may_lack(&self, share: f64) -> bool {
-        let best = self.votes.first().map_or(0, |best| best.intensity);
         let unseen = self.certified_floor.saturating_sub(1);
-        self.cut && f64::from(unseen) >= f64::from(best) * share
+        self.cut && f64::from(unseen) >= f64::from(self.lead) * share
     }
 
     /// The given heading in the grid's frame, radians.
@@ -88,6 +93,8 @@ pub(crate) fn in_map(frame: GridFrame, in_cells: Matrix3<f64>) -> Covariance {
 /// One place where the robot may be.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Place {
+    /// Number of the map among those that are searched together, from 0.
+    pub map: u32,
     /// Pose of the target frame: the laser or, where several are joined,
     /// the base.
     pub map_from_laser: Pose,
@@ -100,6 +107,8 @@ pub struct Place {
     pub probability: f64,
     /// Votes of the best pose that led there.
     pub intensity: u16,
+    /// Votes that a pose of the map can have at most.
+    pub possible: u16,
     /// Votes that led there.
     pub support: u64,
 }
@@ -219,6 +228,7 @@ impl Places {
         let reported = self.places.iter().take(1 + self.alternatives as usize);
         let summaries: Vec<PlaceSummary> = reported
             .map(|place| PlaceSummary {
+                map: place.map.into(),
                 map_from_laser: place.map_from_laser,
                 covariance: place.covariance,
                 score: place.score,
@@ -252,6 +262,17 @@ impl Default for Places {
     }
 }
 
+/// By how much the best place must lead over others to stand alone.
+#[derive(Debug, Clone, Copy, PartialEq, Default)]
+pub struct Margin {
+    /// For what its scan says, see [`PeakConfig::least_lead`].
+    pub needed: f64,
+    /// A lead that may come from what the map leaves out.
+    pub left_out: f64,
+    /// Whether a pose that the search did not come to may be as good.
+    pub may_lack: bool,
+}
+
 /// What reading places takes, and the last ones. Kept from scan to scan: once
 /// the buffers are large enough, nothing is allocated any more. It may serve any map.
 #[derive(Debug, Default)]
@@ -262,6 +283,8 @@ pub struct Workspace {
     /// Of the best place over each.
     leads: Vec<f64>,
     places: Places,
+    /// What the best of them needs to stand alone.
+    margin: Margin,
     /// The beams of the last scan that was compared with a map.
     ends: Ends,
 }
@@ -273,9 +296,21 @@ pub struct Judged<'w> {
     pub places: &'w Places,
     /// The beams that were compared with the map; none where the votes alone decide.
     pub ends: Option<&'w Ends>,
+    /// By how much the best place must lead over others.
+    pub margin: Margin,
 }
 
 impl Workspace {
+    /// What became of each beam at the best place.
+    pub(crate) fn classes(&self) -> &Vec<BeamClass> {
+        &self.places.classes
+    }
+
+    /// The beams of the last scan that was compared with a map.
+    pub(crate) fn ends(&self) -> &Ends {
+        &self.ends
+    }
+
     /// Reads the places as the settings want it: from the votes alone, or from how well the
     /// scan fits the map, which is then asked for. The map must be that of the votes; its
     /// cells may be finer, with the same origin.
@@ -291,7 +326,14 @@ impl Workspace {
     ) -> Result<Judged<'_>, E> {
         if config.score == Score::Votes {
             let places = self.by_votes(input, config);
-            return Ok(Judged { places, ends: None });
+            return Ok(Judged {
+                places,
+                ends: None,
+                margin: Margin {
+                    may_lack: input.may_lack(config.ambiguous_share),
+                    ..Margin::default()
+                },
+            });
         }
         // Out of the workspace while that is at work.
         let mut ends = std::mem::take(&mut self.ends);
@@ -302,6 +344,7 @@ impl Workspace {
         found.map(|()| Judged {
             places: &self.places,
             ends: Some(&self.ends),
+            margin: self.margin,
         })
     }
 }

@@ -8,6 +8,8 @@ use messages::Verdict;
 /// What is reported of a place.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct PlaceSummary {
+    /// Which map it is on: places with other numbers are on other maps.
+    pub map: u64,
     /// Pose of the laser in the map.
     pub map_from_laser: Pose,
     /// Its spread.
@@ -52,6 +54,12 @@ fn fit(place: &PlaceSummary) -> f64 {
 
 /// How the others lie to the best place.
 fn apart(best: &PlaceSummary, others: &[PlaceSummary]) -> String {
+    let elsewhere = others.iter().filter(|other| other.map != best.map).count();
+    match elsewhere {
+        0 => {}
+        1 => return "one of them on another map".to_owned(),
+        _ => return format!("{elsewhere} of them on other maps"),
+    }
     let distance = |other: &PlaceSummary| best.map_from_laser.distance_to(other.map_from_laser);
     let distances = others.iter().map(distance);
     let (nearest, farthest) = distances.fold((f64::INFINITY, 0.0_f64), |(near, far), distance| {
@@ -87,6 +95,7 @@ mod tests {
 
     fn at(x: f64, y: f64, degrees: f64) -> PlaceSummary {
         PlaceSummary {
+            map: 0,
             map_from_laser: Pose::new(x, y, degrees.to_radians()),
             covariance: Covariance::from_deviations(2.0, 0.02, 0.01),
             score: 0.874,

@@ -58,7 +58,7 @@ pub(super) fn find(
     summits: &mut Vec<Summit>,
 ) {
     summits.clear();
-    let best = input.votes.first().map_or(0, |vote| vote.intensity);
+    let best = input.lead as u16;
     for vote in input.votes {
         let near = |summit: &&mut Summit| input.are_near(&summit.vote, vote, reach);
         if let Some(summit) = summits.iter_mut().find(near) {

@@ -17,6 +17,7 @@ fn input(votes: &[Vote]) -> PeakInput<'_> {
         certified_floor: 85,
         cut: false,
         highest_possible: 200,
+        lead: votes.first().map_or(0, |vote| vote.intensity.into()),
         headings: 360,
         known_heading: None,
         frame: GridFrame {

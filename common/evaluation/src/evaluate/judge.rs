@@ -193,11 +193,13 @@ pub(super) mod tests {
 
     fn found(verdict: Verdict, poses: &[Pose]) -> Places {
         let place = |&map_from_laser: &Pose| Place {
+            map: 0,
             map_from_laser,
             covariance: Covariance::from_deviations(0.1, 0.1, 0.01),
             score: 0.75,
             probability: 0.5,
             intensity: 100,
+            possible: 200,
             support: 1,
         };
         Places {

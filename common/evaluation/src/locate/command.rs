@@ -30,6 +30,11 @@ pub struct Config {
     #[arg(long)]
     json: bool,
 
+    /// The maps of a building, searched together: a folder of maps, or a file that
+    /// lists them with names and floors, see docs/maps.md
+    #[arg(long, value_name = "FOLDER|FILE", conflicts_with = "map")]
+    maps: Option<PathBuf>,
+
     #[command(flatten)]
     particles: ParticlesOptions,
 
@@ -44,11 +49,18 @@ pub struct Config {
 /// Map or recording cannot be used, every scan was rejected, or the recording is
 /// damaged: that is reported after what lies before the damage.
 pub fn run(config: &Config) -> Result<ExitCode, EvaluationError> {
-    config.options.check()?;
+    config.options.check_settings()?;
     let files = [&config.recordings[..], &config.bag].concat();
-    let map = config.options.load_map(&files)?;
+    let maps = config.options.load_set(config.maps.as_deref(), &files)?;
+    let map = match maps.is_empty() {
+        true => config.options.load_map(&files)?,
+        false => None,
+    };
     let recording = config.options.open(&files)?;
-    let mut session = Session::open(&recording, &config.options, map.as_ref())?;
+    let mut session = match maps.is_empty() {
+        true => Session::open(&recording, &config.options, map.as_ref())?,
+        false => Session::open_on(&recording, &config.options, &maps)?,
+    };
     if !config.json {
         stdout::print(&format!("{}\n", Line::header()))?;
     }

@@ -8,7 +8,7 @@ use engine::localizer::Outcome;
 use engine::peaks::Place;
 use geometry::Pose;
 use messages::Verdict;
-use offline::{Answer, Reply, TakenScan};
+use offline::{Answer, KnownMap, Reply, TakenScan};
 use serde::Serialize;
 
 use super::particles::Particles;
@@ -21,6 +21,10 @@ pub(super) struct Object {
     /// The map's id in hexadecimal, as logs show it: a number of 64 bits is not
     /// safe in JSON.
     map_id: String,
+    /// The name of the best place's map, where several are searched; else null.
+    map: Option<String>,
+    /// Its floor, where the set of maps says so.
+    floor: Option<String>,
     verdict: &'static str,
     /// Other places that fit about as well.
     alternatives: u32,
@@ -76,6 +80,8 @@ struct Beams {
 /// `map_from_laser` in metres and radians, and how sure it is.
 #[derive(Debug, Serialize)]
 struct Hypothesis {
+    /// The name of its map, where several are searched; else null.
+    map: Option<String>,
     x: f64,
     y: f64,
     yaw: f64,
@@ -95,6 +101,8 @@ impl Object {
         let mut object = Object {
             stamp_ns: scan.stamp_ns,
             map_id: format!("{:016x}", reply.map_id),
+            map: None,
+            floor: None,
             verdict: Verdict::NoScan.as_str(),
             alternatives: 0,
             says: None,
@@ -121,7 +129,11 @@ impl Object {
     fn fill(
         &mut self,
         Answer {
-            outcome, places, ..
+            outcome,
+            places,
+            map,
+            maps,
+            ..
         }: &Answer<'_>,
         base_from_laser: Option<Pose>,
     ) {
@@ -132,7 +144,13 @@ impl Object {
         self.votes = Some(votes(outcome));
         self.beams = beams(&places.classes);
         let laser_from_base = base_from_laser.map(Pose::inverse);
+        let is_set = maps.len() > 1;
+        let name = |map: &KnownMap| is_set.then(|| map.name.clone());
+        if !places.places.is_empty() {
+            (self.map, self.floor) = (name(map), map.floor.clone());
+        }
         let hypothesis = |place: &Place| Hypothesis {
+            map: name(&maps[place.map as usize]),
             x: place.map_from_laser.x,
             y: place.map_from_laser.y,
             yaw: place.map_from_laser.yaw,

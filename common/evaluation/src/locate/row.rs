@@ -33,5 +33,11 @@ pub(super) fn text(stamp_ns: i64, reply: &Reply<'_>) -> String {
         line.heading_deg = Some(best.map_from_laser.yaw.to_degrees());
         line.score = Some(best.score as f32);
     }
-    line.text()
+    match &reply.answer {
+        // What the verdict says stands at the end of the line, and which map before it.
+        Ok(answer) if answer.maps.len() > 1 && !places.places.is_empty() => {
+            format!("{}  on {}", line.text(), answer.map.name)
+        }
+        _ => line.text(),
+    }
 }

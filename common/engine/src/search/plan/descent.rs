@@ -186,10 +186,9 @@ impl<'a> Descent<'a> {
     /// The next block that may matter.
     fn next(&mut self) -> Option<Block> {
         self.scratch.collector.raise_best(self.task.best());
-        self.scratch.queue.pop(
-            self.budget.prefers_leaves(),
-            self.scratch.collector.floor(),
-        )
+        self.scratch
+            .queue
+            .pop(self.budget.prefers_leaves(), self.scratch.collector.floor())
     }
 
     /// Asks for what is known of a block that is likely the next one.

@@ -403,15 +403,16 @@ mod tests {
         workspaces.resize_with(maps.len(), Workspace::default);
         let mut found = vec![VoteSet::default(); maps.len()];
         let searched = maps.iter().zip(workspaces).zip(&mut found);
-        let searched = searched.map(
-            |((&(index, grid, program, space), workspace), found)| Searched {
-                index,
-                grid,
-                scan: (program, space),
-                workspace,
-                found,
-            },
-        );
+        let searched =
+            searched.map(
+                |((&(index, grid, program, space), workspace), found)| Searched {
+                    index,
+                    grid,
+                    scan: (program, space),
+                    workspace,
+                    found,
+                },
+            );
         let mut searched: Vec<_> = searched.collect();
         SearchIndex::search_together(&mut searched, how, config, &|| false).unwrap();
         found

@@ -188,11 +188,7 @@ impl Budget {
 
     /// Whether counting every pose would be done sooner than what is left, blocks of
     /// each level, and before the search has to end.
-    pub(in crate::search) fn is_hopeless(
-        &mut self,
-        left: [usize; LEVELS],
-        elsewhere: f64,
-    ) -> bool {
+    pub(in crate::search) fn is_hopeless(&mut self, left: [usize; LEVELS], elsewhere: f64) -> bool {
         self.next = self.spent * NEXT_LOOK;
         if self.spent + elsewhere + self.counting > self.limit {
             return false;

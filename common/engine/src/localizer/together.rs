@@ -1,0 +1,112 @@
+//! Several maps that are searched together.
+
+use super::{Localizer, Workspace};
+use crate::EngineError;
+use crate::instruction_set::InstructionSet;
+use crate::observation::Observation;
+use crate::search::{SearchIndex, Searched};
+use crate::votes::least_close;
+
+impl Localizer {
+    /// Searches maps together, each in a workspace of its own, with the settings of the first:
+    /// of each map the poses that come near the best one of all. `None` if `stop` said so
+    /// before the end.
+    ///
+    /// Votes are compared as shares of the highest possible on each map, without rounding.
+    ///
+    /// # Errors
+    /// If the scan is refused, see [`Observation::check`], or the heading not finite.
+    ///
+    /// # Panics
+    /// If there is no map, or a localizer was prepared for the other kind of question.
+    pub(crate) fn search_together(
+        mut maps: Vec<(&Localizer, &mut Workspace)>,
+        scan: Observation<'_>,
+        heading: Option<f64>,
+        stop: &dyn Fn() -> bool,
+    ) -> Result<Option<()>, EngineError> {
+        let found = match heading {
+            Some(heading) => at_heading(&mut maps, scan, heading, stop)?,
+            None => at_any_heading(&mut maps, scan, stop)?,
+        };
+        if found.is_none() {
+            return Ok(None);
+        }
+        let shares = maps.iter().map(|(_, workspace)| share(workspace));
+        let lead = shares.reduce(|a, b| if is_better(b, a) { b } else { a });
+        let (best, possible) = lead.expect("a map");
+        for (map, workspace) in &mut maps {
+            let outcome = &mut workspace.outcome;
+            let here = u64::from(outcome.highest_possible);
+            outcome.lead = (best * here).div_ceil(possible) as u16;
+            if heading.is_some() {
+                let floor = map.config.collect.floor(outcome.lead);
+                let least = least_close(outcome.lead);
+                outcome.found.confine((outcome.lead, floor), Some(least));
+            }
+        }
+        Ok(Some(()))
+    }
+}
+
+/// Votes of the best pose on a map, and how many are possible.
+fn share(workspace: &Workspace) -> (u64, u64) {
+    let outcome = &workspace.outcome;
+    let possible = u64::from(outcome.highest_possible.max(1));
+    (outcome.found.best.into(), possible)
+}
+
+fn is_better((a, of_a): (u64, u64), (b, of_b): (u64, u64)) -> bool {
+    a * of_b > b * of_a
+}
+
+fn at_any_heading(
+    maps: &mut [(&Localizer, &mut Workspace)],
+    scan: Observation<'_>,
+    stop: &dyn Fn() -> bool,
+) -> Result<Option<()>, EngineError> {
+    for (map, workspace) in maps.iter_mut() {
+        let (space, votes) = (&map.space, &map.config.votes);
+        workspace.program.compile(scan, 0.0, space, votes)?;
+    }
+    let config = &maps.first().expect("a map").0.config;
+    let how = (InstructionSet::best(), usize::from(config.threads));
+    let searched = maps.iter_mut().map(|(map, workspace)| {
+        let Workspace {
+            program,
+            search,
+            outcome,
+            ..
+        } = &mut **workspace;
+        Searched {
+            index: map.index(),
+            grid: &map.grid,
+            scan: (program, &map.space),
+            workspace: search,
+            found: &mut outcome.found,
+        }
+    });
+    let mut searched: Vec<_> = searched.collect();
+    let found = SearchIndex::search_together(&mut searched, how, config.collect, stop);
+    for (map, workspace) in maps.iter_mut() {
+        let Workspace {
+            program, outcome, ..
+        } = &mut **workspace;
+        map.describe(program, None, outcome);
+    }
+    Ok(found)
+}
+
+fn at_heading(
+    maps: &mut [(&Localizer, &mut Workspace)],
+    scan: Observation<'_>,
+    heading: f64,
+    stop: &dyn Fn() -> bool,
+) -> Result<Option<()>, EngineError> {
+    for (map, workspace) in maps.iter_mut() {
+        if map.search_at_in(workspace, scan, heading, stop)?.is_none() {
+            return Ok(None);
+        }
+    }
+    Ok(Some(()))
+}

@@ -1,0 +1,251 @@
+//! Several maps, searched as one: the floors of a building, or all buildings of a campus.
+//!
+//! ```text
+//! scan ─┬─ map 0: votes ─ places ─┐
+//!       ├─ map 1: votes ─ places ─┼─ merged: places that name their map, one verdict
+//!       └─ map 2: votes ─ places ─┘
+//! ```
+//!
+//! The search is one over all maps: as soon as a good pose is known on one of them, blocks of
+//! the others are compared with its votes, so that ten maps cost far less than ten searches.
+//! Votes are compared as shares of what is possible on each map; ties go to the map that is
+//! named first.
+
+use crate::EngineError;
+use crate::fit::Ends;
+use crate::localizer::{Localizer, Outcome};
+use crate::locator::{self, Locator};
+use crate::observation::Observation;
+use crate::peaks::{Found, Merged, PeakConfig, Places, Score, merge};
+
+/// Maps that are ready to be asked, by any number of threads.
+#[derive(Debug, Clone)]
+pub struct MapSet {
+    locators: Vec<Locator>,
+}
+
+/// What locating takes, kept from scan to scan. It may serve any set.
+#[derive(Debug, Default)]
+pub struct Workspace {
+    maps: Vec<locator::Workspace>,
+    merged: Merged,
+}
+
+/// What a scan says about map and pose.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Located<'w> {
+    /// The votes on the map of the best place; of the first map where there is no place.
+    pub outcome: &'w Outcome,
+    /// The places, each with the number of its map, and the verdict.
+    pub places: &'w Places,
+    /// The same as it is merged with what others found on other maps.
+    pub found: &'w Found,
+    /// The scan's beams as they were compared with that map; none where the votes alone
+    /// decide.
+    pub ends: Option<&'w Ends>,
+}
+
+impl MapSet {
+    /// A set of at least one map, all prepared with the same settings.
+    ///
+    /// # Panics
+    /// If there is none.
+    #[must_use]
+    pub fn new(locators: Vec<Locator>) -> Self {
+        assert!(!locators.is_empty(), "a set of maps has at least one");
+        MapSet { locators }
+    }
+
+    /// The maps, in the order by which ties are decided.
+    #[must_use]
+    pub fn locators(&self) -> &[Locator] {
+        &self.locators
+    }
+
+    /// The places at which a scan may have been taken, on any of the maps; among all positions
+    /// at a heading in the maps' frames, radians, where one is given; `None` if `stop` said so
+    /// before the end. Of one map, the places are those of [`Locator::locate_unless`].
+    ///
+    /// # Errors
+    /// If the scan is refused, see [`Observation::check`], or the heading not finite.
+    ///
+    /// # Panics
+    /// If the locators were prepared for unknown headings and one is given, or the other way
+    /// round.
+    pub fn locate_unless<'w, 's>(
+        &self,
+        workspace: &'w mut Workspace,
+        scan: impl Into<Observation<'s>>,
+        heading: Option<f64>,
+        stop: &dyn Fn() -> bool,
+    ) -> Result<Option<Located<'w>>, EngineError> {
+        let scan = scan.into();
+        let Workspace { maps, merged } = workspace;
+        maps.resize_with(self.locators.len(), locator::Workspace::default);
+        let localizers = self.locators.iter().map(Locator::localizer);
+        let searched = localizers.zip(maps.iter_mut().map(locator::Workspace::localizer));
+        let searched = Localizer::search_together(searched.collect(), scan, heading, stop)?;
+        if searched.is_none() {
+            return Ok(None);
+        }
+        let config = self.locators[0].peaks();
+        // What is left out of the places of a map may be among those of all.
+        let max_hypotheses = match config.score {
+            Score::Fit => u32::MAX,
+            Score::Votes => config.max_hypotheses,
+        };
+        let all = PeakConfig {
+            max_hypotheses,
+            ..*config
+        };
+        let mut found = Vec::with_capacity(maps.len());
+        for (map, (locator, workspace)) in (0..).zip(self.locators.iter().zip(maps.iter_mut())) {
+            found.push(locator.judge(workspace, scan, &all, |outcome, judged| {
+                Found::on(map, outcome, judged)
+            })?);
+        }
+        *merged = merge(&found, config);
+        let best = &maps[merged.best_of];
+        merged.places.classes.clone_from(best.classes());
+        Ok(Some(Located {
+            outcome: best.outcome(),
+            places: &merged.places,
+            found: &merged.found,
+            ends: best.ends(config.score),
+        }))
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use geometry::Pose;
+    use messages::Verdict;
+    use proptest::collection::vec;
+    use proptest::prelude::*;
+
+    use super::*;
+    use crate::grid::{Cell, CellRules, Grid, GridFrame};
+    use crate::localizer::{LocalizerConfig, Prior};
+    use crate::locator::{LocatorConfig, OccupancyView};
+    use crate::program::VoteConfig;
+    use crate::scan::Scan;
+    use crate::testing::{any_grid, any_scan};
+
+    /// None where the grid has no obstacle or no room.
+    fn locator(grid: &Grid, resolution_m: f64, votes: VoteConfig, score: Score) -> Option<Locator> {
+        let occupancy: Vec<u8> = grid
+            .cells()
+            .iter()
+            .map(|cell| match cell {
+                Cell::Occupied => 100,
+                _ => 0,
+            })
+            .collect();
+        let map = OccupancyView {
+            frame: GridFrame {
+                resolution_m,
+                map_from_grid: Pose::new(1.0, -2.0, 0.3),
+            },
+            sides: (grid.width(), grid.height()),
+            occupancy: &occupancy,
+            rules: CellRules::default(),
+        };
+        let config = LocatorConfig {
+            localizer: LocalizerConfig {
+                headings: 48,
+                votes,
+                ..LocalizerConfig::default()
+            },
+            peaks: PeakConfig {
+                score,
+                ..PeakConfig::default()
+            },
+        };
+        Locator::new(map, config, Prior::None).ok()
+    }
+
+    proptest! {
+        #[test]
+        fn a_set_of_one_map_answers_as_that_map_does(
+            grid in any_grid(), scan in any_scan(), by_votes: bool,
+        ) {
+            let score = if by_votes { Score::Votes } else { Score::Fit };
+            let Some(locator) = locator(&grid, 0.1, scan.config(), score) else { return Ok(()) };
+            let mut alone = locator::Workspace::default();
+            let found = locator.locate(&mut alone, &scan.scan()).unwrap();
+            let set = MapSet::new(vec![locator.clone()]);
+            let mut together = Workspace::default();
+            let all = set.locate_unless(&mut together, &scan.scan(), None, &|| false).unwrap().unwrap();
+            prop_assert_eq!(all.outcome, found.outcome);
+            prop_assert_eq!(&all.places.places, &found.places.places);
+            prop_assert_eq!(&all.places.classes, &found.places.classes);
+            let said = |places: &Places| (places.verdict, places.alternatives, places.inlier_share);
+            prop_assert_eq!(said(all.places), said(found.places));
+            // By votes alone they are shares here, and votes there.
+            prop_assert!((all.places.confidence - found.places.confidence).abs() < 1e-12);
+            prop_assert_eq!(all.ends, found.ends);
+        }
+
+        #[test]
+        fn parts_of_a_set_that_are_merged_have_its_best_place(
+            worlds in vec((any_grid(), 0.07..0.14f64), 2..6), scan in any_scan(), cut in 1usize..5,
+        ) {
+            let locators = worlds.iter().filter_map(|(grid, side)| locator(grid, *side, scan.config(), Score::Fit));
+            let locators: Vec<Locator> = locators.collect();
+            prop_assume!(locators.len() > 1);
+            let cut = cut.min(locators.len() - 1);
+            let mut workspace = Workspace::default();
+            let mut ask = |locators: &[Locator]| {
+                let set = MapSet::new(locators.to_vec());
+                let found = set.locate_unless(&mut workspace, &scan.scan(), None, &|| false);
+                let found = found.unwrap().unwrap();
+                (found.places.clone(), found.found.clone())
+            };
+            let (whole, _) = ask(&locators);
+            let (_, first) = ask(&locators[..cut]);
+            let (_, mut second) = ask(&locators[cut..]);
+            let config = *locators[0].peaks();
+            second.leading_map += cut as u32;
+            second.places.iter_mut().for_each(|place| place.map += cut as u32);
+            let merged = merge(&[first, second], &config).places;
+            let best = |places: &Places| places.places.first().map(|place| {
+                (place.map, place.map_from_laser, place.score, place.intensity, place.possible)
+            });
+            prop_assert_eq!(best(&merged), best(&whole));
+            prop_assert_eq!(merged.verdict, whole.verdict);
+            prop_assert_eq!(merged.inlier_share, whole.inlier_share);
+        }
+    }
+
+    #[test]
+    fn a_place_on_another_map_is_an_alternative() {
+        let rows = [
+            "##########",
+            "#........#",
+            "#.....####",
+            "#........#",
+            "##########",
+        ];
+        let grid = crate::grid::drawn::grid(&rows);
+        let ranges: Vec<f32> = (0..36).map(|_| 0.2).collect();
+        let scan = Scan {
+            angle_min: 0.0,
+            angle_increment: 10f64.to_radians(),
+            range_min_m: 0.0,
+            range_max_m: 9.0,
+            ranges: &ranges,
+        };
+        let locator = locator(&grid, 0.1, VoteConfig::default(), Score::Fit).unwrap();
+        let mut workspace = Workspace::default();
+        let mut ask = |count| {
+            let set = MapSet::new(vec![locator.clone(); count]);
+            let found = set.locate_unless(&mut workspace, &scan, None, &|| false);
+            found.unwrap().unwrap().places.clone()
+        };
+        let (one, two) = (ask(1), ask(2));
+        assert_eq!(two.places[0], one.places[0], "ties go to the first map");
+        assert_eq!(two.places[1].map, 1);
+        assert_eq!(two.alternatives, 2 * one.alternatives + 1);
+        assert_ne!(two.verdict, Verdict::Unique);
+    }
+}

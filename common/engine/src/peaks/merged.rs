@@ -1,0 +1,142 @@
+//! Places on several maps, or found by several machines, as one answer.
+
+use messages::Verdict;
+
+use super::{Judged, Margin, PeakConfig, Place, Places, Score};
+use crate::fit::BeamClass;
+use crate::localizer::Outcome;
+use crate::votes::is_close;
+
+/// What was found on one map, or on several that somebody else has merged.
+#[derive(Debug, Clone, PartialEq, Default)]
+pub struct Found {
+    /// Distinct places, best first, each with the number of its map.
+    pub places: Vec<Place>,
+    /// By how much the best of them must lead over others.
+    pub margin: Margin,
+    /// Share of the beams that end at an obstacle at the best of them.
+    pub inlier_share: f64,
+    /// The map with the most votes among these, by number.
+    pub leading_map: u32,
+    /// What its best pose has, and what is possible there.
+    pub lead: (u32, u32),
+    /// Share of the possible votes that a pose may have which was not collected, 0..=1.
+    pub unseen: f64,
+}
+
+impl Found {
+    /// What was found on the map of this number.
+    #[must_use]
+    pub fn on(map: u32, outcome: &Outcome, judged: &Judged<'_>) -> Self {
+        let possible = outcome.highest_possible.max(1);
+        let places = judged.places.places.iter();
+        let unseen = outcome.found.certified_floor.saturating_sub(1);
+        Found {
+            places: places.map(|place| Place { map, ..*place }).collect(),
+            margin: judged.margin,
+            inlier_share: judged.places.inlier_share,
+            leading_map: map,
+            lead: (outcome.found.best.into(), possible),
+            unseen: f64::from(unseen) / f64::from(possible),
+        }
+    }
+
+    /// Whether its lead is greater, as a share without rounding.
+    fn leads(&self, other: &Found) -> bool {
+        let product = |a: u32, b: u32| u64::from(a) * u64::from(b);
+        product(self.lead.0, other.lead.1) > product(other.lead.0, self.lead.1)
+    }
+}
+
+/// One answer of several.
+#[derive(Debug, Clone, PartialEq, Default)]
+pub struct Merged {
+    /// The places and the verdict. What became of the beams at the best place is that of
+    /// the map it is on: the classes are empty.
+    pub places: Places,
+    /// All that was merged, as it would be merged with others: the places are those above.
+    pub found: Found,
+    /// Which of those that were merged has the best place.
+    pub best_of: usize,
+}
+
+/// Brings what was found on several maps, in their order, to one answer, as if one search had
+/// found it: places are ordered by their scores, equal ones by the order of the maps, and a
+/// place on another map is an alternative like any other.
+///
+/// Places with less than half of the votes of the best pose count on its map only.
+#[must_use]
+pub fn merge(all: &[Found], config: &PeakConfig) -> Merged {
+    let first = all.iter().reduce(|a, b| if b.leads(a) { b } else { a });
+    let Some(leading) = first else {
+        return Merged::default();
+    };
+    let counts = |place: &&Place| {
+        let (best, of) = leading.lead;
+        let here = (u64::from(best) * u64::from(place.possible)).div_ceil(u64::from(of.max(1)));
+        place.map == leading.leading_map || is_close(place.intensity, here as u16)
+    };
+    let numbered = all.iter().enumerate();
+    let mut places: Vec<(usize, Place)> = numbered
+        .flat_map(|(number, found)| {
+            let places = found.places.iter().filter(counts);
+            places.map(move |place| (number, *place))
+        })
+        .collect();
+    // Stable: equal ones stay in the order of the maps.
+    places.sort_by(|(_, a), (_, b)| b.score.total_cmp(&a.score));
+    let best_of = places.first().map_or(0, |&(number, _)| number);
+    let may_lack = all.iter().any(|found| found.margin.may_lack);
+    let margin = Margin {
+        may_lack,
+        ..all[best_of].margin
+    };
+    let unseen = all.iter().map(|found| found.unseen).fold(0.0, f64::max);
+    let mut merged = Places {
+        places: places.into_iter().map(|(_, place)| place).collect(),
+        inlier_share: all[best_of].inlier_share,
+        classes: Vec::<BeamClass>::new(),
+        ..Places::default()
+    };
+    let found = Found {
+        places: merged.places.clone(),
+        margin,
+        inlier_share: merged.inlier_share,
+        leading_map: leading.leading_map,
+        lead: leading.lead,
+        unseen,
+    };
+    if let Some(best) = merged.places.first().copied() {
+        match config.score {
+            Score::Fit => merged.judge_by_fit((best.score, margin), &mut Vec::new(), config),
+            Score::Votes => merged.judge_by_shares((best, margin), unseen, config),
+        }
+    }
+    Merged {
+        places: merged,
+        found,
+        best_of,
+    }
+}
+
+impl Places {
+    /// What the shares of the votes allow to say, which are the scores here.
+    fn judge_by_shares(
+        &mut self,
+        (best, margin): (Place, Margin),
+        unseen: f64,
+        config: &PeakConfig,
+    ) {
+        let others = self.places[1..].iter();
+        let rivals = others.filter(|place| place.score >= best.score * config.ambiguous_share);
+        self.alternatives = rivals.count() as u32;
+        let next = self.places.get(1).map_or(unseen, |next| next.score);
+        self.confidence = (1.0 - next / best.score).clamp(0.0, 1.0);
+        self.verdict = match () {
+            () if best.score < config.poor_fit_share => Verdict::PoorFit,
+            () if self.alternatives > 0 || margin.may_lack => Verdict::Ambiguous,
+            () => Verdict::Unique,
+        };
+        self.places.truncate(config.max_hypotheses as usize);
+    }
+}

@@ -1,0 +1,273 @@
+//! Sets of maps: the floors of a building, or the buildings of a campus.
+//!
+//! A set is a folder of maps, or a file that names them:
+//!
+//! ```yaml
+//! maps:
+//!   - name: ground          # 1 to 64 of a-z A-Z 0-9 - _ .
+//!     map: ground/map.yaml  # from the file's folder
+//!     floor: 0              # free text; may be left out
+//!   - name: first
+//!     map: first/map.yaml
+//! ```
+//!
+//! The order counts: of equally good poses, that on the map which is named first is the
+//! better one.
+
+use std::fs;
+use std::path::{Path, PathBuf};
+
+use serde::Deserialize;
+use serde_saphyr::{MessageFormatter, UserMessageFormatter};
+
+use crate::MapError;
+use crate::keys::Scalar;
+
+/// The file of a folder that says which maps it has.
+const LIST: &str = "maps.yaml";
+
+/// Most maps of a set.
+pub const MAX_MAPS: usize = 1000;
+
+/// Most bytes of a file that names maps.
+const MAX_LIST_BYTES: u64 = 1 << 20;
+
+/// A map of a set.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub struct MapFile {
+    /// What it is called; no two maps of a set have the same name.
+    pub name: String,
+    /// Its description, a YAML file as map_server reads it.
+    pub yaml: PathBuf,
+    /// The floor, where the set says so.
+    pub floor: Option<String>,
+}
+
+#[derive(Debug, Deserialize)]
+#[serde(deny_unknown_fields)]
+struct List {
+    maps: Vec<Entry>,
+}
+
+#[derive(Debug, Deserialize)]
+#[serde(deny_unknown_fields)]
+struct Entry {
+    name: Scalar,
+    map: Scalar,
+    #[serde(default)]
+    floor: Option<Scalar>,
+}
+
+/// The maps of a set: those that a file names, or those in a folder. There, `maps.yaml` says
+/// which; without it they are all YAML files in the folder and, in each folder below,
+/// `map.yaml`, by their names.
+///
+/// # Errors
+/// Says what cannot be read, or what is wrong and what is allowed. The maps themselves are
+/// not opened.
+pub fn set_of(path: impl AsRef<Path>) -> Result<Vec<MapFile>, MapError> {
+    let path = path.as_ref();
+    let maps = match path.is_dir() {
+        true if path.join(LIST).is_file() => listed(&path.join(LIST))?,
+        true => in_folder(path)?,
+        false => listed(path)?,
+    };
+    check(path, &maps)?;
+    Ok(maps)
+}
+
+/// Maps that are given one by one, as a set: each is called by its file, or by its folder
+/// where the file is `map.yaml`.
+///
+/// # Errors
+/// There is none, more than [`MAX_MAPS`], or two have one name.
+pub fn set_of_files(files: &[PathBuf]) -> Result<Vec<MapFile>, MapError> {
+    let maps: Vec<MapFile> = files.iter().map(|yaml| named(yaml)).collect();
+    check(Path::new("--map"), &maps)?;
+    Ok(maps)
+}
+
+fn named(yaml: &Path) -> MapFile {
+    let stem = |path: &Path| path.file_stem().map(|stem| stem.to_string_lossy().into());
+    let folder = || {
+        let full = yaml.canonicalize().ok()?;
+        Some(full.parent()?.file_name()?.to_string_lossy().into())
+    };
+    let name: Option<String> = match stem(yaml).as_deref() {
+        Some("map" | "recording") => folder(),
+        _ => None,
+    };
+    MapFile {
+        name: name.or_else(|| stem(yaml)).unwrap_or_default(),
+        yaml: yaml.to_owned(),
+        floor: None,
+    }
+}
+
+fn listed(path: &Path) -> Result<Vec<MapFile>, MapError> {
+    let failed = |source| MapError::Description {
+        path: path.to_owned(),
+        source,
+    };
+    let bytes = fs::metadata(path).map_err(failed)?.len();
+    if bytes > MAX_LIST_BYTES {
+        let reason = format!("it has {bytes} bytes: allowed are {MAX_LIST_BYTES}");
+        return Err(refused(path, reason));
+    }
+    let text = fs::read_to_string(path).map_err(failed)?;
+    let list: List = serde_saphyr::from_str(&text).map_err(|error| {
+        let reason = UserMessageFormatter.format_message(&error).into_owned();
+        refused(path, reason)
+    })?;
+    let folder = path.parent().unwrap_or(Path::new(""));
+    let maps = list.maps.into_iter().map(|entry| MapFile {
+        name: entry.name.text().to_owned(),
+        // Joining an absolute name gives that name.
+        yaml: folder.join(entry.map.text()),
+        floor: entry.floor.map(|floor| floor.text().to_owned()),
+    });
+    Ok(maps.collect())
+}
+
+fn in_folder(folder: &Path) -> Result<Vec<MapFile>, MapError> {
+    let failed = |source| MapError::Description {
+        path: folder.to_owned(),
+        source,
+    };
+    let mut maps = Vec::new();
+    for entry in fs::read_dir(folder).map_err(failed)? {
+        let path = entry.map_err(failed)?.path();
+        let below = path.join("map.yaml");
+        let is_yaml = path
+            .extension()
+            .is_some_and(|ending| ending == "yaml" || ending == "yml");
+        if path.is_dir() && below.is_file() {
+            maps.push(named(&below));
+        } else if is_yaml && path.is_file() {
+            maps.push(named(&path));
+        }
+    }
+    maps.sort_by(|a, b| a.name.cmp(&b.name));
+    Ok(maps)
+}
+
+fn check(path: &Path, maps: &[MapFile]) -> Result<(), MapError> {
+    if maps.is_empty() {
+        let reason = format!(
+            "there are no maps: allowed are a folder with maps (*.yaml, or */map.yaml) and a \
+             file like {LIST}"
+        );
+        return Err(refused(path, reason));
+    }
+    if maps.len() > MAX_MAPS {
+        let reason = format!("{} maps: allowed are {MAX_MAPS}", maps.len());
+        return Err(refused(path, reason));
+    }
+    for (number, map) in maps.iter().enumerate() {
+        let is_allowed = |letter: char| letter.is_ascii_alphanumeric() || "-_.".contains(letter);
+        if !(1..=64).contains(&map.name.len()) || !map.name.chars().all(is_allowed) {
+            let reason = format!(
+                "a map is called {:?}: allowed are 1 to 64 of a-z A-Z 0-9 - _ .",
+                map.name
+            );
+            return Err(refused(path, reason));
+        }
+        if let Some(other) = maps[..number].iter().find(|other| other.name == map.name) {
+            let reason = format!(
+                "{} and {} are both called {:?}: each map of a set has a name of its own",
+                other.yaml.display(),
+                map.yaml.display(),
+                map.name
+            );
+            return Err(refused(path, reason));
+        }
+    }
+    Ok(())
+}
+
+fn refused(path: &Path, reason: String) -> MapError {
+    MapError::Set {
+        path: path.to_owned(),
+        reason,
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn folder(files: &[(&str, &str)]) -> tempfile::TempDir {
+        let folder = tempfile::tempdir().unwrap();
+        for (name, text) in files {
+            let path = folder.path().join(name);
+            fs::create_dir_all(path.parent().unwrap()).unwrap();
+            fs::write(path, text).unwrap();
+        }
+        folder
+    }
+
+    fn names(maps: &[MapFile]) -> Vec<&str> {
+        maps.iter().map(|map| &*map.name).collect()
+    }
+
+    #[test]
+    fn a_folder_of_maps_is_a_set_by_their_names() {
+        let files = [
+            ("b.yaml", ""),
+            ("a/map.yaml", ""),
+            ("c.png", ""),
+            ("d/x", ""),
+        ];
+        let folder = folder(&files);
+        let maps = set_of(folder.path()).unwrap();
+        assert_eq!(names(&maps), ["a", "b"]);
+        assert_eq!(maps[0].yaml, folder.path().join("a/map.yaml"));
+    }
+
+    #[test]
+    fn a_list_names_maps_in_its_order() {
+        let list =
+            "maps:\n  - {name: up, map: u.yaml, floor: 1}\n  - name: down\n    map: /d.yaml\n";
+        let folder = folder(&[("maps.yaml", list), ("x.yaml", "")]);
+        for path in [folder.path().to_owned(), folder.path().join("maps.yaml")] {
+            let maps = set_of(path).unwrap();
+            assert_eq!(names(&maps), ["up", "down"]);
+            assert_eq!(maps[0].yaml, folder.path().join("u.yaml"));
+            assert_eq!(maps[0].floor.as_deref(), Some("1"));
+            assert_eq!(
+                (&*maps[1].yaml, &maps[1].floor),
+                (Path::new("/d.yaml"), &None)
+            );
+        }
+    }
+
+    #[test]
+    fn what_is_no_set_is_refused_with_what_is_allowed() {
+        let check = |list: &str, expected: &str| {
+            let folder = folder(&[("maps.yaml", list)]);
+            let error = set_of(folder.path()).unwrap_err().to_string();
+            assert!(error.contains(expected), "{error}");
+        };
+        check("maps: []", "there are no maps");
+        check(
+            "maps:\n  - {name: a/b, map: x.yaml}",
+            "1 to 64 of a-z A-Z 0-9",
+        );
+        check(
+            "maps:\n  - {name: a, map: x.yaml}\n  - {name: a, map: y.yaml}",
+            "both called \"a\"",
+        );
+        check("maps:\n  - {name: a, mapp: x.yaml}", "mapp");
+        check("mapps: []", "mapps");
+        let empty = folder(&[]);
+        assert!(
+            set_of(empty.path())
+                .unwrap_err()
+                .to_string()
+                .contains("no maps")
+        );
+        assert!(set_of(empty.path().join("nowhere")).is_err());
+        let twice = [PathBuf::from("a/x.yaml"), PathBuf::from("b/x.yaml")];
+        assert!(set_of_files(&twice).is_err());
+    }
+}

@@ -1,0 +1,150 @@
+//! Several maps that are searched together: what is certain on its own map stays so and names
+//! it, and nothing else becomes certain.
+#![allow(
+    clippy::unwrap_used,
+    reason = "the lint spares test functions but not what they share"
+)]
+
+use std::path::{Path, PathBuf};
+
+use serde_json::Value;
+use tests::executables;
+use tests::needs::Need;
+
+/// These are of one drive, and hold each other's places.
+const ONE_DRIVE: [&str; 2] = ["malaga_campus", "malaga_courtyard"];
+
+/// A building: its name, its map, and scans of it.
+struct Building {
+    name: String,
+    map: PathBuf,
+    scans: PathBuf,
+}
+
+fn shipped() -> Vec<Building> {
+    let building = |name: &str| {
+        let folder = tests::root().join("recordings").join(name);
+        Building {
+            name: name.to_owned(),
+            map: folder.join("map.yaml"),
+            scans: folder.join("recording.mcap"),
+        }
+    };
+    let names = ["malaga_campus", "malaga_courtyard", "malaga_corridor"];
+    names.map(building).into()
+}
+
+/// What `locate` says of each so many-th scan on these maps.
+fn locate(scans: &Path, maps: &[&Path], every: usize) -> Vec<Value> {
+    let mut command = executables::backcast();
+    command.args(["locate", "--json", "--every", &every.to_string()]);
+    for map in maps {
+        command.arg("--map").arg(map);
+    }
+    let outcome = command.arg(scans).output().unwrap();
+    let said = String::from_utf8_lossy(&outcome.stderr);
+    assert_eq!(outcome.status.code(), Some(0), "{said}");
+    let lines = String::from_utf8(outcome.stdout).unwrap();
+    let lines = lines.lines().map(|line| serde_json::from_str(line).unwrap());
+    lines.collect()
+}
+
+fn is_near(a: &Value, b: &Value) -> bool {
+    let of = |found: &Value, key: &str| found["hypotheses"][0][key].as_f64().unwrap();
+    let (dx, dy) = (of(a, "x") - of(b, "x"), of(a, "y") - of(b, "y"));
+    let turn = (of(a, "yaw") - of(b, "yaw")).rem_euclid(std::f64::consts::TAU);
+    dx.hypot(dy) <= 0.5 && turn.min(std::f64::consts::TAU - turn) <= 10f64.to_radians()
+}
+
+/// Compares what is found on all maps together with what is found on its own: how many scans
+/// are certain there, and how many of these are certain here.
+fn compare(buildings: &[Building], building: &Building, every: usize) -> (usize, usize) {
+    let maps: Vec<&Path> = buildings.iter().map(|other| &*other.map).collect();
+    let alone = locate(&building.scans, &[&building.map], every);
+    let together = locate(&building.scans, &maps, every);
+    assert_eq!(alone.len(), together.len());
+    let (mut certain, mut kept) = (0, 0);
+    for (alone, together) in alone.iter().zip(&together) {
+        let stamp = &alone["stamp_ns"];
+        let map = together["map"].as_str().unwrap();
+        let shares_drive = ONE_DRIVE.contains(&map) && ONE_DRIVE.contains(&&*building.name);
+        if together["verdict"] == "Unique" {
+            assert!(map == building.name || shares_drive, "{stamp}: {map}");
+            assert!(shares_drive || is_near(alone, together), "{stamp}");
+            assert!(shares_drive || alone["verdict"] == "Unique", "{stamp}");
+        }
+        if alone["verdict"] == "Unique" {
+            certain += 1;
+            assert!(map == building.name || shares_drive, "{stamp}: {map}");
+            let is_kept = shares_drive || is_near(alone, together);
+            assert!(is_kept, "{stamp}: another place of {map}");
+            kept += usize::from(shares_drive || together["verdict"] == "Unique");
+        }
+    }
+    (certain, kept)
+}
+
+#[test]
+fn maps_that_are_searched_together_name_the_right_one() {
+    let buildings = shipped();
+    for (building, every) in buildings.iter().zip([40, 20, 4]) {
+        let (certain, kept) = compare(&buildings, building, every);
+        assert!(certain >= 3, "{}: {certain}", building.name);
+        assert_eq!(kept, certain, "{}", building.name);
+    }
+}
+
+#[test]
+fn nine_buildings_that_are_searched_together_keep_what_is_certain() {
+    let test = "nine_buildings_that_are_searched_together_keep_what_is_certain";
+    let Some(data) = tests::evaluation_data() else {
+        return Need::Data.is_missing(test, "no folder shared/data/evaluation beside the project");
+    };
+    let mut buildings = shipped();
+    for name in ["intel", "fr079", "csail", "aces", "seattle", "wean"] {
+        let scans = data.join(format!("{name}_queries.mcap"));
+        buildings.push(Building {
+            name: format!("{name}_queries"),
+            map: scans.clone(),
+            scans,
+        });
+    }
+    let (mut certain, mut kept) = (0, 0);
+    for building in &buildings[3..] {
+        let found = compare(&buildings, building, 10);
+        (certain, kept) = (certain + found.0, kept + found.1);
+    }
+    assert!(certain > 80, "{certain}");
+    assert_eq!(kept, certain);
+}
+
+#[test]
+fn a_set_of_maps_is_a_folder_or_a_list_with_floors() {
+    let folder = tempfile::tempdir().unwrap();
+    let list = folder.path().join("maps.yaml");
+    let recordings = tests::root().join("recordings");
+    let of = |name: &str| recordings.join(name).join("map.yaml").display().to_string();
+    std::fs::write(
+        &list,
+        format!(
+            "maps:\n  - {{name: hall, map: {}, floor: 2}}\n  - {{name: yard, map: {}}}\n",
+            of("malaga_corridor"),
+            of("malaga_courtyard")
+        ),
+    )
+    .unwrap();
+    let scans = recordings.join("malaga_corridor/recording.mcap");
+    for set in [folder.path(), &list] {
+        let mut command = executables::backcast();
+        command.args(["locate", "--json", "--every", "20", "--maps"]);
+        let outcome = command.arg(set).arg(&scans).output().unwrap();
+        let lines = String::from_utf8(outcome.stdout).unwrap();
+        let found: Value = serde_json::from_str(lines.lines().next().unwrap()).unwrap();
+        assert_eq!((&found["map"], &found["floor"]), (&"hall".into(), &"2".into()));
+        assert_eq!(found["hypotheses"][0]["map"], "hall");
+        assert_eq!(found["verdict"], "Unique");
+    }
+    // On one map there is no name.
+    let found = locate(&scans, &[Path::new(&of("malaga_corridor"))], 20);
+    assert_eq!(found[0]["map"], Value::Null);
+}
