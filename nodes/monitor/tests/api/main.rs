@@ -5,6 +5,7 @@
 )]
 
 mod limits;
+mod phone;
 mod reading;
 mod refusals;
 mod world;
