@@ -31,6 +31,7 @@ use tokio::sync::{Semaphore, oneshot};
 use transport::{CONSOLE_ONLY, node};
 
 use crate::token::Token;
+use crate::webhook::Webhook;
 use crate::{DashboardError, Options, Robot, Robots};
 use refusal::Refusal;
 
@@ -120,6 +121,9 @@ impl Server {
                 (token, Some(shown))
             }
         };
+        if let Some(server) = &options.webhook {
+            robots.post_states_to(Webhook::start(server)?);
+        }
         let listener = listening::bind(listen)?;
         let address = listener.local_addr().map_err(DashboardError::Server)?;
         let runtime = tokio::runtime::Builder::new_current_thread()

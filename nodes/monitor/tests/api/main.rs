@@ -8,5 +8,6 @@ mod limits;
 mod phone;
 mod reading;
 mod refusals;
+mod webhook;
 mod world;
 mod writing;

@@ -49,6 +49,11 @@ pub(crate) struct World {
 
 impl World {
     pub(crate) fn new(test: &str) -> World {
+        World::with(test, &[])
+    }
+
+    /// With more arguments for the node.
+    pub(crate) fn with(test: &str, arguments: &[&str]) -> World {
         let isolated = Isolated::new(test);
         let graph = isolated.join("test");
         let folder = tempfile::tempdir().unwrap();
@@ -66,7 +71,7 @@ impl World {
             _folder: folder,
         };
         world.serve_map();
-        world.node = Some(start(&world.graph, world.site.0, &token));
+        world.node = Some(start(&world.graph, world.site.0, &token, arguments));
         wait_until_ready(&world.graph, "monitor");
         world
     }
@@ -118,6 +123,8 @@ impl World {
         };
         header.stamp.counter = counter;
         header.stamp.entered_ns = header.sent_ns - age_s * 1_000_000_000;
+        // Nothing is sent before it was measured.
+        header.sent_ns = header.sent_ns.max(header.stamp.entered_ns);
         loan.items_mut().copy_from_slice(words);
         loan.send().unwrap();
     }
@@ -157,12 +164,13 @@ impl Drop for World {
     }
 }
 
-fn start(graph: &Graph, address: SocketAddr, token: &Path) -> NodeProcess {
+fn start(graph: &Graph, address: SocketAddr, token: &Path, more: &[&str]) -> NodeProcess {
     let (address, token) = (address.to_string(), token.to_str().unwrap());
+    let common = ["--listen", &address, "--robot", "r", "--token-file", token];
     NodeProcess::start(
         env!("CARGO_BIN_EXE_monitor"),
         graph,
-        ["--listen", &address, "--robot", "r", "--token-file", token],
+        [&common, more].concat(),
     )
 }
 
