@@ -6,6 +6,7 @@
 //! | `robot` | what is known of one robot, and whoever watches it |
 //! | `robots` | those that are known |
 //! | `server` | HTTP and WebSocket: the gate, the API, the page |
+//! | `webhook` | states of the robots, posted elsewhere |
 //!
 //! Where the messages come from is up to whoever uses it: a source gives a
 //! [`Robot`] what happens, and takes the requests that it is given. Nobody waits for
@@ -20,6 +21,7 @@ mod robots;
 mod server;
 mod token;
 mod view;
+mod webhook;
 
 pub use error::DashboardError;
 pub use options::Options;

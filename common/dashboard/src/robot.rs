@@ -5,7 +5,7 @@
 
 use std::sync::atomic::{AtomicUsize, Ordering};
 use std::sync::mpsc::{Receiver, SyncSender, sync_channel};
-use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
+use std::sync::{Arc, Mutex, MutexGuard, OnceLock, PoisonError};
 
 use axum::body::Bytes;
 use axum::extract::ws::Utf8Bytes;
@@ -15,11 +15,13 @@ use messages::{
 };
 use serde::Serialize;
 use tokio::sync::{broadcast, watch};
+use transport::wall_ns;
 
 use crate::view::{
-    Answer, Beams, History, Log, LogLine, Map, Message, Region, Roster, Snapshot, Times, Track,
-    Tracked, field_frame,
+    Answer, Beams, History, Log, LogLine, Map, Message, Region, Roster, Snapshot, StateChange,
+    Times, Track, Tracked, field_frame,
 };
+use crate::webhook::Webhook;
 
 /// Messages that may wait for a slow reader; beyond, it loses the oldest.
 const QUEUE: usize = 64;
@@ -52,6 +54,7 @@ pub struct Robot {
     graph: Option<String>,
     known: Mutex<Known>,
     news: broadcast::Sender<Utf8Bytes>,
+    webhook: OnceLock<Webhook>,
     field: watch::Sender<Option<Bytes>>,
     field_viewers: AtomicUsize,
     requests: SyncSender<Request>,
@@ -103,6 +106,7 @@ impl Robot {
             graph,
             known: Mutex::default(),
             news: broadcast::Sender::new(QUEUE),
+            webhook: OnceLock::new(),
             field: watch::Sender::new(None),
             field_viewers: AtomicUsize::new(0),
             requests,
@@ -217,9 +221,21 @@ impl Robot {
     }
 
     fn broadcast_state(&self, known: &Known, now_ns: i64) {
-        if let Some(period) = known.history.newest(now_ns) {
-            self.broadcast(&Message::State(period));
+        let Some(period) = known.history.newest(now_ns) else {
+            return;
+        };
+        if let Some(webhook) = self.webhook.get() {
+            let before = known.history.before(now_ns);
+            webhook.post(json::object(&StateChange {
+                robot: &self.name,
+                graph: self.graph.as_deref(),
+                since_s: wall_ns() as f64 / 1e9 - period.ago_s,
+                before: before.as_ref().map(|before| before.state),
+                before_pose: before.and_then(|before| before.last),
+                period: period.clone(),
+            }));
         }
+        self.broadcast(&Message::State(period));
     }
 
     /// Puts it into words once for all who watch, if there are any. The lock is
@@ -234,6 +250,12 @@ impl Robot {
 
 /// What the server asks.
 impl Robot {
+    /// States are posted there from now on.
+    pub(crate) fn post_states_to(&self, webhook: &Webhook) {
+        // One that it has already is the same.
+        let _ = self.webhook.set(webhook.clone());
+    }
+
     /// Its name.
     #[must_use]
     pub fn name(&self) -> &str {

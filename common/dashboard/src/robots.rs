@@ -1,14 +1,20 @@
 //! The robots that are known.
 
-use std::sync::{Arc, PoisonError, RwLock};
+use std::sync::{Arc, PoisonError, RwLock, RwLockReadGuard};
 
 use crate::Robot;
+use crate::webhook::Webhook;
 
 /// Robots in the order of their names. Clones share them: a source adds, the server
 /// asks.
 #[derive(Debug, Clone, Default)]
-pub struct Robots {
-    all: Arc<RwLock<Vec<Arc<Robot>>>>,
+pub struct Robots(Arc<RwLock<Shared>>);
+
+#[derive(Debug, Default)]
+struct Shared {
+    all: Vec<Arc<Robot>>,
+    /// Where the states of all are posted.
+    webhook: Option<Webhook>,
 }
 
 impl Robots {
@@ -18,10 +24,14 @@ impl Robots {
     /// Adds a robot; returns whether it could: there may be one of the name, or
     /// [`Robots::MAX`] others.
     pub fn add(&self, robot: Arc<Robot>) -> bool {
-        let mut all = self.all.write().unwrap_or_else(PoisonError::into_inner);
+        let mut shared = self.0.write().unwrap_or_else(PoisonError::into_inner);
+        let Shared { all, webhook } = &mut *shared;
         let place = all.binary_search_by(|other| other.name().cmp(robot.name()));
         match place {
             Err(place) if all.len() < Self::MAX => {
+                if let Some(webhook) = webhook {
+                    robot.post_states_to(webhook);
+                }
                 all.insert(place, robot);
                 true
             }
@@ -29,10 +39,20 @@ impl Robots {
         }
     }
 
+    /// The states of all, also of those that are added later, are posted there.
+    pub(crate) fn post_states_to(&self, webhook: Webhook) {
+        let mut shared = self.0.write().unwrap_or_else(PoisonError::into_inner);
+        shared
+            .all
+            .iter()
+            .for_each(|robot| robot.post_states_to(&webhook));
+        shared.webhook = Some(webhook);
+    }
+
     /// The robot of a name, if there is one.
     #[must_use]
     pub fn get(&self, name: &str) -> Option<Arc<Robot>> {
-        let all = self.all.read().unwrap_or_else(PoisonError::into_inner);
+        let all = &self.read().all;
         let place = all.binary_search_by(|robot| robot.name().cmp(name)).ok()?;
         Some(Arc::clone(&all[place]))
     }
@@ -40,8 +60,12 @@ impl Robots {
     /// Their names.
     #[must_use]
     pub fn names(&self) -> Vec<String> {
-        let all = self.all.read().unwrap_or_else(PoisonError::into_inner);
+        let all = &self.read().all;
         all.iter().map(|robot| robot.name().to_owned()).collect()
+    }
+
+    fn read(&self) -> RwLockReadGuard<'_, Shared> {
+        self.0.read().unwrap_or_else(PoisonError::into_inner)
     }
 }
 

@@ -15,6 +15,7 @@ mod connections;
 mod gate;
 mod listening;
 mod page;
+mod phone;
 mod reading;
 mod refusal;
 mod stream;
@@ -27,9 +28,10 @@ use axum::Router;
 use axum::extract::DefaultBodyLimit;
 use axum::routing::{get, post, put};
 use tokio::sync::{Semaphore, oneshot};
-use transport::CONSOLE_ONLY;
+use transport::{CONSOLE_ONLY, node};
 
 use crate::token::Token;
+use crate::webhook::Webhook;
 use crate::{DashboardError, Options, Robot, Robots};
 use refusal::Refusal;
 
@@ -92,8 +94,10 @@ fn router(site: Arc<Site>) -> Router {
 #[derive(Debug)]
 pub struct Server {
     address: SocketAddr,
-    /// Where to change something, if nobody else knows the token.
+    /// What to change something by, if nobody else knows it.
     token: Option<String>,
+    /// A name under which browsers reach it.
+    host: Option<String>,
     stop: Option<oneshot::Sender<()>>,
     thread: Option<JoinHandle<()>>,
 }
@@ -117,6 +121,9 @@ impl Server {
                 (token, Some(shown))
             }
         };
+        if let Some(server) = &options.webhook {
+            robots.post_states_to(Webhook::start(server)?);
+        }
         let listener = listening::bind(listen)?;
         let address = listener.local_addr().map_err(DashboardError::Server)?;
         let runtime = tokio::runtime::Builder::new_current_thread()
@@ -145,6 +152,7 @@ impl Server {
         Ok(Server {
             address,
             token: shown,
+            host: options.host.first().cloned(),
             stop: Some(stop),
             thread: Some(thread),
         })
@@ -161,9 +169,27 @@ impl Server {
         }
         if !address.ip().is_loopback() {
             tracing::warn!("whoever reaches {address} can read, and nothing is encrypted");
+            self.announce_to_phones();
         }
         if asked.port() != 0 && address.port() != asked.port() {
             tracing::info!("port {} is taken", asked.port());
+        }
+    }
+
+    /// Shows on a terminal what a phone opens the page by, with the token. Files of the log
+    /// are not read by phones.
+    fn announce_to_phones(&self) {
+        if !node::logs_to_terminal() {
+            return;
+        }
+        let Some(place) = phone::place(self.address, self.host.as_deref(), self.token.as_deref())
+        else {
+            tracing::info!("no route leads to other machines: --host names this one for phones");
+            return;
+        };
+        match phone::code(&place) {
+            Ok(code) => tracing::info!(target: CONSOLE_ONLY, "on a phone: {place}\n{code}"),
+            Err(error) => tracing::warn!("no QR code holds the page's address: {error}"),
         }
     }
 

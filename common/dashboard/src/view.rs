@@ -12,6 +12,7 @@ mod history;
 mod log;
 mod map;
 mod roster;
+mod state_change;
 mod track;
 mod tracked;
 
@@ -23,6 +24,7 @@ pub(crate) use history::{History, Period};
 pub(crate) use log::{Log, LogLine};
 pub(crate) use map::{Map, MapInfo};
 pub(crate) use roster::{NodeReport, Roster};
+pub(crate) use state_change::StateChange;
 pub(crate) use track::{Track, TrackPoint};
 pub(crate) use tracked::Tracked;
 

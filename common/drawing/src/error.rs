@@ -25,6 +25,17 @@ pub enum DrawingError {
         /// Bytes that there are.
         found: usize,
     },
+    /// An animation without a picture.
+    #[error("an animation needs at least one picture")]
+    NoFrame,
+    /// A picture of an animation that is not as large as the first.
+    #[error("a picture of {width} x {height} pixels in an animation of another size")]
+    FrameSize {
+        /// Pixels.
+        width: u32,
+        /// Pixels.
+        height: u32,
+    },
     /// The pixels could not be encoded.
     #[error("the picture cannot be encoded as PNG")]
     Encoding(#[from] png::EncodingError),

@@ -75,6 +75,13 @@ impl Image {
         &self.rgba
     }
 
+    /// Red, green, blue and opacity of one pixel; nothing beside the image.
+    pub(crate) fn pixel(&self, x: u32, y: u32) -> [u8; 4] {
+        let first = 4 * (y as usize * self.width as usize + x as usize);
+        let pixel = self.rgba.get(first..).and_then(<[u8]>::first_chunk);
+        pixel.copied().unwrap_or_default()
+    }
+
     /// The bytes of a PNG file.
     ///
     /// # Errors

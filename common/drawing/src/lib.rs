@@ -2,10 +2,11 @@
 //!
 //! ```text
 //! path, text, image ─ scene ─┬─ to_png
+//!                            ├─ to_animated_png
 //!                            └─ to_svg
 //! ```
 //!
-//! Both come from the same items, so they show the same. Letters are outlines
+//! All come from the same items, so they show the same. Letters are outlines
 //! of a font that is linked in: nothing has to be installed where a picture is
 //! made or looked at, and an SVG holds no text that could come out otherwise.
 //! Coordinates are pixels from the upper left corner, y downwards.
@@ -13,6 +14,7 @@
 //! The crate knows no map, robot or file. It draws with `tiny-skia` rather than
 //! through a whole SVG renderer, which takes ten times as long to build.
 
+mod animation;
 mod color;
 mod error;
 mod image;
@@ -22,6 +24,7 @@ mod scene;
 mod text;
 mod vector;
 
+pub use animation::{Frame, to_animated_png};
 pub use color::Color;
 pub use error::DrawingError;
 pub use image::Image;

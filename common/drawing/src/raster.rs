@@ -14,10 +14,18 @@ use crate::{Color, DrawingError, Image, Path, Rect, Scene, Stroke};
 /// # Errors
 /// If there is no room for the pixels, or the encoder fails.
 pub fn to_png(scene: &Scene) -> Result<Vec<u8>, DrawingError> {
+    pixels(scene)?.to_png()
+}
+
+/// One pixel a unit of the scene.
+///
+/// # Errors
+/// If there is no room for them.
+pub(crate) fn pixels(scene: &Scene) -> Result<Image, DrawingError> {
     let (width, height) = (scene.width(), scene.height());
     let mut pixmap = Pixmap::new(width, height).ok_or(DrawingError::Size { width, height })?;
     draw(&mut pixmap, scene.items(), None);
-    Image::new(width, height, pixmap.take_demultiplied())?.to_png()
+    Image::new(width, height, pixmap.take_demultiplied())
 }
 
 fn draw(pixmap: &mut Pixmap, items: &[Item], mask: Option<&Mask>) {

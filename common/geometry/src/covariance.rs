@@ -4,6 +4,13 @@ use nalgebra::{Matrix2, Matrix3, Vector2, Vector3};
 
 use crate::Pose;
 
+/// Standard deviations to which the ellipse of a position reaches that holds 95 %:
+/// √(-2 ln 0.05), for χ² with two degrees of freedom is exponential.
+pub const ELLIPSE_95: f64 = 2.447_746_830_680_816;
+
+/// Standard deviations of an angle on either side that hold 95 %.
+pub const ANGLE_95: f64 = 1.959_963_984_540_054;
+
 /// Covariance of a pose: rows and columns are x, y (metres) and yaw (radians),
 /// in the frame in which the pose is given.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -127,6 +134,12 @@ mod tests {
         assert!((ellipse.major_m - 2.0).abs() < 1e-12);
         assert!((ellipse.minor_m - 0.1).abs() < 1e-12);
         assert!((ellipse.angle.sin().abs() - 1.0).abs() < 1e-12, "along y");
+    }
+
+    #[test]
+    fn ellipses_of_95_percent_hold_that_much() {
+        // Of a normal distribution in the plane, exp(-r²/2) lies beyond r deviations.
+        assert!(((-ELLIPSE_95 * ELLIPSE_95 / 2.0).exp() - 0.05).abs() < 1e-15);
     }
 
     #[test]

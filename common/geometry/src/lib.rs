@@ -10,6 +10,6 @@ mod mount;
 mod pose;
 
 pub use angle::{angle_between, wrap_angle};
-pub use covariance::{Covariance, Ellipse};
+pub use covariance::{ANGLE_95, Covariance, ELLIPSE_95, Ellipse};
 pub use mount::{Mount, MountError};
 pub use pose::Pose;

@@ -78,6 +78,20 @@ pub enum LauncherError {
         /// Why not.
         source: io::Error,
     },
+    /// What builds is not installed, and there is nothing to run.
+    #[error(
+        "{program} is not installed, and there are no executables of {missing}: install what \
+         `{command}` needs (Rust: https://rustup.rs), or get the nodes built, as a package or by \
+         packaging/install elsewhere (docs/install.md), and name them in the descriptor without a folder"
+    )]
+    NothingToRun {
+        /// The program that builds.
+        program: String,
+        /// Its command.
+        command: String,
+        /// The nodes whose executables are missing.
+        missing: String,
+    },
     /// A build failed.
     #[error("node {node}: the build `{command}` failed with {status}")]
     BuildFailed {

@@ -1,13 +1,11 @@
 //! The boundary of the obstacles.
 
 use bytemuck::{Pod, Zeroable};
-#[cfg(feature = "iceoryx2")]
-use iceoryx2_bb_derive_macros::ZeroCopySend;
-#[cfg(feature = "iceoryx2")]
-use iceoryx2_bb_elementary_traits::zero_copy_send::ZeroCopySend;
 use serde::{Deserialize, Serialize};
 
 use crate::Stamp;
+#[cfg(feature = "iceoryx2")]
+use crate::zero_copy::ZeroCopySend;
 
 /// Header of topic `boundary`; the items are the boundary cells by (y, x).
 ///

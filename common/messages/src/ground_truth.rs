@@ -1,12 +1,10 @@
 //! The true pose of a scan, as recordings made for evaluation hold it.
 
 use bytemuck::{Pod, Zeroable};
-#[cfg(feature = "iceoryx2")]
-use iceoryx2_bb_derive_macros::ZeroCopySend;
-#[cfg(feature = "iceoryx2")]
-use iceoryx2_bb_elementary_traits::zero_copy_send::ZeroCopySend;
 use serde::{Deserialize, Serialize};
 
+#[cfg(feature = "iceoryx2")]
+use crate::zero_copy::ZeroCopySend;
 use crate::{FrameName, Pose2, Stamp};
 
 /// The message of topic `ground_truth`; its `measured_ns` is the scan's.

@@ -1,13 +1,11 @@
 //! The state of a node.
 
 use bytemuck::{Pod, Zeroable};
-#[cfg(feature = "iceoryx2")]
-use iceoryx2_bb_derive_macros::ZeroCopySend;
-#[cfg(feature = "iceoryx2")]
-use iceoryx2_bb_elementary_traits::zero_copy_send::ZeroCopySend;
 use serde::{Deserialize, Serialize};
 
 use crate::Name;
+#[cfg(feature = "iceoryx2")]
+use crate::zero_copy::ZeroCopySend;
 
 /// Header of topic `health`; the items are the last error as UTF-8, at most
 /// [`HealthHeader::ERROR_CAPACITY`] bytes, empty where there was none.

@@ -1,12 +1,10 @@
 //! Where the robot may be.
 
 use bytemuck::{Pod, Zeroable};
-#[cfg(feature = "iceoryx2")]
-use iceoryx2_bb_derive_macros::ZeroCopySend;
-#[cfg(feature = "iceoryx2")]
-use iceoryx2_bb_elementary_traits::zero_copy_send::ZeroCopySend;
 use serde::{Deserialize, Serialize};
 
+#[cfg(feature = "iceoryx2")]
+use crate::zero_copy::ZeroCopySend;
 use crate::{Pose2, Stamp};
 
 /// Header of topic `hypotheses`; the items are distinct poses, best first.

@@ -29,6 +29,8 @@ mod stamp;
 pub mod topic;
 mod tracked_pose;
 mod votes;
+#[cfg(feature = "iceoryx2")]
+mod zero_copy;
 
 pub use attention::AttentionHeader;
 pub use beams::{Beam, BeamFate, BeamsHeader};

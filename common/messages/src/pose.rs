@@ -2,11 +2,10 @@
 
 use bytemuck::{Pod, Zeroable};
 use geometry::Pose;
-#[cfg(feature = "iceoryx2")]
-use iceoryx2_bb_derive_macros::ZeroCopySend;
-#[cfg(feature = "iceoryx2")]
-use iceoryx2_bb_elementary_traits::zero_copy_send::ZeroCopySend;
 use serde::{Deserialize, Serialize};
+
+#[cfg(feature = "iceoryx2")]
+use crate::zero_copy::ZeroCopySend;
 
 /// Metres and radians; the field that holds it names the frames.
 #[derive(Debug, Clone, Copy, PartialEq, Pod, Zeroable, Serialize, Deserialize)]

@@ -1,13 +1,11 @@
 //! The readings of a scan that was brought to one time and place.
 
 use bytemuck::{Pod, Zeroable};
-#[cfg(feature = "iceoryx2")]
-use iceoryx2_bb_derive_macros::ZeroCopySend;
-#[cfg(feature = "iceoryx2")]
-use iceoryx2_bb_elementary_traits::zero_copy_send::ZeroCopySend;
 use serde::{Deserialize, Serialize};
 
 use crate::Stamp;
+#[cfg(feature = "iceoryx2")]
+use crate::zero_copy::ZeroCopySend;
 
 /// Header of topic `readings`; the items are the beams that the second stage judges.
 #[derive(Debug, Clone, Copy, PartialEq, Pod, Zeroable, Serialize, Deserialize)]

@@ -1,13 +1,11 @@
 //! Where poses are to be searched.
 
 use bytemuck::{Pod, Zeroable};
-#[cfg(feature = "iceoryx2")]
-use iceoryx2_bb_derive_macros::ZeroCopySend;
-#[cfg(feature = "iceoryx2")]
-use iceoryx2_bb_elementary_traits::zero_copy_send::ZeroCopySend;
 use serde::{Deserialize, Serialize};
 
 use crate::Stamp;
+#[cfg(feature = "iceoryx2")]
+use crate::zero_copy::ZeroCopySend;
 
 /// Header of topic `region`; the items are the corners of a polygon in turn, two
 /// of an upright rectangle, or none where poses are searched everywhere.

@@ -1,12 +1,10 @@
 //! One laser scan.
 
 use bytemuck::{Pod, Zeroable};
-#[cfg(feature = "iceoryx2")]
-use iceoryx2_bb_derive_macros::ZeroCopySend;
-#[cfg(feature = "iceoryx2")]
-use iceoryx2_bb_elementary_traits::zero_copy_send::ZeroCopySend;
 use serde::{Deserialize, Serialize};
 
+#[cfg(feature = "iceoryx2")]
+use crate::zero_copy::ZeroCopySend;
 use crate::{FrameName, Name, Pose2, Stamp};
 
 /// Header of topic `scan`; the items are ranges in metres. Beam `i` points to

@@ -1,11 +1,10 @@
 //! When something was measured, and when the graph first saw it.
 
 use bytemuck::{Pod, Zeroable};
-#[cfg(feature = "iceoryx2")]
-use iceoryx2_bb_derive_macros::ZeroCopySend;
-#[cfg(feature = "iceoryx2")]
-use iceoryx2_bb_elementary_traits::zero_copy_send::ZeroCopySend;
 use serde::{Deserialize, Serialize};
+
+#[cfg(feature = "iceoryx2")]
+use crate::zero_copy::ZeroCopySend;
 
 /// The origin of a measurement. Every step copies the stamp of its input
 /// onward, so latency is always now minus `entered_ns`.

@@ -1,12 +1,10 @@
 //! Where the tracker has the robot, and how sure it is.
 
 use bytemuck::{Pod, Zeroable};
-#[cfg(feature = "iceoryx2")]
-use iceoryx2_bb_derive_macros::ZeroCopySend;
-#[cfg(feature = "iceoryx2")]
-use iceoryx2_bb_elementary_traits::zero_copy_send::ZeroCopySend;
 use serde::{Deserialize, Serialize};
 
+#[cfg(feature = "iceoryx2")]
+use crate::zero_copy::ZeroCopySend;
 use crate::{FrameName, Pose2, Stamp};
 
 /// The message of topic `pose`; the items are the reason in words, and what to do, as

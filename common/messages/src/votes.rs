@@ -1,12 +1,10 @@
 //! The outcome of one search: the poses that the scan votes for.
 
 use bytemuck::{Pod, Zeroable};
-#[cfg(feature = "iceoryx2")]
-use iceoryx2_bb_derive_macros::ZeroCopySend;
-#[cfg(feature = "iceoryx2")]
-use iceoryx2_bb_elementary_traits::zero_copy_send::ZeroCopySend;
 use serde::{Deserialize, Serialize};
 
+#[cfg(feature = "iceoryx2")]
+use crate::zero_copy::ZeroCopySend;
 use crate::{Pose2, Stamp};
 
 /// Header of topic `votes`; the items are poses by falling intensity, equal ones

@@ -21,7 +21,7 @@ use super::errors::Judged;
 use super::field::Votes;
 use super::sheet::Panel;
 use super::subject::Subject;
-use super::{errors, field, outline, scan, sheet, surface};
+use super::{animation, errors, field, outline, scan, sheet, surface};
 use crate::PlotError;
 
 /// Draws one picture and says how large it is.
@@ -32,6 +32,9 @@ use crate::PlotError;
 pub fn run(config: &Config) -> Result<ExitCode, PlotError> {
     let format = config.check()?;
     let given = config.options.load_map(&config.bag)?;
+    if config.kind == Kind::Drive {
+        return run_drive(config, given.as_ref());
+    }
     let scene = match &config.bag[..] {
         [] => draw_map(config, given, None)?,
         bag => {
@@ -46,14 +49,31 @@ pub fn run(config: &Config) -> Result<ExitCode, PlotError> {
         Format::Png => drawing::to_png(&scene)?,
         Format::Svg => drawing::to_svg(&scene)?.into_bytes(),
     };
-    fs::write(&config.out, bytes).map_err(|source| PlotError::Picture {
-        file: config.out.clone(),
-        source,
-    })?;
+    write(config, &bytes)?;
     let (width, height) = (scene.width(), scene.height());
     let file = config.out.display();
     stdout::print(&format!("{file}: {width} x {height} pixels\n"))?;
     Ok(ExitCode::SUCCESS)
+}
+
+fn run_drive(config: &Config, given: Option<&OccupancyGrid>) -> Result<ExitCode, PlotError> {
+    let recording = config.options.open(&config.bag)?;
+    let mut plot = Plot::open(config, &recording, given)?;
+    let subjects = plot.subjects()?;
+    let (ground, name) = (config.ground(plot.session.map()?), plot.name());
+    let frames = animation::frames(&ground, &subjects, &name, config.size());
+    let bytes = drawing::to_animated_png(frames)?;
+    write(config, &bytes)?;
+    let (file, scans, kilobytes) = (config.out.display(), subjects.len(), bytes.len() / 1000);
+    stdout::print(&format!("{file}: {scans} scans, {kilobytes} kB\n"))?;
+    Ok(ExitCode::SUCCESS)
+}
+
+fn write(config: &Config, bytes: &[u8]) -> Result<(), PlotError> {
+    fs::write(&config.out, bytes).map_err(|source| PlotError::Picture {
+        file: config.out.clone(),
+        source,
+    })
 }
 
 /// The map that is given, else the one in the recording.
@@ -229,6 +249,22 @@ impl<'a> Plot<'a> {
         })
     }
 
+    /// All scans that can be searched.
+    fn subjects(&mut self) -> Result<Vec<Subject>, PlotError> {
+        let progress = Progress::new("locating", self.session.scans.total());
+        let (mut subjects, mut number) = (Vec::new(), 0);
+        while let Some(scan) = self.session.scans.next() {
+            number += 1;
+            match self.subject(number, &scan?) {
+                Ok(subject) => subjects.push(subject),
+                Err(error) if is_refusal(&error) => say(&format!("scan {number}: {error}")),
+                Err(error) => return Err(error),
+            }
+            progress.step();
+        }
+        Ok(subjects)
+    }
+
     fn draw_sheet(&mut self) -> Result<Scene, PlotError> {
         let total = self.session.scans.total();
         let wanted = u64::from(self.config.panels.unwrap_or(12)).min(total);
@@ -243,13 +279,7 @@ impl<'a> Plot<'a> {
             let scan = scan?;
             panels.push(match self.subject(number, &scan) {
                 Ok(subject) => Panel::Scan(Box::new(subject)),
-                Err(
-                    refusal @ PlotError::Offline(
-                        OfflineError::Refused(_)
-                        | OfflineError::Heading(_)
-                        | OfflineError::NoUsableMap { .. },
-                    ),
-                ) => Panel::Refused(number, refusal.to_string()),
+                Err(error) if is_refusal(&error) => Panel::Refused(number, error.to_string()),
                 Err(error) => return Err(error),
             });
             progress.step();
@@ -257,6 +287,15 @@ impl<'a> Plot<'a> {
         let ground = self.config.ground(self.session.map()?);
         sheet::draw(&ground, &panels, &self.name(), self.config.size())
     }
+}
+
+/// Whether it is of one scan alone, so that the others can be drawn.
+fn is_refusal(error: &PlotError) -> bool {
+    use OfflineError::{Heading, NoUsableMap, Refused};
+    matches!(
+        error,
+        PlotError::Offline(Refused(_) | Heading(_) | NoUsableMap { .. })
+    )
 }
 
 /// Whether the scan of a number from 1 is one of `wanted` evenly spread ones,

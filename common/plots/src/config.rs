@@ -33,6 +33,8 @@ pub(super) enum Kind {
     Errors,
     /// Some scans at their places, side by side
     Sheet,
+    /// All scans at their places, one after the other: an animated PNG
+    Drive,
 }
 
 /// Options of `backcast plot`.
@@ -127,14 +129,26 @@ impl Config {
                 self.out.display()
             ));
         }
+        let format = self.format()?;
+        if self.kind == Kind::Drive && format == Format::Svg {
+            return usage(format!(
+                "--out {}: the picture `drive` moves, and the name must end with .png",
+                self.out.display()
+            ));
+        }
+        Ok(format)
+    }
+
+    fn format(&self) -> Result<Format, PlotError> {
         let extension = self.out.extension().and_then(|name| name.to_str());
         match extension.map(str::to_ascii_lowercase).as_deref() {
             Some("png") => Ok(Format::Png),
             Some("svg") => Ok(Format::Svg),
-            _ => usage(format!(
+            _ => Err(OfflineError::Usage(format!(
                 "--out {}: the name must end with .png or .svg",
                 self.out.display()
-            )),
+            ))
+            .into()),
         }
     }
 

@@ -50,6 +50,11 @@ impl Extent {
         }
     }
 
+    /// Grows until it holds another.
+    pub(super) fn include_all(&mut self, other: Extent) {
+        self.include([other.min, other.max]);
+    }
+
     /// What both hold; `other` where they have nothing in common.
     pub(super) fn within(self, other: Extent) -> Self {
         let min = (self.min.0.max(other.min.0), self.min.1.max(other.min.1));

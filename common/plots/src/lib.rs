@@ -9,6 +9,7 @@
 //!                    ├─ field ────┤
 //!                    ├─ surface ──┼─ drawing
 //!                    ├─ sheet ────┤
+//!                    ├─ animation ┤
 //!                    └─ errors ───┘
 //! map ───────────────── outline ──┘
 //! ```
@@ -16,6 +17,7 @@
 //! `difference` is drawn by `backcast regress`, `drive` by `backcast evaluate --sequence`,
 //! `curves`, `diagram` and `places_on_map` by `backcast bench paper`.
 
+mod animation;
 mod axes;
 mod chart;
 mod command;

@@ -1,18 +1,10 @@
 //! What is drawn on a map: robots, the truth, ellipses, and a scale bar.
 
 use drawing::{Anchor, Color, Path, Scene, Stroke, TextStyle};
-use geometry::{Covariance, Pose};
+use geometry::{Covariance, ELLIPSE_95, Pose};
 
 use super::theme;
 use super::view::View;
-
-/// The share of the probability that an ellipse holds, per cent, as in all pictures.
-pub(super) const HELD_PERCENT: f64 = 95.0;
-
-/// This many standard deviations it reaches: χ² with two degrees of freedom is exponential.
-fn deviations() -> f64 {
-    (-2.0 * (1.0 - HELD_PERCENT / 100.0).ln()).sqrt()
-}
 
 /// A point of the picture, and a heading in the map, radians.
 pub(super) type Placement = ((f64, f64), f64);
@@ -50,7 +42,7 @@ pub(super) fn ellipse(
     stroke: Stroke,
 ) {
     let ellipse = covariance.ellipse();
-    let pixels = |metres: f64| deviations() * metres * view.pixels_per_m();
+    let pixels = |metres: f64| ELLIPSE_95 * metres * view.pixels_per_m();
     let axes = (pixels(ellipse.major_m), pixels(ellipse.minor_m));
     let mut path = Path::new();
     path.add_ellipse(view.at((pose.x, pose.y)), axes, -ellipse.angle);

@@ -105,8 +105,7 @@ pub(super) fn legend(subject: &Subject) -> Vec<Entry> {
                 entries.push((Sample::Dot(color), format!("{name} {count}")));
             }
         }
-        let name = format!("{} %", marks::HELD_PERCENT);
-        entries.push((Sample::Ellipse(theme::BEST), name));
+        entries.push((Sample::Ellipse(theme::BEST), "95 %".to_owned()));
     }
     if subject.shown.len() > 1 {
         entries.push((Sample::Robot(theme::OTHER), "other places".to_owned()));

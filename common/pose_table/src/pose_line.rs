@@ -1,7 +1,7 @@
 //! What is printed for one scan where the graph has a tracker: its pose first, the
 //! answer to the scan alone beside it. Pure.
 
-use geometry::{Covariance, Pose};
+use geometry::{Covariance, ELLIPSE_95, Pose};
 use messages::{PoseHeader, TrackState};
 use serde::Serialize;
 
@@ -82,7 +82,7 @@ impl Row {
             "x m",
             "y m",
             "heading deg",
-            "+- m",
+            "95 % m",
             "state",
             "prob %",
             "single scan",
@@ -105,7 +105,8 @@ impl Row {
             &number(pose.x, 3),
             &number(pose.y, 3),
             &number(pose.heading_deg, 2),
-            &number(pose.deviation_m, 3),
+            // To either side, as the page and the pictures have it.
+            &number(pose.deviation_m.map(|m| ELLIPSE_95 * m), 3),
             pose.state,
             &number(pose.probability.map(|share| 100.0 * share), 1),
             &single,
@@ -145,21 +146,9 @@ fn covariance(header: &PoseHeader) -> Option<Covariance> {
     is_finite.then(|| Covariance::from_rows(header.laser_covariance))
 }
 
-fn row(
-    [
-        stamp,
-        x,
-        y,
-        heading,
-        deviation,
-        state,
-        probability,
-        single,
-        ms,
-    ]: [&str; 9],
-) -> String {
+fn row([stamp, x, y, heading, within, state, probability, single, ms]: [&str; 9]) -> String {
     format!(
-        "{stamp:>14}  {x:>9}  {y:>9}  {heading:>11}  {deviation:>6}  {state:<9}  {probability:>6}  {single:<12}  {ms:>8}"
+        "{stamp:>14}  {x:>9}  {y:>9}  {heading:>11}  {within:>6}  {state:<9}  {probability:>6}  {single:<12}  {ms:>8}"
     )
 }
 
@@ -182,9 +171,9 @@ mod tests {
     #[test]
     fn columns_stand_under_their_names() {
         let expected = "
-       stamp s        x m        y m  heading deg    +- m  state      prob %  single scan         ms
-1117803432.123      1.000     -2.000       180.00   0.020  Unique       97.5  Ambiguous +2     26.00
-1117803432.123      1.000     -2.000       180.00   0.020  Doubtful     97.5  -                26.00  the scans do not fit
+       stamp s        x m        y m  heading deg  95 % m  state      prob %  single scan         ms
+1117803432.123      1.000     -2.000       180.00   0.049  Unique       97.5  Ambiguous +2     26.00
+1117803432.123      1.000     -2.000       180.00   0.049  Doubtful     97.5  -                26.00  the scans do not fit
 1117803432.123          -          -            -       -  Searching       -  Ambiguous +2     26.00  2 places fit, 25 m apart
 1117803432.123          -          -            -       -  -               -  Ambiguous +2     25.00
 ";

@@ -2,6 +2,7 @@
 
 use std::time::Instant;
 
+use geometry::{ANGLE_95, ELLIPSE_95};
 use ratatui::style::{Color, Style, Stylize};
 use ratatui::text::{Line, Span, Text};
 
@@ -100,8 +101,9 @@ fn pose_lines(pose: &Tracked) -> Vec<Line<'static>> {
     let mut lines = vec![Line::from(format!("{}.", pose.says))];
     if let Some(laser) = pose.laser {
         let spread = pose.ellipse.map_or(String::new(), |ellipse| {
-            let (m, deg) = (ellipse.major_m, ellipse.yaw.to_degrees());
-            format!(" +- {m:.3} m, {deg:.2} deg")
+            let m = ELLIPSE_95 * ellipse.major_m;
+            let deg = ANGLE_95 * ellipse.yaw.to_degrees();
+            format!(" +- {m:.3} m, {deg:.2} deg (95 %)")
         });
         let text = format!(
             "x {:.3} m, y {:.3} m, heading {:.2} deg{spread}",
@@ -253,7 +255,7 @@ mod tests {
         for expected in [
             "  Doubtful  scan 7\n",
             "the scans do not fit where the robot should be.\n",
-            "x 1.500 m, y -2.000 m, heading 28.65 deg +- 0.250 m, 0.57 deg\n",
+            "x 1.500 m, y -2.000 m, heading 28.65 deg +- 0.612 m, 1.12 deg (95 %)\n",
             "probability 87.5 %, score 0.50\n",
             "This scan alone, Ambiguous: 2 places fit.\n",
             "scan to pose 21.5 ms",

@@ -138,7 +138,7 @@ pub use health::Health;
 pub use leftovers::{files_of, remove_dead_graphs, remove_leftovers};
 pub use loan::Loan;
 pub use log_lines::{CONSOLE_ONLY, log_in_graph};
-pub use membership::{control_socket, running_graphs};
+pub use membership::{control_socket, is_launched, running_graphs};
 pub use peers::Peers;
 pub use publisher::Publisher;
 pub use space::shared_memory_has_room;

@@ -108,6 +108,12 @@ pub fn control_socket(graph: &GraphName) -> PathBuf {
         .join(format!("{}{CONTROL}", membership.prefix))
 }
 
+/// Whether a launcher runs `graph`.
+#[must_use]
+pub fn is_launched(graph: &GraphName) -> bool {
+    Claim::is_taken(graph)
+}
+
 /// The graphs of this user that have a launcher, by its socket.
 #[must_use]
 pub fn running_graphs() -> Vec<GraphName> {

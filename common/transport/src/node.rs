@@ -85,12 +85,10 @@ fn start_logging_by(default: &str) -> Result<(), String> {
         .with_default_directive(LevelFilter::INFO.into())
         .parse(&filter)
         .map_err(|error| format!("{} is {filter:?}: {error}", EnvFilter::DEFAULT_ENV))?;
-    let is_terminal = std::io::stderr().is_terminal();
     let console = tracing_subscriber::fmt::layer()
-        .with_ansi(is_terminal)
+        .with_ansi(std::io::stderr().is_terminal())
         .with_writer(std::io::stderr);
-    let default_format = if is_terminal { "short" } else { "text" };
-    let console = match variable(LOG_FORMAT_VARIABLE, default_format)?.as_str() {
+    let console = match log_format()?.as_str() {
         "text" => console.boxed(),
         "short" => console.with_timer(TimeOfDay).with_target(false).boxed(),
         "json" => console.json().boxed(),
@@ -107,6 +105,21 @@ fn start_logging_by(default: &str) -> Result<(), String> {
         .with(log_lines::keep())
         .try_init()
         .map_err(|error| format!("cannot start logging: {error}"))
+}
+
+fn log_format() -> Result<String, String> {
+    let is_terminal = std::io::stderr().is_terminal();
+    variable(
+        LOG_FORMAT_VARIABLE,
+        if is_terminal { "short" } else { "text" },
+    )
+}
+
+/// Whether somebody reads the log on a terminal, also through the launcher: pictures of
+/// characters are for these alone.
+#[must_use]
+pub fn logs_to_terminal() -> bool {
+    log_format().is_ok_and(|format| format == "short")
 }
 
 /// Hours, minutes and seconds, UTC.

@@ -190,6 +190,12 @@ fn meet(
                     ..
                 } = other;
                 let fits = other.map_id == map_id;
+                match (comes, fits) {
+                    (true, true) => dispatcher.team().join(session, since, workers),
+                    (false, _) => dispatcher.leave(session),
+                    // It answers those who ask it, of the map that it has.
+                    (true, false) => {}
+                }
                 tracing::info!(
                     session,
                     workers,
@@ -197,12 +203,6 @@ fn meet(
                     fits,
                     "another server has the same map name"
                 );
-                match (comes, fits) {
-                    (true, true) => dispatcher.team().join(session, since, workers),
-                    (false, _) => dispatcher.leave(session),
-                    // It answers those who ask it, of the map that it has.
-                    (true, false) => {}
-                }
                 waker.wake();
             })
             .wait()

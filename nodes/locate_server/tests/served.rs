@@ -14,8 +14,9 @@ use messages::{ScanHeader, topic};
 use network_payload::Preamble;
 use tests::world::{World, as_the_graph_has_it};
 use transport::Graph;
-use transport::testing::{Isolated, NodeProcess, wait_for_health, wait_until_ready};
+use transport::testing::{Isolated, NodeProcess, wait_for_health, wait_until, wait_until_ready};
 use zenoh::bytes::Encoding;
+use zenoh::handlers::FifoChannelHandler;
 use zenoh::query::{ConsolidationMode, Query, QueryTarget, Queryable, Reply};
 use zenoh::{Session, Wait};
 
@@ -128,6 +129,17 @@ fn json_of((header, ranges): &Scan) -> Vec<u8> {
     value.to_string().into_bytes()
 }
 
+/// Asks and does not wait for the answer, which may take a minute.
+fn ask_json(session: &Session, scan: &Scan) -> FifoChannelHandler<Reply> {
+    session
+        .get("backcast/locate/corridor?deadline_ms=60000")
+        .payload(json_of(scan))
+        .encoding(Encoding::from(JSON))
+        .timeout(TIMEOUT)
+        .wait()
+        .unwrap()
+}
+
 #[test]
 fn answers_are_those_of_the_engine() {
     let server = Server::start("answers", &[]);
@@ -217,20 +229,11 @@ fn what_cannot_be_answered_in_time_is_not_searched() {
 fn beyond_its_queue_a_server_is_busy() {
     let server = Server::start("busy", &["--workers", "1", "--waiting", "0"]);
     let session = caller(&[&server]);
-    let payload = json_of(&scans()[0]);
+    let scan = &scans()[0];
     let (mut answers, mut busy) = (0, 0);
     // Sooner or later more than two come at the same time.
     while answers == 0 || busy == 0 {
-        let asking = (0..20).map(|_| {
-            let get = session
-                .get("backcast/locate/corridor")
-                .payload(payload.clone());
-            get.encoding(Encoding::from(JSON))
-                .timeout(TIMEOUT)
-                .wait()
-                .unwrap()
-        });
-        let asking: Vec<_> = asking.collect();
+        let asking: Vec<_> = (0..20).map(|_| ask_json(&session, scan)).collect();
         for replies in asking {
             match replies.recv().unwrap().into_result() {
                 Ok(_) => answers += 1,
@@ -367,23 +370,21 @@ fn what_was_handed_on_comes_back_when_the_other_leaves() {
     let me = other.zid();
     let (_silent, kept) = stand_silent(&other, &format!("backcast/locate/corridor/{me}"));
     let map_id = map::load(world().map()).unwrap().id();
+    let log = server.graph.subscriber::<topic::Log>().unwrap();
     let token = format!("backcast/locate/corridor/{me}/{map_id:016x}/ffffffffffffffff/64");
     let token = other.liveliness().declare_token(token).wait().unwrap();
-    let payload = json_of(&scans()[0]);
-    std::thread::scope(|scope| {
-        let ask = || ask_raw(&caller, "?deadline_ms=60000", JSON, payload.clone());
-        let mut asking = Vec::new();
-        // Until one is handed on, which is held without a word.
-        let _held = loop {
-            asking.push(scope.spawn(ask));
-            if let Ok(query) = kept.recv_timeout(Duration::from_millis(1)) {
-                break query;
-            }
-        };
-        token.undeclare().wait().unwrap();
-        for answer in asking {
-            answer.join().unwrap().into_result().unwrap();
-        }
+    // The server logs whom it may hand requests to.
+    let me = me.to_string();
+    wait_until(&server.graph, &log, |_, text| {
+        String::from_utf8_lossy(text).contains(&me)
     });
+    // All at the same time, so that they are more than the server searches at once.
+    let scan = &scans()[0];
+    let asked: Vec<_> = (0..20).map(|_| ask_json(&caller, scan)).collect();
+    let _held = kept.recv_timeout(TIMEOUT).expect("none was handed on");
+    token.undeclare().wait().unwrap();
+    for replies in asked {
+        replies.recv().unwrap().into_result().unwrap();
+    }
     server.process.stop();
 }

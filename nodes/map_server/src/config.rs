@@ -18,6 +18,10 @@ pub struct Config {
     #[arg(long, value_name = "FILE")]
     pub recorded: Option<PathBuf>,
 
+    /// A recording that is played on `--map`: where it holds another map, that is logged.
+    #[arg(long, value_name = "FILE", conflicts_with = "recorded")]
+    pub played: Option<PathBuf>,
+
     /// What the graph may use.
     #[command(flatten)]
     pub memory: map::MemoryOptions,

@@ -1,6 +1,7 @@
 //! Looks at the files, loads and sends.
 
 use std::error::Error;
+use std::path::Path;
 use std::time::{Duration, SystemTime, UNIX_EPOCH};
 
 use map::OccupancyGrid;
@@ -36,7 +37,10 @@ pub fn run(graph: &Graph, config: &Config) -> Result<(), MapServerError> {
     // What is in a recording does not change.
     let is_watched = recorded.is_none();
     match recorded.map_or_else(|| load(config), Ok) {
-        Ok(grid) => server.serve(&grid)?,
+        Ok(grid) => {
+            server.serve(&grid)?;
+            compare(config, &grid);
+        }
         Err(error) if error.is_missing() => server.wait_for(&error)?,
         Err(source) => {
             return Err(MapServerError::Map {
@@ -65,31 +69,65 @@ fn load(config: &Config) -> Result<OccupancyGrid, map::MapError> {
     })
 }
 
-/// The last map of the recording, where one is named and holds one.
+/// The last map of the recording that is named, where it holds one.
 fn recorded(config: &Config) -> Result<Option<OccupancyGrid>, MapServerError> {
     let Some(path) = &config.recorded else {
         return Ok(None);
     };
-    let failed = |source: Box<dyn Error + Send + Sync>| MapServerError::Recorded {
+    let grid = map_in(path, config).map_err(|source| MapServerError::Recorded {
         path: path.clone(),
         source,
-    };
-    let recording = Recording::open(path).map_err(|error| failed(error.into()))?;
-    let maps = recording.maps().map_err(|error| failed(error.into()))?;
-    let Some(last) = maps.last() else {
-        tracing::info!(recording = %path.display(), map = %config.map.display(),
-            "the recording holds no map");
+    })?;
+    match &grid {
+        Some(_) => {
+            tracing::info!(recording = %path.display(), "the map is that of the recording");
+        }
+        None => tracing::info!(recording = %path.display(), map = %config.map.display(),
+            "the recording holds no map"),
+    }
+    Ok(grid)
+}
+
+/// The last map of a recording, where it holds one; the graph can hold it.
+fn map_in(
+    path: &Path,
+    config: &Config,
+) -> Result<Option<OccupancyGrid>, Box<dyn Error + Send + Sync>> {
+    let recording = Recording::open(path)?;
+    let Some(last) = recording.maps()?.last() else {
         return Ok(None);
     };
-    let (_, map) = last.map_err(|error| failed(error.into()))?;
-    let (limit, size) = (config.memory.limit(), (map.info.width, map.info.height));
-    let fits = limit.check(size);
-    fits.map_err(|error| failed(error.into()))?;
-    let grid = map.to_grid().map_err(|error| failed(error.into()))?;
-    let fits = limit.check_grid(&grid);
-    fits.map_err(|error| failed(error.into()))?;
-    tracing::info!(recording = %path.display(), "the map is that of the recording");
+    let (_, map) = last?;
+    let limit = config.memory.limit();
+    limit.check((map.info.width, map.info.height))?;
+    let grid = map.to_grid()?;
+    limit.check_grid(&grid)?;
     Ok(Some(grid))
+}
+
+/// Says so where what is played was recorded on another map than this one.
+fn compare(config: &Config, served: &OccupancyGrid) {
+    let Some(path) = &config.played else {
+        return;
+    };
+    // What is wrong with the recording, its player says.
+    let Ok(Some(own)) = map_in(path, config) else {
+        return;
+    };
+    if own.id() == served.id() {
+        return;
+    }
+    let size = |grid: &OccupancyGrid| {
+        let OccupancyGrid { width, height, .. } = grid;
+        format!("{width} x {height} cells of {} m", grid.resolution_m)
+    };
+    tracing::warn!(
+        "{} was recorded on another map ({}) than {} ({}): where they differ, scans do not fit",
+        path.display(),
+        size(&own),
+        config.map.display(),
+        size(served)
+    );
 }
 
 struct Server {

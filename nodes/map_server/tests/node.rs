@@ -6,7 +6,7 @@
 
 use std::ffi::OsStr;
 use std::fs;
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 use std::process::ExitStatus;
 
 use messages::{HealthHeader, NodeState, topic};
@@ -14,7 +14,7 @@ use recording::write::{Packing, RecordingWriter};
 use recording::{Message, Recording};
 use ros::TfMessage;
 use tempfile::TempDir;
-use transport::testing::{Isolated, NodeProcess, wait_for_health, wait_until};
+use transport::testing::{Isolated, NodeProcess, wait_for_health, wait_until, wait_until_ready};
 use transport::{Graph, Subscriber};
 
 /// A folder with map files, a graph, and the node in both.
@@ -156,6 +156,29 @@ fn the_map_of_a_recording_is_preferred_where_it_holds_one() {
     world.interrupt();
     let (status, log) = world.finish();
     assert!(status.success(), "{log}");
+
+    // Played on another map, which is served and is said to be another.
+    world.start_with(&[OsStr::new("--played"), OsStr::new(file)]);
+    let late = world.graph.subscriber::<topic::Map>().unwrap();
+    world.wait(&late, |_, cells| cells == [100, 0]);
+    wait_until_ready(&world.graph, "map_server");
+    world.interrupt();
+    let (status, log) = world.finish();
+    assert!(status.success(), "{log}");
+    assert!(log.contains("recorded on another map"), "{log}");
+    // On its own, there is nothing to say.
+    let own = Path::new(file).with_file_name("map.yaml");
+    let options = [
+        "--map".as_ref(),
+        own.as_os_str(),
+        "--played".as_ref(),
+        file.as_ref(),
+    ];
+    let node = NodeProcess::start(env!("CARGO_BIN_EXE_map_server"), &world.graph, options);
+    wait_until_ready(&world.graph, "map_server");
+    node.interrupt();
+    let (status, log) = node.finish();
+    assert!(status.success() && !log.contains("another map"), "{log}");
 
     // One without a map, which has that of the file.
     let empty = world.at("empty.mcap");

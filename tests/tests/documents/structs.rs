@@ -204,6 +204,10 @@ const JSON: &[(&str, &[(&str, &str)])] = &[
         &[("common/dashboard/src/view/history.rs", "Period")],
     ),
     (
+        "A webhook's object",
+        &[("common/dashboard/src/view/state_change.rs", "StateChange")],
+    ),
+    (
         "`beams`",
         &[("common/dashboard/src/view/beams.rs", "Beams")],
     ),

@@ -45,7 +45,9 @@ fn locate(scans: &Path, maps: &[&Path], every: usize) -> Vec<Value> {
     let said = String::from_utf8_lossy(&outcome.stderr);
     assert_eq!(outcome.status.code(), Some(0), "{said}");
     let lines = String::from_utf8(outcome.stdout).unwrap();
-    let lines = lines.lines().map(|line| serde_json::from_str(line).unwrap());
+    let lines = lines
+        .lines()
+        .map(|line| serde_json::from_str(line).unwrap());
     lines.collect()
 }
 
@@ -140,7 +142,10 @@ fn a_set_of_maps_is_a_folder_or_a_list_with_floors() {
         let outcome = command.arg(set).arg(&scans).output().unwrap();
         let lines = String::from_utf8(outcome.stdout).unwrap();
         let found: Value = serde_json::from_str(lines.lines().next().unwrap()).unwrap();
-        assert_eq!((&found["map"], &found["floor"]), (&"hall".into(), &"2".into()));
+        assert_eq!(
+            (&found["map"], &found["floor"]),
+            (&"hall".into(), &"2".into())
+        );
         assert_eq!(found["hypotheses"][0]["map"], "hall");
         assert_eq!(found["verdict"], "Unique");
     }

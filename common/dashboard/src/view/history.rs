@@ -111,6 +111,11 @@ impl History {
     pub(crate) fn newest(&self, now_ns: i64) -> Option<Period<'_>> {
         self.periods(now_ns).next_back()
     }
+
+    /// The state before that.
+    pub(crate) fn before(&self, now_ns: i64) -> Option<Period<'_>> {
+        self.periods(now_ns).nth_back(1)
+    }
 }
 
 #[cfg(test)]
@@ -143,6 +148,8 @@ mod tests {
         assert_eq!((first.why, first.ago_s), ("one place", 0.0));
         let ends = (first.first.unwrap().x, first.last.unwrap().x);
         assert_eq!(ends, (1.0, 2.0));
+        assert_eq!(history.before(0).unwrap(), first);
+        assert_eq!(history.newest(0).unwrap().state, "Lost");
     }
 
     #[test]

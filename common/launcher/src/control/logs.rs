@@ -9,14 +9,17 @@ use clap::Args;
 use command_line::stdout::print;
 use messages::{LogHeader, LogLevel, topic};
 use serde::Serialize;
-use transport::{Flow, Graph, GraphName};
+use transport::{Flow, Graph, GraphName, is_launched};
 
 use super::command::{known_node, the_graph};
 use crate::LauncherError;
+use crate::run::console::{LAUNCHER, say};
 
 /// How long the lines that nodes keep for late joiners take to come.
 const KEPT_LINES: Duration = Duration::from_millis(700);
 const TICK: Duration = Duration::from_millis(100);
+/// Between two looks whether the graph still runs.
+const LOOK: Duration = Duration::from_secs(1);
 
 /// Options of `backcast logs`.
 #[derive(Debug, Args)]
@@ -24,7 +27,7 @@ pub struct LogsConfig {
     /// Only this node
     node: Option<String>,
 
-    /// Keep printing new lines, until Ctrl-C
+    /// Keep printing new lines, until the graph ends or Ctrl-C
     #[arg(long, short)]
     follow: bool,
 
@@ -48,7 +51,14 @@ pub fn logs(config: &LogsConfig) -> Result<ExitCode, LauncherError> {
     let begin = Instant::now();
     let mut kept: Vec<LogLine> = Vec::new();
     let (mut all_kept, mut printed) = (false, 0u64);
+    // Nodes can also be started by others, whose end nobody tells.
+    let was_launched = is_launched(&name);
+    let (mut has_ended, mut looked) = (false, begin);
     graph.run(&[&lines], TICK, |_| {
+        if was_launched && looked.elapsed() >= LOOK {
+            has_ended = !is_launched(&name);
+            looked = Instant::now();
+        }
         while let Some(line) = lines.receive()? {
             let line = LogLine::of(line.header(), line.items());
             if config.node.as_ref().is_none_or(|node| *node == line.node) {
@@ -67,9 +77,13 @@ pub fn logs(config: &LogsConfig) -> Result<ExitCode, LauncherError> {
                 })?;
             }
         }
-        let goes_on = config.follow || !all_kept;
+        let goes_on = !all_kept || config.follow && !has_ended;
         Ok::<_, LauncherError>(if goes_on { Flow::Continue } else { Flow::Stop })
     })?;
+    if has_ended {
+        say(LAUNCHER, &format!("graph {name} has ended"));
+        return Ok(ExitCode::SUCCESS);
+    }
     match &config.node {
         // One that is there and has logged nothing is no fault.
         Some(node) if printed == 0 => known_node(&name, node)?,

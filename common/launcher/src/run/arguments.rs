@@ -24,6 +24,16 @@ pub fn leave_out_monitors(dataflow: &mut Dataflow) {
     dataflow.nodes.retain(|node| node.executable() != MONITOR);
 }
 
+/// Calls the robot by the graph's name on its page, where the descriptor does not name it.
+pub fn name_robot(dataflow: &mut Dataflow, graph: &str) {
+    let nodes = dataflow.nodes.iter_mut();
+    for monitor in nodes.filter(|node| node.executable() == MONITOR) {
+        if value(monitor, "--robot").is_none() {
+            set(monitor, "--robot", Some(graph));
+        }
+    }
+}
+
 /// The first node with one of these executables, for which an option is meant.
 /// `file` is named in errors.
 ///
@@ -125,6 +135,23 @@ mod tests {
         ] {
             assert_eq!(value(&node(args), "--rate"), expected, "{args}");
         }
+    }
+
+    #[test]
+    fn a_page_names_its_robot_as_the_graph_unless_it_has_a_name() {
+        let text = "nodes: [{id: p, path: bin/monitor}, {id: q, path: monitor, args: --robot r7},
+            {id: a, path: bin/accumulator}]";
+        let topics = dataflow::Topics {
+            names: &[],
+            shared: &[],
+            several: &[],
+        };
+        let mut dataflow = dataflow::parse(text, &topics).unwrap();
+        name_robot(&mut dataflow, "hall");
+        let args: Vec<_> = dataflow.nodes.iter().map(|node| &node.args[..]).collect();
+        assert_eq!(args[0], ["--robot=hall"]);
+        assert_eq!(args[1], ["--robot", "r7"]);
+        assert!(args[2].is_empty());
     }
 
     #[test]

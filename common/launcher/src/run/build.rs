@@ -31,9 +31,16 @@ pub fn build_all(dataflow: &Dataflow, folder: &Path) -> Result<(), LauncherError
         match build(node, folder) {
             Err(LauncherError::BuildNotStarted {
                 command, source, ..
-            }) if source.kind() == io::ErrorKind::NotFound
-                && are_there(with_build().filter(|n| n.build == node.build), folder) =>
-            {
+            }) if source.kind() == io::ErrorKind::NotFound => {
+                let missing = missing(with_build().filter(|n| n.build == node.build), folder);
+                if !missing.is_empty() {
+                    let program = command.split(' ').next().unwrap_or_default().to_owned();
+                    return Err(LauncherError::NothingToRun {
+                        program,
+                        command,
+                        missing: missing.join(", "),
+                    });
+                }
                 note(&format!(
                     "`{command}` cannot be started: the nodes are run as they are"
                 ));
@@ -44,8 +51,10 @@ pub fn build_all(dataflow: &Dataflow, folder: &Path) -> Result<(), LauncherError
     Ok(())
 }
 
-fn are_there<'a>(mut nodes: impl Iterator<Item = &'a Node>, folder: &Path) -> bool {
-    nodes.all(|node| executable(node, folder).is_file())
+/// The nodes that have no executable.
+fn missing<'a>(nodes: impl Iterator<Item = &'a Node>, folder: &Path) -> Vec<&'a str> {
+    let without = nodes.filter(|node| !executable(node, folder).is_file());
+    without.map(|node| node.id.as_str()).collect()
 }
 
 fn build(node: &Node, folder: &Path) -> Result<(), LauncherError> {
@@ -117,11 +126,9 @@ mod tests {
         assert!(!folder.path().join("built").exists());
         let nodes = "  - {id: a, path: x, build: no-such-program x}\n";
         let said = build_nodes(nodes, folder.path()).unwrap_err().to_string();
-        assert_eq!(
-            said,
-            "node a: the build `no-such-program x` cannot be started; where all executables are \
-             there, --no-build runs them as they are"
-        );
+        let expected = "no-such-program is not installed, and there are no executables of a: ";
+        assert!(said.starts_with(expected), "{said}");
+        assert!(said.contains("docs/install.md"), "{said}");
     }
 
     #[test]
@@ -133,6 +140,7 @@ mod tests {
         build_nodes(&built, folder.path()).unwrap();
         assert!(folder.path().join("built").exists());
         let in_part = node("a", "x") + &node("b", "z");
-        build_nodes(&in_part, folder.path()).unwrap_err();
+        let said = build_nodes(&in_part, folder.path()).unwrap_err();
+        assert!(said.to_string().contains("executables of b: "), "{said}");
     }
 }

@@ -9,7 +9,7 @@ use messages::{Topic, topic};
 use ros::lasers::name_of;
 
 use super::arguments::{
-    ACCUMULATOR, MAP_SERVER, PLAYERS, find, leave_out_monitors, set, unset, value,
+    ACCUMULATOR, MAP_SERVER, PLAYERS, find, leave_out_monitors, name_robot, set, unset, value,
 };
 use super::options::{Options, Rate};
 use super::{lasers, replay};
@@ -17,6 +17,8 @@ use crate::LauncherError;
 
 /// The recording whose own map `map_server` prefers.
 const RECORDED_MAP: &str = "--recorded";
+/// The recording that is played on another map than its own.
+const PLAYED: &str = "--played";
 const MAX_AGE: &str = "--heading-max-age-s";
 
 /// Puts the options into the arguments of their nodes. `file` is named in
@@ -36,7 +38,10 @@ pub(crate) fn apply(
         let map = std::path::absolute(map).map_err(LauncherError::Folder)?;
         let node = find(dataflow, &[MAP_SERVER], "--map", file)?;
         set(node, "--map", Some(&map.to_string_lossy()));
-        unset(node, RECORDED_MAP, true);
+        if let Some(recording) = value(node, RECORDED_MAP).map(str::to_owned) {
+            unset(node, RECORDED_MAP, true);
+            set(node, PLAYED, Some(&recording));
+        }
     }
     if let Some(rate) = options.rate {
         let node = find(dataflow, &PLAYERS, "--rate", file)?;
@@ -48,6 +53,9 @@ pub(crate) fn apply(
     }
     if options.no_monitor {
         leave_out_monitors(dataflow);
+    }
+    if let Some(graph) = &options.graph {
+        name_robot(dataflow, graph.as_str());
     }
     forward_heading(&options.heading, dataflow, file)
 }
@@ -216,7 +224,8 @@ mod tests {
             ["--beams", "9", "--recorded=/drive.mcap"]
         );
         options.map = Some("/other.yaml".into());
-        assert_eq!(map_args(&options), ["--beams", "9", "--map=/other.yaml"]);
+        let expected = ["--beams", "9", "--map=/other.yaml", "--played=/drive.mcap"];
+        assert_eq!(map_args(&options), expected);
         // Which of several recordings has the map of all is not known.
         options.map = None;
         options.replay.push("/rest.mcap".into());

@@ -147,10 +147,23 @@ fn a_graph_is_asked_restarted_in_part_and_stopped_from_elsewhere() {
         "{stdout}"
     );
 
+    let mut follower = launcher(folder.path(), &["logs", "--follow", "--graph", name])
+        .spawn()
+        .unwrap();
+    let mut lines = BufReader::new(follower.stdout.take().unwrap());
+    let mut first = String::new();
+    lines.read_line(&mut first).unwrap();
+    assert!(first.contains("backcast | "), "{first}");
+
     let (code, _, said) = ask(&["stop"]);
     assert_eq!(code, Some(0), "{said}");
     let (status, said) = running.wait();
     assert_eq!(status.code(), Some(0), "{said}");
+    std::io::copy(&mut lines, &mut std::io::sink()).unwrap();
+    let followed = follower.wait_with_output().unwrap();
+    let said = String::from_utf8(followed.stderr).unwrap();
+    assert_eq!(followed.status.code(), Some(0), "{said}");
+    assert!(said.contains("graph test-control has ended"), "{said}");
     let (code, _, said) = ask(&["stop"]);
     assert_eq!(code, Some(1), "{said}");
     assert!(

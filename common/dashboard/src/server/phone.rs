@@ -1,0 +1,109 @@
+//! The page's address as a QR code of characters, for phones.
+
+use std::net::{IpAddr, SocketAddr, UdpSocket};
+
+use qrcode::render::unicode::Dense1x2;
+use qrcode::types::QrError;
+use qrcode::{EcLevel, QrCode};
+
+/// An address of a network for documents: no machine has it, the default route leads there.
+const ELSEWHERE: (&str, u16) = ("192.0.2.1", 9);
+
+/// Where other machines open the page: by the `host`, else by the address that is listened
+/// to or, where that is any, by the one of the default route. The `token` follows after `#`,
+/// which browsers do not send. None where no route leads to other machines.
+pub(super) fn place(
+    listening: SocketAddr,
+    host: Option<&str>,
+    token: Option<&str>,
+) -> Option<String> {
+    let port = listening.port();
+    let server = match (host, listening.ip()) {
+        (Some(name), _) => format!("{name}:{port}"),
+        (None, ip) if ip.is_unspecified() => SocketAddr::new(on_default_route()?, port).to_string(),
+        (None, _) => listening.to_string(),
+    };
+    let token = token.map(|token| format!("#token={token}"));
+    Some(format!("http://{server}/{}", token.unwrap_or_default()))
+}
+
+/// This machine's address towards others. Connecting such a socket sends nothing.
+fn on_default_route() -> Option<IpAddr> {
+    let socket = UdpSocket::bind("0.0.0.0:0").ok()?;
+    socket.connect(ELSEWHERE).ok()?;
+    Some(socket.local_addr().ok()?.ip())
+}
+
+/// The code, two rows of modules in a line, for bright characters on a dark terminal; phones
+/// read it inverted, too.
+///
+/// # Errors
+/// The text is too long.
+pub(super) fn code(text: &str) -> Result<String, QrError> {
+    // A screen has no stains that more redundancy would be for.
+    let code = QrCode::with_error_correction_level(text, EcLevel::L)?;
+    let mut picture = code.render::<Dense1x2>();
+    picture
+        .dark_color(Dense1x2::Light)
+        .light_color(Dense1x2::Dark);
+    Ok(picture.build())
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn phones_are_sent_where_they_can_reach_it() {
+        let place = |listening: &str, host, token| {
+            super::place(listening.parse().unwrap(), host, token).unwrap()
+        };
+        assert_eq!(
+            place("192.0.2.7:7440", None, Some("0123")),
+            "http://192.0.2.7:7440/#token=0123"
+        );
+        assert_eq!(
+            place("0.0.0.0:7441", Some("r7.local"), None),
+            "http://r7.local:7441/"
+        );
+        assert_eq!(
+            place("[2001:db8::7]:80", None, None),
+            "http://[2001:db8::7]:80/"
+        );
+        // Where there is a route at all, it is no address that only this machine has.
+        let any = super::place("0.0.0.0:7440".parse().unwrap(), None, None);
+        assert!(any.is_none_or(|place| !place.contains("//0.0.0.0") && !place.contains("//127.")));
+    }
+
+    #[test]
+    fn the_code_has_the_modules_of_the_text_and_a_margin() {
+        let text = format!("http://192.168.100.100:7440/#token={}", "0f".repeat(16));
+        let code = code(&text).unwrap();
+        let lines: Vec<Vec<char>> = code.lines().map(|line| line.chars().collect()).collect();
+        // It fits a terminal of 80 columns, beside who says it.
+        assert!(
+            lines
+                .iter()
+                .all(|line| line.len() == lines[0].len() && line.len() <= 58)
+        );
+        // Bright is the ground, of which four modules are around the code.
+        let is_bright = |x: usize, y: usize| match lines[y / 2][x] {
+            '█' => true,
+            '▀' => y.is_multiple_of(2),
+            '▄' => !y.is_multiple_of(2),
+            ' ' => false,
+            other => panic!("{other}"),
+        };
+        let expected = QrCode::with_error_correction_level(&text, EcLevel::L).unwrap();
+        let width = lines[0].len();
+        assert_eq!(width, expected.width() + 8);
+        for (x, y) in (0..width).flat_map(|y| (0..width).map(move |x| (x, y))) {
+            let inside = 4..width - 4;
+            let is_dark = inside.contains(&x)
+                && inside.contains(&y)
+                && expected[(x - 4, y - 4)] == qrcode::Color::Dark;
+            assert_eq!(is_bright(x, y), !is_dark, "{x}, {y}");
+        }
+        assert!(super::code(&"x".repeat(4000)).is_err());
+    }
+}

@@ -1,0 +1,169 @@
+//! States of the robots, posted to a server of the user's.
+//!
+//! A thread of its own posts one after the other over plain HTTP, each once. So many may
+//! wait; where the server is slower, the oldest are left out, for the newest says most.
+//! What was not posted is counted, and logged now and then.
+
+use std::thread;
+use std::time::{Duration, Instant};
+
+use axum::http::Uri;
+use tokio::sync::broadcast::error::RecvError;
+use tokio::sync::broadcast::{Receiver, Sender};
+use ureq::Agent;
+
+use crate::DashboardError;
+
+/// States that may wait.
+const QUEUE: usize = 64;
+
+/// How long the server may take for one, from the look-up of its name to its answer.
+const TIMEOUT: Duration = Duration::from_secs(5);
+
+/// Between two lines on states that were not posted.
+const SILENCE: Duration = Duration::from_secs(60);
+
+/// Where states are posted, as long as there is a clone of it.
+#[derive(Debug, Clone)]
+pub(crate) struct Webhook(Sender<String>);
+
+impl Webhook {
+    /// Starts the thread.
+    ///
+    /// # Errors
+    /// The system refuses.
+    pub(crate) fn start(server: &Uri) -> Result<Self, DashboardError> {
+        let (states, waiting) = tokio::sync::broadcast::channel(QUEUE);
+        let server = server.to_string();
+        thread::Builder::new()
+            .name("webhook".into())
+            .spawn(move || post_all(&server, waiting))
+            .map_err(DashboardError::Server)?;
+        Ok(Webhook(states))
+    }
+
+    /// Posts an object of JSON; waits for nothing.
+    pub(crate) fn post(&self, state: String) {
+        // Its thread lives as long as this.
+        let _ = self.0.send(state);
+    }
+}
+
+/// Posts until nobody has a state any more.
+fn post_all(server: &str, mut waiting: Receiver<String>) {
+    let agent: Agent = Agent::config_builder()
+        .timeout_global(Some(TIMEOUT))
+        .build()
+        .into();
+    let mut losses = Losses::default();
+    loop {
+        let outcome = match waiting.blocking_recv() {
+            Ok(state) => post(&agent, server, &state).map_err(|reason| (1, reason)),
+            Err(RecvError::Lagged(states)) => Err((states, "the server is too slow".to_owned())),
+            Err(RecvError::Closed) => return,
+        };
+        let line = match outcome {
+            Ok(()) => losses.end(),
+            Err((states, reason)) => losses.add(states, &reason, Instant::now()),
+        };
+        // The address may hold a secret, and is not logged.
+        if let Some(line) = line {
+            tracing::warn!("webhook: {line}");
+        }
+    }
+}
+
+fn post(agent: &Agent, server: &str, state: &str) -> Result<(), String> {
+    let request = agent.post(server).content_type("application/json");
+    request
+        .send(state)
+        .map(drop)
+        .map_err(|error| error.to_string())
+}
+
+/// States that were not posted, and when that is worth a line: the first at once, more of
+/// them once a minute, and when one is posted again.
+#[derive(Debug, Default)]
+struct Losses {
+    states: u64,
+    logged: Option<Instant>,
+}
+
+impl Losses {
+    fn add(&mut self, states: u64, reason: &str, now: Instant) -> Option<String> {
+        self.states += states;
+        if self.logged.is_some_and(|at| now - at < SILENCE) {
+            return None;
+        }
+        self.logged = Some(now);
+        let states = self.states;
+        Some(format!("{states} not posted: {reason}"))
+    }
+
+    fn end(&mut self) -> Option<String> {
+        let states = std::mem::take(self).states;
+        (states > 0).then(|| format!("posts again, after {states} not posted"))
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use std::io::{BufRead, BufReader, Read, Write};
+    use std::net::TcpListener;
+
+    use super::*;
+
+    #[test]
+    fn losses_are_counted_and_logged_now_and_then() {
+        let mut losses = Losses::default();
+        let begin = Instant::now();
+        let line = losses.add(1, "refused", begin);
+        assert_eq!(line.unwrap(), "1 not posted: refused");
+        assert_eq!(losses.add(2, "refused", begin + SILENCE / 2), None);
+        let line = losses.add(1, "timeout", begin + SILENCE);
+        assert_eq!(line.unwrap(), "4 not posted: timeout");
+        assert_eq!(losses.end().unwrap(), "posts again, after 4 not posted");
+        assert_eq!(losses.end(), None, "all is well");
+        assert!(losses.add(1, "refused", begin + SILENCE).is_some());
+    }
+
+    /// Takes a request, and answers it when `ready` returns.
+    fn take(listener: &TcpListener, ready: impl FnOnce()) -> String {
+        let (mut stream, _) = listener.accept().unwrap();
+        let mut reader = BufReader::new(stream.try_clone().unwrap());
+        let mut length = 0;
+        loop {
+            let mut line = String::new();
+            reader.read_line(&mut line).unwrap();
+            if let Some(given) = line.to_lowercase().strip_prefix("content-length:") {
+                length = given.trim().parse().unwrap();
+            }
+            if line == "\r\n" {
+                break;
+            }
+        }
+        let mut body = vec![0; length];
+        reader.read_exact(&mut body).unwrap();
+        ready();
+        let answer = b"HTTP/1.1 204 No Content\r\nConnection: close\r\n\r\n";
+        stream.write_all(answer).unwrap();
+        String::from_utf8(body).unwrap()
+    }
+
+    #[test]
+    fn a_slow_server_gets_the_newest() {
+        let listener = TcpListener::bind("127.0.0.1:0").unwrap();
+        let server = format!("http://{}/", listener.local_addr().unwrap());
+        let webhook = Webhook::start(&server.parse().unwrap()).unwrap();
+        webhook.post("first".to_owned());
+        let first = take(&listener, || {
+            for state in 0..QUEUE + 100 {
+                webhook.post(state.to_string());
+            }
+        });
+        assert_eq!(first, "first");
+        let posted: Vec<String> = (0..QUEUE).map(|_| take(&listener, || {})).collect();
+        let expected: Vec<String> = (100..QUEUE + 100).map(|state| state.to_string()).collect();
+        assert_eq!(posted, expected);
+    }
+}

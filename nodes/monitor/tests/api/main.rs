@@ -1,0 +1,13 @@
+//! The API as anybody sees it from outside: over TCP, with a graph behind it.
+#![allow(
+    clippy::unwrap_used,
+    reason = "the lint spares test functions but not what they share"
+)]
+
+mod limits;
+mod phone;
+mod reading;
+mod refusals;
+mod webhook;
+mod world;
+mod writing;

@@ -1,0 +1,132 @@
+//! What is known, and what happens.
+
+use std::io::Read;
+
+use bytemuck::Zeroable;
+use messages::{BeamsHeader, FieldHeader, TrackState, topic};
+use serde_json::{Value, json};
+use transport::{Flow, TransportError};
+use tungstenite::Message;
+
+use crate::world::{CELLS, World, map_name, next, next_of};
+
+#[test]
+fn what_flows_in_the_graph_is_reported() {
+    let world = World::new("flow");
+    let robots = world.site.get("/api/v1/robots");
+    assert_eq!(robots["robots"], json!(["r"]));
+    let known = world.wait_for_state(|known| !known["map"].is_null());
+    assert_eq!(known["map"]["id"], map_name());
+    let mut socket = world.stream();
+    assert_eq!(next(&mut socket)["type"], "snapshot");
+    world.answer(7, 1.5);
+    let answer = next_of(&mut socket, "answer");
+    assert_eq!(answer["verdict"], "Unique");
+    assert_eq!(answer["hypotheses"][0]["laser"]["x"], 1.5);
+    let mut loan = world.beams.loan(1).unwrap();
+    *loan.header_mut() = BeamsHeader::zeroed();
+    loan.send().unwrap();
+    assert_eq!(next_of(&mut socket, "beams")["fate"], "h");
+    // A later viewer gets the same at once.
+    let known = world.site.get("/api/v1/robots/r");
+    assert_eq!(known["answer"]["counter"], 7);
+    let names: Vec<&Value> = known["nodes"]
+        .as_array()
+        .unwrap()
+        .iter()
+        .map(|n| &n["name"])
+        .collect();
+    assert_eq!(names, ["monitor"]);
+}
+
+#[test]
+fn the_trackers_pose_is_reported_with_its_age() {
+    let world = World::new("tracked");
+    world.wait_for_state(|known| !known["map"].is_null());
+    let mut socket = world.stream();
+    assert_eq!(next(&mut socket)["pose"], Value::Null, "no tracker yet");
+    world.answer(7, 9.0);
+    world.track(7, TrackState::Unique, 1.5, 61);
+    let pose = next_of(&mut socket, "pose");
+    assert_eq!(
+        (&pose["state"], &pose["laser"]["x"]),
+        (&json!("Unique"), &json!(1.5))
+    );
+    assert_eq!(pose["says"], "one place is left");
+    let known = world.site.get("/api/v1/robots/r");
+    assert_eq!(known["pose"]["counter"], 7);
+    assert_eq!(known["answer"]["hypotheses"][0]["laser"]["x"], 9.0);
+    assert_eq!(known["track"], json!([[1.5, 2.0, "U", 0.5]]));
+    // A later viewer gets its age.
+    let age_s = known["ages"]["scan_s"].as_f64().unwrap();
+    assert!(age_s >= 61.0, "{age_s}");
+}
+
+#[test]
+fn the_map_is_a_byte_a_cell() {
+    let world = World::new("map");
+    world.wait_for_state(|known| !known["map"].is_null());
+    let path = "/api/v1/robots/r/map";
+    let request = |more: &str| {
+        format!(
+            "GET {path} HTTP/1.1\r\nHost: {}\r\n{more}Connection: close\r\n\r\n",
+            world.site.0
+        )
+    };
+    let (status, _, cells) = world.site.raw(request("").as_bytes());
+    assert_eq!((status, cells), (200, CELLS.to_vec()));
+    let (status, _, cells) = world
+        .site
+        .raw(request(&format!("If-None-Match: \"{}\"\r\n", map_name())).as_bytes());
+    assert_eq!((status, cells.len()), (304, 0), "the reader has it");
+    let (_, head, packed) = world
+        .site
+        .raw(request("Accept-Encoding: gzip\r\n").as_bytes());
+    assert!(head.contains("content-encoding: gzip"), "{head}");
+    let mut cells = Vec::new();
+    flate2::read::GzDecoder::new(&packed[..])
+        .read_to_end(&mut cells)
+        .unwrap();
+    assert_eq!(cells, CELLS);
+}
+
+#[test]
+fn the_field_flows_while_somebody_looks() {
+    let world = World::new("field");
+    let fields = world.graph.publisher::<topic::Field>().unwrap();
+    assert!(!fields.has_subscribers());
+    let mut socket = world.stream();
+    socket
+        .send(Message::text(
+            json!({"type": "field", "on": true}).to_string(),
+        ))
+        .unwrap();
+    let tick = std::time::Duration::from_millis(20);
+    let wait = |wanted: bool| {
+        world
+            .graph
+            .run(&[], tick, |_| {
+                let reached = fields.has_subscribers() == wanted;
+                Ok::<_, TransportError>(if reached { Flow::Stop } else { Flow::Continue })
+            })
+            .unwrap();
+    };
+    wait(true);
+    let mut loan = fields.loan(2).unwrap();
+    *loan.header_mut() = FieldHeader {
+        width: 2,
+        height: 1,
+        best: 10,
+        ..FieldHeader::zeroed()
+    };
+    loan.items_mut().copy_from_slice(&[10, 0]);
+    loan.send().unwrap();
+    let image = loop {
+        if let Message::Binary(image) = socket.read().unwrap() {
+            break image;
+        }
+    };
+    assert_eq!(image[image.len() - 2..], [255, 0]);
+    drop(socket);
+    wait(false);
+}

@@ -1,0 +1,37 @@
+//! Who is not let in.
+
+use crate::world::World;
+
+#[test]
+fn other_sites_are_refused() {
+    let world = World::new("sites");
+    let ask = |headers: &[&str]| world.site.ask("GET", "/api/v1/robots", headers, "").0;
+    assert_eq!(ask(&["Origin: http://evil.example"]), 403);
+    assert_eq!(ask(&["Origin: null"]), 403);
+    assert_eq!(ask(&[&format!("Origin: http://{}", world.site.0)]), 200);
+    assert_eq!(ask(&["Host: evil.example"]), 421);
+    assert_eq!(ask(&["Sec-Fetch-Site: cross-site"]), 403);
+    // A WebSocket is not kept from other sites by browsers.
+    let upgrade = [
+        "Connection: Upgrade",
+        "Upgrade: websocket",
+        "Sec-WebSocket-Version: 13",
+        "Sec-WebSocket-Key: dGhlIHNhbXBsZSBub25jZQ==",
+        "Origin: http://evil.example",
+    ];
+    let (status, _) = world
+        .site
+        .ask("GET", "/api/v1/robots/r/stream", &upgrade, "");
+    assert_eq!(status, 403);
+    let (_, head, _) = world.site.raw(
+        format!(
+            "GET / HTTP/1.1\r\nHost: {}\r\nConnection: close\r\n\r\n",
+            world.site.0
+        )
+        .as_bytes(),
+    );
+    assert!(
+        head.contains("content-security-policy: default-src 'none'"),
+        "{head}"
+    );
+}

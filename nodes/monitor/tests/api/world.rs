@@ -1,0 +1,192 @@
+//! The node in a graph of its own, which a test speaks in.
+
+use std::net::{SocketAddr, TcpStream};
+use std::path::Path;
+
+use bytemuck::Zeroable;
+use messages::{
+    HypothesesHeader, Hypothesis, MapHeader, Pose2, PoseHeader, TrackState, Verdict, topic,
+};
+use serde_json::Value;
+use tempfile::TempDir;
+use tests::http::{Site, token_file};
+use transport::testing::{Isolated, NodeProcess, wait_until_ready};
+use transport::{Flow, Graph, Publisher, TransportError};
+use tungstenite::{Message, WebSocket, client};
+
+pub(crate) const TOKEN: &str = "0123456789abcdef";
+
+pub(crate) const CELLS: [u8; 6] = [0, 100, 255, 0, 0, 100];
+
+fn map_header() -> MapHeader {
+    let mut header = MapHeader {
+        width: 3,
+        height: 2,
+        resolution_m: 0.05,
+        ..MapHeader::zeroed()
+    };
+    header.map_id = header.id_of(&CELLS);
+    header
+}
+
+/// As the API says it.
+pub(crate) fn map_name() -> String {
+    format!("{:016x}", map_header().map_id)
+}
+
+/// The node in a graph of its own, and what it may be asked.
+pub(crate) struct World {
+    node: Option<NodeProcess>,
+    pub(crate) site: Site,
+    hypotheses: Publisher<topic::Hypotheses>,
+    pub(crate) poses: Publisher<topic::Tracked>,
+    pub(crate) beams: Publisher<topic::Beams>,
+    maps: Publisher<topic::Map>,
+    pub(crate) graph: Graph,
+    _isolated: Isolated,
+    _folder: TempDir,
+}
+
+impl World {
+    pub(crate) fn new(test: &str) -> World {
+        World::with(test, &[])
+    }
+
+    /// With more arguments for the node.
+    pub(crate) fn with(test: &str, arguments: &[&str]) -> World {
+        let isolated = Isolated::new(test);
+        let graph = isolated.join("test");
+        let folder = tempfile::tempdir().unwrap();
+        let token = token_file(folder.path(), TOKEN);
+        let site = Site::free();
+        let mut world = World {
+            node: None,
+            site,
+            hypotheses: graph.publisher().unwrap(),
+            poses: graph.publisher().unwrap(),
+            beams: graph.publisher().unwrap(),
+            maps: graph.publisher().unwrap(),
+            graph,
+            _isolated: isolated,
+            _folder: folder,
+        };
+        world.serve_map();
+        world.node = Some(start(&world.graph, world.site.0, &token, arguments));
+        wait_until_ready(&world.graph, "monitor");
+        world
+    }
+
+    fn serve_map(&self) {
+        let mut loan = self.maps.loan(CELLS.len()).unwrap();
+        *loan.header_mut() = map_header();
+        loan.items_mut().copy_from_slice(&CELLS);
+        loan.send().unwrap();
+    }
+
+    pub(crate) fn answer(&self, counter: u64, x: f64) {
+        let mut loan = self.hypotheses.loan(1).unwrap();
+        let header = loan.header_mut();
+        *header = HypothesesHeader {
+            map_id: map_header().map_id,
+            verdict: Verdict::Unique as u32,
+            ..HypothesesHeader::zeroed()
+        };
+        header.stamp.counter = counter;
+        loan.items_mut()[0] = Hypothesis {
+            map_from_laser: Pose2 {
+                x,
+                y: 2.0,
+                yaw: 0.5,
+            },
+            ..Hypothesis::zeroed()
+        };
+        loan.send().unwrap();
+    }
+
+    /// Sends where the tracker has the robot, by a scan that came `age_s` ago.
+    pub(crate) fn track(&self, counter: u64, state: TrackState, x: f64, age_s: i64) {
+        let words = b"one place is left";
+        let mut loan = self.poses.loan(words.len()).unwrap();
+        let header = loan.header_mut();
+        *header = PoseHeader {
+            map_id: map_header().map_id,
+            sent_ns: transport::monotonic_ns(),
+            map_from_laser: Pose2 {
+                x,
+                y: 2.0,
+                yaw: 0.5,
+            },
+            state: state as u32,
+            from_scan: 1,
+            pose_known: 1,
+            ..PoseHeader::zeroed()
+        };
+        header.stamp.counter = counter;
+        header.stamp.entered_ns = header.sent_ns - age_s * 1_000_000_000;
+        // Nothing is sent before it was measured.
+        header.sent_ns = header.sent_ns.max(header.stamp.entered_ns);
+        loan.items_mut().copy_from_slice(words);
+        loan.send().unwrap();
+    }
+
+    /// Asks until the answer is as it should be; the graph continues meanwhile.
+    pub(crate) fn wait_for_state(&self, is_awaited: impl Fn(&Value) -> bool) -> Value {
+        let mut found = None;
+        let tick = std::time::Duration::from_millis(20);
+        self.graph
+            .run(&[], tick, |_| {
+                found = Some(self.site.get("/api/v1/robots/r")).filter(&is_awaited);
+                let flow = if found.is_some() {
+                    Flow::Stop
+                } else {
+                    Flow::Continue
+                };
+                Ok::<_, TransportError>(flow)
+            })
+            .unwrap();
+        found.unwrap()
+    }
+
+    pub(crate) fn stream(&self) -> WebSocket<TcpStream> {
+        let url = format!("ws://{}/api/v1/robots/r/stream", self.site.0);
+        let stream = TcpStream::connect(self.site.0).unwrap();
+        client(url, stream).unwrap().0
+    }
+}
+
+impl Drop for World {
+    fn drop(&mut self) {
+        if let Some(node) = self.node.take()
+            && !std::thread::panicking()
+        {
+            node.stop();
+        }
+    }
+}
+
+fn start(graph: &Graph, address: SocketAddr, token: &Path, more: &[&str]) -> NodeProcess {
+    let (address, token) = (address.to_string(), token.to_str().unwrap());
+    let common = ["--listen", &address, "--robot", "r", "--token-file", token];
+    NodeProcess::start(
+        env!("CARGO_BIN_EXE_monitor"),
+        graph,
+        [&common, more].concat(),
+    )
+}
+
+pub(crate) fn next(socket: &mut WebSocket<TcpStream>) -> Value {
+    loop {
+        if let Message::Text(text) = socket.read().unwrap() {
+            return serde_json::from_str(&text).unwrap();
+        }
+    }
+}
+
+pub(crate) fn next_of(socket: &mut WebSocket<TcpStream>, kind: &str) -> Value {
+    loop {
+        let message = next(socket);
+        if message["type"] == kind {
+            return message;
+        }
+    }
+}

@@ -1,0 +1,96 @@
+//! What changes the graph.
+
+use messages::{Corner, topic};
+use serde_json::json;
+use transport::testing::wait_for;
+
+use crate::world::{TOKEN, World};
+
+#[test]
+fn writing_needs_the_token_and_somebody_who_listens() {
+    let world = World::new("token");
+    let path = "/api/v1/robots/r/region";
+    let body = r#"{"corners":[[0,0],[2,3]]}"#;
+    let json = "Content-Type: application/json";
+    let token = format!("Authorization: Bearer {TOKEN}");
+    let put = |headers: &[&str], body: &str| world.site.ask("PUT", path, headers, body).0;
+    assert_eq!(put(&[json], body), 401);
+    assert_eq!(
+        put(&[json, "Authorization: Bearer 0123456789abcdeX"], body),
+        403
+    );
+    assert_eq!(
+        put(&[json, "Authorization: Basic 0123456789abcdef"], body),
+        401
+    );
+    assert_eq!(put(&[json, &token], body), 409, "nobody takes a region");
+    assert_eq!(
+        world
+            .site
+            .ask("POST", "/api/v1/robots/r/save", &[&token], "")
+            .0,
+        409
+    );
+
+    let regions = world.graph.subscriber::<topic::Region>().unwrap();
+    let saves = world.graph.subscriber::<topic::Save>().unwrap();
+    world.wait_for_state(|known| known["abilities"] == json!({"region": true, "save": true}));
+    assert_eq!(put(&[json, &token], body), 202);
+    let corners = wait_for(&world.graph, &regions, |_, corners| {
+        (!corners.is_empty()).then(|| corners.to_vec())
+    });
+    assert_eq!(
+        corners,
+        [Corner { x: 0.0, y: 0.0 }, Corner { x: 2.0, y: 3.0 }]
+    );
+    let known = world.wait_for_state(|known| known["region"] != json!([]));
+    assert_eq!(known["region"], json!([[0.0, 0.0], [2.0, 3.0]]));
+    assert_eq!(world.site.ask("DELETE", path, &[&token], "").0, 202);
+    wait_for(&world.graph, &regions, |_, corners| {
+        corners.is_empty().then_some(())
+    });
+    assert_eq!(
+        world
+            .site
+            .ask("POST", "/api/v1/robots/r/save", &[&token], "")
+            .0,
+        202
+    );
+    wait_for(&world.graph, &saves, |_, _| Some(()));
+}
+
+#[test]
+fn nonsense_is_refused_with_a_reason() {
+    let world = World::new("nonsense");
+    let regions = world.graph.subscriber::<topic::Region>().unwrap();
+    world.wait_for_state(|known| known["abilities"]["region"] == true);
+    let token = format!("Authorization: Bearer {TOKEN}");
+    let headers = [token.as_str(), "Content-Type: application/json"];
+    let put = |body: &str| {
+        world
+            .site
+            .ask("PUT", "/api/v1/robots/r/region", &headers, body)
+            .0
+    };
+    assert_eq!(put("{"), 400);
+    assert_eq!(put(r#"{"corners":[[0,0],[1,1]],"more":1}"#), 422);
+    assert_eq!(put(r#"{"corners":[[0,0]]}"#), 422);
+    assert_eq!(put(r#"{"corners":[[0,0],[1e300,1]]}"#), 422);
+    assert_eq!(put(r#"{"corners":[[0,0],[null,1]]}"#), 422);
+    let many = format!(r#"{{"corners":[{}[0,0]]}}"#, "[0,0],".repeat(1000));
+    assert_eq!(put(&many), 422);
+    assert_eq!(
+        put(&format!(
+            r#"{{"corners":[{}[0,0]]}}"#,
+            "[0,0],".repeat(100_000)
+        )),
+        413
+    );
+    let sent = regions.newest().unwrap();
+    assert!(sent.is_none_or(|sent| sent.items().is_empty()), "no region");
+    let (status, body) = world.site.ask("GET", "/api/v1/robots/other", &[], "");
+    assert_eq!(status, 404);
+    assert!(body.contains("there is no robot"), "{body}");
+    assert_eq!(world.site.ask("GET", "/../etc/passwd", &[], "").0, 404);
+    assert_eq!(world.site.ask("POST", "/", &[], "").0, 405);
+}

@@ -1,0 +1,67 @@
+//! What is declared is used, and what others link is little.
+
+use std::collections::BTreeSet;
+use std::path::Path;
+use std::process::Command;
+
+use crate::workspace::{files, metadata};
+
+#[test]
+fn every_dependency_is_used() {
+    // Its dependencies are there for their features.
+    const FEATURES: &str = "shared_features";
+    let metadata = metadata();
+    for package in metadata["packages"].as_array().unwrap() {
+        let name = package["name"].as_str().unwrap();
+        if name == FEATURES {
+            continue;
+        }
+        let manifest = Path::new(package["manifest_path"].as_str().unwrap());
+        let sources = files(manifest.parent().unwrap()).into_iter();
+        let sources = sources.filter(|file| file.extension().is_some_and(|ending| ending == "rs"));
+        let text: String = sources
+            .map(|file| std::fs::read_to_string(file).unwrap())
+            .collect();
+        let is_name = |c: char| c.is_alphanumeric() || c == '_';
+        let words: BTreeSet<&str> = text.split(|c| !is_name(c)).collect();
+        for dependency in package["dependencies"].as_array().unwrap() {
+            let renamed = dependency["rename"].as_str();
+            let dependency = renamed.unwrap_or_else(|| dependency["name"].as_str().unwrap());
+            let is_used = words.contains(dependency.replace('-', "_").as_str());
+            assert!(
+                is_used || dependency == FEATURES,
+                "{name} does not use {dependency}"
+            );
+        }
+    }
+}
+
+/// What a program links that uses the engine as a library.
+#[test]
+fn the_engine_as_a_library_brings_no_command_line_and_no_shared_memory() {
+    let options = [
+        "--edges", "normal", "--prefix", "none", "--format", "{p}", "--locked",
+    ];
+    let mut tree = Command::new(env!("CARGO"));
+    tree.args(["tree", "--package", "backcast-engine"])
+        .args(options);
+    let output = tree.current_dir(tests::root()).output().unwrap();
+    assert!(
+        output.status.success(),
+        "{}",
+        String::from_utf8_lossy(&output.stderr)
+    );
+    let text = String::from_utf8(output.stdout).unwrap();
+    let names: BTreeSet<&str> = text
+        .lines()
+        .filter_map(|line| line.split(' ').next())
+        .collect();
+    assert!(
+        names.contains("backcast-engine") && names.contains("nalgebra"),
+        "{text}"
+    );
+    let foreign = names
+        .iter()
+        .filter(|name| name.starts_with("clap") || name.starts_with("iceoryx2"));
+    assert_eq!(foreign.collect::<Vec<_>>(), Vec::<&&str>::new());
+}

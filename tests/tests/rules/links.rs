@@ -1,0 +1,79 @@
+//! Which crate may link which: nodes never each other, and what each is to stay free of.
+
+use std::collections::BTreeSet;
+
+use crate::workspace::{dependencies, folders};
+
+/// The only nodes that may link zenoh, by themselves or with `zenoh_session`: the others
+/// must build in a minute.
+const ZENOH_NODES: [&str; 4] = ["bridge", "fleet_monitor", "locate_server", "ros2_gateway"];
+
+pub(crate) fn links_zenoh(dependencies: &BTreeSet<String>) -> bool {
+    let is_zenoh = |name: &String| name.starts_with("zenoh") || name == "zenoh_session";
+    dependencies.iter().any(is_zenoh)
+}
+
+#[test]
+fn nodes_never_depend_on_nodes() {
+    let nodes = folders("nodes");
+    for (name, dependencies) in dependencies() {
+        let on_nodes: Vec<_> = dependencies.intersection(&nodes).collect();
+        assert!(on_nodes.is_empty(), "{name} depends on {on_nodes:?}");
+    }
+}
+
+#[test]
+fn foxglove_is_linked_by_its_server_alone() {
+    for (name, dependencies) in dependencies() {
+        let may = name == "foxglove_server";
+        assert!(may || !dependencies.contains("foxglove"), "{name}");
+    }
+}
+
+#[test]
+fn drawing_knows_no_other_crate_of_the_project() {
+    let dependencies = dependencies();
+    let known: Vec<_> = dependencies["drawing"]
+        .iter()
+        .filter(|name| dependencies.contains_key(*name))
+        .collect();
+    assert!(known.is_empty(), "drawing depends on {known:?}");
+}
+
+#[test]
+fn each_crate_has_the_name_of_its_folder() {
+    let names: BTreeSet<String> = dependencies().into_keys().collect();
+    let folders: BTreeSet<String> = folders("nodes")
+        .into_iter()
+        .chain(folders("common"))
+        .collect();
+    let tests = BTreeSet::from(["tests".to_owned()]);
+    assert_eq!(
+        names.difference(&folders).cloned().collect::<BTreeSet<_>>(),
+        tests
+    );
+    assert_eq!(folders.difference(&names).count(), 0);
+}
+
+#[test]
+fn zenoh_is_linked_only_where_machines_are_joined() {
+    for (name, dependencies) in dependencies() {
+        let may = ZENOH_NODES.contains(&name.as_str()) || name == "zenoh_session";
+        assert!(may || !links_zenoh(&dependencies), "{name}");
+    }
+}
+
+#[test]
+fn only_what_is_asked_over_a_network_has_a_runtime_for_it() {
+    for (name, dependencies) in dependencies() {
+        // Foxglove's server runs on the runtime that its node gives it.
+        let others = ["dashboard", "foxglove_server", "shared_features", "tests"];
+        let may = ZENOH_NODES.contains(&name.as_str()) || others.contains(&name.as_str());
+        for library in ["tokio", "axum"] {
+            assert!(
+                may || !dependencies.contains(library),
+                "{name} links {library}"
+            );
+        }
+    }
+}

@@ -1,0 +1,11 @@
+//! Rules of the workspace that the compiler does not keep.
+#![allow(
+    clippy::unwrap_used,
+    reason = "the lint spares test functions but not what they share"
+)]
+
+mod builds;
+mod dependencies;
+mod links;
+mod purity;
+mod workspace;
