@@ -8,4 +8,5 @@ mod hard_cases;
 mod lost_searches;
 mod reference;
 mod side_by_side;
+mod starting_over;
 mod tracking;
