@@ -21,11 +21,20 @@ DEFINITIONS = {
         "std_msgs/Header header\nstring id\nstring instance_id\nbool active\n"
         "float32 heartbeat_timeout\nfloat32 heartbeat_period\n"
     ),
+    "backcast_msgs/msg/Localization": (
+        "uint8 SEARCHING=0\nuint8 UNIQUE=1\nuint8 DOUBTFUL=2\nuint8 LOST=3\n"
+        "std_msgs/Header header\nuint8 state\nfloat64 probability\n"
+        "builtin_interfaces/Time since\nuint32 alternatives\nstring map_id\nbool pose_known\n"
+        "geometry_msgs/PoseWithCovariance pose\nstring reason\n"
+    ),
 }
+# Of these, all that they hold is said.
+WHOLE = ["bond", "amcl/transition_event", "localization", "/parameter_events"]
 TYPES |= {
     "particle_cloud": "nav2_msgs/msg/ParticleCloud",
     "bond": "bond/msg/Status",
     "amcl/transition_event": "lifecycle_msgs/msg/TransitionEvent",
+    "localization": "backcast_msgs/msg/Localization",
 }
 NAMES, VALUES = "string[] names\n", "rcl_interfaces/Parameter[] parameters\n"
 RESULT = "rcl_interfaces/SetParametersResult"
@@ -173,7 +182,7 @@ def plain(value):
 
 class Nav2(Robot):
     def take(self, topic, msgtype, sample):
-        if topic not in ["amcl_pose", "particle_cloud", "bond", "amcl/transition_event"]:
+        if topic not in ["amcl_pose", "particle_cloud", *WHOLE]:
             return super().take(topic, msgtype, sample)
         data = sample.payload.to_bytes()
         message = STORE.deserialize_cdr(data, msgtype)
@@ -201,11 +210,30 @@ class Nav2(Robot):
         self.subscribe(self.nav, "bond")
         self.subscribe(self.nav, "amcl/transition_event")
         self.subscribe(self.nav, "tf")
+        self.subscribe(self.nav, "/parameter_events")
         self.join("rviz")
 
-    def join(self, name):
-        """Somebody who wants the last pose, too."""
-        node, topic = self.node(name), "amcl_pose"
+    def hear(self, topic):
+        self.subscribe(self.node("listener"), topic)
+
+    def fleet(self):
+        """A master control that takes where robots are."""
+
+        def take(sample):
+            position = json.loads(sample.payload.to_bytes())
+            say(
+                event="vda5050",
+                key=str(sample.key_expr),
+                encoding=str(sample.encoding),
+                position=position,
+            )
+
+        handler = zenoh.handlers.Callback(take, indirect=False)
+        self.alive.append(self.session.declare_subscriber("vda5050/**", handler))
+
+    def join(self, name, topic="amcl_pose"):
+        """Somebody who wants the last message, too."""
+        node = self.node(name)
         msgtype = TYPES[topic]
         kind = EntityKind.SUBSCRIPTION
         key, token = self.endpoint(
@@ -227,21 +255,48 @@ class Nav2(Robot):
         self.alive.append(subscriber)
         self.token(token)
 
-    def drive(self, index):
-        """A recorded scan, and the odometry as a transform, as AMCL takes it."""
-        odometry = STORE.deserialize_cdr(self.recorded["odom"][index], TYPES["odom"])
-        pose = odometry.pose.pose
+    def drive(self, index, time=None, odom=None):
+        """A recorded scan, and the odometry as a transform, as AMCL takes it; at the time of
+        another scan, and with another odometry: x, y and yaw."""
+        time = index if time is None else time
+        odometry = STORE.deserialize_cdr(self.recorded["odom"][time], TYPES["odom"])
+        pose = STORE.deserialize_cdr(self.recorded["odom"][index], TYPES["odom"]).pose.pose
+        position, orientation = plain(pose.position), plain(pose.orientation)
+        if odom is not None:
+            x, y, yaw = odom
+            position = {"x": x, "y": y}
+            orientation = {"z": math.sin(yaw / 2), "w": math.cos(yaw / 2)}
         transform = {
             "header": plain(odometry.header),
             "child_frame_id": odometry.child_frame_id,
-            "transform": {
-                "translation": plain(pose.position),
-                "rotation": plain(pose.orientation),
-            },
+            "transform": {"translation": position, "rotation": orientation},
         }
         message = build((Nodetype.NAME, TYPES["tf"]), {"transforms": [transform]})
         self.put("tf", bytes(STORE.serialize_cdr(message, TYPES["tf"])))
-        self.put("scan", self.recorded["scan"][index], SENSOR)
+        scan = STORE.deserialize_cdr(self.recorded["scan"][index], TYPES["scan"])
+        scan.header.stamp = STORE.deserialize_cdr(
+            self.recorded["scan"][time], TYPES["scan"]
+        ).header.stamp
+        self.put("scan", bytes(STORE.serialize_cdr(scan, TYPES["scan"])), SENSOR)
+
+    def clock(self, ns):
+        """A simulation's time."""
+        stamp = {"clock": {"sec": ns // 10**9, "nanosec": ns % 10**9}}
+        message = build((Nodetype.NAME, TYPES["/clock"]), stamp)
+        self.put("/clock", bytes(STORE.serialize_cdr(message, TYPES["/clock"])))
+
+    def other_map(self, cell):
+        """The map, but for one cell."""
+        message = STORE.deserialize_cdr(self.recorded["map"][0], TYPES["map"])
+        message.data = message.data.copy()
+        message.data[cell] = 0 if message.data[cell] == 100 else 100
+        self.put("map", bytes(STORE.serialize_cdr(message, TYPES["map"])), KEPT)
+
+    def humble(self, topic):
+        """A node of ROS 2 Humble publishes that: its types have no hashes."""
+        kind, node = EntityKind.PUBLISHER, self.node("old_lidar")
+        _, token = self.endpoint(node, kind, topic, TYPES[topic], "TypeHashNotSupported", SENSOR)
+        self.token(token)
 
     def point(self, frame, x, y):
         """As "2D Pose Estimate" does."""

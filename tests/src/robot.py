@@ -42,6 +42,11 @@ TYPES = {
     "initialpose": "geometry_msgs/msg/PoseWithCovarianceStamped",
     "hypotheses": "geometry_msgs/msg/PoseArray",
     "/diagnostics": "diagnostic_msgs/msg/DiagnosticArray",
+    # Of all robots together.
+    "/tf": "tf2_msgs/msg/TFMessage",
+    "/tf_static": "tf2_msgs/msg/TFMessage",
+    "/clock": "rosgraph_msgs/msg/Clock",
+    "/parameter_events": "rcl_interfaces/msg/ParameterEvent",
 }
 SERVICE = "std_srvs/srv/Empty"
 # What ROS puts into a message without fields.
@@ -199,7 +204,7 @@ class Robot:
                 "frame": message.header.frame_id,
                 "poses": [planar(pose) for pose in message.poses],
             }
-        elif topic == "tf":
+        elif topic in ["tf", "/tf"]:
             first = message.transforms[0]
             if first.header.frame_id != "map":
                 return
@@ -241,7 +246,7 @@ class Robot:
         for topic, qos in [("odom", RELIABLE), ("scan", SENSOR)]:
             self.put(topic, self.recorded[topic][index], qos)
 
-    def mounts(self, lasers):
+    def mounts(self, lasers, topic="tf_static"):
         """The frames of lasers: name, x, and a quaternion's x, y, z, w."""
         t = STORE.types
         stamp = t["builtin_interfaces/msg/Time"](0, 0)
@@ -256,8 +261,8 @@ class Robot:
             )
             for name, x, turn in lasers
         ]
-        message = t[TYPES["tf_static"]](transforms)
-        self.put("tf_static", bytes(STORE.serialize_cdr(message, TYPES["tf_static"])), KEPT)
+        message = t[TYPES[topic]](transforms)
+        self.put(topic, bytes(STORE.serialize_cdr(message, TYPES[topic])), KEPT)
 
     def scan_of(self, laser, index):
         """A recorded scan, as if it were that laser's."""

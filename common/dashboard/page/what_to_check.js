@@ -35,7 +35,7 @@ function problem({ name, state, last_error }) {
     case "silent": return `${name} does not report any more: see backcast logs ${name}.`;
     case "stopped": return PLAYERS.includes(name) ? "The recording has ended." : `${name} has ended: see backcast logs ${name}.`;
     case "degraded": return `${name} is degraded${why}${hint}.`;
-    case "waiting": return `${name} waits${why}${hint}.`;
+    case "waiting": return last_error.startsWith("waiting for ") ? `${name} is ${last_error}${hint}.` : `${name} waits${why}${hint}.`;
     case "busy": return `${name} prepares a map: wait.`;
     default: return "";
   }

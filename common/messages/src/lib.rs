@@ -39,7 +39,7 @@ pub use field::{FieldHeader, FieldKind};
 pub use ground_truth::GroundTruth;
 pub use health::{HealthHeader, NodeState};
 pub use hypotheses::{HypothesesHeader, Hypothesis, Verdict};
-pub use initial_pose::InitialPose;
+pub use initial_pose::{InitialPose, InitialPoseKind};
 pub use log::{LogHeader, LogLevel};
 pub use map::{MapHeader, UNKNOWN, WrongMapId, map_id};
 pub use name::{FrameName, Name};

@@ -70,6 +70,12 @@ impl PoseHeader {
         let state = TrackState::from_code(self.state);
         self.pose_known == 1 && state.is_some_and(TrackState::is_believed)
     }
+
+    /// Whether there is a pose, and nothing speaks against it.
+    #[must_use]
+    pub fn is_unique(&self) -> bool {
+        self.pose_known == 1 && self.state == TrackState::Unique as u32
+    }
 }
 
 /// What the tracker knows.

@@ -7,10 +7,10 @@
 
 use messages::{
     AttentionHeader, Beam, BeamsHeader, BoundaryCell, BoundaryHeader, Corner, FieldHeader,
-    FieldKind, GroundTruth, HealthHeader, HypothesesHeader, Hypothesis, InitialPose, LogHeader,
-    LogLevel, MapHeader, NodeState, Odometry, Particle, ParticlesHeader, Pose2, PoseHeader,
-    Reading, ReadingsHeader, RegionHeader, SaveHeader, ScanHeader, Topic, TrackReason, TrackState,
-    Verdict, Vote, VotesHeader, topic,
+    FieldKind, GroundTruth, HealthHeader, HypothesesHeader, Hypothesis, InitialPose,
+    InitialPoseKind, LogHeader, LogLevel, MapHeader, NodeState, Odometry, Particle,
+    ParticlesHeader, Pose2, PoseHeader, Reading, ReadingsHeader, RegionHeader, SaveHeader,
+    ScanHeader, Topic, TrackReason, TrackState, Verdict, Vote, VotesHeader, topic,
 };
 
 use crate::WireError;
@@ -136,6 +136,8 @@ pub(crate) fn attention(_: &AttentionHeader, items: &[u8]) -> Checked {
 
 pub(crate) fn initial_pose(header: &InitialPose, items: &[u8]) -> Checked {
     let refuse = Refuse::on::<topic::InitialPoseTopic>();
+    let kind = InitialPoseKind::from_code(header.kind);
+    refuse.unless_known("kind", header.kind, kind)?;
     refuse.unless_pose("map_from_base", header.map_from_base)?;
     for value in header.covariance {
         refuse.unless_finite("covariance", value)?;
@@ -218,11 +220,20 @@ impl Refuse {
         self.refuse(field, &found, format!("{header}, as the header says"))
     }
 
-    fn unless_known<K: Copy>(&self, field: &'static str, code: u32, known: Option<K>) -> Checked {
+    fn unless_known<K: Copy>(
+        &self,
+        field: &'static str,
+        code: impl Into<u64>,
+        known: Option<K>,
+    ) -> Checked {
         if known.is_some() {
             return Ok(());
         }
-        self.refuse(field, &code, "one of the codes of this version".into())
+        self.refuse(
+            field,
+            &code.into(),
+            "one of the codes of this version".into(),
+        )
     }
 
     fn unless_text(&self, field: &'static str, bytes: &[u8], most: usize) -> Checked {

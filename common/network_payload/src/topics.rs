@@ -100,7 +100,7 @@ wire! {
     Particles = "Particles/v1", 32 * MIB, particles, [stamp.entered_ns];
     Tracked = "Pose/v1", 4 * KIB, tracked, [stamp.entered_ns, sent_ns];
     Attention = "Attention/v1", 4 * KIB, attention, [stamp.entered_ns];
-    InitialPoseTopic = "InitialPose/v1", 4 * KIB, initial_pose, [stamp.entered_ns];
+    InitialPoseTopic = "InitialPose/v2", 4 * KIB, initial_pose, [stamp.entered_ns];
     Beams = "Beams/v1", MIB, beams, [stamp.entered_ns];
     GroundTruthTopic = "GroundTruth/v2", 4 * KIB, ground_truth, [stamp.entered_ns];
     Region = "Region/v1", 64 * KIB, region, [stamp.entered_ns], kept;

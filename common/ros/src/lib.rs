@@ -21,6 +21,7 @@
 pub mod backcast_msgs;
 mod bond;
 pub mod cdr;
+mod clock;
 mod definition;
 mod diagnostic_array;
 pub mod diagnostics;
@@ -45,6 +46,7 @@ mod std_msgs;
 mod tf_message;
 
 pub use bond::BondStatus;
+pub use clock::Clock;
 pub use diagnostic_array::{DiagnosticArray, DiagnosticStatus, KeyValue};
 pub use error::ConversionError;
 pub use geometry_msgs::{
@@ -72,7 +74,9 @@ pub trait RosMessage: serde::Serialize {
 
 #[cfg(test)]
 mod tests {
-    use super::backcast_msgs::{Beam, Beams, Hypotheses, Hypothesis, Pose2D, Vote, Votes};
+    use super::backcast_msgs::{
+        Beam, Beams, Hypotheses, Hypothesis, Localization, Pose2D, Vote, Votes,
+    };
     use super::*;
     use crate::cdr;
 
@@ -134,6 +138,17 @@ mod tests {
 
     #[test]
     fn our_own_messages_survive_their_bytes() {
+        assert_survives(&Localization {
+            header: header(),
+            state: 2,
+            probability: 0.75,
+            since: header().stamp,
+            alternatives: 3,
+            map_id: "00ff".to_owned(),
+            pose_known: true,
+            pose: PoseWithCovariance::from_planar(geometry::Pose::new(1.0, 2.0, 0.5), [0.5; 9]),
+            reason: "one place".to_owned(),
+        });
         assert_survives(&Votes {
             header: header(),
             map_id: u64::MAX,
@@ -207,6 +222,9 @@ mod tests {
             Votes::DEFINITION,
             Hypotheses::DEFINITION,
             Beams::DEFINITION,
+            Localization::DEFINITION,
+            Clock::DEFINITION,
+            rcl_interfaces::ParameterEvent::DEFINITION,
         ];
         let mut known = std::collections::BTreeMap::new();
         for definition in definitions {

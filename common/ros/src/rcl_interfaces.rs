@@ -2,8 +2,8 @@
 
 use serde::{Deserialize, Serialize};
 
-use super::RosService;
 use super::definition::{definition, part};
+use super::{RosMessage, RosService, Time};
 
 /// `rcl_interfaces/msg/ParameterType`: what a parameter holds.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -145,6 +145,36 @@ pub struct ListParametersResult {
     pub names: Vec<String>,
     /// What stands before their last dots.
     pub prefixes: Vec<String>,
+}
+
+/// `rcl_interfaces/msg/ParameterEvent`: what became of a node's parameters.
+#[derive(Debug, Clone, PartialEq, Default, Serialize, Deserialize)]
+pub struct ParameterEvent {
+    /// When.
+    pub stamp: Time,
+    /// The node's whole name.
+    pub node: String,
+    /// Those that there were not before.
+    pub new_parameters: Vec<Parameter>,
+    /// Those that hold something else.
+    pub changed_parameters: Vec<Parameter>,
+    /// Those that there are no more.
+    pub deleted_parameters: Vec<Parameter>,
+}
+
+impl RosMessage for ParameterEvent {
+    const SCHEMA: &'static str = "rcl_interfaces/msg/ParameterEvent";
+    const DEFINITION: &'static str = definition!(
+        "\
+builtin_interfaces/Time stamp
+string node
+rcl_interfaces/Parameter[] new_parameters
+rcl_interfaces/Parameter[] changed_parameters
+rcl_interfaces/Parameter[] deleted_parameters
+",
+        Time,
+        Parameter,
+    );
 }
 
 /// Names of parameters: the request of several services.

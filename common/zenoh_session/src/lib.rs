@@ -8,10 +8,12 @@ mod error;
 mod options;
 mod queue;
 mod report;
+mod routers;
 mod session;
 
 pub use error::{Cause, KeyError, NetworkError};
 pub use options::Options;
 pub use queue::{Past, Queue, QueueLimits};
 pub use report::Report;
+pub use routers::Routers;
 pub use session::{LOG, open, settings};

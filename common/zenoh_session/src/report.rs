@@ -18,6 +18,12 @@ pub struct Report {
     said_ns: i64,
     /// Refusals that were counted and not reported.
     unsaid: u64,
+    /// What is waited for, in words; none where all that is needed is there.
+    waiting: Option<String>,
+    /// Whether those words are the last error.
+    is_said: bool,
+    /// Whether the last map was refused.
+    is_map_refused: bool,
 }
 
 impl Report {
@@ -28,6 +34,9 @@ impl Report {
             health,
             said_ns: i64::MIN / 2,
             unsaid: 0,
+            waiting: Some(String::new()),
+            is_said: false,
+            is_map_refused: false,
         }
     }
 
@@ -36,7 +45,46 @@ impl Report {
     /// # Errors
     /// If the graph fails.
     pub fn ready(&mut self) -> Result<(), TransportError> {
-        self.health.state(NodeState::Ready)
+        self.is_map_refused = false;
+        self.waiting_for(None)
+    }
+
+    /// What is waited for, in words that stand behind "waiting for"; empty where it is too
+    /// early to say, none where all that is needed is there. The words stand as the last
+    /// error for as long as they hold.
+    ///
+    /// # Errors
+    /// If the graph fails.
+    pub fn waiting_for(&mut self, words: Option<&str>) -> Result<(), TransportError> {
+        if self.waiting.as_deref() != words {
+            self.waiting = words.map(str::to_owned);
+            match words {
+                Some(words) if !words.is_empty() => {
+                    self.is_said = true;
+                    self.health.error(&format!("waiting for {words}"))?;
+                }
+                _ if std::mem::take(&mut self.is_said) => self.health.forget_error(),
+                _ => {}
+            }
+        }
+        self.health.state(self.state())
+    }
+
+    /// A map was taken: one that was refused before is no more what is wanted.
+    ///
+    /// # Errors
+    /// If the graph fails.
+    pub fn map_taken(&mut self) -> Result<(), TransportError> {
+        self.is_map_refused = false;
+        self.health.state(self.state())
+    }
+
+    fn state(&self) -> NodeState {
+        match &self.waiting {
+            _ if self.is_map_refused => NodeState::Degraded,
+            Some(_) => NodeState::Waiting,
+            None => NodeState::Ready,
+        }
     }
 
     /// To be called now and then.
@@ -68,7 +116,8 @@ impl Report {
     /// If the graph fails.
     pub fn map_refused(&mut self, error: &(dyn Error + 'static)) -> Result<(), TransportError> {
         self.refused(error)?;
-        self.health.state(NodeState::Degraded)
+        self.is_map_refused = true;
+        self.health.state(self.state())
     }
 
     /// A message was refused.
@@ -88,6 +137,7 @@ impl Report {
         let mut problem = with_causes(error);
         problem.truncate(problem.floor_char_boundary(HealthHeader::ERROR_CAPACITY));
         tracing::warn!(unsaid, "rejected: {problem}");
+        self.is_said = false;
         self.health.error(&problem)
     }
 }

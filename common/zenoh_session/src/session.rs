@@ -16,7 +16,7 @@ const TICK: Duration = Duration::from_millis(100);
 
 const MODE: &str = "mode";
 const LISTEN: &str = "listen/endpoints";
-const CONNECT: &str = "connect/endpoints";
+pub(crate) const CONNECT: &str = "connect/endpoints";
 const SCOUTING: &str = "scouting/multicast/enabled";
 
 /// What a node logs that joins a network, in the words of `RUST_LOG`: also who is let

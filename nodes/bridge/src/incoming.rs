@@ -95,7 +95,7 @@ impl<T: Wire> Incoming<T> {
         report.sent();
         if T::NAME == topic::Map::NAME {
             // One that was refused before is no more what is wanted.
-            report.ready()?;
+            report.map_taken()?;
         }
         Ok(())
     }

@@ -125,6 +125,9 @@ pub struct Names {
     /// geometry_msgs/PoseArray, out
     #[arg(long, value_name = "NAME", default_value = "hypotheses")]
     pub hypotheses: String,
+    /// backcast_msgs/Localization, transient local, out: the tracker's verdict
+    #[arg(long, value_name = "NAME", default_value = "localization")]
+    pub localization: String,
     /// diagnostic_msgs/DiagnosticArray, out
     #[arg(long, value_name = "NAME", default_value = "/diagnostics")]
     pub diagnostics: String,

@@ -14,6 +14,8 @@ pub(crate) struct Diagnostics {
     publisher: Publisher<DiagnosticArray>,
     /// The newest scan: where the robot's clock meets the host's.
     newest: Option<Stamp>,
+    /// The time of a simulation, where that counts.
+    sim_ns: Option<i64>,
 }
 
 impl Diagnostics {
@@ -21,12 +23,18 @@ impl Diagnostics {
         Ok(Diagnostics {
             publisher: Publisher::open(member, topic, 10)?,
             newest: None,
+            sim_ns: None,
         })
     }
 
     /// Something is known of this scan.
     pub(crate) fn on_scan(&mut self, stamp: Stamp) {
         self.newest = Some(stamp);
+    }
+
+    /// The time of a simulation counts.
+    pub(crate) fn on_sim_time(&mut self, now_ns: i64) {
+        self.sim_ns = Some(now_ns);
     }
 
     /// Sends the robot the state of a node.
@@ -50,6 +58,9 @@ impl Diagnostics {
 
     /// The robot's clock: as its scans are dated, else the host's.
     fn clock_ns(&self) -> i64 {
+        if let Some(sim_ns) = self.sim_ns {
+            return sim_ns;
+        }
         self.newest.map_or_else(wall_ns, |newest| {
             let since_ns = monotonic_ns().saturating_sub(newest.entered_ns).max(0);
             newest.measured_ns.saturating_add(since_ns)

@@ -33,6 +33,14 @@ pub enum GatewayError {
         /// What it may hold.
         allowed: String,
     },
+    /// The file of the last pose cannot be used.
+    #[error("the saved pose in {file} cannot be used: {reason}")]
+    SavedPose {
+        /// Its path.
+        file: String,
+        /// What is wrong, and what is allowed.
+        reason: String,
+    },
     /// An initial pose is in a frame that is not the map's.
     #[error("the initial pose is in frame {found:?}: allowed is {allowed:?}")]
     InitialPoseFrame {

@@ -3,7 +3,7 @@
 //! It speaks what `rmw_zenoh` speaks: the robot's scan, odometry and map enter the
 //! graph, and the graph's answers go to the robot, with an initial pose for its
 //! particle filter as soon as the verdict is Unique. Module `ros` knows the format and
-//! nothing of localization; `frames` and `seeding` are pure. What comes from the
+//! nothing of localization; `frames`, `seeding`, `waiting` and `vda5050` are pure. What comes from the
 //! network is checked before it enters the graph, refused if it is wrong, and counted
 //! in `health`.
 //!
@@ -17,12 +17,16 @@ mod diagnostics;
 mod error;
 mod frames;
 mod incoming;
+mod inputs;
 mod outgoing;
 mod outlet;
 mod rmw_zenoh;
 mod run;
 mod seeding;
 mod topics;
+mod vda5050;
+mod verdict;
+mod waiting;
 
 pub use amcl::{Options, Role};
 pub use config::{Brought, Config, Seed};

@@ -166,8 +166,7 @@ impl Outlet {
         self.map_id = Some(map_id);
         self.maps_sent += 1;
         report.sent();
-        // One that was refused before is no more what is wanted.
-        report.ready()?;
+        report.map_taken()?;
         let (width, height, resolution_m) = (grid.width, grid.height, grid.resolution_m);
         let map_id = format!("{map_id:016x}");
         tracing::info!(width, height, resolution_m, map_id, "the robot's map");

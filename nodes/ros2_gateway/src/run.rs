@@ -12,10 +12,12 @@ use crate::amcl::{self, Role};
 use crate::config::MAP_FRAME;
 use crate::frames::Frames;
 use crate::incoming::Incoming;
+use crate::inputs::{Inputs, Taken};
 use crate::outgoing::Outgoing;
 use crate::rmw_zenoh::{Member, Seen, Service, Watch};
 use crate::seeding::Seeding;
 use crate::topics::Topics;
+use crate::verdict::Verdict;
 use crate::{Config, GatewayError};
 
 /// How long a late joiner of the graph may wait for the map.
@@ -40,17 +42,20 @@ fn seed(graph: &Graph, config: &Config) -> Result<(), GatewayError> {
     // What is wrong with options is said before anything is opened.
     let (domain, mounts) = (config.domain()?, config.mounts()?);
     let mut report = Report::new(graph.health()?);
+    let mut inputs = Inputs::new(config)?;
+    inputs.connecting(&mut report)?;
     let Some(session) = zenoh_session::open(graph, &config.network, || report.tick())? else {
         return Ok(());
     };
     let member = Member::join(&session, domain, &config.namespace, config.node())?;
     let mut gateway = Gateway::open(graph, member, config, &topics, mounts)?;
     tracing::info!(domain, node = config.node(), "joined the robot's domain");
-    report.ready()?;
     let (hypotheses, health) = (graph.subscriber()?, graph.subscriber()?);
     let poses = graph.subscriber()?;
     graph.run(&[&hypotheses, &poses, &health], TICK, |_| {
-        gateway.step((&hypotheses, &poses), &health, &mut report)?;
+        gateway.step((&hypotheses, &poses), &health, &topics, &mut report)?;
+        let (member, taken) = (&gateway.member, Some(gateway.taken()));
+        inputs.look((config, &topics), member, taken, None, &mut report)?;
         report.tick()?;
         Ok(Flow::Continue)
     })
@@ -62,6 +67,8 @@ struct Gateway {
     service: Service<Empty>,
     incoming: Incoming,
     outgoing: Outgoing,
+    /// Once there is a tracker.
+    verdict: Option<Verdict>,
     frames: Frames,
     seeding: Seeding,
     map_frame: Option<String>,
@@ -82,6 +89,7 @@ impl Gateway {
             service: Service::open(graph, &member, &topics.reinitialize)?,
             incoming: Incoming::open(graph, &member, config, topics, &mut watch)?,
             outgoing,
+            verdict: None,
             watch,
             member,
             frames: Frames::new(mounts),
@@ -94,6 +102,7 @@ impl Gateway {
         &mut self,
         (hypotheses, poses): (&Subscriber<topic::Hypotheses>, &Subscriber<topic::Tracked>),
         health: &Subscriber<topic::Health>,
+        topics: &Topics,
         report: &mut Report,
     ) -> Result<(), TransportError> {
         self.incoming
@@ -120,12 +129,31 @@ impl Gateway {
             let header = sample.header();
             self.outgoing
                 .tracked(header, map_frame, &mut self.seeding, report)?;
+            let verdict = match &mut self.verdict {
+                Some(verdict) => verdict,
+                none => match Verdict::open(&self.member, topics) {
+                    Ok(verdict) => none.insert(verdict),
+                    Err(error) => {
+                        report.refused(&error)?;
+                        continue;
+                    }
+                },
+            };
+            verdict.send(header, sample.items(), map_frame, report)?;
         }
         while let Some(sample) = health.receive()? {
             let diagnostics = &mut self.outgoing.diagnostics;
             diagnostics.health(sample.header(), sample.items(), report)?;
         }
         Ok(())
+    }
+
+    fn taken(&self) -> Taken<'_> {
+        Taken {
+            incoming: &self.incoming,
+            watch: &self.watch,
+            clock: None,
+        }
     }
 
     /// Who came.

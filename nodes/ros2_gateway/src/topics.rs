@@ -17,6 +17,7 @@ pub(crate) struct Topics {
     pub(crate) amcl_pose: String,
     pub(crate) initial_pose: String,
     pub(crate) hypotheses: String,
+    pub(crate) localization: String,
     pub(crate) diagnostics: String,
     pub(crate) reinitialize: String,
     /// In AMCL's place; these have the names that AMCL gives them.
@@ -24,6 +25,9 @@ pub(crate) struct Topics {
     pub(crate) set_initial_pose: String,
     pub(crate) nomotion: String,
     pub(crate) bond: String,
+    /// Of all nodes together, whatever the namespace.
+    pub(crate) clock: String,
+    pub(crate) parameter_events: String,
 }
 
 /// The scans of a laser.
@@ -51,6 +55,7 @@ impl Topics {
             amcl_pose,
             initial_pose,
             hypotheses,
+            localization,
             diagnostics,
             reinitialize,
         } = &config.names;
@@ -63,12 +68,15 @@ impl Topics {
             amcl_pose: resolve("amcl-pose", amcl_pose)?,
             initial_pose: resolve("initial-pose", initial_pose)?,
             hypotheses: resolve("hypotheses", hypotheses)?,
+            localization: resolve("localization", localization)?,
             diagnostics: resolve("diagnostics", diagnostics)?,
             reinitialize: resolve("reinitialize", reinitialize)?,
             particle_cloud: resolve("namespace", "particle_cloud")?,
             set_initial_pose: resolve("namespace", "set_initial_pose")?,
             nomotion: resolve("namespace", "request_nomotion_update")?,
             bond: resolve("namespace", "bond")?,
+            clock: "/clock".to_owned(),
+            parameter_events: "/parameter_events".to_owned(),
         })
     }
 }

@@ -1,5 +1,6 @@
 //! Receives scans, odometry and what searches find, and sends poses.
 
+mod initial;
 mod inputs;
 mod map;
 mod outputs;
@@ -12,7 +13,7 @@ use engine::EngineError;
 use engine::fit::Ends;
 use engine::joined::{Joiner, Role};
 use engine::tracking::{Candidate, Follower, Need};
-use geometry::{Covariance, Pose};
+use geometry::Pose;
 use messages::{PoseHeader, ScanHeader, Stamp, TrackReason, TrackState};
 use transport::{Flow, GapCounter, Graph, Health, TransportError, with_causes};
 
@@ -21,6 +22,7 @@ use crate::message::{Tracked, nothing};
 use crate::queue::{Answers, Scans};
 use crate::world::World;
 use crate::{Config, TrackerError};
+use initial::Initial;
 use inputs::Inputs;
 use outputs::Outputs;
 use search::Searchers;
@@ -32,14 +34,9 @@ const TICK: Duration = Duration::from_millis(25);
 /// The last pose is kept on disk as often.
 const REMEMBERED_EVERY: Duration = Duration::from_secs(1);
 
-/// What is expected beforehand leads by this much over what a search finds: what an
-/// operator says, as much as a place that was known before; what was true when the
-/// robot was last on, as much as one key scan says.
-const INITIAL_LEAD: f64 = 10.0;
+/// What was true when the robot was last on leads by this much over what a search finds:
+/// as much as one key scan says.
 const REMEMBERED_LEAD: f64 = 4.0;
-
-/// What an operator's pose on the command line may err by.
-const INITIAL_ERROR: (f64, f64) = (0.5, 0.26);
 
 /// Follows the robot until the stop flag is set.
 ///
@@ -63,10 +60,7 @@ pub fn run(graph: &Graph, config: &Config) -> Result<(), TrackerError> {
         searchers: Searchers::default(),
         is_silent: false,
         before: None,
-        initial: config.initial_pose.map(|pose| {
-            let (metres, radians) = INITIAL_ERROR;
-            (pose, Covariance::from_deviations(metres, metres, radians))
-        }),
+        initial: config.initial_pose.map(Initial::of_option),
         last: None,
         candidates: Vec::new(),
         gaps: GapCounter::new(),
@@ -106,8 +100,8 @@ struct Node {
     is_silent: bool,
     /// Where the target frame was by the odometry at the scan before.
     before: Option<Pose>,
-    /// Where the robot is said to be, of the base.
-    initial: Option<(Pose, Covariance)>,
+    /// Where the robot is said to be; counts at the next scan.
+    initial: Option<Initial>,
     /// Of the last scan.
     last: Option<Tracked>,
     candidates: Vec<Candidate>,
@@ -152,15 +146,7 @@ impl Node {
         }
         while let Some(initial) = inputs.initial_poses.receive()? {
             self.health.count_received(1);
-            let initial = initial.header();
-            let covariance = Covariance::from_rows(initial.covariance);
-            let pose = Pose::from(initial.map_from_base);
-            match pose.is_finite() && covariance.0.cholesky().is_some() {
-                true => self.initial = Some((pose, covariance)),
-                false => {
-                    self.refuse("initial pose rejected: the pose or its covariance is not valid")?;
-                }
-            }
+            self.take_initial(initial.header())?;
         }
         while let Some(odometry) = inputs.odometry.receive()? {
             self.health.count_received(1);
@@ -220,15 +206,15 @@ impl Node {
             self.refuse(&format!("scan {counter} rejected: {reason}"))?;
             return self.send_nothing(scan, TrackReason::NoScan);
         }
-        if let Some(initial) = self.initial.take() {
-            self.expect_base(initial, INITIAL_LEAD);
-        }
+        let is_set = self.begin_at_initial();
         let now = self.joiner.odom_from_target();
         let moved = self
             .before
             .zip(now)
             .map(|(before, now)| before.inverse().then(now));
         self.before = now;
+        // A pose that is believed is that of this scan.
+        let moved = if is_set { Some(Pose::IDENTITY) } else { moved };
         let Some(world) = &self.world else {
             return Ok(());
         };

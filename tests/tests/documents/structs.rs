@@ -182,6 +182,10 @@ const JSON: &[(&str, &[(&str, &str)])] = &[
         &[("nodes/tracker/src/memory.rs", "Remembered")],
     ),
     (
+        "VDA 5050",
+        &[("nodes/ros2_gateway/src/vda5050.rs", "Position")],
+    ),
+    (
         "`snapshot`",
         &[("common/dashboard/src/view.rs", "Snapshot")],
     ),

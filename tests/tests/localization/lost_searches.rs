@@ -13,18 +13,18 @@ use transport::testing::{Isolated, NodeProcess, wait_for, wait_for_health, wait_
 use transport::{Graph, Publisher, Subscriber};
 
 /// The graph, with scans that the test sends.
-struct Robot {
-    world: World,
+pub(super) struct Robot {
+    pub(super) world: World,
     scans: Publisher<topic::Scan>,
-    poses: Subscriber<topic::Tracked>,
+    pub(super) poses: Subscriber<topic::Tracked>,
     requests: Subscriber<topic::Attention>,
     health: Subscriber<topic::Health>,
     nodes: Vec<(&'static str, NodeProcess)>,
-    graph: Graph,
+    pub(super) graph: Graph,
 }
 
 impl Robot {
-    fn start(isolated: &Isolated) -> Self {
+    pub(super) fn start(isolated: &Isolated) -> Self {
         let graph = isolated.join("test");
         let mut robot = Robot {
             world: World::of("malaga_corridor"),
@@ -63,7 +63,7 @@ impl Robot {
     }
 
     /// Sends one of the recording's scans, as the scan of this number.
-    fn send(&self, counter: u64) -> ScanHeader {
+    pub(super) fn send(&self, counter: u64) -> ScanHeader {
         let scan = &self.world.scans()[counter as usize];
         let header = as_the_graph_has_it(scan, counter);
         let mut loan = self.scans.loan(scan.ranges.len()).unwrap();
@@ -78,6 +78,13 @@ impl Robot {
         wait_for(&self.graph, &self.poses, |pose, _| {
             (pose.from_scan == 1 && pose.stamp == scan.stamp).then_some(pose.state)
         })
+    }
+
+    /// Ends the graph, those who take first.
+    pub(super) fn stop(mut self) {
+        for (_, node) in self.nodes.drain(..).rev() {
+            node.stop();
+        }
     }
 
     /// Waits until a search of this scan is asked for.

@@ -9,4 +9,5 @@ mod lost_searches;
 mod many_maps;
 mod reference;
 mod side_by_side;
+mod starting_over;
 mod tracking;

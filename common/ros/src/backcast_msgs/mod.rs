@@ -1,5 +1,6 @@
 //! Messages of our own, for what no message of ROS holds without loss: the
-//! graph's `votes`, `hypotheses`, `beams` and `pose` with every field of their headers.
+//! graph's `votes`, `hypotheses`, `beams` and `pose` with every field of their headers, and
+//! the verdict as a robot's programs need it.
 //!
 //! They are plain `ros2msg` and CDR, so a generic reader decodes them. Numbers
 //! that name a state stand as in the graph, with their names as constants in
@@ -9,11 +10,13 @@
 
 mod beams;
 mod hypotheses;
+mod localization;
 mod tracked_pose;
 mod votes;
 
 pub use beams::{Beam, Beams};
 pub use hypotheses::{Hypotheses, Hypothesis};
+pub use localization::Localization;
 pub use tracked_pose::TrackedPose;
 pub use votes::{Vote, Votes};
 

@@ -39,6 +39,10 @@ fn the_first_cause_is_named_first() {
     let expected = ["lms_reader does not report", "tracker waits"];
     check(&[&tracker, &dead], json!({}), &expected);
     check(&[&laser], Value::Null, &["No map has come"]);
+    let why = "waiting for /map: no publisher";
+    let gateway = node("ros2_gateway", "waiting", 0.0, why);
+    let expected = ["ros2_gateway is waiting for /map: no publisher: check the ROS 2 robot"];
+    check(&[&gateway], Value::Null, &expected);
     let quiet = node("lms_reader", "ready", 0.0, "");
     check(
         &[&quiet],

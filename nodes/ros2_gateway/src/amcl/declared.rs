@@ -112,6 +112,11 @@ pub(super) const ALL: &[Declared] = &[
         FINITE,
     ),
     never("initial_pose.z", Double(0.0), "the robot is in the plane"),
+    always(
+        "initialize_at_saved_pose",
+        Bool(false),
+        "a tracker that has no pose starts with the saved one, which a scan must confirm",
+    ),
     never("lambda_short", Double(0.1), SENSOR),
     never("laser_likelihood_max_dist", Double(2.0), SENSOR),
     ranged(
@@ -151,10 +156,18 @@ pub(super) const ALL: &[Declared] = &[
         Text("nav2_amcl::DifferentialMotionModel"),
         MOTION,
     ),
-    never(
-        "save_pose_rate",
-        Double(0.5),
-        "the tracker saves the pose: --remember FILE",
+    ranged(
+        always(
+            "save_pose_rate",
+            Double(0.5),
+            "how often the pose is saved at most, hertz; never at 0 and below",
+        ),
+        FINITE,
+    ),
+    always(
+        "saved_pose_filepath",
+        Text("/tmp/amcl_saved_pose"),
+        "the file of the saved pose; empty for none",
     ),
     start(
         "scan_topic",
@@ -182,10 +195,10 @@ pub(super) const ALL: &[Declared] = &[
     ),
     never("update_min_a", Double(0.2), EVERY_SCAN),
     never("update_min_d", Double(0.25), EVERY_SCAN),
-    never(
+    start(
         "use_sim_time",
         Bool(false),
-        "all is dated as the scans are, by whatever clock",
+        "what is sent between scans is dated by /clock",
     ),
     never("z_hit", Double(0.5), SENSOR),
     never("z_max", Double(0.05), SENSOR),

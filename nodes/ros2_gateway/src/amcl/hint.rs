@@ -3,7 +3,7 @@
 //! Refuses poses in other frames than the map's, and covariances that are none.
 
 use geometry::{Covariance, Pose};
-use messages::{InitialPose, Stamp};
+use messages::{InitialPose, InitialPoseKind, Pose2, Stamp};
 use ros::PoseWithCovarianceStamped;
 
 use crate::GatewayError;
@@ -39,6 +39,7 @@ pub(super) fn of_message(
             measured_ns: said_ns,
             ..Stamp::default()
         },
+        kind: InitialPoseKind::Hint as u64,
         map_from_base: now.into(),
         covariance: covariance
             .carried(
@@ -56,8 +57,27 @@ pub(super) fn of_message(
 pub(super) fn of_parameters(pose: Pose) -> InitialPose {
     InitialPose {
         stamp: Stamp::default(),
+        kind: InitialPoseKind::Hint as u64,
         map_from_base: pose.into(),
         covariance: unsaid().to_rows(),
+    }
+}
+
+/// A pose as one of this kind.
+pub(super) fn of_kind(kind: InitialPoseKind, pose: InitialPose) -> InitialPose {
+    InitialPose {
+        kind: kind as u64,
+        ..pose
+    }
+}
+
+/// The robot may be anywhere.
+pub(super) fn anywhere() -> InitialPose {
+    InitialPose {
+        stamp: Stamp::default(),
+        kind: InitialPoseKind::Anywhere as u64,
+        map_from_base: Pose2::from(Pose::IDENTITY),
+        covariance: [0.0; 9],
     }
 }
 

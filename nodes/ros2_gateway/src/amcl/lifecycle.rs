@@ -114,6 +114,10 @@ impl Lifecycle {
         state(self.state as u8)
     }
 
+    pub(crate) fn primary(&self) -> Primary {
+        self.state
+    }
+
     /// What is asked for: by name where there is one, else by number.
     ///
     /// # Errors

@@ -1,24 +1,26 @@
 //! In the place of `nav2_amcl`: the same node, topics, services and parameters, and a pose
 //! with no initial guess.
 //!
-//! `lifecycle`, `parameters`, `params_file`, `hint`, `cloud`, `standing` and
-//! `waiting` are pure; `life`
+//! `lifecycle`, `parameters`, `params_file`, `hint`, `cloud` and `standing` are pure; `life`
 //! and `parameter_services` offer the first two, `body` is what a lifecycle manager
-//! configures and activates.
+//! configures and activates, with `parts` while it is configured.
 
 mod body;
 mod bond;
 mod cloud;
 mod declared;
 mod hint;
+mod hints;
 mod life;
 mod lifecycle;
 mod outgoing;
 mod parameter_services;
 mod parameters;
 mod params_file;
+mod parts;
+mod saved_pose;
+mod sim_clock;
 mod standing;
-mod waiting;
 
 use std::path::{Path, PathBuf};
 
@@ -28,10 +30,11 @@ use zenoh_session::Report;
 
 use crate::GatewayError;
 use crate::config::{Config, MAP_FRAME, Seed};
+use crate::inputs::Inputs;
 use crate::rmw_zenoh::{self, Member};
 use crate::run::TICK;
 use crate::topics::Topics;
-use body::{Body, Said};
+use body::{Body, Joined, Said};
 use life::Life;
 use parameter_services::ParameterServices;
 use parameters::Parameters;
@@ -51,6 +54,11 @@ pub struct Options {
     /// Start active, for robots without a lifecycle manager; with --as amcl
     #[arg(long)]
     pub autostart: bool,
+
+    /// Believe initial poses of initialpose, set_initial_pose and the parameters at once,
+    /// with no scan that confirms them; with --as amcl
+    #[arg(long)]
+    pub believe_initial_pose: bool,
 }
 
 impl Options {
@@ -59,6 +67,7 @@ impl Options {
         let given = [
             (self.params_file.is_some(), "params-file"),
             (self.autostart, "autostart"),
+            (self.believe_initial_pose, "believe-initial-pose"),
         ];
         match given.into_iter().find(|(is_given, _)| *is_given) {
             Some((_, option)) if self.role != Role::Amcl => Err(GatewayError::Option {
@@ -97,31 +106,40 @@ pub(crate) fn run(graph: &Graph, config: &Config) -> Result<(), GatewayError> {
     let domain = config.domain()?;
     config.mounts()?;
     let mut report = Report::new(graph.health()?);
+    let inputs = Inputs::new(&config)?;
+    inputs.connecting(&mut report)?;
     let Some(session) = zenoh_session::open(graph, &config.network, || report.tick())? else {
         return Ok(());
     };
     let member = Member::join(&session, domain, &config.namespace, config.node())?;
     let mut life = Life::open(graph, &member, &node)?;
-    let services = ParameterServices::open(graph, &member, &node)?;
+    let events = &topics.parameter_events;
+    let mut services = ParameterServices::open(graph, &member, &node, events)?;
     let map_frame = config
         .map_frame
         .clone()
         .unwrap_or_else(|| MAP_FRAME.to_owned());
-    let mut body = Body::new(graph, &member, &config, &topics, map_frame);
+    let joined = Joined {
+        graph,
+        member: &member,
+        config: &config,
+        topics: &topics,
+    };
+    let mut body = Body::new(joined, map_frame, inputs);
     let said = Said {
         hypotheses: graph.subscriber()?,
         poses: graph.subscriber()?,
         health: graph.subscriber()?,
     };
     tracing::info!(domain, node, "joined the robot's domain in AMCL's place");
-    report.ready()?;
     if config.amcl.autostart {
         life.start(|change| body.change(change, &parameters));
     }
     graph.run(&[&said.hypotheses, &said.poses, &said.health], TICK, |_| {
         life.serve(|change| body.change(change, &parameters), &mut report)?;
         services.serve(&mut parameters, &mut report)?;
-        body.step(&said, &parameters, &mut report)?;
+        let state = life.lifecycle.primary();
+        body.step(&said, state, &parameters, &mut report)?;
         report.tick()?;
         Ok(Flow::Continue)
     })
@@ -163,7 +181,12 @@ mod tests {
     #[test]
     fn options_of_amcls_place_are_refused_elsewhere() {
         let parse = |words: &[&str]| Config::parse_from(["ros2_gateway"].iter().chain(words));
-        for words in [&["--autostart"][..], &["--params-file", "a"]] {
+        let options: [&[&str]; 3] = [
+            &["--autostart"],
+            &["--params-file", "a"],
+            &["--believe-initial-pose"],
+        ];
+        for words in options {
             let error = parse(words).amcl.check().unwrap_err().to_string();
             assert_eq!(error, format!("{}: allowed with --as amcl", words[0]));
             let with = [words, &["--as", "amcl"]].concat();

@@ -2,7 +2,7 @@
 //! odometry.
 
 use geometry::Pose;
-use messages::{HypothesesHeader, Hypothesis, PoseHeader};
+use messages::{HypothesesHeader, Hypothesis, PoseHeader, Stamp};
 use ros::nav2_msgs::ParticleCloud;
 use ros::{PoseWithCovarianceStamped, TfMessage};
 use transport::{TransportError, monotonic_ns};
@@ -16,27 +16,44 @@ use crate::diagnostics::Diagnostics;
 use crate::outgoing::{in_map, transform};
 use crate::rmw_zenoh::{Member, Publisher};
 use crate::topics::Topics;
+use crate::verdict::Verdict;
 
 /// What goes to the robot, while the node is active.
 pub(super) struct Outgoing {
     pose: Publisher<PoseWithCovarianceStamped>,
     cloud: Publisher<ParticleCloud>,
     transforms: Publisher<TfMessage>,
+    verdict: Verdict,
     pub(super) diagnostics: Diagnostics,
     standing: Standing,
     /// Whether the tracker believes a pose.
     is_believed: bool,
+    /// Whether the tracker was asked to start over, and has not yet: what it believes is of
+    /// before.
+    is_outdated: bool,
+    /// Whether time is that of the scans and of `/clock`, and not this machine's.
+    uses_sim_time: bool,
+    /// The newest time of both.
+    sim_ns: i64,
 }
 
 impl Outgoing {
-    pub(super) fn open(member: &Member, topics: &Topics) -> Result<Self, GatewayError> {
+    pub(super) fn open(
+        member: &Member,
+        topics: &Topics,
+        uses_sim_time: bool,
+    ) -> Result<Self, GatewayError> {
         Ok(Outgoing {
             pose: Publisher::open_kept(member, &topics.amcl_pose, 1)?,
             cloud: Publisher::open_fresh(member, &topics.particle_cloud, 5)?,
             transforms: Publisher::open(member, &topics.tf, 100)?,
             diagnostics: Diagnostics::open(member, &topics.diagnostics)?,
+            verdict: Verdict::open(member, topics)?,
             standing: Standing::default(),
             is_believed: false,
+            is_outdated: false,
+            uses_sim_time,
+            sim_ns: i64::MIN,
         })
     }
 
@@ -44,27 +61,70 @@ impl Outgoing {
     pub(super) fn rest(&mut self) {
         self.standing = Standing::default();
         self.is_believed = false;
+        self.is_outdated = false;
+    }
+
+    /// Takes the time of a simulation: what is sent between scans is dated by it, so that
+    /// nothing is dated ahead of a simulation that is paused or slow.
+    pub(super) fn on_sim_time(&mut self, now_ns: i64) {
+        self.sim_ns = now_ns;
+        self.diagnostics.on_sim_time(now_ns);
+    }
+
+    /// The clock by which the transform is sent between scans.
+    fn now_ns(&self) -> i64 {
+        match self.uses_sim_time {
+            true => self.sim_ns,
+            false => monotonic_ns(),
+        }
+    }
+
+    /// The scan as it stands on that clock.
+    fn on_clock(&mut self, stamp: Stamp) -> Stamp {
+        if !self.uses_sim_time {
+            return stamp;
+        }
+        // Before the first message of the clock, time stands still between scans.
+        self.sim_ns = self.sim_ns.max(stamp.measured_ns);
+        Stamp {
+            entered_ns: stamp.measured_ns,
+            ..stamp
+        }
+    }
+
+    /// The tracker was told where the robot is: what it believes counts.
+    pub(super) fn go_on(&mut self) {
+        self.is_outdated = false;
+    }
+
+    /// The tracker was asked to forget its pose: nothing is sent of it any more.
+    pub(super) fn start_over(&mut self) {
+        self.rest();
+        self.is_outdated = true;
     }
 
     /// Takes the tracker's pose at a scan; between scans the transform stays.
     pub(super) fn tracked(
         &mut self,
-        header: &PoseHeader,
+        (header, words): (&PoseHeader, &[u8]),
         map_frame: &str,
         report: &mut Report,
     ) -> Result<(), TransportError> {
         if header.from_scan != 1 {
             return Ok(());
         }
-        self.diagnostics.on_scan(header.stamp);
+        let stamp = self.on_clock(header.stamp);
+        self.diagnostics.on_scan(stamp);
         // The pose of a laser is not the robot's.
-        self.is_believed = header.is_believed() && header.mount_known == 1;
+        self.is_outdated &= header.is_believed();
+        self.is_believed = header.is_believed() && header.mount_known == 1 && !self.is_outdated;
         let is_tied = self.is_believed && header.odom_known == 1;
         let found = is_tied.then(|| {
             let odom = header.odom_frame.as_str().to_owned();
             (Pose::from(header.map_from_odom), odom)
         });
-        self.standing.on_scan(header.stamp, found);
+        self.standing.on_scan(stamp, found);
+        self.verdict.send(header, words, map_frame, report)?;
         let outcome = self.send_pose(header, map_frame, report);
         outcome.or_else(|error| report.refused(&error))
     }
@@ -117,7 +177,7 @@ impl Outgoing {
         parameters: &Parameters,
         report: &mut Report,
     ) -> Result<(), TransportError> {
-        let Some(due) = self.standing.due(monotonic_ns()) else {
+        let Some(due) = self.standing.due(self.now_ns()) else {
             return Ok(());
         };
         if !parameters.is_on("tf_broadcast") {

@@ -1,16 +1,21 @@
 //! The services by which other nodes read and set the parameters.
 
+use ros::Time;
 use ros::rcl_interfaces::{
     DescribeParameters, DescribeParametersResponse, GetParameterTypes, GetParameterTypesResponse,
-    GetParameters, GetParametersResponse, ListParameters, ListParametersResponse, SetParameters,
-    SetParametersAtomically, SetParametersAtomicallyResponse, SetParametersResponse,
+    GetParameters, GetParametersResponse, ListParameters, ListParametersResponse, Parameter,
+    ParameterEvent, SetParameters, SetParametersAtomically, SetParametersAtomicallyResponse,
+    SetParametersResponse,
 };
-use transport::{Graph, TransportError};
+use transport::{Graph, TransportError, wall_ns};
 use zenoh_session::Report;
 
 use super::parameters::Parameters;
 use crate::GatewayError;
-use crate::rmw_zenoh::{Member, Service};
+use crate::rmw_zenoh::{Member, Publisher, Service};
+
+/// Events that are kept for those that are slow, as ROS has it.
+const EVENTS: usize = 1000;
 
 /// As each node of ROS has them.
 pub(super) struct ParameterServices {
@@ -20,11 +25,19 @@ pub(super) struct ParameterServices {
     list: Service<ListParameters>,
     set: Service<SetParameters>,
     set_all: Service<SetParametersAtomically>,
+    events: Publisher<ParameterEvent>,
+    /// The node's whole name.
+    node: String,
 }
 
 impl ParameterServices {
     /// Of the node with this whole name.
-    pub(super) fn open(graph: &Graph, member: &Member, node: &str) -> Result<Self, GatewayError> {
+    pub(super) fn open(
+        graph: &Graph,
+        member: &Member,
+        node: &str,
+        events: &str,
+    ) -> Result<Self, GatewayError> {
         let name = |service: &str| format!("{node}/{service}");
         Ok(ParameterServices {
             describe: Service::open(graph, member, &name("describe_parameters"))?,
@@ -33,12 +46,14 @@ impl ParameterServices {
             list: Service::open(graph, member, &name("list_parameters"))?,
             set: Service::open(graph, member, &name("set_parameters"))?,
             set_all: Service::open(graph, member, &name("set_parameters_atomically"))?,
+            events: Publisher::open_blocking(member, events, EVENTS)?,
+            node: node.to_owned(),
         })
     }
 
     /// Answers who asks.
     pub(super) fn serve(
-        &self,
+        &mut self,
         parameters: &mut Parameters,
         report: &mut Report,
     ) -> Result<(), TransportError> {
@@ -68,20 +83,56 @@ impl ParameterServices {
         self.list.serve(report, |request| ListParametersResponse {
             result: parameters.list(&request.prefixes, request.depth),
         })?;
-        self.set.serve(report, |request| SetParametersResponse {
-            results: request
-                .parameters
-                .iter()
-                .map(|parameter| parameters.set(&parameter.name, &parameter.value))
-                .collect(),
+        // What one call has set is one event.
+        let mut changes: Vec<Vec<Parameter>> = Vec::new();
+        self.set.serve(report, |request| {
+            let mut changed = Vec::new();
+            let mut set = |parameter: Parameter| {
+                let result = parameters.set(&parameter.name, &parameter.value);
+                if result.successful {
+                    changed.push(parameters.named(parameter.name));
+                }
+                result
+            };
+            let results = request.parameters.into_iter().map(&mut set).collect();
+            changes.push(changed);
+            SetParametersResponse { results }
         })?;
         self.set_all.serve(report, |request| {
             let values = request.parameters.iter();
             let values = values.map(|parameter| (&*parameter.name, &parameter.value));
-            SetParametersAtomicallyResponse {
-                result: parameters.set_all(values),
+            let result = parameters.set_all(values);
+            if result.successful {
+                let names = request
+                    .parameters
+                    .into_iter()
+                    .map(|parameter| parameter.name);
+                changes.push(names.map(|name| parameters.named(name)).collect());
             }
+            SetParametersAtomicallyResponse { result }
         })?;
+        for changed in changes.into_iter().filter(|changed| !changed.is_empty()) {
+            self.tell(changed, report)?;
+        }
+        Ok(())
+    }
+
+    /// Says what was set; to what it was already, too, as ROS does.
+    fn tell(
+        &mut self,
+        changed_parameters: Vec<Parameter>,
+        report: &mut Report,
+    ) -> Result<(), TransportError> {
+        let sent = self.events.send(&ParameterEvent {
+            stamp: Time::from_ns(wall_ns()).unwrap_or_default(),
+            node: self.node.clone(),
+            changed_parameters,
+            ..ParameterEvent::default()
+        });
+        match sent {
+            Ok(()) => report.sent(),
+            Err(error) => report.refused(&error)?,
+        }
         Ok(())
     }
 }

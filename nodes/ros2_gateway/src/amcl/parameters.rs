@@ -6,8 +6,8 @@ use std::collections::BTreeMap;
 
 use geometry::Pose;
 use ros::rcl_interfaces::{
-    FloatingPointRange, ListParametersResult, ParameterDescriptor, ParameterType, ParameterValue,
-    SetParametersResult,
+    FloatingPointRange, ListParametersResult, Parameter, ParameterDescriptor, ParameterType,
+    ParameterValue, SetParametersResult,
 };
 
 use super::declared::{ALL, Counts, Declared};
@@ -114,6 +114,12 @@ impl Parameters {
             .get(name)
             .map(ParameterValue::from)
             .unwrap_or_default()
+    }
+
+    /// The parameter of that name with what it holds.
+    pub(super) fn named(&self, name: String) -> Parameter {
+        let value = self.get(&name);
+        Parameter { name, value }
     }
 
     /// What a parameter means.

@@ -211,11 +211,12 @@ fn primitive(kind: &str) -> Option<u8> {
 
 #[cfg(test)]
 mod tests {
+    use ros::backcast_msgs::Localization;
     use ros::lifecycle_msgs::{ChangeState, TransitionEvent};
     use ros::nav2_msgs::{ParticleCloud, SetInitialPose};
-    use ros::rcl_interfaces::{DescribeParameters, GetParameters};
+    use ros::rcl_interfaces::{DescribeParameters, GetParameters, ParameterEvent};
     use ros::{
-        BondStatus, DiagnosticArray, LaserScan, OccupancyGridMsg, Odometry, PoseArray,
+        BondStatus, Clock, DiagnosticArray, LaserScan, OccupancyGridMsg, Odometry, PoseArray,
         PoseWithCovarianceStamped, RosService, TfMessage,
     };
 
@@ -279,6 +280,21 @@ mod tests {
             of_message::<BondStatus>(),
             "bond::msg::dds_::Status_",
             "87eaccffa254ffffadc0b61600452e8251740f06c25659a2dbda4927fdb1f70a",
+        );
+        check(
+            of_message::<ParameterEvent>(),
+            "rcl_interfaces::msg::dds_::ParameterEvent_",
+            "043e627780fcad87a22d225bc2a037361dba713fca6a6b9f4b869a5aa0393204",
+        );
+        check(
+            of_message::<Clock>(),
+            "rosgraph_msgs::msg::dds_::Clock_",
+            "692f7a66e93a3c83e71765d033b60349ba68023a8c689a79e48078bcb5c58564",
+        );
+        check(
+            of_message::<Localization>(),
+            "backcast_msgs::msg::dds_::Localization_",
+            "54798799c773940db42bfa44236b5f3da93c8460bc340fdaf6044ac49036447c",
         );
         check(
             of_message::<TransitionEvent>(),

@@ -98,8 +98,13 @@ impl Member {
         })
     }
 
-    pub(super) fn session(&self) -> &Session {
+    pub(crate) fn session(&self) -> &Session {
         &self.session
+    }
+
+    /// The robot's domain.
+    pub(crate) fn domain(&self) -> u32 {
+        self.domain
     }
 
     /// Tokens of all that is on the domain.

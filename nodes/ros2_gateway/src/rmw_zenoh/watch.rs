@@ -1,6 +1,6 @@
 //! Who comes to the robot's domain, by the tokens of its nodes.
 
-use std::collections::BTreeSet;
+use std::collections::BTreeMap;
 use std::sync::Arc;
 use std::sync::atomic::{AtomicU64, Ordering};
 
@@ -15,6 +15,7 @@ use zenoh_session::KeyError;
 use super::entity::{Kind, Token, TypeInfo};
 use super::{Member, description};
 use crate::GatewayError;
+use crate::waiting::Publishing;
 
 /// Tokens that wait: a large robot has some hundred.
 const MAX_WAITING: usize = 4096;
@@ -35,8 +36,8 @@ pub(crate) struct Watch {
     dropped: Arc<AtomicU64>,
     subscribed: String,
     published: Vec<(String, TypeInfo)>,
-    /// Those of them that somebody has published as they are taken.
-    found: BTreeSet<String>,
+    /// How those of them are published that somebody has published.
+    found: BTreeMap<String, Publishing>,
     _subscriber: Subscriber<()>,
 }
 
@@ -72,7 +73,7 @@ impl Watch {
             dropped,
             subscribed: subscribed.to_owned(),
             published: Vec::new(),
-            found: BTreeSet::new(),
+            found: BTreeMap::new(),
             _subscriber: subscriber,
         })
     }
@@ -84,14 +85,29 @@ impl Watch {
         Ok(())
     }
 
-    /// Whether somebody has published the topic as it is taken.
-    pub(crate) fn has_found(&self, topic: &str) -> bool {
-        self.found.contains(topic)
+    /// How the topic is published, by whoever does so as it is taken.
+    pub(crate) fn publishing(&self, topic: &str) -> Publishing {
+        let found = self.found.get(topic);
+        found.copied().unwrap_or(Publishing::Nobody)
     }
 
     /// Tokens that were not looked at since the last call: there were too many.
     pub(crate) fn dropped(&self) -> u64 {
         self.dropped.swap(0, Ordering::Relaxed)
+    }
+
+    fn note(&mut self, token: &Token) {
+        let known = self
+            .published
+            .iter()
+            .find(|(topic, _)| *topic == token.topic);
+        if let Some((topic, expected)) = known
+            && token.kind == Kind::Publisher.code()
+            && self.publishing(topic) != Publishing::Expected
+        {
+            let publishing = publishing(&token.info, expected);
+            self.found.insert(token.topic.clone(), publishing);
+        }
     }
 
     /// The next that is of interest. A token that cannot be read is of no interest.
@@ -100,14 +116,8 @@ impl Watch {
             let token = Token::read(&key);
             let mine = member.session().zid().to_string();
             let others = token.filter(|token| token.session != mine);
-            if let Some(token) = &others
-                && token.kind == Kind::Publisher.code()
-                && self
-                    .published
-                    .iter()
-                    .any(|(topic, info)| *topic == token.topic && *info == token.info)
-            {
-                self.found.insert(token.topic.clone());
+            if let Some(token) = &others {
+                self.note(token);
             }
             let seen = others.and_then(|token| judge(&token, &self.subscribed, &self.published));
             if seen.is_some() {
@@ -115,6 +125,17 @@ impl Watch {
             }
         }
         None
+    }
+}
+
+/// How a topic is published where another type is expected, or the same.
+fn publishing(found: &TypeInfo, expected: &TypeInfo) -> Publishing {
+    match () {
+        () if found == expected => Publishing::Expected,
+        () if found.name != expected.name => Publishing::OtherType,
+        // What rmw_zenoh of Humble writes in its place is no hash.
+        () if !found.hash.starts_with("RIHS01_") => Publishing::NoVersion,
+        () => Publishing::OtherVersion,
     }
 }
 
@@ -160,6 +181,20 @@ mod tests {
         let other = format!("{START}/MS/%/%/amcl/%other/{kind}/{QOS}");
         assert!(seen(&other).is_none());
         assert!(seen(&format!("{START}/NN/%/%/amcl")).is_none());
+    }
+
+    #[test]
+    fn how_a_topic_is_published_is_distinguished() {
+        let expected = description::of_message::<LaserScan>().unwrap();
+        let with = |name: &str, hash: &str| {
+            let (name, hash) = (name.to_owned(), hash.to_owned());
+            publishing(&TypeInfo { name, hash }, &expected)
+        };
+        assert_eq!(with(&expected.name, &expected.hash), Publishing::Expected);
+        let humble = with(&expected.name, "TypeHashNotSupported");
+        assert_eq!(humble, Publishing::NoVersion);
+        assert_eq!(with(&expected.name, "RIHS01_00"), Publishing::OtherVersion);
+        assert_eq!(with("other", &expected.hash), Publishing::OtherType);
     }
 
     #[test]

@@ -5,15 +5,18 @@
     reason = "the lint spares test functions but not what they share"
 )]
 
+mod amcl;
+mod carried;
 mod filter;
 mod nav2;
 mod refusals;
+mod waiting;
 
 use bytemuck::Zeroable;
 use geometry::Pose;
 use messages::{
-    FrameName, HypothesesHeader, Hypothesis, MapHeader, Odometry, Pose2, PoseHeader, ScanHeader,
-    Stamp, TrackState, Verdict, topic,
+    FrameName, HypothesesHeader, Hypothesis, MapHeader, NodeState, Odometry, Pose2, PoseHeader,
+    ScanHeader, Stamp, TrackState, Verdict, topic,
 };
 use recording::{Kind, Message, Recording};
 use ros::LaserScan;
@@ -22,7 +25,7 @@ use tests::executables;
 use tests::robot::Robot;
 use tests::world::World;
 use transport::testing::{Isolated, NodeProcess, wait_for, wait_for_health, wait_until_ready};
-use transport::{Graph, Publisher};
+use transport::{Graph, Publisher, Subscriber};
 
 /// A graph with a gateway, and a robot that has joined it.
 struct Joined {
@@ -50,7 +53,8 @@ impl Joined {
         let arguments = common.iter().chain(options);
         let executable = env!("CARGO_BIN_EXE_ros2_gateway");
         let gateway = NodeProcess::start(executable, &graph, arguments);
-        wait_until_ready(&graph, "ros2_gateway");
+        // It has joined as soon as it says what it waits for.
+        wait_until_waiting(&graph, "waiting for");
         let recording = World::of("malaga_corridor").recording();
         let robot = Robot::start(&endpoint, &recording, namespace)?;
         Some(Joined {
@@ -64,6 +68,25 @@ impl Joined {
     fn stop(&mut self) {
         self.gateway.take().unwrap().stop();
     }
+}
+
+/// Waits until the gateway says, among others, that it waits for this.
+fn wait_until_waiting(graph: &Graph, words: &str) {
+    let health = graph.subscriber::<topic::Health>().unwrap();
+    wait_for(graph, &health, |report, error| {
+        let is_waiting = report.state == NodeState::Waiting as u32;
+        let is_gateway = report.node.as_str() == "ros2_gateway";
+        let is_said = String::from_utf8_lossy(error).contains(words);
+        (is_gateway && is_waiting && is_said).then_some(())
+    });
+}
+
+/// Waits until the gateway has all that it needs, by reports from when `health` joined.
+fn wait_until_green(graph: &Graph, health: &Subscriber<topic::Health>) {
+    let ready = NodeState::Ready as u32;
+    wait_for_health(graph, health, |report| {
+        report.node.as_str() == "ros2_gateway" && report.state == ready
+    });
 }
 
 /// The recorded messages of a kind.
@@ -308,25 +331,14 @@ fn what_the_graph_says_reaches_the_robot_byte_for_byte() {
     joined.stop();
 }
 
-#[test]
-fn a_robot_whose_pose_is_tracked_is_sent_that_pose_and_no_single_answer() {
-    let options = ["--broadcast-tf", "--odom-frame", "odom"];
-    let Some(mut joined) = Joined::new("ros-pose", "/", &options) else {
-        return;
-    };
-    let answers = joined.graph.publisher::<topic::Hypotheses>().unwrap();
-    let poses = joined.graph.publisher::<topic::Tracked>().unwrap();
-    for order in ["arrive", "transforms", "filter"] {
-        joined.robot.order(order, json!({}));
-    }
-    let scans_in = joined.graph.subscriber::<topic::Scan>().unwrap();
-    joined.robot.order("scan", json!({ "index": 0 }));
-    wait_for(&joined.graph, &scans_in, |_, _| Some(()));
-
-    let (answer, items) = hypotheses(0, Verdict::Unique);
-    let mut loan = poses.loan(0).unwrap();
-    *loan.header_mut() = PoseHeader {
-        stamp: answer.stamp,
+/// What a tracker says that is sure of the robot's place.
+fn tracked(stamp: Stamp) -> PoseHeader {
+    PoseHeader {
+        stamp,
+        map_id: 0xff,
+        since_ns: 5_000_000_000,
+        probability: 0.75,
+        places: 1,
         state: TrackState::Unique as u32,
         from_scan: 1,
         pose_known: 1,
@@ -338,13 +350,50 @@ fn a_robot_whose_pose_is_tracked_is_sent_that_pose_and_no_single_answer() {
         map_from_odom: pose2(-2.0, 0.5, 0.25),
         base_covariance: [4e-4, 0.0, 0.0, 0.0, 1e-2, 0.0, 0.0, 0.0, 1e-6],
         ..PoseHeader::zeroed()
-    };
+    }
+}
+
+fn poses_of(graph: &Graph) -> Publisher<topic::Tracked> {
+    graph.publisher_for(PoseHeader::WORDS_CAPACITY).unwrap()
+}
+
+fn send_pose(publisher: &Publisher<topic::Tracked>, header: &PoseHeader) {
+    let words = b"one place";
+    let mut loan = publisher.loan(words.len()).unwrap();
+    *loan.header_mut() = *header;
+    loan.items_mut().copy_from_slice(words);
     loan.send().unwrap();
+}
+
+#[test]
+fn a_robot_whose_pose_is_tracked_is_sent_that_pose_and_no_single_answer() {
+    let options = ["--broadcast-tf", "--odom-frame", "odom"];
+    let Some(mut joined) = Joined::new("ros-pose", "/", &options) else {
+        return;
+    };
+    let answers = joined.graph.publisher::<topic::Hypotheses>().unwrap();
+    let poses = poses_of(&joined.graph);
+    for order in ["arrive", "transforms", "filter"] {
+        joined.robot.order(order, json!({}));
+    }
+    let scans_in = joined.graph.subscriber::<topic::Scan>().unwrap();
+    joined.robot.order("scan", json!({ "index": 0 }));
+    wait_for(&joined.graph, &scans_in, |_, _| Some(()));
+
+    let (answer, items) = hypotheses(0, Verdict::Unique);
+    send_pose(&poses, &tracked(answer.stamp));
     let seed = joined.robot.wait_for("initialpose");
     assert_eq!(seed["same"], true, "the bytes differ");
     assert_near(&seed["pose"], Pose::new(3.0, 1.0, 0.25));
     let tf = joined.robot.wait_for("tf");
     assert_eq!(tf["child"], "odom");
+    // The verdict is a topic as soon as there is a tracker.
+    joined
+        .robot
+        .order("join", json!({ "name": "fleet", "topic": "localization" }));
+    let said = joined.robot.wait_for("localization");
+    assert_eq!((&said["same"], &said["state"]), (&json!(true), &json!(1)));
+    assert_eq!(said["reason"], "one place");
 
     // The single answer says elsewhere, and is shown; no initial pose is sent there.
     let mut header = answer;

@@ -2,7 +2,7 @@
 
 use std::path::PathBuf;
 
-use messages::InitialPose;
+use messages::{InitialPose, InitialPoseKind};
 
 use super::filter::engine;
 use super::*;
@@ -11,7 +11,6 @@ use super::*;
 const PARAMETERS: &str = "\
 amcl:
   ros__parameters:
-    use_sim_time: false
     alpha1: 0.2
     base_frame_id: base_link
     global_frame_id: map
@@ -24,14 +23,16 @@ amcl:
     scan_topic: scan
 ";
 
-fn parameters(name: &str) -> PathBuf {
+/// A file of parameters of that name, with more of them, each as `name: value`.
+pub(super) fn parameters(name: &str, more: &[&str]) -> PathBuf {
     let file = PathBuf::from(env!("CARGO_TARGET_TMPDIR")).join(name);
-    std::fs::write(&file, PARAMETERS).unwrap();
+    let more: Vec<String> = more.iter().map(|line| format!("    {line}\n")).collect();
+    std::fs::write(&file, format!("{PARAMETERS}{}", more.concat())).unwrap();
     file
 }
 
 /// What a service answers.
-fn ask(robot: &mut Robot, service: &str, request: &Value) -> Value {
+pub(super) fn ask(robot: &mut Robot, service: &str, request: &Value) -> Value {
     robot.order("ask", json!({ "service": service, "request": request }));
     let said = robot.wait_for("answer");
     assert_eq!(said["service"], service);
@@ -40,7 +41,7 @@ fn ask(robot: &mut Robot, service: &str, request: &Value) -> Value {
 }
 
 /// Whether the lifecycle manager gets the transition of that number, and the state then.
-fn change(robot: &mut Robot, id: u8) -> (bool, String) {
+pub(super) fn change(robot: &mut Robot, id: u8) -> (bool, String) {
     let done = ask(
         robot,
         "amcl/change_state",
@@ -49,13 +50,13 @@ fn change(robot: &mut Robot, id: u8) -> (bool, String) {
     (done["success"].as_bool().unwrap(), state(robot))
 }
 
-fn state(robot: &mut Robot) -> String {
+pub(super) fn state(robot: &mut Robot) -> String {
     let state = ask(robot, "amcl/get_state", &json!({}));
     state["current_state"]["label"].as_str().unwrap().to_owned()
 }
 
 /// All that was said up to now.
-fn until_now(robot: &mut Robot) -> Vec<Value> {
+pub(super) fn until_now(robot: &mut Robot) -> Vec<Value> {
     robot.order("mark", json!({}));
     let mut all = Vec::new();
     loop {
@@ -67,14 +68,34 @@ fn until_now(robot: &mut Robot) -> Vec<Value> {
     }
 }
 
-fn planar(value: &Value) -> Pose {
+pub(super) fn planar(value: &Value) -> Pose {
     let of = |index: usize| value[index].as_f64().unwrap();
     Pose::new(of(0), of(1), of(2))
 }
 
+/// What was said on a topic of the scan with this stamp, nanoseconds.
+pub(super) fn of_scan(robot: &mut Robot, topic: &str, stamp: i64) -> Value {
+    loop {
+        let said = robot.wait_for(topic);
+        let of = match &said["stamp"] {
+            Value::Number(number) => number.as_i64(),
+            _ => {
+                let of = |part: &str| said["header"]["stamp"][part].as_i64();
+                of("sec")
+                    .zip(of("nanosec"))
+                    .map(|(s, ns)| s * 1_000_000_000 + ns)
+            }
+        };
+        assert_eq!(said["same"], true, "the bytes differ: {said}");
+        if of == Some(stamp) {
+            return said;
+        }
+    }
+}
+
 #[test]
 fn nav2_starts_us_in_amcls_place_and_gets_a_pose_with_no_click() {
-    let file = parameters("nav2.yaml");
+    let file = parameters("nav2.yaml", &["save_pose_rate: 0.0"]);
     let options = ["--as", "amcl", "--params-file", file.to_str().unwrap()];
     let Some(mut joined) = Joined::new("ros-nav2", "/", &options) else {
         return;
@@ -90,8 +111,12 @@ fn nav2_starts_us_in_amcls_place_and_gets_a_pose_with_no_click() {
     let robot = &mut joined.robot;
     robot.order("follow", json!({}));
 
-    // The lifecycle manager's way.
+    // The lifecycle manager's way, which the page shows as well.
     assert_eq!(state(robot), "unconfigured");
+    wait_until_waiting(
+        graph,
+        "waiting for a lifecycle manager: the node is unconfigured",
+    );
     assert_eq!(change(robot, 3), (false, "unconfigured".into()));
     assert_eq!(change(robot, 1), (true, "inactive".into()));
     let event = robot.wait_for("amcl/transition_event");
@@ -112,6 +137,11 @@ fn nav2_starts_us_in_amcls_place_and_gets_a_pose_with_no_click() {
         (&json!("amcl"), &json!(true))
     );
     assert_eq!(bond["same"], true);
+    robot.order(
+        "join",
+        json!({ "name": "docking", "topic": "localization" }),
+    );
+    robot.order("fleet", json!({}));
 
     // It drives, and gets a pose.
     let truths = Recording::open(World::of("malaga_corridor").recording()).unwrap();
@@ -127,8 +157,13 @@ fn nav2_starts_us_in_amcls_place_and_gets_a_pose_with_no_click() {
         })
     };
     let (mut right, mut index) = (0, 0);
+    let reports = graph.subscriber::<topic::Health>().unwrap();
     while right < 5 {
         let is_believed = drive(robot, index);
+        if index == 0 {
+            // Green, now that all comes.
+            wait_until_green(graph, &reports);
+        }
         let stamp = scans[index].header.stamp.as_ns();
         if is_believed {
             let pose = robot.wait_for("amcl_pose");
@@ -158,7 +193,29 @@ fn nav2_starts_us_in_amcls_place_and_gets_a_pose_with_no_click() {
             let odom_from_base = odometry.pose.pose.planar().unwrap();
             let by_tf = planar(&tf["pose"]).then(odom_from_base).then(mount);
             assert!(by_tf.is_within(truth, 0.2, 0.05), "{by_tf:?} {truth:?}");
+            // So it is by the verdict, and for a master control.
+            let verdict = of_scan(robot, "localization", stamp);
+            assert!(
+                [1, 2].contains(&verdict["state"].as_i64().unwrap()),
+                "{verdict}"
+            );
+            assert_eq!(verdict["pose_known"], true);
+            let place = &verdict["pose"]["pose"]["position"];
+            assert_eq!(
+                (&place["x"], &place["y"]),
+                (&pose["pose"][0], &pose["pose"][1])
+            );
+            let told = robot.wait_for("vda5050");
+            assert_eq!(told["key"], "vda5050/0/localization");
             right += 1;
+        } else {
+            let verdict = of_scan(robot, "localization", stamp);
+            assert!(
+                [0, 3].contains(&verdict["state"].as_i64().unwrap()),
+                "{verdict}"
+            );
+            let told = robot.wait_for("vda5050");
+            assert_eq!(told["position"]["localized"], false, "{told}");
         }
         index += 1;
     }
@@ -200,7 +257,37 @@ fn nav2_starts_us_in_amcls_place_and_gets_a_pose_with_no_click() {
     ask(robot, "set_initial_pose", &pose);
     hint(7.0);
     ask(robot, "request_nomotion_update", &json!({}));
+
+    // It starts over: the pose is forgotten, and found again.
     ask(robot, "reinitialize_global_localization", &json!({}));
+    let anywhere = InitialPoseKind::Anywhere as u64;
+    wait_for(graph, &hints, |hint, _| {
+        (hint.kind == anywhere).then_some(())
+    });
+    // What was sent before the answer has come.
+    for _ in 0..2 {
+        assert_eq!(state(robot), "active");
+    }
+    until_now(robot);
+    let searched = scans[index].header.stamp.as_ns();
+    assert!(!drive(robot, index), "the pose is forgotten");
+    let verdict = of_scan(robot, "localization", searched);
+    assert_eq!(
+        (&verdict["state"], &verdict["since"]),
+        (&json!(0), &verdict["header"]["stamp"])
+    );
+    let events = until_now(robot);
+    let is_pose = |said: &&Value| said["event"] == "tf" || said["event"] == "amcl_pose";
+    assert!(!events.iter().any(|said| is_pose(&said)), "{events:?}");
+    index += 1;
+    while !drive(robot, index) {
+        index += 1;
+    }
+    let stamp = scans[index].header.stamp.as_ns();
+    let base = planar(&of_scan(robot, "amcl_pose", stamp)["pose"]);
+    let (laser, truth) = (base.then(Pose::new(0.78, 0.0, 0.0)), truths[&stamp].pose);
+    assert!(laser.is_within(truth, 0.2, 0.05), "{laser:?} {truth:?}");
+    index += 1;
 
     // Once it is not active, nothing is published.
     assert_eq!(change(robot, 4), (true, "inactive".into()));
@@ -224,7 +311,7 @@ fn nav2_starts_us_in_amcls_place_and_gets_a_pose_with_no_click() {
 
 #[test]
 fn tools_find_amcl_with_its_names_types_and_parameters() {
-    let file = parameters("tools.yaml");
+    let file = parameters("tools.yaml", &["save_pose_rate: 0.0"]);
     let options = [
         "--as",
         "amcl",
@@ -261,6 +348,8 @@ fn tools_find_amcl_with_its_names_types_and_parameters() {
         "MP /amcl_pose :1:,1:,:,:,,",
         "MP /bond ::,10:,:,:,,",
         "MP /diagnostics ::,10:,:,:,,",
+        "MP /localization :1:,1:,:,:,,",
+        "MP /parameter_events ::,1000:,:,:,,",
         "MP /particle_cloud 2::,5:,:,:,,",
         "MP /tf ::,100:,:,:,,",
         "MS /initialpose ::,10:,:,:,,",
@@ -315,7 +404,19 @@ fn tools_find_amcl_with_its_names_types_and_parameters() {
     let text = json!({ "name": "scan_topic", "value": { "type": 4, "string_value": "other" } });
     let values =
         json!({ "parameters": [value("transform_tolerance", 0.25), text, value("z_hit", 0.4)] });
+    robot.order("hear", json!({ "topic": "/parameter_events" }));
     let results = ask(robot, "amcl/set_parameters", &values);
+    // Who watches is told what was set, and nothing of what was not.
+    let event = robot.wait_for("/parameter_events");
+    assert_eq!(
+        (&event["same"], &event["node"]),
+        (&json!(true), &json!("/amcl"))
+    );
+    let changed = event["changed_parameters"].as_array().unwrap();
+    let names: Vec<&Value> = changed.iter().map(|parameter| &parameter["name"]).collect();
+    assert_eq!(names, ["transform_tolerance", "z_hit"]);
+    assert_eq!(changed[0]["value"]["double_value"], 0.25);
+    assert_eq!(event["new_parameters"], json!([]));
     let result = |index: usize| &results["results"][index];
     assert_eq!(result(0), &json!({ "successful": true, "reason": "" }));
     assert_eq!(result(1)["successful"], false);
@@ -328,6 +429,11 @@ fn tools_find_amcl_with_its_names_types_and_parameters() {
     assert!(reason.starts_with("it has no meaning here"), "{reason}");
     let together = ask(robot, "amcl/set_parameters_atomically", &values);
     assert_eq!(together["result"]["successful"], false);
+    let one = json!({ "parameters": [value("laser_max_range", 20.0)] });
+    ask(robot, "amcl/set_parameters_atomically", &one);
+    // Of the call that was refused there was none.
+    let event = robot.wait_for("/parameter_events");
+    assert_eq!(event["changed_parameters"][0]["name"], "laser_max_range");
     let names = json!({ "names": ["transform_tolerance"] });
     let got = ask(robot, "amcl/get_parameters", &names);
     assert_eq!(got["values"][0]["double_value"], 0.25);

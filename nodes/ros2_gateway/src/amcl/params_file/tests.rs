@@ -51,7 +51,6 @@ fn the_file_of_nav2_is_taken_as_it_is() {
         "laser_model_type",
         "max_particles",
         "robot_model_type",
-        "use_sim_time",
     ];
     assert_eq!(remarks.len(), idle.len(), "{remarks:?}");
     for (remark, name) in remarks.iter().zip(idle) {

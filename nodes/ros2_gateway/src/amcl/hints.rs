@@ -1,0 +1,120 @@
+//! Where somebody says that the robot is, by topic and by service, and what the tracker is
+//! told of it.
+
+use messages::{InitialPose, InitialPoseKind, topic};
+use ros::nav2_msgs::SetInitialPose;
+use ros::{Empty, Nothing, PoseWithCovarianceStamped};
+use transport::{Graph, Publisher, TransportError, monotonic_ns};
+use zenoh_session::Report;
+
+use super::hint;
+use crate::GatewayError;
+use crate::frames::Frames;
+use crate::incoming::{MAX_BYTES, take};
+use crate::rmw_zenoh::{Keeping, Member, Service, Subscription, Watch};
+use crate::topics::Topics;
+
+/// What comes, and where it goes.
+pub(super) struct Hints {
+    initial_poses: Subscription<PoseWithCovarianceStamped>,
+    set_initial_pose: Service<SetInitialPose>,
+    reinitialize: Service<Empty>,
+    publisher: Publisher<topic::InitialPoseTopic>,
+    sent: u64,
+    /// What a pose that somebody says is taken for.
+    kind: InitialPoseKind,
+}
+
+impl Hints {
+    /// Poses are believed with no scan that confirms them where `are_believed` says so.
+    pub(super) fn open(
+        graph: &Graph,
+        member: &Member,
+        topics: &Topics,
+        watch: &mut Watch,
+        are_believed: bool,
+    ) -> Result<Self, GatewayError> {
+        let topic = &topics.initial_pose;
+        watch.expect::<PoseWithCovarianceStamped>(topic)?;
+        let reliable = Keeping::Reliable;
+        Ok(Hints {
+            initial_poses: Subscription::open(graph, member, topic, reliable, 10, MAX_BYTES)?,
+            set_initial_pose: Service::open(graph, member, &topics.set_initial_pose)?,
+            reinitialize: Service::open(graph, member, &topics.reinitialize)?,
+            publisher: graph.publisher()?,
+            sent: 0,
+            kind: kind(are_believed),
+        })
+    }
+
+    /// Takes what has come; the newest counts, and stays in `pending` until it can be handed
+    /// on.
+    pub(super) fn take(
+        &mut self,
+        frames: &Frames,
+        map_frame: &str,
+        pending: &mut Option<InitialPose>,
+        report: &mut Report,
+    ) -> Result<(), TransportError> {
+        let kind = self.kind;
+        let said = |message: &PoseWithCovarianceStamped| -> Result<InitialPose, GatewayError> {
+            let pose = hint::of_message(message, map_frame, |ns| frames.moved_since(ns))?;
+            let how = match kind {
+                InitialPoseKind::Believed => "it is believed",
+                _ => "it is tried first, and a scan must confirm it",
+            };
+            tracing::info!("an initial pose came: {how}");
+            Ok(hint::of_kind(kind, pose))
+        };
+        take(&mut self.initial_poses, report, |message, _| {
+            *pending = Some(said(&message)?);
+            Ok(())
+        })?;
+        let mut wrong = Vec::new();
+        self.set_initial_pose.serve(report, |request| {
+            match said(&request.pose) {
+                Ok(found) => *pending = Some(found),
+                // The response has no room for it.
+                Err(error) => wrong.push(error),
+            }
+            Nothing::default()
+        })?;
+        for error in wrong {
+            report.refused(&error)?;
+        }
+        self.reinitialize.serve(report, |_| {
+            tracing::info!("asked to localize from anywhere: the tracker forgets its pose");
+            *pending = Some(hint::anywhere());
+            Nothing::default()
+        })?;
+        Ok(())
+    }
+
+    /// Hands on what is pending, once the tracker is there; what that was.
+    pub(super) fn hand_on(
+        &mut self,
+        pending: &mut Option<InitialPose>,
+    ) -> Result<Option<InitialPoseKind>, TransportError> {
+        if !self.publisher.has_subscribers() {
+            return Ok(None);
+        }
+        let Some(mut said) = pending.take() else {
+            return Ok(None);
+        };
+        said.stamp.entered_ns = monotonic_ns();
+        said.stamp.counter = self.sent;
+        let mut loan = self.publisher.loan(0)?;
+        *loan.header_mut() = said;
+        loan.send()?;
+        self.sent += 1;
+        Ok(InitialPoseKind::from_code(said.kind))
+    }
+}
+
+/// What a pose that somebody says is taken for.
+pub(super) fn kind(are_believed: bool) -> InitialPoseKind {
+    match are_believed {
+        true => InitialPoseKind::Believed,
+        false => InitialPoseKind::Hint,
+    }
+}

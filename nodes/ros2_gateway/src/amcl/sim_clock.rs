@@ -1,0 +1,57 @@
+//! The time of a simulation, on topic `/clock`.
+
+use ros::Clock;
+use transport::{Graph, TransportError};
+use zenoh_session::Report;
+
+use crate::GatewayError;
+use crate::checks::measured_ns;
+use crate::incoming::{MAX_BYTES, take};
+use crate::rmw_zenoh::{Keeping, Member, Subscription, Watch};
+use crate::topics::Topics;
+
+/// Follows it.
+pub(super) struct SimClock {
+    clocks: Subscription<Clock>,
+    now_ns: Option<i64>,
+    received: u64,
+}
+
+impl SimClock {
+    pub(super) fn open(
+        graph: &Graph,
+        member: &Member,
+        topics: &Topics,
+        watch: &mut Watch,
+    ) -> Result<Self, GatewayError> {
+        watch.expect::<Clock>(&topics.clock)?;
+        Ok(SimClock {
+            clocks: Subscription::open(graph, member, &topics.clock, Keeping::Fresh, 1, MAX_BYTES)?,
+            now_ns: None,
+            received: 0,
+        })
+    }
+
+    /// Takes what has come.
+    pub(super) fn take(&mut self, report: &mut Report) -> Result<(), TransportError> {
+        let SimClock {
+            clocks,
+            now_ns,
+            received,
+        } = self;
+        take(clocks, report, |message, _| {
+            *now_ns = Some(measured_ns("the clock", message.clock)?);
+            *received += 1;
+            Ok(())
+        })
+    }
+
+    /// The time, if one has come: nanoseconds since 1970.
+    pub(super) fn now_ns(&self) -> Option<i64> {
+        self.now_ns
+    }
+
+    pub(super) fn received(&self) -> u64 {
+        self.received
+    }
+}

@@ -1,0 +1,116 @@
+//! Whether all that the robot brings comes: said in the log when that changes, and in the
+//! node's health for as long as it holds.
+
+use transport::{TransportError, monotonic_ns};
+use zenoh_session::{Report, Routers};
+
+use crate::GatewayError;
+use crate::config::{Brought, Config};
+use crate::incoming::Incoming;
+use crate::rmw_zenoh::{Member, Watch};
+use crate::topics::Topics;
+use crate::waiting::{Input, Status, Waiting};
+
+/// From one look to the next, nanoseconds.
+const PERIOD_NS: i64 = 200_000_000;
+
+/// Looks at the robot's side now and then.
+pub(crate) struct Inputs {
+    routers: Routers,
+    waiting: Waiting,
+    looked_ns: i64,
+    /// What was said last in the log.
+    said: Option<String>,
+}
+
+/// What the robot brings while the gateway takes it.
+pub(crate) struct Taken<'a> {
+    pub(crate) incoming: &'a Incoming,
+    pub(crate) watch: &'a Watch,
+    /// How many messages of the clock came, where one is needed.
+    pub(crate) clock: Option<u64>,
+}
+
+impl Inputs {
+    pub(crate) fn new(config: &Config) -> Result<Self, GatewayError> {
+        Ok(Inputs {
+            routers: Routers::of(&config.network)?,
+            waiting: Waiting::default(),
+            looked_ns: i64::MIN,
+            said: Some(String::new()),
+        })
+    }
+
+    /// Before the session is there.
+    pub(crate) fn connecting(&self, report: &mut Report) -> Result<(), TransportError> {
+        report.waiting_for(Some(&self.routers.awaited()))
+    }
+
+    /// Says what is waited for: the router, else an input, else what the gateway itself waits
+    /// for, in words; nothing is taken yet where `taken` is none.
+    pub(crate) fn look(
+        &mut self,
+        (config, topics): (&Config, &Topics),
+        member: &Member,
+        taken: Option<Taken<'_>>,
+        itself: Option<&str>,
+        report: &mut Report,
+    ) -> Result<(), TransportError> {
+        let now_ns = monotonic_ns();
+        if now_ns.saturating_sub(self.looked_ns) < PERIOD_NS {
+            return Ok(());
+        }
+        self.looked_ns = now_ns;
+        let inputs = taken.map(|taken| taken.inputs(config, topics));
+        let missing = self.routers.missing(member.session());
+        let status = match &inputs {
+            _ if !missing.is_empty() => Status::Waits(&missing),
+            None => itself.map_or(Status::Begins, Status::Waits),
+            Some(inputs) => match (self.waiting.look(inputs, now_ns), itself) {
+                (Status::Flows, Some(itself)) => Status::Waits(itself),
+                (status, _) => status,
+            },
+        };
+        let words = match status {
+            Status::Flows => None,
+            Status::Begins => Some(""),
+            Status::Waits(words) => Some(words),
+        };
+        report.waiting_for(words)?;
+        if self.said.as_deref() != words {
+            match words {
+                None => tracing::info!("all that the robot brings comes"),
+                Some("") => {}
+                Some(words) => tracing::warn!("waiting for {words}"),
+            }
+            self.said = words.map(str::to_owned);
+        }
+        Ok(())
+    }
+}
+
+impl Taken<'_> {
+    /// What the robot does not bring is not waited for.
+    fn inputs<'t>(&self, config: &Config, topics: &'t Topics) -> Vec<Input<'t>> {
+        let (maps, scans) = self.incoming.sent();
+        let input = |topic: &'t str, received, comes_once| Input {
+            topic,
+            publishing: self.watch.publishing(topic),
+            received,
+            comes_once,
+        };
+        let map = config
+            .brings(Brought::Map)
+            .then(|| input(&topics.map, maps, true));
+        let scans = topics
+            .scans
+            .iter()
+            .zip(scans)
+            .filter(|_| config.brings(Brought::Scan))
+            .map(|(scans, received)| input(&scans.topic, received, false));
+        let clock = self
+            .clock
+            .map(|received| input(&topics.clock, received, false));
+        map.into_iter().chain(scans).chain(clock).collect()
+    }
+}

@@ -1,0 +1,152 @@
+//! What the gateway waits for, in words. Pure.
+
+/// So long an input may be silent before that is said, nanoseconds.
+const PATIENCE_NS: i64 = 3_000_000_000;
+
+/// Who publishes a topic.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(crate) enum Publishing {
+    /// Nobody.
+    Nobody,
+    /// Somebody whose messages are of another type.
+    OtherType,
+    /// Somebody whose messages are of another version of the type.
+    OtherVersion,
+    /// Somebody who does not say which version: a node of ROS 2 Humble.
+    NoVersion,
+    /// Somebody whose messages are taken.
+    Expected,
+}
+
+/// An input: its topic, who publishes it, and how many messages have come.
+#[derive(Debug, Clone, Copy)]
+pub(crate) struct Input<'a> {
+    pub(crate) topic: &'a str,
+    pub(crate) publishing: Publishing,
+    pub(crate) received: u64,
+    /// Whether one message is enough.
+    pub(crate) comes_once: bool,
+}
+
+impl Input<'_> {
+    fn why(&self) -> &'static str {
+        match (self.publishing, self.received) {
+            (Publishing::Nobody, 0) => "no publisher",
+            (Publishing::OtherType, 0) => "a publisher of another type",
+            (Publishing::OtherVersion, 0) => "a publisher with another version of the type",
+            (Publishing::NoVersion, 0) => "a publisher with no type hash (ROS 2 Humble)",
+            (Publishing::Expected, 0) => "a publisher, and no message yet",
+            (_, _) => "no message any more",
+        }
+    }
+}
+
+/// How the inputs are.
+#[derive(Debug, PartialEq, Eq)]
+pub(crate) enum Status<'a> {
+    /// All come.
+    Flows,
+    /// Some have not come yet, and it is too early to say so.
+    Begins,
+    /// What is waited for.
+    Waits(&'a str),
+}
+
+/// Notices inputs that are silent.
+#[derive(Debug, Default)]
+pub(crate) struct Waiting {
+    /// Of each input, how many messages there were, and since when.
+    seen: Vec<(u64, i64)>,
+    words: String,
+}
+
+impl Waiting {
+    /// Looks at all inputs, which are the same at each call.
+    pub(crate) fn look(&mut self, inputs: &[Input<'_>], now_ns: i64) -> Status<'_> {
+        self.seen.resize(inputs.len(), (0, now_ns));
+        let mut is_early = false;
+        let mut words = Vec::new();
+        for (input, (count, since_ns)) in inputs.iter().zip(&mut self.seen) {
+            if *count != input.received {
+                (*count, *since_ns) = (input.received, now_ns);
+            }
+            let is_silent = now_ns.saturating_sub(*since_ns) >= PATIENCE_NS;
+            let has_come = input.received > 0;
+            match (has_come, is_silent) {
+                (true, _) if input.comes_once => {}
+                (_, true) => words.push(format!("{}: {}", input.topic, input.why())),
+                (true, false) => {}
+                (false, false) => is_early = true,
+            }
+        }
+        self.words = words.join(", ");
+        match (self.words.is_empty(), is_early) {
+            (false, _) => Status::Waits(&self.words),
+            (true, true) => Status::Begins,
+            (true, false) => Status::Flows,
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    const S: i64 = 1_000_000_000;
+
+    fn input(topic: &str, publishing: Publishing, received: u64) -> Input<'_> {
+        Input {
+            topic,
+            publishing,
+            received,
+            comes_once: topic == "/map",
+        }
+    }
+
+    #[test]
+    fn silence_is_said_and_so_is_its_end() {
+        let mut waiting = Waiting::default();
+        let (nobody, expected) = (Publishing::Nobody, Publishing::Expected);
+        let mut look = |map: u64, laser: Publishing, scans: u64, at: i64| {
+            let who = if map > 0 { expected } else { nobody };
+            let inputs = [input("/map", who, map), input("/scan", laser, scans)];
+            match waiting.look(&inputs, at * S) {
+                Status::Flows => "flows".to_owned(),
+                Status::Begins => String::new(),
+                Status::Waits(words) => words.to_owned(),
+            }
+        };
+        assert_eq!(look(0, nobody, 0, 10), "");
+        assert_eq!(look(0, nobody, 0, 12), "", "nobody is late yet");
+        let both = "/map: no publisher, /scan: no publisher";
+        assert_eq!(look(0, nobody, 0, 13), both);
+        let words = look(1, expected, 0, 15);
+        assert_eq!(words, "/scan: a publisher, and no message yet");
+        assert_eq!(look(1, expected, 1, 16), "flows");
+        assert_eq!(look(1, expected, 2, 18), "flows");
+        assert_eq!(look(1, expected, 2, 21), "/scan: no message any more");
+    }
+
+    #[test]
+    fn a_publisher_whose_messages_cannot_be_taken_is_named() {
+        for (publishing, words) in [
+            (Publishing::OtherType, "another type"),
+            (Publishing::OtherVersion, "another version"),
+            (Publishing::NoVersion, "Humble"),
+        ] {
+            let mut waiting = Waiting::default();
+            let scan = [input("/scan", publishing, 0)];
+            assert_eq!(waiting.look(&scan, 0), Status::Begins);
+            let status = waiting.look(&scan, 3 * S);
+            assert!(
+                matches!(status, Status::Waits(w) if w.contains(words)),
+                "{status:?}"
+            );
+        }
+    }
+
+    #[test]
+    fn who_needs_nothing_waits_for_nothing() {
+        assert_eq!(Waiting::default().look(&[], 0), Status::Flows);
+    }
+}

@@ -1,0 +1,281 @@
+//! In AMCL's place, with a tracker that the test plays.
+
+use std::path::Path;
+
+use messages::{InitialPose, InitialPoseKind};
+
+use super::nav2::{ask, of_scan, parameters, state, until_now};
+use super::*;
+
+/// A stamp that is no scan's: milliseconds of the robot's clock.
+fn stamp(ms: i64) -> Stamp {
+    Stamp {
+        measured_ns: 1_700_000_000_000_000_000 + ms * 1_000_000,
+        entered_ns: transport::monotonic_ns(),
+        counter: 0,
+    }
+}
+
+/// In AMCL's place, active, with these parameters and options.
+fn active(tag: &str, namespace: &str, more: &[&str], options: &[&str]) -> Option<Joined> {
+    let file = parameters(&format!("{tag}.yaml"), more);
+    let common = [
+        "--as",
+        "amcl",
+        "--autostart",
+        "--params-file",
+        file.to_str().unwrap(),
+    ];
+    Joined::new(tag, namespace, &[&common, options].concat())
+}
+
+#[test]
+fn two_lasers_in_a_namespace_share_the_transforms_of_all_robots() {
+    let scans = ["--scan", "front/scan", "--scan", "rear/scan"];
+    let shared = ["--tf", "/tf", "--tf-static", "/tf_static"];
+    let options = [&scans[..], &shared[..]].concat();
+    let Some(mut joined) = active("ros-shared", "/r2", &["save_pose_rate: 0.0"], &options) else {
+        return;
+    };
+    let graph = &joined.graph;
+    let robot = &mut joined.robot;
+    let scans_in = graph.subscriber::<topic::Scan>().unwrap();
+    robot.order("hear", json!({ "topic": "/tf" }));
+    robot.order("join", json!({ "name": "rviz" }));
+    let level = [0.0, 0.0, 0.0, 1.0];
+    let lasers = json!([["front", 0.5, level], ["rear", -0.4, level]]);
+    robot.order("mounts", json!({ "lasers": lasers, "topic": "/tf_static" }));
+    for (laser, x) in [("front", 0.5), ("rear", -0.4)] {
+        robot.order("scan_of", json!({ "laser": laser, "index": 0 }));
+        let header: ScanHeader = wait_for(graph, &scans_in, |header, _| Some(*header));
+        assert_eq!((header.laser.as_str(), header.mount_known), (laser, 1));
+        assert_eq!(header.base_from_laser, pose2(x, 0.0, 0.0));
+    }
+    let sent = tracked(stamp(0));
+    let poses = poses_of(graph);
+    send_pose(&poses, &sent);
+    let tf = robot.wait_for("/tf");
+    assert_eq!((&tf["same"], &tf["child"]), (&json!(true), &json!("odom")));
+    assert_near(&tf["pose"], Pose::new(-2.0, 0.5, 0.25));
+    let pose = of_scan(robot, "amcl_pose", sent.stamp.measured_ns);
+    assert_near(&pose["pose"], Pose::new(3.0, 1.0, 0.25));
+    joined.stop();
+}
+
+#[test]
+fn a_master_control_is_told_in_the_words_of_vda_5050() {
+    let Some(mut joined) = active("ros-vda", "/r2", &["save_pose_rate: 0.0"], &[]) else {
+        return;
+    };
+    let robot = &mut joined.robot;
+    robot.order("fleet", json!({}));
+    robot.order(
+        "join",
+        json!({ "name": "docking", "topic": "localization" }),
+    );
+    // Its subscription has come when its call is answered.
+    assert_eq!(state(robot), "active");
+    let poses = poses_of(&joined.graph);
+    let sent = tracked(stamp(0));
+    send_pose(&poses, &sent);
+    let mut told = robot.wait_for("vda5050");
+    assert_eq!(told["key"], "vda5050/0/r2/localization");
+    assert_eq!(told["encoding"], "application/json");
+    let range = told["position"]["deviationRange"].take().as_f64().unwrap();
+    // 95 % of a spread of 0.1 m across.
+    assert!((range - 0.1 * 2.447_746_83).abs() < 1e-6, "{range}");
+    let position = json!({
+        "x": 3.0, "y": 1.0, "theta": 0.25, "mapId": "00000000000000ff", "localized": true,
+        "localizationScore": 0.75, "deviationRange": null,
+    });
+    assert_eq!(told["position"], position);
+    let verdict = of_scan(robot, "localization", sent.stamp.measured_ns);
+    let field = |name: &str| &verdict[name];
+    assert_eq!(
+        (field("state"), field("alternatives")),
+        (&json!(1), &json!(0))
+    );
+    assert_eq!(
+        (field("probability"), field("map_id")),
+        (&json!(0.75), &json!("00000000000000ff"))
+    );
+    assert_eq!(field("since"), &json!({ "sec": 5, "nanosec": 0 }));
+    assert_eq!(
+        (field("reason"), field("pose_known")),
+        (&json!("one place"), &json!(true))
+    );
+    assert_eq!(verdict["header"]["frame_id"], "map");
+    assert_eq!(
+        verdict["pose"]["pose"]["position"],
+        json!({ "x": 3.0, "y": 1.0, "z": 0.0 })
+    );
+    assert_eq!(
+        (
+            &verdict["pose"]["covariance"][0],
+            &verdict["pose"]["covariance"][7]
+        ),
+        (&json!(4e-4), &json!(1e-2))
+    );
+    // Who comes later has the last one at once.
+    robot.order("join", json!({ "name": "late", "topic": "localization" }));
+    of_scan(robot, "localization", sent.stamp.measured_ns);
+    let lost = PoseHeader {
+        state: TrackState::Lost as u32,
+        ..tracked(stamp(100))
+    };
+    send_pose(&poses, &lost);
+    assert_eq!(robot.wait_for("vda5050")["position"]["localized"], false);
+    joined.stop();
+}
+
+#[test]
+fn the_first_map_stays_where_parameters_say_so() {
+    let more = ["first_map_only: true", "save_pose_rate: 0.0"];
+    let Some(mut joined) = active("ros-first-map", "/", &more, &[]) else {
+        return;
+    };
+    let graph = &joined.graph;
+    let robot = &mut joined.robot;
+    let maps = graph.subscriber::<topic::Map>().unwrap();
+    robot.order("arrive", json!({}));
+    let next = || {
+        wait_for(graph, &maps, |header: &MapHeader, cells| {
+            Some((header.map_id, cells.to_vec()))
+        })
+    };
+    let (_, first) = next();
+    // Another one, of which nothing is taken.
+    robot.order("other_map", json!({ "cell": 0 }));
+    for _ in 0..2 {
+        assert_eq!(state(robot), "active");
+    }
+    let off = json!({ "name": "first_map_only", "value": { "type": 1, "bool_value": false } });
+    ask(
+        robot,
+        "amcl/set_parameters",
+        &json!({ "parameters": [off] }),
+    );
+    robot.order("other_map", json!({ "cell": 1 }));
+    let (_, third) = next();
+    let differ: Vec<usize> = (0..first.len())
+        .filter(|i| first[*i] != third[*i])
+        .collect();
+    assert_eq!(differ, [1]);
+    joined.stop();
+}
+
+/// The next that the tracker is told.
+fn hint(graph: &Graph, hints: &Subscriber<topic::InitialPoseTopic>) -> InitialPose {
+    wait_for(graph, hints, |hint: &InitialPose, _| Some(*hint))
+}
+
+#[test]
+fn the_saved_pose_is_a_hint_and_what_somebody_says_is_believed_where_that_is_wanted() {
+    let folder = Path::new(env!("CARGO_TARGET_TMPDIR"));
+    let saved = folder.join("saved_pose");
+    let file = format!("saved_pose_filepath: {}", saved.display());
+    // As AMCL leaves it.
+    std::fs::write(
+        &saved,
+        "frame_id: map\nx: 1.25\ny: -2.5\nz: 0.0\nyaw: 0.5\n",
+    )
+    .unwrap();
+    let more = [
+        "initialize_at_saved_pose: true",
+        "save_pose_rate: 1000.0",
+        &*file,
+    ];
+    let Some(mut joined) = active("ros-saved", "/", &more, &["--believe-initial-pose"]) else {
+        return;
+    };
+    let graph = &joined.graph;
+    let robot = &mut joined.robot;
+    let hints = graph.subscriber::<topic::InitialPoseTopic>().unwrap();
+    let poses = poses_of(graph);
+    let searching = |ms| PoseHeader {
+        state: TrackState::Searching as u32,
+        ..tracked(stamp(ms))
+    };
+    // A tracker that has no pose needs it.
+    send_pose(&poses, &searching(-100));
+    let first = hint(graph, &hints);
+    assert_eq!(
+        first.kind,
+        InitialPoseKind::Hint as u64,
+        "a scan must confirm it"
+    );
+    assert_eq!(first.map_from_base, pose2(1.25, -2.5, 0.5));
+    let pose = json!({ "pose": { "header": { "frame_id": "map" }, "pose": { "pose": {
+        "position": { "x": 7.0 }, "orientation": { "w": 1.0 } } } } });
+    ask(robot, "set_initial_pose", &pose);
+    let said = hint(graph, &hints);
+    assert_eq!(
+        (said.kind, said.map_from_base.x),
+        (InitialPoseKind::Believed as u64, 7.0)
+    );
+    ask(robot, "reinitialize_global_localization", &json!({}));
+    assert_eq!(hint(graph, &hints).kind, InitialPoseKind::Anywhere as u64);
+
+    // What the tracker still believes is of before, and is neither sent nor saved.
+    robot.order("join", json!({ "name": "rviz" }));
+    robot.order(
+        "join",
+        json!({ "name": "docking", "topic": "localization" }),
+    );
+    assert_eq!(state(robot), "active");
+    let before = tracked(stamp(0));
+    send_pose(&poses, &before);
+    of_scan(robot, "localization", before.stamp.measured_ns);
+    assert_eq!(state(robot), "active");
+    let said = until_now(robot);
+    assert!(
+        !said.iter().any(|said| said["event"] == "amcl_pose"),
+        "{said:?}"
+    );
+    send_pose(&poses, &searching(100));
+    let sure = tracked(stamp(200));
+    send_pose(&poses, &sure);
+    of_scan(robot, "amcl_pose", sure.stamp.measured_ns);
+    // The turn after the one in which it was sent answers.
+    for _ in 0..2 {
+        assert_eq!(state(robot), "active");
+    }
+    let text = std::fs::read_to_string(&saved).unwrap();
+    assert!(
+        text.contains("\nx: 3.0\ny: 1.0\nz: 0.0\nyaw: 0.25\n"),
+        "{text}"
+    );
+    assert!(
+        text.starts_with("timestamp: 1700000000.200000000\nframe_id: \"map\"\n"),
+        "{text}"
+    );
+    joined.stop();
+}
+
+#[test]
+fn a_simulation_that_is_paused_has_no_transform_of_the_future() {
+    let more = ["use_sim_time: true", "save_pose_rate: 0.0"];
+    let Some(mut joined) = active("ros-sim", "/", &more, &[]) else {
+        return;
+    };
+    let robot = &mut joined.robot;
+    robot.order("follow", json!({}));
+    let start = stamp(0).measured_ns;
+    robot.order("clock", json!({ "ns": start }));
+    // Its subscriptions have come when its call is answered.
+    assert_eq!(state(robot), "active");
+    let poses = poses_of(&joined.graph);
+    send_pose(&poses, &tracked(stamp(0)));
+    let tolerance_ns = 500_000_000;
+    for ms in [0, 60, 130] {
+        robot.order("clock", json!({ "ns": start + ms * 1_000_000 }));
+        let tf = robot.wait_for("tf");
+        let at_ns = tf["stamp"].as_i64().unwrap() - tolerance_ns - start;
+        assert_eq!(at_ns, ms * 1_000_000);
+        // Time passes here, and not there.
+        for _ in 0..5 {
+            assert_eq!(state(robot), "active");
+        }
+    }
+    joined.stop();
+}

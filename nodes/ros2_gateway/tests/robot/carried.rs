@@ -1,0 +1,110 @@
+//! A robot in whose AMCL's place we are, that somebody carries away.
+
+use super::filter::engine;
+use super::nav2::{of_scan, parameters, planar, state, until_now};
+use super::*;
+
+/// Where the laser sits on the recorded robot.
+const MOUNT: Pose = Pose {
+    x: 0.78,
+    y: 0.0,
+    yaw: 0.0,
+};
+
+/// So many scans of the recording are left out while it is carried: some metres.
+const CARRIED: usize = 8;
+
+#[test]
+fn a_robot_that_is_carried_away_has_no_transform_before_it_is_found_again() {
+    let file = parameters("carried.yaml", &["save_pose_rate: 0.0"]);
+    let file = file.to_str().unwrap();
+    let options = ["--as", "amcl", "--autostart", "--params-file", file];
+    let Some(mut joined) = Joined::new("ros-carried", "/", &options) else {
+        return;
+    };
+    let mut nodes = engine(&joined.graph);
+    let tracker = executables::path("tracker");
+    let tracker = NodeProcess::start(tracker.to_str().unwrap(), &joined.graph, [""; 0]);
+    nodes.push(tracker);
+    let graph = &joined.graph;
+    let poses = graph.subscriber::<topic::Tracked>().unwrap();
+    let robot = &mut joined.robot;
+    robot.order("follow", json!({}));
+    robot.order(
+        "join",
+        json!({ "name": "docking", "topic": "localization" }),
+    );
+    robot.order("arrive", json!({}));
+    for node in [
+        "boundary_extractor",
+        "accumulator",
+        "peak_extractor",
+        "tracker",
+    ] {
+        wait_until_ready(graph, node);
+    }
+    let truths = Recording::open(World::of("malaga_corridor").recording()).unwrap();
+    let truths = truths.ground_truths().unwrap();
+    let (odometry, scans) = (recorded(Kind::Odometry), scans());
+    let stamp = |index: usize| scans[index].header.stamp.as_ns();
+    let odom_from_base = |index: usize| match &odometry[index] {
+        Message::Odometry(odometry) => odometry.pose.pose.planar().unwrap(),
+        other => panic!("{:?}", other.kind()),
+    };
+    let drive = |robot: &mut Robot, index: usize, time: usize, odom: Pose| -> PoseHeader {
+        let Pose { x, y, yaw } = odom;
+        let how = json!({ "index": index, "time": time, "odom": [x, y, yaw] });
+        robot.order("drive", how);
+        wait_for(graph, &poses, |header: &PoseHeader, _| {
+            let is_this = header.from_scan == 1 && header.stamp.measured_ns == stamp(time);
+            is_this.then_some(*header)
+        })
+    };
+    // It finds itself, and drives on for a while.
+    let (mut sure, mut index) = (0, 0);
+    while sure < 3 {
+        let pose = drive(robot, index, index, odom_from_base(index));
+        sure += usize::from(pose.is_unique());
+        index += 1;
+    }
+    // Then its wheels stand still while it is carried.
+    let (left, put) = (index - 1, index - 1 + CARRIED);
+    let jump = odom_from_base(left).then(odom_from_base(put).inverse());
+    let (mut was_lost, mut found) = (false, 0);
+    while found < 2 {
+        let from = index - left - 1 + put;
+        assert!(
+            from < scans.len(),
+            "it was not found before the recording ended"
+        );
+        let odom = jump.then(odom_from_base(from));
+        let pose = drive(robot, from, index, odom);
+        // What comes behind the verdict is of this scan.
+        of_scan(robot, "localization", stamp(index));
+        if pose.is_unique() {
+            assert!(was_lost, "a place elsewhere is not the same");
+            let transform = loop {
+                let transform = robot.wait_for("tf");
+                if transform["stamp"] == stamp(index) + 500_000_000 {
+                    break transform;
+                }
+            };
+            let laser = planar(&transform["pose"]).then(odom).then(MOUNT);
+            let truth = truths[&stamp(from)].pose;
+            assert!(laser.is_within(truth, 0.2, 0.05), "{laser:?} {truth:?}");
+            found += 1;
+        } else if !pose.is_believed() {
+            was_lost = true;
+            until_now(robot);
+            for _ in 0..2 {
+                assert_eq!(state(robot), "active");
+            }
+            let said = until_now(robot);
+            let is_transform = |said: &Value| said["event"] == "tf";
+            assert!(!said.iter().any(is_transform), "{said:?}");
+        }
+        index += 1;
+    }
+    nodes.into_iter().for_each(NodeProcess::stop);
+    joined.stop();
+}

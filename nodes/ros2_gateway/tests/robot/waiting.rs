@@ -1,0 +1,50 @@
+//! What the gateway waits for, as the page shows it.
+
+use super::nav2::parameters;
+use super::*;
+
+#[test]
+fn a_router_that_is_not_there_is_named_until_it_is() {
+    let isolated = Isolated::new("ros-router");
+    let graph = isolated.join("test");
+    let endpoint = format!("tcp/{}:7447", isolated.name().loopback());
+    let executable = env!("CARGO_BIN_EXE_ros2_gateway");
+    let gateway = NodeProcess::start(executable, &graph, ["--connect", &endpoint]);
+    wait_until_waiting(&graph, &format!("waiting for a router: none at {endpoint}"));
+    // Another gateway is one.
+    let elsewhere = Isolated::new("ros-elsewhere");
+    let other = elsewhere.join("other");
+    let router = NodeProcess::start(executable, &other, ["--listen", &endpoint]);
+    wait_until_waiting(
+        &graph,
+        "waiting for /map: no publisher, /scan: no publisher",
+    );
+    // And away again.
+    router.stop();
+    wait_until_waiting(&graph, &format!("waiting for a router: none at {endpoint}"));
+    gateway.stop();
+}
+
+#[test]
+fn inputs_that_do_not_come_are_named_and_the_node_is_ready_when_they_do() {
+    let file = parameters("waiting.yaml", &["save_pose_rate: 0.0"]);
+    let file = file.to_str().unwrap();
+    let options = ["--as", "amcl", "--autostart", "--params-file", file];
+    let Some(mut joined) = Joined::new("ros-waiting", "/", &options) else {
+        return;
+    };
+    let graph = &joined.graph;
+    let robot = &mut joined.robot;
+    robot.order("humble", json!({ "topic": "scan" }));
+    let humble = "/scan: a publisher with no type hash (ROS 2 Humble)";
+    wait_until_waiting(graph, &format!("/map: no publisher, {humble}"));
+    robot.order("arrive", json!({}));
+    wait_until_waiting(graph, &format!("waiting for {humble}"));
+    // Joined before, for it lasts no longer than the scan.
+    let health = graph.subscriber::<topic::Health>().unwrap();
+    robot.order("drive", json!({ "index": 0 }));
+    wait_until_green(graph, &health);
+    // The laser is silent again.
+    wait_until_waiting(graph, "waiting for /scan: no message any more");
+    joined.stop();
+}

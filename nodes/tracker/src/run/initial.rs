@@ -1,0 +1,151 @@
+//! What is said of where the robot is: when the node starts, and on topic `initial_pose`.
+
+use engine::tracking::Follower;
+use geometry::{Covariance, Pose};
+use messages::{InitialPose, InitialPoseKind, TrackReason};
+
+use super::turn::Turn;
+use super::{Node, TrackerError};
+
+/// What an operator says leads by this much over what a search finds: as much as a place
+/// that was known before.
+const INITIAL_LEAD: f64 = 10.0;
+
+/// What an operator's pose on the command line may err by: standard deviations, metres
+/// and radians.
+const INITIAL_ERROR: (f64, f64) = (0.5, 0.26);
+
+/// Where the robot is said to be.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(super) struct Initial {
+    /// Of the base, in the map, with its covariance.
+    base: (Pose, Covariance),
+    /// Whether that counts before a scan confirms it.
+    is_believed: bool,
+}
+
+impl Initial {
+    /// As the command line says it.
+    pub(super) fn of_option(pose: Pose) -> Self {
+        let (metres, radians) = INITIAL_ERROR;
+        Initial {
+            base: (pose, Covariance::from_deviations(metres, metres, radians)),
+            is_believed: false,
+        }
+    }
+
+    /// As a message says it; `None` where the robot may be anywhere.
+    fn of_message(message: &InitialPose) -> Result<Option<Self>, String> {
+        let kind = InitialPoseKind::from_code(message.kind)
+            .ok_or_else(|| format!("its kind is {}: allowed are 0, 1 and 2", message.kind))?;
+        if kind == InitialPoseKind::Anywhere {
+            return Ok(None);
+        }
+        let covariance = Covariance::from_rows(message.covariance);
+        let pose = Pose::from(message.map_from_base);
+        match pose.is_finite() && covariance.0.cholesky().is_some() {
+            true => Ok(Some(Initial {
+                base: (pose, covariance),
+                is_believed: kind == InitialPoseKind::Believed,
+            })),
+            false => Err("the pose or its covariance is not valid".to_owned()),
+        }
+    }
+}
+
+impl Node {
+    /// Takes what somebody says; the newest counts.
+    pub(super) fn take_initial(&mut self, message: &InitialPose) -> Result<(), TrackerError> {
+        match Initial::of_message(message) {
+            Ok(Some(initial)) => self.initial = Some(initial),
+            Ok(None) => self.start_over()?,
+            Err(reason) => self.refuse(&format!("initial pose rejected: {reason}"))?,
+        }
+        Ok(())
+    }
+
+    /// Forgets where the robot was: the next scan is searched as after a start.
+    fn start_over(&mut self) -> Result<(), TrackerError> {
+        tracing::info!("asked to start over: the pose is forgotten");
+        if let Turn::Search { scan, .. } = self.turn {
+            // Its search was about what is forgotten; each scan has one pose all the same.
+            self.turn = Turn::Idle;
+            self.send_nothing(&scan, TrackReason::NoScan)?;
+        }
+        self.tracker = Follower::new(&self.config.follow);
+        self.asked = None;
+        self.initial = None;
+        self.remembered = None;
+        self.last = None;
+        self.last_state = None;
+        Ok(())
+    }
+
+    /// Starts at the pose that was said, if one was; whether the tracker is set there by
+    /// the scan whose turn it is, and follows from now on.
+    pub(super) fn begin_at_initial(&mut self) -> bool {
+        let Some(Initial { base, is_believed }) = self.initial.take() else {
+            return false;
+        };
+        let target = self.target().from_base(base.0);
+        let covariance = base.1.carried(base.0, target);
+        self.asked = None;
+        match &self.world {
+            Some(world) if is_believed => {
+                let seen = world.seen(&self.ends, &self.config.fit);
+                self.tracker.start_at(&seen, target, covariance);
+                true
+            }
+            _ => {
+                self.tracker.expect(target, covariance, INITIAL_LEAD);
+                false
+            }
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use bytemuck::Zeroable;
+
+    use super::*;
+
+    fn message(kind: u64) -> InitialPose {
+        InitialPose {
+            kind,
+            map_from_base: Pose::new(1.0, 2.0, 0.5).into(),
+            covariance: Covariance::from_deviations(0.1, 0.1, 0.1).to_rows(),
+            ..InitialPose::zeroed()
+        }
+    }
+
+    #[test]
+    fn a_pose_is_a_hint_or_believed_and_anywhere_is_none() {
+        for (kind, is_believed) in [(0, false), (1, true)] {
+            let initial = Initial::of_message(&message(kind)).unwrap().unwrap();
+            assert_eq!(initial.is_believed, is_believed);
+            assert_eq!(initial.base.0, Pose::new(1.0, 2.0, 0.5));
+        }
+        // What stands for the pose is not read.
+        let anywhere = InitialPose {
+            kind: 2,
+            map_from_base: Pose::new(f64::NAN, 0.0, 0.0).into(),
+            ..InitialPose::zeroed()
+        };
+        assert_eq!(Initial::of_message(&anywhere), Ok(None));
+        assert!(!Initial::of_option(Pose::IDENTITY).is_believed);
+    }
+
+    #[test]
+    fn what_is_no_pose_is_refused() {
+        let refused = |message: &InitialPose| Initial::of_message(message).unwrap_err();
+        let reason = refused(&message(3));
+        assert_eq!(reason, "its kind is 3: allowed are 0, 1 and 2");
+        let mut wrong = message(1);
+        wrong.map_from_base.x = f64::INFINITY;
+        assert!(refused(&wrong).contains("not valid"));
+        let mut wrong = message(0);
+        wrong.covariance = [0.0; 9];
+        assert!(refused(&wrong).contains("not valid"));
+    }
+}

@@ -1,0 +1,94 @@
+//! What somebody says of where the robot is: the tracker forgets its pose when it is told
+//! that the robot may be anywhere, and believes a pose at once that it is told to believe.
+#![allow(
+    clippy::unwrap_used,
+    reason = "the lint spares test functions but not what they share"
+)]
+
+use geometry::{Covariance, Pose};
+use messages::{InitialPose, InitialPoseKind, PoseHeader, Stamp, TrackReason, TrackState, topic};
+use recording::Recording;
+use transport::Publisher;
+use transport::testing::{Isolated, wait_for};
+
+use super::lost_searches::Robot;
+
+/// What the tracker says of the recording's scan of this number.
+fn pose_of(robot: &Robot, counter: u64) -> PoseHeader {
+    let scan = robot.send(counter);
+    wait_for(&robot.graph, &robot.poses, |pose, _| {
+        (pose.from_scan == 1 && pose.stamp == scan.stamp).then_some(*pose)
+    })
+}
+
+/// Where the laser was at the recording's scan of this number.
+fn truth(robot: &Robot, counter: u64) -> Pose {
+    let recording = Recording::open(robot.world.recording()).unwrap();
+    let truths = recording.ground_truths().unwrap();
+    let scan = &robot.world.scans()[counter as usize];
+    truths[&scan.header.stamp.as_ns()].pose
+}
+
+fn say(to: &Publisher<topic::InitialPoseTopic>, kind: InitialPoseKind, pose: Pose) {
+    let mut loan = to.loan(0).unwrap();
+    *loan.header_mut() = InitialPose {
+        kind: kind as u64,
+        map_from_base: pose.into(),
+        covariance: Covariance::from_deviations(0.1, 0.1, 0.05).to_rows(),
+        stamp: Stamp::default(),
+    };
+    loan.send().unwrap();
+}
+
+/// Sends scans from this one on until one is Unique, at the true place; the next number.
+fn drive_until_unique(robot: &Robot, mut counter: u64) -> u64 {
+    loop {
+        let pose = pose_of(robot, counter);
+        if pose.is_unique() {
+            let (found, truth) = (Pose::from(pose.map_from_laser), truth(robot, counter));
+            // As near as all answers on this recording are.
+            assert!(found.is_within(truth, 0.2, 0.05), "{found:?} {truth:?}");
+            return counter + 1;
+        }
+        counter += 1;
+    }
+}
+
+#[test]
+fn a_tracker_that_starts_over_forgets_its_pose_and_finds_the_robot_again() {
+    let isolated = Isolated::new("start-over");
+    let robot = Robot::start(&isolated);
+    let said = robot.graph.publisher().unwrap();
+    let next = drive_until_unique(&robot, 0);
+    // A hint that waits for a scan is dropped with it.
+    say(&said, InitialPoseKind::Hint, truth(&robot, next));
+    say(&said, InitialPoseKind::Anywhere, Pose::IDENTITY);
+    let pose = pose_of(&robot, next);
+    assert_eq!(pose.state, TrackState::Searching as u32);
+    // What is kept of now are the places that this scan alone has.
+    let reason = TrackReason::from_code(pose.reason);
+    let is_first = [TrackReason::SeveralPlaces, TrackReason::TooEarly];
+    assert!(is_first.map(Some).contains(&reason), "{reason:?}");
+    assert_eq!(pose.since_ns, pose.stamp.measured_ns);
+    drive_until_unique(&robot, next + 1);
+    robot.stop();
+}
+
+#[test]
+fn a_pose_is_believed_at_once_only_where_that_is_said() {
+    let isolated = Isolated::new("believe");
+    let robot = Robot::start(&isolated);
+    let said = robot.graph.publisher().unwrap();
+    say(&said, InitialPoseKind::Hint, truth(&robot, 0));
+    let pose = pose_of(&robot, 0);
+    assert_eq!(pose.state, TrackState::Searching as u32);
+    say(&said, InitialPoseKind::Believed, truth(&robot, 1));
+    let pose = pose_of(&robot, 1);
+    assert!(pose.is_unique(), "{}", pose.state);
+    let (found, truth) = (Pose::from(pose.map_from_laser), truth(&robot, 1));
+    assert!(found.is_within(truth, 0.2, 0.05), "{found:?} {truth:?}");
+    // It goes on from there.
+    let pose = pose_of(&robot, 2);
+    assert!(pose.is_unique(), "{}", pose.state);
+    robot.stop();
+}
