@@ -242,6 +242,7 @@ mod tests {
                 cut: false,
                 poses_evaluated: 99,
             },
+            lead: 9,
             highest_possible: 200,
             beams_used: 11,
             beams_silent: 4,

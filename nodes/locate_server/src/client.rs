@@ -16,7 +16,7 @@ use crate::LocateError;
 use crate::error::REFUSED;
 
 /// Between two attempts, where nobody answers or all are busy.
-const PAUSE: Duration = Duration::from_millis(20);
+pub(crate) const PAUSE: Duration = Duration::from_millis(20);
 
 /// How long an attempt may say nothing before another one is made beside it; each that
 /// is under way doubles it, so that slow servers are not asked again and again.
@@ -38,12 +38,45 @@ pub fn ask(
     (header, ranges): (&ScanHeader, &[f32]),
     deadline: Duration,
 ) -> Result<Received<topic::Hypotheses>, LocateError> {
-    let preamble = Preamble {
-        sender: u64::from_le_bytes(first_bytes(&session.zid().to_le_bytes())),
-        sequence: header.stamp.counter,
-        clock_ns: monotonic_ns(),
-    };
-    let request = network_payload::encode::<topic::Scan>(&preamble, header, ranges)?;
+    let encoding = network_payload::encoding::<topic::Scan>();
+    let question = Question::new(session, (header, ranges), &encoding)?;
+    let (encoding, payload) = ask_bytes(session, map, &question, deadline)?;
+    let mut answer = network_payload::decode::<topic::Hypotheses>(&encoding, &payload)?;
+    answer.rebase(monotonic_ns());
+    Ok(answer)
+}
+
+/// A scan as bytes, and what they say of themselves.
+pub(crate) struct Question {
+    encoding: String,
+    payload: Vec<u8>,
+}
+
+impl Question {
+    pub(crate) fn new(
+        session: &Session,
+        (header, ranges): (&ScanHeader, &[f32]),
+        encoding: &str,
+    ) -> Result<Self, LocateError> {
+        let preamble = Preamble {
+            sender: u64::from_le_bytes(first_bytes(&session.zid().to_le_bytes())),
+            sequence: header.stamp.counter,
+            clock_ns: monotonic_ns(),
+        };
+        Ok(Question {
+            encoding: encoding.to_owned(),
+            payload: network_payload::encode::<topic::Scan>(&preamble, header, ranges)?,
+        })
+    }
+}
+
+/// The answer to a question as bytes, and what they say of themselves.
+pub(crate) fn ask_bytes(
+    session: &Session,
+    map: &str,
+    question: &Question,
+    deadline: Duration,
+) -> Result<(String, Vec<u8>), LocateError> {
     let due = Instant::now() + deadline;
     let (events, received) = unbounded();
     // How many attempts are under way, and when to make the next one.
@@ -55,7 +88,7 @@ pub fn ask(
             return Err(LocateError::Late { deadline_ms });
         }
         if now >= next {
-            attempt(session, map, &request, due - now, events.clone())?;
+            attempt(session, map, question, due - now, events.clone())?;
             // No deadline is so far that this overflows.
             (open, next) = (open + 1, now + SILENCE * 2_u32.pow(open));
         }
@@ -63,7 +96,10 @@ pub fn ask(
             continue;
         };
         match event {
-            Some(Ok(sample)) => return answer(&sample),
+            Some(Ok(sample)) => {
+                let payload = sample.payload().to_bytes().into_owned();
+                return Ok((sample.encoding().to_string(), payload));
+            }
             Some(Err(error)) => refusal(&error).map_or(Ok(()), Err)?,
             None => {
                 open -= 1;
@@ -71,14 +107,6 @@ pub fn ask(
             }
         }
     }
-}
-
-fn answer(sample: &Sample) -> Result<Received<topic::Hypotheses>, LocateError> {
-    let encoding = sample.encoding().to_string();
-    let payload = sample.payload().to_bytes();
-    let mut answer = network_payload::decode::<topic::Hypotheses>(&encoding, &payload)?;
-    answer.rebase(monotonic_ns());
-    Ok(answer)
 }
 
 /// What an attempt receives; None, at last, when nobody will answer any more.
@@ -104,7 +132,7 @@ impl Drop for Attempt {
 fn attempt(
     session: &Session,
     map: &str,
-    request: &[u8],
+    question: &Question,
     remaining: Duration,
     events: Sender<Event>,
 ) -> Result<(), LocateError> {
@@ -113,8 +141,8 @@ fn attempt(
     let attempt = Attempt(events);
     session
         .get(format!("{key}?deadline_ms={milliseconds}"))
-        .payload(request)
-        .encoding(Encoding::from(network_payload::encoding::<topic::Scan>()))
+        .payload(question.payload.as_slice())
+        .encoding(Encoding::from(question.encoding.as_str()))
         .timeout(remaining)
         .callback(move |reply| attempt.deliver(Some(reply.into_result())))
         .wait()

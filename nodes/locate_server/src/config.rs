@@ -9,6 +9,9 @@ use engine::directions::Directions;
 use engine::grid::CellRules;
 use engine::localizer::LocalizerConfig;
 use engine::peaks::PeakConfig;
+use map::{MapError, MapFile};
+
+use crate::shard::Shard;
 
 /// Locates scans on a map, for clients on Zenoh.
 ///
@@ -17,12 +20,22 @@ use engine::peaks::PeakConfig;
 #[derive(Debug, Clone, Parser)]
 #[command(name = "locate_server", version)]
 pub struct Config {
-    /// The map, a YAML file as map_server reads it
-    #[arg(long, value_name = "FILE")]
-    pub map: PathBuf,
+    /// The map, a YAML file as map_server reads it; several are searched together
+    #[arg(long, value_name = "FILE", required_unless_present = "maps")]
+    pub map: Vec<PathBuf>,
 
-    /// The map's name, the last part of backcast/locate/NAME: 1 to 64 of a-z A-Z 0-9 -
-    /// _ . [default: that of the folder in which the map lies]
+    /// The maps of a building, searched together: a folder of maps, or a file that
+    /// lists them with names and floors
+    #[arg(long, value_name = "FOLDER|FILE", conflicts_with = "map")]
+    pub maps: Option<PathBuf>,
+
+    /// The part of the set that this server holds: 2/4 is every fourth map from the second
+    /// on. It is asked at backcast/locate/NAME.2-of-4, all of them by `ask_shards`
+    #[arg(long, value_name = "NUMBER/OF")]
+    pub shard: Option<Shard>,
+
+    /// The name of the map or the maps, the last part of backcast/locate/NAME: 1 to 64 of
+    /// a-z A-Z 0-9 - _ . [default: that of the folder in which they lie]
     #[arg(long, value_name = "NAME", value_parser = network_payload::name)]
     pub name: Option<String>,
 
@@ -68,12 +81,39 @@ impl Config {
         }
     }
 
-    /// What the map is called.
+    /// The maps, by name.
+    ///
+    /// # Errors
+    /// If the set cannot be read, or two maps have one name.
+    pub fn files(&self) -> Result<Vec<MapFile>, MapError> {
+        match (&self.maps, &*self.map) {
+            (Some(set), _) => map::set_of(set),
+            // One map needs no name.
+            (None, [yaml]) => Ok(vec![MapFile {
+                name: self.name(),
+                yaml: yaml.clone(),
+                floor: None,
+            }]),
+            (None, files) => map::set_of_files(files),
+        }
+    }
+
+    /// The name under which it is asked: that of the shard, where it holds one.
+    #[must_use]
+    pub fn asked_name(&self) -> String {
+        let name = self.name();
+        self.shard
+            .map_or_else(|| name.clone(), |shard| shard.name(&name))
+    }
+
+    /// What the map or the set of maps is called.
     #[must_use]
     pub fn name(&self) -> String {
         let folder = || {
-            let path = self.map.canonicalize().ok()?;
-            let folder = path.parent()?.file_name()?.to_str()?.to_owned();
+            let path = self.maps.as_ref().or(self.map.first())?;
+            let path = path.canonicalize().ok()?;
+            let folder = if path.is_dir() { &path } else { path.parent()? };
+            let folder = folder.file_name()?.to_str()?.to_owned();
             network_payload::name(&folder).ok()
         };
         let given = self.name.clone().or_else(folder);

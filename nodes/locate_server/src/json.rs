@@ -42,6 +42,8 @@ struct Answer {
     stamp_ns: i64,
     /// In hexadecimal: a number of 64 bits is not safe in JSON.
     map_id: String,
+    /// Its name, where several maps are searched; else null.
+    map: Option<String>,
     verdict: String,
     /// Other places that fit about as well.
     alternatives: u32,
@@ -57,6 +59,8 @@ struct Answer {
 
 #[derive(Debug, Serialize)]
 struct Place {
+    /// The name of its map, where several are searched; else null.
+    map: Option<String>,
     /// `map_from_laser`, metres and radians.
     #[serde(flatten)]
     laser: Placed,
@@ -104,9 +108,11 @@ pub(crate) fn read(
 pub(crate) fn write(
     header: &HypothesesHeader,
     hypotheses: &[Hypothesis],
+    name_of: &dyn Fn(u64) -> Option<String>,
 ) -> Result<Vec<u8>, serde_json::Error> {
     let verdict = Verdict::from_code(header.verdict).unwrap_or(Verdict::NoScan);
     let place = |place: &Hypothesis| Place {
+        map: name_of(place.map_id),
         laser: place.map_from_laser.into(),
         covariance: place.covariance,
         score: place.score,
@@ -116,6 +122,7 @@ pub(crate) fn write(
     serde_json::to_vec(&Answer {
         stamp_ns: header.stamp.measured_ns,
         map_id: format!("{:016x}", header.map_id),
+        map: name_of(header.map_id),
         verdict: verdict.to_string(),
         alternatives: header.alternatives,
         confidence: header.confidence,
@@ -173,6 +180,7 @@ mod tests {
             ..Zeroable::zeroed()
         };
         let place = Hypothesis {
+            map_id: 0xab,
             map_from_laser: Pose2 {
                 x: 1.0,
                 y: 2.0,
@@ -180,9 +188,16 @@ mod tests {
             },
             ..Zeroable::zeroed()
         };
-        let text = write(&header, &[place]).unwrap();
+        let text = write(&header, &[place], &|id| {
+            (id == 0xab).then(|| "attic".into())
+        })
+        .unwrap();
         let value: serde_json::Value = serde_json::from_slice(&text).unwrap();
         assert_eq!(value["map_id"], "00000000000000ab");
+        assert_eq!(
+            (&value["map"], &value["hypotheses"][0]["map"]),
+            (&"attic".into(), &"attic".into())
+        );
         assert_eq!(value["verdict"], "Unique");
         assert_eq!(value["hypotheses"][0]["yaw"], 0.5);
         assert_eq!(value["hypotheses"][0]["map_from_base"]["x"], 0.0);

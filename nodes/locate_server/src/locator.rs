@@ -5,29 +5,48 @@ use bytemuck::Zeroable;
 use engine::EngineError;
 use engine::grid::{CellRules, GridFrame};
 use engine::localizer::Prior;
-pub use engine::locator::Workspace;
 use engine::locator::{LocatorConfig, OccupancyView};
-use engine::peaks::{Places, Target};
+use engine::map_set::MapSet;
+pub use engine::map_set::Workspace;
+use engine::peaks::{Place, Places, Target};
 use engine::scan::Scan;
 use map::OccupancyGrid;
 use messages::{HypothesesHeader, Hypothesis, ScanHeader};
 
-/// A map that is ready to be searched, by any number of threads.
+use crate::shard::{Part, Shard};
+
+/// A map, or several, ready to be searched by any number of threads.
 #[derive(Debug)]
 pub struct Locator {
-    map_id: u64,
-    engine: engine::locator::Locator,
+    /// Ids and names, in the order of the set.
+    maps: Vec<(u64, String)>,
+    /// Their numbers and ids in the whole set.
+    held: Vec<(u32, u64)>,
+    /// Which part of the set it is, and the names of all maps of that.
+    part_of: (Shard, Vec<String>),
+    set: MapSet,
+}
+
+/// A map of a set, ready to be searched.
+#[derive(Debug)]
+pub struct SearchedMap {
+    id: u64,
+    number: u32,
+    name: String,
+    locator: engine::locator::Locator,
 }
 
 /// Header and items of `hypotheses`, all but the times of computing.
 pub type Answer = (HypothesesHeader, Vec<Hypothesis>);
 
-impl Locator {
-    /// Prepares a map, which takes from milliseconds to seconds.
+impl SearchedMap {
+    /// Prepares the map of this number and name in the whole set, which takes from
+    /// milliseconds to seconds.
     ///
     /// # Errors
     /// If the map has no occupied or no free cell, or a setting is out of range.
     pub fn new(
+        (number, name): (u32, String),
         map: &OccupancyGrid,
         rules: CellRules,
         config: LocatorConfig,
@@ -41,16 +60,64 @@ impl Locator {
             occupancy: &map.cells,
             rules,
         };
-        Ok(Locator {
-            map_id: map.id(),
-            engine: engine::locator::Locator::new(view, config, Prior::None)?,
+        Ok(SearchedMap {
+            id: map.id(),
+            number,
+            name,
+            locator: engine::locator::Locator::new(view, config, Prior::None)?,
         })
     }
+}
 
-    /// The id of the map.
+impl Locator {
+    /// Prepares one map.
+    ///
+    /// # Errors
+    /// As [`SearchedMap::new`].
+    pub fn new(
+        map: &OccupancyGrid,
+        rules: CellRules,
+        config: LocatorConfig,
+    ) -> Result<Self, EngineError> {
+        let map = SearchedMap::new((0, String::new()), map, rules, config)?;
+        Ok(Locator::of_set(
+            vec![map],
+            (Shard::WHOLE, vec![String::new()]),
+        ))
+    }
+
+    /// Searches maps together, of which there is at least one. They are that part of a set
+    /// whose maps have these names.
+    #[must_use]
+    pub fn of_set(maps: Vec<SearchedMap>, part_of: (Shard, Vec<String>)) -> Self {
+        let held = maps.iter().map(|map| (map.number, map.id)).collect();
+        let (ids, locators): (_, Vec<_>) = maps
+            .into_iter()
+            .map(|map| ((map.id, map.name), map.locator))
+            .unzip();
+        Locator {
+            maps: ids,
+            held,
+            part_of,
+            set: MapSet::new(locators),
+        }
+    }
+
+    /// The id of the map; of several, a number that differs where one of them or their order
+    /// does.
     #[must_use]
     pub fn map_id(&self) -> u64 {
-        self.map_id
+        let ids = self.maps.iter().map(|&(id, _)| id);
+        ids.reduce(|all, id| all.rotate_left(1) ^ id)
+            .unwrap_or_default()
+    }
+
+    /// The name of a map, where there are several.
+    #[must_use]
+    pub fn name_of(&self, map_id: u64) -> Option<&str> {
+        let mut maps = self.maps.iter().filter(|_| self.maps.len() > 1);
+        let found = maps.find(|&&(id, _)| id == map_id);
+        found.map(|(_, name)| name.as_str())
     }
 
     /// Finds the places of a scan; `None` if `stop` said so before it was done.
@@ -64,26 +131,43 @@ impl Locator {
         stop: &dyn Fn() -> bool,
     ) -> Result<Option<Answer>, EngineError> {
         let scan = Scan::of(header, ranges);
-        let found = self.engine.locate_unless(workspace, &scan, None, stop)?;
+        let found = self.set.locate_unless(workspace, &scan, None, stop)?;
         Ok(found.map(|found| {
             let outcome = found.outcome;
             let votes = (outcome.found.best.into(), outcome.highest_possible);
-            described(header, self.map_id, votes, found.places)
+            described(header, &self.maps, votes, found.places)
         }))
+    }
+
+    /// The same as it is merged with what others find on other maps of the set.
+    ///
+    /// # Errors
+    /// As [`Locator::locate`].
+    pub fn locate_part(
+        &self,
+        workspace: &mut Workspace,
+        (header, ranges): (&ScanHeader, &[f32]),
+        stop: &dyn Fn() -> bool,
+    ) -> Result<Option<Part>, EngineError> {
+        let scan = Scan::of(header, ranges);
+        let found = self.set.locate_unless(workspace, &scan, None, stop)?;
+        let part_of = || self.part_of.clone();
+        Ok(found.map(|found| Part::new(part_of(), &self.held, &found)))
     }
 }
 
 fn described(
     scan: &ScanHeader,
-    map_id: u64,
+    maps: &[(u64, String)],
     (best, highest_possible): (u32, u32),
     places: &Places,
 ) -> Answer {
     let mount_known = scan.mount_known == 1;
+    let id_of = |place: &Place| maps[place.map as usize].0;
     let target = Target::of(mount_known.then(|| scan.base_from_laser.into()), false);
     let header = HypothesesHeader {
         stamp: scan.stamp,
-        map_id,
+        map_id: places.places.first().map_or(maps[0].0, id_of),
         verdict: places.verdict as u32,
         alternatives: places.alternatives,
         confidence: places.confidence as f32,
@@ -94,6 +178,6 @@ fn described(
         ..HypothesesHeader::zeroed()
     };
     let places = places.places.iter();
-    let hypotheses = places.map(|place| place.hypothesis(map_id, target));
+    let hypotheses = places.map(|place| place.hypothesis(id_of(place), target));
     (header, hypotheses.collect())
 }

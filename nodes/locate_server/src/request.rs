@@ -15,8 +15,12 @@ use crate::json;
 pub const JSON: &str = "application/json;backcast.Scan/v1";
 /// That of its answer.
 pub const JSON_ANSWER: &str = "application/json;backcast.Hypotheses/v2";
+/// The encoding of a request in postcard to one shard of a set of maps.
+pub const PART: &str = "application/postcard;backcast.ScanForPart/v1";
+/// That of its answer.
+pub const PART_ANSWER: &str = "application/postcard;backcast.Part/v1";
 /// What a request may say of itself.
-pub(crate) const ENCODINGS: [&str; 2] = ["application/postcard;backcast.Scan/v2", JSON];
+pub(crate) const ENCODINGS: [&str; 3] = ["application/postcard;backcast.Scan/v2", JSON, PART];
 /// Characters of a foreign encoding that an error shows.
 const SHOWN: usize = 80;
 
@@ -25,6 +29,8 @@ const SHOWN: usize = 80;
 pub enum Form {
     /// As the bridge sends it; the preamble of the request is that of the answer.
     Postcard(Preamble),
+    /// The same to one shard of a set of maps, whose answer is merged with others'.
+    Part,
     /// JSON.
     Json,
 }
@@ -60,32 +66,43 @@ pub fn read(encoding: &str, payload: &[u8], now_ns: i64) -> Result<Request, Loca
             ranges,
         });
     }
-    if encoding != network_payload::encoding::<topic::Scan>() {
+    let as_scan = network_payload::encoding::<topic::Scan>();
+    if ![&*as_scan, PART].contains(&encoding) {
         let found = encoding.chars().take(SHOWN).collect();
         return Err(LocateError::Encoding { found });
     }
-    let mut scan = network_payload::decode::<topic::Scan>(encoding, payload)?;
+    let mut scan = network_payload::decode::<topic::Scan>(&as_scan, payload)?;
     scan.rebase(now_ns);
+    let form = match encoding {
+        PART => Form::Part,
+        _ => Form::Postcard(scan.preamble),
+    };
     Ok(Request {
-        form: Form::Postcard(scan.preamble),
+        form,
         header: scan.header,
         ranges: scan.items,
     })
 }
 
 /// An answer in this form, which is sent at `now_ns` of the monotonic clock: its
-/// encoding and its bytes.
+/// encoding and its bytes. Maps have names where several are searched.
 ///
 /// # Errors
-/// If the engine gave what cannot be sent.
+/// If the engine gave what cannot be sent, or a part of an answer is wanted.
 pub fn write(
     form: Form,
     header: &HypothesesHeader,
     hypotheses: &[Hypothesis],
+    name_of: &dyn Fn(u64) -> Option<String>,
     now_ns: i64,
 ) -> Result<(String, Vec<u8>), LocateError> {
     match form {
-        Form::Json => Ok((JSON_ANSWER.into(), json::write(header, hypotheses)?)),
+        // Hypotheses are no part: that is written by who has it.
+        Form::Part => Err(LocateError::NoShard),
+        Form::Json => Ok((
+            JSON_ANSWER.into(),
+            json::write(header, hypotheses, name_of)?,
+        )),
         Form::Postcard(asked) => {
             let preamble = Preamble {
                 clock_ns: now_ns,
@@ -148,7 +165,7 @@ mod tests {
             "as old as there"
         );
         let header = HypothesesHeader::zeroed();
-        let (encoding, payload) = write(asked.form, &header, &[], 60_000).unwrap();
+        let (encoding, payload) = write(asked.form, &header, &[], &|_| None, 60_000).unwrap();
         let answer = network_payload::decode::<topic::Hypotheses>(&encoding, &payload).unwrap();
         assert_eq!((answer.preamble.sender, answer.preamble.sequence), (7, 3));
         assert_eq!(answer.preamble.clock_ns, 60_000);

@@ -1,9 +1,11 @@
 //! Prepares the map, opens the dispatcher, and reports its state.
 
+use std::path::Path;
 use std::sync::Arc;
 use std::time::{Duration, Instant};
 
 use engine::locator::LocatorConfig;
+use map::MapFile;
 use messages::NodeState;
 use transport::{Flow, Graph, Waker, wall_ns};
 use zenoh::liveliness::LivelinessToken;
@@ -15,8 +17,8 @@ use zenoh_session::KeyError;
 
 use crate::counts::Counts;
 use crate::dispatcher::Dispatcher;
-use crate::locator::Locator;
-use crate::{Config, LocateError, worker};
+use crate::locator::{Locator, SearchedMap};
+use crate::{Config, LocateError, Shard, worker};
 
 /// Between two looks at the counters, and at who else is there.
 const TICK: Duration = Duration::from_millis(200);
@@ -51,22 +53,27 @@ pub fn run(graph: &Graph, config: &Config) -> Result<(), LocateError> {
 }
 
 fn prepare(config: &Config) -> Result<Locator, LocateError> {
-    let path = &config.map;
-    let grid = map::load_noting(path, |key| tracing::warn!("{key}")).map_err(|source| {
-        LocateError::Map {
-            path: path.clone(),
-            source: Box::new(source),
-        }
-    })?;
     let how = LocatorConfig {
         localizer: config.localizer.clone(),
         peaks: config.peaks,
     };
-    let locator = Locator::new(&grid, config.cells, how);
-    locator.map_err(|source| LocateError::UnusableMap {
-        path: path.clone(),
-        source,
-    })
+    let failed = |path: &Path, source| LocateError::Map {
+        path: path.to_owned(),
+        source: Box::new(source),
+    };
+    let set = config.maps.as_deref().unwrap_or(Path::new("--map"));
+    let mut maps = Vec::new();
+    let files = config.files().map_err(|source| failed(set, source))?;
+    // Without shards, all of them are held here.
+    let shard = config.shard.unwrap_or(Shard::WHOLE);
+    for (number, MapFile { name, yaml, .. }) in shard.take(&files)? {
+        let grid = map::load_noting(&yaml, |key| tracing::warn!("{key}"));
+        let grid = grid.map_err(|source| failed(&yaml, source))?;
+        let map = SearchedMap::new((number, name), &grid, config.cells, how.clone());
+        maps.push(map.map_err(|source| LocateError::UnusableMap { path: yaml, source })?);
+    }
+    let names = files.into_iter().map(|file| file.name).collect();
+    Ok(Locator::of_set(maps, (shard, names)))
 }
 
 /// What stands on the network, as long as this lives.
@@ -91,7 +98,7 @@ impl Service {
         counts: &Arc<Counts>,
         waker: Waker,
     ) -> Result<Self, LocateError> {
-        let key = network_payload::locate(&config.name());
+        let key = network_payload::locate(&config.asked_name());
         let workers = config.workers();
         let me = session.zid().to_string();
         let load = (workers, config.waiting.into());

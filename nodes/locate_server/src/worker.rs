@@ -10,6 +10,7 @@ use zenoh::Wait;
 use crate::counts::Counts;
 use crate::dispatcher::{Job, WorkQueue};
 use crate::locator::{Locator, Workspace};
+use crate::request::{Form, PART_ANSWER};
 use crate::{LocateError, request};
 
 /// Answers until nobody takes requests any more.
@@ -46,10 +47,21 @@ fn answer(
     )?;
     let stop = || deadline.has_passed();
     let scan = (&asked.header, asked.ranges.as_slice());
+    if asked.form == Form::Part {
+        let Some(mut part) = locator.locate_part(workspace, scan, &stop)? else {
+            return Err(deadline.late());
+        };
+        part.search_ns = start.elapsed().as_nanos() as u64;
+        let bytes = postcard::to_allocvec(&part).map_err(|error| LocateError::Part {
+            reason: error.to_string(),
+        })?;
+        return Ok((PART_ANSWER.to_owned(), bytes));
+    }
     let Some((mut header, hypotheses)) = locator.locate(workspace, scan, &stop)? else {
         return Err(deadline.late());
     };
     header.search_ns = start.elapsed().as_nanos() as u64;
     header.sent_ns = monotonic_ns();
-    request::write(asked.form, &header, &hypotheses, header.sent_ns)
+    let name_of = |map_id| locator.name_of(map_id).map(str::to_owned);
+    request::write(asked.form, &header, &hypotheses, &name_of, header.sent_ns)
 }

@@ -41,10 +41,11 @@ impl Found {
         }
     }
 
-    /// Whether its lead is greater, as a share without rounding.
+    /// Whether its lead is greater, as a share without rounding, or equal on a map before.
     fn leads(&self, other: &Found) -> bool {
         let product = |a: u32, b: u32| u64::from(a) * u64::from(b);
-        product(self.lead.0, other.lead.1) > product(other.lead.0, self.lead.1)
+        let lead = product(self.lead.0, other.lead.1).cmp(&product(other.lead.0, self.lead.1));
+        lead.then(other.leading_map.cmp(&self.leading_map)).is_gt()
     }
 }
 
@@ -60,8 +61,8 @@ pub struct Merged {
     pub best_of: usize,
 }
 
-/// Brings what was found on several maps, in their order, to one answer, as if one search had
-/// found it: places are ordered by their scores, equal ones by the order of the maps, and a
+/// Brings what was found on several maps, in any order, to one answer, as if one search had
+/// found it: places are ordered by their scores, equal ones by the numbers of their maps, and a
 /// place on another map is an alternative like any other.
 ///
 /// Places with less than half of the votes of the best pose count on its map only.
@@ -83,8 +84,8 @@ pub fn merge(all: &[Found], config: &PeakConfig) -> Merged {
             places.map(move |place| (number, *place))
         })
         .collect();
-    // Stable: equal ones stay in the order of the maps.
-    places.sort_by(|(_, a), (_, b)| b.score.total_cmp(&a.score));
+    // Stable: equal ones of a map stay in their order.
+    places.sort_by(|(_, a), (_, b)| b.score.total_cmp(&a.score).then(a.map.cmp(&b.map)));
     let best_of = places.first().map_or(0, |&(number, _)| number);
     let may_lack = all.iter().any(|found| found.margin.may_lack);
     let margin = Margin {

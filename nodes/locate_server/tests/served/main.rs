@@ -4,6 +4,8 @@
     reason = "the lint spares test functions but not what they share"
 )]
 
+mod shards;
+
 use std::sync::atomic::{AtomicBool, AtomicUsize, Ordering};
 use std::thread::ScopedJoinHandle;
 use std::time::Duration;
@@ -37,18 +39,17 @@ fn world() -> World {
 
 impl Server {
     fn start(tag: &str, arguments: &[&str]) -> Self {
+        let map = world().map();
+        let common = ["--map", map.to_str().unwrap(), "--name", "corridor"];
+        Server::of(tag, &[&common, arguments].concat())
+    }
+
+    /// A server with these maps.
+    fn of(tag: &str, arguments: &[&str]) -> Self {
         let isolated = Isolated::new(tag);
         let graph = isolated.join("test");
         let listen = endpoint(&isolated);
-        let map = world().map();
-        let common = [
-            "--map",
-            map.to_str().unwrap(),
-            "--name",
-            "corridor",
-            "--listen",
-            &listen,
-        ];
+        let common = ["--listen", &listen];
         let executable = env!("CARGO_BIN_EXE_locate_server");
         let process = NodeProcess::start(executable, &graph, common.iter().chain(arguments));
         wait_until_ready(&graph, "locate_server");

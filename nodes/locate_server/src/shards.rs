@@ -1,0 +1,172 @@
+//! Asking all shards of a set of maps, for programs in Rust.
+
+use std::collections::BTreeSet;
+use std::time::{Duration, Instant};
+
+use engine::peaks::{Found, Merged, PeakConfig, Places, merge};
+use messages::{ScanHeader, Verdict};
+use zenoh::{Session, Wait};
+use zenoh_session::KeyError;
+
+use crate::LocateError;
+use crate::client::{PAUSE, Question, ask_bytes};
+use crate::request::{PART, PART_ANSWER};
+use crate::shard::{Part, Shard};
+
+/// Most bytes of a part, many times those of all candidates of a thousand maps' names.
+const MAX_PART_BYTES: usize = 16 << 20;
+
+/// What all shards say of a scan.
+#[derive(Debug, Clone, PartialEq)]
+pub struct OverMaps {
+    /// The places and the verdict; each place has the number of its map. Where maps were not
+    /// searched, nothing is `Unique`: the robot may be on one of them.
+    pub places: Places,
+    /// The names of all maps of the set, by their numbers.
+    pub maps: Vec<String>,
+    /// Those of which no server answered.
+    pub not_searched: Vec<String>,
+    /// Computing of the slowest shard.
+    pub slowest: Duration,
+}
+
+impl OverMaps {
+    /// The name of the best place's map.
+    #[must_use]
+    pub fn map(&self) -> Option<&str> {
+        let best = self.places.places.first()?;
+        self.maps.get(best.map as usize).map(String::as_str)
+    }
+}
+
+/// Asks all shards of the set of this name at once, each again and again until the deadline,
+/// and merges what they find: a server that dies meanwhile costs no answer where another one
+/// has the same shard, and is named by its maps where none has.
+///
+/// # Errors
+/// [`LocateError::Late`] if no shard answered in time, [`LocateError::Refused`] if the scan is
+/// none, and an error where servers disagree how many shards there are, or send what is not
+/// sound.
+pub fn ask_shards(
+    session: &Session,
+    set: &str,
+    (header, ranges): (&ScanHeader, &[f32]),
+    deadline: Duration,
+    config: &PeakConfig,
+) -> Result<OverMaps, LocateError> {
+    let due = Instant::now() + deadline;
+    let late = || LocateError::Late {
+        deadline_ms: deadline.as_millis(),
+    };
+    let of = loop {
+        if let Some(of) = shards(session, set)? {
+            break of;
+        }
+        if Instant::now() + PAUSE >= due {
+            return Err(late());
+        }
+        std::thread::sleep(PAUSE);
+    };
+    let question = Question::new(session, (header, ranges), PART)?;
+    let answers: Vec<_> = std::thread::scope(|scope| {
+        let ask = |number| {
+            let (name, question) = (Shard { number, of }.name(set), &question);
+            scope.spawn(move || part(session, &name, question, due))
+        };
+        let asked: Vec<_> = (1..=of).map(ask).collect();
+        let joined = asked.into_iter().map(std::thread::ScopedJoinHandle::join);
+        let answer =
+            |end: Result<_, _>| end.unwrap_or_else(|panic| std::panic::resume_unwind(panic));
+        joined.map(answer).collect()
+    });
+    let mut parts = Vec::new();
+    for answer in answers {
+        match answer {
+            Ok(part) => parts.push(part),
+            // The others have answers.
+            Err(LocateError::Late { .. }) => {}
+            Err(error) => return Err(error),
+        }
+    }
+    let Some(first) = parts.first() else {
+        return Err(late());
+    };
+    if parts.iter().any(|part| part.maps != first.maps) {
+        let reason = "servers have other maps than each other under one name".to_owned();
+        return Err(LocateError::Part { reason });
+    }
+    merged(&parts, config)
+}
+
+fn merged(parts: &[Part], config: &PeakConfig) -> Result<OverMaps, LocateError> {
+    let mut found: Vec<Found> = Vec::new();
+    for part in parts {
+        found.push(part.found()?);
+    }
+    let Merged { mut places, .. } = merge(&found, config);
+    let maps = parts[0].maps.clone();
+    let is_searched = |map: usize| parts.iter().any(|part| part.shard.holds(map));
+    let missing = maps.iter().enumerate();
+    let missing = missing.filter(|(map, _)| !is_searched(*map));
+    let not_searched: Vec<String> = missing.map(|(_, name)| name.clone()).collect();
+    if !not_searched.is_empty() && places.verdict == Verdict::Unique {
+        places.verdict = Verdict::Ambiguous;
+    }
+    let slowest = parts.iter().map(|part| part.search_ns).max();
+    Ok(OverMaps {
+        places,
+        maps,
+        not_searched,
+        slowest: Duration::from_nanos(slowest.unwrap_or_default()),
+    })
+}
+
+/// How many shards a set has, by the servers that are there; `None` where there is none.
+fn shards(session: &Session, set: &str) -> Result<Option<u16>, LocateError> {
+    let key = format!("{}/*/*/*/*", network_payload::locate(&format!("{set}.$*")));
+    let failed = KeyError::when("look who is at", &key);
+    let tokens = session.liveliness().get(&key).wait().map_err(failed)?;
+    let mut found = BTreeSet::new();
+    for reply in tokens {
+        let Ok(sample) = reply.into_result() else {
+            continue;
+        };
+        let name = sample.key_expr().as_str().split('/').nth(2);
+        let shard = name.and_then(|name| Shard::of_name(name, set));
+        found.extend(shard.map(|shard| shard.of));
+    }
+    match (found.len(), found.pop_first()) {
+        (0 | 1, of) => Ok(of),
+        (_, of) => {
+            let numbers: Vec<String> = of.iter().chain(&found).map(u16::to_string).collect();
+            let reason = format!(
+                "servers of {set} disagree how many shards there are: {}",
+                numbers.join(", ")
+            );
+            Err(LocateError::Part { reason })
+        }
+    }
+}
+
+fn part(
+    session: &Session,
+    name: &str,
+    question: &Question,
+    due: Instant,
+) -> Result<Part, LocateError> {
+    let remaining = due.saturating_duration_since(Instant::now());
+    let (encoding, payload) = ask_bytes(session, name, question, remaining)?;
+    let unsound = |reason: String| LocateError::Part { reason };
+    if encoding != PART_ANSWER {
+        return Err(unsound(format!(
+            "it is {encoding:?}: allowed is {PART_ANSWER:?}"
+        )));
+    }
+    let bytes = payload.len();
+    if bytes > MAX_PART_BYTES {
+        return Err(unsound(format!(
+            "it has {bytes} bytes: allowed are {MAX_PART_BYTES}"
+        )));
+    }
+    postcard::from_bytes(&payload).map_err(|error| unsound(error.to_string()))
+}
