@@ -86,14 +86,14 @@ impl<'a> Session<'a> {
         options: &Options,
         given: Option<&'a OccupancyGrid>,
     ) -> Result<Self, OfflineError> {
-        let mut maps = match given {
+        let mut session = Session::unprepared(recording, options)?;
+        session.maps = match given {
             Some(map) => Maps::given(map),
             None => Maps::recorded(recording)?,
         };
-        if maps.is_empty() {
+        if session.maps.is_empty() {
             return Err(no_map(recording));
         }
-        let mut session = Session::unprepared(recording, options, maps)?;
         if let Some(map) = given {
             // Without it there is nothing to be done for any scan.
             session.maps.since(i64::MIN, |_| Ok(()));
@@ -105,11 +105,7 @@ impl<'a> Session<'a> {
         Ok(session)
     }
 
-    fn unprepared(
-        recording: &'a Recording,
-        options: &Options,
-        maps: Maps<'a>,
-    ) -> Result<Self, OfflineError> {
+    fn unprepared(recording: &'a Recording, options: &Options) -> Result<Self, OfflineError> {
         let damage = |error| match error {
             RecordingError::NoTopic { .. } => damage_of(recording).unwrap_or(error),
             other => other,
@@ -120,7 +116,7 @@ impl<'a> Session<'a> {
             motion: Motion::of(recording, &topics, &options.motion),
             scans: Scans::of(recording, topics, options.every),
             prepare_cpu_ms: 0.0,
-            maps,
+            maps: Maps::none(),
             prepared: None,
             refusal: String::new(),
             notes: headings.notes().to_vec(),
@@ -144,7 +140,7 @@ impl<'a> Session<'a> {
         let Some(first) = maps.first() else {
             return Session::open(recording, options, None);
         };
-        let mut session = Session::unprepared(recording, options, Maps::none())?;
+        let mut session = Session::unprepared(recording, options)?;
         let prior = session.headings.source().prior();
         let cache = session.cache.as_ref();
         let prepare = || World::of_set(maps, &options.engine, prior, cache);

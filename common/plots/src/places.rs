@@ -132,6 +132,7 @@ mod tests {
         let place = Place {
             map: 0,
             possible: 100,
+            drawn_doubt: 0.0,
             map_from_laser: pose,
             covariance: Covariance::from_deviations(0.01, 0.01, 0.01),
             score: 1.0,

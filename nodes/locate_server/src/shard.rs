@@ -125,6 +125,7 @@ struct SentPlace {
     score: f64,
     intensity: u16,
     possible: u16,
+    drawn_doubt: f64,
     support: u64,
 }
 
@@ -148,6 +149,7 @@ impl Part {
             score: place.score,
             intensity: place.intensity,
             possible: place.possible,
+            drawn_doubt: place.drawn_doubt,
             support: place.support,
         };
         Part {
@@ -187,7 +189,7 @@ impl Part {
             let [x, y, yaw] = sent.pose;
             let numbers = sent.pose.iter().chain(&sent.covariance);
             let is_sound = numbers
-                .chain([&sent.score])
+                .chain([&sent.score, &sent.drawn_doubt])
                 .all(|number| number.is_finite())
                 && sent.possible > 0
                 && is_map(sent.map);
@@ -200,6 +202,7 @@ impl Part {
                     probability: 0.0,
                     intensity: sent.intensity,
                     possible: sent.possible,
+                    drawn_doubt: sent.drawn_doubt,
                     support: sent.support,
                 })
                 .ok_or_else(|| unsound("a place has no pose on a map of the shard"))
@@ -254,6 +257,7 @@ mod tests {
             score: 0.9,
             intensity: 5,
             possible: 9,
+            drawn_doubt: 0.0,
             support: 1,
         };
         let part = Part {

@@ -41,6 +41,11 @@ const DRAWN_ERROR_M: f64 = 0.1;
 /// nearer to each other than the centres do.
 const SLACK: f64 = std::f64::consts::SQRT_2;
 
+/// Where the best place lacks little itself, the true one does not lack much more than this.
+pub(crate) fn lacks(best: f64) -> f64 {
+    2.0 * (1.0 - best).max(0.0)
+}
+
 impl DistanceField {
     /// Prepares a map of `width · height` occupancies, row by row from the
     /// lowest y.
@@ -76,8 +81,14 @@ impl DistanceField {
     /// little itself.
     #[must_use]
     pub fn left_out(&self, best: f64, config: &FitConfig) -> f64 {
-        let lacks = 2.0 * (1.0 - best).max(0.0);
-        self.drawn_share * config.drawn_doubt.min(lacks)
+        self.drawn_share * config.drawn_doubt.min(lacks(best))
+    }
+
+    /// The same, however good the best place is: by so much less may the true place on a map
+    /// that was measured fit than a wrong one here.
+    #[must_use]
+    pub fn drawn_doubt(&self, config: &FitConfig) -> f64 {
+        self.drawn_share * config.drawn_doubt
     }
 
     /// What the walls of the map are off by because they were drawn, metres: nothing

@@ -31,6 +31,7 @@ use crate::grid::GridFrame;
 pub use agreement::BeamClass;
 pub use config::FitConfig;
 pub use distance_field::DistanceField;
+pub(crate) use distance_field::lacks;
 pub(crate) use ends::End;
 pub use ends::{Ends, JudgedBeam};
 pub use readings::Readings;

@@ -7,7 +7,7 @@ use nalgebra::{Matrix3, Vector3};
 
 use super::summits::{self, Reach, Summit};
 use super::{Margin, PeakConfig, PeakInput, Place, Places, Workspace, in_map, likelihood};
-use crate::fit::{BeamClass, DistanceField, Ends, GridPose, Refined};
+use crate::fit::{BeamClass, DistanceField, Ends, GridPose, Refined, lacks};
 use crate::votes::most_candidates;
 
 /// Reads the places from the votes of a scan and from the scan itself, see
@@ -93,12 +93,16 @@ impl Places {
         let places = &mut self.places;
         leads.clear();
         leads.extend(places.iter().map(|place| lead(best, place.score)));
-        let rivals = leads[1..]
-            .iter()
-            .filter(|&&lead| lead < needed.max(left_out));
+        let first = places[0];
+        let left_out = |place: &Place| match place.map == first.map {
+            true => left_out,
+            false => lead(best, best - doubt_between(&first, place)),
+        };
+        let rivals = leads.iter().zip(&*places).skip(1);
+        let rivals = rivals.filter(|&(&lead, place)| lead < needed.max(left_out(place)));
         self.alternatives = rivals.count() as u32;
-        for lead in leads.iter_mut() {
-            *lead = (*lead - left_out).max(0.0);
+        for (lead, place) in leads.iter_mut().zip(&*places) {
+            *lead = (*lead - left_out(place)).max(0.0);
         }
         likelihood::assign(places, leads, config);
         self.verdict = match () {
@@ -109,6 +113,14 @@ impl Places {
         places.truncate(config.max_hypotheses as usize);
         self.confidence = places[0].probability;
     }
+}
+
+/// By how much the scores of the best place and of one on another map may be off to each other,
+/// because one of the maps was drawn: a drawing has clean walls, which fit a piece of any
+/// building, and leaves out what stands at them.
+fn doubt_between(best: &Place, other: &Place) -> f64 {
+    best.drawn_doubt
+        .max(other.drawn_doubt.min(lacks(best.score)))
 }
 
 /// How far a score lies behind the best, against what that lacks of a perfect
@@ -168,6 +180,7 @@ fn place(
         probability: 0.0,
         intensity: vote.intensity,
         possible: input.highest_possible as u16,
+        drawn_doubt: distance_field.drawn_doubt(&config.fit),
         support: summit.support,
     }
 }

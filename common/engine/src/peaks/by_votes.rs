@@ -97,6 +97,7 @@ fn place(input: &PeakInput<'_>, summit: &Summit, reach: Reach) -> Place {
         score: f64::from(summit.intensity) / f64::from(input.highest_possible.max(1)),
         intensity: summit.intensity,
         possible: input.highest_possible as u16,
+        drawn_doubt: 0.0,
         support: moments.count,
     }
 }

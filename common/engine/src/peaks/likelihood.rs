@@ -35,6 +35,7 @@ mod tests {
             probability: 0.0,
             intensity: 1,
             possible: 1,
+            drawn_doubt: 0.0,
             support: 1,
         };
         let mut places: Vec<Place> = scores.iter().map(place).collect();

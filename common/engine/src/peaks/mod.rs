@@ -109,6 +109,9 @@ pub struct Place {
     pub intensity: u16,
     /// Votes that a pose of the map can have at most.
     pub possible: u16,
+    /// By how much scores on the map may be off because it was drawn, 0..=1; 0 where it was
+    /// measured.
+    pub drawn_doubt: f64,
     /// Votes that led there.
     pub support: u64,
 }

@@ -200,6 +200,7 @@ pub(super) mod tests {
             probability: 0.5,
             intensity: 100,
             possible: 200,
+            drawn_doubt: 0.0,
             support: 1,
         };
         Places {

@@ -121,7 +121,9 @@ fn an_object_shows_votes_and_hypotheses() {
             "beams",
             "confidence",
             "cpu_ms",
+            "floor",
             "hypotheses",
+            "map",
             "map_id",
             "particles",
             "refused",
@@ -170,6 +172,7 @@ fn an_object_shows_votes_and_hypotheses() {
         [
             "covariance",
             "intensity",
+            "map",
             "map_from_base",
             "probability",
             "score",

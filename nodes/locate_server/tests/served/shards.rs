@@ -66,7 +66,10 @@ fn whole() -> Locator {
 #[test]
 fn shards_that_are_merged_answer_as_one_server_that_has_all_maps() {
     let set = list();
-    let servers = [shard("one", &set, "1/2"), shard("two", &set, "2/2")];
+    let servers = [
+        shard("shard_one", &set, "1/2"),
+        shard("shard_two", &set, "2/2"),
+    ];
     let session = caller(&[&servers[0], &servers[1]]);
     let (locator, mut workspace) = (whole(), Workspace::default());
     let mut found = [0; 3];
@@ -101,8 +104,8 @@ fn shards_that_are_merged_answer_as_one_server_that_has_all_maps() {
 #[test]
 fn a_shard_that_nobody_holds_is_named_and_nothing_is_unique_then() {
     let set = list();
-    let first = shard("first", &set, "1/2");
-    let second = shard("second", &set, "2/2");
+    let first = shard("shard_left", &set, "1/2");
+    let second = shard("shard_gone", &set, "2/2");
     let session = caller(&[&first, &second]);
     let scan = &scans_of("malaga_courtyard", 40)[0];
     assert_eq!(
@@ -125,7 +128,7 @@ fn a_shard_with_another_server_loses_no_question_when_one_is_killed() {
     /// How often one is killed.
     const KILLS: usize = 5;
     let set = list();
-    let first = shard("only", &set, "1/2");
+    let first = shard("shard_only", &set, "1/2");
     let session = session(&[], &[first.endpoint()]);
     let scans = scans_of("malaga_corridor", 1);
     let mut scan = scans.iter().cycle();
@@ -166,7 +169,7 @@ fn shard_of(first: &Server, set: &tempfile::TempDir, number: usize) -> Server {
     ];
     let connect = ["--connect", &connect];
     Server::of(
-        &format!("replica{number}"),
+        &format!("shard_replica{number}"),
         &[&arguments[..], &connect].concat(),
     )
 }
