@@ -23,6 +23,10 @@ pub fn by_fit(input: &PeakInput<'_>, scan: (&DistanceField, &Ends), config: &Pea
 /// end on different pieces of what is seen.
 const PIECE_SIGMAS: f64 = 4.0;
 
+/// Over a place on another map the best one must lead by so many times as much: maps that were
+/// made by others, in other ways, are not as comparable as places on one.
+const ELSEWHERE: f64 = 2.0;
+
 impl Workspace {
     /// Reads the places from the votes of a scan and from the scan itself, which
     /// must be of the same map. Its grid may be finer than that of the votes,
@@ -99,7 +103,11 @@ impl Places {
             false => lead(best, best - doubt_between(&first, place)),
         };
         let rivals = leads.iter().zip(&*places).skip(1);
-        let rivals = rivals.filter(|&(&lead, place)| lead < needed.max(left_out(place)));
+        let needed = |place: &Place| match place.map == first.map {
+            true => needed,
+            false => needed * ELSEWHERE,
+        };
+        let rivals = rivals.filter(|&(&lead, place)| lead < needed(place).max(left_out(place)));
         self.alternatives = rivals.count() as u32;
         for (lead, place) in leads.iter_mut().zip(&*places) {
             *lead = (*lead - left_out(place)).max(0.0);
