@@ -169,7 +169,7 @@ fn shard_of(first: &Server, set: &tempfile::TempDir, number: usize) -> Server {
     ];
     let connect = ["--connect", &connect];
     Server::of(
-        &format!("shard_replica{number}"),
+        &format!("replica{number}"),
         &[&arguments[..], &connect].concat(),
     )
 }

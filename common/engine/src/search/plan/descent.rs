@@ -1,85 +1,34 @@
 //! One branch-and-bound search: from large blocks down to poses, those with the highest
 //! bound first.
 
+mod scratch;
+
 use std::cmp::Reverse;
 use std::ops::Range;
 use std::sync::atomic::Ordering;
 
 use messages::Vote;
 
-use super::queue::{Block, BoundedBlock, Level, Queue};
+use super::queue::{Block, Level};
 use crate::search::beam_sampling;
 use crate::search::bounds::interval_bounds::{IntervalBounds, Window};
-use crate::search::bounds::set_bounds::SetBounds;
 use crate::search::index::SearchIndex;
 use crate::search::index::bits;
-use crate::search::index::intervals::BlockIntervals;
 use crate::search::index::intervals::CELLS;
 use crate::search::index::prefetch::prefetch;
 use crate::search::index::within::{Size, quarters};
-use crate::search::leaves::block_ranges::BlockRanges;
 use crate::search::leaves::leaf::Count;
-use crate::search::task::budget::{Budget, LEVELS, Tally};
+use crate::search::task::budget::{Budget, LEVELS};
 use crate::search::task::{End, Programs, Task};
 use crate::simd::headings::HEADINGS;
-use crate::votes::Collector;
+use scratch::Candidate;
+pub(in crate::search) use scratch::Scratch;
 
 /// One thread's part of a search.
 pub(in crate::search) struct Descent<'a> {
     task: &'a Task<'a>,
     scratch: &'a mut Scratch,
     budget: Budget,
-}
-
-/// Buffers of one thread's search, kept from scan to scan.
-#[derive(Debug, Default)]
-pub(in crate::search) struct Scratch {
-    set_bounds: SetBounds,
-    intervals: BlockIntervals,
-    interval_bounds: IntervalBounds,
-    block_ranges: BlockRanges,
-    /// The votes of a block of 4 × 4 cells at each of [`HEADINGS`].
-    counts: Vec<Count>,
-    queue: Queue,
-    /// Headings at which blocks of 8 × 8 cells may matter.
-    windows: Vec<Window>,
-    /// The bounds of these blocks: of all, once the search is done, whose bound
-    /// is not below the floor.
-    pub fine: Vec<BoundedBlock>,
-    /// Headings at which blocks of 4 × 4 cells may matter.
-    candidates: Vec<Candidate>,
-    /// The poses that matter.
-    pub collector: Collector,
-    /// How many were counted.
-    pub poses_evaluated: u64,
-    /// The most votes that any pose can have that the search did not reach.
-    pub left: u16,
-    tally: Tally,
-}
-
-/// A heading at which a block may still matter, and its bound there.
-#[derive(Debug, Clone, Copy)]
-struct Candidate {
-    heading: u16,
-    bound: u16,
-}
-
-impl Scratch {
-    /// Makes scratch for a task; nothing is left of the one before.
-    fn start(&mut self, task: &Task<'_>) {
-        let programs = task.programs;
-        self.set_bounds.fit(&programs.sets, task.headings());
-        self.block_ranges.prepare(task.grid, &task.space.directions);
-        self.counts.resize(HEADINGS, Count::default());
-        self.queue.clear();
-        self.windows.clear();
-        self.fine.clear();
-        self.candidates.clear();
-        self.collector.start(task.config);
-        self.poses_evaluated = 0;
-        self.left = 0;
-        self.tally = Tally::default();
-    }
 }
 
 impl<'a> Descent<'a> {

@@ -11,6 +11,8 @@ mod descent;
 mod parts;
 mod queue;
 mod search;
+mod together;
 
 pub use block_bounds::BlockBounds;
-pub use search::{Searched, Workspace};
+pub use search::Workspace;
+pub use together::Searched;

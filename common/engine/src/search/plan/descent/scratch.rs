@@ -1,0 +1,63 @@
+//! Buffers of one thread's search.
+
+use crate::search::bounds::interval_bounds::{IntervalBounds, Window};
+use crate::search::bounds::set_bounds::SetBounds;
+use crate::search::index::intervals::BlockIntervals;
+use crate::search::leaves::block_ranges::BlockRanges;
+use crate::search::leaves::leaf::Count;
+use crate::search::plan::queue::{BoundedBlock, Queue};
+use crate::search::task::Task;
+use crate::search::task::budget::Tally;
+use crate::simd::headings::HEADINGS;
+use crate::votes::Collector;
+
+/// Buffers of one thread's search, kept from scan to scan.
+#[derive(Debug, Default)]
+pub(in crate::search) struct Scratch {
+    pub(super) set_bounds: SetBounds,
+    pub(super) intervals: BlockIntervals,
+    pub(super) interval_bounds: IntervalBounds,
+    pub(super) block_ranges: BlockRanges,
+    /// The votes of a block of 4 × 4 cells at each of [`HEADINGS`].
+    pub(super) counts: Vec<Count>,
+    pub(super) queue: Queue,
+    /// Headings at which blocks of 8 × 8 cells may matter.
+    pub(super) windows: Vec<Window>,
+    /// The bounds of these blocks: of all, once the search is done, whose bound
+    /// is not below the floor.
+    pub fine: Vec<BoundedBlock>,
+    /// Headings at which blocks of 4 × 4 cells may matter.
+    pub(super) candidates: Vec<Candidate>,
+    /// The poses that matter.
+    pub collector: Collector,
+    /// How many were counted.
+    pub poses_evaluated: u64,
+    /// The most votes that any pose can have that the search did not reach.
+    pub left: u16,
+    pub(super) tally: Tally,
+}
+
+/// A heading at which a block may still matter, and its bound there.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct Candidate {
+    pub(super) heading: u16,
+    pub(super) bound: u16,
+}
+
+impl Scratch {
+    /// Makes scratch for a task; nothing is left of the one before.
+    pub(super) fn start(&mut self, task: &Task<'_>) {
+        let programs = task.programs;
+        self.set_bounds.fit(&programs.sets, task.headings());
+        self.block_ranges.prepare(task.grid, &task.space.directions);
+        self.counts.resize(HEADINGS, Count::default());
+        self.queue.clear();
+        self.windows.clear();
+        self.fine.clear();
+        self.candidates.clear();
+        self.collector.start(task.config);
+        self.poses_evaluated = 0;
+        self.left = 0;
+        self.tally = Tally::default();
+    }
+}
