@@ -17,7 +17,7 @@ use crate::program::ScanProgram;
 use crate::search::{self, BlockBounds, SearchIndex};
 use crate::space::Space;
 use crate::sweep;
-use crate::votes::{FieldVotes, VoteSet};
+use crate::votes::{FieldVotes, VoteSet, VoteShare};
 pub use config::{FieldMethod, LocalizerConfig};
 use field::Fields;
 pub use preparation::Preparation;
@@ -96,6 +96,13 @@ pub struct Outcome {
     pub headings: u32,
     /// The heading that was given, in the map frame, radians.
     pub known_heading: Option<f64>,
+}
+
+impl Outcome {
+    /// What the best pose that was collected has of what is possible.
+    pub(crate) fn best_share(&self) -> VoteShare {
+        VoteShare::new(self.found.best, self.highest_possible as u16)
+    }
 }
 
 impl Localizer {

@@ -3,6 +3,7 @@
 mod config;
 mod distinct;
 mod of_field;
+mod share;
 
 use std::cmp::Reverse;
 
@@ -13,6 +14,7 @@ pub use distinct::{DISTINCT_DEG, DISTINCT_M, distinct};
 pub(crate) use distinct::{Distinct, is_close, least_close, most_candidates};
 pub(crate) use of_field::FieldVotes;
 pub use of_field::of_field;
+pub use share::VoteShare;
 
 /// The poses with the most votes, and how complete they are.
 #[derive(Debug, Clone, PartialEq, Eq, Default)]

@@ -6,8 +6,8 @@ use engine::EngineError;
 use engine::grid::{CellRules, GridFrame};
 use engine::localizer::Prior;
 use engine::locator::{LocatorConfig, OccupancyView};
-use engine::map_set::MapSet;
 pub use engine::map_set::Workspace;
+use engine::map_set::{Located, MapSet};
 use engine::peaks::{Place, Places, Target};
 use engine::scan::Scan;
 use map::OccupancyGrid;
@@ -127,15 +127,14 @@ impl Locator {
     pub fn locate(
         &self,
         workspace: &mut Workspace,
-        (header, ranges): (&ScanHeader, &[f32]),
+        scan: (&ScanHeader, &[f32]),
         stop: &dyn Fn() -> bool,
     ) -> Result<Option<Answer>, EngineError> {
-        let scan = Scan::of(header, ranges);
-        let found = self.set.locate_unless(workspace, &scan, None, stop)?;
+        let found = self.search(workspace, scan, stop)?;
         Ok(found.map(|found| {
             let outcome = found.outcome;
             let votes = (outcome.found.best.into(), outcome.highest_possible);
-            described(header, &self.maps, votes, found.places)
+            described(scan.0, &self.maps, votes, found.places)
         }))
     }
 
@@ -146,13 +145,21 @@ impl Locator {
     pub fn locate_part(
         &self,
         workspace: &mut Workspace,
-        (header, ranges): (&ScanHeader, &[f32]),
+        scan: (&ScanHeader, &[f32]),
         stop: &dyn Fn() -> bool,
     ) -> Result<Option<Part>, EngineError> {
+        let found = self.search(workspace, scan, stop)?;
+        Ok(found.map(|found| Part::new(self.part_of.clone(), &self.held, &found)))
+    }
+
+    fn search<'w>(
+        &self,
+        workspace: &'w mut Workspace,
+        (header, ranges): (&ScanHeader, &[f32]),
+        stop: &dyn Fn() -> bool,
+    ) -> Result<Option<Located<'w>>, EngineError> {
         let scan = Scan::of(header, ranges);
-        let found = self.set.locate_unless(workspace, &scan, None, stop)?;
-        let part_of = || self.part_of.clone();
-        Ok(found.map(|found| Part::new(part_of(), &self.held, &found)))
+        self.set.locate_unless(workspace, &scan, None, stop)
     }
 }
 

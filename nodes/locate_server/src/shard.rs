@@ -9,6 +9,7 @@ use std::str::FromStr;
 
 use engine::map_set::Located;
 use engine::peaks::{Found, Margin, Place};
+use engine::votes::VoteShare;
 use geometry::{Covariance, Pose};
 use map::MapFile;
 use serde::{Deserialize, Serialize};
@@ -112,7 +113,7 @@ pub struct Part {
     may_lack: bool,
     inlier_share: f64,
     leading_map: u32,
-    lead: (u32, u32),
+    lead: (u16, u16),
     unseen: f64,
 }
 
@@ -163,7 +164,7 @@ impl Part {
             may_lack: found.margin.may_lack,
             inlier_share: found.inlier_share,
             leading_map: number(found.leading_map),
-            lead: found.lead,
+            lead: (found.lead.votes, found.lead.possible),
             unseen: found.unseen,
         }
     }
@@ -216,7 +217,7 @@ impl Part {
             },
             inlier_share: self.inlier_share,
             leading_map: self.leading_map,
-            lead: self.lead,
+            lead: VoteShare::new(self.lead.0, self.lead.1),
             unseen: self.unseen,
         })
     }

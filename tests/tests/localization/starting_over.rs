@@ -1,5 +1,5 @@
-//! What somebody says of where the robot is: the tracker forgets its pose when it is told
-//! that the robot may be anywhere, and believes a pose at once that it is told to believe.
+//! What somebody says of where the robot is: the tracker forgets its pose where the
+//! robot may be anywhere, and believes a pose at once that is said to be sure.
 #![allow(
     clippy::unwrap_used,
     reason = "the lint spares test functions but not what they share"

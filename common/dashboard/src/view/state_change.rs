@@ -1,4 +1,4 @@
-//! That another state begins, as a webhook is told.
+//! That another state begins, as it is posted to a webhook.
 
 use serde::Serialize;
 

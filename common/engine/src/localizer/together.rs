@@ -32,13 +32,13 @@ impl Localizer {
         if found.is_none() {
             return Ok(None);
         }
-        let shares = maps.iter().map(|(_, workspace)| share(workspace));
-        let lead = shares.reduce(|a, b| if is_better(b, a) { b } else { a });
-        let (best, possible) = lead.expect("a map");
+        let shares = maps
+            .iter()
+            .map(|(_, workspace)| workspace.outcome.best_share());
+        let lead = shares.max_by(|a, b| a.compare(*b)).expect("a map");
         for (map, workspace) in &mut maps {
             let outcome = &mut workspace.outcome;
-            let here = u64::from(outcome.highest_possible);
-            outcome.lead = (best * here).div_ceil(possible) as u16;
+            outcome.lead = lead.on(outcome.highest_possible as u16);
             if heading.is_some() {
                 let floor = map.config.collect.floor(outcome.lead);
                 let least = least_close(outcome.lead);
@@ -47,17 +47,6 @@ impl Localizer {
         }
         Ok(Some(()))
     }
-}
-
-/// Votes of the best pose on a map, and how many are possible.
-fn share(workspace: &Workspace) -> (u64, u64) {
-    let outcome = &workspace.outcome;
-    let possible = u64::from(outcome.highest_possible.max(1));
-    (outcome.found.best.into(), possible)
-}
-
-fn is_better((a, of_a): (u64, u64), (b, of_b): (u64, u64)) -> bool {
-    a * of_b > b * of_a
 }
 
 fn at_any_heading(

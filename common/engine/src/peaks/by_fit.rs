@@ -53,6 +53,10 @@ impl Workspace {
             by_score.then(i.cmp(j))
         });
         self.places.clear();
+        self.margin = Margin {
+            may_lack: input.may_lack(config.ambiguous_share),
+            ..Margin::default()
+        };
         keep_distinct(&self.refined, &mut self.places.places, config);
         if let Some(best) = self.places.places.first().copied() {
             let found = &mut self.places;
@@ -68,11 +72,7 @@ impl Workspace {
                 best.score,
                 best.score - distance_field.left_out(best.score, &config.fit),
             );
-            self.margin = Margin {
-                needed,
-                left_out,
-                may_lack: input.may_lack(config.ambiguous_share),
-            };
+            (self.margin.needed, self.margin.left_out) = (needed, left_out);
             found.judge_by_fit((best.score, self.margin), &mut self.leads, config);
         }
         &self.places

@@ -3,9 +3,8 @@
 use messages::Verdict;
 
 use super::{Judged, Margin, PeakConfig, Place, Places, Score};
-use crate::fit::BeamClass;
 use crate::localizer::Outcome;
-use crate::votes::is_close;
+use crate::votes::{VoteShare, is_close};
 
 /// What was found on one map, or on several that somebody else has merged.
 #[derive(Debug, Clone, PartialEq, Default)]
@@ -18,8 +17,8 @@ pub struct Found {
     pub inlier_share: f64,
     /// The map with the most votes among these, by number.
     pub leading_map: u32,
-    /// What its best pose has, and what is possible there.
-    pub lead: (u32, u32),
+    /// What its best pose has.
+    pub lead: VoteShare,
     /// Share of the possible votes that a pose may have which was not collected, 0..=1.
     pub unseen: f64,
 }
@@ -36,15 +35,14 @@ impl Found {
             margin: judged.margin,
             inlier_share: judged.places.inlier_share,
             leading_map: map,
-            lead: (outcome.found.best.into(), possible),
+            lead: outcome.best_share(),
             unseen: f64::from(unseen) / f64::from(possible),
         }
     }
 
     /// Whether its lead is greater, as a share without rounding, or equal on a map before.
     fn leads(&self, other: &Found) -> bool {
-        let product = |a: u32, b: u32| u64::from(a) * u64::from(b);
-        let lead = product(self.lead.0, other.lead.1).cmp(&product(other.lead.0, self.lead.1));
+        let lead = self.lead.compare(other.lead);
         lead.then(other.leading_map.cmp(&self.leading_map)).is_gt()
     }
 }
@@ -73,9 +71,8 @@ pub fn merge(all: &[Found], config: &PeakConfig) -> Merged {
         return Merged::default();
     };
     let counts = |place: &&Place| {
-        let (best, of) = leading.lead;
-        let here = (u64::from(best) * u64::from(place.possible)).div_ceil(u64::from(of.max(1)));
-        place.map == leading.leading_map || is_close(place.intensity, here as u16)
+        let best = leading.lead.on(place.possible);
+        place.map == leading.leading_map || is_close(place.intensity, best)
     };
     let numbered = all.iter().enumerate();
     let mut places: Vec<(usize, Place)> = numbered
@@ -96,7 +93,6 @@ pub fn merge(all: &[Found], config: &PeakConfig) -> Merged {
     let mut merged = Places {
         places: places.into_iter().map(|(_, place)| place).collect(),
         inlier_share: all[best_of].inlier_share,
-        classes: Vec::<BeamClass>::new(),
         ..Places::default()
     };
     let found = Found {

@@ -1,5 +1,5 @@
-//! Where somebody says that the robot is, by topic and by service, and what the tracker is
-//! told of it.
+//! Where somebody says that the robot is, by topic and by service, and what the tracker
+//! is sent of it.
 
 use messages::{InitialPose, InitialPoseKind, topic};
 use ros::nav2_msgs::SetInitialPose;

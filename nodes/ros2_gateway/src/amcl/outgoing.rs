@@ -92,7 +92,7 @@ impl Outgoing {
         }
     }
 
-    /// The tracker was told where the robot is: what it believes counts.
+    /// The tracker was given where the robot is: what it believes counts.
     pub(super) fn go_on(&mut self) {
         self.is_outdated = false;
     }

@@ -78,17 +78,20 @@ fn a_master_control_is_told_in_the_words_of_vda_5050() {
     let poses = poses_of(&joined.graph);
     let sent = tracked(stamp(0));
     send_pose(&poses, &sent);
-    let mut told = robot.wait_for("vda5050");
-    assert_eq!(told["key"], "vda5050/0/r2/localization");
-    assert_eq!(told["encoding"], "application/json");
-    let range = told["position"]["deviationRange"].take().as_f64().unwrap();
+    let mut standard = robot.wait_for("vda5050");
+    assert_eq!(standard["key"], "vda5050/0/r2/localization");
+    assert_eq!(standard["encoding"], "application/json");
+    let range = standard["position"]["deviationRange"]
+        .take()
+        .as_f64()
+        .unwrap();
     // 95 % of a spread of 0.1 m across.
     assert!((range - 0.1 * 2.447_746_83).abs() < 1e-6, "{range}");
     let position = json!({
         "x": 3.0, "y": 1.0, "theta": 0.25, "mapId": "00000000000000ff", "localized": true,
         "localizationScore": 0.75, "deviationRange": null,
     });
-    assert_eq!(told["position"], position);
+    assert_eq!(standard["position"], position);
     let verdict = of_scan(robot, "localization", sent.stamp.measured_ns);
     let field = |name: &str| &verdict[name];
     assert_eq!(
@@ -164,7 +167,7 @@ fn the_first_map_stays_where_parameters_say_so() {
     joined.stop();
 }
 
-/// The next that the tracker is told.
+/// The next message to the tracker.
 fn hint(graph: &Graph, hints: &Subscriber<topic::InitialPoseTopic>) -> InitialPose {
     wait_for(graph, hints, |hint: &InitialPose, _| Some(*hint))
 }

@@ -1,6 +1,6 @@
 //! A robot in whose AMCL's place we are, that somebody carries away.
 
-use super::filter::engine;
+use super::filter::engine_and_tracker;
 use super::nav2::{of_scan, parameters, planar, state, until_now};
 use super::*;
 
@@ -22,10 +22,7 @@ fn a_robot_that_is_carried_away_has_no_transform_before_it_is_found_again() {
     let Some(mut joined) = Joined::new("ros-carried", "/", &options) else {
         return;
     };
-    let mut nodes = engine(&joined.graph);
-    let tracker = executables::path("tracker");
-    let tracker = NodeProcess::start(tracker.to_str().unwrap(), &joined.graph, [""; 0]);
-    nodes.push(tracker);
+    let nodes = engine_and_tracker(&joined.graph);
     let graph = &joined.graph;
     let poses = graph.subscriber::<topic::Tracked>().unwrap();
     let robot = &mut joined.robot;

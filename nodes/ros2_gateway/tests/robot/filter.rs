@@ -4,7 +4,20 @@ use super::*;
 
 /// Starts the engine's nodes; they are ready once they have a map.
 pub(super) fn engine(graph: &Graph) -> Vec<NodeProcess> {
-    let nodes = ["boundary_extractor", "accumulator", "peak_extractor"];
+    start(
+        graph,
+        &["boundary_extractor", "accumulator", "peak_extractor"],
+    )
+}
+
+/// The same with the tracker.
+pub(super) fn engine_and_tracker(graph: &Graph) -> Vec<NodeProcess> {
+    let mut nodes = engine(graph);
+    nodes.extend(start(graph, &["tracker"]));
+    nodes
+}
+
+fn start(graph: &Graph, nodes: &[&str]) -> Vec<NodeProcess> {
     let start = |name: &&str| {
         let executable = executables::path(name);
         NodeProcess::start(executable.to_str().unwrap(), graph, [""; 0])

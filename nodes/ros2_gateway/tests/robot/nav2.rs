@@ -4,7 +4,7 @@ use std::path::PathBuf;
 
 use messages::{InitialPose, InitialPoseKind};
 
-use super::filter::engine;
+use super::filter::engine_and_tracker;
 use super::*;
 
 /// As `nav2_bringup` has it, but for a tolerance that shows.
@@ -100,10 +100,7 @@ fn nav2_starts_us_in_amcls_place_and_gets_a_pose_with_no_click() {
     let Some(mut joined) = Joined::new("ros-nav2", "/", &options) else {
         return;
     };
-    let mut nodes = engine(&joined.graph);
-    let tracker = executables::path("tracker");
-    let tracker = NodeProcess::start(tracker.to_str().unwrap(), &joined.graph, [""; 0]);
-    nodes.push(tracker);
+    let nodes = engine_and_tracker(&joined.graph);
     let graph = &joined.graph;
     let poses = graph.subscriber::<topic::Tracked>().unwrap();
     let hints = graph.subscriber::<topic::InitialPoseTopic>().unwrap();
@@ -205,8 +202,8 @@ fn nav2_starts_us_in_amcls_place_and_gets_a_pose_with_no_click() {
                 (&place["x"], &place["y"]),
                 (&pose["pose"][0], &pose["pose"][1])
             );
-            let told = robot.wait_for("vda5050");
-            assert_eq!(told["key"], "vda5050/0/localization");
+            let standard = robot.wait_for("vda5050");
+            assert_eq!(standard["key"], "vda5050/0/localization");
             right += 1;
         } else {
             let verdict = of_scan(robot, "localization", stamp);
@@ -214,8 +211,8 @@ fn nav2_starts_us_in_amcls_place_and_gets_a_pose_with_no_click() {
                 [0, 3].contains(&verdict["state"].as_i64().unwrap()),
                 "{verdict}"
             );
-            let told = robot.wait_for("vda5050");
-            assert_eq!(told["position"]["localized"], false, "{told}");
+            let standard = robot.wait_for("vda5050");
+            assert_eq!(standard["position"]["localized"], false, "{standard}");
         }
         index += 1;
     }
@@ -406,7 +403,7 @@ fn tools_find_amcl_with_its_names_types_and_parameters() {
         json!({ "parameters": [value("transform_tolerance", 0.25), text, value("z_hit", 0.4)] });
     robot.order("hear", json!({ "topic": "/parameter_events" }));
     let results = ask(robot, "amcl/set_parameters", &values);
-    // Who watches is told what was set, and nothing of what was not.
+    // The event names what was set, and nothing of what was not.
     let event = robot.wait_for("/parameter_events");
     assert_eq!(
         (&event["same"], &event["node"]),

@@ -19,7 +19,7 @@ use crate::search::task::budget::Cost;
 use crate::search::task::lead::Lead;
 use crate::simd::Simd;
 use crate::space::Space;
-use crate::votes::CollectConfig;
+use crate::votes::{CollectConfig, VoteShare};
 
 /// What is searched: a scan on a map.
 pub(in crate::search) struct Task<'a> {
@@ -122,7 +122,7 @@ impl<'a> Task<'a> {
 
     /// Takes the votes of a pose of this map.
     pub(in crate::search) fn raise_best(&self, votes: u16) {
-        self.lead.raise(votes, self.possible);
+        self.lead.raise(VoteShare::new(votes, self.possible));
     }
 
     /// What poses of the map see.
