@@ -33,6 +33,7 @@ static PAGE: LazyLock<Page> = LazyLock::new(|| {
         save: true,
     });
     let options = Options {
+        webhook: None,
         host: Vec::new(),
         token_file: Some(token),
     };
