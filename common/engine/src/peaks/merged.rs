@@ -124,8 +124,14 @@ impl Places {
         unseen: f64,
         config: &PeakConfig,
     ) {
+        // As votes on its own map: there no rounding differs from that of one map.
+        let best_on = |place: &Place| {
+            let votes = f64::from(best.intensity) * f64::from(place.possible);
+            votes / f64::from(best.possible.max(1))
+        };
         let others = self.places[1..].iter();
-        let rivals = others.filter(|place| place.score >= best.score * config.ambiguous_share);
+        let rivals = others
+            .filter(|place| f64::from(place.intensity) >= best_on(place) * config.ambiguous_share);
         self.alternatives = rivals.count() as u32;
         let next = self.places.get(1).map_or(unseen, |next| next.score);
         self.confidence = (1.0 - next / best.score).clamp(0.0, 1.0);
