@@ -52,7 +52,15 @@ fn a_recording_of_a_recording_is_the_same_message_for_message() {
             timed if TIMED.contains(&timed) => {
                 assert_eq!(times(messages), times(&second[topic]), "{topic}");
             }
-            _ => assert!(*messages == second[topic], "{topic} differs"),
+            _ => {
+                let again = &second[topic];
+                let differs = messages.iter().zip(again).position(|(a, b)| a != b);
+                let found = (messages.len(), again.len());
+                assert!(
+                    *messages == *again,
+                    "{topic} differs at {differs:?} of {found:?}"
+                );
+            }
         }
     }
     // Where the tracker believes a place.

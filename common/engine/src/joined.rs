@@ -99,6 +99,30 @@ pub enum LeftOut {
     Refused(EngineError),
 }
 
+/// Where the target frame was at some time by the odometry.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct ByOdometry {
+    /// In the odometry's frame.
+    pub odom_from_target: Pose,
+    /// Of how many starts of the odometry it is.
+    start: u32,
+}
+
+impl ByOdometry {
+    /// How the target frame moved since another time; `None` where the odometry began
+    /// anew in between.
+    #[must_use]
+    pub fn moved_since(&self, before: &Self) -> Option<Pose> {
+        let is_of_one = self.start == before.start;
+        is_of_one.then(|| {
+            before
+                .odom_from_target
+                .inverse()
+                .then(self.odom_from_target)
+        })
+    }
+}
+
 /// The scans of an answer.
 #[derive(Debug)]
 pub enum Seen<'a> {
@@ -344,16 +368,22 @@ impl Joiner {
     /// Where the target frame was by the odometry when the newest scan of the first laser
     /// was half measured, see [`Motion::until`].
     #[must_use]
-    pub fn odom_from_target(&self) -> Option<Pose> {
-        let odom_from_child = self.motion.until(self.lasers[0].middle_ns())?;
-        Some(odom_from_child.then(self.child_from_target()))
+    pub fn by_odometry(&self) -> Option<ByOdometry> {
+        self.at_time(self.lasers[0].middle_ns())
     }
 
     /// Where the target frame was by the newest odometry.
     #[must_use]
-    pub fn newest_odom_from_target(&self) -> Option<Pose> {
-        let odom_from_child = self.motion.until(self.motion.newest_ns()?)?;
-        Some(odom_from_child.then(self.child_from_target()))
+    pub fn by_newest_odometry(&self) -> Option<ByOdometry> {
+        self.at_time(self.motion.newest_ns()?)
+    }
+
+    fn at_time(&self, stamp_ns: i64) -> Option<ByOdometry> {
+        let odom_from_child = self.motion.until(stamp_ns)?;
+        Some(ByOdometry {
+            odom_from_target: odom_from_child.then(self.child_from_target()),
+            start: self.motion.starts(),
+        })
     }
 
     /// The frame of the odometry; empty before the first.

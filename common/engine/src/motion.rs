@@ -20,11 +20,21 @@ const MAX_BEYOND_NS: i64 = 250_000_000;
 /// begun again; others that are late are left out.
 const BEGUN_ANEW_NS: i64 = 1_000_000_000;
 
+/// No robot is faster, metres a second, and so much a sample may be off besides.
+const FASTEST_M_S: f64 = 10.0;
+const OFF_M: f64 = 0.5;
+
+/// Odometry that was restarted counts from where the robot is. A sample that lies so near
+/// to that, metres and radians, and so far from the sample before, is its first.
+const START: (f64, f64) = (0.05, 0.05);
+const FROM_BEFORE: (f64, f64) = (0.2, 0.1);
+
 /// The poses of a moving frame over time, by increasing stamps.
 #[derive(Debug, Clone)]
 pub struct Motion {
     samples: VecDeque<(i64, Pose)>,
     keep: usize,
+    starts: u32,
 }
 
 /// Where the frame was at some time.
@@ -43,23 +53,35 @@ impl Motion {
         Motion {
             samples: VecDeque::new(),
             keep: samples,
+            starts: 0,
         }
     }
 
-    /// Takes a sample; the stamp in nanoseconds.
+    /// Takes a sample; the stamp in nanoseconds. Where the odometry begins anew, what was
+    /// before is forgotten, for nothing says how the robot moved between.
     pub fn add(&mut self, stamp_ns: i64, odom_from_child: Pose) {
-        match self.newest_ns() {
-            Some(newest) if stamp_ns < newest.saturating_sub(BEGUN_ANEW_NS) => self.samples.clear(),
-            Some(newest) if stamp_ns <= newest => return,
-            _ => {}
-        }
         if !odom_from_child.is_finite() {
             return;
+        }
+        if let Some(&newest) = self.samples.back() {
+            if begins_anew(newest, (stamp_ns, odom_from_child)) {
+                self.samples.clear();
+                self.starts += 1;
+            } else if stamp_ns <= newest.0 {
+                return;
+            }
         }
         if self.samples.len() >= self.keep {
             self.samples.pop_front();
         }
         self.samples.push_back((stamp_ns, odom_from_child));
+    }
+
+    /// How often the odometry has begun anew: its poses since then say nothing of those
+    /// before.
+    #[must_use]
+    pub fn starts(&self) -> u32 {
+        self.starts
     }
 
     /// When the newest sample was measured, nanoseconds.
@@ -137,6 +159,15 @@ impl Motion {
     }
 }
 
+/// Whether a sample cannot go on from the one before.
+fn begins_anew((before_ns, before): (i64, Pose), (stamp_ns, now): (i64, Pose)) -> bool {
+    let later_ns = stamp_ns.saturating_sub(before_ns);
+    let at_start = now.is_within(Pose::IDENTITY, START.0, START.1)
+        && !now.is_within(before, FROM_BEFORE.0, FROM_BEFORE.1);
+    let too_fast = || now.distance_to(before) > OFF_M + FASTEST_M_S * later_ns as f64 / 1e9;
+    later_ns < -BEGUN_ANEW_NS || later_ns > 0 && (at_start || too_fast())
+}
+
 #[cfg(test)]
 mod tests {
     use std::f64::consts::FRAC_PI_2;
@@ -187,7 +218,38 @@ mod tests {
         let middle = motion.at(21 * TENTH).unwrap().odom_from_child;
         assert!(middle.is_within(east(1.0), 1e-12, 1e-12));
         motion.add(0, east(5.0));
-        assert_eq!(motion.newest_ns(), Some(0));
+        assert_eq!((motion.newest_ns(), motion.starts()), (Some(0), 1));
         assert!(motion.may_reach(5 * TENTH) && !motion.may_reach(6 * TENTH));
+    }
+    #[test]
+    fn odometry_that_counts_from_the_start_again_has_begun_anew() {
+        let far = Pose::new(3.0, -1.0, 2.0);
+        let next = |pose| {
+            let mut motion = motion(&[(10, Pose::IDENTITY), (12, far)]);
+            motion.add(14 * TENTH, pose);
+            (motion.starts(), motion.until(14 * TENTH))
+        };
+        // From the origin to 3 m in a fifth of a second is too fast.
+        assert_eq!(next(far), (1, Some(far)));
+        assert_eq!(next(far.then(Pose::new(1.0, 0.0, 0.5))).0, 1);
+        let first = Pose::new(0.02, 0.0, 0.01);
+        assert_eq!(next(first), (2, Some(first)));
+        // Drives through the origin, and stands there.
+        let mut through = Motion::keeping(8);
+        for tenth in 0..8 {
+            through.add(
+                tenth * TENTH,
+                Pose::new(0.15 * (tenth as f64 - 4.0), 0.0, 0.0),
+            );
+            through.add(
+                tenth * TENTH + 1,
+                Pose::new(0.15 * (tenth as f64 - 4.0), 0.0, 0.0),
+            );
+        }
+        assert_eq!(through.starts(), 0);
+        // Scans before the restart are not covered, and nothing lies between.
+        let mut anew = motion(&[(10, far), (12, far)]);
+        anew.add(13 * TENTH, Pose::IDENTITY);
+        assert_eq!((anew.until(12 * TENTH), anew.at(12 * TENTH)), (None, None));
     }
 }

@@ -4,8 +4,7 @@
 use std::sync::Arc;
 
 use engine::EngineError;
-use engine::joined::{JoinConfig, Joiner, MotionConfig, Seen};
-use geometry::Pose;
+use engine::joined::{ByOdometry, JoinConfig, Joiner, MotionConfig, Seen};
 use recording::{Kind, Recording, RecordingError};
 use ros::lasers;
 
@@ -94,8 +93,8 @@ impl<'a> Motion<'a> {
     }
 
     /// Where the target frame was by the odometry when the scan was taken.
-    pub(crate) fn odom_from_target(&self) -> Option<Pose> {
-        self.joiner.odom_from_target()
+    pub(crate) fn by_odometry(&self) -> Option<ByOdometry> {
+        self.joiner.by_odometry()
     }
 
     /// What was brought.

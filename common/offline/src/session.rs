@@ -6,6 +6,7 @@ use std::collections::BTreeSet;
 use std::path::{Path, PathBuf};
 
 use engine::fit::Ends;
+use engine::joined::ByOdometry;
 use engine::localizer::Prior;
 use engine::peaks::Target;
 use geometry::Pose;
@@ -59,7 +60,7 @@ pub struct View {
     /// Where the beams end, seen from the laser.
     pub ends: Ends,
     /// Where the target frame was by the odometry.
-    pub odom_from_target: Option<Pose>,
+    pub by_odometry: Option<ByOdometry>,
     /// Whose pose is searched.
     pub target: Target,
 }
@@ -280,7 +281,7 @@ impl<'a> Session<'a> {
         let ends = self.world()?.ends(seen.observation());
         Ok(View {
             ends: ends.map_err(OfflineError::Refused)?,
-            odom_from_target: self.motion.odom_from_target(),
+            by_odometry: self.motion.by_odometry(),
             target: Target::of(scan.base_from_laser, self.motion.targets_base()),
         })
     }

@@ -1,6 +1,7 @@
 //! What is sent of a pose.
 
 use bytemuck::Zeroable;
+use engine::joined::ByOdometry;
 use engine::peaks::Target;
 use engine::tracking::Report;
 use geometry::{Covariance, Pose};
@@ -20,7 +21,7 @@ pub(crate) struct Tracked {
     /// Whether it is known how the laser sits on the base.
     pub(crate) mount_known: bool,
     /// Where the target frame was by the odometry, and the odometry's frame.
-    pub(crate) odom_from_target: Option<(Pose, FrameName)>,
+    pub(crate) by_odometry: Option<(ByOdometry, FrameName)>,
     /// Nanoseconds of computing.
     pub(crate) tracking_ns: u64,
 }
@@ -29,8 +30,8 @@ impl Tracked {
     /// Where the odometry's frame lies in the map.
     #[must_use]
     pub(crate) fn map_from_odom(&self) -> Option<Pose> {
-        let (odom_from_target, _) = self.odom_from_target?;
-        Some(self.report.pose?.then(odom_from_target.inverse()))
+        let (at, _) = self.by_odometry?;
+        Some(self.report.pose?.then(at.odom_from_target.inverse()))
     }
 
     /// The message of the scan.
@@ -39,11 +40,13 @@ impl Tracked {
         self.at(self.report.pose.unwrap_or_default(), self.stamp, true)
     }
 
-    /// The message where odometry has carried the pose on since the scan.
+    /// The message where odometry has carried the pose on since the scan; none where it
+    /// has begun anew.
     #[must_use]
-    pub(crate) fn carried(&self, odom_from_target: Pose, stamp: Stamp) -> Option<PoseHeader> {
-        let map_from_target = self.map_from_odom()?.then(odom_from_target);
-        Some(self.at(map_from_target, stamp, false))
+    pub(crate) fn carried(&self, newest: ByOdometry, stamp: Stamp) -> Option<PoseHeader> {
+        let (at, _) = self.by_odometry?;
+        let moved = newest.moved_since(&at)?;
+        Some(self.at(self.report.pose?.then(moved), stamp, false))
     }
 
     fn at(&self, map_from_target: Pose, stamp: Stamp, from_scan: bool) -> PoseHeader {
@@ -54,7 +57,7 @@ impl Tracked {
             let target = Covariance(report.covariance);
             target.carried(map_from_target, of).to_rows()
         };
-        let frame = self.odom_from_target.map(|(_, frame)| frame);
+        let frame = self.by_odometry.map(|(_, frame)| frame);
         PoseHeader {
             stamp,
             map_id: self.map_id,

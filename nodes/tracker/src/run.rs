@@ -11,7 +11,7 @@ use std::time::{Duration, Instant};
 
 use engine::EngineError;
 use engine::fit::Ends;
-use engine::joined::{Joiner, Role};
+use engine::joined::{ByOdometry, Joiner, Role};
 use engine::tracking::{Candidate, Follower, Need};
 use geometry::Pose;
 use messages::{PoseHeader, ScanHeader, Stamp, TrackReason, TrackState};
@@ -26,10 +26,10 @@ use initial::Initial;
 use inputs::Inputs;
 use outputs::Outputs;
 use search::Searchers;
-use turn::{ODOMETRY_WAIT, Turn};
+use turn::{ODOMETRY_WAIT, Since, Turn};
 
-/// A scan that waits for odometry is looked at as often.
-const TICK: Duration = Duration::from_millis(25);
+/// A scan that waits for odometry is looked at as often, while nothing comes.
+const TICK: Duration = Duration::from_millis(50);
 
 /// The last pose is kept on disk as often.
 const REMEMBERED_EVERY: Duration = Duration::from_secs(1);
@@ -55,6 +55,7 @@ pub fn run(graph: &Graph, config: &Config) -> Result<(), TrackerError> {
         scans: Scans::default(),
         answers: Answers::default(),
         turn: Turn::Idle,
+        looks: 0,
         ends: Ends::default(),
         asked: None,
         searchers: Searchers::default(),
@@ -89,6 +90,8 @@ struct Node {
     answers: Answers,
     /// What the scan whose turn it is waits for.
     turn: Turn,
+    /// How often the node has looked for what came.
+    looks: u32,
     /// Of that scan.
     ends: Ends,
     /// The scan whose search counts later.
@@ -99,7 +102,7 @@ struct Node {
     /// ones are asked for and not waited for, so that poses go on.
     is_silent: bool,
     /// Where the target frame was by the odometry at the scan before.
-    before: Option<Pose>,
+    before: Option<ByOdometry>,
     /// Where the robot is said to be; counts at the next scan.
     initial: Option<Initial>,
     /// Of the last scan.
@@ -117,6 +120,7 @@ struct Node {
 
 impl Node {
     fn step(&mut self, inputs: &Inputs) -> Result<(), TrackerError> {
+        self.looks = self.looks.wrapping_add(1);
         loop {
             self.take(inputs)?;
             self.health.tick()?;
@@ -162,7 +166,8 @@ impl Node {
         match self.turn {
             Turn::Idle => self.next_scan(),
             Turn::Odometry { scan, since } => {
-                if self.joiner.lacks_odometry() && since.elapsed() < ODOMETRY_WAIT {
+                let is_over = since.is_over(ODOMETRY_WAIT, self.looks);
+                if self.joiner.lacks_odometry() && !is_over {
                     return Ok(false);
                 }
                 self.begin(inputs, &scan)?;
@@ -185,7 +190,7 @@ impl Node {
             self.health.count_dropped(lost);
             self.turn = Turn::Odometry {
                 scan,
-                since: Instant::now(),
+                since: Since::now(self.looks),
             };
         }
         Ok(true)
@@ -207,11 +212,11 @@ impl Node {
             return self.send_nothing(scan, TrackReason::NoScan);
         }
         let is_set = self.begin_at_initial();
-        let now = self.joiner.odom_from_target();
+        let now = self.joiner.by_odometry();
         let moved = self
             .before
             .zip(now)
-            .map(|(before, now)| before.inverse().then(now));
+            .and_then(|(before, now)| now.moved_since(&before));
         self.before = now;
         // A pose that is believed is that of this scan.
         let moved = if is_set { Some(Pose::IDENTITY) } else { moved };
@@ -237,7 +242,7 @@ impl Node {
                 self.turn = Turn::Search {
                     scan: *scan,
                     of,
-                    since: start,
+                    since: Since::now(self.looks),
                 };
                 Ok(())
             }
@@ -274,7 +279,7 @@ impl Node {
             report: self.tracker.report(),
             target,
             mount_known: scan.mount_known == 1,
-            odom_from_target: self.before.map(|pose| (pose, self.joiner.odom_frame())),
+            by_odometry: self.before.map(|at| (at, self.joiner.odom_frame())),
             tracking_ns: start.elapsed().as_nanos() as u64,
         };
         self.last = Some(last);
@@ -301,8 +306,8 @@ impl Node {
         else {
             return Ok(());
         };
-        let newest = self.joiner.newest_odom_from_target();
-        let Some(header) = newest.and_then(|pose| last.carried(pose, stamp)) else {
+        let newest = self.joiner.by_newest_odometry();
+        let Some(header) = newest.and_then(|newest| last.carried(newest, stamp)) else {
             return Ok(());
         };
         self.send(header, &last.report.words())

@@ -4,7 +4,7 @@
 use std::sync::{Mutex, PoisonError};
 
 use bytemuck::Zeroable;
-use engine::joined::{JoinConfig, Joiner, Kept};
+use engine::joined::{ByOdometry, JoinConfig, Joiner, Kept};
 use engine::localizer::Prior;
 use engine::observation::Observation;
 use engine::peaks::Target;
@@ -55,7 +55,7 @@ struct State {
     /// The scan whose search counts later.
     asked: Option<Kept>,
     /// Where the laser was by the odometry at the scan before.
-    before: Option<Pose>,
+    before: Option<ByOdometry>,
     /// Where the robot is said to be, of the base.
     expected: Option<(Pose, Covariance)>,
 }
@@ -249,10 +249,10 @@ impl Tracker {
             let laser = target.from_base(base);
             tracker.expect(laser, covariance.carried(base, laser), EXPECTED_LEAD);
         }
-        let now = joiner.odom_from_target();
+        let now = joiner.by_odometry();
         let moved = before
             .zip(now)
-            .map(|(before, now)| before.inverse().then(now));
+            .and_then(|(before, now)| now.moved_since(&before));
         *before = now;
         let seen = Seen {
             distance_field: locator.distance_field(),

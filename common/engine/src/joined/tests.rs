@@ -119,10 +119,8 @@ fn odometry_of_the_stamp_of_a_scan_counts_for_it_to_the_nanosecond() {
             ..scan("", 1000)
         };
         joiner.on_scan(&header, &RANGES);
-        let odom_from_base = joiner
-            .odom_from_target()
-            .unwrap()
-            .then(Pose::new(-0.5, 0.0, 0.0));
+        let by_odometry = joiner.by_odometry().unwrap();
+        let odom_from_base = by_odometry.odom_from_target.then(Pose::new(-0.5, 0.0, 0.0));
         assert_eq!(odom_from_base, Pose::new(1.0, 0.0, 0.0), "{odd}");
     }
 }
@@ -225,4 +223,26 @@ fn the_first_laser_must_be_sound() {
     joiner.on_scan(&lost, &RANGES);
     let error = joiner.bring().unwrap_err().to_string();
     assert!(error.contains("where laser front sits"), "{error}");
+}
+
+#[test]
+fn odometry_that_begins_anew_says_nothing_of_the_motion_since_before() {
+    let mut joiner = Joiner::new(JoinConfig::default());
+    let at = |joiner: &mut Joiner, ms| {
+        joiner.on_odometry(&odometry(ms));
+        joiner.on_scan(&scan("", ms), &RANGES);
+        joiner.by_odometry().unwrap()
+    };
+    let (one, two) = (at(&mut joiner, 3000), at(&mut joiner, 3500));
+    let moved = two.moved_since(&one).unwrap();
+    assert!(moved.is_within(Pose::new(0.5, 0.0, 0.0), 1e-9, 1e-9));
+    // Restarted where the robot is.
+    joiner.on_odometry(&Odometry {
+        odom_from_child: Pose::IDENTITY.into(),
+        ..odometry(4000)
+    });
+    joiner.on_scan(&scan("", 4000), &RANGES);
+    let anew = joiner.by_odometry().unwrap();
+    assert_eq!(anew.moved_since(&two), None);
+    assert_eq!(joiner.by_newest_odometry(), Some(anew));
 }

@@ -17,8 +17,9 @@ pub(super) struct DrivenPath {
     pub path_m: f64,
     /// Radians turned along it, to either side.
     pub turned: f64,
-    /// Whether a step of it is not known; the robot is then taken to have stood.
-    pub has_hole: bool,
+    /// The longest time of a step that is not known, seconds, if there is one; the robot is
+    /// then taken to have stood.
+    pub unknown_s: Option<f64>,
 }
 
 /// Standard deviations of odometry: at rest, for stamps that differ from the scans',
@@ -36,10 +37,10 @@ const UNKNOWN_M: f64 = 0.4;
 const UNKNOWN: f64 = 30.0 * std::f64::consts::PI / 180.0;
 
 impl DrivenPath {
-    /// Goes on by a step, if that is known.
-    pub(super) fn add(&mut self, step: Option<Pose>) {
+    /// Goes on by a step, if that is known, which took so many seconds.
+    pub(super) fn add(&mut self, step: Option<Pose>, seconds: f64) {
         let Some(step) = step else {
-            self.has_hole = true;
+            self.unknown_s = Some(self.unknown_s.unwrap_or(0.0).max(seconds));
             return;
         };
         self.step = self.step.then(step);
@@ -69,7 +70,7 @@ impl DrivenPath {
     }
 
     fn error(&self, noise: f64) -> Matrix3<f64> {
-        let hole = if self.has_hole { 1.0 } else { 0.0 };
+        let hole = if self.unknown_s.is_some() { 1.0 } else { 0.0 };
         let squares = |deviations: [f64; 3]| deviations.iter().map(|d| (noise * d).powi(2)).sum();
         let position: f64 = squares([AT_REST_M, PER_METRE_M * self.path_m, hole * UNKNOWN_M]);
         let heading: f64 = squares([AT_REST, PER_RADIAN * self.turned, PER_METRE * self.path_m])

@@ -85,6 +85,8 @@ pub struct Tracker {
     is_key: bool,
     is_blank: bool,
     needs_search: bool,
+    /// Of the last scan.
+    stamp_ns: Option<i64>,
     /// Where the robot should be at the next scan, and by how much that leads.
     expected: Option<(Pose, Covariance, f64)>,
 }
@@ -106,6 +108,7 @@ impl Tracker {
             is_key: false,
             is_blank: false,
             needs_search: false,
+            stamp_ns: None,
             expected: None,
         }
     }
@@ -122,9 +125,12 @@ impl Tracker {
 
     /// Starts from a pose that is believed, with its covariance.
     pub fn start_at(&mut self, seen: &Seen<'_>, pose: Pose, covariance: Covariance) {
-        *self = Tracker::new(self.config);
+        *self = Tracker {
+            matcher: ScanMatcher::start_at(seen),
+            ..Tracker::new(self.config)
+        };
         let id = self.places.start_at(seen, (pose, covariance.0));
-        self.belief.believe(id);
+        self.belief.start_at(id);
     }
 
     /// Takes the next scan and how the target frame moved since the one before, if
@@ -144,12 +150,16 @@ impl Tracker {
         };
         self.belief.go_on(stamp_ns, moved);
         self.asks_ahead = false;
+        let seconds = self.stamp_ns.map_or(0.0, |before| {
+            stamp_ns.saturating_sub(before).max(0) as f64 / 1e9
+        });
+        self.stamp_ns = Some(stamp_ns);
         for path in [&mut self.since_key, &mut self.since_scan] {
-            path.add(moved);
+            path.add(moved, seconds);
         }
         let mut is_due = false;
         if let Some((path, left)) = &mut self.ahead {
-            path.add(moved);
+            path.add(moved, seconds);
             *left = left.saturating_sub(1);
             is_due = *left == 0;
         }
@@ -169,10 +179,11 @@ impl Tracker {
         }
         self.belief.look_at(&self.places);
         let is_suspicious = self.belief.is_doubtful();
-        self.is_key = self.is_far() || (is_suspicious && !was_doubtful) || is_due;
+        let is_cut_off = moved.is_none();
+        self.is_key = self.is_far() || (is_suspicious && !was_doubtful) || is_due || is_cut_off;
         match () {
             () if !self.is_key => Need::Nothing,
-            () if self.belief.place().is_none() || self.belief.is_unchecked() || is_suspicious => {
+            () if is_suspicious || !self.belief.is_checked() => {
                 self.ahead = None;
                 Need::ThisScan
             }

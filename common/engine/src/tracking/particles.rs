@@ -79,11 +79,11 @@ impl ParticleTracker {
         self.stamp_ns = stamp_ns;
         self.is_blank = seen.ends.beams() < MIN_BEAMS;
         if self.is_blank {
-            self.since_key.add(moved);
+            self.since_key.add(moved, 0.0);
             return Need::Nothing;
         }
         let moved = self.matcher.moved(seen, moved, &self.config);
-        self.since_key.add(moved);
+        self.since_key.add(moved, 0.0);
         self.report.since_m += moved.map_or(0.0, |step| step.x.hypot(step.y));
         if let Some((pose, covariance)) = self.expected.take() {
             self.start(seen, [seed(pose, covariance)]);

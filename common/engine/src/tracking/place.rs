@@ -105,7 +105,7 @@ pub(super) struct Place {
 }
 
 /// A mean is over this many key scans.
-const MEAN_OVER: u32 = 8;
+pub(super) const MEAN_OVER: u32 = 8;
 
 impl Place {
     pub(super) fn born(id: u32, found: &Fitted, log_weight: f64) -> Self {

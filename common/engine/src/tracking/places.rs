@@ -36,6 +36,10 @@ const GATE_RADIANS: f64 = 2.0 * std::f64::consts::PI / 180.0;
 const SNAP: f64 = 0.02;
 const SNAP_BY_DEVIATION: f64 = 0.01;
 
+/// Where it is not known how the robot moved to a scan, it is no farther than by this
+/// speed, metres a second, as far as where odometry slips.
+const SPEED_M_S: f64 = 1.5;
+
 /// Fits that come so close are of one place: as candidates of a search are distinguished.
 const SAME_M: f64 = 0.3;
 const SAME_RADIANS: f64 = 6.5 * std::f64::consts::PI / 180.0;
@@ -205,7 +209,7 @@ impl Places {
             .is_some_and(|p| belief.is_doubtful_at(p));
         self.count(best);
         let born = self.kept.len();
-        self.add_new(best, belief, fits_badly);
+        self.add_new(best, belief, (fits_badly, path.unknown_s));
         if fits_badly {
             self.follow_slip(best, born, belief);
         }
@@ -270,12 +274,18 @@ impl Places {
     }
 
     /// Adds the candidates that are at no place that is kept.
-    fn add_new(&mut self, best: Best, belief: &Belief, fits_badly: bool) {
+    fn add_new(
+        &mut self,
+        best: Best,
+        belief: &Belief,
+        (fits_badly, unknown_s): (bool, Option<f64>),
+    ) {
         let tracked = belief
             .place()
             .and_then(|id| self.get(id))
             .map(|p| p.predicted.0);
         let is_first = self.key_scans == 0;
+        let near_m = NEAR_M + SPEED_M_S * unknown_s.unwrap_or(0.0);
         for i in 0..self.candidates.len() {
             if self.is_known[i] {
                 continue;
@@ -286,7 +296,7 @@ impl Places {
                 Some(_) if !fits_badly => self.config.newborn_lag_unique,
                 _ => self.config.newborn_lag,
             };
-            let is_near = tracked.is_some_and(|pose| pose.distance_to(found.pose) <= NEAR_M);
+            let is_near = tracked.is_some_and(|pose| pose.distance_to(found.pose) <= near_m);
             let lag = match is_near {
                 true => far.min(self.config.newborn_lag_near),
                 false => far,

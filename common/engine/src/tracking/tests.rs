@@ -146,6 +146,74 @@ fn a_robot_that_is_carried_away_is_noticed_at_once_and_found_again() {
 }
 
 #[test]
+fn where_it_is_not_known_how_the_robot_moved_three_key_scans_have_to_agree_again() {
+    let building = building(&UNLIKE);
+    let mut tracker = Tracker::new(TrackingConfig::default());
+    building.step(&mut tracker, START, None);
+    let end = building.drive(&mut tracker, START, 5);
+    assert_eq!(tracker.report().state, TrackState::Unique);
+    // Odometry was restarted while the robot drove on.
+    let mut at = end.then(Pose::new(0.6, -0.1, -0.1));
+    let step = Pose::new(0.45, 0.0, 0.0);
+    let mut states = Vec::new();
+    let mut moved = None;
+    for _ in 0..3 {
+        assert_eq!(building.step(&mut tracker, at, moved), Need::ThisScan);
+        states.push(tracker.report().state);
+        moved = Some(step);
+        at = at.then(step);
+    }
+    let doubtful = TrackState::Doubtful;
+    assert_eq!(states, [doubtful, doubtful, TrackState::Unique]);
+    assert!(is_at(&tracker, at.then(step.inverse())));
+}
+
+/// States at key scans of which so many beams of nine go through walls, after scans that fit.
+fn states_where_scans_fit_badly(of_nine: usize) -> Vec<TrackState> {
+    let building = building(&UNLIKE);
+    let mut tracker = Tracker::new(TrackingConfig::default());
+    building.step(&mut tracker, START, None);
+    let mut at = building.drive(&mut tracker, START, 5);
+    assert_eq!(tracker.report().state, TrackState::Unique);
+    let step = Pose::new(0.0, 0.0, 0.36);
+    let take = |_| {
+        at = at.then(step);
+        let mut ranges = building.ranges(at);
+        for nine in ranges.chunks_mut(9) {
+            nine[..of_nine].iter_mut().for_each(|range| *range *= 1.6);
+        }
+        let scan = building.scan(&ranges);
+        let ends = Ends::new(&scan, &building.space, &BeamConfig::default()).unwrap();
+        let fit = FitConfig::default();
+        let seen = building.seen(&ends, &fit);
+        let need = tracker.begin(&seen, 1, Some(step));
+        // A search finds nothing better.
+        tracker.finish(&seen, (need != Need::Nothing).then_some(&[]));
+        tracker.report().state
+    };
+    (0..20).map(take).collect()
+}
+
+#[test]
+fn what_fits_badly_for_long_is_not_taken_for_good() {
+    let states = states_where_scans_fit_badly(3);
+    assert!(
+        states.iter().all(|state| *state == TrackState::Doubtful),
+        "{states:?}"
+    );
+    // As well as is enough for a place that is new: the building has changed.
+    let states = states_where_scans_fit_badly(2);
+    let doubtful = states
+        .iter()
+        .take_while(|state| **state == TrackState::Doubtful);
+    assert_eq!(doubtful.count(), 7, "{states:?}");
+    assert!(
+        states[7..].iter().all(|state| *state == TrackState::Unique),
+        "{states:?}"
+    );
+}
+
+#[test]
 fn what_odometry_misses_is_followed() {
     let building = building(&UNLIKE);
     let mut tracker = Tracker::new(TrackingConfig::default());

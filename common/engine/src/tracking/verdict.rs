@@ -6,12 +6,12 @@ use nalgebra::Matrix3;
 
 use super::TrackingConfig;
 use super::driven_path::DrivenPath;
-use super::place::Place;
+use super::place::{MEAN_OVER, Place};
 use super::places::{FARTHEST_BEHIND, NEAR_M, Places};
 use super::report::Report;
 
 /// Key scans since a step that is not known that have to agree before a place is the only
-/// one: nothing ties what was seen before to where the robot is now.
+/// one, found or kept: nothing ties what was seen before to where the robot is now.
 pub(super) const MIN_KEYS: u32 = 3;
 
 /// Places so near each other are not distinguished by the verdict.
@@ -30,6 +30,36 @@ const LOST_SCANS: u32 = 3;
 const LOST_FALL: f64 = 0.15;
 const LOST_BELOW: f64 = 0.1;
 
+/// Scans fit badly at the place that is believed. What does so for long becomes the mean
+/// there, and would be taken for good: what they are measured by is the mean before.
+#[derive(Debug, Clone, Copy)]
+struct Doubt {
+    mean_before: f64,
+    /// Scores at key scans since.
+    keys: u32,
+    sum: f64,
+}
+
+impl Doubt {
+    fn new(place: &Place) -> Self {
+        Doubt {
+            mean_before: place.mean,
+            keys: 0,
+            sum: 0.0,
+        }
+    }
+
+    fn add(&mut self, place: &Place) {
+        self.keys += 1;
+        self.sum += place.last;
+    }
+
+    /// The mean of so many key scans that the map may have changed there.
+    fn usual(&self) -> Option<f64> {
+        (self.keys >= MEAN_OVER).then(|| self.sum / f64::from(self.keys))
+    }
+}
+
 #[derive(Debug, Clone)]
 pub(super) struct Belief {
     config: TrackingConfig,
@@ -37,6 +67,8 @@ pub(super) struct Belief {
     place: Option<u32>,
     was_unique: bool,
     fits_badly: bool,
+    /// Since scans fit badly there.
+    doubt: Option<Doubt>,
     /// The last search that was needed had no answer.
     unchecked: bool,
     lead: f64,
@@ -59,6 +91,7 @@ impl Belief {
             place: None,
             was_unique: false,
             fits_badly: false,
+            doubt: None,
             unchecked: false,
             lead: 0.0,
             bad_keys: 0,
@@ -80,7 +113,14 @@ impl Belief {
     pub(super) fn believe(&mut self, id: u32) {
         self.place = Some(id);
         self.was_unique = true;
+        self.doubt = None;
         self.lead = FARTHEST_BEHIND;
+    }
+
+    /// The same, and no scan has to confirm it.
+    pub(super) fn start_at(&mut self, id: u32) {
+        self.believe(id);
+        self.connected_keys = MIN_KEYS;
     }
 
     pub(super) fn slip(&mut self, id: u32, by: f64) {
@@ -103,16 +143,18 @@ impl Belief {
     /// Whether the last scan speaks against a place.
     pub(super) fn is_doubtful_at(&self, place: &Place) -> bool {
         let config = &self.config;
-        place.last < config.doubt_score.max(place.mean - config.doubt_fall)
+        let mean = self.doubt.map_or(place.mean, |doubt| doubt.mean_before);
+        place.last < config.doubt_score.max(mean - config.doubt_fall)
     }
 
     pub(super) fn is_doubtful(&self) -> bool {
         self.place.is_some() && self.fits_badly
     }
 
-    /// Whether a search was needed and had no answer, and none has come since.
-    pub(super) fn is_unchecked(&self) -> bool {
-        self.unchecked
+    /// Whether a place is believed that nothing but how scans fit has to confirm: a search
+    /// that was needed had an answer, and it is known how the robot moved.
+    pub(super) fn is_checked(&self) -> bool {
+        self.place.is_some() && !self.unchecked && self.connected_keys >= MIN_KEYS
     }
 
     /// Sees whether a search that was needed has an answer, or another one has.
@@ -129,6 +171,10 @@ impl Belief {
     pub(super) fn look_at(&mut self, places: &Places) {
         let place = self.place.and_then(|id| places.get(id));
         self.fits_badly = place.is_some_and(|place| self.is_doubtful_at(place));
+        self.doubt = match place {
+            Some(place) if self.fits_badly => self.doubt.or(Some(Doubt::new(place))),
+            _ => None,
+        };
     }
 
     /// Sees what became of the places at a scan.
@@ -138,7 +184,7 @@ impl Belief {
         }
         self.look_at(places);
         let state = match self.place {
-            Some(_) if !self.fits_badly && !self.unchecked && self.lead >= MIN_LEAD => {
+            Some(_) if self.is_checked() && !self.fits_badly && self.lead >= MIN_LEAD => {
                 TrackState::Unique
             }
             Some(_) => TrackState::Doubtful,
@@ -159,7 +205,8 @@ impl Belief {
             TrackState::Unique if self.slipped.is_some() => TrackReason::OdometryJump,
             TrackState::Unique => TrackReason::OnePlace,
             TrackState::Doubtful if self.fits_badly || self.unchecked => TrackReason::PoorFit,
-            TrackState::Doubtful => TrackReason::SeveralPlaces,
+            TrackState::Doubtful if several => TrackReason::SeveralPlaces,
+            TrackState::Doubtful => TrackReason::TooEarly,
             TrackState::Lost => self.lost_by,
             TrackState::Searching if places.is_empty() => TrackReason::NoPlace,
             TrackState::Searching if several => TrackReason::SeveralPlaces,
@@ -192,7 +239,7 @@ impl Belief {
         {
             let is_near = |place: &Place| place.pose.is_within(best.pose, NEAR_M, f64::INFINITY);
             match places.get(id).is_some_and(is_near) {
-                true => self.place = Some(best.id),
+                true => (self.place, self.doubt) = (Some(best.id), None),
                 false => self.lose(TrackReason::AnotherPlace),
             }
         }
@@ -209,6 +256,13 @@ impl Belief {
                 self.lose(TrackReason::PoorFit);
             }
         }
+        if let Some(doubt) = &mut self.doubt {
+            doubt.add(best);
+            let usual = doubt.usual();
+            if usual.is_some_and(|mean| self.is_enough(mean)) {
+                self.doubt = None;
+            }
+        }
         if self.place.is_none() && !self.unchecked && self.is_unique(best) {
             self.place = Some(best.id);
             self.was_unique = true;
@@ -222,12 +276,16 @@ impl Belief {
     }
 
     fn is_unique(&self, best: &Place) -> bool {
-        let config = &self.config;
-        let lack = (config.sure_mean - best.mean).max(0.0);
         self.connected_keys >= MIN_KEYS
-            && self.lead >= config.sure_lead + config.poor_fit_lead * lack
-            && best.mean >= config.least_mean
-            && best.last >= config.least_mean - LAST_BELOW
+            && self.is_enough(best.mean)
+            && best.last >= self.config.least_mean - LAST_BELOW
+    }
+
+    /// Whether the best place leads by enough for one with that mean score.
+    fn is_enough(&self, mean: f64) -> bool {
+        let config = &self.config;
+        let lack = (config.sure_mean - mean).max(0.0);
+        self.lead >= config.sure_lead + config.poor_fit_lead * lack && mean >= config.least_mean
     }
 
     /// What is to be said; places that are not believed have gone `since_key` since the

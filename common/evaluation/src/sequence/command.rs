@@ -13,7 +13,7 @@ use progress::{Progress, say};
 use super::drive::Moment;
 use super::figures::Figures;
 use super::run::Said;
-use super::{course, drive, follow, jumps, starts};
+use super::{course, drive, follow, jumps, outages, starts};
 use crate::EvaluationError;
 
 /// Further options of `backcast evaluate --sequence`.
@@ -32,6 +32,11 @@ pub(crate) struct SequenceOptions {
     /// How many times the robot is moved elsewhere, 0..=1000
     #[arg(long, value_name = "COUNT", default_value_t = 20, value_parser = clap::value_parser!(u32).range(0..=1000))]
     pub kidnaps: u32,
+
+    /// How many times nothing is heard of the robot for 0.5 to 4 s and odometry then begins
+    /// anew, 0..=1000
+    #[arg(long, value_name = "COUNT", default_value_t = 20, value_parser = clap::value_parser!(u32).range(0..=1000))]
+    pub outages: u32,
 
     /// Ignore the odometry
     #[arg(long)]
@@ -119,6 +124,8 @@ fn one(
     let followed = follow::evaluate(world, &moments, config)?;
     let chosen = jumps::choose(&moments, sequence.kidnaps);
     let jumps = jumps::evaluate(world, &moments, &chosen, config)?;
+    let chosen = outages::choose(&moments, sequence.outages);
+    let outages = outages::evaluate(world, &moments, &chosen, config)?;
     for (start, scan, off_m) in &starts.wrong {
         progress.say(&format!(
             "{name}: started at scan {start}, Unique and {off_m:.1} m off at scan {scan}"
@@ -133,10 +140,15 @@ fn one(
             "{name}: put from scan {from} to {to}, Unique and wrong"
         ));
     }
+    for (from, to, off_m) in &outages.wrong {
+        progress.say(&format!(
+            "{name}: not heard between scans {from} and {to}, Unique and {off_m:.1} m off after that"
+        ));
+    }
     let searching_ms = moments.iter().map(|moment| moment.search_ms);
     Ok(Figures::new(
         name,
-        (&starts, &followed, &jumps),
+        (&starts, &followed, (&jumps, &outages)),
         course::errors(&moments, &said),
         searching_ms,
     ))

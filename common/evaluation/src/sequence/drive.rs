@@ -100,9 +100,9 @@ fn connect(moments: &mut [Moment], options: &SequenceOptions) {
         let (before, now) = (&moments[i - 1], &moments[i]);
         let by_odometry = before
             .view
-            .odom_from_target
-            .zip(now.view.odom_from_target)
-            .map(|(a, b)| a.inverse().then(b));
+            .by_odometry
+            .zip(now.view.by_odometry)
+            .and_then(|(before, now)| now.moved_since(&before));
         let truly = before.truth.zip(now.truth).map(|(a, b)| {
             let target = |laser| now.view.target.from_laser(laser);
             target(a).inverse().then(target(b))

@@ -6,6 +6,7 @@ use statistics::Distribution;
 use super::errors::{Errors, Spread};
 use super::follow::Followed;
 use super::jumps::Jumps;
+use super::outages::Outages;
 use super::starts::Starts;
 
 /// Shares are 0..=1; docs/tracking.md explains each.
@@ -27,6 +28,10 @@ pub(super) struct Figures {
     pub(super) kidnaps_noticed_within_2: Option<f64>,
     pub(super) kidnaps_right_after_5_m: Option<f64>,
     pub(super) kidnaps_wrong: u64,
+    /// Times that nothing was heard of the robot for a while, and odometry began anew.
+    pub(super) outages: u64,
+    pub(super) outages_right_after_5_m: Option<f64>,
+    pub(super) outages_wrong: u64,
     /// Of the drive from its first scan, with no guess.
     pub(super) from_first_scan: Errors,
     pub(super) searched_share: Option<f64>,
@@ -83,7 +88,7 @@ fn after(parts: [u64; 5], of: [u64; 5]) -> After {
 impl Figures {
     pub(super) fn new(
         bag: String,
-        (starts, followed, jumps): (&Starts, &Followed, &Jumps),
+        (starts, followed, (jumps, outages)): (&Starts, &Followed, (&Jumps, &Outages)),
         from_first_scan: Errors,
         searching_ms: impl IntoIterator<Item = f64>,
     ) -> Self {
@@ -105,6 +110,9 @@ impl Figures {
             kidnaps_noticed_within_2: share(jumps.noticed, jumps.jumps),
             kidnaps_right_after_5_m: share(jumps.right, jumps.jumps),
             kidnaps_wrong: jumps.wrong.len() as u64,
+            outages: outages.outages,
+            outages_right_after_5_m: share(outages.right, outages.outages),
+            outages_wrong: outages.wrong.len() as u64,
             from_first_scan,
             searched_share: share(starts.searches, starts.scans),
             cpu_ms_tracking: Times::of(followed.tracking_ms.iter().copied()),
@@ -151,6 +159,7 @@ impl Figures {
             "{}\n  starts {:>4}   after     1     2     5    10    20 m\n    right, %       {}\n    not yet, %     {}\n    wrong at any time  {}\n  \
              followed: losses {}, RMS {} m {}°, farthest {} m; in the ellipse {} %; Unique {} %; false alarms {} an hour\n  \
              put elsewhere {} times: noticed within 2 scans {} %, right after 5 m {} %, wrong {}\n  \
+             not heard for 0.5 to 4 s {} times: right after 5 m {} %, wrong {}\n  \
              from the first scan, {poses} poses, RMSE / median / max: APE {} m; RPE {} m, {}°\n  \
              CPU a scan, median / p90: tracking {} / {} ms, searching {} / {} ms; searched {} % of the scans after a start\n",
             self.bag,
@@ -169,6 +178,9 @@ impl Figures {
             percent(self.kidnaps_noticed_within_2),
             percent(self.kidnaps_right_after_5_m),
             self.kidnaps_wrong,
+            self.outages,
+            percent(self.outages_right_after_5_m),
+            self.outages_wrong,
             spread(ape_m, 3),
             spread(rpe_m, 3),
             spread(rpe_deg, 2),

@@ -62,20 +62,8 @@ pub(super) fn evaluate(
 ) -> Result<Jumps, EvaluationError> {
     let mut all = Jumps::default();
     for &(from, to) in chosen {
-        let begin = moments.partition_point(|m| m.gone_m < moments[from].gone_m - BEFORE_M);
-        let Some(begin) = (begin..from).find(|&i| moments[i].truth.is_some()) else {
-            continue;
-        };
-        let Some(truth) = moments[begin].truth else {
-            continue;
-        };
         let mut run = Run::new(world, moments, config);
-        run.start_at(begin, truth);
-        let mut was_right = false;
-        for (index, moment) in moments.iter().enumerate().take(from + 1).skip(begin + 1) {
-            was_right = run.take(index, moment.moved)?.is_right();
-        }
-        if !was_right {
+        if !run.follow_to(from, BEFORE_M)? {
             continue;
         }
         all.jumps += 1;

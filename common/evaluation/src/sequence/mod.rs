@@ -1,6 +1,6 @@
 //! `backcast evaluate --sequence`: how the tracker does on a drive whose true poses are
-//! known. It starts at many scans of the drive, follows the whole of it, and is put
-//! elsewhere; see docs/tracking.md.
+//! known. It starts at many scans of the drive, follows the whole of it, is put elsewhere,
+//! and is not heard for a while; see docs/tracking.md.
 
 mod command;
 mod course;
@@ -9,6 +9,7 @@ mod errors;
 mod figures;
 mod follow;
 mod jumps;
+mod outages;
 mod run;
 mod starts;
 

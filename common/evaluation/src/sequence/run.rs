@@ -90,6 +90,23 @@ impl<'a> Run<'a> {
         self.tracker.start_at(&seen, pose, covariance);
     }
 
+    /// Follows the robot to a moment, from the truth at least so many metres before; whether
+    /// it is right there.
+    pub(super) fn follow_to(&mut self, last: usize, metres: f64) -> Result<bool, EvaluationError> {
+        let moments = self.moments;
+        let begin = moments.partition_point(|m| m.gone_m < moments[last].gone_m - metres);
+        let known = (begin..last).find_map(|i| Some((i, moments[i].truth?)));
+        let Some((first, truth)) = known else {
+            return Ok(false);
+        };
+        self.start_at(first, truth);
+        let mut is_right = false;
+        for index in first + 1..=last {
+            is_right = self.take(index, moments[index].moved)?.is_right();
+        }
+        Ok(is_right)
+    }
+
     /// Gives the tracker a moment, to which it moved so.
     pub(super) fn take(
         &mut self,

@@ -7,7 +7,7 @@ use transport::{Peers, TransportError};
 
 use super::inputs::Inputs;
 use super::outputs::Outputs;
-use super::turn::{SEARCH_WAIT, Turn};
+use super::turn::{SEARCH_WAIT, Since, Turn};
 use super::{Node, TrackerError};
 
 /// Who takes part in a search: who takes requests, and who sends what was found. A search
@@ -45,7 +45,7 @@ impl Node {
         &mut self,
         inputs: &Inputs,
         scan: &ScanHeader,
-        (of, since): (Stamp, Instant),
+        (of, since): (Stamp, Since),
     ) -> Result<bool, TrackerError> {
         let has_come = self.answers.of(of).is_some();
         if !has_come && Searchers::now(inputs, &self.outputs).any_new_since(&self.searchers) {
@@ -53,14 +53,14 @@ impl Node {
             // one is searched.
             self.ask(inputs, of)?;
             self.is_silent = false;
-            let since = Instant::now();
+            let since = Since::now(self.looks);
             let scan = *scan;
             self.turn = Turn::Search { scan, of, since };
             return Ok(false);
         }
         // Scans are searched in their order, by whoever searches all of them, too.
         let is_lost = self.answers.any_after(of);
-        let is_over = is_lost || self.is_silent || since.elapsed() >= SEARCH_WAIT;
+        let is_over = is_lost || self.is_silent || since.is_over(SEARCH_WAIT, self.looks);
         if !has_come && !is_over {
             return Ok(false);
         }

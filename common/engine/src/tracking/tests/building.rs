@@ -10,7 +10,7 @@ pub(super) struct Building {
     grid: Grid,
     distance_field: DistanceField,
     localizer: Localizer,
-    space: Space,
+    pub(super) space: Space,
 }
 
 /// Ragged walls, so that it does not count as drawn.
