@@ -106,6 +106,11 @@ impl Incoming {
         self.outlet.sent()
     }
 
+    /// How often odometry came.
+    pub(crate) fn odometry_sent(&self) -> u64 {
+        self.outlet.odometry_sent()
+    }
+
     /// The frame of the robot's map, if one came.
     pub(crate) fn map_frame(&self) -> Option<&str> {
         self.map_frame.as_deref()

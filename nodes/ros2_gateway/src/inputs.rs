@@ -5,6 +5,7 @@ use transport::{TransportError, monotonic_ns};
 use zenoh_session::{Report, Routers};
 
 use crate::GatewayError;
+use crate::amcl::Role;
 use crate::config::{Brought, Config};
 use crate::incoming::Incoming;
 use crate::rmw_zenoh::{Member, Watch};
@@ -91,14 +92,21 @@ impl Inputs {
 
 impl Taken<'_> {
     /// What the robot does not bring is not waited for.
-    fn inputs<'t>(&self, config: &Config, topics: &'t Topics) -> Vec<Input<'t>> {
+    fn inputs<'t>(&self, config: &'t Config, topics: &'t Topics) -> Vec<Input<'t>> {
         let (maps, scans) = self.incoming.sent();
         let input = |topic: &'t str, received, comes_once| Input {
             topic,
             publishing: self.watch.publishing(topic),
             received,
             comes_once,
+            from_frame: None,
         };
+        // Elsewhere a robot may be without.
+        let needs_odometry = config.amcl.role == Role::Amcl && config.brings(Brought::Odometry);
+        let odometry = needs_odometry.then(|| Input {
+            from_frame: Some(&config.odom_frame),
+            ..input(&topics.tf, self.incoming.odometry_sent(), false)
+        });
         let map = config
             .brings(Brought::Map)
             .then(|| input(&topics.map, maps, true));
@@ -111,6 +119,7 @@ impl Taken<'_> {
         let clock = self
             .clock
             .map(|received| input(&topics.clock, received, false));
-        map.into_iter().chain(scans).chain(clock).collect()
+        let others = odometry.into_iter().chain(clock);
+        map.into_iter().chain(scans).chain(others).collect()
     }
 }

@@ -23,6 +23,38 @@ pub(crate) struct Rules {
     pub(crate) first_map_only: bool,
 }
 
+/// Stamps this much earlier than the last are of a clock that was set back, or of a
+/// recording that was begun again, nanoseconds.
+const SET_BACK_NS: i64 = 1_000_000_000;
+
+/// A laser whose scans are sent.
+struct Laser {
+    name: Name,
+    sent: u64,
+    /// Of the last scan that was sent, nanoseconds.
+    stamp_ns: Option<i64>,
+    /// Whether it was said that scans come twice.
+    repeats: bool,
+}
+
+impl Laser {
+    fn new(name: Name) -> Self {
+        Laser {
+            name,
+            sent: 0,
+            stamp_ns: None,
+            repeats: false,
+        }
+    }
+
+    /// Whether a scan has come before, or a later one: bridges may send each twice.
+    fn had(&self, stamp_ns: i64) -> bool {
+        // Who has no clock sends 0 always.
+        let before = |last: i64| (last.saturating_sub(SET_BACK_NS)..=last).contains(&stamp_ns);
+        stamp_ns != 0 && self.stamp_ns.is_some_and(before)
+    }
+}
+
 /// Where messages enter the graph; what nobody sends has no publisher.
 pub(crate) struct Outlet {
     scans: Option<Publisher<topic::Scan>>,
@@ -30,8 +62,7 @@ pub(crate) struct Outlet {
     maps: Option<Publisher<topic::Map>>,
     /// What the graph may take for a map.
     memory_limit: MemoryLimit,
-    /// Of each laser its name, and how many of its scans were sent.
-    lasers: Vec<(Name, u64)>,
+    lasers: Vec<Laser>,
     odometry_sent: u64,
     maps_sent: u64,
     map_id: Option<u64>,
@@ -56,7 +87,7 @@ impl Outlet {
             maps: brings(Brought::Map)
                 .map(|()| graph.publisher())
                 .transpose()?,
-            lasers: scans.iter().map(|scans| (scans.laser, 0)).collect(),
+            lasers: scans.iter().map(|scans| Laser::new(scans.laser)).collect(),
             odometry_sent: 0,
             maps_sent: 0,
             map_id: None,
@@ -66,10 +97,14 @@ impl Outlet {
 
     /// How many maps came, and how many scans of each laser.
     pub(crate) fn sent(&self) -> (u64, impl Iterator<Item = u64>) {
-        (self.maps_sent, self.lasers.iter().map(|(_, sent)| *sent))
+        (self.maps_sent, self.lasers.iter().map(|laser| laser.sent))
     }
 
-    /// Sends a scan of a laser, by its place among them.
+    pub(crate) fn odometry_sent(&self) -> u64 {
+        self.odometry_sent
+    }
+
+    /// Sends a scan of a laser, by its place among them; one that was sent before is dropped.
     pub(crate) fn send_scan(
         &mut self,
         laser: usize,
@@ -77,17 +112,25 @@ impl Outlet {
         frames: &mut Frames,
         report: &mut Report,
     ) -> Result<(), GatewayError> {
-        let (Some(publisher), Some((name, sent))) = (&self.scans, self.lasers.get_mut(laser))
-        else {
+        let (Some(publisher), Some(of)) = (&self.scans, self.lasers.get_mut(laser)) else {
             return Ok(());
         };
         check_scan(message)?;
+        let stamp_ns = message.header.stamp.as_ns();
+        if of.had(stamp_ns) {
+            report.dropped(1);
+            if !of.repeats {
+                tracing::warn!("scans come twice, or after later ones: these are dropped");
+                of.repeats = true;
+            }
+            return Ok(());
+        }
         let frame = measurements::frame(&message.header.frame_id)?;
         let mount = frames.base_from_laser(laser, &message.header.frame_id)?;
         let header = measurements::scan_header(message, frame, mount);
         let header = ScanHeader {
-            stamp: entering(header.stamp, *sent),
-            laser: *name,
+            stamp: entering(header.stamp, of.sent),
+            laser: of.name,
             range_min_m: header
                 .range_min_m
                 .max(self.rules.range_min_m.unwrap_or(0.0)),
@@ -101,7 +144,8 @@ impl Outlet {
         *loan.header_mut() = header;
         loan.items_mut().copy_from_slice(&message.ranges);
         loan.send()?;
-        *sent += 1;
+        of.sent += 1;
+        of.stamp_ns = Some(stamp_ns);
         report.sent();
         Ok(())
     }
@@ -179,5 +223,20 @@ fn entering(stamp: Stamp, counter: u64) -> Stamp {
         entered_ns: monotonic_ns(),
         counter,
         ..stamp
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_scan_that_comes_again_is_known_and_a_clock_may_be_set_back() {
+        let mut laser = Laser::new(Name::new("front"));
+        let second = 1_000_000_000;
+        assert!(!laser.had(0));
+        laser.stamp_ns = Some(7 * second);
+        assert!(laser.had(7 * second) && laser.had(7 * second - 1) && laser.had(6 * second));
+        assert!(!laser.had(7 * second + 1) && !laser.had(6 * second - 1));
     }
 }

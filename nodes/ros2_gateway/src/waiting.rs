@@ -26,18 +26,25 @@ pub(crate) struct Input<'a> {
     pub(crate) received: u64,
     /// Whether one message is enough.
     pub(crate) comes_once: bool,
+    /// Of /tf, the frame whose transforms are counted.
+    pub(crate) from_frame: Option<&'a str>,
 }
 
 impl Input<'_> {
-    fn why(&self) -> &'static str {
-        match (self.publishing, self.received) {
+    fn why(&self) -> String {
+        let why = match (self.publishing, self.received) {
+            (Publishing::Expected, received) if let Some(frame) = self.from_frame => {
+                let any_more = if received == 0 { "" } else { " any more" };
+                return format!("no transform from {frame}{any_more}");
+            }
             (Publishing::Nobody, 0) => "no publisher",
             (Publishing::OtherType, 0) => "a publisher of another type",
             (Publishing::OtherVersion, 0) => "a publisher with another version of the type",
             (Publishing::NoVersion, 0) => "a publisher with no type hash (ROS 2 Humble)",
             (Publishing::Expected, 0) => "a publisher, and no message yet",
             (_, _) => "no message any more",
-        }
+        };
+        why.to_owned()
     }
 }
 
@@ -100,6 +107,7 @@ mod tests {
             publishing,
             received,
             comes_once: topic == "/map",
+            from_frame: (topic == "/tf").then_some("odom"),
         }
     }
 
@@ -142,6 +150,24 @@ mod tests {
                 matches!(status, Status::Waits(w) if w.contains(words)),
                 "{status:?}"
             );
+        }
+    }
+
+    #[test]
+    fn odometry_that_is_missing_among_transforms_is_named() {
+        for (publishing, received, words) in [
+            (Publishing::Nobody, 0, "/tf: no publisher"),
+            (Publishing::Expected, 0, "/tf: no transform from odom"),
+            (
+                Publishing::Expected,
+                7,
+                "/tf: no transform from odom any more",
+            ),
+        ] {
+            let mut waiting = Waiting::default();
+            let odometry = [input("/tf", publishing, received)];
+            waiting.look(&odometry, 0);
+            assert_eq!(waiting.look(&odometry, 3 * S), Status::Waits(words));
         }
     }
 
