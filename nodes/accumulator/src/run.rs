@@ -31,9 +31,9 @@ use supply::Supply;
 /// scan comes; a scan that waits for odometry is looked at as often.
 const TICK: Duration = Duration::from_millis(25);
 
-/// A scan waits this long for odometry past its last beam and, as it is looked at
-/// once a tick, at most 50 ms.
-const ODOMETRY_WAIT: Duration = Duration::from_millis(25);
+/// A scan waits this long for odometry past its last beam: odometry comes ten times a
+/// second at least, and a process that sends it may not run for a while.
+const ODOMETRY_WAIT: Duration = Duration::from_millis(100);
 
 /// Readings of each kind that are kept to take headings and poses from: ten seconds
 /// of odometry at 100 Hz.
