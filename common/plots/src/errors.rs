@@ -77,8 +77,6 @@ struct Series {
     limit: f64,
     /// The least that an axis goes down to: what a truth is good for.
     least: f64,
-    /// No error is above.
-    bound: f64,
     value: fn((f64, f64)) -> f64,
 }
 
@@ -87,14 +85,12 @@ const SERIES: [Series; 2] = [
         name: "position error, m",
         limit: SUCCESS.0,
         least: 0.001,
-        bound: f64::INFINITY,
         value: |(metres, _)| metres,
     },
     Series {
         name: "heading error, °",
         limit: SUCCESS.1,
         least: 0.01,
-        bound: 180.0,
         value: |(_, degrees)| degrees,
     },
 ];
@@ -147,10 +143,7 @@ impl Series {
         let values = judged.iter().filter_map(|judged| judged.off);
         let values = values.map(|off| (self.value)(off).max(self.least));
         let around = [self.limit, 1.5 * self.limit];
-        match Scale::of_decades(values.chain(around)) {
-            Scale::Decades(low, high) => Scale::Decades(low, high.min(self.bound)),
-            even @ Scale::Even(..) => even,
-        }
+        Scale::of_decades(values.chain(around))
     }
 }
 

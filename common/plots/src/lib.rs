@@ -45,6 +45,8 @@ mod shapes;
 mod sheet;
 mod subject;
 mod surface;
+#[cfg(test)]
+mod tests;
 mod theme;
 mod view;
 

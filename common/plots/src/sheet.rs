@@ -20,6 +20,8 @@ pub(super) enum Panel {
 const HEIGHTS: (f64, f64) = (0.4, 0.75);
 const GAP: f64 = 10.0;
 const CAPTION: f64 = 28.0;
+/// A panel is at least this wide.
+const LEAST_WIDTH: f64 = 250.0;
 /// Text of captions, and by how much marks are smaller than in a picture of one scan.
 const SMALL: f64 = 15.0;
 const SMALLER: f64 = 0.85;
@@ -35,7 +37,8 @@ pub(super) fn draw(
     size: Size,
 ) -> Result<Scene, PlotError> {
     let unit = page::unit(size.width);
-    let columns = columns_for(panels.len());
+    let most = page::body_width(size.width) / (LEAST_WIDTH * unit);
+    let columns = columns_for(panels.len(), most as usize);
     let rows = panels.len().div_ceil(columns);
     let gap = GAP * unit;
     let width = (page::body_width(size.width) - gap * (columns - 1) as f64) / columns as f64;
@@ -71,9 +74,10 @@ fn shape(ground: &Ground<'_>, panels: &[Panel], size: Size) -> f64 {
     middle.unwrap_or_default().clamp(HEIGHTS.0, HEIGHTS.1)
 }
 
-/// As many columns as make the sheet a little wider than high.
-fn columns_for(panels: usize) -> usize {
-    ((1.2 * panels as f64).sqrt().ceil() as usize).clamp(1, panels.max(1))
+/// As many columns as make the sheet a little wider than high, if they are legible.
+fn columns_for(panels: usize, most: usize) -> usize {
+    let wide = (1.2 * panels as f64).sqrt().ceil() as usize;
+    wide.min(most).clamp(1, panels.max(1))
 }
 
 fn draw_panel(
@@ -167,7 +171,9 @@ mod tests {
     #[test]
     fn panels_fill_rows_that_are_a_little_wider_than_high() {
         for (panels, columns) in [(1, 1), (2, 2), (3, 2), (4, 3), (12, 4), (64, 9)] {
-            assert_eq!(columns_for(panels), columns, "{panels}");
+            assert_eq!(columns_for(panels, 9), columns, "{panels}");
         }
+        assert_eq!(columns_for(12, 2), 2);
+        assert_eq!(columns_for(12, 0), 1);
     }
 }
