@@ -196,6 +196,10 @@ fn draw_arrow(scene: &mut Scene, (from, to): ((f64, f64), (f64, f64)), role: Rol
             to.1 - size * y - side * size * 0.5 * x,
         )
     };
+    // A rim keeps arrows legible over dark cells.
+    let rim = Color::WHITE.with_opacity(0.75);
+    let width = stroke(role, unit).width;
+    scene.stroke(Path::line(from, to), Stroke::new(rim, width + 1.8 * unit));
     scene.stroke(Path::line(from, to), stroke(role, unit));
     let foot = Path::circle(from, 2.6 * unit);
     scene.fill(foot, stroke(role, unit).color);

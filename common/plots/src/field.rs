@@ -70,7 +70,7 @@ impl<'a> Votes<'a> {
                 verdict: None,
                 says,
             },
-            extent: Extent::of_known(map, rules),
+            extent: Ground { map, rules }.known(),
             truth,
             width: page::COMMON_WIDTH,
         }

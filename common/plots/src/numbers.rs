@@ -52,7 +52,7 @@ impl Numbers {
             let (sin, cos) = (turn * std::f64::consts::TAU).sin_cos();
             let base = (
                 mark.0 + distance * cos,
-                mark.1 + distance * sin + 0.36 * style.size,
+                mark.1 + distance * sin + 0.25 * style.size,
             );
             (base, style.area_of(text, base))
         });

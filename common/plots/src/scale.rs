@@ -57,8 +57,8 @@ impl Scale {
         (low..=high).contains(&value)
     }
 
-    /// The values that are written beside the axis, with their text: about `most`, if it
-    /// is an even one.
+    /// The values that are written beside the axis, with their text: about `most`, and some
+    /// more of decades.
     pub(super) fn ticks(self, most: u32) -> Vec<(f64, String)> {
         let values: Vec<f64> = match self {
             Scale::Even(low, high) => {
@@ -94,7 +94,7 @@ fn decades(low: f64, high: f64, most: u32) -> Vec<f64> {
         let some = powers().filter(|power| power % every == 0);
         let all = some.flat_map(|power| factors.iter().map(move |f| f * 10f64.powi(power)));
         values = all.filter(|value| within.contains(value)).collect();
-        if values.len() <= most as usize {
+        if values.len() <= most as usize + 3 {
             break;
         }
     }
@@ -145,7 +145,7 @@ mod tests {
             texts(Scale::Decades(0.01, 100.0)),
             ["0.01", "0.1", "1", "10", "100"]
         );
-        let few = Scale::Decades(0.001, 1000.0).ticks(4);
+        let few = Scale::Decades(0.001, 1000.0).ticks(3);
         let values: Vec<f64> = few.into_iter().map(|(value, _)| value).collect();
         assert_eq!(values, [0.01, 1.0, 100.0]);
     }
