@@ -126,7 +126,7 @@ fn draw_curve(page: &mut Page, curve: &Curve, (area, (x, y)): (Rect, (Scale, Sca
         bars.add_line(at(point.x, low), at(point.x, high));
         for end in [low, high]
             .into_iter()
-            .filter(|&end| y.holds(end) && low < high)
+            .filter(|&end| !y.is_below(end) && low < high)
         {
             let (end_x, end_y) = at(point.x, end);
             bars.add_line((end_x - 4.0 * unit, end_y), (end_x + 4.0 * unit, end_y));
@@ -143,7 +143,7 @@ fn draw_curve(page: &mut Page, curve: &Curve, (area, (x, y)): (Rect, (Scale, Sca
         return;
     }
     page.legend.add(Sample::Curve(line, shape), &*curve.name);
-    let shown = curve.points.iter().filter(|point| y.holds(point.y));
+    let shown = curve.points.iter().filter(|point| !y.is_below(point.y));
     for point in shown {
         let mark = shape.at(at(point.x, point.y), 4.5 * unit);
         page.scene.fill(mark, line.color);
@@ -153,7 +153,7 @@ fn draw_curve(page: &mut Page, curve: &Curve, (area, (x, y)): (Rect, (Scale, Sca
 /// Whether a point, or its interval, goes on below the axis: a scale of decades has no 0.
 fn is_below(point: &CurvePoint, y: Scale) -> bool {
     let low = point.interval.map_or(point.y, |(low, _)| low);
-    !y.holds(low.min(point.y))
+    y.is_below(low.min(point.y))
 }
 
 /// Names the intervals, and what does not lie on the axis.

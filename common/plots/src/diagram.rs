@@ -199,7 +199,10 @@ fn draw_arrow(scene: &mut Scene, (from, to): ((f64, f64), (f64, f64)), role: Rol
     // A rim keeps arrows legible over dark cells.
     let rim = Color::WHITE.with_opacity(0.75);
     let width = stroke(role, unit).width;
-    scene.stroke(Path::line(from, to), Stroke::new(rim, width + 1.8 * unit));
+    let barbs = Path::polyline([barb(1.0), to, barb(-1.0)]);
+    let around = Stroke::new(rim, width + 1.8 * unit);
+    scene.stroke(Path::line(from, to), around);
+    scene.stroke(barbs.clone(), around);
     scene.stroke(Path::line(from, to), stroke(role, unit));
     let foot = Path::circle(from, 2.6 * unit);
     scene.fill(foot, stroke(role, unit).color);
@@ -207,7 +210,7 @@ fn draw_arrow(scene: &mut Scene, (from, to): ((f64, f64), (f64, f64)), role: Rol
         dash: 0.0,
         ..stroke(role, unit)
     };
-    scene.stroke(Path::polyline([barb(1.0), to, barb(-1.0)]), solid);
+    scene.stroke(barbs, solid);
 }
 
 fn name(legend: &mut Legend, diagram: &Diagram, unit: f64) {

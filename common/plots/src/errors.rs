@@ -128,8 +128,7 @@ impl Series {
                 let y = value.map_or(area.y, height);
                 let shape = match value {
                     None => Some(Shape::Cross),
-                    Some(value) if scale.holds(value) => None,
-                    Some(_) => Some(Shape::Down),
+                    Some(value) => scale.is_below(value).then_some(Shape::Down),
                 };
                 ((x, y), shape)
             };

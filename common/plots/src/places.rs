@@ -66,7 +66,7 @@ fn name(legend: &mut Legend, subject: &Subject) {
     }
     if !subject.shown.is_empty() {
         legend.add(Sample::Robot(theme::BEST), "best place");
-        legend.add(Sample::Ellipse(theme::BEST), "95 % of its position");
+        legend.add(Sample::Ellipse(theme::BEST), "position, 95 %");
     }
     if subject.shown.len() > 1 {
         legend.add(Sample::Robot(theme::OTHER), "other places by rank");
@@ -262,10 +262,7 @@ pub(super) mod tests {
         };
         let one = subject(Pose::IDENTITY);
         let (known, ranks) = names(&one);
-        assert_eq!(
-            known,
-            ["truth", "best place", "95 % of its position", "hit (1)"]
-        );
+        assert_eq!(known, ["truth", "best place", "position, 95 %", "hit (1)"]);
         assert!(ranks.is_empty());
         let mut two = one.clone();
         two.shown.push(Shown {
@@ -274,7 +271,7 @@ pub(super) mod tests {
         });
         two.truth = None;
         let (known, ranks) = names(&two);
-        let expected = ["best place", "95 % of its position", "other places by rank"];
+        let expected = ["best place", "position, 95 %", "other places by rank"];
         assert_eq!(known[..3], expected);
         assert_eq!(known[3..], ["scan at other places", "hit (1)"]);
         assert_eq!(ranks, ["2"]);

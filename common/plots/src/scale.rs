@@ -51,10 +51,13 @@ impl Scale {
         share.clamp(0.0, 1.0)
     }
 
-    /// Whether a value lies on the axis and not beyond its ends.
-    pub(super) fn holds(self, value: f64) -> bool {
-        let (Scale::Even(low, high) | Scale::Decades(low, high)) = self;
-        (low..=high).contains(&value)
+    /// Whether a value lies before the axis' beginning.
+    pub(super) fn is_below(self, value: f64) -> bool {
+        match self {
+            Scale::Even(low, _) => value < low,
+            // Powers of ten are not exact below 1.
+            Scale::Decades(low, _) => value < low * (1.0 - 1e-9),
+        }
     }
 
     /// The values that are written beside the axis, with their text: about `most`, and some
@@ -176,6 +179,6 @@ mod tests {
         assert_eq!(scale.share(10.0), 0.5);
         assert_eq!((scale.share(0.0), scale.share(1e9)), (0.0, 1.0));
         assert_eq!(Scale::Even(2.0, 4.0).share(3.0), 0.5);
-        assert!(scale.holds(1.0) && scale.holds(100.0) && !scale.holds(0.0));
+        assert!(!scale.is_below(1.0) && scale.is_below(0.9) && scale.is_below(0.0));
     }
 }
